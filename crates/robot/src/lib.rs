@@ -1,0 +1,1 @@
+//! Rumbo's robot: one tick from bytes and edges to duty and telemetry.

@@ -1,0 +1,1 @@
+//! Rumbo's experiments: the robot against the plant, metrics, identification.

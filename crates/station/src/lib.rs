@@ -1,0 +1,1 @@
+//! Rumbo's station: link, session and web dashboard.

@@ -1,0 +1,1 @@
+//! Rumbo's bytes: frames, messages, the original's text protocol and its CSV.
