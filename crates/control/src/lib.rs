@@ -1,1 +1,21 @@
-//! Rumbo's control core: maths, estimators, controllers, modes, parameters. No I/O, no clock, no allocation.
+//! Rumbo's control core: everything the robot decides, and nothing it touches.
+//!
+//! Bytes, pins and clocks stay outside: the caller gives the time and what the sensors latched
+//! ([`Inputs`]), and gets back what the wheels, the servo and the sonars are to do ([`Outputs`]). Inside, the flow of
+//! one tick is estimate ([`speed`], [`odometry`], [`range`]) -> [`mode`] -> [`drive`].
+//!
+//! The same inputs give the same bits on every machine: only `+ - * /`, a correctly rounded square root and
+//! the polynomials of [`math`] are used. Nothing here panics, allocates, loops without bound or formats text.
+#![no_std]
+
+pub mod drive;
+pub mod math;
+pub mod mode;
+pub mod odometry;
+pub mod params;
+pub mod pid;
+pub mod range;
+pub mod speed;
+pub mod types;
+
+pub use types::*;

@@ -1,1 +1,6 @@
-//! Rumbo's bytes: frames, messages, the original's text protocol and its CSV.
+//! Rumbo's bytes, in both directions and at both ends: frames, messages, the original's text protocol and its CSV.
+#![no_std]
+
+pub mod message;
+
+pub use message::*;

@@ -1,0 +1,296 @@
+//! The values that cross the border of the core, each with its unit, and the newtypes of raw counts.
+
+use core::ops::{Index, IndexMut};
+
+/// Control ticks per second [Hz].
+pub const TICK_HZ: u32 = 100;
+/// Period of the control tick [us].
+pub const TICK_US: u32 = 1_000_000 / TICK_HZ;
+/// Period of the control tick [s].
+pub const TICK_S: f32 = 1.0 / TICK_HZ as f32;
+/// Time from the latching of the inputs to the outputs taking effect [us].
+pub const OUTPUT_DELAY_US: u32 = 3_000;
+
+/// A side of the robot, looking forward. The original's motor A is the right wheel, B the left one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Left, towards +y.
+    Left,
+    /// Right, towards -y.
+    Right,
+}
+
+/// Both sides, in the order in which they are always processed.
+pub const SIDES: [Side; 2] = [Side::Left, Side::Right];
+
+/// One value for each wheel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wheels<T> {
+    /// The left wheel's.
+    pub left: T,
+    /// The right wheel's.
+    pub right: T,
+}
+
+impl<T> Wheels<T> {
+    /// The same value for both wheels.
+    pub const fn both(value: T) -> Self
+    where
+        T: Copy,
+    {
+        Self { left: value, right: value }
+    }
+
+    /// Applies `f` to each wheel's value.
+    pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> Wheels<U> {
+        Wheels { left: f(self.left), right: f(self.right) }
+    }
+}
+
+impl<T> Index<Side> for Wheels<T> {
+    type Output = T;
+
+    fn index(&self, side: Side) -> &T {
+        match side {
+            Side::Left => &self.left,
+            Side::Right => &self.right,
+        }
+    }
+}
+
+impl<T> IndexMut<Side> for Wheels<T> {
+    fn index_mut(&mut self, side: Side) -> &mut T {
+        match side {
+            Side::Left => &mut self.left,
+            Side::Right => &mut self.right,
+        }
+    }
+}
+
+/// A reading of the robot's free-running microsecond clock. It wraps after 71.6 minutes; differences survive the wrap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Micros(pub u32);
+
+impl Micros {
+    /// Time from `earlier` to `self` [us], right as long as it is below 71.6 minutes.
+    pub const fn since(self, earlier: Micros) -> u32 {
+        self.0.wrapping_sub(earlier.0)
+    }
+
+    /// The instant `us` microseconds later.
+    pub const fn after(self, us: u32) -> Micros {
+        Micros(self.0.wrapping_add(us))
+    }
+}
+
+/// PWM of one wheel, signed: -255 (full backward) to 255 (full forward); 0 releases the bridge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Duty(i16);
+
+impl Duty {
+    /// Full forward.
+    pub const MAX: i16 = 255;
+    /// The bridge released.
+    pub const RELEASED: Duty = Duty(0);
+
+    /// A duty from PWM counts, limited to -255..=255.
+    pub const fn new(counts: i16) -> Duty {
+        if counts > Self::MAX {
+            Duty(Self::MAX)
+        } else if counts < -Self::MAX {
+            Duty(-Self::MAX)
+        } else {
+            Duty(counts)
+        }
+    }
+
+    /// PWM counts, -255..=255.
+    pub const fn counts(self) -> i16 {
+        self.0
+    }
+}
+
+/// What the encoder interrupt of one wheel left at the tick. One Hall channel: the direction is not measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Edges {
+    /// Edges seen since the start, wrapping.
+    pub count: u16,
+    /// Instant of the last edge.
+    pub last: Micros,
+    /// Time between the last edge and the one of the same pole a motor turn (eight edges) before [us];
+    /// 0 until there have been eight.
+    pub turn_us: u32,
+}
+
+/// The three sonars of the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum SonarId {
+    /// Left (or first of a pair).
+    Left = 0,
+    /// Right (or second of a pair).
+    Right = 1,
+    /// In front, on the servo in the final rig.
+    Front = 2,
+}
+
+impl SonarId {
+    /// All sonars, in the order of their numbers.
+    pub const ALL: [SonarId; 3] = [SonarId::Left, SonarId::Right, SonarId::Front];
+}
+
+/// What became of a ping.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Echo {
+    /// The echo line was high for this long [us].
+    Pulse(u32),
+    /// The line rose and did not fall within the reach: nothing in sight.
+    Clear,
+    /// The line never rose, or was already high when the ping was due.
+    Silent,
+}
+
+/// A range as the modes see it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Range {
+    /// Distance from the sonar [m].
+    Valid(f32),
+    /// Nothing within reach.
+    Clear,
+    /// No echo line, or impossible values; also before the first reading.
+    #[default]
+    Faulty,
+}
+
+/// A range and its age.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AgedRange {
+    /// The range.
+    pub range: Range,
+    /// Time since the ping it comes from [s].
+    pub age_s: f32,
+}
+
+impl Default for AgedRange {
+    fn default() -> Self {
+        Self { range: Range::Faulty, age_s: f32::MAX }
+    }
+}
+
+/// Angle of the front sonar's servo [rad]: 0 straight ahead, positive to the left, -pi/2..=pi/2.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ServoAngle(pub f32);
+
+/// Position and heading in the world frame (REP 103).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// Forward of the start [m].
+    pub x_m: f32,
+    /// Left of the start [m].
+    pub y_m: f32,
+    /// Counter-clockwise from x, in (-pi, pi] [rad].
+    pub heading_rad: f32,
+}
+
+/// What latched at the tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Inputs {
+    /// The instant of the tick.
+    pub now: Micros,
+    /// Both encoders.
+    pub encoders: Wheels<Edges>,
+    /// A ping that ended since the last tick.
+    pub echo: Option<(SonarId, Echo)>,
+    /// Battery voltage [V] where a divider is wired; the original has none.
+    pub battery_v: Option<f32>,
+}
+
+/// What takes effect [`OUTPUT_DELAY_US`] after the tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outputs {
+    /// PWM and direction of both wheels.
+    pub drive: Wheels<Duty>,
+    /// Where the front sonar points.
+    pub servo: ServoAngle,
+    /// The sonar to trigger, if any.
+    pub ping: Option<SonarId>,
+}
+
+/// What a mode asks of the wheels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Drive {
+    /// Both bridges released.
+    #[default]
+    Release,
+    /// Open loop: signed fraction of full PWM for each wheel, -1..=1.
+    Duty(Wheels<f32>),
+    /// Wheel speeds [rad/s].
+    WheelSpeed(Wheels<f32>),
+    /// Body velocities.
+    Twist {
+        /// Forward speed [m/s].
+        forward_m_s: f32,
+        /// Yaw rate, counter-clockwise [rad/s].
+        yaw_rad_s: f32,
+    },
+}
+
+/// Why a mode or the supervisor refuses to drive. Faults latch until they are cleared on purpose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Fault {
+    /// No sign of life from the other end of the link.
+    LinkLost = 1,
+    /// The sonar the mode needs is silent or gives impossible values.
+    SonarFaulty = 2,
+    /// The sonar's last good reading is too old to drive on.
+    SonarStale = 3,
+    /// The wall the mode regulates on is out of reach.
+    WallLost = 4,
+    /// The left wheel is driven and its encoder gives no edges.
+    LeftEncoderSilent = 5,
+    /// The right wheel is driven and its encoder gives no edges.
+    RightEncoderSilent = 6,
+    /// The battery is below its lower limit.
+    BatteryLow = 7,
+    /// A non-finite value reached the core.
+    NotFinite = 8,
+    /// A control tick took longer than its period.
+    Overrun = 9,
+}
+
+impl Fault {
+    /// All faults, by number.
+    pub const ALL: [Fault; 9] = [
+        Fault::LinkLost,
+        Fault::SonarFaulty,
+        Fault::SonarStale,
+        Fault::WallLost,
+        Fault::LeftEncoderSilent,
+        Fault::RightEncoderSilent,
+        Fault::BatteryLow,
+        Fault::NotFinite,
+        Fault::Overrun,
+    ];
+
+    /// The fault with this number.
+    pub fn from_number(number: u8) -> Option<Fault> {
+        Self::ALL.into_iter().find(|fault| *fault as u8 == number)
+    }
+
+    /// What it means and what to do, for people.
+    #[cfg(feature = "names")]
+    pub const fn explanation(self) -> &'static str {
+        match self {
+            Fault::LinkLost => "link lost: no heartbeat arrived in time; check the connection, then clear and arm again",
+            Fault::SonarFaulty => "sonar faulty: its echo line is silent or gives impossible values; check its wiring",
+            Fault::SonarStale => "sonar stale: no good reading for too long; is something absorbing the echo?",
+            Fault::WallLost => "wall lost: nothing within the sonar's reach; face the robot to a wall",
+            Fault::LeftEncoderSilent => "left encoder silent: the wheel is driven but does not turn, or its sensor is cut",
+            Fault::RightEncoderSilent => "right encoder silent: the wheel is driven but does not turn, or its sensor is cut",
+            Fault::BatteryLow => "battery low: charge it",
+            Fault::NotFinite => "a value was not a finite number; reset the parameters",
+            Fault::Overrun => "a control tick took too long",
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! What the two ends say to each other, as values. How they look in bytes: [`crate::codec`].
+
+use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::{AgedRange, Duty, Fault, Pose, Wheels};
+
+/// Version of the binary protocol; raised when a change is not understood by the other end.
+pub const PROTOCOL_VERSION: u8 = 1;
+
+/// From the robot to the station.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FromRobot {
+    /// Who speaks; the answer to [`ToRobot::Hello`] and the first frame after a reset.
+    Hello(Hello),
+    /// The fast signals, 25 times a second.
+    Telemetry(Telemetry),
+    /// The slow signals, twice a second.
+    Status(Status),
+    /// Something happened.
+    Event(Event),
+    /// What became of a command.
+    Ack(Ack),
+}
+
+/// From the station to the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ToRobot {
+    /// Asks for [`FromRobot::Hello`].
+    Hello,
+    /// A sign of life.
+    Heartbeat,
+    /// Applied exactly once, acknowledged as often as it arrives.
+    Command {
+        /// Chosen at random by the station when it starts; a new session forgets the old one's numbers.
+        session: u8,
+        /// Consecutive within the session, wrapping.
+        number: u16,
+        /// What to do.
+        command: Command,
+    },
+}
+
+/// Who the robot is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hello {
+    /// [`PROTOCOL_VERSION`] of the robot.
+    pub protocol: u8,
+    /// Hash of the parameter table ([`rumbo_control::params`]); a station with another table must not write parameters.
+    pub schema: u32,
+    /// Hash of the program image; 0 for the native build.
+    pub image: u32,
+    /// Why it started.
+    pub reset: ResetCause,
+}
+
+/// Why the robot's program started.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum ResetCause {
+    /// Power applied, or the start of a simulation.
+    PowerOn = 0,
+    /// The reset button or the serial adapter.
+    External = 1,
+    /// The supply dipped.
+    BrownOut = 2,
+    /// The watchdog: a tick hung.
+    Watchdog = 3,
+}
+
+/// The fast signals.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Telemetry {
+    /// Robot time of the sample [ms], wrapping; the receiver unwraps it.
+    pub t_ms: u16,
+    /// Estimated pose; sent with 1 mm and 2 pi / 65536.
+    pub pose: Pose,
+    /// Wheel speeds [rad/s], the sample of 20 ms before `t_ms` first; sent with 0.02 rad/s.
+    pub wheel_rad_s: [Wheels<f32>; 2],
+    /// Wheel speed references [rad/s]; 0 when driven open loop; sent with 0.001 rad/s.
+    pub wheel_ref_rad_s: Wheels<f32>,
+    /// PWM applied to the wheels.
+    pub duty: Wheels<Duty>,
+    /// State of the mode's machine, 0..=15; names: `ModeId::state_names`.
+    pub state: u8,
+    /// The wheels may turn.
+    pub armed: bool,
+    /// A fault is latched; its cause is in [`Status`] and in an [`Event`].
+    pub faulted: bool,
+    /// Ranges by `SonarId` number; sent with 2.5 mm, ages not sent (0).
+    pub ranges: [AgedRange; 3],
+}
+
+/// The slow signals.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Status {
+    /// The mode selected.
+    pub mode: ModeId,
+    /// The wheels may turn.
+    pub armed: bool,
+    /// The latched fault.
+    pub fault: Option<Fault>,
+    /// Battery [V], where a divider is wired.
+    pub battery_v: Option<f32>,
+    /// The mode's reference: [m] in mode 1, [rad/s] of the left and right wheel in mode 5, both the same in mode 1.
+    pub reference: Wheels<f32>,
+    /// Frames from the station that failed the CRC, wrapping.
+    pub crc_errors: u8,
+    /// Telemetry frames dropped because the link was full, wrapping.
+    pub dropped: u8,
+    /// Control ticks that overran, wrapping.
+    pub overruns: u8,
+    /// Angle of the servo [rad]; sent with 1 degree.
+    pub servo_rad: f32,
+}
+
+/// Something that happened, with the time at which it did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// Robot time [ms], wrapping.
+    pub t_ms: u16,
+    /// What.
+    pub kind: EventKind,
+}
+
+/// What happened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EventKind {
+    /// The wheels may turn.
+    Armed,
+    /// The wheels were released, on command or by a fault.
+    Disarmed,
+    /// A fault latched.
+    Faulted(Fault),
+    /// The latched fault was cleared on command.
+    Cleared(Fault),
+    /// Another mode is active.
+    ModeChanged(ModeId),
+    /// The mode reached its reference.
+    Reached,
+}
+
+/// A command to the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// Release the wheels at once and disarm. Pre-empts everything.
+    Stop,
+    /// Arm and start the mode.
+    Arm,
+    /// Stop the mode and disarm.
+    Disarm,
+    /// Forget the latched fault.
+    ClearFault,
+    /// Select a mode; refused while armed.
+    Mode(ModeId),
+    /// The mode's reference for both wheels: distance [m] in mode 1, speed [rad/s] in mode 5.
+    Reference(f32),
+    /// The mode's reference for each wheel: speed [rad/s] in mode 5.
+    WheelReference(Wheels<f32>),
+    /// A basic movement (mode 0).
+    Move {
+        /// Which one.
+        movement: Movement,
+        /// How fast the (outer) wheel turns.
+        level: Level,
+    },
+    /// Set a parameter of the table.
+    SetParam {
+        /// Its number in [`rumbo_control::params`].
+        id: u8,
+        /// Its new value, in its unit.
+        value: f32,
+    },
+    /// Ask for a parameter; the acknowledgement carries it.
+    GetParam {
+        /// Its number in [`rumbo_control::params`].
+        id: u8,
+    },
+    /// Set every parameter to its default.
+    ResetParams,
+    /// Call the present place the origin.
+    ResetPose,
+}
+
+/// How much of a basic movement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Level {
+    /// Open loop: fraction of full PWM, 0..=1.
+    Duty(f32),
+    /// Closed loop: wheel speed [rad/s], 0 or more.
+    Speed(f32),
+}
+
+/// What became of a command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ack {
+    /// The command's session.
+    pub session: u8,
+    /// The command's number.
+    pub number: u16,
+    /// Applied, with the value in force now (0 where there is none), or refused.
+    pub result: Result<f32, Refusal>,
+}
+
+/// Why a command was refused; the robot goes on as before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Refusal {
+    /// The value is not a finite number.
+    NotFinite = 1,
+    /// The value is outside the allowed range.
+    OutOfRange = 2,
+    /// No such parameter.
+    UnknownParam = 3,
+    /// The mode takes no such command.
+    NotInThisMode = 4,
+    /// Not while armed: disarm first.
+    Armed = 5,
+    /// A fault is latched: clear it first.
+    Faulted = 6,
+    /// The sonar the mode needs gives no good reading.
+    SonarNotReady = 7,
+    /// No heartbeat: the link is not alive.
+    NoLink = 8,
+    /// The command could not be understood.
+    Malformed = 9,
+}
