@@ -1,1 +1,11 @@
 //! Rumbo's station: link, session and web dashboard.
+//!
+//! A [`Target`] is a robot behind a byte link. A session drives it in its own thread, and turns bytes into signals and
+//! commands into bytes; the web side shows the signals in a browser on this machine and passes on what is asked there.
+//! [`serve`] joins the two.
+
+mod serve;
+mod target;
+
+pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeError, serve};
+pub use target::{Choice, MapPose, Obstacle, Scene, Simulation, SonarMount, Target, Truth};

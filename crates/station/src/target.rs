@@ -1,0 +1,141 @@
+//! What a session talks to: a robot behind a byte link, simulated, emulated or real.
+//!
+//! A [`Target`] lives in its own time. The session lets it live for a while ([`Target::advance`]), hands it the
+//! bytes for the robot and takes the bytes that came back. Whatever is known of a simulated robot beyond those bytes comes
+//! through [`Simulation`], and goes to the eyes only: commands and measurements take the link, as with a real robot.
+
+use rumbo_control::Wheels;
+use serde::Serialize;
+
+/// A robot at the other end of a byte link.
+pub trait Target: Send {
+    /// Time the target has lived since its start or last reset [us].
+    fn now_us(&self) -> u64;
+
+    /// Lets the target live for `dt_us` more. A real port has lived by itself and only updates its clock.
+    ///
+    /// # Errors
+    /// When the target is gone for good; the message says what, where and the remedy.
+    fn advance(&mut self, dt_us: u64) -> Result<(), String>;
+
+    /// Hands over bytes for the robot. They are queued at the sending end of the link, in order.
+    ///
+    /// # Errors
+    /// When the target is gone for good; the message says what, where and the remedy.
+    fn send(&mut self, bytes: &[u8]) -> Result<(), String>;
+
+    /// Appends the bytes that arrived from the robot since the last call.
+    fn receive(&mut self, into: &mut Vec<u8>);
+
+    /// Speed of the link [baud], ten bits to a byte.
+    fn baud(&self) -> u32;
+
+    /// What only a simulation can do and tell; `None` for a real robot.
+    fn simulation(&mut self) -> Option<&mut dyn Simulation> {
+        None
+    }
+}
+
+/// The extras of a simulated robot, whose clock starts with [`Target::now_us`] at 0.
+pub trait Simulation {
+    /// What is really the case now.
+    fn truth(&self) -> Truth;
+
+    /// What surrounds the robot and what could be chosen instead; constant between resets.
+    fn scene(&self) -> Scene;
+
+    /// Starts again from time 0 with the choice given.
+    ///
+    /// # Errors
+    /// When the choice names something unknown or unreadable; the simulation then goes on as before.
+    fn reset(&mut self, choice: &Choice) -> Result<(), String>;
+}
+
+/// A place on the map: world frame, x east, y north, counter-clockwise heading (REP 103).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct MapPose {
+    /// [m].
+    pub x_m: f64,
+    /// [m].
+    pub y_m: f64,
+    /// [rad].
+    pub heading_rad: f64,
+}
+
+/// What is really the case with a simulated robot at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Truth {
+    /// Pose in the world.
+    pub pose: MapPose,
+    /// Speeds of the wheels, forward positive [rad/s].
+    pub wheel_rad_s: Wheels<f64>,
+    /// Distance to the nearest thing in each sonar's cone, by `SonarId` number [m]; `None` when nothing is within reach
+    /// or the rig has no such sonar.
+    pub range_m: [Option<f64>; 3],
+    /// Angle of the servo, 0 straight ahead, positive to the left [rad].
+    pub servo_rad: f64,
+    /// The body touches something.
+    pub contact: bool,
+    /// Battery at its terminals [V].
+    pub battery_v: f64,
+}
+
+/// What surrounds a simulated robot.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Scene {
+    /// What is running.
+    pub choice: Choice,
+    /// Names of the scenarios to choose from.
+    pub scenarios: Vec<String>,
+    /// Names of the worlds to choose from.
+    pub worlds: Vec<String>,
+    /// Name of the robot.
+    pub robot: String,
+    /// Pose of the odometry's origin in the world: the estimated pose is drawn from here.
+    pub start: MapPose,
+    /// Walls and boxes.
+    pub obstacles: Vec<Obstacle>,
+    /// Outline of the robot in its own frame [m], closed by itself.
+    pub footprint_m: Vec<[f64; 2]>,
+    /// Distance between the wheels [m].
+    pub base_m: f64,
+    /// Radius of the wheels [m].
+    pub wheel_radius_m: f64,
+    /// The rig's sonars.
+    pub sonars: Vec<SonarMount>,
+}
+
+/// A wall or a box, seen from above.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Obstacle {
+    /// Corners in the world frame [m].
+    pub corners_m: Vec<[f64; 2]>,
+    /// The last corner joins the first: a box. Otherwise a wall along the corners.
+    pub closed: bool,
+}
+
+/// Where a sonar sits and what it can see.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct SonarMount {
+    /// `SonarId` number.
+    pub id: u8,
+    /// Place and direction in the robot's frame; with the servo straight ahead where it is on the servo.
+    pub at: MapPose,
+    /// Half the opening angle of the beam [rad].
+    pub half_angle_rad: f64,
+    /// Longest distance used [m].
+    pub reach_m: f64,
+    /// Turns with the servo.
+    pub on_servo: bool,
+}
+
+/// Which simulation to run.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Choice {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Name of the world; `None` for the scenario's own.
+    pub world: Option<String>,
+    /// Seed of everything random.
+    pub seed: u64,
+}
