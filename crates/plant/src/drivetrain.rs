@@ -1,1 +1,274 @@
-//! To come: drivetrain.
+//! From the bridge's pins to the motion of wheels and body.
+//!
+//! ```text
+//! duty ─► mean current of one PWM period ─► torque ─► dry and viscous friction ─► wheel speeds ─► slip ─► body
+//!                ▲ back-EMF, supply                        ▲ floor under each wheel
+//! ```
+//!
+//! The PWM is on the L298N's *enable* pin: while it is low all four transistors are off, the current returns to the
+//! supply through the diodes, and once it has died the motor coasts. The mean torque is therefore far from linear in
+//! the duty; [`Drivetrain`] uses its closed form (docs/theory/plant.md). The two wheels are coupled through the mass
+//! of the body. Dry friction is exact: it stops a wheel, holds it at a speed of exactly zero, and never reverses it.
+//!
+//! Wheel index 0 is the left wheel, 1 the right. All angles and speeds are the wheels', positive forward.
+
+pub use bridge::Bridge;
+
+use crate::battery::{self, Battery};
+use crate::noise::{Noise, source};
+use crate::params::{self, Params};
+use bridge::{Command, RELEASED, Winding};
+use coupling::{Coupling, turning_share};
+use wander::Wander;
+
+mod bridge;
+mod coupling;
+mod wander;
+
+/// Left or right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Left wheel, motor B of the report.
+    Left,
+    /// Right wheel, motor A of the report.
+    Right,
+}
+
+impl Side {
+    /// Index of this side in arrays of both wheels.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        match self {
+            Self::Left => 0,
+            Self::Right => 1,
+        }
+    }
+}
+
+/// What one step moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Way of the point between the wheels, along the body's x axis, m.
+    pub forward_m: f64,
+    /// Turn, counter-clockwise positive, rad.
+    pub yaw_rad: f64,
+    /// Angle turned by each wheel, rad.
+    pub wheel_rad: [f64; 2],
+}
+
+/// One wheel with its motor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WheelState {
+    /// Angle since the start, rad.
+    pub angle_rad: f64,
+    /// Speed, rad/s.
+    pub speed_rad_s: f64,
+    /// Mean current through the motor over a PWM period, positive for forward torque, A.
+    pub current_a: f64,
+    /// Share of the rolled distance lost to slip at this place.
+    pub slip: f64,
+    command: Command,
+    floor: Wander,
+    slipping: Wander,
+}
+
+/// State of a [`Drivetrain`]: plain numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Left and right wheel.
+    pub wheels: [WheelState; 2],
+    /// Battery.
+    pub battery: battery::State,
+}
+
+/// Parameters in the form the step needs.
+#[derive(Clone, Copy, Debug)]
+pub struct Drivetrain {
+    battery: Battery,
+    noise: Noise,
+    winding: Winding,
+    wheels: [WheelModel; 2],
+    floor: params::Floor,
+    on_floor: bool,
+    coupling: Coupling,
+    base_m: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct WheelModel {
+    params: params::Wheel,
+    back_emf_v_s: f64,
+    torque_n_m_a: f64,
+    inverse_stribeck: f64,
+    floor_knots_per_rad: f64,
+    slip_knots_per_rad: f64,
+}
+
+impl Drivetrain {
+    /// A drivetrain on the floor, or with the wheels in the air.
+    #[must_use]
+    pub fn new(params: &Params, noise: Noise, on_floor: bool) -> Self {
+        let motor = &params.motor;
+        let wheel = |wheel: params::Wheel| WheelModel {
+            params: wheel,
+            back_emf_v_s: motor.back_emf_v_s * wheel.strength,
+            torque_n_m_a: motor.back_emf_v_s * wheel.strength * motor.gear_efficiency,
+            inverse_stribeck: 1.0 / wheel.stribeck_rad_s,
+            floor_knots_per_rad: wheel.radius_m / params.floor.roughness_length_m,
+            slip_knots_per_rad: wheel.radius_m / params.floor.slip_length_m,
+        };
+        Self {
+            battery: Battery::new(&params.battery),
+            noise,
+            winding: Winding::new(params),
+            wheels: [wheel(params.wheels.left), wheel(params.wheels.right)],
+            floor: params.floor,
+            on_floor,
+            coupling: Coupling::new(params, on_floor),
+            base_m: params.body.base_m,
+        }
+    }
+
+    /// At rest, bridges released, at a random angle of the motor shafts.
+    #[must_use]
+    pub fn start(&self) -> State {
+        let wheel = |index: u32| WheelState {
+            angle_rad: self.noise.uniform(source::DRIVETRAIN + index, 0),
+            speed_rad_s: 0.0,
+            current_a: 0.0,
+            slip: 0.0,
+            command: RELEASED,
+            floor: Wander::start(&self.noise, source::DRIVETRAIN + 2 + index),
+            slipping: Wander::start(&self.noise, source::DRIVETRAIN + 4 + index),
+        };
+        State {
+            wheels: [wheel(0), wheel(1)],
+            battery: self.battery.start(),
+        }
+    }
+
+    /// Sets one half of the bridge; it holds until set again.
+    pub fn set_bridge(&self, state: &mut State, side: Side, bridge: Bridge) {
+        let command = &mut state.wheels[side.index()].command;
+        *command = self.winding.command(bridge, *command);
+    }
+
+    /// Terminal voltage of the battery, V.
+    #[must_use]
+    pub fn battery_v(&self, state: &State) -> f64 {
+        self.battery.terminal_v(&state.battery)
+    }
+
+    /// Speed of the body over the ground now: forward m/s, yaw rad/s.
+    #[must_use]
+    pub fn body_speed(&self, state: &State) -> (f64, f64) {
+        let motion = self.motion(
+            state,
+            [state.wheels[0].speed_rad_s, state.wheels[1].speed_rad_s],
+        );
+        (motion.forward_m, motion.yaw_rad)
+    }
+
+    /// Advances by `dt_s` (at most 1 ms for the stated accuracy). `resist_n_m` is dry friction added to each wheel
+    /// from outside, such as a wall the body leans on.
+    pub fn step(&self, state: &mut State, dt_s: f64, resist_n_m: [f64; 2]) -> Motion {
+        let supply_v = self.battery.terminal_v(&state.battery);
+        let old = [state.wheels[0].speed_rad_s, state.wheels[1].speed_rad_s];
+        let (mut supply_a, mut torque_n_m) = (0.0, [0.0; 2]);
+        for i in 0..2 {
+            let wheel = &state.wheels[i];
+            let emf_v = self.wheels[i].back_emf_v_s * wheel.speed_rad_s;
+            let (motor_a, drawn_a) = self.winding.current(&wheel.command, emf_v, supply_v);
+            state.wheels[i].current_a = motor_a;
+            supply_a += drawn_a;
+            torque_n_m[i] = motor_a * self.wheels[i].torque_n_m_a
+                - self.wheels[i].params.viscous_n_m_s * old[i];
+        }
+        self.battery.draw(&mut state.battery, supply_a, dt_s);
+
+        let turning = if old == [0.0; 2] {
+            turning_share(torque_n_m)
+        } else {
+            turning_share(old)
+        };
+        let dry =
+            |i: usize| self.dry_n_m(i, &state.wheels[i], torque_n_m[i], turning) + resist_n_m[i];
+        let new = self
+            .coupling
+            .speeds_after(old, torque_n_m, [dry(0), dry(1)], dt_s);
+
+        let mut wheel_rad = [0.0; 2];
+        for i in 0..2 {
+            wheel_rad[i] = 0.5 * (old[i] + new[i]) * dt_s;
+            self.roll(i, &mut state.wheels[i], new[i], wheel_rad[i]);
+        }
+        self.motion(state, wheel_rad)
+    }
+
+    /// Largest dry friction on a wheel, N m: its own in the direction it turns (or would), plus the floor's.
+    fn dry_n_m(&self, i: usize, wheel: &WheelState, torque_n_m: f64, turning: f64) -> f64 {
+        let model = &self.wheels[i];
+        let towards = if wheel.speed_rad_s == 0.0 {
+            torque_n_m
+        } else {
+            wheel.speed_rad_s
+        };
+        let own = if towards < 0.0 {
+            model.params.coulomb_backward_n_m
+        } else {
+            model.params.coulomb_forward_n_m
+        };
+        let relative = wheel.speed_rad_s * model.inverse_stribeck;
+        let breakaway = 1.0 + (model.params.static_ratio - 1.0) / (1.0 + relative * relative);
+        (own + self.floor_n_m(wheel, turning)) * breakaway
+    }
+
+    fn floor_n_m(&self, wheel: &WheelState, turning: f64) -> f64 {
+        if !self.on_floor {
+            return 0.0;
+        }
+        let here = 1.0 + self.floor.roughness * wheel.floor.value();
+        let here = if here > 0.0 { here } else { 0.0 };
+        self.floor.friction_scale * here * (self.floor.rolling_n_m + self.floor.scrub_n_m * turning)
+    }
+
+    /// Moves one wheel on, with the floor and slip at its new place.
+    fn roll(&self, i: usize, wheel: &mut WheelState, speed_rad_s: f64, rolled_rad: f64) {
+        wheel.speed_rad_s = speed_rad_s;
+        wheel.angle_rad += rolled_rad;
+        if self.on_floor && rolled_rad != 0.0 {
+            let (way, index) = (rolled_rad.abs(), i as u32);
+            let model = &self.wheels[i];
+            wheel.floor.advance(
+                way * model.floor_knots_per_rad,
+                &self.noise,
+                source::DRIVETRAIN + 2 + index,
+            );
+            wheel.slipping.advance(
+                way * model.slip_knots_per_rad,
+                &self.noise,
+                source::DRIVETRAIN + 4 + index,
+            );
+            wheel.slip = self.floor.slip * wheel.slipping.value();
+        }
+    }
+
+    /// The body's motion when the wheels turn by these angles (or at these speeds).
+    fn motion(&self, state: &State, wheel_rad: [f64; 2]) -> Motion {
+        let way =
+            |i: usize| self.wheels[i].params.radius_m * wheel_rad[i] * (1.0 - state.wheels[i].slip);
+        let (left_m, right_m) = if self.on_floor {
+            (way(0), way(1))
+        } else {
+            (0.0, 0.0)
+        };
+        Motion {
+            forward_m: 0.5 * (left_m + right_m),
+            yaw_rad: (right_m - left_m) / self.base_m,
+            wheel_rad,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

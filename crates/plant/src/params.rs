@@ -286,7 +286,7 @@ section! {
         /// Speed (0.17 s per 60 degrees).
         speed_rad_s = 6.2, 0.1 => 50.0, "rad/s";
         /// Largest deflection from straight ahead, either side.
-        travel_rad = 1.5707963267948966, 0.1 => 3.2, "rad";
+        travel_rad = std::f64::consts::FRAC_PI_2, 0.1 => 3.2, "rad";
     }
 }
 
