@@ -14,6 +14,7 @@
 //! Frames follow REP 103: x forward, y left, headings counter-clockwise; SI units.
 
 pub mod battery;
+pub mod cone;
 pub mod contact;
 pub mod draw;
 pub mod drivetrain;

@@ -247,7 +247,7 @@ section! {
 }
 
 section! {
-    /// HC-SR04 rangers, all alike.
+    /// HC-SR04 rangers, all alike. Noise: see `sonar`; beam and incidence are read off the servo sweeps of the lane run.
     Sonar {
         /// From the end of the trigger pulse to the rise of the echo line.
         trigger_to_rise_s = 450e-6, 1e-6 => 5e-3, "s";
@@ -256,23 +256,37 @@ section! {
         /// Shortest range that is measured; nearer things read as this.
         min_range_m = 0.02, 0.0 => 0.5, "m";
         /// Half of the beam's opening.
-        beam_half_angle_rad = 0.26, 0.01 => 1.5, "rad";
+        beam_half_angle_rad = 0.31, 0.01 => 1.5, "rad";
         /// Angle of incidence beyond which a flat face returns no echo.
-        incidence_limit_rad = 0.39, 0.01 => 1.57, "rad";
-        /// Width over which the echo fades about that limit.
-        incidence_soft_rad = 0.05, 0.0 => 0.5, "rad";
-        /// Standard deviation of a reading at rest.
-        noise_rest_m = 0.002, 0.0 => 0.2, "m";
-        /// Standard deviation added in motion.
-        noise_motion_m = 0.006, 0.0 => 0.3, "m";
+        incidence_limit_rad = 0.55, 0.01 => 1.57, "rad";
+        /// Standard deviation of that limit from ping to ping.
+        incidence_soft_rad = 0.06, 0.0 => 0.5, "rad";
+        /// Longest range at which a corner is heard whose faces are turned away.
+        corner_reach_m = 0.6, 0.0 => 6.0, "m";
+        /// Standard deviation of the timing of a clean echo.
+        jitter_m = 0.0004, 0.0 => 0.05, "m";
+        /// Frequency of the burst: a weak echo is timed whole cycles early or late.
+        carrier_hz = 40000.0, 1000.0 => 500000.0, "Hz";
+        /// Standard deviation, before rounding to whole cycles, at rest and at `noise_range_m`.
+        noise_rest_m = 0.0015, 0.0 => 0.2, "m";
+        /// The same in motion.
+        noise_motion_m = 0.0023, 0.0 => 0.3, "m";
+        /// Range at which those two hold.
+        noise_range_m = 0.57, 0.05 => 5.0, "m";
+        /// Power of the range with which they grow.
+        noise_growth = 2.6, 0.0 => 6.0, "1";
         /// Share of readings that are outliers.
         outlier_rate = 0.01, 0.0 => 0.5, "1";
-        /// Typical size of an outlier.
-        outlier_m = 0.1, 0.0 => 3.0, "m";
+        /// Largest outlier, towards shorter ranges, relative to the range.
+        outlier_span = 0.15, 0.0 => 1.0, "1";
         /// Share of pings without an echo though something is in reach.
-        loss_rate = 0.003, 0.0 => 0.9, "1";
-        /// Share of pings that hear another sonar's ping in the air.
+        loss_rate = 0.001, 0.0 => 0.9, "1";
+        /// Chance that a sonar takes the echo of another, looking the same way, for its own.
         crosstalk = 0.5, 0.0 => 1.0, "1";
+        /// The same for the other's second echo: obstacle, body, obstacle.
+        crosstalk_bounce = 0.08, 0.0 => 1.0, "1";
+        /// How far behind the transducers the body reflects that second echo.
+        bounce_behind_m = 0.04, 0.0 => 0.3, "m";
         /// How long the echo line stays high without an echo.
         timeout_high_s = 0.038, 0.001 => 0.3, "s";
         /// Air temperature: speed of sound = 331.3 + 0.606 T.

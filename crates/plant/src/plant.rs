@@ -1,1 +1,433 @@
-//! To come: plant.
+//! The robot in its world: all parts, stepped together.
+//!
+//! Time goes in steps of at most a millisecond, aligned to the millisecond grid and split where the caller stops.
+//! Commands (bridge, servo, trigger) act at the present time; what the robot's pins would see comes back from
+//! [`Plant::advance`] as events in the order of time, each at its microsecond.
+
+use libm::{cos, sin, sqrt};
+
+use crate::contact::{self, Footprint, Pose};
+use crate::drivetrain::{self, Bridge, Drivetrain, Motion, Side};
+use crate::encoder::{self, Encoder};
+use crate::noise::Noise;
+use crate::params::{self, Params};
+use crate::servo;
+use crate::sonar::{self, Sonar, SonarId, View};
+use crate::world::World;
+
+/// Longest physical step, and the grid it keeps to.
+const STEP_US: u64 = 1000;
+
+/// Where a sonar sits on the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mount {
+    /// Ahead of the wheels' axis.
+    pub x_m: f64,
+    /// Left of the middle.
+    pub y_m: f64,
+    /// Where it looks: 0 forward, positive to the left.
+    pub angle_rad: f64,
+    /// True if the servo turns it.
+    pub on_servo: bool,
+}
+
+/// The sonars a robot carries.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rig {
+    /// Left, or the left (or rear left-side) one of a pair.
+    pub left: Option<Mount>,
+    /// Right, or the right one of a pair.
+    pub right: Option<Mount>,
+    /// Front.
+    pub front: Option<Mount>,
+}
+
+impl Rig {
+    fn mounts(&self) -> [Option<Mount>; 3] {
+        [self.left, self.right, self.front]
+    }
+}
+
+/// What a plant is made of.
+#[derive(Clone, Debug, Default)]
+pub struct Setup {
+    /// Physical numbers, already drawn for the seed if they are to be.
+    pub params: Params,
+    /// Sonars.
+    pub rig: Rig,
+    /// What stands around.
+    pub world: World,
+    /// Seed of all noise.
+    pub seed: u64,
+    /// Which robot of the seed, for batches.
+    pub robot: u32,
+    /// True if the robot is held up: wheels turn freely and the body stays.
+    pub wheels_in_air: bool,
+}
+
+/// What does not change during a run.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    drivetrain: Drivetrain,
+    encoders: [Encoder; 2],
+    footprint: Footprint,
+    servo: params::Servo,
+    sonar: Sonar,
+    mounts: [Option<Mount>; 3],
+    world: World,
+    wheels_in_air: bool,
+}
+
+/// Everything that changes: plain numbers, copied to save a moment and to come back to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    now_us: u64,
+    pose: Pose,
+    /// Speed of the body over the last step: forward, yaw.
+    speed: [f64; 2],
+    drivetrain: drivetrain::State,
+    encoders: [encoder::State; 2],
+    contact: contact::State,
+    servo: servo::State,
+    sonars: [sonar::State; 3],
+}
+
+/// What the robot's pins, or an observer, would notice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// An edge of a wheel's Hall sensor.
+    Edge {
+        /// Which wheel.
+        wheel: Side,
+        /// When.
+        at_us: u64,
+        /// Level after it.
+        level: bool,
+    },
+    /// An echo line goes high: the burst leaves.
+    EchoRise {
+        /// Which sonar.
+        sonar: SonarId,
+        /// When.
+        at_us: u64,
+    },
+    /// An echo line goes low: an echo, or the time-out.
+    EchoFall {
+        /// Which sonar.
+        sonar: SonarId,
+        /// When.
+        at_us: u64,
+    },
+    /// The body touches an obstacle it was clear of.
+    Contact {
+        /// When, to the step.
+        at_us: u64,
+        /// Index in [`World::obstacles`].
+        obstacle: usize,
+        /// Closing speed of the point that touched.
+        speed_m_s: f64,
+    },
+}
+
+impl Event {
+    /// When it happens.
+    #[must_use]
+    pub const fn at_us(&self) -> u64 {
+        match *self {
+            Self::Edge { at_us, .. }
+            | Self::EchoRise { at_us, .. }
+            | Self::EchoFall { at_us, .. }
+            | Self::Contact { at_us, .. } => at_us,
+        }
+    }
+}
+
+/// What is so, without any sensor in between.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Truth {
+    /// Time since the start.
+    pub now_us: u64,
+    /// Pose of the middle of the wheels' axis.
+    pub pose: Pose,
+    /// Speed of each wheel (left, right), rad/s, positive forward.
+    pub wheel_rad_s: [f64; 2],
+    /// Angle of each wheel since some start, rad.
+    pub wheel_rad: [f64; 2],
+    /// Speed of the body along its x axis.
+    pub forward_m_s: f64,
+    /// Turn rate of the body, counter-clockwise.
+    pub yaw_rad_s: f64,
+    /// Noise-free range of each sonar by [`SonarId::index`]; `None` where it hears nothing or does not exist.
+    pub range_m: [Option<f64>; 3],
+    /// Terminal voltage of the battery.
+    pub battery_v: f64,
+    /// Current drawn from it.
+    pub battery_a: f64,
+    /// Where the servo points: 0 ahead, positive to the left.
+    pub servo_rad: f64,
+    /// Touches so far.
+    pub contacts: u32,
+    /// True while the body touches something.
+    pub touching: bool,
+}
+
+impl Plant {
+    /// Puts the parts together.
+    #[must_use]
+    pub fn new(setup: Setup) -> Self {
+        let Setup { params, rig, world, seed, robot, wheels_in_air } = setup;
+        let noise = Noise::new(seed, robot);
+        Self {
+            drivetrain: Drivetrain::new(&params, noise, !wheels_in_air),
+            encoders: [0, 1].map(|index| Encoder::new(&params, &noise, index)),
+            footprint: Footprint::new(&params.body, &params.wheels),
+            servo: params.servo,
+            sonar: Sonar::new(&params.sonar, noise),
+            mounts: rig.mounts(),
+            world,
+            wheels_in_air,
+        }
+    }
+
+    /// Time 0, at rest at a pose, bridges released, servo straight ahead.
+    #[must_use]
+    pub fn start(&self, pose: Pose) -> State {
+        let drivetrain = self.drivetrain.start();
+        let encoder = |i: usize| self.encoders[i].start(drivetrain.wheels[i].angle_rad);
+        State {
+            now_us: 0,
+            pose,
+            speed: [0.0; 2],
+            drivetrain,
+            encoders: [encoder(0), encoder(1)],
+            contact: contact::State::default(),
+            servo: servo::State::default(),
+            sonars: [sonar::State::default(); 3],
+        }
+    }
+
+    /// What stands around.
+    #[must_use]
+    pub const fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// Footprint of the body.
+    #[must_use]
+    pub const fn footprint(&self) -> &Footprint {
+        &self.footprint
+    }
+
+    /// Sets one half of the bridge from now on.
+    pub fn set_bridge(&self, state: &mut State, side: Side, bridge: Bridge) {
+        self.drivetrain.set_bridge(&mut state.drivetrain, side, bridge);
+    }
+
+    /// Tells the servo where to point from now on: 0 ahead, positive to the left.
+    pub fn set_servo(&self, state: &mut State, angle_rad: f64) {
+        state.servo.command(&self.servo, angle_rad);
+    }
+
+    /// Ends a trigger pulse now. False if the robot has no such sonar or its echo line is not low: nothing happens then.
+    pub fn trigger(&self, state: &mut State, sonar: SonarId) -> bool {
+        self.view(state, sonar).is_some_and(|view| {
+            self.sonar.trigger(&mut state.sonars, sonar, state.now_us, &self.world, &view)
+        })
+    }
+
+    /// Level of a wheel's Hall sensor now.
+    #[must_use]
+    pub fn encoder_level(&self, state: &State, wheel: Side) -> bool {
+        self.encoders[wheel.index()].level(&state.encoders[wheel.index()])
+    }
+
+    /// Passes time up to `until_us` (nothing happens if that is past), reporting events in the order of time.
+    pub fn advance(&self, state: &mut State, until_us: u64, events: &mut impl FnMut(Event)) {
+        let mut queue = Queue::default();
+        while state.now_us < until_us {
+            let grid_us = (state.now_us / STEP_US + 1) * STEP_US;
+            self.step(state, grid_us.min(until_us), &mut queue, events);
+            queue.flush(events);
+        }
+    }
+
+    fn step(&self, state: &mut State, until_us: u64, queue: &mut Queue, events: &mut impl FnMut(Event)) {
+        let from_us = state.now_us;
+        let step_us = (until_us - from_us) as f64;
+        let dt_s = step_us * 1e-6;
+
+        let before_rad = state.drivetrain.wheels.map(|wheel| wheel.angle_rad);
+        let resistance_n_m = self.footprint.resistance_n_m(&state.contact);
+        let motion = self.drivetrain.step(&mut state.drivetrain, dt_s, resistance_n_m);
+        for wheel in [Side::Left, Side::Right] {
+            let i = wheel.index();
+            let after_rad = state.drivetrain.wheels[i].angle_rad;
+            self.encoders[i].turn(&mut state.encoders[i], before_rad[i], after_rad, |edge| {
+                // Within (from, until]: an edge at the very start belongs to the next microsecond.
+                let into_us = libm::ceil(edge.fraction * step_us).clamp(1.0, step_us);
+                let at_us = from_us + into_us as u64;
+                queue.put(Event::Edge { wheel, at_us, level: edge.level }, events);
+            });
+        }
+        state.servo.step(&self.servo, dt_s);
+        state.now_us = until_us;
+        self.move_body(state, &motion, dt_s, queue, events);
+        for sonar in SonarId::ALL {
+            Sonar::advance(&mut state.sonars[sonar.index()], until_us, |edge| {
+                let at_us = edge.at_us;
+                let event = if edge.level {
+                    Event::EchoRise { sonar, at_us }
+                } else {
+                    Event::EchoFall { sonar, at_us }
+                };
+                queue.put(event, events);
+            });
+        }
+    }
+
+    /// Moves the body along the arc of its wheels, as far as the world lets it.
+    fn move_body(
+        &self,
+        state: &mut State,
+        motion: &Motion,
+        dt_s: f64,
+        queue: &mut Queue,
+        events: &mut impl FnMut(Event),
+    ) {
+        if motion.forward_m == 0.0 && motion.yaw_rad == 0.0 {
+            state.speed = [0.0; 2];
+            return;
+        }
+        let before = state.pose;
+        let middle_rad = before.heading_rad + 0.5 * motion.yaw_rad;
+        let (ahead, across) = (cos(middle_rad), sin(middle_rad));
+        let mut pose = Pose {
+            x_m: before.x_m + motion.forward_m * ahead,
+            y_m: before.y_m + motion.forward_m * across,
+            heading_rad: before.heading_rad + motion.yaw_rad,
+        };
+        let impact = self.footprint.settle(&self.world, &mut state.contact, &before, &mut pose, dt_s);
+        let moved_m = (pose.x_m - before.x_m) * ahead + (pose.y_m - before.y_m) * across;
+        state.speed = [moved_m / dt_s, (pose.heading_rad - before.heading_rad) / dt_s];
+        pose.heading_rad = wrapped(pose.heading_rad);
+        state.pose = pose;
+        if let Some(impact) = impact {
+            let at_us = state.now_us;
+            let event = Event::Contact { at_us, obstacle: impact.obstacle, speed_m_s: impact.speed_m_s };
+            queue.put(event, events);
+        }
+    }
+
+    fn view(&self, state: &State, sonar: SonarId) -> Option<View> {
+        self.mounts[sonar.index()].map(|mount| {
+            let pose = &state.pose;
+            let (s, c) = (sin(pose.heading_rad), cos(pose.heading_rad));
+            let [forward_m_s, yaw_rad_s] = state.speed;
+            let along = forward_m_s - yaw_rad_s * mount.y_m;
+            let across = yaw_rad_s * mount.x_m;
+            let servo_rad = if mount.on_servo { state.servo.angle_rad } else { 0.0 };
+            View {
+                at: [
+                    pose.x_m + c * mount.x_m - s * mount.y_m,
+                    pose.y_m + s * mount.x_m + c * mount.y_m,
+                ],
+                axis_rad: pose.heading_rad + mount.angle_rad + servo_rad,
+                speed_m_s: sqrt(along * along + across * across),
+            }
+        })
+    }
+
+    /// Time, pose and speeds as they are now. Costs one exact cone query per sonar.
+    #[must_use]
+    pub fn truth(&self, state: &State) -> Truth {
+        let range_m = SonarId::ALL.map(|sonar| {
+            self.view(state, sonar).and_then(|view| self.sonar.true_range_m(&self.world, &view))
+        });
+        let [left, right] = &state.drivetrain.wheels;
+        Truth {
+            now_us: state.now_us,
+            pose: state.pose,
+            wheel_rad_s: [left.speed_rad_s, right.speed_rad_s],
+            wheel_rad: [left.angle_rad, right.angle_rad],
+            forward_m_s: state.speed[0],
+            yaw_rad_s: state.speed[1],
+            range_m,
+            battery_v: self.drivetrain.battery_v(&state.drivetrain),
+            battery_a: state.drivetrain.battery.current_a,
+            servo_rad: state.servo.angle_rad,
+            contacts: state.contact.contacts,
+            touching: state.contact.touching,
+        }
+    }
+
+    /// True if the robot was set up with its wheels off the floor.
+    #[must_use]
+    pub const fn wheels_in_air(&self) -> bool {
+        self.wheels_in_air
+    }
+}
+
+impl State {
+    /// Time since the start.
+    #[must_use]
+    pub const fn now_us(&self) -> u64 {
+        self.now_us
+    }
+
+    /// Puts the robot elsewhere, as a hand would: speeds and everything else stay.
+    pub fn place(&mut self, pose: Pose) {
+        self.pose = pose;
+        self.contact.clearance_m = 0.0;
+    }
+}
+
+/// Heading in (-pi, pi] of one at most a turn outside.
+fn wrapped(heading_rad: f64) -> f64 {
+    use core::f64::consts::{PI, TAU};
+    if heading_rad > PI {
+        heading_rad - TAU
+    } else if heading_rad <= -PI {
+        heading_rad + TAU
+    } else {
+        heading_rad
+    }
+}
+
+/// Events of one step, sorted by time; those of the same microsecond keep their order.
+struct Queue {
+    events: [Event; Self::ROOM],
+    used: usize,
+}
+
+impl Default for Queue {
+    fn default() -> Self {
+        let nothing = Event::EchoRise { sonar: SonarId::Left, at_us: 0 };
+        Self { events: [nothing; Self::ROOM], used: 0 }
+    }
+}
+
+impl Queue {
+    /// The robot gives up to four edges per wheel in a step, and two per sonar. If a stranger one gives more, the
+    /// first ones leave early: none is lost.
+    const ROOM: usize = 24;
+
+    fn put(&mut self, event: Event, events: &mut impl FnMut(Event)) {
+        if self.used == Self::ROOM {
+            self.flush(events);
+        }
+        let mut at = self.used;
+        while at > 0 && self.events[at - 1].at_us() > event.at_us() {
+            self.events[at] = self.events[at - 1];
+            at -= 1;
+        }
+        self.events[at] = event;
+        self.used += 1;
+    }
+
+    fn flush(&mut self, events: &mut impl FnMut(Event)) {
+        for &event in &self.events[..self.used] {
+            events(event);
+        }
+        self.used = 0;
+    }
+}

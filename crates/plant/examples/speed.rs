@@ -1,0 +1,59 @@
+//! How fast the plant is: `cargo run --release -p rumbo-plant --example speed`.
+//!
+//! A robot drives about a room with 20 boxes, first without pings, then with its three sonars at 50 pings a second.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use rumbo_plant::contact::Pose;
+use rumbo_plant::drivetrain::{Bridge, Side};
+use rumbo_plant::plant::{Mount, Plant, Rig, Setup};
+use rumbo_plant::sonar::SonarId;
+use rumbo_plant::world::{Block, ShapeError, Wall, World};
+
+const RUN_S: u64 = 2_000;
+
+fn main() -> Result<(), ShapeError> {
+    let mount = |x_m, y_m, angle_rad| Some(Mount { x_m, y_m, angle_rad, on_servo: false });
+    let rig = Rig { left: mount(0.05, 0.07, 1.57), right: mount(0.05, -0.07, -1.57), front: mount(0.11, 0.0, 0.0) };
+    let walls = [[5.0, 5.0], [-5.0, 5.0], [-5.0, -5.0], [5.0, -5.0]];
+    let walls: Vec<Wall> = (0..4)
+        .map(|i| Wall { from_m: walls[i], to_m: walls[(i + 1) % 4], thickness_m: 0.02 })
+        .collect();
+    let blocks: Vec<Block> = (0..20)
+        .map(|i| {
+            let (angle, away_m) = (2.4 * f64::from(i), 1.2 + 0.15 * f64::from(i));
+            Block {
+                center_m: [away_m * libm::cos(angle), away_m * libm::sin(angle)],
+                size_m: [0.4, 0.4],
+                heading_rad: angle,
+            }
+        })
+        .collect();
+    let plant = Plant::new(Setup { rig, world: World::new(&walls, &blocks)?, ..Setup::default() });
+
+    for ping in [false, true] {
+        let mut state = plant.start(Pose::default());
+        let mut events = 0_u64;
+        let started = Instant::now();
+        for tick in 0..RUN_S * 100 {
+            let turn = if tick / 300 % 2 == 0 { 0.05 } else { -0.05 };
+            plant.set_bridge(&mut state, Side::Left, Bridge::Forward(0.5 + turn));
+            plant.set_bridge(&mut state, Side::Right, Bridge::Forward(0.5 - turn));
+            if ping && tick % 2 == 0 {
+                plant.trigger(&mut state, SonarId::ALL[(tick / 2 % 3) as usize]);
+            }
+            plant.advance(&mut state, (tick + 1) * 10_000, &mut |event| events += u64::from(event.at_us() > 0));
+        }
+        let took_s = started.elapsed().as_secs_f64();
+        let truth = black_box(plant.truth(&state));
+        println!(
+            "{:<13} {:6.1} ns per 1 ms step, {:6.0} x real time ({events} events, {} contacts)",
+            if ping { "50 pings/s:" } else { "no ping:" },
+            took_s / (RUN_S * 1000) as f64 * 1e9,
+            RUN_S as f64 / took_s,
+            truth.contacts
+        );
+    }
+    Ok(())
+}
