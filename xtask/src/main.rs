@@ -1,3 +1,145 @@
-//! Chores of the project.
+//! The project's chores, run as `cargo xtask <command>`.
+//!
+//! [`test`] is everything that must hold before a change is merged, [`tidy`] the rules no compiler checks,
+//! [`bench`] the figures of the README. Each prints what it does; none needs anything but cargo to start.
 
-fn main() {}
+use std::process::ExitCode;
+
+mod bench;
+mod lab;
+mod markdown;
+mod project;
+mod test;
+mod tidy;
+
+use project::Project;
+
+const HELP: &str = "\
+The project's chores.
+
+Usage: cargo xtask <command> [options]
+
+Commands:
+  test [--only STEP]...    every check, in order: format, tidy, clippy, docs, tests, dashboard, browser, README
+  tidy                     the rules of ARCHITECTURE.md: dependencies, no_std, files, links
+  bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
+
+Options:
+  --help, -h    this text; after a command, its steps or parts
+
+Examples:
+  cargo xtask test
+  cargo xtask test --only fmt --only clippy
+  cargo xtask tidy
+  cargo xtask bench --only headless
+
+With CI=true in the environment a check that cannot run is a failure, otherwise it is skipped with the remedy.
+Exit status: 0 all well, 1 something failed, 2 wrong usage.";
+
+/// What a command line asks for.
+#[derive(Debug, PartialEq)]
+enum Request {
+    Help(Option<String>),
+    Run { command: String, only: Vec<String> },
+}
+
+fn main() -> ExitCode {
+    let request = match parse(lexopt::Parser::from_env()) {
+        Ok(request) => request,
+        Err(error) => return usage(&error.to_string()),
+    };
+    let (command, only) = match request {
+        Request::Help(command) => {
+            println!("{}", help(command.as_deref()));
+            return ExitCode::SUCCESS;
+        }
+        Request::Run { command, only } => (command, only),
+    };
+    let project = match Project::find() {
+        Ok(project) => project,
+        Err(error) => return failure(&error),
+    };
+    let outcome = match command.as_str() {
+        "test" => test::run(&project, &only),
+        "tidy" if only.is_empty() => tidy::run(&project),
+        "bench" => bench::run(&project, &only),
+        "tidy" => return usage("tidy takes no options"),
+        other => return usage(&format!("unknown command `{other}`")),
+    };
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => failure(&error),
+    }
+}
+
+fn parse(mut args: lexopt::Parser) -> Result<Request, lexopt::Error> {
+    use lexopt::prelude::{Long, Short, Value, ValueExt};
+    let (mut command, mut only, mut help) = (None, Vec::new(), false);
+    while let Some(arg) = args.next()? {
+        match arg {
+            Long("help") | Short('h') => help = true,
+            Long("only") => only.push(args.value()?.string()?),
+            Value(value) if command.is_none() => command = Some(value.string()?),
+            _ => return Err(arg.unexpected()),
+        }
+    }
+    Ok(match command {
+        Some(command) if !help => Request::Run { command, only },
+        command => Request::Help(command),
+    })
+}
+
+fn help(command: Option<&str>) -> String {
+    match command {
+        Some("test") => test::help(),
+        Some("bench") => bench::help(),
+        _ => HELP.to_owned(),
+    }
+}
+
+fn usage(error: &str) -> ExitCode {
+    eprintln!("xtask: {error}; see `cargo xtask --help`");
+    ExitCode::from(2)
+}
+
+fn failure(error: &str) -> ExitCode {
+    eprintln!("xtask: {error}");
+    ExitCode::FAILURE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn request(args: &[&str]) -> Result<Request, String> {
+        parse(lexopt::Parser::from_args(args)).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn several_steps_may_be_chosen() {
+        let chosen = request(&["test", "--only", "fmt", "--only=clippy"]);
+        let only = vec!["fmt".to_owned(), "clippy".to_owned()];
+        assert_eq!(
+            chosen,
+            Ok(Request::Run {
+                command: "test".to_owned(),
+                only
+            })
+        );
+    }
+
+    #[test]
+    fn no_command_and_the_help_flag_ask_for_help() {
+        assert_eq!(request(&[]), Ok(Request::Help(None)));
+        assert_eq!(
+            request(&["bench", "-h"]),
+            Ok(Request::Help(Some("bench".to_owned())))
+        );
+    }
+
+    #[test]
+    fn an_unknown_option_is_an_error() {
+        assert!(request(&["test", "--fast"]).is_err_and(|error| error.contains("--fast")));
+    }
+}

@@ -1,0 +1,204 @@
+//! A running `rumbo lab`, seen from outside: its address, its page, its telemetry, and its end.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc;
+use std::time::Duration;
+
+/// Longest wait for the lab to say where it listens, and for any answer of it.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A lab on a free port without a browser; stopped when dropped.
+pub(crate) struct Lab {
+    child: Child,
+    /// The address it printed, with its one-time token.
+    url: String,
+}
+
+impl Lab {
+    /// Starts `command` with `--no-browser --port 0` added and waits for the address it prints.
+    pub(crate) fn start(mut command: Command) -> Result<Self, String> {
+        command
+            .args(["--no-browser", "--port", "0"])
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped());
+        let mut child = command
+            .spawn()
+            .map_err(|error| format!("cannot start the lab: {error}"))?;
+        let stdout = child.stdout.take();
+        let mut lab = Self {
+            child,
+            url: String::new(),
+        };
+        let (send, receive) = mpsc::channel();
+        // The reader lives as long as the lab, so that the lab never writes to a closed pipe.
+        std::thread::spawn(move || {
+            for line in stdout
+                .into_iter()
+                .flat_map(|stdout| BufReader::new(stdout).lines())
+                .map_while(Result::ok)
+            {
+                if let Some(start) = line.find("http://") {
+                    let url = line[start..].split_whitespace().next().unwrap_or_default();
+                    let _ = send.send(url.to_owned());
+                }
+            }
+        });
+        lab.url = receive
+            .recv_timeout(PATIENCE)
+            .map_err(|_| format!("the lab printed no address within {} s", PATIENCE.as_secs()))?;
+        Ok(lab)
+    }
+
+    /// Its process number.
+    pub(crate) fn pid(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// The address it printed, for a browser.
+    pub(crate) fn url(&self) -> &str {
+        &self.url
+    }
+
+    /// Fetches the page as a browser would: with the token, then with the cookie that the token became.
+    pub(crate) fn page(&self) -> Result<String, String> {
+        Ok(self.enter()?.1)
+    }
+
+    /// Opens the dashboard's WebSocket.
+    pub(crate) fn socket(&self) -> Result<tungstenite::WebSocket<TcpStream>, String> {
+        let (cookie, _) = self.enter()?;
+        let host = self.host()?;
+        let request = tungstenite::ClientRequestBuilder::new(
+            format!("ws://{host}/ws")
+                .parse()
+                .map_err(|error| format!("ws://{host}/ws: {error}"))?,
+        )
+        .with_header("Origin", format!("http://{host}"))
+        .with_header("Cookie", cookie);
+        let (socket, _) = tungstenite::client(request, self.connect()?)
+            .map_err(|error| format!("WebSocket: {error}"))?;
+        Ok(socket)
+    }
+
+    /// The session cookie (empty if the lab needs none) and the page.
+    fn enter(&self) -> Result<(String, String), String> {
+        let mut path = format!("/{}", self.url.splitn(4, '/').nth(3).unwrap_or_default());
+        let mut cookie = String::new();
+        for _ in 0..4 {
+            let answer = self.get(&path, &cookie)?;
+            if let Some(set) = answer.header("set-cookie") {
+                cookie = set.split(';').next().unwrap_or_default().to_owned();
+            }
+            match (answer.status, answer.header("location")) {
+                (200, _) => return Ok((cookie, answer.body)),
+                (301..=308, Some(next)) => path = next.to_owned(),
+                (status, _) => {
+                    return Err(format!(
+                        "GET {path}: status {status}: {}",
+                        answer.body.trim()
+                    ));
+                }
+            }
+        }
+        Err(format!("GET {path}: too many redirections"))
+    }
+
+    fn get(&self, path: &str, cookie: &str) -> Result<Answer, String> {
+        let request = format!(
+            "GET {path} HTTP/1.1\r\nHost: {}\r\nCookie: {cookie}\r\nAccept: text/html\r\nConnection: close\r\n\r\n",
+            self.host()?
+        );
+        let mut stream = self.connect()?;
+        let mut bytes = Vec::new();
+        stream
+            .write_all(request.as_bytes())
+            .and_then(|()| stream.read_to_end(&mut bytes))
+            .map_err(|error| format!("GET {path}: {error}"))?;
+        Answer::parse(&String::from_utf8_lossy(&bytes))
+            .ok_or_else(|| format!("GET {path}: not an HTTP answer"))
+    }
+
+    fn connect(&self) -> Result<TcpStream, String> {
+        let host = self.host()?;
+        let connect = || {
+            let stream = TcpStream::connect(host)?;
+            stream.set_read_timeout(Some(PATIENCE))?;
+            Ok(stream)
+        };
+        connect().map_err(|error: std::io::Error| format!("{host}: {error}"))
+    }
+
+    /// `address:port`.
+    fn host(&self) -> Result<&str, String> {
+        self.url
+            .split('/')
+            .nth(2)
+            .ok_or_else(|| format!("`{}` is not an address", self.url))
+    }
+}
+
+impl Drop for Lab {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// As much of an HTTP answer as is needed here.
+struct Answer {
+    status: u16,
+    headers: Vec<(String, String)>,
+    body: String,
+}
+
+impl Answer {
+    fn parse(text: &str) -> Option<Self> {
+        let (head, body) = text.split_once("\r\n\r\n")?;
+        let mut lines = head.lines();
+        let status = lines.next()?.split(' ').nth(1)?.parse().ok()?;
+        let headers = lines
+            .filter_map(|line| line.split_once(':'))
+            .map(|(name, value)| (name.to_lowercase(), value.trim().to_owned()))
+            .collect();
+        Some(Self {
+            status,
+            headers,
+            body: body.to_owned(),
+        })
+    }
+
+    fn header(&self, name: &str) -> Option<&str> {
+        self.headers
+            .iter()
+            .find(|(known, _)| known == name)
+            .map(|(_, value)| value.as_str())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_is_read_whatever_the_case_of_its_headers() {
+        let answer = Answer::parse(
+            "HTTP/1.1 303 See Other\r\nSet-Cookie: a=b; HttpOnly\r\nlocation: /\r\n\r\nbody",
+        );
+        let answer = answer.expect("a valid answer");
+        assert_eq!(
+            (answer.status, answer.header("set-cookie")),
+            (303, Some("a=b; HttpOnly"))
+        );
+        assert_eq!(
+            (answer.header("location"), answer.body.as_str()),
+            (Some("/"), "body")
+        );
+    }
+
+    #[test]
+    fn something_else_is_not_an_answer() {
+        assert!(Answer::parse("hello").is_none());
+    }
+}

@@ -1,0 +1,156 @@
+//! Where the project is, its files, and how programs are run in it.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+
+/// The checkout that the chores work on.
+pub(crate) struct Project {
+    /// Folder of the root `Cargo.toml`.
+    pub(crate) root: PathBuf,
+    /// Where cargo puts what it builds.
+    pub(crate) target: PathBuf,
+    /// `cargo metadata` without dependencies.
+    pub(crate) metadata: Value,
+    /// `CI=true` is set: what cannot be checked is a failure.
+    pub(crate) ci: bool,
+}
+
+impl Project {
+    /// The project that this program was built from.
+    pub(crate) fn find() -> Result<Self, String> {
+        let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let root = here.parent().unwrap_or(here).to_owned();
+        let metadata = metadata(&root.join("Cargo.toml"))?;
+        let target = metadata["target_directory"]
+            .as_str()
+            .ok_or("cargo metadata gives no target directory")?
+            .into();
+        let ci = std::env::var("CI").is_ok_and(|value| value == "true" || value == "1");
+        Ok(Self {
+            root,
+            target,
+            metadata,
+            ci,
+        })
+    }
+
+    /// A program started in the project's root.
+    pub(crate) fn command(&self, program: impl AsRef<OsStr>) -> Command {
+        let mut command = Command::new(program);
+        command.current_dir(&self.root);
+        command
+    }
+
+    /// The cargo that runs this program, started in the project's root.
+    pub(crate) fn cargo(&self, args: &[&str]) -> Command {
+        let mut command = self.command(cargo_program());
+        command.args(args);
+        command
+    }
+
+    /// Builds the `rumbo` binary as users get it (does nothing when it is fresh) and says where it is.
+    pub(crate) fn release_binary(&self) -> Result<PathBuf, String> {
+        run(&mut self.cargo(&["build", "--release", "--locked"]))?;
+        Ok(self.release_binary_path())
+    }
+
+    /// Where [`Self::release_binary`] puts it.
+    pub(crate) fn release_binary_path(&self) -> PathBuf {
+        let name = format!("rumbo{}", std::env::consts::EXE_SUFFIX);
+        self.target.join("release").join(name)
+    }
+
+    /// Paths, relative to the root, of the files under version control or about to be.
+    pub(crate) fn files(&self) -> Result<Vec<PathBuf>, String> {
+        let list = output(self.command("git").args([
+            "ls-files",
+            "-z",
+            "--cached",
+            "--others",
+            "--exclude-standard",
+        ]))?;
+        let mut files: Vec<PathBuf> = list
+            .split('\0')
+            .filter(|path| !path.is_empty())
+            .map(PathBuf::from)
+            .collect();
+        files.retain(|path| self.root.join(path).is_file());
+        files.sort();
+        files.dedup();
+        Ok(files)
+    }
+}
+
+/// `cargo metadata --no-deps` of the workspace of `manifest`.
+pub(crate) fn metadata(manifest: &Path) -> Result<Value, String> {
+    let mut command = Command::new(cargo_program());
+    command
+        .args([
+            "metadata",
+            "--no-deps",
+            "--format-version",
+            "1",
+            "--manifest-path",
+        ])
+        .arg(manifest);
+    serde_json::from_str(&output(&mut command)?).map_err(|error| format!("cargo metadata: {error}"))
+}
+
+/// Runs a program to its end with its output shown; an error says which failed and how.
+pub(crate) fn run(command: &mut Command) -> Result<(), String> {
+    let status = command
+        .stdin(Stdio::null())
+        .status()
+        .map_err(|error| format!("{}: {error}", shown(command)))?;
+    if status.success() {
+        Ok(())
+    } else {
+        Err(format!("`{}` failed: {status}", shown(command)))
+    }
+}
+
+/// Runs a program to its end and gives what it wrote to its standard output.
+pub(crate) fn output(command: &mut Command) -> Result<String, String> {
+    let output = command
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| format!("{}: {error}", shown(command)))?;
+    if output.status.success() {
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    } else {
+        let errors = String::from_utf8_lossy(&output.stderr);
+        Err(format!(
+            "`{}` failed: {}\n{}",
+            shown(command),
+            output.status,
+            errors.trim_end()
+        ))
+    }
+}
+
+/// The place of a program on the search path.
+pub(crate) fn find_program(name: &str) -> Option<PathBuf> {
+    let paths = std::env::var_os("PATH")?;
+    std::env::split_paths(&paths)
+        .map(|folder| folder.join(name))
+        .find(|program| program.is_file())
+}
+
+/// A command as one would type it.
+pub(crate) fn shown(command: &Command) -> String {
+    let program = Path::new(command.get_program())
+        .file_name()
+        .unwrap_or(command.get_program());
+    let words: Vec<_> = std::iter::once(program)
+        .chain(command.get_args())
+        .map(|word| word.to_string_lossy().into_owned())
+        .collect();
+    words.join(" ")
+}
+
+fn cargo_program() -> std::ffi::OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
+}

@@ -1,0 +1,255 @@
+//! `cargo xtask test`: every check, in order, each with its time and result, and a summary.
+//!
+//! A step that lacks a tool installs it where it can (Debian packages as root, Node packages with `npm ci`), else it
+//! is skipped with the remedy; with `CI=true` that is a failure. Debug builds serve the tests, one release build the
+//! browser and the README, so nothing is built twice in the same way.
+
+mod readme;
+mod tools;
+mod web;
+
+use std::time::{Duration, Instant};
+
+pub(crate) use tools::installed_chromium;
+
+use crate::project::{Project, run as run_command};
+use crate::tidy;
+
+/// How a step ended.
+#[derive(Debug, PartialEq)]
+enum Outcome {
+    Passed,
+    /// With what is wrong.
+    Failed(String),
+    /// With what is missing and the remedy.
+    Skipped(String),
+}
+
+/// Why a step did not pass.
+enum Stop {
+    /// The check ran, or should have run, and failed.
+    Failed(String),
+    /// A tool is missing and cannot be installed from here; says which and how to get it.
+    Missing(String),
+}
+
+impl From<String> for Stop {
+    fn from(error: String) -> Self {
+        Self::Failed(error)
+    }
+}
+
+struct Step {
+    name: &'static str,
+    what: &'static str,
+    check: fn(&Project) -> Result<(), Stop>,
+}
+
+const STEPS: [Step; 9] = [
+    Step {
+        name: "fmt",
+        what: "the code is formatted",
+        check: fmt,
+    },
+    Step {
+        name: "tidy",
+        what: "the rules of ARCHITECTURE.md hold",
+        check: rules,
+    },
+    Step {
+        name: "clippy",
+        what: "no warning from the compiler or clippy",
+        check: clippy,
+    },
+    Step {
+        name: "doc",
+        what: "the API documentation builds without a warning",
+        check: doc,
+    },
+    Step {
+        name: "test",
+        what: "the tests of all crates",
+        check: tests,
+    },
+    Step {
+        name: "build",
+        what: "the rumbo binary, as users build it",
+        check: build,
+    },
+    Step {
+        name: "web",
+        what: "the types of the dashboard",
+        check: web::types,
+    },
+    Step {
+        name: "browser",
+        what: "the dashboard in a real browser",
+        check: web::browser,
+    },
+    Step {
+        name: "readme",
+        what: "the commands of the README",
+        check: readme::check,
+    },
+];
+
+/// Text of `cargo xtask test --help`.
+pub(crate) fn help() -> String {
+    let mut text = String::from("Usage: cargo xtask test [--only STEP]...\n\nSteps, in order:\n");
+    for step in &STEPS {
+        text += &format!("  {:<8} {}\n", step.name, step.what);
+    }
+    text + "\nExamples:\n  cargo xtask test\n  cargo xtask test --only fmt --only clippy\n  CI=true cargo xtask test"
+}
+
+/// Runs the steps named in `only` (all if empty); true if none failed.
+pub(crate) fn run(project: &Project, only: &[String]) -> Result<bool, String> {
+    if let Some(unknown) = only
+        .iter()
+        .find(|name| STEPS.iter().all(|step| step.name != *name))
+    {
+        let known: Vec<_> = STEPS.iter().map(|step| step.name).collect();
+        return Err(format!("no step `{unknown}`; steps: {}", known.join(", ")));
+    }
+    let mut results = Vec::new();
+    for step in STEPS
+        .iter()
+        .filter(|step| only.is_empty() || only.iter().any(|name| name == step.name))
+    {
+        println!("\n==> {}: {}", step.name, step.what);
+        let start = Instant::now();
+        let outcome = judge((step.check)(project), project.ci);
+        let time = start.elapsed();
+        println!("<== {}", line(step.name, &outcome, time));
+        results.push((step.name, outcome, time));
+    }
+    println!("\nSummary");
+    for (name, outcome, time) in &results {
+        println!("  {}", line(name, outcome, *time));
+    }
+    println!("{}", tally(results.iter().map(|(_, outcome, _)| outcome)));
+    Ok(!results
+        .iter()
+        .any(|(_, outcome, _)| matches!(outcome, Outcome::Failed(_))))
+}
+
+fn judge(result: Result<(), Stop>, ci: bool) -> Outcome {
+    match result {
+        Ok(()) => Outcome::Passed,
+        Err(Stop::Failed(error)) => Outcome::Failed(error),
+        Err(Stop::Missing(remedy)) if ci => Outcome::Failed(format!("not checked: {remedy}")),
+        Err(Stop::Missing(remedy)) => Outcome::Skipped(remedy),
+    }
+}
+
+fn line(name: &str, outcome: &Outcome, time: Duration) -> String {
+    let (word, why) = match outcome {
+        Outcome::Passed => ("passed", ""),
+        Outcome::Failed(error) => ("FAILED", error.as_str()),
+        Outcome::Skipped(remedy) => ("skipped", remedy.as_str()),
+    };
+    format!("{name:<8} {word:<7} {:>6.1} s  {why}", time.as_secs_f64())
+        .trim_end()
+        .to_owned()
+}
+
+fn tally<'a>(outcomes: impl Iterator<Item = &'a Outcome>) -> String {
+    let (mut passed, mut failed, mut skipped) = (0, 0, 0);
+    for outcome in outcomes {
+        match outcome {
+            Outcome::Passed => passed += 1,
+            Outcome::Failed(_) => failed += 1,
+            Outcome::Skipped(_) => skipped += 1,
+        }
+    }
+    format!("{passed} passed, {failed} failed, {skipped} skipped")
+}
+
+fn fmt(project: &Project) -> Result<(), Stop> {
+    tools::component(project, "fmt", "rustfmt")?;
+    Ok(run_command(
+        &mut project.cargo(&["fmt", "--all", "--check"]),
+    )?)
+}
+
+fn rules(project: &Project) -> Result<(), Stop> {
+    if tidy::run(project)? {
+        Ok(())
+    } else {
+        Err(Stop::Failed("see the findings above".to_owned()))
+    }
+}
+
+/// The robot's crates are checked a second time as the firmware sees them, without their host-only features.
+fn clippy(project: &Project) -> Result<(), Stop> {
+    tools::component(project, "clippy", "clippy")?;
+    const DENY: [&str; 3] = ["--", "-D", "warnings"];
+    let whole = ["clippy", "--workspace", "--all-targets", "--locked"];
+    run_command(&mut project.cargo(&[&whole[..], &DENY].concat()))?;
+    let robot = [
+        "clippy",
+        "-p",
+        "rumbo-control",
+        "-p",
+        "rumbo-wire",
+        "-p",
+        "rumbo-robot",
+        "--locked",
+    ];
+    Ok(run_command(
+        &mut project.cargo(&[&robot[..], &DENY].concat()),
+    )?)
+}
+
+fn doc(project: &Project) -> Result<(), Stop> {
+    let mut doc = project.cargo(&["doc", "--workspace", "--no-deps", "--locked"]);
+    Ok(run_command(doc.env("RUSTDOCFLAGS", "-D warnings"))?)
+}
+
+fn tests(project: &Project) -> Result<(), Stop> {
+    Ok(run_command(&mut project.cargo(&[
+        "test",
+        "--workspace",
+        "--no-fail-fast",
+        "--locked",
+    ]))?)
+}
+
+fn build(project: &Project) -> Result<(), Stop> {
+    project.release_binary()?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_closing_line_counts_every_step() {
+        let outcomes = [
+            Outcome::Passed,
+            Outcome::Failed("x".to_owned()),
+            Outcome::Passed,
+            Outcome::Skipped("y".to_owned()),
+        ];
+        assert_eq!(tally(outcomes.iter()), "2 passed, 1 failed, 1 skipped");
+    }
+
+    #[test]
+    fn a_missing_tool_is_a_skip_at_home_and_a_failure_in_ci() {
+        let missing = || Err(Stop::Missing("install it".to_owned()));
+        assert_eq!(
+            judge(missing(), false),
+            Outcome::Skipped("install it".to_owned())
+        );
+        assert_eq!(
+            judge(missing(), true),
+            Outcome::Failed("not checked: install it".to_owned())
+        );
+    }
+
+    #[test]
+    fn every_step_is_in_the_help() {
+        assert!(STEPS.iter().all(|step| help().contains(step.what)));
+    }
+}

@@ -1,0 +1,101 @@
+//! Tools that the checks need: found, installed where that is possible, else named with the remedy.
+
+use std::path::{Path, PathBuf};
+
+use super::Stop;
+use crate::project::{Project, find_program, output, run};
+
+/// Makes sure that `cargo <subcommand>` exists; rustup installs the component otherwise.
+pub(crate) fn component(project: &Project, subcommand: &str, component: &str) -> Result<(), Stop> {
+    if output(&mut project.cargo(&[subcommand, "--version"])).is_ok() {
+        return Ok(());
+    }
+    let remedy = format!("cargo {subcommand} is missing: `rustup component add {component}`");
+    let rustup = find_program("rustup").ok_or_else(|| Stop::Missing(remedy.clone()))?;
+    run(project
+        .command(rustup)
+        .args(["component", "add", component]))
+    .map_err(|_| Stop::Missing(remedy))
+}
+
+/// The browser of the environment variable `CHROMIUM`, or an installed one; installs Debian's otherwise.
+pub(crate) fn chromium(project: &Project) -> Result<PathBuf, Stop> {
+    if let Some(path) = std::env::var_os("CHROMIUM").map(PathBuf::from) {
+        let error = || Stop::Failed(format!("CHROMIUM={} is not a file", path.display()));
+        return if path.is_file() {
+            Ok(path)
+        } else {
+            Err(error())
+        };
+    }
+    installed_chromium().map_or_else(
+        || {
+            program(
+                project,
+                "chromium",
+                &["chromium"],
+                "or set CHROMIUM to the path of a Chromium",
+            )
+        },
+        Ok,
+    )
+}
+
+/// A Chromium on the search path.
+pub(crate) fn installed_chromium() -> Option<PathBuf> {
+    ["chromium", "chromium-browser", "google-chrome"]
+        .into_iter()
+        .find_map(find_program)
+}
+
+/// Node and npm, with the packages of `web/package-lock.json` installed.
+pub(crate) fn node(project: &Project) -> Result<PathBuf, Stop> {
+    let node = program(project, "node", &["nodejs", "npm"], "Node 20 or newer")?;
+    let npm = program(project, "npm", &["npm"], "it comes with Node")?;
+    let web = project.root.join("web");
+    if !up_to_date(
+        &web.join("node_modules/.package-lock.json"),
+        &web.join("package-lock.json"),
+    ) {
+        run(project
+            .command(npm)
+            .current_dir(&web)
+            .args(["ci", "--no-audit", "--no-fund"]))?;
+    }
+    Ok(node)
+}
+
+/// A program on the search path; as root on Debian, `packages` are installed to get it.
+fn program(project: &Project, name: &str, packages: &[&str], hint: &str) -> Result<PathBuf, Stop> {
+    if let Some(path) = find_program(name) {
+        return Ok(path);
+    }
+    let remedy = format!(
+        "{name} is missing: `apt-get install {}` as root ({hint})",
+        packages.join(" ")
+    );
+    let (Some(apt), true) = (find_program("apt-get"), is_root()) else {
+        return Err(Stop::Missing(remedy));
+    };
+    let install = run(project.command(&apt).args(["-qq", "update"])).and_then(|()| {
+        run(project
+            .command(&apt)
+            .env("DEBIAN_FRONTEND", "noninteractive")
+            .args(["-qq", "install", "--yes", "--no-install-recommends"])
+            .args(packages))
+    });
+    match (install, find_program(name)) {
+        (Ok(()), Some(path)) => Ok(path),
+        (Err(error), _) => Err(Stop::Missing(format!("{remedy}; {error}"))),
+        _ => Err(Stop::Missing(remedy)),
+    }
+}
+
+fn is_root() -> bool {
+    output(std::process::Command::new("id").arg("-u")).is_ok_and(|id| id.trim() == "0")
+}
+
+fn up_to_date(product: &Path, source: &Path) -> bool {
+    let time = |path: &Path| path.metadata().and_then(|data| data.modified()).ok();
+    time(product).is_some_and(|made| time(source).is_some_and(|wanted| made >= wanted))
+}

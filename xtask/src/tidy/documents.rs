@@ -1,0 +1,140 @@
+//! Documents: relative links reach a file and a heading, decision records are numbered without gaps.
+
+use super::{Finding, Tree};
+use crate::markdown::Markdown;
+
+/// Folder of the decision records.
+const RECORDS: &str = "docs/adr/";
+
+/// Checks all Markdown files.
+pub(crate) fn check(tree: &Tree) -> Vec<Finding> {
+    let mut findings = records(tree);
+    for (path, text) in tree.texts(|path| path.ends_with(".md") && !path.contains("node_modules/"))
+    {
+        for (line, target) in Markdown::parse(text).links {
+            if let Some(what) = broken(tree, path, &target) {
+                findings.push(Finding::error(path, line, what));
+            }
+        }
+    }
+    findings
+}
+
+/// What is wrong with a link of the file `from`, if anything; addresses of other sites are not followed.
+fn broken(tree: &Tree, from: &str, target: &str) -> Option<String> {
+    if target.contains("://") || target.starts_with("mailto:") {
+        return None;
+    }
+    let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+    let path = if file.is_empty() {
+        from.to_owned()
+    } else {
+        resolve(from, file)
+    };
+    if !tree.has_file(&path) && !tree.has_folder(&path) {
+        return Some(format!(
+            "the link `{target}` leads to `{path}`, which is not in the project"
+        ));
+    }
+    let headings = |text| Markdown::parse(text).anchors;
+    let missing = !anchor.is_empty()
+        && path.ends_with(".md")
+        && !tree
+            .text(&path)
+            .map(headings)
+            .unwrap_or_default()
+            .iter()
+            .any(|known| known == anchor);
+    missing.then(|| format!("the link `{target}` names a heading that `{path}` does not have"))
+}
+
+/// The path that a link `target` in the file `from` means, relative to the root.
+fn resolve(from: &str, target: &str) -> String {
+    let mut folders: Vec<&str> = from.split('/').collect();
+    folders.pop();
+    for part in target.split('/') {
+        match part {
+            "" | "." => {}
+            ".." => drop(folders.pop()),
+            folder => folders.push(folder),
+        }
+    }
+    folders.join("/")
+}
+
+/// Records are named `0001-title.md`, numbered without gaps, and start with `# 0001: Title`.
+fn records(tree: &Tree) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let records = tree.texts(|path| path.starts_with(RECORDS) && path != "docs/adr/README.md");
+    for (expected, (path, text)) in (1..).zip(records) {
+        let number = path[RECORDS.len()..].split('-').next().unwrap_or_default();
+        let wanted = format!("{expected:04}");
+        if number != wanted {
+            findings.push(Finding::error(
+                path,
+                1,
+                format!("decision record numbered `{number}`; expected {wanted}"),
+            ));
+        } else if !text.starts_with(&format!("# {wanted}: ")) {
+            findings.push(Finding::error(
+                path,
+                1,
+                format!("a decision record starts with `# {wanted}: title`"),
+            ));
+        }
+    }
+    findings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(files: &[(&str, &str)]) -> Vec<String> {
+        check(&Tree::of(files))
+            .iter()
+            .map(Finding::to_string)
+            .collect()
+    }
+
+    #[test]
+    fn links_to_files_folders_and_headings_are_followed() {
+        let readme = "[a](docs/a.md#the-end) [b](docs) [c](#top)\n\n# Top\n";
+        assert_eq!(
+            found(&[
+                ("README.md", readme),
+                ("docs/a.md", "# The end\n[up](../README.md)\n")
+            ]),
+            [""; 0]
+        );
+    }
+
+    #[test]
+    fn a_link_to_nowhere_is_found_with_its_line() {
+        let found = found(&[("docs/a.md", "# A\n\n[b](b.md)\n")]);
+        assert_eq!(found.len(), 1);
+        assert!(
+            found[0].starts_with("docs/a.md:3: the link `b.md` leads to `docs/b.md`"),
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn a_link_to_a_missing_heading_is_found() {
+        assert!(found(&[("a.md", "[b](#b)\n")])[0].contains("names a heading"));
+    }
+
+    #[test]
+    fn records_are_numbered_without_gaps() {
+        let first = ("docs/adr/0001-records.md", "# 0001: Records\n");
+        assert_eq!(
+            found(&[first, ("docs/adr/0002-link.md", "# 0002: Link\n")]),
+            [""; 0]
+        );
+        assert!(
+            found(&[first, ("docs/adr/0003-link.md", "# 0003: Link\n")])[0]
+                .contains("expected 0002")
+        );
+        assert!(found(&[("docs/adr/0001-records.md", "# Records\n")])[0].contains("starts with"));
+    }
+}
