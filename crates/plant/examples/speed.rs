@@ -14,11 +14,26 @@ use rumbo_plant::world::{Block, ShapeError, Wall, World};
 const RUN_S: u64 = 2_000;
 
 fn main() -> Result<(), ShapeError> {
-    let mount = |x_m, y_m, angle_rad| Some(Mount { x_m, y_m, angle_rad, on_servo: false });
-    let rig = Rig { left: mount(0.05, 0.07, 1.57), right: mount(0.05, -0.07, -1.57), front: mount(0.11, 0.0, 0.0) };
+    let mount = |x_m, y_m, angle_rad| {
+        Some(Mount {
+            x_m,
+            y_m,
+            angle_rad,
+            on_servo: false,
+        })
+    };
+    let rig = Rig {
+        left: mount(0.05, 0.07, 1.57),
+        right: mount(0.05, -0.07, -1.57),
+        front: mount(0.11, 0.0, 0.0),
+    };
     let walls = [[5.0, 5.0], [-5.0, 5.0], [-5.0, -5.0], [5.0, -5.0]];
     let walls: Vec<Wall> = (0..4)
-        .map(|i| Wall { from_m: walls[i], to_m: walls[(i + 1) % 4], thickness_m: 0.02 })
+        .map(|i| Wall {
+            from_m: walls[i],
+            to_m: walls[(i + 1) % 4],
+            thickness_m: 0.02,
+        })
         .collect();
     let blocks: Vec<Block> = (0..20)
         .map(|i| {
@@ -30,20 +45,27 @@ fn main() -> Result<(), ShapeError> {
             }
         })
         .collect();
-    let plant = Plant::new(Setup { rig, world: World::new(&walls, &blocks)?, ..Setup::default() });
+    let plant = Plant::new(Setup {
+        rig,
+        world: World::new(&walls, &blocks)?,
+        ..Setup::default()
+    });
 
     for ping in [false, true] {
         let mut state = plant.start(Pose::default());
         let mut events = 0_u64;
         let started = Instant::now();
         for tick in 0..RUN_S * 100 {
-            let turn = if tick / 300 % 2 == 0 { 0.05 } else { -0.05 };
-            plant.set_bridge(&mut state, Side::Left, Bridge::Forward(0.5 + turn));
-            plant.set_bridge(&mut state, Side::Right, Bridge::Forward(0.5 - turn));
+            // Circles of about half a metre, each tick another duty as a controller would command.
+            let ripple = 0.01 * (tick % 7) as f64;
+            plant.set_bridge(&mut state, Side::Left, Bridge::Forward(0.4 + ripple));
+            plant.set_bridge(&mut state, Side::Right, Bridge::Forward(0.6 - ripple));
             if ping && tick % 2 == 0 {
                 plant.trigger(&mut state, SonarId::ALL[(tick / 2 % 3) as usize]);
             }
-            plant.advance(&mut state, (tick + 1) * 10_000, &mut |event| events += u64::from(event.at_us() > 0));
+            plant.advance(&mut state, (tick + 1) * 10_000, &mut |event| {
+                events += u64::from(event.at_us() > 0)
+            });
         }
         let took_s = started.elapsed().as_secs_f64();
         let truth = black_box(plant.truth(&state));

@@ -105,7 +105,9 @@ pub fn nearest(world: &World, cone: &Cone, hearing: &Hearing) -> Option<Return> 
         query.candidates(obstacle, |candidate| {
             // Both faces at a corner propose it: the one that faces the apex more counts.
             let better = candidate.range_m < limit_m
-                || best.is_none_or(|best| candidate.range_m == limit_m && candidate.facing > best.facing);
+                || best.is_none_or(|best| {
+                    candidate.range_m == limit_m && candidate.facing > best.facing
+                });
             if better
                 && candidate.range_m <= limit_m
                 && query.hears(&candidate)
@@ -157,7 +159,11 @@ impl Query {
                     at,
                     range_m,
                     // height / range is the cosine between the face's normal and the way back; touching is facing.
-                    facing: if range_m > 0.0 { height_m / range_m } else { 1.0 },
+                    facing: if range_m > 0.0 {
+                        height_m / range_m
+                    } else {
+                        1.0
+                    },
                     corner,
                 });
             };
@@ -190,27 +196,31 @@ impl Query {
 fn hidden(world: &World, own: usize, apex: Point, candidate: &Candidate) -> bool {
     let way = sub(candidate.at, apex);
     let length_m = candidate.range_m;
-    world.obstacles().iter().enumerate().any(|(index, obstacle)| {
-        if index == own || length_m <= 0.0 {
-            return false;
-        }
-        let d = sub(obstacle.center, apex);
-        let off_line = cross(way, d);
-        let reach = length_m + obstacle.radius_m;
-        let widest = obstacle.radius_m * length_m;
-        if off_line * off_line > widest * widest || dot(d, d) > reach * reach {
-            return false;
-        }
-        obstacle.faces.iter().any(|face| {
-            let height_m = face.height_m(apex);
-            let closing = -dot(way, face.normal);
-            // The point itself may touch the other obstacle: only what is clearly nearer hides it.
-            if height_m < 0.0 || closing <= 0.0 || height_m >= closing * (1.0 - 1e-9) {
+    world
+        .obstacles()
+        .iter()
+        .enumerate()
+        .any(|(index, obstacle)| {
+            if index == own || length_m <= 0.0 {
                 return false;
             }
-            let along = dot(sub(apex, face.start), face.along)
-                + height_m / closing * dot(way, face.along);
-            (0.0..=face.length_m).contains(&along)
+            let d = sub(obstacle.center, apex);
+            let off_line = cross(way, d);
+            let reach = length_m + obstacle.radius_m;
+            let widest = obstacle.radius_m * length_m;
+            if off_line * off_line > widest * widest || dot(d, d) > reach * reach {
+                return false;
+            }
+            obstacle.faces.iter().any(|face| {
+                let height_m = face.height_m(apex);
+                let closing = -dot(way, face.normal);
+                // The point itself may touch the other obstacle: only what is clearly nearer hides it.
+                if height_m < 0.0 || closing <= 0.0 || height_m >= closing * (1.0 - 1e-9) {
+                    return false;
+                }
+                let along = dot(sub(apex, face.start), face.along)
+                    + height_m / closing * dot(way, face.along);
+                (0.0..=face.length_m).contains(&along)
+            })
         })
-    })
 }

@@ -103,19 +103,28 @@ impl Footprint {
     /// Corners in the world, counter-clockwise from front left.
     #[must_use]
     pub fn corners(&self, pose: &Pose) -> [Point; 4] {
-        rectangle(self.half_m, [self.ahead_m, 0.0], [pose.x_m, pose.y_m], pose.heading_rad)
+        rectangle(
+            self.half_m,
+            [self.ahead_m, 0.0],
+            [pose.x_m, pose.y_m],
+            pose.heading_rad,
+        )
     }
 
     /// Dry friction that blocked wheels feel (left, right), N m.
     #[must_use]
     pub fn resistance_n_m(&self, state: &State) -> [f64; 2] {
-        [state.blocked[0] * self.drag_n_m[0], state.blocked[1] * self.drag_n_m[1]]
+        [
+            state.blocked[0] * self.drag_n_m[0],
+            state.blocked[1] * self.drag_n_m[1],
+        ]
     }
 
     /// Distance from a body at `pose` to the nearest obstacle, at least; negative if it overlaps one.
     #[must_use]
     pub fn clearance_m(&self, world: &World, pose: &Pose) -> f64 {
-        self.nearest(world, pose).map_or(f64::INFINITY, |(_, gap)| gap.distance_m)
+        self.nearest(world, pose)
+            .map_or(f64::INFINITY, |(_, gap)| gap.distance_m)
     }
 
     /// Settles a step from `before` to `pose` that took `dt_s`; returns the impact if a touch begins.
@@ -152,7 +161,10 @@ impl Footprint {
                 Some((obstacle, gap)) if gap.distance_m < 0.0 => {
                     if impact.is_none() {
                         let speed_m_s = self.closing_m(before, &wanted, &gap) / dt_s;
-                        impact = Some(Impact { obstacle, speed_m_s });
+                        impact = Some(Impact {
+                            obstacle,
+                            speed_m_s,
+                        });
                     }
                     self.push(pose, &gap);
                 }
@@ -180,7 +192,9 @@ impl Footprint {
         let corners = self.corners(pose);
         let mut best: Option<(usize, Gap)> = None;
         for (index, obstacle) in world.obstacles().iter().enumerate() {
-            let limit_m = best.as_ref().map_or(f64::INFINITY, |(_, gap)| gap.distance_m);
+            let limit_m = best
+                .as_ref()
+                .map_or(f64::INFINITY, |(_, gap)| gap.distance_m);
             let d = sub(obstacle.center, [pose.x_m, pose.y_m]);
             if sqrt(dot(d, d)) - obstacle.radius_m - self.reach_m < limit_m {
                 let gap = gap(&corners, obstacle);
@@ -223,7 +237,11 @@ impl Footprint {
         };
         [-1.0, 1.0].map(|side| {
             let (asked_m, got_m) = (wheel_m(before, wanted, side), wheel_m(before, got, side));
-            if asked_m == 0.0 { 0.0 } else { (1.0 - got_m / asked_m).clamp(0.0, 1.0) }
+            if asked_m == 0.0 {
+                0.0
+            } else {
+                (1.0 - got_m / asked_m).clamp(0.0, 1.0)
+            }
         })
     }
 }
@@ -262,9 +280,16 @@ fn gap(body: &[Point; 4], obstacle: &Obstacle) -> Gap {
 }
 
 /// Height of the lowest point over the line through `start`, and the middle of all that are about as low.
-fn lowest(points: impl Iterator<Item = Point> + Clone, start: Point, normal: Point) -> (f64, Point) {
+fn lowest(
+    points: impl Iterator<Item = Point> + Clone,
+    start: Point,
+    normal: Point,
+) -> (f64, Point) {
     let height_m = |point: Point| dot(sub(point, start), normal);
-    let lowest_m = points.clone().map(height_m).fold(f64::INFINITY, |a, b| if b < a { b } else { a });
+    let lowest_m = points
+        .clone()
+        .map(height_m)
+        .fold(f64::INFINITY, |a, b| if b < a { b } else { a });
     let (mut sum, mut n) = ([0.0, 0.0], 0.0);
     for point in points {
         if height_m(point) <= lowest_m + FLAT_M {

@@ -94,7 +94,11 @@ impl Link {
 
     fn deliver(&mut self, index: u64, at_us: u64, byte: u8) {
         let chance = |fault: u32, rate| self.noise.chance(self.source + fault, index, rate);
-        let silent = self.params.silences_us.iter().any(|&(from, until)| (from..until).contains(&at_us));
+        let silent = self
+            .params
+            .silences_us
+            .iter()
+            .any(|&(from, until)| (from..until).contains(&at_us));
         if silent || chance(0, self.params.loss_rate) {
             return;
         }
@@ -103,7 +107,11 @@ impl Link {
         } else {
             byte
         };
-        let copies = if chance(2, self.params.duplication_rate) { 2 } else { 1 };
+        let copies = if chance(2, self.params.duplication_rate) {
+            2
+        } else {
+            1
+        };
         for _ in 0..copies {
             self.under_way.push_back((at_us, byte));
         }
@@ -118,7 +126,11 @@ impl Link {
 
     /// The next byte that has arrived by now, with its time of arrival.
     pub fn pop(&mut self, now_us: u64) -> Option<(u64, u8)> {
-        if self.next_arrival_us()? <= now_us { self.under_way.pop_front() } else { None }
+        if self.next_arrival_us()? <= now_us {
+            self.under_way.pop_front()
+        } else {
+            None
+        }
     }
 
     /// When the next byte arrives, `None` if none is under way.
@@ -202,9 +214,16 @@ mod tests {
         let bytes = run();
         assert_eq!(bytes, run());
         let expected = 20_000.0 * 0.9 * 1.02;
-        assert!((bytes.len() as f64 - expected).abs() < 200.0, "{}", bytes.len());
+        assert!(
+            (bytes.len() as f64 - expected).abs() < 200.0,
+            "{}",
+            bytes.len()
+        );
         let changed = bytes.iter().filter(|byte| byte.count_ones() == 1).count() as f64;
-        assert!((changed / bytes.len() as f64 - 0.05).abs() < 0.006, "{changed}");
+        assert!(
+            (changed / bytes.len() as f64 - 0.05).abs() < 0.006,
+            "{changed}"
+        );
     }
 
     #[test]
@@ -219,7 +238,11 @@ mod tests {
         while let Some((at_us, _)) = link.pop(u64::MAX) {
             arrivals.push(at_us);
         }
-        assert!(arrivals.iter().all(|at_us| !(500_000..700_000).contains(at_us)));
+        assert!(
+            arrivals
+                .iter()
+                .all(|at_us| !(500_000..700_000).contains(at_us))
+        );
         assert_eq!(arrivals.len(), 960 - 192);
     }
 }

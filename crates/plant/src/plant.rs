@@ -175,7 +175,14 @@ impl Plant {
     /// Puts the parts together.
     #[must_use]
     pub fn new(setup: Setup) -> Self {
-        let Setup { params, rig, world, seed, robot, wheels_in_air } = setup;
+        let Setup {
+            params,
+            rig,
+            world,
+            seed,
+            robot,
+            wheels_in_air,
+        } = setup;
         let noise = Noise::new(seed, robot);
         Self {
             drivetrain: Drivetrain::new(&params, noise, !wheels_in_air),
@@ -220,7 +227,8 @@ impl Plant {
 
     /// Sets one half of the bridge from now on.
     pub fn set_bridge(&self, state: &mut State, side: Side, bridge: Bridge) {
-        self.drivetrain.set_bridge(&mut state.drivetrain, side, bridge);
+        self.drivetrain
+            .set_bridge(&mut state.drivetrain, side, bridge);
     }
 
     /// Tells the servo where to point from now on: 0 ahead, positive to the left.
@@ -231,7 +239,8 @@ impl Plant {
     /// Ends a trigger pulse now. False if the robot has no such sonar or its echo line is not low: nothing happens then.
     pub fn trigger(&self, state: &mut State, sonar: SonarId) -> bool {
         self.view(state, sonar).is_some_and(|view| {
-            self.sonar.trigger(&mut state.sonars, sonar, state.now_us, &self.world, &view)
+            self.sonar
+                .trigger(&mut state.sonars, sonar, state.now_us, &self.world, &view)
         })
     }
 
@@ -251,14 +260,22 @@ impl Plant {
         }
     }
 
-    fn step(&self, state: &mut State, until_us: u64, queue: &mut Queue, events: &mut impl FnMut(Event)) {
+    fn step(
+        &self,
+        state: &mut State,
+        until_us: u64,
+        queue: &mut Queue,
+        events: &mut impl FnMut(Event),
+    ) {
         let from_us = state.now_us;
         let step_us = (until_us - from_us) as f64;
         let dt_s = step_us * 1e-6;
 
         let before_rad = state.drivetrain.wheels.map(|wheel| wheel.angle_rad);
         let resistance_n_m = self.footprint.resistance_n_m(&state.contact);
-        let motion = self.drivetrain.step(&mut state.drivetrain, dt_s, resistance_n_m);
+        let motion = self
+            .drivetrain
+            .step(&mut state.drivetrain, dt_s, resistance_n_m);
         for wheel in [Side::Left, Side::Right] {
             let i = wheel.index();
             let after_rad = state.drivetrain.wheels[i].angle_rad;
@@ -266,7 +283,14 @@ impl Plant {
                 // Within (from, until]: an edge at the very start belongs to the next microsecond.
                 let into_us = libm::ceil(edge.fraction * step_us).clamp(1.0, step_us);
                 let at_us = from_us + into_us as u64;
-                queue.put(Event::Edge { wheel, at_us, level: edge.level }, events);
+                queue.put(
+                    Event::Edge {
+                        wheel,
+                        at_us,
+                        level: edge.level,
+                    },
+                    events,
+                );
             });
         }
         state.servo.step(&self.servo, dt_s);
@@ -306,14 +330,23 @@ impl Plant {
             y_m: before.y_m + motion.forward_m * across,
             heading_rad: before.heading_rad + motion.yaw_rad,
         };
-        let impact = self.footprint.settle(&self.world, &mut state.contact, &before, &mut pose, dt_s);
+        let impact =
+            self.footprint
+                .settle(&self.world, &mut state.contact, &before, &mut pose, dt_s);
         let moved_m = (pose.x_m - before.x_m) * ahead + (pose.y_m - before.y_m) * across;
-        state.speed = [moved_m / dt_s, (pose.heading_rad - before.heading_rad) / dt_s];
+        state.speed = [
+            moved_m / dt_s,
+            (pose.heading_rad - before.heading_rad) / dt_s,
+        ];
         pose.heading_rad = wrapped(pose.heading_rad);
         state.pose = pose;
         if let Some(impact) = impact {
             let at_us = state.now_us;
-            let event = Event::Contact { at_us, obstacle: impact.obstacle, speed_m_s: impact.speed_m_s };
+            let event = Event::Contact {
+                at_us,
+                obstacle: impact.obstacle,
+                speed_m_s: impact.speed_m_s,
+            };
             queue.put(event, events);
         }
     }
@@ -325,7 +358,11 @@ impl Plant {
             let [forward_m_s, yaw_rad_s] = state.speed;
             let along = forward_m_s - yaw_rad_s * mount.y_m;
             let across = yaw_rad_s * mount.x_m;
-            let servo_rad = if mount.on_servo { state.servo.angle_rad } else { 0.0 };
+            let servo_rad = if mount.on_servo {
+                state.servo.angle_rad
+            } else {
+                0.0
+            };
             View {
                 at: [
                     pose.x_m + c * mount.x_m - s * mount.y_m,
@@ -341,7 +378,8 @@ impl Plant {
     #[must_use]
     pub fn truth(&self, state: &State) -> Truth {
         let range_m = SonarId::ALL.map(|sonar| {
-            self.view(state, sonar).and_then(|view| self.sonar.true_range_m(&self.world, &view))
+            self.view(state, sonar)
+                .and_then(|view| self.sonar.true_range_m(&self.world, &view))
         });
         let [left, right] = &state.drivetrain.wheels;
         Truth {
@@ -401,8 +439,14 @@ struct Queue {
 
 impl Default for Queue {
     fn default() -> Self {
-        let nothing = Event::EchoRise { sonar: SonarId::Left, at_us: 0 };
-        Self { events: [nothing; Self::ROOM], used: 0 }
+        let nothing = Event::EchoRise {
+            sonar: SonarId::Left,
+            at_us: 0,
+        };
+        Self {
+            events: [nothing; Self::ROOM],
+            used: 0,
+        }
     }
 }
 

@@ -47,7 +47,10 @@ mod tests {
             state.step(&servo, 0.001);
             time_s += 0.001;
         }
-        assert!((time_s - 1.0 / servo.speed_rad_s).abs() <= 0.001, "{time_s}");
+        assert!(
+            (time_s - 1.0 / servo.speed_rad_s).abs() <= 0.001,
+            "{time_s}"
+        );
     }
 
     #[test]

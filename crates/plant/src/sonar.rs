@@ -227,7 +227,14 @@ impl Sonar {
     }
 
     /// When the echoes of a burst can reach the other sonars: 0 for never.
-    fn burst(&self, own: usize, ping: u64, rise_us: u64, heard_m: Option<f64>, view: &View) -> Burst {
+    fn burst(
+        &self,
+        own: usize,
+        ping: u64,
+        rise_us: u64,
+        heard_m: Option<f64>,
+        view: &View,
+    ) -> Burst {
         let arrival_us = |range_m: f64| rise_us + self.round_trip_us(range_m);
         let second = heard_m
             .map(|range_m| 2.0 * range_m + self.params.bounce_behind_m)

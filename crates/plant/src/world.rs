@@ -116,7 +116,10 @@ impl Obstacle {
             .map(|(&a, &b)| Face::between(a, b))
             .collect();
         let n = corners.len() as f64;
-        let center = scale(corners.iter().fold([0.0, 0.0], |sum, &c| add(sum, c)), 1.0 / n);
+        let center = scale(
+            corners.iter().fold([0.0, 0.0], |sum, &c| add(sum, c)),
+            1.0 / n,
+        );
         let radius_m = corners
             .iter()
             .map(|&c| sqrt(dot(sub(c, center), sub(c, center))))
@@ -189,7 +192,13 @@ impl World {
     /// # Errors
     /// If it is not finite, has no length or a negative thickness.
     pub fn add_wall(&mut self, wall: &Wall) -> Result<(), ShapeError> {
-        finite(&[wall.from_m[0], wall.from_m[1], wall.to_m[0], wall.to_m[1], wall.thickness_m])?;
+        finite(&[
+            wall.from_m[0],
+            wall.from_m[1],
+            wall.to_m[0],
+            wall.to_m[1],
+            wall.thickness_m,
+        ])?;
         let d = sub(wall.to_m, wall.from_m);
         let length_m = sqrt(dot(d, d));
         if length_m <= 0.0 || wall.thickness_m < 0.0 {
@@ -217,11 +226,22 @@ impl World {
     /// If it is not finite or a side is not positive.
     pub fn add_block(&mut self, block: &Block) -> Result<(), ShapeError> {
         let [w, h] = block.size_m;
-        finite(&[block.center_m[0], block.center_m[1], w, h, block.heading_rad])?;
+        finite(&[
+            block.center_m[0],
+            block.center_m[1],
+            w,
+            h,
+            block.heading_rad,
+        ])?;
         if w <= 0.0 || h <= 0.0 {
             return Err(ShapeError::NotPositive);
         }
-        let corners = rectangle([0.5 * w, 0.5 * h], [0.0, 0.0], block.center_m, block.heading_rad);
+        let corners = rectangle(
+            [0.5 * w, 0.5 * h],
+            [0.0, 0.0],
+            block.center_m,
+            block.heading_rad,
+        );
         self.obstacles.push(Obstacle::from_corners(&corners));
         Ok(())
     }
@@ -264,7 +284,11 @@ pub fn rectangle(half_m: [f64; 2], offset: Point, center: Point, heading_rad: f6
 }
 
 fn finite(values: &[f64]) -> Result<(), ShapeError> {
-    if values.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(ShapeError::NotFinite) }
+    if values.iter().all(|v| v.is_finite()) {
+        Ok(())
+    } else {
+        Err(ShapeError::NotFinite)
+    }
 }
 
 pub(crate) fn add(a: Point, b: Point) -> Point {
@@ -302,7 +326,11 @@ mod tests {
         let world = World::new(&[ends(0.0), ends(0.1)], &[]).unwrap();
         assert_eq!(world.obstacles()[0].distance_m([0.0, 0.0]), 2.0);
         assert!((world.obstacles()[1].distance_m([0.0, 0.0]) - 1.95).abs() < 1e-12);
-        assert_eq!(world.obstacles()[0].distance_m([2.0, 3.0]), 2.0, "in line with the screen, beyond its end");
+        assert_eq!(
+            world.obstacles()[0].distance_m([2.0, 3.0]),
+            2.0,
+            "in line with the screen, beyond its end"
+        );
         assert!(world.obstacles()[1].contains([2.0, 0.5]));
         assert!(!world.obstacles()[0].contains([2.0, 0.5]));
     }
@@ -316,7 +344,9 @@ mod tests {
         };
         let world = World::new(&[], &[block]).unwrap();
         let half_diagonal_m = 0.2 * 2.0_f64.sqrt();
-        assert!((world.obstacles()[0].distance_m([0.0, 0.0]) - (1.0 - half_diagonal_m)).abs() < 1e-12);
+        assert!(
+            (world.obstacles()[0].distance_m([0.0, 0.0]) - (1.0 - half_diagonal_m)).abs() < 1e-12
+        );
         assert!((world.obstacles()[0].radius_m - half_diagonal_m).abs() < 1e-12);
     }
 

@@ -91,19 +91,38 @@ proptest! {
 }
 
 fn screen(from_m: Point, to_m: Point) -> Wall {
-    Wall { from_m, to_m, thickness_m: 0.0 }
+    Wall {
+        from_m,
+        to_m,
+        thickness_m: 0.0,
+    }
 }
 
 fn ahead(half_angle_rad: f64) -> Cone {
-    Cone { apex: [0.0, 0.0], axis_rad: 0.0, half_angle_rad }
+    Cone {
+        apex: [0.0, 0.0],
+        axis_rad: 0.0,
+        half_angle_rad,
+    }
 }
 
-const HEARING: Hearing = Hearing { reach_m: 2.5, incidence_limit_rad: 0.5, corner_reach_m: 0.6 };
+const HEARING: Hearing = Hearing {
+    reach_m: 2.5,
+    incidence_limit_rad: 0.5,
+    corner_reach_m: 0.6,
+};
 
 /// A long screen whose normal is turned by `angle_rad` from the view, 1 m away along it.
 fn slanted(angle_rad: f64) -> World {
     let (s, c) = angle_rad.sin_cos();
-    World::new(&[screen([c + 9.0 * s, s - 9.0 * c], [c - 9.0 * s, s + 9.0 * c])], &[]).unwrap()
+    World::new(
+        &[screen(
+            [c + 9.0 * s, s - 9.0 * c],
+            [c - 9.0 * s, s + 9.0 * c],
+        )],
+        &[],
+    )
+    .unwrap()
 }
 
 #[test]
@@ -151,15 +170,34 @@ fn a_box_seen_corner_on_is_heard_only_from_near() {
 
 #[test]
 fn the_nearer_of_two_boxes_is_heard() {
-    let block = |x_m: f64, y_m: f64| Block { center_m: [x_m, y_m], size_m: [0.2, 0.2], heading_rad: 0.0 };
+    let block = |x_m: f64, y_m: f64| Block {
+        center_m: [x_m, y_m],
+        size_m: [0.2, 0.2],
+        heading_rad: 0.0,
+    };
     let world = World::new(&[], &[block(1.5, 0.0), block(1.0, 0.2)]).unwrap();
-    assert!((nearest(&world, &ahead(0.3), &HEARING).unwrap().range_m - (0.9_f64.powi(2) + 0.01).sqrt()).abs() < 1e-12);
-    let only_far = Cone { axis_rad: -0.06, half_angle_rad: 0.1, ..ahead(0.1) };
+    assert!(
+        (nearest(&world, &ahead(0.3), &HEARING).unwrap().range_m - (0.9_f64.powi(2) + 0.01).sqrt())
+            .abs()
+            < 1e-12
+    );
+    let only_far = Cone {
+        axis_rad: -0.06,
+        half_angle_rad: 0.1,
+        ..ahead(0.1)
+    };
     assert!((nearest(&world, &only_far, &HEARING).unwrap().range_m - 1.4).abs() < 1e-12);
 }
 
 #[test]
 fn nothing_beyond_the_reach_or_behind_the_transducer_is_heard() {
-    let world = World::new(&[screen([2.6, -5.0], [2.6, 5.0]), screen([-0.5, -5.0], [-0.5, 5.0])], &[]).unwrap();
+    let world = World::new(
+        &[
+            screen([2.6, -5.0], [2.6, 5.0]),
+            screen([-0.5, -5.0], [-0.5, 5.0]),
+        ],
+        &[],
+    )
+    .unwrap();
     assert_eq!(nearest(&world, &ahead(0.3), &HEARING), None);
 }
