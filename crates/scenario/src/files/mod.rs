@@ -1,9 +1,26 @@
 //! The files that describe robots, worlds and experiments.
+//!
+//! [`Library`] finds a file by name (built in) or path (on disk) and reads it; [`Library::setup`] puts a scenario
+//! together with its robot, rig and world. Everything is checked while it is read: a wrong file yields one line per
+//! problem, with file, line, key, value and what is allowed. Angles are degrees and speeds rpm in the files, radians
+//! and rad/s in what comes out.
 
-pub mod robot;
-pub mod scenario;
-pub mod world;
+pub mod commands;
+mod error;
+mod library;
+mod names;
+mod near;
+pub mod parameters;
+mod read;
+mod robot;
+mod scenario;
+mod setup;
+mod world;
 
-pub use robot::{FirmwareCaps, Mount, Rig, RobotFile, Wiring};
+pub use error::{FileError, Problem};
+pub use library::{Kind, Library};
+pub use names::{MOVEMENTS, find_mode, find_movement};
+pub use robot::{FirmwareCaps, RobotFile, SIGNALS, Wiring};
 pub use scenario::{Bounds, ScenarioFile, Spread, Start, TimedCommand};
-pub use world::{Arena, BoxShape, WallSegment, WorldFile};
+pub use setup::{Overrides, Setup};
+pub use world::{Arena, WorldFile};

@@ -1,5 +1,28 @@
 //! A scenario file: an experiment, as robot + rig + world + mode + timed commands + limits on its metrics.
+//!
+//! ```toml
+//! title = "Stop at a distance from a wall"
+//! robot = "memoria"      # a built-in name, or the path of a file beside this one
+//! rig = "front_single"
+//! world = "wall_front"
+//! mode = "front_distance"
+//! duration_s = 9
+//! [start]
+//! x_m = 0
+//! [[command]]            # one action each; see `commands.rs` for all of them
+//! at_s = 0.5
+//! reference_m = 0.3
+//! [limits]
+//! "step1.settling_s" = { max = 2.4 }
+//! ```
 
+use super::commands::read_commands;
+use super::error::FileError;
+use super::names::find_mode;
+use super::parameters::read_parameters;
+use super::read::{Allowed, Source, Table};
+use super::robot::read_plant;
+use super::world::{ANGLE, PLACE};
 use rumbo_control::mode::ModeId;
 use rumbo_wire::message::Command;
 use std::collections::BTreeMap;
@@ -85,4 +108,125 @@ pub enum Spread {
     Drawn,
     /// Every seed drives the robot of the file; only the noise differs.
     None,
+}
+
+const DURATION: Allowed = Allowed::new(0.1, 3600.0, "s");
+const BOUND: Allowed = Allowed::new(-1e9, 1e9, "");
+
+impl ScenarioFile {
+    /// Reads a scenario. Whether its robot, rig and world exist is for [`super::Library::setup`] to say.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text, by line of `file`.
+    pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, FileError> {
+        let source = Source::new(file, text);
+        let parsed = source.parse()?;
+        let root = source.root(&parsed);
+        let mode = read_mode(&root);
+        let duration_s = root.required_number("duration_s", DURATION);
+        let scenario = Self {
+            name: name.into(),
+            title: root
+                .required_text("title", "one line that says what the experiment is")
+                .value,
+            text: text.into(),
+            robot: root
+                .required_text("robot", "name of a robot, e.g. \"memoria\"")
+                .value,
+            rig: root
+                .required_text(
+                    "rig",
+                    "name of one of the robot's rigs, e.g. \"front_single\"",
+                )
+                .value,
+            world: root
+                .required_text("world", "name of a world, e.g. \"open\"")
+                .value,
+            mode,
+            duration_s,
+            start: read_start(&root.table("start")),
+            wheels_in_air: root.flag("wheels_in_air").is_some_and(|flag| flag.value),
+            commands: read_commands(root.tables("command"), mode, duration_s),
+            limits: read_limits(&root.table("limits"), ""),
+            parameters: read_parameters(&root.table("parameters")),
+            spread: read_spread(&root.table("spread")),
+            plant: read_plant(&root.table("plant"), ""),
+        };
+        root.finish();
+        source.verdict()?;
+        Ok(scenario)
+    }
+}
+
+fn read_mode(root: &Table<'_, '_>) -> ModeId {
+    if !root.has("mode") {
+        root.complain_here(
+            "mode is missing: name or number of a mode, e.g. \"front_distance\" or 1",
+        );
+    }
+    root.word("mode")
+        .and_then(|word| match find_mode(&word.value) {
+            Ok(mode) => Some(mode),
+            Err(remedy) => {
+                root.complain("mode", word.line, &word.value, &remedy);
+                None
+            }
+        })
+        .unwrap_or_default()
+}
+
+fn read_start(table: &Table<'_, '_>) -> Start {
+    let start = Start {
+        x_m: table.number("x_m", PLACE).unwrap_or(0.0),
+        y_m: table.number("y_m", PLACE).unwrap_or(0.0),
+        heading_rad: table
+            .number("heading_deg", ANGLE)
+            .unwrap_or(0.0)
+            .to_radians(),
+    };
+    table.finish();
+    start
+}
+
+fn read_spread(table: &Table<'_, '_>) -> Spread {
+    let none = table.flag("none").is_some_and(|flag| flag.value);
+    table.finish();
+    if none { Spread::None } else { Spread::Drawn }
+}
+
+/// Limits by metric. A dot in a metric's name may be quoted or not: TOML then nests, and the names are joined again.
+fn read_limits(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String, Bounds> {
+    let mut limits = BTreeMap::new();
+    for key in table.keys() {
+        let metric = format!("{prefix}{}", key.value);
+        let below = table.table(key.value);
+        if !below.has("min")
+            && !below.has("max")
+            && below
+                .keys()
+                .iter()
+                .any(|inner| below.holds_table(inner.value))
+        {
+            limits.extend(read_limits(&below, &format!("{metric}.")));
+            continue;
+        }
+        let bounds = Bounds {
+            min: below.number("min", BOUND),
+            max: below.number("max", BOUND),
+        };
+        if below.keys().is_empty() && table.holds_table(key.value) {
+            below.complain_here("has neither min nor max: write e.g. { max = 2.4 }");
+        }
+        if let Bounds {
+            min: Some(min),
+            max: Some(max),
+        } = bounds
+            && min > max
+        {
+            below.complain_here(&format!("min {min} is above max {max}: nothing could pass"));
+        }
+        below.finish();
+        limits.insert(metric, bounds);
+    }
+    limits
 }

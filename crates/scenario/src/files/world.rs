@@ -1,4 +1,28 @@
 //! A world file: the walls and boxes that the robot drives among.
+//!
+//! ```toml
+//! title = "A wall across the way"
+//! [arena]                # what the map shows; walled = true puts a wall along each side
+//! from_m = [-0.5, -1.0]
+//! to_m = [1.5, 1.0]
+//! [[wall]]
+//! from_m = [1.2, -1.0]
+//! to_m = [1.2, 1.0]
+//! [[box]]
+//! centre_m = [0.5, 0.6]
+//! size_m = [0.4, 0.3]
+//! angle_deg = 20
+//! ```
+
+use super::error::FileError;
+use super::read::{Allowed, Source, Table};
+use rumbo_plant::world::{Block, ShapeError, Wall, World};
+
+/// Coordinates of anything in a world.
+pub(crate) const PLACE: Allowed = Allowed::new(-50.0, 50.0, "m");
+const SIDE: Allowed = Allowed::new(0.01, 50.0, "m");
+const THICKNESS: Allowed = Allowed::new(0.0, 1.0, "m");
+pub(crate) const ANGLE: Allowed = Allowed::new(-360.0, 360.0, "deg");
 
 /// A world, as `worlds/*.toml` describes it. World frame: x and y in metres, angles counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,10 +35,10 @@ pub struct WorldFile {
     pub text: String,
     /// The part of the world that a map shows.
     pub arena: Arena,
-    /// Straight walls without thickness, the arena's own four included where it is walled.
-    pub walls: Vec<WallSegment>,
+    /// Straight walls, the arena's own four included where it is walled.
+    pub walls: Vec<Wall>,
     /// Boxes, solid.
-    pub boxes: Vec<BoxShape>,
+    pub boxes: Vec<Block>,
 }
 
 /// A rectangle along the axes.
@@ -26,22 +50,93 @@ pub struct Arena {
     pub to_m: [f64; 2],
 }
 
-/// A straight wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallSegment {
-    /// One end, x and y [m].
-    pub from_m: [f64; 2],
-    /// The other end, x and y [m].
-    pub to_m: [f64; 2],
+impl WorldFile {
+    /// Reads a world.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text, by line of `file`.
+    pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, FileError> {
+        let source = Source::new(file, text);
+        let parsed = source.parse()?;
+        let root = source.root(&parsed);
+        let title = root
+            .required_text("title", "one line that says what the world is")
+            .value;
+        let (arena, mut walls) = read_arena(&root.table("arena"));
+        walls.extend(root.tables("wall").into_iter().map(read_wall));
+        let boxes = root.tables("box").into_iter().map(read_box).collect();
+        root.finish();
+        source.verdict()?;
+        Ok(Self {
+            name: name.into(),
+            title,
+            text: text.into(),
+            arena,
+            walls,
+            boxes,
+        })
+    }
+
+    /// The obstacles as the plant wants them.
+    ///
+    /// # Errors
+    /// A shape without size; a parsed file has none.
+    pub fn world(&self) -> Result<World, ShapeError> {
+        World::new(&self.walls, &self.boxes)
+    }
 }
 
-/// A rectangular box.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BoxShape {
-    /// Its middle, x and y [m].
-    pub centre_m: [f64; 2],
-    /// Its sides, along x and y before it is turned [m].
-    pub size_m: [f64; 2],
-    /// How far it is turned, counter-clockwise [rad].
-    pub angle_rad: f64,
+fn read_arena(table: &Table<'_, '_>) -> (Arena, Vec<Wall>) {
+    let [x0, y0] = table.pair("from_m", PLACE).unwrap_or([-2.0, -2.0]);
+    let [x1, y1] = table.pair("to_m", PLACE).unwrap_or([2.0, 2.0]);
+    if x0 >= x1 || y0 >= y1 {
+        table.complain_here(
+            "from_m must be the corner of smaller x and y, to_m that of larger x and y",
+        );
+    }
+    let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]];
+    let walled = table.flag("walled").is_some_and(|flag| flag.value);
+    let sides = corners.windows(2).filter(|_| walled);
+    let walls = sides
+        .map(|ends| Wall {
+            from_m: ends[0],
+            to_m: ends[1],
+            thickness_m: 0.0,
+        })
+        .collect();
+    table.finish();
+    (
+        Arena {
+            from_m: [x0, y0],
+            to_m: [x1, y1],
+        },
+        walls,
+    )
+}
+
+fn read_wall(table: Table<'_, '_>) -> Wall {
+    let from_m = table.required_pair("from_m", PLACE);
+    let to_m = table.required_pair("to_m", PLACE);
+    let thickness_m = table.number("thickness_m", THICKNESS).unwrap_or(0.0);
+    if table.has("from_m") && table.has("to_m") && from_m == to_m {
+        table.complain_here("from_m and to_m are the same point: a wall needs two different ends");
+    }
+    table.finish();
+    Wall {
+        from_m,
+        to_m,
+        thickness_m,
+    }
+}
+
+fn read_box(table: Table<'_, '_>) -> Block {
+    let center_m = table.required_pair("centre_m", PLACE);
+    let size_m = table.required_pair("size_m", SIDE);
+    let angle_deg = table.number("angle_deg", ANGLE).unwrap_or(0.0);
+    table.finish();
+    Block {
+        center_m,
+        size_m,
+        heading_rad: angle_deg.to_radians(),
+    }
 }

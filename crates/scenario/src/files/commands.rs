@@ -1,0 +1,257 @@
+//! The `[[command]]` tables of a scenario: what the station sends to the robot, and when.
+//!
+//! Each has `at_s` and one action:
+//!
+//! | keys | does |
+//! |---|---|
+//! | `arm = true`, `disarm = true`, `stop = true` | arm and start the mode; end it; release the wheels at once |
+//! | `clear_fault = true`, `reset_pose = true` | forget a latched fault; call the present place the origin |
+//! | `mode = "wheel_speed"` | select a mode (the robot must be disarmed) |
+//! | `reference_m = 0.3` | mode `front_distance`: the distance to hold |
+//! | `speed_rpm = 60`, or `left_rpm = 60` and `right_rpm = 50` | mode `wheel_speed` |
+//! | `move = "turn_left"` with `duty = 0.4` or `speed_rpm = 60` | mode `manual`, a basic movement |
+//! | the same with `duty = 0`, `ramp_to_duty = 0.4`, `ramp_s = 12` | open loop, the duty moves by one count of PWM at a time |
+//! | `parameter = "name"` and `value = 1.5` | set a control parameter |
+
+use super::names::{find_mode, find_movement};
+use super::parameters;
+use super::read::{Allowed, Table};
+use super::scenario::TimedCommand;
+use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::{Duty, Wheels};
+use rumbo_wire::message::{Command, Level};
+use std::f64::consts::PI;
+
+const DISTANCE: Allowed = Allowed::new(0.02, 2.5, "m");
+const SPEED: Allowed = Allowed::new(-200.0, 200.0, "rpm");
+const MOVE_SPEED: Allowed = Allowed::new(0.0, 200.0, "rpm");
+const DUTY: Allowed = Allowed::new(0.0, 1.0, "");
+/// Least time between the commands of a ramp: each is answered before the next is sent.
+const RAMP_STEP_S: f64 = 0.1;
+
+/// The actions that are a bare `true`.
+const FLAGS: [(&str, Command); 5] = [
+    ("arm", Command::Arm),
+    ("disarm", Command::Disarm),
+    ("stop", Command::Stop),
+    ("clear_fault", Command::ClearFault),
+    ("reset_pose", Command::ResetPose),
+];
+/// The keys that say which action a command is.
+const ACTIONS: [&str; 11] = [
+    "arm",
+    "disarm",
+    "stop",
+    "clear_fault",
+    "reset_pose",
+    "mode",
+    "reference_m",
+    "move",
+    "speed_rpm",
+    "left_rpm",
+    "parameter",
+];
+/// The keys that only go with an action.
+const COMPANIONS: [&str; 5] = ["right_rpm", "value", "duty", "ramp_to_duty", "ramp_s"];
+
+/// Reads all commands; `mode` is the mode selected at the start.
+pub(crate) fn read_commands(
+    tables: Vec<Table<'_, '_>>,
+    mut mode: ModeId,
+    duration_s: f64,
+) -> Vec<TimedCommand> {
+    let mut commands: Vec<TimedCommand> = Vec::new();
+    let mut earliest_s = 0.0;
+    for table in tables {
+        let at = table.placed_number("at_s", Allowed::new(0.0, duration_s, "s"));
+        if !table.has("at_s") {
+            table.complain_here("at_s is missing: the time of the command in s since the start");
+        }
+        let at_s = at.map_or(earliest_s, |at| at.value);
+        if let Some(at) = at
+            && at.value < earliest_s
+        {
+            let remedy = format!(
+                "must be {earliest_s} or more: commands stand in order of time, after the end of a ramp"
+            );
+            table.complain("at_s", at.line, &at.value.to_string(), &remedy);
+        }
+        commands.extend(read_command(&table, at_s, &mut mode, duration_s));
+        earliest_s = commands
+            .last()
+            .map_or(earliest_s, |last| last.at_s.max(earliest_s));
+        table.finish();
+    }
+    commands
+}
+
+/// One command: a list, since a ramp is many.
+fn read_command(
+    table: &Table<'_, '_>,
+    at_s: f64,
+    mode: &mut ModeId,
+    duration_s: f64,
+) -> Vec<TimedCommand> {
+    let given: Vec<&str> = ACTIONS.into_iter().filter(|key| table.has(key)).collect();
+    let single = |command| vec![TimedCommand { at_s, command }];
+    match given[..] {
+        ["move"] | ["move", "speed_rpm"] => {
+            needs_mode(table, "move", ModeId::Manual, *mode);
+            read_move(table, at_s, duration_s)
+        }
+        [key] => read_simple(table, key, mode)
+            .map(single)
+            .unwrap_or_default(),
+        _ => {
+            let known = [&["at_s"][..], &ACTIONS, &COMPANIONS].concat();
+            for key in &known {
+                table.value(key);
+            }
+            // An unknown key is probably the missing action, and is complained about anyway.
+            let all_known = table.keys().iter().all(|key| known.contains(&key.value));
+            match given[..] {
+                [] if all_known => table.complain_here(&format!(
+                    "has no action: give one of {}",
+                    ACTIONS.join(", ")
+                )),
+                [] => {}
+                _ => table.complain_here(&format!(
+                    "has more than one action ({}): give each its own [[command]]",
+                    given.join(", ")
+                )),
+            }
+            Vec::new()
+        }
+    }
+}
+
+fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut ModeId) -> Option<Command> {
+    if let Some((_, command)) = FLAGS.into_iter().find(|(flag, _)| *flag == key) {
+        let flag = table.flag(key)?;
+        if !flag.value {
+            table.complain(
+                key,
+                flag.line,
+                "false",
+                "must be true, or leave the command out",
+            );
+        }
+        return Some(command);
+    }
+    match key {
+        "mode" => {
+            let word = table.word(key)?;
+            *mode = find_mode(&word.value)
+                .map_err(|remedy| table.complain(key, word.line, &word.value, &remedy))
+                .ok()?;
+            Some(Command::Mode(*mode))
+        }
+        "reference_m" => {
+            needs_mode(table, key, ModeId::FrontDistance, *mode);
+            Some(Command::Reference(table.number(key, DISTANCE)? as f32))
+        }
+        "speed_rpm" => {
+            needs_mode(table, key, ModeId::WheelSpeed, *mode);
+            Some(Command::Reference(rad_s(table.number(key, SPEED)?)))
+        }
+        "left_rpm" => {
+            needs_mode(table, key, ModeId::WheelSpeed, *mode);
+            let (left, right) = (
+                table.number(key, SPEED),
+                table.required_number("right_rpm", SPEED),
+            );
+            Some(Command::WheelReference(Wheels {
+                left: rad_s(left?),
+                right: rad_s(right),
+            }))
+        }
+        "parameter" => {
+            let name = table.text(key)?;
+            let entry = parameters::find(&name.value)
+                .map_err(|remedy| {
+                    table.complain(key, name.line, &format!("{:?}", name.value), &remedy)
+                })
+                .ok()?;
+            let value = table.required_number("value", entry.allowed());
+            Some(Command::SetParam {
+                id: entry.id,
+                value: value as f32,
+            })
+        }
+        _ => None,
+    }
+}
+
+fn read_move(table: &Table<'_, '_>, at_s: f64, duration_s: f64) -> Vec<TimedCommand> {
+    let movement = table.text("move").and_then(|name| {
+        find_movement(&name.value)
+            .map_err(|remedy| {
+                table.complain("move", name.line, &format!("{:?}", name.value), &remedy)
+            })
+            .ok()
+    });
+    let (duty, speed_rpm) = (
+        table.number("duty", DUTY),
+        table.number("speed_rpm", MOVE_SPEED),
+    );
+    let movement = movement.unwrap_or_default();
+    if table.has("duty") == table.has("speed_rpm") && movement != Movement::Stop {
+        table.complain_here("needs either duty (0..1, open loop) or speed_rpm (closed loop)");
+    }
+    if table.has("ramp_to_duty") || table.has("ramp_s") {
+        return read_ramp(table, at_s, duration_s, movement, duty.unwrap_or(0.0));
+    }
+    let level = match speed_rpm {
+        Some(rpm) => Level::Speed(rad_s(rpm)),
+        None => Level::Duty(duty.unwrap_or(0.0) as f32),
+    };
+    vec![TimedCommand {
+        at_s,
+        command: Command::Move { movement, level },
+    }]
+}
+
+/// A ramp of the duty: one command per count of PWM, evenly spaced from `at_s` to `at_s + ramp_s`.
+fn read_ramp(
+    table: &Table<'_, '_>,
+    at_s: f64,
+    duration_s: f64,
+    movement: Movement,
+    from: f64,
+) -> Vec<TimedCommand> {
+    let full = f64::from(Duty::MAX);
+    let to = table.required_number("ramp_to_duty", DUTY);
+    let (first, last) = ((from * full).round(), (to * full).round());
+    let steps = (last - first).abs();
+    let allowed = Allowed::new(
+        (steps * RAMP_STEP_S).max(RAMP_STEP_S),
+        (duration_s - at_s).max(RAMP_STEP_S),
+        "s",
+    );
+    let ramp_s = table.required_number("ramp_s", allowed);
+    (0..=steps as u32)
+        .map(|step| {
+            let part = f64::from(step) / steps.max(1.0);
+            let level = Level::Duty(((first + part * (last - first)) / full) as f32);
+            TimedCommand {
+                at_s: at_s + part * ramp_s,
+                command: Command::Move { movement, level },
+            }
+        })
+        .collect()
+}
+
+fn needs_mode(table: &Table<'_, '_>, key: &str, needed: ModeId, mode: ModeId) {
+    if mode != needed {
+        let text = format!(
+            "{key} is for mode `{}`, and the mode here is `{}`",
+            needed.name(),
+            mode.name()
+        );
+        table.complain_here(&text);
+    }
+}
+
+fn rad_s(rpm: f64) -> f32 {
+    (rpm * PI / 30.0) as f32
+}

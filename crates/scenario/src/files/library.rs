@@ -1,0 +1,168 @@
+//! Finds robots, worlds and scenarios: built into the program by name, on disk by path.
+
+use super::error::FileError;
+use super::near::near_or_all;
+use super::{RobotFile, ScenarioFile, WorldFile};
+use rust_embed::RustEmbed;
+use std::path::{Path, PathBuf};
+
+#[derive(RustEmbed)]
+#[folder = "../../robots"]
+struct Robots;
+
+#[derive(RustEmbed)]
+#[folder = "../../worlds"]
+struct Worlds;
+
+#[derive(RustEmbed)]
+#[folder = "../../scenarios"]
+struct Scenarios;
+
+/// The kinds of file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// `robots/*.toml`
+    Robot,
+    /// `worlds/*.toml`
+    World,
+    /// `scenarios/*.toml`
+    Scenario,
+}
+
+impl Kind {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Robot => "robot",
+            Self::World => "world",
+            Self::Scenario => "scenario",
+        }
+    }
+
+    /// The names of the built-in files, in order.
+    fn names(self) -> Vec<String> {
+        let files: Vec<_> = match self {
+            Self::Robot => Robots::iter().collect(),
+            Self::World => Worlds::iter().collect(),
+            Self::Scenario => Scenarios::iter().collect(),
+        };
+        let mut names: Vec<String> = files
+            .iter()
+            .filter_map(|file| Some(file.strip_suffix(".toml")?.to_owned()))
+            .collect();
+        names.sort();
+        names
+    }
+
+    fn built_in(self, name: &str) -> Option<String> {
+        let file = format!("{name}.toml");
+        let embedded = match self {
+            Self::Robot => Robots::get(&file),
+            Self::World => Worlds::get(&file),
+            Self::Scenario => Scenarios::get(&file),
+        }?;
+        String::from_utf8(embedded.data.into_owned()).ok()
+    }
+}
+
+/// Where files are found. A name is a built-in file; whatever ends in `.toml` or holds a `/` is a path.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Library {
+    /// Paths are relative to this folder; empty for the current one.
+    base: PathBuf,
+}
+
+/// A file's text and how to speak of it.
+struct Found {
+    name: String,
+    file: String,
+    text: String,
+}
+
+impl Library {
+    /// Paths are relative to the current folder.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The same, with paths relative to the folder of the file that holds them.
+    #[must_use]
+    pub fn beside(&self, name_or_path: &str) -> Self {
+        let folder = is_path(name_or_path)
+            .then(|| Path::new(name_or_path).parent())
+            .flatten();
+        Self {
+            base: folder.map_or_else(|| self.base.clone(), |folder| self.base.join(folder)),
+        }
+    }
+
+    /// A robot.
+    ///
+    /// # Errors
+    /// An unknown name, an unreadable path, or everything that is wrong with the file.
+    pub fn robot(&self, name_or_path: &str) -> Result<RobotFile, FileError> {
+        let found = self.find(Kind::Robot, name_or_path)?;
+        RobotFile::parse(&found.name, &found.file, &found.text)
+    }
+
+    /// A world.
+    ///
+    /// # Errors
+    /// As for [`Library::robot`].
+    pub fn world(&self, name_or_path: &str) -> Result<WorldFile, FileError> {
+        let found = self.find(Kind::World, name_or_path)?;
+        WorldFile::parse(&found.name, &found.file, &found.text)
+    }
+
+    /// A scenario. Its robot, rig and world are looked up by [`Library::setup`] only.
+    ///
+    /// # Errors
+    /// As for [`Library::robot`].
+    pub fn scenario(&self, name_or_path: &str) -> Result<ScenarioFile, FileError> {
+        let found = self.find(Kind::Scenario, name_or_path)?;
+        ScenarioFile::parse(&found.name, &found.file, &found.text)
+    }
+
+    /// Names of the built-in files of a kind, in order.
+    #[must_use]
+    pub fn list(&self, kind: Kind) -> Vec<String> {
+        kind.names()
+    }
+
+    fn find(&self, kind: Kind, name_or_path: &str) -> Result<Found, FileError> {
+        if is_path(name_or_path) {
+            let path = self.base.join(name_or_path);
+            let text = std::fs::read_to_string(&path).map_err(|error| FileError::Unreadable {
+                path: path.display().to_string(),
+                reason: error.to_string(),
+            })?;
+            let stem = path
+                .file_stem()
+                .map(|stem| stem.to_string_lossy().into_owned());
+            return Ok(Found {
+                name: stem.unwrap_or_default(),
+                file: path.display().to_string(),
+                text,
+            });
+        }
+        let text = kind.built_in(name_or_path).ok_or_else(|| {
+            let names = kind.names();
+            let near = near_or_all(name_or_path, names.iter().map(String::as_str));
+            FileError::Unknown {
+                kind: kind.word(),
+                name: name_or_path.to_owned(),
+                near,
+            }
+        })?;
+        let file = format!("{}s/{name_or_path}.toml", kind.word());
+        Ok(Found {
+            name: name_or_path.to_owned(),
+            file,
+            text,
+        })
+    }
+}
+
+fn is_path(name_or_path: &str) -> bool {
+    name_or_path.ends_with(".toml") || name_or_path.contains(['/', '\\'])
+}

@@ -1,0 +1,58 @@
+//! The names that files and commands use for what the control core knows by number.
+
+use super::near;
+use rumbo_control::mode::{ModeId, Movement};
+
+/// The basic movements and their names in files.
+pub const MOVEMENTS: [(Movement, &str); 13] = [
+    (Movement::Stop, "stop"),
+    (Movement::Forward, "forward"),
+    (Movement::Backward, "backward"),
+    (Movement::TurnLeft, "turn_left"),
+    (Movement::TurnRight, "turn_right"),
+    (Movement::PivotLeftForward, "pivot_left_forward"),
+    (Movement::PivotLeftBackward, "pivot_left_backward"),
+    (Movement::PivotRightForward, "pivot_right_forward"),
+    (Movement::PivotRightBackward, "pivot_right_backward"),
+    (Movement::ArcLeft, "arc_left"),
+    (Movement::ArcRight, "arc_right"),
+    (Movement::ArcLeftBackward, "arc_left_backward"),
+    (Movement::ArcRightBackward, "arc_right_backward"),
+];
+
+/// A mode by name or number.
+///
+/// # Errors
+/// What to write instead.
+pub fn find_mode(word: &str) -> Result<ModeId, String> {
+    let by_number = word.parse().ok().and_then(ModeId::from_number);
+    by_number
+        .or_else(|| ModeId::ALL.into_iter().find(|mode| mode.name() == word))
+        .ok_or_else(|| {
+            let names = near::near(word, ModeId::ALL.iter().map(|mode| mode.name()));
+            let offered: Vec<String> = ModeId::ALL
+                .iter()
+                .filter(|mode| names.is_empty() || names.contains(&mode.name()))
+                .map(|mode| format!("`{}` ({})", mode.name(), *mode as u8))
+                .collect();
+            format!("unknown mode; did you mean {}?", offered.join(" or "))
+        })
+}
+
+/// A basic movement by name.
+///
+/// # Errors
+/// What to write instead.
+pub fn find_movement(name: &str) -> Result<Movement, String> {
+    let names = MOVEMENTS.iter().map(|(_, name)| *name);
+    MOVEMENTS
+        .iter()
+        .find(|(_, own)| *own == name)
+        .map(|(movement, _)| *movement)
+        .ok_or_else(|| {
+            format!(
+                "unknown movement; {}",
+                near::did_you_mean(&near::near_or_all(name, names))
+            )
+        })
+}

@@ -1,0 +1,238 @@
+//! The built-in files are right, and wrong ones are told what is wrong, line by line.
+
+use rumbo_control::mode::Movement;
+use rumbo_scenario::files::{Kind, Library, Overrides, RobotFile, ScenarioFile, WorldFile};
+use rumbo_wire::message::{Command, Level};
+
+#[test]
+fn every_built_in_file_can_be_set_up() {
+    let library = Library::new();
+    for name in library.list(Kind::Robot) {
+        library.robot(&name).unwrap();
+    }
+    for name in library.list(Kind::World) {
+        library.world(&name).unwrap().world().unwrap();
+    }
+    let scenarios = library.list(Kind::Scenario);
+    assert!(scenarios.len() >= 20);
+    for name in scenarios {
+        library.setup(&name, &Overrides::default()).unwrap();
+    }
+}
+
+#[test]
+fn the_front_sonar_of_mode_1_starts_107_cm_from_the_wall() {
+    let setup = Library::new()
+        .setup("mode1", &Overrides::default())
+        .unwrap();
+    let sonar_x_m = setup.scenario.start.x_m + setup.rig.front.unwrap().x_m;
+    assert!((setup.world.walls[0].from_m[0] - sonar_x_m - 1.07).abs() < 1e-9);
+}
+
+#[test]
+fn a_ramp_is_one_command_per_count_of_pwm() {
+    let scenario = Library::new()
+        .scenario("manual-deadzone-left-forward")
+        .unwrap();
+    let duties: Vec<f32> = scenario
+        .commands
+        .iter()
+        .filter_map(|timed| match timed.command {
+            Command::Move {
+                movement: Movement::PivotRightForward,
+                level: Level::Duty(duty),
+            } => Some(duty * 255.0),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(duties.len(), 78);
+    assert!(
+        duties
+            .iter()
+            .enumerate()
+            .all(|(count, duty)| (duty - count as f32).abs() < 1e-3)
+    );
+}
+
+#[test]
+fn a_file_on_disk_works_as_well_as_a_name() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/mode1.toml");
+    let library = Library::new();
+    let mut from_disk = library.setup(path, &Overrides::default()).unwrap();
+    from_disk.scenario.name = "mode1".into();
+    assert_eq!(
+        from_disk,
+        library.setup("mode1", &Overrides::default()).unwrap()
+    );
+}
+
+const SCENARIO: &str = r#"title = "t"
+robot = "memoria"
+rig = "front_single"
+world = "open"
+mode = "manual"
+duration_s = 5
+"#;
+
+fn scenario_error(text: &str) -> String {
+    ScenarioFile::parse("x", "scenarios/x.toml", text)
+        .map_or_else(|error| error.to_string(), |_| "no problem".into())
+}
+
+/// What is added to a valid scenario, and the complaint it must give.
+const WRONG_SCENARIOS: [(&str, &str); 17] = [
+    (
+        "[start]\nx_m = -400",
+        "scenarios/x.toml:8: start.x_m = -400: must be within -50..50 m",
+    ),
+    (
+        "[start]\nx_cm = -40",
+        "scenarios/x.toml:8: start.x_cm = -40: unknown key; the key is `x_m`, in m and not in cm: x_m = -0.4",
+    ),
+    (
+        "[start]\nheading = 90",
+        "scenarios/x.toml:8: start.heading = 90: unknown key; the key is `heading_deg`, with its unit: deg",
+    ),
+    (
+        "[start]\nx_m = \"1 m\"",
+        "scenarios/x.toml:8: start.x_m = \"1 m\": must be a number in m, without quotes",
+    ),
+    (
+        "[start]\nx_m = nan",
+        "scenarios/x.toml:8: start.x_m = nan: must be within -50..50 m",
+    ),
+    (
+        "wheel_in_air = true",
+        "scenarios/x.toml:7: wheel_in_air = true: unknown key; did you mean `wheels_in_air`?",
+    ),
+    (
+        "wheels_in_air = 1",
+        "scenarios/x.toml:7: wheels_in_air = 1: must be true or false",
+    ),
+    (
+        "[[command]]\nat_s = 2\narm = true\n[[command]]\nat_s = 1\nstop = true",
+        "scenarios/x.toml:11: command[2].at_s = 1: must be 2 or more: commands stand in order of time, after the end of a ramp",
+    ),
+    (
+        "[[command]]\nat_s = 6\narm = true",
+        "scenarios/x.toml:8: command[1].at_s = 6: must be within 0..5 s",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmove = \"turn_lef\"\nduty = 0.4",
+        "scenarios/x.toml:9: command[1].move = \"turn_lef\": unknown movement; did you mean `turn_left`?",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmove = \"forward\"",
+        "scenarios/x.toml:7: [command[1]] needs either duty (0..1, open loop) or speed_rpm (closed loop)",
+    ),
+    (
+        "[[command]]\nat_s = 1\nreference_m = 0.3",
+        "scenarios/x.toml:7: [command[1]] reference_m is for mode `front_distance`, and the mode here is `manual`",
+    ),
+    (
+        "[[command]]\nat_s = 1\nreference_cm = 30",
+        "scenarios/x.toml:9: command[1].reference_cm = 30: unknown key; the key is `reference_m`, in m and not in cm: reference_m = 0.3",
+    ),
+    (
+        "[[command]]\nat_s = 1\narm = true\nstop = true",
+        "scenarios/x.toml:7: [command[1]] has more than one action (arm, stop): give each its own [[command]]",
+    ),
+    (
+        "[limits]\n\"a.b_m\" = { max = \"2\" }",
+        "scenarios/x.toml:8: limits.a.b_m.max = \"2\": must be a number, without quotes",
+    ),
+    (
+        "[plant.battery]\nopen_circuit_mv = 7400",
+        "scenarios/x.toml:8: plant.battery.open_circuit_mv = 7400: unknown key; the key is `open_circuit_v`, in v and not in mv: open_circuit_v = 7.4",
+    ),
+    (
+        "[start\nx_m = 1",
+        "scenarios/x.toml:7: not valid TOML: unclosed table, expected `]`",
+    ),
+];
+
+#[test]
+fn a_wrong_scenario_is_told_line_key_value_and_what_is_allowed() {
+    for (wrong, expected) in WRONG_SCENARIOS {
+        assert_eq!(scenario_error(&format!("{SCENARIO}{wrong}\n")), expected);
+    }
+}
+
+#[test]
+fn all_problems_of_a_file_are_told_at_once_in_the_order_of_lines() {
+    let text = "title = 1\nrobot = \"memoria\"\nrig = \"final\"\nworld = \"open\"\nmode = \"weel_speed\"\nduration_s = -1\n";
+    assert_eq!(
+        scenario_error(text),
+        "scenarios/x.toml:1: title = 1: must be text in quotes\n\
+         scenarios/x.toml:5: mode = weel_speed: unknown mode; did you mean `wheel_speed` (5)?\n\
+         scenarios/x.toml:6: duration_s = -1: must be within 0.1..3600 s"
+    );
+}
+
+#[test]
+fn what_is_missing_is_named_with_what_belongs_there() {
+    let error = scenario_error("title = \"t\"\n");
+    assert!(
+        error.contains("scenarios/x.toml: duration_s is missing: must be within 0.1..3600 s"),
+        "{error}"
+    );
+    assert!(
+        error.contains("scenarios/x.toml: robot is missing: name of a robot, e.g. \"memoria\""),
+        "{error}"
+    );
+}
+
+#[test]
+fn wrong_worlds_and_robots_are_told_what_is_wrong() {
+    let world = |text: &str| {
+        WorldFile::parse("x", "worlds/x.toml", text)
+            .unwrap_err()
+            .to_string()
+    };
+    assert_eq!(
+        world("title = \"t\"\n[[box]]\ncentre_m = [0, 0]\nsize_m = [0.4, -0.4]\n"),
+        "worlds/x.toml:4: box[1].size_m = -0.4: must be within 0.01..50 m"
+    );
+    assert_eq!(
+        world("title = \"t\"\n[[wall]]\nfrom = [0, 0]\nto_m = [1, 0]\n"),
+        "worlds/x.toml:2: wall[1].from_m is missing: two numbers [x, y], each must be within -50..50 m\n\
+         worlds/x.toml:3: wall[1].from = [0, 0]: unknown key; the key is `from_m`, with its unit: m"
+    );
+    let robot = |text: &str| {
+        RobotFile::parse("x", "robots/x.toml", text)
+            .unwrap_err()
+            .to_string()
+    };
+    assert_eq!(
+        robot(
+            "title = \"t\"\n[rig.a.front]\nx_m = 0.1\n[wiring.w]\nservo = 9\nleft_echo = 9\n[plant.encoder]\nedges_per_motor_turn = 7.5\n"
+        ),
+        "robots/x.toml:6: wiring.w.left_echo = 9: servo is on that pin already: give each signal its own\n\
+         robots/x.toml:8: plant.encoder.edges_per_motor_turn = 7.5: must be a whole number within 1..32"
+    );
+    assert_eq!(
+        robot("title = \"t\"\n[rig.a]\nfornt = { x_m = 0.1 }\n"),
+        "robots/x.toml:3: rig.a.fornt = {...}: unknown key; did you mean `front`?"
+    );
+}
+
+#[test]
+fn unknown_names_list_the_near_ones() {
+    let library = Library::new();
+    assert_eq!(
+        library.scenario("mode55").unwrap_err().to_string(),
+        "unknown scenario `mode55`; did you mean `mode5` or `mode1`?"
+    );
+    assert_eq!(
+        library.world("x").unwrap_err().to_string(),
+        "unknown world `x`; did you mean `open`, `room` or `wall_front`?"
+    );
+    let overrides = Overrides {
+        rig: Some("front".into()),
+        ..Overrides::default()
+    };
+    assert_eq!(
+        library.setup("mode1", &overrides).unwrap_err().to_string(),
+        "unknown rig `front`; did you mean `front_pair` or `front_single`?"
+    );
+}
