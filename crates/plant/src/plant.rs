@@ -6,9 +6,13 @@
 
 use libm::{cos, sin, sqrt};
 
+pub use crate::event::Event;
+pub use crate::rig::{Mount, Rig};
+
 use crate::contact::{self, Footprint, Pose};
 use crate::drivetrain::{self, Bridge, Drivetrain, Motion, Side};
 use crate::encoder::{self, Encoder};
+use crate::event::Queue;
 use crate::noise::Noise;
 use crate::params::{self, Params};
 use crate::servo;
@@ -17,36 +21,6 @@ use crate::world::World;
 
 /// Longest physical step, and the grid it keeps to.
 const STEP_US: u64 = 1000;
-
-/// Where a sonar sits on the robot.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Mount {
-    /// Ahead of the wheels' axis.
-    pub x_m: f64,
-    /// Left of the middle.
-    pub y_m: f64,
-    /// Where it looks: 0 forward, positive to the left.
-    pub angle_rad: f64,
-    /// True if the servo turns it.
-    pub on_servo: bool,
-}
-
-/// The sonars a robot carries.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Rig {
-    /// Left, or the left (or rear left-side) one of a pair.
-    pub left: Option<Mount>,
-    /// Right, or the right one of a pair.
-    pub right: Option<Mount>,
-    /// Front.
-    pub front: Option<Mount>,
-}
-
-impl Rig {
-    fn mounts(&self) -> [Option<Mount>; 3] {
-        [self.left, self.right, self.front]
-    }
-}
 
 /// What a plant is made of.
 #[derive(Clone, Debug, Default)]
@@ -90,56 +64,6 @@ pub struct State {
     contact: contact::State,
     servo: servo::State,
     sonars: [sonar::State; 3],
-}
-
-/// What the robot's pins, or an observer, would notice.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Event {
-    /// An edge of a wheel's Hall sensor.
-    Edge {
-        /// Which wheel.
-        wheel: Side,
-        /// When.
-        at_us: u64,
-        /// Level after it.
-        level: bool,
-    },
-    /// An echo line goes high: the burst leaves.
-    EchoRise {
-        /// Which sonar.
-        sonar: SonarId,
-        /// When.
-        at_us: u64,
-    },
-    /// An echo line goes low: an echo, or the time-out.
-    EchoFall {
-        /// Which sonar.
-        sonar: SonarId,
-        /// When.
-        at_us: u64,
-    },
-    /// The body touches an obstacle it was clear of.
-    Contact {
-        /// When, to the step.
-        at_us: u64,
-        /// Index in [`World::obstacles`].
-        obstacle: usize,
-        /// Closing speed of the point that touched.
-        speed_m_s: f64,
-    },
-}
-
-impl Event {
-    /// When it happens.
-    #[must_use]
-    pub const fn at_us(&self) -> u64 {
-        match *self {
-            Self::Edge { at_us, .. }
-            | Self::EchoRise { at_us, .. }
-            | Self::EchoFall { at_us, .. }
-            | Self::Contact { at_us, .. } => at_us,
-        }
-    }
 }
 
 /// What is so, without any sensor in between.
@@ -428,50 +352,5 @@ fn wrapped(heading_rad: f64) -> f64 {
         heading_rad + TAU
     } else {
         heading_rad
-    }
-}
-
-/// Events of one step, sorted by time; those of the same microsecond keep their order.
-struct Queue {
-    events: [Event; Self::ROOM],
-    used: usize,
-}
-
-impl Default for Queue {
-    fn default() -> Self {
-        let nothing = Event::EchoRise {
-            sonar: SonarId::Left,
-            at_us: 0,
-        };
-        Self {
-            events: [nothing; Self::ROOM],
-            used: 0,
-        }
-    }
-}
-
-impl Queue {
-    /// The robot gives up to four edges per wheel in a step, and two per sonar. If a stranger one gives more, the
-    /// first ones leave early: none is lost.
-    const ROOM: usize = 24;
-
-    fn put(&mut self, event: Event, events: &mut impl FnMut(Event)) {
-        if self.used == Self::ROOM {
-            self.flush(events);
-        }
-        let mut at = self.used;
-        while at > 0 && self.events[at - 1].at_us() > event.at_us() {
-            self.events[at] = self.events[at - 1];
-            at -= 1;
-        }
-        self.events[at] = event;
-        self.used += 1;
-    }
-
-    fn flush(&mut self, events: &mut impl FnMut(Event)) {
-        for &event in &self.events[..self.used] {
-            events(event);
-        }
-        self.used = 0;
     }
 }

@@ -1,5 +1,7 @@
 //! The exact cone against dense ray sampling, and what sounds and what hides.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
 use proptest::prelude::*;
 use rumbo_plant::cone::{Cone, Hearing, nearest};
 use rumbo_plant::world::{Block, Point, Wall, World};

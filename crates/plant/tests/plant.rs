@@ -1,5 +1,7 @@
 //! The assembled robot: time, events, contact, sonars.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
 use std::thread;
 
 use rumbo_plant::contact::Pose;

@@ -1,5 +1,7 @@
 //! Many pings: the errors of the readings are those that the parameters state.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params;
 use rumbo_plant::sonar::{Sonar, SonarId, State, View};

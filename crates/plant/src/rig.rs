@@ -1,0 +1,32 @@
+//! Where the sonars sit on the robot.
+
+/// Where a sonar sits on the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mount {
+    /// Ahead of the wheels' axis.
+    pub x_m: f64,
+    /// Left of the middle.
+    pub y_m: f64,
+    /// Where it looks: 0 forward, positive to the left.
+    pub angle_rad: f64,
+    /// True if the servo turns it.
+    pub on_servo: bool,
+}
+
+/// The sonars a robot carries.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rig {
+    /// Left, or the left (or rear left-side) one of a pair.
+    pub left: Option<Mount>,
+    /// Right, or the right one of a pair.
+    pub right: Option<Mount>,
+    /// Front.
+    pub front: Option<Mount>,
+}
+
+impl Rig {
+    /// By [`SonarId::index`](crate::sonar::SonarId::index).
+    pub(crate) fn mounts(&self) -> [Option<Mount>; 3] {
+        [self.left, self.right, self.front]
+    }
+}
