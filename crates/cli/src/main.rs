@@ -1,3 +1,34 @@
-//! The `rumbo` command.
+//! The `rumbo` command: reads the arguments, calls the crate that does the work, prints what came of it.
+//!
+//! Results go to stdout, progress and errors to stderr, one line per error. Exit status: 0 done, 1 a limit of a
+//! scenario was missed, 2 wrong input. Each file here is one subcommand.
 
-fn main() {}
+mod args;
+mod failure;
+mod import;
+mod list;
+mod output;
+
+use args::{Cli, Command};
+use clap::Parser;
+use failure::Failure;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let outcome = match Cli::try_parse() {
+        Ok(cli) => dispatch(cli),
+        Err(error) => args::explain(&error),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn dispatch(cli: Cli) -> Result<(), Failure> {
+    match cli.command {
+        Some(Command::Import(args)) => import::import(&args),
+        Some(Command::List(args)) => list::list(&args),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,231 @@
+//! The command line: subcommands, options, and the examples that each `--help` shows.
+
+use crate::failure::Failure;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Rumbo: the lab of a small robot. Without a subcommand, `lab`.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    args_conflicts_with_subcommands = true,
+    after_help = "\
+Examples:
+  rumbo                       a simulated robot and its dashboard in the browser
+  rumbo run mode1 mode5       experiments without a window, with their metrics
+  rumbo list                  what there is to choose from"
+)]
+pub(crate) struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+    /// Options of `lab`.
+    #[command(flatten)]
+    pub(crate) lab: LabArgs,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Drive a simulated robot from a dashboard in the browser
+    Lab(LabArgs),
+    /// Run scenarios as fast as the machine can and judge their metrics
+    Run(RunArgs),
+    /// Find the plant's parameters from recorded runs
+    Identify(IdentifyArgs),
+    /// Check a CSV of the original program and convert it to a log (MCAP)
+    Import(ImportArgs),
+    /// List scenarios, worlds, robots, modes and parameters
+    List(ListArgs),
+}
+
+/// Options of `rumbo lab`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo lab
+  rumbo lab --scenario mode5 --speed 4
+  rumbo lab --scenario mode1 --world room --port 9000 --no-browser")]
+pub(crate) struct LabArgs {
+    /// Scenario that the robot starts in: name or path
+    #[arg(long, value_name = "NAME", default_value = "mode1")]
+    pub(crate) scenario: String,
+    /// Robot instead of the scenario's own: name or path
+    #[arg(long, value_name = "NAME")]
+    pub(crate) robot: Option<String>,
+    /// World instead of the scenario's own: name or path
+    #[arg(long, value_name = "NAME")]
+    pub(crate) world: Option<String>,
+    /// Port on 127.0.0.1; 0 takes any free one
+    #[arg(long, value_name = "N", default_value_t = rumbo_station::DEFAULT_PORT)]
+    pub(crate) port: u16,
+    /// Do not open the browser
+    #[arg(long)]
+    pub(crate) no_browser: bool,
+    /// Seconds of simulation per second; 0 starts paused
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
+    pub(crate) speed: f64,
+    /// Seed of everything random
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+/// Options of `rumbo run`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo run mode1
+  rumbo run mode5 --runs 20 --json
+  rumbo run mode1 --seed 7 --param battery.open_circuit_v=6.9 --out out/mode1")]
+pub(crate) struct RunArgs {
+    /// Scenarios: names, or paths of files
+    #[arg(required = true, value_name = "SCENARIO")]
+    pub(crate) scenarios: Vec<String>,
+    /// Seed of the first run; each further run takes the next
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Runs of each scenario, each with a seed of its own
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) runs: u32,
+    /// Robot instead of the scenario's own: name or path
+    #[arg(long, value_name = "NAME")]
+    pub(crate) robot: Option<String>,
+    /// World instead of the scenario's own: name or path
+    #[arg(long, value_name = "NAME")]
+    pub(crate) world: Option<String>,
+    /// Rig instead of the scenario's own
+    #[arg(long, value_name = "NAME")]
+    pub(crate) rig: Option<String>,
+    /// Parameter of the control core, or of the plant (a dotted name); may be repeated
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
+    pub(crate) params: Vec<(String, f64)>,
+    /// Folder for the results of each run; made if need be
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// One JSON object per run on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Threads [default: one per core]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
+/// Options of `rumbo identify`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo identify runs/mode5.csv runs/mode7.csv --robot my_robot.toml
+  rumbo identify runs/mode5.csv --check memoria --json --plots out")]
+pub(crate) struct IdentifyArgs {
+    /// Recorded runs: CSV of the original program, or logs made of them by `rumbo import`
+    #[arg(required = true, value_name = "LOG")]
+    pub(crate) logs: Vec<PathBuf>,
+    /// Robot to start from; given by path, its [plant] table is rewritten and its comments are kept
+    #[arg(
+        long,
+        value_name = "ROBOT",
+        default_value = "memoria",
+        conflicts_with = "check"
+    )]
+    pub(crate) robot: String,
+    /// Evaluate this robot without fitting it
+    #[arg(long, value_name = "ROBOT")]
+    pub(crate) check: Option<String>,
+    /// The result as JSON on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Folder for plots of measured against simulated, SVG and PNG; made if need be
+    #[arg(long, value_name = "DIR")]
+    pub(crate) plots: Option<PathBuf>,
+}
+
+/// Options of `rumbo import`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo import runs/mode5.csv
+  rumbo import runs/mode5.csv --out logs/mode5.mcap --json")]
+pub(crate) struct ImportArgs {
+    /// CSV of the original program
+    #[arg(value_name = "FILE.csv")]
+    pub(crate) file: PathBuf,
+    /// The log to write [default: the same name with .mcap, in the current folder]
+    #[arg(long, value_name = "FILE.mcap")]
+    pub(crate) out: Option<PathBuf>,
+    /// The summary as JSON on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Options of `rumbo list`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo list
+  rumbo list parameters
+  rumbo list scenarios --json")]
+pub(crate) struct ListArgs {
+    /// One topic only
+    pub(crate) topic: Option<Topic>,
+    /// As one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What can be listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Topic {
+    /// Experiments
+    Scenarios,
+    /// Walls and boxes
+    Worlds,
+    /// Robots and their rigs
+    Robots,
+    /// What the robot can do
+    Modes,
+    /// Basic movements of mode `manual`
+    Movements,
+    /// Parameters of the control core
+    Parameters,
+    /// Numbers of the plant
+    Plant,
+}
+
+/// Shows help and version; turns a wrong argument into one line.
+pub(crate) fn explain(error: &clap::Error) -> Result<(), Failure> {
+    if !error.use_stderr() {
+        return Ok(error.print()?);
+    }
+    let text = error.to_string();
+    let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let told: Vec<&str> = lines
+        .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"))
+        .collect();
+    let told = told.join("; ").replace(":; ", ": ");
+    Err(Failure::Input(format!(
+        "{}; see `rumbo --help`",
+        told.trim_start_matches("error: ")
+    )))
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(speed) if (0.0..=100.0).contains(&speed) => Ok(speed),
+        _ => Err("must be a number within 0..100".into()),
+    }
+}
+
+fn parameter(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("write it as name=value, e.g. battery.open_circuit_v=6.9")?;
+    let value: f64 = value
+        .trim()
+        .parse()
+        .map_err(|_| format!("`{value}` is not a number"))?;
+    if value.is_finite() {
+        Ok((name.trim().to_owned(), value))
+    } else {
+        Err("the value must be finite".into())
+    }
+}

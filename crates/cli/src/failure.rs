@@ -1,0 +1,51 @@
+//! Why a command did not do what was asked, and the exit status for it.
+
+use std::fmt;
+use std::io::Write;
+use std::process::ExitCode;
+
+/// What ended a command.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// A run missed a limit of its scenario; which one has been printed.
+    LimitMissed,
+    /// Wrong input, or something outside the program is not as needed: what, where and the remedy, in one line each.
+    Input(String),
+    /// Whoever read our output has had enough.
+    ReaderGone,
+}
+
+impl Failure {
+    /// A complaint about anything that can say what is wrong.
+    pub(crate) fn input(error: impl fmt::Display) -> Self {
+        Self::Input(error.to_string())
+    }
+
+    /// Prints the complaint to stderr and gives the exit status.
+    pub(crate) fn report(self) -> ExitCode {
+        match self {
+            Self::LimitMissed => ExitCode::from(1),
+            Self::Input(text) => {
+                // A closed stderr leaves nobody to tell.
+                let _ = writeln!(
+                    std::io::stderr(),
+                    "error: {}",
+                    text.replace('\n', "\nerror: ")
+                );
+                ExitCode::from(2)
+            }
+            Self::ReaderGone => ExitCode::SUCCESS,
+        }
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        match error.kind() {
+            std::io::ErrorKind::BrokenPipe => Self::ReaderGone,
+            _ => Self::Input(format!(
+                "the output could not be written ({error}); is the disk full?"
+            )),
+        }
+    }
+}
