@@ -236,3 +236,27 @@ fn unknown_names_list_the_near_ones() {
         "unknown rig `front`; did you mean `front_pair` or `front_single`?"
     );
 }
+
+proptest::proptest! {
+    #[test]
+    fn a_damaged_file_gets_an_answer_and_never_a_panic(at in 0_usize..600, cut in 0_usize..20, put in "[ -~\n]{0,6}") {
+        for kind in [Kind::Robot, Kind::World, Kind::Scenario] {
+            let library = Library::new();
+            let text = match kind {
+                Kind::Robot => library.robot("memoria").unwrap().text,
+                Kind::World => library.world("room").unwrap().text,
+                Kind::Scenario => library.scenario("manual-deadzone-left-forward").unwrap().text,
+            };
+            let (from, to) = (at % text.len(), (at % text.len() + cut).min(text.len()));
+            let damaged = format!("{}{put}{}", &text[..from], &text[to..]);
+            let complaint = match kind {
+                Kind::Robot => RobotFile::parse("x", "x.toml", &damaged).err(),
+                Kind::World => WorldFile::parse("x", "x.toml", &damaged).err(),
+                Kind::Scenario => ScenarioFile::parse("x", "x.toml", &damaged).err(),
+            };
+            for line in complaint.iter().flat_map(|error| error.to_string().lines().map(String::from).collect::<Vec<_>>()) {
+                proptest::prop_assert!(line.starts_with("x.toml:"), "{line}");
+            }
+        }
+    }
+}

@@ -1,8 +1,9 @@
 //! A scenario with everything it names, and what the command line changes about it.
 
 use super::error::FileError;
-use super::near::near_or_all;
+use super::near::{near, near_or_all};
 use super::{Library, RobotFile, ScenarioFile, WorldFile, parameters};
+use rumbo_plant::params::Params;
 use rumbo_plant::plant::Rig;
 
 /// What the command line sets in place of the scenario's own.
@@ -14,7 +15,7 @@ pub struct Overrides {
     pub rig: Option<String>,
     /// Another world.
     pub world: Option<String>,
-    /// Parameters by name: those of the control core, or dotted ones of the plant such as `battery.open_circuit_v`.
+    /// Parameters by name: those of the control core, and the dotted keys of the plant such as `battery.open_circuit_v`.
     pub parameters: Vec<(String, f64)>,
 }
 
@@ -74,21 +75,33 @@ impl Library {
     }
 }
 
-/// Sets one parameter: of the plant if its name is dotted, of the control core otherwise.
+/// Sets one parameter, of the plant or of the control core, whichever has the name.
 fn apply(scenario: &mut ScenarioFile, name: &str, value: f64) -> Result<(), FileError> {
-    let wrong =
-        |remedy: String| FileError::Setting(format!("parameter {name} = {value}: {remedy}"));
-    if name.contains('.') {
-        let mut scratch = rumbo_plant::params::Params::default();
-        scratch
+    let wrong = |remedy: &str| FileError::Setting(format!("parameter {name} = {value}: {remedy}"));
+    let mut plant = Params::default();
+    if plant.get(name).is_some() {
+        plant
             .set(name, value)
-            .map_err(|error| wrong(error.to_string()))?;
+            .map_err(|error| wrong(&error.to_string()))?;
         scenario.plant.insert(name.to_owned(), value);
         return Ok(());
     }
-    let allowed = parameters::find(name).map_err(wrong)?.allowed();
+    let entries = parameters::all();
+    let Some(entry) = entries.iter().find(|entry| entry.name == name) else {
+        let limits = Params::limits();
+        let known = limits
+            .iter()
+            .map(|limit| limit.key.as_str())
+            .chain(entries.iter().map(|entry| entry.name));
+        return Err(FileError::Unknown {
+            kind: "parameter",
+            name: name.to_owned(),
+            near: near(name, known).into_iter().map(str::to_owned).collect(),
+        });
+    };
+    let allowed = entry.allowed();
     if !(allowed.min..=allowed.max).contains(&value) {
-        return Err(wrong(allowed.remedy()));
+        return Err(wrong(&allowed.remedy()));
     }
     scenario.parameters.insert(name.to_owned(), value as f32);
     Ok(())
