@@ -217,6 +217,21 @@ fn wrong_worlds_and_robots_are_told_what_is_wrong() {
 }
 
 #[test]
+fn a_robot_cannot_start_inside_a_box() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("inside.toml");
+    let text = SCENARIO.replace("\"open\"", "\"room\"") + "[start]\nx_m = 1.6\n";
+    std::fs::write(&path, text).unwrap();
+    let error = Library::new()
+        .setup(path.to_str().unwrap(), &Overrides::default())
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "scenario inside: its start x_m = 1.6, y_m = 0 is inside a wall or box of world room; move [start] or choose another world"
+    );
+}
+
+#[test]
 fn unknown_names_list_the_near_ones() {
     let library = Library::new();
     assert_eq!(

@@ -2,7 +2,8 @@
 
 use super::error::FileError;
 use super::near::{near, near_or_all};
-use super::{Library, RobotFile, ScenarioFile, WorldFile, parameters};
+use super::{Library, RobotFile, ScenarioFile, Start, WorldFile, parameters};
+use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::Rig;
 
@@ -57,6 +58,7 @@ impl Library {
         for (name, value) in &overrides.parameters {
             apply(&mut scenario, name, *value)?;
         }
+        stands_free(&scenario, &robot, &world)?;
         let rig = robot
             .rigs
             .get(&scenario.rig)
@@ -73,6 +75,39 @@ impl Library {
             world,
         })
     }
+}
+
+/// Complains about a start inside a wall or a box.
+fn stands_free(
+    scenario: &ScenarioFile,
+    robot: &RobotFile,
+    world: &WorldFile,
+) -> Result<(), FileError> {
+    let obstacles = world
+        .world()
+        .map_err(|error| FileError::Setting(format!("world {}: {error}", world.name)))?;
+    let Start {
+        x_m,
+        y_m,
+        heading_rad,
+    } = scenario.start;
+    let footprint = Footprint::new(&robot.plant.body, &robot.plant.wheels);
+    if footprint.clearance_m(
+        &obstacles,
+        &Pose {
+            x_m,
+            y_m,
+            heading_rad,
+        },
+    ) >= 0.0
+        || scenario.wheels_in_air
+    {
+        return Ok(());
+    }
+    Err(FileError::Setting(format!(
+        "scenario {}: its start x_m = {x_m}, y_m = {y_m} is inside a wall or box of world {}; move [start] or choose another world",
+        scenario.name, world.name
+    )))
 }
 
 /// Sets one parameter, of the plant or of the control core, whichever has the name.
