@@ -4,8 +4,22 @@
 //! commands into bytes; the web side shows the signals in a browser on this machine and passes on what is asked there.
 //! [`serve`] joins the two.
 
+mod assets;
+mod board;
+mod catalogue;
+pub mod client;
+pub mod commands;
+mod guard;
+mod meter;
+mod orders;
+mod robot_clock;
 mod serve;
+mod session;
+mod signals;
+mod socket;
 mod target;
+mod web;
+mod words;
 
 pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeError, serve};
 pub use target::{Choice, MapPose, Obstacle, Scene, Simulation, SonarMount, Target, Truth};

@@ -1,7 +1,19 @@
 //! Starts the lab: binds the port, then runs the session and the web server in threads of their own.
 
+use crate::board::Board;
+use crate::guard::Guard;
+use crate::orders::Order;
+use crate::session::{Orders, Session};
+use crate::socket::Hub;
 use crate::target::Target;
-use std::fmt;
+use crate::web;
+use std::net::{Ipv4Addr, TcpListener};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{self, SyncSender};
+use std::thread::JoinHandle;
+use std::{fmt, io};
+use tokio::sync::oneshot;
 
 /// The port of the dashboard unless another is asked for.
 pub const DEFAULT_PORT: u16 = 8360;
@@ -17,7 +29,10 @@ pub struct LabConfig {
 
 impl Default for LabConfig {
     fn default() -> Self {
-        Self { port: DEFAULT_PORT, speed: 1.0 }
+        Self {
+            port: DEFAULT_PORT,
+            speed: 1.0,
+        }
     }
 }
 
@@ -27,7 +42,7 @@ pub enum ServeError {
     /// Another program listens on the port.
     PortInUse(u16),
     /// The port could not be opened, or a thread not be started, for another reason.
-    Io(std::io::Error),
+    Io(io::Error),
 }
 
 impl fmt::Display for ServeError {
@@ -44,10 +59,21 @@ impl fmt::Display for ServeError {
 
 impl std::error::Error for ServeError {}
 
-/// A lab being served; dropping it ends it.
+impl From<io::Error> for ServeError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+/// A lab being served; dropping it ends it, and stops the robot.
 #[derive(Debug)]
 pub struct Lab {
     url: String,
+    /// `None` once ended. The session lives while there are senders.
+    orders: Option<SyncSender<Order>>,
+    web_ends: Option<oneshot::Sender<()>>,
+    session: Option<JoinHandle<Result<(), String>>>,
+    web: Option<JoinHandle<()>>,
 }
 
 impl Lab {
@@ -56,20 +82,96 @@ impl Lab {
         &self.url
     }
 
-    /// Returns when the lab has ended by itself: the target is gone.
+    /// Returns when the session has ended by itself: the target is gone.
     ///
     /// # Errors
     /// What the target said when it went.
-    pub fn wait(self) -> Result<(), String> {
-        Ok(())
+    pub fn wait(mut self) -> Result<(), String> {
+        match self.session.take().map(JoinHandle::join) {
+            Some(Ok(ended)) => ended,
+            Some(Err(_)) => Err("the session ended by a fault of its own; please report it".into()),
+            None => Ok(()),
+        }
     }
 }
+
+impl Drop for Lab {
+    fn drop(&mut self) {
+        // The web side first: its connections hold senders of orders.
+        drop(self.web_ends.take());
+        let web = self.web.take().map(JoinHandle::join);
+        drop(self.orders.take());
+        let session = self.session.take().map(JoinHandle::join);
+        // Nobody is left to hear of a fault.
+        drop((web, session));
+    }
+}
+
+/// Orders that may wait for the session, which takes them every few milliseconds.
+const ORDERS_WAITING: usize = 256;
 
 /// Serves the dashboard of `target` on 127.0.0.1 until the returned [`Lab`] is dropped. Prints nothing.
 ///
 /// # Errors
 /// [`ServeError`], when the port cannot be opened.
 pub fn serve(config: LabConfig, target: Box<dyn Target>) -> Result<Lab, ServeError> {
-    let _ = (config, target);
-    Ok(Lab { url: String::new() })
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, config.port)).map_err(|error| {
+        match error.kind() {
+            io::ErrorKind::AddrInUse => ServeError::PortInUse(config.port),
+            _ => ServeError::Io(error),
+        }
+    })?;
+    listener.set_nonblocking(true)?;
+    let guard = Guard::new(listener.local_addr()?.port()).map_err(io::Error::other)?;
+    let url = guard.url();
+
+    let board = Arc::new(Board::new());
+    let stop = Arc::new(AtomicBool::new(false));
+    let (orders, queue) = mpsc::sync_channel(ORDERS_WAITING);
+    let session = Session::new(
+        target,
+        Arc::clone(&board),
+        Orders {
+            queue,
+            stop: Arc::clone(&stop),
+        },
+        config.speed,
+    );
+    let session = std::thread::Builder::new()
+        .name("session".into())
+        .spawn(move || session.run())?;
+
+    let router = web::router(
+        Arc::new(guard),
+        Hub {
+            board,
+            orders: orders.clone(),
+            stop,
+        },
+    );
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()?;
+    let (web_ends, ended) = oneshot::channel();
+    let web = std::thread::Builder::new()
+        .name("web".into())
+        .spawn(move || {
+            runtime.block_on(async {
+                let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
+                    return;
+                };
+                // Connections end with the runtime.
+                tokio::select! {
+                    _ = async { axum::serve(listener, router).await } => {}
+                    _ = ended => {}
+                }
+            });
+        })?;
+    Ok(Lab {
+        url,
+        orders: Some(orders),
+        web_ends: Some(web_ends),
+        session: Some(session),
+        web: Some(web),
+    })
 }

@@ -1,0 +1,84 @@
+//! The dashboard's files, built into the program. Only these are served: no path of a request is ever opened.
+
+/// A file as it is served.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asset {
+    pub(crate) path: &'static str,
+    pub(crate) mime: &'static str,
+    pub(crate) bytes: &'static [u8],
+}
+
+macro_rules! assets {
+    ($($path:literal: $mime:expr),* $(,)?) => {
+        &[$(Asset { path: concat!("/", $path), mime: $mime, bytes: include_bytes!(concat!("../../../web/", $path)) }),*]
+    };
+}
+
+const HTML: &str = "text/html; charset=utf-8";
+const CSS: &str = "text/css; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+const SVG: &str = "image/svg+xml";
+const TEXT: &str = "text/plain; charset=utf-8";
+
+/// All files.
+pub(crate) const ASSETS: &[Asset] = assets![
+    "index.html": HTML,
+    "style.css": CSS,
+    "icon.svg": SVG,
+    "src/dom.js": SCRIPT,
+    "src/events.js": SCRIPT,
+    "src/header.js": SCRIPT,
+    "src/link.js": SCRIPT,
+    "src/main.js": SCRIPT,
+    "src/map.js": SCRIPT,
+    "src/panel.js": SCRIPT,
+    "src/parameters.js": SCRIPT,
+    "src/plots.js": SCRIPT,
+    "src/store.js": SCRIPT,
+    "src/theme.js": SCRIPT,
+    "src/types.js": SCRIPT,
+    "src/units.js": SCRIPT,
+    "vendor/uplot/uPlot.js": SCRIPT,
+    "vendor/uplot/uPlot.css": CSS,
+    "vendor/uplot/LICENSE": TEXT,
+];
+
+/// The file for the path of a request.
+pub(crate) fn find(path: &str) -> Option<&'static Asset> {
+    let path = if path == "/" { "/index.html" } else { path };
+    ASSETS.iter().find(|asset| asset.path == path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn every_module_of_the_dashboard_is_served() {
+        let modules =
+            std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src")).unwrap();
+        for module in modules {
+            let name = module.unwrap().file_name().into_string().unwrap();
+            if name.ends_with(".js") {
+                assert!(
+                    find(&format!("/src/{name}")).is_some(),
+                    "src/{name} is missing in ASSETS"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_path_outside_the_list_is_nothing() {
+        for path in [
+            "/../Cargo.toml",
+            "/package.json",
+            "/src/../index.html",
+            "//index.html",
+            "",
+        ] {
+            assert!(find(path).is_none(), "{path}");
+        }
+    }
+}

@@ -1,0 +1,370 @@
+//! The board between the session and the pages: the session writes, each page's connection reads on from where it was.
+//!
+//! Everything on it is bounded. Samples and events sit in rings with running numbers, so that a page that is slow, was away or is new
+//! gets the recent past and never holds the session up; the rest is one current value each, with a version.
+//! Nobody reads, nothing is made: rows become JSON in the connections.
+
+use crate::catalogue::ParameterState;
+use crate::signals::Sample;
+use crate::target::Scene;
+use serde::Serialize;
+use std::collections::VecDeque;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tokio::sync::watch;
+
+/// Samples kept: five minutes of telemetry at 25 Hz.
+pub(crate) const SAMPLES_KEPT: usize = 7_500;
+/// Events kept.
+pub(crate) const EVENTS_KEPT: usize = 1_000;
+
+/// How an event is to be seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Level {
+    /// Something went on.
+    Info,
+    /// Something was achieved or applied.
+    Good,
+    /// Something was refused or lost.
+    Warning,
+    /// The robot had to stop.
+    Fault,
+}
+
+/// Something that happened, as people read it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct LoggedEvent {
+    /// Session time [s].
+    pub(crate) t_s: f64,
+    pub(crate) level: Level,
+    /// What happened, with its cause.
+    pub(crate) text: String,
+}
+
+/// What changes slowly.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct State {
+    pub(crate) t_s: f64,
+    /// A simulation: its speed can be set and it can be reset.
+    pub(crate) simulated: bool,
+    /// Seconds of the target asked for per second of the wall clock.
+    pub(crate) speed: f64,
+    /// Seconds of the target per second of the wall clock, measured.
+    pub(crate) achieved_speed: f64,
+    pub(crate) link: LinkState,
+    pub(crate) robot: RobotState,
+}
+
+/// The link, for the page.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct LinkState {
+    pub(crate) connected: bool,
+    pub(crate) telemetry_hz: f64,
+    /// Share of the link's capacity from the robot, 0..=1.
+    pub(crate) down_load: f64,
+    /// Share of the link's capacity to the robot, 0..=1.
+    pub(crate) up_load: f64,
+    pub(crate) baud: u32,
+    pub(crate) round_trip_ms: Option<u64>,
+    /// Frames from the robot that failed the CRC.
+    pub(crate) crc_errors_down: u16,
+    /// Frames to the robot that failed the CRC.
+    pub(crate) crc_errors_up: u8,
+    pub(crate) frames_lost: u16,
+    /// Telemetry the robot dropped because the link was full.
+    pub(crate) dropped: u8,
+    /// The operator's commands not acknowledged yet.
+    pub(crate) unacknowledged: usize,
+}
+
+/// The robot's slow signals, for the page.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct RobotState {
+    pub(crate) mode: u8,
+    pub(crate) armed: bool,
+    /// The latched fault and what to do about it.
+    pub(crate) fault: Option<&'static str>,
+    pub(crate) battery_v: Option<f64>,
+    pub(crate) true_battery_v: Option<f64>,
+    pub(crate) reference: [f32; 2],
+    pub(crate) overruns: u8,
+    pub(crate) servo_rad: f32,
+    /// The robot has another parameter table, or another protocol: its parameters are neither shown nor written.
+    pub(crate) foreign: bool,
+}
+
+/// A ring whose entries keep their running number.
+#[derive(Debug)]
+struct Ring<T> {
+    entries: VecDeque<T>,
+    /// Number of the next entry.
+    next: u64,
+    kept: usize,
+}
+
+impl<T: Clone> Ring<T> {
+    fn new(kept: usize) -> Self {
+        Self {
+            entries: VecDeque::new(),
+            next: 0,
+            kept,
+        }
+    }
+
+    fn push(&mut self, entry: T) {
+        if self.entries.len() == self.kept {
+            self.entries.pop_front();
+        }
+        self.entries.push_back(entry);
+        self.next += 1;
+    }
+
+    fn clear(&mut self) {
+        self.entries.clear();
+    }
+
+    /// The entries from `cursor` on and how many before them are gone; moves the cursor behind them.
+    fn read(&self, cursor: &mut u64) -> (Vec<T>, u64) {
+        let first = self.next - self.entries.len() as u64;
+        let gone = first.saturating_sub(*cursor);
+        let skip = cursor.saturating_sub(first) as usize;
+        *cursor = self.next;
+        (self.entries.iter().skip(skip).cloned().collect(), gone)
+    }
+}
+
+/// A value and how often it changed.
+#[derive(Debug, Default)]
+struct Versioned<T> {
+    value: T,
+    version: u64,
+}
+
+impl<T: PartialEq> Versioned<T> {
+    /// Whether the value is a new one.
+    fn set(&mut self, value: T) -> bool {
+        let new = self.version == 0 || self.value != value;
+        if new {
+            self.value = value;
+            self.version += 1;
+        }
+        new
+    }
+}
+
+#[derive(Debug)]
+struct Contents {
+    run: u32,
+    samples: Ring<Sample>,
+    events: Ring<LoggedEvent>,
+    scene: Versioned<Option<Scene>>,
+    parameters: Versioned<Vec<ParameterState>>,
+    state: Versioned<State>,
+}
+
+/// What is to be shown.
+#[derive(Debug)]
+pub(crate) struct Board {
+    contents: Mutex<Contents>,
+    changed: watch::Sender<()>,
+}
+
+/// How far a page has read.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Cursor {
+    run: u32,
+    samples: u64,
+    events: u64,
+    scene: u64,
+    parameters: u64,
+    state: u64,
+}
+
+/// What is new to a page.
+#[derive(Debug, Default)]
+pub(crate) struct News {
+    /// Number of the run, which changes with a reset: what the page has of earlier runs is over.
+    pub(crate) run: u32,
+    pub(crate) scene: Option<Option<Scene>>,
+    pub(crate) parameters: Option<Vec<ParameterState>>,
+    pub(crate) state: Option<State>,
+    pub(crate) samples: Vec<Sample>,
+    pub(crate) events: Vec<LoggedEvent>,
+    /// Events that left the ring before the page took them.
+    pub(crate) events_gone: u64,
+}
+
+impl Board {
+    pub(crate) fn new() -> Self {
+        Self {
+            contents: Mutex::new(Contents {
+                run: 1,
+                samples: Ring::new(SAMPLES_KEPT),
+                events: Ring::new(EVENTS_KEPT),
+                scene: Versioned::default(),
+                parameters: Versioned::default(),
+                state: Versioned::default(),
+            }),
+            changed: watch::Sender::new(()),
+        }
+    }
+
+    /// A poisoned lock holds whole values all the same: each is written in one move.
+    fn lock(&self) -> MutexGuard<'_, Contents> {
+        self.contents.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Wakes its holder when something new is on the board.
+    pub(crate) fn subscribe(&self) -> watch::Receiver<()> {
+        self.changed.subscribe()
+    }
+
+    pub(crate) fn push_samples(&self, samples: &[Sample]) {
+        if samples.is_empty() {
+            return;
+        }
+        let mut contents = self.lock();
+        samples
+            .iter()
+            .for_each(|sample| contents.samples.push(*sample));
+        self.changed.send_replace(());
+    }
+
+    pub(crate) fn push_event(&self, event: LoggedEvent) {
+        self.lock().events.push(event);
+        self.changed.send_replace(());
+    }
+
+    pub(crate) fn set_scene(&self, scene: Option<Scene>) {
+        if self.lock().scene.set(scene) {
+            self.changed.send_replace(());
+        }
+    }
+
+    pub(crate) fn set_parameters(&self, parameters: &[ParameterState]) {
+        if self.lock().parameters.set(parameters.to_vec()) {
+            self.changed.send_replace(());
+        }
+    }
+
+    pub(crate) fn set_state(&self, state: State) {
+        if self.lock().state.set(state) {
+            self.changed.send_replace(());
+        }
+    }
+
+    /// A new run begins: the samples of the old one are over, its events stay.
+    pub(crate) fn start_run(&self) {
+        let mut contents = self.lock();
+        contents.run += 1;
+        contents.samples.clear();
+    }
+
+    /// What is new since `cursor`, which moves on.
+    pub(crate) fn news(&self, cursor: &mut Cursor) -> News {
+        let contents = self.lock();
+        let (samples, _) = contents.samples.read(&mut cursor.samples);
+        let (events, gone) = contents.events.read(&mut cursor.events);
+        let first_time = cursor.run == 0;
+        cursor.run = contents.run;
+        News {
+            run: contents.run,
+            scene: take_new(&contents.scene, &mut cursor.scene),
+            parameters: take_new(&contents.parameters, &mut cursor.parameters),
+            state: take_new(&contents.state, &mut cursor.state),
+            samples,
+            events,
+            // What left the ring before the page came was not its to take.
+            events_gone: if first_time { 0 } else { gone },
+        }
+    }
+}
+
+fn take_new<T: Clone>(versioned: &Versioned<T>, seen: &mut u64) -> Option<T> {
+    (versioned.version != *seen).then(|| {
+        *seen = versioned.version;
+        versioned.value.clone()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rumbo_control::Wheels;
+    use rumbo_control::mode::ModeId;
+    use rumbo_wire::Telemetry;
+
+    fn sample(t_ms: i64) -> Sample {
+        Sample {
+            t_ms,
+            mode: ModeId::Manual,
+            reference: Wheels::both(0.0),
+            telemetry: Telemetry::default(),
+            truth: None,
+        }
+    }
+
+    fn event(number: usize) -> LoggedEvent {
+        LoggedEvent {
+            t_s: 0.0,
+            level: Level::Info,
+            text: number.to_string(),
+        }
+    }
+
+    #[test]
+    fn a_new_page_gets_the_recent_past_and_then_only_what_is_new() {
+        let board = Board::new();
+        board.push_samples(&[sample(0), sample(40)]);
+        board.push_event(event(0));
+        let mut cursor = Cursor::default();
+        let news = board.news(&mut cursor);
+        assert_eq!((news.samples.len(), news.events.len()), (2, 1));
+        board.push_samples(&[sample(80)]);
+        let news = board.news(&mut cursor);
+        assert_eq!(
+            news.samples
+                .iter()
+                .map(|sample| sample.t_ms)
+                .collect::<Vec<_>>(),
+            [80]
+        );
+        assert!(news.events.is_empty());
+    }
+
+    #[test]
+    fn what_is_kept_is_bounded_and_a_slow_page_knows_what_it_missed() {
+        let board = Board::new();
+        let mut cursor = Cursor::default();
+        board.news(&mut cursor);
+        (0..3 * SAMPLES_KEPT as i64).for_each(|t_ms| board.push_samples(&[sample(t_ms)]));
+        (0..EVENTS_KEPT + 5).for_each(|number| board.push_event(event(number)));
+        let news = board.news(&mut cursor);
+        assert_eq!(news.samples.len(), SAMPLES_KEPT);
+        assert_eq!(news.events.len(), EVENTS_KEPT);
+        assert_eq!(news.events_gone, 5);
+    }
+
+    #[test]
+    fn a_reset_ends_the_samples_of_the_old_run() {
+        let board = Board::new();
+        let mut cursor = Cursor::default();
+        board.push_samples(&[sample(0), sample(40)]);
+        let before = board.news(&mut cursor).run;
+        board.start_run();
+        board.push_samples(&[sample(0)]);
+        let news = board.news(&mut cursor);
+        assert_ne!(news.run, before);
+        assert_eq!(news.samples.len(), 1);
+    }
+
+    #[test]
+    fn a_value_that_did_not_change_is_not_news() {
+        let board = Board::new();
+        let mut cursor = Cursor::default();
+        board.set_state(State::default());
+        assert!(board.news(&mut cursor).state.is_some());
+        board.set_state(State::default());
+        assert!(board.news(&mut cursor).state.is_none());
+    }
+}

@@ -1,0 +1,117 @@
+//! What there is to choose and to set: modes, movements and parameters, as the page gets them.
+
+use rumbo_control::mode::{ModeId, Movement};
+use serde::Serialize;
+
+/// A parameter of the table, with its value as far as it is known.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct ParameterState {
+    #[serde(flatten)]
+    pub(crate) entry: Entry,
+    /// The value the robot acknowledged.
+    pub(crate) value: Option<f32>,
+    /// A new value is on its way.
+    pub(crate) pending: bool,
+    /// Why the last write failed.
+    pub(crate) refused: Option<String>,
+}
+
+/// What the table says of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct Entry {
+    pub(crate) id: u8,
+    pub(crate) name: &'static str,
+    pub(crate) unit: &'static str,
+    pub(crate) min: f32,
+    pub(crate) max: f32,
+    pub(crate) default: f32,
+    /// The mode it belongs to; `None` for all.
+    pub(crate) mode: Option<u8>,
+    pub(crate) description: &'static str,
+}
+
+/// The whole table, in the order of the numbers.
+pub(crate) fn table() -> impl Iterator<Item = Entry> {
+    (0..=u8::MAX).map_while(entry)
+}
+
+/// The parameter with this number.
+pub(crate) fn entry(id: u8) -> Option<Entry> {
+    let _ = id;
+    None
+}
+
+/// A mode to choose.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct ModeEntry {
+    id: u8,
+    name: &'static str,
+    /// What its reference is, if it takes one.
+    reference: Option<ReferenceKind>,
+    /// Takes basic movements.
+    movements: bool,
+    states: &'static [&'static str],
+}
+
+/// What a mode's reference is.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum ReferenceKind {
+    /// A distance [m].
+    Distance,
+    /// A speed of each wheel [rad/s].
+    WheelSpeed,
+}
+
+/// The modes to choose from.
+pub(crate) fn modes() -> Vec<ModeEntry> {
+    ModeId::ALL.into_iter().map(mode_entry).collect()
+}
+
+fn mode_entry(mode: ModeId) -> ModeEntry {
+    ModeEntry {
+        id: mode as u8,
+        name: mode.name(),
+        reference: match mode {
+            ModeId::Manual => None,
+            ModeId::FrontDistance => Some(ReferenceKind::Distance),
+            ModeId::WheelSpeed => Some(ReferenceKind::WheelSpeed),
+        },
+        movements: mode == ModeId::Manual,
+        states: &[],
+    }
+}
+
+/// The movements of mode 0.
+const MOVEMENTS: [Movement; 13] = [
+    Movement::Stop,
+    Movement::Forward,
+    Movement::Backward,
+    Movement::TurnLeft,
+    Movement::TurnRight,
+    Movement::PivotLeftForward,
+    Movement::PivotLeftBackward,
+    Movement::PivotRightForward,
+    Movement::PivotRightBackward,
+    Movement::ArcLeft,
+    Movement::ArcRight,
+    Movement::ArcLeftBackward,
+    Movement::ArcRightBackward,
+];
+
+/// The movement with this number.
+pub(crate) fn movement(number: u8) -> Option<Movement> {
+    MOVEMENTS
+        .into_iter()
+        .find(|movement| *movement as u8 == number)
+}
+
+/// Hash of the table, as robots report it.
+pub(crate) fn schema() -> u32 {
+    0
+}
+
+/// How many parameters there are.
+pub(crate) fn len() -> u8 {
+    u8::try_from(table().count()).unwrap_or(u8::MAX)
+}

@@ -1,0 +1,290 @@
+//! The station's end of the link: bytes from the robot become what was heard, commands become bytes.
+//!
+//! Knows the protocol and nothing of browsers, threads or wall clocks: time is an argument, in the target's time. It asks for
+//! HELLO until the robot answers, then reads the parameters, sends heartbeats, and notices silence and restarts. It
+//! never arms.
+
+use crate::commands::{CommandManager, Outcome, QueueFull};
+use crate::meter::Meter;
+use crate::robot_clock::RobotClock;
+use rumbo_control::Wheels;
+use rumbo_control::mode::ModeId;
+use rumbo_wire::{
+    Ack, Command, Decoder, EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received,
+    Status, Telemetry, ToRobot,
+};
+
+/// Room for a line of the original's text, the longest thing a robot says.
+const LINE_BYTES: usize = 128;
+/// HELLO is repeated this often until answered [us].
+const HELLO_PERIOD_US: u64 = 300_000;
+/// An answer to HELLO comes within this time; a later HELLO is a robot that started again [us].
+const HELLO_ANSWER_US: u64 = 1_000_000;
+/// A sign of life goes out this often, a third of the 500 ms after which the robot stops [us].
+const HEARTBEAT_PERIOD_US: u64 = 150_000;
+/// The link counts as lost after this long without a frame: 25 telemetry frames [us].
+const SILENCE_US: u64 = 1_000_000;
+
+/// What was heard from the robot, in the session's time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Heard {
+    /// The robot answered for the first time, or after silence.
+    Connected(Hello),
+    /// The robot's program started again by itself.
+    Restarted(Hello),
+    /// Nothing came for a second.
+    Lost,
+    /// The fast signals, as of this time [ms].
+    Telemetry(i64, Telemetry),
+    /// The slow signals.
+    Status(Status),
+    /// Something happened at this time [ms].
+    Event(i64, EventKind),
+    /// A command ended.
+    Ended(Outcome),
+}
+
+/// The parameter table the station knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KnownTable {
+    /// Its hash, compared with [`Hello::schema`].
+    pub schema: u32,
+    /// How many parameters it has, numbered from 0.
+    pub len: u8,
+}
+
+/// Speaks with one robot.
+#[derive(Debug)]
+pub struct RobotClient {
+    table: KnownTable,
+    clock: RobotClock,
+    decoder: Decoder<LINE_BYTES>,
+    manager: CommandManager,
+    sequence: u8,
+    hello: Option<Hello>,
+    connected: bool,
+    hello_sent_us: Option<u64>,
+    last_sent_us: Option<u64>,
+    last_heard_us: u64,
+    mode: ModeId,
+    reference: Wheels<f32>,
+    malformed: u32,
+    up: Meter,
+    down: Meter,
+    frames: Meter,
+}
+
+impl RobotClient {
+    /// A client for a robot not heard yet. `session` is to be random. `clock_known`: the robot's clock started with the session's.
+    pub fn new(session: u8, clock_known: bool, table: KnownTable) -> Self {
+        let clock = if clock_known {
+            RobotClock::STARTED_WITH_SESSION
+        } else {
+            RobotClock::UNKNOWN
+        };
+        Self {
+            table,
+            clock,
+            decoder: Decoder::default(),
+            manager: CommandManager::new(session),
+            sequence: 0,
+            hello: None,
+            connected: false,
+            hello_sent_us: None,
+            last_sent_us: None,
+            last_heard_us: 0,
+            mode: ModeId::default(),
+            reference: Wheels::both(0.0),
+            malformed: 0,
+            up: Meter::default(),
+            down: Meter::default(),
+            frames: Meter::default(),
+        }
+    }
+
+    /// Takes a command from the operator.
+    ///
+    /// # Errors
+    /// [`QueueFull`]; never for STOP.
+    pub fn submit(&mut self, command: Command, now_us: u64) -> Result<(), QueueFull> {
+        self.manager.submit(command, now_us)
+    }
+
+    /// Appends the bytes to be sent now. To be called after every step of time.
+    pub fn poll(&mut self, now_us: u64, to_robot: &mut Vec<u8>, heard: &mut Vec<Heard>) {
+        if self.connected && now_us.saturating_sub(self.last_heard_us) > SILENCE_US {
+            self.connected = false;
+            self.hello_sent_us = None;
+            heard.push(Heard::Lost);
+        }
+        let hello_due = self
+            .hello_sent_us
+            .is_none_or(|sent_us| now_us >= sent_us + HELLO_PERIOD_US);
+        if !self.connected && hello_due {
+            self.hello_sent_us = Some(now_us);
+            self.say(ToRobot::Hello, now_us, to_robot);
+        }
+        if let Some(command) = self.manager.poll(now_us) {
+            self.say(command, now_us, to_robot);
+        }
+        if self
+            .last_sent_us
+            .is_none_or(|sent_us| now_us >= sent_us + HEARTBEAT_PERIOD_US)
+        {
+            self.say(ToRobot::Heartbeat, now_us, to_robot);
+        }
+        self.report_outcomes(heard);
+    }
+
+    fn say(&mut self, message: ToRobot, now_us: u64, to_robot: &mut Vec<u8>) {
+        let frame = message.frame(self.sequence);
+        self.sequence = self.sequence.wrapping_add(1);
+        self.last_sent_us = Some(now_us);
+        self.up.add(frame.bytes().len(), now_us);
+        to_robot.extend_from_slice(frame.bytes());
+    }
+
+    /// Takes bytes that arrived from the robot and appends what they say.
+    pub fn hear(&mut self, bytes: &[u8], now_us: u64, heard: &mut Vec<Heard>) {
+        self.down.add(bytes.len(), now_us);
+        for byte in bytes {
+            let body = match self.decoder.push(*byte) {
+                Some(Received::Frame(body)) => body,
+                // A robot addressed in binary answers so; a line is left from before.
+                Some(Received::Line(_)) | None => continue,
+            };
+            match FromRobot::from_body(&body) {
+                Ok(message) => self.understand(message, now_us, heard),
+                Err(_) => self.malformed = self.malformed.wrapping_add(1),
+            }
+        }
+        self.report_outcomes(heard);
+    }
+
+    fn understand(&mut self, message: FromRobot, now_us: u64, heard: &mut Vec<Heard>) {
+        self.last_heard_us = now_us;
+        self.frames.add(
+            usize::from(matches!(message, FromRobot::Telemetry(_))),
+            now_us,
+        );
+        let now_ms = (now_us / 1_000) as i64;
+        match message {
+            FromRobot::Hello(hello) => self.greet(hello, now_us, heard),
+            FromRobot::Telemetry(telemetry) => {
+                let t_ms = self.clock.session_ms(telemetry.t_ms, now_ms);
+                heard.push(Heard::Telemetry(t_ms, telemetry));
+            }
+            FromRobot::Status(status) => {
+                self.mode = status.mode;
+                self.reference = status.reference;
+                heard.push(Heard::Status(status));
+            }
+            FromRobot::Event(event) => {
+                if let EventKind::ModeChanged(mode) = event.kind {
+                    self.mode = mode;
+                }
+                heard.push(Heard::Event(
+                    self.clock.session_ms(event.t_ms, now_ms),
+                    event.kind,
+                ));
+            }
+            FromRobot::Ack(ack) => self.acknowledge(&ack, now_us),
+        }
+    }
+
+    fn greet(&mut self, hello: Hello, now_us: u64, heard: &mut Vec<Heard>) {
+        let answer = self
+            .hello_sent_us
+            .is_some_and(|sent_us| now_us < sent_us + HELLO_ANSWER_US);
+        let known = self.hello.replace(hello).is_some();
+        if known && !answer {
+            self.manager.robot_restarted();
+            self.clock = RobotClock::UNKNOWN;
+            heard.push(Heard::Restarted(hello));
+        } else if !self.connected {
+            heard.push(Heard::Connected(hello));
+        } else {
+            return;
+        }
+        self.connected = true;
+        self.read_parameters();
+    }
+
+    /// Asks for the value of every parameter, if the robot's table is the one known here.
+    pub fn read_parameters(&mut self) {
+        if self.table_matches() {
+            (0..self.table.len)
+                .for_each(|id| self.manager.submit_background(Command::GetParam { id }));
+        }
+    }
+
+    fn acknowledge(&mut self, ack: &Ack, now_us: u64) {
+        self.manager.acknowledge(ack, now_us);
+    }
+
+    fn report_outcomes(&mut self, heard: &mut Vec<Heard>) {
+        heard.extend(self.manager.take_outcomes().into_iter().map(Heard::Ended));
+    }
+
+    /// The robot is heard.
+    pub fn connected(&self) -> bool {
+        self.connected
+    }
+
+    /// Who the robot says it is.
+    pub fn hello(&self) -> Option<Hello> {
+        self.hello
+    }
+
+    /// The robot has the parameter table known here, and speaks this protocol.
+    pub fn table_matches(&self) -> bool {
+        self.hello.is_some_and(|hello| {
+            hello.schema == self.table.schema && hello.protocol == PROTOCOL_VERSION
+        })
+    }
+
+    /// The mode last reported.
+    pub fn mode(&self) -> ModeId {
+        self.mode
+    }
+
+    /// The mode's reference last reported; units as in [`Status::reference`].
+    pub fn reference(&self) -> Wheels<f32> {
+        self.reference
+    }
+
+    /// Load and quality of the link.
+    pub fn link(&mut self, now_us: u64) -> LinkFigures {
+        LinkFigures {
+            up_bytes_s: self.up.per_second(now_us),
+            down_bytes_s: self.down.per_second(now_us),
+            telemetry_hz: self.frames.per_second(now_us),
+            crc_errors: self.decoder.crc_errors(),
+            frames_lost: self.decoder.frames_lost(),
+            malformed: self.malformed,
+            round_trip_us: self.manager.round_trip_us(),
+            unacknowledged: self.manager.unacknowledged(),
+        }
+    }
+}
+
+/// Load and quality of the link.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LinkFigures {
+    /// Bytes to the robot [1/s].
+    pub up_bytes_s: f64,
+    /// Bytes from the robot [1/s].
+    pub down_bytes_s: f64,
+    /// Telemetry frames from the robot [1/s].
+    pub telemetry_hz: f64,
+    /// Frames from the robot that failed the CRC, wrapping.
+    pub crc_errors: u16,
+    /// Frames from the robot missing by their sequence numbers, wrapping.
+    pub frames_lost: u16,
+    /// Frames that passed the CRC and mean nothing here, wrapping.
+    pub malformed: u32,
+    /// Smoothed time from a command to its acknowledgement [us].
+    pub round_trip_us: Option<u64>,
+    /// The operator's commands that wait for their acknowledgement.
+    pub unacknowledged: usize,
+}

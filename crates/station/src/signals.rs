@@ -1,0 +1,227 @@
+//! Samples of the signals: what the robot said of one instant, beside what was really the case.
+
+use crate::target::Truth;
+use rumbo_control::mode::ModeId;
+use rumbo_control::{Range, Wheels};
+use rumbo_wire::Telemetry;
+use serde::Serialize;
+use std::collections::VecDeque;
+
+/// The signals at one instant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sample {
+    /// Session time of the telemetry [ms].
+    pub t_ms: i64,
+    /// The active mode.
+    pub mode: ModeId,
+    /// The mode's reference; units as in [`rumbo_wire::Status::reference`].
+    pub reference: Wheels<f32>,
+    /// What the robot said.
+    pub telemetry: Telemetry,
+    /// What was the case [`EARLIER_MS`] before and at `t_ms`; `None` with a real robot.
+    pub truth: Option<[Truth; 2]>,
+}
+
+/// The first of the two wheel speeds in a telemetry frame is this much older [ms].
+pub(crate) const EARLIER_MS: i64 = 20;
+
+/// One value of a row as the page gets it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub(crate) enum Cell {
+    Number(f64),
+    /// A range in which there is nothing: no gap in the measurement, but no number either.
+    Word(&'static str),
+    /// Not known (null).
+    Unknown(Option<()>),
+}
+
+const UNKNOWN: Cell = Cell::Unknown(None);
+
+impl Cell {
+    /// Four decimals: a tenth of a millimetre, less than any signal's own step.
+    fn number(value: impl Into<f64>) -> Cell {
+        let value = value.into();
+        if value.is_finite() {
+            Cell::Number((value * 1e4).round() / 1e4)
+        } else {
+            UNKNOWN
+        }
+    }
+
+    fn optional(value: Option<f64>) -> Cell {
+        value.map_or(UNKNOWN, Cell::number)
+    }
+
+    fn range(range: Range) -> Cell {
+        match range {
+            Range::Valid(range_m) => Cell::number(range_m),
+            Range::Clear => Cell::Word("clear"),
+            Range::Faulty => UNKNOWN,
+        }
+    }
+}
+
+/// Values in a row.
+const COLUMNS: usize = 33;
+
+impl Sample {
+    /// The row of this sample, each value with its name. The page finds the values by the names.
+    pub(crate) fn named_row(&self) -> [(&'static str, Cell); COLUMNS] {
+        let said = &self.telemetry;
+        let [before, at] = said.wheel_rad_s;
+        let [left, right, front] = said.ranges.map(|aged| Cell::range(aged.range));
+        let was =
+            |value: fn(&Truth) -> f64| Cell::optional(self.truth.as_ref().map(|[_, at]| value(at)));
+        let was_before = |value: fn(&Truth) -> f64| {
+            Cell::optional(self.truth.as_ref().map(|[before, _]| value(before)))
+        };
+        let was_range =
+            |id: usize| Cell::optional(self.truth.as_ref().and_then(|[_, at]| at.range_m[id]));
+        [
+            ("t_s", Cell::number(self.t_ms as f64 / 1e3)),
+            ("mode", Cell::number(self.mode as u8)),
+            ("state", Cell::number(said.state)),
+            ("armed", Cell::number(u8::from(said.armed))),
+            ("faulted", Cell::number(u8::from(said.faulted))),
+            ("reference_left", Cell::number(self.reference.left)),
+            ("reference_right", Cell::number(self.reference.right)),
+            ("x_m", Cell::number(said.pose.x_m)),
+            ("y_m", Cell::number(said.pose.y_m)),
+            ("heading_rad", Cell::number(said.pose.heading_rad)),
+            ("left_before_rad_s", Cell::number(before.left)),
+            ("right_before_rad_s", Cell::number(before.right)),
+            ("left_rad_s", Cell::number(at.left)),
+            ("right_rad_s", Cell::number(at.right)),
+            ("left_ref_rad_s", Cell::number(said.wheel_ref_rad_s.left)),
+            ("right_ref_rad_s", Cell::number(said.wheel_ref_rad_s.right)),
+            ("left_pwm", Cell::number(said.duty.left.counts())),
+            ("right_pwm", Cell::number(said.duty.right.counts())),
+            ("range_left_m", left),
+            ("range_right_m", right),
+            ("range_front_m", front),
+            ("true_x_m", was(|truth| truth.pose.x_m)),
+            ("true_y_m", was(|truth| truth.pose.y_m)),
+            ("true_heading_rad", was(|truth| truth.pose.heading_rad)),
+            (
+                "true_left_before_rad_s",
+                was_before(|truth| truth.wheel_rad_s.left),
+            ),
+            (
+                "true_right_before_rad_s",
+                was_before(|truth| truth.wheel_rad_s.right),
+            ),
+            ("true_left_rad_s", was(|truth| truth.wheel_rad_s.left)),
+            ("true_right_rad_s", was(|truth| truth.wheel_rad_s.right)),
+            ("true_range_left_m", was_range(0)),
+            ("true_range_right_m", was_range(1)),
+            ("true_range_front_m", was_range(2)),
+            ("true_servo_rad", was(|truth| truth.servo_rad)),
+            ("contact", was(|truth| f64::from(u8::from(truth.contact)))),
+        ]
+    }
+
+    /// The values of the row.
+    pub(crate) fn row(&self) -> Vec<Cell> {
+        self.named_row().into_iter().map(|(_, cell)| cell).collect()
+    }
+
+    /// The names of the row's values, in their order.
+    pub(crate) fn columns() -> [&'static str; COLUMNS] {
+        let empty = Sample {
+            t_ms: 0,
+            mode: ModeId::default(),
+            reference: Wheels::both(0.0),
+            telemetry: Telemetry::default(),
+            truth: None,
+        };
+        empty.named_row().map(|(name, _)| name)
+    }
+}
+
+/// The truth of the last second: telemetry arrives later than it happened.
+#[derive(Debug, Default)]
+pub(crate) struct TruthLog {
+    entries: VecDeque<(i64, Truth)>,
+}
+
+/// Length of the log [ms].
+const LOG_MS: i64 = 1_000;
+
+impl TruthLog {
+    /// Notes what is the case at `t_ms`.
+    pub(crate) fn push(&mut self, t_ms: i64, truth: Truth) {
+        self.entries.push_back((t_ms, truth));
+        while self
+            .entries
+            .front()
+            .is_some_and(|(oldest_ms, _)| *oldest_ms < t_ms - LOG_MS)
+        {
+            self.entries.pop_front();
+        }
+    }
+
+    /// What was noted last at or before `t_ms`, or the oldest entry.
+    pub(crate) fn at(&self, t_ms: i64) -> Option<Truth> {
+        let after = self
+            .entries
+            .partition_point(|(noted_ms, _)| *noted_ms <= t_ms);
+        self.entries
+            .get(after.saturating_sub(1))
+            .map(|(_, truth)| *truth)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rumbo_control::AgedRange;
+
+    #[test]
+    fn nothing_in_reach_is_not_an_unknown_range() {
+        let mut telemetry = Telemetry::default();
+        telemetry.ranges[0] = AgedRange {
+            range: Range::Clear,
+            age_s: 0.0,
+        };
+        telemetry.ranges[2] = AgedRange {
+            range: Range::Valid(0.31234),
+            age_s: 0.0,
+        };
+        let sample = Sample {
+            t_ms: 1_040,
+            mode: ModeId::FrontDistance,
+            reference: Wheels::both(0.3),
+            telemetry,
+            truth: None,
+        };
+        let json = serde_json::to_value(sample.row()).unwrap();
+        let column = |name: &str| {
+            Sample::columns()
+                .iter()
+                .position(|column| *column == name)
+                .unwrap()
+        };
+        assert_eq!(json[column("t_s")], 1.04);
+        assert_eq!(json[column("range_left_m")], "clear");
+        assert!(json[column("range_right_m")].is_null());
+        assert_eq!(json[column("range_front_m")], 0.3123);
+        assert!(json[column("true_x_m")].is_null());
+    }
+
+    #[test]
+    fn the_truth_of_a_past_instant_is_found() {
+        let mut log = TruthLog::default();
+        for t_ms in (0..3_000).step_by(5) {
+            log.push(
+                t_ms,
+                Truth {
+                    battery_v: t_ms as f64,
+                    ..Truth::default()
+                },
+            );
+        }
+        assert_eq!(log.at(2_460).unwrap().battery_v, 2_460.0);
+        assert!(log.entries.len() <= 202);
+    }
+}

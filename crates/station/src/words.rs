@@ -1,0 +1,76 @@
+//! What commands and answers are called, for people: cm, rpm and % instead of SI.
+
+use crate::catalogue;
+use crate::commands::{Fate, Outcome};
+use rumbo_control::mode::ModeId;
+use rumbo_wire::{Command, Level, Refusal};
+use std::f32::consts::TAU;
+
+fn rpm(speed_rad_s: f32) -> f32 {
+    speed_rad_s * 60.0 / TAU
+}
+
+/// The command in words; `mode` gives a reference its unit.
+pub(crate) fn command(command: &Command, mode: ModeId) -> String {
+    match command {
+        Command::Stop => "STOP".into(),
+        Command::Arm => "ON".into(),
+        Command::Disarm => "OFF".into(),
+        Command::ClearFault => "clear the fault".into(),
+        Command::Mode(mode) => format!("mode {} {}", *mode as u8, mode.name()),
+        Command::Reference(value) if mode == ModeId::WheelSpeed => {
+            format!("reference {:.0} rpm", rpm(*value))
+        }
+        Command::Reference(value) => format!("reference {:.1} cm", value * 100.0),
+        Command::WheelReference(wheels) => {
+            format!(
+                "references left {:.0} rpm, right {:.0} rpm",
+                rpm(wheels.left),
+                rpm(wheels.right)
+            )
+        }
+        Command::Move {
+            movement,
+            level: Level::Duty(duty),
+        } => {
+            format!("movement {movement:?} with {:.0} % PWM", duty * 100.0)
+        }
+        Command::Move {
+            movement,
+            level: Level::Speed(speed_rad_s),
+        } => {
+            format!("movement {movement:?} at {:.0} rpm", rpm(*speed_rad_s))
+        }
+        Command::SetParam { id, value } => format!("{} = {value}", parameter(*id)),
+        Command::GetParam { id } => format!("read {}", parameter(*id)),
+        Command::ResetParams => "all parameters to their defaults".into(),
+        Command::ResetPose => "the present place is the origin".into(),
+    }
+}
+
+/// How a command ended, in words.
+pub(crate) fn outcome(outcome: &Outcome, mode: ModeId) -> String {
+    let asked = command(&outcome.command, mode);
+    match outcome.fate {
+        Fate::Applied(_) => format!("{asked}: done"),
+        Fate::Refused(why) => format!("{asked}: refused, {}", refusal(why, &outcome.command)),
+        Fate::Superseded => format!("{asked}: given up, STOP came after it"),
+        Fate::Expired => format!("{asked}: given up, the robot did not answer in time"),
+        Fate::RobotRestarted => format!("{asked}: given up, the robot started again"),
+    }
+}
+
+/// Why the robot refused, with what is allowed where that is known here.
+pub(crate) fn refusal(why: Refusal, command: &Command) -> String {
+    match (why, command) {
+        (Refusal::OutOfRange, Command::SetParam { id, .. }) => match catalogue::entry(*id) {
+            Some(entry) => format!("allowed is {} to {} {}", entry.min, entry.max, entry.unit),
+            None => "out of range".into(),
+        },
+        _ => why.explanation().into(),
+    }
+}
+
+fn parameter(id: u8) -> String {
+    catalogue::entry(id).map_or_else(|| format!("parameter {id}"), |entry| entry.name.into())
+}

@@ -1,0 +1,307 @@
+//! A toy robot for the station's tests: a point between the start and a wall, speaking the binary protocol over a link of 9600 baud.
+//!
+//! It knows no physics and none of the real control; it answers, and it moves when armed.
+
+use rumbo_control::mode::ModeId;
+use rumbo_control::{AgedRange, Duty, Pose, Range, Wheels};
+use rumbo_station::{Choice, MapPose, Obstacle, Scene, Simulation, SonarMount, Target, Truth};
+use rumbo_wire::{
+    Ack, Command, Decoder, Event, EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received,
+    Refusal, ResetCause, Status, Telemetry, ToRobot,
+};
+use std::collections::VecDeque;
+
+const TICK_US: u64 = 10_000;
+const BYTE_US: u64 = 1_042;
+const WALL_M: f32 = 1.2;
+const WHEEL_RADIUS_M: f32 = 0.0325;
+
+/// The toy.
+pub struct Toy {
+    now_us: u64,
+    up: VecDeque<(u64, u8)>,
+    down: VecDeque<(u64, u8)>,
+    decoder: Decoder<64>,
+    sequence: u8,
+    last: Option<Ack>,
+    mode: ModeId,
+    armed: bool,
+    reference: Wheels<f32>,
+    wheel_rad_s: f32,
+    before_rad_s: f32,
+    x_m: f32,
+    choice: Choice,
+    /// How often each command was applied.
+    pub applied: Vec<Command>,
+}
+
+impl Default for Toy {
+    fn default() -> Self {
+        Self {
+            now_us: 0,
+            up: VecDeque::new(),
+            down: VecDeque::new(),
+            decoder: Decoder::default(),
+            sequence: 0,
+            last: None,
+            mode: ModeId::Manual,
+            armed: false,
+            reference: Wheels::both(0.3),
+            wheel_rad_s: 0.0,
+            before_rad_s: 0.0,
+            x_m: 0.0,
+            choice: Choice {
+                scenario: "toy".into(),
+                world: None,
+                seed: 1,
+            },
+            applied: Vec::new(),
+        }
+    }
+}
+
+impl Toy {
+    fn say(&mut self, message: FromRobot) {
+        let frame = message.frame(self.sequence);
+        self.sequence = self.sequence.wrapping_add(1);
+        queue(&mut self.down, frame.bytes(), self.now_us);
+    }
+
+    fn event(&mut self, kind: EventKind) {
+        let t_ms = self.t_ms();
+        self.say(FromRobot::Event(Event { t_ms, kind }));
+    }
+
+    fn t_ms(&self) -> u16 {
+        ((self.now_us / 1_000) & 0xFFFF) as u16
+    }
+
+    fn range_m(&self) -> f32 {
+        WALL_M - self.x_m
+    }
+
+    fn take(&mut self, byte: u8) {
+        let Some(Received::Frame(body)) = self.decoder.push(byte) else {
+            return;
+        };
+        match ToRobot::from_body(&body) {
+            Ok(ToRobot::Hello) => self.say(FromRobot::Hello(Hello {
+                protocol: PROTOCOL_VERSION,
+                schema: 0,
+                image: 0,
+                reset: ResetCause::PowerOn,
+            })),
+            Ok(ToRobot::Command {
+                session,
+                number,
+                command,
+            }) => {
+                let known = self
+                    .last
+                    .filter(|last| last.session == session && last.number == number);
+                let ack = known.unwrap_or_else(|| Ack {
+                    session,
+                    number,
+                    result: self.apply(command),
+                });
+                self.last = Some(ack);
+                self.say(FromRobot::Ack(ack));
+            }
+            Ok(ToRobot::Heartbeat) | Err(_) => {}
+        }
+    }
+
+    fn apply(&mut self, command: Command) -> Result<f32, Refusal> {
+        self.applied.push(command);
+        match command {
+            Command::Stop | Command::Disarm => {
+                self.armed = false;
+                self.event(EventKind::Disarmed);
+            }
+            Command::Arm => {
+                self.armed = true;
+                self.event(EventKind::Armed);
+            }
+            Command::Mode(_) if self.armed => return Err(Refusal::Armed),
+            Command::Mode(mode) => {
+                self.mode = mode;
+                self.event(EventKind::ModeChanged(mode));
+            }
+            Command::Reference(value) => {
+                self.reference = Wheels::both(value);
+                return Ok(value);
+            }
+            Command::GetParam { .. } => return Ok(1.0),
+            Command::SetParam { value, .. } if value > 1e3 => return Err(Refusal::OutOfRange),
+            Command::SetParam { value, .. } => return Ok(value),
+            _ => {}
+        }
+        Ok(0.0)
+    }
+
+    fn tick(&mut self) {
+        let wanted_rad_s = match self.mode {
+            _ if !self.armed => 0.0,
+            ModeId::FrontDistance => {
+                ((self.range_m() - self.reference.left) * 120.0).clamp(-10.0, 10.0)
+            }
+            ModeId::WheelSpeed => self.reference.left,
+            ModeId::Manual => 3.0,
+        };
+        if self.now_us.is_multiple_of(2 * TICK_US) {
+            self.before_rad_s = self.wheel_rad_s;
+        }
+        self.wheel_rad_s += (wanted_rad_s - self.wheel_rad_s) * 0.1;
+        self.x_m = (self.x_m + self.wheel_rad_s * WHEEL_RADIUS_M * 0.01).clamp(-1.0, WALL_M - 0.02);
+        if self.now_us.is_multiple_of(4 * TICK_US) {
+            let range = AgedRange {
+                range: Range::Valid(self.range_m()),
+                age_s: 0.0,
+            };
+            let telemetry = Telemetry {
+                t_ms: self.t_ms(),
+                pose: Pose {
+                    x_m: self.x_m,
+                    y_m: 0.0,
+                    heading_rad: 0.0,
+                },
+                wheel_rad_s: [
+                    Wheels::both(self.before_rad_s),
+                    Wheels::both(self.wheel_rad_s),
+                ],
+                wheel_ref_rad_s: Wheels::both(wanted_rad_s),
+                duty: Wheels::both(Duty::new((self.wheel_rad_s * 10.0) as i16)),
+                state: u8::from(self.armed),
+                armed: self.armed,
+                faulted: false,
+                ranges: [AgedRange::default(), AgedRange::default(), range],
+            };
+            self.say(FromRobot::Telemetry(telemetry));
+        }
+        if self.now_us.is_multiple_of(500_000) {
+            let (mode, armed, reference) = (self.mode, self.armed, self.reference);
+            self.say(FromRobot::Status(Status {
+                mode,
+                armed,
+                reference,
+                ..Status::default()
+            }));
+        }
+    }
+}
+
+/// The bytes leave one after the other.
+fn queue(link: &mut VecDeque<(u64, u8)>, bytes: &[u8], now_us: u64) {
+    for byte in bytes {
+        let free_us = link
+            .back()
+            .map_or(now_us, |(arrives_us, _)| *arrives_us)
+            .max(now_us);
+        link.push_back((free_us + BYTE_US, *byte));
+    }
+}
+
+fn arrived(link: &mut VecDeque<(u64, u8)>, now_us: u64) -> Option<u8> {
+    link.front()
+        .filter(|(arrives_us, _)| *arrives_us <= now_us)?;
+    link.pop_front().map(|(_, byte)| byte)
+}
+
+impl Target for Toy {
+    fn now_us(&self) -> u64 {
+        self.now_us
+    }
+
+    fn advance(&mut self, dt_us: u64) -> Result<(), String> {
+        let until_us = self.now_us + dt_us;
+        while self.now_us < until_us {
+            self.now_us += 1_000;
+            while let Some(byte) = arrived(&mut self.up, self.now_us) {
+                self.take(byte);
+            }
+            if self.now_us.is_multiple_of(TICK_US) {
+                self.tick();
+            }
+        }
+        Ok(())
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), String> {
+        queue(&mut self.up, bytes, self.now_us);
+        Ok(())
+    }
+
+    fn receive(&mut self, into: &mut Vec<u8>) {
+        while let Some(byte) = arrived(&mut self.down, self.now_us) {
+            into.push(byte);
+        }
+    }
+
+    fn baud(&self) -> u32 {
+        9_600
+    }
+
+    fn simulation(&mut self) -> Option<&mut dyn Simulation> {
+        Some(self)
+    }
+}
+
+impl Simulation for Toy {
+    fn truth(&self) -> Truth {
+        Truth {
+            pose: MapPose {
+                x_m: f64::from(self.x_m),
+                y_m: 0.0,
+                heading_rad: 0.0,
+            },
+            wheel_rad_s: Wheels::both(f64::from(self.wheel_rad_s)),
+            range_m: [None, None, Some(f64::from(self.range_m()))],
+            servo_rad: 0.0,
+            contact: false,
+            battery_v: 7.4,
+        }
+    }
+
+    fn scene(&self) -> Scene {
+        let front = MapPose {
+            x_m: 0.1,
+            y_m: 0.0,
+            heading_rad: 0.0,
+        };
+        Scene {
+            choice: self.choice.clone(),
+            scenarios: vec!["toy".into()],
+            worlds: vec!["wall".into()],
+            robot: "toy".into(),
+            start: MapPose::default(),
+            obstacles: vec![Obstacle {
+                corners_m: vec![[1.3, -1.0], [1.3, 1.0]],
+                closed: false,
+            }],
+            footprint_m: vec![[0.1, 0.075], [-0.1, 0.075], [-0.1, -0.075], [0.1, -0.075]],
+            base_m: 0.1,
+            wheel_radius_m: 0.0325,
+            sonars: vec![SonarMount {
+                id: 2,
+                at: front,
+                half_angle_rad: 0.26,
+                reach_m: 2.5,
+                on_servo: true,
+            }],
+        }
+    }
+
+    fn reset(&mut self, choice: &Choice) -> Result<(), String> {
+        if choice.scenario != "toy" {
+            return Err(format!(
+                "there is no scenario {}; there is: toy",
+                choice.scenario
+            ));
+        }
+        *self = Toy {
+            choice: choice.clone(),
+            ..Toy::default()
+        };
+        Ok(())
+    }
+}

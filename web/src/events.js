@@ -1,0 +1,27 @@
+// @ts-check
+/** The events, newest first, each with its cause. */
+import { create, element } from './dom.js';
+import { format } from './units.js';
+
+/** @typedef {import('./types.js').LoggedEvent} LoggedEvent */
+
+/** Lines kept on the page. */
+const KEPT = 300;
+/** The level in a sign too: not by colour alone. */
+const SIGNS = { info: '·', good: '✓', warning: '!', fault: '✕' };
+
+export class EventList {
+  #list = element('events', HTMLOListElement);
+
+  clear() {
+    this.#list.replaceChildren();
+  }
+
+  /** @param {LoggedEvent[]} events oldest first */
+  add(events) {
+    const lines = events.slice(-KEPT).map(({ t_s, level, text }) => create('li', { className: level },
+      create('time', { textContent: `${format(t_s, 2)} s` }), create('span', { className: 'sign', textContent: SIGNS[level], title: level }), text));
+    this.#list.prepend(...lines.reverse());
+    while (this.#list.children.length > KEPT) this.#list.lastElementChild?.remove();
+  }
+}

@@ -1,0 +1,114 @@
+// @ts-check
+/** The top line: what runs, how fast, and how good the link is. */
+import { create, element, setText } from './dom.js';
+import { format } from './units.js';
+
+/** @typedef {import('./types.js').State} State */
+/** @typedef {import('./types.js').Scene} Scene */
+/** @typedef {import('./panel.js').Send} Send */
+
+const SPEEDS = [0, 0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
+/** The scenario's own world. */
+const OWN = '';
+/** Without a word from the server for this long, what is shown is old [ms]. */
+const STALE_MS = 1_500;
+
+export class Header {
+  #form = element('simulation', HTMLFormElement);
+  #scenario = element('scenario', HTMLSelectElement);
+  #world = element('world', HTMLSelectElement);
+  #seed = element('seed', HTMLInputElement);
+  #speed = element('speed', HTMLSelectElement);
+  #connection = element('connection', HTMLSpanElement);
+  #roundTrip = element('round-trip', HTMLOutputElement);
+  #load = element('load', HTMLOutputElement);
+  #crc = element('crc', HTMLOutputElement);
+  #battery = element('battery', HTMLOutputElement);
+  /** @type {State | null} */
+  #state = null;
+  #open = false;
+  /** @type {string | null} */
+  #why = null;
+  #heard_ms = 0;
+
+  /** @param {Send} send */
+  constructor(send) {
+    this.#speed.replaceChildren(...SPEEDS.map((factor) => option(String(factor), factor === 0 ? 'paused' : `× ${factor}`)));
+    this.#speed.addEventListener('change', () => send({ type: 'speed', factor: Number(this.#speed.value) }));
+    this.#form.addEventListener('submit', (event) => {
+      event.preventDefault();
+      send({ type: 'reset', scenario: this.#scenario.value, world: this.#world.value === OWN ? null : this.#world.value, seed: this.#seed.valueAsNumber });
+    });
+    setInterval(() => this.#showConnection(), STALE_MS / 3);
+  }
+
+  /** @param {Scene | null} scene */
+  setScene(scene) {
+    this.#form.hidden = scene === null;
+    if (!scene) return;
+    this.#scenario.replaceChildren(...scene.scenarios.map((name) => option(name, name)));
+    this.#world.replaceChildren(option(OWN, "the scenario's"), ...scene.worlds.map((name) => option(name, name)));
+    this.#scenario.value = scene.choice.scenario;
+    this.#world.value = scene.choice.world ?? OWN;
+    this.#seed.value = String(scene.choice.seed);
+  }
+
+  /**
+   * @param {boolean} open
+   * @param {string | null} why
+   */
+  setOpen(open, why) {
+    this.#open = open;
+    this.#why = why;
+    this.heard();
+  }
+
+  /** The server said something. */
+  heard() {
+    this.#heard_ms = performance.now();
+    this.#showConnection();
+  }
+
+  /** @param {State} state */
+  show(state) {
+    this.#state = state;
+    const speed = String(state.speed);
+    if (![...this.#speed.options].some((each) => each.value === speed)) this.#speed.append(option(speed, `× ${speed}`));
+    if (document.activeElement !== this.#speed) this.#speed.value = speed;
+    const { link, robot } = state;
+    setText(this.#roundTrip, link.round_trip_ms === null ? '–' : `${link.round_trip_ms} ms`);
+    setText(this.#load, `↓ ${format(link.down_load * 100, 0)} % ↑ ${format(link.up_load * 100, 0)} %`);
+    setText(this.#crc, `${link.crc_errors_down} | ${link.crc_errors_up}`);
+    this.#crc.classList.toggle('bad', link.crc_errors_down + link.crc_errors_up > 0);
+    setText(this.#battery, `${format(robot.battery_v ?? robot.true_battery_v)} V${robot.battery_v === null && robot.true_battery_v !== null ? ' (true)' : ''}`);
+    this.#showConnection();
+  }
+
+  #showConnection() {
+    const [text, level] = this.#connectionWords();
+    setText(this.#connection, text);
+    this.#connection.className = `chip ${level}`;
+    document.body.classList.toggle('stale', level === 'bad');
+  }
+
+  /** @returns {[string, string]} */
+  #connectionWords() {
+    const state = this.#state;
+    if (!this.#open) return [`no connection${this.#why ? `: ${this.#why}` : ''}, trying again…`, 'bad'];
+    if (!state) return ['connecting…', 'bad'];
+    if (state.speed === 0) return ['simulation paused', 'warning'];
+    if (performance.now() - this.#heard_ms > STALE_MS) return ['the station is silent', 'bad'];
+    if (!state.link.connected) return ['no answer from the robot', 'bad'];
+    const slow = state.simulated && state.achieved_speed > 0 && state.achieved_speed < 0.9 * state.speed;
+    const rate = `live ${format(state.link.telemetry_hz, 0)} Hz`;
+    return slow ? [`${rate}, only × ${format(state.achieved_speed)}`, 'warning'] : [rate, 'good'];
+  }
+}
+
+/**
+ * @param {string} value
+ * @param {string} text
+ */
+function option(value, text) {
+  return create('option', { value, textContent: text });
+}

@@ -1,0 +1,118 @@
+// @ts-check
+/**
+ * The dashboard: joins the link, the store and what is seen of it. Nothing is drawn unless something arrived or was asked for.
+ *
+ * For tests and for the browser's console, `window.rumbo` gives the signals as plotted.
+ */
+import { element, onFrame, setText } from './dom.js';
+import { EventList } from './events.js';
+import { Header } from './header.js';
+import { Link } from './link.js';
+import { WorldMap } from './map.js';
+import { CommandPanel } from './panel.js';
+import { ParameterTable } from './parameters.js';
+import { Plots } from './plots.js';
+import { Store } from './store.js';
+import { DEG_PER_RAD, format } from './units.js';
+
+/** @typedef {import('./types.js').FromServer} FromServer */
+/** @typedef {import('./types.js').State} State */
+
+const store = new Store();
+/** @type {State | null} */
+let state = null;
+
+/** @param {import('./types.js').Order} order */
+function send(order) {
+  if (!link.send(order)) events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text: `${order.type}: not sent, there is no connection` }]);
+}
+
+const redraw = onFrame(() => {
+  plots.draw();
+  map.draw();
+  showPose();
+});
+const header = new Header(send);
+const panel = new CommandPanel(send);
+const parameters = new ParameterTable(send);
+const events = new EventList();
+const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);
+const pause = element('pause', HTMLButtonElement);
+const live = element('live', HTMLButtonElement);
+const plots = new Plots(element('plots', HTMLDivElement), store, redraw, (following) => {
+  pause.setAttribute('aria-pressed', String(!following));
+  live.classList.toggle('good', following);
+});
+plots.follow(true);
+
+pause.addEventListener('click', () => plots.follow(!plots.following));
+live.addEventListener('click', () => plots.follow(true));
+element('clear', HTMLButtonElement).addEventListener('click', () => {
+  store.clear();
+  redraw();
+});
+const windowSelect = element('window', HTMLSelectElement);
+windowSelect.addEventListener('change', () => plots.setWindow(Number(windowSelect.value)));
+addEventListener('keydown', (event) => {
+  const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
+  if (typing || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.key === 'p') plots.follow(!plots.following);
+  if (event.key === 'l') plots.follow(true);
+});
+
+const pose = element('pose', HTMLOutputElement);
+function showPose() {
+  const at = store.latest?.estimated;
+  const text = at ? `x ${format(at.x_m * 100)} cm   y ${format(at.y_m * 100)} cm   heading ${format(at.heading_rad * DEG_PER_RAD)}°` : '';
+  setText(pose, store.latest?.contact ? `${text}   contact!` : text);
+}
+
+/** @param {FromServer} message */
+function receive(message) {
+  header.heard();
+  switch (message.type) {
+    case 'hello':
+      store.begin(message.columns);
+      events.clear();
+      panel.setModes(message.modes);
+      plots.modes = message.modes;
+      break;
+    case 'scene':
+      store.setRun(message.run);
+      header.setScene(message.scene);
+      map.setScene(message.scene);
+      document.body.classList.toggle('simulated', message.scene !== null);
+      break;
+    case 'state':
+      state = message.state;
+      header.show(state);
+      panel.show(state);
+      parameters.setMode(state.robot.mode, state.robot.foreign);
+      map.servo_rad = state.robot.servo_rad;
+      break;
+    case 'parameters':
+      parameters.show(message.parameters);
+      break;
+    case 'events':
+      events.add(message.events);
+      break;
+    case 'samples':
+      store.setRun(message.run);
+      for (const row of message.rows) store.push(row);
+      redraw();
+      break;
+    case 'error':
+      break;
+  }
+}
+
+const link = new Link(receive, (open, why) => header.setOpen(open, why));
+
+Object.assign(window, {
+  rumbo: {
+    /** A signal as plotted. @param {string} name */
+    series: (name) => store.series(name),
+    /** The slow state last received. */
+    state: () => state,
+  },
+});

@@ -1,0 +1,111 @@
+// @ts-check
+/** The parameter table: what each is, what the robot holds, and what may be written. */
+import { create, element, setText } from './dom.js';
+import { formatFloat } from './units.js';
+
+/** @typedef {import('./types.js').Parameter} Parameter */
+/** @typedef {import('./panel.js').Send} Send */
+
+/** One line of the table. */
+class Line {
+  /** @param {Parameter} parameter @param {Send} send */
+  constructor(parameter, send) {
+    this.parameter = parameter;
+    this.edited = false;
+    this.input = create('input', {
+      type: 'number', step: 'any', min: formatFloat(parameter.min), max: formatFloat(parameter.max), required: true,
+      id: `parameter-${parameter.name}`,
+    });
+    this.input.setAttribute('aria-label', `${parameter.name} in ${parameter.unit || 'no unit'}`);
+    this.apply = create('button', { type: 'button', textContent: 'Apply', title: 'Write to the robot (Enter)' });
+    this.revert = create('button', { type: 'button', textContent: 'Revert', title: 'Back to what the robot holds (Escape)' });
+    this.note = create('span', { className: 'refused' });
+    this.row = create('tr', {},
+      create('td', { textContent: parameter.name, title: parameter.description }),
+      create('td', {}, this.input),
+      create('td', { textContent: parameter.unit }),
+      create('td', { className: 'number', textContent: `${formatFloat(parameter.min)} … ${formatFloat(parameter.max)}` }),
+      create('td', { className: 'number', textContent: formatFloat(parameter.default) }),
+      create('td', { className: 'acts' }, this.apply, this.revert, this.note),
+    );
+    const write = () => {
+      if (Number.isNaN(this.input.valueAsNumber)) return;
+      // A value out of range goes to the robot too: it refuses, and says why.
+      this.edited = false;
+      send({ type: 'set_param', id: this.parameter.id, value: this.input.valueAsNumber });
+    };
+    const revert = () => {
+      this.edited = false;
+      this.show(this.parameter);
+    };
+    this.apply.addEventListener('click', write);
+    this.revert.addEventListener('click', revert);
+    this.input.addEventListener('input', () => {
+      this.edited = true;
+      this.show(this.parameter);
+    });
+    this.input.addEventListener('keydown', (event) => {
+      if (event.key === 'Enter') write();
+      if (event.key === 'Escape') revert();
+    });
+    this.show(parameter);
+  }
+
+  /** @param {Parameter} parameter */
+  show(parameter) {
+    this.parameter = parameter;
+    const held = formatFloat(parameter.value);
+    // What is being typed is not overwritten; a refused value stays to be corrected.
+    if (!this.edited && !parameter.refused && !parameter.pending && this.input.value !== held) this.input.value = held;
+    const different = this.input.value !== held;
+    this.apply.hidden = this.revert.hidden = !different && !parameter.refused;
+    this.row.className = parameter.pending ? 'pending' : parameter.refused ? 'bad' : this.edited ? 'edited' : '';
+    setText(this.note, parameter.pending ? 'waiting…' : parameter.refused ? `refused: ${parameter.refused}` : parameter.value === null ? 'not read yet' : '');
+  }
+}
+
+export class ParameterTable {
+  #body = element('parameters', HTMLTableSectionElement);
+  #all = element('all-parameters', HTMLInputElement);
+  #note = element('parameter-note', HTMLSpanElement);
+  #send;
+  /** @type {Map<number, Line>} */
+  #lines = new Map();
+  #mode = 0;
+
+  /** @param {Send} send */
+  constructor(send) {
+    this.#send = send;
+    this.#all.addEventListener('change', () => this.#filter());
+    element('reset-parameters', HTMLButtonElement).addEventListener('click', () => send({ type: 'reset_params' }));
+  }
+
+  /** @param {Parameter[]} parameters */
+  show(parameters) {
+    const same = parameters.length === this.#lines.size && parameters.every(({ id, name }) => this.#lines.get(id)?.parameter.name === name);
+    if (!same) {
+      this.#lines = new Map(parameters.map((parameter) => [parameter.id, new Line(parameter, this.#send)]));
+      this.#body.replaceChildren(...[...this.#lines.values()].map((line) => line.row));
+      this.#filter();
+    }
+    for (const parameter of parameters) this.#lines.get(parameter.id)?.show(parameter);
+  }
+
+  /**
+   * Shows the parameters of this mode and those of all modes.
+   * @param {number} mode
+   * @param {boolean} foreign the robot has another table
+   */
+  setMode(mode, foreign) {
+    setText(this.#note, foreign ? 'the robot has another table: not shown' : '');
+    if (mode === this.#mode) return;
+    this.#mode = mode;
+    this.#filter();
+  }
+
+  #filter() {
+    for (const { row, parameter } of this.#lines.values()) {
+      row.hidden = !this.#all.checked && parameter.mode !== null && parameter.mode !== this.#mode;
+    }
+  }
+}

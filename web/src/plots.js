@@ -1,0 +1,353 @@
+// @ts-check
+/**
+ * The plots: one time axis, cursors in step. The view follows the newest data, or holds still while data goes on arriving.
+ */
+import uPlot from '../vendor/uplot/uPlot.js';
+import { create, setText } from './dom.js';
+import { colours, onThemeChange, stateColour } from './theme.js';
+import { format } from './units.js';
+
+/** @typedef {import('./store.js').Store} Store */
+/** @typedef {import('./store.js').Stretch} Stretch */
+/** @typedef {import('./types.js').ModeEntry} ModeEntry */
+/** @typedef {import('./theme.js').ColourName} ColourName */
+
+/**
+ * @typedef {object} Curve
+ * @property {string} name As in the store.
+ * @property {string} label
+ * @property {ColourName} colour
+ * @property {'measured' | 'reference' | 'true'} kind
+ */
+
+/** @type {{title: string, unit: string, table: 'slow' | 'fast', step: number, decimals: number, weight: number, curves: Curve[]}[]} */
+const PLOTS = [
+  {
+    title: 'distance', unit: 'cm', table: 'slow', step: 10, decimals: 1, weight: 5,
+    curves: [
+      { name: 'true_range_left_cm', label: 'true left', colour: 'left', kind: 'true' },
+      { name: 'true_range_right_cm', label: 'true right', colour: 'right', kind: 'true' },
+      { name: 'true_range_front_cm', label: 'true front', colour: 'front', kind: 'true' },
+      { name: 'range_left_cm', label: 'left', colour: 'left', kind: 'measured' },
+      { name: 'range_right_cm', label: 'right', colour: 'right', kind: 'measured' },
+      { name: 'range_front_cm', label: 'front', colour: 'front', kind: 'measured' },
+      { name: 'reference_cm', label: 'reference', colour: 'reference', kind: 'reference' },
+    ],
+  },
+  {
+    title: 'wheel speed', unit: 'rpm', table: 'fast', step: 20, decimals: 0, weight: 5,
+    curves: [
+      { name: 'true_left_rpm', label: 'true left', colour: 'left', kind: 'true' },
+      { name: 'true_right_rpm', label: 'true right', colour: 'right', kind: 'true' },
+      { name: 'left_rpm', label: 'left', colour: 'left', kind: 'measured' },
+      { name: 'right_rpm', label: 'right', colour: 'right', kind: 'measured' },
+      { name: 'left_ref_rpm', label: 'ref. left', colour: 'left', kind: 'reference' },
+      { name: 'right_ref_rpm', label: 'ref. right', colour: 'right', kind: 'reference' },
+    ],
+  },
+  {
+    title: 'PWM', unit: 'of 255', table: 'slow', step: 50, decimals: 0, weight: 3,
+    curves: [
+      { name: 'left_pwm', label: 'left', colour: 'left', kind: 'measured' },
+      { name: 'right_pwm', label: 'right', colour: 'right', kind: 'measured' },
+    ],
+  },
+];
+
+const GUTTER_PX = 46;
+const FONT = '11px system-ui, sans-serif';
+const BAND_PX = 46;
+const SYNC = 'rumbo';
+/** Shortest time that can be zoomed into [s]. */
+const MIN_WINDOW_S = 0.2;
+
+/** One plot on the page with its curves' buttons. */
+class Panel {
+  /** @param {uPlot} plot @param {() => void} fill @param {() => void} label */
+  constructor(plot, fill, label) {
+    this.plot = plot;
+    this.fill = fill;
+    this.label = label;
+  }
+}
+
+export class Plots {
+  #root;
+  #store;
+  /** @type {Panel[]} */
+  #panels = [];
+  #window_s = 20;
+  #following = true;
+  /** @type {[number, number]} */
+  #range_s = [0, 20];
+  /** @type {ModeEntry[]} */
+  modes = [];
+  #onFollow;
+  #redraw;
+
+  /**
+   * @param {HTMLElement} root
+   * @param {Store} store
+   * @param {() => void} redraw asks for a frame
+   * @param {(following: boolean) => void} onFollow
+   */
+  constructor(root, store, redraw, onFollow) {
+    this.#root = root;
+    this.#store = store;
+    this.#redraw = redraw;
+    this.#onFollow = onFollow;
+    for (const spec of PLOTS) this.#panels.push(this.#plotPanel(spec));
+    this.#panels.push(this.#bandPanel());
+    new ResizeObserver(() => this.#fit()).observe(root);
+    this.#fit();
+    onThemeChange(() => this.draw());
+  }
+
+  get following() {
+    return this.#following;
+  }
+
+  /** @param {boolean} following */
+  follow(following) {
+    this.#following = following;
+    this.#onFollow(following);
+    this.#redraw();
+  }
+
+  /** @param {number} window_s */
+  setWindow(window_s) {
+    this.#window_s = window_s;
+    this.follow(true);
+  }
+
+  /**
+   * @param {number} from_s
+   * @param {number} to_s
+   */
+  #zoom(from_s, to_s) {
+    if (to_s - from_s < MIN_WINDOW_S) return;
+    this.#range_s = [from_s, to_s];
+    this.follow(false);
+  }
+
+  draw() {
+    const newest_s = this.#store.slow.t.at(-1);
+    if (this.#following) {
+      const to_s = Math.max(newest_s ?? 0, this.#window_s);
+      this.#range_s = [to_s - this.#window_s, to_s];
+    }
+    const [min, max] = this.#range_s;
+    for (const panel of this.#panels) {
+      panel.plot.batch(() => {
+        panel.fill();
+        panel.plot.setScale('x', { min, max });
+      });
+      panel.label();
+    }
+  }
+
+  #fit() {
+    const width = this.#root.clientWidth;
+    const weights = PLOTS.reduce((sum, spec) => sum + spec.weight, 0);
+    const heads_px = PLOTS.length * 20;
+    const free_px = this.#root.clientHeight - BAND_PX - heads_px;
+    this.#panels.forEach((panel, index) => {
+      const weight = PLOTS[index]?.weight;
+      const height = weight === undefined ? BAND_PX : Math.max(50, Math.floor((free_px * weight) / weights));
+      panel.plot.setSize({ width, height });
+    });
+  }
+
+  /** @param {typeof PLOTS[number]} spec */
+  #plotPanel(spec) {
+    const table = this.#store[spec.table];
+    const data = /** @type {uPlot.AlignedData} */ ([table.t, ...spec.curves.map((curve) => table.columns.get(curve.name) ?? [])]);
+    const head = create('div', { className: 'plot-head' }, create('b', { textContent: spec.title }), create('i', { textContent: spec.unit }));
+    const body = create('div', { className: 'plot-body' });
+    this.#root.append(head, body);
+
+    const step = spec.step;
+    const plot = new uPlot({
+      ...this.#common(),
+      scales: {
+        x: { time: false, auto: false },
+        // Whole steps, so that the axis does not tremble with the noise.
+        y: { range: (_plot, low, high) => (low === null || low === undefined ? [0, 10 * step] : [Math.floor(low / step - 0.05) * step, Math.ceil(high / step + 0.05) * step]) },
+      },
+      axes: [timeAxis(false), valueAxis()],
+      series: [{}, ...spec.curves.map(curveOptions)],
+    }, data, body);
+    this.#makeNavigable(plot);
+
+    const chips = spec.curves.map((curve, index) => {
+      const value = create('output', { textContent: '–' });
+      const chip = create('button', { type: 'button', className: `curve ${curve.kind}`, title: 'Show or hide' }, create('span', { className: `swatch ${curve.colour}` }), curve.label, value);
+      chip.setAttribute('aria-pressed', 'true');
+      chip.addEventListener('click', () => {
+        const show = chip.getAttribute('aria-pressed') !== 'true';
+        chip.setAttribute('aria-pressed', String(show));
+        plot.setSeries(index + 1, { show });
+      });
+      head.append(chip);
+      return { chip, value, column: /** @type {(number | null | undefined)[]} */ (data[index + 1]) };
+    });
+    const label = () => {
+      const at = plot.cursor.idx ?? table.t.length - 1;
+      for (const { chip, value, column } of chips) {
+        const unused = !plottedIn(column);
+        if (chip.hidden !== unused) chip.hidden = unused;
+        setText(value, format(column[at] ?? column[at - 1], spec.decimals));
+      }
+    };
+    return new Panel(plot, () => plot.setData(data, false), label);
+  }
+
+  /** The states of the mode's machine, along the time axis. */
+  #bandPanel() {
+    const body = create('div', { className: 'plot-body' });
+    this.#root.append(body);
+    const table = this.#store.slow;
+    const data = /** @type {uPlot.AlignedData} */ ([table.t, table.columns.get('left_pwm') ?? []]);
+    const options = this.#common();
+    const plot = new uPlot({
+      ...options,
+      scales: { x: { time: false, auto: false }, y: { range: [0, 1] } },
+      axes: [timeAxis(true), { ...valueAxis(), values: () => [], grid: { show: false }, label: 'state', labelSize: 14, labelFont: FONT, size: GUTTER_PX - 14 }],
+      series: [{}, { show: false }],
+      hooks: { ...options.hooks, drawAxes: [(/** @type {uPlot} */ each) => this.#drawBand(each)] },
+    }, data, body);
+    this.#makeNavigable(plot);
+    return new Panel(plot, () => plot.setData(data, false), () => {});
+  }
+
+  /** @param {uPlot} plot */
+  #drawBand(plot) {
+    const { ctx, bbox } = plot;
+    const [from_s, to_s] = this.#range_s;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+    ctx.textBaseline = 'middle';
+    for (const stretch of this.#store.stretches) {
+      if (stretch.to_s < from_s || stretch.from_s > to_s) continue;
+      const left = plot.valToPos(Math.max(stretch.from_s, from_s), 'x', true);
+      const right = plot.valToPos(Math.min(stretch.to_s, to_s), 'x', true);
+      ctx.globalAlpha = stretch.armed || stretch.faulted ? 0.55 : 0.25;
+      ctx.fillStyle = stretch.faulted ? colours.bad : stretch.armed ? stateColour(stretch.state) : colours.dim;
+      ctx.fillRect(left, bbox.top, right - left, bbox.height);
+      ctx.globalAlpha = 1;
+      const name = this.#stretchName(stretch);
+      if (ctx.measureText(name).width + 8 < right - left) {
+        ctx.fillStyle = colours.text;
+        ctx.fillText(name, left + 4, bbox.top + bbox.height / 2);
+      }
+    }
+    ctx.restore();
+  }
+
+  /** @param {Stretch} stretch */
+  #stretchName(stretch) {
+    const mode = this.modes.find((each) => each.id === stretch.mode);
+    const state = stretch.faulted ? 'fault' : stretch.armed ? (mode?.states[stretch.state] ?? `state ${stretch.state}`) : 'off';
+    return `${stretch.mode}: ${state}`;
+  }
+
+  /** Options that all plots share. */
+  #common() {
+    return {
+      width: 600,
+      height: 120,
+      padding: /** @type {uPlot.Padding} */ ([6, 8, 0, 0]),
+      legend: { show: false },
+      cursor: {
+        sync: { key: SYNC, setSeries: false },
+        drag: { x: true, y: false, setScale: false },
+        points: { size: 5 },
+        bind: { dblclick: () => () => { this.follow(true); return null; } },
+      },
+      hooks: {
+        setSelect: [(/** @type {uPlot} */ plot) => {
+          const { left, width } = plot.select;
+          if (width < 4) return;
+          this.#zoom(plot.posToVal(left, 'x'), plot.posToVal(left + width, 'x'));
+          plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+        }],
+        setCursor: [() => this.#redrawLabels()],
+      },
+    };
+  }
+
+  /** A moved cursor changes the numbers shown, not the curves. */
+  #redrawLabels() {
+    for (const panel of this.#panels) panel.label();
+  }
+
+  /** @param {uPlot} plot */
+  #makeNavigable(plot) {
+    plot.over.addEventListener('wheel', (event) => {
+      event.preventDefault();
+      const [from_s, to_s] = this.#range_s;
+      const factor = event.deltaY > 0 ? 1.25 : 0.8;
+      const at_s = this.#following ? to_s : plot.posToVal(event.offsetX, 'x');
+      if (this.#following) {
+        this.#window_s = Math.min(300, Math.max(MIN_WINDOW_S, this.#window_s * factor));
+        this.#redraw();
+      } else {
+        this.#zoom(at_s - (at_s - from_s) * factor, at_s + (to_s - at_s) * factor);
+      }
+    }, { passive: false });
+  }
+}
+
+/**
+ * Whether a curve has anything to show lately; the last lines may lack it.
+ * @param {(number | null | undefined)[]} column
+ */
+function plottedIn(column) {
+  for (let index = column.length - 1; index >= Math.max(0, column.length - 1_000); index--) {
+    if (column[index] !== null && column[index] !== undefined) return true;
+  }
+  return false;
+}
+
+/** @param {Curve} curve @returns {uPlot.Series} */
+function curveOptions(curve) {
+  const reference = curve.kind === 'reference';
+  return {
+    label: curve.label,
+    stroke: () => colours[curve.colour],
+    width: reference ? 1.5 : curve.kind === 'true' ? 1 : 1.75,
+    dash: reference ? [7, 4] : curve.kind === 'true' ? [2, 2] : undefined,
+    alpha: curve.kind === 'true' ? 0.75 : 1,
+    points: { show: false },
+    paths: reference ? uPlot.paths.stepped?.({ align: 1 }) : uPlot.paths.linear?.(),
+  };
+}
+
+/** @param {boolean} labelled @returns {uPlot.Axis} */
+function timeAxis(labelled) {
+  return {
+    stroke: () => colours.dim,
+    grid: { stroke: () => colours.grid, width: 1 },
+    ticks: { show: labelled, stroke: () => colours.grid, size: 4 },
+    font: FONT,
+    gap: 2,
+    size: labelled ? 20 : 3,
+    values: labelled ? (_plot, splits) => splits.map((t_s) => `${Number(t_s.toFixed(2))} s`) : () => [],
+  };
+}
+
+/** @returns {uPlot.Axis} */
+function valueAxis() {
+  return {
+    stroke: () => colours.dim,
+    grid: { stroke: () => colours.grid, width: 1 },
+    ticks: { show: false },
+    font: FONT,
+    gap: 4,
+    size: GUTTER_PX,
+    space: 24,
+  };
+}

@@ -1,0 +1,242 @@
+// @ts-check
+/**
+ * The signals received, in columns as uPlot takes them: a slow table with a line for each telemetry frame, and a fast one for the wheel
+ * speeds, of which a frame brings two.
+ *
+ * In a column null is a gap, and undefined means that this line has no such value and the curve goes on.
+ */
+import { CM_PER_M, RPM_PER_RAD_S } from './units.js';
+
+/** @typedef {import('./types.js').Cell} Cell */
+/** @typedef {(number | null | undefined)[]} Column */
+
+/** Time kept [s], as long as the server's. */
+const KEPT_S = 300;
+/** A frame's first wheel speeds are this much older [s]. */
+const EARLIER_S = 0.02;
+
+/** @param {Cell | undefined} cell */
+const number = (cell) => (typeof cell === 'number' ? cell : null);
+
+/**
+ * @param {Cell | undefined} cell
+ * @param {number} factor
+ */
+function scaled(cell, factor) {
+  return typeof cell === 'number' ? cell * factor : null;
+}
+
+/** Lines of increasing time. */
+export class Table {
+  /** @type {number[]} */
+  t = [];
+  /** @type {Map<string, Column>} */
+  columns;
+
+  /** @param {string[]} names */
+  constructor(names) {
+    this.columns = new Map(names.map((name) => [name, []]));
+  }
+
+  /**
+   * Appends a line; one that is not later than the last is dropped.
+   * @param {number} t_s
+   * @param {Record<string, number | null | undefined>} values
+   */
+  push(t_s, values) {
+    const last = this.t.at(-1);
+    if (last !== undefined && t_s <= last) return;
+    this.t.push(t_s);
+    for (const [name, column] of this.columns) column.push(values[name]);
+    // In large pieces, so that moving the rest is rare.
+    const first = this.t[0] ?? t_s;
+    if (t_s - first > 1.2 * KEPT_S) this.#drop(this.t.findIndex((each) => each >= t_s - KEPT_S));
+  }
+
+  /** @param {number} count */
+  #drop(count) {
+    this.t.splice(0, count);
+    for (const column of this.columns.values()) column.splice(0, count);
+  }
+
+  clear() {
+    this.#drop(this.t.length);
+  }
+}
+
+const SLOW = [
+  'reference_cm', 'range_left_cm', 'range_right_cm', 'range_front_cm',
+  'true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'left_pwm', 'right_pwm',
+];
+const FAST = ['left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm', 'true_left_rpm', 'true_right_rpm'];
+
+/** The mode whose reference is a distance. */
+const FRONT_DISTANCE = 1;
+
+/**
+ * A stretch of time in one state.
+ * @typedef {{from_s: number, to_s: number, mode: number, state: number, armed: boolean, faulted: boolean}} Stretch
+ */
+
+/** @typedef {{x_m: number, y_m: number, heading_rad: number}} Pose */
+
+/**
+ * The newest sample, for the map and the numbers.
+ * @typedef {object} Latest
+ * @property {number} t_s
+ * @property {Pose | null} estimated
+ * @property {Pose | null} truth
+ * @property {[Cell, Cell, Cell]} ranges_m Left, right, front.
+ * @property {number | null} servo_rad
+ * @property {boolean} contact
+ */
+
+/** Points kept of each trail, one every 2 cm at least. */
+const TRAIL_POINTS = 2_000;
+const TRAIL_STEP_M = 0.02;
+
+export class Store {
+  slow = new Table(SLOW);
+  fast = new Table(FAST);
+  /** @type {Stretch[]} */
+  stretches = [];
+  /** @type {Latest | null} */
+  latest = null;
+  /** @type {{estimated: [number, number][], truth: [number, number][]}} */
+  trails = { estimated: [], truth: [] };
+  #run = 0;
+  /** @type {Map<string, number>} */
+  #index = new Map();
+
+  /**
+   * A new connection: everything comes again.
+   * @param {string[]} columns
+   */
+  begin(columns) {
+    this.#index = new Map(columns.map((name, index) => [name, index]));
+    this.clear();
+  }
+
+  clear() {
+    this.slow.clear();
+    this.fast.clear();
+    this.stretches = [];
+    this.latest = null;
+    this.trails = { estimated: [], truth: [] };
+  }
+
+  /**
+   * What is plotted belongs to this run of the simulation only.
+   * @param {number} run
+   */
+  setRun(run) {
+    if (run !== this.#run) this.clear();
+    this.#run = run;
+  }
+
+  /** @param {Cell[]} row */
+  push(row) {
+    /** @param {string} name */
+    const cell = (name) => row[this.#index.get(name) ?? -1];
+    /** @param {string} name */
+    const rpm = (name) => scaled(cell(name), RPM_PER_RAD_S);
+    /** @param {string} name */
+    const cm = (name) => scaled(cell(name), CM_PER_M);
+    const t_s = number(cell('t_s'));
+    if (t_s === null) return;
+    const mode = number(cell('mode')) ?? 0;
+
+    this.slow.push(t_s, {
+      reference_cm: mode === FRONT_DISTANCE ? cm('reference_left') : null,
+      range_left_cm: cm('range_left_m'),
+      range_right_cm: cm('range_right_m'),
+      range_front_cm: cm('range_front_m'),
+      true_range_left_cm: cm('true_range_left_m'),
+      true_range_right_cm: cm('true_range_right_m'),
+      true_range_front_cm: cm('true_range_front_m'),
+      left_pwm: number(cell('left_pwm')),
+      right_pwm: number(cell('right_pwm')),
+    });
+    this.fast.push(t_s - EARLIER_S, {
+      left_rpm: rpm('left_before_rad_s'),
+      right_rpm: rpm('right_before_rad_s'),
+      true_left_rpm: rpm('true_left_before_rad_s'),
+      true_right_rpm: rpm('true_right_before_rad_s'),
+    });
+    this.fast.push(t_s, {
+      left_rpm: rpm('left_rad_s'),
+      right_rpm: rpm('right_rad_s'),
+      left_ref_rpm: rpm('left_ref_rad_s'),
+      right_ref_rpm: rpm('right_ref_rad_s'),
+      true_left_rpm: rpm('true_left_rad_s'),
+      true_right_rpm: rpm('true_right_rad_s'),
+    });
+    this.#pushStretch(t_s, mode, number(cell('state')) ?? 0, cell('armed') === 1, cell('faulted') === 1);
+
+    const estimated = pose(cell('x_m'), cell('y_m'), cell('heading_rad'));
+    const truth = pose(cell('true_x_m'), cell('true_y_m'), cell('true_heading_rad'));
+    lengthen(this.trails.estimated, estimated);
+    lengthen(this.trails.truth, truth);
+    this.latest = {
+      t_s,
+      estimated,
+      truth,
+      ranges_m: [cell('range_left_m') ?? null, cell('range_right_m') ?? null, cell('range_front_m') ?? null],
+      servo_rad: number(cell('true_servo_rad')),
+      contact: cell('contact') === 1,
+    };
+  }
+
+  /**
+   * @param {number} t_s
+   * @param {number} mode
+   * @param {number} state
+   * @param {boolean} armed
+   * @param {boolean} faulted
+   */
+  #pushStretch(t_s, mode, state, armed, faulted) {
+    const last = this.stretches.at(-1);
+    if (last) last.to_s = t_s;
+    if (!last || last.mode !== mode || last.state !== state || last.armed !== armed || last.faulted !== faulted) {
+      this.stretches.push({ from_s: t_s, to_s: t_s, mode, state, armed, faulted });
+    }
+    const first = this.stretches[0];
+    if (first && first.to_s < t_s - 1.2 * KEPT_S) this.stretches.shift();
+  }
+
+  /**
+   * A signal as plotted, in the units plotted.
+   * @param {string} name
+   * @returns {{t: number[], y: Column}}
+   */
+  series(name) {
+    for (const table of [this.slow, this.fast]) {
+      const y = table.columns.get(name);
+      if (y) return { t: [...table.t], y: [...y] };
+    }
+    throw new Error(`no signal ${name}; there are ${[...SLOW, ...FAST].join(', ')}`);
+  }
+}
+
+/**
+ * @param {Cell | undefined} x_m
+ * @param {Cell | undefined} y_m
+ * @param {Cell | undefined} heading_rad
+ * @returns {Pose | null}
+ */
+function pose(x_m, y_m, heading_rad) {
+  if (typeof x_m !== 'number' || typeof y_m !== 'number' || typeof heading_rad !== 'number') return null;
+  return { x_m, y_m, heading_rad };
+}
+
+/**
+ * @param {[number, number][]} trail
+ * @param {Pose | null} at
+ */
+function lengthen(trail, at) {
+  if (!at) return;
+  const last = trail.at(-1);
+  if (last && Math.hypot(at.x_m - last[0], at.y_m - last[1]) < TRAIL_STEP_M) return;
+  trail.push([at.x_m, at.y_m]);
+  if (trail.length > TRAIL_POINTS) trail.splice(0, TRAIL_POINTS / 10);
+}

@@ -1,0 +1,73 @@
+// @ts-check
+/**
+ * What the server sends and takes; the other end is `socket.rs` and `orders.rs` of the station.
+ *
+ * @typedef {number | 'clear' | null} Cell A value of a row; 'clear': nothing within the sonar's reach; null: not known.
+ *
+ * @typedef {object} ModeEntry
+ * @property {number} id
+ * @property {string} name
+ * @property {'distance' | 'wheel_speed' | null} reference What its reference is [m or rad/s].
+ * @property {boolean} movements Takes basic movements.
+ * @property {string[]} states
+ *
+ * @typedef {{x_m: number, y_m: number, heading_rad: number}} Pose World frame, counter-clockwise heading.
+ * @typedef {{id: number, at: Pose, half_angle_rad: number, reach_m: number, on_servo: boolean}} SonarMount
+ * @typedef {{corners_m: [number, number][], closed: boolean}} Obstacle
+ *
+ * @typedef {object} Scene
+ * @property {{scenario: string, world: string | null, seed: number}} choice
+ * @property {string[]} scenarios
+ * @property {string[]} worlds
+ * @property {string} robot
+ * @property {Pose} start Origin of the odometry in the world.
+ * @property {Obstacle[]} obstacles
+ * @property {[number, number][]} footprint_m
+ * @property {number} base_m
+ * @property {number} wheel_radius_m
+ * @property {SonarMount[]} sonars
+ *
+ * @typedef {object} Parameter
+ * @property {number} id
+ * @property {string} name
+ * @property {string} unit
+ * @property {number} min
+ * @property {number} max
+ * @property {number} default
+ * @property {number | null} mode
+ * @property {string} description
+ * @property {number | null} value
+ * @property {boolean} pending
+ * @property {string | null} refused
+ *
+ * @typedef {object} State
+ * @property {number} t_s
+ * @property {boolean} simulated
+ * @property {number} speed
+ * @property {number} achieved_speed
+ * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
+ *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number}} link
+ * @property {{mode: number, armed: boolean, fault: string | null, battery_v: number | null, true_battery_v: number | null,
+ *   reference: [number, number], overruns: number, servo_rad: number, foreign: boolean}} robot
+ *
+ * @typedef {{t_s: number, level: 'info' | 'good' | 'warning' | 'fault', text: string}} LoggedEvent
+ *
+ * @typedef {{type: 'hello', version: string, columns: string[], modes: ModeEntry[]}
+ *   | {type: 'scene', run: number, scene: Scene | null}
+ *   | {type: 'parameters', parameters: Parameter[]}
+ *   | {type: 'state', state: State}
+ *   | {type: 'samples', run: number, rows: Cell[][]}
+ *   | {type: 'events', events: LoggedEvent[]}
+ *   | {type: 'error', text: string}} FromServer
+ *
+ * @typedef {{type: 'stop' | 'arm' | 'disarm' | 'clear_fault' | 'reset_params' | 'reset_pose'}
+ *   | {type: 'mode', mode: number}
+ *   | {type: 'reference', value: number}
+ *   | {type: 'wheel_reference', left: number, right: number}
+ *   | {type: 'move_duty', movement: number, duty: number}
+ *   | {type: 'move_speed', movement: number, speed_rad_s: number}
+ *   | {type: 'set_param', id: number, value: number}
+ *   | {type: 'speed', factor: number}
+ *   | {type: 'reset', scenario: string, world: string | null, seed: number}} Order
+ */
+export {};
