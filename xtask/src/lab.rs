@@ -14,6 +14,8 @@ pub(crate) struct Lab {
     child: Child,
     /// The address it printed, with its one-time token.
     url: String,
+    /// What the token became, once the page was fetched.
+    cookie: Option<String>,
 }
 
 impl Lab {
@@ -30,6 +32,7 @@ impl Lab {
         let mut lab = Self {
             child,
             url: String::new(),
+            cookie: None,
         };
         let (send, receive) = mpsc::channel();
         // The reader lives as long as the lab, so that the lab never writes to a closed pipe.
@@ -61,38 +64,19 @@ impl Lab {
         &self.url
     }
 
-    /// Fetches the page as a browser would: with the token, then with the cookie that the token became.
-    pub(crate) fn page(&self) -> Result<String, String> {
-        Ok(self.enter()?.1)
-    }
-
-    /// Opens the dashboard's WebSocket.
-    pub(crate) fn socket(&self) -> Result<tungstenite::WebSocket<TcpStream>, String> {
-        let (cookie, _) = self.enter()?;
-        let host = self.host()?;
-        let request = tungstenite::ClientRequestBuilder::new(
-            format!("ws://{host}/ws")
-                .parse()
-                .map_err(|error| format!("ws://{host}/ws: {error}"))?,
-        )
-        .with_header("Origin", format!("http://{host}"))
-        .with_header("Cookie", cookie);
-        let (socket, _) = tungstenite::client(request, self.connect()?)
-            .map_err(|error| format!("WebSocket: {error}"))?;
-        Ok(socket)
-    }
-
-    /// The session cookie (empty if the lab needs none) and the page.
-    fn enter(&self) -> Result<(String, String), String> {
-        let mut path = format!("/{}", self.url.splitn(4, '/').nth(3).unwrap_or_default());
-        let mut cookie = String::new();
+    /// Fetches the page as a browser would: the first time with the token, then with the cookie that the token became.
+    pub(crate) fn page(&mut self) -> Result<String, String> {
+        let mut path = match &self.cookie {
+            Some(_) => "/".to_owned(),
+            None => format!("/{}", self.url.splitn(4, '/').nth(3).unwrap_or_default()),
+        };
         for _ in 0..4 {
-            let answer = self.get(&path, &cookie)?;
-            if let Some(set) = answer.header("set-cookie") {
-                cookie = set.split(';').next().unwrap_or_default().to_owned();
+            let answer = self.get(&path)?;
+            if let Some(cookie) = answer.header("set-cookie") {
+                self.cookie = cookie.split(';').next().map(str::to_owned);
             }
             match (answer.status, answer.header("location")) {
-                (200, _) => return Ok((cookie, answer.body)),
+                (200, _) => return Ok(answer.body),
                 (301..=308, Some(next)) => path = next.to_owned(),
                 (status, _) => {
                     return Err(format!(
@@ -105,11 +89,31 @@ impl Lab {
         Err(format!("GET {path}: too many redirections"))
     }
 
-    fn get(&self, path: &str, cookie: &str) -> Result<Answer, String> {
-        let request = format!(
-            "GET {path} HTTP/1.1\r\nHost: {}\r\nCookie: {cookie}\r\nAccept: text/html\r\nConnection: close\r\n\r\n",
-            self.host()?
-        );
+    /// Opens the dashboard's WebSocket.
+    pub(crate) fn socket(&mut self) -> Result<tungstenite::WebSocket<TcpStream>, String> {
+        self.page()?;
+        let host = self.host()?;
+        let address = format!("ws://{host}/ws");
+        let uri = address
+            .parse()
+            .map_err(|error| format!("{address}: {error}"))?;
+        let request = tungstenite::ClientRequestBuilder::new(uri)
+            .with_header("Origin", format!("http://{host}"))
+            .with_header("Cookie", self.cookie.as_deref().unwrap_or_default());
+        let (socket, _) = tungstenite::client(request, self.connect()?)
+            .map_err(|error| format!("{address}: {error}"))?;
+        Ok(socket)
+    }
+
+    fn get(&self, path: &str) -> Result<Answer, String> {
+        let host = self.host()?;
+        let cookie = self
+            .cookie
+            .as_deref()
+            .map(|cookie| format!("Cookie: {cookie}\r\n"))
+            .unwrap_or_default();
+        let request =
+            format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n{cookie}Connection: close\r\n\r\n");
         let mut stream = self.connect()?;
         let mut bytes = Vec::new();
         stream

@@ -14,37 +14,38 @@ pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
     let mut start = project.command(project.release_binary_path());
     start.arg("lab");
     let begin = Instant::now();
-    let lab = Lab::start(start)?;
+    let mut lab = Lab::start(start)?;
     let address = begin.elapsed();
     lab.page()?;
     let page = begin.elapsed();
     let mut socket = lab.socket()?;
     let first = loop {
-        if is_telemetry(
+        if samples(
             &socket
                 .read()
                 .map_err(|error| format!("WebSocket: {error}"))?,
-        ) {
+        ) > 0
+        {
             break begin.elapsed();
         }
     };
     let reader = std::thread::spawn(move || {
-        let (mut messages, mut bytes) = (0_u32, 0_usize);
+        let (mut rows, mut bytes) = (0, 0);
         let end = Instant::now() + WATCH;
         while Instant::now() < end {
             let Ok(message) = socket.read() else { break };
-            messages += u32::from(is_telemetry(&message));
+            rows += samples(&message);
             bytes += message.len();
         }
-        (messages, bytes)
+        (rows, bytes)
     });
     let watched = process::cpu_percent(lab.pid(), WATCH)?;
-    let (messages, bytes) = reader
+    let (rows, bytes) = reader
         .join()
         .map_err(|_| "the WebSocket client failed".to_owned())?;
     let resident = process::resident_mb(lab.pid())?;
     let alone = process::cpu_percent(lab.pid(), WATCH)?;
-    let per_s = |count: f64| count / WATCH.as_secs_f64();
+    let per_s = |count: usize| count as f64 / WATCH.as_secs_f64();
     Ok(vec![
         Figure::new(
             "lab: start to address printed",
@@ -64,11 +65,11 @@ pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
         Figure::new(
             "lab: telemetry on the WebSocket",
             format!(
-                "{:.1} messages/s, {:.1} kB/s",
-                per_s(messages.into()),
-                per_s(bytes as f64) / 1e3
+                "{:.1} samples/s, {:.1} kB/s",
+                per_s(rows),
+                per_s(bytes) / 1e3
             ),
-            "25 frames/s",
+            "25 samples/s",
         ),
         Figure::new(
             "lab: CPU, no page",
@@ -84,9 +85,13 @@ pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
     ])
 }
 
-/// Whether a message carries samples of the signals.
-fn is_telemetry(message: &tungstenite::Message) -> bool {
-    message
+/// How many samples of the signals a message carries.
+fn samples(message: &tungstenite::Message) -> usize {
+    let message = message
         .to_text()
-        .is_ok_and(|text| text.contains("\"samples\""))
+        .ok()
+        .and_then(|text| serde_json::from_str::<serde_json::Value>(text).ok());
+    message
+        .and_then(|message| message["rows"].as_array().map(Vec::len))
+        .unwrap_or(0)
 }

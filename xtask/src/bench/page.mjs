@@ -12,7 +12,7 @@ console.log("ready");
 for await (const url of createInterface({ input: process.stdin })) {
   try {
     await page.goto(url);
-    await page.waitForFunction(() => globalThis.rumbo?.series("left_rpm")?.t.length > 0, null, { polling: "raf", timeout: 20_000 });
+    await page.waitForFunction(() => globalThis.rumbo?.series("left_pwm")?.t.length > 0, null, { polling: "raf", timeout: 20_000 });
     console.log("live");
   } catch (error) {
     console.log(String(error).split("\n")[0]);

@@ -141,7 +141,7 @@ fn try_command(project: &Project, rumbo: &Path, command: &Command) -> Result<(),
                 start
             };
             start.args(args);
-            let lab = Lab::start(start)?;
+            let mut lab = Lab::start(start)?;
             let page = lab.page()?;
             if page.to_lowercase().contains("<html") {
                 Ok(())
