@@ -7,12 +7,16 @@
 //! While the line is high, or about to rise, a trigger is ignored: a sonar without an echo blocks itself, and only
 //! itself. What is heard in the cone is decided by [`crate::cone`]. Errors, as the recorded runs show them:
 //! - *Cycles*: the receiver times a zero crossing of the 40 kHz burst. A weak echo is timed whole cycles (4.3 mm)
-//!   early or late; the spread grows with the range, and with motion.
+//!   early or late.
 //! - *Jitter*: a fraction of a millimetre in every reading.
-//! - *Outliers*: now and then something short of the obstacle is timed. *Losses*: no echo at all.
+//! - *Outliers*: now and then something short of the obstacle is timed. *Losses*: no echo at all. Both are rare until
+//!   the echo is weak.
 //! - *Crosstalk*: an echo of another sonar that arrives while this one listens may end its pulse: the other's first
 //!   echo, or its second one, obstacle - body - obstacle. With two paired sonars fired one right after the other, the
-//!   second reads a few centimetres short in one of a dozen pings for that reason.
+//!   second reads a few centimetres short in one of a dozen pings for that reason, and is noisier in the others.
+//!
+//! *Weakness* is the one measure of an echo that drives these: 1 in motion at about half a metre, growing with the
+//! range up to about a metre, less at rest, more while another burst is in the air.
 
 use libm::{cos, floor, pow};
 
@@ -159,11 +163,12 @@ impl Sonar {
         let limit_rad = self.params.incidence_limit_rad
             + self.params.incidence_soft_rad * self.draw(own, 0).normal(ping);
         let heard_m = self.heard_m(world, view, limit_rad);
-        let reading_m = heard_m
-            .filter(|_| !self.draw(own, 1).chance(ping, self.params.loss_rate))
-            .map(|range_m| self.reading_m(own, ping, range_m, view.speed_m_s));
-
         let rise_us = now_us + micros(self.params.trigger_to_rise_s);
+        let unsteady = self.unsteadiness(view.speed_m_s)
+            * self.disturbance(states, own, rise_us, view.axis_rad);
+        let reading_m = heard_m.and_then(|range_m| {
+            self.reading_m(own, ping, range_m, self.weakness(range_m, unsteady))
+        });
         let high_us = match reading_m {
             Some(reading_m) => self.round_trip_us(reading_m),
             None => micros(self.params.timeout_high_s),
@@ -204,26 +209,57 @@ impl Sonar {
         }
     }
 
-    /// What the receiver makes of an echo from `range_m`.
-    fn reading_m(&self, own: usize, ping: u64, range_m: f64, speed_m_s: f64) -> f64 {
-        let moving = (speed_m_s / MOVING_M_S).min(1.0);
+    /// What the receiver makes of an echo from `range_m`; `None` if it misses it.
+    fn reading_m(&self, own: usize, ping: u64, range_m: f64, weakness: f64) -> Option<f64> {
+        let p = &self.params;
+        let growth = pow(weakness, p.fault_growth);
+        if self.draw(own, 1).chance(ping, p.loss_rate * growth) {
+            return None;
+        }
         let noisy_m = range_m
-            + self.params.jitter_m * self.draw(own, 2).normal(ping)
-            + self.cycles_m(range_m, moving, self.draw(own, 3).normal(ping));
-        let short = if self.draw(own, 4).chance(ping, self.params.outlier_rate) {
-            self.params.outlier_span * self.draw(own, 5).uniform(ping)
+            + p.jitter_m * self.draw(own, 2).normal(ping)
+            + self.cycles_m(weakness, self.draw(own, 3).normal(ping));
+        let short = if self.draw(own, 4).chance(ping, p.outlier_rate * growth) {
+            p.outlier_span * self.draw(own, 5).uniform(ping)
         } else {
             0.0
         };
-        (noisy_m * (1.0 - short)).max(self.params.min_range_m)
+        Some((noisy_m * (1.0 - short)).max(p.min_range_m))
+    }
+
+    /// Factor of the weakness for the sonar's motion.
+    fn unsteadiness(&self, speed_m_s: f64) -> f64 {
+        let rest = self.params.rest_weakness;
+        rest + (1.0 - rest) * (speed_m_s / MOVING_M_S).min(1.0)
+    }
+
+    /// Factor of the weakness for bursts of other sonars, looking the same way, whose second echo is still to come.
+    fn disturbance(&self, states: &[State; 3], own: usize, rise_us: u64, axis_rad: f64) -> f64 {
+        let share = |other: usize| {
+            let burst = &states[other].burst;
+            let pending = other != own && burst.echo_us[1] > rise_us;
+            if pending {
+                cos(burst.axis_rad - axis_rad).max(0.0)
+            } else {
+                0.0
+            }
+        };
+        let most = share(0).max(share(1)).max(share(2));
+        1.0 + (self.params.disturbed_weakness - 1.0) * most
+    }
+
+    fn weakness(&self, range_m: f64, unsteady: f64) -> f64 {
+        let p = &self.params;
+        unsteady
+            * pow(
+                range_m.min(p.noise_full_m) / p.noise_range_m,
+                p.noise_growth,
+            )
     }
 
     /// Error of timing a wrong cycle of the burst, for a standard normal draw.
-    fn cycles_m(&self, range_m: f64, moving: f64, normal: f64) -> f64 {
-        let p = &self.params;
-        let sd_m = p.noise_rest_m + (p.noise_motion_m - p.noise_rest_m) * moving;
-        let grown_m = sd_m * pow(range_m / p.noise_range_m, p.noise_growth);
-        floor(normal * grown_m / self.cycle_m + 0.5) * self.cycle_m
+    fn cycles_m(&self, weakness: f64, normal: f64) -> f64 {
+        floor(normal * self.params.noise_m * weakness / self.cycle_m + 0.5) * self.cycle_m
     }
 
     /// When the echoes of a burst can reach the other sonars: 0 for never.
@@ -239,7 +275,9 @@ impl Sonar {
         let second = heard_m
             .map(|range_m| 2.0 * range_m + self.params.bounce_behind_m)
             .filter(|&range_m| range_m <= self.params.reach_m)
-            .map(|range_m| range_m + self.cycles_m(range_m, 1.0, self.draw(own, 6).normal(ping)));
+            .map(|range_m| {
+                range_m + self.cycles_m(self.weakness(range_m, 1.0), self.draw(own, 6).normal(ping))
+            });
         Burst {
             echo_us: [heard_m, second].map(|range_m| range_m.map_or(0, arrival_us)),
             axis_rad: view.axis_rad,

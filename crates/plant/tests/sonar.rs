@@ -23,8 +23,8 @@ fn wall_at(x_m: f64) -> World {
 fn clean() -> params::Sonar {
     params::Sonar {
         jitter_m: 0.0,
-        noise_rest_m: 0.0,
-        noise_motion_m: 0.0,
+        noise_m: 0.0,
+        disturbed_weakness: 1.0,
         outlier_rate: 0.0,
         loss_rate: 0.0,
         crosstalk: 0.0,
@@ -125,8 +125,8 @@ fn jitter_has_its_standard_deviation() {
 #[test]
 fn weak_echoes_slip_whole_cycles_more_in_motion_and_far_away() {
     let params = params::Sonar {
-        noise_rest_m: 0.002,
-        noise_motion_m: 0.006,
+        noise_m: 0.006,
+        rest_weakness: 0.3,
         ..clean()
     };
     let cycle_m = 0.5 * (331.3 + 0.606 * 20.0) / params.carrier_hz;
@@ -139,9 +139,14 @@ fn weak_echoes_slip_whole_cycles_more_in_motion_and_far_away() {
     let expected_m = (0.006_f64.powi(2) + cycle_m * cycle_m / 12.0).sqrt();
     assert!((sd(&readings_m(&params, 0.57, 0.3)) / expected_m - 1.0).abs() < 0.04);
     assert!(sd(&at_rest) < 0.003);
-    assert!(sd(&readings_m(&params, 1.0, 0.0)) > 2.0 * sd(&at_rest));
+    assert!(sd(&readings_m(&params, 0.9, 0.0)) > 2.0 * sd(&at_rest));
+    let (far, farther) = (readings_m(&params, 1.0, 0.3), readings_m(&params, 2.0, 0.3));
     assert!(
-        sd(&readings_m(&params, 0.2, 0.0)) < 1e-9,
+        (sd(&far) / sd(&farther) - 1.0).abs() < 0.04,
+        "it grows no more"
+    );
+    assert!(
+        sd(&readings_m(&params, 0.1, 0.0)) < 1e-9,
         "an echo from near is strong"
     );
 }
@@ -150,6 +155,7 @@ fn weak_echoes_slip_whole_cycles_more_in_motion_and_far_away() {
 fn outliers_and_losses_come_at_their_rates() {
     let params = params::Sonar {
         outlier_rate: 0.05,
+        fault_growth: 0.0,
         loss_rate: 0.02,
         ..clean()
     };
@@ -199,6 +205,25 @@ fn second_of_a_pair(params: &params::Sonar, gap_us: u64, second_axis_rad: f64) -
             range_m(pulse_us(&mut states, SonarId::Right, now_us + 100_000).unwrap())
         })
         .collect()
+}
+
+#[test]
+fn outliers_are_rare_until_the_echo_is_weak() {
+    let params = params::Sonar {
+        outlier_rate: 0.01,
+        ..clean()
+    };
+    let share = |at_m: f64| {
+        let heard = readings_m(&params, at_m, 0.3);
+        heard
+            .iter()
+            .filter(|&&range_m| range_m < at_m - 1e-3)
+            .count() as f64
+            / heard.len() as f64
+    };
+    assert!((share(params.noise_range_m) / 0.01 - 1.0).abs() < 0.4);
+    assert!(share(0.3) < 0.001);
+    assert!(share(0.8) > 0.1);
 }
 
 #[test]

@@ -1,0 +1,327 @@
+//! How noisy the sonars are: the same figures from a recorded run and from the plant's sonars repeating it.
+//!
+//! ```text
+//! log ──► smooth motion ──► residuals ──► sd at rest, sd in motion, outliers, losses   (measured)
+//!              └──► the plant's sonars, pinged at the log's times ──► the same figures (simulated, mean of many seeds)
+//! ```
+//!
+//! A reading is *lost* if it is no possible range. The residual of another is its distance from a Theil-Sen line
+//! through the readings around it (four on each side, itself left out). A row is *at rest* if the bridge is released
+//! around it and that line is level. Within each of the two classes a residual is an *outlier* beyond
+//! [`OUTLIER_SDS`] robust standard deviations (1.4826 times the median magnitude) and at least [`OUTLIER_LEAST_M`];
+//! the standard deviation is that of the others.
+
+pub use log::{SonarLog, SonarLogError};
+pub use residuals::{OUTLIER_LEAST_M, OUTLIER_SDS, SonarStats, statistics};
+
+use rumbo_plant::noise::Noise;
+use rumbo_plant::params;
+use rumbo_plant::sonar::{self, Sonar, SonarId, View};
+use rumbo_plant::world::{Wall, World};
+
+use residuals::{at_rest, line_around};
+
+mod log;
+mod residuals;
+
+/// Speed given to the sonars of a moving robot: anything above their threshold counts as motion.
+const MOVING_M_S: f64 = 0.2;
+/// Between the fall of one echo line and the end of the next trigger pulse in the original program.
+const NEXT_PING_US: u64 = 100;
+/// Seeds that a simulated figure is the mean of.
+const SEEDS: u64 = 50;
+
+/// One sonar of one run: what was measured and what the plant's sonars give in its place.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Comparison {
+    /// Log and sonar.
+    pub name: String,
+    /// From the log.
+    pub measured: SonarStats,
+    /// Mean over many seeds of the plant.
+    pub simulated: SonarStats,
+}
+
+/// Compares every sonar of a run with the plant's.
+#[must_use]
+pub fn compare(log: &SonarLog, sonar: &params::Sonar) -> Vec<Comparison> {
+    let runs: Vec<Vec<SonarStats>> = (0..SEEDS)
+        .map(|seed| statistics(&repeat(log, sonar, seed)))
+        .collect();
+    statistics(log)
+        .into_iter()
+        .enumerate()
+        .map(|(index, measured)| {
+            let side = if log.range_m.len() == 1 {
+                ""
+            } else {
+                [" left", " right"][index.min(1)]
+            };
+            Comparison {
+                name: format!("{}{side}", log.name),
+                measured,
+                simulated: mean(runs.iter().map(|run| run[index])),
+            }
+        })
+        .collect()
+}
+
+/// A table of comparisons, measured and simulated side by side.
+#[must_use]
+pub fn table(comparisons: &[Comparison]) -> String {
+    let mut text = format!(
+        "{:<32} {:>18} {:>18} {:>18} {:>18}\n{:<32}{}\n",
+        "sonar, measured | simulated",
+        "sd at rest, cm",
+        "sd in motion, cm",
+        "outliers, %",
+        "lost, %",
+        "",
+        format!("{:>9} {:>9}", "measured", "simulated").repeat(4)
+    );
+    for Comparison {
+        name,
+        measured,
+        simulated,
+    } in comparisons
+    {
+        let pair = |n: f64, value: fn(&SonarStats) -> f64| {
+            if n == 0.0 {
+                format!("{:>9} {:>9}", "-", "-")
+            } else {
+                format!(
+                    "{:>9.3} {:>9.3}",
+                    100.0 * value(measured),
+                    100.0 * value(simulated)
+                )
+            }
+        };
+        text += &format!(
+            "{name:<32}{}{}{}{}\n",
+            pair(measured.rest_n, |s| s.rest_sd_m),
+            pair(measured.motion_n, |s| s.motion_sd_m),
+            pair(1.0, |s| s.outlier_rate),
+            pair(1.0, |s| s.loss_rate),
+        );
+    }
+    text
+}
+
+fn mean(runs: impl Iterator<Item = SonarStats>) -> SonarStats {
+    let (mut sum, mut n) = (SonarStats::default(), 0.0);
+    for run in runs {
+        n += 1.0;
+        sum.rest_n += run.rest_n;
+        sum.rest_sd_m += run.rest_sd_m;
+        sum.motion_n += run.motion_n;
+        sum.motion_sd_m += run.motion_sd_m;
+        sum.outlier_rate += run.outlier_rate;
+        sum.loss_rate += run.loss_rate;
+    }
+    SonarStats {
+        rest_n: sum.rest_n / n,
+        rest_sd_m: sum.rest_sd_m / n,
+        motion_n: sum.motion_n / n,
+        motion_sd_m: sum.motion_sd_m / n,
+        outlier_rate: sum.outlier_rate / n,
+        loss_rate: sum.loss_rate / n,
+    }
+}
+
+/// The same run with the plant's sonars: they look square at a wall from the smoothed distances of the log, and are
+/// pinged at its times as the original program does, each as soon as the one before has its echo.
+#[must_use]
+pub fn repeat(log: &SonarLog, sonar: &params::Sonar, seed: u64) -> SonarLog {
+    let rangers = Sonar::new(sonar, Noise::new(seed, 0));
+    let world = World::new(
+        &[Wall {
+            from_m: [0.0, -50.0],
+            to_m: [0.0, 50.0],
+            thickness_m: 0.0,
+        }],
+        &[],
+    );
+    // A wall of these numbers is a valid shape.
+    let world = world.unwrap_or_default();
+    let sound_m_s = 331.3 + 0.606 * sonar.temperature_c;
+    let mut states = [sonar::State::default(); 3];
+    let mut range_m = vec![Vec::with_capacity(log.t_s.len()); log.range_m.len()];
+    for (row, &t_s) in log.t_s.iter().enumerate() {
+        let mut now_us = (t_s * 1e6).round() as u64;
+        for (index, (id, readings_m)) in [SonarId::Left, SonarId::Right]
+            .into_iter()
+            .zip(&mut range_m)
+            .enumerate()
+        {
+            let line = line_around(&log.t_s, &log.range_m[index], row, true);
+            let Some(line) = line else {
+                readings_m.push(0.0);
+                continue;
+            };
+            let speed_m_s = if at_rest(log, row, &line) {
+                0.0
+            } else {
+                MOVING_M_S
+            };
+            let view = View {
+                at: [-line.at_row_m, 0.14 * index as f64],
+                axis_rad: 0.0,
+                speed_m_s,
+            };
+            rangers.trigger(&mut states, id, now_us, &world, &view);
+            let (mut rise_us, mut fall_us) = (now_us, now_us);
+            Sonar::advance(&mut states[id.index()], now_us + 60_000, |edge| {
+                *(if edge.level {
+                    &mut rise_us
+                } else {
+                    &mut fall_us
+                }) = edge.at_us;
+            });
+            now_us = fall_us + NEXT_PING_US;
+            readings_m.push((fall_us - rise_us) as f64 * 1e-6 * sound_m_s / 2.0);
+        }
+    }
+    SonarLog {
+        name: log.name.clone(),
+        t_s: log.t_s.clone(),
+        driven: log.driven.clone(),
+        range_m,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    const CYCLE_M: f64 = 0.5 * 343.42 / 40_000.0;
+
+    /// A log of two sonars: 300 rows driven towards a wall, then 300 at rest, each reading changed by `error`.
+    fn log(error: impl Fn(usize, usize) -> f64) -> SonarLog {
+        let distance_m = |row: usize| 1.0 - 0.002 * row.min(300) as f64;
+        let series = |sonar: usize| {
+            (0..600)
+                .map(|row| distance_m(row) + error(sonar, row))
+                .collect()
+        };
+        SonarLog {
+            name: "made.csv".into(),
+            t_s: (0..600).map(|row| 0.07 * row as f64).collect(),
+            driven: (0..600).map(|row| row < 300).collect(),
+            range_m: vec![series(0), series(1)],
+        }
+    }
+
+    #[test]
+    fn the_figures_are_those_that_the_log_was_made_with() {
+        let noise = Noise::new(1, 0);
+        let [left, right] = statistics(&log(|sonar, row| {
+            let sd_m = if row < 300 { 0.003 } else { 0.001 };
+            match (sonar, row % 50) {
+                (1, 20) => -0.08,
+                (1, 40) => 21.0,
+                _ => sd_m * noise.normal(sonar as u32, row as u64),
+            }
+        }))
+        .try_into()
+        .unwrap();
+        // A line through eight noisy neighbours adds about a sixth of their variance.
+        assert!((0.003..0.0036).contains(&left.motion_sd_m), "{left:?}");
+        assert!((0.001..0.0013).contains(&left.rest_sd_m), "{left:?}");
+        assert_eq!((left.outlier_rate, left.loss_rate), (0.0, 0.0));
+        assert_eq!(left.rest_n + left.motion_n, 600.0);
+        assert!(
+            (right.loss_rate - 0.02).abs() < 1e-9
+                && (right.outlier_rate - 12.0 / 588.0).abs() < 3.0 / 588.0,
+            "{right:?}"
+        );
+        assert!(
+            (right.motion_sd_m / left.motion_sd_m - 1.0).abs() < 0.15,
+            "outliers and losses are apart"
+        );
+    }
+
+    #[test]
+    fn a_repeated_run_has_the_noise_of_the_plants_sonars() {
+        let quiet = params::Sonar {
+            noise_m: 0.0,
+            outlier_rate: 0.0,
+            loss_rate: 0.0,
+            crosstalk_bounce: 0.0,
+            ..params::Sonar::default()
+        };
+        let clean = log(|_, _| 0.0);
+        let [left, _] = statistics(&repeat(&clean, &quiet, 3)).try_into().unwrap();
+        assert!(
+            (left.motion_sd_m / quiet.jitter_m - 1.1).abs() < 0.15 && left.outlier_rate == 0.0,
+            "{left:?}"
+        );
+        let usual = params::Sonar::default();
+        let [left, right] = statistics(&repeat(&clean, &usual, 3)).try_into().unwrap();
+        assert!(left.motion_sd_m > 0.3 * CYCLE_M, "{left:?}");
+        assert!(
+            right.outlier_rate > left.outlier_rate,
+            "the second of the pair hears the first: {right:?}"
+        );
+        assert_eq!(repeat(&clean, &usual, 3), repeat(&clean, &usual, 3));
+    }
+
+    #[test]
+    fn a_malformed_log_is_refused_with_line_and_column() {
+        let path = Path::new("run.csv");
+        let header = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n";
+        let error = SonarLog::parse(
+            path,
+            &format!("{header}70,50,50,30,1,60,60\n70,5o,50,30,1,60,60\n"),
+        )
+        .unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "run.csv, line 3: `left_cm` is `5o`, not a number"
+        );
+        let error = SonarLog::parse(path, "dt_ms,speed_a_rpm\n50,0\n").unwrap_err();
+        assert!(error.to_string().contains("no column `left_cm`"), "{error}");
+    }
+
+    #[test]
+    fn the_doubled_reading_of_mode_1_is_one_sonar() {
+        let text = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n70,50,50,30,1,60,60\n71,49,49,30,1,0,0\n";
+        let log = SonarLog::parse(Path::new("run.csv"), text).unwrap();
+        assert_eq!(log.range_m, [[0.5, 0.49]]);
+        assert_eq!(log.driven, [true, false]);
+        assert!((log.t_s[1] - 0.141).abs() < 1e-12);
+    }
+
+    /// With the recorded runs at hand (`RUMBO_DATA`): each figure of the nominal sonars within 25 % of the data.
+    #[test]
+    fn the_nominal_sonars_are_as_noisy_as_the_recorded_ones() {
+        let Some(folder) = std::env::var_os("RUMBO_DATA") else {
+            return;
+        };
+        for file in ["mode1_stop_at_wall.csv", "mode3_follow_wall.csv"] {
+            let log = SonarLog::read(&Path::new(&folder).join(file)).unwrap();
+            let compared = compare(&log, &params::Sonar::default());
+            println!("{}", table(&compared));
+            for Comparison {
+                name,
+                measured,
+                simulated,
+            } in compared
+            {
+                let figures = |s: &SonarStats| [s.rest_sd_m, s.motion_sd_m, s.outlier_rate];
+                for (data, plant) in figures(&measured).into_iter().zip(figures(&simulated)) {
+                    assert!(
+                        (plant - data).abs() <= 0.25 * data,
+                        "{name}: {plant} for {data}"
+                    );
+                }
+                // The runs lost nothing in 921 pings: the plant loses less than one in a run.
+                assert!(
+                    measured.loss_rate == 0.0 && simulated.loss_rate < 1e-3,
+                    "{name}: {simulated:?}"
+                );
+            }
+        }
+    }
+}

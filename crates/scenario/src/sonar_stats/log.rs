@@ -1,0 +1,121 @@
+//! Ranges of a recorded run, from the original program's CSV.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A log of ranges that cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SonarLogError {
+    path: PathBuf,
+    /// 1-based; 0 if the file as a whole is meant.
+    line: u64,
+    cause: String,
+}
+
+impl fmt::Display for SonarLogError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        if self.line > 0 {
+            write!(f, ", line {}", self.line)?;
+        }
+        write!(f, ": {}", self.cause)
+    }
+}
+
+impl std::error::Error for SonarLogError {}
+
+/// The ranges of a recorded run of modes 1 to 4.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SonarLog {
+    /// File name without folder.
+    pub name: String,
+    /// Time of each row since the first.
+    pub t_s: Vec<f64>,
+    /// True where the bridge drove either wheel.
+    pub driven: Vec<bool>,
+    /// Readings by sonar (left, right), in the order they were pinged; one series if the run used one sonar.
+    pub range_m: Vec<Vec<f64>>,
+}
+
+impl SonarLog {
+    /// Reads a CSV of the original program's modes 1 to 4.
+    ///
+    /// # Errors
+    /// A file that cannot be read, lacks a column, or holds something that is no number.
+    pub fn read(path: &Path) -> Result<Self, SonarLogError> {
+        let text = std::fs::read_to_string(path).map_err(|cause| SonarLogError {
+            path: path.into(),
+            line: 0,
+            cause: cause.to_string(),
+        })?;
+        Self::parse(path, &text)
+    }
+
+    /// Reads the same from memory; `path` is for messages and the name.
+    ///
+    /// # Errors
+    /// As [`SonarLog::read`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self, SonarLogError> {
+        let error = |line: u64, cause: String| SonarLogError {
+            path: path.into(),
+            line,
+            cause,
+        };
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .from_reader(text.as_bytes());
+        let bad = |cause: csv::Error| {
+            error(
+                cause.position().map_or(0, csv::Position::line),
+                cause.to_string(),
+            )
+        };
+        let header = reader.headers().map_err(bad)?.clone();
+        let names = ["dt_ms", "left_cm", "right_cm", "pwm_a", "pwm_b"];
+        let mut columns = [0; 5];
+        for (column, name) in columns.iter_mut().zip(names) {
+            *column = header
+                .iter()
+                .position(|field| field == name)
+                .ok_or_else(|| {
+                    error(1, format!("no column `{name}`: not a log of modes 1 to 4"))
+                })?;
+        }
+        let (mut t_s, mut driven, mut left_m, mut right_m) = (vec![], vec![], vec![], vec![]);
+        let mut now_s = 0.0;
+        for record in reader.records() {
+            let record = record.map_err(bad)?;
+            let line = record.position().map_or(0, csv::Position::line);
+            let mut values = [0.0; 5];
+            for ((value, &column), name) in values.iter_mut().zip(&columns).zip(names) {
+                let field = record.get(column).unwrap_or_default();
+                *value = field
+                    .parse()
+                    .ok()
+                    .filter(|number: &f64| number.is_finite())
+                    .ok_or_else(|| error(line, format!("`{name}` is `{field}`, not a number")))?;
+            }
+            let [dt_ms, left_cm, right_cm, pwm_a, pwm_b] = values;
+            now_s += dt_ms * 1e-3;
+            t_s.push(now_s);
+            driven.push(pwm_a != 0.0 || pwm_b != 0.0);
+            left_m.push(left_cm * 0.01);
+            right_m.push(right_cm * 0.01);
+        }
+        let name = path
+            .file_name()
+            .map_or_else(|| "log".into(), |name| name.to_string_lossy().into_owned());
+        // Mode 1 has one sonar and writes its reading twice.
+        let range_m = if left_m == right_m {
+            vec![left_m]
+        } else {
+            vec![left_m, right_m]
+        };
+        Ok(Self {
+            name,
+            t_s,
+            driven,
+            range_m,
+        })
+    }
+}
