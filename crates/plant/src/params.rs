@@ -264,29 +264,35 @@ section! {
         /// Longest range at which a corner is heard whose faces are turned away.
         corner_reach_m = 0.6, 0.0 => 6.0, "m";
         /// Standard deviation of the timing of a clean echo.
-        jitter_m = 0.0004, 0.0 => 0.05, "m";
+        jitter_m = 0.0005, 0.0 => 0.05, "m";
         /// Frequency of the burst: a weak echo is timed whole cycles early or late.
         carrier_hz = 40000.0, 1000.0 => 500000.0, "Hz";
-        /// Standard deviation, before rounding to whole cycles, at rest and at `noise_range_m`.
-        noise_rest_m = 0.0015, 0.0 => 0.2, "m";
-        /// The same in motion.
-        noise_motion_m = 0.0023, 0.0 => 0.3, "m";
-        /// Range at which those two hold.
+        /// Standard deviation, before rounding to whole cycles, in motion and at `noise_range_m`: weakness 1.
+        noise_m = 0.0021, 0.0 => 0.3, "m";
+        /// Weakness of an echo at rest relative to motion.
+        rest_weakness = 0.7, 0.0 => 1.0, "1";
+        /// Weakness of an echo while the second echo of another sonar is still to come.
+        disturbed_weakness = 1.8, 1.0 => 10.0, "1";
+        /// Range at which the weakness is 1 in motion.
         noise_range_m = 0.57, 0.05 => 5.0, "m";
-        /// Power of the range with which they grow.
-        noise_growth = 2.6, 0.0 => 6.0, "1";
-        /// Share of readings that are outliers.
-        outlier_rate = 0.01, 0.0 => 0.5, "1";
+        /// Power of the range with which the weakness grows.
+        noise_growth = 3.2, 0.0 => 6.0, "1";
+        /// Range beyond which it grows no more.
+        noise_full_m = 0.9, 0.05 => 6.0, "m";
+        /// Share of readings that are outliers at weakness 1.
+        outlier_rate = 0.0023, 0.0 => 0.5, "1";
         /// Largest outlier, towards shorter ranges, relative to the range.
-        outlier_span = 0.15, 0.0 => 1.0, "1";
-        /// Share of pings without an echo though something is in reach.
-        loss_rate = 0.001, 0.0 => 0.9, "1";
+        outlier_span = 0.17, 0.0 => 1.0, "1";
+        /// Share of pings without an echo, though something is in reach, at weakness 1.
+        loss_rate = 1e-5, 0.0 => 0.9, "1";
+        /// Power of the weakness with which outliers and losses grow.
+        fault_growth = 3.1, 0.0 => 6.0, "1";
         /// Chance that a sonar takes the echo of another, looking the same way, for its own.
         crosstalk = 0.5, 0.0 => 1.0, "1";
         /// The same for the other's second echo: obstacle, body, obstacle.
         crosstalk_bounce = 0.08, 0.0 => 1.0, "1";
         /// How far behind the transducers the body reflects that second echo.
-        bounce_behind_m = 0.04, 0.0 => 0.3, "m";
+        bounce_behind_m = 0.055, 0.0 => 0.3, "m";
         /// How long the echo line stays high without an echo.
         timeout_high_s = 0.038, 0.001 => 0.3, "s";
         /// Air temperature: speed of sound = 331.3 + 0.606 T.

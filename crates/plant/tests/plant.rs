@@ -177,7 +177,7 @@ fn edges_count_the_angle_that_the_wheels_turned() {
     let plant = plant(World::empty(), 3);
     let mut state = plant.start(Pose::default());
     let before = plant.truth(&state).wheel_rad;
-    drive(&plant, &mut state, 0.7, 0.4);
+    drive(&plant, &mut state, 0.9, 0.7);
     let mut edges = [0_u32; 2];
     plant.advance(&mut state, 2_000_000, &mut |event| {
         if let Event::Edge { wheel, .. } = event {
