@@ -275,6 +275,31 @@ fn a_robot_that_meets_a_wall_at_an_angle_slides_along_it() {
 }
 
 #[test]
+fn a_robot_that_blunders_about_a_cluttered_room_never_overlaps_anything() {
+    let mut contacts = 0;
+    for seed in 0..6 {
+        let plant = plant(room(), seed);
+        let choice = rumbo_plant::noise::Noise::new(seed, 9);
+        let mut state = plant.start(Pose::default());
+        for tick in 0..3_000_u64 {
+            if tick % 50 == 0 {
+                let duty = |wheel| 2.4 * choice.uniform(wheel, tick) - 1.0;
+                drive(&plant, &mut state, duty(0), duty(1));
+            }
+            plant.advance(&mut state, (tick + 1) * 10_000, &mut |_| {});
+            let truth = plant.truth(&state);
+            let clearance_m = plant.footprint().clearance_m(plant.world(), &truth.pose);
+            assert!(
+                clearance_m > -1e-8,
+                "seed {seed}, tick {tick}: {clearance_m}"
+            );
+            contacts = contacts.max(truth.contacts);
+        }
+    }
+    assert!(contacts > 5, "it met things: {contacts}");
+}
+
+#[test]
 fn the_wheels_feel_the_wall() {
     let plant = plant(wall_at(0.3), 6);
     let free = {
