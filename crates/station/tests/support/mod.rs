@@ -17,7 +17,7 @@ const WALL_M: f32 = 1.2;
 const WHEEL_RADIUS_M: f32 = 0.0325;
 
 /// The toy.
-pub struct Toy {
+pub(crate) struct Toy {
     now_us: u64,
     up: VecDeque<(u64, u8)>,
     down: VecDeque<(u64, u8)>,
@@ -32,7 +32,7 @@ pub struct Toy {
     x_m: f32,
     choice: Choice,
     /// How often each command was applied.
-    pub applied: Vec<Command>,
+    pub(crate) applied: Vec<Command>,
 }
 
 impl Default for Toy {
