@@ -1,6 +1,32 @@
 //! Rumbo's bytes, in both directions and at both ends: frames, messages, the original's text protocol and its CSV.
+//!
+//! Bytes come in through [`Decoder`], which finds binary frames and lines of text by itself. A frame becomes a
+//! message ([`message`]) in [`codec`], a line becomes a command or a row of telemetry in [`text`]; both are checked
+//! values, and acting on them is somebody else's business. On the way out, [`codec`] turns a message into a
+//! [`Frame`] and [`text`] formats a line.
+//!
+//! Nothing here allocates, panics, or formats with `core::fmt` on the robot's side. The bytes are described for
+//! people in `docs/protocol.md`, which a test keeps true.
 #![no_std]
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "units are written [m], [rad]"
+)]
 
+mod bytes;
+pub mod codec;
+pub mod csv;
+mod decimal;
+pub mod decoder;
+pub mod frame;
 pub mod message;
+#[cfg(feature = "names")]
+mod names;
+mod quantise;
+pub mod text;
+mod text_row;
 
+pub use codec::{Malformed, Message};
+pub use decoder::{Decoder, Received};
+pub use frame::{Body, Frame, Kind};
 pub use message::*;

@@ -66,6 +66,21 @@ pub enum ResetCause {
     Watchdog = 3,
 }
 
+impl ResetCause {
+    /// All causes, by number.
+    pub const ALL: [ResetCause; 4] = [
+        ResetCause::PowerOn,
+        ResetCause::External,
+        ResetCause::BrownOut,
+        ResetCause::Watchdog,
+    ];
+
+    /// The cause with this number.
+    pub fn from_number(number: u8) -> Option<ResetCause> {
+        Self::ALL.into_iter().find(|cause| *cause as u8 == number)
+    }
+}
+
 /// The fast signals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Telemetry {
@@ -222,4 +237,26 @@ pub enum Refusal {
     NoLink = 8,
     /// The command could not be understood.
     Malformed = 9,
+}
+
+impl Refusal {
+    /// All refusals, by number.
+    pub const ALL: [Refusal; 9] = [
+        Refusal::NotFinite,
+        Refusal::OutOfRange,
+        Refusal::UnknownParam,
+        Refusal::NotInThisMode,
+        Refusal::Armed,
+        Refusal::Faulted,
+        Refusal::SonarNotReady,
+        Refusal::NoLink,
+        Refusal::Malformed,
+    ];
+
+    /// The refusal with this number.
+    pub fn from_number(number: u8) -> Option<Refusal> {
+        Self::ALL
+            .into_iter()
+            .find(|refusal| *refusal as u8 == number)
+    }
 }

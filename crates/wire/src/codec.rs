@@ -1,0 +1,442 @@
+//! Messages to frames and back. All numbers little-endian; `docs/protocol.md` lists every byte.
+//!
+//! Decoding checks lengths and numbers of enumerations, never plausibility: a value that is not finite arrives as
+//! such, and who applies it refuses it with a reason.
+
+use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Wheels};
+
+use crate::bytes::{Reader, Writer};
+use crate::frame::{Body, Frame, Kind};
+use crate::message::*;
+use crate::quantise::{from_i12, from_i16, from_turn, round, to_i12, to_i16, to_turn};
+
+/// Why a frame that passed the CRC is no message: the other end speaks something else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Malformed {
+    /// A frame of the other direction.
+    Direction,
+    /// The payload is too short or too long for what it is.
+    Length,
+    /// A number that stands for nothing: mode, fault, command, refusal...
+    Number,
+}
+
+/// What travels in frames in one direction.
+pub trait Message: Sized {
+    /// The frame for this message, number `seq` of its direction (modulo 16).
+    fn frame(&self, seq: u8) -> Frame;
+
+    /// The message in a frame.
+    ///
+    /// # Errors
+    /// If the frame holds no message of this direction.
+    fn from_body(body: &Body) -> Result<Self, Malformed>;
+}
+
+impl Message for FromRobot {
+    fn frame(&self, seq: u8) -> Frame {
+        let mut to = Writer::default();
+        let kind = match self {
+            FromRobot::Hello(hello) => put_hello(&mut to, hello),
+            FromRobot::Telemetry(telemetry) => put_telemetry(&mut to, telemetry),
+            FromRobot::Status(status) => put_status(&mut to, status),
+            FromRobot::Event(event) => put_event(&mut to, event),
+            FromRobot::Ack(ack) => put_ack(&mut to, ack),
+        };
+        Frame::new(kind, seq, to.payload())
+    }
+
+    fn from_body(body: &Body) -> Result<Self, Malformed> {
+        let mut from = Reader(body.payload());
+        let message = match body.kind {
+            Kind::RobotHello => FromRobot::Hello(hello(&mut from)?),
+            Kind::Telemetry => FromRobot::Telemetry(telemetry(&mut from)?),
+            Kind::Status => FromRobot::Status(status(&mut from)?),
+            Kind::Event => FromRobot::Event(event(&mut from)?),
+            Kind::Ack => FromRobot::Ack(ack(&mut from)?),
+            Kind::StationHello | Kind::Heartbeat | Kind::Command => {
+                return Err(Malformed::Direction);
+            }
+        };
+        from.finish()?;
+        Ok(message)
+    }
+}
+
+impl Message for ToRobot {
+    fn frame(&self, seq: u8) -> Frame {
+        let mut to = Writer::default();
+        let kind = match self {
+            ToRobot::Hello => Kind::StationHello,
+            ToRobot::Heartbeat => Kind::Heartbeat,
+            ToRobot::Command {
+                session,
+                number,
+                command,
+            } => {
+                to.put([*session]).put(number.to_le_bytes());
+                put_command(&mut to, command);
+                Kind::Command
+            }
+        };
+        Frame::new(kind, seq, to.payload())
+    }
+
+    fn from_body(body: &Body) -> Result<Self, Malformed> {
+        let mut from = Reader(body.payload());
+        let message = match body.kind {
+            // Whatever a later version adds to its HELLO: it is still one.
+            Kind::StationHello => return Ok(ToRobot::Hello),
+            Kind::Heartbeat => ToRobot::Heartbeat,
+            Kind::Command => ToRobot::Command {
+                session: from.u8()?,
+                number: from.u16()?,
+                command: command(&mut from)?,
+            },
+            _ => return Err(Malformed::Direction),
+        };
+        from.finish()?;
+        Ok(message)
+    }
+}
+
+fn put_hello(to: &mut Writer, hello: &Hello) -> Kind {
+    to.put([hello.protocol])
+        .put(hello.schema.to_le_bytes())
+        .put(hello.image.to_le_bytes())
+        .put([hello.reset as u8]);
+    Kind::RobotHello
+}
+
+fn hello(from: &mut Reader) -> Result<Hello, Malformed> {
+    Ok(Hello {
+        protocol: from.u8()?,
+        schema: from.u32()?,
+        image: from.u32()?,
+        reset: ResetCause::from_number(from.u8()?).ok_or(Malformed::Number)?,
+    })
+}
+
+/// Positions are sent in millimetres.
+const POSITION_PER_M: f32 = 1_000.0;
+/// Measured wheel speeds are sent in 0.02 rad/s: up to 40.9 rad/s, 391 rpm.
+const SPEED_PER_RAD_S: f32 = 50.0;
+/// References of wheel speeds are sent in 0.001 rad/s: up to 32.7 rad/s, 313 rpm.
+const REFERENCE_PER_RAD_S: f32 = 1_000.0;
+/// Ranges are sent in 2.5 mm: up to 2.5525 m.
+const RANGE_PER_M: f32 = 400.0;
+/// Ten bits, of which the two highest codes mean something else.
+const RANGE_MAX: u32 = 1_021;
+const RANGE_CLEAR: u32 = 1_022;
+const RANGE_FAULTY: u32 = 1_023;
+
+fn put_telemetry(to: &mut Writer, telemetry: &Telemetry) -> Kind {
+    let Telemetry {
+        t_ms,
+        pose,
+        wheel_rad_s,
+        wheel_ref_rad_s,
+        duty,
+        state,
+        armed,
+        faulted,
+        ranges,
+    } = telemetry;
+    to.put(t_ms.to_le_bytes());
+    // One marked value makes the whole pose unknown.
+    let known = pose.x_m.is_finite() && pose.y_m.is_finite() && pose.heading_rad.is_finite();
+    let pose = if known {
+        *pose
+    } else {
+        Pose {
+            x_m: f32::NAN,
+            y_m: f32::NAN,
+            heading_rad: 0.0,
+        }
+    };
+    to.put(to_i16(pose.x_m, POSITION_PER_M).to_le_bytes());
+    to.put(to_i16(pose.y_m, POSITION_PER_M).to_le_bytes());
+    to.put(to_turn(pose.heading_rad).to_le_bytes());
+    for sample in wheel_rad_s {
+        let [left_low, left_high] = to_i12(sample.left, SPEED_PER_RAD_S).to_le_bytes();
+        let right = to_i12(sample.right, SPEED_PER_RAD_S);
+        let [right_low, right_high] = (right << 4).to_le_bytes();
+        to.put([left_low, left_high | right_low, right_high]);
+    }
+    to.put(to_i16(wheel_ref_rad_s.left, REFERENCE_PER_RAD_S).to_le_bytes());
+    to.put(to_i16(wheel_ref_rad_s.right, REFERENCE_PER_RAD_S).to_le_bytes());
+    let counts = |duty: Duty| u32::from(duty.counts().cast_unsigned() & 0x1FF);
+    let bits = counts(duty.left)
+        | counts(duty.right) << 9
+        | u32::from(state & 0xF) << 18
+        | u32::from(*armed) << 22
+        | u32::from(*faulted) << 23;
+    let [low, middle, high, _] = bits.to_le_bytes();
+    to.put([low, middle, high]);
+    let [left, right, front] = ranges.map(|aged| range_code(aged.range));
+    to.put((left | right << 10 | front << 20).to_le_bytes());
+    Kind::Telemetry
+}
+
+fn telemetry(from: &mut Reader) -> Result<Telemetry, Malformed> {
+    let t_ms = from.u16()?;
+    let mut pose = Pose {
+        x_m: from_i16(from.i16()?, POSITION_PER_M),
+        y_m: from_i16(from.i16()?, POSITION_PER_M),
+        heading_rad: from_turn(from.u16()?),
+    };
+    if pose.x_m.is_nan() {
+        pose.heading_rad = f32::NAN;
+    }
+    let mut wheel_rad_s = [Wheels::both(0.0); 2];
+    for sample in &mut wheel_rad_s {
+        let [low, middle, high] = from.take()?;
+        sample.left = from_i12(u16::from_le_bytes([low, middle]) & 0xFFF, SPEED_PER_RAD_S);
+        sample.right = from_i12(u16::from_le_bytes([middle, high]) >> 4, SPEED_PER_RAD_S);
+    }
+    let wheel_ref_rad_s = Wheels {
+        left: from_i16(from.i16()?, REFERENCE_PER_RAD_S),
+        right: from_i16(from.i16()?, REFERENCE_PER_RAD_S),
+    };
+    let [low, middle, high] = from.take()?;
+    let bits = u32::from_le_bytes([low, middle, high, 0]);
+    // Nine bits, signed.
+    let counts = |bits: u32| Duty::new(((bits as u16) << 7).cast_signed() >> 7);
+    let ranges = from.u32()?;
+    Ok(Telemetry {
+        t_ms,
+        pose,
+        wheel_rad_s,
+        wheel_ref_rad_s,
+        duty: Wheels {
+            left: counts(bits),
+            right: counts(bits >> 9),
+        },
+        state: (bits >> 18 & 0xF) as u8,
+        armed: bits & 1 << 22 != 0,
+        faulted: bits & 1 << 23 != 0,
+        ranges: [ranges, ranges >> 10, ranges >> 20].map(|code| AgedRange {
+            range: range(code & 0x3FF),
+            age_s: 0.0,
+        }),
+    })
+}
+
+fn range_code(range: Range) -> u32 {
+    match range {
+        Range::Valid(range_m) if range_m.is_finite() => round(range_m * RANGE_PER_M)
+            .clamp(0, RANGE_MAX.cast_signed())
+            .cast_unsigned(),
+        Range::Clear => RANGE_CLEAR,
+        Range::Valid(_) | Range::Faulty => RANGE_FAULTY,
+    }
+}
+
+fn range(code: u32) -> Range {
+    match code {
+        RANGE_CLEAR => Range::Clear,
+        RANGE_FAULTY => Range::Faulty,
+        _ => Range::Valid(f32::from(code as u16) / RANGE_PER_M),
+    }
+}
+
+/// The battery is sent in millivolts; the highest code means that it is not measured.
+const BATTERY_PER_V: f32 = 1_000.0;
+const BATTERY_UNKNOWN: u16 = u16::MAX;
+/// The servo's angle is sent in degrees.
+const SERVO_PER_RAD: f32 = 180.0 / core::f32::consts::PI;
+
+fn put_status(to: &mut Writer, status: &Status) -> Kind {
+    let battery = match status.battery_v {
+        Some(volts) if volts.is_finite() => round(volts * BATTERY_PER_V).clamp(0, 65_534) as u16,
+        _ => BATTERY_UNKNOWN,
+    };
+    let servo_rad = if status.servo_rad.is_finite() {
+        status.servo_rad
+    } else {
+        0.0
+    };
+    to.put([
+        status.mode as u8,
+        u8::from(status.armed),
+        status.fault.map_or(0, |fault| fault as u8),
+    ]);
+    to.put(battery.to_le_bytes());
+    to.put(status.reference.left.to_le_bytes())
+        .put(status.reference.right.to_le_bytes());
+    to.put([status.crc_errors, status.dropped, status.overruns]);
+    to.put((round(servo_rad * SERVO_PER_RAD).clamp(-127, 127) as i8).to_le_bytes());
+    Kind::Status
+}
+
+fn status(from: &mut Reader) -> Result<Status, Malformed> {
+    Ok(Status {
+        mode: mode(from)?,
+        armed: from.u8()? & 1 != 0,
+        fault: match from.u8()? {
+            0 => None,
+            number => Some(Fault::from_number(number).ok_or(Malformed::Number)?),
+        },
+        battery_v: match from.u16()? {
+            BATTERY_UNKNOWN => None,
+            code => Some(f32::from(code) / BATTERY_PER_V),
+        },
+        reference: Wheels {
+            left: from.f32()?,
+            right: from.f32()?,
+        },
+        crc_errors: from.u8()?,
+        dropped: from.u8()?,
+        overruns: from.u8()?,
+        servo_rad: f32::from(i8::from_le_bytes(from.take()?)) / SERVO_PER_RAD,
+    })
+}
+
+fn mode(from: &mut Reader) -> Result<ModeId, Malformed> {
+    ModeId::from_number(from.u8()?).ok_or(Malformed::Number)
+}
+
+fn fault(from: &mut Reader) -> Result<Fault, Malformed> {
+    Fault::from_number(from.u8()?).ok_or(Malformed::Number)
+}
+
+fn put_event(to: &mut Writer, event: &Event) -> Kind {
+    to.put(event.t_ms.to_le_bytes());
+    match event.kind {
+        EventKind::Armed => to.put([1]),
+        EventKind::Disarmed => to.put([2]),
+        EventKind::Faulted(fault) => to.put([3, fault as u8]),
+        EventKind::Cleared(fault) => to.put([4, fault as u8]),
+        EventKind::ModeChanged(mode) => to.put([5, mode as u8]),
+        EventKind::Reached => to.put([6]),
+    };
+    Kind::Event
+}
+
+fn event(from: &mut Reader) -> Result<Event, Malformed> {
+    let t_ms = from.u16()?;
+    let kind = match from.u8()? {
+        1 => EventKind::Armed,
+        2 => EventKind::Disarmed,
+        3 => EventKind::Faulted(fault(from)?),
+        4 => EventKind::Cleared(fault(from)?),
+        5 => EventKind::ModeChanged(mode(from)?),
+        6 => EventKind::Reached,
+        _ => return Err(Malformed::Number),
+    };
+    Ok(Event { t_ms, kind })
+}
+
+fn put_ack(to: &mut Writer, ack: &Ack) -> Kind {
+    to.put([ack.session]).put(ack.number.to_le_bytes());
+    match ack.result {
+        Ok(value) => to.put([0]).put(value.to_le_bytes()),
+        Err(refusal) => to.put([refusal as u8]),
+    };
+    Kind::Ack
+}
+
+fn ack(from: &mut Reader) -> Result<Ack, Malformed> {
+    Ok(Ack {
+        session: from.u8()?,
+        number: from.u16()?,
+        result: match from.u8()? {
+            0 => Ok(from.f32()?),
+            number => Err(Refusal::from_number(number).ok_or(Malformed::Number)?),
+        },
+    })
+}
+
+/// `level` as a byte that says which and the value.
+const LEVEL_DUTY: u8 = 0;
+const LEVEL_SPEED: u8 = 1;
+
+fn put_command(to: &mut Writer, command: &Command) {
+    match command {
+        Command::Stop => to.put([1]),
+        Command::Arm => to.put([2]),
+        Command::Disarm => to.put([3]),
+        Command::ClearFault => to.put([4]),
+        Command::Mode(mode) => to.put([5, *mode as u8]),
+        Command::Reference(value) => to.put([6]).put(value.to_le_bytes()),
+        Command::WheelReference(wheels) => to
+            .put([7])
+            .put(wheels.left.to_le_bytes())
+            .put(wheels.right.to_le_bytes()),
+        Command::Move { movement, level } => {
+            let (which, value) = match level {
+                Level::Duty(value) => (LEVEL_DUTY, value),
+                Level::Speed(value) => (LEVEL_SPEED, value),
+            };
+            to.put([8, *movement as u8, which]).put(value.to_le_bytes())
+        }
+        Command::SetParam { id, value } => to.put([9, *id]).put(value.to_le_bytes()),
+        Command::GetParam { id } => to.put([10, *id]),
+        Command::ResetParams => to.put([11]),
+        Command::ResetPose => to.put([12]),
+    };
+}
+
+fn command(from: &mut Reader) -> Result<Command, Malformed> {
+    Ok(match from.u8()? {
+        1 => Command::Stop,
+        2 => Command::Arm,
+        3 => Command::Disarm,
+        4 => Command::ClearFault,
+        5 => Command::Mode(mode(from)?),
+        6 => Command::Reference(from.f32()?),
+        7 => Command::WheelReference(Wheels {
+            left: from.f32()?,
+            right: from.f32()?,
+        }),
+        8 => Command::Move {
+            movement: movement(from.u8()?).ok_or(Malformed::Number)?,
+            level: match from.u8()? {
+                LEVEL_DUTY => Level::Duty(from.f32()?),
+                LEVEL_SPEED => Level::Speed(from.f32()?),
+                _ => return Err(Malformed::Number),
+            },
+        },
+        9 => Command::SetParam {
+            id: from.u8()?,
+            value: from.f32()?,
+        },
+        10 => Command::GetParam { id: from.u8()? },
+        11 => Command::ResetParams,
+        12 => Command::ResetPose,
+        _ => return Err(Malformed::Number),
+    })
+}
+
+/// The movements, by number.
+const MOVEMENTS: [Movement; 13] = [
+    Movement::Stop,
+    Movement::Forward,
+    Movement::Backward,
+    Movement::TurnLeft,
+    Movement::TurnRight,
+    Movement::PivotLeftForward,
+    Movement::PivotLeftBackward,
+    Movement::PivotRightForward,
+    Movement::PivotRightBackward,
+    Movement::ArcLeft,
+    Movement::ArcRight,
+    Movement::ArcLeftBackward,
+    Movement::ArcRightBackward,
+];
+
+fn movement(number: u8) -> Option<Movement> {
+    MOVEMENTS
+        .into_iter()
+        .find(|movement| *movement as u8 == number)
+}
+
+/// Session and number of a command frame, also of one whose command is not understood: it can still be refused.
+pub fn command_number(body: &Body) -> Option<(u8, u16)> {
+    let mut from = Reader(body.payload());
+    match body.kind {
+        Kind::Command => Some((from.u8().ok()?, from.u16().ok()?)),
+        _ => None,
+    }
+}

@@ -1,0 +1,67 @@
+//! What people read: explanations with the remedy.
+
+use rumbo_control::Fault;
+
+use crate::message::{EventKind, Refusal, ResetCause};
+
+impl Refusal {
+    /// Why the command was refused and what to do.
+    pub const fn explanation(self) -> &'static str {
+        match self {
+            Refusal::NotFinite => "the value is not a finite number; send a number",
+            Refusal::OutOfRange => {
+                "the value is outside the allowed range; see the limits with `rumbo list`"
+            }
+            Refusal::UnknownParam => "no such parameter; see `rumbo list`",
+            Refusal::NotInThisMode => {
+                "the selected mode takes no such command; select the mode that does"
+            }
+            Refusal::Armed => "not while armed; disarm first",
+            Refusal::Faulted => "a fault is latched; remove its cause and clear it first",
+            Refusal::SonarNotReady => {
+                "the sonar this mode needs gives no good reading; check its wiring, and that something is within 2.5 m"
+            }
+            Refusal::NoLink => "no heartbeat arrives at the robot; connect, then arm again",
+            Refusal::Malformed => {
+                "the robot did not understand the command; use the same version at both ends"
+            }
+        }
+    }
+}
+
+impl ResetCause {
+    /// Why the robot's program started.
+    pub const fn explanation(self) -> &'static str {
+        match self {
+            ResetCause::PowerOn => "power on",
+            ResetCause::External => "reset button or serial adapter",
+            ResetCause::BrownOut => "the supply dipped; charge the battery, check the cables",
+            ResetCause::Watchdog => "the watchdog: the program hung; please report it",
+        }
+    }
+}
+
+impl EventKind {
+    /// What happened, in a few words.
+    pub const fn title(self) -> &'static str {
+        match self {
+            EventKind::Armed => "armed",
+            EventKind::Disarmed => "disarmed",
+            EventKind::Faulted(_) => "fault",
+            EventKind::Cleared(_) => "fault cleared",
+            EventKind::ModeChanged(_) => "mode changed",
+            EventKind::Reached => "reference reached",
+        }
+    }
+
+    /// What it is about: the fault's explanation or the mode's name.
+    pub const fn detail(self) -> Option<&'static str> {
+        match self {
+            EventKind::Faulted(fault) | EventKind::Cleared(fault) => {
+                Some(Fault::explanation(fault))
+            }
+            EventKind::ModeChanged(mode) => Some(mode.name()),
+            EventKind::Armed | EventKind::Disarmed | EventKind::Reached => None,
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Numbers in few bits: saturating, never wrapping, with a code of their own for what is not finite.
+//!
+//! No cast between floats and integers: adding 1.5 * 2^23 leaves the rounded value in the low bits of the float
+//! (ties to even), the same on every machine.
+
+use core::f32::consts::TAU;
+
+/// Largest magnitude that [`round`] takes: beyond it the trick of the bits has no integer for every value.
+const ROUND_LIMIT: f32 = 4_194_303.0;
+
+/// The nearest integer of a finite value, saturated to +-4,194,303.
+pub(crate) fn round(value: f32) -> i32 {
+    const MAGIC: f32 = 12_582_912.0;
+    let limited = value.clamp(-ROUND_LIMIT, ROUND_LIMIT);
+    (limited + MAGIC)
+        .to_bits()
+        .wrapping_sub(MAGIC.to_bits())
+        .cast_signed()
+}
+
+/// Code of a value that is not finite, in a field of 16 bits.
+const NOT_FINITE_16: i16 = i16::MIN;
+
+/// `value` in units of `1 / per_unit`, as 16 bits: saturates to +-32,767.
+pub(crate) fn to_i16(value: f32, per_unit: f32) -> i16 {
+    if !value.is_finite() {
+        return NOT_FINITE_16;
+    }
+    // Narrow enough for i16 after the clamp.
+    round(value * per_unit).clamp(-32_767, 32_767) as i16
+}
+
+/// Inverse of [`to_i16`]; NaN for the code of what is not finite.
+pub(crate) fn from_i16(code: i16, per_unit: f32) -> f32 {
+    if code == NOT_FINITE_16 {
+        f32::NAN
+    } else {
+        f32::from(code) / per_unit
+    }
+}
+
+/// Code of a value that is not finite, in a field of 12 bits.
+const NOT_FINITE_12: i16 = -2_048;
+
+/// `value` in units of `1 / per_unit`, as 12 bits: saturates to +-2,047.
+pub(crate) fn to_i12(value: f32, per_unit: f32) -> u16 {
+    let code = if value.is_finite() {
+        round(value * per_unit).clamp(-2_047, 2_047) as i16
+    } else {
+        NOT_FINITE_12
+    };
+    code.cast_unsigned() & 0xFFF
+}
+
+/// Inverse of [`to_i12`], of the low 12 bits; NaN for the code of what is not finite.
+pub(crate) fn from_i12(code: u16, per_unit: f32) -> f32 {
+    let signed = (code << 4).cast_signed() >> 4;
+    if signed == NOT_FINITE_12 {
+        f32::NAN
+    } else {
+        f32::from(signed) / per_unit
+    }
+}
+
+/// A finite angle as a fraction of a turn, 2 pi / 65536. An angle wraps by its nature.
+pub(crate) fn to_turn(angle_rad: f32) -> u16 {
+    (round(angle_rad * (65_536.0 / TAU)) & 0xFFFF) as u16
+}
+
+/// Inverse of [`to_turn`], in (-pi, pi].
+pub(crate) fn from_turn(code: u16) -> f32 {
+    const HALF_TURN: u16 = 0x8000;
+    if code == HALF_TURN {
+        core::f32::consts::PI
+    } else {
+        f32::from(code.cast_signed()) * (TAU / 65_536.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn rounding_gives_the_nearest_integer(value in -4_194_303.0f32..4_194_303.0) {
+            prop_assert_eq!(f64::from(round(value)), f64::from(value).round_ties_even());
+        }
+
+        #[test]
+        fn a_code_never_wraps(value: f32) {
+            let sixteen = from_i16(to_i16(value, 1000.0), 1000.0);
+            let twelve = from_i12(to_i12(value, 50.0), 50.0);
+            for (back, largest, step) in [(sixteen, 32.767, 0.001), (twelve, 40.94, 0.02)] {
+                if value.is_finite() {
+                    let wanted = value.clamp(-largest, largest);
+                    prop_assert!((back - wanted).abs() <= step * 0.501, "{} came back as {}", value, back);
+                } else {
+                    prop_assert!(back.is_nan());
+                }
+            }
+        }
+
+        #[test]
+        fn an_angle_comes_back_within_half_a_step(angle_rad in -core::f32::consts::PI..core::f32::consts::PI) {
+            let back = from_turn(to_turn(angle_rad));
+            let error = (back - angle_rad).abs();
+            prop_assert!(error.min((TAU - error).abs()) <= TAU / 65_536.0 * 0.51);
+        }
+    }
+
+    #[test]
+    fn infinity_saturates_when_rounded() {
+        assert_eq!(
+            (round(f32::INFINITY), round(f32::NEG_INFINITY)),
+            (4_194_303, -4_194_303)
+        );
+    }
+}

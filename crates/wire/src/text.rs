@@ -1,0 +1,245 @@
+//! The original program's text protocol, both directions, both ends.
+//!
+//! To the robot: a command a line (`ON`, `OFF`, `REF v`, `REF A v`, `REF B v`, `GOAL x y`, `PID A|B kp ki kd`, and our
+//! `MODE n`), in upper or lower case. From the robot: a row of comma-separated numbers, whose columns depend on the
+//! mode (`csv` names them). Units are the original's here and nowhere else: cm, degrees, rpm, ms; A is the right wheel,
+//! B the left one. What `REF` means depends on the mode, so values stay as written.
+
+use core::fmt;
+
+use rumbo_control::{Range, Side, Wheels};
+
+use crate::decimal::{self, Text};
+
+pub use crate::text_row::{DistanceRow, MissionRow, Row, RowKind, SpeedRow, WaypointsRow};
+
+/// rad/s in one rpm.
+pub const RAD_S_PER_RPM: f32 = core::f32::consts::PI / 30.0;
+/// rad in one degree.
+pub const RAD_PER_DEG: f32 = core::f32::consts::PI / 180.0;
+/// cm in one m.
+pub const CM_PER_M: f32 = 100.0;
+
+/// Length of the longest row, CR and LF included.
+pub const MAX_LINE: usize = 128;
+
+/// A line for the wire.
+pub struct Line(pub(crate) Text<MAX_LINE>);
+
+impl Line {
+    /// The bytes, CR LF at the end as the original's `println` had it.
+    pub fn bytes(&self) -> &[u8] {
+        self.0.bytes()
+    }
+}
+
+/// What a text row shows for a range [cm]: the original has numbers only. 0 is *faulty*, 400 (the end of the
+/// HC-SR04's scale, beyond the reach that is used) is *clear*.
+pub fn cm_from_range(range: Range) -> f32 {
+    match range {
+        Range::Valid(range_m) => range_m * CM_PER_M,
+        Range::Clear => CLEAR_CM,
+        Range::Faulty => 0.0,
+    }
+}
+
+/// Inverse of [`cm_from_range`].
+pub fn range_from_cm(range_cm: f32) -> Range {
+    if range_cm >= CLEAR_CM {
+        Range::Clear
+    } else if range_cm > 0.0 {
+        Range::Valid(range_cm / CM_PER_M)
+    } else {
+        Range::Faulty
+    }
+}
+
+const CLEAR_CM: f32 = 400.0;
+
+/// Why a line is no command or no row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TextError {
+    /// No command starts like this.
+    UnknownCommand,
+    /// The motor is neither `A` nor `B`.
+    UnknownMotor,
+    /// A value is missing.
+    Missing,
+    /// Something follows the last value.
+    Extra,
+    /// The value number `.0` (the first is 1) is no decimal number.
+    NotANumber(u8),
+    /// The number of values fits no row of telemetry.
+    Columns,
+    /// The value number `.0` (the first is 1) is a number that the column cannot hold.
+    OutOfRange(u8),
+}
+
+impl fmt::Display for TextError {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            TextError::UnknownCommand => out.write_str(
+                "unknown command; allowed: ON, OFF, REF, GOAL, PID, MODE, each with its values",
+            ),
+            TextError::UnknownMotor => {
+                out.write_str("unknown motor; A is the right wheel, B the left one")
+            }
+            TextError::Missing => out.write_str("a value is missing"),
+            TextError::Extra => out.write_str("too many values"),
+            TextError::NotANumber(at) => write!(out, "value {at} is not a number"),
+            TextError::Columns => {
+                out.write_str("the number of values fits no row of telemetry (7, 10 or 13)")
+            }
+            TextError::OutOfRange(at) => write!(out, "value {at} is out of range"),
+        }
+    }
+}
+
+impl core::error::Error for TextError {}
+
+/// A command in the words of the original.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TextCommand {
+    /// Arm and start.
+    On,
+    /// Stop and disarm.
+    Off,
+    /// The mode's reference for both wheels [cm] or [rpm].
+    Reference(f32),
+    /// One wheel's reference [rpm].
+    WheelReference(Side, f32),
+    /// The next goal.
+    Goal {
+        /// Forward of the origin [m].
+        x_m: f32,
+        /// Left of the origin [m].
+        y_m: f32,
+    },
+    /// Gains of one wheel's speed loop.
+    Gains {
+        /// The wheel.
+        side: Side,
+        /// Proportional gain [PWM per rpm].
+        kp: f32,
+        /// Integral gain [PWM per rpm and s].
+        ki: f32,
+        /// Derivative gain [PWM per rpm, times s].
+        kd: f32,
+    },
+    /// Select a mode, by its number.
+    Mode(u8),
+}
+
+impl TextCommand {
+    /// The command in a line, given without its end.
+    ///
+    /// # Errors
+    /// If the line is not exactly a command and its values.
+    pub fn parse(line: &str) -> Result<TextCommand, TextError> {
+        let mut words = Words {
+            rest: line.as_bytes(),
+            values: 0,
+        };
+        let name = words.next().ok_or(TextError::UnknownCommand)?;
+        let is = |wanted: &str| name.eq_ignore_ascii_case(wanted.as_bytes());
+        let command = if is("ON") {
+            TextCommand::On
+        } else if is("OFF") {
+            TextCommand::Off
+        } else if is("REF") {
+            match words.motor() {
+                Some(side) => TextCommand::WheelReference(side, words.number()?),
+                None => TextCommand::Reference(words.number()?),
+            }
+        } else if is("GOAL") {
+            TextCommand::Goal {
+                x_m: words.number()?,
+                y_m: words.number()?,
+            }
+        } else if is("PID") {
+            let side = words.motor().ok_or(TextError::UnknownMotor)?;
+            TextCommand::Gains {
+                side,
+                kp: words.number()?,
+                ki: words.number()?,
+                kd: words.number()?,
+            }
+        } else if is("MODE") {
+            match words.next().ok_or(TextError::Missing)? {
+                [digit @ b'0'..=b'9'] => TextCommand::Mode(digit - b'0'),
+                _ => return Err(TextError::NotANumber(1)),
+            }
+        } else {
+            return Err(TextError::UnknownCommand);
+        };
+        if words.next().is_some() {
+            Err(TextError::Extra)
+        } else {
+            Ok(command)
+        }
+    }
+}
+
+/// The command as the station sends it, without the LF.
+impl fmt::Display for TextCommand {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let motor = |side: &Side| match side {
+            Side::Right => 'A',
+            Side::Left => 'B',
+        };
+        match self {
+            TextCommand::On => out.write_str("ON"),
+            TextCommand::Off => out.write_str("OFF"),
+            TextCommand::Reference(value) => write!(out, "REF {value}"),
+            TextCommand::WheelReference(side, value) => write!(out, "REF {} {value}", motor(side)),
+            TextCommand::Goal { x_m, y_m } => write!(out, "GOAL {x_m} {y_m}"),
+            TextCommand::Gains { side, kp, ki, kd } => {
+                write!(out, "PID {} {kp} {ki} {kd}", motor(side))
+            }
+            TextCommand::Mode(number) => write!(out, "MODE {number}"),
+        }
+    }
+}
+
+/// Words separated by blanks.
+struct Words<'a> {
+    rest: &'a [u8],
+    values: u8,
+}
+
+impl<'a> Words<'a> {
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let rest = self.rest.trim_ascii_start();
+        let end = rest
+            .iter()
+            .position(u8::is_ascii_whitespace)
+            .unwrap_or(rest.len());
+        let (word, rest) = rest.split_at_checked(end)?;
+        self.rest = rest;
+        (!word.is_empty()).then_some(word)
+    }
+
+    /// The motor, if its letter is next.
+    fn motor(&mut self) -> Option<Side> {
+        let before = self.rest;
+        match self.next() {
+            Some(b"A" | b"a") => Some(Side::Right),
+            Some(b"B" | b"b") => Some(Side::Left),
+            _ => {
+                self.rest = before;
+                None
+            }
+        }
+    }
+
+    fn number(&mut self) -> Result<f32, TextError> {
+        let word = self.next().ok_or(TextError::Missing)?;
+        self.values += 1;
+        decimal::parse(word).ok_or(TextError::NotANumber(self.values))
+    }
+}
+
+/// The pair of values that the original sends for motor A, then motor B.
+pub(crate) fn a_then_b<T>(wheels: Wheels<T>) -> [T; 2] {
+    [wheels.right, wheels.left]
+}

@@ -1,0 +1,328 @@
+//! The rows of telemetry of the original's text protocol, to and from text.
+
+use rumbo_control::Wheels;
+
+use crate::decimal::{self, Text};
+use crate::text::{Line, TextError, a_then_b};
+
+/// The row of modes 1 to 4.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DistanceRow {
+    /// Time since the row before [ms].
+    pub dt_ms: u32,
+    /// The left (or first) sonar's range [cm].
+    pub left_cm: f32,
+    /// The right (or second) sonar's range [cm].
+    pub right_cm: f32,
+    /// The distance to keep [cm].
+    pub reference_cm: f32,
+    /// Number of the mode.
+    pub mode: u8,
+    /// Signed PWM, -255..=255.
+    pub pwm: Wheels<i16>,
+}
+
+/// The row of modes 5 and 6; ours also in mode 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpeedRow {
+    /// Time since the row before [ms].
+    pub dt_ms: u32,
+    /// Wheel speeds [rpm].
+    pub wheel_rpm: Wheels<f32>,
+    /// Speed reference of motor A, the right wheel [rpm]; the original has one for both.
+    pub reference_rpm: f32,
+    /// Number of the mode.
+    pub mode: u8,
+    /// Signed PWM, -255..=255.
+    pub pwm: Wheels<i16>,
+}
+
+/// The row of mode 7.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WaypointsRow {
+    /// Time since the row before [ms].
+    pub dt_ms: u32,
+    /// Wheel speeds [rpm].
+    pub wheel_rpm: Wheels<f32>,
+    /// Wheel speed references [rpm].
+    pub reference_rpm: Wheels<f32>,
+    /// Forward of the origin [m].
+    pub x_m: f32,
+    /// Left of the origin [m].
+    pub y_m: f32,
+    /// Heading, counter-clockwise [deg].
+    pub heading_deg: f32,
+    /// Signed PWM, -255..=255.
+    pub pwm: Wheels<i16>,
+}
+
+/// The row of mode 8.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MissionRow {
+    /// Time since the row before [ms].
+    pub dt_ms: u32,
+    /// Wheel speed references [rpm].
+    pub reference_rpm: Wheels<f32>,
+    /// Heading wanted [deg].
+    pub heading_reference_deg: f32,
+    /// The goal, forward of the origin [m].
+    pub goal_x_m: f32,
+    /// The goal, left of the origin [m].
+    pub goal_y_m: f32,
+    /// Forward of the origin [m].
+    pub x_m: f32,
+    /// Left of the origin [m].
+    pub y_m: f32,
+    /// Heading, counter-clockwise [deg].
+    pub heading_deg: f32,
+    /// State of the mode's machine.
+    pub state: u8,
+    /// The right sonar's range [cm].
+    pub right_cm: f32,
+    /// The left sonar's range [cm].
+    pub left_cm: f32,
+    /// The front sonar's range [cm].
+    pub front_cm: f32,
+}
+
+/// A row of telemetry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Row {
+    /// Modes 1 to 4.
+    Distance(DistanceRow),
+    /// Modes 5 and 6 (and 0).
+    Speed(SpeedRow),
+    /// Mode 7.
+    Waypoints(WaypointsRow),
+    /// Mode 8.
+    Mission(MissionRow),
+}
+
+/// Which columns a row has; [`crate::csv`] names them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowKind {
+    /// Modes 1 to 4.
+    Distance,
+    /// Modes 5 and 6 (and 0).
+    Speed,
+    /// Mode 7.
+    Waypoints,
+    /// Mode 8.
+    Mission,
+}
+
+impl Row {
+    /// The row in a line, given without its end; its columns tell which it is.
+    ///
+    /// # Errors
+    /// If the line has other columns than any row, or a value is no number.
+    pub fn parse(line: &str) -> Result<Row, TextError> {
+        let kind = match line.split(',').count() {
+            // The mode is the fifth column of both.
+            7 => match Fields::new(line).nth_number(4)? {
+                mode if (1.0..=4.0).contains(&mode) => RowKind::Distance,
+                _ => RowKind::Speed,
+            },
+            10 => RowKind::Waypoints,
+            13 => RowKind::Mission,
+            _ => return Err(TextError::Columns),
+        };
+        Row::parse_as(kind, line)
+    }
+
+    /// The row in a line whose columns are known from the header of a file.
+    ///
+    /// # Errors
+    /// If values are missing, too many, no numbers or out of range.
+    pub fn parse_as(kind: RowKind, line: &str) -> Result<Row, TextError> {
+        let mut from = Fields::new(line);
+        let row = match kind {
+            RowKind::Distance => Row::Distance(DistanceRow {
+                dt_ms: from.milliseconds()?,
+                left_cm: from.number()?,
+                right_cm: from.number()?,
+                reference_cm: from.number()?,
+                mode: from.small()?,
+                pwm: from.pwm()?,
+            }),
+            RowKind::Speed => Row::Speed(SpeedRow {
+                dt_ms: from.milliseconds()?,
+                wheel_rpm: from.wheels()?,
+                reference_rpm: from.number()?,
+                mode: from.small()?,
+                pwm: from.pwm()?,
+            }),
+            RowKind::Waypoints => Row::Waypoints(WaypointsRow {
+                dt_ms: from.milliseconds()?,
+                wheel_rpm: from.wheels()?,
+                reference_rpm: from.wheels()?,
+                x_m: from.number()?,
+                y_m: from.number()?,
+                heading_deg: from.number()?,
+                pwm: from.pwm()?,
+            }),
+            RowKind::Mission => Row::Mission(MissionRow {
+                dt_ms: from.milliseconds()?,
+                reference_rpm: from.wheels()?,
+                heading_reference_deg: from.number()?,
+                goal_x_m: from.number()?,
+                goal_y_m: from.number()?,
+                x_m: from.number()?,
+                y_m: from.number()?,
+                heading_deg: from.number()?,
+                state: from.small()?,
+                right_cm: from.number()?,
+                left_cm: from.number()?,
+                front_cm: from.number()?,
+            }),
+        };
+        if from.rest.is_some() {
+            Err(TextError::Extra)
+        } else {
+            Ok(row)
+        }
+    }
+
+    /// Which columns it has.
+    pub fn kind(&self) -> RowKind {
+        match self {
+            Row::Distance(_) => RowKind::Distance,
+            Row::Speed(_) => RowKind::Speed,
+            Row::Waypoints(_) => RowKind::Waypoints,
+            Row::Mission(_) => RowKind::Mission,
+        }
+    }
+
+    /// The row as a line for the wire. Floats have at most two decimals.
+    pub fn line(&self) -> Line {
+        let mut to = Columns(Text::EMPTY);
+        match self {
+            Row::Distance(row) => {
+                to.milliseconds(row.dt_ms);
+                to.numbers([row.left_cm, row.right_cm, row.reference_cm]);
+                to.integers([i16::from(row.mode)]);
+                to.integers(a_then_b(row.pwm));
+            }
+            Row::Speed(row) => {
+                to.milliseconds(row.dt_ms);
+                to.numbers(a_then_b(row.wheel_rpm));
+                to.numbers([row.reference_rpm]);
+                to.integers([i16::from(row.mode)]);
+                to.integers(a_then_b(row.pwm));
+            }
+            Row::Waypoints(row) => {
+                to.milliseconds(row.dt_ms);
+                to.numbers(a_then_b(row.wheel_rpm));
+                to.numbers(a_then_b(row.reference_rpm));
+                to.numbers([row.x_m, row.y_m, row.heading_deg]);
+                to.integers(a_then_b(row.pwm));
+            }
+            Row::Mission(row) => {
+                to.milliseconds(row.dt_ms);
+                to.numbers(a_then_b(row.reference_rpm));
+                to.numbers([row.heading_reference_deg, row.goal_x_m, row.goal_y_m]);
+                to.numbers([row.x_m, row.y_m, row.heading_deg]);
+                to.integers([i16::from(row.state)]);
+                to.numbers([row.right_cm, row.left_cm, row.front_cm]);
+            }
+        }
+        to.0.push(b'\r');
+        to.0.push(b'\n');
+        Line(to.0)
+    }
+}
+
+/// Writes columns, a comma before each but the first.
+struct Columns(Text<{ crate::text::MAX_LINE }>);
+
+impl Columns {
+    fn milliseconds(&mut self, dt_ms: u32) {
+        self.0
+            .push_integer(i32::try_from(dt_ms).unwrap_or(i32::MAX));
+    }
+
+    fn numbers<const N: usize>(&mut self, values: [f32; N]) {
+        for value in values {
+            self.0.push(b',');
+            self.0.push_hundredths(value);
+        }
+    }
+
+    fn integers<const N: usize>(&mut self, values: [i16; N]) {
+        for value in values {
+            self.0.push(b',');
+            self.0.push_integer(i32::from(value));
+        }
+    }
+}
+
+/// Reads columns separated by commas, in order.
+struct Fields<'a> {
+    rest: Option<&'a str>,
+    /// Number of the value read last.
+    at: u8,
+}
+
+impl<'a> Fields<'a> {
+    fn new(line: &'a str) -> Self {
+        Self {
+            rest: Some(line),
+            at: 0,
+        }
+    }
+
+    fn number(&mut self) -> Result<f32, TextError> {
+        let rest = self.rest.ok_or(TextError::Missing)?;
+        let field = match rest.split_once(',') {
+            Some((field, rest)) => {
+                self.rest = Some(rest);
+                field
+            }
+            None => {
+                self.rest = None;
+                rest
+            }
+        };
+        self.at = self.at.saturating_add(1);
+        decimal::parse(field.trim_ascii().as_bytes()).ok_or(TextError::NotANumber(self.at))
+    }
+
+    /// The number in the column after `skipped` others.
+    fn nth_number(&mut self, skipped: u8) -> Result<f32, TextError> {
+        for _ in 0..skipped {
+            self.number()?;
+        }
+        self.number()
+    }
+
+    /// A number of `low..=high`, rounded to an integer.
+    fn integer(&mut self, low: f32, high: f32) -> Result<i32, TextError> {
+        let value = self.number()?;
+        if (low..=high).contains(&value) {
+            Ok(crate::quantise::round(value))
+        } else {
+            Err(TextError::OutOfRange(self.at))
+        }
+    }
+
+    /// Up to an hour: the original's longest silence is below a minute.
+    fn milliseconds(&mut self) -> Result<u32, TextError> {
+        Ok(self.integer(0.0, 3_600_000.0)?.cast_unsigned())
+    }
+
+    fn small(&mut self) -> Result<u8, TextError> {
+        Ok(self.integer(0.0, 255.0)? as u8)
+    }
+
+    fn wheels(&mut self) -> Result<Wheels<f32>, TextError> {
+        let right = self.number()?;
+        let left = self.number()?;
+        Ok(Wheels { left, right })
+    }
+
+    fn pwm(&mut self) -> Result<Wheels<i16>, TextError> {
+        let right = self.integer(-255.0, 255.0)? as i16;
+        let left = self.integer(-255.0, 255.0)? as i16;
+        Ok(Wheels { left, right })
+    }
+}
