@@ -60,8 +60,8 @@ fn the_worked_example_of_telemetry_is_right() {
             y_m: -0.25,
             heading_rad: core::f32::consts::FRAC_PI_2,
         },
-        wheel_rad_s: [Wheels::both(6.28), Wheels::both(6.3)],
-        wheel_ref_rad_s: Wheels::both(6.283),
+        wheel_rad_s: [Wheels::both(6.24), Wheels::both(6.26)],
+        wheel_ref_rad_s: Wheels::both(6.25),
         duty: Wheels {
             left: Duty::new(120),
             right: Duty::new(118),
