@@ -158,7 +158,11 @@ impl<const N: usize> Decoder<N> {
         if cut || !printable {
             return None;
         }
-        self.after_text = Some(self.len);
+        // A frame starts with a COBS code below 32, so the bytes up to its first LF are never printable: a line
+        // that follows something unprintable after text may lie inside a frame.
+        if self.after_text.is_none_or(|end| end == start) {
+            self.after_text = Some(self.len);
+        }
         Some(start..start + len)
     }
 }
