@@ -47,7 +47,7 @@ export class Header {
     this.#form.hidden = scene === null;
     if (!scene) return;
     this.#scenario.replaceChildren(...scene.scenarios.map((name) => option(name, name)));
-    this.#world.replaceChildren(option(OWN, "the scenario's"), ...scene.worlds.map((name) => option(name, name)));
+    this.#world.replaceChildren(option(OWN, 'its own'), ...scene.worlds.map((name) => option(name, name)));
     this.#scenario.value = scene.choice.scenario;
     this.#world.value = scene.choice.world ?? OWN;
     this.#seed.value = String(scene.choice.seed);

@@ -25,8 +25,8 @@ const PLOTS = [
   {
     title: 'distance', unit: 'cm', table: 'slow', step: 10, decimals: 1, weight: 5,
     curves: [
-      { name: 'true_range_left_cm', label: 'true left', colour: 'left', kind: 'true' },
-      { name: 'true_range_right_cm', label: 'true right', colour: 'right', kind: 'true' },
+      { name: 'true_range_left_cm', label: 'true l.', colour: 'left', kind: 'true' },
+      { name: 'true_range_right_cm', label: 'true r.', colour: 'right', kind: 'true' },
       { name: 'true_range_front_cm', label: 'true front', colour: 'front', kind: 'true' },
       { name: 'range_left_cm', label: 'left', colour: 'left', kind: 'measured' },
       { name: 'range_right_cm', label: 'right', colour: 'right', kind: 'measured' },
@@ -35,14 +35,14 @@ const PLOTS = [
     ],
   },
   {
-    title: 'wheel speed', unit: 'rpm', table: 'fast', step: 20, decimals: 0, weight: 5,
+    title: 'wheels', unit: 'rpm', table: 'fast', step: 20, decimals: 0, weight: 5,
     curves: [
-      { name: 'true_left_rpm', label: 'true left', colour: 'left', kind: 'true' },
-      { name: 'true_right_rpm', label: 'true right', colour: 'right', kind: 'true' },
+      { name: 'true_left_rpm', label: 'true l.', colour: 'left', kind: 'true' },
+      { name: 'true_right_rpm', label: 'true r.', colour: 'right', kind: 'true' },
       { name: 'left_rpm', label: 'left', colour: 'left', kind: 'measured' },
       { name: 'right_rpm', label: 'right', colour: 'right', kind: 'measured' },
-      { name: 'left_ref_rpm', label: 'ref. left', colour: 'left', kind: 'reference' },
-      { name: 'right_ref_rpm', label: 'ref. right', colour: 'right', kind: 'reference' },
+      { name: 'left_ref_rpm', label: 'ref. l.', colour: 'left', kind: 'reference' },
+      { name: 'right_ref_rpm', label: 'ref. r.', colour: 'right', kind: 'reference' },
     ],
   },
   {
@@ -181,7 +181,7 @@ export class Plots {
 
     const chips = spec.curves.map((curve, index) => {
       const value = create('output', { textContent: '–' });
-      const chip = create('button', { type: 'button', className: `curve ${curve.kind}`, title: 'Show or hide' }, create('span', { className: `swatch ${curve.colour}` }), curve.label, value);
+      const chip = create('button', { type: 'button', className: `curve ${curve.kind}`, title: `${curve.label}: show or hide` }, create('span', { className: `swatch ${curve.colour}` }), curve.label, value);
       chip.setAttribute('aria-pressed', 'true');
       chip.addEventListener('click', () => {
         const show = chip.getAttribute('aria-pressed') !== 'true';
@@ -230,6 +230,7 @@ export class Plots {
     ctx.clip();
     ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
     ctx.textBaseline = 'middle';
+    ctx.textAlign = 'left';
     for (const stretch of this.#store.stretches) {
       if (stretch.to_s < from_s || stretch.from_s > to_s) continue;
       const left = plot.valToPos(Math.max(stretch.from_s, from_s), 'x', true);
@@ -348,6 +349,6 @@ function valueAxis() {
     font: FONT,
     gap: 4,
     size: GUTTER_PX,
-    space: 24,
+    space: 18,
   };
 }

@@ -4,11 +4,11 @@
 mod support;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let port = std::env::args().nth(1).map_or(Ok(0), |port| port.parse())?;
-    let lab = rumbo_station::serve(
-        rumbo_station::LabConfig { port, speed: 1.0 },
-        Box::new(support::Toy::default()),
-    )?;
+    let config = rumbo_station::LabConfig {
+        port: 0,
+        ..rumbo_station::LabConfig::default()
+    };
+    let lab = rumbo_station::serve(config, Box::new(support::Toy::default()))?;
     println!("{}", lab.url());
     Ok(lab.wait()?)
 }

@@ -4,7 +4,7 @@
 //! HELLO until the robot answers, then reads the parameters, sends heartbeats, and notices silence and restarts. It
 //! never arms.
 
-use crate::commands::{CommandManager, Outcome, QueueFull};
+use crate::commands::{CommandManager, Fate, Outcome, QueueFull};
 use crate::meter::Meter;
 use crate::robot_clock::RobotClock;
 use rumbo_control::Wheels;
@@ -223,7 +223,18 @@ impl RobotClient {
     }
 
     fn report_outcomes(&mut self, heard: &mut Vec<Heard>) {
-        heard.extend(self.manager.take_outcomes().into_iter().map(Heard::Ended));
+        for outcome in self.manager.take_outcomes() {
+            // The acknowledgement knows before the next status does.
+            if let Fate::Applied(value) = outcome.fate {
+                match outcome.command {
+                    Command::Reference(_) => self.reference = Wheels::both(value),
+                    Command::WheelReference(wheels) => self.reference = wheels,
+                    Command::Mode(mode) => self.mode = mode,
+                    _ => {}
+                }
+            }
+            heard.push(Heard::Ended(outcome));
+        }
     }
 
     /// The robot is heard.

@@ -24,6 +24,22 @@ pub(crate) enum Order {
     Reset(Choice),
 }
 
+/// The orders as they are to be obeyed when STOP was pressed (`stop`): no older command to the robot comes after it.
+///
+/// The flag is raised before STOP enters the queue, so a STOP that is not in `waiting` is newer than all that is.
+pub(crate) fn stop_first(mut waiting: Vec<Order>, stop: bool) -> Vec<Order> {
+    if !stop {
+        return waiting;
+    }
+    let is_stop = |order: &Order| *order == Order::Robot(Command::Stop);
+    let newer = match waiting.iter().rposition(is_stop) {
+        Some(last) => waiting.split_off(last + 1),
+        None => Vec::new(),
+    };
+    waiting.retain(|order| !matches!(order, Order::Robot(_)));
+    [vec![Order::Robot(Command::Stop)], waiting, newer].concat()
+}
+
 /// Why a text is no order.
 #[derive(Debug)]
 pub(crate) struct BadOrder(String);
@@ -175,6 +191,31 @@ mod tests {
                 world: None,
                 seed: 3
             })
+        );
+    }
+
+    #[test]
+    fn nothing_asked_before_stop_is_done_after_it() {
+        let robot = Order::Robot;
+        let waiting = vec![
+            robot(Command::Arm),
+            Order::Speed(2.0),
+            robot(Command::Stop),
+            robot(Command::ClearFault),
+        ];
+        let obeyed = [
+            robot(Command::Stop),
+            Order::Speed(2.0),
+            robot(Command::ClearFault),
+        ];
+        assert_eq!(stop_first(waiting, true), obeyed);
+        assert_eq!(
+            stop_first(vec![robot(Command::Arm)], true),
+            [robot(Command::Stop)]
+        );
+        assert_eq!(
+            stop_first(vec![robot(Command::Arm)], false),
+            [robot(Command::Arm)]
         );
     }
 

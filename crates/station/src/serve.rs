@@ -7,6 +7,7 @@ use crate::session::{Orders, Session};
 use crate::socket::Hub;
 use crate::target::Target;
 use crate::web;
+use axum::serve::ListenerExt;
 use std::net::{Ipv4Addr, TcpListener};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -160,6 +161,8 @@ pub fn serve(config: LabConfig, target: Box<dyn Target>) -> Result<Lab, ServeErr
                 let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
                     return;
                 };
+                // News are small and must not wait to be gathered. Should that fail, they are late and nothing worse.
+                let listener = listener.tap_io(|connection| drop(connection.set_nodelay(true)));
                 // Connections end with the runtime.
                 tokio::select! {
                     _ = async { axum::serve(listener, router).await } => {}

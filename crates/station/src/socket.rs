@@ -125,7 +125,7 @@ async fn take_orders(mut from_page: SplitStream<WebSocket>, hub: &Hub) -> Option
             }
         };
         if order == Order::Robot(Command::Stop) {
-            hub.stop.store(true, Ordering::Relaxed);
+            hub.stop.store(true, Ordering::SeqCst);
         }
         // A full queue holds many orders that wake the session all the same, and STOP has its own way.
         if hub.orders.try_send(order).is_err() {

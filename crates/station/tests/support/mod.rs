@@ -131,6 +131,7 @@ impl Toy {
                 self.reference = Wheels::both(value);
                 return Ok(value);
             }
+            Command::WheelReference(wheels) => self.reference = wheels,
             Command::GetParam { .. } => return Ok(1.0),
             Command::SetParam { value, .. } if value > 1e3 => return Err(Refusal::OutOfRange),
             Command::SetParam { value, .. } => return Ok(value),

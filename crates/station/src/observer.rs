@@ -1,0 +1,218 @@
+//! Keeps the board up to date with what was heard: samples, events in words, the status, the parameters' values.
+
+use crate::board::{Board, Level, LoggedEvent, State};
+use crate::catalogue::{self, ParameterState};
+use crate::client::{Heard, RobotClient};
+use crate::commands::{Fate, Outcome};
+use crate::signals::{EARLIER_MS, Sample, TruthLog};
+use crate::target::{Scene, Truth};
+use crate::words;
+use rumbo_wire::{Command, EventKind, Hello, PROTOCOL_VERSION, Status, Telemetry};
+use std::sync::Arc;
+
+/// What is known of the robot.
+pub(crate) struct Observer {
+    board: Arc<Board>,
+    status: Status,
+    parameters: Vec<ParameterState>,
+    truths: TruthLog,
+    samples: Vec<Sample>,
+    /// The state changed in a way that the operator waits for.
+    urgent: bool,
+}
+
+impl Observer {
+    /// An observer who knows nothing yet.
+    pub(crate) fn new(board: Arc<Board>) -> Self {
+        let observer = Self {
+            board,
+            status: Status::default(),
+            parameters: unread_parameters(),
+            truths: TruthLog::default(),
+            samples: Vec::new(),
+            urgent: true,
+        };
+        observer.board.set_parameters(&observer.parameters);
+        observer
+    }
+
+    /// The simulation started again: what was known is over.
+    pub(crate) fn start_run(&mut self) {
+        self.board.start_run();
+        *self = Self::new(Arc::clone(&self.board));
+    }
+
+    /// Notes what is the case at `now_ms`.
+    pub(crate) fn truth(&mut self, now_ms: i64, truth: Truth) {
+        self.truths.push(now_ms, truth);
+    }
+
+    /// The slow signals, as far as they are known; what telemetry and events tell sooner is in it.
+    pub(crate) fn status(&self) -> Status {
+        self.status
+    }
+
+    /// A new value is on its way; whether there is such a parameter.
+    pub(crate) fn parameter_pending(&mut self, id: u8) -> bool {
+        let Some(parameter) = self.parameters.get_mut(usize::from(id)) else {
+            return false;
+        };
+        parameter.pending = true;
+        self.board.set_parameters(&self.parameters);
+        true
+    }
+
+    /// Notes an event.
+    pub(crate) fn note(&mut self, t_ms: i64, level: Level, text: String) {
+        self.urgent = true;
+        self.board.push_event(LoggedEvent {
+            t_s: t_ms as f64 / 1e3,
+            level,
+            text,
+        });
+    }
+
+    /// Puts the samples on the board; whether the state is to follow at once.
+    pub(crate) fn publish(&mut self) -> bool {
+        self.board.push_samples(&self.samples);
+        self.samples.clear();
+        std::mem::take(&mut self.urgent)
+    }
+
+    /// Puts the scene on the board.
+    pub(crate) fn show_scene(&self, scene: Option<Scene>) {
+        self.board.set_scene(scene);
+    }
+
+    /// Puts the state on the board.
+    pub(crate) fn show_state(&self, state: State) {
+        self.board.set_state(state);
+    }
+
+    /// Takes in what was heard up to `now_ms`.
+    pub(crate) fn digest(&mut self, heard: &mut Vec<Heard>, client: &mut RobotClient, now_ms: i64) {
+        for item in heard.drain(..) {
+            match item {
+                Heard::Telemetry(t_ms, telemetry) => self.sample(t_ms, telemetry, client),
+                Heard::Status(status) => self.status = status,
+                Heard::Event(t_ms, kind) => self.event(t_ms, kind),
+                Heard::Ended(outcome) => self.end_command(&outcome, client, now_ms),
+                Heard::Connected(hello) => self.connected(hello, client.table_matches(), now_ms),
+                Heard::Restarted(hello) => {
+                    self.parameters = unread_parameters();
+                    self.board.set_parameters(&self.parameters);
+                    let why = hello.reset.explanation();
+                    self.note(
+                        now_ms,
+                        Level::Fault,
+                        format!("the robot's program started again: {why}"),
+                    );
+                }
+                Heard::Lost => {
+                    let text = "link lost: nothing heard from the robot for a second; trying again";
+                    self.note(now_ms, Level::Fault, text.into());
+                }
+            }
+        }
+    }
+
+    fn sample(&mut self, t_ms: i64, telemetry: Telemetry, client: &RobotClient) {
+        // Known long before the next status.
+        self.urgent |= self.status.armed != telemetry.armed;
+        self.status.armed = telemetry.armed;
+        let truth = self.truths.at(t_ms - EARLIER_MS).zip(self.truths.at(t_ms));
+        self.samples.push(Sample {
+            t_ms,
+            mode: client.mode(),
+            reference: client.reference(),
+            telemetry,
+            truth: truth.map(|(before, at)| [before, at]),
+        });
+    }
+
+    fn event(&mut self, t_ms: i64, kind: EventKind) {
+        let level = match kind {
+            EventKind::Armed | EventKind::Reached => Level::Good,
+            EventKind::Disarmed | EventKind::ModeChanged(_) => Level::Info,
+            EventKind::Faulted(fault) => {
+                self.status.fault = Some(fault);
+                Level::Fault
+            }
+            EventKind::Cleared(_) => {
+                self.status.fault = None;
+                Level::Info
+            }
+        };
+        let text = match kind.detail() {
+            Some(detail) => format!("{}: {detail}", kind.title()),
+            None => kind.title().into(),
+        };
+        self.note(t_ms, level, text);
+    }
+
+    fn connected(&mut self, hello: Hello, table_matches: bool, now_ms: i64) {
+        if hello.protocol != PROTOCOL_VERSION {
+            let text = format!(
+                "the robot speaks protocol {}, this station {PROTOCOL_VERSION}: flash the robot or update the station",
+                hello.protocol
+            );
+            return self.note(now_ms, Level::Fault, text);
+        }
+        let why = hello.reset.explanation();
+        self.note(
+            now_ms,
+            Level::Good,
+            format!("connected; the robot's program started after: {why}"),
+        );
+        if !table_matches {
+            let text =
+                "the robot has another parameter table: parameters are neither shown nor written";
+            self.note(now_ms, Level::Warning, text.into());
+        }
+    }
+
+    fn end_command(&mut self, ended: &Outcome, client: &mut RobotClient, now_ms: i64) {
+        match (ended.command, ended.fate) {
+            (Command::SetParam { id, .. } | Command::GetParam { id }, fate) => {
+                if let Some(parameter) = self.parameters.get_mut(usize::from(id)) {
+                    parameter.pending = false;
+                    parameter.refused = match fate {
+                        Fate::Applied(value) => {
+                            parameter.value = Some(value);
+                            None
+                        }
+                        Fate::Refused(why) => Some(words::refusal(why, &ended.command)),
+                        Fate::Superseded | Fate::Expired | Fate::RobotRestarted => {
+                            Some("not confirmed".into())
+                        }
+                    };
+                    self.board.set_parameters(&self.parameters);
+                }
+            }
+            (Command::ResetParams, Fate::Applied(_)) => client.read_parameters(),
+            _ => {}
+        }
+        let level = match ended.fate {
+            Fate::Applied(_) => Level::Info,
+            _ => Level::Warning,
+        };
+        // That a value was read is no event.
+        if !matches!(
+            (ended.command, ended.fate),
+            (Command::GetParam { .. }, Fate::Applied(_))
+        ) {
+            self.note(now_ms, level, words::outcome(ended, client.mode()));
+        }
+    }
+}
+
+fn unread_parameters() -> Vec<ParameterState> {
+    catalogue::table()
+        .map(|entry| ParameterState {
+            entry,
+            value: None,
+            pending: false,
+            refused: None,
+        })
+        .collect()
+}

@@ -1,0 +1,237 @@
+// @ts-check
+/**
+ * The dashboard in a real browser, on the real lab: RUMBO_BIN is the program, CHROMIUM the browser (default /usr/bin/chromium),
+ * SCREENSHOT a file for a picture of the page.
+ */
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { createInterface } from 'node:readline';
+import { request } from 'node:http';
+import { after, before, test } from 'node:test';
+import { chromium } from 'playwright-core';
+
+/** @typedef {{series: (name: string) => {t: number[], y: (number | null | undefined)[]}, state: () => import('../src/types.js').State | null}} Rumbo */
+
+const BROWSER_ARGS = [
+  '--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+  '--disable-component-update', '--disable-sync',
+];
+/** Long enough for any machine; nothing is judged by it [ms]. */
+const PATIENCE_MS = 30_000;
+/** Below this a wheel stands [rpm]. */
+const STANDING_RPM = 3;
+
+/** @type {import('node:child_process').ChildProcess} */
+let lab;
+/** @type {string} */
+let url;
+/** @type {import('playwright-core').Browser} */
+let browser;
+/** @type {import('playwright-core').Page} */
+let page;
+/** @type {string[]} */
+const complaints = [];
+
+before(async () => {
+  const program = process.env['RUMBO_BIN'];
+  assert.ok(program, 'RUMBO_BIN names the program to test');
+  lab = spawn(program, ['lab', '--no-browser', '--port', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
+  assert.ok(lab.stdout);
+  for await (const line of createInterface({ input: lab.stdout })) {
+    const found = line.match(/http:\/\/\S+/);
+    if (found) {
+      url = found[0];
+      break;
+    }
+  }
+  browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
+  page = await browser.newPage({ viewport: { width: 1280, height: 720 }, colorScheme: 'dark' });
+  page.setDefaultTimeout(PATIENCE_MS);
+  page.on('pageerror', (error) => complaints.push(String(error)));
+  page.on('console', (message) => {
+    if (message.type() === 'error') complaints.push(message.text());
+  });
+  await page.goto(url);
+});
+
+after(async () => {
+  await browser?.close();
+  lab?.kill();
+});
+
+/**
+ * The last values plotted of a signal, gaps left out.
+ * @param {string} name
+ * @param {number} count
+ */
+function lastValues(name, count) {
+  return page.evaluate(({ name, count }) => {
+    const { y } = /** @type {any} */ (window).rumbo.series(name);
+    return /** @type {number[]} */ (y.filter((/** @type {unknown} */ value) => typeof value === 'number').slice(-count));
+  }, { name, count });
+}
+
+/** The sonar that looks ahead, by the rig. */
+async function distanceName() {
+  for (const name of ['range_front_cm', 'range_left_cm']) {
+    if ((await lastValues(name, 1)).length > 0) return name;
+  }
+  throw new Error('no sonar reads anything');
+}
+
+/**
+ * Waits until a signal's last second lies within a tolerance of a value, as plotted.
+ * @param {string} name
+ * @param {number} value
+ * @param {number} tolerance
+ */
+function settles(name, value, tolerance) {
+  return page.waitForFunction(({ name, value, tolerance }) => {
+    const { y } = /** @type {any} */ (window).rumbo.series(name);
+    const last = y.filter((/** @type {unknown} */ each) => typeof each === 'number').slice(-25);
+    return last.length === 25 && last.every((/** @type {number} */ each) => Math.abs(each - value) <= tolerance);
+  }, { name, value, tolerance });
+}
+
+/** @param {boolean} armed */
+function isArmed(armed) {
+  return page.waitForFunction((armed) => /** @type {any} */ (window).rumbo.state()?.robot.armed === armed, armed);
+}
+
+/** Waits until the wheels turn, as plotted. */
+function wheelsTurn() {
+  return page.waitForFunction((limit) => {
+    const { y } = /** @type {any} */ (window).rumbo.series('left_rpm');
+    return y.slice(-10).some((/** @type {number} */ each) => Math.abs(each) > limit);
+  }, 4 * STANDING_RPM);
+}
+
+async function wheelsStand() {
+  for (const side of ['left', 'right']) {
+    await settles(`${side}_pwm`, 0, 0);
+    await settles(`${side}_rpm`, 0, STANDING_RPM);
+    await settles(`true_${side}_rpm`, 0, STANDING_RPM);
+  }
+}
+
+/** @param {number} cm */
+async function setReference(cm) {
+  await page.locator('#reference-cm').fill(String(cm));
+  await page.locator('#reference-cm').press('Enter');
+}
+
+test('the page connects, and the robot is not armed by it', async () => {
+  await page.waitForSelector('#connection.good');
+  await isArmed(false);
+  assert.deepEqual(await lastValues('left_pwm', 1), [0]);
+  assert.equal(new URL(page.url()).search, '', 'the token does not stay in the address');
+});
+
+test('mode 1 holds 30 cm, and the distance follows the reference to 50 cm', async () => {
+  await page.getByRole('button', { name: 'front distance' }).click();
+  await page.waitForSelector('#reference-cm');
+  await setReference(30);
+  await page.locator('#on').click();
+  await isArmed(true);
+  const distance = await distanceName();
+  await settles(distance, 30, 2);
+  await setReference(50);
+  await settles('reference_cm', 50, 0.1);
+  await settles(distance, 50, 2);
+  if (process.env['SCREENSHOT']) await page.screenshot({ path: process.env['SCREENSHOT'] });
+});
+
+test('STOP stops the wheels, by the button and by Space from anywhere', async () => {
+  await setReference(30);
+  await wheelsTurn();
+  await page.locator('#stop').click();
+  await isArmed(false);
+  await wheelsStand();
+
+  await page.locator('#on').click();
+  await isArmed(true);
+  await wheelsTurn();
+  await page.locator('#reference-cm').focus();
+  await page.keyboard.press('Space');
+  await isArmed(false);
+  await wheelsStand();
+});
+
+test('mode 5 turns the wheels at the speed asked for', async () => {
+  await page.getByRole('button', { name: 'wheel speed' }).click();
+  await page.locator('#reference-left-rpm').fill('-40');
+  await page.locator('#reference button').click();
+  await page.locator('#on').click();
+  await settles('left_rpm', -40, 8);
+  await settles('right_rpm', -40, 8);
+  await page.locator('#off').click();
+  await isArmed(false);
+  await wheelsStand();
+});
+
+test('the view held still loses no data', async () => {
+  await page.locator('#pause').click();
+  const { t: before } = await page.evaluate(() => /** @type {any} */ (window).rumbo.series('left_pwm'));
+  await page.waitForFunction((count) => /** @type {any} */ (window).rumbo.series('left_pwm').t.length > count + 25, before.length);
+  await page.locator('#live').click();
+  const { t } = await page.evaluate(() => /** @type {any} */ (window).rumbo.series('left_pwm'));
+  const gaps = t.slice(1).map((/** @type {number} */ each, /** @type {number} */ index) => each - t[index]);
+  assert.ok(Math.max(...gaps) < 0.5, `a gap of ${Math.max(...gaps)} s`);
+});
+
+test('a reset starts again with the seed asked for', async () => {
+  await page.locator('#seed').fill('7');
+  await page.locator('#simulation button[type=submit]').click();
+  await page.waitForFunction(() => {
+    const { t } = /** @type {any} */ (window).rumbo.series('left_pwm');
+    return t.length > 0 && t.at(-1) < 5 && t[0] < 1;
+  });
+  assert.equal(await page.locator('#seed').inputValue(), '7');
+});
+
+test('a page of another origin gets no WebSocket', async () => {
+  const cookie = (await page.context().cookies()).map(({ name, value }) => `${name}=${value}`).join('; ');
+  for (const [origin, expected] of [['http://evil.example', 403], [new URL(url).origin, 101]]) {
+    /** @type {number | undefined} */
+    const status = await new Promise((resolve, reject) => {
+      const asked = request(new URL('/ws', url), {
+        headers: {
+          Cookie: cookie, Origin: String(origin), Connection: 'Upgrade', Upgrade: 'websocket', 'Sec-WebSocket-Version': '13',
+          'Sec-WebSocket-Key': 'AAAAAAAAAAAAAAAAAAAAAA==',
+        },
+      });
+      asked.on('response', (answer) => resolve(answer.statusCode));
+      asked.on('upgrade', (answer, socket) => {
+        socket.destroy();
+        resolve(answer.statusCode);
+      });
+      asked.on('error', reject);
+      asked.end();
+    });
+    assert.equal(status, expected, String(origin));
+  }
+});
+
+test('garbage is told why and closed, while the robot goes on and the page too', async () => {
+  const told = await page.evaluate(() => new Promise((resolve) => {
+    const socket = new WebSocket(`ws://${location.host}/ws`);
+    /** @type {string[]} */
+    const errors = [];
+    socket.onopen = () => socket.send('garbage');
+    socket.onmessage = (event) => {
+      const message = JSON.parse(event.data);
+      if (message.type === 'error') errors.push(message.text);
+    };
+    socket.onclose = (event) => resolve({ errors, code: event.code });
+  }));
+  const { errors, code } = /** @type {{errors: string[], code: number}} */ (told);
+  assert.match(errors[0] ?? '', /not understood/);
+  assert.equal(code, 1008);
+  const [last] = await page.evaluate(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.slice(-1));
+  await page.waitForFunction((last) => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1) > last + 1, last);
+  await page.waitForSelector('#connection.good');
+});
+
+test('the browser has nothing to complain about', () => {
+  assert.deepEqual(complaints, []);
+});
