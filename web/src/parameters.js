@@ -12,13 +12,16 @@ class Line {
   constructor(parameter, send) {
     this.parameter = parameter;
     this.edited = false;
+    /** The refusal the operator has seen and left. @type {string | null} */
+    this.dismissed = null;
     this.input = create('input', {
       type: 'number', step: 'any', min: formatFloat(parameter.min), max: formatFloat(parameter.max), required: true,
       id: `parameter-${parameter.name}`,
     });
     this.input.setAttribute('aria-label', `${parameter.name} in ${parameter.unit || 'no unit'}`);
     this.apply = create('button', { type: 'button', textContent: 'Apply', title: 'Write to the robot (Enter)' });
-    this.revert = create('button', { type: 'button', textContent: 'Revert', title: 'Back to what the robot holds (Escape)' });
+    this.revert = create('button', { type: 'button', textContent: '↺', title: 'Back to what the robot holds (Escape)' });
+    this.revert.setAttribute('aria-label', 'Revert');
     this.note = create('span', { className: 'refused' });
     this.row = create('tr', {},
       create('td', { textContent: parameter.name, title: parameter.description }),
@@ -32,10 +35,12 @@ class Line {
       if (Number.isNaN(this.input.valueAsNumber)) return;
       // A value out of range goes to the robot too: it refuses, and says why.
       this.edited = false;
+      this.dismissed = null;
       send({ type: 'set_param', id: this.parameter.id, value: this.input.valueAsNumber });
     };
     const revert = () => {
       this.edited = false;
+      this.dismissed = this.parameter.refused;
       this.show(this.parameter);
     };
     this.apply.addEventListener('click', write);
@@ -55,12 +60,12 @@ class Line {
   show(parameter) {
     this.parameter = parameter;
     const held = formatFloat(parameter.value);
+    const refused = parameter.refused === this.dismissed ? null : parameter.refused;
     // What is being typed is not overwritten; a refused value stays to be corrected.
-    if (!this.edited && !parameter.refused && !parameter.pending && this.input.value !== held) this.input.value = held;
-    const different = this.input.value !== held;
-    this.apply.hidden = this.revert.hidden = !different && !parameter.refused;
-    this.row.className = parameter.pending ? 'pending' : parameter.refused ? 'bad' : this.edited ? 'edited' : '';
-    setText(this.note, parameter.pending ? 'waiting…' : parameter.refused ? `refused: ${parameter.refused}` : parameter.value === null ? 'not read yet' : '');
+    if (!this.edited && !refused && !parameter.pending && this.input.value !== held) this.input.value = held;
+    this.apply.hidden = this.revert.hidden = this.input.value === held && !refused;
+    this.row.className = parameter.pending ? 'pending' : refused ? 'bad' : this.edited ? 'edited' : '';
+    setText(this.note, parameter.pending ? 'waiting…' : refused ? `refused: ${refused}` : parameter.value === null ? 'not read yet' : '');
   }
 }
 
