@@ -96,7 +96,7 @@ pub(crate) struct RunArgs {
     /// Rig instead of the scenario's own
     #[arg(long, value_name = "NAME")]
     pub(crate) rig: Option<String>,
-    /// Parameter of the control core, or of the plant (a dotted name); may be repeated
+    /// Parameter of the control core or the plant (`rumbo list`); may be repeated
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
     pub(crate) params: Vec<(String, f64)>,
     /// Folder for the results of each run; made if need be

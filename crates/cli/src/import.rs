@@ -8,6 +8,8 @@ use crate::failure::Failure;
 use crate::output::{self, figure};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, WriteOptions};
+use rumbo_wire::csv;
+use rumbo_wire::text::RowKind;
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -18,29 +20,9 @@ use std::path::{Path, PathBuf};
 /// Media type of the attached original.
 pub(crate) const CSV: &str = "text/csv";
 
-/// The headers that the original program's modes write, and the modes.
-const HEADERS: [(&str, &str); 4] = [
-    (
-        "modes 1 to 4",
-        "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b",
-    ),
-    (
-        "modes 5 and 6",
-        "dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b",
-    ),
-    (
-        "mode 7",
-        "dt_ms,speed_a_rpm,speed_b_rpm,reference_a_rpm,reference_b_rpm,x_m,y_m,heading_deg,pwm_a,pwm_b",
-    ),
-    (
-        "mode 8",
-        "dt_ms,reference_a_rpm,reference_b_rpm,heading_reference_deg,goal_x_m,goal_y_m,x_m,y_m,heading_deg,state,right_cm,left_cm,front_cm",
-    ),
-];
-
 /// What becomes of a column: its unit's factor, and what its values must lie within.
 struct Column {
-    original: &'static str,
+    original: &'static csv::Column,
     name: String,
     factor: f64,
     min: f64,
@@ -83,17 +65,20 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
 }
 
 impl Column {
-    /// The column of this name: units to SI, motor A to the right wheel and B to the left one.
-    fn of(original: &'static str) -> Self {
-        let units = [
-            ("_cm", "_m", 0.01),
-            ("_rpm", "_rad_s", PI / 30.0),
-            ("_deg", "_rad", PI / 180.0),
-        ];
-        let unit = units
-            .iter()
-            .find_map(|(from, to, factor)| Some((original.strip_suffix(from)?, *to, *factor)));
-        let (stem, unit, factor) = unit.unwrap_or((original, "", 1.0));
+    /// What a column becomes: units to SI, motor A to the right wheel and B to the left one.
+    fn of(original: &'static csv::Column) -> Self {
+        let (unit, factor) = match original.unit {
+            "cm" => ("_m", 0.01),
+            "rpm" => ("_rad_s", PI / 30.0),
+            "deg" => ("_rad", PI / 180.0),
+            "m" => ("_m", 1.0),
+            _ => ("", 1.0),
+        };
+        let suffix = format!("_{}", original.unit);
+        let stem = original
+            .name
+            .strip_suffix(suffix.as_str())
+            .unwrap_or(original.name);
         let stem = match stem {
             "left" | "right" | "front" => format!("{stem}_range"),
             "pwm_a" => "right_pwm".into(),
@@ -104,7 +89,7 @@ impl Column {
             "reference_b" => "left_reference".into(),
             other => other.to_owned(),
         };
-        let (min, max) = match original {
+        let (min, max) = match original.name {
             "pwm_a" | "pwm_b" => (-255.0, 255.0),
             "mode" => (0.0, 8.0),
             "state" => (0.0, 15.0),
@@ -121,6 +106,24 @@ impl Column {
     }
 }
 
+/// The modes whose rows look like this.
+fn modes(kind: RowKind) -> &'static str {
+    match kind {
+        RowKind::Distance => "modes 1 to 4",
+        RowKind::Speed => "modes 5 and 6",
+        RowKind::Waypoints => "mode 7",
+        RowKind::Mission => "mode 8",
+    }
+}
+
+fn header_of(kind: RowKind) -> String {
+    kind.columns()
+        .iter()
+        .map(|column| column.name)
+        .collect::<Vec<_>>()
+        .join(",")
+}
+
 fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
     let wrong =
         |line: usize, what: String| Failure::Input(format!("{}:{line}: {what}", path.display()));
@@ -128,41 +131,30 @@ fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
         .lines()
         .enumerate()
         .map(|(index, line)| (index + 1, line.trim()));
-    let header: String = lines
-        .next()
-        .unwrap_or_default()
-        .1
-        .split(',')
-        .map(str::trim)
-        .collect::<Vec<_>>()
-        .join(",");
-    let (modes, header) = HEADERS
-        .into_iter()
-        .find(|(_, known)| *known == header)
-        .ok_or_else(|| {
-            let known: Vec<String> = HEADERS
-                .iter()
-                .map(|(modes, header)| format!("{modes}: {header}"))
-                .collect();
-            wrong(
-                1,
-                format!(
-                    "unknown header `{header}`; the first line must be one of: {}",
-                    known.join(" | ")
-                ),
-            )
-        })?;
-    let columns: Vec<Column> = header.split(',').map(Column::of).collect();
+    let header = lines.next().unwrap_or_default().1;
+    let kind = csv::recognise(header).ok_or_else(|| {
+        let known = RowKind::ALL.map(|kind| format!("{}: {}", modes(kind), header_of(kind)));
+        wrong(
+            1,
+            format!(
+                "unknown header `{header}`; the first line must be one of: {}",
+                known.join(" | ")
+            ),
+        )
+    })?;
+    let columns: Vec<Column> = kind.columns().iter().map(Column::of).collect();
     let (mut rows, mut time_s, mut longest_gap_s) = (Vec::new(), 0.0, 0.0_f64);
     for (line, row) in lines.filter(|(_, row)| !row.is_empty()) {
         let fields: Vec<&str> = row.split(',').map(str::trim).collect();
         if fields.len() != columns.len() {
-            let what = format!(
-                "{} values in a row of {} columns; expected {header}",
-                fields.len(),
-                columns.len()
-            );
-            return Err(wrong(line, what));
+            let (found, due) = (fields.len(), columns.len());
+            return Err(wrong(
+                line,
+                format!(
+                    "{found} values in a row of {due} columns; expected {}",
+                    header_of(kind)
+                ),
+            ));
         }
         let mut values = Vec::with_capacity(columns.len());
         for (column, field) in columns.iter().zip(fields) {
@@ -176,7 +168,10 @@ fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
                 } = column;
                 wrong(
                     line,
-                    format!("{original} = `{field}`: must be a number within {min}..{max}"),
+                    format!(
+                        "{} = `{field}`: must be a number within {min}..{max}",
+                        original.name
+                    ),
                 )
             })?;
             values.push(value * column.factor);
@@ -196,7 +191,7 @@ fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
         ));
     }
     Ok(Recording {
-        modes,
+        modes: modes(kind),
         columns,
         rows,
         longest_gap_s,

@@ -1,3 +1,4 @@
 //! Rumbo's experiments: the robot against the plant, metrics, identification.
 
 pub mod files;
+pub mod sonar_stats;
