@@ -16,6 +16,9 @@ const MAX_WAITING: usize = 64;
 /// A command that makes the wheels turn is given up when it has not been acknowledged for this long [us].
 pub const MOTION_EXPIRY_US: u64 = 2_000_000;
 
+/// A read without an answer is sent this often before another session is tried.
+const SENDS_PER_SESSION: u32 = 6;
+
 /// What became of a command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
@@ -181,6 +184,11 @@ impl CommandManager {
         let flying = self.in_flight.as_mut()?;
         if now_us < flying.next_send_us {
             return None;
+        }
+        // To read twice does no harm, so a read may find out that an earlier station had the same session: the robot takes
+        // our numbers for old ones and is silent.
+        if flying.background && flying.sends > 0 && flying.sends.is_multiple_of(SENDS_PER_SESSION) {
+            self.session = self.session.wrapping_add(1);
         }
         // Doubling eases a full link; STOP insists.
         let doublings = if flying.command == Command::Stop {

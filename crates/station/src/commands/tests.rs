@@ -130,6 +130,33 @@ fn reading_parameters_gives_way_to_the_operator() {
 }
 
 #[test]
+fn a_robot_that_takes_the_numbers_for_old_ones_is_met_in_another_session() {
+    let mut manager = CommandManager::new(SESSION);
+    manager.submit_background(Command::GetParam { id: 0 });
+    let mut answered = None;
+    for step in 0..1_000 {
+        let now_us = step * 10_000;
+        if let Some(ToRobot::Command {
+            session, number, ..
+        }) = manager.poll(now_us)
+            && session != SESSION
+        {
+            answered = Some(session);
+            manager.acknowledge(
+                &Ack {
+                    session,
+                    number,
+                    result: Ok(1.0),
+                },
+                now_us,
+            );
+        }
+    }
+    assert_eq!(answered, Some(SESSION + 1));
+    assert_eq!(manager.take_outcomes().len(), 1);
+}
+
+#[test]
 fn a_restarted_robot_is_not_asked_to_arm() {
     let mut manager = CommandManager::new(SESSION);
     manager.submit(Command::Arm, 0).unwrap();
