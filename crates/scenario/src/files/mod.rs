@@ -15,6 +15,7 @@ mod read;
 mod robot;
 mod scenario;
 mod setup;
+mod value;
 mod world;
 
 pub use error::{FileError, Problem};

@@ -6,37 +6,11 @@
 
 use super::error::{FileError, Problem};
 use super::near;
+pub(crate) use super::value::{Allowed, Placed};
+use super::value::{number_of, shown};
 use std::cell::RefCell;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// What is allowed for a number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Allowed {
-    /// Smallest.
-    pub(crate) min: f64,
-    /// Largest.
-    pub(crate) max: f64,
-    /// For people; empty for a bare number, `count` for a whole one.
-    pub(crate) unit: &'static str,
-}
-
-impl Allowed {
-    /// `min` to `max` of a unit, both included.
-    pub(crate) const fn new(min: f64, max: f64, unit: &'static str) -> Self {
-        Self { min, max, unit }
-    }
-
-    /// What to do about a value that is not allowed.
-    pub(crate) fn remedy(&self) -> String {
-        let Self { min, max, unit } = self;
-        match *unit {
-            "" | "1" => format!("must be within {min}..{max}"),
-            "count" => format!("must be a whole number within {min}..{max}"),
-            unit => format!("must be within {min}..{max} {unit}"),
-        }
-    }
-}
 
 /// The text of one file and the problems found in it so far.
 pub(crate) struct Source<'t> {
@@ -116,15 +90,6 @@ impl<'t> Source<'t> {
             .filter(|byte| *byte == b'\n')
             .count()
     }
-}
-
-/// A value with its place, for loaders that judge it themselves.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Placed<T> {
-    /// The value.
-    pub(crate) value: T,
-    /// Its line.
-    pub(crate) line: usize,
 }
 
 /// One table of a file.
@@ -404,8 +369,7 @@ impl<'a, 't> Table<'a, 't> {
             );
             return None;
         };
-        let whole = allowed.unit != "count" || number.fract() == 0.0;
-        if (allowed.min..=allowed.max).contains(&number) && whole {
+        if allowed.admits(number) {
             return Some(number);
         }
         self.complain(key, line, &shown(value), &allowed.remedy());
@@ -418,38 +382,5 @@ impl<'a, 't> Table<'a, 't> {
         } else {
             format!("{}.{key}", self.path)
         }
-    }
-}
-
-/// The number that a value is, if it is one.
-pub(crate) fn number_of(value: &DeValue<'_>) -> Option<f64> {
-    match value {
-        DeValue::Float(float) => float.as_str().parse().ok(),
-        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
-            .ok()
-            .map(|integer| integer as f64),
-        _ => None,
-    }
-}
-
-/// A value as a complaint shows it.
-pub(crate) fn shown(value: &DeValue<'_>) -> String {
-    match value {
-        DeValue::String(text) => format!("{text:?}"),
-        DeValue::Integer(integer) => integer.as_str().to_owned(),
-        DeValue::Float(float) => float.as_str().to_owned(),
-        DeValue::Boolean(flag) => flag.to_string(),
-        DeValue::Datetime(date) => date.to_string(),
-        DeValue::Array(items) => {
-            format!(
-                "[{}]",
-                items
-                    .iter()
-                    .map(|item| shown(item.get_ref()))
-                    .collect::<Vec<_>>()
-                    .join(", ")
-            )
-        }
-        DeValue::Table(_) => "{...}".into(),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::error::FileError;
 use super::near::{near, near_or_all};
+use super::read::Allowed;
 use super::{Library, RobotFile, ScenarioFile, Start, WorldFile, parameters};
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::params::Params;
@@ -113,17 +114,21 @@ fn stands_free(
 /// Sets one parameter, of the plant or of the control core, whichever has the name.
 fn apply(scenario: &mut ScenarioFile, name: &str, value: f64) -> Result<(), FileError> {
     let wrong = |remedy: &str| FileError::Setting(format!("parameter {name} = {value}: {remedy}"));
-    let mut plant = Params::default();
-    if plant.get(name).is_some() {
-        plant
-            .set(name, value)
-            .map_err(|error| wrong(&error.to_string()))?;
+    let judge = |allowed: Allowed| {
+        if allowed.admits(value) {
+            Ok(())
+        } else {
+            Err(wrong(&allowed.remedy()))
+        }
+    };
+    let limits = Params::limits();
+    if let Some(limit) = limits.iter().find(|limit| limit.key == name) {
+        judge(Allowed::new(limit.min, limit.max, limit.unit))?;
         scenario.plant.insert(name.to_owned(), value);
         return Ok(());
     }
     let entries = parameters::all();
     let Some(entry) = entries.iter().find(|entry| entry.name == name) else {
-        let limits = Params::limits();
         let known = limits
             .iter()
             .map(|limit| limit.key.as_str())
@@ -134,10 +139,7 @@ fn apply(scenario: &mut ScenarioFile, name: &str, value: f64) -> Result<(), File
             near: near(name, known).into_iter().map(str::to_owned).collect(),
         });
     };
-    let allowed = entry.allowed();
-    if !(allowed.min..=allowed.max).contains(&value) {
-        return Err(wrong(&allowed.remedy()));
-    }
+    judge(entry.allowed())?;
     scenario.parameters.insert(name.to_owned(), value as f32);
     Ok(())
 }
