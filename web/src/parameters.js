@@ -90,7 +90,6 @@ export class ParameterTable {
     const same = parameters.length === this.#lines.size && parameters.every(({ id, name }) => this.#lines.get(id)?.parameter.name === name);
     if (!same) {
       this.#lines = new Map(parameters.map((parameter) => [parameter.id, new Line(parameter, this.#send)]));
-      this.#body.replaceChildren(...[...this.#lines.values()].map((line) => line.row));
       this.#filter();
     }
     for (const parameter of parameters) this.#lines.get(parameter.id)?.show(parameter);
@@ -108,9 +107,13 @@ export class ParameterTable {
     this.#filter();
   }
 
+  /** The mode's own parameters first, then those of all modes. */
   #filter() {
-    for (const { row, parameter } of this.#lines.values()) {
-      row.hidden = !this.#all.checked && parameter.mode !== null && parameter.mode !== this.#mode;
-    }
+    const lines = [...this.#lines.values()];
+    const own = lines.filter(({ parameter }) => parameter.mode === this.#mode);
+    const others = lines.filter(({ parameter }) => parameter.mode !== this.#mode);
+    for (const { row, parameter } of others) row.hidden = !this.#all.checked && parameter.mode !== null;
+    for (const { row } of own) row.hidden = false;
+    this.#body.replaceChildren(...[...own, ...others].map(({ row }) => row));
   }
 }

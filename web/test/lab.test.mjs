@@ -169,6 +169,20 @@ test('mode 5 turns the wheels at the speed asked for', async () => {
   await wheelsStand();
 });
 
+test('a parameter is written and held, and a value out of range is refused with the reason', async () => {
+  const input = page.locator('#parameter-link_timeout_s');
+  await page.waitForFunction(() => /** @type {HTMLInputElement | null} */ (document.querySelector('#parameter-link_timeout_s'))?.value !== '');
+  await input.fill('0.3');
+  await input.press('Enter');
+  await page.waitForFunction(() => [...document.querySelectorAll('#events li')].some((line) => line.textContent?.includes('link_timeout_s = 0.3: done')));
+  const row = page.locator('#parameters tr', { has: input });
+  await input.fill('99');
+  await input.press('Enter');
+  await row.getByText('refused: allowed is').waitFor();
+  await row.getByRole('button', { name: 'Revert' }).click();
+  assert.equal(await input.inputValue(), '0.3');
+});
+
 test('the view held still loses no data', async () => {
   await page.locator('#pause').click();
   const { t: before } = await page.evaluate(() => /** @type {any} */ (window).rumbo.series('left_pwm'));

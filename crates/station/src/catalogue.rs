@@ -1,6 +1,7 @@
 //! What there is to choose and to set: modes, movements and parameters, as the page gets them.
 
 use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::params::{Limits, ParamId};
 use serde::Serialize;
 
 /// A parameter of the table, with its value as far as it is known.
@@ -32,13 +33,27 @@ pub(crate) struct Entry {
 
 /// The whole table, in the order of the numbers.
 pub(crate) fn table() -> impl Iterator<Item = Entry> {
-    (0..=u8::MAX).map_while(entry)
+    ParamId::ALL.into_iter().map(describe)
 }
 
 /// The parameter with this number.
 pub(crate) fn entry(id: u8) -> Option<Entry> {
-    let _ = id;
-    None
+    ParamId::from_number(id).map(describe)
+}
+
+fn describe(id: ParamId) -> Entry {
+    let Limits { min, max, default } = id.limits();
+    Entry {
+        id: id as u8,
+        name: id.name(),
+        // People write a pure number without a unit.
+        unit: if id.unit() == "1" { "" } else { id.unit() },
+        min,
+        max,
+        default,
+        mode: id.mode().map(|mode| mode as u8),
+        description: id.help(),
+    }
 }
 
 /// A mode to choose.
@@ -104,14 +119,4 @@ pub(crate) fn movement(number: u8) -> Option<Movement> {
     MOVEMENTS
         .into_iter()
         .find(|movement| *movement as u8 == number)
-}
-
-/// Hash of the table, as robots report it.
-pub(crate) fn schema() -> u32 {
-    0
-}
-
-/// How many parameters there are.
-pub(crate) fn len() -> u8 {
-    u8::try_from(table().count()).unwrap_or(u8::MAX)
 }

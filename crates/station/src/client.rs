@@ -9,6 +9,7 @@ use crate::meter::Meter;
 use crate::robot_clock::RobotClock;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
+use rumbo_control::params;
 use rumbo_wire::{
     Ack, Command, Decoder, EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received,
     Status, Telemetry, ToRobot,
@@ -51,6 +52,15 @@ pub struct KnownTable {
     pub schema: u32,
     /// How many parameters it has, numbered from 0.
     pub len: u8,
+}
+
+impl KnownTable {
+    /// The table this station is built with.
+    pub const OURS: Self = Self {
+        schema: params::SCHEMA,
+        // Numbers of parameters are bytes on the link.
+        len: params::COUNT as u8,
+    };
 }
 
 /// Speaks with one robot.

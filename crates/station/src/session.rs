@@ -5,7 +5,6 @@
 //! keeps the board up to date. Nothing waits for a page.
 
 use crate::board::{Board, Level, LinkState, RobotState, State};
-use crate::catalogue;
 use crate::client::{Heard, KnownTable, RobotClient};
 use crate::observer::Observer;
 use crate::orders::{self, MAX_SPEED, Order};
@@ -297,11 +296,7 @@ fn to_ms(us: u64) -> i64 {
 }
 
 fn new_client(clock_known: bool) -> RobotClient {
-    let table = KnownTable {
-        schema: catalogue::schema(),
-        len: catalogue::len(),
-    };
-    RobotClient::new(random_session(), clock_known, table)
+    RobotClient::new(random_session(), clock_known, KnownTable::OURS)
 }
 
 /// A session id; from the clock where there is no randomness to be had.

@@ -12,6 +12,9 @@ use support::Toy;
 
 const STEP_US: u64 = 5_000;
 
+/// No parameters are read, so that every command is the test's.
+const NO_TABLE: KnownTable = KnownTable { schema: 0, len: 0 };
+
 /// Lets both live for one step; `lose` says which bytes of each direction are lost.
 fn step(
     client: &mut RobotClient,
@@ -41,7 +44,7 @@ proptest! {
             random >> 16 < 65_536 / 50
         };
         let mut toy = Toy::default();
-        let mut client = RobotClient::new(3, true, KnownTable { schema: 0, len: 0 });
+        let mut client = RobotClient::new(3, true, NO_TABLE);
         let mut heard = Vec::new();
         let asked: Vec<Command> = (0..20u8).map(|n| Command::Reference(f32::from(n))).collect();
         for command in &asked {
@@ -62,7 +65,7 @@ proptest! {
 #[test]
 fn silence_is_noticed_and_the_answer_after_it_too() {
     let mut toy = Toy::default();
-    let mut client = RobotClient::new(3, true, KnownTable { schema: 0, len: 0 });
+    let mut client = RobotClient::new(3, true, NO_TABLE);
     let mut heard = Vec::new();
     let mut run = |client: &mut RobotClient, toy: &mut Toy, cut: bool| {
         heard.clear();
@@ -88,7 +91,7 @@ fn silence_is_noticed_and_the_answer_after_it_too() {
 #[test]
 fn telemetry_keeps_its_time_over_the_link() {
     let mut toy = Toy::default();
-    let mut client = RobotClient::new(3, true, KnownTable { schema: 0, len: 0 });
+    let mut client = RobotClient::new(3, true, NO_TABLE);
     let mut heard = Vec::new();
     // Longer than a wrap of the robot's 16 bits.
     (0..70_000_000 / STEP_US).for_each(|_| step(&mut client, &mut toy, &mut || false, &mut heard));

@@ -321,6 +321,50 @@ async fn commands_are_acknowledged_stop_disarms_and_a_reset_starts_anew() {
     .await;
 }
 
+fn parameter<'a>(message: &'a Value, name: &str) -> Option<&'a Value> {
+    let all = message["parameters"].as_array()?;
+    all.iter().find(|parameter| parameter["name"] == name)
+}
+
+#[tokio::test]
+async fn parameters_are_read_written_and_refused_with_the_reason() {
+    let lab = start(8.0);
+    let cookie = open(&lab);
+    let mut page = connect_own(&lab, &cookie).await;
+    let read = |message: &Value| {
+        let base = parameter(message, "base_m")?;
+        base["value"].as_f64().map(|_| base.clone())
+    };
+    let base = wait_for(&mut page, read).await;
+    assert_eq!(base["value"], base["default"]);
+    say(
+        &mut page,
+        json!({"type": "set_param", "id": base["id"], "value": 0.125}),
+    )
+    .await;
+    wait_for(&mut page, |message| {
+        (parameter(message, "base_m")?["value"] == 0.125).then_some(())
+    })
+    .await;
+    say(
+        &mut page,
+        json!({"type": "set_param", "id": base["id"], "value": 100}),
+    )
+    .await;
+    let refused = |message: &Value| {
+        parameter(message, "base_m")?["refused"]
+            .as_str()
+            .map(str::to_owned)
+    };
+    let why = wait_for(&mut page, refused).await;
+    assert!(why.contains("0.03 to 1 m"), "{why}");
+    say(&mut page, json!({"type": "reset_params"})).await;
+    wait_for(&mut page, |message| {
+        (parameter(message, "base_m")?["value"] == base["default"]).then_some(())
+    })
+    .await;
+}
+
 #[tokio::test]
 async fn a_paused_simulation_stands_still() {
     let lab = start(0.0);

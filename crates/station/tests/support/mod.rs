@@ -3,6 +3,7 @@
 //! It knows no physics and none of the real control; it answers, and it moves when armed.
 
 use rumbo_control::mode::ModeId;
+use rumbo_control::params::{ParamError, ParamId, Params, SCHEMA};
 use rumbo_control::{AgedRange, Duty, Pose, Range, Wheels};
 use rumbo_station::{Choice, MapPose, Obstacle, Scene, Simulation, SonarMount, Target, Truth};
 use rumbo_wire::{
@@ -30,6 +31,7 @@ pub(crate) struct Toy {
     wheel_rad_s: f32,
     before_rad_s: f32,
     x_m: f32,
+    params: Params,
     choice: Choice,
     /// How often each command was applied.
     pub(crate) applied: Vec<Command>,
@@ -50,6 +52,7 @@ impl Default for Toy {
             wheel_rad_s: 0.0,
             before_rad_s: 0.0,
             x_m: 0.0,
+            params: Params::default(),
             choice: Choice {
                 scenario: "toy".into(),
                 world: None,
@@ -87,7 +90,7 @@ impl Toy {
         match ToRobot::from_body(&body) {
             Ok(ToRobot::Hello) => self.say(FromRobot::Hello(Hello {
                 protocol: PROTOCOL_VERSION,
-                schema: 0,
+                schema: SCHEMA,
                 image: 0,
                 reset: ResetCause::PowerOn,
             })),
@@ -132,9 +135,19 @@ impl Toy {
                 return Ok(value);
             }
             Command::WheelReference(wheels) => self.reference = wheels,
-            Command::GetParam { .. } => return Ok(1.0),
-            Command::SetParam { value, .. } if value > 1e3 => return Err(Refusal::OutOfRange),
-            Command::SetParam { value, .. } => return Ok(value),
+            Command::GetParam { id } => {
+                return ParamId::from_number(id)
+                    .map(|id| self.params.get(id))
+                    .ok_or(Refusal::UnknownParam);
+            }
+            Command::SetParam { id, value } => {
+                let id = ParamId::from_number(id).ok_or(Refusal::UnknownParam)?;
+                return self.params.set(id, value).map_err(|error| match error {
+                    ParamError::NotFinite => Refusal::NotFinite,
+                    ParamError::OutOfRange => Refusal::OutOfRange,
+                });
+            }
+            Command::ResetParams => self.params = Params::default(),
             _ => {}
         }
         Ok(0.0)
