@@ -1,1 +1,417 @@
-//! drive
+//! From what a mode asks of the wheels to the duty of each bridge. Derivation: docs/theory/drive.md.
+//!
+//! ```text
+//! speed reference -> ramp -> feedforward kS + kV w + kA a --+
+//!                     |                                     v
+//!                     +------> PID (w_ref - w_est) -------> + -> limits 0..1 -> duty in the driven direction
+//! ```
+//!
+//! Everything is reckoned in the direction in which the wheel is driven, so the duty never brakes by reversing. A change of
+//! direction goes through zero: the bridge is released until the edges have stopped, and only then does the sign of the
+//! driven direction change; one Hall channel does not tell it otherwise. A wheel that stands although it is asked to
+//! turn gets a kick that grows until edges come.
+
+use crate::math::{abs, clamp, max, round};
+use crate::params::{ParamId, Params};
+use crate::pid::{NotFinite, Pid, PidState};
+use crate::speed::WheelMotion;
+use crate::types::{Drive, Duty, SIDES, TICK_S, Wheels};
+
+/// References below this are a standstill [rad/s]: half a turn per minute.
+const STANDSTILL_RAD_S: f32 = 0.05;
+/// Growth of the kick of a wheel that still stands [1/s].
+const KICK_GROWTH: f32 = 1.5;
+/// The ramp never leads the wheel by more than this [rad/s], lest a held wheel shoot off when it comes free.
+const RAMP_LEAD_RAD_S: f32 = 4.0;
+
+/// Duty that a speed takes at the nominal battery voltage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Feedforward {
+    /// Duty that balances friction, forward.
+    pub static_forward: f32,
+    /// The same backward.
+    pub static_backward: f32,
+    /// Duty per speed [s/rad].
+    pub velocity: f32,
+    /// Duty per acceleration [s^2/rad].
+    pub acceleration: f32,
+}
+
+/// Configuration of one wheel's speed loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpeedLoop {
+    /// Duty from the reference alone.
+    pub feedforward: Feedforward,
+    /// First duty of a standing wheel.
+    pub kick: f32,
+    /// What the feedforward misses; output is duty, limits 0..1.
+    pub pid: Pid,
+    /// Slope of the ramp when speeding up [rad/s^2].
+    pub accel_rad_s2: f32,
+    /// Slope of the ramp when slowing down [rad/s^2].
+    pub decel_rad_s2: f32,
+}
+
+impl SpeedLoop {
+    /// The ramp one tick on: towards the target, and never far ahead of the wheel.
+    fn ramp(&self, before_rad_s: f32, target_rad_s: f32, measured_rad_s: f32) -> f32 {
+        let up = self.accel_rad_s2 * TICK_S;
+        let down = self.decel_rad_s2 * TICK_S;
+        let next = before_rad_s + clamp(target_rad_s - before_rad_s, -down, up);
+        let lead = measured_rad_s + max(RAMP_LEAD_RAD_S, up);
+        if next > lead {
+            max(lead, before_rad_s - down)
+        } else {
+            next
+        }
+    }
+}
+
+/// The direction in which a wheel was last driven.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Direction {
+    /// Forward; also before it was ever driven.
+    #[default]
+    Forward,
+    /// Backward.
+    Backward,
+}
+
+impl Direction {
+    /// `value` with the sign of this direction.
+    pub fn sign(self, value: f32) -> f32 {
+        match self {
+            Direction::Forward => value,
+            Direction::Backward => -value,
+        }
+    }
+
+    fn of(value: f32) -> Direction {
+        if value < 0.0 {
+            Direction::Backward
+        } else {
+            Direction::Forward
+        }
+    }
+}
+
+/// Memory of one wheel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct WheelState {
+    direction: Direction,
+    pid: PidState,
+    /// The ramped reference in the driven direction [rad/s]; `None` while the wheel is not regulated.
+    ramp_rad_s: Option<f32>,
+    /// How long the wheel has stood although it is driven [s].
+    held_s: f32,
+}
+
+/// Memory of the drive layer.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DriveLayer {
+    wheels: Wheels<WheelState>,
+}
+
+/// What the drive layer decided.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Driven {
+    /// PWM of both wheels.
+    pub duty: Wheels<Duty>,
+    /// Speed references of both wheels [rad/s]; 0 when driven open loop.
+    pub wheel_ref_rad_s: Wheels<f32>,
+}
+
+impl DriveLayer {
+    /// The direction in which each wheel turns if it turns.
+    pub fn directions(&self) -> Wheels<Direction> {
+        self.wheels.map(|wheel| wheel.direction)
+    }
+
+    /// One tick: `motion` is what the edges say, `battery_v` the measured voltage if there is one.
+    ///
+    /// # Errors
+    /// [`NotFinite`] when the request is not a finite number.
+    pub fn step(
+        &mut self,
+        params: &Params,
+        drive: &Drive,
+        motion: &Wheels<WheelMotion>,
+        battery_v: Option<f32>,
+    ) -> Result<Driven, NotFinite> {
+        let compensation = compensation(params, battery_v);
+        let mut driven = Driven::default();
+        let references = match *drive {
+            Drive::Release => None,
+            Drive::Duty(duty) => {
+                for side in SIDES {
+                    driven.duty[side] = self.wheels[side].open_loop(duty[side], &motion[side])?;
+                }
+                return Ok(driven);
+            }
+            Drive::WheelSpeed(references) => Some(references),
+            Drive::Twist {
+                forward_m_s,
+                yaw_rad_s,
+            } => Some(params.geometry().wheels_from_body(forward_m_s, yaw_rad_s)),
+        };
+        let Some(references) = references else {
+            for side in SIDES {
+                self.wheels[side].release();
+            }
+            return Ok(driven);
+        };
+        driven.wheel_ref_rad_s = references;
+        for side in SIDES {
+            let wheel_loop = params.speed_loop(side);
+            driven.duty[side] = self.wheels[side].speed(
+                &wheel_loop,
+                references[side],
+                &motion[side],
+                compensation,
+            )?;
+        }
+        Ok(driven)
+    }
+}
+
+/// Factor on the feedforward for a battery that is not at its nominal voltage; 1 where it is not measured.
+fn compensation(params: &Params, battery_v: Option<f32>) -> f32 {
+    match battery_v {
+        Some(volts) if volts > 1.0 => clamp(params.get(ParamId::NominalBattery) / volts, 0.5, 2.0),
+        _ => 1.0,
+    }
+}
+
+impl WheelState {
+    fn release(&mut self) {
+        self.pid.reset();
+        self.ramp_rad_s = None;
+        self.held_s = 0.0;
+    }
+
+    /// Takes over the direction of `request` if the wheel stands; says whether it may be driven that way.
+    fn may_drive(&mut self, request: f32, motion: &WheelMotion) -> bool {
+        let wanted = Direction::of(request);
+        if wanted == self.direction {
+            return true;
+        }
+        if motion.standing {
+            self.direction = wanted;
+            self.release();
+        }
+        motion.standing
+    }
+
+    fn open_loop(&mut self, duty: f32, motion: &WheelMotion) -> Result<Duty, NotFinite> {
+        if !duty.is_finite() {
+            return Err(NotFinite);
+        }
+        self.release();
+        let counts = counts(abs(duty));
+        Ok(if counts > 0 && self.may_drive(duty, motion) {
+            self.duty(counts)
+        } else {
+            Duty::RELEASED
+        })
+    }
+
+    fn speed(
+        &mut self,
+        wheel_loop: &SpeedLoop,
+        reference_rad_s: f32,
+        motion: &WheelMotion,
+        compensation: f32,
+    ) -> Result<Duty, NotFinite> {
+        if !reference_rad_s.is_finite() {
+            return Err(NotFinite);
+        }
+        let standstill = abs(reference_rad_s) < STANDSTILL_RAD_S;
+        if standstill || !self.may_drive(reference_rad_s, motion) {
+            self.release();
+            return Ok(Duty::RELEASED);
+        }
+        let target_rad_s = abs(reference_rad_s);
+        let measured_rad_s = motion.speed_rad_s;
+        // A wheel that still rolls is taken over at the speed it has.
+        let before_rad_s = self.ramp_rad_s.unwrap_or(measured_rad_s);
+        let ramp_rad_s = wheel_loop.ramp(before_rad_s, target_rad_s, measured_rad_s);
+        let slope_rad_s2 = (ramp_rad_s - before_rad_s) / TICK_S;
+        self.ramp_rad_s = Some(ramp_rad_s);
+
+        let Feedforward {
+            static_forward,
+            static_backward,
+            velocity,
+            acceleration,
+        } = wheel_loop.feedforward;
+        let friction = match self.direction {
+            Direction::Forward => static_forward,
+            Direction::Backward => static_backward,
+        };
+        let feedforward =
+            (friction + velocity * ramp_rad_s + acceleration * slope_rad_s2) * compensation;
+        let mut duty = wheel_loop.pid.step(
+            &mut self.pid,
+            ramp_rad_s,
+            measured_rad_s,
+            feedforward,
+            TICK_S,
+        )?;
+        if motion.standing {
+            duty = clamp(
+                max(
+                    duty,
+                    (wheel_loop.kick + KICK_GROWTH * self.held_s) * compensation,
+                ),
+                0.0,
+                1.0,
+            );
+            self.held_s += TICK_S;
+        } else {
+            self.held_s = 0.0;
+        }
+        Ok(self.duty(counts(duty)))
+    }
+
+    fn duty(&self, counts: i16) -> Duty {
+        match self.direction {
+            Direction::Forward => Duty::new(counts),
+            Direction::Backward => Duty::new(-counts),
+        }
+    }
+}
+
+/// PWM counts of a duty in 0..=1.
+fn counts(duty: f32) -> i16 {
+    i16::try_from(round(clamp(duty, 0.0, 1.0) * f32::from(Duty::MAX))).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TURNING: WheelMotion = WheelMotion {
+        speed_rad_s: 6.0,
+        edges: 4,
+        standing: false,
+    };
+    const STANDING: WheelMotion = WheelMotion {
+        speed_rad_s: 0.0,
+        edges: 0,
+        standing: true,
+    };
+
+    fn step(layer: &mut DriveLayer, drive: Drive, motion: WheelMotion) -> Wheels<Duty> {
+        layer
+            .step(&Params::default(), &drive, &Wheels::both(motion), None)
+            .unwrap()
+            .duty
+    }
+
+    fn speed(rad_s: f32) -> Drive {
+        Drive::WheelSpeed(Wheels::both(rad_s))
+    }
+
+    #[test]
+    fn a_turning_wheel_is_released_until_it_stands_before_it_is_driven_back() {
+        let mut layer = DriveLayer::default();
+        assert!(step(&mut layer, speed(6.0), TURNING).left.counts() > 0);
+        for _ in 0..20 {
+            assert_eq!(
+                step(&mut layer, speed(-6.0), TURNING),
+                Wheels::both(Duty::RELEASED)
+            );
+            assert_eq!(
+                step(&mut layer, Drive::Duty(Wheels::both(-0.5)), TURNING),
+                Wheels::both(Duty::RELEASED)
+            );
+        }
+        assert_eq!(layer.directions(), Wheels::both(Direction::Forward));
+        assert!(step(&mut layer, speed(-6.0), STANDING).left.counts() < 0);
+        assert_eq!(layer.directions(), Wheels::both(Direction::Backward));
+    }
+
+    #[test]
+    fn the_duty_never_brakes_by_reversing() {
+        let mut layer = DriveLayer::default();
+        let fast = WheelMotion {
+            speed_rad_s: 15.0,
+            ..TURNING
+        };
+        for _ in 0..200 {
+            assert!(step(&mut layer, speed(1.0), fast).left.counts() >= 0);
+        }
+    }
+
+    #[test]
+    fn a_standing_wheel_is_kicked_harder_until_it_moves() {
+        let mut layer = DriveLayer::default();
+        let first = step(&mut layer, speed(1.0), STANDING).left.counts();
+        assert!(first >= 76, "{first}");
+        let later = (0..30)
+            .map(|_| step(&mut layer, speed(1.0), STANDING).left.counts())
+            .last()
+            .unwrap();
+        assert!(later > first + 50, "{first} -> {later}");
+        let moving = WheelMotion {
+            speed_rad_s: 1.0,
+            edges: 1,
+            standing: false,
+        };
+        assert!(step(&mut layer, speed(1.0), moving).left.counts() < later - 30);
+    }
+
+    #[test]
+    fn a_low_battery_gets_more_duty() {
+        let duty = |battery_v| {
+            let mut layer = DriveLayer::default();
+            let motion = Wheels::both(TURNING);
+            layer
+                .step(&Params::default(), &speed(6.0), &motion, battery_v)
+                .unwrap()
+                .duty
+                .left
+                .counts()
+        };
+        assert!(duty(Some(6.4)) > duty(Some(7.4)));
+        assert_eq!(duty(Some(7.4)), duty(None));
+    }
+
+    #[test]
+    fn zero_releases_both_wheels_and_forgets() {
+        let mut layer = DriveLayer::default();
+        for _ in 0..50 {
+            step(&mut layer, speed(8.0), TURNING);
+        }
+        assert_eq!(
+            step(&mut layer, speed(0.0), TURNING),
+            Wheels::both(Duty::RELEASED)
+        );
+        assert_eq!(layer.wheels.left.pid, PidState::default());
+        assert_eq!(
+            step(&mut layer, Drive::Release, TURNING),
+            Wheels::both(Duty::RELEASED)
+        );
+    }
+
+    #[test]
+    fn a_request_that_is_not_finite_is_refused() {
+        for drive in [speed(f32::NAN), Drive::Duty(Wheels::both(f32::INFINITY))] {
+            let mut layer = DriveLayer::default();
+            assert!(
+                layer
+                    .step(&Params::default(), &drive, &Wheels::both(STANDING), None)
+                    .is_err()
+            );
+        }
+    }
+
+    #[test]
+    fn a_held_wheel_does_not_wind_the_ramp_up() {
+        let mut layer = DriveLayer::default();
+        for _ in 0..500 {
+            step(&mut layer, speed(20.0), STANDING);
+        }
+        assert!(layer.wheels.left.ramp_rad_s.unwrap() <= RAMP_LEAD_RAD_S);
+    }
+}

@@ -2,13 +2,14 @@
 //!
 //! Bytes, pins and clocks stay outside: the caller gives the time and what the sensors latched
 //! ([`Inputs`]), and gets back what the wheels, the servo and the sonars are to do ([`Outputs`]). Inside, the flow of
-//! one tick is estimate ([`speed`], [`odometry`], [`range`]) -> [`mode`] -> [`drive`].
+//! one tick is [`estimate`] (of [`speed`], [`odometry`], [`range`]) -> [`mode`] -> [`drive`].
 //!
 //! The same inputs give the same bits on every machine: only `+ - * /`, a correctly rounded square root and
 //! the polynomials of [`math`] are used. Nothing here panics, allocates, loops without bound or formats text.
 #![no_std]
 
 pub mod drive;
+pub mod estimate;
 pub mod math;
 pub mod mode;
 pub mod odometry;

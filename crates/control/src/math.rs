@@ -1,1 +1,150 @@
-//! math
+//! The core's own mathematics: the same bits on every machine.
+//!
+//! Only `+ - * /` and a correctly rounded square root are used; the trigonometric functions are polynomials in
+//! `f32` (coefficients: Cephes, S. Moshier). Within +-4 pi their error is below 1e-6. Conversions between floats and
+//! integers go through the bits, since a bare `as` is not trusted on every target.
+
+use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
+
+/// 1.5 * 2^23: adding it to a float of magnitude below 2^22 rounds that float to the nearest integer, ties to even,
+/// and leaves the integer in the low bits.
+const ROUNDER: f32 = 12_582_912.0;
+/// Bits of [`ROUNDER`].
+const ROUNDER_BITS: i32 = 0x4B40_0000;
+/// Largest magnitude that [`ROUNDER`] rounds.
+const ROUND_LIMIT: f32 = 4_194_303.0;
+
+/// The larger of two finite numbers.
+pub fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two finite numbers.
+pub fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// `x` limited to `low..=high`.
+pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
+    if x < low {
+        low
+    } else if x > high {
+        high
+    } else {
+        x
+    }
+}
+
+/// Magnitude.
+pub fn abs(x: f32) -> f32 {
+    if x < 0.0 { -x } else { x }
+}
+
+/// Square root, correctly rounded; 0 for anything that is not positive.
+pub fn sqrt(x: f32) -> f32 {
+    if x > 0.0 { libm::sqrtf(x) } else { 0.0 }
+}
+
+/// The nearest integer, ties to even; saturates at +-4 194 303, and 0 for what is not a number.
+pub fn round(x: f32) -> i32 {
+    if x.is_nan() {
+        return 0;
+    }
+    let rounded = clamp(x, -ROUND_LIMIT, ROUND_LIMIT) + ROUNDER;
+    rounded.to_bits().cast_signed() - ROUNDER_BITS
+}
+
+/// An integer as a float, rounded once. Exact below 2^24.
+pub fn from_u32(x: u32) -> f32 {
+    let [a, b, c, d] = x.to_le_bytes();
+    let (low, high) = (u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]));
+    f32::from(high) * 65_536.0 + f32::from(low)
+}
+
+/// `x` less its nearest multiple of the period; exact to rounding for up to some thousand periods.
+fn reduce(x: f32, inverse: f32, parts: [f32; 3]) -> (f32, i32) {
+    let turns = round(x * inverse);
+    let count = clamp(x * inverse, -ROUND_LIMIT, ROUND_LIMIT) + ROUNDER - ROUNDER;
+    (
+        ((x - count * parts[0]) - count * parts[1]) - count * parts[2],
+        turns,
+    )
+}
+
+/// pi / 2 in three parts, the first two short enough that their products with small integers are exact.
+const HALF_PI: [f32; 3] = [1.570_312_5, 4.837_513e-4, 7.549_79e-8];
+/// 2 pi in three parts.
+const TWO_PI: [f32; 3] = [4.0 * HALF_PI[0], 4.0 * HALF_PI[1], 4.0 * HALF_PI[2]];
+
+/// An angle as its equal in (-pi, pi] [rad]; 0 for what is not finite.
+pub fn wrap_angle(angle_rad: f32) -> f32 {
+    if !angle_rad.is_finite() {
+        return 0.0;
+    }
+    if angle_rad > -PI && angle_rad <= PI {
+        return angle_rad;
+    }
+    let (wrapped, _) = reduce(angle_rad, 1.0 / TAU, TWO_PI);
+    if wrapped <= -PI {
+        wrapped + TAU
+    } else {
+        min(wrapped, PI)
+    }
+}
+
+/// Sine and cosine of an angle [rad].
+pub fn sin_cos(angle_rad: f32) -> (f32, f32) {
+    let (x, quadrant) = reduce(angle_rad, 1.0 / FRAC_PI_2, HALF_PI);
+    let z = x * x;
+    let sin = ((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * x + x;
+    let cos = ((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * z * z - 0.5 * z + 1.0;
+    match quadrant & 3 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+/// sin(x) / x, for the chord of an arc.
+pub fn sinc(x_rad: f32) -> f32 {
+    if abs(x_rad) < 0.01 {
+        1.0 - x_rad * x_rad / 6.0
+    } else {
+        sin_cos(x_rad).0 / x_rad
+    }
+}
+
+/// Angle of the point (x, y) from the x axis, in (-pi, pi] [rad]; 0 for the origin.
+pub fn atan2(y: f32, x: f32) -> f32 {
+    let (far, near) = (max(abs(x), abs(y)), min(abs(x), abs(y)));
+    if far <= 0.0 {
+        return 0.0;
+    }
+    let mut angle = atan_of_fraction(near / far);
+    if abs(y) > abs(x) {
+        angle = FRAC_PI_2 - angle;
+    }
+    if x < 0.0 {
+        angle = PI - angle;
+    }
+    if y < 0.0 { -angle } else { angle }
+}
+
+/// Arc tangent of a number in 0..=1.
+fn atan_of_fraction(x: f32) -> f32 {
+    const TAN_PI_8: f32 = 0.414_213_57;
+    let (x, offset) = if x > TAN_PI_8 {
+        ((x - 1.0) / (x + 1.0), FRAC_PI_4)
+    } else {
+        (x, 0.0)
+    };
+    let z = x * x;
+    let odd =
+        (((8.053_744_5e-2 * z - 1.387_768_6e-1) * z + 1.997_771_1e-1) * z - 3.333_295e-1) * z * x
+            + x;
+    offset + odd
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,1 +1,306 @@
-//! The table of parameters: each tunable declared once; firmware, wire, command line and dashboard derive from it.
+//! The table of parameters: each tunable declared once. Firmware, wire, command line and dashboard derive from it.
+//!
+//! A parameter is a number on the link, a name in files. Names, units and help exist on the host only (feature `names`); limits and
+//! defaults are code, not data, so that on the AVR they stay in flash.
+
+use crate::drive::{Feedforward, SpeedLoop};
+use crate::mode::ModeId;
+use crate::odometry::Geometry;
+use crate::pid::{Gains, Pid};
+use crate::types::{Side, Wheels};
+
+/// Smallest and largest allowed value, and the one without any override.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Smallest allowed value.
+    pub min: f32,
+    /// Largest allowed value.
+    pub max: f32,
+    /// Value without any override.
+    pub default: f32,
+}
+
+/// Why a parameter was not set; its value is as before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParamError {
+    /// Not a finite number.
+    NotFinite,
+    /// Outside its limits.
+    OutOfRange,
+}
+
+/// Declares the table. Each line: help, variant, name, unit, default, limits, mode.
+macro_rules! table {
+    ($( #[doc = $help:literal] $id:ident = $name:literal, $unit:literal, $default:expr, $min:expr => $max:expr, $mode:expr; )+) => {
+        /// Number of a parameter, as on the link.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum ParamId { $( #[doc = $help] $id, )+ }
+
+        impl ParamId {
+            /// All parameters, in the order of their numbers.
+            pub const ALL: [ParamId; COUNT] = [ $( ParamId::$id, )+ ];
+
+            /// Its limits and default.
+            pub const fn limits(self) -> Limits {
+                match self { $( ParamId::$id => Limits { min: $min, max: $max, default: $default }, )+ }
+            }
+
+            /// The mode it belongs to; `None` when all modes use it.
+            pub const fn mode(self) -> Option<ModeId> {
+                match self { $( ParamId::$id => $mode, )+ }
+            }
+
+            /// Its name in files, commands and the dashboard.
+            #[cfg(feature = "names")]
+            pub const fn name(self) -> &'static str {
+                match self { $( ParamId::$id => $name, )+ }
+            }
+
+            /// Its unit; `1` for a pure number.
+            #[cfg(feature = "names")]
+            pub const fn unit(self) -> &'static str {
+                match self { $( ParamId::$id => $unit, )+ }
+            }
+
+            /// What it is, in one line.
+            #[cfg(feature = "names")]
+            pub fn help(self) -> &'static str {
+                match self { $( ParamId::$id => $help.trim_ascii(), )+ }
+            }
+        }
+
+        /// How many parameters there are.
+        pub const COUNT: usize = { let names = [ $( $name, )+ ]; names.len() };
+
+        /// Hash of names, units and limits in their order (FNV-1a): two ends with different tables must not exchange numbers.
+        pub const SCHEMA: u32 = {
+            let mut hash: u32 = 0x811C_9DC5;
+            $(
+                hash = fnv(hash, $name.as_bytes());
+                hash = fnv(hash, $unit.as_bytes());
+                hash = fnv(hash, &f32::to_le_bytes($min));
+                hash = fnv(hash, &f32::to_le_bytes($max));
+            )+
+            hash
+        };
+    };
+}
+
+const fn fnv(mut hash: u32, bytes: &[u8]) -> u32 {
+    let mut i = 0;
+    while i < bytes.len() {
+        hash = (hash ^ bytes[i] as u32).wrapping_mul(0x0100_0193);
+        i += 1;
+    }
+    hash
+}
+
+const FRONT: Option<ModeId> = Some(ModeId::FrontDistance);
+const MANUAL: Option<ModeId> = Some(ModeId::Manual);
+
+table! {
+    /// Radius of the left wheel.
+    RadiusLeft = "radius_left_m", "m", 0.0325, 0.01 => 0.2, None;
+    /// Radius of the right wheel.
+    RadiusRight = "radius_right_m", "m", 0.0325, 0.01 => 0.2, None;
+    /// Distance between the wheels' contact points.
+    Base = "base_m", "m", 0.10, 0.03 => 1.0, None;
+    /// Speed of sound.
+    SoundSpeed = "sound_speed_m_s", "m/s", 343.4, 300.0 => 380.0, None;
+    /// Duty that balances the left wheel's friction, forward.
+    StaticLeftForward = "ks_left_forward", "1", 0.20, 0.0 => 0.8, None;
+    /// Duty that balances the left wheel's friction, backward.
+    StaticLeftBackward = "ks_left_backward", "1", 0.20, 0.0 => 0.8, None;
+    /// Duty that balances the right wheel's friction, forward.
+    StaticRightForward = "ks_right_forward", "1", 0.20, 0.0 => 0.8, None;
+    /// Duty that balances the right wheel's friction, backward.
+    StaticRightBackward = "ks_right_backward", "1", 0.20, 0.0 => 0.8, None;
+    /// Duty per wheel speed.
+    Velocity = "kv", "s/rad", 0.018, 0.0 => 0.2, None;
+    /// Duty per wheel acceleration.
+    Acceleration = "ka", "s2/rad", 0.008, 0.0 => 0.1, None;
+    /// Duty that a standing wheel gets at first when asked to turn; it grows until edges come.
+    Kick = "kick", "1", 0.30, 0.0 => 1.0, None;
+    /// Speed loop of the left wheel, proportional gain.
+    SpeedKpLeft = "speed_kp_left", "s/rad", 0.08, 0.0 => 2.0, None;
+    /// Speed loop of the left wheel, integral gain.
+    SpeedKiLeft = "speed_ki_left", "1/rad", 0.25, 0.0 => 20.0, None;
+    /// Speed loop of the left wheel, derivative gain.
+    SpeedKdLeft = "speed_kd_left", "s2/rad", 0.0, 0.0 => 1.0, None;
+    /// Speed loop of the right wheel, proportional gain.
+    SpeedKpRight = "speed_kp_right", "s/rad", 0.08, 0.0 => 2.0, None;
+    /// Speed loop of the right wheel, integral gain.
+    SpeedKiRight = "speed_ki_right", "1/rad", 0.25, 0.0 => 20.0, None;
+    /// Speed loop of the right wheel, derivative gain.
+    SpeedKdRight = "speed_kd_right", "s2/rad", 0.0, 0.0 => 1.0, None;
+    /// Largest acceleration asked of a wheel.
+    WheelAccel = "wheel_accel_rad_s2", "rad/s2", 30.0, 1.0 => 500.0, None;
+    /// Largest deceleration asked of a wheel; beyond about 20 friction alone does not brake it.
+    WheelDecel = "wheel_decel_rad_s2", "rad/s2", 20.0, 1.0 => 500.0, None;
+    /// Voltage at which the feedforward was measured; used where the battery's voltage is.
+    NominalBattery = "nominal_battery_v", "V", 7.4, 3.0 => 30.0, None;
+    /// Voltage below which the robot does not drive; used where the battery's voltage is measured.
+    LowBattery = "low_battery_v", "V", 6.2, 0.0 => 30.0, None;
+    /// Time without a sign of life after which the wheels are released.
+    LinkTimeout = "link_timeout_s", "s", 0.4, 0.05 => 0.45, None;
+    /// The same when the robot is addressed in text.
+    TextTimeout = "text_timeout_s", "s", 10.0, 0.1 => 3600.0, None;
+    /// Inner wheel's speed over the outer one's in arcs.
+    ArcRatio = "arc_ratio", "1", 0.5, 0.0 => 1.0, MANUAL;
+    /// Largest approach speed.
+    FrontCruise = "front_cruise_m_s", "m/s", 0.45, 0.02 => 0.8, FRONT;
+    /// Deceleration planned on the way to the reference.
+    FrontBrake = "front_brake_m_s2", "m/s2", 0.55, 0.05 => 3.0, FRONT;
+    /// Speed per distance near the reference.
+    FrontKp = "front_kp", "1/s", 5.0, 0.1 => 20.0, FRONT;
+    /// Distance from the reference within which the wheels are released.
+    FrontTolerance = "front_tolerance_m", "m", 0.0015, 0.0005 => 0.05, FRONT;
+    /// Yaw rate per heading error, to drive straight.
+    FrontHeading = "front_heading_kp", "1/s", 4.0, 0.0 => 20.0, FRONT;
+    /// Age of the sonar's last good reading beyond which the robot stops.
+    StaleRange = "stale_range_s", "s", 0.5, 0.1 => 2.0, FRONT;
+}
+
+impl ParamId {
+    /// The parameter with this number.
+    pub fn from_number(number: u8) -> Option<ParamId> {
+        Self::ALL.get(usize::from(number)).copied()
+    }
+
+    /// The parameter with this name.
+    #[cfg(feature = "names")]
+    pub fn from_name(name: &str) -> Option<ParamId> {
+        Self::ALL.into_iter().find(|id| id.name() == name)
+    }
+}
+
+/// The values in force. Every value is finite and within its limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Params {
+    values: [f32; COUNT],
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            values: ParamId::ALL.map(|id| id.limits().default),
+        }
+    }
+}
+
+impl Params {
+    /// A parameter's value.
+    pub fn get(&self, id: ParamId) -> f32 {
+        self.values.get(id as usize).copied().unwrap_or_default()
+    }
+
+    /// Sets a parameter; gives the value in force.
+    ///
+    /// # Errors
+    /// The value is not finite or outside the parameter's limits; it is then as before.
+    pub fn set(&mut self, id: ParamId, value: f32) -> Result<f32, ParamError> {
+        let Limits { min, max, .. } = id.limits();
+        if !value.is_finite() {
+            return Err(ParamError::NotFinite);
+        }
+        if value < min || value > max {
+            return Err(ParamError::OutOfRange);
+        }
+        if let Some(slot) = self.values.get_mut(id as usize) {
+            *slot = value;
+        }
+        Ok(value)
+    }
+
+    /// The lengths for odometry.
+    pub fn geometry(&self) -> Geometry {
+        Geometry {
+            radius_m: Wheels {
+                left: self.get(ParamId::RadiusLeft),
+                right: self.get(ParamId::RadiusRight),
+            },
+            base_m: self.get(ParamId::Base),
+        }
+    }
+
+    /// The speed loop of one wheel.
+    pub fn speed_loop(&self, side: Side) -> SpeedLoop {
+        use ParamId as Id;
+        let ([forward, backward], [kp, ki, kd]) = match side {
+            Side::Left => (
+                [Id::StaticLeftForward, Id::StaticLeftBackward],
+                [Id::SpeedKpLeft, Id::SpeedKiLeft, Id::SpeedKdLeft],
+            ),
+            Side::Right => (
+                [Id::StaticRightForward, Id::StaticRightBackward],
+                [Id::SpeedKpRight, Id::SpeedKiRight, Id::SpeedKdRight],
+            ),
+        };
+        SpeedLoop {
+            feedforward: Feedforward {
+                static_forward: self.get(forward),
+                static_backward: self.get(backward),
+                velocity: self.get(Id::Velocity),
+                acceleration: self.get(Id::Acceleration),
+            },
+            kick: self.get(Id::Kick),
+            pid: Pid {
+                gains: Gains {
+                    kp: self.get(kp),
+                    ki: self.get(ki),
+                    kd: self.get(kd),
+                },
+                min: 0.0,
+                max: 1.0,
+                tracking_s: 0.1,
+            },
+            accel_rad_s2: self.get(Id::WheelAccel),
+            decel_rad_s2: self.get(Id::WheelDecel),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_default_is_within_its_limits_and_every_number_finds_its_parameter() {
+        for id in ParamId::ALL {
+            let Limits { min, max, default } = id.limits();
+            assert!(min <= default && default <= max && min < max, "{id:?}");
+            assert_eq!(ParamId::from_number(id as u8), Some(id));
+            assert_eq!(Params::default().get(id), default);
+        }
+        assert_eq!(ParamId::from_number(COUNT as u8), None);
+    }
+
+    #[test]
+    fn a_value_out_of_range_or_not_finite_is_refused_and_changes_nothing() {
+        let mut params = Params::default();
+        for id in ParamId::ALL {
+            let Limits { min, max, .. } = id.limits();
+            assert_eq!(params.set(id, max + 1.0), Err(ParamError::OutOfRange));
+            assert_eq!(params.set(id, min - 1.0), Err(ParamError::OutOfRange));
+            assert_eq!(params.set(id, f32::NAN), Err(ParamError::NotFinite));
+        }
+        assert_eq!(params, Params::default());
+        assert_eq!(params.set(ParamId::Base, 0.2), Ok(0.2));
+        assert_eq!(params.geometry().base_m, 0.2);
+    }
+
+    #[cfg(feature = "names")]
+    #[test]
+    fn names_are_unique_and_carry_their_unit() {
+        extern crate std;
+        let mut names: std::vec::Vec<_> = ParamId::ALL.iter().map(|id| id.name()).collect();
+        for id in ParamId::ALL {
+            assert_eq!(ParamId::from_name(id.name()), Some(id));
+            assert!(!id.help().is_empty() && !id.unit().is_empty());
+        }
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), COUNT);
+    }
+}

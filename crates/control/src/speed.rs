@@ -1,1 +1,247 @@
-//! speed
+//! Wheel speed from the edges of one Hall sensor. Derivation: docs/theory/wheel_speed.md.
+//!
+//! Two measurements are fused. The time of the last eight edges, one turn of the motor, is free of the disc's uneven
+//! poles, and half a motor turn late. The edges of the last tick over the time they took (M/T method) are fresh, and off by
+//! as much as the poles are uneven. What the poles can explain is taken from the first, what they cannot is a
+//! real change and taken from the second. When edges stop coming, the speed is bounded by one edge over the time since.
+
+use crate::math::{from_u32, max, min};
+use crate::types::{Edges, Micros, TICK_S};
+
+/// Wheel angle of one edge [rad]: 8 edges per motor turn, 48 motor turns per wheel turn.
+pub const EDGE_RAD: f32 = core::f32::consts::TAU / (8.0 * 48.0);
+/// Edges of one motor turn.
+const EDGES_PER_TURN: u16 = 8;
+/// A gap between edges is at most this much wider than the mean: poles +-5 % each, doubled for both ends and for safety.
+const UNEVENNESS: f32 = 0.12;
+/// What a motor turn's mean may lag behind a wheel that speeds up, relative.
+const LAG: f32 = 0.02;
+/// Without an edge for this long the wheel counts as standing [us]: then it turns below 4 rpm.
+const STANDING_US: u32 = 40_000;
+
+/// Memory of one wheel's estimator.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpeedEstimator {
+    count: u16,
+    last: Micros,
+    /// Edges since the wheel last stood, at most [`EDGES_PER_TURN`] + 1: before that, `turn_us` spans the standing.
+    run: u16,
+    standing: bool,
+    started: bool,
+    speed_rad_s: f32,
+}
+
+/// What the edges say about a wheel, without sign.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WheelMotion {
+    /// Speed [rad/s], 0 or more.
+    pub speed_rad_s: f32,
+    /// Edges since the last tick.
+    pub edges: u16,
+    /// No edge for long enough that the wheel may be driven the other way.
+    pub standing: bool,
+}
+
+impl SpeedEstimator {
+    /// One tick.
+    pub fn step(&mut self, edges: &Edges, now: Micros) -> WheelMotion {
+        if !self.started {
+            *self = Self {
+                count: edges.count,
+                last: edges.last,
+                standing: true,
+                started: true,
+                ..Self::default()
+            };
+        }
+        let new = edges.count.wrapping_sub(self.count);
+        if new > 0 {
+            self.take(new, edges);
+        } else if !self.standing {
+            let silent_us = now.since(edges.last);
+            if silent_us >= STANDING_US {
+                self.standing = true;
+                self.run = 0;
+                self.speed_rad_s = 0.0;
+            } else {
+                let widest_gap_rad = EDGE_RAD * (1.0 + UNEVENNESS);
+                self.speed_rad_s = min(
+                    self.speed_rad_s,
+                    widest_gap_rad / max(from_u32(silent_us) * 1e-6, TICK_S / 10.0),
+                );
+            }
+        }
+        WheelMotion {
+            speed_rad_s: self.speed_rad_s,
+            edges: new,
+            standing: self.standing,
+        }
+    }
+
+    fn take(&mut self, new: u16, edges: &Edges) {
+        let span_us = edges.last.since(self.last);
+        let fresh = if self.standing || span_us == 0 {
+            // From rest the time of the first gap is unknown; the tick bounds it.
+            f32::from(new) * EDGE_RAD / TICK_S
+        } else {
+            f32::from(new) * EDGE_RAD / (from_u32(span_us) * 1e-6)
+        };
+        self.run = core::cmp::min(self.run.saturating_add(new), EDGES_PER_TURN + 1);
+        let whole_turn = self.run > EDGES_PER_TURN && edges.turn_us > 0;
+        self.speed_rad_s = if whole_turn {
+            let turn = f32::from(EDGES_PER_TURN) * EDGE_RAD / (from_u32(edges.turn_us) * 1e-6);
+            let explained = turn * (UNEVENNESS / f32::from(new) + LAG);
+            if fresh > turn + explained {
+                fresh - explained
+            } else if fresh < turn - explained {
+                fresh + explained
+            } else {
+                turn
+            }
+        } else {
+            fresh
+        };
+        self.count = edges.count;
+        self.last = edges.last;
+        self.standing = false;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A disc with uneven poles turning at a speed that depends on time, as the interrupt would see it.
+    struct Disc {
+        places: [f32; 8],
+        angle_edges: f64,
+        next: u32,
+        edges: Edges,
+        poles: [u32; 8],
+    }
+
+    impl Disc {
+        fn new(places: [f32; 8]) -> Self {
+            Self {
+                places,
+                angle_edges: 0.0,
+                next: 1,
+                edges: Edges::default(),
+                poles: [0; 8],
+            }
+        }
+
+        /// Turns for one tick that ends at `now_us`, in steps of 1 us.
+        fn tick(&mut self, start_us: u32, speed_rad_s: f64) -> Edges {
+            for us in start_us..start_us + 10_000 {
+                self.angle_edges += speed_rad_s * 1e-6 / f64::from(EDGE_RAD);
+                let pole = self.next as usize % 8;
+                if self.angle_edges >= f64::from(self.next) + f64::from(self.places[pole]) {
+                    if self.next > 8 {
+                        self.edges.turn_us = us - self.poles[pole];
+                    }
+                    self.poles[pole] = us;
+                    self.edges.last = Micros(us);
+                    self.edges.count = self.edges.count.wrapping_add(1);
+                    self.next += 1;
+                }
+            }
+            self.edges
+        }
+    }
+
+    const UNEVEN: [f32; 8] = [0.05, -0.04, 0.02, -0.05, 0.05, -0.02, 0.03, -0.05];
+
+    fn speeds(
+        places: [f32; 8],
+        ticks: u32,
+        speed: impl Fn(u32) -> f64,
+    ) -> std::vec::Vec<(f64, f32, bool)> {
+        let (mut disc, mut estimator) = (Disc::new(places), SpeedEstimator::default());
+        (0..ticks)
+            .map(|tick| {
+                let edges = disc.tick(tick * 10_000, speed(tick));
+                let motion = estimator.step(&edges, Micros((tick + 1) * 10_000));
+                (speed(tick), motion.speed_rad_s, motion.standing)
+            })
+            .collect()
+    }
+
+    extern crate std;
+
+    #[test]
+    fn uneven_poles_do_not_ripple_a_steady_speed() {
+        for rpm in [20.0, 60.0, 100.0, 150.0] {
+            let w = rpm / 60.0 * core::f64::consts::TAU;
+            for (_, estimate, _) in speeds(UNEVEN, 200, |_| w).into_iter().skip(30) {
+                assert!(
+                    (f64::from(estimate) / w - 1.0).abs() < 0.002,
+                    "{rpm} rpm: {estimate} of {w}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_wheel_that_speeds_up_is_followed_within_a_tenth() {
+        let ramp = |tick: u32| 2.0 + 20.0 * f64::from(tick) * 0.01;
+        for (truth, estimate, _) in speeds(UNEVEN, 60, ramp).into_iter().skip(5) {
+            assert!(
+                (f64::from(estimate) - truth).abs() < 0.1 * truth + 0.25,
+                "{estimate} of {truth}"
+            );
+        }
+    }
+
+    #[test]
+    fn when_edges_stop_the_estimate_falls_and_the_wheel_stands_within_50_ms() {
+        let seen = speeds(UNEVEN, 60, |tick| if tick < 50 { 6.0 } else { 0.0 });
+        assert!(seen[51].1 < 2.0, "{:?}", seen[51]);
+        let stood = seen
+            .iter()
+            .skip(50)
+            .position(|(_, speed, standing)| *standing && *speed == 0.0);
+        assert!(stood.is_some_and(|ticks| ticks <= 5), "{stood:?}");
+    }
+
+    #[test]
+    fn a_wheel_at_five_rpm_does_not_count_as_standing() {
+        let seen = speeds([0.0; 8], 300, |_| 5.0 / 60.0 * core::f64::consts::TAU);
+        assert!(seen.iter().skip(20).all(|(_, _, standing)| !standing));
+    }
+
+    #[test]
+    fn the_clock_may_wrap() {
+        let mut estimator = SpeedEstimator::default();
+        let at = |us: u32, count: u16| {
+            (
+                Edges {
+                    count,
+                    last: Micros(us),
+                    turn_us: 0,
+                },
+                Micros(us.wrapping_add(500)),
+            )
+        };
+        let (edges, now) = at(u32::MAX - 3_999, 0);
+        estimator.step(&edges, now);
+        let (edges, now) = at(u32::MAX - 3_999, 1);
+        estimator.step(&edges, now);
+        let (edges, now) = at(4_000, 5);
+        let motion = estimator.step(&edges, now);
+        assert!((motion.speed_rad_s - 4.0 * EDGE_RAD / 8e-3).abs() < 1e-3);
+    }
+
+    proptest! {
+        #[test]
+        fn no_edges_make_a_speed_that_is_not_finite(inputs in prop::collection::vec((0u16..40, any::<u32>(), any::<u32>()), 1..100)) {
+            let (mut estimator, mut count) = (SpeedEstimator::default(), 0u16);
+            for (new, last, turn_us) in inputs {
+                count = count.wrapping_add(new);
+                let motion = estimator.step(&Edges { count, last: Micros(last), turn_us }, Micros(last));
+                prop_assert!(motion.speed_rad_s.is_finite() && motion.speed_rad_s >= 0.0);
+            }
+        }
+    }
+}

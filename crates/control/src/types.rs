@@ -38,12 +38,18 @@ impl<T> Wheels<T> {
     where
         T: Copy,
     {
-        Self { left: value, right: value }
+        Self {
+            left: value,
+            right: value,
+        }
     }
 
     /// Applies `f` to each wheel's value.
     pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> Wheels<U> {
-        Wheels { left: f(self.left), right: f(self.right) }
+        Wheels {
+            left: f(self.left),
+            right: f(self.right),
+        }
     }
 }
 
@@ -173,7 +179,10 @@ pub struct AgedRange {
 
 impl Default for AgedRange {
     fn default() -> Self {
-        Self { range: Range::Faulty, age_s: f32::MAX }
+        Self {
+            range: Range::Faulty,
+            age_s: f32::MAX,
+        }
     }
 }
 
@@ -282,12 +291,24 @@ impl Fault {
     #[cfg(feature = "names")]
     pub const fn explanation(self) -> &'static str {
         match self {
-            Fault::LinkLost => "link lost: no heartbeat arrived in time; check the connection, then clear and arm again",
-            Fault::SonarFaulty => "sonar faulty: its echo line is silent or gives impossible values; check its wiring",
-            Fault::SonarStale => "sonar stale: no good reading for too long; is something absorbing the echo?",
-            Fault::WallLost => "wall lost: nothing within the sonar's reach; face the robot to a wall",
-            Fault::LeftEncoderSilent => "left encoder silent: the wheel is driven but does not turn, or its sensor is cut",
-            Fault::RightEncoderSilent => "right encoder silent: the wheel is driven but does not turn, or its sensor is cut",
+            Fault::LinkLost => {
+                "link lost: no heartbeat arrived in time; check the connection, then clear and arm again"
+            }
+            Fault::SonarFaulty => {
+                "sonar faulty: its echo line is silent or gives impossible values; check its wiring"
+            }
+            Fault::SonarStale => {
+                "sonar stale: no good reading for too long; is something absorbing the echo?"
+            }
+            Fault::WallLost => {
+                "wall lost: nothing within the sonar's reach; face the robot to a wall"
+            }
+            Fault::LeftEncoderSilent => {
+                "left encoder silent: the wheel is driven but does not turn, or its sensor is cut"
+            }
+            Fault::RightEncoderSilent => {
+                "right encoder silent: the wheel is driven but does not turn, or its sensor is cut"
+            }
             Fault::BatteryLow => "battery low: charge it",
             Fault::NotFinite => "a value was not a finite number; reset the parameters",
             Fault::Overrun => "a control tick took too long",

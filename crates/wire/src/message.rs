@@ -1,5 +1,6 @@
 //! What the two ends say to each other, as values. How they look in bytes: [`crate::codec`].
 
+pub use rumbo_control::mode::Level;
 use rumbo_control::mode::{ModeId, Movement};
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Wheels};
 
@@ -193,15 +194,6 @@ pub enum Command {
     ResetParams,
     /// Call the present place the origin.
     ResetPose,
-}
-
-/// How much of a basic movement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Level {
-    /// Open loop: fraction of full PWM, 0..=1.
-    Duty(f32),
-    /// Closed loop: wheel speed [rad/s], 0 or more.
-    Speed(f32),
 }
 
 /// What became of a command.

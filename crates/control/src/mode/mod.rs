@@ -1,4 +1,19 @@
 //! The modes: what the robot does, one file each.
+//!
+//! A mode is configuration (from the parameters and its setpoint) apart from state, and one function of the
+//! [`Situation`]: [`Mode::step`]. One enum dispatches: [`ActiveMode`]. Numbers of modes appear in [`ModeId`] only.
+
+pub mod front_distance;
+pub mod manual;
+pub mod wheel_speed;
+
+use crate::estimate::Estimate;
+use crate::params::Params;
+use crate::range::{MIN_RANGE_M, REACH_M};
+use crate::types::{Drive, Fault, Range, ServoAngle, SonarId, Wheels};
+use front_distance::FrontDistance;
+use manual::Manual;
+use wheel_speed::WheelSpeed;
 
 /// The modes of the report, by the number they have there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,6 +44,16 @@ impl ModeId {
             ModeId::Manual => "manual",
             ModeId::FrontDistance => "front_distance",
             ModeId::WheelSpeed => "wheel_speed",
+        }
+    }
+
+    /// The names of its states, by the number in the telemetry.
+    #[cfg(feature = "names")]
+    pub const fn state_names(self) -> &'static [&'static str] {
+        match self {
+            ModeId::Manual => &manual::STATE_NAMES,
+            ModeId::FrontDistance => &front_distance::STATE_NAMES,
+            ModeId::WheelSpeed => &wheel_speed::STATE_NAMES,
         }
     }
 }
@@ -64,4 +89,323 @@ pub enum Movement {
     ArcLeftBackward = 11,
     /// Backward along an arc, the centre on the right.
     ArcRightBackward = 12,
+}
+
+impl Movement {
+    /// All movements, by number.
+    pub const ALL: [Movement; 13] = [
+        Movement::Stop,
+        Movement::Forward,
+        Movement::Backward,
+        Movement::TurnLeft,
+        Movement::TurnRight,
+        Movement::PivotLeftForward,
+        Movement::PivotLeftBackward,
+        Movement::PivotRightForward,
+        Movement::PivotRightBackward,
+        Movement::ArcLeft,
+        Movement::ArcRight,
+        Movement::ArcLeftBackward,
+        Movement::ArcRightBackward,
+    ];
+}
+
+/// How much of a basic movement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Level {
+    /// Open loop: fraction of full PWM, 0..=1.
+    Duty(f32),
+    /// Closed loop: wheel speed [rad/s], 0 to [`MAX_WHEEL_RAD_S`].
+    Speed(f32),
+}
+
+/// Fastest wheel reference that is accepted, either way [rad/s]: 191 rpm.
+pub const MAX_WHEEL_RAD_S: f32 = 20.0;
+/// Shortest distance reference that is accepted [m].
+pub const MIN_DISTANCE_M: f32 = MIN_RANGE_M + 0.03;
+/// Longest distance reference that is accepted [m]: the sonar must still see the wall beyond it.
+pub const MAX_DISTANCE_M: f32 = REACH_M - 0.5;
+
+/// What a mode knows when it steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Situation<'a> {
+    /// What the estimators say.
+    pub estimate: &'a Estimate,
+}
+
+/// What a mode asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Action {
+    /// Of the wheels.
+    pub drive: Drive,
+    /// Of the sonars and the servo.
+    pub look: Look,
+    /// Number of its state, for telemetry; names: `ModeId::state_names`.
+    pub state: u8,
+    /// It has reached its reference.
+    pub reached: bool,
+}
+
+/// Where the robot looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Where the servo points.
+    pub servo: ServoAngle,
+    /// Which sonars matter, by `SonarId` number; these are pinged in turn.
+    pub sonars: [bool; 3],
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            servo: ServoAngle::default(),
+            sonars: [true; 3],
+        }
+    }
+}
+
+impl Look {
+    /// One sonar only, as often as it can.
+    pub const fn only(sonar: SonarId) -> Self {
+        let mut sonars = [false; 3];
+        sonars[sonar as usize] = true;
+        Self {
+            servo: ServoAngle(0.0),
+            sonars,
+        }
+    }
+}
+
+/// A mode: configuration apart from state.
+pub trait Mode {
+    /// What it remembers from tick to tick; the default is its start.
+    type State: Default;
+
+    /// One tick.
+    ///
+    /// # Errors
+    /// Why it cannot go on; the supervisor then releases the wheels.
+    fn step(&self, state: &mut Self::State, at: &Situation) -> Result<Action, Fault>;
+}
+
+/// Why a reference is refused; the last valid one stays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SetpointError {
+    /// Not a finite number.
+    NotFinite,
+    /// Outside what the mode allows.
+    OutOfRange,
+    /// The mode takes no such reference.
+    NotInThisMode,
+}
+
+/// The mode that runs, with its setpoint and its state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ActiveMode {
+    /// Mode 0.
+    Manual(manual::Setpoint),
+    /// Mode 1: reference [m] and state.
+    FrontDistance(f32, front_distance::State),
+    /// Mode 5: references [rad/s].
+    WheelSpeed(Wheels<f32>),
+}
+
+impl Default for ActiveMode {
+    fn default() -> Self {
+        Self::new(ModeId::default())
+    }
+}
+
+impl ActiveMode {
+    /// A mode at its start, with its default reference.
+    pub fn new(id: ModeId) -> Self {
+        match id {
+            ModeId::Manual => Self::Manual(manual::Setpoint::default()),
+            ModeId::FrontDistance => {
+                Self::FrontDistance(front_distance::DEFAULT_M, front_distance::State::default())
+            }
+            ModeId::WheelSpeed => Self::WheelSpeed(Wheels::both(0.0)),
+        }
+    }
+
+    /// Which mode it is.
+    pub fn id(&self) -> ModeId {
+        match self {
+            Self::Manual(_) => ModeId::Manual,
+            Self::FrontDistance(..) => ModeId::FrontDistance,
+            Self::WheelSpeed(_) => ModeId::WheelSpeed,
+        }
+    }
+
+    /// Forgets its state and keeps its reference: the wheels have just been armed.
+    pub fn start(&mut self) {
+        if let Self::FrontDistance(_, state) = self {
+            *state = front_distance::State::default();
+        }
+    }
+
+    /// Where it needs to look, armed or not.
+    pub fn look(&self) -> Look {
+        match self {
+            Self::FrontDistance(..) => Look::only(SonarId::Front),
+            Self::Manual(_) | Self::WheelSpeed(_) => Look::default(),
+        }
+    }
+
+    /// Whether the sensors it needs give good readings.
+    pub fn is_ready(&self, estimate: &Estimate) -> bool {
+        match self {
+            Self::FrontDistance(..) => {
+                matches!(estimate.range(SonarId::Front).range, Range::Valid(_))
+            }
+            Self::Manual(_) | Self::WheelSpeed(_) => true,
+        }
+    }
+
+    /// The reference in force: [m] for both wheels in mode 1, [rad/s] per wheel in mode 5, else 0.
+    pub fn reference(&self) -> Wheels<f32> {
+        match self {
+            Self::Manual(_) => Wheels::both(0.0),
+            Self::FrontDistance(distance_m, _) => Wheels::both(*distance_m),
+            Self::WheelSpeed(references) => *references,
+        }
+    }
+
+    /// Sets the reference for both wheels: distance [m] in mode 1, speed [rad/s] in mode 5.
+    ///
+    /// # Errors
+    /// Why it is refused; the last one stays.
+    pub fn set_reference(&mut self, value: f32) -> Result<(), SetpointError> {
+        match self {
+            Self::Manual(_) => Err(SetpointError::NotInThisMode),
+            Self::FrontDistance(distance_m, _) => {
+                *distance_m = within(value, MIN_DISTANCE_M, MAX_DISTANCE_M)?;
+                Ok(())
+            }
+            Self::WheelSpeed(references) => {
+                *references = Wheels::both(within(value, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?);
+                Ok(())
+            }
+        }
+    }
+
+    /// Sets the reference of each wheel [rad/s] in mode 5.
+    ///
+    /// # Errors
+    /// Why it is refused; the last one stays.
+    pub fn set_wheel_reference(&mut self, value: Wheels<f32>) -> Result<(), SetpointError> {
+        let Self::WheelSpeed(references) = self else {
+            return Err(SetpointError::NotInThisMode);
+        };
+        let left = within(value.left, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
+        let right = within(value.right, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
+        *references = Wheels { left, right };
+        Ok(())
+    }
+
+    /// Sets the movement of mode 0.
+    ///
+    /// # Errors
+    /// Why it is refused; the last one stays.
+    pub fn set_movement(&mut self, movement: Movement, level: Level) -> Result<(), SetpointError> {
+        let Self::Manual(setpoint) = self else {
+            return Err(SetpointError::NotInThisMode);
+        };
+        let level = match level {
+            Level::Duty(duty) => Level::Duty(within(duty, 0.0, 1.0)?),
+            Level::Speed(rad_s) => Level::Speed(within(rad_s, 0.0, MAX_WHEEL_RAD_S)?),
+        };
+        *setpoint = manual::Setpoint { movement, level };
+        Ok(())
+    }
+
+    /// One tick.
+    ///
+    /// # Errors
+    /// Why the mode cannot go on.
+    pub fn step(&mut self, params: &Params, at: &Situation) -> Result<Action, Fault> {
+        match self {
+            Self::Manual(setpoint) => Manual::new(params, *setpoint).step(&mut (), at),
+            Self::FrontDistance(distance_m, state) => {
+                FrontDistance::new(params, *distance_m).step(state, at)
+            }
+            Self::WheelSpeed(references) => WheelSpeed {
+                references: *references,
+            }
+            .step(&mut (), at),
+        }
+    }
+}
+
+fn within(value: f32, min: f32, max: f32) -> Result<f32, SetpointError> {
+    if !value.is_finite() {
+        Err(SetpointError::NotFinite)
+    } else if value < min || value > max {
+        Err(SetpointError::OutOfRange)
+    } else {
+        Ok(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reference_out_of_range_is_refused_and_the_last_one_stays() {
+        let mut mode = ActiveMode::new(ModeId::FrontDistance);
+        assert_eq!(mode.set_reference(0.5), Ok(()));
+        assert_eq!(mode.set_reference(-0.1), Err(SetpointError::OutOfRange));
+        assert_eq!(mode.set_reference(2.2), Err(SetpointError::OutOfRange));
+        assert_eq!(mode.set_reference(f32::NAN), Err(SetpointError::NotFinite));
+        assert_eq!(mode.reference(), Wheels::both(0.5));
+        assert_eq!(
+            mode.set_wheel_reference(Wheels::both(1.0)),
+            Err(SetpointError::NotInThisMode)
+        );
+    }
+
+    #[test]
+    fn half_a_valid_pair_of_references_is_refused_whole() {
+        let mut mode = ActiveMode::new(ModeId::WheelSpeed);
+        assert_eq!(
+            mode.set_wheel_reference(Wheels {
+                left: 3.0,
+                right: 50.0
+            }),
+            Err(SetpointError::OutOfRange)
+        );
+        assert_eq!(mode.reference(), Wheels::both(0.0));
+        assert_eq!(
+            mode.set_movement(Movement::Forward, Level::Duty(0.5)),
+            Err(SetpointError::NotInThisMode)
+        );
+    }
+
+    #[test]
+    fn the_front_mode_is_ready_only_when_its_sonar_sees_a_wall() {
+        let mode = ActiveMode::new(ModeId::FrontDistance);
+        let mut estimate = Estimate::default();
+        assert!(!mode.is_ready(&estimate));
+        estimate.ranges[SonarId::Front as usize].range = Range::Clear;
+        assert!(!mode.is_ready(&estimate));
+        estimate.ranges[SonarId::Front as usize].range = Range::Valid(0.8);
+        assert!(mode.is_ready(&estimate));
+        assert!(ActiveMode::new(ModeId::Manual).is_ready(&Estimate::default()));
+    }
+
+    #[test]
+    fn modes_and_movements_are_found_by_their_number() {
+        for mode in ModeId::ALL {
+            assert_eq!(ModeId::from_number(mode as u8), Some(mode));
+            assert_eq!(ActiveMode::new(mode).id(), mode);
+        }
+        assert_eq!(ModeId::from_number(9), None);
+        assert!(
+            Movement::ALL
+                .iter()
+                .enumerate()
+                .all(|(number, movement)| *movement as usize == number)
+        );
+    }
 }

@@ -1,0 +1,270 @@
+//! Mode 1: stop at a distance from the wall in front (memoria 2.1).
+//!
+//! distance error e [m] -> forward speed [m/s] -> wheel-speed loops. Too far is a positive error: drive forward.
+//!
+//! ```text
+//! |v| = min(cruise, sqrt(2 a |e|), kp |e|), at least the slowest steady speed       v has the sign of e
+//! ```
+//!
+//! The root is the speed from which the planned deceleration `a` stops at the reference; near it, where the root is
+//! steep, the proportional law is slower and takes over. Within the tolerance the wheels are released; friction, not
+//! power, holds the robot, and only a lasting error starts it again. A heading loop on the odometry keeps it straight.
+//!
+//! | state | does | leaves when | to |
+//! |---|---|---|---|
+//! | 0 approach | drives, far from the reference | within 5 cm | 1 |
+//! | 1 settle | drives, near the reference | within the tolerance | 2 |
+//! | | | beyond 6 cm | 0 |
+//! | 2 hold | wheels released | error beyond twice the tolerance for 0.15 s | 1 |
+//! | | | beyond 6 cm | 0 |
+//!
+//! The report drives the PWM by the distance, proportional far and PI near, around a PWM at which the robot just moves. Ours closes
+//! the speed loops inside, so the same approach works on any floor and battery, and brakes as late as friction allows.
+
+use super::{Action, Look, Mode, Situation};
+use crate::math::{abs, clamp, max, min, sqrt};
+use crate::params::{ParamId, Params};
+use crate::types::{Drive, Fault, Range, SonarId, TICK_S};
+
+/// Names of the states.
+#[cfg(feature = "names")]
+pub const STATE_NAMES: [&str; 3] = ["approach", "settle", "hold"];
+
+/// Reference before the first command [m], as in the report.
+pub const DEFAULT_M: f32 = 0.30;
+/// Distance error at which *near* begins [m].
+const NEAR_M: f32 = 0.05;
+/// Distance error at which it ends again [m].
+const FAR_M: f32 = 0.06;
+/// Slowest speed that the wheels hold steadily [m/s].
+const CREEP_M_S: f32 = 0.03;
+/// How long an error must last to start the robot again [s].
+const RESTART_S: f32 = 0.15;
+/// Most of the wheels' speed that straightening may take.
+const STEERING_SHARE: f32 = 0.3;
+
+/// Configuration of mode 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrontDistance {
+    /// Reference [m].
+    pub distance_m: f32,
+    /// Largest speed [m/s].
+    pub cruise_m_s: f32,
+    /// Planned deceleration [m/s^2].
+    pub brake_m_s2: f32,
+    /// Speed per error near the reference [1/s].
+    pub kp: f32,
+    /// Error within which the wheels are released [m].
+    pub tolerance_m: f32,
+    /// Yaw rate per heading error [1/s].
+    pub heading_kp: f32,
+    /// Distance between the wheels [m].
+    pub base_m: f32,
+    /// Oldest range to drive on [s].
+    pub stale_s: f32,
+}
+
+/// Where mode 1 stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Phase {
+    #[default]
+    Approach = 0,
+    Settle = 1,
+    Hold = 2,
+}
+
+/// Memory of mode 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct State {
+    phase: Phase,
+    /// Heading at the start [rad].
+    heading_rad: Option<f32>,
+    /// How long the error has been too large to hold [s].
+    off_s: f32,
+}
+
+impl FrontDistance {
+    /// From the parameters.
+    pub fn new(params: &Params, distance_m: f32) -> Self {
+        Self {
+            distance_m,
+            cruise_m_s: params.get(ParamId::FrontCruise),
+            brake_m_s2: params.get(ParamId::FrontBrake),
+            kp: params.get(ParamId::FrontKp),
+            tolerance_m: params.get(ParamId::FrontTolerance),
+            heading_kp: params.get(ParamId::FrontHeading),
+            base_m: params.get(ParamId::Base),
+            stale_s: params.get(ParamId::StaleRange),
+        }
+    }
+
+    fn next_phase(&self, state: &mut State, error_m: f32) -> Phase {
+        let off = abs(error_m);
+        state.off_s = if off > 2.0 * self.tolerance_m {
+            state.off_s + TICK_S
+        } else {
+            0.0
+        };
+        match state.phase {
+            Phase::Approach if off < NEAR_M => Phase::Settle,
+            Phase::Settle | Phase::Hold if off > FAR_M => Phase::Approach,
+            Phase::Settle if off < self.tolerance_m => Phase::Hold,
+            Phase::Hold if state.off_s > RESTART_S => Phase::Settle,
+            phase => phase,
+        }
+    }
+
+    fn speed_m_s(&self, error_m: f32) -> f32 {
+        let off = abs(error_m);
+        let braking = sqrt(2.0 * self.brake_m_s2 * off);
+        let speed = max(min(min(self.cruise_m_s, braking), self.kp * off), CREEP_M_S);
+        if error_m < 0.0 { -speed } else { speed }
+    }
+}
+
+impl Mode for FrontDistance {
+    type State = State;
+
+    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
+        let range = at.estimate.range(SonarId::Front);
+        let range_m = match range.range {
+            Range::Valid(_) if range.age_s > self.stale_s => return Err(Fault::SonarStale),
+            Range::Valid(range_m) => range_m,
+            Range::Clear => return Err(Fault::WallLost),
+            Range::Faulty => return Err(Fault::SonarFaulty),
+        };
+        let error_m = range_m - self.distance_m;
+        state.phase = self.next_phase(state, error_m);
+
+        let heading_rad = at.estimate.pose.heading_rad;
+        let start_rad = *state.heading_rad.get_or_insert(heading_rad);
+        let drive = match state.phase {
+            Phase::Hold => Drive::Release,
+            Phase::Approach | Phase::Settle => {
+                let forward_m_s = self.speed_m_s(error_m);
+                let most = STEERING_SHARE * abs(forward_m_s) / (0.5 * self.base_m);
+                let error_rad = crate::math::wrap_angle(start_rad - heading_rad);
+                Drive::Twist {
+                    forward_m_s,
+                    yaw_rad_s: clamp(self.heading_kp * error_rad, -most, most),
+                }
+            }
+        };
+        let reached = state.phase == Phase::Hold;
+        Ok(Action {
+            drive,
+            look: Look::only(SonarId::Front),
+            state: state.phase as u8,
+            reached,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::Estimate;
+    use crate::types::AgedRange;
+
+    fn estimate(range: Range, age_s: f32) -> Estimate {
+        let mut estimate = Estimate::default();
+        estimate.ranges[SonarId::Front as usize] = AgedRange { range, age_s };
+        estimate
+    }
+
+    fn step(state: &mut State, range: Range, age_s: f32) -> Result<Action, Fault> {
+        let mode = FrontDistance::new(&Params::default(), 0.3);
+        mode.step(
+            state,
+            &Situation {
+                estimate: &estimate(range, age_s),
+            },
+        )
+    }
+
+    fn forward(state: &mut State, range_m: f32) -> f32 {
+        match step(state, Range::Valid(range_m), 0.0).unwrap().drive {
+            Drive::Twist { forward_m_s, .. } => forward_m_s,
+            _ => 0.0,
+        }
+    }
+
+    #[test]
+    fn too_far_drives_forward_and_too_near_backward() {
+        assert!(forward(&mut State::default(), 1.0) > 0.3);
+        assert!(forward(&mut State::default(), 0.15) < -0.2);
+    }
+
+    #[test]
+    fn the_planned_speed_can_be_braked_before_the_reference() {
+        let params = Params::default();
+        let brake = params.get(ParamId::FrontBrake);
+        for millimetres in 2..700u16 {
+            let error_m = f32::from(millimetres) * 1e-3;
+            let v = forward(&mut State::default(), 0.3 + error_m);
+            assert!(
+                v <= CREEP_M_S || v * v / (2.0 * brake) <= error_m * 1.000_1,
+                "{v} m/s at {error_m} m"
+            );
+        }
+    }
+
+    #[test]
+    fn at_the_reference_the_wheels_are_released_and_only_a_lasting_error_starts_them() {
+        let mut state = State::default();
+        step(&mut state, Range::Valid(0.34), 0.0).unwrap();
+        let held = step(&mut state, Range::Valid(0.3005), 0.0).unwrap();
+        assert_eq!(
+            (held.drive, held.reached, held.state),
+            (Drive::Release, true, 2)
+        );
+        for _ in 0..10 {
+            assert_eq!(forward(&mut state, 0.305), 0.0);
+        }
+        assert_eq!(forward(&mut state, 0.3), 0.0);
+        let moved = (0..30).any(|_| forward(&mut state, 0.305) > 0.0);
+        assert!(moved);
+    }
+
+    #[test]
+    fn it_never_drives_on_a_stale_lost_or_absurd_range() {
+        let mut state = State::default();
+        assert_eq!(
+            step(&mut state, Range::Valid(1.0), 0.6),
+            Err(Fault::SonarStale)
+        );
+        assert_eq!(step(&mut state, Range::Clear, 0.0), Err(Fault::WallLost));
+        assert_eq!(
+            step(&mut state, Range::Faulty, 0.0),
+            Err(Fault::SonarFaulty)
+        );
+    }
+
+    #[test]
+    fn it_steers_back_to_the_heading_it_started_with() {
+        let mode = FrontDistance::new(&Params::default(), 0.3);
+        let mut state = State::default();
+        let mut estimate = estimate(Range::Valid(1.0), 0.0);
+        mode.step(
+            &mut state,
+            &Situation {
+                estimate: &estimate,
+            },
+        )
+        .unwrap();
+        estimate.pose.heading_rad = 0.1;
+        match mode
+            .step(
+                &mut state,
+                &Situation {
+                    estimate: &estimate,
+                },
+            )
+            .unwrap()
+            .drive
+        {
+            Drive::Twist { yaw_rad_s, .. } => assert!(yaw_rad_s < 0.0),
+            other => panic!("{other:?}"),
+        }
+    }
+}

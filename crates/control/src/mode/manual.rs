@@ -1,0 +1,182 @@
+//! Mode 0: the basic movements (memoria 1), open loop by duty or closed loop by wheel speed.
+//!
+//! Each movement is a pair of factors for the two wheels: +1 forward, -1 backward, 0 standing, the arcs' inner wheel
+//! at a ratio of the outer one. A pivot moves one wheel alone, so it also serves the tests of section 1: dead zone,
+//! asymmetry and static curve of each wheel and direction, on the floor or in the air.
+//!
+//! | state | when |
+//! |---|---|
+//! | 0 stop | the movement is *stop*: wheels released |
+//! | 1 open loop | a duty is given |
+//! | 2 by speed | a wheel speed is given |
+//!
+//! The report moves open loop only; by speed the two wheels keep their ratio on any floor.
+
+use super::{Action, Level, Look, Mode, Movement, Situation};
+use crate::params::{ParamId, Params};
+use crate::types::{Drive, Fault, Wheels};
+
+/// Names of the states.
+#[cfg(feature = "names")]
+pub const STATE_NAMES: [&str; 3] = ["stop", "open loop", "by speed"];
+
+/// What is asked of mode 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setpoint {
+    /// Which movement.
+    pub movement: Movement,
+    /// How fast the outer wheel turns.
+    pub level: Level,
+}
+
+impl Default for Setpoint {
+    fn default() -> Self {
+        Self {
+            movement: Movement::Stop,
+            level: Level::Duty(0.0),
+        }
+    }
+}
+
+/// Configuration of mode 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Manual {
+    /// What to do.
+    pub setpoint: Setpoint,
+    /// Inner wheel's share in arcs, 0..=1.
+    pub arc_ratio: f32,
+}
+
+impl Manual {
+    /// From the parameters.
+    pub fn new(params: &Params, setpoint: Setpoint) -> Self {
+        Self {
+            setpoint,
+            arc_ratio: params.get(ParamId::ArcRatio),
+        }
+    }
+
+    /// Factors on the level for both wheels.
+    fn factors(&self) -> Wheels<f32> {
+        let inner = self.arc_ratio;
+        let (left, right) = match self.setpoint.movement {
+            Movement::Stop => (0.0, 0.0),
+            Movement::Forward => (1.0, 1.0),
+            Movement::Backward => (-1.0, -1.0),
+            Movement::TurnLeft => (-1.0, 1.0),
+            Movement::TurnRight => (1.0, -1.0),
+            Movement::PivotLeftForward => (0.0, 1.0),
+            Movement::PivotLeftBackward => (0.0, -1.0),
+            Movement::PivotRightForward => (1.0, 0.0),
+            Movement::PivotRightBackward => (-1.0, 0.0),
+            Movement::ArcLeft => (inner, 1.0),
+            Movement::ArcRight => (1.0, inner),
+            Movement::ArcLeftBackward => (-inner, -1.0),
+            Movement::ArcRightBackward => (-1.0, -inner),
+        };
+        Wheels { left, right }
+    }
+}
+
+impl Mode for Manual {
+    type State = ();
+
+    fn step(&self, _: &mut (), _: &Situation) -> Result<Action, Fault> {
+        let factors = self.factors();
+        let (drive, state) = match (self.setpoint.movement, self.setpoint.level) {
+            (Movement::Stop, _) => (Drive::Release, 0),
+            (_, Level::Duty(duty)) => (Drive::Duty(factors.map(|factor| factor * duty)), 1),
+            (_, Level::Speed(rad_s)) => {
+                (Drive::WheelSpeed(factors.map(|factor| factor * rad_s)), 2)
+            }
+        };
+        Ok(Action {
+            drive,
+            look: Look::default(),
+            state,
+            reached: false,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::Estimate;
+
+    fn drive(movement: Movement, level: Level) -> Drive {
+        let manual = Manual::new(&Params::default(), Setpoint { movement, level });
+        manual
+            .step(
+                &mut (),
+                &Situation {
+                    estimate: &Estimate::default(),
+                },
+            )
+            .unwrap()
+            .drive
+    }
+
+    #[test]
+    fn a_pivot_moves_one_wheel_alone() {
+        let duty = |movement| drive(movement, Level::Duty(0.4));
+        assert_eq!(
+            duty(Movement::PivotLeftForward),
+            Drive::Duty(Wheels {
+                left: 0.0,
+                right: 0.4
+            })
+        );
+        assert_eq!(
+            duty(Movement::PivotRightBackward),
+            Drive::Duty(Wheels {
+                left: -0.4,
+                right: 0.0
+            })
+        );
+    }
+
+    #[test]
+    fn an_arc_to_the_left_has_the_left_wheel_inside() {
+        assert_eq!(
+            drive(Movement::ArcLeft, Level::Speed(6.0)),
+            Drive::WheelSpeed(Wheels {
+                left: 3.0,
+                right: 6.0
+            })
+        );
+        assert_eq!(
+            drive(Movement::ArcRight, Level::Speed(6.0)),
+            Drive::WheelSpeed(Wheels {
+                left: 6.0,
+                right: 3.0
+            })
+        );
+    }
+
+    #[test]
+    fn every_movement_backward_is_the_opposite_of_its_twin() {
+        for (forward, backward) in [
+            (Movement::Forward, Movement::Backward),
+            (Movement::TurnLeft, Movement::TurnRight),
+            (Movement::PivotLeftForward, Movement::PivotLeftBackward),
+            (Movement::PivotRightForward, Movement::PivotRightBackward),
+            (Movement::ArcLeft, Movement::ArcLeftBackward),
+            (Movement::ArcRight, Movement::ArcRightBackward),
+        ] {
+            let (Drive::Duty(there), Drive::Duty(back)) = (
+                drive(forward, Level::Duty(0.5)),
+                drive(backward, Level::Duty(0.5)),
+            ) else {
+                panic!("open loop");
+            };
+            assert_eq!(there.map(|duty| duty + 0.0), back.map(|duty| 0.0 - duty));
+        }
+    }
+
+    #[test]
+    fn stop_releases_whatever_the_level() {
+        assert_eq!(drive(Movement::Stop, Level::Duty(1.0)), Drive::Release);
+        assert_eq!(drive(Movement::Stop, Level::Speed(5.0)), Drive::Release);
+    }
+}
