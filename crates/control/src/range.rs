@@ -136,7 +136,7 @@ impl RangeFilter {
         if self.count < 3 {
             return;
         }
-        let middle_m = median(self.recent_m);
+        let middle_m = max(median(self.recent_m), 0.0);
         let Range::Valid(_) = self.range else {
             self.declare(Range::Valid(middle_m), now);
             self.count = 3;
