@@ -65,6 +65,8 @@ pub struct WheelState {
     pub speed_rad_s: f64,
     /// Mean current through the motor over a PWM period, positive for forward torque, A.
     pub current_a: f64,
+    /// Recent speed as the friction remembers it, rad/s, never negative: see [`params::Wheel::friction_memory_s`].
+    pub remembered_rad_s: f64,
     /// Share of the rolled distance lost to slip at this place.
     pub slip: f64,
     command: Command,
@@ -100,6 +102,7 @@ struct WheelModel {
     back_emf_v_s: f64,
     torque_n_m_a: f64,
     inverse_stribeck: f64,
+    forgetting_per_s: f64,
     floor_knots_per_rad: f64,
     slip_knots_per_rad: f64,
 }
@@ -114,6 +117,7 @@ impl Drivetrain {
             back_emf_v_s: motor.back_emf_v_s * wheel.strength,
             torque_n_m_a: motor.back_emf_v_s * wheel.strength * motor.gear_efficiency,
             inverse_stribeck: 1.0 / wheel.stribeck_rad_s,
+            forgetting_per_s: 1.0 / wheel.friction_memory_s,
             floor_knots_per_rad: wheel.radius_m / params.floor.roughness_length_m,
             slip_knots_per_rad: wheel.radius_m / params.floor.slip_length_m,
         };
@@ -136,6 +140,7 @@ impl Drivetrain {
             angle_rad: self.noise.uniform(source::DRIVETRAIN + index, 0),
             speed_rad_s: 0.0,
             current_a: 0.0,
+            remembered_rad_s: 0.0,
             slip: 0.0,
             command: RELEASED,
             floor: Wander::start(&self.noise, source::DRIVETRAIN + 2 + index),
@@ -176,13 +181,12 @@ impl Drivetrain {
         let old = [state.wheels[0].speed_rad_s, state.wheels[1].speed_rad_s];
         let (mut supply_a, mut torque_n_m) = (0.0, [0.0; 2]);
         for i in 0..2 {
-            let wheel = &state.wheels[i];
-            let emf_v = self.wheels[i].back_emf_v_s * wheel.speed_rad_s;
+            let (model, wheel) = (&self.wheels[i], &state.wheels[i]);
+            let emf_v = model.back_emf_v_s * wheel.speed_rad_s;
             let (motor_a, drawn_a) = self.winding.current(&wheel.command, emf_v, supply_v);
             state.wheels[i].current_a = motor_a;
             supply_a += drawn_a;
-            torque_n_m[i] = motor_a * self.wheels[i].torque_n_m_a
-                - self.wheels[i].params.viscous_n_m_s * old[i];
+            torque_n_m[i] = motor_a * model.torque_n_m_a - model.params.viscous_n_m_s * old[i];
         }
         self.battery.draw(&mut state.battery, supply_a, dt_s);
 
@@ -200,7 +204,7 @@ impl Drivetrain {
         let mut wheel_rad = [0.0; 2];
         for i in 0..2 {
             wheel_rad[i] = 0.5 * (old[i] + new[i]) * dt_s;
-            self.roll(i, &mut state.wheels[i], new[i], wheel_rad[i]);
+            self.roll(i, &mut state.wheels[i], new[i], wheel_rad[i], dt_s);
         }
         self.motion(state, wheel_rad)
     }
@@ -218,7 +222,7 @@ impl Drivetrain {
         } else {
             model.params.coulomb_forward_n_m
         };
-        let relative = wheel.speed_rad_s * model.inverse_stribeck;
+        let relative = wheel.remembered_rad_s * model.inverse_stribeck;
         let breakaway = 1.0 + (model.params.static_ratio - 1.0) / (1.0 + relative * relative);
         (own + self.floor_n_m(wheel, turning)) * breakaway
     }
@@ -233,12 +237,15 @@ impl Drivetrain {
     }
 
     /// Moves one wheel on, with the floor and slip at its new place.
-    fn roll(&self, i: usize, wheel: &mut WheelState, speed_rad_s: f64, rolled_rad: f64) {
+    fn roll(&self, i: usize, wheel: &mut WheelState, speed_rad_s: f64, rolled_rad: f64, dt_s: f64) {
+        let model = &self.wheels[i];
         wheel.speed_rad_s = speed_rad_s;
         wheel.angle_rad += rolled_rad;
+        let share = dt_s * model.forgetting_per_s;
+        let share = if share < 1.0 { share } else { 1.0 };
+        wheel.remembered_rad_s += share * (speed_rad_s.abs() - wheel.remembered_rad_s);
         if self.on_floor && rolled_rad != 0.0 {
             let (way, index) = (rolled_rad.abs(), i as u32);
-            let model = &self.wheels[i];
             wheel.floor.advance(
                 way * model.floor_knots_per_rad,
                 &self.noise,

@@ -127,7 +127,7 @@ section! {
     Body {
         /// Mass with battery and electronics (typical of such a kit; the runs do not tell it).
         mass_kg = 0.9, 0.05 => 20.0, "kg";
-        /// Moment of inertia about the vertical axis: m (l^2 + w^2) / 12 of the footprint.
+        /// Moment of inertia about the vertical axis: m (l^2 + w^2) / 12 of the footprint. Identified, also the castor's resistance.
         yaw_inertia_kg_m2 = 0.0047, 1e-5 => 5.0, "kg m2";
         /// Distance between the wheels' contact points (the odometry of the report uses 0.10).
         base_m = 0.10, 0.03 => 1.0, "m";
@@ -172,15 +172,15 @@ section! {
     /// DC gear motor, the same for both wheels; what sets one apart from the other is in its wheel.
     Motor {
         /// Winding resistance.
-        resistance_ohm = 5.0, 0.2 => 50.0, "ohm";
+        resistance_ohm = 4.0, 0.2 => 50.0, "ohm";
         /// Winding inductance.
-        inductance_h = 0.0025, 1e-5 => 0.1, "H";
+        inductance_h = 0.0015, 1e-5 => 0.1, "H";
         /// Back-EMF per wheel speed, equal to the ideal torque per current (V s/rad = N m/A).
         back_emf_v_s = 0.25, 0.01 => 5.0, "V s/rad";
         /// Share of the torque that the gears pass on.
         gear_efficiency = 0.7, 0.1 => 1.0, "1";
-        /// Inertia of rotor, gears and wheel, referred to the wheel: a rotor of 5e-7 kg m2 times 48^2.
-        inertia_kg_m2 = 0.0012, 1e-5 => 0.1, "kg m2";
+        /// Inertia of rotor, gears and wheel, referred to the wheel: a rotor of 6e-7 kg m2 times 48^2.
+        inertia_kg_m2 = 0.0014, 1e-5 => 0.1, "kg m2";
         /// Motor turns per wheel turn.
         gear_ratio = 48.0, 1.0 => 500.0, "1";
     }
@@ -194,15 +194,17 @@ section! {
         /// Back-EMF and torque constants relative to `motor`.
         strength = 1.0, 0.5 => 2.0, "1";
         /// Dry friction of gears and brushes turning forward, referred to the wheel.
-        coulomb_forward_n_m = 0.016, 0.0 => 1.0, "N m";
+        coulomb_forward_n_m = 0.008, 0.0 => 1.0, "N m";
         /// The same turning backward.
-        coulomb_backward_n_m = 0.016, 0.0 => 1.0, "N m";
+        coulomb_backward_n_m = 0.008, 0.0 => 1.0, "N m";
         /// Viscous friction, referred to the wheel.
-        viscous_n_m_s = 0.0005, 0.0 => 0.1, "N m s/rad";
-        /// Breakaway torque over sliding friction.
-        static_ratio = 1.15, 1.0 => 3.0, "1";
-        /// Speed at which that excess has fallen to half (Stribeck).
-        stribeck_rad_s = 0.5, 0.05 => 20.0, "rad/s";
+        viscous_n_m_s = 0.0015, 0.0 => 0.1, "N m s/rad";
+        /// Dry friction after rest, relative to that at speed.
+        static_ratio = 1.8, 1.0 => 3.0, "1";
+        /// Speed at which half of that excess is gone (Stribeck).
+        stribeck_rad_s = 10.0, 0.05 => 50.0, "rad/s";
+        /// Time over which the friction follows the speed: lubricant and tyres remember how fast they went.
+        friction_memory_s = 1.5, 0.001 => 30.0, "s";
     }
 }
 
@@ -222,13 +224,13 @@ section! {
         /// Scale on all floor friction: 1 is the floor of the identified runs.
         friction_scale = 1.0, 0.0 => 5.0, "1";
         /// Dry resistance per wheel when rolling straight: tyres and castor.
-        rolling_n_m = 0.02, 0.0 => 1.0, "N m";
+        rolling_n_m = 0.01, 0.0 => 1.0, "N m";
         /// Dry resistance per wheel added when turning on the spot: scrubbing tyres and castor.
         scrub_n_m = 0.01, 0.0 => 1.0, "N m";
         /// Standard deviation of that resistance along the way, relative.
-        roughness = 0.1, 0.0 => 0.5, "1";
+        roughness = 0.09, 0.0 => 0.5, "1";
         /// Distance over which the floor changes.
-        roughness_length_m = 0.03, 0.001 => 1.0, "m";
+        roughness_length_m = 0.15, 0.001 => 1.0, "m";
         /// Standard deviation of each wheel's slip: distance lost over distance rolled.
         slip = 0.01, 0.0 => 0.2, "1";
         /// Distance rolled over which the slip changes.

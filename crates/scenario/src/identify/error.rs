@@ -1,0 +1,81 @@
+//! What can go wrong between a log and a robot file.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// Why a run could not be identified. Each message names the place and the remedy.
+#[derive(Clone, Debug, PartialEq)]
+pub enum IdentifyError {
+    /// A file cannot be read or is no CSV.
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The cause in the words of the system or the CSV reader.
+        cause: String,
+    },
+    /// The columns are not those of a mode that records PWM.
+    Header {
+        /// The file.
+        path: PathBuf,
+        /// Its header.
+        found: String,
+    },
+    /// A cell of a log is not what it should be.
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// Line, the header being 1.
+        line: u64,
+        /// Name of the column.
+        column: String,
+        /// What the cell holds.
+        value: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// No log shows speeds or a distance ahead.
+    NothingToFit,
+    /// The optimiser failed.
+    Optimiser(String),
+    /// The robot file is no TOML, or its `[plant]` is no table.
+    RobotFile(String),
+    /// A plot could not be written.
+    Plot(String),
+}
+
+impl fmt::Display for IdentifyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Read { path, cause } => write!(f, "{}: {cause}", path.display()),
+            Self::Header { path, found } => write!(
+                f,
+                "{}: no columns dt_ms, pwm_a, pwm_b with speeds or distances in `{found}`; give a log of modes 1 to 7",
+                path.display()
+            ),
+            Self::Value {
+                path,
+                line,
+                column,
+                value,
+                allowed,
+            } => {
+                write!(
+                    f,
+                    "{}, line {line}, column {column}: `{value}`, allowed is {allowed}",
+                    path.display()
+                )
+            }
+            Self::NothingToFit => {
+                write!(
+                    f,
+                    "no log shows wheel speeds (modes 5 to 7) or a wall ahead (modes 1, 2); add one that does"
+                )
+            }
+            Self::Optimiser(cause) => write!(f, "the fit did not converge: {cause}"),
+            Self::RobotFile(cause) => write!(f, "robot file: {cause}"),
+            Self::Plot(cause) => write!(f, "plot: {cause}"),
+        }
+    }
+}
+
+impl std::error::Error for IdentifyError {}

@@ -1,0 +1,297 @@
+//! Recorded runs as identification needs them: duty in, speeds or distance out, on a millisecond grid.
+//!
+//! Reads the original program's CSV; the header tells which mode wrote it. What a row says holds from its time to the
+//! next: the duty was applied then, the speeds are those of the latest completed 50 ms window. Where the applied
+//! reference is zero (modes 5 to 7), the bridge was released whatever the PWM column says.
+
+use super::error::IdentifyError;
+use std::path::Path;
+
+/// Length of the windows in which the original counts encoder edges, ms.
+pub(super) const WINDOW_MS: usize = 50;
+const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;
+
+/// What a run tells about the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Seen {
+    /// Both wheels' speeds (modes 5, 6 and 7).
+    Speeds,
+    /// The distance to a wall straight ahead (modes 1 and 2).
+    FrontRange,
+    /// Nothing of use here (modes 3 and 4: the wall is beside the robot).
+    Nothing,
+}
+
+/// One row of a log.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Time since the log's start, ms.
+    pub at_ms: usize,
+    /// Applied duty of the left and right wheel, -1 to 1; 0 is released.
+    pub duty: [f64; 2],
+    /// Reference of the wheels' speeds, rad/s; zero in modes without.
+    pub reference_rad_s: [f64; 2],
+    /// Measured speed of the left and right wheel, rad/s; zero in modes without.
+    pub speed_rad_s: [f64; 2],
+    /// Measured distance ahead, m; zero in modes without.
+    pub range_m: f64,
+}
+
+impl Row {
+    /// Whether the wheels are asked to go against each other.
+    #[must_use]
+    pub fn is_turning(&self) -> bool {
+        self.reference_rad_s[0] * self.reference_rad_s[1] < 0.0
+    }
+}
+
+/// A recorded run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DriveLog {
+    /// File name without folder.
+    pub name: String,
+    /// What it measured.
+    pub seen: Seen,
+    /// Rows in the order of time.
+    pub rows: Vec<Row>,
+    /// When counting windows end, modulo their length, if the log shows it.
+    pub window_phase_ms: Option<usize>,
+}
+
+impl DriveLog {
+    /// Reads a CSV of the original program.
+    ///
+    /// # Errors
+    /// A file that cannot be read, a header of no mode with PWM, a row with a value that is no number.
+    pub fn read(path: &Path) -> Result<Self, IdentifyError> {
+        let file = std::fs::File::open(path).map_err(|cause| IdentifyError::Read {
+            path: path.into(),
+            cause: cause.to_string(),
+        })?;
+        Self::parse(path, file)
+    }
+
+    /// Reads the same from any source; `path` is for messages and the name.
+    ///
+    /// # Errors
+    /// As [`DriveLog::read`].
+    pub fn parse(path: &Path, source: impl std::io::Read) -> Result<Self, IdentifyError> {
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .from_reader(source);
+        let bad = |error: csv::Error| IdentifyError::Read {
+            path: path.into(),
+            cause: error.to_string(),
+        };
+        let header: Vec<String> = reader
+            .headers()
+            .map_err(bad)?
+            .iter()
+            .map(String::from)
+            .collect();
+        let columns = Columns::find(path, &header)?;
+        let (mut rows, mut at_ms, mut is_front) = (Vec::new(), 0_usize, false);
+        for record in reader.records() {
+            let record = record.map_err(bad)?;
+            let fields = Fields {
+                path,
+                header: &header,
+                record: &record,
+            };
+            at_ms += fields.duration_ms(columns.dt)?;
+            rows.push(columns.row(&fields, at_ms)?);
+            is_front = columns.is_front(&fields)?;
+        }
+        if rows.len() < 2 {
+            return Err(IdentifyError::Read {
+                path: path.into(),
+                cause: "fewer than two rows".into(),
+            });
+        }
+        let seen = match columns.signals {
+            Signals::Speeds { .. } => Seen::Speeds,
+            Signals::Ranges { .. } if is_front => Seen::FrontRange,
+            Signals::Ranges { .. } => Seen::Nothing,
+        };
+        let name = path
+            .file_name()
+            .map_or_else(|| "log".into(), |name| name.to_string_lossy().into_owned());
+        let window_phase_ms = if seen == Seen::Speeds {
+            window_phase_ms(&rows)
+        } else {
+            None
+        };
+        Ok(Self {
+            name,
+            seen,
+            rows,
+            window_phase_ms,
+        })
+    }
+
+    /// When the counting window ended whose speed a row shows, ms. Unknown phases count as half a window old.
+    #[must_use]
+    pub fn window_end_ms(&self, row: &Row) -> usize {
+        let age_ms = self.window_phase_ms.map_or(WINDOW_MS / 2, |phase_ms| {
+            (row.at_ms + WINDOW_MS - phase_ms) % WINDOW_MS
+        });
+        row.at_ms.saturating_sub(age_ms)
+    }
+
+    /// Length of the run, ms.
+    #[must_use]
+    pub fn duration_ms(&self) -> usize {
+        self.rows.last().map_or(0, |row| row.at_ms)
+    }
+}
+
+/// The phase of the counting windows: rows within one window must show the same speeds. `None` if the rows are too
+/// far apart to tell.
+fn window_phase_ms(rows: &[Row]) -> Option<usize> {
+    let contradictions = |phase_ms: usize| {
+        let window = |row: &Row| (row.at_ms + WINDOW_MS - phase_ms) / WINDOW_MS;
+        rows.windows(2)
+            .filter(|pair| {
+                window(&pair[0]) == window(&pair[1]) && pair[0].speed_rad_s != pair[1].speed_rad_s
+            })
+            .count()
+    };
+    let counts: Vec<usize> = (0..WINDOW_MS).map(contradictions).collect();
+    let (least, most) = (*counts.iter().min()?, *counts.iter().max()?);
+    // A phase shows if the wrong ones are refuted by many rows and the right one by few.
+    if most < 20 || least * 4 > most {
+        return None;
+    }
+    // Rows in step with the windows leave a stretch of phases; its middle is the best guess.
+    let holds = |phase_ms: usize| counts[phase_ms % WINDOW_MS] == least;
+    let first =
+        (0..WINDOW_MS).find(|&phase_ms| holds(phase_ms) && !holds(phase_ms + WINDOW_MS - 1))?;
+    let length = (first..first + WINDOW_MS)
+        .take_while(|&phase_ms| holds(phase_ms))
+        .count();
+    Some((first + (length - 1) / 2) % WINDOW_MS)
+}
+
+/// Where the columns of a mode are.
+struct Columns {
+    dt: usize,
+    mode: Option<usize>,
+    /// Left and right; motor A of the report is the right one.
+    pwm: [usize; 2],
+    signals: Signals,
+}
+
+enum Signals {
+    Speeds {
+        speed: [usize; 2],
+        reference: [usize; 2],
+    },
+    Ranges {
+        range: [usize; 2],
+        reference: usize,
+    },
+}
+
+impl Columns {
+    fn find(path: &Path, header: &[String]) -> Result<Self, IdentifyError> {
+        let find = |name: &str| header.iter().position(|column| column == name);
+        let pair = |left: &str, right: &str| Some([find(left)?, find(right)?]);
+        let signals = || {
+            if let Some(speed) = pair("speed_b_rpm", "speed_a_rpm") {
+                let both = find("reference_rpm").map(|column| [column, column]);
+                let reference = both.or_else(|| pair("reference_b_rpm", "reference_a_rpm"))?;
+                return Some(Signals::Speeds { speed, reference });
+            }
+            Some(Signals::Ranges {
+                range: pair("left_cm", "right_cm")?,
+                reference: find("reference_cm")?,
+            })
+        };
+        let columns = || {
+            Some(Self {
+                dt: find("dt_ms")?,
+                mode: find("mode"),
+                pwm: pair("pwm_b", "pwm_a")?,
+                signals: signals()?,
+            })
+        };
+        columns().ok_or_else(|| IdentifyError::Header {
+            path: path.into(),
+            found: header.join(","),
+        })
+    }
+
+    /// Whether the distances are to a wall ahead: modes 1 and 2.
+    fn is_front(&self, fields: &Fields<'_>) -> Result<bool, IdentifyError> {
+        let mode = self.mode.map_or(Ok(0.0), |column| fields.number(column))?;
+        Ok(mode == 1.0 || mode == 2.0)
+    }
+
+    fn row(&self, fields: &Fields<'_>, at_ms: usize) -> Result<Row, IdentifyError> {
+        let pair =
+            |columns: [usize; 2]| Ok([fields.number(columns[0])?, fields.number(columns[1])?]);
+        let pwm = pair(self.pwm)?;
+        let is_front = self.is_front(fields)?;
+        let mut row = Row {
+            at_ms,
+            duty: pwm.map(|pwm| (pwm / 255.0).clamp(-1.0, 1.0)),
+            reference_rad_s: [0.0; 2],
+            speed_rad_s: [0.0; 2],
+            range_m: 0.0,
+        };
+        match self.signals {
+            Signals::Speeds { speed, reference } => {
+                row.speed_rad_s = pair(speed)?.map(|rpm| rpm * RAD_S_PER_RPM);
+                row.reference_rad_s = pair(reference)?.map(|rpm| rpm * RAD_S_PER_RPM);
+                for (duty, reference) in row.duty.iter_mut().zip(row.reference_rad_s) {
+                    if reference == 0.0 {
+                        *duty = 0.0;
+                    }
+                }
+            }
+            Signals::Ranges { range, reference } => {
+                row.range_m = pair(range)?.iter().sum::<f64>() / 200.0;
+                // These modes log the PWM without its sign: too near a wall ahead is backward. Beside a wall they only
+                // go forward.
+                if is_front && row.range_m < fields.number(reference)? / 100.0 {
+                    row.duty = row.duty.map(|duty| -duty);
+                }
+            }
+        }
+        Ok(row)
+    }
+}
+
+/// One record with what a message about it needs.
+struct Fields<'a> {
+    path: &'a Path,
+    header: &'a [String],
+    record: &'a csv::StringRecord,
+}
+
+impl Fields<'_> {
+    fn number(&self, column: usize) -> Result<f64, IdentifyError> {
+        let text = self.record.get(column).unwrap_or_default();
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(self.error(column, "a number")),
+        }
+    }
+
+    fn duration_ms(&self, column: usize) -> Result<usize, IdentifyError> {
+        match self.number(column)? {
+            value if (0.0..=600_000.0).contains(&value) => Ok(value.round() as usize),
+            _ => Err(self.error(column, "0 to 600000 ms")),
+        }
+    }
+
+    fn error(&self, column: usize, allowed: &'static str) -> IdentifyError {
+        IdentifyError::Value {
+            path: self.path.into(),
+            line: self.record.position().map_or(0, csv::Position::line),
+            column: self.header[column].clone(),
+            value: self.record.get(column).unwrap_or_default().into(),
+            allowed,
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Identification in words: tables for a terminal.
+
+use super::fit::{Check, Identification};
+use super::score::{RunScore, WheelError};
+use std::fmt;
+
+impl fmt::Display for Identification {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{:<42}{:>10}  {:>10}  {:<12}told by the runs",
+            "parameter", "value", "+- 1 sd", "unit"
+        )?;
+        for parameter in &self.parameters {
+            let unit = if parameter.unit == "1" {
+                ""
+            } else {
+                &parameter.unit
+            };
+            let (value, uncertainty) = (
+                significant(parameter.value),
+                significant(parameter.uncertainty),
+            );
+            let share = 100.0 * parameter.told_by_runs;
+            for key in &parameter.keys {
+                writeln!(
+                    f,
+                    "{key:<42}{value:>10}  {uncertainty:>10}  {unit:<12}{share:.0} %"
+                )?;
+            }
+        }
+        writeln!(
+            f,
+            "wheels start to turn at PWM {:.0} in the air, {:.0} on the floor",
+            self.dead_zone_air_pwm, self.dead_zone_floor_pwm
+        )?;
+        self.runs.iter().try_for_each(|run| write!(f, "{run}"))
+    }
+}
+
+impl fmt::Display for Check {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.runs.iter().try_for_each(|run| write!(f, "{run}"))
+    }
+}
+
+impl fmt::Display for RunScore {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "\n{}: battery {:.2} V, floor friction x {:.2}",
+            self.name, self.nuisance.battery_v, self.nuisance.floor_scale
+        )?;
+        if let Some(range_rmse_m) = self.range_rmse_m {
+            writeln!(
+                f,
+                "  distance to the wall: RMSE {:.1} cm",
+                100.0 * range_rmse_m
+            )?;
+        }
+        for (what, wheels) in [
+            ("whole run, open loop", &self.whole),
+            ("  straight stretches", &self.whole_straight),
+            ("  turns on the spot", &self.whole_turning),
+            ("0.5 s ahead", &self.ahead),
+            ("  straight stretches", &self.ahead_straight),
+            ("  turns on the spot", &self.ahead_turning),
+        ] {
+            if let Some([left, right]) = wheels {
+                writeln!(
+                    f,
+                    "  {what:<24}left {}  right {}",
+                    words(left),
+                    words(right)
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn words(error: &WheelError) -> String {
+    format!("RMSE {:>5.2} rpm, R^2 {:>6.3}", error.rmse_rpm, error.r2)
+}
+
+/// Four significant digits.
+#[must_use]
+pub(super) fn significant(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let digits = 3 - value.abs().log10().floor() as i32;
+    let scale = 10_f64.powi(digits);
+    format!("{}", (value * scale).round() / scale)
+}

@@ -1,0 +1,138 @@
+//! How well a plant repeats a run: RMSE and R^2 per wheel, whole run and half a second ahead.
+
+use super::log::{DriveLog, Row, Seen};
+use super::replay::{Nuisance, Replay, Trace};
+use rumbo_plant::params::Params;
+use serde::Serialize;
+
+const RPM_PER_RAD_S: f64 = 30.0 / std::f64::consts::PI;
+
+/// Error of one wheel, or of both; rpm.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct WheelError {
+    /// Root mean square over the rows, rpm.
+    pub rmse_rpm: f64,
+    /// Share of the variance explained; negative if the mean would do better.
+    pub r2: f64,
+    /// Rows compared.
+    pub rows: usize,
+}
+
+/// Errors of one run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunScore {
+    /// Name of the log.
+    pub name: String,
+    /// The two values fitted for this run alone.
+    pub nuisance: Nuisance,
+    /// Whole run replayed open loop from rest: left, right wheel. `None` for runs without speeds.
+    pub whole: Option<[WheelError; 2]>,
+    /// The same over rows in which both wheels are asked to go the same way.
+    pub whole_straight: Option<[WheelError; 2]>,
+    /// The same over rows in which the wheels are asked to turn against each other.
+    pub whole_turning: Option<[WheelError; 2]>,
+    /// Half a second ahead from measured speeds.
+    pub ahead: Option<[WheelError; 2]>,
+    /// Half a second ahead, rows as in `whole_straight`.
+    pub ahead_straight: Option<[WheelError; 2]>,
+    /// Half a second ahead, rows as in `whole_turning`.
+    pub ahead_turning: Option<[WheelError; 2]>,
+    /// Distance to the wall ahead, RMS over the rows, m. `None` for runs without it.
+    pub range_rmse_m: Option<f64>,
+}
+
+/// Replays a run and compares.
+#[must_use]
+pub(super) fn score(log: &DriveLog, params: &Params, nuisance: Nuisance) -> RunScore {
+    let replay = Replay::new(log, params, nuisance);
+    let mut score = RunScore {
+        name: log.name.clone(),
+        nuisance,
+        whole: None,
+        whole_straight: None,
+        whole_turning: None,
+        ahead: None,
+        ahead_straight: None,
+        ahead_turning: None,
+        range_rmse_m: None,
+    };
+    match log.seen {
+        Seen::Nothing => {}
+        Seen::FrontRange => {
+            let trace = replay.whole();
+            let start_m = start_range_m(log, &trace);
+            let squares = log
+                .rows
+                .iter()
+                .map(|row| (start_m - trace.way_m[row.at_ms] - row.range_m).powi(2));
+            score.range_rmse_m = Some((squares.sum::<f64>() / log.rows.len() as f64).sqrt());
+        }
+        Seen::Speeds => {
+            let simulated = replay.speeds(&replay.whole());
+            let whole: Vec<Pair> = log.rows.iter().zip(simulated).collect();
+            let ahead: Vec<Pair> = (0..log.rows.len())
+                .filter_map(|index| replay.ahead(index))
+                .map(|(target, speeds)| (&log.rows[target], speeds))
+                .collect();
+            score.whole = errors(&whole, |_| true);
+            score.whole_straight = errors(&whole, |row| !row.is_turning());
+            score.whole_turning = errors(&whole, Row::is_turning);
+            score.ahead = errors(&ahead, |_| true);
+            score.ahead_straight = errors(&ahead, |row| !row.is_turning());
+            score.ahead_turning = errors(&ahead, Row::is_turning);
+        }
+    }
+    score
+}
+
+/// A measured row with the speeds simulated for it, rad/s.
+type Pair<'a> = (&'a Row, [f64; 2]);
+
+fn errors(pairs: &[Pair<'_>], choose: impl Fn(&Row) -> bool) -> Option<[WheelError; 2]> {
+    let chosen: Vec<&Pair<'_>> = pairs.iter().filter(|(row, _)| choose(row)).collect();
+    let wheel = |i: usize| {
+        let n = chosen.len() as f64;
+        let mean = chosen
+            .iter()
+            .map(|(row, _)| row.speed_rad_s[i])
+            .sum::<f64>()
+            / n;
+        let variance = chosen
+            .iter()
+            .map(|(row, _)| (row.speed_rad_s[i] - mean).powi(2))
+            .sum::<f64>()
+            / n;
+        let square = chosen
+            .iter()
+            .map(|(row, speed)| (row.speed_rad_s[i] - speed[i]).powi(2))
+            .sum::<f64>()
+            / n;
+        let r2 = if variance > 0.0 {
+            1.0 - square / variance
+        } else {
+            0.0
+        };
+        WheelError {
+            rmse_rpm: square.sqrt() * RPM_PER_RAD_S,
+            r2,
+            rows: chosen.len(),
+        }
+    };
+    if chosen.is_empty() {
+        None
+    } else {
+        Some([wheel(0), wheel(1)])
+    }
+}
+
+/// The distance at the start that fits a trace best: the median of distance plus way.
+#[must_use]
+pub(super) fn start_range_m(log: &DriveLog, trace: &Trace) -> f64 {
+    let mut starts: Vec<f64> = log
+        .rows
+        .iter()
+        .map(|row| row.range_m + trace.way_m[row.at_ms])
+        .collect();
+    starts.sort_by(f64::total_cmp);
+    starts[starts.len() / 2]
+}

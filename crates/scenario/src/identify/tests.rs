@@ -1,0 +1,295 @@
+use super::problem::dead_zone_pwm;
+use super::*;
+use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side};
+use rumbo_plant::noise::Noise;
+use rumbo_plant::params::Params;
+use std::fmt::Write as _;
+use std::path::Path;
+
+const RPM: f64 = 30.0 / std::f64::consts::PI;
+
+/// A run of mode 5 in the original's format: a plant under this PWM (left and right, changed every 41 ms), its edges
+/// counted in 50 ms windows.
+fn recorded(params: &Params, pwm: impl Fn(f64) -> [f64; 2], seconds: f64) -> String {
+    let mut params = *params;
+    params.floor.roughness = 0.0;
+    params.floor.slip = 0.0;
+    let drivetrain = Drivetrain::new(&params, Noise::new(3, 0), true);
+    let mut state = drivetrain.start();
+    let edges = |state: &rumbo_plant::drivetrain::State| {
+        state
+            .wheels
+            .map(|wheel| (wheel.angle_rad * 384.0 / std::f64::consts::TAU).floor())
+    };
+    let mut text = String::from("dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b\n");
+    let (mut counted, mut speed_rpm) = (edges(&state), [0.0; 2]);
+    for ms in 0..(seconds * 1000.0) as usize {
+        if ms % 50 == 7 {
+            let now = edges(&state);
+            speed_rpm = [0, 1].map(|i| (now[i] - counted[i]) * 3.125);
+            counted = now;
+        }
+        if ms % 41 == 0 {
+            let [left, right] = pwm(ms as f64 / 1000.0);
+            for (side, pwm) in [(Side::Left, left), (Side::Right, right)] {
+                let duty = pwm.abs() / 255.0;
+                let bridge = if pwm < 0.0 {
+                    Bridge::Backward(duty)
+                } else {
+                    Bridge::Forward(duty)
+                };
+                drivetrain.set_bridge(&mut state, side, bridge);
+            }
+            if ms > 0 {
+                let [speed_left, speed_right] = speed_rpm;
+                let reference = if left == 0.0 { 0 } else { 60 };
+                writeln!(
+                    text,
+                    "41,{speed_right},{speed_left},{reference},5,{right},{left}"
+                )
+                .unwrap();
+            }
+        }
+        drivetrain.step(&mut state, 0.001, [0.0; 2]);
+    }
+    text
+}
+
+/// Steps up and down, a stop, and backward.
+fn exercise(at_s: f64) -> [f64; 2] {
+    match (at_s / 1.5) as usize {
+        0 => [85.0, 90.0],
+        1 => [110.0, 105.0],
+        2 => [80.0, 78.0],
+        3 => [0.0, 0.0],
+        4 => [-100.0, -95.0],
+        _ => [-80.0, -85.0],
+    }
+}
+
+fn log(text: &str) -> DriveLog {
+    DriveLog::parse(Path::new("runs/test.csv"), text.as_bytes()).unwrap()
+}
+
+fn message(text: &str) -> String {
+    DriveLog::parse(Path::new("runs/test.csv"), text.as_bytes())
+        .unwrap_err()
+        .to_string()
+}
+
+#[test]
+fn a_zero_reference_is_a_released_bridge_and_motor_a_is_the_right_one() {
+    let log = log(
+        "dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b\n41,30,60,60,5,51,102\n41,30,60,0,5,-38,-35\n",
+    );
+    assert_eq!(log.rows[0].duty, [0.4, 0.2]);
+    assert!((log.rows[0].speed_rad_s[0] * RPM - 60.0).abs() < 1e-9);
+    assert_eq!(log.rows[1].duty, [0.0, 0.0]);
+    assert_eq!(log.rows[1].at_ms, 82);
+}
+
+#[test]
+fn mode_1_logs_no_sign_and_too_near_is_backward() {
+    let log = log(
+        "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n69,107,107,30,1,102,102\n64,30,30,50,1,51,51\n",
+    );
+    assert_eq!(log.rows[0].duty, [0.4, 0.4]);
+    assert_eq!(log.rows[1].duty, [-0.2, -0.2]);
+    assert_eq!(log.rows[0].range_m, 1.07);
+}
+
+#[test]
+fn a_bad_cell_names_file_line_column_and_value() {
+    let text = "dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b\n41,0,0,60,5,114,110\n40,fast,0,60,5,1,1\n";
+    assert_eq!(
+        message(text),
+        "runs/test.csv, line 3, column speed_a_rpm: `fast`, allowed is a number"
+    );
+    let text =
+        "dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b\n-41,0,0,60,5,114,110\n";
+    assert!(message(text).contains("line 2, column dt_ms: `-41`"));
+    assert!(message("time,x\n1,2\n").contains("no columns dt_ms, pwm_a, pwm_b"));
+    assert!(
+        message("dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b\n")
+            .contains("two rows")
+    );
+}
+
+#[test]
+fn the_rows_tell_when_the_counting_windows_end() {
+    let log = log(&recorded(&Params::default(), exercise, 9.0));
+    assert_eq!(log.window_phase_ms, Some(7));
+}
+
+#[test]
+fn a_run_of_a_known_plant_is_repeated_by_it() {
+    let params = Params::default();
+    let run = [log(&recorded(&params, exercise, 9.0))];
+    let check = check(&run, &params).unwrap();
+    let nuisance = check.runs[0].nuisance;
+    assert!(
+        (nuisance.battery_v - params.battery.open_circuit_v).abs() < 0.3,
+        "{nuisance:?}"
+    );
+    for error in check.runs[0].whole.unwrap() {
+        // One count per window is 3.125 rpm: rounding alone leaves 1.3 rpm.
+        assert!(error.rmse_rpm < 2.0, "{error:?}");
+        assert!(error.r2 > 0.99);
+    }
+}
+
+#[test]
+fn an_empty_battery_is_told_from_a_full_one() {
+    let mut params = Params::default();
+    let volts = [6.9, 8.2].map(|volts| {
+        params.battery.open_circuit_v = volts;
+        let run = [log(&recorded(&params, exercise, 9.0))];
+        check(&run, &Params::default()).unwrap().runs[0]
+            .nuisance
+            .battery_v
+    });
+    assert!(volts[1] - volts[0] > 0.9, "{volts:?}");
+}
+
+#[test]
+fn a_plant_with_other_parameters_is_found_from_its_run() {
+    let mut other = Params::default();
+    other.wheels.left.coulomb_forward_n_m *= 1.5;
+    other.wheels.right.viscous_n_m_s *= 0.7;
+    other.wheels.left.viscous_n_m_s *= 0.7;
+    other.motor.inertia_kg_m2 *= 1.4;
+    let run = [log(&recorded(&other, exercise, 9.0))];
+    let before = check(&run, &Params::default()).unwrap();
+    let found = identify(&run, &Params::default(), 0).unwrap();
+    let (before, after) = (before.runs[0].whole.unwrap(), found.runs[0].whole.unwrap());
+    for i in 0..2 {
+        assert!(
+            after[i].rmse_rpm < before[i].rmse_rpm && after[i].rmse_rpm < 2.5,
+            "{before:?} {after:?}"
+        );
+    }
+    assert_eq!(found.params.check(), Ok(()));
+    assert!(
+        found
+            .parameters
+            .iter()
+            .all(|parameter| parameter.uncertainty > 0.0)
+    );
+    let left = found.params.wheels.left.coulomb_forward_n_m;
+    assert!(
+        left > found.params.wheels.right.coulomb_forward_n_m,
+        "the left wheel was made harder to turn"
+    );
+}
+
+#[test]
+fn a_log_that_tells_nothing_about_driving_is_refused() {
+    let side = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n70,58,57,57,3,74,70\n70,58,57,57,3,74,70\n";
+    assert_eq!(
+        check(&[log(side)], &Params::default()).unwrap_err(),
+        IdentifyError::NothingToFit
+    );
+}
+
+fn identification() -> Identification {
+    Identification {
+        params: Params::default(),
+        parameters: vec![
+            Identified {
+                keys: vec!["motor.back_emf_v_s".into()],
+                value: 0.243_187,
+                uncertainty: 0.01,
+                unit: "V s/rad".into(),
+                told_by_runs: 0.9,
+            },
+            Identified {
+                keys: vec![
+                    "wheels.left.static_ratio".into(),
+                    "wheels.right.static_ratio".into(),
+                ],
+                value: 1.5,
+                uncertainty: 0.1,
+                unit: "1".into(),
+                told_by_runs: 0.9,
+            },
+        ],
+        dead_zone_air_pwm: 35.0,
+        dead_zone_floor_pwm: 65.0,
+        runs: vec![],
+    }
+}
+
+#[test]
+fn rewriting_touches_the_plant_only_and_keeps_comments() {
+    let text = "# Top\ntitle = \"x\"\n\n# About the plant\n[plant.motor]\n# Why this\nback_emf_v_s = 0.3 # measured\n\
+                resistance_ohm = 5.0\n\n[parameters]\nspeed = 1 # keep\n";
+    let once = rewrite(text, &identification(), "2026-11-21").unwrap();
+    assert!(once.starts_with("# Top\ntitle = \"x\"\n"));
+    assert!(
+        once.contains("# Why this\nback_emf_v_s = 0.2432 # measured\nresistance_ohm = 5.0\n"),
+        "{once}"
+    );
+    assert!(once.contains("# About the plant\n# Identified by `rumbo identify` on 2026-11-21"));
+    assert!(once.contains("[parameters]\nspeed = 1 # keep\n"));
+    assert!(
+        once.contains("[plant.wheels.left]\nstatic_ratio = 1.5"),
+        "{once}"
+    );
+
+    let twice = rewrite(&once, &identification(), "2027-01-01").unwrap();
+    assert_eq!(once.replace("2026-11-21", "2027-01-01"), twice);
+}
+
+#[test]
+fn a_robot_file_whose_plant_is_no_table_is_refused() {
+    let error = rewrite("plant = 3\n", &identification(), "today").unwrap_err();
+    assert!(error.to_string().contains("no [table]"), "{error}");
+}
+
+#[test]
+fn plots_are_written_as_svg_and_png() {
+    let log = log(&recorded(&Params::default(), exercise, 3.0));
+    let folder = std::env::temp_dir().join(format!("rumbo-plot-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let nuisance = Nuisance {
+        battery_v: 7.4,
+        floor_scale: 1.0,
+    };
+    let paths = plot(&log, &Params::default(), nuisance, &folder).unwrap();
+    let svg = std::fs::read_to_string(&paths[0]).unwrap();
+    let png = std::fs::read(&paths[1]).unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(
+        ["measured", "simulated", "left wheel", "right wheel"]
+            .iter()
+            .all(|word| svg.contains(word))
+    );
+    assert!(png.starts_with(b"\x89PNG") && png.len() > 10_000);
+}
+
+/// The project's robot on the real robot's runs; needs them in the folder `RUMBO_DATA`.
+#[test]
+fn the_identified_robot_repeats_the_real_runs() {
+    let Some(folder) = std::env::var_os("RUMBO_DATA") else {
+        return;
+    };
+    let run = |name: &str| DriveLog::read(&Path::new(&folder).join(name)).unwrap();
+    let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/memoria.toml");
+    let file: toml::Table = std::fs::read_to_string(robot).unwrap().parse().unwrap();
+    let params: Params = file["plant"].clone().try_into().unwrap();
+    let check = check(
+        &[run("mode5_wheel_speed.csv"), run("mode7_square.csv")],
+        &params,
+    )
+    .unwrap();
+    for i in 0..2 {
+        assert!(check.runs[0].whole.unwrap()[i].rmse_rpm < 7.0, "{check}");
+        assert!(check.runs[0].ahead.unwrap()[i].rmse_rpm < 5.0, "{check}");
+        assert!(
+            check.runs[1].whole_straight.unwrap()[i].rmse_rpm < 12.0,
+            "{check}"
+        );
+    }
+    assert!((32.0..38.0).contains(&dead_zone_pwm(&params, false)));
+    assert!((60.0..70.0).contains(&dead_zone_pwm(&params, true)));
+}
