@@ -85,8 +85,8 @@ export class CommandPanel {
     if (!this.#inForce) return;
     const entry = this.#entries.find((each) => each.id === this.#shown);
     const [left, right] = state.robot.reference;
-    if (entry?.reference === 'distance') setText(this.#inForce, `now ${format(left * CM_PER_M)} cm`);
-    if (entry?.reference === 'wheel_speed') {
+    if (entry?.reference?.kind === 'distance') setText(this.#inForce, `now ${format(left * CM_PER_M)} cm`);
+    if (entry?.reference?.kind === 'wheel_speed') {
       setText(this.#inForce, `now ${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)} rpm`);
     }
   }
@@ -95,8 +95,9 @@ export class CommandPanel {
   #layOut(mode) {
     this.#movements.hidden = !mode?.movements;
     this.#inForce = create('output', { className: 'hint' });
-    if (mode?.reference === 'distance') this.#layOutDistance();
-    else if (mode?.reference === 'wheel_speed') this.#layOutSpeeds();
+    const reference = mode?.reference;
+    if (reference?.kind === 'distance') this.#layOutDistance(reference.min * CM_PER_M, reference.max * CM_PER_M);
+    else if (reference?.kind === 'wheel_speed') this.#layOutSpeeds(reference.min * RPM_PER_RAD_S, reference.max * RPM_PER_RAD_S);
     else {
       this.#inForce = null;
       this.#reference.replaceChildren();
@@ -104,8 +105,12 @@ export class CommandPanel {
     }
   }
 
-  #layOutDistance() {
-    const input = number('reference-cm', 30, 1, 250, 'any');
+  /**
+   * @param {number} min_cm
+   * @param {number} max_cm
+   */
+  #layOutDistance(min_cm, max_cm) {
+    const input = number('reference-cm', 30, min_cm, max_cm);
     this.#reference.replaceChildren(create('label', {}, 'reference ', input, ' cm'), submit('Set'), this.#inForce ?? '');
     this.#reference.onsubmit = (event) => {
       event.preventDefault();
@@ -113,9 +118,13 @@ export class CommandPanel {
     };
   }
 
-  #layOutSpeeds() {
-    const left = number('reference-left-rpm', 60, -200, 200, 'any');
-    const right = number('reference-right-rpm', 60, -200, 200, 'any');
+  /**
+   * @param {number} min_rpm
+   * @param {number} max_rpm
+   */
+  #layOutSpeeds(min_rpm, max_rpm) {
+    const left = number('reference-left-rpm', 60, min_rpm, max_rpm);
+    const right = number('reference-right-rpm', 60, min_rpm, max_rpm);
     const both = create('input', { type: 'checkbox', id: 'reference-both', checked: true });
     const tie = () => {
       right.disabled = both.checked;
@@ -135,12 +144,12 @@ export class CommandPanel {
   }
 
   #layOutMovements() {
-    const level = number('level', 35, 0, 100, 'any');
+    const level = number('level', 35, 0, 100);
     const unit = create('select', { id: 'level-unit', title: 'Open loop by PWM, or closed loop by speed' },
       create('option', { value: 'duty', textContent: '% PWM' }), create('option', { value: 'speed', textContent: 'rpm' }));
     unit.addEventListener('change', () => {
       const duty = unit.value === 'duty';
-      level.max = duty ? '100' : '200';
+      level.max = duty ? '100' : '190';
       level.value = duty ? '35' : '60';
     });
     const pad = create('div', { className: 'pad' }, ...MOVEMENTS.map(({ id, sign, name }) => {
@@ -162,10 +171,9 @@ export class CommandPanel {
  * @param {number} value
  * @param {number} min
  * @param {number} max
- * @param {string} step
  */
-function number(id, value, min, max, step) {
-  return create('input', { type: 'number', id, value: String(value), min: String(min), max: String(max), step, required: true });
+function number(id, value, min, max) {
+  return create('input', { type: 'number', id, value: String(value), min: String(Math.ceil(min * 10) / 10), max: String(Math.floor(max * 10) / 10), step: 'any', required: true });
 }
 
 /** @param {string} text */

@@ -7,7 +7,7 @@
  * @typedef {object} ModeEntry
  * @property {number} id
  * @property {string} name
- * @property {'distance' | 'wheel_speed' | null} reference What its reference is [m or rad/s].
+ * @property {{kind: 'distance' | 'wheel_speed', min: number, max: number} | null} reference What its reference is [m or rad/s].
  * @property {boolean} movements Takes basic movements.
  * @property {string[]} states
  *

@@ -34,7 +34,7 @@ pub(crate) enum Level {
 /// Something that happened, as people read it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct LoggedEvent {
-    /// Session time [s].
+    /// Session time \[s\].
     pub(crate) t_s: f64,
     pub(crate) level: Level,
     /// What happened, with its cause.

@@ -1,6 +1,6 @@
 //! What there is to choose and to set: modes, movements and parameters, as the page gets them.
 
-use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::mode::{MAX_DISTANCE_M, MAX_WHEEL_RAD_S, MIN_DISTANCE_M, ModeId};
 use rumbo_control::params::{Limits, ParamId};
 use serde::Serialize;
 
@@ -62,19 +62,27 @@ pub(crate) struct ModeEntry {
     id: u8,
     name: &'static str,
     /// What its reference is, if it takes one.
-    reference: Option<ReferenceKind>,
+    reference: Option<Reference>,
     /// Takes basic movements.
     movements: bool,
     states: &'static [&'static str],
 }
 
-/// What a mode's reference is.
+/// A mode's reference.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Reference {
+    kind: ReferenceKind,
+    min: f32,
+    max: f32,
+}
+
+/// What a mode's reference is, in SI units.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum ReferenceKind {
-    /// A distance [m].
+    /// A distance in metres.
     Distance,
-    /// A speed of each wheel [rad/s].
+    /// A speed of each wheel in rad/s.
     WheelSpeed,
 }
 
@@ -89,34 +97,18 @@ fn mode_entry(mode: ModeId) -> ModeEntry {
         name: mode.name(),
         reference: match mode {
             ModeId::Manual => None,
-            ModeId::FrontDistance => Some(ReferenceKind::Distance),
-            ModeId::WheelSpeed => Some(ReferenceKind::WheelSpeed),
+            ModeId::FrontDistance => Some(Reference {
+                kind: ReferenceKind::Distance,
+                min: MIN_DISTANCE_M,
+                max: MAX_DISTANCE_M,
+            }),
+            ModeId::WheelSpeed => Some(Reference {
+                kind: ReferenceKind::WheelSpeed,
+                min: -MAX_WHEEL_RAD_S,
+                max: MAX_WHEEL_RAD_S,
+            }),
         },
         movements: mode == ModeId::Manual,
-        states: &[],
+        states: mode.state_names(),
     }
-}
-
-/// The movements of mode 0.
-const MOVEMENTS: [Movement; 13] = [
-    Movement::Stop,
-    Movement::Forward,
-    Movement::Backward,
-    Movement::TurnLeft,
-    Movement::TurnRight,
-    Movement::PivotLeftForward,
-    Movement::PivotLeftBackward,
-    Movement::PivotRightForward,
-    Movement::PivotRightBackward,
-    Movement::ArcLeft,
-    Movement::ArcRight,
-    Movement::ArcLeftBackward,
-    Movement::ArcRightBackward,
-];
-
-/// The movement with this number.
-pub(crate) fn movement(number: u8) -> Option<Movement> {
-    MOVEMENTS
-        .into_iter()
-        .find(|movement| *movement as u8 == number)
 }

@@ -17,13 +17,13 @@ use rumbo_wire::{
 
 /// Room for a line of the original's text, the longest thing a robot says.
 const LINE_BYTES: usize = 128;
-/// HELLO is repeated this often until answered [us].
+/// HELLO is repeated this often until answered \[us\].
 const HELLO_PERIOD_US: u64 = 300_000;
-/// An answer to HELLO comes within this time; a later HELLO is a robot that started again [us].
+/// An answer to HELLO comes within this time; a later HELLO is a robot that started again \[us\].
 const HELLO_ANSWER_US: u64 = 1_000_000;
-/// A sign of life goes out this often, a third of the 500 ms after which the robot stops [us].
+/// A sign of life goes out this often, a third of the 500 ms after which the robot stops \[us\].
 const HEARTBEAT_PERIOD_US: u64 = 150_000;
-/// The link counts as lost after this long without a frame: 25 telemetry frames [us].
+/// The link counts as lost after this long without a frame: 25 telemetry frames \[us\].
 const SILENCE_US: u64 = 1_000_000;
 
 /// What was heard from the robot, in the session's time.
@@ -35,11 +35,11 @@ pub enum Heard {
     Restarted(Hello),
     /// Nothing came for a second.
     Lost,
-    /// The fast signals, as of this time [ms].
+    /// The fast signals, as of this time \[ms\].
     Telemetry(i64, Telemetry),
     /// The slow signals.
     Status(Status),
-    /// Something happened at this time [ms].
+    /// Something happened at this time \[ms\].
     Event(i64, EventKind),
     /// A command ended.
     Ended(Outcome),
@@ -304,7 +304,7 @@ pub struct LinkFigures {
     pub frames_lost: u16,
     /// Frames that passed the CRC and mean nothing here, wrapping.
     pub malformed: u32,
-    /// Smoothed time from a command to its acknowledgement [us].
+    /// Smoothed time from a command to its acknowledgement \[us\].
     pub round_trip_us: Option<u64>,
     /// The operator's commands that wait for their acknowledgement.
     pub unacknowledged: usize,

@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 
 /// Most commands that wait their turn.
 const MAX_WAITING: usize = 64;
-/// A command that makes the wheels turn is given up when it has not been acknowledged for this long [us].
+/// A command that makes the wheels turn is given up when it has not been acknowledged for this long \[us\].
 pub const MOTION_EXPIRY_US: u64 = 2_000_000;
 
 /// A read without an answer is sent this often before another session is tried.
@@ -43,7 +43,7 @@ pub enum Fate {
     RobotRestarted,
 }
 
-/// No more than [`MAX_WAITING`] commands may wait.
+/// As many commands wait as may.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct QueueFull;
 
@@ -236,7 +236,7 @@ impl CommandManager {
         std::mem::take(&mut self.outcomes)
     }
 
-    /// Smoothed round trip of a command [us], `None` before the first.
+    /// Smoothed round trip of a command \[us\], `None` before the first.
     pub fn round_trip_us(&self) -> Option<u64> {
         self.round_trip.smoothed_us
     }

@@ -1,6 +1,6 @@
 //! The link's load: bytes per second over the last two seconds.
 
-/// Length of one bucket [us].
+/// Length of one bucket \[us\].
 const BUCKET_US: u64 = 250_000;
 /// Buckets in the window.
 const BUCKETS: usize = 8;

@@ -1,9 +1,8 @@
 //! What a page may ask: JSON text to a checked order.
 
-use crate::catalogue;
 use crate::target::Choice;
 use rumbo_control::Wheels;
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::{ModeId, Movement};
 use rumbo_wire::{Command, Level};
 use serde::Deserialize;
 use std::fmt;
@@ -153,7 +152,9 @@ pub(crate) fn parse(text: &str) -> Result<Order, BadOrder> {
 }
 
 fn move_order(movement: u8, level: Level) -> Result<Order, BadOrder> {
-    let movement = catalogue::movement(movement)
+    let movement = Movement::ALL
+        .into_iter()
+        .find(|each| *each as u8 == movement)
         .ok_or_else(|| BadOrder(format!("there is no movement {movement}")))?;
     Ok(Order::Robot(Command::Move { movement, level }))
 }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-/// Step of the target's time [us]; instants at which the truth is noted are multiples of it.
+/// Step of the target's time \[us\]; instants at which the truth is noted are multiples of it.
 pub(crate) const SLICE_US: u64 = 5_000;
 /// Target time that a late session still catches up with, in seconds of the wall clock; more is let go.
 const CATCH_UP_S: f64 = 0.1;

@@ -3,7 +3,7 @@
 /// Turns the robot's wrapping milliseconds into the session's time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RobotClock {
-    /// Session time at the robot's time 0 [ms]; `None` until the first frame of a robot whose start is not known.
+    /// Session time at the robot's time 0 \[ms\]; `None` until the first frame of a robot whose start is not known.
     offset_ms: Option<i64>,
 }
 
@@ -13,7 +13,7 @@ impl RobotClock {
     /// The clock of a robot that has been running for an unknown time.
     pub(crate) const UNKNOWN: Self = Self { offset_ms: None };
 
-    /// Session time [ms] of a robot time that arrived at `now_ms`.
+    /// Session time \[ms\] of a robot time that arrived at `now_ms`.
     ///
     /// Right while the frame is less than half a wrap (32 s) old. The first frame of a robot with an unknown start counts as
     /// fresh, so all its times are late by that frame's way over the link.

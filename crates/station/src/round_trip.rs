@@ -1,16 +1,16 @@
 //! The round trip of a command and the time-out that follows from it, after RFC 6298.
 
-/// Time-out before a round trip was measured [us]: two telemetry frames and the command at 9600 baud, doubled.
+/// Time-out before a round trip was measured \[us\]: two telemetry frames and the command at 9600 baud, doubled.
 pub(crate) const FIRST_TIMEOUT_US: u64 = 200_000;
-/// Shortest time-out [us]: a telemetry frame at 9600 baud lasts 31 ms and may be under way both before and in the answer.
+/// Shortest time-out \[us\]: a telemetry frame at 9600 baud lasts 31 ms and may be under way both before and in the answer.
 const SHORTEST_TIMEOUT_US: u64 = 80_000;
-/// Longest time-out [us].
+/// Longest time-out \[us\].
 pub(crate) const LONGEST_TIMEOUT_US: u64 = 1_000_000;
 
 /// Round trip and its time-out.
 #[derive(Debug, Default)]
 pub(crate) struct RoundTrip {
-    /// Smoothed round trip [us], `None` before the first.
+    /// Smoothed round trip \[us\], `None` before the first.
     pub(crate) smoothed_us: Option<u64>,
     deviation_us: u64,
 }
@@ -30,7 +30,7 @@ impl RoundTrip {
         }
     }
 
-    /// Time after which a command without an answer is repeated [us].
+    /// Time after which a command without an answer is repeated \[us\].
     pub(crate) fn timeout_us(&self) -> u64 {
         let estimate_us = self.smoothed_us.map_or(FIRST_TIMEOUT_US, |smoothed| {
             smoothed + 4 * self.deviation_us

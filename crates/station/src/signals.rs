@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 /// The signals at one instant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
-    /// Session time of the telemetry [ms].
+    /// Session time of the telemetry \[ms\].
     pub t_ms: i64,
     /// The active mode.
     pub mode: ModeId,
@@ -22,7 +22,7 @@ pub(crate) struct Sample {
     pub truth: Option<[Truth; 2]>,
 }
 
-/// The first of the two wheel speeds in a telemetry frame is this much older [ms].
+/// The first of the two wheel speeds in a telemetry frame is this much older \[ms\].
 pub(crate) const EARLIER_MS: i64 = 20;
 
 /// One value of a row as the page gets it.
@@ -145,7 +145,7 @@ pub(crate) struct TruthLog {
     entries: VecDeque<(i64, Truth)>,
 }
 
-/// Length of the log [ms].
+/// Length of the log \[ms\].
 const LOG_MS: i64 = 1_000;
 
 impl TruthLog {

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// A robot at the other end of a byte link.
 pub trait Target: Send {
-    /// Time the target has lived since its start or last reset [us].
+    /// Time the target has lived since its start or last reset \[us\].
     fn now_us(&self) -> u64;
 
     /// Lets the target live for `dt_us` more. A real port has lived by itself and only updates its clock.
@@ -27,7 +27,7 @@ pub trait Target: Send {
     /// Appends the bytes that arrived from the robot since the last call.
     fn receive(&mut self, into: &mut Vec<u8>);
 
-    /// Speed of the link [baud], ten bits to a byte.
+    /// Speed of the link \[baud\], ten bits to a byte.
     fn baud(&self) -> u32;
 
     /// What only a simulation can do and tell; `None` for a real robot.
@@ -54,11 +54,11 @@ pub trait Simulation {
 /// A place on the map: world frame, x east, y north, counter-clockwise heading (REP 103).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MapPose {
-    /// [m].
+    /// \[m\].
     pub x_m: f64,
-    /// [m].
+    /// \[m\].
     pub y_m: f64,
-    /// [rad].
+    /// \[rad\].
     pub heading_rad: f64,
 }
 
@@ -69,14 +69,14 @@ pub struct Truth {
     pub pose: MapPose,
     /// Speeds of the wheels, forward positive [rad/s].
     pub wheel_rad_s: Wheels<f64>,
-    /// Distance to the nearest thing in each sonar's cone, by `SonarId` number [m]; `None` when nothing is within reach
+    /// Distance to the nearest thing in each sonar's cone, by `SonarId` number \[m\]; `None` when nothing is within reach
     /// or the rig has no such sonar.
     pub range_m: [Option<f64>; 3],
-    /// Angle of the servo, 0 straight ahead, positive to the left [rad].
+    /// Angle of the servo, 0 straight ahead, positive to the left \[rad\].
     pub servo_rad: f64,
     /// The body touches something.
     pub contact: bool,
-    /// Battery at its terminals [V].
+    /// Battery at its terminals \[V\].
     pub battery_v: f64,
 }
 
@@ -95,11 +95,11 @@ pub struct Scene {
     pub start: MapPose,
     /// Walls and boxes.
     pub obstacles: Vec<Obstacle>,
-    /// Outline of the robot in its own frame [m], closed by itself.
+    /// Outline of the robot in its own frame \[m\], closed by itself.
     pub footprint_m: Vec<[f64; 2]>,
-    /// Distance between the wheels [m].
+    /// Distance between the wheels \[m\].
     pub base_m: f64,
-    /// Radius of the wheels [m].
+    /// Radius of the wheels \[m\].
     pub wheel_radius_m: f64,
     /// The rig's sonars.
     pub sonars: Vec<SonarMount>,
@@ -108,7 +108,7 @@ pub struct Scene {
 /// A wall or a box, seen from above.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Obstacle {
-    /// Corners in the world frame [m].
+    /// Corners in the world frame \[m\].
     pub corners_m: Vec<[f64; 2]>,
     /// The last corner joins the first: a box. Otherwise a wall along the corners.
     pub closed: bool,
@@ -121,9 +121,9 @@ pub struct SonarMount {
     pub id: u8,
     /// Place and direction in the robot's frame; with the servo straight ahead where it is on the servo.
     pub at: MapPose,
-    /// Half the opening angle of the beam [rad].
+    /// Half the opening angle of the beam \[rad\].
     pub half_angle_rad: f64,
-    /// Longest distance used [m].
+    /// Longest distance used \[m\].
     pub reach_m: f64,
     /// Turns with the servo.
     pub on_servo: bool,
