@@ -229,3 +229,35 @@ fn parameter(text: &str) -> Result<(String, f64), String> {
         Err("the value must be finite".into())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Cli;
+    use clap::{CommandFactory, Parser};
+
+    #[test]
+    fn every_example_of_the_help_is_a_valid_command() {
+        let mut command = Cli::command();
+        let helps: Vec<String> = command
+            .get_subcommands_mut()
+            .map(|subcommand| subcommand.render_help().to_string())
+            .chain([Cli::command().render_help().to_string()])
+            .collect();
+        let mut seen = 0;
+        for help in helps {
+            let (_, examples) = help.split_once("Examples:").unwrap();
+            for example in examples
+                .lines()
+                .map(str::trim)
+                .filter(|line| line.starts_with("rumbo"))
+            {
+                // A description may follow, set off by blanks.
+                let line = example.split_once("  ").map_or(example, |(line, _)| line);
+                Cli::try_parse_from(line.split_whitespace())
+                    .unwrap_or_else(|error| panic!("{line}: {error}"));
+                seen += 1;
+            }
+        }
+        assert!(seen > 10);
+    }
+}

@@ -4,8 +4,9 @@ use crate::args::{ListArgs, Topic};
 use crate::failure::Failure;
 use crate::output::{self, figure};
 use rumbo_control::mode::ModeId;
+use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
-use rumbo_scenario::files::{FileError, Kind, Library, MOVEMENTS, parameters};
+use rumbo_scenario::files::{FileError, Kind, Library, MOVEMENTS, parameters::exact};
 use serde_json::{Map, Value, json};
 
 /// Lists one topic, or all but the plant's numbers.
@@ -74,12 +75,20 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
             }
         }
         Topic::Modes => {
-            entries.extend(ModeId::ALL.iter().map(|mode| json!({ "name": mode.name(), "number": *mode as u8 })));
+            entries.extend(
+                ModeId::ALL
+                    .iter()
+                    .map(|mode| json!({ "name": mode.name(), "number": *mode as u8 })),
+            );
         }
-        Topic::Movements => entries.extend(MOVEMENTS.iter().map(|(_, name)| json!({ "name": name }))),
-        Topic::Parameters => entries.extend(parameters::all().iter().map(|entry| {
-            json!({ "name": entry.name, "min": entry.min, "max": entry.max, "default": entry.default,
-                    "unit": entry.unit, "help": entry.help })
+        Topic::Movements => {
+            entries.extend(MOVEMENTS.iter().map(|(_, name)| json!({ "name": name })))
+        }
+        Topic::Parameters => entries.extend(ParamId::ALL.iter().map(|id| {
+            let limits = id.limits();
+            json!({ "name": id.name(), "min": exact(limits.min), "max": exact(limits.max),
+                    "default": exact(limits.default), "unit": id.unit(), "help": id.help(),
+                    "mode": id.mode().map(ModeId::name) })
         })),
         Topic::Plant => entries.extend(Params::limits().iter().map(|limit| {
             json!({ "name": limit.key, "min": limit.min, "max": limit.max, "default": limit.nominal,

@@ -5,6 +5,7 @@
 
 mod args;
 mod failure;
+mod identify;
 mod import;
 mod list;
 mod output;
@@ -27,6 +28,7 @@ fn main() -> ExitCode {
 
 fn dispatch(cli: Cli) -> Result<(), Failure> {
     match cli.command {
+        Some(Command::Identify(args)) => identify::identify(&args),
         Some(Command::Import(args)) => import::import(&args),
         Some(Command::List(args)) => list::list(&args),
         _ => Ok(()),

@@ -167,14 +167,14 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut ModeId) -> Option<Co
         }
         "parameter" => {
             let name = table.text(key)?;
-            let entry = parameters::find(&name.value)
+            let id = parameters::find(&name.value)
                 .map_err(|remedy| {
                     table.complain(key, name.line, &format!("{:?}", name.value), &remedy)
                 })
                 .ok()?;
-            let value = table.required_number("value", entry.allowed());
+            let value = table.required_number("value", parameters::allowed(id));
             Some(Command::SetParam {
-                id: entry.id,
+                id: id as u8,
                 value: value as f32,
             })
         }

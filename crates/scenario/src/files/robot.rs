@@ -16,6 +16,7 @@ use super::error::FileError;
 use super::parameters::read_parameters;
 use super::read::{Allowed, Source, Table};
 use super::world::ANGLE;
+use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
 use std::collections::{BTreeMap, BTreeSet};
@@ -67,7 +68,7 @@ pub struct RobotFile {
     /// Which signal is on which pin, by the name of the wiring.
     pub wirings: BTreeMap<String, Wiring>,
     /// Control parameters that differ from their defaults, from `[parameters]`; sent to the robot before arming.
-    pub parameters: BTreeMap<String, f32>,
+    pub parameters: Vec<(ParamId, f32)>,
     /// What the firmware may take of the chip.
     pub firmware: FirmwareCaps,
 }

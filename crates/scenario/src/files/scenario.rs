@@ -24,6 +24,7 @@ use super::read::{Allowed, Source, Table};
 use super::robot::read_plant;
 use super::world::{ANGLE, PLACE};
 use rumbo_control::mode::ModeId;
+use rumbo_control::params::ParamId;
 use rumbo_wire::message::Command;
 use std::collections::BTreeMap;
 
@@ -54,8 +55,9 @@ pub struct ScenarioFile {
     pub commands: Vec<TimedCommand>,
     /// What each metric must keep to for the run to pass.
     pub limits: BTreeMap<String, Bounds>,
-    /// Control parameters sent before the first command, from `[parameters]`; they win over the robot file's.
-    pub parameters: BTreeMap<String, f32>,
+    /// Control parameters sent before the first command, from `[parameters]`; they win over the robot file's, and later
+    /// ones over earlier ones.
+    pub parameters: Vec<(ParamId, f32)>,
     /// Whether each seed draws its own robot.
     pub spread: Spread,
     /// Plant values that hold in every run, set after the draw, from `[plant]`; dotted keys of `Params`.

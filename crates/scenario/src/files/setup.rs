@@ -4,6 +4,7 @@ use super::error::FileError;
 use super::near::{near, near_or_all};
 use super::read::Allowed;
 use super::{Library, RobotFile, ScenarioFile, Start, WorldFile, parameters};
+use rumbo_control::params::ParamId;
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::Rig;
@@ -127,19 +128,18 @@ fn apply(scenario: &mut ScenarioFile, name: &str, value: f64) -> Result<(), File
         scenario.plant.insert(name.to_owned(), value);
         return Ok(());
     }
-    let entries = parameters::all();
-    let Some(entry) = entries.iter().find(|entry| entry.name == name) else {
+    let Some(id) = ParamId::from_name(name) else {
         let known = limits
             .iter()
             .map(|limit| limit.key.as_str())
-            .chain(entries.iter().map(|entry| entry.name));
+            .chain(ParamId::ALL.map(ParamId::name));
         return Err(FileError::Unknown {
             kind: "parameter",
             name: name.to_owned(),
             near: near(name, known).into_iter().map(str::to_owned).collect(),
         });
     };
-    judge(entry.allowed())?;
-    scenario.parameters.insert(name.to_owned(), value as f32);
+    judge(parameters::allowed(id))?;
+    scenario.parameters.push((id, value as f32));
     Ok(())
 }

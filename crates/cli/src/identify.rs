@@ -1,0 +1,219 @@
+//! `rumbo identify`: the plant's parameters from recorded runs, or how well a robot file repeats them.
+
+use crate::args::IdentifyArgs;
+use crate::failure::Failure;
+use crate::import::CSV;
+use crate::output;
+use indicatif::ProgressBar;
+use rumbo_plant::params::Params;
+use rumbo_scenario::files::{Library, RobotFile};
+use rumbo_scenario::identify::{
+    self, DriveLog, GENERATIONS, Identification, IdentifyError, RunScore,
+};
+use rumbo_scenario::sonar_stats::{self, Comparison, SonarLog};
+use rumbo_wire::csv;
+use rumbo_wire::text::RowKind;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// What the runs recorded: the drive, and the sonars where there are any.
+#[derive(Default)]
+struct Logs {
+    drive: Vec<DriveLog>,
+    sonar: Vec<SonarLog>,
+}
+
+/// The outcome as JSON.
+#[derive(Serialize)]
+struct Report<'a> {
+    robot: &'a str,
+    #[serde(flatten)]
+    drive: Drive,
+    /// Measured and simulated figures of each sonar of the runs.
+    sonars: &'a [Comparison],
+    plots: &'a [PathBuf],
+    written: Option<&'a Path>,
+}
+
+/// What became of the drive's runs.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Drive {
+    /// Parameters fitted.
+    Identified(Identification),
+    /// Repeated with a robot file's parameters; no runs if none shows the drive.
+    Checked { runs: Vec<RunScore> },
+}
+
+/// Identifies, or checks, and prints what came of it.
+pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
+    let logs = read(&args.logs)?;
+    let name = args.check.as_ref().unwrap_or(&args.robot);
+    let robot = Library::new().robot(name).map_err(Failure::input)?;
+    let spinner = ProgressBar::new_spinner().with_message("comparing with the plant");
+    spinner.enable_steady_tick(Duration::from_millis(100));
+    let (drive, params) = match args.check {
+        Some(_) => (check(&logs, &robot.plant)?, robot.plant),
+        None => {
+            let found = identify::identify(&logs.drive, &robot.plant, GENERATIONS)
+                .map_err(Failure::input)?;
+            let params = found.params;
+            (Drive::Identified(found), params)
+        }
+    };
+    let sonars: Vec<Comparison> = logs
+        .sonar
+        .iter()
+        .flat_map(|log| sonar_stats::compare(log, &params.sonar))
+        .collect();
+    let plots = match &args.plots {
+        Some(folder) => plot(&logs, &drive, &params, folder)?,
+        None => Vec::new(),
+    };
+    spinner.finish_and_clear();
+    let written = match &drive {
+        Drive::Identified(found) if name.ends_with(".toml") => Some(write(Path::new(name), found)?),
+        _ => None,
+    };
+    if args.json {
+        return output::json(&Report {
+            robot: name,
+            drive,
+            sonars: &sonars,
+            plots: &plots,
+            written,
+        });
+    }
+    report(&drive, &sonars, &plots)?;
+    match written {
+        Some(path) => output::line(&format!(
+            "\n{}: its [plant] table is rewritten",
+            path.display()
+        )),
+        None if args.check.is_none() => output::line(
+            "\nnothing is written: give --robot as the path of a file to have its [plant] table rewritten",
+        ),
+        None => Ok(()),
+    }
+}
+
+fn check(logs: &Logs, params: &Params) -> Result<Drive, Failure> {
+    match identify::check(&logs.drive, params) {
+        Ok(check) => Ok(Drive::Checked { runs: check.runs }),
+        // Runs beside a wall tell nothing of the drive, and all of the sonars.
+        Err(IdentifyError::NothingToFit) if !logs.sonar.is_empty() => {
+            Ok(Drive::Checked { runs: Vec::new() })
+        }
+        Err(error) => Err(Failure::input(error)),
+    }
+}
+
+/// Reads CSVs of the original program, and logs that carry one.
+fn read(paths: &[PathBuf]) -> Result<Logs, Failure> {
+    let mut logs = Logs::default();
+    for path in paths {
+        let text = text_of(path)?;
+        logs.drive
+            .push(DriveLog::parse(path, text.as_bytes()).map_err(Failure::input)?);
+        if csv::recognise(text.lines().next().unwrap_or_default()) == Some(RowKind::Distance) {
+            logs.sonar
+                .push(SonarLog::parse(path, &text).map_err(Failure::input)?);
+        }
+    }
+    Ok(logs)
+}
+
+/// The CSV that a path holds: itself, or attached to a log by `rumbo import`.
+fn text_of(path: &Path) -> Result<String, Failure> {
+    let wrong = |what: String| Failure::Input(format!("{}: {what}", path.display()));
+    let bytes = std::fs::read(path).map_err(|error| {
+        wrong(format!(
+            "cannot be read ({error}); give the path of a CSV or a log"
+        ))
+    })?;
+    let is_log = path
+        .extension()
+        .is_some_and(|extension| extension == "mcap");
+    let bytes = if is_log {
+        attached(&bytes).map_err(wrong)?
+    } else {
+        bytes
+    };
+    String::from_utf8(bytes)
+        .map_err(|_| wrong("is no text; give a CSV of the original program".into()))
+}
+
+fn attached(log: &[u8]) -> Result<Vec<u8>, String> {
+    let damaged =
+        |error: mcap::McapError| format!("is no intact MCAP log ({error}); import the CSV again");
+    let summary = mcap::Summary::read(log)
+        .map_err(damaged)?
+        .unwrap_or_default();
+    let index = summary
+        .attachment_indexes
+        .iter()
+        .find(|index| index.media_type == CSV);
+    let index = index
+        .ok_or("carries no recording of the original program; give one made by `rumbo import`")?;
+    Ok(mcap::read::attachment(log, index)
+        .map_err(damaged)?
+        .data
+        .into_owned())
+}
+
+fn plot(
+    logs: &Logs,
+    drive: &Drive,
+    params: &Params,
+    folder: &Path,
+) -> Result<Vec<PathBuf>, Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| {
+        Failure::Input(format!(
+            "{}: cannot be made ({error}); choose another folder with --plots",
+            folder.display()
+        ))
+    })?;
+    let runs = match drive {
+        Drive::Identified(found) => &found.runs,
+        Drive::Checked { runs } => runs,
+    };
+    let mut plots = Vec::new();
+    for run in runs {
+        for log in logs.drive.iter().filter(|log| log.name == run.name) {
+            plots
+                .extend(identify::plot(log, params, run.nuisance, folder).map_err(Failure::input)?);
+        }
+    }
+    Ok(plots)
+}
+
+/// Rewrites the `[plant]` table of a robot file, after a look whether the outcome is a valid robot.
+fn write<'a>(path: &'a Path, found: &Identification) -> Result<&'a Path, Failure> {
+    let file = path.display().to_string();
+    let wrong =
+        |error: std::io::Error| Failure::Input(format!("{file}: cannot be rewritten ({error})"));
+    let text = std::fs::read_to_string(path).map_err(wrong)?;
+    let today = time::OffsetDateTime::now_utc().date().to_string();
+    let text = identify::rewrite(&text, found, &today).map_err(Failure::input)?;
+    RobotFile::parse("", &file, &text).map_err(Failure::input)?;
+    std::fs::write(path, text).map_err(wrong)?;
+    Ok(path)
+}
+
+fn report(drive: &Drive, sonars: &[Comparison], plots: &[PathBuf]) -> Result<(), Failure> {
+    let text = match drive {
+        Drive::Identified(found) => found.to_string(),
+        Drive::Checked { runs } => runs.iter().map(ToString::to_string).collect(),
+    };
+    if !text.is_empty() {
+        output::line(text.trim())?;
+    }
+    if !sonars.is_empty() {
+        output::line("")?;
+        output::line(sonar_stats::table(sonars).trim_end())?;
+    }
+    plots
+        .iter()
+        .try_for_each(|path| output::line(&format!("plot: {}", path.display())))
+}
