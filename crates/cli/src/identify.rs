@@ -41,7 +41,7 @@ struct Report<'a> {
 #[serde(untagged)]
 enum Drive {
     /// Parameters fitted.
-    Identified(Identification),
+    Identified(Box<Identification>),
     /// Repeated with a robot file's parameters; no runs if none shows the drive.
     Checked { runs: Vec<RunScore> },
 }
@@ -59,7 +59,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
             let found = identify::identify(&logs.drive, &robot.plant, GENERATIONS)
                 .map_err(Failure::input)?;
             let params = found.params;
-            (Drive::Identified(found), params)
+            (Drive::Identified(Box::new(found)), params)
         }
     };
     let sonars: Vec<Comparison> = logs
