@@ -1,1 +1,26 @@
 //! Rumbo's robot: one tick from bytes and edges to duty and telemetry.
+//!
+//! bytes -> [`Robot::receive`]: decoder -> ledger (each command once) -> supervisor, mode, parameters;
+//! sensors -> [`Robot::tick`]: supervisor (link alive?) -> pilot (estimate, mode, drive layer) -> reporter -> outbox;
+//! [`Robot::transmit`] -> bytes.
+//!
+//! No clock, no pins, no waiting, no allocation: the firmware, the emulated chip and the simulator run this same
+//! robot. The bytes are described in `docs/protocol.md`.
+#![no_std]
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "units are written [m], [rad]"
+)]
+
+mod clock;
+mod ledger;
+mod outbox;
+mod pilot;
+mod report;
+mod robot;
+mod sonars;
+mod stall;
+mod supervisor;
+mod text;
+
+pub use robot::{Config, Robot};

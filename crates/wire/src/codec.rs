@@ -3,13 +3,14 @@
 //! Decoding checks lengths and numbers of enumerations, never plausibility: a value that is not finite arrives as
 //! such, and who applies it refuses it with a reason.
 
+use rumbo_control::math::round;
 use rumbo_control::mode::{ModeId, Movement};
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Wheels};
 
 use crate::bytes::{Reader, Writer};
 use crate::frame::{Body, Frame, Kind};
 use crate::message::*;
-use crate::quantise::{from_i12, from_i16, from_turn, round, to_i12, to_i16, to_turn};
+use crate::quantise::{from_i12, from_i16, from_turn, to_i12, to_i16, to_turn};
 
 /// Why a frame that passed the CRC is no message: the other end speaks something else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -409,25 +410,8 @@ fn command(from: &mut Reader) -> Result<Command, Malformed> {
     })
 }
 
-/// The movements, by number.
-const MOVEMENTS: [Movement; 13] = [
-    Movement::Stop,
-    Movement::Forward,
-    Movement::Backward,
-    Movement::TurnLeft,
-    Movement::TurnRight,
-    Movement::PivotLeftForward,
-    Movement::PivotLeftBackward,
-    Movement::PivotRightForward,
-    Movement::PivotRightBackward,
-    Movement::ArcLeft,
-    Movement::ArcRight,
-    Movement::ArcLeftBackward,
-    Movement::ArcRightBackward,
-];
-
 fn movement(number: u8) -> Option<Movement> {
-    MOVEMENTS
+    Movement::ALL
         .into_iter()
         .find(|movement| *movement as u8 == number)
 }

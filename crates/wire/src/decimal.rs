@@ -1,7 +1,7 @@
 //! Decimal numbers to and from text, small and without `core::fmt` or `core::num::dec2flt`: those cost tens of
 //! kilobytes on the AVR, and the first misprints there.
 
-use crate::quantise::round;
+use rumbo_control::math::{from_u32, round};
 
 /// Text being written into a fixed buffer. What does not fit is cut; the longest line does (tested in `text`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,7 +111,7 @@ pub(crate) fn parse(text: &[u8]) -> Option<f32> {
     if let Some((_, tail)) = rest.split_first() {
         exponent += parse_exponent(tail)?;
     }
-    let value = scale(f32_from(mantissa), exponent);
+    let value = scale(from_u32(mantissa), exponent);
     value
         .is_finite()
         .then_some(if negative { -value } else { value })
@@ -139,12 +139,6 @@ fn parse_exponent(text: &[u8]) -> Option<i16> {
         value = value * 10 + i16::from(digit - b'0');
     }
     Some(if negative { -value } else { value })
-}
-
-/// The nearest float, by halves that are exact: no cast, so the same bits everywhere.
-fn f32_from(value: u32) -> f32 {
-    let [a, b, c, d] = value.to_le_bytes();
-    f32::from(u16::from_le_bytes([c, d])) * 65_536.0 + f32::from(u16::from_le_bytes([a, b]))
 }
 
 /// `value * 10^exponent`, by powers of ten that `f32` holds exactly.

@@ -1,22 +1,8 @@
 //! Numbers in few bits: saturating, never wrapping, with a code of their own for what is not finite.
-//!
-//! No cast between floats and integers: adding 1.5 * 2^23 leaves the rounded value in the low bits of the float
-//! (ties to even), the same on every machine.
 
 use core::f32::consts::TAU;
 
-/// Largest magnitude that [`round`] takes: beyond it the trick of the bits has no integer for every value.
-const ROUND_LIMIT: f32 = 4_194_303.0;
-
-/// The nearest integer of a finite value, saturated to +-4,194,303.
-pub(crate) fn round(value: f32) -> i32 {
-    const MAGIC: f32 = 12_582_912.0;
-    let limited = value.clamp(-ROUND_LIMIT, ROUND_LIMIT);
-    (limited + MAGIC)
-        .to_bits()
-        .wrapping_sub(MAGIC.to_bits())
-        .cast_signed()
-}
+use rumbo_control::math::round;
 
 /// Code of a value that is not finite, in a field of 16 bits.
 const NOT_FINITE_16: i16 = i16::MIN;
@@ -84,11 +70,6 @@ mod tests {
 
     proptest! {
         #[test]
-        fn rounding_gives_the_nearest_integer(value in -4_194_303.0f32..4_194_303.0) {
-            prop_assert_eq!(f64::from(round(value)), f64::from(value).round_ties_even());
-        }
-
-        #[test]
         fn a_code_never_wraps(value: f32) {
             let sixteen = from_i16(to_i16(value, 1000.0), 1000.0);
             let twelve = from_i12(to_i12(value, 50.0), 50.0);
@@ -108,13 +89,5 @@ mod tests {
             let error = (back - angle_rad).abs();
             prop_assert!(error.min((TAU - error).abs()) <= TAU / 65_536.0 * 0.51);
         }
-    }
-
-    #[test]
-    fn infinity_saturates_when_rounded() {
-        assert_eq!(
-            (round(f32::INFINITY), round(f32::NEG_INFINITY)),
-            (4_194_303, -4_194_303)
-        );
     }
 }

@@ -1,6 +1,7 @@
 //! The rows of telemetry of the original's text protocol, to and from text.
 
 use rumbo_control::Wheels;
+use rumbo_control::math::round;
 
 use crate::decimal::{self, Text};
 use crate::text::{Line, TextError, a_then_b};
@@ -299,7 +300,7 @@ impl<'a> Fields<'a> {
     fn integer(&mut self, low: f32, high: f32) -> Result<i32, TextError> {
         let value = self.number()?;
         if (low..=high).contains(&value) {
-            Ok(crate::quantise::round(value))
+            Ok(round(value))
         } else {
             Err(TextError::OutOfRange(self.at))
         }

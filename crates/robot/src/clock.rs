@@ -1,0 +1,79 @@
+//! Milliseconds and overruns out of a microsecond clock that wraps after 71.6 minutes.
+
+use rumbo_control::{Micros, TICK_US};
+
+/// Counts milliseconds so that they wrap at 65,536 ms only, also where the microseconds wrap.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Clock {
+    now: Micros,
+    started: bool,
+    t_ms: u16,
+    rest_us: u32,
+    overruns: u8,
+}
+
+impl Clock {
+    /// Takes the time of a tick; gives the time since the one before [us], 0 at the first.
+    pub(crate) fn advance(&mut self, now: Micros) -> u32 {
+        let elapsed_us = if self.started { now.since(self.now) } else { 0 };
+        self.started = true;
+        self.now = now;
+        let total_us = self.rest_us.saturating_add(elapsed_us);
+        self.t_ms = self.t_ms.wrapping_add(((total_us / 1_000) & 0xFFFF) as u16);
+        self.rest_us = total_us % 1_000;
+        // A tick started late by half a period or more: the one before overran.
+        if elapsed_us >= TICK_US + TICK_US / 2 {
+            self.overruns = self.overruns.wrapping_add(1);
+        }
+        elapsed_us
+    }
+
+    /// The time of the last tick.
+    pub(crate) fn now(&self) -> Micros {
+        self.now
+    }
+
+    /// Milliseconds since the first tick, wrapping.
+    pub(crate) fn t_ms(&self) -> u16 {
+        self.t_ms
+    }
+
+    /// Ticks that started late, wrapping.
+    pub(crate) fn overruns(&self) -> u8 {
+        self.overruns
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn milliseconds_go_on_where_microseconds_wrap() {
+        let mut clock = Clock::default();
+        let start = Micros(u32::MAX - 25_300);
+        for n in 0..1_000u32 {
+            clock.advance(start.after(n * TICK_US));
+            assert_eq!(u32::from(clock.t_ms()), n * 10);
+        }
+        assert_eq!(clock.overruns(), 0);
+    }
+
+    #[test]
+    fn parts_of_milliseconds_are_not_lost() {
+        let mut clock = Clock::default();
+        (0..=1_000u32).for_each(|n| {
+            clock.advance(Micros(n * 1_700));
+        });
+        assert_eq!(clock.t_ms(), 1_700);
+    }
+
+    #[test]
+    fn a_late_tick_is_counted() {
+        let mut clock = Clock::default();
+        for us in [0, 10_000, 26_000, 30_000] {
+            clock.advance(Micros(us));
+        }
+        assert_eq!(clock.overruns(), 1);
+    }
+}

@@ -1,0 +1,260 @@
+//! The control core put together: estimators -> mode -> drive layer, with the parameters and the setpoint.
+
+use rumbo_control::drive::DriveLayer;
+use rumbo_control::estimate::{Estimate, Estimator};
+use rumbo_control::math::round;
+use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, Movement, SetpointError, Situation};
+use rumbo_control::params::{ParamError, ParamId, Params};
+use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, Wheels};
+use rumbo_wire::Refusal;
+
+use crate::report::Signals;
+use crate::sonars::PingSchedule;
+use crate::stall::StallWatch;
+
+/// Ticks of low battery that stop the robot: 0.5 s, since the voltage dips when the wheels start.
+const LOW_BATTERY_TICKS: u8 = 50;
+
+/// What drives, and what it remembers.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pilot {
+    params: Params,
+    estimator: Estimator,
+    estimate: Estimate,
+    mode: ActiveMode,
+    drive: DriveLayer,
+    pings: PingSchedule,
+    stall: StallWatch,
+    low_battery_ticks: u8,
+    duty: Wheels<Duty>,
+    wheel_ref_rad_s: Wheels<f32>,
+    state: u8,
+    reached: bool,
+}
+
+/// What a tick decided.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step {
+    /// For the pins.
+    pub(crate) outputs: Outputs,
+    /// The mode has reached its reference at this tick.
+    pub(crate) reached: bool,
+    /// Why the wheels were released at this tick, although the robot was armed.
+    pub(crate) fault: Option<Fault>,
+}
+
+impl Pilot {
+    /// One tick. Unless `armed`, and on a fault, the wheels are released.
+    pub(crate) fn step(&mut self, inputs: &Inputs, armed: bool) -> Step {
+        self.estimate = self
+            .estimator
+            .step(&self.params, inputs, self.drive.directions());
+        let (action, fault) = match self.act(inputs, armed) {
+            Ok(action) => (action, None),
+            Err(fault) => {
+                self.release();
+                (self.at_rest(), Some(fault))
+            }
+        };
+        let reached = action.reached && !self.reached;
+        self.reached = action.reached;
+        self.state = action.state;
+        let ping = self.pings.next(action.look.sonars);
+        Step {
+            outputs: Outputs {
+                drive: self.duty,
+                servo: action.look.servo,
+                ping,
+            },
+            reached,
+            fault,
+        }
+    }
+
+    fn act(&mut self, inputs: &Inputs, armed: bool) -> Result<Action, Fault> {
+        if !armed {
+            self.release();
+            return Ok(self.at_rest());
+        }
+        self.watch(inputs)?;
+        let action = self.mode.step(
+            &self.params,
+            &Situation {
+                estimate: &self.estimate,
+            },
+        )?;
+        self.apply(&action.drive, inputs.battery_v)?;
+        Ok(action)
+    }
+
+    fn at_rest(&self) -> Action {
+        Action {
+            look: self.mode.look(),
+            ..Action::default()
+        }
+    }
+
+    /// What no mode should have to look after.
+    fn watch(&mut self, inputs: &Inputs) -> Result<(), Fault> {
+        let edges = self.estimate.motion.map(|motion| motion.edges);
+        if let Some(fault) = self.stall.step(edges, self.duty) {
+            return Err(fault);
+        }
+        let low = inputs
+            .battery_v
+            .is_some_and(|volts| volts < self.params.get(ParamId::LowBattery));
+        self.low_battery_ticks = if low {
+            self.low_battery_ticks.saturating_add(1)
+        } else {
+            0
+        };
+        if self.low_battery_ticks >= LOW_BATTERY_TICKS {
+            Err(Fault::BatteryLow)
+        } else {
+            Ok(())
+        }
+    }
+
+    fn apply(&mut self, drive: &Drive, battery_v: Option<f32>) -> Result<(), Fault> {
+        let driven = self
+            .drive
+            .step(&self.params, drive, &self.estimate.motion, battery_v)
+            .map_err(|_| Fault::NotFinite)?;
+        self.duty = driven.duty;
+        self.wheel_ref_rad_s = driven.wheel_ref_rad_s;
+        Ok(())
+    }
+
+    fn release(&mut self) {
+        self.stall = StallWatch::default();
+        self.low_battery_ticks = 0;
+        // Releasing cannot fail: it asks for no number. Even so the wheels are released.
+        if self.apply(&Drive::Release, None).is_err() {
+            self.duty = Wheels::both(Duty::RELEASED);
+        }
+    }
+
+    /// What telemetry shows of the last tick.
+    pub(crate) fn signals(&self) -> Signals {
+        Signals {
+            pose: self.estimate.pose,
+            wheel_rad_s: self.estimate.wheel_rad_s,
+            wheel_ref_rad_s: self.wheel_ref_rad_s,
+            duty: self.duty,
+            state: self.state,
+            ranges: self.estimate.ranges,
+        }
+    }
+
+    /// The selected mode.
+    pub(crate) fn mode(&self) -> ModeId {
+        self.mode.id()
+    }
+
+    /// The setpoint in force, as in [`rumbo_wire::Status`].
+    pub(crate) fn reference(&self) -> Wheels<f32> {
+        self.mode.reference()
+    }
+
+    /// Selects a mode, with its default setpoint.
+    pub(crate) fn select(&mut self, mode: ModeId) {
+        self.mode = ActiveMode::new(mode);
+    }
+
+    /// Whether the mode's sensors are good enough to arm.
+    pub(crate) fn ready(&self) -> Result<(), Refusal> {
+        if self.mode.is_ready(&self.estimate) {
+            Ok(())
+        } else {
+            Err(Refusal::SonarNotReady)
+        }
+    }
+
+    /// The wheels have been armed.
+    pub(crate) fn start(&mut self) {
+        self.mode.start();
+        self.reached = false;
+    }
+
+    /// Sets the reference of both wheels; gives it.
+    pub(crate) fn set_reference(&mut self, value: f32) -> Result<f32, Refusal> {
+        self.mode
+            .set_reference(value)
+            .map_err(refusal_of_setpoint)?;
+        Ok(self.mode.reference().left)
+    }
+
+    /// Sets the reference of each wheel; gives the left one's.
+    pub(crate) fn set_wheel_reference(&mut self, value: Wheels<f32>) -> Result<f32, Refusal> {
+        self.mode
+            .set_wheel_reference(value)
+            .map_err(refusal_of_setpoint)?;
+        Ok(self.mode.reference().left)
+    }
+
+    /// Sets the basic movement; gives its level.
+    pub(crate) fn set_movement(
+        &mut self,
+        movement: Movement,
+        level: Level,
+    ) -> Result<f32, Refusal> {
+        self.mode
+            .set_movement(movement, level)
+            .map_err(refusal_of_setpoint)?;
+        let (Level::Duty(value) | Level::Speed(value)) = level;
+        Ok(value)
+    }
+
+    /// A parameter's value.
+    pub(crate) fn param(&self, number: u8) -> Result<f32, Refusal> {
+        let id = ParamId::from_number(number).ok_or(Refusal::UnknownParam)?;
+        Ok(self.params.get(id))
+    }
+
+    /// Sets a parameter; gives the value in force.
+    pub(crate) fn set_param(&mut self, number: u8, value: f32) -> Result<f32, Refusal> {
+        let id = ParamId::from_number(number).ok_or(Refusal::UnknownParam)?;
+        self.params.set(id, value).map_err(refusal_of_param)
+    }
+
+    /// Sets several parameters, or none.
+    pub(crate) fn set_params(&mut self, values: [(ParamId, f32); 3]) -> Result<f32, Refusal> {
+        let mut params = self.params;
+        for (id, value) in values {
+            params.set(id, value).map_err(refusal_of_param)?;
+        }
+        self.params = params;
+        Ok(0.0)
+    }
+
+    /// Sets every parameter to its default.
+    pub(crate) fn reset_params(&mut self) {
+        self.params = Params::default();
+    }
+
+    /// Calls the present place the origin.
+    pub(crate) fn reset_pose(&mut self) {
+        self.estimator.reset_pose();
+    }
+
+    /// Silence of the link that stops the robot [us].
+    pub(crate) fn link_timeout_us(&self, id: ParamId) -> u32 {
+        // At most an hour, which 32 bits hold.
+        round(self.params.get(id) * 1_000.0).unsigned_abs() * 1_000
+    }
+}
+
+fn refusal_of_setpoint(error: SetpointError) -> Refusal {
+    match error {
+        SetpointError::NotFinite => Refusal::NotFinite,
+        SetpointError::OutOfRange => Refusal::OutOfRange,
+        SetpointError::NotInThisMode => Refusal::NotInThisMode,
+    }
+}
+
+fn refusal_of_param(error: ParamError) -> Refusal {
+    match error {
+        ParamError::NotFinite => Refusal::NotFinite,
+        ParamError::OutOfRange => Refusal::OutOfRange,
+    }
+}

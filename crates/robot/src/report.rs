@@ -1,0 +1,282 @@
+//! What the robot says, when, and in which language.
+//!
+//! In binary: telemetry every fourth tick with the speeds of two ticks, status twice a second and at once when it
+//! changes, events and acknowledgements as they come. In text: the original's row for the mode whenever the link has
+//! taken the row before, at most ten a second. The answer is in the language in which the robot was last addressed.
+
+use rumbo_control::mode::ModeId;
+use rumbo_control::{AgedRange, Duty, Micros, Pose, Range, SonarId, Wheels};
+use rumbo_wire::text::{CM_PER_M, DistanceRow, RAD_S_PER_RPM, Row, SpeedRow, cm_from_range};
+use rumbo_wire::{Ack, Event, EventKind, FromRobot, Hello, Message, Refusal, Status, Telemetry};
+
+use crate::outbox::{Outbox, Priority};
+
+/// A telemetry frame every so many ticks: 25 Hz.
+const TELEMETRY_TICKS: u8 = 4;
+/// The earlier of its two speed samples is so many ticks older: 20 ms.
+const SAMPLE_TICKS: u8 = 2;
+/// A status every so many ticks: 2 Hz.
+const STATUS_TICKS: u8 = 50;
+/// A text row every so many ticks at most: 10 Hz.
+const ROW_TICKS: u8 = 10;
+
+/// The language of the other end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Language {
+    /// Frames.
+    #[default]
+    Binary,
+    /// Lines.
+    Text,
+}
+
+/// What a tick found out, for telemetry.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Signals {
+    pub(crate) pose: Pose,
+    pub(crate) wheel_rad_s: Wheels<f32>,
+    pub(crate) wheel_ref_rad_s: Wheels<f32>,
+    pub(crate) duty: Wheels<Duty>,
+    pub(crate) state: u8,
+    pub(crate) ranges: [AgedRange; 3],
+}
+
+/// Fills the outbox.
+#[derive(Clone, Debug)]
+pub(crate) struct Reporter {
+    hello: Hello,
+    language: Language,
+    outbox: Outbox,
+    seq: u8,
+    hello_due: bool,
+    status_due: bool,
+    last_status: Status,
+    telemetry_in: u8,
+    status_in: u8,
+    row_in: u8,
+    last_row_at: Micros,
+    earlier_rad_s: Wheels<f32>,
+    dropped: u8,
+}
+
+impl Reporter {
+    /// A reporter that introduces itself with `hello` first.
+    pub(crate) fn new(hello: Hello) -> Self {
+        Self {
+            hello,
+            language: Language::Binary,
+            outbox: Outbox::default(),
+            seq: 0,
+            hello_due: true,
+            status_due: true,
+            last_status: Status::default(),
+            telemetry_in: TELEMETRY_TICKS,
+            status_in: STATUS_TICKS,
+            row_in: ROW_TICKS,
+            last_row_at: Micros(0),
+            earlier_rad_s: Wheels::both(0.0),
+            dropped: 0,
+        }
+    }
+
+    /// The next byte for the link.
+    pub(crate) fn transmit(&mut self) -> Option<u8> {
+        self.outbox.pop()
+    }
+
+    /// The language in which the robot was last addressed.
+    pub(crate) fn language(&self) -> Language {
+        self.language
+    }
+
+    /// The robot was addressed in `language`.
+    pub(crate) fn addressed_in(&mut self, language: Language) {
+        self.language = language;
+    }
+
+    /// HELLO was asked for.
+    pub(crate) fn introduce(&mut self) {
+        self.hello_due = true;
+    }
+
+    /// Telemetry frames that the link had no room for, wrapping.
+    pub(crate) fn dropped(&self) -> u8 {
+        self.dropped
+    }
+
+    /// Answers a command.
+    pub(crate) fn acknowledge(&mut self, ack: Ack) {
+        self.say(Priority::Answer, &FromRobot::Ack(ack));
+    }
+
+    /// Says in text that a line was refused; the original says nothing at all.
+    pub(crate) fn refuse_line(&mut self, refusal: Refusal) {
+        self.say_number(*b"ERR ", refusal as u8);
+    }
+
+    /// Tells what happened.
+    pub(crate) fn event(&mut self, t_ms: u16, kind: EventKind) {
+        match (self.language, kind) {
+            (Language::Binary, _) => {
+                self.say(Priority::Answer, &FromRobot::Event(Event { t_ms, kind }));
+            }
+            (Language::Text, EventKind::Faulted(fault)) => self.say_number(*b"FLT ", fault as u8),
+            (Language::Text, _) => {}
+        }
+    }
+
+    /// At the end of every tick.
+    pub(crate) fn tick(&mut self, now: Micros, t_ms: u16, status: &Status, signals: &Signals) {
+        match self.language {
+            Language::Binary => self.tick_binary(t_ms, status, signals),
+            Language::Text => self.tick_text(now, status, signals),
+        }
+    }
+
+    fn tick_binary(&mut self, t_ms: u16, status: &Status, signals: &Signals) {
+        if self.hello_due && self.say(Priority::Answer, &FromRobot::Hello(self.hello)) {
+            self.hello_due = false;
+        }
+        self.status_in = self.status_in.saturating_sub(1);
+        if self.status_in == 0 || is_news(status, &self.last_status) {
+            self.status_due = true;
+        }
+        if self.status_due && self.say(Priority::Status, &FromRobot::Status(*status)) {
+            self.status_due = false;
+            self.status_in = STATUS_TICKS;
+            self.last_status = *status;
+        }
+        self.telemetry_in = self.telemetry_in.saturating_sub(1);
+        match self.telemetry_in {
+            SAMPLE_TICKS => self.earlier_rad_s = signals.wheel_rad_s,
+            0 => {
+                self.telemetry_in = TELEMETRY_TICKS;
+                let telemetry = Telemetry {
+                    t_ms,
+                    pose: signals.pose,
+                    wheel_rad_s: [self.earlier_rad_s, signals.wheel_rad_s],
+                    wheel_ref_rad_s: signals.wheel_ref_rad_s,
+                    duty: signals.duty,
+                    state: signals.state,
+                    armed: status.armed,
+                    faulted: status.fault.is_some(),
+                    ranges: signals.ranges,
+                };
+                if !self.say(Priority::Telemetry, &FromRobot::Telemetry(telemetry)) {
+                    self.dropped = self.dropped.wrapping_add(1);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn tick_text(&mut self, now: Micros, status: &Status, signals: &Signals) {
+        self.row_in = self.row_in.saturating_sub(1);
+        if self.row_in > 0 || !self.outbox.is_empty() {
+            return;
+        }
+        self.row_in = ROW_TICKS;
+        let dt_ms = now.since(self.last_row_at) / 1_000;
+        self.last_row_at = now;
+        self.outbox
+            .push(Priority::Answer, row(dt_ms, status, signals).line().bytes());
+    }
+
+    /// Sends a message, or says that it did not fit. Only what is sent takes a number: a gap is the link's loss.
+    fn say(&mut self, priority: Priority, message: &FromRobot) -> bool {
+        let sent = self.outbox.push(priority, message.frame(self.seq).bytes());
+        if sent {
+            self.seq = self.seq.wrapping_add(1) & 0xF;
+        }
+        sent
+    }
+
+    fn say_number(&mut self, word: [u8; 4], number: u8) {
+        let [a, b, c, d] = word;
+        self.outbox.push(
+            Priority::Answer,
+            &[a, b, c, d, b'0' + number % 10, b'\r', b'\n'],
+        );
+    }
+}
+
+/// The counters and the battery alone are no news.
+fn is_news(status: &Status, before: &Status) -> bool {
+    (status.mode, status.armed, status.fault) != (before.mode, before.armed, before.fault)
+        || status.reference != before.reference
+}
+
+/// The original's row for the mode.
+fn row(dt_ms: u32, status: &Status, signals: &Signals) -> Row {
+    let mode = status.mode as u8;
+    let pwm = signals.duty.map(Duty::counts);
+    match status.mode {
+        ModeId::FrontDistance => {
+            // One sonar, which the original sends twice.
+            let front = signals
+                .ranges
+                .get(SonarId::Front as usize)
+                .map_or(Range::Faulty, |aged| aged.range);
+            let front_cm = cm_from_range(front);
+            let reference_cm = status.reference.left * CM_PER_M;
+            Row::Distance(DistanceRow {
+                dt_ms,
+                left_cm: front_cm,
+                right_cm: front_cm,
+                reference_cm,
+                mode,
+                pwm,
+            })
+        }
+        ModeId::Manual | ModeId::WheelSpeed => Row::Speed(SpeedRow {
+            dt_ms,
+            wheel_rpm: signals.wheel_rad_s.map(|rad_s| rad_s / RAD_S_PER_RPM),
+            reference_rpm: signals.wheel_ref_rad_s.right / RAD_S_PER_RPM,
+            mode,
+            pwm,
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use rumbo_wire::{Decoder, PROTOCOL_VERSION, Received, ResetCause};
+
+    #[test]
+    fn telemetry_carries_the_speeds_of_two_instants_20_ms_apart() {
+        let hello = Hello {
+            protocol: PROTOCOL_VERSION,
+            schema: 0,
+            image: 0,
+            reset: ResetCause::PowerOn,
+        };
+        let mut reporter = Reporter::new(hello);
+        let mut decoder = Decoder::<64>::default();
+        let mut frames = 0;
+        for tick in 0..200u16 {
+            // A speed that tells the tick it was taken at, in steps that telemetry resolves.
+            let signals = Signals {
+                wheel_rad_s: Wheels::both(f32::from(tick) / 10.0),
+                ..Signals::default()
+            };
+            reporter.tick(Micros(0), tick * 10, &Status::default(), &signals);
+            while let Some(byte) = reporter.transmit() {
+                let Some(Received::Frame(body)) = decoder.push(byte) else {
+                    continue;
+                };
+                let Ok(FromRobot::Telemetry(telemetry)) = FromRobot::from_body(&body) else {
+                    continue;
+                };
+                let ticks = telemetry
+                    .wheel_rad_s
+                    .map(|wheels| (wheels.left * 10.0).round() as u16);
+                assert_eq!(ticks, [tick - 2, tick]);
+                assert_eq!(telemetry.t_ms, tick * 10);
+                frames += 1;
+            }
+        }
+        assert_eq!(frames, 50);
+    }
+}

@@ -1,0 +1,268 @@
+//! The robot: bytes and sensor readings in, duty and bytes out.
+//!
+//! At a tick the caller hands over the bytes that arrived ([`Robot::receive`]), then what the sensors latched
+//! ([`Robot::tick`]), and empties the transmit ring at its own pace ([`Robot::transmit`]). Nothing here waits, reads a
+//! clock or knows a pin, so the firmware, the emulated chip and the simulator run the same robot.
+
+use rumbo_control::params::{ParamId, SCHEMA};
+use rumbo_control::{Fault, Inputs, Outputs};
+use rumbo_wire::text::TextCommand;
+use rumbo_wire::{
+    Ack, Body, Command, Decoder, EventKind, Hello, Message, PROTOCOL_VERSION, Received, Refusal,
+    ResetCause, Status, ToRobot, codec,
+};
+
+use crate::clock::Clock;
+use crate::ledger::{Ledger, Verdict};
+use crate::pilot::Pilot;
+use crate::report::{Language, Reporter};
+use crate::supervisor::Supervisor;
+use crate::text::{self, Translated};
+
+/// Longest line of text that is understood.
+const LINE: usize = 48;
+/// Without a tick for this long [us], the robot does not know what it drives through.
+const TICK_LOST_US: u32 = 100_000;
+
+/// What the robot is told about itself at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Config {
+    /// Hash of the program image; 0 for the native build.
+    pub image: u32,
+    /// Why the program started.
+    pub reset: ResetCause,
+}
+
+/// The whole robot, but for its hardware.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    clock: Clock,
+    decoder: Decoder<LINE>,
+    ledger: Ledger,
+    supervisor: Supervisor,
+    pilot: Pilot,
+    reporter: Reporter,
+}
+
+impl Robot {
+    /// A robot at rest, disarmed whatever the cause of its start.
+    pub fn new(config: Config) -> Robot {
+        let hello = Hello {
+            protocol: PROTOCOL_VERSION,
+            schema: SCHEMA,
+            image: config.image,
+            reset: config.reset,
+        };
+        Robot {
+            clock: Clock::default(),
+            decoder: Decoder::default(),
+            ledger: Ledger::default(),
+            supervisor: Supervisor::default(),
+            pilot: Pilot::default(),
+            reporter: Reporter::new(hello),
+        }
+    }
+
+    /// Takes a byte from the link; what it completes is applied at once.
+    pub fn receive(&mut self, byte: u8) {
+        match self.decoder.push(byte) {
+            None => {}
+            Some(Received::Frame(body)) => self.take_frame(&body),
+            Some(Received::Line(line)) => {
+                let parsed = TextCommand::parse(line);
+                self.take_line(parsed.ok());
+            }
+        }
+    }
+
+    /// One tick: judges, estimates, drives, reports. The outputs take effect
+    /// [`OUTPUT_DELAY_US`](rumbo_control::OUTPUT_DELAY_US) after the tick.
+    pub fn tick(&mut self, inputs: &Inputs) -> Outputs {
+        let elapsed_us = self.clock.advance(inputs.now);
+        if elapsed_us > TICK_LOST_US {
+            self.fail(Fault::Overrun);
+        }
+        let timeout = match self.reporter.language() {
+            Language::Binary => ParamId::LinkTimeout,
+            Language::Text => ParamId::TextTimeout,
+        };
+        let timeout_us = self.pilot.link_timeout_us(timeout);
+        if let Some(event) = self.supervisor.watch_link(inputs.now, timeout_us) {
+            self.released_by(event);
+        }
+        let step = self.pilot.step(inputs, self.supervisor.is_armed());
+        if let Some(fault) = step.fault {
+            self.fail(fault);
+        }
+        if step.reached {
+            self.event(EventKind::Reached);
+        }
+        let status = self.status(inputs.battery_v, step.outputs.servo.0);
+        self.reporter.tick(
+            inputs.now,
+            self.clock.t_ms(),
+            &status,
+            &self.pilot.signals(),
+        );
+        step.outputs
+    }
+
+    /// The next byte for the link, if any waits.
+    pub fn transmit(&mut self) -> Option<u8> {
+        self.reporter.transmit()
+    }
+
+    /// Sets a parameter before the robot starts, as the overrides of a robot file do in a simulation.
+    ///
+    /// # Errors
+    /// As for [`Command::SetParam`].
+    pub fn set_param(&mut self, id: u8, value: f32) -> Result<f32, Refusal> {
+        self.pilot.set_param(id, value)
+    }
+
+    fn take_frame(&mut self, body: &Body) {
+        let Ok(message) = ToRobot::from_body(body) else {
+            if let Some((session, number)) = codec::command_number(body) {
+                self.reporter.addressed_in(Language::Binary);
+                self.reporter.acknowledge(Ack {
+                    session,
+                    number,
+                    result: Err(Refusal::Malformed),
+                });
+            }
+            return;
+        };
+        self.reporter.addressed_in(Language::Binary);
+        match message {
+            ToRobot::Hello => self.reporter.introduce(),
+            ToRobot::Heartbeat => {}
+            ToRobot::Command {
+                session,
+                number,
+                command,
+            } => match self.ledger.judge(session, number, &command) {
+                Verdict::New => {
+                    let ack = Ack {
+                        session,
+                        number,
+                        result: self.apply(&command),
+                    };
+                    self.ledger.record(ack, &command);
+                    self.reporter.acknowledge(ack);
+                }
+                Verdict::Repeated(ack) => self.reporter.acknowledge(ack),
+                Verdict::Late => {}
+            },
+        }
+        // Only now: a start that comes alone, out of a silent link, finds it dead.
+        self.supervisor.sign_of_life(self.clock.now());
+    }
+
+    /// A line of text; `None` if it is no command. Bytes inside a frame can look like a line, so that alone says nothing.
+    fn take_line(&mut self, command: Option<TextCommand>) {
+        let Some(command) = command else {
+            if self.reporter.language() == Language::Text {
+                self.reporter.refuse_line(Refusal::Malformed);
+            }
+            return;
+        };
+        self.reporter.addressed_in(Language::Text);
+        // Text has no heartbeat: the line that starts the robot is its own sign of life.
+        self.supervisor.sign_of_life(self.clock.now());
+        if let Err(refusal) = self.apply_text(command) {
+            self.reporter.refuse_line(refusal);
+        }
+    }
+
+    fn apply_text(&mut self, command: TextCommand) -> Result<f32, Refusal> {
+        match text::translate(command, self.pilot.mode(), self.pilot.reference())? {
+            // Text has no command of its own for it: who says OFF knows that the robot stands.
+            Translated::Command(Command::Disarm) => {
+                self.apply(&Command::Disarm)?;
+                self.apply(&Command::ClearFault)
+            }
+            Translated::Command(command) => self.apply(&command),
+            Translated::Params(values) => self.pilot.set_params(values),
+        }
+    }
+
+    /// Applies a command; gives the value in force, 0 where there is none.
+    fn apply(&mut self, command: &Command) -> Result<f32, Refusal> {
+        match *command {
+            Command::Stop | Command::Disarm => {
+                if let Some(event) = self.supervisor.disarm() {
+                    self.event(event);
+                }
+                Ok(0.0)
+            }
+            Command::Arm => {
+                let event = self.supervisor.arm(self.pilot.ready())?;
+                if let Some(event) = event {
+                    self.pilot.start();
+                    self.event(event);
+                }
+                Ok(0.0)
+            }
+            Command::ClearFault => {
+                if let Some(event) = self.supervisor.clear() {
+                    self.event(event);
+                }
+                Ok(0.0)
+            }
+            // A jump of gains, or of the heading that a mode keeps, is not for a moving robot.
+            Command::Mode(_) | Command::ResetParams | Command::ResetPose
+                if self.supervisor.is_armed() =>
+            {
+                Err(Refusal::Armed)
+            }
+            Command::Mode(mode) => {
+                self.pilot.select(mode);
+                self.event(EventKind::ModeChanged(mode));
+                Ok(f32::from(mode as u8))
+            }
+            Command::Reference(value) => self.pilot.set_reference(value),
+            Command::WheelReference(wheels) => self.pilot.set_wheel_reference(wheels),
+            Command::Move { movement, level } => self.pilot.set_movement(movement, level),
+            Command::SetParam { id, value } => self.pilot.set_param(id, value),
+            Command::GetParam { id } => self.pilot.param(id),
+            Command::ResetParams => {
+                self.pilot.reset_params();
+                Ok(0.0)
+            }
+            Command::ResetPose => {
+                self.pilot.reset_pose();
+                Ok(0.0)
+            }
+        }
+    }
+
+    fn fail(&mut self, fault: Fault) {
+        if let Some(event) = self.supervisor.fail(fault) {
+            self.released_by(event);
+        }
+    }
+
+    fn released_by(&mut self, event: EventKind) {
+        self.event(event);
+        self.event(EventKind::Disarmed);
+    }
+
+    fn event(&mut self, kind: EventKind) {
+        self.reporter.event(self.clock.t_ms(), kind);
+    }
+
+    fn status(&self, battery_v: Option<f32>, servo_rad: f32) -> Status {
+        let low = |counter: u16| (counter & 0xFF) as u8;
+        Status {
+            mode: self.pilot.mode(),
+            armed: self.supervisor.is_armed(),
+            fault: self.supervisor.fault(),
+            battery_v,
+            reference: self.pilot.reference(),
+            crc_errors: low(self.decoder.crc_errors()),
+            dropped: self.reporter.dropped(),
+            overruns: self.clock.overruns(),
+            servo_rad,
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Commands in the words of the original, in the units of the core.
+
+use rumbo_control::mode::ModeId;
+use rumbo_control::params::ParamId;
+use rumbo_control::{Duty, Side, Wheels};
+use rumbo_wire::text::{CM_PER_M, RAD_S_PER_RPM, TextCommand};
+use rumbo_wire::{Command, Refusal};
+
+/// Duty per rad/s in a gain of one PWM count per rpm.
+const GAIN_PER_PWM_PER_RPM: f32 = 1.0 / (255.0 * RAD_S_PER_RPM);
+const _: () = assert!(Duty::MAX == 255);
+
+/// What a line asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Translated {
+    /// The same as this command.
+    Command(Command),
+    /// These parameters at once.
+    Params([(ParamId, f32); 3]),
+}
+
+/// Translates a line; what `REF` means depends on the mode, and `REF A` keeps the left wheel's `reference`.
+///
+/// # Errors
+/// The mode takes no such command, or there is no such mode.
+pub(crate) fn translate(
+    command: TextCommand,
+    mode: ModeId,
+    reference: Wheels<f32>,
+) -> Result<Translated, Refusal> {
+    let command = match command {
+        TextCommand::On => Command::Arm,
+        TextCommand::Off => Command::Disarm,
+        TextCommand::Reference(value) => match mode {
+            ModeId::FrontDistance => Command::Reference(value / CM_PER_M),
+            ModeId::WheelSpeed => Command::Reference(value * RAD_S_PER_RPM),
+            ModeId::Manual => return Err(Refusal::NotInThisMode),
+        },
+        TextCommand::WheelReference(side, rpm) => {
+            let mut wheels = reference;
+            wheels[side] = rpm * RAD_S_PER_RPM;
+            Command::WheelReference(wheels)
+        }
+        TextCommand::Goal { .. } => return Err(Refusal::NotInThisMode),
+        TextCommand::Mode(number) => {
+            Command::Mode(ModeId::from_number(number).ok_or(Refusal::OutOfRange)?)
+        }
+        TextCommand::Gains { side, kp, ki, kd } => {
+            let [kp_id, ki_id, kd_id] = match side {
+                Side::Left => [
+                    ParamId::SpeedKpLeft,
+                    ParamId::SpeedKiLeft,
+                    ParamId::SpeedKdLeft,
+                ],
+                Side::Right => [
+                    ParamId::SpeedKpRight,
+                    ParamId::SpeedKiRight,
+                    ParamId::SpeedKdRight,
+                ],
+            };
+            let gain = |id, value| (id, value * GAIN_PER_PWM_PER_RPM);
+            return Ok(Translated::Params([
+                gain(kp_id, kp),
+                gain(ki_id, ki),
+                gain(kd_id, kd),
+            ]));
+        }
+    };
+    Ok(Translated::Command(command))
+}

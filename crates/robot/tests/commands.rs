@@ -1,0 +1,200 @@
+//! Commands: once each, answered each time, refused with a reason and without a trace.
+
+mod support;
+
+use proptest::prelude::*;
+use rumbo_control::Wheels;
+use rumbo_control::mode::{Level, ModeId, Movement};
+use rumbo_control::params::ParamId;
+use rumbo_wire::{Command, EventKind, Frame, Kind, Refusal, ToRobot};
+use support::{Bench, SESSION};
+
+#[test]
+fn a_repeated_command_is_applied_once_and_answered_each_time() {
+    let mut bench = Bench::alive();
+    bench
+        .numbered(SESSION, 1, Command::Mode(ModeId::WheelSpeed))
+        .unwrap();
+    bench.numbered(SESSION, 2, Command::Arm).unwrap();
+    bench.numbered(SESSION, 3, Command::Disarm).unwrap();
+    let before = bench.acks();
+    // The link repeats the last command and, late, one before it.
+    assert_eq!(bench.numbered(SESSION, 3, Command::Disarm), Ok(0.0));
+    assert_eq!(bench.acks().last(), before.last());
+    bench.send(&ToRobot::Command {
+        session: SESSION,
+        number: 2,
+        command: Command::Arm,
+    });
+    bench.ticks(20);
+    assert_eq!(bench.acks().len(), before.len() + 1);
+    assert!(!bench.status().armed);
+    let armed = bench
+        .events()
+        .iter()
+        .filter(|event| **event == EventKind::Armed)
+        .count();
+    assert_eq!(armed, 1);
+}
+
+#[test]
+fn a_refusal_too_is_repeated_as_it_was() {
+    let mut bench = Bench::alive();
+    assert_eq!(
+        bench.numbered(SESSION, 1, Command::Reference(1.0)),
+        Err(Refusal::NotInThisMode)
+    );
+    bench
+        .numbered(SESSION + 1, 0, Command::Mode(ModeId::FrontDistance))
+        .unwrap();
+    assert_eq!(
+        bench.numbered(SESSION + 1, 1, Command::Reference(-1.0)),
+        Err(Refusal::OutOfRange)
+    );
+    assert_eq!(
+        bench.numbered(SESSION + 1, 1, Command::Reference(-1.0)),
+        Err(Refusal::OutOfRange)
+    );
+}
+
+#[test]
+fn another_session_starts_its_own_numbers() {
+    let mut bench = Bench::alive();
+    bench
+        .numbered(1, 500, Command::Mode(ModeId::WheelSpeed))
+        .unwrap();
+    assert_eq!(bench.numbered(2, 0, Command::Reference(3.0)), Ok(3.0));
+    assert_eq!(bench.status().reference, Wheels::both(3.0));
+}
+
+#[test]
+fn a_value_that_is_not_finite_or_out_of_range_changes_nothing() {
+    let mut bench = Bench::alive();
+    bench.command(Command::Mode(ModeId::WheelSpeed)).unwrap();
+    bench.command(Command::Reference(4.0)).unwrap();
+    for (value, refusal) in [
+        (f32::NAN, Refusal::NotFinite),
+        (f32::INFINITY, Refusal::NotFinite),
+        (1e6, Refusal::OutOfRange),
+    ] {
+        assert_eq!(bench.command(Command::Reference(value)), Err(refusal));
+        let half = Wheels {
+            left: 1.0,
+            right: value,
+        };
+        assert_eq!(bench.command(Command::WheelReference(half)), Err(refusal));
+        let id = ParamId::Base as u8;
+        assert_eq!(bench.command(Command::SetParam { id, value }), Err(refusal));
+        assert_eq!(
+            bench.command(Command::GetParam { id }),
+            Ok(ParamId::Base.limits().default)
+        );
+    }
+    assert_eq!(bench.status().reference, Wheels::both(4.0));
+}
+
+#[test]
+fn the_mode_changes_only_while_disarmed() {
+    let mut bench = Bench::alive();
+    bench.drive();
+    assert_eq!(
+        bench.command(Command::Mode(ModeId::Manual)),
+        Err(Refusal::Armed)
+    );
+    assert_eq!(bench.command(Command::ResetParams), Err(Refusal::Armed));
+    assert_eq!(bench.command(Command::ResetPose), Err(Refusal::Armed));
+    assert_eq!(bench.status().mode, ModeId::WheelSpeed);
+    bench.command(Command::Disarm).unwrap();
+    assert_eq!(bench.command(Command::Mode(ModeId::Manual)), Ok(0.0));
+    assert_eq!(bench.status().mode, ModeId::Manual);
+}
+
+#[test]
+fn a_command_belongs_to_its_mode() {
+    let mut bench = Bench::alive();
+    assert_eq!(
+        bench.command(Command::Reference(0.5)),
+        Err(Refusal::NotInThisMode)
+    );
+    let forward = Command::Move {
+        movement: Movement::Forward,
+        level: Level::Duty(0.5),
+    };
+    assert_eq!(bench.command(forward), Ok(0.5));
+    bench.command(Command::Mode(ModeId::FrontDistance)).unwrap();
+    assert_eq!(bench.command(forward), Err(Refusal::NotInThisMode));
+    assert_eq!(bench.command(Command::Reference(0.5)), Ok(0.5));
+}
+
+#[test]
+fn parameters_are_read_set_and_reset() {
+    let mut bench = Bench::alive();
+    let id = ParamId::Base as u8;
+    assert_eq!(
+        bench.command(Command::SetParam { id, value: 0.12 }),
+        Ok(0.12)
+    );
+    assert_eq!(bench.command(Command::GetParam { id }), Ok(0.12));
+    bench.command(Command::ResetParams).unwrap();
+    assert_eq!(
+        bench.command(Command::GetParam { id }),
+        Ok(ParamId::Base.limits().default)
+    );
+    assert_eq!(
+        bench.command(Command::GetParam { id: 250 }),
+        Err(Refusal::UnknownParam)
+    );
+}
+
+#[test]
+fn a_command_that_is_not_understood_is_refused_by_its_number() {
+    let mut bench = Bench::alive();
+    bench.bytes_in(Frame::new(Kind::Command, 0, &[SESSION, 9, 0, 200]).bytes());
+    bench.ticks(20);
+    assert_eq!(
+        bench.acks().last().map(|ack| (ack.number, ack.result)),
+        Some((9, Err(Refusal::Malformed)))
+    );
+}
+
+#[test]
+fn a_basic_movement_drives_the_wheels_by_its_duty() {
+    let mut bench = Bench::alive();
+    bench.command(Command::Arm).unwrap();
+    bench
+        .command(Command::Move {
+            movement: Movement::TurnLeft,
+            level: Level::Duty(0.4),
+        })
+        .unwrap();
+    let counts = bench.outputs.drive.map(|duty| duty.counts());
+    assert_eq!(
+        counts,
+        Wheels {
+            left: -102,
+            right: 102
+        }
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn garbage_at_line_rate_changes_nothing(noise in prop::collection::vec(any::<u8>(), 2_000..4_000)) {
+        let mut quiet = Bench::alive();
+        quiet.drive();
+        let mut noisy = Bench::alive();
+        noisy.drive();
+        for bytes in noise.chunks(10) {
+            noisy.bytes_in(bytes);
+            // Ends what the noise began, so that the heartbeats get through.
+            noisy.bytes_in(&[0]);
+            noisy.ticks(1);
+            quiet.ticks(1);
+            prop_assert_eq!(noisy.outputs, quiet.outputs);
+        }
+        prop_assert_eq!(noisy.events(), quiet.events());
+        prop_assert!(noisy.lines.is_empty());
+    }
+}
