@@ -1,6 +1,6 @@
 //! Two-cell Li-ion battery: open-circuit voltage falling with the charge drawn, behind an internal resistance.
 //!
-//! The open-circuit voltage itself is the state. Down to the knee it falls by [`PLATEAU_V`] per full charge, below
+//! The open-circuit voltage itself is the state. Down to the knee it falls by `PLATEAU_V` per full charge, below
 //! the knee about ten times as fast: the shape of an NMC cell's discharge curve in two straight lines.
 
 use crate::params;

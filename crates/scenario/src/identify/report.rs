@@ -66,7 +66,11 @@ impl fmt::Display for RunScore {
             ("  straight stretches", &self.ahead_straight),
             ("  turns on the spot", &self.ahead_turning),
         ] {
-            if let Some([left, right]) = wheels {
+            let Some([left, right]) = wheels else {
+                continue;
+            };
+            // A run without turns is all straight stretches.
+            if self.whole_turning.is_some() || !what.starts_with("  ") {
                 writeln!(
                     f,
                     "  {what:<24}left {}  right {}",

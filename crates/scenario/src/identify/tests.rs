@@ -267,6 +267,24 @@ fn plots_are_written_as_svg_and_png() {
     assert!(png.starts_with(b"\x89PNG") && png.len() > 10_000);
 }
 
+/// The plant of the project's robot file.
+fn memoria() -> Params {
+    let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/memoria.toml");
+    let file: toml::Table = std::fs::read_to_string(robot).unwrap().parse().unwrap();
+    file["plant"].clone().try_into().unwrap()
+}
+
+#[test]
+fn the_identified_robot_starts_to_turn_at_the_reports_pwm() {
+    let params = memoria();
+    let (air, floor) = (dead_zone_pwm(&params, false), dead_zone_pwm(&params, true));
+    assert!((32.0..38.0).contains(&air), "the report: 35, here {air}");
+    assert!(
+        (60.0..70.0).contains(&floor),
+        "the report: 65, here {floor}"
+    );
+}
+
 /// The project's robot on the real robot's runs; needs them in the folder `RUMBO_DATA`.
 #[test]
 fn the_identified_robot_repeats_the_real_runs() {
@@ -274,9 +292,7 @@ fn the_identified_robot_repeats_the_real_runs() {
         return;
     };
     let run = |name: &str| DriveLog::read(&Path::new(&folder).join(name)).unwrap();
-    let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/memoria.toml");
-    let file: toml::Table = std::fs::read_to_string(robot).unwrap().parse().unwrap();
-    let params: Params = file["plant"].clone().try_into().unwrap();
+    let params = memoria();
     let check = check(
         &[run("mode5_wheel_speed.csv"), run("mode7_square.csv")],
         &params,
@@ -290,6 +306,4 @@ fn the_identified_robot_repeats_the_real_runs() {
             "{check}"
         );
     }
-    assert!((32.0..38.0).contains(&dead_zone_pwm(&params, false)));
-    assert!((60.0..70.0).contains(&dead_zone_pwm(&params, true)));
 }
