@@ -123,19 +123,19 @@ table! {
     /// Duty that a standing wheel gets at first when asked to turn; it grows until edges come.
     Kick = "kick", "1", 0.30, 0.0 => 1.0, None;
     /// Speed loop of the left wheel, proportional gain.
-    SpeedKpLeft = "speed_kp_left", "s/rad", 0.08, 0.0 => 2.0, None;
+    SpeedKpLeft = "speed_kp_left", "s/rad", 0.14, 0.0 => 2.0, None;
     /// Speed loop of the left wheel, integral gain.
-    SpeedKiLeft = "speed_ki_left", "1/rad", 0.25, 0.0 => 20.0, None;
+    SpeedKiLeft = "speed_ki_left", "1/rad", 0.5, 0.0 => 20.0, None;
     /// Speed loop of the left wheel, derivative gain.
     SpeedKdLeft = "speed_kd_left", "s2/rad", 0.0, 0.0 => 1.0, None;
     /// Speed loop of the right wheel, proportional gain.
-    SpeedKpRight = "speed_kp_right", "s/rad", 0.08, 0.0 => 2.0, None;
+    SpeedKpRight = "speed_kp_right", "s/rad", 0.14, 0.0 => 2.0, None;
     /// Speed loop of the right wheel, integral gain.
-    SpeedKiRight = "speed_ki_right", "1/rad", 0.25, 0.0 => 20.0, None;
+    SpeedKiRight = "speed_ki_right", "1/rad", 0.5, 0.0 => 20.0, None;
     /// Speed loop of the right wheel, derivative gain.
     SpeedKdRight = "speed_kd_right", "s2/rad", 0.0, 0.0 => 1.0, None;
     /// Largest acceleration asked of a wheel.
-    WheelAccel = "wheel_accel_rad_s2", "rad/s2", 30.0, 1.0 => 500.0, None;
+    WheelAccel = "wheel_accel_rad_s2", "rad/s2", 40.0, 1.0 => 500.0, None;
     /// Largest deceleration asked of a wheel; beyond about 20 friction alone does not brake it.
     WheelDecel = "wheel_decel_rad_s2", "rad/s2", 20.0, 1.0 => 500.0, None;
     /// Voltage at which the feedforward was measured; used where the battery's voltage is.
@@ -149,9 +149,9 @@ table! {
     /// Inner wheel's speed over the outer one's in arcs.
     ArcRatio = "arc_ratio", "1", 0.5, 0.0 => 1.0, MANUAL;
     /// Largest approach speed.
-    FrontCruise = "front_cruise_m_s", "m/s", 0.45, 0.02 => 0.8, FRONT;
+    FrontCruise = "front_cruise_m_s", "m/s", 0.5, 0.02 => 0.8, FRONT;
     /// Deceleration planned on the way to the reference.
-    FrontBrake = "front_brake_m_s2", "m/s2", 0.55, 0.05 => 3.0, FRONT;
+    FrontBrake = "front_brake_m_s2", "m/s2", 0.36, 0.05 => 3.0, FRONT;
     /// Speed per distance near the reference.
     FrontKp = "front_kp", "1/s", 5.0, 0.1 => 20.0, FRONT;
     /// Distance from the reference within which the wheels are released.

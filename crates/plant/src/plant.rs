@@ -322,6 +322,13 @@ impl Plant {
         }
     }
 
+    /// Speeds of both wheels, left and right, forward positive.
+    #[must_use]
+    pub const fn wheel_rad_s(&self, state: &State) -> [f64; 2] {
+        let [left, right] = &state.drivetrain.wheels;
+        [left.speed_rad_s, right.speed_rad_s]
+    }
+
     /// True if the robot was set up with its wheels off the floor.
     #[must_use]
     pub const fn wheels_in_air(&self) -> bool {

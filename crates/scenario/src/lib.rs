@@ -1,5 +1,11 @@
 //! Rumbo's experiments: the robot against the plant, metrics, identification.
 
+mod board;
 pub mod files;
 pub mod identify;
+pub mod metrics;
+mod operator;
+pub mod run;
+pub mod sim;
 pub mod sonar_stats;
+pub mod trace;

@@ -1,0 +1,36 @@
+//! Metrics of a run: from the plant's truth and what crosses the pins, never from the robot's own estimates.
+//!
+//! Every run has `contacts`, `contact_speed_m_s`..., every scenario with references has one group per step, named after its place in
+//! the scenario: `step1.settling_s`. Names end in their unit.
+
+mod path;
+mod start;
+mod step;
+
+use crate::files::Setup;
+use crate::sim::Sim;
+use crate::trace::Trace;
+use rumbo_control::mode::ModeId;
+use std::collections::BTreeMap;
+
+/// Metrics by name.
+pub type Metrics = BTreeMap<String, f64>;
+
+/// All metrics of a run.
+pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace, telemetry_frames: u64) -> Metrics {
+    let mut metrics = Metrics::new();
+    let duration_s = setup.scenario.duration_s;
+    metrics.insert("contacts".into(), f64::from(sim.truth().contacts));
+    metrics.insert("reverse_drive_rad_s".into(), sim.worst_reverse_rad_s());
+    metrics.insert("telemetry_hz".into(), telemetry_frames as f64 / duration_s);
+    metrics.insert("control_period_s".into(), sim.control_period_s());
+    match setup.scenario.mode {
+        ModeId::FrontDistance => step::distance_steps(setup, sim, trace, &mut metrics),
+        ModeId::WheelSpeed => step::speed_steps(setup, trace, &mut metrics),
+        ModeId::Manual => {
+            path::movement(setup, trace, &mut metrics);
+            start::dead_zones(trace, &mut metrics);
+        }
+    }
+    metrics
+}

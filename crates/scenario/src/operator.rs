@@ -1,0 +1,125 @@
+//! Sends a scenario's commands at their times, as a person at the dashboard would: over the link, one at a time,
+//! repeated until they are acknowledged, with a heartbeat in between.
+
+use crate::files::TimedCommand;
+use crate::sim::Sim;
+use rumbo_control::mode::ModeId;
+use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, ToRobot};
+
+/// Time between heartbeats [us].
+const HEARTBEAT_US: u64 = 100_000;
+/// Time after which an unanswered command is repeated [us].
+const REPEAT_US: u64 = 200_000;
+/// Longest line of the original's telemetry.
+const LINE: usize = 160;
+
+/// The sending side of a run.
+pub(crate) struct Operator<'a> {
+    commands: &'a [TimedCommand],
+    mode: Option<ModeId>,
+    next: usize,
+    number: u16,
+    seq: u8,
+    /// The command that waits for its acknowledgement, and when it was last sent.
+    pending: Option<(Command, u64)>,
+    heartbeat_due_us: u64,
+    decoder: Decoder<LINE>,
+    buffer: Vec<u8>,
+    /// What the robot refused or reported.
+    pub(crate) complaints: Vec<String>,
+    /// Telemetry frames received.
+    pub(crate) telemetry_frames: u64,
+}
+
+impl<'a> Operator<'a> {
+    pub(crate) fn new(mode: ModeId, commands: &'a [TimedCommand]) -> Self {
+        Self {
+            commands,
+            mode: Some(mode),
+            next: 0,
+            number: 0,
+            seq: 0,
+            pending: None,
+            heartbeat_due_us: 0,
+            decoder: Decoder::default(),
+            buffer: Vec::new(),
+            complaints: Vec::new(),
+            telemetry_frames: 0,
+        }
+    }
+
+    /// Listens, then says what is due.
+    pub(crate) fn step(&mut self, sim: &mut Sim) {
+        let now_us = sim.now_us();
+        self.listen(sim);
+        if now_us >= self.heartbeat_due_us {
+            self.say(sim, &ToRobot::Heartbeat);
+            self.heartbeat_due_us = now_us + HEARTBEAT_US;
+        }
+        if let Some((command, sent_us)) = self.pending {
+            if now_us >= sent_us + REPEAT_US {
+                self.send(sim, command);
+            }
+            return;
+        }
+        let due = |timed: &&TimedCommand| timed.at_s * 1e6 <= now_us as f64;
+        let command = match self.mode.take() {
+            Some(mode) => Command::Mode(mode),
+            None => match self.commands.get(self.next).filter(due) {
+                Some(timed) => {
+                    self.next += 1;
+                    timed.command
+                }
+                None => return,
+            },
+        };
+        self.number = self.number.wrapping_add(1);
+        self.send(sim, command);
+    }
+
+    fn send(&mut self, sim: &mut Sim, command: Command) {
+        let message = ToRobot::Command {
+            session: 1,
+            number: self.number,
+            command,
+        };
+        self.say(sim, &message);
+        self.pending = Some((command, sim.now_us()));
+    }
+
+    fn say(&mut self, sim: &mut Sim, message: &ToRobot) {
+        sim.send(message.frame(self.seq).bytes());
+        self.seq = self.seq.wrapping_add(1);
+    }
+
+    fn listen(&mut self, sim: &mut Sim) {
+        let mut buffer = std::mem::take(&mut self.buffer);
+        buffer.clear();
+        sim.receive(&mut buffer);
+        for byte in &buffer {
+            let Some(Received::Frame(body)) = self.decoder.push(*byte) else {
+                continue;
+            };
+            match FromRobot::from_body(&body) {
+                Ok(FromRobot::Ack(ack)) if ack.number == self.number => {
+                    if let (Some((command, _)), Err(refusal)) = (self.pending.take(), ack.result) {
+                        let now_s = sim.now_us() as f64 * 1e-6;
+                        let why = refusal.explanation();
+                        self.complaints
+                            .push(format!("at {now_s:.2} s {command:?} was refused: {why}"));
+                    }
+                }
+                Ok(FromRobot::Event(event)) => {
+                    if let rumbo_wire::EventKind::Faulted(fault) = event.kind {
+                        let now_s = sim.now_us() as f64 * 1e-6;
+                        self.complaints
+                            .push(format!("at {now_s:.2} s fault: {}", fault.explanation()));
+                    }
+                }
+                Ok(FromRobot::Telemetry(_)) => self.telemetry_frames += 1,
+                Ok(_) | Err(_) => {}
+            }
+        }
+        self.buffer = buffer;
+    }
+}

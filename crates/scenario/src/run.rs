@@ -1,0 +1,91 @@
+//! Runs of a scenario: headless, as fast as the machine can, many seeds on all cores.
+//!
+//! A run depends on its setup and seed alone, so its result is the same on one thread and on many.
+
+use crate::files::{FileError, Setup};
+use crate::metrics::{self, Metrics};
+use crate::operator::Operator;
+use crate::sim::Sim;
+use crate::trace::{SAMPLE_US, Trace};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// What a run gave.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunResult {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// The seed.
+    pub seed: u64,
+    /// No limit is missed, and the robot refused nothing and reported no fault.
+    pub pass: bool,
+    /// All metrics; units in the names.
+    pub metrics: Metrics,
+    /// Why it did not pass, a line each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub failures: Vec<String>,
+    /// What really happened.
+    #[serde(skip)]
+    pub trace: Trace,
+}
+
+/// Runs a scenario once.
+///
+/// # Errors
+/// If the setup's values do not fit together.
+pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
+    let scenario = &setup.scenario;
+    let mut sim = Sim::new(setup, seed)?;
+    let mut operator = Operator::new(scenario.mode, &scenario.commands);
+    let mut trace = Trace::default();
+    let end_us = (scenario.duration_s * 1e6) as u64;
+    trace.samples.reserve((end_us / SAMPLE_US) as usize + 1);
+    while sim.now_us() < end_us {
+        operator.step(&mut sim);
+        sim.advance((sim.now_us() + SAMPLE_US).min(end_us));
+        trace.take(&sim);
+    }
+    let metrics = metrics::compute(setup, &sim, &trace, operator.telemetry_frames);
+    let mut failures = operator.complaints;
+    for (name, bounds) in &scenario.limits {
+        match metrics.get(name) {
+            Some(value) if bounds.admit(*value) => {}
+            Some(value) => failures.push(format!("{name} = {value:.4}: limit {bounds}")),
+            None => failures.push(format!(
+                "{name}: this scenario has no such metric; it has {}",
+                known(&metrics)
+            )),
+        }
+    }
+    Ok(RunResult {
+        scenario: scenario.name.clone(),
+        seed,
+        pass: failures.is_empty(),
+        metrics,
+        failures,
+        trace,
+    })
+}
+
+fn known(metrics: &Metrics) -> String {
+    metrics
+        .keys()
+        .map(String::as_str)
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+/// Runs a scenario for each seed on all threads of the current pool; calls `done` as each ends. Results in the order of `seeds`.
+///
+/// # Errors
+/// If the setup's values do not fit together.
+pub fn run_many(
+    setup: &Setup,
+    seeds: std::ops::Range<u64>,
+    done: impl Fn(&RunResult) + Sync,
+) -> Result<Vec<RunResult>, FileError> {
+    seeds
+        .into_par_iter()
+        .map(|seed| run(setup, seed).inspect(&done))
+        .collect()
+}

@@ -1,0 +1,271 @@
+//! The robot of `rumbo-robot` in the plant of `rumbo-plant`, on one clock, behind a simulated serial link.
+//!
+//! Ticks fall on multiples of 10 ms and latch what the plant's edges left in the board; the outputs reach the plant
+//! exactly 3 ms later, as on the chip. Bytes go through [`Link`]s at 9600 baud: whoever uses a [`Sim`] meets the robot
+//! as it would behind a real port.
+
+use crate::board::{Board, micros};
+use crate::files::{FileError, Setup, Spread};
+use rumbo_control::params::ParamId;
+use rumbo_control::{Duty, Inputs, OUTPUT_DELAY_US, Outputs, SIDES, SonarId, TICK_US, Wheels};
+use rumbo_plant::contact::Pose;
+use rumbo_plant::drivetrain::{Bridge, Side};
+use rumbo_plant::link::{Direction, Link, LinkParams};
+use rumbo_plant::noise::Noise;
+use rumbo_plant::params::Params;
+use rumbo_plant::plant::{Plant, State, Truth};
+use rumbo_robot::{Config, Robot};
+use rumbo_wire::ResetCause;
+
+/// A simulated robot in its world.
+#[derive(Clone, Debug)]
+pub struct Sim {
+    plant: Plant,
+    params: Params,
+    state: State,
+    robot: Robot,
+    board: Board,
+    uplink: Link,
+    downlink: Link,
+    baud: u32,
+    next_tick_us: u64,
+    pending: Option<(u64, Outputs)>,
+    duty: Wheels<Duty>,
+    worst_reverse_rad_s: f64,
+    /// When outputs first and last took effect, and how often since the first [us].
+    outputs_us: (u64, u64, u64),
+}
+
+impl Sim {
+    /// A robot at the start of a scenario; `seed` draws its parameters, unless the scenario says not to, and its noise.
+    ///
+    /// # Errors
+    /// If the files' values do not fit together.
+    pub fn new(setup: &Setup, seed: u64) -> Result<Self, FileError> {
+        let params = drawn_params(setup, seed)?;
+        let scenario = &setup.scenario;
+        let world = setup
+            .world
+            .world()
+            .map_err(|error| FileError::Setting(format!("world {}: {error}", setup.world.name)))?;
+        let plant = Plant::new(rumbo_plant::plant::Setup {
+            params,
+            rig: setup.rig,
+            world,
+            seed,
+            robot: 0,
+            wheels_in_air: scenario.wheels_in_air,
+        });
+        let state = plant.start(Pose {
+            x_m: scenario.start.x_m,
+            y_m: scenario.start.y_m,
+            heading_rad: scenario.start.heading_rad,
+        });
+        let mut robot = Robot::new(Config {
+            image: 0,
+            reset: ResetCause::PowerOn,
+        });
+        for (id, value) in setup.robot.parameters.iter().chain(&scenario.parameters) {
+            set_param(&mut robot, *id, *value)?;
+        }
+        let link = LinkParams::default();
+        let noise = Noise::new(seed, 0);
+        Ok(Self {
+            plant,
+            params,
+            state,
+            robot,
+            board: Board::default(),
+            baud: link.baud,
+            uplink: Link::new(link.clone(), noise, Direction::ToRobot),
+            downlink: Link::new(link, noise, Direction::ToStation),
+            next_tick_us: 0,
+            pending: None,
+            duty: Wheels::default(),
+            worst_reverse_rad_s: 0.0,
+            outputs_us: (0, 0, 0),
+        })
+    }
+
+    /// Simulated time since the start [us].
+    pub fn now_us(&self) -> u64 {
+        self.state.now_us()
+    }
+
+    /// Speed of the link [baud].
+    pub fn baud(&self) -> u32 {
+        self.baud
+    }
+
+    /// The plant's parameters, as drawn for this seed.
+    pub fn params(&self) -> &Params {
+        &self.params
+    }
+
+    /// What is really the case.
+    pub fn truth(&self) -> Truth {
+        self.plant.truth(&self.state)
+    }
+
+    /// The duties in force at the bridges.
+    pub fn duty(&self) -> Wheels<Duty> {
+        self.duty
+    }
+
+    /// Fastest that a wheel turned while its bridge drove it the other way [rad/s].
+    pub fn worst_reverse_rad_s(&self) -> f64 {
+        self.worst_reverse_rad_s
+    }
+
+    /// Mean time between two settings of the bridges [s].
+    pub fn control_period_s(&self) -> f64 {
+        let (first_us, last_us, count) = self.outputs_us;
+        (last_us - first_us) as f64 * 1e-6 / count.max(1) as f64
+    }
+
+    /// Puts bytes for the robot on the line.
+    pub fn send(&mut self, bytes: &[u8]) {
+        self.uplink.send(self.now_us(), bytes);
+    }
+
+    /// Appends the bytes that have arrived from the robot.
+    pub fn receive(&mut self, into: &mut Vec<u8>) {
+        self.downlink.receive(self.now_us(), into);
+    }
+
+    /// Changes what the link does to the bytes, both ways; its speed stays.
+    pub fn set_link_faults(&mut self, faults: &LinkParams) {
+        self.uplink.set_faults(faults.clone());
+        self.downlink.set_faults(faults.clone());
+    }
+
+    /// Lets robot and plant live until this time [us].
+    pub fn advance(&mut self, until_us: u64) {
+        loop {
+            let mut next_us = self.next_tick_us.min(until_us);
+            if let Some((at_us, _)) = self.pending {
+                next_us = next_us.min(at_us);
+            }
+            let board = &mut self.board;
+            self.plant
+                .advance(&mut self.state, next_us, &mut |event| board.take(event));
+            self.watch_reverse();
+            if let Some((at_us, outputs)) = self.pending
+                && at_us == next_us
+            {
+                self.pending = None;
+                self.apply(&outputs);
+            }
+            if self.next_tick_us == next_us && next_us < until_us {
+                self.tick();
+            }
+            if next_us == until_us {
+                return;
+            }
+        }
+    }
+
+    fn tick(&mut self) {
+        let now_us = self.now_us();
+        while let Some((_, byte)) = self.uplink.pop(now_us) {
+            self.robot.receive(byte);
+        }
+        let outputs = self.robot.tick(&Inputs {
+            now: micros(now_us),
+            encoders: self.board.encoders(),
+            echo: self.board.echo(now_us),
+            battery_v: None,
+        });
+        self.pending = Some((now_us + u64::from(OUTPUT_DELAY_US), outputs));
+        self.next_tick_us += u64::from(TICK_US);
+        // The transmit interrupt hands a byte to the line whenever the line is free.
+        while self.downlink.line_free_us() < self.next_tick_us {
+            let Some(byte) = self.robot.transmit() else {
+                break;
+            };
+            self.downlink.send(now_us, &[byte]);
+        }
+    }
+
+    fn apply(&mut self, outputs: &Outputs) {
+        let now_us = self.now_us();
+        self.outputs_us = match self.outputs_us {
+            (0, ..) => (now_us, now_us, 0),
+            (first_us, _, count) => (first_us, now_us, count + 1),
+        };
+        self.duty = outputs.drive;
+        for side in SIDES {
+            let bridge = bridge(outputs.drive[side]);
+            self.plant
+                .set_bridge(&mut self.state, plant_side(side), bridge);
+        }
+        self.watch_reverse();
+        self.plant
+            .set_servo(&mut self.state, f64::from(outputs.servo.0));
+        if let Some(sonar) = outputs.ping {
+            self.plant.trigger(&mut self.state, plant_sonar(sonar));
+            self.board.pinged(sonar, self.state.now_us());
+        }
+    }
+
+    fn watch_reverse(&mut self) {
+        let wheels = self.plant.wheel_rad_s(&self.state);
+        for (side, speed) in SIDES.into_iter().zip(wheels) {
+            let against = -speed * f64::from(self.duty[side].counts().signum());
+            self.worst_reverse_rad_s = self.worst_reverse_rad_s.max(against);
+        }
+    }
+}
+
+/// The robot file's parameters, drawn for the seed, with the scenario's own values on top.
+fn drawn_params(setup: &Setup, seed: u64) -> Result<Params, FileError> {
+    let mut params = match setup.scenario.spread {
+        Spread::Drawn => setup.robot.plant.draw(seed, 0),
+        Spread::None => setup.robot.plant,
+    };
+    for (key, value) in &setup.scenario.plant {
+        params
+            .set(key, *value)
+            .map_err(|error| FileError::Setting(error.to_string()))?;
+    }
+    Ok(params)
+}
+
+fn set_param(robot: &mut Robot, id: ParamId, value: f32) -> Result<(), FileError> {
+    robot
+        .set_param(id as u8, value)
+        .map(|_| ())
+        .map_err(|refusal| {
+            FileError::Setting(format!(
+                "parameter {} = {value}: {}",
+                id.name(),
+                refusal.explanation()
+            ))
+        })
+}
+
+fn bridge(duty: Duty) -> Bridge {
+    let share = f64::from(duty.counts()) / f64::from(Duty::MAX);
+    if duty == Duty::RELEASED {
+        Bridge::Released
+    } else if share > 0.0 {
+        Bridge::Forward(share)
+    } else {
+        Bridge::Backward(-share)
+    }
+}
+
+fn plant_side(side: rumbo_control::Side) -> Side {
+    match side {
+        rumbo_control::Side::Left => Side::Left,
+        rumbo_control::Side::Right => Side::Right,
+    }
+}
+
+fn plant_sonar(sonar: SonarId) -> rumbo_plant::sonar::SonarId {
+    match sonar {
+        SonarId::Left => rumbo_plant::sonar::SonarId::Left,
+        SonarId::Right => rumbo_plant::sonar::SonarId::Right,
+        SonarId::Front => rumbo_plant::sonar::SonarId::Front,
+    }
+}

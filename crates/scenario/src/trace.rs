@@ -1,0 +1,110 @@
+//! What a run really did, sampled at every control tick from the plant and the pins.
+
+use crate::files::FileError;
+use crate::sim::Sim;
+use std::io::Write;
+use std::path::Path;
+
+/// Period of the samples [us].
+pub const SAMPLE_US: u64 = 10_000;
+
+/// The truth at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Time since the start [s].
+    pub t_s: f64,
+    /// Position in the world [m].
+    pub x_m: f64,
+    /// Position in the world [m].
+    pub y_m: f64,
+    /// Heading, not wrapped, so that turns add up [rad].
+    pub heading_rad: f64,
+    /// True wheel speeds, left and right [rad/s].
+    pub wheel_rad_s: [f64; 2],
+    /// PWM at the bridges, left and right, -255..=255.
+    pub duty: [i16; 2],
+    /// True distance from the front sonar [m]; NaN when nothing is within reach.
+    pub front_m: f64,
+    /// Battery at its terminals [V].
+    pub battery_v: f64,
+}
+
+/// A whole run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trace {
+    /// The samples, in order of time.
+    pub samples: Vec<Sample>,
+}
+
+impl Trace {
+    /// Adds the present.
+    pub(crate) fn take(&mut self, sim: &Sim) {
+        let truth = sim.truth();
+        let wrapped_rad = truth.pose.heading_rad;
+        let heading_rad = self.samples.last().map_or(wrapped_rad, |last| {
+            let change = wrapped_rad - last.heading_rad;
+            last.heading_rad + change
+                - std::f64::consts::TAU * (change / std::f64::consts::TAU).round()
+        });
+        let duty = sim.duty();
+        self.samples.push(Sample {
+            t_s: truth.now_us as f64 * 1e-6,
+            x_m: truth.pose.x_m,
+            y_m: truth.pose.y_m,
+            heading_rad,
+            wheel_rad_s: truth.wheel_rad_s,
+            duty: [duty.left.counts(), duty.right.counts()],
+            front_m: truth.range_m[2].unwrap_or(f64::NAN),
+            battery_v: truth.battery_v,
+        });
+    }
+
+    /// The samples from `from_s` to just before `until_s`.
+    pub fn between(&self, from_s: f64, until_s: f64) -> &[Sample] {
+        let index = |t_s: f64| {
+            self.samples
+                .partition_point(|sample| sample.t_s < t_s - 1e-9)
+        };
+        &self.samples[index(from_s)..index(until_s).max(index(from_s))]
+    }
+
+    /// Writes the samples as CSV, units in the names of the columns.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write_csv(&self, path: &Path) -> Result<(), FileError> {
+        let write = || -> std::io::Result<()> {
+            let mut file = std::io::BufWriter::new(std::fs::File::create(path)?);
+            writeln!(
+                file,
+                "t_s,x_m,y_m,heading_rad,left_rad_s,right_rad_s,left_duty,right_duty,front_m,battery_v"
+            )?;
+            for sample in &self.samples {
+                let Sample {
+                    t_s,
+                    x_m,
+                    y_m,
+                    heading_rad,
+                    wheel_rad_s,
+                    duty,
+                    front_m,
+                    battery_v,
+                } = sample;
+                let front_m = if front_m.is_nan() {
+                    String::new()
+                } else {
+                    format!("{front_m:.5}")
+                };
+                writeln!(
+                    file,
+                    "{t_s:.3},{x_m:.5},{y_m:.5},{heading_rad:.5},{:.4},{:.4},{},{},{front_m},{battery_v:.3}",
+                    wheel_rad_s[0], wheel_rad_s[1], duty[0], duty[1],
+                )?;
+            }
+            file.flush()
+        };
+        write().map_err(|error| {
+            FileError::Setting(format!("cannot write {}: {error}", path.display()))
+        })
+    }
+}
