@@ -48,9 +48,9 @@ enum Drive {
 
 /// Identifies, or checks, and prints what came of it.
 pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
-    let logs = read(&args.logs)?;
     let name = args.check.as_ref().unwrap_or(&args.robot);
     let robot = Library::new().robot(name).map_err(Failure::input)?;
+    let logs = read(&args.logs)?;
     let spinner = ProgressBar::new_spinner().with_message("comparing with the plant");
     spinner.enable_steady_tick(Duration::from_millis(100));
     let (drive, params) = match args.check {

@@ -7,8 +7,12 @@ mod args;
 mod failure;
 mod identify;
 mod import;
+mod lab;
 mod list;
 mod output;
+mod parallel;
+mod run;
+mod scene;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -28,9 +32,11 @@ fn main() -> ExitCode {
 
 fn dispatch(cli: Cli) -> Result<(), Failure> {
     match cli.command {
-        Some(Command::Identify(args)) => identify::identify(&args),
         Some(Command::Import(args)) => import::import(&args),
         Some(Command::List(args)) => list::list(&args),
-        _ => Ok(()),
+        Some(Command::Lab(args)) => lab::lab(&args),
+        Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Identify(args)) => identify::identify(&args),
+        None => lab::lab(&cli.lab),
     }
 }

@@ -1,0 +1,163 @@
+//! `rumbo run`: scenarios without a window, as fast as the machine can, judged against their limits.
+
+use crate::args::RunArgs;
+use crate::failure::Failure;
+use crate::output::{self, figure};
+use crate::parallel;
+use indicatif::{ProgressBar, ProgressStyle};
+use rumbo_scenario::files::{Library, Overrides, ScenarioFile, Setup};
+use rumbo_scenario::run::{self, RunResult};
+use rumbo_scenario::trace::Trace;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::thread::available_parallelism;
+
+/// Runs every scenario with every seed; one line or table per scenario, or one JSON object per run.
+pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
+    let overrides = Overrides {
+        robot: args.robot.clone(),
+        rig: args.rig.clone(),
+        world: args.world.clone(),
+        parameters: args.params.clone(),
+    };
+    let library = Library::new();
+    let setup = |name: &String| library.setup(name, &overrides).map_err(Failure::input);
+    let setups: Vec<Setup> = args.scenarios.iter().map(setup).collect::<Result<_, _>>()?;
+    if let Some(folder) = &args.out {
+        std::fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))?;
+    }
+
+    let runs = args.runs as usize;
+    let seed_of = |index: usize| args.seed.wrapping_add((index % runs) as u64);
+    let job = |index: usize| run::run(&setups[index / runs], seed_of(index));
+    let threads = args.threads.map_or_else(
+        || available_parallelism().map_or(1, usize::from),
+        usize::from,
+    );
+    let progress = progress_bar(setups.len() * runs);
+    let (mut passed, mut results) = (true, Vec::new());
+    parallel::in_order(setups.len() * runs, threads, job, |index, result| {
+        let mut result = result.map_err(Failure::input)?;
+        progress.inc(1);
+        passed &= result.pass;
+        if let Some(folder) = &args.out {
+            record(folder, &result)?;
+        }
+        if args.json {
+            return progress.suspend(|| output::json(&result));
+        }
+        // A thousand traces would fill the memory; what is printed needs none.
+        result.trace = Trace::default();
+        results.push(result);
+        if results.len() < runs {
+            return Ok(());
+        }
+        let results = std::mem::take(&mut results);
+        progress.suspend(|| report(&setups[index / runs].scenario, &results))
+    })?;
+    progress.finish_and_clear();
+    if passed {
+        Ok(())
+    } else {
+        Err(Failure::LimitMissed)
+    }
+}
+
+/// On stderr, and only where that is a terminal and there is something to wait for.
+fn progress_bar(runs: usize) -> ProgressBar {
+    if runs < 4 {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} runs, {eta} left");
+    ProgressBar::new(runs as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+/// The result of one run, and what really happened, as files of their own.
+fn record(folder: &Path, result: &RunResult) -> Result<(), Failure> {
+    let stem = format!("{}-{}", result.scenario, result.seed);
+    let path = folder.join(format!("{stem}.json"));
+    let text = serde_json::to_string(result).map_err(Failure::input)?;
+    std::fs::write(&path, text + "\n").map_err(|error| unwritable(&path, &error))?;
+    result
+        .trace
+        .write_csv(&folder.join(format!("{stem}.csv")))
+        .map_err(Failure::input)
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::Input(format!(
+        "{}: cannot be written ({error}); choose another folder with --out",
+        path.display()
+    ))
+}
+
+/// All runs of one scenario: each metric's range over the seeds against its limits, and why runs did not pass.
+fn report(scenario: &ScenarioFile, results: &[RunResult]) -> Result<(), Failure> {
+    let passes = results.iter().filter(|result| result.pass).count();
+    let seeds = match results {
+        [first, .., last] => format!(
+            "seeds {} to {}, {passes} of {} pass",
+            first.seed,
+            last.seed,
+            results.len()
+        ),
+        _ => results
+            .iter()
+            .map(|only| format!("seed {}", only.seed))
+            .collect(),
+    };
+    output::line(&format!("{}: {} ({seeds})", scenario.name, scenario.title))?;
+    let mut values: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for (metric, value) in results.iter().flat_map(|result| &result.metrics) {
+        values.entry(metric).or_default().push(*value);
+    }
+    let mut rows = Vec::new();
+    if results.len() > 1 {
+        rows.push(
+            ["", "least", "median", "most", "limit"]
+                .map(String::from)
+                .to_vec(),
+        );
+    }
+    rows.extend(
+        values
+            .into_iter()
+            .map(|(metric, values)| row(scenario, metric, values)),
+    );
+    output::table(&rows)?;
+    for result in results {
+        for failure in &result.failures {
+            output::line(&format!("  FAILED, seed {}: {failure}", result.seed))?;
+        }
+    }
+    Ok(())
+}
+
+/// One metric: its value, or least, median and most of many; its limit, and whether that is kept.
+fn row(scenario: &ScenarioFile, metric: &str, mut values: Vec<f64>) -> Vec<String> {
+    values.sort_by(f64::total_cmp);
+    let mut row = vec![metric.to_owned()];
+    match &values[..] {
+        [first, .., last] => row.extend([*first, values[values.len() / 2], *last].map(in_words)),
+        _ => row.extend(values.iter().map(|only| in_words(*only))),
+    }
+    if let Some(bounds) = scenario.limits.get(metric) {
+        let missed = values.iter().filter(|value| !bounds.admit(**value)).count();
+        let verdict = if missed == 0 {
+            "ok".into()
+        } else {
+            format!("MISSED by {missed}")
+        };
+        row.extend([bounds.to_string(), verdict]);
+    }
+    row
+}
+
+/// A metric is no number where what it measures did not happen, such as settling.
+fn in_words(value: f64) -> String {
+    if value.is_nan() {
+        "never".into()
+    } else {
+        figure(value)
+    }
+}
