@@ -260,7 +260,7 @@ fn right_after_a_ping_its_second_echo_shortens_the_next_reading() {
         crosstalk_bounce: 0.1,
         ..clean()
     };
-    // The second echo arrives at 450 + 6,058 us + 2 x 4 cm; the next sonar's own at 3,800 + 450 + 2,913.
+    // The second echo arrives at 450 + 6,058 us and the way to the body and back; the next sonar's own at 3,800 + 450 + 2,913.
     let ranges = second_of_a_pair(&params, 3_800, 0.0);
     let short: Vec<f64> = ranges
         .iter()
@@ -272,7 +272,7 @@ fn right_after_a_ping_its_second_echo_shortens_the_next_reading() {
         "{}",
         short.len()
     );
-    let expected_m = 0.5 + 0.5 + 0.04 - 0.003_8 * (331.3 + 0.606 * 20.0) / 2.0;
+    let expected_m = 0.5 + 0.5 + params.bounce_behind_m - 0.003_8 * (331.3 + 0.606 * 20.0) / 2.0;
     assert!(
         short
             .iter()

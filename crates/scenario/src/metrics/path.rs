@@ -5,6 +5,9 @@ use crate::files::Setup;
 use crate::trace::{Sample, Trace};
 use rumbo_wire::Command;
 
+/// Shortest path that has a radius [m]; turning on the spot has none.
+const MOVED_M: f64 = 0.2;
+
 /// Metrics of the movement as a whole, from the first [`Command::Move`] to the end.
 pub(super) fn movement(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
     let moves = |command: &Command| matches!(command, Command::Move { .. });
@@ -34,7 +37,7 @@ pub(super) fn movement(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
         put("sideways_m", dy * cos - dx * sin);
         put("path_m", length);
         put("turn_rad", turn);
-        if turn.abs() > 0.1 {
+        if turn.abs() > 0.1 && length > MOVED_M {
             put("radius_m", length / turn.abs());
         }
     }

@@ -1,0 +1,265 @@
+//! The real control core on the real plant: what each mode promises, seed by seed.
+
+use rumbo_scenario::files::{Library, Overrides, Setup};
+use rumbo_scenario::run::{RunResult, run, run_many};
+use rumbo_scenario::sim::Sim;
+use rumbo_scenario::trace::Trace;
+use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, ToRobot};
+
+fn setup(scenario: &str) -> Setup {
+    Library::new()
+        .setup(scenario, &Overrides::default())
+        .unwrap()
+}
+
+/// The worst of a metric over the runs; NaN if any run lacks it.
+fn worst(runs: &[RunResult], metric: &str) -> f64 {
+    runs.iter()
+        .map(|run| run.metrics.get(metric).copied().unwrap_or(f64::NAN))
+        .fold(0.0, |worst, value| {
+            if value.is_nan() {
+                value
+            } else {
+                f64::max(worst, value)
+            }
+        })
+}
+
+fn twenty(scenario: &str) -> Vec<RunResult> {
+    run_many(&setup(scenario), 1..21, |_| {}).unwrap()
+}
+
+fn assert_all_pass(scenario: &str, seeds: std::ops::Range<u64>) {
+    for run in run_many(&setup(scenario), seeds, |_| {}).unwrap() {
+        assert!(
+            run.pass,
+            "{scenario}, seed {}: {:?}",
+            run.seed, run.failures
+        );
+    }
+}
+
+#[test]
+fn stops_30_cm_from_the_wall_sooner_than_the_original_and_without_passing_it() {
+    let runs = twenty("mode1");
+    assert!(worst(&runs, "step1.settling_s") <= 2.4);
+    assert!(worst(&runs, "step1.overshoot_m") <= 0.008);
+    assert!(worst(&runs, "step1.steady_error_m") <= 0.005);
+    assert!(worst(&runs, "step2.settling_s") <= 1.1);
+    assert_eq!(worst(&runs, "contacts"), 0.0);
+}
+
+#[test]
+fn wheels_follow_every_step_of_the_report() {
+    let runs = twenty("mode5");
+    for (step, settling_s) in [(1, 0.8), (3, 0.6), (6, 1.2), (9, 0.8)] {
+        assert!(
+            worst(&runs, &format!("step{step}.settling_s")) <= settling_s,
+            "step {step}"
+        );
+        assert!(
+            worst(&runs, &format!("step{step}.ripple_rad_s")) <= 0.1048,
+            "step {step}: more than 1 rpm"
+        );
+    }
+}
+
+#[test]
+fn a_reversal_at_speed_never_drives_against_a_turning_wheel() {
+    let runs = twenty("mode5-reversal");
+    assert!(worst(&runs, "step2.settling_s") <= 1.4);
+    assert!(
+        worst(&runs, "reverse_drive_rad_s") <= 0.5236,
+        "more than 5 rpm"
+    );
+}
+
+#[test]
+fn fifty_seeds_pass_every_limit_of_every_scenario() {
+    for name in Library::new().list(rumbo_scenario::files::Kind::Scenario) {
+        assert_all_pass(&name, 1..51);
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits_on_one_thread_and_on_four() {
+    let setup = setup("mode1");
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| run_many(&setup, 1..9, |_| {}).unwrap())
+    };
+    let (one, four) = (on(1), on(4));
+    assert_eq!(one, four);
+    assert_ne!(one[0].trace, one[1].trace, "another seed is another run");
+}
+
+/// A person at the link: sends messages, hears the answers.
+struct Person {
+    sim: Sim,
+    number: u16,
+    decoder: Decoder<160>,
+}
+
+impl Person {
+    fn at(scenario: &str) -> Self {
+        let sim = Sim::new(&setup(scenario), 3).unwrap();
+        Self {
+            sim,
+            number: 0,
+            decoder: Decoder::default(),
+        }
+    }
+
+    fn command(&mut self, command: Command) {
+        self.number += 1;
+        let message = ToRobot::Command {
+            session: 9,
+            number: self.number,
+            command,
+        };
+        self.sim.send(message.frame(0).bytes());
+    }
+
+    /// Lives for a while, with a heartbeat every 100 ms; gives the messages heard.
+    fn wait_s(&mut self, seconds: f64) -> Vec<FromRobot> {
+        let mut heard = Vec::new();
+        let end_us = self.sim.now_us() + (seconds * 1e6) as u64;
+        while self.sim.now_us() < end_us {
+            self.sim.send(ToRobot::Heartbeat.frame(0).bytes());
+            heard.extend(self.listen_until((self.sim.now_us() + 100_000).min(end_us)));
+        }
+        heard
+    }
+
+    fn listen_until(&mut self, until_us: u64) -> Vec<FromRobot> {
+        self.sim.advance(until_us);
+        let mut bytes = Vec::new();
+        self.sim.receive(&mut bytes);
+        bytes
+            .into_iter()
+            .filter_map(|byte| match self.decoder.push(byte) {
+                Some(Received::Frame(body)) => FromRobot::from_body(&body).ok(),
+                _ => None,
+            })
+            .collect()
+    }
+
+    fn driving(scenario: &str) -> Self {
+        use rumbo_control::mode::ModeId;
+        let mut person = Self::at(scenario);
+        person.wait_s(0.5);
+        for command in [
+            Command::Mode(ModeId::WheelSpeed),
+            Command::Reference(8.0),
+            Command::Arm,
+        ] {
+            person.command(command);
+            person.wait_s(0.2);
+        }
+        person.wait_s(2.0);
+        assert!(person.sim.truth().wheel_rad_s[0] > 6.0, "drives");
+        person
+    }
+
+    /// Time until both bridges are released [us].
+    fn released_after_us(&mut self, within_us: u64) -> u64 {
+        let start_us = self.sim.now_us();
+        while self.sim.duty() != rumbo_control::Wheels::default() {
+            assert!(
+                self.sim.now_us() < start_us + within_us,
+                "not released within {within_us} us"
+            );
+            self.listen_until(self.sim.now_us() + 1_000);
+        }
+        self.sim.now_us() - start_us
+    }
+}
+
+#[test]
+fn stop_releases_the_wheels_within_30_ms_and_the_links_time() {
+    let mut person = Person::driving("mode5");
+    person.command(Command::Stop);
+    // A frame of a STOP command has 11 bytes at most; the module adds 8 ms.
+    let link_us = 11 * 10_000_000 / 9_600 + 8_000;
+    let taken_us = person.released_after_us(link_us + 30_000);
+    assert!(taken_us <= link_us + 30_000);
+}
+
+#[test]
+fn a_silent_link_stops_the_robot_within_half_a_second() {
+    let mut person = Person::driving("mode5");
+    let silent_us = person.released_after_us(500_000);
+    assert!(silent_us > 200_000, "it drives on for a while: {silent_us}");
+    let heard = person.wait_s(0.6);
+    let lost = |message: &FromRobot| matches!(message, FromRobot::Status(status) if status.fault == Some(rumbo_control::Fault::LinkLost));
+    assert!(heard.iter().any(lost), "and says why");
+    person.command(Command::Arm);
+    person.wait_s(0.3);
+    assert_eq!(
+        person.sim.duty(),
+        rumbo_control::Wheels::default(),
+        "a latched fault refuses to arm"
+    );
+}
+
+#[test]
+fn a_reference_beyond_the_sonar_is_refused_and_the_robot_keeps_its_last_one() {
+    use rumbo_control::mode::ModeId;
+    let mut person = Person::at("mode1");
+    person.wait_s(0.5);
+    for command in [
+        Command::Mode(ModeId::FrontDistance),
+        Command::Reference(0.4),
+        Command::Arm,
+    ] {
+        person.command(command);
+        person.wait_s(0.2);
+    }
+    for wrong in [-0.2, f32::NAN, 5.0] {
+        person.command(Command::Reference(wrong));
+        let heard = person.wait_s(0.3);
+        assert!(
+            heard
+                .iter()
+                .any(|message| matches!(message, FromRobot::Ack(ack) if ack.result.is_err()))
+        );
+    }
+    person.wait_s(4.0);
+    let front_m = person.sim.truth().range_m[2].unwrap();
+    assert!((front_m - 0.4).abs() < 0.015, "{front_m}");
+}
+
+#[test]
+fn a_wall_that_is_not_there_is_never_driven_at() {
+    let world = Overrides {
+        world: Some("open".into()),
+        ..Overrides::default()
+    };
+    let setup = Library::new().setup("mode1", &world).unwrap();
+    let run = run(&setup, 1).unwrap();
+    assert!(
+        !run.pass
+            && run
+                .failures
+                .iter()
+                .any(|failure| failure.contains("refused")),
+        "{:?}",
+        run.failures
+    );
+    let Trace { samples } = &run.trace;
+    assert!(samples.iter().all(|sample| sample.duty == [0, 0]));
+}
+
+#[test]
+fn the_link_carries_25_telemetry_frames_a_second() {
+    for run in twenty("mode5").iter().take(3) {
+        assert!(
+            run.metrics["telemetry_hz"] > 24.5,
+            "{}",
+            run.metrics["telemetry_hz"]
+        );
+    }
+}
