@@ -120,7 +120,7 @@ pub(crate) struct IdentifyArgs {
     /// Recorded runs: CSV of the original program, or logs made of them by `rumbo import`
     #[arg(required = true, value_name = "LOG")]
     pub(crate) logs: Vec<PathBuf>,
-    /// Robot to start from; given by path, its [plant] table is rewritten and its comments are kept
+    /// Robot to start from; given by path, its table `plant` is rewritten and its comments are kept
     #[arg(
         long,
         value_name = "ROBOT",

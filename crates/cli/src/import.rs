@@ -33,7 +33,7 @@ struct Column {
 struct Recording {
     modes: &'static str,
     columns: Vec<Column>,
-    /// Time since the first row [s], and the row's values.
+    /// Time since the first row, in s, and the row's values.
     rows: Vec<(f64, Vec<f64>)>,
     longest_gap_s: f64,
 }

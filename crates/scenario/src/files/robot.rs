@@ -83,9 +83,9 @@ pub struct Wiring {
 /// Most that an image may take, from `[firmware]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FirmwareCaps {
-    /// Flash [bytes].
+    /// Flash, in bytes.
     pub flash_bytes: u32,
-    /// Static SRAM [bytes].
+    /// Static SRAM, in bytes.
     pub sram_bytes: u32,
 }
 

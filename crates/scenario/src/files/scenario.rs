@@ -45,7 +45,7 @@ pub struct ScenarioFile {
     pub world: String,
     /// The mode selected before the first command.
     pub mode: ModeId,
-    /// How long it lasts [s].
+    /// How long it lasts, in s.
     pub duration_s: f64,
     /// Where the robot stands at first.
     pub start: Start,
@@ -67,18 +67,18 @@ pub struct ScenarioFile {
 /// The pose at the start, in the world frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
-    /// Middle of the wheels' axis [m].
+    /// Middle of the wheels' axis, in m.
     pub x_m: f64,
-    /// Middle of the wheels' axis [m].
+    /// Middle of the wheels' axis, in m.
     pub y_m: f64,
-    /// Counter-clockwise from x [rad].
+    /// Counter-clockwise from x, in rad.
     pub heading_rad: f64,
 }
 
 /// A command and when the station sends it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimedCommand {
-    /// Time since the start [s].
+    /// Time since the start, in s.
     pub at_s: f64,
     /// What is sent, in the units of the link (m, rad/s, fraction of full PWM).
     pub command: Command,

@@ -44,9 +44,9 @@ pub struct WorldFile {
 /// A rectangle along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arena {
-    /// The corner of smallest x and y [m].
+    /// The corner of smallest x and y, in m.
     pub from_m: [f64; 2],
-    /// The corner of largest x and y [m].
+    /// The corner of largest x and y, in m.
     pub to_m: [f64; 2],
 }
 
