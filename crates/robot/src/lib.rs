@@ -7,10 +7,6 @@
 //! No clock, no pins, no waiting, no allocation: the firmware, the emulated chip and the simulator run this same
 //! robot. The bytes are described in `docs/protocol.md`.
 #![no_std]
-#![allow(
-    rustdoc::broken_intra_doc_links,
-    reason = "units are written [m], [rad]"
-)]
 
 mod clock;
 mod ledger;

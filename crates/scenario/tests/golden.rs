@@ -2,6 +2,8 @@
 //!
 //! After a change that is meant: `RUMBO_BLESS=1 cargo test -p rumbo-scenario --test golden`, and read the difference.
 
+#![cfg(test)]
+
 use rumbo_scenario::files::{Kind, Library, Overrides};
 use rumbo_scenario::run::run;
 use std::fmt::Write as _;

@@ -8,10 +8,6 @@
 //! Nothing here allocates, panics, or formats with `core::fmt` on the robot's side. The bytes are described for
 //! people in `docs/protocol.md`, which a test keeps true.
 #![no_std]
-#![allow(
-    rustdoc::broken_intra_doc_links,
-    reason = "units are written [m], [rad]"
-)]
 
 mod bytes;
 pub mod codec;

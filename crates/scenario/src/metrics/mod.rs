@@ -32,5 +32,9 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace, telemetry_frames: u64) -
             start::dead_zones(trace, &mut metrics);
         }
     }
+    // A billionth of any unit is rounding, not behaviour.
+    for value in metrics.values_mut() {
+        *value = (*value * 1e9).round() / 1e9 + 0.0;
+    }
     metrics
 }

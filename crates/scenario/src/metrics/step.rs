@@ -83,9 +83,9 @@ fn response(
             .find(|sample| progress(sample) >= level * span)
             .map(|sample| sample.t_s)
     };
-    let outside = |sample: &&Sample| !((signal(sample) - reference).abs() <= band);
-    let last_outside = samples.iter().rev().find(outside);
-    let settled = samples.last().is_some_and(|last| !outside(&last));
+    let within = |sample: &Sample| (signal(sample) - reference).abs() <= band;
+    let last_outside = samples.iter().rev().find(|sample| !within(sample));
+    let settled = samples.last().is_some_and(within);
     let steady = &samples[(samples.len() as f64 * (1.0 - STEADY_SHARE)) as usize..];
     let count = steady.len() as f64;
     let mean = steady.iter().map(&signal).sum::<f64>() / count;
