@@ -1,5 +1,6 @@
 //! Why a command did not do what was asked, and the exit status for it.
 
+use rumbo_scenario::files::FileError;
 use std::fmt;
 use std::io::Write;
 use std::process::ExitCode;
@@ -36,6 +37,12 @@ impl Failure {
             }
             Self::ReaderGone => ExitCode::SUCCESS,
         }
+    }
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
+        Self::input(error)
     }
 }
 

@@ -10,7 +10,6 @@ mod import;
 mod lab;
 mod list;
 mod output;
-mod parallel;
 mod run;
 mod scene;
 

@@ -3,14 +3,12 @@
 use crate::args::RunArgs;
 use crate::failure::Failure;
 use crate::output::{self, figure};
-use crate::parallel;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_scenario::files::{Library, Overrides, ScenarioFile, Setup};
 use rumbo_scenario::run::{self, RunResult};
 use rumbo_scenario::trace::Trace;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::thread::available_parallelism;
 
 /// Runs every scenario with every seed; one line or table per scenario, or one JSON object per run.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
@@ -27,17 +25,21 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         std::fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))?;
     }
 
+    if let Some(threads) = args.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.into())
+            .build_global()
+            .map_err(Failure::input)?;
+    }
     let runs = args.runs as usize;
-    let seed_of = |index: usize| args.seed.wrapping_add((index % runs) as u64);
-    let job = |index: usize| run::run(&setups[index / runs], seed_of(index));
-    let threads = args.threads.map_or_else(
-        || available_parallelism().map_or(1, usize::from),
-        usize::from,
-    );
-    let progress = progress_bar(setups.len() * runs);
+    let seeds = || (0..args.runs).map(|index| args.seed.wrapping_add(u64::from(index)));
+    let jobs: Vec<_> = setups
+        .iter()
+        .flat_map(|setup| seeds().map(move |seed| (setup, seed)))
+        .collect();
+    let progress = progress_bar(jobs.len());
     let (mut passed, mut results) = (true, Vec::new());
-    parallel::in_order(setups.len() * runs, threads, job, |index, result| {
-        let mut result = result.map_err(Failure::input)?;
+    run::run_all(&jobs, |setup, mut result| {
         progress.inc(1);
         passed &= result.pass;
         if let Some(folder) = &args.out {
@@ -53,7 +55,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
             return Ok(());
         }
         let results = std::mem::take(&mut results);
-        progress.suspend(|| report(&setups[index / runs].scenario, &results))
+        progress.suspend(|| report(&setup.scenario, &results))
     })?;
     progress.finish_and_clear();
     if passed {

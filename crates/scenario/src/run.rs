@@ -75,17 +75,26 @@ fn known(metrics: &Metrics) -> String {
         .join(", ")
 }
 
-/// Runs a scenario for each seed on all threads of the current pool; calls `done` as each ends. Results in the order of `seeds`.
+/// Runs started together: enough for every thread to be busy, few enough that their traces fit in memory.
+const BATCH: usize = 64;
+
+/// Runs all `jobs`, each a setup and a seed, on all threads of the current pool, and hands the results to `handle`
+/// in the order of the jobs.
 ///
 /// # Errors
-/// If the setup's values do not fit together.
-pub fn run_many(
-    setup: &Setup,
-    seeds: std::ops::Range<u64>,
-    done: impl Fn(&RunResult) + Sync,
-) -> Result<Vec<RunResult>, FileError> {
-    seeds
-        .into_par_iter()
-        .map(|seed| run(setup, seed).inspect(&done))
-        .collect()
+/// The first error, of a setup or of `handle`; no further batch is begun.
+pub fn run_all<E: From<FileError>>(
+    jobs: &[(&Setup, u64)],
+    mut handle: impl FnMut(&Setup, RunResult) -> Result<(), E>,
+) -> Result<(), E> {
+    for batch in jobs.chunks(BATCH) {
+        let results: Vec<_> = batch
+            .par_iter()
+            .map(|(setup, seed)| run(setup, *seed))
+            .collect();
+        for ((setup, _), result) in batch.iter().zip(results) {
+            handle(setup, result?)?;
+        }
+    }
+    Ok(())
 }

@@ -2,8 +2,9 @@
 
 #![cfg(test)]
 
+use rumbo_scenario::files::FileError;
 use rumbo_scenario::files::{Library, Overrides, Setup};
-use rumbo_scenario::run::{RunResult, run, run_many};
+use rumbo_scenario::run::{RunResult, run, run_all};
 use rumbo_scenario::sim::Sim;
 use rumbo_scenario::trace::Trace;
 use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, ToRobot};
@@ -30,12 +31,23 @@ fn worst(runs: &[RunResult], metric: &str) -> f64 {
         })
 }
 
-fn twenty(scenario: &str) -> Vec<RunResult> {
-    run_many(&setup(scenario), 1..21, |_| {}).unwrap()
+fn seeds(setup: &Setup, seeds: std::ops::Range<u64>) -> Vec<RunResult> {
+    let jobs: Vec<_> = seeds.map(|seed| (setup, seed)).collect();
+    let mut results = Vec::new();
+    let collect = |_: &Setup, result| {
+        results.push(result);
+        Ok::<(), FileError>(())
+    };
+    run_all(&jobs, collect).unwrap();
+    results
 }
 
-fn assert_all_pass(scenario: &str, seeds: std::ops::Range<u64>) {
-    for run in run_many(&setup(scenario), seeds, |_| {}).unwrap() {
+fn twenty(scenario: &str) -> Vec<RunResult> {
+    seeds(&setup(scenario), 1..21)
+}
+
+fn assert_all_pass(scenario: &str, range: std::ops::Range<u64>) {
+    for run in seeds(&setup(scenario), range) {
         assert!(
             run.pass,
             "{scenario}, seed {}: {:?}",
@@ -94,7 +106,7 @@ fn the_same_seed_gives_the_same_bits_on_one_thread_and_on_four() {
             .num_threads(threads)
             .build()
             .unwrap();
-        pool.install(|| run_many(&setup, 1..9, |_| {}).unwrap())
+        pool.install(|| seeds(&setup, 1..9))
     };
     let (one, four) = (on(1), on(4));
     assert_eq!(one, four);
