@@ -1,4 +1,4 @@
-//! A bench for the robot: a link at 9600 baud, wheels that follow the duty at once, a wall in front.
+//! A bench for the robot: a link at 9600 baud, wheels that follow the duty with a lag, a wall in front.
 #![allow(dead_code, reason = "each test file uses some of it")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test helpers")]
 
@@ -15,6 +15,8 @@ use rumbo_wire::{
 const BYTES_PER_100_TICKS: u32 = 960;
 /// Speed of the bench's wheels at full duty [rad/s].
 const FULL_SPEED_RAD_S: f32 = 20.0;
+/// Share of the way to the speed of their duty that the wheels make in a tick: a time constant of 0.1 s.
+const LAG: f32 = 0.1;
 /// Width of an edge [rad].
 const EDGE_RAD: f32 = core::f32::consts::TAU / 384.0;
 /// Speed of the session, if none is given.
@@ -23,14 +25,16 @@ pub(crate) const SESSION: u8 = 0x51;
 /// One wheel and its encoder.
 #[derive(Clone, Copy, Default)]
 struct Wheel {
+    speed_rad_s: f32,
     angle_rad: f32,
     edges: Edges,
     times: [u32; 8],
 }
 
 impl Wheel {
-    fn turn(&mut self, speed_rad_s: f32, from_us: u32) {
-        let step_rad = speed_rad_s.abs() * 0.001;
+    fn turn(&mut self, duty: f32, from_us: u32) {
+        self.speed_rad_s += (duty * FULL_SPEED_RAD_S - self.speed_rad_s) * LAG;
+        let step_rad = self.speed_rad_s.abs() * 0.001;
         for ms in 0..TICK_US / 1_000 {
             self.angle_rad += step_rad;
             if self.angle_rad >= EDGE_RAD {
@@ -152,12 +156,9 @@ impl Bench {
         }
         for side in SIDES {
             let duty = f32::from(self.outputs.drive[side].counts()) / 255.0;
-            let speed_rad_s = if self.held {
-                0.0
-            } else {
-                duty * FULL_SPEED_RAD_S
-            };
-            self.wheels[side].turn(speed_rad_s, self.now.0);
+            if !self.held {
+                self.wheels[side].turn(duty, self.now.0);
+            }
         }
         self.now = self.now.after(TICK_US);
         self.tick += 1;
