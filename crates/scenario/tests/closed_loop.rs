@@ -114,6 +114,7 @@ fn the_same_seed_gives_the_same_bits_on_one_thread_and_on_four() {
 }
 
 /// A person at the link: sends messages, hears the answers.
+#[derive(Clone)]
 struct Person {
     sim: Sim,
     number: u16,
@@ -198,11 +199,23 @@ impl Person {
 #[test]
 fn stop_releases_the_wheels_within_30_ms_and_the_links_time() {
     let mut person = Person::driving("mode5");
-    person.command(Command::Stop);
-    // A frame of a STOP command has 11 bytes at most; the module adds 8 ms.
-    let link_us = 11 * 10_000_000 / 9_600 + 8_000;
-    let taken_us = person.released_after_us(link_us + 30_000);
-    assert!(taken_us <= link_us + 30_000);
+    let message = ToRobot::Command {
+        session: 9,
+        number: person.number + 1,
+        command: Command::Stop,
+    };
+    // Ten bits a byte, and the module's delay.
+    let link_us = message.frame(0).bytes().len() as u64 * 10_000_000 / 9_600 + 8_000;
+    let mut worst_us = 0;
+    // The STOP may fall anywhere between two ticks.
+    for _ in 0..10 {
+        let mut stopped = person.clone();
+        stopped.command(Command::Stop);
+        worst_us = worst_us.max(stopped.released_after_us(link_us + 30_000));
+        person.listen_until(person.sim.now_us() + 1_000);
+    }
+    assert!(worst_us <= link_us + 30_000, "{worst_us}");
+    println!("STOP to zero PWM: {worst_us} us, of which the link's {link_us} us");
 }
 
 #[test]
