@@ -51,7 +51,11 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     let name = args.check.as_ref().unwrap_or(&args.robot);
     let robot = Library::new().robot(name).map_err(Failure::input)?;
     let logs = read(&args.logs)?;
-    let spinner = ProgressBar::new_spinner().with_message("comparing with the plant");
+    let doing = match args.check {
+        Some(_) => "comparing with the plant",
+        None => "searching for the plant that repeats the runs; two cores take some two minutes",
+    };
+    let spinner = ProgressBar::new_spinner().with_message(doing);
     spinner.enable_steady_tick(Duration::from_millis(100));
     let (drive, params) = match args.check {
         Some(_) => (check(&logs, &robot.plant)?, robot.plant),
