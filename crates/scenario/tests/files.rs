@@ -275,3 +275,21 @@ proptest::proptest! {
         }
     }
 }
+
+#[test]
+fn the_example_of_the_scenario_page_runs_and_passes() {
+    let page = include_str!("../../../docs/scenarios.md");
+    let example = page
+        .split("```toml")
+        .nth(1)
+        .unwrap()
+        .split("```")
+        .next()
+        .unwrap();
+    let path = std::env::temp_dir().join(format!("rumbo-example-{}.toml", std::process::id()));
+    std::fs::write(&path, example).unwrap();
+    let setup = Library::new().setup(path.to_str().unwrap(), &Overrides::default());
+    std::fs::remove_file(&path).unwrap();
+    let run = rumbo_scenario::run::run(&setup.unwrap(), 1).unwrap();
+    assert!(run.pass, "{:?}", run.failures);
+}
