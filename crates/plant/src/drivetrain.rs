@@ -175,7 +175,7 @@ impl Drivetrain {
     }
 
     /// Advances by `dt_s` (at most 1 ms for the stated accuracy). `resist_n_m` is dry friction added to each wheel
-    /// from outside, such as a wall the body leans on.
+    /// from outside, such as a wall the body leans on; a negative one is a floor easier than the parameters say.
     pub fn step(&self, state: &mut State, dt_s: f64, resist_n_m: [f64; 2]) -> Motion {
         let supply_v = self.battery.terminal_v(&state.battery);
         let old = [state.wheels[0].speed_rad_s, state.wheels[1].speed_rad_s];
@@ -195,8 +195,10 @@ impl Drivetrain {
         } else {
             turning_share(old)
         };
-        let dry =
-            |i: usize| self.dry_n_m(i, &state.wheels[i], torque_n_m[i], turning) + resist_n_m[i];
+        let dry = |i: usize| {
+            let dry = self.dry_n_m(i, &state.wheels[i], torque_n_m[i], turning) + resist_n_m[i];
+            if dry > 0.0 { dry } else { 0.0 }
+        };
         let new = self
             .coupling
             .speeds_after(old, torque_n_m, [dry(0), dry(1)], dt_s);

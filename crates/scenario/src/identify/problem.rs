@@ -7,7 +7,7 @@
 //! 65 on the floor.
 
 use super::log::{DriveLog, Seen};
-use super::replay::{Nuisance, Replay};
+use super::replay::{Correct, Nuisance, Replay};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use rayon::prelude::*;
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side};
@@ -247,8 +247,9 @@ fn run_residuals(log: &DriveLog, replay: &Replay<'_>, residuals: &mut Vec<f64>) 
         residuals.extend(errors.map(|error| weight * robust(error / WHOLE_SD_RAD_S)));
     }
     let weight = weight * (AHEAD_EVERY as f64).sqrt();
-    for index in (0..log.rows.len()).step_by(AHEAD_EVERY) {
-        if let Some((target, predicted)) = replay.ahead(index) {
+    let observed = replay.observe(Correct::Speeds);
+    for (index, observed) in observed.iter().enumerate().step_by(AHEAD_EVERY) {
+        if let Some((target, predicted)) = replay.ahead(index, observed) {
             let row = &log.rows[target];
             let weight = if row.is_turning() {
                 weight / TURNING

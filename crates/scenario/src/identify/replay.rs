@@ -2,6 +2,11 @@
 //!
 //! The plant runs without its random parts (slip, rough floor). Speeds are taken as the original takes them, over 50 ms
 //! windows, but from the angle instead of whole edges: where the edges were no log tells, and the angle is their mean.
+//!
+//! A prediction half a second ahead starts from an observed state: the same plant runs along with the log, and each
+//! completed window corrects it by fixed gains, first the speed and, if asked, the resistance of the floor where the
+//! wheel is. Battery and friction memory are those of the plant that runs along. No row after the start is used, but
+//! for the duty, which is the prediction's input.
 
 use super::log::{DriveLog, Row, WINDOW_MS};
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side, State};
@@ -11,6 +16,30 @@ use rumbo_plant::params::Params;
 const STEP_S: f64 = 0.001;
 /// Horizon of the short prediction, ms.
 pub(super) const AHEAD_MS: usize = 500;
+
+/// Share of the speed's error that a window corrects.
+const SPEED_GAIN: f64 = 0.7;
+/// Resistance that a window's error adds, N m per rad/s. Both gains are the best compromise on the runs of modes 5 and 7.
+const RESISTANCE_GAIN_N_M_S: f64 = 0.002;
+/// Slower wheels stick and slip, and three counts per window tell no resistance, rad/s: the floor's mean is assumed.
+const SLOWEST_TELLING_RAD_S: f64 = 1.0;
+
+/// What the measurements correct in the plant that runs along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Correct {
+    /// The wheels' speeds alone: errors of the parameters stay visible, as a fit needs them.
+    Speeds,
+    /// Also the floor's resistance, as a prediction wants it.
+    SpeedsAndFloor,
+}
+
+/// The state of the robot as the measurements up to a row tell it.
+#[derive(Clone, Copy)]
+pub(super) struct Observed {
+    state: State,
+    /// Dry resistance of the floor here beyond the mean, each wheel, N m.
+    resist_n_m: [f64; 2],
+}
 
 /// What differs from run to run and no log says.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -25,8 +54,8 @@ pub struct Nuisance {
 pub(super) struct Replay<'a> {
     log: &'a DriveLog,
     drivetrain: Drivetrain,
-    /// What the friction remembers of the measured speeds, at each row, rad/s.
-    remembered_rad_s: Vec<[f64; 2]>,
+    /// Share of the floor's resistance that is another one after each radian rolled.
+    forgetting_per_rad: [f64; 2],
 }
 
 /// Angles and way on the millisecond grid.
@@ -50,7 +79,8 @@ impl<'a> Replay<'a> {
         Self {
             log,
             drivetrain,
-            remembered_rad_s: remembered_rad_s(log, &params),
+            forgetting_per_rad: [params.wheels.left, params.wheels.right]
+                .map(|wheel| wheel.radius_m / params.floor.roughness_length_m),
         }
     }
 
@@ -90,10 +120,40 @@ impl<'a> Replay<'a> {
         self.log.rows.iter().map(speed).collect()
     }
 
-    /// Predicts half a second from the measured speeds of row `index`: the row predicted and its speeds, rad/s.
+    /// The state at the end of each row's window.
+    #[must_use]
+    pub(super) fn observe(&self, correct: Correct) -> Vec<Observed> {
+        let mut now = Observed {
+            state: self.drivetrain.start(),
+            resist_n_m: [0.0; 2],
+        };
+        self.apply(&mut now.state, &self.log.rows[0]);
+        let (mut angle_rad, mut observed, mut shown_ms) = (Vec::new(), Vec::new(), None);
+        let mut rows = self.log.rows.iter().peekable();
+        let mut windows = self.log.rows.iter().peekable();
+        for now_ms in 0..=self.log.duration_ms() {
+            angle_rad.push(angles(&now.state));
+            while let Some(row) = windows.next_if(|row| self.log.window_end_ms(row) <= now_ms) {
+                // Rows between two windows' ends show the same window again.
+                if shown_ms != Some(now_ms) {
+                    shown_ms = Some(now_ms);
+                    let before = angle_rad[now_ms.saturating_sub(WINDOW_MS)];
+                    now.correct(correct, row, window_speed(before, angle_rad[now_ms]));
+                }
+                observed.push(now);
+            }
+            while let Some(row) = rows.next_if(|row| row.at_ms <= now_ms) {
+                self.apply(&mut now.state, row);
+            }
+            self.roll(&mut now);
+        }
+        observed
+    }
+
+    /// Predicts half a second from the state `observed` at row `index`: the row predicted and its speeds, rad/s.
     /// `None` near the end of the log.
     #[must_use]
-    pub(super) fn ahead(&self, index: usize) -> Option<(usize, [f64; 2])> {
+    pub(super) fn ahead(&self, index: usize, observed: &Observed) -> Option<(usize, [f64; 2])> {
         let from_ms = self.log.window_end_ms(&self.log.rows[index]);
         let after = &self.log.rows[index..];
         let target = index
@@ -102,29 +162,29 @@ impl<'a> Replay<'a> {
                 .position(|row| self.log.window_end_ms(row) >= from_ms + AHEAD_MS)?;
         let until_ms = self.log.window_end_ms(&self.log.rows[target]);
 
-        // The measured speed is that of the window's middle.
-        let start_ms = from_ms.saturating_sub(WINDOW_MS / 2);
-        let mut state = self.drivetrain.start();
-        for i in 0..2 {
-            state.wheels[i].speed_rad_s = self.log.rows[index].speed_rad_s[i];
-            state.wheels[i].remembered_rad_s = self.remembered_rad_s[index][i];
-        }
-        let first = self.log.rows[..index]
-            .iter()
-            .rposition(|row| row.at_ms <= start_ms)
-            .unwrap_or(0);
-        let mut rows = self.log.rows[first..].iter().peekable();
-        let mut window_start = angles(&state);
-        for now_ms in start_ms..until_ms {
+        let mut now = *observed;
+        let applied = self.log.rows.partition_point(|row| row.at_ms < from_ms);
+        let mut rows = self.log.rows[applied..].iter().peekable();
+        let mut window_start = angles(&now.state);
+        for now_ms in from_ms..until_ms {
             if now_ms + WINDOW_MS == until_ms {
-                window_start = angles(&state);
+                window_start = angles(&now.state);
             }
             while let Some(row) = rows.next_if(|row| row.at_ms <= now_ms) {
-                self.apply(&mut state, row);
+                self.apply(&mut now.state, row);
             }
-            self.drivetrain.step(&mut state, STEP_S, [0.0; 2]);
+            self.roll(&mut now);
         }
-        Some((target, window_speed(window_start, angles(&state))))
+        Some((target, window_speed(window_start, angles(&now.state))))
+    }
+
+    /// One step; the resistance is forgotten along the way, as the floor changes.
+    fn roll(&self, now: &mut Observed) {
+        let motion = self.drivetrain.step(&mut now.state, STEP_S, now.resist_n_m);
+        for i in 0..2 {
+            now.resist_n_m[i] *=
+                (1.0 - motion.wheel_rad[i].abs() * self.forgetting_per_rad[i]).max(0.0);
+        }
     }
 
     fn apply(&self, state: &mut State, row: &Row) {
@@ -142,23 +202,23 @@ impl<'a> Replay<'a> {
     }
 }
 
-/// The measured speeds as each wheel's friction remembers them, from rest.
-fn remembered_rad_s(log: &DriveLog, params: &Params) -> Vec<[f64; 2]> {
-    let memory_s = [
-        params.wheels.left.friction_memory_s,
-        params.wheels.right.friction_memory_s,
-    ];
-    let (mut remembered, mut before_ms) = ([0.0; 2], 0);
-    let follow = |row: &Row| {
-        let passed_s = (row.at_ms - before_ms) as f64 / 1000.0;
-        before_ms = row.at_ms;
-        for i in 0..2 {
-            remembered[i] += (row.speed_rad_s[i].abs() - remembered[i])
-                * (1.0 - (-passed_s / memory_s[i]).exp());
+impl Observed {
+    /// Takes in a measured window, given the speeds expected in it, rad/s.
+    fn correct(&mut self, what: Correct, row: &Row, expected_rad_s: [f64; 2]) {
+        for (i, expected_rad_s) in expected_rad_s.into_iter().enumerate() {
+            let measured_rad_s = row.speed_rad_s[i];
+            let error_rad_s = measured_rad_s - expected_rad_s;
+            self.state.wheels[i].speed_rad_s += SPEED_GAIN * error_rad_s;
+            let tells = expected_rad_s * measured_rad_s > 0.0
+                && expected_rad_s.abs().min(measured_rad_s.abs()) > SLOWEST_TELLING_RAD_S;
+            if !tells {
+                self.resist_n_m[i] = 0.0;
+            } else if what == Correct::SpeedsAndFloor {
+                // Slower than expected, in whichever direction, is more resistance.
+                self.resist_n_m[i] -= RESISTANCE_GAIN_N_M_S * error_rad_s * measured_rad_s.signum();
+            }
         }
-        remembered
-    };
-    log.rows.iter().map(follow).collect()
+    }
 }
 
 fn angles(state: &State) -> [f64; 2] {

@@ -1,7 +1,7 @@
 //! How well a plant repeats a run: RMSE and R^2 per wheel, whole run and half a second ahead.
 
 use super::log::{DriveLog, Row, Seen};
-use super::replay::{Nuisance, Replay, Trace};
+use super::replay::{Correct, Nuisance, Replay, Trace};
 use rumbo_plant::params::Params;
 use serde::Serialize;
 
@@ -31,7 +31,7 @@ pub struct RunScore {
     pub whole_straight: Option<[WheelError; 2]>,
     /// The same over rows in which the wheels are asked to turn against each other.
     pub whole_turning: Option<[WheelError; 2]>,
-    /// Half a second ahead from measured speeds.
+    /// Half a second ahead from the state observed in the rows up to the start: see [`super::replay`].
     pub ahead: Option<[WheelError; 2]>,
     /// Half a second ahead, rows as in `whole_straight`.
     pub ahead_straight: Option<[WheelError; 2]>,
@@ -70,8 +70,11 @@ pub(super) fn score(log: &DriveLog, params: &Params, nuisance: Nuisance) -> RunS
         Seen::Speeds => {
             let simulated = replay.speeds(&replay.whole());
             let whole: Vec<Pair> = log.rows.iter().zip(simulated).collect();
-            let ahead: Vec<Pair> = (0..log.rows.len())
-                .filter_map(|index| replay.ahead(index))
+            let ahead: Vec<Pair> = replay
+                .observe(Correct::SpeedsAndFloor)
+                .iter()
+                .enumerate()
+                .filter_map(|(index, observed)| replay.ahead(index, observed))
                 .map(|(target, speeds)| (&log.rows[target], speeds))
                 .collect();
             score.whole = errors(&whole, |_| true);

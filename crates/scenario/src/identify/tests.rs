@@ -1,4 +1,5 @@
 use super::problem::dead_zone_pwm;
+use super::replay::{Correct, Replay};
 use super::*;
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side};
 use rumbo_plant::noise::Noise;
@@ -136,6 +137,45 @@ fn a_run_of_a_known_plant_is_repeated_by_it() {
         assert!(error.rmse_rpm < 2.0, "{error:?}");
         assert!(error.r2 > 0.99);
     }
+}
+
+const NOMINAL: Nuisance = Nuisance {
+    battery_v: 7.4,
+    floor_scale: 1.0,
+};
+
+#[test]
+fn a_prediction_uses_no_speed_measured_after_its_start() {
+    let before = log(&recorded(&Params::default(), exercise, 3.0));
+    let start = before.rows.len() / 2;
+    let mut after = before.clone();
+    for row in &mut after.rows[start + 1..] {
+        row.speed_rad_s = row.speed_rad_s.map(|speed| 2.0 * speed + 1.0);
+    }
+    let predicted = |log: &DriveLog| {
+        let replay = Replay::new(log, &Params::default(), NOMINAL);
+        let observed = replay.observe(Correct::SpeedsAndFloor);
+        replay.ahead(start, &observed[start]).unwrap()
+    };
+    assert_eq!(predicted(&before), predicted(&after));
+}
+
+#[test]
+fn a_floor_harder_than_the_parameters_is_observed() {
+    let mut hard = Params::default();
+    hard.floor.friction_scale = 1.3;
+    let log = log(&recorded(&hard, exercise, 4.0));
+    let replay = Replay::new(&log, &Params::default(), NOMINAL);
+    let square = |correct: Correct| {
+        let observed = replay.observe(correct);
+        let ahead = |(index, observed)| replay.ahead(index, observed);
+        let predicted = observed.iter().enumerate().filter_map(ahead);
+        predicted
+            .map(|(row, speed)| (speed[0] - log.rows[row].speed_rad_s[0]).powi(2))
+            .sum::<f64>()
+    };
+    let (speeds, floor) = (square(Correct::Speeds), square(Correct::SpeedsAndFloor));
+    assert!(floor < 0.8 * speeds, "{floor} {speeds}");
 }
 
 #[test]
