@@ -115,7 +115,11 @@ pub(crate) struct RunArgs {
 #[command(after_help = "\
 Examples:
   rumbo identify runs/mode5.csv runs/mode7.csv --robot my_robot.toml
-  rumbo identify runs/mode5.csv --check memoria --json --plots out")]
+  rumbo identify runs/mode5.csv --check memoria --json --plots out
+
+Whole run: the recorded duty replayed, from the first row to the last. 0.5 s ahead: from the state that the rows
+up to then tell (wheel speeds, the floor's resistance), no later speed used. Of each run only the battery's
+voltage and the floor's friction are fitted with --check. Without it a fit takes some two minutes.")]
 pub(crate) struct IdentifyArgs {
     /// Recorded runs: CSV of the original program, or logs made of them by `rumbo import`
     #[arg(required = true, value_name = "LOG")]
