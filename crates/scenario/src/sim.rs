@@ -32,6 +32,8 @@ pub struct Sim {
     pending: Option<(u64, Outputs)>,
     duty: Wheels<Duty>,
     worst_reverse_rad_s: f64,
+    /// Sonars whose trigger wire is cut, by `SonarId` number.
+    cut: [bool; 3],
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
 }
@@ -83,6 +85,7 @@ impl Sim {
             pending: None,
             duty: Wheels::default(),
             worst_reverse_rad_s: 0.0,
+            cut: [false; 3],
             outputs_us: (0, 0, 0),
         })
     }
@@ -137,6 +140,11 @@ impl Sim {
     pub fn set_link_faults(&mut self, faults: &LinkParams) {
         self.uplink.set_faults(faults.clone());
         self.downlink.set_faults(faults.clone());
+    }
+
+    /// Cuts a sonar's wires: from now on it answers no ping.
+    pub fn cut_sonar(&mut self, sonar: SonarId) {
+        self.cut[sonar as usize] = true;
     }
 
     /// Lets robot and plant live until this time [us].
@@ -203,7 +211,9 @@ impl Sim {
         self.plant
             .set_servo(&mut self.state, f64::from(outputs.servo.0));
         if let Some(sonar) = outputs.ping {
-            self.plant.trigger(&mut self.state, plant_sonar(sonar));
+            if !self.cut[sonar as usize] {
+                self.plant.trigger(&mut self.state, plant_sonar(sonar));
+            }
             self.board.pinged(sonar, self.state.now_us());
         }
     }

@@ -236,6 +236,29 @@ fn a_silent_link_stops_the_robot_within_half_a_second() {
 }
 
 #[test]
+fn a_sonar_cut_on_the_way_stops_the_robot_before_the_wall_and_says_so() {
+    use rumbo_control::mode::ModeId;
+    let mut person = Person::at("mode1");
+    person.wait_s(0.5);
+    for command in [Command::Mode(ModeId::FrontDistance), Command::Arm] {
+        person.command(command);
+        person.wait_s(0.2);
+    }
+    person.wait_s(0.8);
+    assert!(person.sim.truth().forward_m_s > 0.4, "at full speed");
+    person.sim.cut_sonar(rumbo_control::SonarId::Front);
+    let heard = person.wait_s(2.0);
+    let truth = person.sim.truth();
+    assert_eq!((truth.wheel_rad_s, truth.contacts), ([0.0; 2], 0));
+    let fault = rumbo_wire::EventKind::Faulted(rumbo_control::Fault::SonarFaulty);
+    assert!(
+        heard
+            .iter()
+            .any(|message| matches!(message, FromRobot::Event(event) if event.kind == fault))
+    );
+}
+
+#[test]
 fn a_reference_beyond_the_sonar_is_refused_and_the_robot_keeps_its_last_one() {
     use rumbo_control::mode::ModeId;
     let mut person = Person::at("mode1");
