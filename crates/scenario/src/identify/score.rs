@@ -31,7 +31,7 @@ pub struct RunScore {
     pub whole_straight: Option<[WheelError; 2]>,
     /// The same over rows in which the wheels are asked to turn against each other.
     pub whole_turning: Option<[WheelError; 2]>,
-    /// Half a second ahead from the state observed in the rows up to the start: see [`super::replay`].
+    /// Half a second ahead from the state observed in the rows up to the start.
     pub ahead: Option<[WheelError; 2]>,
     /// Half a second ahead, rows as in `whole_straight`.
     pub ahead_straight: Option<[WheelError; 2]>,
