@@ -1,6 +1,7 @@
-//! The fit: a global search (CMA-ES), then Levenberg-Marquardt, then uncertainties from its Jacobian.
+//! The fit: Levenberg-Marquardt from the robot's present values and from the best point of a global search (CMA-ES), the better of
+//! the two; then uncertainties from its Jacobian.
 //!
-//! The search is seeded and its objective has no randomness: the same logs give the same parameters.
+//! The search is seeded and its objective has no randomness: the same logs and robot give the same parameters.
 
 use super::error::IdentifyError;
 use super::log::{DriveLog, Seen};
@@ -55,8 +56,8 @@ pub struct Check {
     pub runs: Vec<RunScore>,
 }
 
-/// Fits the plant to all runs together, starting from `start`. `generations` of global search come first:
-/// [`GENERATIONS`] from nominal values, none from a good robot file.
+/// Fits the plant to all runs together, from the values in `start` and, unless `generations` is 0, from the best point of a global
+/// search of so many generations ([`GENERATIONS`] suffice); the better fit wins.
 ///
 /// # Errors
 /// No run with speeds or a distance ahead; a fit that breaks down.
@@ -67,12 +68,16 @@ pub fn identify(
 ) -> Result<Identification, IdentifyError> {
     let logs = useful(logs)?;
     let problem = Problem::new(&UNKNOWNS, &logs, start);
-    let found = if generations == 0 {
-        DVector::zeros(problem.dimension())
-    } else {
-        search(&problem, generations)?
-    };
-    let (problem, z) = descend(problem, &found)?;
+    let nuisances = logs.iter().map(|log| Ok(check_one(log, start)?.nuisance));
+    let nuisances: Vec<_> = nuisances.collect::<Result<_, IdentifyError>>()?;
+    let mut best = descend(problem.clone(), &problem.point(start, &nuisances))?;
+    if generations > 0 {
+        let found = descend(problem.clone(), &search(&problem, generations)?)?;
+        if problem.cost(&found.1) < problem.cost(&best.1) {
+            best = found;
+        }
+    }
+    let (problem, z) = best;
     let sd = standard_deviations(&problem, &z)?;
 
     let params = problem.plant(&z);
@@ -104,24 +109,25 @@ pub fn identify(
 /// # Errors
 /// As [`identify`].
 pub fn check(logs: &[DriveLog], params: &Params) -> Result<Check, IdentifyError> {
-    let check_one = |log: DriveLog| {
-        let run = [log];
-        let problem = Problem::new(&[], &run, params);
-        // A coarse grid first: a battery too low is a robot that never moves, and no slope leads away from that.
-        let grid = [-2.0, -1.0, 0.0, 1.0, 2.0]
-            .map(|volts| [-2.0, 0.0, 2.0].map(|floor| [volts, floor]))
-            .concat();
-        let points = grid.iter().map(|point| DVector::from_row_slice(point));
-        let best = points.min_by(|a, b| problem.cost(a).total_cmp(&problem.cost(b)));
-        let (problem, z) = descend(problem, &best.unwrap_or_else(|| DVector::zeros(2)))?;
-        Ok(score(&run[0], params, problem.nuisance(0, &z)))
-    };
     Ok(Check {
         runs: useful(logs)?
-            .into_iter()
-            .map(check_one)
+            .iter()
+            .map(|log| check_one(log, params))
             .collect::<Result<_, _>>()?,
     })
+}
+
+fn check_one(log: &DriveLog, params: &Params) -> Result<RunScore, IdentifyError> {
+    let run = std::slice::from_ref(log);
+    let problem = Problem::new(&[], run, params);
+    // A coarse grid first: a battery too low is a robot that never moves, and no slope leads away from that.
+    let grid = [-2.0, -1.0, 0.0, 1.0, 2.0]
+        .map(|volts| [-2.0, 0.0, 2.0].map(|floor| [volts, floor]))
+        .concat();
+    let points = grid.iter().map(|point| DVector::from_row_slice(point));
+    let best = points.min_by(|a, b| problem.cost(a).total_cmp(&problem.cost(b)));
+    let (problem, z) = descend(problem, &best.unwrap_or_else(|| DVector::zeros(2)))?;
+    Ok(score(log, params, problem.nuisance(0, &z)))
 }
 
 fn useful(logs: &[DriveLog]) -> Result<Vec<DriveLog>, IdentifyError> {

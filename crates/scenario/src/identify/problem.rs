@@ -1,8 +1,9 @@
 //! The least-squares problem: unknowns, what is known about them beforehand, residuals.
 //!
-//! Each unknown is a normalised number `z`: 0 is the value before the fit, +-1 one standard deviation of what is
-//! believed about it (in the logarithm of its distance from the lower limit, so that it stays allowed). The beliefs
-//! enter as residuals; they hold what the runs cannot tell, such as which part of a torque is voltage and which is
+//! Each unknown is a normalised number `z`: 0 is the nominal value of such a robot's parts, +-1 one standard deviation
+//! of what is believed about it (in the logarithm of its distance from the lower limit, so that it stays allowed). The
+//! values before the fit are a place to start from and nothing more, so that a second fit does not drift from the first.
+//! The beliefs enter as residuals; they hold what the runs cannot tell, such as which part of a torque is voltage and which is
 //! friction. Two facts of the report are such residuals too: wheels start to turn at a PWM of about 35 in the air and
 //! 65 on the floor.
 
@@ -93,7 +94,7 @@ pub struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    /// All of `unknowns` around the values in `start`, and two nuisance values per log.
+    /// All of `unknowns` around their nominal values, the rest as in `start`, and two nuisance values per log.
     #[must_use]
     pub fn new(unknowns: &'a [Unknown], logs: &'a [DriveLog], start: &Params) -> Self {
         let all = Params::limits();
@@ -121,9 +122,10 @@ impl<'a> Problem<'a> {
     /// The value of unknown `index` at normalised `z`.
     #[must_use]
     pub fn value(&self, index: usize, z: f64) -> f64 {
-        let Limit { key, min, max, .. } = &self.limits[index];
-        let start = self.start.get(key).unwrap_or(*min).max(min + 1e-9);
-        (min + (start - min) * (self.unknowns[index].prior_sd * z).exp()).min(*max)
+        let Limit {
+            min, max, nominal, ..
+        } = &self.limits[index];
+        (min + (nominal - min).max(1e-9) * (self.unknowns[index].prior_sd * z).exp()).min(*max)
     }
 
     /// Change of that value per unit of `z`.
@@ -136,6 +138,25 @@ impl<'a> Problem<'a> {
     #[must_use]
     pub fn unit(&self, index: usize) -> &'static str {
         self.limits[index].unit
+    }
+
+    /// The point with the values in `params` and these nuisance values, one pair per log.
+    #[must_use]
+    pub fn point(&self, params: &Params, nuisances: &[Nuisance]) -> DVector<f64> {
+        let unknowns = self
+            .unknowns
+            .iter()
+            .zip(&self.limits)
+            .map(|(unknown, limit)| {
+                let above = |value: f64| (value - limit.min).max(1e-9);
+                let value = params.get(&limit.key).unwrap_or(limit.nominal);
+                (above(value) / above(limit.nominal)).ln() / unknown.prior_sd
+            });
+        let nuisances = nuisances.iter().flat_map(|nuisance| {
+            let battery = (nuisance.battery_v - BATTERY_V.0) / BATTERY_V.1;
+            [battery, nuisance.floor_scale.ln() / FLOOR_SD]
+        });
+        DVector::from_iterator(self.dimension(), unknowns.chain(nuisances))
     }
 
     /// The plant at `z`.
