@@ -45,6 +45,7 @@ pub(crate) fn near<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> 
         .filter(|(likeness, _)| *likeness > 0.5)
         .collect();
     rated.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(b.1)));
+    rated.dedup();
     rated.truncate(3);
     rated.into_iter().map(|(_, candidate)| candidate).collect()
 }
@@ -165,5 +166,10 @@ mod tests {
             ["mode1", "mode5"]
         );
         assert_eq!(near_or_all("xyzzy", ["open", "room"]), ["open", "room"]);
+    }
+
+    #[test]
+    fn a_name_known_twice_is_offered_once() {
+        assert_eq!(near("at_sec", ["at_s", "at_s"]), ["at_s"]);
     }
 }
