@@ -164,16 +164,6 @@ impl Drivetrain {
         self.battery.terminal_v(&state.battery)
     }
 
-    /// Speed of the body over the ground now: forward m/s, yaw rad/s.
-    #[must_use]
-    pub fn body_speed(&self, state: &State) -> (f64, f64) {
-        let motion = self.motion(
-            state,
-            [state.wheels[0].speed_rad_s, state.wheels[1].speed_rad_s],
-        );
-        (motion.forward_m, motion.yaw_rad)
-    }
-
     /// Advances by `dt_s` (at most 1 ms for the stated accuracy). `resist_n_m` is dry friction added to each wheel
     /// from outside, such as a wall the body leans on; a negative one is a floor easier than the parameters say.
     pub fn step(&self, state: &mut State, dt_s: f64, resist_n_m: [f64; 2]) -> Motion {

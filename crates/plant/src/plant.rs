@@ -168,12 +168,6 @@ impl Plant {
         })
     }
 
-    /// Level of a wheel's Hall sensor now.
-    #[must_use]
-    pub fn encoder_level(&self, state: &State, wheel: Side) -> bool {
-        self.encoders[wheel.index()].level(&state.encoders[wheel.index()])
-    }
-
     /// Passes time up to `until_us` (nothing happens if that is past), reporting events in the order of time.
     pub fn advance(&self, state: &mut State, until_us: u64, events: &mut impl FnMut(Event)) {
         let mut queue = Queue::default();

@@ -136,12 +136,6 @@ impl Sim {
         self.downlink.receive(self.now_us(), into);
     }
 
-    /// Changes what the link does to the bytes, both ways; its speed stays.
-    pub fn set_link_faults(&mut self, faults: &LinkParams) {
-        self.uplink.set_faults(faults.clone());
-        self.downlink.set_faults(faults.clone());
-    }
-
     /// Cuts a sonar's wires: from now on it answers no ping.
     pub fn cut_sonar(&mut self, sonar: SonarId) {
         self.cut[sonar as usize] = true;

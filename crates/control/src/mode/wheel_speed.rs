@@ -9,7 +9,8 @@
 //! | 1 turning | otherwise |
 //!
 //! The report's controller is an equilibrium PWM of 50 plus a PI on a speed counted in 50 ms, in steps of 3.1 rpm. Ours knows
-//! each wheel's friction (feedforward), times the edges, and acts every 10 ms: docs/theory/drive.md, docs/theory/wheel_speed.md.
+//! each wheel's friction (feedforward), times the edges, and acts every 10 ms: docs/theory/drive.md, docs/theory/wheel_speed.md. Worst of 20 simulated robots against the real one: 0 -> 60 rpm
+//! in 0.32 s instead of 3.7, 0 -> -100 rpm in 0.44 s instead of 5.3 (`rumbo run mode5 --runs 20`).
 
 use super::{Action, Look, Mode, Situation};
 use crate::types::{Drive, Fault, Wheels};

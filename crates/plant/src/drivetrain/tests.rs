@@ -78,9 +78,10 @@ fn one_wheel_may_hold_while_the_other_turns() {
     let [left, right] = speeds(&state);
     assert_eq!(left, 0.0);
     assert!(right > 3.0);
-    let (forward_m_s, yaw_rad_s) = drivetrain.body_speed(&state);
-    assert!((forward_m_s - 0.0325 * right / 2.0).abs() < 1e-12);
-    assert!((yaw_rad_s - 0.0325 * right / 0.10).abs() < 1e-12);
+    let motion = drivetrain.step(&mut state, 1e-3, [0.0; 2]);
+    let right_m = 0.0325 * motion.wheel_rad[1];
+    assert!(motion.forward_m > 0.0 && (motion.forward_m - right_m / 2.0).abs() < 1e-12);
+    assert!((motion.yaw_rad - right_m / 0.10).abs() < 1e-12);
 }
 
 #[test]

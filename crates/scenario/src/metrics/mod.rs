@@ -1,7 +1,7 @@
 //! Metrics of a run: from the plant's truth and what crosses the pins, never from the robot's own estimates.
 //!
-//! Every run has `contacts`, `contact_speed_m_s`..., every scenario with references has one group per step, named after its place in
-//! the scenario: `step1.settling_s`. Names end in their unit.
+//! Some are given for every run, some depend on the mode; each step of a reference has a group of its own, named after its place in the
+//! scenario: `step1.settling_s`. Names end in their unit; docs/scenarios.md lists them all.
 
 mod path;
 mod start;
