@@ -1,14 +1,19 @@
 //! What the robot knows about itself and what is around it, from what latched at the tick.
 //!
 //! edges -> wheel speeds ([`crate::speed`]) and distances -> pose ([`crate::odometry`]); echoes -> ranges ([`crate::range`]),
-//! moved along with the distance in between.
+//! moved along with the distance in between. The servo's place is reckoned from its commands and its speed: it tells nothing.
 
 use crate::drive::Direction;
+use crate::math::{abs, clamp, sin_cos, wrap_angle};
 use crate::odometry::Geometry;
 use crate::params::{ParamId, Params};
 use crate::range::{RangeFilter, range_from_echo};
+use crate::rig::View;
 use crate::speed::{EDGE_RAD, SpeedEstimator, WheelMotion};
-use crate::types::{AgedRange, Inputs, Pose, SIDES, SonarId, Wheels};
+use crate::types::{AgedRange, Inputs, Pose, Reading, SIDES, ServoAngle, SonarId, TICK_S, Wheels};
+
+/// The front sonar looks ahead when the servo is within this of it [rad].
+const AHEAD_RAD: f32 = 0.06;
 
 /// Memory of the estimators.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,6 +21,19 @@ pub struct Estimator {
     speed: Wheels<SpeedEstimator>,
     pose: Pose,
     ranges: [RangeFilter; 3],
+    servo_rad: f32,
+    servo_target_rad: f32,
+    ping: Option<Ping>,
+    /// What the front sonar last said off the middle.
+    aside: AgedRange,
+}
+
+/// The ping whose echo is waited for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Ping {
+    sonar: SonarId,
+    pose: Pose,
+    servo_rad: f32,
 }
 
 /// What the estimators say at one tick.
@@ -27,16 +45,33 @@ pub struct Estimate {
     pub wheel_rad_s: Wheels<f32>,
     /// Forward speed [m/s].
     pub forward_m_s: f32,
+    /// Yaw rate [rad/s].
+    pub yaw_rad_s: f32,
+    /// Way rolled since the last tick, signed [m].
+    pub rolled_m: f32,
+    /// Angle turned since the last tick [rad].
+    pub turned_rad: f32,
     /// Pose by odometry.
     pub pose: Pose,
-    /// Filtered ranges by `SonarId` number.
+    /// Filtered ranges by `SonarId` number; of a sonar on the servo only those ahead.
     pub ranges: [AgedRange; 3],
+    /// What a sonar said at this tick, unfiltered.
+    pub reading: Option<Reading>,
+    /// Where the servo points [rad].
+    pub servo_rad: f32,
+    /// The servo is where it was told to point.
+    pub servo_arrived: bool,
 }
 
 impl Estimate {
     /// The range of one sonar.
     pub fn range(&self, sonar: SonarId) -> AgedRange {
         self.ranges.get(sonar as usize).copied().unwrap_or_default()
+    }
+
+    /// Both wheels stand.
+    pub fn standing(&self) -> bool {
+        self.motion.left.standing && self.motion.right.standing
     }
 }
 
@@ -49,49 +84,113 @@ impl Estimator {
         directions: Wheels<Direction>,
     ) -> Estimate {
         let mut estimate = Estimate::default();
-        let mut turned_rad = Wheels::both(0.0);
+        let mut wheel_rad = Wheels::both(0.0);
         for side in SIDES {
             let motion = self.speed[side].step(&inputs.encoders[side], inputs.now);
             let direction = directions[side];
             estimate.motion[side] = motion;
             estimate.wheel_rad_s[side] = direction.sign(motion.speed_rad_s);
-            turned_rad[side] = direction.sign(f32::from(motion.edges) * EDGE_RAD);
+            wheel_rad[side] = direction.sign(f32::from(motion.edges) * EDGE_RAD);
         }
         let geometry: Geometry = params.geometry();
-        geometry.advance(&mut self.pose, turned_rad);
+        geometry.advance(&mut self.pose, wheel_rad);
         estimate.pose = self.pose;
-        (estimate.forward_m_s, _) = geometry.body_from_wheels(estimate.wheel_rad_s);
+        (estimate.forward_m_s, estimate.yaw_rad_s) =
+            geometry.body_from_wheels(estimate.wheel_rad_s);
+        (estimate.rolled_m, estimate.turned_rad) = geometry.body_from_wheels(wheel_rad);
 
-        let (rolled_m, _) = geometry.body_from_wheels(turned_rad);
-        self.step_ranges(params, inputs, rolled_m);
+        self.step_servo(params.get(ParamId::ServoSpeed));
+        estimate.servo_rad = self.servo_rad;
+        estimate.servo_arrived = self.servo_rad == self.servo_target_rad;
+        estimate.reading = self.reading(params, inputs);
+        self.step_ranges(params, inputs, &estimate);
         for (range, filter) in estimate.ranges.iter_mut().zip(&self.ranges) {
             *range = filter.range(inputs.now);
         }
         estimate
     }
 
-    fn step_ranges(&mut self, params: &Params, inputs: &Inputs, rolled_m: f32) {
-        for (sonar, filter) in SonarId::ALL.into_iter().zip(&mut self.ranges) {
-            // Rolling forward brings the front sonar nearer to what it sees; what the others see slides by.
-            filter.predict(if sonar == SonarId::Front {
-                rolled_m
-            } else {
-                0.0
+    /// What the pilot decided at this tick: where the servo goes, which sonar pings.
+    pub fn commanded(&mut self, servo: ServoAngle, ping: Option<SonarId>) {
+        self.servo_target_rad = servo.0;
+        if let Some(sonar) = ping {
+            self.ping = Some(Ping {
+                sonar,
+                pose: self.pose,
+                servo_rad: self.servo_rad,
             });
-            if let Some((pinged, echo)) = inputs.echo
-                && pinged == sonar
+        }
+    }
+
+    fn step_servo(&mut self, speed_rad_s: f32) {
+        let most = speed_rad_s * TICK_S;
+        let left = self.servo_target_rad - self.servo_rad;
+        self.servo_rad = if abs(left) <= most {
+            self.servo_target_rad
+        } else {
+            self.servo_rad + clamp(left, -most, most)
+        };
+    }
+
+    /// The echo of this tick, with the place from which it came.
+    fn reading(&mut self, params: &Params, inputs: &Inputs) -> Option<Reading> {
+        let (sonar, echo) = inputs.echo?;
+        let ping = self.ping.take().filter(|ping| ping.sonar == sonar)?;
+        let mount = params.view(sonar, ping.servo_rad)?;
+        let (x_m, y_m) = ping.pose.to_world(mount.x_m, mount.y_m);
+        let (x_m, y_m) = self.pose.to_local(x_m, y_m);
+        let turned_rad = wrap_angle(self.pose.heading_rad - ping.pose.heading_rad);
+        let range = range_from_echo(echo, params.get(ParamId::SoundSpeed));
+        if sonar == SonarId::Front {
+            self.aside = AgedRange { range, age_s: 0.0 };
+        }
+        Some(Reading {
+            sonar,
+            range,
+            view: View {
+                x_m,
+                y_m,
+                axis_rad: wrap_angle(mount.axis_rad - turned_rad),
+            },
+            servo_rad: ping.servo_rad,
+        })
+    }
+
+    fn step_ranges(&mut self, params: &Params, inputs: &Inputs, estimate: &Estimate) {
+        for (sonar, filter) in SonarId::ALL.into_iter().zip(&mut self.ranges) {
+            // Rolling forward brings a sonar that looks ahead nearer to what it sees; what others see slides by.
+            if let Some(view) = params.view(sonar, 0.0) {
+                let (_, cos) = sin_cos(view.axis_rad);
+                filter.predict(estimate.rolled_m * cos);
+            }
+            if let Some(reading) = estimate.reading
+                && reading.sonar == sonar
+                && (sonar != SonarId::Front || abs(reading.servo_rad) < AHEAD_RAD)
             {
-                filter.take(
-                    range_from_echo(echo, params.get(ParamId::SoundSpeed)),
-                    inputs.now,
-                );
+                filter.take(reading.range, inputs.now);
             }
             filter.hold_age(inputs.now);
         }
     }
 
+    /// What each sonar last saw where it looks now, for people: the front one's last answer while the servo looks aside.
+    pub fn shown(&self, estimate: &Estimate) -> [AgedRange; 3] {
+        let [left, right, front] = estimate.ranges;
+        let aside = abs(self.servo_rad) >= AHEAD_RAD;
+        [left, right, if aside { self.aside } else { front }]
+    }
+
     /// Calls the present place the origin.
     pub fn reset_pose(&mut self) {
+        if let Some(ping) = &mut self.ping {
+            let (x_m, y_m) = self.pose.to_local(ping.pose.x_m, ping.pose.y_m);
+            let heading_rad = wrap_angle(ping.pose.heading_rad - self.pose.heading_rad);
+            ping.pose = Pose {
+                x_m,
+                y_m,
+                heading_rad,
+            };
+        }
         self.pose = Pose::default();
     }
 }
@@ -128,6 +227,58 @@ mod tests {
         assert!(estimate.forward_m_s < 0.0);
     }
 
+    /// Ticks with the front sonar pinging every sixth, the servo told to point to `servo_rad`.
+    fn looking(estimator: &mut Estimator, servo_rad: f32, ticks: u32) -> Estimate {
+        let mut last = Estimate::default();
+        for tick in 0..ticks {
+            let answered = tick % 6 == 2;
+            let inputs = Inputs {
+                now: Micros(tick * 10_000),
+                echo: answered.then_some((SonarId::Front, Echo::Pulse(3_000))),
+                ..Inputs::default()
+            };
+            last = estimator.step(&Params::default(), &inputs, Wheels::default());
+            let ping = (tick % 6 == 0).then_some(SonarId::Front);
+            estimator.commanded(ServoAngle(servo_rad), ping);
+        }
+        last
+    }
+
+    #[test]
+    fn the_servo_takes_its_time_and_what_it_sees_aside_is_not_ahead() {
+        let mut estimator = Estimator::default();
+        let soon = looking(&mut estimator, 1.2, 10);
+        assert!(!soon.servo_arrived && soon.servo_rad < 0.6);
+        let mut estimator = Estimator::default();
+        looking(&mut estimator, 1.2, 24);
+        let later = looking(&mut estimator, 1.2, 60);
+        assert!(later.servo_arrived && later.servo_rad == 1.2);
+        assert!(matches!(estimator.shown(&later)[2].range, Range::Valid(_)));
+        let ahead = looking(&mut Estimator::default(), 0.0, 60);
+        assert!(matches!(ahead.range(SonarId::Front).range, Range::Valid(_)));
+    }
+
+    #[test]
+    fn a_reading_comes_with_the_place_from_which_it_was_taken() {
+        let (mut estimator, params) = (Estimator::default(), Params::default());
+        estimator.commanded(ServoAngle(0.0), Some(SonarId::Left));
+        estimator.pose = Pose {
+            x_m: 0.1,
+            y_m: 0.0,
+            heading_rad: 0.2,
+        };
+        let inputs = Inputs {
+            echo: Some((SonarId::Left, Echo::Pulse(3_000))),
+            ..Inputs::default()
+        };
+        let estimate = estimator.step(&params, &inputs, Wheels::default());
+        let reading = estimate.reading.unwrap();
+        let half_pi = core::f32::consts::FRAC_PI_2;
+        assert!((reading.view.axis_rad - (half_pi - 0.2)).abs() < 1e-5);
+        let (x_m, y_m) = estimator.pose.to_world(reading.view.x_m, reading.view.y_m);
+        assert!((x_m - 0.03).abs() < 1e-5 && (y_m - 0.075).abs() < 1e-5);
+    }
+
     #[test]
     fn an_echo_reaches_its_own_sonar_only() {
         let (mut estimator, params) = (Estimator::default(), Params::default());
@@ -137,6 +288,7 @@ mod tests {
         };
         for tick in 1..=4u32 {
             inputs.now = Micros(tick * 60_000);
+            estimator.commanded(ServoAngle::default(), Some(SonarId::Right));
             estimator.step(&params, &inputs, Wheels::default());
         }
         let estimate = estimator.step(

@@ -16,7 +16,9 @@ pub mod odometry;
 pub mod params;
 pub mod pid;
 pub mod range;
+pub mod rig;
 pub mod speed;
 pub mod types;
+pub mod wall;
 
 pub use types::*;

@@ -106,6 +106,22 @@ table! {
     RadiusRight = "radius_right_m", "m", 0.0325, 0.01 => 0.2, None;
     /// Distance between the wheels' contact points.
     Base = "base_m", "m", 0.10, 0.03 => 1.0, None;
+    /// Which sonars the robot carries: 0 `front_single`, 1 `front_pair`, 2 `side_pair_left`, 3 `side_pair_right`, 4 `final`.
+    Rig = "rig", "1", 4.0, 0.0 => 4.0, None;
+    /// Sonars that look ahead: distance ahead of the wheels' axis.
+    SonarFrontX = "sonar_front_x_m", "m", 0.13, -0.3 => 0.3, None;
+    /// Sonars that look to a side: distance ahead of the wheels' axis, for a pair of its middle.
+    SonarSideX = "sonar_side_x_m", "m", 0.03, -0.3 => 0.3, None;
+    /// Sonars that look to a side: distance from the middle of the robot.
+    SonarSideY = "sonar_side_y_m", "m", 0.075, 0.0 => 0.3, None;
+    /// Distance between two sonars that look ahead.
+    FrontGap = "front_gap_m", "m", 0.12, 0.02 => 0.5, None;
+    /// Distance between two sonars that look to one side.
+    SideGap = "side_gap_m", "m", 0.14, 0.02 => 0.5, None;
+    /// Half angle of a sonar's beam.
+    Beam = "sonar_beam_rad", "rad", 0.31, 0.0 => 1.0, None;
+    /// Speed of the servo, to know where it points.
+    ServoSpeed = "servo_speed_rad_s", "rad/s", 6.0, 0.5 => 50.0, None;
     /// Speed of sound.
     SoundSpeed = "sound_speed_m_s", "m/s", 343.4, 300.0 => 380.0, None;
     /// Duty that balances the left wheel's friction, forward.
@@ -146,6 +162,8 @@ table! {
     LinkTimeout = "link_timeout_s", "s", 0.4, 0.05 => 0.45, None;
     /// The same when the robot is addressed in text.
     TextTimeout = "text_timeout_s", "s", 10.0, 0.1 => 3600.0, None;
+    /// Age of a sonar's last good reading beyond which the robot does not drive on it.
+    StaleRange = "stale_range_s", "s", 0.5, 0.1 => 2.0, None;
     /// Inner wheel's speed over the outer one's in arcs.
     ArcRatio = "arc_ratio", "1", 0.5, 0.0 => 1.0, MANUAL;
     /// Largest approach speed.
@@ -158,8 +176,6 @@ table! {
     FrontTolerance = "front_tolerance_m", "m", 0.0015, 0.0005 => 0.05, FRONT;
     /// Yaw rate per heading error, to drive straight.
     FrontHeading = "front_heading_kp", "1/s", 4.0, 0.0 => 20.0, FRONT;
-    /// Age of the sonar's last good reading beyond which the robot stops.
-    StaleRange = "stale_range_s", "s", 0.5, 0.1 => 2.0, FRONT;
 }
 
 impl ParamId {

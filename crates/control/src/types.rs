@@ -1,5 +1,7 @@
 //! The values that cross the border of the core, each with its unit, and the newtypes of raw counts.
 
+use crate::math::sin_cos;
+use crate::rig::View;
 use core::ops::{Index, IndexMut};
 
 /// Control ticks per second [Hz].
@@ -168,6 +170,19 @@ pub enum Range {
     Faulty,
 }
 
+/// What a sonar said at this tick, before any filter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// Which one.
+    pub sonar: SonarId,
+    /// What it said.
+    pub range: Range,
+    /// From where it looked when it pinged, in the robot's present frame: the robot has moved on since.
+    pub view: View,
+    /// Where the servo pointed when it pinged [rad].
+    pub servo_rad: f32,
+}
+
 /// A range and its age.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AgedRange {
@@ -199,6 +214,24 @@ pub struct Pose {
     pub y_m: f32,
     /// Counter-clockwise from x, in (-pi, pi] [rad].
     pub heading_rad: f32,
+}
+
+impl Pose {
+    /// A point of the world [m] as seen from here: ahead, left.
+    pub fn to_local(&self, x_m: f32, y_m: f32) -> (f32, f32) {
+        let (sin, cos) = sin_cos(self.heading_rad);
+        let (dx, dy) = (x_m - self.x_m, y_m - self.y_m);
+        (cos * dx + sin * dy, cos * dy - sin * dx)
+    }
+
+    /// A point seen from here [m] (ahead, left) in the world.
+    pub fn to_world(&self, ahead_m: f32, left_m: f32) -> (f32, f32) {
+        let (sin, cos) = sin_cos(self.heading_rad);
+        (
+            self.x_m + cos * ahead_m - sin * left_m,
+            self.y_m + sin * ahead_m + cos * left_m,
+        )
+    }
 }
 
 /// What latched at the tick.

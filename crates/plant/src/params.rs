@@ -233,8 +233,8 @@ section! {
         roughness_length_m = 0.15, 0.001 => 1.0, "m";
         /// Standard deviation of each wheel's slip: distance lost over distance rolled.
         slip = 0.01, 0.0 => 0.2, "1";
-        /// Distance rolled over which the slip changes.
-        slip_length_m = 0.2, 0.001 => 5.0, "m";
+        /// Distance rolled over which the slip changes: the grain of floor and tyre.
+        slip_length_m = 0.001, 0.0005 => 5.0, "m";
     }
 }
 

@@ -251,8 +251,8 @@ fn at_full_speed_the_robot_stops_at_a_thin_wall() {
     assert!(truth.touching);
     assert!(impacts[0] > 0.2, "{impacts:?}");
     assert!(
-        truth.forward_m_s.abs() < 0.005,
-        "its wheels slip: {truth:?}"
+        truth.forward_m_s.abs() < 0.02,
+        "its wheels spin at 0.3 m/s, it jerks at most: {truth:?}"
     );
     assert!(
         (truth.pose.x_m - 0.87).abs() < 1e-3,

@@ -3,9 +3,11 @@
 use rumbo_control::drive::DriveLayer;
 use rumbo_control::estimate::{Estimate, Estimator};
 use rumbo_control::math::round;
+use rumbo_control::mode::waypoints::Waypoint;
 use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, Movement, SetpointError, Situation};
 use rumbo_control::params::{ParamError, ParamId, Params};
-use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, Wheels};
+use rumbo_control::rig::Rig;
+use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, SonarId, Wheels};
 use rumbo_wire::Refusal;
 
 use crate::report::Signals;
@@ -29,7 +31,9 @@ pub(crate) struct Pilot {
     duty: Wheels<Duty>,
     wheel_ref_rad_s: Wheels<f32>,
     state: u8,
+    heading_ref_rad: f32,
     reached: bool,
+    unreachable: bool,
 }
 
 /// What a tick decided.
@@ -39,6 +43,8 @@ pub(crate) struct Step {
     pub(crate) outputs: Outputs,
     /// The mode has reached its reference at this tick.
     pub(crate) reached: bool,
+    /// The mode has found out at this tick that its goal cannot be reached.
+    pub(crate) unreachable: bool,
     /// Why the wheels were released at this tick, although the robot was armed.
     pub(crate) fault: Option<Fault>,
 }
@@ -58,8 +64,15 @@ impl Pilot {
         };
         let reached = action.reached && !self.reached;
         self.reached = action.reached;
+        let unreachable = action.unreachable && !self.unreachable;
+        self.unreachable = action.unreachable;
         self.state = action.state;
-        let ping = self.pings.next(action.look.sonars);
+        self.heading_ref_rad = action.heading_ref_rad;
+        if action.new_origin {
+            self.estimator.reset_pose();
+        }
+        let ping = self.pings.next(self.carried(action.look.sonars));
+        self.estimator.commanded(action.look.servo, ping);
         Step {
             outputs: Outputs {
                 drive: self.duty,
@@ -67,8 +80,17 @@ impl Pilot {
                 ping,
             },
             reached,
+            unreachable,
             fault,
         }
+    }
+
+    /// Of the sonars that are wanted, those that the rig has.
+    fn carried(&self, mut wanted: [bool; 3]) -> [bool; 3] {
+        for (sonar, wanted) in SonarId::ALL.into_iter().zip(&mut wanted) {
+            *wanted &= self.params.view(sonar, 0.0).is_some();
+        }
+        wanted
     }
 
     fn act(&mut self, inputs: &Inputs, armed: bool) -> Result<Action, Fault> {
@@ -142,7 +164,9 @@ impl Pilot {
             wheel_ref_rad_s: self.wheel_ref_rad_s,
             duty: self.duty,
             state: self.state,
-            ranges: self.estimate.ranges,
+            servo_rad: self.estimate.servo_rad,
+            heading_ref_rad: self.heading_ref_rad,
+            ranges: self.estimator.shown(&self.estimate),
         }
     }
 
@@ -174,6 +198,40 @@ impl Pilot {
     pub(crate) fn start(&mut self) {
         self.mode.start();
         self.reached = false;
+        self.unreachable = false;
+    }
+
+    /// The sonars that the robot believes to carry.
+    pub(crate) fn rig(&self) -> Rig {
+        self.params.rig()
+    }
+
+    /// Sets the goal.
+    pub(crate) fn set_goal(&mut self, x_m: f32, y_m: f32) -> Result<f32, Refusal> {
+        self.mode.set_goal(x_m, y_m).map_err(refusal_of_setpoint)?;
+        Ok(0.0)
+    }
+
+    /// Makes following a lane the task.
+    pub(crate) fn follow_lane(&mut self) -> Result<f32, Refusal> {
+        self.mode.follow_lane().map_err(refusal_of_setpoint)?;
+        Ok(0.0)
+    }
+
+    /// Begins a route.
+    pub(crate) fn begin_route(&mut self, repeat: bool, relative: bool) -> Result<f32, Refusal> {
+        self.mode
+            .begin_route(repeat, relative)
+            .map_err(refusal_of_setpoint)?;
+        Ok(0.0)
+    }
+
+    /// Appends a waypoint.
+    pub(crate) fn add_waypoint(&mut self, waypoint: Waypoint) -> Result<f32, Refusal> {
+        self.mode
+            .add_waypoint(waypoint)
+            .map_err(refusal_of_setpoint)?;
+        Ok(0.0)
     }
 
     /// Sets the reference of both wheels; gives it.

@@ -6,7 +6,10 @@
 
 use rumbo_control::mode::ModeId;
 use rumbo_control::{AgedRange, Duty, Micros, Pose, Range, SonarId, Wheels};
-use rumbo_wire::text::{CM_PER_M, DistanceRow, RAD_S_PER_RPM, Row, SpeedRow, cm_from_range};
+use rumbo_wire::text::{
+    CM_PER_M, DistanceRow, MissionRow, RAD_PER_DEG, RAD_S_PER_RPM, Row, SpeedRow, WaypointsRow,
+    cm_from_range,
+};
 use rumbo_wire::{Ack, Event, EventKind, FromRobot, Hello, Message, Refusal, Status, Telemetry};
 
 use crate::outbox::{Outbox, Priority};
@@ -38,6 +41,8 @@ pub(crate) struct Signals {
     pub(crate) wheel_ref_rad_s: Wheels<f32>,
     pub(crate) duty: Wheels<Duty>,
     pub(crate) state: u8,
+    pub(crate) servo_rad: f32,
+    pub(crate) heading_ref_rad: f32,
     pub(crate) ranges: [AgedRange; 3],
 }
 
@@ -160,6 +165,7 @@ impl Reporter {
                     state: signals.state,
                     armed: status.armed,
                     faulted: status.fault.is_some(),
+                    servo_rad: signals.servo_rad,
                     ranges: signals.ranges,
                 };
                 if !self.say(Priority::Telemetry, &FromRobot::Telemetry(telemetry)) {
@@ -210,25 +216,50 @@ fn is_news(status: &Status, before: &Status) -> bool {
 fn row(dt_ms: u32, status: &Status, signals: &Signals) -> Row {
     let mode = status.mode as u8;
     let pwm = signals.duty.map(Duty::counts);
+    let range_cm = |sonar: SonarId| {
+        let aged = signals.ranges.get(sonar as usize);
+        cm_from_range(aged.map_or(Range::Faulty, |aged| aged.range))
+    };
     match status.mode {
-        ModeId::FrontDistance => {
-            // One sonar, which the original sends twice.
-            let front = signals
-                .ranges
-                .get(SonarId::Front as usize)
-                .map_or(Range::Faulty, |aged| aged.range);
-            let front_cm = cm_from_range(front);
-            let reference_cm = status.reference.left * CM_PER_M;
+        ModeId::FrontDistance | ModeId::FrontAlign | ModeId::WallHold | ModeId::WallFollow => {
+            // One sonar in front the original sends twice.
+            let (left, right) = match status.mode {
+                ModeId::FrontDistance => (SonarId::Front, SonarId::Front),
+                _ => (SonarId::Left, SonarId::Right),
+            };
             Row::Distance(DistanceRow {
                 dt_ms,
-                left_cm: front_cm,
-                right_cm: front_cm,
-                reference_cm,
+                left_cm: range_cm(left),
+                right_cm: range_cm(right),
+                reference_cm: status.reference.left * CM_PER_M,
                 mode,
                 pwm,
             })
         }
-        ModeId::Manual | ModeId::WheelSpeed => Row::Speed(SpeedRow {
+        ModeId::Waypoints => Row::Waypoints(WaypointsRow {
+            dt_ms,
+            wheel_rpm: signals.wheel_rad_s.map(|rad_s| rad_s / RAD_S_PER_RPM),
+            reference_rpm: signals.wheel_ref_rad_s.map(|rad_s| rad_s / RAD_S_PER_RPM),
+            x_m: signals.pose.x_m,
+            y_m: signals.pose.y_m,
+            heading_deg: signals.pose.heading_rad / RAD_PER_DEG,
+            pwm,
+        }),
+        ModeId::Mission => Row::Mission(MissionRow {
+            dt_ms,
+            reference_rpm: signals.wheel_ref_rad_s.map(|rad_s| rad_s / RAD_S_PER_RPM),
+            heading_reference_deg: signals.heading_ref_rad / RAD_PER_DEG,
+            goal_x_m: status.reference.left,
+            goal_y_m: status.reference.right,
+            x_m: signals.pose.x_m,
+            y_m: signals.pose.y_m,
+            heading_deg: signals.pose.heading_rad / RAD_PER_DEG,
+            state: signals.state,
+            right_cm: range_cm(SonarId::Right),
+            left_cm: range_cm(SonarId::Left),
+            front_cm: range_cm(SonarId::Front),
+        }),
+        ModeId::Manual | ModeId::WheelSpeed | ModeId::StraightLine => Row::Speed(SpeedRow {
             dt_ms,
             wheel_rpm: signals.wheel_rad_s.map(|rad_s| rad_s / RAD_S_PER_RPM),
             reference_rpm: signals.wheel_ref_rad_s.right / RAD_S_PER_RPM,

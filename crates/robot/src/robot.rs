@@ -97,7 +97,10 @@ impl Robot {
         if step.reached {
             self.event(EventKind::Reached);
         }
-        let status = self.status(inputs.battery_v, step.outputs.servo.0);
+        if step.unreachable {
+            self.event(EventKind::Unreachable);
+        }
+        let status = self.status(inputs.battery_v);
         self.reporter.tick(
             inputs.now,
             self.clock.t_ms(),
@@ -209,9 +212,14 @@ impl Robot {
                 }
                 Ok(0.0)
             }
-            // A jump of gains, or of the heading that a mode keeps, is not for a moving robot.
+            // A jump of gains, of the heading that a mode keeps, or of the sonars, is not for a moving robot.
             Command::Mode(_) | Command::ResetParams | Command::ResetPose
                 if self.supervisor.is_armed() =>
+            {
+                Err(Refusal::Armed)
+            }
+            Command::SetParam { id, .. }
+                if id == ParamId::Rig as u8 && self.supervisor.is_armed() =>
             {
                 Err(Refusal::Armed)
             }
@@ -233,6 +241,10 @@ impl Robot {
                 self.pilot.reset_pose();
                 Ok(0.0)
             }
+            Command::Goal { x_m, y_m } => self.pilot.set_goal(x_m, y_m),
+            Command::Lane => self.pilot.follow_lane(),
+            Command::Route { repeat, relative } => self.pilot.begin_route(repeat, relative),
+            Command::Waypoint(waypoint) => self.pilot.add_waypoint(waypoint),
         }
     }
 
@@ -251,7 +263,7 @@ impl Robot {
         self.reporter.event(self.clock.t_ms(), kind);
     }
 
-    fn status(&self, battery_v: Option<f32>, servo_rad: f32) -> Status {
+    fn status(&self, battery_v: Option<f32>) -> Status {
         let low = |counter: u16| (counter & 0xFF) as u8;
         Status {
             mode: self.pilot.mode(),
@@ -262,7 +274,7 @@ impl Robot {
             crc_errors: low(self.decoder.crc_errors()),
             dropped: self.reporter.dropped(),
             overruns: self.clock.overruns(),
-            servo_rad,
+            rig: self.pilot.rig(),
         }
     }
 }

@@ -32,16 +32,20 @@ pub(crate) fn translate(
         TextCommand::On => Command::Arm,
         TextCommand::Off => Command::Disarm,
         TextCommand::Reference(value) => match mode {
-            ModeId::FrontDistance => Command::Reference(value / CM_PER_M),
-            ModeId::WheelSpeed => Command::Reference(value * RAD_S_PER_RPM),
-            ModeId::Manual => return Err(Refusal::NotInThisMode),
+            ModeId::FrontDistance | ModeId::FrontAlign | ModeId::WallFollow => {
+                Command::Reference(value / CM_PER_M)
+            }
+            ModeId::WheelSpeed | ModeId::StraightLine => Command::Reference(value * RAD_S_PER_RPM),
+            ModeId::Manual | ModeId::WallHold | ModeId::Waypoints | ModeId::Mission => {
+                return Err(Refusal::NotInThisMode);
+            }
         },
         TextCommand::WheelReference(side, rpm) => {
             let mut wheels = reference;
             wheels[side] = rpm * RAD_S_PER_RPM;
             Command::WheelReference(wheels)
         }
-        TextCommand::Goal { .. } => return Err(Refusal::NotInThisMode),
+        TextCommand::Goal { x_m, y_m } => Command::Goal { x_m, y_m },
         TextCommand::Mode(number) => {
             Command::Mode(ModeId::from_number(number).ok_or(Refusal::OutOfRange)?)
         }

@@ -3,6 +3,7 @@
 
 use crate::files::TimedCommand;
 use crate::sim::Sim;
+use crate::trace::Heard;
 use rumbo_control::mode::ModeId;
 use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, ToRobot};
 
@@ -27,8 +28,8 @@ pub(crate) struct Operator<'a> {
     buffer: Vec<u8>,
     /// What the robot refused or reported.
     pub(crate) complaints: Vec<String>,
-    /// Telemetry frames received.
-    pub(crate) telemetry_frames: u64,
+    /// Telemetry and events received.
+    pub(crate) heard: Vec<Heard>,
 }
 
 impl<'a> Operator<'a> {
@@ -44,7 +45,7 @@ impl<'a> Operator<'a> {
             decoder: Decoder::default(),
             buffer: Vec::new(),
             complaints: Vec::new(),
-            telemetry_frames: 0,
+            heard: Vec::new(),
         }
     }
 
@@ -100,7 +101,12 @@ impl<'a> Operator<'a> {
             let Some(Received::Frame(body)) = self.decoder.push(*byte) else {
                 continue;
             };
-            match FromRobot::from_body(&body) {
+            let message = FromRobot::from_body(&body);
+            if let Ok(what @ (FromRobot::Telemetry(_) | FromRobot::Event(_))) = message {
+                let t_s = sim.now_us() as f64 * 1e-6;
+                self.heard.push(Heard { t_s, what });
+            }
+            match message {
                 Ok(FromRobot::Ack(ack)) if ack.number == self.number => {
                     if let (Some((command, _)), Err(refusal)) = (self.pending.take(), ack.result) {
                         let now_s = sim.now_us() as f64 * 1e-6;
@@ -116,7 +122,6 @@ impl<'a> Operator<'a> {
                             .push(format!("at {now_s:.2} s fault: {}", fault.explanation()));
                     }
                 }
-                Ok(FromRobot::Telemetry(_)) => self.telemetry_frames += 1,
                 Ok(_) | Err(_) => {}
             }
         }

@@ -45,7 +45,8 @@ pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
         sim.advance((sim.now_us() + SAMPLE_US).min(end_us));
         trace.take(&sim);
     }
-    let metrics = metrics::compute(setup, &sim, &trace, operator.telemetry_frames);
+    trace.heard = operator.heard;
+    let metrics = metrics::compute(setup, &sim, &trace);
     let mut failures = operator.complaints;
     for (name, bounds) in &scenario.limits {
         match metrics.get(name) {

@@ -67,6 +67,9 @@ impl Sim {
             image: 0,
             reset: ResetCause::PowerOn,
         });
+        for (id, value) in setup.rig_parameters()? {
+            set_param(&mut robot, id, value)?;
+        }
         for (id, value) in setup.robot.parameters.iter().chain(&scenario.parameters) {
             set_param(&mut robot, *id, *value)?;
         }

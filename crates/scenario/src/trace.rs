@@ -2,6 +2,7 @@
 
 use crate::files::FileError;
 use crate::sim::Sim;
+use rumbo_wire::FromRobot;
 use std::io::Write;
 use std::path::Path;
 
@@ -23,15 +24,28 @@ pub struct Sample {
     pub wheel_rad_s: [f64; 2],
     /// PWM at the bridges, left and right, -255..=255.
     pub duty: [i16; 2],
-    /// True distance from the front sonar [m]; NaN when nothing is within reach.
-    pub front_m: f64,
+    /// True range of the left, right and front sonar [m]; infinite when nothing is within reach.
+    pub range_m: [f64; 3],
+    /// Where the servo points [rad].
+    pub servo_rad: f64,
     /// Battery at its terminals [V].
     pub battery_v: f64,
+}
+
+/// Something that crossed the link and that metrics need.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heard {
+    /// When the station had it, since the start [s].
+    pub t_s: f64,
+    /// What.
+    pub what: FromRobot,
 }
 
 /// A whole run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trace {
+    /// Telemetry and events as they arrived at the station.
+    pub heard: Vec<Heard>,
     /// The samples, in order of time.
     pub samples: Vec<Sample>,
 }
@@ -54,7 +68,10 @@ impl Trace {
             heading_rad,
             wheel_rad_s: truth.wheel_rad_s,
             duty: [duty.left.counts(), duty.right.counts()],
-            front_m: truth.range_m[2].unwrap_or(f64::NAN),
+            range_m: truth
+                .range_m
+                .map(|range_m| range_m.unwrap_or(f64::INFINITY)),
+            servo_rad: truth.servo_rad,
             battery_v: truth.battery_v,
         });
     }
@@ -77,7 +94,7 @@ impl Trace {
             let mut file = std::io::BufWriter::new(std::fs::File::create(path)?);
             writeln!(
                 file,
-                "t_s,x_m,y_m,heading_rad,left_rad_s,right_rad_s,left_duty,right_duty,front_m,battery_v"
+                "t_s,x_m,y_m,heading_rad,left_rad_s,right_rad_s,left_duty,right_duty,left_m,right_m,front_m,servo_rad,battery_v"
             )?;
             for sample in &self.samples {
                 let Sample {
@@ -87,17 +104,20 @@ impl Trace {
                     heading_rad,
                     wheel_rad_s,
                     duty,
-                    front_m,
+                    range_m,
+                    servo_rad,
                     battery_v,
                 } = sample;
-                let front_m = if front_m.is_nan() {
-                    String::new()
-                } else {
-                    format!("{front_m:.5}")
-                };
+                let [left_m, right_m, front_m] = range_m.map(|range_m| {
+                    if range_m.is_finite() {
+                        format!("{range_m:.5}")
+                    } else {
+                        String::new()
+                    }
+                });
                 writeln!(
                     file,
-                    "{t_s:.3},{x_m:.5},{y_m:.5},{heading_rad:.5},{:.4},{:.4},{},{},{front_m},{battery_v:.3}",
+                    "{t_s:.3},{x_m:.5},{y_m:.5},{heading_rad:.5},{:.4},{:.4},{},{},{left_m},{right_m},{front_m},{servo_rad:.4},{battery_v:.3}",
                     wheel_rad_s[0], wheel_rad_s[1], duty[0], duty[1],
                 )?;
             }

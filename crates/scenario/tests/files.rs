@@ -127,7 +127,7 @@ const WRONG_SCENARIOS: [(&str, &str); 17] = [
     ),
     (
         "[[command]]\nat_s = 1\nreference_m = 0.3",
-        "scenarios/x.toml:7: [command[1]] reference_m is for mode `front_distance`, and the mode here is `manual`",
+        "scenarios/x.toml:7: [command[1]] reference_m is for mode `front_distance` or `front_align` or `wall_follow`, and the mode here is `manual`",
     ),
     (
         "[[command]]\nat_s = 1\nreference_cm = 30",

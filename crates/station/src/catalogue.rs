@@ -1,6 +1,8 @@
 //! What there is to choose and to set: modes, movements and parameters, as the page gets them.
 
-use rumbo_control::mode::{MAX_DISTANCE_M, MAX_WHEEL_RAD_S, MIN_DISTANCE_M, ModeId};
+use rumbo_control::mode::{
+    MAX_DISTANCE_M, MAX_WALL_M, MAX_WHEEL_RAD_S, MIN_DISTANCE_M, MIN_WALL_M, ModeId,
+};
 use rumbo_control::params::{Limits, ParamId};
 use serde::Serialize;
 
@@ -96,13 +98,18 @@ fn mode_entry(mode: ModeId) -> ModeEntry {
         id: mode as u8,
         name: mode.name(),
         reference: match mode {
-            ModeId::Manual => None,
-            ModeId::FrontDistance => Some(Reference {
+            ModeId::Manual | ModeId::WallHold | ModeId::Waypoints | ModeId::Mission => None,
+            ModeId::WallFollow => Some(Reference {
+                kind: ReferenceKind::Distance,
+                min: MIN_WALL_M,
+                max: MAX_WALL_M,
+            }),
+            ModeId::FrontDistance | ModeId::FrontAlign => Some(Reference {
                 kind: ReferenceKind::Distance,
                 min: MIN_DISTANCE_M,
                 max: MAX_DISTANCE_M,
             }),
-            ModeId::WheelSpeed => Some(Reference {
+            ModeId::WheelSpeed | ModeId::StraightLine => Some(Reference {
                 kind: ReferenceKind::WheelSpeed,
                 min: -MAX_WHEEL_RAD_S,
                 max: MAX_WHEEL_RAD_S,

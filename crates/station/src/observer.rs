@@ -14,6 +14,7 @@ use std::sync::Arc;
 pub(crate) struct Observer {
     board: Arc<Board>,
     status: Status,
+    servo_rad: f32,
     parameters: Vec<ParameterState>,
     truths: TruthLog,
     samples: Vec<Sample>,
@@ -27,6 +28,7 @@ impl Observer {
         let observer = Self {
             board,
             status: Status::default(),
+            servo_rad: 0.0,
             parameters: unread_parameters(),
             truths: TruthLog::default(),
             samples: Vec::new(),
@@ -50,6 +52,11 @@ impl Observer {
     /// The slow signals, as far as they are known; what telemetry and events tell sooner is in it.
     pub(crate) fn status(&self) -> Status {
         self.status
+    }
+
+    /// Where the servo points, as last told [rad].
+    pub(crate) fn servo_rad(&self) -> f32 {
+        self.servo_rad
     }
 
     /// A new value is on its way; whether there is such a parameter.
@@ -120,6 +127,7 @@ impl Observer {
         // Known long before the next status.
         self.urgent |= self.status.armed != telemetry.armed;
         self.status.armed = telemetry.armed;
+        self.servo_rad = telemetry.servo_rad;
         let truth = self.truths.at(t_ms - EARLIER_MS).zip(self.truths.at(t_ms));
         self.samples.push(Sample {
             t_ms,
@@ -138,6 +146,7 @@ impl Observer {
                 self.status.fault = Some(fault);
                 Level::Fault
             }
+            EventKind::Unreachable => Level::Warning,
             EventKind::Cleared(_) => {
                 self.status.fault = None;
                 Level::Info

@@ -279,7 +279,7 @@ impl Session {
                 true_battery_v: true_battery_v.map(|volts| rounded(volts, 1e2)),
                 reference: [reference.left, reference.right],
                 overruns: status.overruns,
-                servo_rad: status.servo_rad,
+                servo_rad: self.observer.servo_rad(),
                 foreign: self.client.hello().is_some() && !self.client.table_matches(),
             },
         }

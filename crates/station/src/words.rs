@@ -3,6 +3,7 @@
 use crate::catalogue;
 use crate::commands::{Fate, Outcome};
 use rumbo_control::mode::ModeId;
+use rumbo_wire::message::Waypoint;
 use rumbo_wire::{Command, Level, Refusal};
 use std::f32::consts::TAU;
 
@@ -18,7 +19,7 @@ pub(crate) fn command(command: &Command, mode: ModeId) -> String {
         Command::Disarm => "OFF".into(),
         Command::ClearFault => "clear the fault".into(),
         Command::Mode(mode) => format!("mode {} {}", *mode as u8, mode.name()),
-        Command::Reference(value) if mode == ModeId::WheelSpeed => {
+        Command::Reference(value) if matches!(mode, ModeId::WheelSpeed | ModeId::StraightLine) => {
             format!("reference {:.0} rpm", rpm(*value))
         }
         Command::Reference(value) => format!("reference {:.1} cm", value * 100.0),
@@ -45,6 +46,15 @@ pub(crate) fn command(command: &Command, mode: ModeId) -> String {
         Command::GetParam { id } => format!("read {}", parameter(*id)),
         Command::ResetParams => "all parameters to their defaults".into(),
         Command::ResetPose => "the present place is the origin".into(),
+        Command::Goal { x_m, y_m } => format!("goal ({x_m:.2}, {y_m:.2}) m"),
+        Command::Lane => "follow the lane".into(),
+        Command::Route { repeat, .. } => {
+            let how = if *repeat { "again and again" } else { "once" };
+            format!("a new route, {how}")
+        }
+        Command::Waypoint(Waypoint { x_m, y_m, .. }) => {
+            format!("waypoint ({x_m:.2}, {y_m:.2}) m")
+        }
     }
 }
 

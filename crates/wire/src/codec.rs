@@ -5,6 +5,7 @@
 
 use rumbo_control::math::round;
 use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::rig::Rig;
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Wheels};
 
 use crate::bytes::{Reader, Writer};
@@ -121,10 +122,8 @@ fn hello(from: &mut Reader) -> Result<Hello, Malformed> {
 
 /// Positions are sent in millimetres.
 const POSITION_PER_M: f32 = 1_000.0;
-/// Measured wheel speeds are sent in 0.02 rad/s: up to 40.9 rad/s, 391 rpm.
+/// Wheel speeds and their references are sent in 0.02 rad/s: up to 40.9 rad/s, 391 rpm.
 const SPEED_PER_RAD_S: f32 = 50.0;
-/// References of wheel speeds are sent in 0.001 rad/s: up to 32.7 rad/s, 313 rpm.
-const REFERENCE_PER_RAD_S: f32 = 1_000.0;
 /// Ranges are sent in 2.5 mm: up to 2.5525 m.
 const RANGE_PER_M: f32 = 400.0;
 /// Ten bits, of which the two highest codes mean something else.
@@ -142,6 +141,7 @@ fn put_telemetry(to: &mut Writer, telemetry: &Telemetry) -> Kind {
         state,
         armed,
         faulted,
+        servo_rad,
         ranges,
     } = telemetry;
     to.put(t_ms.to_le_bytes());
@@ -159,14 +159,12 @@ fn put_telemetry(to: &mut Writer, telemetry: &Telemetry) -> Kind {
     to.put(to_i16(pose.x_m, POSITION_PER_M).to_le_bytes());
     to.put(to_i16(pose.y_m, POSITION_PER_M).to_le_bytes());
     to.put(to_turn(pose.heading_rad).to_le_bytes());
-    for sample in wheel_rad_s {
+    for sample in wheel_rad_s.iter().chain([wheel_ref_rad_s]) {
         let [left_low, left_high] = to_i12(sample.left, SPEED_PER_RAD_S).to_le_bytes();
         let right = to_i12(sample.right, SPEED_PER_RAD_S);
         let [right_low, right_high] = (right << 4).to_le_bytes();
         to.put([left_low, left_high | right_low, right_high]);
     }
-    to.put(to_i16(wheel_ref_rad_s.left, REFERENCE_PER_RAD_S).to_le_bytes());
-    to.put(to_i16(wheel_ref_rad_s.right, REFERENCE_PER_RAD_S).to_le_bytes());
     let counts = |duty: Duty| u32::from(duty.counts().cast_unsigned() & 0x1FF);
     let bits = counts(duty.left)
         | counts(duty.right) << 9
@@ -175,6 +173,12 @@ fn put_telemetry(to: &mut Writer, telemetry: &Telemetry) -> Kind {
         | u32::from(*faulted) << 23;
     let [low, middle, high, _] = bits.to_le_bytes();
     to.put([low, middle, high]);
+    let servo_rad = if servo_rad.is_finite() {
+        *servo_rad
+    } else {
+        0.0
+    };
+    to.put((round(servo_rad * SERVO_PER_RAD).clamp(-127, 127) as i8).to_le_bytes());
     let [left, right, front] = ranges.map(|aged| range_code(aged.range));
     to.put((left | right << 10 | front << 20).to_le_bytes());
     Kind::Telemetry
@@ -190,25 +194,23 @@ fn telemetry(from: &mut Reader) -> Result<Telemetry, Malformed> {
     if pose.x_m.is_nan() {
         pose.heading_rad = f32::NAN;
     }
-    let mut wheel_rad_s = [Wheels::both(0.0); 2];
-    for sample in &mut wheel_rad_s {
+    let mut speeds = [Wheels::both(0.0); 3];
+    for sample in &mut speeds {
         let [low, middle, high] = from.take()?;
         sample.left = from_i12(u16::from_le_bytes([low, middle]) & 0xFFF, SPEED_PER_RAD_S);
         sample.right = from_i12(u16::from_le_bytes([middle, high]) >> 4, SPEED_PER_RAD_S);
     }
-    let wheel_ref_rad_s = Wheels {
-        left: from_i16(from.i16()?, REFERENCE_PER_RAD_S),
-        right: from_i16(from.i16()?, REFERENCE_PER_RAD_S),
-    };
+    let [earlier_rad_s, now_rad_s, wheel_ref_rad_s] = speeds;
     let [low, middle, high] = from.take()?;
     let bits = u32::from_le_bytes([low, middle, high, 0]);
     // Nine bits, signed.
     let counts = |bits: u32| Duty::new(((bits as u16) << 7).cast_signed() >> 7);
+    let servo_rad = f32::from(i8::from_le_bytes(from.take()?)) / SERVO_PER_RAD;
     let ranges = from.u32()?;
     Ok(Telemetry {
         t_ms,
         pose,
-        wheel_rad_s,
+        wheel_rad_s: [earlier_rad_s, now_rad_s],
         wheel_ref_rad_s,
         duty: Wheels {
             left: counts(bits),
@@ -217,6 +219,7 @@ fn telemetry(from: &mut Reader) -> Result<Telemetry, Malformed> {
         state: (bits >> 18 & 0xF) as u8,
         armed: bits & 1 << 22 != 0,
         faulted: bits & 1 << 23 != 0,
+        servo_rad,
         ranges: [ranges, ranges >> 10, ranges >> 20].map(|code| AgedRange {
             range: range(code & 0x3FF),
             age_s: 0.0,
@@ -253,11 +256,6 @@ fn put_status(to: &mut Writer, status: &Status) -> Kind {
         Some(volts) if volts.is_finite() => round(volts * BATTERY_PER_V).clamp(0, 65_534) as u16,
         _ => BATTERY_UNKNOWN,
     };
-    let servo_rad = if status.servo_rad.is_finite() {
-        status.servo_rad
-    } else {
-        0.0
-    };
     to.put([
         status.mode as u8,
         u8::from(status.armed),
@@ -266,8 +264,12 @@ fn put_status(to: &mut Writer, status: &Status) -> Kind {
     to.put(battery.to_le_bytes());
     to.put(status.reference.left.to_le_bytes())
         .put(status.reference.right.to_le_bytes());
-    to.put([status.crc_errors, status.dropped, status.overruns]);
-    to.put((round(servo_rad * SERVO_PER_RAD).clamp(-127, 127) as i8).to_le_bytes());
+    to.put([
+        status.crc_errors,
+        status.dropped,
+        status.overruns,
+        status.rig as u8,
+    ]);
     Kind::Status
 }
 
@@ -290,7 +292,7 @@ fn status(from: &mut Reader) -> Result<Status, Malformed> {
         crc_errors: from.u8()?,
         dropped: from.u8()?,
         overruns: from.u8()?,
-        servo_rad: f32::from(i8::from_le_bytes(from.take()?)) / SERVO_PER_RAD,
+        rig: Rig::from_number(from.u8()?).ok_or(Malformed::Number)?,
     })
 }
 
@@ -311,6 +313,7 @@ fn put_event(to: &mut Writer, event: &Event) -> Kind {
         EventKind::Cleared(fault) => to.put([4, fault as u8]),
         EventKind::ModeChanged(mode) => to.put([5, mode as u8]),
         EventKind::Reached => to.put([6]),
+        EventKind::Unreachable => to.put([7]),
     };
     Kind::Event
 }
@@ -324,6 +327,7 @@ fn event(from: &mut Reader) -> Result<Event, Malformed> {
         4 => EventKind::Cleared(fault(from)?),
         5 => EventKind::ModeChanged(mode(from)?),
         6 => EventKind::Reached,
+        7 => EventKind::Unreachable,
         _ => return Err(Malformed::Number),
     };
     Ok(Event { t_ms, kind })
@@ -376,6 +380,22 @@ fn put_command(to: &mut Writer, command: &Command) {
         Command::GetParam { id } => to.put([10, *id]),
         Command::ResetParams => to.put([11]),
         Command::ResetPose => to.put([12]),
+        Command::Goal { x_m, y_m } => to.put([13]).put(x_m.to_le_bytes()).put(y_m.to_le_bytes()),
+        Command::Lane => to.put([14]),
+        Command::Route { repeat, relative } => {
+            to.put([15, u8::from(*repeat) | u8::from(*relative) << 1])
+        }
+        Command::Waypoint(Waypoint {
+            x_m,
+            y_m,
+            heading_rad,
+        }) => {
+            to.put([16])
+                .put(x_m.to_le_bytes())
+                .put(y_m.to_le_bytes())
+                .put([u8::from(heading_rad.is_some())]);
+            to.put(heading_rad.unwrap_or(0.0).to_le_bytes())
+        }
     };
 }
 
@@ -406,6 +426,28 @@ fn command(from: &mut Reader) -> Result<Command, Malformed> {
         10 => Command::GetParam { id: from.u8()? },
         11 => Command::ResetParams,
         12 => Command::ResetPose,
+        13 => Command::Goal {
+            x_m: from.f32()?,
+            y_m: from.f32()?,
+        },
+        14 => Command::Lane,
+        15 => {
+            let flags = from.u8()?;
+            Command::Route {
+                repeat: flags & 1 != 0,
+                relative: flags & 2 != 0,
+            }
+        }
+        16 => {
+            let (x_m, y_m) = (from.f32()?, from.f32()?);
+            let has_heading = from.u8()? != 0;
+            let heading_rad = from.f32()?;
+            Command::Waypoint(Waypoint {
+                x_m,
+                y_m,
+                heading_rad: has_heading.then_some(heading_rad),
+            })
+        }
         _ => return Err(Malformed::Number),
     })
 }

@@ -1,11 +1,13 @@
 //! What the two ends say to each other, as values. How they look in bytes: [`crate::codec`].
 
 pub use rumbo_control::mode::Level;
+pub use rumbo_control::mode::waypoints::Waypoint;
 use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::rig::Rig;
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Wheels};
 
 /// Version of the binary protocol; raised when a change is not understood by the other end.
-pub const PROTOCOL_VERSION: u8 = 1;
+pub const PROTOCOL_VERSION: u8 = 2;
 
 /// From the robot to the station.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,7 +93,7 @@ pub struct Telemetry {
     pub pose: Pose,
     /// Wheel speeds [rad/s], the sample of 20 ms before `t_ms` first; sent with 0.02 rad/s.
     pub wheel_rad_s: [Wheels<f32>; 2],
-    /// Wheel speed references [rad/s]; 0 when driven open loop; sent with 0.001 rad/s.
+    /// Wheel speed references [rad/s]; 0 when driven open loop; sent with 0.02 rad/s.
     pub wheel_ref_rad_s: Wheels<f32>,
     /// PWM applied to the wheels.
     pub duty: Wheels<Duty>,
@@ -101,7 +103,9 @@ pub struct Telemetry {
     pub armed: bool,
     /// A fault is latched; its cause is in [`Status`] and in an [`Event`].
     pub faulted: bool,
-    /// Ranges by `SonarId` number; sent with 2.5 mm, ages not sent (0).
+    /// Where the servo points [rad]; sent with 1 degree.
+    pub servo_rad: f32,
+    /// Ranges by `SonarId` number, the front one in the servo's direction; sent with 2.5 mm, ages not sent (0).
     pub ranges: [AgedRange; 3],
 }
 
@@ -116,7 +120,8 @@ pub struct Status {
     pub fault: Option<Fault>,
     /// Battery [V], where a divider is wired.
     pub battery_v: Option<f32>,
-    /// The mode's reference: [m] in mode 1, [rad/s] of the left and right wheel in mode 5, both the same in mode 1.
+    /// The mode's reference: a distance [m] in modes 1, 2 and 4 (both the same), speeds of the left and right wheel
+    /// [rad/s] in modes 5 and 6, the goal's x and y [m] in mode 8, else 0.
     pub reference: Wheels<f32>,
     /// Frames from the station that failed the CRC, wrapping.
     pub crc_errors: u8,
@@ -124,8 +129,8 @@ pub struct Status {
     pub dropped: u8,
     /// Control ticks that overran, wrapping.
     pub overruns: u8,
-    /// Angle of the servo [rad]; sent with 1 degree.
-    pub servo_rad: f32,
+    /// The sonars that the robot believes to carry.
+    pub rig: Rig,
 }
 
 /// Something that happened, with the time at which it did.
@@ -152,6 +157,8 @@ pub enum EventKind {
     ModeChanged(ModeId),
     /// The mode reached its reference.
     Reached,
+    /// The mode found out that its goal cannot be reached; the robot waits.
+    Unreachable,
 }
 
 /// A command to the robot.
@@ -167,7 +174,7 @@ pub enum Command {
     ClearFault,
     /// Select a mode; refused while armed.
     Mode(ModeId),
-    /// The mode's reference for both wheels: distance [m] in mode 1, speed [rad/s] in mode 5.
+    /// The mode's reference: distance [m] in modes 1, 2 and 4, speed of both wheels [rad/s] in modes 5 and 6.
     Reference(f32),
     /// The mode's reference for each wheel: speed [rad/s] in mode 5.
     WheelReference(Wheels<f32>),
@@ -194,6 +201,24 @@ pub enum Command {
     ResetParams,
     /// Call the present place the origin.
     ResetPose,
+    /// Go to a point: around obstacles in mode 8, straight in mode 7. It may arrive at any time.
+    Goal {
+        /// Forward of the origin [m].
+        x_m: f32,
+        /// Left of the origin [m].
+        y_m: f32,
+    },
+    /// Follow a lane (mode 8).
+    Lane,
+    /// Begin a new route (mode 7); [`Command::Waypoint`]s follow.
+    Route {
+        /// Starts over at the end.
+        repeat: bool,
+        /// The places are as seen from where the robot starts, not from the origin.
+        relative: bool,
+    },
+    /// Append a waypoint to the route (mode 7).
+    Waypoint(Waypoint),
 }
 
 /// What became of a command.

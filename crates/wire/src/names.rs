@@ -51,6 +51,7 @@ impl EventKind {
             EventKind::Cleared(_) => "fault cleared",
             EventKind::ModeChanged(_) => "mode changed",
             EventKind::Reached => "reference reached",
+            EventKind::Unreachable => "goal unreachable",
         }
     }
 
@@ -61,6 +62,9 @@ impl EventKind {
                 Some(Fault::explanation(fault))
             }
             EventKind::ModeChanged(mode) => Some(mode.name()),
+            EventKind::Unreachable => {
+                Some("every way round was tried; give another goal, or clear the way")
+            }
             EventKind::Armed | EventKind::Disarmed | EventKind::Reached => None,
         }
     }

@@ -15,6 +15,8 @@ pub use crate::text_row::{DistanceRow, MissionRow, Row, RowKind, SpeedRow, Waypo
 
 /// rad/s in one rpm.
 pub const RAD_S_PER_RPM: f32 = core::f32::consts::PI / 30.0;
+/// rad in one degree.
+pub const RAD_PER_DEG: f32 = core::f32::consts::PI / 180.0;
 /// cm in one m.
 pub const CM_PER_M: f32 = 100.0;
 

@@ -61,7 +61,7 @@ fn the_worked_example_of_telemetry_is_right() {
             heading_rad: core::f32::consts::FRAC_PI_2,
         },
         wheel_rad_s: [Wheels::both(6.24), Wheels::both(6.26)],
-        wheel_ref_rad_s: Wheels::both(6.25),
+        wheel_ref_rad_s: Wheels::both(6.26),
         duty: Wheels {
             left: Duty::new(120),
             right: Duty::new(118),
@@ -69,6 +69,7 @@ fn the_worked_example_of_telemetry_is_right() {
         state: 2,
         armed: true,
         faulted: false,
+        servo_rad: -30f32.to_radians(),
         ranges: [
             aged(Range::Clear),
             aged(Range::Faulty),
@@ -112,7 +113,7 @@ fn the_numbers_of_the_tables_are_right() {
         let wire = frame.bytes().len();
         said(&format!("| {row} | {} | {wire} |", wire - 5));
     }
-    assert_eq!(PROTOCOL_VERSION, 1, "say so in docs/protocol.md");
+    assert_eq!(PROTOCOL_VERSION, 2, "say so in docs/protocol.md");
 }
 
 #[test]

@@ -157,6 +157,7 @@ impl Mode for FrontDistance {
             look: Look::only(SonarId::Front),
             state: state.phase as u8,
             reached,
+            ..Action::default()
         })
     }
 }

@@ -12,7 +12,7 @@
 //!
 //! The report moves open loop only; by speed the two wheels keep their ratio on any floor.
 
-use super::{Action, Level, Look, Mode, Movement, Situation};
+use super::{Action, Level, Mode, Movement, Situation};
 use crate::params::{ParamId, Params};
 use crate::types::{Drive, Fault, Wheels};
 
@@ -92,9 +92,8 @@ impl Mode for Manual {
         };
         Ok(Action {
             drive,
-            look: Look::default(),
             state,
-            reached: false,
+            ..Action::default()
         })
     }
 }

@@ -3,16 +3,28 @@
 //! A mode is configuration (from the parameters and its setpoint) apart from state, and one function of the
 //! [`Situation`]: [`Mode::step`]. One enum dispatches: [`ActiveMode`]. Numbers of modes appear in [`ModeId`] only.
 
+pub mod front_align;
 pub mod front_distance;
 pub mod manual;
+pub mod mission;
+pub mod straight_line;
+pub mod wall_follow;
+pub mod wall_hold;
+pub mod waypoints;
 pub mod wheel_speed;
 
 use crate::estimate::Estimate;
 use crate::params::Params;
 use crate::range::{MIN_RANGE_M, REACH_M};
 use crate::types::{Drive, Fault, Range, ServoAngle, SonarId, Wheels};
+use front_align::FrontAlign;
 use front_distance::FrontDistance;
 use manual::Manual;
+use mission::{Mission, Task};
+use straight_line::StraightLine;
+use wall_follow::WallFollow;
+use wall_hold::WallHold;
+use waypoints::{FARTHEST_M, Route, Waypoint, Waypoints};
 use wheel_speed::WheelSpeed;
 
 /// The modes of the report, by the number they have there.
@@ -24,13 +36,35 @@ pub enum ModeId {
     Manual = 0,
     /// Stop at a distance from a wall (memoria 2.1).
     FrontDistance = 1,
+    /// Stop square to a wall at a distance from it (memoria 2.2).
+    FrontAlign = 2,
+    /// Follow a wall at the distance at which the robot starts (memoria 3.1).
+    WallHold = 3,
+    /// Follow a wall at a commanded distance (memoria 3.2).
+    WallFollow = 4,
     /// Each wheel at a commanded speed (memoria 4.1).
     WheelSpeed = 5,
+    /// Straight on, by the difference of distance travelled (memoria 4.2).
+    StraightLine = 6,
+    /// A route of poses by odometry (memoria 4.3).
+    Waypoints = 7,
+    /// A goal around obstacles, or a lane of boxes (memoria 5).
+    Mission = 8,
 }
 
 impl ModeId {
     /// The modes that exist, in the order of their numbers.
-    pub const ALL: [ModeId; 3] = [ModeId::Manual, ModeId::FrontDistance, ModeId::WheelSpeed];
+    pub const ALL: [ModeId; 9] = [
+        ModeId::Manual,
+        ModeId::FrontDistance,
+        ModeId::FrontAlign,
+        ModeId::WallHold,
+        ModeId::WallFollow,
+        ModeId::WheelSpeed,
+        ModeId::StraightLine,
+        ModeId::Waypoints,
+        ModeId::Mission,
+    ];
 
     /// The mode with this number.
     pub fn from_number(number: u8) -> Option<ModeId> {
@@ -43,7 +77,13 @@ impl ModeId {
         match self {
             ModeId::Manual => "manual",
             ModeId::FrontDistance => "front_distance",
+            ModeId::FrontAlign => "front_align",
+            ModeId::WallHold => "wall_hold",
+            ModeId::WallFollow => "wall_follow",
             ModeId::WheelSpeed => "wheel_speed",
+            ModeId::StraightLine => "straight_line",
+            ModeId::Waypoints => "waypoints",
+            ModeId::Mission => "mission",
         }
     }
 
@@ -53,7 +93,13 @@ impl ModeId {
         match self {
             ModeId::Manual => &manual::STATE_NAMES,
             ModeId::FrontDistance => &front_distance::STATE_NAMES,
+            ModeId::FrontAlign => &front_align::STATE_NAMES,
+            ModeId::WallHold => &wall_hold::STATE_NAMES,
+            ModeId::WallFollow => &wall_follow::STATE_NAMES,
             ModeId::WheelSpeed => &wheel_speed::STATE_NAMES,
+            ModeId::StraightLine => &straight_line::STATE_NAMES,
+            ModeId::Waypoints => &waypoints::STATE_NAMES,
+            ModeId::Mission => &mission::STATE_NAMES,
         }
     }
 }
@@ -126,6 +172,13 @@ pub const MIN_DISTANCE_M: f32 = MIN_RANGE_M + 0.03;
 /// Longest distance reference that is accepted [m]: the sonar must still see the wall beyond it.
 pub const MAX_DISTANCE_M: f32 = REACH_M - 0.5;
 
+/// Shortest distance to a wall beside the robot that is accepted [m], from the sonar.
+pub const MIN_WALL_M: f32 = 0.10;
+/// Longest distance to a wall beside the robot that is accepted [m].
+pub const MAX_WALL_M: f32 = 1.5;
+/// Distance to a wall beside the robot before the first command [m], as in the report.
+pub const DEFAULT_WALL_M: f32 = 0.50;
+
 /// What a mode knows when it steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a> {
@@ -142,8 +195,14 @@ pub struct Action {
     pub look: Look,
     /// Number of its state, for telemetry; names: `ModeId::state_names`.
     pub state: u8,
+    /// The heading that it wants, for telemetry [rad]; 0 where it wants none.
+    pub heading_ref_rad: f32,
     /// It has reached its reference.
     pub reached: bool,
+    /// It has found out that its goal cannot be reached.
+    pub unreachable: bool,
+    /// The present place is the origin from now on.
+    pub new_origin: bool,
 }
 
 /// Where the robot looks.
@@ -201,13 +260,29 @@ pub enum SetpointError {
 
 /// The mode that runs, with its setpoint and its state.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one mode is active at a time, in place; there is no heap to box the large one in"
+)]
 pub enum ActiveMode {
     /// Mode 0.
     Manual(manual::Setpoint),
     /// Mode 1: reference [m] and state.
     FrontDistance(f32, front_distance::State),
+    /// Mode 2: reference [m] and state.
+    FrontAlign(f32, front_align::State),
+    /// Mode 3: state.
+    WallHold(wall_hold::State),
+    /// Mode 4: reference [m] and state.
+    WallFollow(f32, wall_follow::State),
     /// Mode 5: references [rad/s].
     WheelSpeed(Wheels<f32>),
+    /// Mode 6: reference of both wheels [rad/s] and state.
+    StraightLine(f32, straight_line::State),
+    /// Mode 7: route and state.
+    Waypoints(Route, waypoints::State),
+    /// Mode 8: task and state.
+    Mission(Task, mission::State),
 }
 
 impl Default for ActiveMode {
@@ -224,7 +299,15 @@ impl ActiveMode {
             ModeId::FrontDistance => {
                 Self::FrontDistance(front_distance::DEFAULT_M, front_distance::State::default())
             }
+            ModeId::FrontAlign => {
+                Self::FrontAlign(front_distance::DEFAULT_M, front_align::State::default())
+            }
+            ModeId::WallHold => Self::WallHold(wall_hold::State::default()),
+            ModeId::WallFollow => Self::WallFollow(DEFAULT_WALL_M, wall_follow::State::default()),
             ModeId::WheelSpeed => Self::WheelSpeed(Wheels::both(0.0)),
+            ModeId::StraightLine => Self::StraightLine(0.0, straight_line::State::default()),
+            ModeId::Waypoints => Self::Waypoints(Route::default(), waypoints::State::default()),
+            ModeId::Mission => Self::Mission(Task::default(), mission::State::default()),
         }
     }
 
@@ -233,14 +316,27 @@ impl ActiveMode {
         match self {
             Self::Manual(_) => ModeId::Manual,
             Self::FrontDistance(..) => ModeId::FrontDistance,
+            Self::FrontAlign(..) => ModeId::FrontAlign,
+            Self::WallHold(_) => ModeId::WallHold,
+            Self::WallFollow(..) => ModeId::WallFollow,
             Self::WheelSpeed(_) => ModeId::WheelSpeed,
+            Self::StraightLine(..) => ModeId::StraightLine,
+            Self::Waypoints(..) => ModeId::Waypoints,
+            Self::Mission(..) => ModeId::Mission,
         }
     }
 
     /// Forgets its state and keeps its reference: the wheels have just been armed.
     pub fn start(&mut self) {
-        if let Self::FrontDistance(_, state) = self {
-            *state = front_distance::State::default();
+        match self {
+            Self::Manual(_) | Self::WheelSpeed(_) => {}
+            Self::FrontDistance(_, state) => *state = front_distance::State::default(),
+            Self::FrontAlign(_, state) => *state = front_align::State::default(),
+            Self::WallHold(state) => *state = wall_hold::State::default(),
+            Self::WallFollow(_, state) => *state = wall_follow::State::default(),
+            Self::StraightLine(_, state) => *state = straight_line::State::default(),
+            Self::Waypoints(_, state) => *state = waypoints::State::default(),
+            Self::Mission(_, state) => *state = mission::State::default(),
         }
     }
 
@@ -248,7 +344,7 @@ impl ActiveMode {
     pub fn look(&self) -> Look {
         match self {
             Self::FrontDistance(..) => Look::only(SonarId::Front),
-            Self::Manual(_) | Self::WheelSpeed(_) => Look::default(),
+            _ => Look::default(),
         }
     }
 
@@ -258,28 +354,48 @@ impl ActiveMode {
             Self::FrontDistance(..) => {
                 matches!(estimate.range(SonarId::Front).range, Range::Valid(_))
             }
-            Self::Manual(_) | Self::WheelSpeed(_) => true,
+            _ => true,
         }
     }
 
-    /// The reference in force: [m] for both wheels in mode 1, [rad/s] per wheel in mode 5, else 0.
+    /// The reference in force: a distance [m] in modes 1, 2 and 4, wheel speeds [rad/s] in modes 5 and 6, the goal
+    /// (x on the left, y on the right) [m] in mode 8, else 0.
     pub fn reference(&self) -> Wheels<f32> {
         match self {
-            Self::Manual(_) => Wheels::both(0.0),
-            Self::FrontDistance(distance_m, _) => Wheels::both(*distance_m),
+            Self::FrontDistance(distance_m, _)
+            | Self::FrontAlign(distance_m, _)
+            | Self::WallFollow(distance_m, _) => Wheels::both(*distance_m),
             Self::WheelSpeed(references) => *references,
+            Self::StraightLine(rad_s, _) => Wheels::both(*rad_s),
+            Self::Mission(Task::Goal { x_m, y_m }, _) => Wheels {
+                left: *x_m,
+                right: *y_m,
+            },
+            Self::Manual(_) | Self::WallHold(_) | Self::Waypoints(..) | Self::Mission(..) => {
+                Wheels::both(0.0)
+            }
         }
     }
 
-    /// Sets the reference for both wheels: distance [m] in mode 1, speed [rad/s] in mode 5.
+    /// Sets the reference: distance [m] in modes 1, 2 and 4, speed of both wheels [rad/s] in modes 5 and 6.
     ///
     /// # Errors
     /// Why it is refused; the last one stays.
     pub fn set_reference(&mut self, value: f32) -> Result<(), SetpointError> {
         match self {
-            Self::Manual(_) => Err(SetpointError::NotInThisMode),
-            Self::FrontDistance(distance_m, _) => {
+            Self::Manual(_) | Self::WallHold(_) | Self::Waypoints(..) | Self::Mission(..) => {
+                Err(SetpointError::NotInThisMode)
+            }
+            Self::FrontDistance(distance_m, _) | Self::FrontAlign(distance_m, _) => {
                 *distance_m = within(value, MIN_DISTANCE_M, MAX_DISTANCE_M)?;
+                Ok(())
+            }
+            Self::WallFollow(distance_m, _) => {
+                *distance_m = within(value, MIN_WALL_M, MAX_WALL_M)?;
+                Ok(())
+            }
+            Self::StraightLine(rad_s, _) => {
+                *rad_s = within(value, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
                 Ok(())
             }
             Self::WheelSpeed(references) => {
@@ -301,6 +417,66 @@ impl ActiveMode {
         let right = within(value.right, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
         *references = Wheels { left, right };
         Ok(())
+    }
+
+    /// Sets the goal: the task of mode 8, a route of one waypoint in mode 7. It may arrive at any time.
+    ///
+    /// # Errors
+    /// Why it is refused; the last one stays.
+    pub fn set_goal(&mut self, x_m: f32, y_m: f32) -> Result<(), SetpointError> {
+        let (x_m, y_m) = (
+            within(x_m, -FARTHEST_M, FARTHEST_M)?,
+            within(y_m, -FARTHEST_M, FARTHEST_M)?,
+        );
+        match self {
+            Self::Mission(task, _) => *task = Task::Goal { x_m, y_m },
+            Self::Waypoints(..) => {
+                let mut route = Route::empty(false, false);
+                route.push(Waypoint {
+                    x_m,
+                    y_m,
+                    heading_rad: None,
+                })?;
+                *self = Self::Waypoints(route, waypoints::State::default());
+            }
+            _ => return Err(SetpointError::NotInThisMode),
+        }
+        Ok(())
+    }
+
+    /// Makes following a lane the task of mode 8.
+    ///
+    /// # Errors
+    /// Another mode is selected.
+    pub fn follow_lane(&mut self) -> Result<(), SetpointError> {
+        let Self::Mission(task, _) = self else {
+            return Err(SetpointError::NotInThisMode);
+        };
+        *task = Task::Lane;
+        Ok(())
+    }
+
+    /// Begins a new route of mode 7, without waypoints: the robot waits.
+    ///
+    /// # Errors
+    /// Another mode is selected.
+    pub fn begin_route(&mut self, repeat: bool, relative: bool) -> Result<(), SetpointError> {
+        let Self::Waypoints(..) = self else {
+            return Err(SetpointError::NotInThisMode);
+        };
+        *self = Self::Waypoints(Route::empty(repeat, relative), waypoints::State::default());
+        Ok(())
+    }
+
+    /// Appends a waypoint to the route of mode 7.
+    ///
+    /// # Errors
+    /// Why it is refused; the route is as before.
+    pub fn add_waypoint(&mut self, waypoint: Waypoint) -> Result<(), SetpointError> {
+        let Self::Waypoints(route, _) = self else {
+            return Err(SetpointError::NotInThisMode);
+        };
+        route.push(waypoint)
     }
 
     /// Sets the movement of mode 0.
@@ -329,10 +505,16 @@ impl ActiveMode {
             Self::FrontDistance(distance_m, state) => {
                 FrontDistance::new(params, *distance_m).step(state, at)
             }
+            Self::FrontAlign(_, state) => FrontAlign.step(state, at),
+            Self::WallHold(state) => WallHold.step(state, at),
+            Self::WallFollow(_, state) => WallFollow.step(state, at),
             Self::WheelSpeed(references) => WheelSpeed {
                 references: *references,
             }
             .step(&mut (), at),
+            Self::StraightLine(_, state) => StraightLine.step(state, at),
+            Self::Waypoints(_, state) => Waypoints.step(state, at),
+            Self::Mission(_, state) => Mission.step(state, at),
         }
     }
 }
@@ -401,6 +583,10 @@ mod tests {
             assert_eq!(ActiveMode::new(mode).id(), mode);
         }
         assert_eq!(ModeId::from_number(9), None);
+        #[cfg(feature = "names")]
+        for mode in ModeId::ALL {
+            assert!(mode.state_names().len() <= 16, "telemetry has four bits");
+        }
         assert!(
             Movement::ALL
                 .iter()

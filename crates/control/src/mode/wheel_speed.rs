@@ -12,7 +12,7 @@
 //! each wheel's friction (feedforward), times the edges, and acts every 10 ms: docs/theory/drive.md, docs/theory/wheel_speed.md. Worst of 20 simulated robots against the real one: 0 -> 60 rpm
 //! in 0.32 s instead of 3.7, 0 -> -100 rpm in 0.44 s instead of 5.3 (`rumbo run mode5 --runs 20`).
 
-use super::{Action, Look, Mode, Situation};
+use super::{Action, Mode, Situation};
 use crate::types::{Drive, Fault, Wheels};
 
 /// Names of the states.
@@ -38,9 +38,8 @@ impl Mode for WheelSpeed {
         };
         Ok(Action {
             drive,
-            look: Look::default(),
             state: u8::from(turning),
-            reached: false,
+            ..Action::default()
         })
     }
 }

@@ -7,8 +7,11 @@
 //! | `arm = true`, `disarm = true`, `stop = true` | arm and start the mode; end it; release the wheels at once |
 //! | `clear_fault = true`, `reset_pose = true` | forget a latched fault; call the present place the origin |
 //! | `mode = "wheel_speed"` | select a mode (the robot must be disarmed) |
-//! | `reference_m = 0.3` | mode `front_distance`: the distance to hold |
-//! | `speed_rpm = 60`, or `left_rpm = 60` and `right_rpm = 50` | mode `wheel_speed` |
+//! | `reference_m = 0.3` | modes `front_distance`, `front_align`, `wall_follow`: the distance to hold |
+//! | `speed_rpm = 60` | modes `wheel_speed`, `straight_line` |
+//! | `left_rpm = 60` and `right_rpm = 50` | mode `wheel_speed` |
+//! | `goal_m = [1.0, 0.5]` | modes `mission`, `waypoints`: a point to go to |
+//! | `lane = true` | mode `mission`: follow a lane |
 //! | `move = "turn_left"` with `duty = 0.4` or `speed_rpm = 60` | mode `manual`, a basic movement |
 //! | the same with `duty = 0`, `ramp_to_duty = 0.4`, `ramp_s = 12` | open loop, the duty moves by one count of PWM at a time |
 //! | `parameter = "name"` and `value = 1.5` | set a control parameter |
@@ -17,12 +20,14 @@ use super::names::{find_mode, find_movement};
 use super::parameters;
 use super::read::{Allowed, Table};
 use super::scenario::TimedCommand;
+use rumbo_control::mode::waypoints::FARTHEST_M;
 use rumbo_control::mode::{ModeId, Movement};
 use rumbo_control::{Duty, Wheels};
 use rumbo_wire::message::{Command, Level};
 use std::f64::consts::PI;
 
 const DISTANCE: Allowed = Allowed::new(0.02, 2.5, "m");
+const GOAL: Allowed = Allowed::new(-FARTHEST_M as f64, FARTHEST_M as f64, "m");
 const SPEED: Allowed = Allowed::new(-200.0, 200.0, "rpm");
 const MOVE_SPEED: Allowed = Allowed::new(0.0, 200.0, "rpm");
 const DUTY: Allowed = Allowed::new(0.0, 1.0, "");
@@ -30,22 +35,25 @@ const DUTY: Allowed = Allowed::new(0.0, 1.0, "");
 const RAMP_STEP_S: f64 = 0.1;
 
 /// The actions that are a bare `true`.
-const FLAGS: [(&str, Command); 5] = [
+const FLAGS: [(&str, Command); 6] = [
     ("arm", Command::Arm),
     ("disarm", Command::Disarm),
     ("stop", Command::Stop),
     ("clear_fault", Command::ClearFault),
     ("reset_pose", Command::ResetPose),
+    ("lane", Command::Lane),
 ];
 /// The keys that say which action a command is.
-const ACTIONS: [&str; 11] = [
+const ACTIONS: [&str; 13] = [
     "arm",
     "disarm",
     "stop",
     "clear_fault",
     "reset_pose",
+    "lane",
     "mode",
     "reference_m",
+    "goal_m",
     "move",
     "speed_rpm",
     "left_rpm",
@@ -96,7 +104,7 @@ fn read_command(
     let single = |command| vec![TimedCommand { at_s, command }];
     match given[..] {
         ["move"] | ["move", "speed_rpm"] => {
-            needs_mode(table, "move", ModeId::Manual, *mode);
+            needs_mode(table, "move", &[ModeId::Manual], *mode);
             read_move(table, at_s, duration_s)
         }
         [key] => read_simple(table, key, mode)
@@ -136,6 +144,9 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut ModeId) -> Option<Co
                 "must be true, or leave the command out",
             );
         }
+        if command == Command::Lane {
+            needs_mode(table, key, &[ModeId::Mission], *mode);
+        }
         return Some(command);
     }
     match key {
@@ -147,15 +158,26 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut ModeId) -> Option<Co
             Some(Command::Mode(*mode))
         }
         "reference_m" => {
-            needs_mode(table, key, ModeId::FrontDistance, *mode);
+            let modes = [
+                ModeId::FrontDistance,
+                ModeId::FrontAlign,
+                ModeId::WallFollow,
+            ];
+            needs_mode(table, key, &modes, *mode);
             Some(Command::Reference(table.number(key, DISTANCE)? as f32))
         }
+        "goal_m" => {
+            needs_mode(table, key, &[ModeId::Mission, ModeId::Waypoints], *mode);
+            let [x_m, y_m] = table.pair(key, GOAL)?.map(|place| place as f32);
+            Some(Command::Goal { x_m, y_m })
+        }
         "speed_rpm" => {
-            needs_mode(table, key, ModeId::WheelSpeed, *mode);
+            let modes = [ModeId::WheelSpeed, ModeId::StraightLine];
+            needs_mode(table, key, &modes, *mode);
             Some(Command::Reference(rad_s(table.number(key, SPEED)?)))
         }
         "left_rpm" => {
-            needs_mode(table, key, ModeId::WheelSpeed, *mode);
+            needs_mode(table, key, &[ModeId::WheelSpeed], *mode);
             let (left, right) = (
                 table.number(key, SPEED),
                 table.required_number("right_rpm", SPEED),
@@ -241,11 +263,15 @@ fn read_ramp(
         .collect()
 }
 
-fn needs_mode(table: &Table<'_, '_>, key: &str, needed: ModeId, mode: ModeId) {
-    if mode != needed {
+fn needs_mode(table: &Table<'_, '_>, key: &str, needed: &[ModeId], mode: ModeId) {
+    if !needed.contains(&mode) {
+        let names: Vec<String> = needed
+            .iter()
+            .map(|needed| format!("`{}`", needed.name()))
+            .collect();
         let text = format!(
-            "{key} is for mode `{}`, and the mode here is `{}`",
-            needed.name(),
+            "{key} is for mode {}, and the mode here is `{}`",
+            names.join(" or "),
             mode.name()
         );
         table.complain_here(&text);

@@ -7,7 +7,7 @@ use super::{Library, RobotFile, ScenarioFile, Start, WorldFile, parameters};
 use rumbo_control::params::ParamId;
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::params::Params;
-use rumbo_plant::plant::Rig;
+use rumbo_plant::plant::{Mount, Rig};
 
 /// What the command line sets in place of the scenario's own.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -76,6 +76,60 @@ impl Library {
             rig,
             world,
         })
+    }
+}
+
+impl Setup {
+    /// What the robot must be told about the rig it carries, as control parameters.
+    ///
+    /// # Errors
+    /// The rig's name is none that the control core knows, or it lacks a sonar of that rig.
+    pub fn rig_parameters(&self) -> Result<Vec<(ParamId, f32)>, FileError> {
+        use rumbo_control::rig::Rig as Known;
+        let name = &self.scenario.rig;
+        let known = Known::ALL.into_iter().find(|rig| rig.name() == name);
+        let Some(rig) = known else {
+            return Err(FileError::Unknown {
+                kind: "rig of the control core",
+                name: name.clone(),
+                near: near_or_all(name, Known::ALL.iter().map(|rig| rig.name())),
+            });
+        };
+        let need = |mount: Option<Mount>, sonar: &str| {
+            mount.ok_or_else(|| {
+                FileError::Setting(format!(
+                    "robot {}: rig {name} needs a `{sonar}` sonar; add [rig.{name}.{sonar}]",
+                    self.robot.name
+                ))
+            })
+        };
+        let mut values = vec![(ParamId::Rig, f64::from(rig as u8))];
+        if matches!(rig, Known::FrontSingle | Known::Final) {
+            values.push((ParamId::SonarFrontX, need(self.rig.front, "front")?.x_m));
+        }
+        if rig != Known::FrontSingle {
+            let left = need(self.rig.left, "left")?;
+            let right = need(self.rig.right, "right")?;
+            match rig {
+                Known::FrontPair => values.extend([
+                    (ParamId::SonarFrontX, left.x_m),
+                    (ParamId::FrontGap, left.y_m - right.y_m),
+                ]),
+                Known::SidePairLeft | Known::SidePairRight => values.extend([
+                    (ParamId::SonarSideX, 0.5 * (left.x_m + right.x_m)),
+                    (ParamId::SonarSideY, left.y_m.abs()),
+                    (ParamId::SideGap, left.x_m - right.x_m),
+                ]),
+                Known::FrontSingle | Known::Final => values.extend([
+                    (ParamId::SonarSideX, left.x_m),
+                    (ParamId::SonarSideY, left.y_m),
+                ]),
+            }
+        }
+        Ok(values
+            .into_iter()
+            .map(|(id, value)| (id, value as f32))
+            .collect())
     }
 }
 

@@ -11,18 +11,23 @@ use crate::files::Setup;
 use crate::sim::Sim;
 use crate::trace::Trace;
 use rumbo_control::mode::ModeId;
+use rumbo_wire::FromRobot;
 use std::collections::BTreeMap;
 
 /// Metrics by name.
 pub type Metrics = BTreeMap<String, f64>;
 
 /// All metrics of a run.
-pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace, telemetry_frames: u64) -> Metrics {
+pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
     let mut metrics = Metrics::new();
     let duration_s = setup.scenario.duration_s;
     metrics.insert("contacts".into(), f64::from(sim.truth().contacts));
     metrics.insert("reverse_drive_rad_s".into(), sim.worst_reverse_rad_s());
-    metrics.insert("telemetry_hz".into(), telemetry_frames as f64 / duration_s);
+    let frames = trace
+        .heard
+        .iter()
+        .filter(|heard| matches!(heard.what, FromRobot::Telemetry(_)));
+    metrics.insert("telemetry_hz".into(), frames.count() as f64 / duration_s);
     metrics.insert("control_period_s".into(), sim.control_period_s());
     match setup.scenario.mode {
         ModeId::FrontDistance => step::distance_steps(setup, sim, trace, &mut metrics),
@@ -31,6 +36,12 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace, telemetry_frames: u64) -
             path::movement(setup, trace, &mut metrics);
             start::dead_zones(trace, &mut metrics);
         }
+        ModeId::FrontAlign
+        | ModeId::WallHold
+        | ModeId::WallFollow
+        | ModeId::StraightLine
+        | ModeId::Waypoints
+        | ModeId::Mission => {}
     }
     // A billionth of any unit is rounding, not behaviour.
     for value in metrics.values_mut() {

@@ -122,7 +122,7 @@ fn response(
 /// Steps of the distance to the wall in front. The run's scale of the speed of sound is removed: the robot cannot know it.
 pub(super) fn distance_steps(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut Metrics) {
     let scale = SOUND_M_S / (331.3 + 0.606 * sim.params().sonar.temperature_c);
-    let distance = |sample: &Sample| sample.front_m * scale;
+    let distance = |sample: &Sample| sample.range_m[2] * scale;
     for (index, step) in steps(&setup.scenario.commands, setup.scenario.duration_s)
         .iter()
         .enumerate()
@@ -197,7 +197,8 @@ mod tests {
                 heading_rad: 0.0,
                 wheel_rad_s: [0.0; 2],
                 duty: [0; 2],
-                front_m: signal(t_s),
+                range_m: [f64::INFINITY, f64::INFINITY, signal(t_s)],
+                servo_rad: 0.0,
                 battery_v: 7.4,
             })
             .collect()
@@ -206,7 +207,9 @@ mod tests {
     #[test]
     fn a_first_order_response_settles_after_three_time_constants() {
         let samples = samples(|t| 1.0 - 0.7 * (1.0 - (-t / 0.4).exp()));
-        let response = response(&samples, 0.0, 1.0, 0.3, 0.05 * 0.7, |sample| sample.front_m);
+        let response = response(&samples, 0.0, 1.0, 0.3, 0.05 * 0.7, |sample| {
+            sample.range_m[2]
+        });
         assert!(
             (response.settling_s - 0.4 * 20f64.ln()).abs() < 0.02,
             "{}",
@@ -224,16 +227,18 @@ mod tests {
     fn what_leaves_the_band_at_the_end_has_not_settled() {
         let samples = samples(|t| if t < 3.9 { 0.3 } else { 0.5 });
         assert!(
-            response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| sample.front_m)
-                .settling_s
-                .is_nan()
+            response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| {
+                sample.range_m[2]
+            })
+            .settling_s
+            .is_nan()
         );
     }
 
     #[test]
     fn overshoot_is_what_goes_beyond_the_reference_in_the_direction_of_the_step() {
         let samples = samples(|t| if t < 1.0 { 0.27 } else { 0.31 });
-        let response = response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| sample.front_m);
+        let response = response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| sample.range_m[2]);
         assert!((response.overshoot - 0.03).abs() < 1e-9);
         assert!((response.steady_error - 0.01).abs() < 1e-9 && response.ripple < 1e-9);
     }

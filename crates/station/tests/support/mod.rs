@@ -160,7 +160,7 @@ impl Toy {
                 ((self.range_m() - self.reference.left) * 120.0).clamp(-10.0, 10.0)
             }
             ModeId::WheelSpeed => self.reference.left,
-            ModeId::Manual => 3.0,
+            _ => 3.0,
         };
         if self.now_us.is_multiple_of(2 * TICK_US) {
             self.before_rad_s = self.wheel_rad_s;
@@ -188,6 +188,7 @@ impl Toy {
                 state: u8::from(self.armed),
                 armed: self.armed,
                 faulted: false,
+                servo_rad: 0.0,
                 ranges: [AgedRange::default(), AgedRange::default(), range],
             };
             self.say(FromRobot::Telemetry(telemetry));

@@ -3,7 +3,9 @@
 
 use proptest::prelude::*;
 use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::rig::Rig;
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Wheels};
+use rumbo_wire::message::Waypoint;
 use rumbo_wire::*;
 
 pub(crate) fn wheels<T: core::fmt::Debug + Clone>(
@@ -38,10 +40,11 @@ prop_compose! {
         duty in wheels((-255i16..=255).prop_map(Duty::new)),
         state in 0u8..16,
         (armed, faulted) in any::<(bool, bool)>(),
+        servo_rad in -1.6f32..1.6,
         ranges in [range(), range(), range()],
     ) -> Telemetry {
         let pose = Pose { x_m, y_m, heading_rad };
-        Telemetry { t_ms, pose, wheel_rad_s: [samples.0, samples.1], wheel_ref_rad_s, duty, state, armed, faulted, ranges }
+        Telemetry { t_ms, pose, wheel_rad_s: [samples.0, samples.1], wheel_ref_rad_s, duty, state, armed, faulted, servo_rad, ranges }
     }
 }
 
@@ -51,9 +54,9 @@ prop_compose! {
         battery_v in prop::option::of(0.0f32..20.0),
         reference in wheels(-200.0f32..200.0),
         (crc_errors, dropped, overruns) in any::<(u8, u8, u8)>(),
-        servo_rad in -1.6f32..1.6,
+        rig in prop::sample::select(Rig::ALL.to_vec()),
     ) -> Status {
-        Status { mode, armed, fault, battery_v, reference, crc_errors, dropped, overruns, servo_rad }
+        Status { mode, armed, fault, battery_v, reference, crc_errors, dropped, overruns, rig }
     }
 }
 
@@ -78,6 +81,7 @@ pub(crate) fn from_robot() -> impl Strategy<Value = FromRobot> {
         fault().prop_map(EventKind::Cleared),
         mode().prop_map(EventKind::ModeChanged),
         Just(EventKind::Reached),
+        Just(EventKind::Unreachable),
     ];
     let event =
         (any::<u16>(), kind).prop_map(|(t_ms, kind)| FromRobot::Event(Event { t_ms, kind }));
@@ -122,6 +126,7 @@ pub(crate) fn command() -> impl Strategy<Value = Command> {
             Command::ClearFault,
             Command::ResetParams,
             Command::ResetPose,
+            Command::Lane,
         ]),
         mode().prop_map(Command::Mode),
         value.clone().prop_map(Command::Reference),
@@ -129,6 +134,18 @@ pub(crate) fn command() -> impl Strategy<Value = Command> {
         (movement, level).prop_map(|(movement, level)| Command::Move { movement, level }),
         (any::<u8>(), value).prop_map(|(id, value)| Command::SetParam { id, value }),
         any::<u8>().prop_map(|id| Command::GetParam { id }),
+        (-20.0f32..20.0, -20.0f32..20.0).prop_map(|(x_m, y_m)| Command::Goal { x_m, y_m }),
+        any::<(bool, bool)>().prop_map(|(repeat, relative)| Command::Route { repeat, relative }),
+        (
+            -20.0f32..20.0,
+            -20.0f32..20.0,
+            prop::option::of(-3.1f32..3.1)
+        )
+            .prop_map(|(x_m, y_m, heading_rad)| Command::Waypoint(Waypoint {
+                x_m,
+                y_m,
+                heading_rad
+            })),
     ]
 }
 

@@ -302,7 +302,7 @@ fn a_wall_that_is_not_there_is_never_driven_at() {
         "{:?}",
         run.failures
     );
-    let Trace { samples } = &run.trace;
+    let Trace { samples, .. } = &run.trace;
     assert!(samples.iter().all(|sample| sample.duty == [0, 0]));
 }
 

@@ -1,0 +1,154 @@
+//! Where the sonars sit: the rigs of the report, a number in the parameter table.
+//!
+//! | number | rig | left | right | front |
+//! |---|---|---|---|---|
+//! | 0 | `front_single` (mode 1) | | | ahead |
+//! | 1 | `front_pair` (mode 2) | ahead, left of the middle | ahead, right of it | |
+//! | 2 | `side_pair_left` (modes 3, 4) | to the left, in front | to the left, behind | |
+//! | 3 | `side_pair_right` | to the right, in front | to the right, behind | |
+//! | 4 | `final` (mode 8) | to the left | to the right | ahead, on the servo |
+
+use crate::math::round;
+use crate::params::{ParamId, Params};
+use crate::types::{Side, SonarId};
+use core::f32::consts::FRAC_PI_2;
+
+/// Which sensors the robot carries, and where.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Rig {
+    /// One sonar looking ahead.
+    FrontSingle = 0,
+    /// Two looking ahead.
+    FrontPair = 1,
+    /// Two looking to the left.
+    SidePairLeft = 2,
+    /// Two looking to the right.
+    SidePairRight = 3,
+    /// One on the servo in front, one on each side.
+    #[default]
+    Final = 4,
+}
+
+impl Rig {
+    /// All rigs, by number.
+    pub const ALL: [Rig; 5] = [
+        Rig::FrontSingle,
+        Rig::FrontPair,
+        Rig::SidePairLeft,
+        Rig::SidePairRight,
+        Rig::Final,
+    ];
+
+    /// The rig with this number.
+    pub fn from_number(number: u8) -> Option<Rig> {
+        Self::ALL.into_iter().find(|rig| *rig as u8 == number)
+    }
+
+    /// The name used in files.
+    #[cfg(feature = "names")]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Rig::FrontSingle => "front_single",
+            Rig::FrontPair => "front_pair",
+            Rig::SidePairLeft => "side_pair_left",
+            Rig::SidePairRight => "side_pair_right",
+            Rig::Final => "final",
+        }
+    }
+
+    /// The side on which a pair of sonars looks, if this rig has one.
+    pub const fn paired_side(self) -> Option<Side> {
+        match self {
+            Rig::SidePairLeft => Some(Side::Left),
+            Rig::SidePairRight => Some(Side::Right),
+            Rig::FrontSingle | Rig::FrontPair | Rig::Final => None,
+        }
+    }
+}
+
+/// From where and in which direction a sonar looks, in the robot's frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct View {
+    /// Ahead of the wheels' axis [m].
+    pub x_m: f32,
+    /// Left of the middle [m].
+    pub y_m: f32,
+    /// The beam's axis, counter-clockwise from ahead [rad].
+    pub axis_rad: f32,
+}
+
+impl Params {
+    /// The rig in force.
+    pub fn rig(&self) -> Rig {
+        let number = round(self.get(ParamId::Rig)).clamp(0, 4) as u8;
+        Rig::from_number(number).unwrap_or_default()
+    }
+
+    /// From where a sonar looks, with the servo at `servo_rad`; `None` where the rig has no such sonar.
+    pub fn view(&self, sonar: SonarId, servo_rad: f32) -> Option<View> {
+        let ahead = self.get(ParamId::SonarFrontX);
+        let beside = self.get(ParamId::SonarSideY);
+        let middle = self.get(ParamId::SonarSideX);
+        let (x_m, y_m, axis_rad) = match (self.rig(), sonar) {
+            (Rig::FrontSingle, SonarId::Front) => (ahead, 0.0, 0.0),
+            (Rig::Final, SonarId::Front) => (ahead, 0.0, servo_rad),
+            (Rig::Final, SonarId::Left) => (middle, beside, FRAC_PI_2),
+            (Rig::Final, SonarId::Right) => (middle, -beside, -FRAC_PI_2),
+            (Rig::FrontPair, SonarId::Left | SonarId::Right) => {
+                let half = 0.5 * self.get(ParamId::FrontGap);
+                (
+                    ahead,
+                    if sonar == SonarId::Left { half } else { -half },
+                    0.0,
+                )
+            }
+            (rig @ (Rig::SidePairLeft | Rig::SidePairRight), SonarId::Left | SonarId::Right) => {
+                let half = 0.5 * self.get(ParamId::SideGap);
+                let sign = if rig == Rig::SidePairLeft { 1.0 } else { -1.0 };
+                let x_m = if sonar == SonarId::Left {
+                    middle + half
+                } else {
+                    middle - half
+                };
+                (x_m, sign * beside, sign * FRAC_PI_2)
+            }
+            (Rig::FrontSingle, _) => return None,
+            (_, SonarId::Front) => return None,
+        };
+        Some(View { x_m, y_m, axis_rad })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_rig_carries_its_own_sonars() {
+        let mut params = Params::default();
+        for rig in Rig::ALL {
+            params.set(ParamId::Rig, f32::from(rig as u8)).unwrap();
+            assert_eq!(params.rig(), rig);
+            assert_eq!(Rig::from_number(rig as u8), Some(rig));
+            let carried = SonarId::ALL.map(|sonar| params.view(sonar, 0.0).is_some());
+            let expected = match rig {
+                Rig::FrontSingle => [false, false, true],
+                Rig::Final => [true; 3],
+                _ => [true, true, false],
+            };
+            assert_eq!(carried, expected, "{rig:?}");
+        }
+        assert_eq!(Rig::from_number(5), None);
+    }
+
+    #[test]
+    fn the_servo_turns_the_front_sonar_of_the_final_rig_only() {
+        let mut params = Params::default();
+        let axis = |params: &Params, sonar| params.view(sonar, 0.4).unwrap().axis_rad;
+        assert_eq!(axis(&params, SonarId::Front), 0.4);
+        assert_eq!(axis(&params, SonarId::Left), FRAC_PI_2);
+        params.set(ParamId::Rig, 0.0).unwrap();
+        assert_eq!(axis(&params, SonarId::Front), 0.0);
+    }
+}

@@ -1,0 +1,282 @@
+//! Where a straight wall is, from any of the robot's sonars and the encoders.
+//!
+//! The wall is the line of points p with p . u(bearing) = distance, in the robot's frame. Two states, distance and
+//! bearing of its normal, in an extended Kalman filter: the encoders move them, each reading corrects them.
+//!
+//! ```text
+//! rolled s, turned t:   distance -= s cos(bearing - t/2)      bearing -= t
+//! a sonar at m, axis a: h = distance - m . u(bearing)         off = |a - bearing|
+//!                       range = h                     within the beam's half angle: the nearest point is in sight
+//!                       range = h / cos(off - beam)   beyond: the edge of the beam meets the wall first
+//! ```
+//!
+//! Two sonars side by side thus give the bearing, as the report's trigonometry does, exact also for equal readings;
+//! one sonar and odometry do so over some way, and a sonar on the servo by looking to both sides. Derivation: docs/theory/wall.md.
+
+use crate::math::{abs, max, sin_cos, wrap_angle};
+use crate::rig::View;
+
+/// Most that a beam's edge may meet the wall off its normal, seen from the beam's edge [rad]; beyond, there is no echo.
+const LARGEST_INCIDENCE_RAD: f32 = 0.7;
+/// Noise of a reading at close range [m].
+const NOISE_M: f32 = 0.003;
+/// Noise of a reading per range.
+const NOISE_SHARE: f32 = 0.01;
+/// Innovations beyond this many standard deviations are refused.
+const GATE_SD: f32 = 4.0;
+/// Refused readings in a row after which the wall is another one.
+const GIVE_IN: u8 = 6;
+/// Standard deviation of the distance gained per way rolled [m/sqrt(m)].
+const WAY_NOISE: f32 = 0.01;
+/// Standard deviation of the bearing gained per way rolled [rad/sqrt(m)].
+const DRIFT_NOISE: f32 = 0.03;
+/// Standard deviation of the bearing gained per angle turned [rad/sqrt(rad)].
+const TURN_NOISE: f32 = 0.03;
+
+/// Where the wall is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// From the middle of the wheels' axis, along the wall's normal [m].
+    pub distance_m: f32,
+    /// Direction to the nearest point of the wall, counter-clockwise from ahead [rad].
+    pub bearing_rad: f32,
+    /// Standard deviation of the distance [m].
+    pub distance_sd_m: f32,
+    /// Standard deviation of the bearing [rad].
+    pub bearing_sd_rad: f32,
+}
+
+/// Memory of the wall filter.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WallFilter {
+    distance_m: f32,
+    bearing_rad: f32,
+    /// Covariance: distance, both, bearing.
+    p: [f32; 3],
+    known: bool,
+    refused: u8,
+}
+
+impl WallFilter {
+    /// The wall, once a reading has been taken.
+    pub fn wall(&self) -> Option<Wall> {
+        let [pdd, _, pbb] = self.p;
+        self.known.then(|| Wall {
+            distance_m: self.distance_m,
+            bearing_rad: self.bearing_rad,
+            distance_sd_m: crate::math::sqrt(max(pdd, 0.0)),
+            bearing_sd_rad: crate::math::sqrt(max(pbb, 0.0)),
+        })
+    }
+
+    /// Starts from a first reading of a wall expected at `bearing_rad`, give or take `bearing_sd_rad`.
+    pub fn start(&mut self, view: &View, range_m: f32, bearing_rad: f32, bearing_sd_rad: f32) {
+        let (sin, cos) = sin_cos(bearing_rad);
+        *self = Self {
+            distance_m: range_m + view.x_m * cos + view.y_m * sin,
+            bearing_rad,
+            p: [
+                square(NOISE_M + NOISE_SHARE * range_m + 0.5 * bearing_sd_rad * range_m),
+                0.0,
+                square(bearing_sd_rad),
+            ],
+            known: true,
+            refused: 0,
+        };
+    }
+
+    /// Moves the wall along with the robot, which rolled `forward_m` and turned `turn_rad` since the last tick.
+    pub fn predict(&mut self, forward_m: f32, turn_rad: f32) {
+        if !self.known {
+            return;
+        }
+        let (sin, cos) = sin_cos(self.bearing_rad - 0.5 * turn_rad);
+        self.distance_m -= forward_m * cos;
+        self.bearing_rad = wrap_angle(self.bearing_rad - turn_rad);
+        // d(distance)/d(bearing)
+        let slope = forward_m * sin;
+        let [pdd, pdb, pbb] = self.p;
+        let (way, turn) = (abs(forward_m), abs(turn_rad));
+        self.p = [
+            pdd + 2.0 * slope * pdb + slope * slope * pbb + square(WAY_NOISE) * way,
+            pdb + slope * pbb,
+            pbb + square(DRIFT_NOISE) * way + square(TURN_NOISE) * turn,
+        ];
+    }
+
+    /// The range that a sonar with this view and a beam of half angle `beam_rad` should read, and its slopes over
+    /// distance and bearing; `None` where the wall gives no echo.
+    fn expect(&self, view: &View, beam_rad: f32) -> Option<(f32, f32, f32)> {
+        let (sin, cos) = sin_cos(self.bearing_rad);
+        let normal_m = self.distance_m - (view.x_m * cos + view.y_m * sin);
+        let slope_m = view.x_m * sin - view.y_m * cos;
+        let off_rad = wrap_angle(view.axis_rad - self.bearing_rad);
+        let beyond_rad = abs(off_rad) - beam_rad;
+        if normal_m <= 0.0 || beyond_rad > LARGEST_INCIDENCE_RAD {
+            return None;
+        }
+        if beyond_rad <= 0.0 {
+            return Some((normal_m, 1.0, slope_m));
+        }
+        let (sin_beyond, cos_beyond) = sin_cos(beyond_rad);
+        let towards = if off_rad > 0.0 { -1.0 } else { 1.0 };
+        Some((
+            normal_m / cos_beyond,
+            1.0 / cos_beyond,
+            slope_m / cos_beyond + towards * normal_m * sin_beyond / (cos_beyond * cos_beyond),
+        ))
+    }
+
+    /// Takes a reading; says whether it was believed.
+    pub fn take(&mut self, view: &View, beam_rad: f32, range_m: f32) -> bool {
+        if !self.known || !range_m.is_finite() {
+            return false;
+        }
+        let Some((expected_m, hd, hb)) = self.expect(view, beam_rad) else {
+            return false;
+        };
+        let [pdd, pdb, pbb] = self.p;
+        let (gd, gb) = (pdd * hd + pdb * hb, pdb * hd + pbb * hb);
+        let variance = hd * gd + hb * gb + square(NOISE_M + NOISE_SHARE * range_m);
+        let innovation_m = range_m - expected_m;
+        if square(innovation_m) > square(GATE_SD) * variance {
+            self.refused = self.refused.saturating_add(1);
+            if self.refused >= GIVE_IN {
+                self.known = false;
+            }
+            return false;
+        }
+        self.refused = 0;
+        let (kd, kb) = (gd / variance, gb / variance);
+        self.distance_m = max(self.distance_m + kd * innovation_m, 0.0);
+        self.bearing_rad = wrap_angle(self.bearing_rad + kb * innovation_m);
+        self.p = [
+            max(pdd - kd * gd, 1e-9),
+            pdb - kd * gb,
+            max(pbb - kb * gb, 1e-9),
+        ];
+        true
+    }
+}
+
+fn square(x: f32) -> f32 {
+    x * x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f32::consts::FRAC_PI_2;
+
+    const BEAM: f32 = 0.31;
+
+    /// The exact range to a wall at `distance_m` and `bearing_rad`.
+    fn range(view: &View, distance_m: f32, bearing_rad: f32) -> f32 {
+        let filter = WallFilter {
+            distance_m,
+            bearing_rad,
+            known: true,
+            ..WallFilter::default()
+        };
+        filter.expect(view, BEAM).unwrap().0
+    }
+
+    fn side(x_m: f32) -> View {
+        View {
+            x_m,
+            y_m: 0.075,
+            axis_rad: FRAC_PI_2,
+        }
+    }
+
+    #[test]
+    fn two_sonars_side_by_side_tell_distance_and_bearing_while_standing() {
+        for askew in [-0.2, 0.0, 0.15] {
+            let (distance_m, bearing_rad) = (0.5, FRAC_PI_2 + askew);
+            let mut filter = WallFilter::default();
+            let first = side(0.1);
+            filter.start(
+                &first,
+                range(&first, distance_m, bearing_rad),
+                FRAC_PI_2,
+                0.4,
+            );
+            for _ in 0..10 {
+                for x_m in [0.1, -0.04] {
+                    let view = side(x_m);
+                    assert!(filter.take(&view, BEAM, range(&view, distance_m, bearing_rad)));
+                }
+            }
+            let wall = filter.wall().unwrap();
+            assert!((wall.distance_m - distance_m).abs() < 2e-3, "{wall:?}");
+            assert!((wall.bearing_rad - bearing_rad).abs() < 0.02, "{wall:?}");
+        }
+    }
+
+    #[test]
+    fn one_sonar_and_the_encoders_tell_them_over_some_way() {
+        let (mut distance_m, bearing_rad) = (0.5, FRAC_PI_2 + 0.1);
+        let (mut filter, view) = (WallFilter::default(), side(0.03));
+        filter.start(&view, range(&view, distance_m, bearing_rad), FRAC_PI_2, 0.3);
+        for tick in 0..200 {
+            distance_m -= 0.002 * sin_cos(bearing_rad).1;
+            filter.predict(0.002, 0.0);
+            if tick % 6 == 0 {
+                assert!(filter.take(&view, BEAM, range(&view, distance_m, bearing_rad)));
+            }
+        }
+        let wall = filter.wall().unwrap();
+        assert!((wall.bearing_rad - bearing_rad).abs() < 0.02, "{wall:?}");
+        assert!((wall.distance_m - distance_m).abs() < 3e-3, "{wall:?}");
+    }
+
+    #[test]
+    fn a_sonar_that_looks_to_both_sides_tells_them_too() {
+        let (distance_m, bearing_rad) = (0.5, 0.2);
+        let mut filter = WallFilter::default();
+        let look = |axis_rad| View {
+            x_m: 0.13,
+            y_m: 0.0,
+            axis_rad,
+        };
+        let ahead = look(0.0);
+        filter.start(&ahead, range(&ahead, distance_m, bearing_rad), 0.0, 0.4);
+        for _ in 0..20 {
+            for axis_rad in [-0.6, 0.0, 0.6] {
+                let view = look(axis_rad);
+                filter.take(&view, BEAM, range(&view, distance_m, bearing_rad));
+            }
+        }
+        let wall = filter.wall().unwrap();
+        assert!((wall.bearing_rad - bearing_rad).abs() < 0.02, "{wall:?}");
+    }
+
+    #[test]
+    fn turning_on_the_spot_moves_the_bearing_and_not_the_distance() {
+        let mut filter = WallFilter::default();
+        let ahead = View::default();
+        filter.start(&ahead, 0.5, 0.0, 0.1);
+        for _ in 0..50 {
+            filter.predict(0.0, 0.01);
+        }
+        let wall = filter.wall().unwrap();
+        assert!((wall.distance_m - 0.5).abs() < 1e-5 && (wall.bearing_rad + 0.5).abs() < 1e-4);
+        assert!(wall.bearing_sd_rad > 0.1);
+    }
+
+    #[test]
+    fn a_spike_is_refused_and_a_lasting_change_makes_the_wall_unknown() {
+        let (mut filter, view) = (WallFilter::default(), side(0.03));
+        filter.start(&view, 0.5, FRAC_PI_2, 0.05);
+        for _ in 0..20 {
+            filter.take(&view, BEAM, 0.5);
+        }
+        let before = filter.wall();
+        assert!(!filter.take(&view, BEAM, 1.3) && filter.wall() == before);
+        assert!(filter.take(&view, BEAM, 0.5));
+        for _ in 0..GIVE_IN {
+            filter.take(&view, BEAM, 1.3);
+        }
+        assert_eq!(filter.wall(), None);
+    }
+}
