@@ -227,7 +227,7 @@ mod tests {
             ("{}", "missing field `type`"),
             (r#"{"type":"fly"}"#, "unknown variant `fly`"),
             (r#"{"type":"stop","now":true}"#, "unknown field `now`"),
-            (r#"{"type":"mode","mode":4}"#, "no mode 4"),
+            (r#"{"type":"mode","mode":9}"#, "no mode 9"),
             (r#"{"type":"mode","mode":-1}"#, "invalid value"),
             (r#"{"type":"reference","value":"NaN"}"#, "invalid type"),
             (r#"{"type":"reference","value":1e300}"#, "too large"),
