@@ -299,11 +299,13 @@ pub enum Fault {
     NotFinite = 8,
     /// A control tick took longer than its period.
     Overrun = 9,
+    /// Something stands in the way of a mode that does not go around it.
+    Blocked = 10,
 }
 
 impl Fault {
     /// All faults, by number.
-    pub const ALL: [Fault; 9] = [
+    pub const ALL: [Fault; 10] = [
         Fault::LinkLost,
         Fault::SonarFaulty,
         Fault::SonarStale,
@@ -313,6 +315,7 @@ impl Fault {
         Fault::BatteryLow,
         Fault::NotFinite,
         Fault::Overrun,
+        Fault::Blocked,
     ];
 
     /// The fault with this number.
@@ -345,6 +348,9 @@ impl Fault {
             Fault::BatteryLow => "battery low: charge it",
             Fault::NotFinite => "a value was not a finite number; reset the parameters",
             Fault::Overrun => "a control tick took too long",
+            Fault::Blocked => {
+                "blocked: something stands in the way; clear the way or turn the robot, then clear the fault and arm again"
+            }
         }
     }
 }
