@@ -199,10 +199,15 @@ impl Reporter {
 
     fn say_number(&mut self, word: [u8; 4], number: u8) {
         let [a, b, c, d] = word;
-        self.outbox.push(
-            Priority::Answer,
-            &[a, b, c, d, b'0' + number % 10, b'\r', b'\n'],
-        );
+        let (tens, ones) = (b'0' + number / 10 % 10, b'0' + number % 10);
+        let line = [a, b, c, d, tens, ones, b'\r', b'\n'];
+        let short = [a, b, c, d, ones, b'\r', b'\n'];
+        let line = if number < 10 {
+            short.as_slice()
+        } else {
+            line.as_slice()
+        };
+        self.outbox.push(Priority::Answer, line);
     }
 }
 
@@ -274,6 +279,25 @@ mod tests {
     extern crate std;
     use super::*;
     use rumbo_wire::{Decoder, PROTOCOL_VERSION, Received, ResetCause};
+
+    #[test]
+    fn a_fault_with_two_digits_is_told_whole_in_text() {
+        let mut reporter = Reporter::new(Hello {
+            protocol: PROTOCOL_VERSION,
+            schema: 0,
+            image: 0,
+            reset: ResetCause::PowerOn,
+        });
+        reporter.addressed_in(Language::Text);
+        for fault in [
+            rumbo_control::Fault::LinkLost,
+            rumbo_control::Fault::Blocked,
+        ] {
+            reporter.event(0, EventKind::Faulted(fault));
+        }
+        let said: std::vec::Vec<u8> = core::iter::from_fn(|| reporter.transmit()).collect();
+        assert_eq!(said, b"FLT 1\r\nFLT 10\r\n");
+    }
 
     #[test]
     fn telemetry_carries_the_speeds_of_two_instants_20_ms_apart() {
