@@ -2,7 +2,7 @@
 //!
 //! Bytes, pins and clocks stay outside: the caller gives the time and what the sensors latched
 //! ([`Inputs`]), and gets back what the wheels, the servo and the sonars are to do ([`Outputs`]). Inside, the flow of
-//! one tick is [`estimate`] (of [`speed`], [`odometry`], [`range`]) -> [`mode`] -> [`drive`].
+//! one tick is [`estimate`] (of [`speed`], [`odometry`], [`range`]) -> [`mode`], of [`motion`]s -> [`drive`].
 //!
 //! The same inputs give the same bits on every machine: only `+ - * /`, a correctly rounded square root and
 //! the polynomials of [`math`] are used. Nothing here panics, allocates, loops without bound or formats text.
@@ -12,6 +12,7 @@ pub mod drive;
 pub mod estimate;
 pub mod math;
 pub mod mode;
+pub mod motion;
 pub mod odometry;
 pub mod params;
 pub mod pid;

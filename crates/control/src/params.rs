@@ -164,6 +164,30 @@ table! {
     TextTimeout = "text_timeout_s", "s", 10.0, 0.1 => 3600.0, None;
     /// Age of a sonar's last good reading beyond which the robot does not drive on it.
     StaleRange = "stale_range_s", "s", 0.5, 0.1 => 2.0, None;
+    /// Time by which the wheels follow a falling speed reference late.
+    SpeedLag = "speed_lag_s", "s", 0.1, 0.0 => 1.0, None;
+    /// Turns on the spot: largest yaw rate.
+    TurnRate = "turn_rate_rad_s", "rad/s", 3.0, 0.2 => 10.0, None;
+    /// Turns on the spot: planned deceleration.
+    TurnBrake = "turn_brake_rad_s2", "rad/s2", 3.5, 0.5 => 60.0, None;
+    /// Turns on the spot: deceleration of the released wheels just before they stand.
+    TurnCoast = "turn_coast_rad_s2", "rad/s2", 6.0, 0.5 => 100.0, None;
+    /// Turns on the spot: error that is good enough.
+    TurnTolerance = "turn_tolerance_rad", "rad", 0.015, 0.002 => 0.5, None;
+    /// Straight lines: largest speed.
+    LineCruise = "line_cruise_m_s", "m/s", 0.45, 0.02 => 0.8, None;
+    /// Straight lines: planned acceleration.
+    LineAccel = "line_accel_m_s2", "m/s2", 0.9, 0.05 => 10.0, None;
+    /// Straight lines: planned deceleration.
+    LineBrake = "line_brake_m_s2", "m/s2", 0.36, 0.05 => 3.0, None;
+    /// Straight lines: deceleration of the released wheels just before they stand.
+    LineCoast = "line_coast_m_s2", "m/s2", 0.5, 0.05 => 5.0, None;
+    /// Straight lines: heading per distance from the line.
+    LineCross = "line_cross_kp", "rad/m", 5.0, 0.0 => 50.0, None;
+    /// Straight lines: yaw rate per heading error.
+    LineHeading = "line_heading_kp", "1/s", 5.0, 0.0 => 20.0, None;
+    /// Straight lines: way left that is good enough.
+    LineTolerance = "line_tolerance_m", "m", 0.004, 0.001 => 0.1, None;
     /// Inner wheel's speed over the outer one's in arcs.
     ArcRatio = "arc_ratio", "1", 0.5, 0.0 => 1.0, MANUAL;
     /// Largest approach speed.

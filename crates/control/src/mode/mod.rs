@@ -358,8 +358,8 @@ impl ActiveMode {
         }
     }
 
-    /// The reference in force: a distance [m] in modes 1, 2 and 4, wheel speeds [rad/s] in modes 5 and 6, the goal
-    /// (x on the left, y on the right) [m] in mode 8, else 0.
+    /// The reference in force: a distance [m] in modes 1, 2 and 4, wheel speeds [rad/s] in modes 5 and 6, the place to go to
+    /// (x on the left, y on the right) [m] in modes 7 and 8, else 0.
     pub fn reference(&self) -> Wheels<f32> {
         match self {
             Self::FrontDistance(distance_m, _)
@@ -371,9 +371,11 @@ impl ActiveMode {
                 left: *x_m,
                 right: *y_m,
             },
-            Self::Manual(_) | Self::WallHold(_) | Self::Waypoints(..) | Self::Mission(..) => {
-                Wheels::both(0.0)
+            Self::Waypoints(_, state) => {
+                let (left, right) = state.target();
+                Wheels { left, right }
             }
+            Self::Manual(_) | Self::WallHold(_) | Self::Mission(..) => Wheels::both(0.0),
         }
     }
 
@@ -513,7 +515,7 @@ impl ActiveMode {
             }
             .step(&mut (), at),
             Self::StraightLine(_, state) => StraightLine.step(state, at),
-            Self::Waypoints(_, state) => Waypoints.step(state, at),
+            Self::Waypoints(route, state) => Waypoints::new(params, route).step(state, at),
             Self::Mission(_, state) => Mission.step(state, at),
         }
     }

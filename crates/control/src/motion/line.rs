@@ -1,0 +1,217 @@
+//! A straight line to a point.
+//!
+//! ```text
+//! cross-track error c [m] -> heading reference = heading of the line - limit(k_c c) -> yaw rate = k_h (reference - heading)
+//! |v| = min(cruise, limit, ramp, sqrt(2 a (way left - v measured * lag))), at least the slowest steady speed
+//! ```
+//!
+//! Left of the line is a positive cross-track error: steer right, towards a smaller heading. Steering comes before speed: a robot that
+//! does not look along the line slows down. As in a turn, the last bit is left to friction, and what falls short is driven once more;
+//! what went too far is not taken back.
+
+use super::RELEASE_DELAY_S;
+use crate::estimate::Estimate;
+use crate::math::{abs, atan2, clamp, max, min, sin_cos, sqrt, wrap_angle};
+use crate::params::{ParamId, Params};
+use crate::types::{Drive, Pose, TICK_S};
+
+/// Slowest speed that the wheels hold steadily [m/s].
+const CREEP_M_S: f32 = 0.03;
+/// Largest angle at which the robot heads for the line [rad]: 30 degrees.
+const MOST_APPROACH_RAD: f32 = 0.52;
+/// Most of the wheels' speed that steering may take: no wheel stops, let alone turns backward.
+const STEERING_SHARE: f32 = 0.6;
+/// Heading error at which the speed is halved [rad].
+const SLOW_RAD: f32 = 0.35;
+/// Times that a rest is driven once more.
+const MOST_TRIES: u8 = 3;
+
+/// A straight piece of way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Segment {
+    /// Its start [m].
+    pub x_m: f32,
+    /// Its start [m].
+    pub y_m: f32,
+    /// Its direction [rad].
+    pub heading_rad: f32,
+    /// Its length [m].
+    pub length_m: f32,
+}
+
+impl Segment {
+    /// From one point to another. Its direction is 0 when they are one.
+    pub fn between(from: (f32, f32), to: (f32, f32)) -> Self {
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        Self {
+            x_m: from.0,
+            y_m: from.1,
+            heading_rad: atan2(dy, dx),
+            length_m: sqrt(dx * dx + dy * dy),
+        }
+    }
+
+    /// From where the robot is, the way it looks.
+    pub fn ahead(pose: &Pose, length_m: f32) -> Self {
+        Self {
+            x_m: pose.x_m,
+            y_m: pose.y_m,
+            heading_rad: pose.heading_rad,
+            length_m,
+        }
+    }
+
+    /// How far along it a point is, and how far to the left of it [m].
+    pub fn place(&self, x_m: f32, y_m: f32) -> (f32, f32) {
+        let (sin, cos) = sin_cos(self.heading_rad);
+        let (dx, dy) = (x_m - self.x_m, y_m - self.y_m);
+        (cos * dx + sin * dy, cos * dy - sin * dx)
+    }
+
+    /// The point this far along it [m].
+    pub fn point(&self, along_m: f32) -> (f32, f32) {
+        let (sin, cos) = sin_cos(self.heading_rad);
+        (self.x_m + along_m * cos, self.y_m + along_m * sin)
+    }
+}
+
+/// Configuration of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Largest speed [m/s].
+    pub cruise_m_s: f32,
+    /// Planned acceleration [m/s^2].
+    pub accel_m_s2: f32,
+    /// Planned deceleration [m/s^2].
+    pub brake_m_s2: f32,
+    /// Time by which the wheels follow late [s].
+    pub lag_s: f32,
+    /// Deceleration of the released wheels at creeping speed [m/s^2].
+    pub coast_m_s2: f32,
+    /// Heading per cross-track error [rad/m].
+    pub cross_kp: f32,
+    /// Yaw rate per heading error [1/s].
+    pub heading_kp: f32,
+    /// Way left that is good enough [m].
+    pub tolerance_m: f32,
+    /// Half the distance between the wheels [m].
+    pub half_base_m: f32,
+}
+
+/// Memory of a line; the default is its start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LineState {
+    coasting: bool,
+    tries: u8,
+    /// The ramped speed [m/s].
+    speed_m_s: f32,
+}
+
+/// What a line asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineStep {
+    /// Of the wheels.
+    pub drive: Drive,
+    /// The heading that it steers to [rad].
+    pub heading_ref_rad: f32,
+    /// Way left [m]; negative beyond the end.
+    pub left_m: f32,
+    /// The robot stands at the end.
+    pub done: bool,
+}
+
+impl Line {
+    /// From the parameters.
+    pub fn new(params: &Params) -> Self {
+        Self {
+            cruise_m_s: params.get(ParamId::LineCruise),
+            accel_m_s2: params.get(ParamId::LineAccel),
+            brake_m_s2: params.get(ParamId::LineBrake),
+            lag_s: params.get(ParamId::SpeedLag),
+            coast_m_s2: params.get(ParamId::LineCoast),
+            cross_kp: params.get(ParamId::LineCross),
+            heading_kp: params.get(ParamId::LineHeading),
+            tolerance_m: params.get(ParamId::LineTolerance),
+            half_base_m: 0.5 * params.get(ParamId::Base),
+        }
+    }
+
+    /// One tick along `segment`, at most at `limit_m_s` ([`f32::MAX`]: as fast as it may; 0: the wheels are released).
+    pub fn step(
+        &self,
+        state: &mut LineState,
+        estimate: &Estimate,
+        segment: &Segment,
+        limit_m_s: f32,
+    ) -> LineStep {
+        let pose = &estimate.pose;
+        let (along_m, cross_m) = segment.place(pose.x_m, pose.y_m);
+        let left_m = segment.length_m - along_m;
+        let approach_rad = clamp(
+            self.cross_kp * cross_m,
+            -MOST_APPROACH_RAD,
+            MOST_APPROACH_RAD,
+        );
+        let heading_ref_rad = wrap_angle(segment.heading_rad - approach_rad);
+        let mut step = LineStep {
+            drive: Drive::Release,
+            heading_ref_rad,
+            left_m,
+            done: false,
+        };
+        if state.coasting && estimate.standing() {
+            if left_m <= self.tolerance_m || state.tries >= MOST_TRIES {
+                step.done = true;
+                return step;
+            }
+            state.coasting = false;
+        }
+        if !state.coasting && self.coasts_there(left_m, estimate.forward_m_s) {
+            state.coasting = true;
+            state.tries = state.tries.saturating_add(1);
+        }
+        if state.coasting || limit_m_s <= 0.0 {
+            state.speed_m_s = max(estimate.forward_m_s, 0.0);
+            return step;
+        }
+        let error_rad = wrap_angle(heading_ref_rad - pose.heading_rad);
+        let forward_m_s = self.speed_m_s(state, estimate, left_m, error_rad, limit_m_s);
+        step.drive = self.steer(forward_m_s, error_rad);
+        step
+    }
+
+    /// Steers to a heading at a speed [m/s], as a line does.
+    pub fn steer(&self, forward_m_s: f32, error_rad: f32) -> Drive {
+        let most = STEERING_SHARE * abs(forward_m_s) / self.half_base_m;
+        Drive::Twist {
+            forward_m_s,
+            yaw_rad_s: clamp(self.heading_kp * error_rad, -most, most),
+        }
+    }
+
+    fn coasts_there(&self, left_m: f32, forward_m_s: f32) -> bool {
+        let forward_m_s = max(forward_m_s, 0.0);
+        let coast_m =
+            forward_m_s * forward_m_s / (2.0 * self.coast_m_s2) + forward_m_s * RELEASE_DELAY_S;
+        left_m <= max(coast_m, 0.5 * self.tolerance_m)
+    }
+
+    fn speed_m_s(
+        &self,
+        state: &mut LineState,
+        estimate: &Estimate,
+        left_m: f32,
+        error_rad: f32,
+        limit_m_s: f32,
+    ) -> f32 {
+        let late_m = self.lag_s * max(estimate.forward_m_s, 0.0);
+        let braking = sqrt(2.0 * self.brake_m_s2 * (left_m - late_m));
+        let slow = 1.0 / (1.0 + abs(error_rad) / SLOW_RAD);
+        let wanted = min(min(self.cruise_m_s * slow, limit_m_s), braking);
+        state.speed_m_s = max(
+            min(wanted, state.speed_m_s + self.accel_m_s2 * TICK_S),
+            min(CREEP_M_S, limit_m_s),
+        );
+        state.speed_m_s
+    }
+}
