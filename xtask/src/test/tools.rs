@@ -48,6 +48,16 @@ pub(crate) fn installed_chromium() -> Option<PathBuf> {
         .find_map(find_program)
 }
 
+/// The emulator that ours is compared with, as a separate program.
+pub(crate) fn simavr(project: &Project) -> Result<PathBuf, Stop> {
+    program(
+        project,
+        "simavr",
+        &["simavr"],
+        "https://github.com/buserror/simavr",
+    )
+}
+
 /// Node and npm, with the packages of `web/package-lock.json` installed.
 pub(crate) fn node(project: &Project) -> Result<PathBuf, Stop> {
     let node = program(project, "node", &["nodejs", "npm"], "Node 20 or newer")?;

@@ -1,0 +1,47 @@
+//! What the CPU asks of everything that is not CPU.
+
+/// When and where an access to a peripheral takes place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Access {
+    /// The cycle in which the bus carries it.
+    pub cycle: u64,
+    /// Address of the instruction [words].
+    pub program_counter: u32,
+}
+
+/// The peripherals as the CPU sees them. Addresses are those of the data space, 0x20 to 0x1FF, and beyond SRAM.
+pub trait Io {
+    /// Reads a register.
+    fn read(&mut self, address: u16, at: Access) -> u8;
+
+    /// Writes a register.
+    fn write(&mut self, address: u16, value: u8, at: Access);
+
+    /// SBI or CBI: sets or clears the bit in `mask` and touches no other.
+    fn write_bit(&mut self, address: u16, mask: u8, set: bool, at: Access);
+
+    /// Lets time pass up to `cycle`.
+    fn advance(&mut self, cycle: u64);
+
+    /// The cycle at which [`Io::advance`] must be called at the latest; 0 if an interrupt is pending and
+    /// `interrupts_enabled`.
+    fn deadline(&self, interrupts_enabled: bool) -> u64;
+
+    /// The pending and enabled interrupt of the highest priority.
+    fn pending(&self) -> Option<u8>;
+
+    /// The CPU enters this interrupt's routine.
+    fn acknowledge(&mut self, vector: u8, cycle: u64);
+
+    /// Where the interrupt vectors start [words]: 0, or the boot section.
+    fn vector_base(&self) -> u32;
+
+    /// SLEEP; says whether sleeping is enabled.
+    fn sleep(&mut self, cycle: u64) -> bool;
+
+    /// WDR.
+    fn reset_watchdog(&mut self, cycle: u64);
+
+    /// SPM at a byte address with r1:r0; gives the words of flash that change now.
+    fn store_program(&mut self, address: u32, value: u16, at: Access) -> Vec<(u32, u16)>;
+}
