@@ -76,6 +76,7 @@ pub(crate) struct LabArgs {
 Examples:
   rumbo run mode1
   rumbo run mode5 --runs 20 --json
+  rumbo run mode5 --runs 20 --program original
   rumbo run mode1 --seed 7 --param battery.open_circuit_v=6.9 --out out/mode1")]
 pub(crate) struct RunArgs {
     /// Scenarios: names, or paths of files
@@ -96,6 +97,10 @@ pub(crate) struct RunArgs {
     /// Rig instead of the scenario's own
     #[arg(long, value_name = "NAME")]
     pub(crate) rig: Option<String>,
+    /// Program at the robot's pins: ours, or the report's with its schemes and gains (of parameters, only the plant's
+    /// count for that one)
+    #[arg(long, value_enum, value_name = "NAME", default_value_t)]
+    pub(crate) program: ProgramName,
     /// Parameter of the control core or the plant (`rumbo list`); may be repeated
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
     pub(crate) params: Vec<(String, f64)>,
@@ -108,6 +113,16 @@ pub(crate) struct RunArgs {
     /// Threads [default: one per core]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
+}
+
+/// The programs that can drive the simulated robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ProgramName {
+    /// Ours
+    #[default]
+    Rumbo,
+    /// The report's, as a baseline
+    Original,
 }
 
 /// Options of `rumbo identify`.

@@ -1,10 +1,10 @@
 //! `rumbo run`: scenarios without a window, as fast as the machine can, judged against their limits.
 
-use crate::args::RunArgs;
+use crate::args::{ProgramName, RunArgs};
 use crate::failure::Failure;
 use crate::output::{self, figure};
 use indicatif::{ProgressBar, ProgressStyle};
-use rumbo_scenario::files::{Library, Overrides, ScenarioFile, Setup};
+use rumbo_scenario::files::{Library, Overrides, Program, ScenarioFile, Setup};
 use rumbo_scenario::run::{self, RunResult};
 use rumbo_scenario::trace::Trace;
 use std::collections::BTreeMap;
@@ -17,6 +17,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         rig: args.rig.clone(),
         world: args.world.clone(),
         parameters: args.params.clone(),
+        program: match args.program {
+            ProgramName::Rumbo => Program::Rumbo,
+            ProgramName::Original => Program::Original,
+        },
     };
     let library = Library::new();
     let setup = |name: &String| library.setup(name, &overrides).map_err(Failure::input);

@@ -5,6 +5,7 @@ pub mod files;
 pub mod identify;
 pub mod metrics;
 mod operator;
+mod original;
 pub mod run;
 pub mod sim;
 pub mod sonar_stats;

@@ -1,7 +1,7 @@
 //! Sends a scenario's commands at their times, as a person at the dashboard would: over the link, one at a time,
 //! repeated until they are acknowledged, with a heartbeat in between.
 
-use crate::files::TimedCommand;
+use crate::files::{Program, Setup, TimedCommand};
 use crate::sim::Sim;
 use crate::trace::Heard;
 use rumbo_control::mode::ModeId;
@@ -17,6 +17,8 @@ const LINE: usize = 160;
 /// The sending side of a run.
 pub(crate) struct Operator<'a> {
     commands: &'a [TimedCommand],
+    /// Commands go to the report's program, not over the link.
+    direct: bool,
     mode: Option<ModeId>,
     next: usize,
     number: u16,
@@ -33,10 +35,11 @@ pub(crate) struct Operator<'a> {
 }
 
 impl<'a> Operator<'a> {
-    pub(crate) fn new(mode: ModeId, commands: &'a [TimedCommand]) -> Self {
+    pub(crate) fn new(setup: &'a Setup) -> Self {
         Self {
-            commands,
-            mode: Some(mode),
+            commands: &setup.scenario.commands,
+            direct: setup.program == Program::Original,
+            mode: Some(setup.scenario.mode),
             next: 0,
             number: 0,
             seq: 0,
@@ -52,6 +55,9 @@ impl<'a> Operator<'a> {
     /// Listens, then says what is due.
     pub(crate) fn step(&mut self, sim: &mut Sim) {
         let now_us = sim.now_us();
+        if self.direct {
+            return self.order(sim);
+        }
         self.listen(sim);
         if now_us >= self.heartbeat_due_us {
             self.say(sim, &ToRobot::Heartbeat);
@@ -63,19 +69,35 @@ impl<'a> Operator<'a> {
             }
             return;
         }
-        let due = |timed: &&TimedCommand| timed.at_s * 1e6 <= now_us as f64;
         let command = match self.mode.take() {
             Some(mode) => Command::Mode(mode),
-            None => match self.commands.get(self.next).filter(due) {
-                Some(timed) => {
-                    self.next += 1;
-                    timed.command
-                }
+            None => match self.due(now_us) {
+                Some(command) => command,
                 None => return,
             },
         };
         self.number = self.number.wrapping_add(1);
         self.send(sim, command);
+    }
+
+    /// The next command of the scenario, if it is time for it.
+    fn due(&mut self, now_us: u64) -> Option<Command> {
+        let timed = self.commands.get(self.next)?;
+        if timed.at_s * 1e6 > now_us as f64 {
+            return None;
+        }
+        self.next += 1;
+        Some(timed.command)
+    }
+
+    /// The same with the report's program, which has no link of ours.
+    fn order(&mut self, sim: &mut Sim) {
+        let t_s = sim.now_us() as f64 * 1e-6;
+        let told = sim.told().into_iter().map(|what| Heard { t_s, what });
+        self.heard.extend(told);
+        while let Some(command) = self.due(sim.now_us()) {
+            sim.order(command);
+        }
     }
 
     fn send(&mut self, sim: &mut Sim, command: Command) {

@@ -36,7 +36,7 @@ pub struct RunResult {
 pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
     let scenario = &setup.scenario;
     let mut sim = Sim::new(setup, seed)?;
-    let mut operator = Operator::new(scenario.mode, &scenario.commands);
+    let mut operator = Operator::new(setup);
     let mut trace = Trace::default();
     let end_us = (scenario.duration_s * 1e6) as u64;
     trace.samples.reserve((end_us / SAMPLE_US) as usize + 1);

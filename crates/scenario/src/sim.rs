@@ -3,9 +3,13 @@
 //! Ticks fall on multiples of 10 ms and latch what the plant's edges left in the board; the outputs reach the plant
 //! exactly 3 ms later, as on the chip. Bytes go through [`Link`]s at 9600 baud: whoever uses a [`Sim`] meets the robot
 //! as it would behind a real port.
+//!
+//! Instead of our robot the report's program can be at the pins ([`Program::Original`]): it keeps its own time, and
+//! [`Sim::order`] hands it commands without a link.
 
 use crate::board::{Board, micros};
-use crate::files::{FileError, Setup, Spread};
+use crate::files::{FileError, Program, Setup, Spread};
+use crate::original::Original;
 use rumbo_control::params::ParamId;
 use rumbo_control::{Duty, Inputs, OUTPUT_DELAY_US, Outputs, SIDES, SonarId, TICK_US, Wheels};
 use rumbo_plant::contact::Pose;
@@ -15,7 +19,7 @@ use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Plant, State, Truth};
 use rumbo_robot::{Config, Robot};
-use rumbo_wire::ResetCause;
+use rumbo_wire::{Command, FromRobot, ResetCause};
 
 /// A simulated robot in its world.
 #[derive(Clone, Debug)]
@@ -24,6 +28,8 @@ pub struct Sim {
     params: Params,
     state: State,
     robot: Robot,
+    /// The report's program, if it is at the pins in the robot's place.
+    original: Option<Original>,
     board: Board,
     uplink: Link,
     downlink: Link,
@@ -73,6 +79,10 @@ impl Sim {
         for (id, value) in setup.robot.parameters.iter().chain(&scenario.parameters) {
             set_param(&mut robot, *id, *value)?;
         }
+        let original = match setup.program {
+            Program::Rumbo => None,
+            Program::Original => Some(Original::new(setup)?),
+        };
         let link = LinkParams::default();
         let noise = Noise::new(seed, 0);
         Ok(Self {
@@ -80,6 +90,7 @@ impl Sim {
             params,
             state,
             robot,
+            original,
             board: Board::default(),
             baud: link.baud,
             uplink: Link::new(link.clone(), noise, Direction::ToRobot),
@@ -144,6 +155,24 @@ impl Sim {
         self.cut[sonar as usize] = true;
     }
 
+    /// Hands a command to the report's program, as a line of text would. False if our robot is at the pins: it listens to
+    /// the link.
+    pub fn order(&mut self, command: Command) -> bool {
+        let Some(original) = &mut self.original else {
+            return false;
+        };
+        original.command(command);
+        true
+    }
+
+    /// What the report's program has told since it was last asked; nothing if our robot is at the pins.
+    pub fn told(&mut self) -> Vec<FromRobot> {
+        self.original
+            .as_mut()
+            .map(Original::told)
+            .unwrap_or_default()
+    }
+
     /// Lets robot and plant live until this time [us].
     pub fn advance(&mut self, until_us: u64) {
         loop {
@@ -151,9 +180,12 @@ impl Sim {
             if let Some((at_us, _)) = self.pending {
                 next_us = next_us.min(at_us);
             }
-            let board = &mut self.board;
+            let (board, original) = (&mut self.board, &mut self.original);
             self.plant
-                .advance(&mut self.state, next_us, &mut |event| board.take(event));
+                .advance(&mut self.state, next_us, &mut |event| match original {
+                    Some(original) => original.take(event),
+                    None => board.take(event),
+                });
             self.watch_reverse();
             if let Some((at_us, outputs)) = self.pending
                 && at_us == next_us
@@ -171,6 +203,9 @@ impl Sim {
     }
 
     fn tick(&mut self) {
+        if self.original.is_some() {
+            return self.tick_original();
+        }
         let now_us = self.now_us();
         while let Some((_, byte)) = self.uplink.pop(now_us) {
             self.robot.receive(byte);
@@ -192,27 +227,55 @@ impl Sim {
         }
     }
 
+    /// What the report's program does takes effect at once.
+    fn tick_original(&mut self) {
+        let now_us = self.now_us();
+        let Some(original) = &mut self.original else {
+            return;
+        };
+        let pins = original.tick(now_us);
+        self.next_tick_us = original.next_us();
+        if let Some(drive) = pins.drive {
+            self.set_bridges(drive);
+        }
+        if let Some(servo_rad) = pins.servo_rad {
+            self.plant.set_servo(&mut self.state, servo_rad);
+        }
+        for sonar in SonarId::ALL {
+            if pins.pings[sonar as usize] {
+                self.trigger(sonar);
+            }
+        }
+    }
+
     fn apply(&mut self, outputs: &Outputs) {
+        self.set_bridges(outputs.drive);
+        self.plant
+            .set_servo(&mut self.state, f64::from(outputs.servo.0));
+        if let Some(sonar) = outputs.ping {
+            self.trigger(sonar);
+            self.board.pinged(sonar, self.state.now_us());
+        }
+    }
+
+    fn trigger(&mut self, sonar: SonarId) {
+        if !self.cut[sonar as usize] {
+            self.plant.trigger(&mut self.state, plant_sonar(sonar));
+        }
+    }
+
+    fn set_bridges(&mut self, drive: Wheels<Duty>) {
         let now_us = self.now_us();
         self.outputs_us = match self.outputs_us {
             (0, ..) => (now_us, now_us, 0),
             (first_us, _, count) => (first_us, now_us, count + 1),
         };
-        self.duty = outputs.drive;
+        self.duty = drive;
         for side in SIDES {
-            let bridge = bridge(outputs.drive[side]);
             self.plant
-                .set_bridge(&mut self.state, plant_side(side), bridge);
+                .set_bridge(&mut self.state, plant_side(side), bridge(drive[side]));
         }
         self.watch_reverse();
-        self.plant
-            .set_servo(&mut self.state, f64::from(outputs.servo.0));
-        if let Some(sonar) = outputs.ping {
-            if !self.cut[sonar as usize] {
-                self.plant.trigger(&mut self.state, plant_sonar(sonar));
-            }
-            self.board.pinged(sonar, self.state.now_us());
-        }
     }
 
     fn watch_reverse(&mut self) {

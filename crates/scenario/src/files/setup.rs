@@ -9,6 +9,16 @@ use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
 
+/// The program that drives the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Program {
+    /// Ours, behind its link.
+    #[default]
+    Rumbo,
+    /// The report's, written anew as a baseline (docs/theory/original.md).
+    Original,
+}
+
 /// What the command line sets in place of the scenario's own.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
@@ -20,6 +30,8 @@ pub struct Overrides {
     pub world: Option<String>,
     /// Parameters by name: those of the control core, and the dotted keys of the plant such as `battery.open_circuit_v`.
     pub parameters: Vec<(String, f64)>,
+    /// The program that drives the robot.
+    pub program: Program,
 }
 
 /// A scenario ready to be run.
@@ -33,6 +45,8 @@ pub struct Setup {
     pub rig: Rig,
     /// Its world.
     pub world: WorldFile,
+    /// The program that drives the robot.
+    pub program: Program,
 }
 
 impl Library {
@@ -75,6 +89,7 @@ impl Library {
             robot,
             rig,
             world,
+            program: overrides.program,
         })
     }
 }
