@@ -10,8 +10,12 @@
 //! direction goes through zero: the bridge is released until the edges have stopped, and only then does the sign of the
 //! driven direction change; one Hall channel does not tell it otherwise. A wheel that stands although it is asked to
 //! turn gets a kick that grows until edges come.
+//!
+//! Both wheels of a movement start together. While one still rolls against its new direction, the other one waits released
+//! if it stands, and gains no speed if it rolls the right way. From rest no wheel waits for the other to break away: the ramp takes both through
+//! it within 30 ms, and holding the first one back made their start more uneven, not less.
 
-use crate::math::{abs, clamp, max, round};
+use crate::math::{abs, clamp, max, min, round};
 use crate::params::{ParamId, Params};
 use crate::pid::{NotFinite, Pid, PidState};
 use crate::speed::WheelMotion;
@@ -53,8 +57,13 @@ pub struct SpeedLoop {
 }
 
 impl SpeedLoop {
-    /// The ramp one tick on: towards the target, and never far ahead of the wheel.
-    fn ramp(&self, before_rad_s: f32, target_rad_s: f32, measured_rad_s: f32) -> f32 {
+    /// The ramp one tick on: towards the target, and never far ahead of the wheel. `hold` lets it gain no speed.
+    fn ramp(&self, before_rad_s: f32, target_rad_s: f32, measured_rad_s: f32, hold: bool) -> f32 {
+        let target_rad_s = if hold {
+            min(target_rad_s, before_rad_s)
+        } else {
+            target_rad_s
+        };
         let up = self.accel_rad_s2 * TICK_S;
         let down = self.decel_rad_s2 * TICK_S;
         let next = before_rad_s + clamp(target_rad_s - before_rad_s, -down, up);
@@ -161,6 +170,10 @@ impl DriveLayer {
             return Ok(driven);
         };
         driven.wheel_ref_rad_s = references;
+        let stopping = Wheels {
+            left: self.wheels.left.must_stop(references.left, &motion.left),
+            right: self.wheels.right.must_stop(references.right, &motion.right),
+        };
         for side in SIDES {
             let wheel_loop = params.speed_loop(side);
             driven.duty[side] = self.wheels[side].speed(
@@ -168,6 +181,7 @@ impl DriveLayer {
                 references[side],
                 &motion[side],
                 compensation,
+                stopping[side.other()],
             )?;
         }
         Ok(driven)
@@ -187,6 +201,13 @@ impl WheelState {
         self.pid.reset();
         self.ramp_rad_s = None;
         self.held_s = 0.0;
+    }
+
+    /// Whether the wheel is asked to turn and still rolls against that.
+    fn must_stop(&self, reference_rad_s: f32, motion: &WheelMotion) -> bool {
+        abs(reference_rad_s) >= STANDSTILL_RAD_S
+            && Direction::of(reference_rad_s) != self.direction
+            && !motion.standing
     }
 
     /// Takes over the direction of `request` if the wheel stands; says whether it may be driven that way.
@@ -221,12 +242,14 @@ impl WheelState {
         reference_rad_s: f32,
         motion: &WheelMotion,
         compensation: f32,
+        partner_stops: bool,
     ) -> Result<Duty, NotFinite> {
         if !reference_rad_s.is_finite() {
             return Err(NotFinite);
         }
         let standstill = abs(reference_rad_s) < STANDSTILL_RAD_S;
-        if standstill || !self.may_drive(reference_rad_s, motion) {
+        let waits = partner_stops && motion.standing;
+        if standstill || !self.may_drive(reference_rad_s, motion) || waits {
             self.release();
             return Ok(Duty::RELEASED);
         }
@@ -234,7 +257,7 @@ impl WheelState {
         let measured_rad_s = motion.speed_rad_s;
         // A wheel that still rolls is taken over at the speed it has.
         let before_rad_s = self.ramp_rad_s.unwrap_or(measured_rad_s);
-        let ramp_rad_s = wheel_loop.ramp(before_rad_s, target_rad_s, measured_rad_s);
+        let ramp_rad_s = wheel_loop.ramp(before_rad_s, target_rad_s, measured_rad_s, partner_stops);
         let slope_rad_s2 = (ramp_rad_s - before_rad_s) / TICK_S;
         self.ramp_rad_s = Some(ramp_rad_s);
 
@@ -329,6 +352,61 @@ mod tests {
         assert_eq!(layer.directions(), Wheels::both(Direction::Forward));
         assert!(step(&mut layer, speed(-6.0), STANDING).left.counts() < 0);
         assert_eq!(layer.directions(), Wheels::both(Direction::Backward));
+    }
+
+    fn wheels(left: WheelMotion, right: WheelMotion) -> Wheels<WheelMotion> {
+        Wheels { left, right }
+    }
+
+    fn both(
+        layer: &mut DriveLayer,
+        left: f32,
+        right: f32,
+        motion: Wheels<WheelMotion>,
+    ) -> [i16; 2] {
+        let drive = Drive::WheelSpeed(Wheels { left, right });
+        let duty = layer
+            .step(&Params::default(), &drive, &motion, None)
+            .unwrap()
+            .duty;
+        [duty.left.counts(), duty.right.counts()]
+    }
+
+    #[test]
+    fn after_a_reversal_the_wheel_that_stands_first_waits_for_the_other() {
+        let mut layer = DriveLayer::default();
+        both(&mut layer, 6.0, 6.0, Wheels::both(TURNING));
+        for _ in 0..20 {
+            let duty = both(&mut layer, -6.0, -6.0, wheels(STANDING, TURNING));
+            assert_eq!(duty, [0, 0]);
+        }
+        let [left, right] = both(&mut layer, -6.0, -6.0, wheels(STANDING, STANDING));
+        assert!(left < 0 && left == right, "{left} {right}");
+    }
+
+    #[test]
+    fn a_wheel_that_rolls_the_right_way_gains_no_speed_while_the_other_must_stop() {
+        let mut layer = DriveLayer::default();
+        for _ in 0..50 {
+            both(&mut layer, 6.0, 6.0, Wheels::both(TURNING));
+        }
+        for _ in 0..20 {
+            let [left, right] = both(&mut layer, -9.0, 9.0, Wheels::both(TURNING));
+            assert!(left == 0 && right > 0);
+        }
+        assert!(layer.wheels.right.ramp_rad_s.unwrap() <= 6.0);
+        for _ in 0..20 {
+            both(&mut layer, -9.0, 9.0, wheels(STANDING, TURNING));
+        }
+        assert!(layer.wheels.right.ramp_rad_s.unwrap() > 8.0);
+    }
+
+    #[test]
+    fn a_wheel_that_nothing_is_asked_of_holds_nobody_back() {
+        let mut layer = DriveLayer::default();
+        both(&mut layer, 6.0, 6.0, Wheels::both(TURNING));
+        let [left, right] = both(&mut layer, -6.0, 0.0, wheels(STANDING, TURNING));
+        assert!(left < 0 && right == 0);
     }
 
     #[test]

@@ -22,6 +22,16 @@ pub enum Side {
     Right,
 }
 
+impl Side {
+    /// The side opposite.
+    pub const fn other(self) -> Side {
+        match self {
+            Side::Left => Side::Right,
+            Side::Right => Side::Left,
+        }
+    }
+}
+
 /// Both sides, in the order in which they are always processed.
 pub const SIDES: [Side; 2] = [Side::Left, Side::Right];
 

@@ -2,6 +2,8 @@
 
 #![cfg(test)]
 
+mod drive;
+
 use rumbo_scenario::files::FileError;
 use rumbo_scenario::files::{Library, Overrides, Setup};
 use rumbo_scenario::run::{RunResult, run, run_all};
