@@ -8,5 +8,6 @@ mod operator;
 mod original;
 pub mod run;
 pub mod sim;
+pub mod sonar_fault;
 pub mod sonar_stats;
 pub mod trace;

@@ -10,6 +10,7 @@
 use crate::board::{Board, micros};
 use crate::files::{FileError, Program, Setup, Spread};
 use crate::original::Original;
+use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
 use rumbo_control::params::ParamId;
 use rumbo_control::{Duty, Inputs, OUTPUT_DELAY_US, Outputs, SIDES, SonarId, TICK_US, Wheels};
 use rumbo_plant::contact::Pose;
@@ -38,8 +39,8 @@ pub struct Sim {
     pending: Option<(u64, Outputs)>,
     duty: Wheels<Duty>,
     worst_reverse_rad_s: f64,
-    /// Sonars whose trigger wire is cut, by `SonarId` number.
-    cut: [bool; 3],
+    sonar_faults: SonarFaults,
+    noise: Noise,
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
 }
@@ -85,6 +86,10 @@ impl Sim {
         };
         let link = LinkParams::default();
         let noise = Noise::new(seed, 0);
+        let mut sonar_faults = SonarFaults::default();
+        for fault in &scenario.sonar_faults {
+            sonar_faults.add(*fault);
+        }
         Ok(Self {
             plant,
             params,
@@ -99,7 +104,8 @@ impl Sim {
             pending: None,
             duty: Wheels::default(),
             worst_reverse_rad_s: 0.0,
-            cut: [false; 3],
+            sonar_faults,
+            noise,
             outputs_us: (0, 0, 0),
         })
     }
@@ -150,9 +156,18 @@ impl Sim {
         self.downlink.receive(self.now_us(), into);
     }
 
+    /// Makes a sonar fail at a time. The report's program, which times its own edges, notices a cut one only.
+    pub fn fail_sonar(&mut self, fault: TimedSonarFault) {
+        self.sonar_faults.add(fault);
+    }
+
     /// Cuts a sonar's wires: from now on it answers no ping.
     pub fn cut_sonar(&mut self, sonar: SonarId) {
-        self.cut[sonar as usize] = true;
+        self.fail_sonar(TimedSonarFault {
+            at_s: self.now_us() as f64 * 1e-6,
+            sonar,
+            fault: SonarFault::Cut,
+        });
     }
 
     /// Hands a command to the report's program, as a line of text would. False if our robot is at the pins: it listens to
@@ -210,10 +225,14 @@ impl Sim {
         while let Some((_, byte)) = self.uplink.pop(now_us) {
             self.robot.receive(byte);
         }
+        let echo = self
+            .board
+            .echo(now_us)
+            .map(|answer| self.sonar_faults.answer(&self.noise, answer, now_us));
         let outputs = self.robot.tick(&Inputs {
             now: micros(now_us),
             encoders: self.board.encoders(),
-            echo: self.board.echo(now_us),
+            echo,
             battery_v: None,
         });
         self.pending = Some((now_us + u64::from(OUTPUT_DELAY_US), outputs));
@@ -259,7 +278,7 @@ impl Sim {
     }
 
     fn trigger(&mut self, sonar: SonarId) {
-        if !self.cut[sonar as usize] {
+        if !self.sonar_faults.is_cut(sonar, self.now_us()) {
             self.plant.trigger(&mut self.state, plant_sonar(sonar));
         }
     }

@@ -55,6 +55,21 @@ fn a_ramp_is_one_command_per_count_of_pwm() {
 }
 
 #[test]
+fn a_scenario_may_let_sonars_fail() {
+    use rumbo_scenario::sonar_fault::{SonarFault, TimedSonarFault};
+    let text = format!(
+        "{SCENARIO}[[sonar_fault]]\nat_s = 2\nsonar = \"left\"\nkind = \"spiking\"\nshare = 0.5\n"
+    );
+    let scenario = ScenarioFile::parse("x", "x.toml", &text).unwrap();
+    let expected = TimedSonarFault {
+        at_s: 2.0,
+        sonar: rumbo_control::SonarId::Left,
+        fault: SonarFault::Spiking(0.5),
+    };
+    assert_eq!(scenario.sonar_faults, [expected]);
+}
+
+#[test]
 fn a_file_on_disk_works_as_well_as_a_name() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/mode1.toml");
     let library = Library::new();
@@ -80,7 +95,11 @@ fn scenario_error(text: &str) -> String {
 }
 
 /// What is added to a valid scenario, and the complaint it must give.
-const WRONG_SCENARIOS: [(&str, &str); 17] = [
+const WRONG_SCENARIOS: [(&str, &str); 18] = [
+    (
+        "[[sonar_fault]]\nat_s = 1\nsonar = \"front\"\nkind = \"broken\"",
+        "scenarios/x.toml:10: sonar_fault[1].kind = broken: write \"cut\", \"stuck\", or \"spiking\" with share = 0.3",
+    ),
     (
         "[start]\nx_m = -400",
         "scenarios/x.toml:8: start.x_m = -400: must be within -50..50 m",

@@ -12,6 +12,10 @@
 //! [[command]]            # one action each; see `commands.rs` for all of them
 //! at_s = 0.5
 //! reference_m = 0.3
+//! [[sonar_fault]]        # none in most scenarios
+//! at_s = 2.0
+//! sonar = "front"        # or "left", "right"
+//! kind = "stuck"         # or "cut", or "spiking" with share = 0.3
 //! [limits]
 //! "step1.settling_s" = { max = 2.4 }
 //! ```
@@ -23,6 +27,8 @@ use super::parameters::read_parameters;
 use super::read::{Allowed, Source, Table};
 use super::robot::read_plant;
 use super::world::{ANGLE, PLACE};
+use crate::sonar_fault::{SonarFault, TimedSonarFault};
+use rumbo_control::SonarId;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_wire::message::Command;
@@ -53,6 +59,8 @@ pub struct ScenarioFile {
     pub wheels_in_air: bool,
     /// What the station sends, in order of time, ramps already resolved into single commands.
     pub commands: Vec<TimedCommand>,
+    /// Sonars that fail on the way.
+    pub sonar_faults: Vec<TimedSonarFault>,
     /// What each metric must keep to for the run to pass.
     pub limits: BTreeMap<String, Bounds>,
     /// Control parameters sent before the first command, from `[parameters]`; they win over the robot file's, and later
@@ -160,6 +168,7 @@ impl ScenarioFile {
             start: read_start(&root.table("start")),
             wheels_in_air: root.flag("wheels_in_air").is_some_and(|flag| flag.value),
             commands: read_commands(root.tables("command"), mode, duration_s),
+            sonar_faults: read_sonar_faults(root.tables("sonar_fault"), duration_s),
             limits: read_limits(&root.table("limits"), ""),
             parameters: read_parameters(&root.table("parameters")),
             spread: read_spread(&root.table("spread")),
@@ -199,6 +208,43 @@ fn read_start(table: &Table<'_, '_>) -> Start {
     };
     table.finish();
     start
+}
+
+fn read_sonar_faults(tables: Vec<Table<'_, '_>>, duration_s: f64) -> Vec<TimedSonarFault> {
+    let mut faults = Vec::new();
+    for table in tables {
+        let at_s = table.required_number("at_s", Allowed::new(0.0, duration_s, "s"));
+        let share = table.number("share", Allowed::new(0.0, 1.0, ""));
+        let sonar = table.required_text("sonar", "\"left\", \"right\" or \"front\"");
+        let sonar_id = match sonar.value.as_str() {
+            "left" => Some(SonarId::Left),
+            "right" => Some(SonarId::Right),
+            "front" => Some(SonarId::Front),
+            "" => None,
+            other => {
+                let remedy = "write \"left\", \"right\" or \"front\"";
+                table.complain("sonar", sonar.line, other, remedy);
+                None
+            }
+        };
+        let kind = table.required_text("kind", "\"cut\", \"stuck\" or \"spiking\"");
+        let fault = match (kind.value.as_str(), share) {
+            ("cut", None) => Some(SonarFault::Cut),
+            ("stuck", None) => Some(SonarFault::Stuck),
+            ("", _) => None,
+            ("spiking", share) => Some(SonarFault::Spiking(share.unwrap_or(0.3))),
+            (other, _) => {
+                let remedy = "write \"cut\", \"stuck\", or \"spiking\" with share = 0.3";
+                table.complain("kind", kind.line, other, remedy);
+                None
+            }
+        };
+        table.finish();
+        if let (Some(sonar), Some(fault)) = (sonar_id, fault) {
+            faults.push(TimedSonarFault { at_s, sonar, fault });
+        }
+    }
+    faults
 }
 
 fn read_spread(table: &Table<'_, '_>) -> Spread {
