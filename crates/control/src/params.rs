@@ -97,6 +97,7 @@ const fn fnv(mut hash: u32, bytes: &[u8]) -> u32 {
 }
 
 const FRONT: Option<ModeId> = Some(ModeId::FrontDistance);
+const WALL: Option<ModeId> = Some(ModeId::WallFollow);
 const MANUAL: Option<ModeId> = Some(ModeId::Manual);
 
 table! {
@@ -200,6 +201,22 @@ table! {
     FrontTolerance = "front_tolerance_m", "m", 0.0015, 0.0005 => 0.05, FRONT;
     /// Yaw rate per heading error, to drive straight.
     FrontHeading = "front_heading_kp", "1/s", 4.0, 0.0 => 20.0, FRONT;
+    /// Speed along the wall.
+    WallCruise = "wall_cruise_m_s", "m/s", 0.16, 0.05 => 0.4, WALL;
+    /// Angle to the wall per distance error.
+    WallKp = "wall_kp", "rad/m", 8.0, 0.0 => 30.0, WALL;
+    /// Angle to the wall per distance error and time.
+    WallKi = "wall_ki", "rad/(m s)", 1.0, 0.0 => 20.0, WALL;
+    /// Largest angle to the wall on the way to another distance.
+    WallHeadingLimit = "wall_heading_limit_rad", "rad", 0.42, 0.1 => 0.55, WALL;
+    /// Yaw rate per angle error.
+    WallHeadingKp = "wall_heading_kp", "1/s", 5.0, 0.0 => 20.0, WALL;
+    /// Yaw rate taken back per yaw rate that the encoders tell.
+    WallDamping = "wall_damping", "1", 0.3, 0.0 => 2.0, WALL;
+    /// Largest yaw rate.
+    WallYawLimit = "wall_yaw_limit_rad_s", "rad/s", 1.5, 0.1 => 5.0, WALL;
+    /// Range of the front sonar at which the robot stops before what stands ahead, where the rig looks ahead.
+    WallStop = "wall_stop_m", "m", 0.15, 0.05 => 1.0, WALL;
 }
 
 impl ParamId {

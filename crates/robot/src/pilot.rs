@@ -187,7 +187,7 @@ impl Pilot {
 
     /// Whether the mode's sensors are good enough to arm.
     pub(crate) fn ready(&self) -> Result<(), Refusal> {
-        if self.mode.is_ready(&self.estimate) {
+        if self.mode.is_ready(&self.params, &self.estimate) {
             Ok(())
         } else {
             Err(Refusal::SonarNotReady)

@@ -14,7 +14,7 @@ pub mod waypoints;
 pub mod wheel_speed;
 
 use crate::estimate::Estimate;
-use crate::params::Params;
+use crate::params::{ParamId, Params};
 use crate::range::{MIN_RANGE_M, REACH_M};
 use crate::types::{Drive, Fault, Range, ServoAngle, SonarId, Wheels};
 use front_align::FrontAlign;
@@ -22,7 +22,7 @@ use front_distance::FrontDistance;
 use manual::Manual;
 use mission::{Mission, Task};
 use straight_line::StraightLine;
-use wall_follow::WallFollow;
+use wall_follow::{Sensors, WallFollow};
 use wall_hold::WallHold;
 use waypoints::{FARTHEST_M, Route, Waypoint, Waypoints};
 use wheel_speed::WheelSpeed;
@@ -349,8 +349,15 @@ impl ActiveMode {
     }
 
     /// Whether the sensors it needs give good readings.
-    pub fn is_ready(&self, estimate: &Estimate) -> bool {
+    pub fn is_ready(&self, params: &Params, estimate: &Estimate) -> bool {
+        let stale_s = params.get(ParamId::StaleRange);
         match self {
+            Self::WallHold(_) => {
+                Sensors::new(params).is_ready(estimate, stale_s, (MIN_WALL_M, MAX_WALL_M))
+            }
+            Self::WallFollow(..) => {
+                Sensors::new(params).is_ready(estimate, stale_s, (MIN_RANGE_M, REACH_M))
+            }
             Self::FrontDistance(..) => {
                 matches!(estimate.range(SonarId::Front).range, Range::Valid(_))
             }
@@ -358,7 +365,7 @@ impl ActiveMode {
         }
     }
 
-    /// The reference in force: a distance [m] in modes 1, 2 and 4, wheel speeds [rad/s] in modes 5 and 6, the place to go to
+    /// The reference in force: a distance [m] in modes 1 to 4, wheel speeds [rad/s] in modes 5 and 6, the place to go to
     /// (x on the left, y on the right) [m] in modes 7 and 8, else 0.
     pub fn reference(&self) -> Wheels<f32> {
         match self {
@@ -375,7 +382,8 @@ impl ActiveMode {
                 let (left, right) = state.target();
                 Wheels { left, right }
             }
-            Self::Manual(_) | Self::WallHold(_) | Self::Mission(..) => Wheels::both(0.0),
+            Self::WallHold(state) => Wheels::both(state.reference_m()),
+            Self::Manual(_) | Self::Mission(..) => Wheels::both(0.0),
         }
     }
 
@@ -508,8 +516,10 @@ impl ActiveMode {
                 FrontDistance::new(params, *distance_m).step(state, at)
             }
             Self::FrontAlign(_, state) => FrontAlign.step(state, at),
-            Self::WallHold(state) => WallHold.step(state, at),
-            Self::WallFollow(_, state) => WallFollow.step(state, at),
+            Self::WallHold(state) => WallHold::new(params).step(state, at),
+            Self::WallFollow(distance_m, state) => {
+                WallFollow::new(params, *distance_m).step(state, at)
+            }
             Self::WheelSpeed(references) => WheelSpeed {
                 references: *references,
             }
@@ -569,13 +579,13 @@ mod tests {
     #[test]
     fn the_front_mode_is_ready_only_when_its_sonar_sees_a_wall() {
         let mode = ActiveMode::new(ModeId::FrontDistance);
-        let mut estimate = Estimate::default();
-        assert!(!mode.is_ready(&estimate));
+        let (params, mut estimate) = (Params::default(), Estimate::default());
+        assert!(!mode.is_ready(&params, &estimate));
         estimate.ranges[SonarId::Front as usize].range = Range::Clear;
-        assert!(!mode.is_ready(&estimate));
+        assert!(!mode.is_ready(&params, &estimate));
         estimate.ranges[SonarId::Front as usize].range = Range::Valid(0.8);
-        assert!(mode.is_ready(&estimate));
-        assert!(ActiveMode::new(ModeId::Manual).is_ready(&Estimate::default()));
+        assert!(mode.is_ready(&params, &estimate));
+        assert!(ActiveMode::new(ModeId::Manual).is_ready(&params, &Estimate::default()));
     }
 
     #[test]

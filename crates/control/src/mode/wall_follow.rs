@@ -1,27 +1,347 @@
 //! Mode 4: follow a wall at a commanded distance (memoria 3.2).
+//!
+//! distance error e [m] -> angle towards the wall a [rad] -> yaw rate [rad/s] -> wheel-speed loops:
+//!
+//! ```text
+//! e = d - d_ref                                 a_ref = kp e + integral(ki e)           within +-heading limit
+//! yaw = side (heading_kp (a_ref - a)) - damping yaw_enc                                  within +-yaw limit
+//! forward = cruise, less where the outer wheel or the way ahead asks for it
+//! ```
+//!
+//! d is the distance from the middle of the side sonars (`sonar_side_x_m`, +-`sonar_side_y_m`) to the wall, along its normal. a is
+//! positive when the robot drives towards the wall, on either side; `side` is 1 for a wall on the left, -1 on the right. Too far is a
+//! positive error and turns the robot towards the wall. Both are estimated by [`crate::wall`] from the pair, or from one sonar and the
+//! encoders on the final rig, which takes the side whose wall is nearer at the start and looks ahead with its front sonar.
+//!
+//! | state | does | leaves when | to |
+//! |---|---|---|---|
+//! | 0 measure | mode 3 only: stands and takes the distance | it has it | 1 or 2 |
+//! | 1 approach | drives at the angle limit, on the way to another distance | e asks for less than the limit | 2 |
+//! | 2 follow | keeps the distance | e asks for more than the limit | 1 |
+//! | 3 slow | as 1 or 2, slower: something stands ahead | the way is free | 1 or 2 |
+//!
+//! The integral stands still while the angle or the yaw rate is limited; the speed gives way to steering where a wheel is at its limit.
+//! It stops with a fault when the wall ends (wall lost), a sonar is silent or old, or, on the final rig, something stands ahead (blocked).
+//!
+//! The report closes the same cascade with PI controllers that act on the PWM of one wheel. Ours regulates the yaw rate, damped by the
+//! encoders, and estimates angle and distance with the encoders' help. Derivation and figures: docs/theory/wall_follow.md.
 
-use super::{Action, Mode, Situation};
-use crate::types::Fault;
+use super::{Action, Look, Mode, Situation};
+use crate::estimate::Estimate;
+use crate::math::{abs, clamp, max, min, sin_cos, sqrt, wrap_angle};
+use crate::params::{ParamId, Params};
+use crate::rig::{Rig, View};
+use crate::types::{Drive, Fault, Range, SIDES, Side, SonarId, TICK_S};
+use crate::wall::{Wall, WallFilter};
+use core::f32::consts::FRAC_PI_2;
 
 /// Names of the states.
 #[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 1] = ["follow"];
+pub const STATE_NAMES: [&str; 4] = ["measure", "approach", "follow", "slow"];
 
-/// Configuration.
+/// How far off parallel the robot may start, one standard deviation [rad].
+const ASKEW_RAD: f32 = 0.2;
+/// Slowest that the inner wheel turns in a bend [m/s]: below, friction makes it stick.
+const INNER_M_S: f32 = 0.02;
+/// Fastest that a wheel is asked to roll [m/s].
+const OUTER_M_S: f32 = 0.6;
+/// Most that the integral turns the robot [rad].
+const INTEGRAL_RAD: f32 = 0.1;
+/// Distance error within which the integral acts [m].
+const INTEGRAL_M: f32 = 0.03;
+/// Deceleration planned before something ahead [m/s^2].
+const BRAKE_M_S2: f32 = 0.15;
+/// Slowest approach of something ahead [m/s].
+const CREEP_M_S: f32 = 0.03;
+/// Error and angle within which the reference counts as reached [m], [rad].
+const REACHED: (f32, f32) = (0.01, 0.06);
+
+/// Configuration of mode 4.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallFollow;
+pub struct WallFollow {
+    /// Reference [m].
+    pub distance_m: f32,
+    /// Speed along the wall [m/s].
+    pub cruise_m_s: f32,
+    /// Angle per distance error [rad/m].
+    pub kp: f32,
+    /// Angle per distance error and time [rad/(m s)].
+    pub ki: f32,
+    /// Largest angle to the wall [rad].
+    pub heading_limit_rad: f32,
+    /// Yaw rate per angle error [1/s].
+    pub heading_kp: f32,
+    /// Yaw rate taken back per yaw rate of the encoders.
+    pub damping: f32,
+    /// Largest yaw rate [rad/s].
+    pub yaw_limit_rad_s: f32,
+    /// Where the robot stops before something ahead, from the front sonar [m].
+    pub stop_m: f32,
+    /// Distance between the wheels [m].
+    pub base_m: f32,
+    /// Half angle of a sonar's beam [rad].
+    pub beam_rad: f32,
+    /// Oldest range to drive on [s].
+    pub stale_s: f32,
+    /// The sensors.
+    pub sensors: Sensors,
+}
 
-/// Memory.
+/// Which sonars see a wall beside the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensors {
+    rig: Rig,
+    /// Where the sonars `Left` and `Right` sit.
+    views: [View; 2],
+}
+
+/// Memory of mode 4.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
-    started: bool,
+    side: Option<Side>,
+    wall: WallFilter,
+    integral_rad: f32,
+}
+
+impl Sensors {
+    /// From the parameters.
+    pub fn new(params: &Params) -> Self {
+        let view = |sonar| params.view(sonar, 0.0).unwrap_or_default();
+        Self {
+            rig: params.rig(),
+            views: [view(SonarId::Left), view(SonarId::Right)],
+        }
+    }
+
+    /// The sonars that look to this side.
+    fn sonars(&self, side: Side) -> impl Iterator<Item = (SonarId, View)> + use<> {
+        let (own, pair) = match side {
+            Side::Left => (SonarId::Left, self.rig.paired_side() == Some(side)),
+            Side::Right => (SonarId::Right, self.rig.paired_side() == Some(side)),
+        };
+        [SonarId::Left, SonarId::Right]
+            .into_iter()
+            .zip(self.views)
+            .filter(move |(sonar, _)| pair || *sonar == own)
+    }
+
+    /// The point from which distances to a wall on this side are measured, ahead and left [m].
+    pub fn point_m(&self, side: Side) -> (f32, f32) {
+        let (mut x_m, mut y_m, mut count) = (0.0, 0.0, 0.0);
+        for (_, view) in self.sonars(side) {
+            x_m += view.x_m;
+            y_m += view.y_m;
+            count += 1.0;
+        }
+        (x_m / max(count, 1.0), y_m / max(count, 1.0))
+    }
+
+    /// Whether a sonar is one of those that look to this side.
+    pub fn watches(&self, side: Side, sonar: SonarId) -> bool {
+        self.sonars(side).any(|(own, _)| own == sonar)
+    }
+
+    /// The side with a wall, the nearer one where there are two; `None` without one in sight of all sonars of that side.
+    pub fn side(&self, estimate: &Estimate, stale_s: f32) -> Option<Side> {
+        let mut best: Option<(Side, f32)> = None;
+        for side in SIDES {
+            let possible = match self.rig {
+                Rig::Final => true,
+                rig => rig.paired_side() == Some(side),
+            };
+            if !possible {
+                continue;
+            }
+            let Ok(range_m) = self.nearest_m(side, estimate, stale_s) else {
+                continue;
+            };
+            if best.is_none_or(|(_, best_m)| range_m < best_m) {
+                best = Some((side, range_m));
+            }
+        }
+        best.map(|(side, _)| side)
+    }
+
+    /// The shortest range of the sonars of a side, if all of them see the wall.
+    fn nearest_m(&self, side: Side, estimate: &Estimate, stale_s: f32) -> Result<f32, Fault> {
+        let mut nearest_m = f32::MAX;
+        for (sonar, _) in self.sonars(side) {
+            let range = estimate.range(sonar);
+            match range.range {
+                Range::Valid(_) if range.age_s > stale_s => return Err(Fault::SonarStale),
+                Range::Valid(range_m) => nearest_m = min(nearest_m, range_m),
+                Range::Clear => return Err(Fault::WallLost),
+                Range::Faulty => return Err(Fault::SonarFaulty),
+            }
+        }
+        Ok(nearest_m)
+    }
+
+    /// Whether the robot looks ahead while it follows a wall.
+    fn looks_ahead(&self) -> bool {
+        self.rig == Rig::Final
+    }
+
+    /// Whether the mode may start: a wall beside the robot within `reach`, and a front sonar that works where there is one.
+    pub fn is_ready(&self, estimate: &Estimate, stale_s: f32, reach: (f32, f32)) -> bool {
+        let ahead = estimate.range(SonarId::Front);
+        let sees_ahead =
+            !self.looks_ahead() || (ahead.range != Range::Faulty && ahead.age_s <= stale_s);
+        let beside = self
+            .side(estimate, stale_s)
+            .and_then(|side| self.nearest_m(side, estimate, stale_s).ok());
+        sees_ahead && beside.is_some_and(|range_m| range_m >= reach.0 && range_m <= reach.1)
+    }
+}
+
+/// 1 for the left, -1 for the right.
+fn sign(side: Side) -> f32 {
+    match side {
+        Side::Left => 1.0,
+        Side::Right => -1.0,
+    }
+}
+
+impl WallFollow {
+    /// From the parameters.
+    pub fn new(params: &Params, distance_m: f32) -> Self {
+        Self {
+            distance_m,
+            cruise_m_s: params.get(ParamId::WallCruise),
+            kp: params.get(ParamId::WallKp),
+            ki: params.get(ParamId::WallKi),
+            heading_limit_rad: params.get(ParamId::WallHeadingLimit),
+            heading_kp: params.get(ParamId::WallHeadingKp),
+            damping: params.get(ParamId::WallDamping),
+            yaw_limit_rad_s: params.get(ParamId::WallYawLimit),
+            stop_m: params.get(ParamId::WallStop),
+            base_m: params.get(ParamId::Base),
+            beam_rad: params.get(ParamId::Beam),
+            stale_s: params.get(ParamId::StaleRange),
+            sensors: Sensors::new(params),
+        }
+    }
+
+    /// Moves the estimate of the wall along and corrects it by the reading of this tick.
+    fn estimate(&self, state: &mut State, side: Side, at: &Estimate) -> Result<Wall, Fault> {
+        if state.wall.wall().is_none() {
+            self.begin(state, side, at)?;
+        } else {
+            state.wall.predict(at.rolled_m, at.turned_rad);
+            if let Some(reading) = at.reading
+                && let Range::Valid(range_m) = reading.range
+                && self.sensors.watches(side, reading.sonar)
+            {
+                state.wall.take(&reading.view, self.beam_rad, range_m);
+            }
+        }
+        state.wall.wall().ok_or(Fault::WallLost)
+    }
+
+    /// Starts the estimate from the ranges that were filtered while the robot stood.
+    fn begin(&self, state: &mut State, side: Side, at: &Estimate) -> Result<(), Fault> {
+        let mut started = false;
+        for (sonar, view) in self.sensors.sonars(side) {
+            let Range::Valid(range_m) = at.range(sonar).range else {
+                return Err(Fault::WallLost);
+            };
+            if started {
+                state.wall.take(&view, self.beam_rad, range_m);
+            } else {
+                let parallel_rad = sign(side) * FRAC_PI_2;
+                state.wall.start(&view, range_m, parallel_rad, ASKEW_RAD);
+                started = true;
+            }
+        }
+        Ok(())
+    }
+
+    /// Distance of the measuring point from the wall [m] and the angle towards the wall [rad].
+    fn distance_and_angle(&self, side: Side, wall: &Wall) -> (f32, f32) {
+        let (x_m, y_m) = self.sensors.point_m(side);
+        let (sin, cos) = sin_cos(wall.bearing_rad);
+        let angle_rad = wrap_angle(FRAC_PI_2 - sign(side) * wall.bearing_rad);
+        (wall.distance_m - x_m * cos - y_m * sin, angle_rad)
+    }
+
+    /// The largest speed that the way ahead allows [m/s].
+    fn free_m_s(&self, at: &Estimate) -> Result<f32, Fault> {
+        if !self.sensors.looks_ahead() {
+            return Ok(self.cruise_m_s);
+        }
+        let ahead = at.range(SonarId::Front);
+        match ahead.range {
+            _ if ahead.age_s > self.stale_s => Err(Fault::SonarStale),
+            Range::Faulty => Err(Fault::SonarFaulty),
+            Range::Clear => Ok(self.cruise_m_s),
+            Range::Valid(ahead_m) if ahead_m <= self.stop_m => Err(Fault::Blocked),
+            Range::Valid(ahead_m) => {
+                let free = sqrt(2.0 * BRAKE_M_S2 * (ahead_m - self.stop_m));
+                Ok(min(max(free, CREEP_M_S), self.cruise_m_s))
+            }
+        }
+    }
+
+    /// The angle towards the wall that the distance asks for [rad], and whether it is limited.
+    fn angle_ref_rad(&self, state: &State, error_m: f32) -> (f32, bool) {
+        let free_rad = self.kp * error_m + state.integral_rad;
+        let limit_rad = self.heading_limit_rad;
+        (
+            clamp(free_rad, -limit_rad, limit_rad),
+            abs(free_rad) > limit_rad,
+        )
+    }
 }
 
 impl Mode for WallFollow {
     type State = State;
 
-    fn step(&self, state: &mut State, _: &Situation) -> Result<Action, Fault> {
-        state.started = true;
-        Ok(Action::default())
+    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
+        let estimate = at.estimate;
+        let side = match state.side {
+            Some(side) => side,
+            None => self
+                .sensors
+                .side(estimate, self.stale_s)
+                .ok_or(Fault::WallLost)?,
+        };
+        state.side = Some(side);
+        self.sensors.nearest_m(side, estimate, self.stale_s)?;
+        let wall = self.estimate(state, side, estimate)?;
+        let (distance_m, angle_rad) = self.distance_and_angle(side, &wall);
+
+        let error_m = distance_m - self.distance_m;
+        let (angle_ref_rad, far) = self.angle_ref_rad(state, error_m);
+        let free_m_s = self.free_m_s(estimate)?;
+        let turn_rad_s = self.heading_kp * (angle_ref_rad - angle_rad);
+        let wanted_rad_s = sign(side) * turn_rad_s - self.damping * estimate.yaw_rad_s;
+        let half_base_m = 0.5 * self.base_m;
+        let bend_rad_s = max(free_m_s - INNER_M_S, 0.0) / half_base_m;
+        let most_rad_s = min(self.yaw_limit_rad_s, bend_rad_s);
+        let yaw_rad_s = clamp(wanted_rad_s, -most_rad_s, most_rad_s);
+        let steady = !far && abs(wanted_rad_s) <= most_rad_s && abs(error_m) < INTEGRAL_M;
+        if steady {
+            let integral_rad = state.integral_rad + self.ki * error_m * TICK_S;
+            state.integral_rad = clamp(integral_rad, -INTEGRAL_RAD, INTEGRAL_RAD);
+        }
+        let outer_m_s = max(OUTER_M_S - half_base_m * abs(yaw_rad_s), 0.0);
+        let phase = if free_m_s < self.cruise_m_s {
+            3
+        } else if far {
+            1
+        } else {
+            2
+        };
+        Ok(Action {
+            drive: Drive::Twist {
+                forward_m_s: min(free_m_s, outer_m_s),
+                yaw_rad_s,
+            },
+            look: Look::default(),
+            state: phase,
+            heading_ref_rad: sign(side) * angle_ref_rad,
+            reached: abs(error_m) < REACHED.0 && abs(angle_rad) < REACHED.1,
+            ..Action::default()
+        })
     }
 }

@@ -1,27 +1,129 @@
 //! Mode 3: follow a wall at the distance at which the robot starts (memoria 3.1).
+//!
+//! The robot stands until each sonar that sees the wall has given five readings. The mean of their medians, the distance of the
+//! middle of the sonars, becomes the reference of mode 4, which does the rest: scheme, signs and states are in
+//! [`super::wall_follow`].
+//!
+//! The report takes the median of the first readings too, to be rid of wrong ones.
 
-use super::{Action, Mode, Situation};
-use crate::types::Fault;
+use super::wall_follow::{self, WallFollow};
+use super::{Action, Look, MAX_WALL_M, MIN_WALL_M, Mode, Situation};
+use crate::math::{clamp, max};
+use crate::params::Params;
+use crate::types::{Fault, Range, SonarId, TICK_S};
 
 /// Names of the states.
 #[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 1] = ["measure"];
+pub const STATE_NAMES: [&str; 4] = wall_follow::STATE_NAMES;
 
-/// Configuration.
+/// Readings of each sonar that make the reference.
+const READINGS: usize = 5;
+/// Longest time to wait for them [s]; they take 0.3 s.
+const PATIENCE_S: f32 = 1.5;
+
+/// Configuration of mode 3: that of mode 4, its reference aside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallHold;
+pub struct WallHold(WallFollow);
 
-/// Memory.
+/// Memory of mode 3.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
-    started: bool,
+    /// The distance to hold [m].
+    reference_m: Option<f32>,
+    /// First readings of the sonars `Left` and `Right` [m].
+    first_m: [[f32; READINGS]; 2],
+    count: [u8; 2],
+    waited_s: f32,
+    follow: wall_follow::State,
+}
+
+impl State {
+    /// The distance that it holds [m]; 0 before it is known.
+    pub fn reference_m(&self) -> f32 {
+        self.reference_m.unwrap_or(0.0)
+    }
+
+    fn hear(&mut self, sonar: SonarId, range_m: f32) {
+        let slot = sonar as usize;
+        if let (Some(first_m), Some(count)) = (self.first_m.get_mut(slot), self.count.get_mut(slot))
+            && let Some(place) = first_m.get_mut(usize::from(*count))
+        {
+            *place = range_m;
+            *count += 1;
+        }
+    }
+
+    /// The median of a sonar's first readings [m], once all are there.
+    fn median_m(&self, sonar: SonarId) -> Option<f32> {
+        let slot = sonar as usize;
+        let all = self
+            .count
+            .get(slot)
+            .is_some_and(|count| usize::from(*count) == READINGS);
+        let first_m = self.first_m.get(slot).filter(|_| all)?;
+        let is_middle = |candidate: &&f32| {
+            let below = first_m.iter().filter(|other| other < candidate).count();
+            let above = first_m.iter().filter(|other| *other > *candidate).count();
+            below <= READINGS / 2 && above <= READINGS / 2
+        };
+        first_m.iter().find(is_middle).copied()
+    }
+}
+
+impl WallHold {
+    /// From the parameters.
+    pub fn new(params: &Params) -> Self {
+        Self(WallFollow::new(params, 0.0))
+    }
+
+    /// Takes the readings of this tick; the reference, once it is known.
+    fn measure(&self, state: &mut State, at: &Situation) -> Result<Option<f32>, Fault> {
+        let sensors = &self.0.sensors;
+        let side = sensors
+            .side(at.estimate, self.0.stale_s)
+            .ok_or(Fault::WallLost)?;
+        if let Some(reading) = at.estimate.reading
+            && let Range::Valid(range_m) = reading.range
+            && sensors.watches(side, reading.sonar)
+        {
+            state.hear(reading.sonar, range_m);
+        }
+        state.waited_s += TICK_S;
+        let (mut sum_m, mut count) = (0.0, 0.0);
+        for sonar in [SonarId::Left, SonarId::Right] {
+            if sensors.watches(side, sonar) {
+                let Some(median_m) = state.median_m(sonar) else {
+                    return if state.waited_s > PATIENCE_S {
+                        Err(Fault::SonarStale)
+                    } else {
+                        Ok(None)
+                    };
+                };
+                sum_m += median_m;
+                count += 1.0;
+            }
+        }
+        Ok(Some(clamp(sum_m / max(count, 1.0), MIN_WALL_M, MAX_WALL_M)))
+    }
 }
 
 impl Mode for WallHold {
     type State = State;
 
-    fn step(&self, state: &mut State, _: &Situation) -> Result<Action, Fault> {
-        state.started = true;
-        Ok(Action::default())
+    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
+        if state.reference_m.is_none() {
+            state.reference_m = self.measure(state, at)?;
+        }
+        let Some(distance_m) = state.reference_m else {
+            return Ok(Action {
+                look: Look::default(),
+                ..Action::default()
+            });
+        };
+        let follow = WallFollow {
+            distance_m,
+            ..self.0
+        };
+        follow.step(&mut state.follow, at)
     }
 }

@@ -6,6 +6,7 @@
 mod path;
 mod start;
 mod step;
+mod wall;
 
 use crate::files::Setup;
 use crate::sim::Sim;
@@ -36,12 +37,8 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
             path::movement(setup, trace, &mut metrics);
             start::dead_zones(trace, &mut metrics);
         }
-        ModeId::FrontAlign
-        | ModeId::WallHold
-        | ModeId::WallFollow
-        | ModeId::StraightLine
-        | ModeId::Waypoints
-        | ModeId::Mission => {}
+        ModeId::WallHold | ModeId::WallFollow => wall::following(setup, sim, trace, &mut metrics),
+        ModeId::FrontAlign | ModeId::StraightLine | ModeId::Waypoints | ModeId::Mission => {}
     }
     // A billionth of any unit is rounding, not behaviour.
     for value in metrics.values_mut() {

@@ -19,14 +19,37 @@ const STEADY_SHARE: f64 = 0.4;
 const SOUND_M_S: f64 = 331.3 + 0.606 * 20.0;
 
 /// A step of a reference.
-struct Step {
+pub(super) struct Step {
     from_s: f64,
     until_s: f64,
     reference: [f64; 2],
 }
 
+impl Step {
+    /// How a signal responded; the reference is that of `wheel`, the band in the signal's unit. `None` without samples.
+    pub(super) fn response(
+        &self,
+        trace: &Trace,
+        wheel: usize,
+        band: f64,
+        signal: impl Fn(&Sample) -> f64,
+    ) -> Option<Response> {
+        let samples = trace.between(self.from_s, self.until_s);
+        let start = signal(samples.first()?);
+        let reference = self.reference[wheel];
+        Some(response(
+            samples,
+            self.from_s,
+            start,
+            reference,
+            band,
+            signal,
+        ))
+    }
+}
+
 /// The steps of a scenario: each time the reference in force changes while the robot is armed.
-fn steps(commands: &[TimedCommand], duration_s: f64) -> Vec<Step> {
+pub(super) fn steps(commands: &[TimedCommand], duration_s: f64) -> Vec<Step> {
     let (mut armed, mut reference) = (false, None);
     let mut steps: Vec<Step> = Vec::new();
     for TimedCommand { at_s, command } in commands {
@@ -56,13 +79,13 @@ fn steps(commands: &[TimedCommand], duration_s: f64) -> Vec<Step> {
 }
 
 /// A signal's response to one step.
-struct Response {
-    settling_s: f64,
-    rise_s: f64,
-    overshoot: f64,
-    steady_error: f64,
-    rms: f64,
-    ripple: f64,
+pub(super) struct Response {
+    pub(super) settling_s: f64,
+    pub(super) rise_s: f64,
+    pub(super) overshoot: f64,
+    pub(super) steady_error: f64,
+    pub(super) rms: f64,
+    pub(super) ripple: f64,
 }
 
 /// Measures `signal` over the samples of a step, from `start` to `reference`. `NaN` where it never gets there.
@@ -119,9 +142,14 @@ fn response(
     }
 }
 
+/// What the robot of this run reads for a metre: it reckons with another speed of sound than the air's.
+pub(super) fn sound_scale(sim: &Sim) -> f64 {
+    SOUND_M_S / (331.3 + 0.606 * sim.params().sonar.temperature_c)
+}
+
 /// Steps of the distance to the wall in front. The run's scale of the speed of sound is removed: the robot cannot know it.
 pub(super) fn distance_steps(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut Metrics) {
-    let scale = SOUND_M_S / (331.3 + 0.606 * sim.params().sonar.temperature_c);
+    let scale = sound_scale(sim);
     let distance = |sample: &Sample| sample.range_m[2] * scale;
     for (index, step) in steps(&setup.scenario.commands, setup.scenario.duration_s)
         .iter()
