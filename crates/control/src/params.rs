@@ -203,8 +203,8 @@ table! {
     FrontHeading = "front_heading_kp", "1/s", 4.0, 0.0 => 20.0, FRONT;
     /// Speed along the wall.
     WallCruise = "wall_cruise_m_s", "m/s", 0.16, 0.05 => 0.4, WALL;
-    /// Angle to the wall per distance error.
-    WallKp = "wall_kp", "rad/m", 8.0, 0.0 => 30.0, WALL;
+    /// Speed towards the wall per distance error.
+    WallKp = "wall_kp", "1/s", 1.6, 0.0 => 10.0, WALL;
     /// Angle to the wall per distance error and time.
     WallKi = "wall_ki", "rad/(m s)", 1.0, 0.0 => 20.0, WALL;
     /// Largest angle to the wall on the way to another distance.

@@ -13,15 +13,17 @@
 //! Two sonars side by side thus give the bearing, as the report's trigonometry does, exact also for equal readings;
 //! one sonar and odometry do so over some way, and a sonar on the servo by looking to both sides. Derivation: docs/theory/wall.md.
 
-use crate::math::{abs, max, sin_cos, wrap_angle};
+use crate::math::{abs, max, min, sin_cos, sqrt, wrap_angle};
 use crate::rig::View;
 
 /// Most that a beam's edge may meet the wall off its normal, seen from the beam's edge [rad]; beyond, there is no echo.
 const LARGEST_INCIDENCE_RAD: f32 = 0.7;
 /// Noise of a reading at close range [m].
-const NOISE_M: f32 = 0.003;
-/// Noise of a reading per range.
-const NOISE_SHARE: f32 = 0.01;
+const NOISE_M: f32 = 0.002;
+/// Noise that is added at a range of 1 m, and with its third power below [m]: a weak echo is timed whole cycles wrong.
+const NOISE_FAR_M: f32 = 0.008;
+/// Innovations count as at most this many standard deviations.
+const BELIEF_SD: f32 = 2.0;
 /// Innovations beyond this many standard deviations are refused.
 const GATE_SD: f32 = 4.0;
 /// Refused readings in a row after which the wall is another one.
@@ -64,21 +66,24 @@ impl WallFilter {
         self.known.then(|| Wall {
             distance_m: self.distance_m,
             bearing_rad: self.bearing_rad,
-            distance_sd_m: crate::math::sqrt(max(pdd, 0.0)),
-            bearing_sd_rad: crate::math::sqrt(max(pbb, 0.0)),
+            distance_sd_m: sqrt(max(pdd, 0.0)),
+            bearing_sd_rad: sqrt(max(pbb, 0.0)),
         })
     }
 
     /// Starts from a first reading of a wall expected at `bearing_rad`, give or take `bearing_sd_rad`.
     pub fn start(&mut self, view: &View, range_m: f32, bearing_rad: f32, bearing_sd_rad: f32) {
         let (sin, cos) = sin_cos(bearing_rad);
+        // The distance depends on the bearing by the sonar's lever, and on its square where the beam misses the normal.
+        let slope_m = view.y_m * cos - view.x_m * sin;
+        let pbb = square(bearing_sd_rad);
         *self = Self {
             distance_m: range_m + view.x_m * cos + view.y_m * sin,
             bearing_rad,
             p: [
-                square(NOISE_M + NOISE_SHARE * range_m + 0.5 * bearing_sd_rad * range_m),
-                0.0,
-                square(bearing_sd_rad),
+                square(noise_m(range_m)) + square(slope_m) * pbb + square(0.5 * pbb * range_m),
+                slope_m * pbb,
+                pbb,
             ],
             known: true,
             refused: 0,
@@ -137,7 +142,7 @@ impl WallFilter {
         };
         let [pdd, pdb, pbb] = self.p;
         let (gd, gb) = (pdd * hd + pdb * hb, pdb * hd + pbb * hb);
-        let variance = hd * gd + hb * gb + square(NOISE_M + NOISE_SHARE * range_m);
+        let variance = hd * gd + hb * gb + square(noise_m(range_m));
         let innovation_m = range_m - expected_m;
         if square(innovation_m) > square(GATE_SD) * variance {
             self.refused = self.refused.saturating_add(1);
@@ -147,7 +152,10 @@ impl WallFilter {
             return false;
         }
         self.refused = 0;
-        let (kd, kb) = (gd / variance, gb / variance);
+        let most_m = BELIEF_SD * sqrt(variance);
+        // A reading further off than that is believed in part only, and makes the estimate in part only surer.
+        let share = most_m / max(abs(innovation_m), most_m);
+        let (kd, kb) = (share * gd / variance, share * gb / variance);
         self.distance_m = max(self.distance_m + kd * innovation_m, 0.0);
         self.bearing_rad = wrap_angle(self.bearing_rad + kb * innovation_m);
         self.p = [
@@ -157,6 +165,12 @@ impl WallFilter {
         ];
         true
     }
+}
+
+/// Standard deviation of a reading [m].
+fn noise_m(range_m: f32) -> f32 {
+    let near_m = min(range_m, 1.0);
+    NOISE_M + NOISE_FAR_M * near_m * near_m * near_m
 }
 
 fn square(x: f32) -> f32 {

@@ -3,7 +3,7 @@
 //! distance error e [m] -> angle towards the wall a [rad] -> yaw rate [rad/s] -> wheel-speed loops:
 //!
 //! ```text
-//! e = d - d_ref                                 a_ref = kp e + integral(ki e)           within +-heading limit
+//! e = d - d_ref                                 a_ref = kp e / cruise + integral(ki e)  within +-heading limit
 //! yaw = side (heading_kp (a_ref - a)) - damping yaw_enc                                  within +-yaw limit
 //! forward = cruise, less where the outer wheel or the way ahead asks for it
 //! ```
@@ -43,6 +43,9 @@ pub const STATE_NAMES: [&str; 4] = ["measure", "approach", "follow", "slow"];
 const ASKEW_RAD: f32 = 0.2;
 /// Slowest that the inner wheel turns in a bend [m/s]: below, friction makes it stick.
 const INNER_M_S: f32 = 0.02;
+/// Share of the angle limit that is given up per standard deviation of the angle: it does not turn far towards a wall that it
+/// hardly knows.
+const DOUBT: f32 = 2.0;
 /// Fastest that a wheel is asked to roll [m/s].
 const OUTER_M_S: f32 = 0.6;
 /// Most that the integral turns the robot [rad].
@@ -63,7 +66,7 @@ pub struct WallFollow {
     pub distance_m: f32,
     /// Speed along the wall [m/s].
     pub cruise_m_s: f32,
-    /// Angle per distance error [rad/m].
+    /// Speed towards the wall per distance error [1/s].
     pub kp: f32,
     /// Angle per distance error and time [rad/(m s)].
     pub ki: f32,
@@ -283,9 +286,9 @@ impl WallFollow {
     }
 
     /// The angle towards the wall that the distance asks for [rad], and whether it is limited.
-    fn angle_ref_rad(&self, state: &State, error_m: f32) -> (f32, bool) {
-        let free_rad = self.kp * error_m + state.integral_rad;
-        let limit_rad = self.heading_limit_rad;
+    fn angle_ref_rad(&self, state: &State, error_m: f32, angle_sd_rad: f32) -> (f32, bool) {
+        let free_rad = self.kp / self.cruise_m_s * error_m + state.integral_rad;
+        let limit_rad = max(self.heading_limit_rad - DOUBT * angle_sd_rad, 0.0);
         (
             clamp(free_rad, -limit_rad, limit_rad),
             abs(free_rad) > limit_rad,
@@ -311,7 +314,7 @@ impl Mode for WallFollow {
         let (distance_m, angle_rad) = self.distance_and_angle(side, &wall);
 
         let error_m = distance_m - self.distance_m;
-        let (angle_ref_rad, far) = self.angle_ref_rad(state, error_m);
+        let (angle_ref_rad, far) = self.angle_ref_rad(state, error_m, wall.bearing_sd_rad);
         let free_m_s = self.free_m_s(estimate)?;
         let turn_rad_s = self.heading_kp * (angle_ref_rad - angle_rad);
         let wanted_rad_s = sign(side) * turn_rad_s - self.damping * estimate.yaw_rad_s;
