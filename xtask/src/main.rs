@@ -1,11 +1,12 @@
 //! The project's chores, run as `cargo xtask <command>`.
 //!
 //! [`test`] is everything that must hold before a change is merged, [`tidy`] the rules no compiler checks,
-//! [`bench`] the figures of the README. Each prints what it does; none needs anything but cargo to start.
+//! [`bench`] the figures of the README, [`campaign`] what must hold over thousands of seeds. Each prints what it does; none needs anything but cargo to start.
 
 use std::process::ExitCode;
 
 mod bench;
+mod campaign;
 mod lab;
 mod markdown;
 mod project;
@@ -23,6 +24,9 @@ Commands:
   test [--only STEP]...    every check, in order: format, tidy, clippy, docs, tests, dashboard, browser, README
   tidy                     the rules of ARCHITECTURE.md: dependencies, no_std, files, links
   bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
+  campaign [--seeds N] [--only SCENARIO]...
+                           every scenario with 1,000 seeds or N, and mode 8 in as many random worlds:
+                           what is required beside what was measured
 
 Options:
   --help, -h    this text; after a command, its steps or parts
@@ -32,6 +36,7 @@ Examples:
   cargo xtask test --only fmt --only clippy
   cargo xtask tidy
   cargo xtask bench --only headless
+  cargo xtask campaign --seeds 100 --only mode8-random
 
 With CI=true in the environment a check that cannot run is a failure, otherwise it is skipped with the remedy.
 Exit status: 0 all well, 1 something failed, 2 wrong usage.";
@@ -40,7 +45,11 @@ Exit status: 0 all well, 1 something failed, 2 wrong usage.";
 #[derive(Debug, PartialEq)]
 enum Request {
     Help(Option<String>),
-    Run { command: String, only: Vec<String> },
+    Run {
+        command: String,
+        only: Vec<String>,
+        seeds: Option<u32>,
+    },
 }
 
 fn main() -> ExitCode {
@@ -48,21 +57,29 @@ fn main() -> ExitCode {
         Ok(request) => request,
         Err(error) => return usage(&error.to_string()),
     };
-    let (command, only) = match request {
+    let (command, only, seeds) = match request {
         Request::Help(command) => {
             println!("{}", help(command.as_deref()));
             return ExitCode::SUCCESS;
         }
-        Request::Run { command, only } => (command, only),
+        Request::Run {
+            command,
+            only,
+            seeds,
+        } => (command, only, seeds),
     };
     let project = match Project::find() {
         Ok(project) => project,
         Err(error) => return failure(&error),
     };
+    if seeds.is_some() && command != "campaign" {
+        return usage("--seeds is for campaign");
+    }
     let outcome = match command.as_str() {
         "test" => test::run(&project, &only),
         "tidy" if only.is_empty() => tidy::run(&project),
         "bench" => bench::run(&project, &only),
+        "campaign" => campaign::run(&project, seeds, &only),
         "tidy" => return usage("tidy takes no options"),
         other => return usage(&format!("unknown command `{other}`")),
     };
@@ -75,17 +92,22 @@ fn main() -> ExitCode {
 
 fn parse(mut args: lexopt::Parser) -> Result<Request, lexopt::Error> {
     use lexopt::prelude::{Long, Short, Value, ValueExt};
-    let (mut command, mut only, mut help) = (None, Vec::new(), false);
+    let (mut command, mut only, mut seeds, mut help) = (None, Vec::new(), None, false);
     while let Some(arg) = args.next()? {
         match arg {
             Long("help") | Short('h') => help = true,
+            Long("seeds") => seeds = Some(args.value()?.parse()?),
             Long("only") => only.push(args.value()?.string()?),
             Value(value) if command.is_none() => command = Some(value.string()?),
             _ => return Err(arg.unexpected()),
         }
     }
     Ok(match command {
-        Some(command) if !help => Request::Run { command, only },
+        Some(command) if !help => Request::Run {
+            command,
+            only,
+            seeds,
+        },
         command => Request::Help(command),
     })
 }
@@ -124,9 +146,24 @@ mod tests {
             chosen,
             Ok(Request::Run {
                 command: "test".to_owned(),
-                only
+                only,
+                seeds: None
             })
         );
+    }
+
+    #[test]
+    fn a_campaign_may_have_fewer_seeds() {
+        let chosen = request(&["campaign", "--seeds", "50"]);
+        assert_eq!(
+            chosen,
+            Ok(Request::Run {
+                command: "campaign".to_owned(),
+                only: Vec::new(),
+                seeds: Some(50)
+            })
+        );
+        assert!(request(&["campaign", "--seeds", "many"]).is_err());
     }
 
     #[test]

@@ -77,6 +77,7 @@ fn prepare(
         ..Overrides::default()
     };
     let setup: Setup = library.setup(&choice.scenario, &overrides)?;
+    let setup = setup.of_seed(choice.seed)?;
     let sim = Sim::new(&setup, choice.seed)?;
     let scene = scene(library, &setup, choice)?;
     Ok((sim, scene))

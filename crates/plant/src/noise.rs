@@ -16,6 +16,8 @@ pub mod source {
     pub const SONAR: u32 = 300;
     /// Serial link; each direction takes a block of ten.
     pub const LINK: u32 = 400;
+    /// Random worlds.
+    pub const WORLD: u32 = 500;
     /// The spread of parameters from seed to seed; open upwards.
     pub const DRAW: u32 = 1000;
 }

@@ -1,12 +1,15 @@
 //! Rumbo's experiments: the robot against the plant, metrics, identification.
 
 mod board;
+pub mod campaign;
 pub mod files;
 pub mod identify;
 pub mod metrics;
 mod operator;
 mod original;
+pub mod random_world;
 pub mod run;
+pub mod shortest_path;
 pub mod sim;
 pub mod sonar_fault;
 pub mod sonar_stats;

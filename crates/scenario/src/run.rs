@@ -34,6 +34,7 @@ pub struct RunResult {
 /// # Errors
 /// If the setup's values do not fit together.
 pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
+    let setup = &*setup.of_seed(seed)?;
     let scenario = &setup.scenario;
     let mut sim = Sim::new(setup, seed)?;
     let mut operator = Operator::new(setup);

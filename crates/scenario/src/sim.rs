@@ -18,7 +18,7 @@ use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::link::{Direction, Link, LinkParams};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
-use rumbo_plant::plant::{Plant, State, Truth};
+use rumbo_plant::plant::{Event, Plant, State, Truth};
 use rumbo_robot::{Config, Robot};
 use rumbo_wire::{Command, FromRobot, ResetCause};
 
@@ -41,16 +41,20 @@ pub struct Sim {
     worst_reverse_rad_s: f64,
     sonar_faults: SonarFaults,
     noise: Noise,
+    worst_contact_m_s: f64,
+    /// Sonars whose trigger wire is cut, by `SonarId` number.
+    cut: [bool; 3],
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
 }
 
 impl Sim {
-    /// A robot at the start of a scenario; `seed` draws its parameters, unless the scenario says not to, and its noise.
+    /// A robot at the start of a scenario; `seed` draws its parameters, unless the scenario says not to, its noise, and a random world.
     ///
     /// # Errors
     /// If the files' values do not fit together.
     pub fn new(setup: &Setup, seed: u64) -> Result<Self, FileError> {
+        let setup = &*setup.of_seed(seed)?;
         let params = drawn_params(setup, seed)?;
         let scenario = &setup.scenario;
         let world = setup
@@ -106,6 +110,8 @@ impl Sim {
             worst_reverse_rad_s: 0.0,
             sonar_faults,
             noise,
+            worst_contact_m_s: 0.0,
+            cut: [false; 3],
             outputs_us: (0, 0, 0),
         })
     }
@@ -138,6 +144,11 @@ impl Sim {
     /// Fastest that a wheel turned while its bridge drove it the other way [rad/s].
     pub fn worst_reverse_rad_s(&self) -> f64 {
         self.worst_reverse_rad_s
+    }
+
+    /// Fastest that a point of the body met an obstacle [m/s]; 0 without a contact.
+    pub fn worst_contact_m_s(&self) -> f64 {
+        self.worst_contact_m_s
     }
 
     /// Mean time between two settings of the bridges [s].
@@ -196,11 +207,16 @@ impl Sim {
                 next_us = next_us.min(at_us);
             }
             let (board, original) = (&mut self.board, &mut self.original);
-            self.plant
-                .advance(&mut self.state, next_us, &mut |event| match original {
+            let worst_contact_m_s = &mut self.worst_contact_m_s;
+            self.plant.advance(&mut self.state, next_us, &mut |event| {
+                if let Event::Contact { speed_m_s, .. } = event {
+                    *worst_contact_m_s = worst_contact_m_s.max(speed_m_s);
+                }
+                match original {
                     Some(original) => original.take(event),
                     None => board.take(event),
-                });
+                }
+            });
             self.watch_reverse();
             if let Some((at_us, outputs)) = self.pending
                 && at_us == next_us

@@ -259,7 +259,7 @@ fn unknown_names_list_the_near_ones() {
     );
     assert_eq!(
         library.world("x").unwrap_err().to_string(),
-        "unknown world `x`; did you mean `open`, `room` or `wall_front`?"
+        "unknown world `x`; did you mean `open`, `random`, `room` or `wall_front`?"
     );
     let overrides = Overrides {
         rig: Some("front".into()),

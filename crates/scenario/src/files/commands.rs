@@ -11,6 +11,7 @@
 //! | `speed_rpm = 60` | modes `wheel_speed`, `straight_line` |
 //! | `left_rpm = 60` and `right_rpm = 50` | mode `wheel_speed` |
 //! | `goal_m = [1.0, 0.5]` | modes `mission`, `waypoints`: a point to go to |
+//! | `goal = "world"` | the same with the goal of a random world |
 //! | `lane = true` | mode `mission`: follow a lane |
 //! | `move = "turn_left"` with `duty = 0.4` or `speed_rpm = 60` | mode `manual`, a basic movement |
 //! | the same with `duty = 0`, `ramp_to_duty = 0.4`, `ramp_s = 12` | open loop, the duty moves by one count of PWM at a time |
@@ -44,7 +45,7 @@ const FLAGS: [(&str, Command); 6] = [
     ("lane", Command::Lane),
 ];
 /// The keys that say which action a command is.
-const ACTIONS: [&str; 13] = [
+const ACTIONS: [&str; 14] = [
     "arm",
     "disarm",
     "stop",
@@ -54,6 +55,7 @@ const ACTIONS: [&str; 13] = [
     "mode",
     "reference_m",
     "goal_m",
+    "goal",
     "move",
     "speed_rpm",
     "left_rpm",
@@ -101,11 +103,21 @@ fn read_command(
     duration_s: f64,
 ) -> Vec<TimedCommand> {
     let given: Vec<&str> = ACTIONS.into_iter().filter(|key| table.has(key)).collect();
-    let single = |command| vec![TimedCommand { at_s, command }];
+    let single = |command| {
+        vec![TimedCommand {
+            at_s,
+            command,
+            goal_of_world: false,
+        }]
+    };
     match given[..] {
         ["move"] | ["move", "speed_rpm"] => {
             needs_mode(table, "move", &[ModeId::Manual], *mode);
             read_move(table, at_s, duration_s)
+        }
+        ["goal"] => {
+            needs_mode(table, "goal", &[ModeId::Mission, ModeId::Waypoints], *mode);
+            read_goal_of_world(table, at_s)
         }
         [key] => read_simple(table, key, mode)
             .map(single)
@@ -204,6 +216,21 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut ModeId) -> Option<Co
     }
 }
 
+/// `goal = "world"`: the place is known once the seed is.
+fn read_goal_of_world(table: &Table<'_, '_>, at_s: f64) -> Vec<TimedCommand> {
+    if let Some(word) = table.text("goal")
+        && word.value != "world"
+    {
+        let remedy = "must be \"world\", the goal of a random world; a place is goal_m = [x, y]";
+        table.complain("goal", word.line, &format!("{:?}", word.value), remedy);
+    }
+    vec![TimedCommand {
+        at_s,
+        command: Command::Goal { x_m: 0.0, y_m: 0.0 },
+        goal_of_world: true,
+    }]
+}
+
 fn read_move(table: &Table<'_, '_>, at_s: f64, duration_s: f64) -> Vec<TimedCommand> {
     let movement = table.text("move").and_then(|name| {
         find_movement(&name.value)
@@ -230,6 +257,7 @@ fn read_move(table: &Table<'_, '_>, at_s: f64, duration_s: f64) -> Vec<TimedComm
     vec![TimedCommand {
         at_s,
         command: Command::Move { movement, level },
+        goal_of_world: false,
     }]
 }
 
@@ -258,6 +286,7 @@ fn read_ramp(
             TimedCommand {
                 at_s: at_s + part * ramp_s,
                 command: Command::Move { movement, level },
+                goal_of_world: false,
             }
         })
         .collect()

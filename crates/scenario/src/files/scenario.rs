@@ -90,6 +90,8 @@ pub struct TimedCommand {
     pub at_s: f64,
     /// What is sent, in the units of the link (m, rad/s, fraction of full PWM).
     pub command: Command,
+    /// The goal is the one of the seed's world: `command` is put in by [`super::Setup::of_seed`].
+    pub goal_of_world: bool,
 }
 
 /// What a metric must keep to; a missing end is free.

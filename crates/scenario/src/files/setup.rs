@@ -4,10 +4,14 @@ use super::error::FileError;
 use super::near::{near, near_or_all};
 use super::read::Allowed;
 use super::{Library, RobotFile, ScenarioFile, Start, WorldFile, parameters};
+use crate::random_world::{Site, Size};
 use rumbo_control::params::ParamId;
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
+use rumbo_plant::world::Point;
+use rumbo_wire::Command;
+use std::borrow::Cow;
 
 /// The program that drives the robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,6 +79,7 @@ impl Library {
             apply(&mut scenario, name, *value)?;
         }
         stands_free(&scenario, &robot, &world)?;
+        has_its_goal(&scenario, &world)?;
         let rig = robot
             .rigs
             .get(&scenario.rig)
@@ -95,6 +100,42 @@ impl Library {
 }
 
 impl Setup {
+    /// The setup of a seed: with boxes and goal in place where the world is random, and else this one as it is.
+    ///
+    /// # Errors
+    /// A random world that finds no room.
+    pub fn of_seed(&self, seed: u64) -> Result<Cow<'_, Self>, FileError> {
+        let Some(random) = self.world.random else {
+            return Ok(Cow::Borrowed(self));
+        };
+        let Start { x_m, y_m, .. } = self.scenario.start;
+        let site = Site {
+            from_m: self.world.arena.from_m,
+            to_m: self.world.arena.to_m,
+            walls: &self.world.walls,
+            boxes: &self.world.boxes,
+            start_m: [x_m, y_m],
+            robot: Size::of(&self.robot.plant.body),
+        };
+        let drawn = random.draw(&site, seed).ok_or_else(|| {
+            FileError::Setting(format!(
+                "world {}: no room for boxes and a goal with seed {seed}; make its arena larger, or ask for fewer groups or nearer goals in \
+                 [random]",
+                self.world.name
+            ))
+        })?;
+        let mut own = self.clone();
+        own.world.random = None;
+        own.world.boxes.extend(drawn.boxes);
+        for timed in &mut own.scenario.commands {
+            if timed.goal_of_world {
+                timed.command = goal_seen_from(&self.scenario.start, drawn.journey.goal_m);
+            }
+        }
+        own.world.journey = Some(drawn.journey);
+        Ok(Cow::Owned(own))
+    }
+
     /// What the robot must be told about the rig it carries, as control parameters.
     ///
     /// # Errors
@@ -146,6 +187,28 @@ impl Setup {
             .map(|(id, value)| (id, value as f32))
             .collect())
     }
+}
+
+/// The command to go to a point of the world, for a robot whose origin is the start.
+fn goal_seen_from(start: &Start, goal_m: Point) -> Command {
+    let (x_m, y_m) = (goal_m[0] - start.x_m, goal_m[1] - start.y_m);
+    let (sin, cos) = (libm::sin(start.heading_rad), libm::cos(start.heading_rad));
+    Command::Goal {
+        x_m: (cos * x_m + sin * y_m) as f32,
+        y_m: (cos * y_m - sin * x_m) as f32,
+    }
+}
+
+/// Complains about a goal that only a random world could give.
+fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result<(), FileError> {
+    let asks = scenario.commands.iter().any(|timed| timed.goal_of_world);
+    if !asks || world.random.is_some() {
+        return Ok(());
+    }
+    Err(FileError::Setting(format!(
+        "scenario {}: its goal is that of the world, and world {} has none; give a world with [random], or goal_m in place of goal",
+        scenario.name, world.name
+    )))
 }
 
 /// Complains about a start inside a wall or a box.

@@ -12,15 +12,24 @@
 //! centre_m = [0.5, 0.6]
 //! size_m = [0.4, 0.3]
 //! angle_deg = 20
+//! [random]               # groups of boxes and a goal besides, others for each seed; each key has a default
+//! groups = [2, 6]
+//! goal_away_m = [2, 4]
+//! unreachable = 0.1      # share of the seeds
+//! blocked = 0.8          # share of the others with something across the straight line
 //! ```
 
 use super::error::FileError;
 use super::read::{Allowed, Source, Table};
+use crate::random_world::{Journey, RandomWorld};
 use rumbo_plant::world::{Block, ShapeError, Wall, World};
 
 /// Coordinates of anything in a world.
 pub(crate) const PLACE: Allowed = Allowed::new(-50.0, 50.0, "m");
 const SIDE: Allowed = Allowed::new(0.01, 50.0, "m");
+const GROUPS: Allowed = Allowed::new(0.0, 20.0, "count");
+const AWAY: Allowed = Allowed::new(0.5, 15.0, "m");
+const SHARE: Allowed = Allowed::new(0.0, 1.0, "");
 const THICKNESS: Allowed = Allowed::new(0.0, 1.0, "m");
 pub(crate) const ANGLE: Allowed = Allowed::new(-360.0, 360.0, "deg");
 
@@ -39,6 +48,10 @@ pub struct WorldFile {
     pub walls: Vec<Wall>,
     /// Boxes, solid.
     pub boxes: Vec<Block>,
+    /// What every seed adds at random.
+    pub random: Option<RandomWorld>,
+    /// The goal of a seed's own world, and the truth about the way there.
+    pub journey: Option<Journey>,
 }
 
 /// A rectangle along the axes.
@@ -65,6 +78,9 @@ impl WorldFile {
         let (arena, mut walls) = read_arena(&root.table("arena"));
         walls.extend(root.tables("wall").into_iter().map(read_wall));
         let boxes = root.tables("box").into_iter().map(read_box).collect();
+        let random = root
+            .has("random")
+            .then(|| read_random(&root.table("random")));
         root.finish();
         source.verdict()?;
         Ok(Self {
@@ -74,6 +90,8 @@ impl WorldFile {
             arena,
             walls,
             boxes,
+            random,
+            journey: None,
         })
     }
 
@@ -112,6 +130,27 @@ fn read_arena(table: &Table<'_, '_>) -> (Arena, Vec<Wall>) {
         },
         walls,
     )
+}
+
+fn read_random(table: &Table<'_, '_>) -> RandomWorld {
+    let usual = RandomWorld::default();
+    let span = |key: &str, allowed: Allowed, usual: [f64; 2]| {
+        let [low, high] = table.pair(key, allowed).unwrap_or(usual);
+        if low > high {
+            table.complain_here(&format!("{key}: the smaller value stands first"));
+        }
+        [low, high]
+    };
+    let random = RandomWorld {
+        groups: span("groups", GROUPS, usual.groups),
+        goal_away_m: span("goal_away_m", AWAY, usual.goal_away_m),
+        unreachable: table
+            .number("unreachable", SHARE)
+            .unwrap_or(usual.unreachable),
+        blocked: table.number("blocked", SHARE).unwrap_or(usual.blocked),
+    };
+    table.finish();
+    random
 }
 
 fn read_wall(table: Table<'_, '_>) -> Wall {

@@ -3,6 +3,7 @@
 //! Some are given for every run, some depend on the mode; each step of a reference has a group of its own, named after its place in the
 //! scenario: `step1.settling_s`. Names end in their unit; docs/scenarios.md lists them all.
 
+mod journey;
 mod path;
 mod start;
 mod step;
@@ -38,7 +39,8 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
             start::dead_zones(trace, &mut metrics);
         }
         ModeId::WallHold | ModeId::WallFollow => wall::following(setup, sim, trace, &mut metrics),
-        ModeId::FrontAlign | ModeId::StraightLine | ModeId::Waypoints | ModeId::Mission => {}
+        ModeId::Mission => journey::journey(setup, sim, trace, &mut metrics),
+        ModeId::FrontAlign | ModeId::StraightLine | ModeId::Waypoints => {}
     }
     // A billionth of any unit is rounding, not behaviour.
     for value in metrics.values_mut() {

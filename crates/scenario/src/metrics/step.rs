@@ -52,7 +52,7 @@ impl Step {
 pub(super) fn steps(commands: &[TimedCommand], duration_s: f64) -> Vec<Step> {
     let (mut armed, mut reference) = (false, None);
     let mut steps: Vec<Step> = Vec::new();
-    for TimedCommand { at_s, command } in commands {
+    for TimedCommand { at_s, command, .. } in commands {
         match command {
             Command::Arm => armed = true,
             Command::Disarm | Command::Stop => armed = false,
@@ -273,7 +273,11 @@ mod tests {
 
     #[test]
     fn a_reference_set_before_arming_counts_from_the_arming() {
-        let at = |at_s, command| TimedCommand { at_s, command };
+        let at = |at_s, command| TimedCommand {
+            at_s,
+            command,
+            goal_of_world: false,
+        };
         let commands = [
             at(0.2, Command::Reference(0.3)),
             at(0.5, Command::Arm),

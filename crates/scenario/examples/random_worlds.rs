@@ -1,0 +1,94 @@
+//! Draws the random worlds of the first seeds with the shortest path in each, as SVG: the figure of docs/theory/random_worlds.md.
+//!
+//! `cargo run --release -p rumbo-scenario --example random_worlds > docs/img/random_worlds.svg`
+
+use rumbo_plant::world::Point;
+use rumbo_scenario::files::{FileError, Library, Overrides, Setup};
+
+const SEEDS: u64 = 15;
+const COLUMNS: u64 = 5;
+/// Pixels per metre.
+const SCALE: f64 = 34.0;
+/// Floor shown around the arena [m].
+const MARGIN_M: f64 = 0.4;
+
+fn main() -> Result<(), FileError> {
+    let setup = Library::new().setup("mode8-random", &Overrides::default())?;
+    let arena = setup.world.arena;
+    let [width, height] =
+        [0, 1].map(|axis| SCALE * (arena.to_m[axis] - arena.from_m[axis] + 2.0 * MARGIN_M));
+    let rows = SEEDS.div_ceil(COLUMNS);
+    println!(
+        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {:.0} {:.0}" font-family="sans-serif" font-size="11">"#,
+        COLUMNS as f64 * width,
+        rows as f64 * height
+    );
+    println!(r#"<rect width="100%" height="100%" fill="white"/>"#);
+    for index in 0..SEEDS {
+        let seed = index + 1;
+        let own = setup.of_seed(seed)?;
+        let (column, row) = (index % COLUMNS, index / COLUMNS);
+        println!(
+            r#"<g transform="translate({:.1} {:.1})">"#,
+            column as f64 * width,
+            row as f64 * height
+        );
+        draw(&own, seed);
+        println!("</g>");
+    }
+    println!("</svg>");
+    Ok(())
+}
+
+/// One world: boxes grey, start blue, goal red, shortest path green.
+fn draw(setup: &Setup, seed: u64) {
+    let arena = setup.world.arena;
+    let place = |[x_m, y_m]: Point| {
+        format!(
+            "{:.1},{:.1}",
+            SCALE * (x_m - arena.from_m[0] + MARGIN_M),
+            SCALE * (arena.to_m[1] - y_m + MARGIN_M)
+        )
+    };
+    let line = |points: &[Point]| {
+        points
+            .iter()
+            .copied()
+            .map(place)
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    let Ok(world) = setup.world.world() else {
+        return;
+    };
+    for obstacle in world.obstacles() {
+        let corners: Vec<Point> = obstacle.corners().collect();
+        println!(
+            r##"<polygon points="{}" fill="#bbb" stroke="#444" stroke-width="0.8"/>"##,
+            line(&corners)
+        );
+    }
+    let dot = |at: Point, radius_m: f64, color: &str| {
+        let at = place(at);
+        let (x, y) = at.split_once(',').unwrap_or_default();
+        println!(
+            r#"<circle cx="{x}" cy="{y}" r="{:.1}" fill="{color}"/>"#,
+            SCALE * radius_m
+        );
+    };
+    dot(
+        [setup.scenario.start.x_m, setup.scenario.start.y_m],
+        0.15,
+        "#46f",
+    );
+    if let Some(journey) = &setup.world.journey {
+        if let Some(path) = &journey.shortest {
+            println!(
+                r##"<polyline points="{}" fill="none" stroke="#182" stroke-width="1.6"/>"##,
+                line(&path.points_m)
+            );
+        }
+        dot(journey.goal_m, 0.09, "#d22");
+    }
+    println!(r#"<text x="16" y="11">seed {seed}</text>"#);
+}
