@@ -257,9 +257,10 @@ fn unknown_names_list_the_near_ones() {
         library.scenario("mode55").unwrap_err().to_string(),
         "unknown scenario `mode55`; did you mean `mode5` or `mode1`?"
     );
-    assert_eq!(
-        library.world("x").unwrap_err().to_string(),
-        "unknown world `x`; did you mean `open`, `random`, `room` or `wall_front`?"
+    let error = library.world("x").unwrap_err().to_string();
+    assert!(
+        error.starts_with("unknown world `x`; known are `") && error.contains("`wall_front`"),
+        "{error}"
     );
     let overrides = Overrides {
         rig: Some("front".into()),

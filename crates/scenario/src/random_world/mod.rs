@@ -65,8 +65,9 @@ impl Size {
         }
     }
 
-    /// A disc that the robot can surely follow: everything that is called reachable can be reached by it [m].
-    fn easy_m(&self) -> f64 {
+    /// Radius of a disc that finds a way to everything that is called reachable [m]: it takes no passage that is hard to drive.
+    #[must_use]
+    pub fn easy_m(&self) -> f64 {
         self.turning_m + 0.03
     }
 
