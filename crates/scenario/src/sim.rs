@@ -39,11 +39,9 @@ pub struct Sim {
     pending: Option<(u64, Outputs)>,
     duty: Wheels<Duty>,
     worst_reverse_rad_s: f64,
+    worst_contact_m_s: f64,
     sonar_faults: SonarFaults,
     noise: Noise,
-    worst_contact_m_s: f64,
-    /// Sonars whose trigger wire is cut, by `SonarId` number.
-    cut: [bool; 3],
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
 }
@@ -108,10 +106,9 @@ impl Sim {
             pending: None,
             duty: Wheels::default(),
             worst_reverse_rad_s: 0.0,
+            worst_contact_m_s: 0.0,
             sonar_faults,
             noise,
-            worst_contact_m_s: 0.0,
-            cut: [false; 3],
             outputs_us: (0, 0, 0),
         })
     }
