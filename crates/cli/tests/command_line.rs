@@ -70,8 +70,8 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
             "error: unexpected argument '--sed' found; tip: a similar argument exists: '--seed'; see `rumbo --help`",
         ),
         (
-            &["run", "mode55"],
-            "error: unknown scenario `mode55`; did you mean `mode5` or `mode1`?",
+            &["run", "fre"],
+            "error: unknown scenario `fre`; did you mean `free`?",
         ),
         (
             &["run", "mode1", "--world", "opne"],

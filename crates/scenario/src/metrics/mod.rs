@@ -39,7 +39,7 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
             start::dead_zones(trace, &mut metrics);
         }
         ModeId::WallHold | ModeId::WallFollow => wall::following(setup, sim, trace, &mut metrics),
-        ModeId::Mission => journey::journey(setup, sim, trace, &mut metrics),
+        ModeId::Mission => journey::journey(setup, sim.worst_contact_m_s(), trace, &mut metrics),
         ModeId::FrontAlign | ModeId::StraightLine | ModeId::Waypoints => {}
     }
     // A billionth of any unit is rounding, not behaviour.
