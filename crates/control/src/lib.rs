@@ -16,6 +16,7 @@ pub mod motion;
 pub mod odometry;
 pub mod params;
 pub mod pid;
+pub mod pursuit;
 pub mod range;
 pub mod rig;
 pub mod speed;
