@@ -70,6 +70,37 @@ fn a_scenario_may_let_sonars_fail() {
 }
 
 #[test]
+fn a_route_is_its_beginning_and_a_command_per_waypoint() {
+    use rumbo_wire::message::Waypoint;
+    let text = SCENARIO.replace("\"manual\"", "\"waypoints\"")
+        + "[[command]]\nat_s = 1\nroute_m = [[1, 0], [1, 0.5, 90]]\nrepeat = true\nframe = \"relative\"\n";
+    let scenario = ScenarioFile::parse("x", "scenarios/x.toml", &text).unwrap();
+    let waypoint = |x_m, y_m, heading_rad| {
+        Command::Waypoint(Waypoint {
+            x_m,
+            y_m,
+            heading_rad,
+        })
+    };
+    let sent: Vec<Command> = scenario
+        .commands
+        .iter()
+        .map(|timed| timed.command)
+        .collect();
+    assert_eq!(
+        sent,
+        [
+            Command::Route {
+                repeat: true,
+                relative: true
+            },
+            waypoint(1.0, 0.0, None),
+            waypoint(1.0, 0.5, Some(std::f32::consts::FRAC_PI_2)),
+        ]
+    );
+}
+
+#[test]
 fn a_file_on_disk_works_as_well_as_a_name() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/mode1.toml");
     let library = Library::new();
@@ -155,6 +186,26 @@ const WRONG_SCENARIOS: [(&str, &str); 19] = [
     (
         "[[command]]\nat_s = 1\narm = true\nstop = true",
         "scenarios/x.toml:7: [command[1]] has more than one action (arm, stop): give each its own [[command]]",
+    ),
+    (
+        "[[command]]\nat_s = 1\nroute_m = [[1, 0]]",
+        "scenarios/x.toml:7: [command[1]] route_m is for mode `waypoints`, and the mode here is `manual`",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmode = 7\n[[command]]\nat_s = 2\nroute_m = [\n  [1, 0],\n  [1, 30],\n]",
+        "scenarios/x.toml:14: command[2].route_m[2] = 30: must be within -20..20 m",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmode = 7\n[[command]]\nat_s = 2\nroute_m = [[1, 0],\n5]",
+        "scenarios/x.toml:13: command[2].route_m[2] = 5: must be [x, y] in m or [x, y, heading_deg]",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmode = 7\n[[command]]\nat_s = 2\nroute_m = 1",
+        "scenarios/x.toml:12: command[2].route_m = 1: must be a list of waypoints [x, y] in m or [x, y, heading_deg]",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmode = 7\n[[command]]\nat_s = 2\nroute_m = [[1, 0]]\nframe = \"map\"",
+        "scenarios/x.toml:13: command[2].frame = \"map\": must be \"absolute\" (from the origin) or \"relative\" (from where the robot starts)",
     ),
     (
         "[limits]\n\"a.b_m\" = { max = \"2\" }",

@@ -1,12 +1,29 @@
 //! Mode 7: a route of poses by odometry (memoria 4.3): turn, drive, turn.
 //!
+//! ```text
+//! turn:  heading error -> yaw rate that friction can still brake       (motion::turn; left is positive)
+//! drive: distance from the line -> heading -> yaw rate; way left -> speed       (motion::line; left of the line steers right)
+//! or, with `waypoint_tracker = 1`, a pure pursuit of all waypoints up to the next with a heading (pursuit)
+//! ```
+//!
 //! | state | does | leaves when | to |
 //! |---|---|---|---|
-//! | 0 wait | wheels released | both stand and there is a waypoint to go to: the line to it is fixed | 1 |
-//! | 1 turn | turns on the spot along the line | it faces along it | 2 |
-//! | 2 drive | follows the line to the waypoint | it stands at its end | 3, 0 if the waypoint has no heading |
-//! | 4 final turn | turns to the waypoint's heading; its place is no longer judged | it faces there | 0 |
-//! | 5 done | wheels released: the route is at its end, the event *reached* | a waypoint is appended | 0 |
+//! | 0 wait | wheels released | both stand and there is a waypoint: the line to it is fixed | 1, or 3 |
+//! | | | the robot is at the waypoint already | 4, 0 or 5 |
+//! | 1 turn | turns on the spot, along the line or to the lookahead | it faces there | 2, or 3 |
+//! | 2 drive | follows the line to the waypoint | it stands at its end | 4 if the waypoint has a heading, else 0 or 5 |
+//! | 3 pursue | follows the polyline without stopping | it stands at its end | 4, 0 or 5 |
+//! | | | it stands and the lookahead is far to a side | 1 |
+//! | 4 final turn | turns to the waypoint's heading; its place is no longer judged | it faces there | 0 or 5 |
+//! | 5 done | wheels released; the event *reached*, once, at the end of the route | a waypoint is appended | 0 |
+//!
+//! A new route or goal may come at any time: the robot stops and starts it from where it stands. A waypoint that is refused changes
+//! nothing; a route without waypoints waits. A line begins at the waypoint before, not where the robot happens to stand, so errors of the
+//! corners do not add up; the first begins where the robot starts.
+//!
+//! The report drives at the point itself, with tolerances of 5 degrees and 10 cm; here the line is followed and every stop is planned.
+//! Worst of 1,000 simulated robots against the real one, off the square by its own odometry: 0.6 cm instead of 6, 18.4 s instead of 30
+//! (`rumbo run mode7 --runs 1000`). Theory: docs/theory/waypoints.md.
 
 mod route;
 

@@ -138,9 +138,7 @@ pub(super) fn route(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
         })
         .collect();
     let samples = trace.between(asked.from_s, f64::INFINITY);
-    let before = poses.iter().rfind(|(t_s, _)| *t_s <= asked.from_s);
-    let (Some(first), Some(last), Some((_, odometry))) = (samples.first(), samples.last(), before)
-    else {
+    let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
         return;
     };
 
@@ -149,7 +147,9 @@ pub(super) fn route(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
         y_m: 0.0,
         heading_rad: 0.0,
     };
-    let by_odometry = asked.polyline(*odometry, nowhere);
+    // The original program sends no telemetry of ours.
+    let before = poses.iter().rfind(|(t_s, _)| *t_s <= asked.from_s);
+    let by_odometry = asked.polyline(before.map_or(nowhere, |(_, pose)| *pose), nowhere);
     let strayed_m: Vec<f64> = poses
         .iter()
         .filter(|(t_s, _)| *t_s > asked.from_s)

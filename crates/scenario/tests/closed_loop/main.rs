@@ -3,6 +3,7 @@
 #![cfg(test)]
 
 mod drive;
+mod mode_7;
 
 use rumbo_scenario::files::FileError;
 use rumbo_scenario::files::{Library, Overrides, Setup};
