@@ -126,7 +126,7 @@ fn scenario_error(text: &str) -> String {
 }
 
 /// What is added to a valid scenario, and the complaint it must give.
-const WRONG_SCENARIOS: [(&str, &str); 19] = [
+const WRONG_SCENARIOS: &[(&str, &str)] = &[
     (
         "[[sonar_fault]]\nat_s = 1\nsonar = \"front\"\nkind = \"broken\"",
         "scenarios/x.toml:10: sonar_fault[1].kind = broken: write \"cut\", \"stuck\", or \"spiking\" with share = 0.3",
@@ -227,7 +227,7 @@ const WRONG_SCENARIOS: [(&str, &str); 19] = [
 
 #[test]
 fn a_wrong_scenario_is_told_line_key_value_and_what_is_allowed() {
-    for (wrong, expected) in WRONG_SCENARIOS {
+    for &(wrong, expected) in WRONG_SCENARIOS {
         assert_eq!(scenario_error(&format!("{SCENARIO}{wrong}\n")), expected);
     }
 }
