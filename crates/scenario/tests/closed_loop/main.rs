@@ -2,6 +2,7 @@
 
 #![cfg(test)]
 
+mod along_a_wall;
 mod drive;
 mod mode_7;
 
