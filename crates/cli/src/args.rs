@@ -35,7 +35,7 @@ pub(crate) enum Command {
     Identify(IdentifyArgs),
     /// Check a CSV of the original program and convert it to a log (MCAP)
     Import(ImportArgs),
-    /// List scenarios, worlds, robots, modes and parameters
+    /// List modes, scenarios, worlds, rigs, robots and parameters
     List(ListArgs),
 }
 
@@ -45,7 +45,8 @@ pub(crate) enum Command {
 Examples:
   rumbo lab
   rumbo lab --scenario mode5 --speed 4
-  rumbo lab --scenario mode1 --world room --port 9000 --no-browser")]
+  rumbo lab --scenario mode1 --rig final --world room
+  rumbo lab --port 9000 --no-browser")]
 pub(crate) struct LabArgs {
     /// Scenario that the robot starts in: name or path
     #[arg(long, value_name = "NAME", default_value = "mode1")]
@@ -56,6 +57,9 @@ pub(crate) struct LabArgs {
     /// World instead of the scenario's own: name or path
     #[arg(long, value_name = "NAME")]
     pub(crate) world: Option<String>,
+    /// Rig instead of the scenario's own: where the sonars sit
+    #[arg(long, value_name = "NAME")]
+    pub(crate) rig: Option<String>,
     /// Port on 127.0.0.1; 0 takes any free one
     #[arg(long, value_name = "N", default_value_t = rumbo_station::DEFAULT_PORT)]
     pub(crate) port: u16,
@@ -77,6 +81,7 @@ Examples:
   rumbo run mode1
   rumbo run mode5 --runs 20 --json
   rumbo run mode5 --runs 20 --program original
+  rumbo run mode1 --rig final --world room
   rumbo run mode1 --seed 7 --param battery.open_circuit_v=6.9 --out out/mode1")]
 pub(crate) struct RunArgs {
     /// Scenarios: names, or paths of files
@@ -181,6 +186,7 @@ pub(crate) struct ImportArgs {
 #[command(after_help = "\
 Examples:
   rumbo list
+  rumbo list modes
   rumbo list parameters
   rumbo list scenarios --json")]
 pub(crate) struct ListArgs {
@@ -200,7 +206,9 @@ pub(crate) enum Topic {
     Worlds,
     /// Robots and their rigs
     Robots,
-    /// What the robot can do
+    /// Where the sonars of a robot can sit
+    Rigs,
+    /// What the robot can do: states, reference and its range
     Modes,
     /// Basic movements of mode `manual`
     Movements,

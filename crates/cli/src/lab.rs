@@ -3,11 +3,12 @@
 use crate::args::LabArgs;
 use crate::failure::Failure;
 use crate::output;
-use crate::scene::scene;
+use crate::scene::{first_commands, scene};
 use rumbo_control::Wheels;
 use rumbo_scenario::files::{FileError, Library, Overrides, Setup};
 use rumbo_scenario::sim::Sim;
 use rumbo_station::{Choice, LabConfig, MapPose, Scene, Simulation, Target, Truth};
+use rumbo_wire::Command;
 use std::io::Write;
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.
@@ -15,6 +16,7 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
     let choice = Choice {
         scenario: args.scenario.clone(),
         world: args.world.clone(),
+        rig: args.rig.clone(),
         seed: args.seed,
     };
     let robot = SimulatedRobot::new(args.robot.clone(), choice).map_err(Failure::input)?;
@@ -41,12 +43,13 @@ struct SimulatedRobot {
     robot: Option<String>,
     sim: Sim,
     scene: Scene,
+    first_commands: Vec<Command>,
 }
 
 impl SimulatedRobot {
     fn new(robot: Option<String>, choice: Choice) -> Result<Self, FileError> {
         let library = Library::new();
-        let (sim, mut scene) = prepare(&library, robot.clone(), choice)?;
+        let (sim, mut scene, first_commands) = prepare(&library, robot.clone(), choice)?;
         offer(&mut scene.scenarios, Some(&scene.choice.scenario));
         offer(&mut scene.worlds, scene.choice.world.as_ref());
         Ok(Self {
@@ -54,6 +57,7 @@ impl SimulatedRobot {
             robot,
             sim,
             scene,
+            first_commands,
         })
     }
 }
@@ -70,17 +74,18 @@ fn prepare(
     library: &Library,
     robot: Option<String>,
     choice: Choice,
-) -> Result<(Sim, Scene), FileError> {
+) -> Result<(Sim, Scene, Vec<Command>), FileError> {
     let overrides = Overrides {
         robot,
         world: choice.world.clone(),
+        rig: choice.rig.clone(),
         ..Overrides::default()
     };
     let setup: Setup = library.setup(&choice.scenario, &overrides)?;
     let setup = setup.of_seed(choice.seed)?;
     let sim = Sim::new(&setup, choice.seed)?;
     let scene = scene(library, &setup, choice)?;
-    Ok((sim, scene))
+    Ok((sim, scene, first_commands(&setup)))
 }
 
 impl Target for SimulatedRobot {
@@ -133,6 +138,10 @@ impl Simulation for SimulatedRobot {
         self.scene.clone()
     }
 
+    fn first_commands(&self) -> Vec<Command> {
+        self.first_commands.clone()
+    }
+
     fn reset(&mut self, choice: &Choice) -> Result<(), String> {
         // The page chooses among names it was given; it opens no files.
         let Scene {
@@ -144,13 +153,14 @@ impl Simulation for SimulatedRobot {
             return Err("no such scenario or world here; choose one of the list".into());
         }
         let fresh = prepare(&self.library, self.robot.clone(), choice.clone());
-        let (sim, scene) = fresh.map_err(|error| error.to_string())?;
+        let (sim, scene, first_commands) = fresh.map_err(|error| error.to_string())?;
         // What the command line added to the lists stays there.
         let Scene {
             scenarios, worlds, ..
         } = std::mem::take(&mut self.scene);
-        (self.sim, self.scene) = (
+        (self.sim, self.first_commands, self.scene) = (
             sim,
+            first_commands,
             Scene {
                 scenarios,
                 worlds,

@@ -6,7 +6,9 @@ use crate::output::{self, figure};
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
+use rumbo_plant::plant::{Mount, Rig};
 use rumbo_scenario::files::{FileError, Kind, Library, MOVEMENTS, parameters::exact};
+use rumbo_station::{ModeEntry, Reference, ReferenceKind};
 use serde_json::{Map, Value, json};
 
 /// Lists one topic, or all but the plant's numbers.
@@ -15,10 +17,11 @@ pub(crate) fn list(args: &ListArgs) -> Result<(), Failure> {
     let topics = match args.topic {
         Some(topic) => vec![topic],
         None => vec![
+            Topic::Modes,
             Topic::Scenarios,
             Topic::Worlds,
+            Topic::Rigs,
             Topic::Robots,
-            Topic::Modes,
             Topic::Parameters,
         ],
     };
@@ -44,6 +47,7 @@ fn name(topic: Topic) -> &'static str {
         Topic::Scenarios => "scenarios",
         Topic::Worlds => "worlds",
         Topic::Robots => "robots",
+        Topic::Rigs => "rigs",
         Topic::Modes => "modes",
         Topic::Movements => "movements",
         Topic::Parameters => "parameters",
@@ -58,7 +62,10 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
         Topic::Scenarios => {
             for name in library.list(Kind::Scenario) {
                 let file = library.scenario(&name).map_err(wrong)?;
-                entries.push(json!({ "name": name, "title": file.title }));
+                entries.push(
+                    json!({ "name": name, "title": file.title, "mode": file.mode.name(),
+                    "rig": file.rig, "world": file.world }),
+                );
             }
         }
         Topic::Worlds => {
@@ -75,11 +82,15 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
             }
         }
         Topic::Modes => {
-            entries.extend(
-                ModeId::ALL
-                    .iter()
-                    .map(|mode| json!({ "name": mode.name(), "number": *mode as u8 })),
-            );
+            entries.extend(rumbo_station::modes().iter().map(mode_entry));
+        }
+        Topic::Rigs => {
+            for robot in library.list(Kind::Robot) {
+                let file = library.robot(&robot).map_err(wrong)?;
+                entries.extend(file.rigs.iter().map(
+                    |(name, rig)| json!({ "name": name, "robot": robot, "sonars": sonars(rig) }),
+                ));
+            }
         }
         Topic::Movements => {
             entries.extend(MOVEMENTS.iter().map(|(_, name)| json!({ "name": name })))
@@ -98,16 +109,122 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
     Ok(entries)
 }
 
+/// A mode, with its reference in the units that people use.
+fn mode_entry(mode: &ModeEntry) -> Value {
+    let rpm = |rad_s: f32| (f64::from(rad_s) * 30.0 / std::f64::consts::PI).round();
+    let reference = mode.reference.map(|Reference { kind, min, max }| match kind {
+        ReferenceKind::Distance => {
+            let cm = |distance_m: f32| (f64::from(distance_m) * 1e3).round() / 10.0;
+            json!({ "what": "distance", "unit": "cm", "min": cm(min), "max": cm(max) })
+        }
+        ReferenceKind::WheelSpeed => {
+            json!({ "what": "speed of each wheel", "unit": "rpm", "min": rpm(min), "max": rpm(max) })
+        }
+        ReferenceKind::Speed => {
+            json!({ "what": "speed", "unit": "rpm", "min": rpm(min), "max": rpm(max) })
+        }
+        ReferenceKind::Goal => {
+            json!({ "what": "x and y", "unit": "m", "min": exact(min), "max": exact(max) })
+        }
+    });
+    json!({ "name": mode.name, "number": mode.id, "help": mode.about, "reference": reference, "states": mode.states })
+}
+
+/// Where each sonar of a rig looks.
+fn sonars(rig: &Rig) -> Map<String, Value> {
+    let mounts = [
+        ("left", rig.left),
+        ("right", rig.right),
+        ("front", rig.front),
+    ];
+    let carried = mounts
+        .into_iter()
+        .filter_map(|(name, mount)| Some((name, mount?)));
+    carried
+        .map(|(name, mount)| {
+            let Mount {
+                x_m,
+                y_m,
+                angle_rad,
+                on_servo,
+            } = mount;
+            let angle_deg = angle_rad.to_degrees().round();
+            let place =
+                json!({ "x_m": x_m, "y_m": y_m, "angle_deg": angle_deg, "on_servo": on_servo });
+            (name.to_owned(), place)
+        })
+        .collect()
+}
+
+/// A mode as a row: number, name, what it does, its reference, its states.
+fn mode_row(entry: &Value) -> Vec<String> {
+    let text = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
+    let reference = &entry["reference"];
+    let limit = |key: &str| reference[key].as_f64().map_or_else(String::new, figure);
+    let reference = match (reference["what"].as_str(), reference["unit"].as_str()) {
+        (Some(what), Some(unit)) => format!("{what} {}..{} {unit}", limit("min"), limit("max")),
+        _ => "no reference".into(),
+    };
+    let states: Vec<_> = entry["states"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_str)
+        .collect();
+    vec![
+        entry["number"].to_string(),
+        text("name"),
+        text("help"),
+        reference,
+        format!("states: {}", states.join(", ")),
+    ]
+}
+
+/// A rig as a row: name, robot, and where each sonar looks.
+fn rig_row(entry: &Value) -> Vec<String> {
+    let looks = |(name, mount): (&String, &Value)| {
+        let direction = match mount["angle_deg"].as_f64() {
+            Some(0.0) => "ahead".to_owned(),
+            Some(90.0) => "to the left".to_owned(),
+            Some(-90.0) => "to the right".to_owned(),
+            angle_deg => format!("at {} deg", figure(angle_deg.unwrap_or_default())),
+        };
+        let servo = if mount["on_servo"] == true {
+            ", on the servo"
+        } else {
+            ""
+        };
+        format!(
+            "{name} looks {direction}{servo} from ({}, {}) m",
+            mount["x_m"], mount["y_m"]
+        )
+    };
+    let sonars: Vec<_> = entry["sonars"]
+        .as_object()
+        .into_iter()
+        .flatten()
+        .map(looks)
+        .collect();
+    let text = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
+    vec![text("name"), text("robot"), sonars.join("; ")]
+}
+
 /// An entry as a row of a table: its name, then whatever it has of the rest.
 fn row(entry: &Value) -> Vec<String> {
+    if entry.get("states").is_some() {
+        return mode_row(entry);
+    }
+    if entry.get("sonars").is_some() {
+        return rig_row(entry);
+    }
     let text = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
     let number = |key: &str| entry[key].as_f64().map(figure);
     let mut row = vec![text("name")];
     if let (Some(min), Some(max), Some(default)) = (number("min"), number("max"), number("default"))
     {
         row.extend([default, format!("{min}..{max}"), text("unit"), text("help")]);
-    } else if let Some(number) = number("number") {
-        row.push(number);
+    } else if entry.get("rig").is_some() {
+        row.extend(["mode", "rig", "world", "title"].map(text));
     } else if let Some(rigs) = entry["rigs"].as_array() {
         let rigs: Vec<_> = rigs.iter().filter_map(Value::as_str).collect();
         row.push(format!("{} (rigs: {})", text("title"), rigs.join(", ")));

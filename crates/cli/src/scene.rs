@@ -3,8 +3,10 @@
 use rumbo_control::SonarId;
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::plant::Mount;
+use rumbo_scenario::files::TimedCommand;
 use rumbo_scenario::files::{FileError, Kind, Library, Setup};
-use rumbo_station::{Choice, MapPose, Obstacle, Scene, SonarMount};
+use rumbo_station::{Choice, MapPose, Obstacle, RoutePlan, Scene, SonarMount};
+use rumbo_wire::Command;
 
 /// The scene of a setup.
 pub(crate) fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, FileError> {
@@ -47,6 +49,10 @@ pub(crate) fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<
         choice,
         scenarios: library.list(Kind::Scenario),
         worlds: library.list(Kind::World),
+        rigs: robot.rigs.keys().cloned().collect(),
+        rig: scenario.rig.clone(),
+        goals: goals(&scenario.commands),
+        routes: routes(&scenario.commands),
         robot: robot.name.clone(),
         start: MapPose {
             x_m: scenario.start.x_m,
@@ -62,4 +68,103 @@ pub(crate) fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<
             .filter_map(|(id, mount)| Some(sonar(id, mount?)))
             .collect(),
     })
+}
+
+/// The commands that tell a robot what to do without making it do so: the mode, and what the experiment sets up to where it arms the
+/// robot, or its first setpoint after that.
+pub(crate) fn first_commands(setup: &Setup) -> Vec<Command> {
+    let commands = setup.scenario.commands.iter().map(|timed| timed.command);
+    let armed = |command: &Command| *command == Command::Arm;
+    let before: Vec<_> = commands
+        .clone()
+        .take_while(|command| !armed(command))
+        .filter(|command| matches!(command, Command::SetParam { .. }) || is_setpoint(command))
+        .collect();
+    let mut first = vec![Command::Mode(setup.scenario.mode)];
+    let set = before.iter().any(is_setpoint);
+    first.extend(before);
+    if !set {
+        // A route is several commands.
+        let mut later = commands.filter(is_setpoint);
+        first.extend(later.next());
+        first.extend(later.take_while(|command| matches!(command, Command::Waypoint(_))));
+    }
+    first
+}
+
+/// Says what to do. A movement does not: that is for the operator to begin.
+fn is_setpoint(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Reference(_)
+            | Command::WheelReference(_)
+            | Command::Goal { .. }
+            | Command::Lane
+            | Command::Route { .. }
+            | Command::Waypoint(_)
+    )
+}
+
+/// The goals of an experiment, each once.
+fn goals(commands: &[TimedCommand]) -> Vec<[f32; 2]> {
+    let mut goals = Vec::new();
+    for timed in commands {
+        if let Command::Goal { x_m, y_m } = timed.command
+            && !goals.contains(&[x_m, y_m])
+        {
+            goals.push([x_m, y_m]);
+        }
+    }
+    goals
+}
+
+/// The routes of an experiment.
+fn routes(commands: &[TimedCommand]) -> Vec<RoutePlan> {
+    let mut routes: Vec<RoutePlan> = Vec::new();
+    for timed in commands {
+        match (timed.command, routes.last_mut()) {
+            (Command::Route { repeat, relative }, _) => routes.push(RoutePlan {
+                repeat,
+                relative,
+                waypoints: Vec::new(),
+            }),
+            (Command::Waypoint(waypoint), Some(route)) => route.waypoints.push(waypoint.into()),
+            _ => {}
+        }
+    }
+    routes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rumbo_control::mode::ModeId;
+    use rumbo_scenario::files::Overrides;
+
+    #[test]
+    fn the_lab_begins_in_every_scenario_s_mode_and_never_armed_or_moving() {
+        let library = Library::new();
+        for name in library.list(Kind::Scenario) {
+            let setup = library.setup(&name, &Overrides::default()).unwrap();
+            let first = first_commands(&setup);
+            assert_eq!(first[0], Command::Mode(setup.scenario.mode), "{name}");
+            let starts = |command: &Command| matches!(command, Command::Arm | Command::Move { .. });
+            assert!(!first.iter().any(starts), "{name}");
+            // The station holds this many back at most.
+            assert!(first.len() <= 64, "{name}");
+        }
+        let setup = library.setup("mode1", &Overrides::default()).unwrap();
+        let expected = [
+            Command::Mode(ModeId::FrontDistance),
+            Command::Reference(0.3),
+        ];
+        assert_eq!(first_commands(&setup), expected);
+        let setup = library.setup("mode8-random", &Overrides::default());
+        let setup = setup.unwrap().of_seed(4).unwrap().into_owned();
+        let first = first_commands(&setup);
+        assert!(
+            matches!(first[..], [Command::Mode(_), Command::Goal { .. }]),
+            "{first:?}"
+        );
+    }
 }

@@ -56,7 +56,7 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         "far.toml",
         "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = 0\nduration_s = 1\n[start]\nx_m = -400\n",
     );
-    let cases: [(&[&str], &str); 19] = [
+    let cases: [(&[&str], &str); 21] = [
         (
             &["fly"],
             "error: unrecognized subcommand 'fly'; see `rumbo --help`",
@@ -84,6 +84,14 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         (
             &["run", "mode1", "--rig", "front"],
             "error: unknown rig `front`; did you mean `front_pair` or `front_single`?",
+        ),
+        (
+            &["lab", "--rig", "fnal"],
+            "error: unknown rig `fnal`; did you mean `final`?",
+        ),
+        (
+            &["lab", "--world", "opne"],
+            "error: unknown world `opne`; did you mean `open`?",
         ),
         (
             &["run", "far.toml"],
@@ -172,6 +180,20 @@ fn list_names_what_there_is() {
             .unwrap()
             .contains(&"front_single".into())
     );
+    let json: serde_json::Value =
+        serde_json::from_str(&stdout(&rumbo(&["list", "modes", "--json"]))).unwrap();
+    let modes = json["modes"].as_array().unwrap();
+    assert_eq!(modes.len(), 9);
+    for mode in modes {
+        assert!(!mode["help"].as_str().unwrap().is_empty(), "{mode}");
+        assert!(!mode["states"].as_array().unwrap().is_empty(), "{mode}");
+    }
+    let reference = serde_json::json!({"what": "distance", "unit": "cm", "min": 5.0, "max": 200.0});
+    assert_eq!(modes[1]["reference"], reference);
+    let modes = stdout(&rumbo(&["list", "modes"]));
+    assert!(modes.contains("distance 5..200 cm"), "{modes}");
+    let rigs = stdout(&rumbo(&["list", "rigs"]));
+    assert!(rigs.contains("front looks ahead, on the servo"), "{rigs}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What the robot says, when, and in which language.
 //!
-//! In binary: telemetry every fourth tick with the speeds of two ticks, status twice a second and at once when it
-//! changes, events and acknowledgements as they come. In text: the original's row for the mode whenever the link has
+//! In binary: telemetry every fourth tick with the speeds of two ticks, the heading reference before every second one if it
+//! changed, status twice a second and at once when it changes, events and acknowledgements as they come. In text: the original's row for the mode whenever the link has
 //! taken the row before, at most ten a second. The answer is in the language in which the robot was last addressed.
 
 use rumbo_control::mode::ModeId;
@@ -18,6 +18,8 @@ use crate::outbox::{Outbox, Priority};
 const TELEMETRY_TICKS: u8 = 4;
 /// The earlier of its two speed samples is so many ticks older: 20 ms.
 const SAMPLE_TICKS: u8 = 2;
+/// The heading reference with every so many telemetry frames at most: 12.5 Hz.
+const HEADING_FRAMES: u8 = 2;
 /// A status every so many ticks: 2 Hz.
 const STATUS_TICKS: u8 = 50;
 /// A text row every so many ticks at most: 10 Hz.
@@ -58,6 +60,9 @@ pub(crate) struct Reporter {
     last_status: Status,
     telemetry_in: u8,
     status_in: u8,
+    /// Telemetry frames until the heading reference may be sent again.
+    heading_in: u8,
+    last_heading_ref_rad: f32,
     row_in: u8,
     last_row_at: Micros,
     earlier_rad_s: Wheels<f32>,
@@ -77,6 +82,8 @@ impl Reporter {
             last_status: Status::default(),
             telemetry_in: TELEMETRY_TICKS,
             status_in: STATUS_TICKS,
+            heading_in: 0,
+            last_heading_ref_rad: 0.0,
             row_in: ROW_TICKS,
             last_row_at: Micros(0),
             earlier_rad_s: Wheels::both(0.0),
@@ -150,12 +157,17 @@ impl Reporter {
             self.status_due = false;
             self.status_in = STATUS_TICKS;
             self.last_status = *status;
+            // Should the last one have been lost: again, once there is one.
+            if self.last_heading_ref_rad != 0.0 {
+                self.last_heading_ref_rad = f32::NAN;
+            }
         }
         self.telemetry_in = self.telemetry_in.saturating_sub(1);
         match self.telemetry_in {
             SAMPLE_TICKS => self.earlier_rad_s = signals.wheel_rad_s,
             0 => {
                 self.telemetry_in = TELEMETRY_TICKS;
+                self.say_heading_ref(signals.heading_ref_rad);
                 let telemetry = Telemetry {
                     t_ms,
                     pose: signals.pose,
@@ -173,6 +185,19 @@ impl Reporter {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// Ahead of telemetry, so that the receiver has both of one instant.
+    fn say_heading_ref(&mut self, heading_rad: f32) {
+        self.heading_in = self.heading_in.saturating_sub(1);
+        let sent = self.heading_in == 0
+            && heading_rad.is_finite()
+            && heading_rad != self.last_heading_ref_rad
+            && self.say(Priority::Telemetry, &FromRobot::HeadingRef(heading_rad));
+        if sent {
+            self.heading_in = HEADING_FRAMES;
+            self.last_heading_ref_rad = heading_rad;
         }
     }
 
@@ -333,5 +358,55 @@ mod tests {
             }
         }
         assert_eq!(frames, 50);
+    }
+
+    /// What the station hears while the mode wants these headings, one per tick.
+    fn heard_of(headings_rad: impl Iterator<Item = f32>) -> std::vec::Vec<FromRobot> {
+        let mut reporter = Reporter::new(Hello {
+            protocol: PROTOCOL_VERSION,
+            schema: 0,
+            image: 0,
+            reset: ResetCause::PowerOn,
+        });
+        let mut decoder = Decoder::<64>::default();
+        let mut heard = std::vec::Vec::new();
+        for heading_ref_rad in headings_rad {
+            let signals = Signals {
+                heading_ref_rad,
+                ..Signals::default()
+            };
+            reporter.tick(Micros(0), 0, &Status::default(), &signals);
+            while let Some(byte) = reporter.transmit() {
+                if let Some(Received::Frame(body)) = decoder.push(byte) {
+                    heard.extend(FromRobot::from_body(&body));
+                }
+            }
+        }
+        heard
+    }
+
+    #[test]
+    fn a_heading_reference_that_moves_is_told_12_times_a_second_ahead_of_telemetry() {
+        let heard = heard_of((0..1_000u16).map(|tick| f32::from(tick) * 1e-3));
+        let places: std::vec::Vec<_> = (0..heard.len())
+            .filter(|place| matches!(heard[*place], FromRobot::HeadingRef(_)))
+            .collect();
+        assert!((120..=126).contains(&places.len()), "{}", places.len());
+        for place in places {
+            assert!(matches!(heard[place + 1], FromRobot::Telemetry(_)));
+        }
+    }
+
+    #[test]
+    fn a_heading_reference_that_rests_is_told_with_the_status_and_none_never() {
+        let count = |heading_rad| {
+            let heard = heard_of(core::iter::repeat_n(heading_rad, 1_000));
+            let headings = heard
+                .iter()
+                .filter(|message| matches!(message, FromRobot::HeadingRef(_)));
+            headings.count()
+        };
+        assert!((19..=22).contains(&count(0.5)), "{}", count(0.5));
+        assert_eq!(count(0.0), 0);
     }
 }

@@ -15,12 +15,7 @@ fn main() -> ExitCode {
     };
     let only: Vec<String> = args.collect();
     let mut all_met = true;
-    let row = |cells: [&str; 4]| {
-        let [what, required, measured, verdict] = cells;
-        println!("| {what:<61} | {required:<28} | {measured:<22} | {verdict:<6} |");
-    };
-    row(["what", "required", &format!("{seeds} seeds"), ""]);
-    println!("|{:-<63}|{:-<30}|{:-<24}|{:-<8}|", "", "", "", "");
+    println!("| what | required | {seeds} seeds | |\n|---|---|---|---|");
     let show = |finding: Finding| {
         let Finding {
             what,
@@ -29,7 +24,8 @@ fn main() -> ExitCode {
             met,
         } = finding;
         all_met &= met;
-        row([&what, &required, &measured, if met { "" } else { "MISSED" }]);
+        let verdict = if met { "" } else { "MISSED" };
+        println!("| {what} | {required} | {measured} | {verdict} |");
     };
     match campaign(seeds, &only, show) {
         Ok(()) if all_met => ExitCode::SUCCESS,

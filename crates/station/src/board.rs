@@ -5,6 +5,7 @@
 //! Nobody reads, nothing is made: rows become JSON in the connections.
 
 use crate::catalogue::ParameterState;
+use crate::errand::Errand;
 use crate::signals::Sample;
 use crate::target::Scene;
 use serde::Serialize;
@@ -89,6 +90,9 @@ pub(crate) struct RobotState {
     pub(crate) reference: [f32; 2],
     pub(crate) overruns: u8,
     pub(crate) servo_rad: f32,
+    /// Name of the rig that the robot believes to carry; `None` until it has said so.
+    pub(crate) rig: Option<&'static str>,
+    pub(crate) errand: Errand,
     /// The robot has another parameter table, or another protocol: its parameters are neither shown nor written.
     pub(crate) foreign: bool,
 }
@@ -290,6 +294,7 @@ fn take_new<T: Clone>(versioned: &Versioned<T>, seen: &mut u64) -> Option<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::target::MapPose;
     use rumbo_control::Wheels;
     use rumbo_control::mode::ModeId;
     use rumbo_wire::Telemetry;
@@ -299,7 +304,9 @@ mod tests {
             t_ms,
             mode: ModeId::Manual,
             reference: Wheels::both(0.0),
+            heading_ref_rad: 0.0,
             telemetry: Telemetry::default(),
+            origin: MapPose::default(),
             truth: None,
         }
     }

@@ -1,5 +1,6 @@
-//! What there is to choose and to set: modes, movements and parameters, as the page gets them.
+//! What there is to choose and to set: modes, movements and parameters, as the page and `rumbo list` get them.
 
+use rumbo_control::mode::waypoints::{FARTHEST_M, MAX_WAYPOINTS};
 use rumbo_control::mode::{
     MAX_DISTANCE_M, MAX_WALL_M, MAX_WHEEL_RAD_S, MIN_DISTANCE_M, MIN_WALL_M, ModeId,
 };
@@ -60,62 +61,109 @@ fn describe(id: ParamId) -> Entry {
 
 /// A mode to choose.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct ModeEntry {
-    id: u8,
-    name: &'static str,
+pub struct ModeEntry {
+    /// Its number.
+    pub id: u8,
+    /// Its name in files and commands.
+    pub name: &'static str,
+    /// What it does, in a few words.
+    pub about: &'static str,
     /// What its reference is, if it takes one.
-    reference: Option<Reference>,
+    pub reference: Option<Reference>,
     /// Takes basic movements.
-    movements: bool,
-    states: &'static [&'static str],
+    pub movements: bool,
+    /// Takes a route of at most so many places.
+    pub route: Option<usize>,
+    /// Follows a lane on command.
+    pub lane: bool,
+    /// The names of its states, by the number in the telemetry.
+    pub states: &'static [&'static str],
 }
 
 /// A mode's reference.
 #[derive(Clone, Copy, Debug, Serialize)]
-struct Reference {
-    kind: ReferenceKind,
-    min: f32,
-    max: f32,
+pub struct Reference {
+    /// What it is.
+    pub kind: ReferenceKind,
+    /// Smallest allowed value.
+    pub min: f32,
+    /// Largest allowed value.
+    pub max: f32,
 }
 
 /// What a mode's reference is, in SI units.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-enum ReferenceKind {
+pub enum ReferenceKind {
     /// A distance in metres.
     Distance,
     /// A speed of each wheel in rad/s.
     WheelSpeed,
+    /// One speed of both wheels in rad/s.
+    Speed,
+    /// A place: each coordinate in metres.
+    Goal,
 }
 
 /// The modes to choose from.
-pub(crate) fn modes() -> Vec<ModeEntry> {
+pub fn modes() -> Vec<ModeEntry> {
     ModeId::ALL.into_iter().map(mode_entry).collect()
+}
+
+/// What a mode's reference may be.
+pub(crate) fn reference(mode: ModeId) -> Option<Reference> {
+    match mode {
+        ModeId::Manual | ModeId::WallHold => None,
+        ModeId::WallFollow => Some(Reference {
+            kind: ReferenceKind::Distance,
+            min: MIN_WALL_M,
+            max: MAX_WALL_M,
+        }),
+        ModeId::FrontDistance | ModeId::FrontAlign => Some(Reference {
+            kind: ReferenceKind::Distance,
+            min: MIN_DISTANCE_M,
+            max: MAX_DISTANCE_M,
+        }),
+        ModeId::WheelSpeed | ModeId::StraightLine => Some(Reference {
+            kind: if mode == ModeId::WheelSpeed {
+                ReferenceKind::WheelSpeed
+            } else {
+                ReferenceKind::Speed
+            },
+            min: -MAX_WHEEL_RAD_S,
+            max: MAX_WHEEL_RAD_S,
+        }),
+        ModeId::Waypoints | ModeId::Mission => Some(Reference {
+            kind: ReferenceKind::Goal,
+            min: -FARTHEST_M,
+            max: FARTHEST_M,
+        }),
+    }
+}
+
+fn about(mode: ModeId) -> &'static str {
+    match mode {
+        ModeId::Manual => "basic movements, open loop or by speed",
+        ModeId::FrontDistance => "stop at a distance from the wall ahead",
+        ModeId::FrontAlign => "stop square to the wall ahead, at a distance from it",
+        ModeId::WallHold => "follow a wall at the distance at which the robot starts",
+        ModeId::WallFollow => "follow a wall at a commanded distance",
+        ModeId::WheelSpeed => "each wheel at a commanded speed",
+        ModeId::StraightLine => "straight on at a commanded speed",
+        ModeId::Waypoints => "visit the places of a route in turn, such as a square of 1 m",
+        ModeId::Mission => "reach a goal around obstacles, or follow a lane of boxes",
+    }
 }
 
 fn mode_entry(mode: ModeId) -> ModeEntry {
     ModeEntry {
         id: mode as u8,
         name: mode.name(),
-        reference: match mode {
-            ModeId::Manual | ModeId::WallHold | ModeId::Waypoints | ModeId::Mission => None,
-            ModeId::WallFollow => Some(Reference {
-                kind: ReferenceKind::Distance,
-                min: MIN_WALL_M,
-                max: MAX_WALL_M,
-            }),
-            ModeId::FrontDistance | ModeId::FrontAlign => Some(Reference {
-                kind: ReferenceKind::Distance,
-                min: MIN_DISTANCE_M,
-                max: MAX_DISTANCE_M,
-            }),
-            ModeId::WheelSpeed | ModeId::StraightLine => Some(Reference {
-                kind: ReferenceKind::WheelSpeed,
-                min: -MAX_WHEEL_RAD_S,
-                max: MAX_WHEEL_RAD_S,
-            }),
-        },
+        about: about(mode),
+        reference: reference(mode),
         movements: mode == ModeId::Manual,
+        route: (mode == ModeId::Waypoints).then_some(MAX_WAYPOINTS),
+        lane: mode == ModeId::Mission,
         states: mode.state_names(),
     }
 }

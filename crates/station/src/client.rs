@@ -78,6 +78,7 @@ pub struct RobotClient {
     last_heard_us: u64,
     mode: ModeId,
     reference: Wheels<f32>,
+    heading_ref_rad: f32,
     malformed: u32,
     up: Meter,
     down: Meter,
@@ -105,6 +106,7 @@ impl RobotClient {
             last_heard_us: 0,
             mode: ModeId::default(),
             reference: Wheels::both(0.0),
+            heading_ref_rad: 0.0,
             malformed: 0,
             up: Meter::default(),
             down: Meter::default(),
@@ -199,6 +201,7 @@ impl RobotClient {
                 ));
             }
             FromRobot::Ack(ack) => self.acknowledge(&ack, now_us),
+            FromRobot::HeadingRef(heading_rad) => self.heading_ref_rad = heading_rad,
         }
     }
 
@@ -239,6 +242,12 @@ impl RobotClient {
                 match outcome.command {
                     Command::Reference(_) => self.reference = Wheels::both(value),
                     Command::WheelReference(wheels) => self.reference = wheels,
+                    Command::Goal { x_m, y_m } if self.mode == ModeId::Mission => {
+                        self.reference = Wheels {
+                            left: x_m,
+                            right: y_m,
+                        };
+                    }
                     Command::Mode(mode) => self.mode = mode,
                     _ => {}
                 }
@@ -272,6 +281,11 @@ impl RobotClient {
     /// The mode's reference last reported; units as in [`Status::reference`].
     pub fn reference(&self) -> Wheels<f32> {
         self.reference
+    }
+
+    /// The heading that the mode wants, last reported [rad]; 0 where it wants none.
+    pub fn heading_ref_rad(&self) -> f32 {
+        self.heading_ref_rad
     }
 
     /// Load and quality of the link.

@@ -9,10 +9,12 @@ mod board;
 mod catalogue;
 pub mod client;
 pub mod commands;
+mod errand;
 mod guard;
 mod meter;
 mod observer;
 mod orders;
+mod origin;
 mod pace;
 mod robot_clock;
 mod round_trip;
@@ -24,5 +26,8 @@ mod target;
 mod web;
 mod words;
 
+pub use catalogue::{ModeEntry, Reference, ReferenceKind, modes};
 pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeError, serve};
-pub use target::{Choice, MapPose, Obstacle, Scene, Simulation, SonarMount, Target, Truth};
+pub use target::{
+    Choice, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation, SonarMount, Target, Truth,
+};

@@ -4,9 +4,13 @@ use crate::board::{Board, Level, LoggedEvent, State};
 use crate::catalogue::{self, ParameterState};
 use crate::client::{Heard, RobotClient};
 use crate::commands::{Fate, Outcome};
+use crate::errand::Errand;
+use crate::origin::Origin;
 use crate::signals::{EARLIER_MS, Sample, TruthLog};
 use crate::target::{Scene, Truth};
 use crate::words;
+use rumbo_control::Pose;
+use rumbo_control::rig::Rig;
 use rumbo_wire::{Command, EventKind, Hello, PROTOCOL_VERSION, Status, Telemetry};
 use std::sync::Arc;
 
@@ -15,6 +19,11 @@ pub(crate) struct Observer {
     board: Arc<Board>,
     status: Status,
     servo_rad: f32,
+    pose: Pose,
+    origin: Origin,
+    errand: Errand,
+    /// The rig that the robot says to carry.
+    rig: Option<Rig>,
     parameters: Vec<ParameterState>,
     truths: TruthLog,
     samples: Vec<Sample>,
@@ -29,6 +38,10 @@ impl Observer {
             board,
             status: Status::default(),
             servo_rad: 0.0,
+            pose: Pose::default(),
+            origin: Origin::default(),
+            errand: Errand::default(),
+            rig: None,
             parameters: unread_parameters(),
             truths: TruthLog::default(),
             samples: Vec::new(),
@@ -59,6 +72,16 @@ impl Observer {
         self.servo_rad
     }
 
+    /// What the robot is asked to reach, and what came of it.
+    pub(crate) fn errand(&self) -> &Errand {
+        &self.errand
+    }
+
+    /// The rig that the robot says to carry, once it has.
+    pub(crate) fn rig(&self) -> Option<Rig> {
+        self.rig
+    }
+
     /// A new value is on its way; whether there is such a parameter.
     pub(crate) fn parameter_pending(&mut self, id: u8) -> bool {
         let Some(parameter) = self.parameters.get_mut(usize::from(id)) else {
@@ -86,8 +109,10 @@ impl Observer {
         std::mem::take(&mut self.urgent)
     }
 
-    /// Puts the scene on the board.
-    pub(crate) fn show_scene(&self, scene: Option<Scene>) {
+    /// Puts the scene on the board; the robot's pose begins where it starts.
+    pub(crate) fn show_scene(&mut self, scene: Option<Scene>) {
+        let start = scene.as_ref().map(|scene| scene.start);
+        self.origin = Origin::new(start.unwrap_or_default());
         self.board.set_scene(scene);
     }
 
@@ -101,8 +126,15 @@ impl Observer {
         for item in heard.drain(..) {
             match item {
                 Heard::Telemetry(t_ms, telemetry) => self.sample(t_ms, telemetry, client),
-                Heard::Status(status) => self.status = status,
-                Heard::Event(t_ms, kind) => self.event(t_ms, kind),
+                Heard::Status(status) => {
+                    self.urgent |= self.rig != Some(status.rig);
+                    self.rig = Some(status.rig);
+                    self.status = status;
+                }
+                Heard::Event(t_ms, kind) => {
+                    self.errand.happened(kind, client.mode(), self.pose);
+                    self.event(t_ms, kind);
+                }
                 Heard::Ended(outcome) => self.end_command(&outcome, client, now_ms),
                 Heard::Connected(hello) => self.connected(hello, client.table_matches(), now_ms),
                 Heard::Restarted(hello) => {
@@ -128,12 +160,16 @@ impl Observer {
         self.urgent |= self.status.armed != telemetry.armed;
         self.status.armed = telemetry.armed;
         self.servo_rad = telemetry.servo_rad;
+        self.pose = telemetry.pose;
         let truth = self.truths.at(t_ms - EARLIER_MS).zip(self.truths.at(t_ms));
+        let true_pose = truth.map(|(_, at)| at.pose);
         self.samples.push(Sample {
             t_ms,
             mode: client.mode(),
             reference: client.reference(),
+            heading_ref_rad: client.heading_ref_rad(),
             telemetry,
+            origin: self.origin.follow(t_ms, telemetry.pose, true_pose),
             truth: truth.map(|(before, at)| [before, at]),
         });
     }
@@ -181,6 +217,9 @@ impl Observer {
     }
 
     fn end_command(&mut self, ended: &Outcome, client: &mut RobotClient, now_ms: i64) {
+        if matches!(ended.fate, Fate::Applied(_)) {
+            self.errand.applied(&ended.command, client.mode());
+        }
         match (ended.command, ended.fate) {
             (Command::SetParam { id, .. } | Command::GetParam { id }, fate) => {
                 if let Some(parameter) = self.parameters.get_mut(usize::from(id)) {
@@ -190,7 +229,9 @@ impl Observer {
                             parameter.value = Some(value);
                             None
                         }
-                        Fate::Refused(why) => Some(words::refusal(why, &ended.command)),
+                        Fate::Refused(why) => {
+                            Some(words::refusal(why, &ended.command, client.mode()))
+                        }
                         Fate::Superseded | Fate::Expired | Fate::RobotRestarted => {
                             Some("not confirmed".into())
                         }
@@ -205,10 +246,13 @@ impl Observer {
             Fate::Applied(_) => Level::Info,
             _ => Level::Warning,
         };
-        // That a value was read is no event.
+        // That a value was read is no event, nor each place of a route.
         if !matches!(
             (ended.command, ended.fate),
-            (Command::GetParam { .. }, Fate::Applied(_))
+            (
+                Command::GetParam { .. } | Command::Waypoint(_),
+                Fate::Applied(_)
+            )
         ) {
             self.note(now_ms, level, words::outcome(ended, client.mode()));
         }

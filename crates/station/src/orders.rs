@@ -2,7 +2,10 @@
 
 use crate::target::Choice;
 use rumbo_control::Wheels;
+use rumbo_control::mode::waypoints::{MAX_WAYPOINTS, Waypoint};
 use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::params::ParamId;
+use rumbo_control::rig::Rig;
 use rumbo_wire::{Command, Level};
 use serde::Deserialize;
 use std::fmt;
@@ -17,6 +20,10 @@ const MAX_NAME: usize = 100;
 pub(crate) enum Order {
     /// A command for the robot.
     Robot(Command),
+    /// A movement that lasts while the page repeats it, as long as a key is held down.
+    Hold(Command),
+    /// A route for the robot: the command that begins it and its places.
+    Route(Vec<Command>),
     /// Seconds of the target per second of the wall clock; 0 pauses.
     Speed(f64),
     /// Start the simulation again.
@@ -35,7 +42,7 @@ pub(crate) fn stop_first(mut waiting: Vec<Order>, stop: bool) -> Vec<Order> {
         Some(last) => waiting.split_off(last + 1),
         None => Vec::new(),
     };
-    waiting.retain(|order| !matches!(order, Order::Robot(_)));
+    waiting.retain(|order| matches!(order, Order::Speed(_) | Order::Reset(_)));
     [vec![Order::Robot(Command::Stop)], waiting, newer].concat()
 }
 
@@ -70,10 +77,28 @@ enum Message {
     MoveDuty {
         movement: u8,
         duty: f32,
+        #[serde(default)]
+        held: bool,
     },
     MoveSpeed {
         movement: u8,
         speed_rad_s: f32,
+        #[serde(default)]
+        held: bool,
+    },
+    Goal {
+        x_m: f32,
+        y_m: f32,
+    },
+    Lane {},
+    Route {
+        repeat: bool,
+        relative: bool,
+        waypoints: Vec<Place>,
+    },
+    Waypoint(Place),
+    Rig {
+        rig: String,
     },
     SetParam {
         id: u8,
@@ -87,8 +112,20 @@ enum Message {
     Reset {
         scenario: String,
         world: Option<String>,
+        #[serde(default)]
+        rig: Option<String>,
         seed: u64,
     },
+}
+
+/// A place of a route, as it is written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Place {
+    x_m: f32,
+    y_m: f32,
+    #[serde(default)]
+    heading_rad: Option<f32>,
 }
 
 /// The order in a page's text.
@@ -112,13 +149,32 @@ pub(crate) fn parse(text: &str) -> Result<Order, BadOrder> {
             left: finite("left", left)?,
             right: finite("right", right)?,
         })),
-        Message::MoveDuty { movement, duty } => {
-            move_order(movement, Level::Duty(finite("duty", duty)?))?
-        }
+        Message::MoveDuty {
+            movement,
+            duty,
+            held,
+        } => move_order(movement, Level::Duty(finite("duty", duty)?), held)?,
         Message::MoveSpeed {
             movement,
             speed_rad_s,
-        } => move_order(movement, Level::Speed(finite("speed_rad_s", speed_rad_s)?))?,
+            held,
+        } => move_order(
+            movement,
+            Level::Speed(finite("speed_rad_s", speed_rad_s)?),
+            held,
+        )?,
+        Message::Goal { x_m, y_m } => Order::Robot(Command::Goal {
+            x_m: finite("x_m", x_m)?,
+            y_m: finite("y_m", y_m)?,
+        }),
+        Message::Lane {} => Order::Robot(Command::Lane),
+        Message::Route {
+            repeat,
+            relative,
+            waypoints,
+        } => route(Command::Route { repeat, relative }, waypoints)?,
+        Message::Waypoint(place) => Order::Robot(waypoint(place)?),
+        Message::Rig { rig } => Order::Robot(rig_command(&rig)?),
         Message::SetParam { id, value } => Order::Robot(Command::SetParam {
             id,
             value: finite("value", value)?,
@@ -134,16 +190,21 @@ pub(crate) fn parse(text: &str) -> Result<Order, BadOrder> {
         Message::Reset {
             scenario,
             world,
+            rig,
             seed,
         } => {
-            if scenario.len() > MAX_NAME
-                || world.as_ref().is_some_and(|world| world.len() > MAX_NAME)
+            let names = [Some(&scenario), world.as_ref(), rig.as_ref()];
+            if names
+                .into_iter()
+                .flatten()
+                .any(|name| name.len() > MAX_NAME)
             {
                 return Err(BadOrder(format!("a name is longer than {MAX_NAME} bytes")));
             }
             Order::Reset(Choice {
                 scenario,
                 world,
+                rig,
                 seed,
             })
         }
@@ -151,12 +212,54 @@ pub(crate) fn parse(text: &str) -> Result<Order, BadOrder> {
     Ok(order)
 }
 
-fn move_order(movement: u8, level: Level) -> Result<Order, BadOrder> {
+/// A route in the commands that make it.
+fn route(begin: Command, places: Vec<Place>) -> Result<Order, BadOrder> {
+    if places.is_empty() || places.len() > MAX_WAYPOINTS {
+        let count = places.len();
+        return Err(BadOrder(format!(
+            "a route has 1 to {MAX_WAYPOINTS} waypoints, not {count}"
+        )));
+    }
+    let waypoints = places.into_iter().map(waypoint);
+    let commands = std::iter::once(Ok(begin)).chain(waypoints);
+    Ok(Order::Route(commands.collect::<Result<_, _>>()?))
+}
+
+fn waypoint(place: Place) -> Result<Command, BadOrder> {
+    Ok(Command::Waypoint(Waypoint {
+        x_m: finite("x_m", place.x_m)?,
+        y_m: finite("y_m", place.y_m)?,
+        heading_rad: match place.heading_rad {
+            Some(heading_rad) => Some(finite("heading_rad", heading_rad)?),
+            None => None,
+        },
+    }))
+}
+
+/// Tells the robot which sonars it carries.
+fn rig_command(name: &str) -> Result<Command, BadOrder> {
+    let rig = Rig::ALL.into_iter().find(|rig| rig.name() == name);
+    let rig = rig.ok_or_else(|| {
+        let known = Rig::ALL.map(Rig::name).join(", ");
+        BadOrder(format!("there is no rig `{name}`; known are {known}"))
+    })?;
+    Ok(Command::SetParam {
+        id: ParamId::Rig as u8,
+        value: f32::from(rig as u8),
+    })
+}
+
+fn move_order(movement: u8, level: Level, held: bool) -> Result<Order, BadOrder> {
     let movement = Movement::ALL
         .into_iter()
         .find(|each| *each as u8 == movement)
         .ok_or_else(|| BadOrder(format!("there is no movement {movement}")))?;
-    Ok(Order::Robot(Command::Move { movement, level }))
+    let command = Command::Move { movement, level };
+    Ok(if held {
+        Order::Hold(command)
+    } else {
+        Order::Robot(command)
+    })
 }
 
 /// A number too large for the robot's 32 bits has become infinite.
@@ -190,9 +293,53 @@ mod tests {
             Order::Reset(Choice {
                 scenario: "mode1".into(),
                 world: None,
+                rig: None,
                 seed: 3
             })
         );
+    }
+
+    #[test]
+    fn a_goal_a_lane_and_a_rig_are_commands_and_a_route_is_several() {
+        let robot = |text| match parse(text).unwrap() {
+            Order::Robot(command) => command,
+            other => panic!("{other:?}"),
+        };
+        let goal = Command::Goal {
+            x_m: 1.0,
+            y_m: -0.5,
+        };
+        assert_eq!(robot(r#"{"type":"goal","x_m":1,"y_m":-0.5}"#), goal);
+        assert_eq!(robot(r#"{"type":"lane"}"#), Command::Lane);
+        let rig = Command::SetParam {
+            id: ParamId::Rig as u8,
+            value: 1.0,
+        };
+        assert_eq!(robot(r#"{"type":"rig","rig":"front_pair"}"#), rig);
+        let turned = Waypoint {
+            x_m: 1.0,
+            y_m: 2.0,
+            heading_rad: Some(1.5),
+        };
+        let appended = robot(r#"{"type":"waypoint","x_m":1,"y_m":2,"heading_rad":1.5}"#);
+        assert_eq!(appended, Command::Waypoint(turned));
+        let route = r#"{"type":"route","repeat":true,"relative":false,
+            "waypoints":[{"x_m":1,"y_m":2,"heading_rad":1.5},{"x_m":0,"y_m":0}]}"#;
+        let begin = Command::Route {
+            repeat: true,
+            relative: false,
+        };
+        let last = Command::Waypoint(Waypoint::default());
+        let expected = vec![begin, Command::Waypoint(turned), last];
+        assert_eq!(parse(route).unwrap(), Order::Route(expected));
+    }
+
+    #[test]
+    fn a_movement_is_held_only_when_the_page_says_so() {
+        let text = r#"{"type":"move_duty","movement":1,"duty":0.3}"#;
+        assert!(matches!(parse(text).unwrap(), Order::Robot(_)));
+        let text = r#"{"type":"move_duty","movement":1,"duty":0.3,"held":true}"#;
+        assert!(matches!(parse(text).unwrap(), Order::Hold(_)));
     }
 
     #[test]
@@ -200,6 +347,8 @@ mod tests {
         let robot = Order::Robot;
         let waiting = vec![
             robot(Command::Arm),
+            Order::Hold(Command::Arm),
+            Order::Route(vec![Command::Lane]),
             Order::Speed(2.0),
             robot(Command::Stop),
             robot(Command::ClearFault),
@@ -235,6 +384,20 @@ mod tests {
             (
                 r#"{"type":"move_duty","movement":99,"duty":0.1}"#,
                 "no movement 99",
+            ),
+            (r#"{"type":"goal","x_m":1}"#, "missing field `y_m`"),
+            (r#"{"type":"goal","x_m":1,"y_m":1e300}"#, "y_m is too large"),
+            (
+                r#"{"type":"route","repeat":true,"relative":true,"waypoints":[]}"#,
+                "1 to 16 waypoints, not 0",
+            ),
+            (
+                r#"{"type":"waypoint","x_m":1,"y_m":1,"z_m":1}"#,
+                "unknown field `z_m`",
+            ),
+            (
+                r#"{"type":"rig","rig":"front"}"#,
+                "no rig `front`; known are front_single",
             ),
         ] {
             let said = parse(text).unwrap_err().to_string();

@@ -4,14 +4,16 @@
 //! speed factor ([`Pace`]); feeds what arrived to the [`RobotClient`] and what that heard to the [`Observer`], who
 //! keeps the board up to date. Nothing waits for a page.
 
-use crate::board::{Board, Level, LinkState, RobotState, State};
+use crate::board::{self, Board, LinkState, RobotState, State};
 use crate::client::{Heard, KnownTable, RobotClient};
 use crate::observer::Observer;
 use crate::orders::{self, MAX_SPEED, Order};
 use crate::pace::{Pace, SLICE_US};
 use crate::target::{Choice, Target};
 use crate::words;
-use rumbo_wire::Command;
+use rumbo_control::mode::Movement;
+use rumbo_control::rig::Rig;
+use rumbo_wire::{Command, Level};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
@@ -25,6 +27,8 @@ const WAKE_PAUSED: Duration = Duration::from_millis(250);
 const ROUND: Duration = Duration::from_millis(20);
 /// The slow state is noted this often, and at once when it matters.
 const STATE_PERIOD: Duration = Duration::from_millis(200);
+/// A movement that a key holds ends this long after the page last said that it is held: a page that is gone lets go.
+const HOLD: Duration = Duration::from_millis(600);
 
 /// Where orders come from.
 pub(crate) struct Orders {
@@ -43,6 +47,10 @@ pub(crate) struct Session {
     pace: Pace,
     simulated: bool,
     state_noted: Option<Instant>,
+    /// The movement that a key holds, and until when without a word from the page.
+    held: Option<(Command, Instant)>,
+    /// The robot has been told what to begin with.
+    briefed: bool,
     /// Kept to spare allocations.
     heard: Vec<Heard>,
     bytes: Vec<u8>,
@@ -69,6 +77,8 @@ impl Session {
             }),
             simulated,
             state_noted: None,
+            held: None,
+            briefed: false,
             heard: Vec::new(),
             bytes: Vec::new(),
         }
@@ -81,7 +91,7 @@ impl Session {
     pub(crate) fn run(mut self) -> Result<(), String> {
         let ended = self.run_until_ended();
         if let Err(why) = &ended {
-            self.note(Level::Fault, format!("the robot is gone: {why}"));
+            self.note(board::Level::Fault, format!("the robot is gone: {why}"));
         }
         ended
     }
@@ -108,6 +118,7 @@ impl Session {
             for order in orders::stop_first(waiting, stop) {
                 self.obey(order)?;
             }
+            self.let_go()?;
             self.live()?;
             self.publish();
         }
@@ -115,13 +126,23 @@ impl Session {
 
     fn obey(&mut self, order: Order) -> Result<(), String> {
         match order {
-            Order::Robot(command) => return self.command(command),
+            Order::Robot(command) => {
+                self.held = None;
+                return self.command(command);
+            }
+            Order::Hold(command) => return self.hold(command),
+            Order::Route(commands) => {
+                self.held = None;
+                for command in commands {
+                    self.command(command)?;
+                }
+            }
             Order::Speed(factor) if self.simulated => {
                 self.pace = Pace::new(factor);
                 self.state_noted = None;
             }
             Order::Speed(_) => self.note(
-                Level::Warning,
+                board::Level::Warning,
                 "speed: refused, a real robot lives at its own".into(),
             ),
             Order::Reset(choice) => self.reset(&choice),
@@ -142,9 +163,42 @@ impl Session {
         self.send()
     }
 
+    /// Begins a movement, or goes on with the same one.
+    fn hold(&mut self, command: Command) -> Result<(), String> {
+        let same = self.held.is_some_and(|(held, _)| held == command);
+        self.held = Some((command, Instant::now() + HOLD));
+        if same { Ok(()) } else { self.command(command) }
+    }
+
+    /// Ends a movement that nobody holds any more.
+    fn let_go(&mut self) -> Result<(), String> {
+        let over = |(_, until): &mut (Command, Instant)| Instant::now() >= *until;
+        match self.held.take_if(over) {
+            Some(_) => self.command(Command::Move {
+                movement: Movement::Stop,
+                level: Level::Duty(0.0),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Tells a simulated robot that has just been found what to begin with.
+    fn brief(&mut self) -> Result<(), String> {
+        if self.briefed || !self.client.connected() {
+            return Ok(());
+        }
+        self.briefed = true;
+        let simulation = self.target.simulation();
+        let commands = simulation.map_or_else(Vec::new, |simulation| simulation.first_commands());
+        commands
+            .into_iter()
+            .filter(|command| *command != Command::Arm)
+            .try_for_each(|command| self.command(command))
+    }
+
     fn refuse(&mut self, command: &Command, why: &str) -> Result<(), String> {
         let asked = words::command(command, self.client.mode());
-        self.note(Level::Warning, format!("{asked}: refused, {why}"));
+        self.note(board::Level::Warning, format!("{asked}: refused, {why}"));
         Ok(())
     }
 
@@ -162,15 +216,17 @@ impl Session {
     fn reset(&mut self, choice: &Choice) {
         let Some(simulation) = self.target.simulation() else {
             return self.note(
-                Level::Warning,
+                board::Level::Warning,
                 "reset: refused, this is a real robot".into(),
             );
         };
         if let Err(why) = simulation.reset(choice) {
-            return self.note(Level::Warning, format!("reset: refused, {why}"));
+            return self.note(board::Level::Warning, format!("reset: refused, {why}"));
         }
         self.client = new_client(self.simulated);
         self.heard.clear();
+        self.held = None;
+        self.briefed = false;
         self.observer.start_run();
         self.pace = Pace::new(self.pace.speed);
         self.state_noted = None;
@@ -180,9 +236,16 @@ impl Session {
             .as_ref()
             .map(|world| format!(" in world {world}"))
             .unwrap_or_default();
+        let rig = choice.rig.as_ref();
+        let rig = rig
+            .map(|rig| format!(" with rig {rig}"))
+            .unwrap_or_default();
         self.note(
-            Level::Info,
-            format!("reset: {}{world}, seed {}", choice.scenario, choice.seed),
+            board::Level::Info,
+            format!(
+                "reset: {}{world}{rig}, seed {}",
+                choice.scenario, choice.seed
+            ),
         );
     }
 
@@ -211,6 +274,7 @@ impl Session {
             self.send()?;
             self.observer
                 .digest(&mut self.heard, &mut self.client, to_ms(now_us));
+            self.brief()?;
             if now.elapsed() >= ROUND {
                 break;
             }
@@ -218,7 +282,7 @@ impl Session {
         Ok(())
     }
 
-    fn note(&mut self, level: Level, text: String) {
+    fn note(&mut self, level: board::Level, text: String) {
         self.observer.note(to_ms(self.target.now_us()), level, text);
     }
 
@@ -280,6 +344,8 @@ impl Session {
                 reference: [reference.left, reference.right],
                 overruns: status.overruns,
                 servo_rad: self.observer.servo_rad(),
+                rig: self.observer.rig().map(Rig::name),
+                errand: self.observer.errand().clone(),
                 foreign: self.client.hello().is_some() && !self.client.table_matches(),
             },
         }

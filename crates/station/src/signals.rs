@@ -1,6 +1,6 @@
 //! Samples of the signals: what the robot said of one instant, beside what was really the case.
 
-use crate::target::Truth;
+use crate::target::{MapPose, Truth};
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Range, Wheels};
 use rumbo_wire::Telemetry;
@@ -16,8 +16,12 @@ pub(crate) struct Sample {
     pub mode: ModeId,
     /// The mode's reference; units as in [`rumbo_wire::Status::reference`].
     pub reference: Wheels<f32>,
+    /// The heading that the mode wants \[rad\]; 0 where it wants none.
+    pub heading_ref_rad: f32,
     /// What the robot said.
     pub telemetry: Telemetry,
+    /// Place in the world of the origin of its pose.
+    pub origin: MapPose,
     /// What was the case [`EARLIER_MS`] before and at `t_ms`; `None` with a real robot.
     pub truth: Option<[Truth; 2]>,
 }
@@ -63,7 +67,7 @@ impl Cell {
 }
 
 /// Values in a row.
-const COLUMNS: usize = 33;
+const COLUMNS: usize = 38;
 
 impl Sample {
     /// The row of this sample, each value with its name. The page finds the values by the names.
@@ -89,6 +93,11 @@ impl Sample {
             ("x_m", Cell::number(said.pose.x_m)),
             ("y_m", Cell::number(said.pose.y_m)),
             ("heading_rad", Cell::number(said.pose.heading_rad)),
+            ("heading_ref_rad", Cell::number(self.heading_ref_rad)),
+            ("origin_x_m", Cell::number(self.origin.x_m)),
+            ("origin_y_m", Cell::number(self.origin.y_m)),
+            ("origin_heading_rad", Cell::number(self.origin.heading_rad)),
+            ("servo_rad", Cell::number(said.servo_rad)),
             ("left_before_rad_s", Cell::number(before.left)),
             ("right_before_rad_s", Cell::number(before.right)),
             ("left_rad_s", Cell::number(at.left)),
@@ -132,7 +141,9 @@ impl Sample {
             t_ms: 0,
             mode: ModeId::default(),
             reference: Wheels::both(0.0),
+            heading_ref_rad: 0.0,
             telemetry: Telemetry::default(),
+            origin: MapPose::default(),
             truth: None,
         };
         empty.named_row().map(|(name, _)| name)
@@ -192,7 +203,9 @@ mod tests {
             t_ms: 1_040,
             mode: ModeId::FrontDistance,
             reference: Wheels::both(0.3),
+            heading_ref_rad: 0.0,
             telemetry,
+            origin: MapPose::default(),
             truth: None,
         };
         let json = serde_json::to_value(sample.row()).unwrap();

@@ -5,6 +5,8 @@
 //! through [`Simulation`], and goes to the eyes only: commands and measurements take the link, as with a real robot.
 
 use rumbo_control::Wheels;
+use rumbo_control::mode::waypoints::Waypoint;
+use rumbo_wire::Command;
 use serde::Serialize;
 
 /// A robot at the other end of a byte link.
@@ -43,6 +45,11 @@ pub trait Simulation {
 
     /// What surrounds the robot and what could be chosen instead; constant between resets.
     fn scene(&self) -> Scene;
+
+    /// What a robot that has just started is told first: the mode and the setpoints of the experiment. Never to arm.
+    fn first_commands(&self) -> Vec<Command> {
+        Vec::new()
+    }
 
     /// Starts again from time 0 with the choice given.
     ///
@@ -89,6 +96,14 @@ pub struct Scene {
     pub scenarios: Vec<String>,
     /// Names of the worlds to choose from.
     pub worlds: Vec<String>,
+    /// Names of the rigs to choose from.
+    pub rigs: Vec<String>,
+    /// Name of the rig that the robot carries.
+    pub rig: String,
+    /// The goals of the experiment, from the origin \[m\].
+    pub goals: Vec<[f32; 2]>,
+    /// The routes of the experiment.
+    pub routes: Vec<RoutePlan>,
     /// Name of the robot.
     pub robot: String,
     /// Pose of the odometry's origin in the world: the estimated pose is drawn from here.
@@ -103,6 +118,43 @@ pub struct Scene {
     pub wheel_radius_m: f64,
     /// The rig's sonars.
     pub sonars: Vec<SonarMount>,
+}
+
+/// The places of a route.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct RoutePlan {
+    /// Starts over at the end.
+    pub repeat: bool,
+    /// As seen from where the robot starts, not from the origin.
+    pub relative: bool,
+    /// The places.
+    pub waypoints: Vec<Place>,
+}
+
+/// A place of a route.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Place {
+    /// Forward of the origin \[m\].
+    pub x_m: f32,
+    /// Left of the origin \[m\].
+    pub y_m: f32,
+    /// Heading to turn to there \[rad\].
+    pub heading_rad: Option<f32>,
+}
+
+impl From<Waypoint> for Place {
+    fn from(waypoint: Waypoint) -> Self {
+        let Waypoint {
+            x_m,
+            y_m,
+            heading_rad,
+        } = waypoint;
+        Self {
+            x_m,
+            y_m,
+            heading_rad,
+        }
+    }
 }
 
 /// A wall or a box, seen from above.
@@ -136,6 +188,8 @@ pub struct Choice {
     pub scenario: String,
     /// Name of the world; `None` for the scenario's own.
     pub world: Option<String>,
+    /// Name of the rig; `None` for the scenario's own.
+    pub rig: Option<String>,
     /// Seed of everything random.
     pub seed: u64,
 }

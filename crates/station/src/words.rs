@@ -1,8 +1,9 @@
 //! What commands and answers are called, for people: cm, rpm and % instead of SI.
 
-use crate::catalogue;
+use crate::catalogue::{self, Reference, ReferenceKind};
 use crate::commands::{Fate, Outcome};
 use rumbo_control::mode::ModeId;
+use rumbo_control::mode::waypoints::{FARTHEST_M, MAX_WAYPOINTS};
 use rumbo_wire::message::Waypoint;
 use rumbo_wire::{Command, Level, Refusal};
 use std::f32::consts::TAU;
@@ -63,7 +64,10 @@ pub(crate) fn outcome(outcome: &Outcome, mode: ModeId) -> String {
     let asked = command(&outcome.command, mode);
     match outcome.fate {
         Fate::Applied(_) => format!("{asked}: done"),
-        Fate::Refused(why) => format!("{asked}: refused, {}", refusal(why, &outcome.command)),
+        Fate::Refused(why) => {
+            let why = refusal(why, &outcome.command, mode);
+            format!("{asked}: refused, {why}")
+        }
         Fate::Superseded => format!("{asked}: given up, STOP came after it"),
         Fate::Expired => format!("{asked}: given up, the robot did not answer in time"),
         Fate::RobotRestarted => format!("{asked}: given up, the robot started again"),
@@ -71,16 +75,71 @@ pub(crate) fn outcome(outcome: &Outcome, mode: ModeId) -> String {
 }
 
 /// Why the robot refused, with what is allowed where that is known here.
-pub(crate) fn refusal(why: Refusal, command: &Command) -> String {
+pub(crate) fn refusal(why: Refusal, command: &Command, mode: ModeId) -> String {
     match (why, command) {
         (Refusal::OutOfRange, Command::SetParam { id, .. }) => match catalogue::entry(*id) {
             Some(entry) => format!("allowed is {} to {} {}", entry.min, entry.max, entry.unit),
             None => "out of range".into(),
         },
+        (
+            Refusal::OutOfRange,
+            Command::Reference(_) | Command::WheelReference(_) | Command::Goal { .. },
+        ) => allowed(mode).unwrap_or_else(|| why.explanation().into()),
+        (Refusal::OutOfRange, Command::Waypoint(_)) => format!(
+            "allowed is -{FARTHEST_M} to {FARTHEST_M} m for each coordinate, and {MAX_WAYPOINTS} waypoints"
+        ),
         _ => why.explanation().into(),
     }
 }
 
+/// What the mode's reference may be.
+fn allowed(mode: ModeId) -> Option<String> {
+    let Reference { kind, min, max } = catalogue::reference(mode)?;
+    Some(match kind {
+        ReferenceKind::Distance => {
+            format!("allowed is {:.1} to {:.1} cm", min * 100.0, max * 100.0)
+        }
+        ReferenceKind::WheelSpeed | ReferenceKind::Speed => {
+            format!("allowed is {:.0} to {:.0} rpm", rpm(min), rpm(max))
+        }
+        ReferenceKind::Goal => format!("allowed is {min} to {max} m for each coordinate"),
+    })
+}
+
 fn parameter(id: u8) -> String {
     catalogue::entry(id).map_or_else(|| format!("parameter {id}"), |entry| entry.name.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_out_of_range_is_refused_with_what_is_allowed_in_the_mode() {
+        let goal = Command::Goal {
+            x_m: 90.0,
+            y_m: 0.0,
+        };
+        for (command, mode, allowed) in [
+            (
+                Command::Reference(9.0),
+                ModeId::FrontDistance,
+                "5.0 to 200.0 cm",
+            ),
+            (
+                Command::Reference(9.0),
+                ModeId::WallFollow,
+                "10.0 to 150.0 cm",
+            ),
+            (
+                Command::Reference(99.0),
+                ModeId::StraightLine,
+                "-191 to 191 rpm",
+            ),
+            (goal, ModeId::Mission, "-20 to 20 m for each coordinate"),
+        ] {
+            let said = refusal(Refusal::OutOfRange, &command, mode);
+            assert_eq!(said, format!("allowed is {allowed}"));
+        }
+    }
 }

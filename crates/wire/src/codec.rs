@@ -45,6 +45,10 @@ impl Message for FromRobot {
             FromRobot::Status(status) => put_status(&mut to, status),
             FromRobot::Event(event) => put_event(&mut to, event),
             FromRobot::Ack(ack) => put_ack(&mut to, ack),
+            FromRobot::HeadingRef(heading_rad) => {
+                to.put(to_turn(*heading_rad).to_le_bytes());
+                Kind::HeadingRef
+            }
         };
         Frame::new(kind, seq, to.payload())
     }
@@ -57,6 +61,7 @@ impl Message for FromRobot {
             Kind::Status => FromRobot::Status(status(&mut from)?),
             Kind::Event => FromRobot::Event(event(&mut from)?),
             Kind::Ack => FromRobot::Ack(ack(&mut from)?),
+            Kind::HeadingRef => FromRobot::HeadingRef(from_turn(from.u16()?)),
             Kind::StationHello | Kind::Heartbeat | Kind::Command => {
                 return Err(Malformed::Direction);
             }

@@ -33,6 +33,8 @@ pub enum Kind {
     Event = 4,
     /// [`crate::FromRobot::Ack`].
     Ack = 5,
+    /// [`crate::FromRobot::HeadingRef`].
+    HeadingRef = 6,
     /// [`crate::ToRobot::Hello`].
     StationHello = 8,
     /// [`crate::ToRobot::Heartbeat`].
@@ -43,12 +45,13 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 8] = [
+    pub const ALL: [Kind; 9] = [
         Kind::RobotHello,
         Kind::Telemetry,
         Kind::Status,
         Kind::Event,
         Kind::Ack,
+        Kind::HeadingRef,
         Kind::StationHello,
         Kind::Heartbeat,
         Kind::Command,

@@ -22,6 +22,9 @@ pub enum FromRobot {
     Event(Event),
     /// What became of a command.
     Ack(Ack),
+    /// The heading that the mode wants [rad], ahead of the telemetry of the same instant; sent with 2 pi / 65536 when it has
+    /// changed, 12.5 times a second at most, and with every status. 0 where the mode wants none.
+    HeadingRef(f32),
 }
 
 /// From the station to the robot.

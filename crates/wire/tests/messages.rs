@@ -60,7 +60,7 @@ proptest! {
     fn what_the_robot_says_arrives(sent in from_robot()) {
         let back = received(&sent);
         match sent {
-            FromRobot::Telemetry(_) | FromRobot::Status(_) => {
+            FromRobot::Telemetry(_) | FromRobot::Status(_) | FromRobot::HeadingRef(_) => {
                 prop_assert_eq!(core::mem::discriminant(&back), core::mem::discriminant(&sent));
                 // Quantised once, it changes no more.
                 prop_assert_eq!(received(&back), back);

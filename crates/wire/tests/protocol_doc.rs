@@ -106,6 +106,10 @@ fn the_numbers_of_the_tables_are_right() {
             FromRobot::Status(Status::default()).frame(0),
             "3 | robot | status",
         ),
+        (
+            FromRobot::HeadingRef(0.0).frame(0),
+            "6 | robot | heading reference",
+        ),
         (ToRobot::Hello.frame(0), "8 | station | HELLO"),
         (ToRobot::Heartbeat.frame(0), "9 | station | heartbeat"),
     ];

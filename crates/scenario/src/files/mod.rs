@@ -13,7 +13,6 @@ mod near;
 pub mod parameters;
 mod read;
 mod robot;
-mod route;
 mod scenario;
 mod setup;
 mod value;

@@ -56,6 +56,7 @@ impl Default for Toy {
             choice: Choice {
                 scenario: "toy".into(),
                 world: None,
+                rig: None,
                 seed: 1,
             },
             applied: Vec::new(),
@@ -287,6 +288,10 @@ impl Simulation for Toy {
             choice: self.choice.clone(),
             scenarios: vec!["toy".into()],
             worlds: vec!["wall".into()],
+            rigs: vec!["final".into()],
+            rig: "final".into(),
+            goals: vec![[1.0, 0.5]],
+            routes: Vec::new(),
             robot: "toy".into(),
             start: MapPose::default(),
             obstacles: vec![Obstacle {

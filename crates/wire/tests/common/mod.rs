@@ -60,7 +60,7 @@ prop_compose! {
     }
 }
 
-/// Everything but telemetry, status and the values of acknowledgements comes back exactly.
+/// Everything but telemetry, status, headings and the values of acknowledgements comes back exactly.
 pub(crate) fn from_robot() -> impl Strategy<Value = FromRobot> {
     let hello = (
         any::<(u8, u32, u32)>(),
@@ -101,7 +101,8 @@ pub(crate) fn from_robot() -> impl Strategy<Value = FromRobot> {
         telemetry().prop_map(FromRobot::Telemetry),
         status().prop_map(FromRobot::Status),
         event,
-        ack
+        ack,
+        (-3.1f32..3.1).prop_map(FromRobot::HeadingRef)
     ]
 }
 
