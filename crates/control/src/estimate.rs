@@ -163,6 +163,7 @@ impl Estimator {
                 let (_, cos) = sin_cos(view.axis_rad);
                 filter.predict(estimate.rolled_m * cos);
             }
+            filter.moved(abs(estimate.rolled_m));
             if let Some(reading) = estimate.reading
                 && reading.sonar == sonar
                 && (sonar != SonarId::Front || abs(reading.servo_rad) < AHEAD_RAD)

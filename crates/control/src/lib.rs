@@ -8,6 +8,7 @@
 //! the polynomials of [`math`] are used. Nothing here panics, allocates, loops without bound or formats text.
 #![no_std]
 
+pub mod beside;
 pub mod drive;
 pub mod estimate;
 pub mod math;
@@ -16,6 +17,7 @@ pub mod motion;
 pub mod odometry;
 pub mod params;
 pub mod pid;
+pub mod pursuit;
 pub mod range;
 pub mod rig;
 pub mod speed;

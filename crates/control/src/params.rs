@@ -98,6 +98,7 @@ const fn fnv(mut hash: u32, bytes: &[u8]) -> u32 {
 
 const FRONT: Option<ModeId> = Some(ModeId::FrontDistance);
 const WALL: Option<ModeId> = Some(ModeId::WallFollow);
+const WAYPOINTS: Option<ModeId> = Some(ModeId::Waypoints);
 const MANUAL: Option<ModeId> = Some(ModeId::Manual);
 
 table! {
@@ -189,6 +190,16 @@ table! {
     LineHeading = "line_heading_kp", "1/s", 5.0, 0.0 => 20.0, None;
     /// Straight lines: way left that is good enough.
     LineTolerance = "line_tolerance_m", "m", 0.004, 0.001 => 0.1, None;
+    /// Pure pursuit: lookahead per speed.
+    PursuitTime = "pursuit_lookahead_s", "s", 0.5, 0.05 => 5.0, None;
+    /// Pure pursuit: shortest lookahead.
+    PursuitLeast = "pursuit_lookahead_m", "m", 0.12, 0.02 => 2.0, None;
+    /// Pure pursuit: distance between points, of which the one after the nearest is the lookahead, as in the report; 0: by the speed.
+    PursuitSpacing = "pursuit_spacing_m", "m", 0.0, 0.0 => 2.0, None;
+    /// Pure pursuit: largest sideways acceleration, which limits the speed in bends.
+    PursuitSide = "pursuit_side_m_s2", "m/s2", 0.4, 0.01 => 10.0, None;
+    /// What follows a route: 0 turns, drives and turns, 1 pure pursuit.
+    WaypointTracker = "waypoint_tracker", "1", 0.0, 0.0 => 1.0, WAYPOINTS;
     /// Inner wheel's speed over the outer one's in arcs.
     ArcRatio = "arc_ratio", "1", 0.5, 0.0 => 1.0, MANUAL;
     /// Largest approach speed.

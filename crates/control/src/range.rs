@@ -21,6 +21,10 @@ const GIVE_IN: u8 = 5;
 const FAULTY_AFTER: u8 = 3;
 /// Answers without an echo in a row that make the road clear.
 const CLEAR_AFTER: u8 = 3;
+/// Answers in a row that are the same to the microsecond: echoes of a sonar on the move differ by some, so it is stuck.
+const STUCK_AFTER: u8 = 8;
+/// Way in which they must have come [m].
+const STUCK_WAY_M: f32 = 0.03;
 /// Gain on the distance at close range, where readings err by a millimetre.
 const GAIN_NEAR: f32 = 0.45;
 /// Gain on the distance at 1 m and beyond, where they err by centimetres.
@@ -59,6 +63,10 @@ pub struct RangeFilter {
     refused: u8,
     clear: u8,
     faulty: u8,
+    /// The last distance answered, as it was, how often it came again, and the way of the sonar since it first came.
+    last_m: f32,
+    repeated: u8,
+    way_m: f32,
     range: Range,
     updated: Micros,
     ever: bool,
@@ -74,6 +82,21 @@ impl RangeFilter {
             self.distance_m = max(self.distance_m - closer_m + self.rate_m_s * TICK_S, 0.0);
             self.range = Range::Valid(self.distance_m);
         }
+    }
+
+    /// The sonar has moved so far over the floor since the last tick, in whichever direction.
+    pub fn moved(&mut self, way_m: f32) {
+        self.way_m = min(self.way_m + way_m, 2.0 * STUCK_WAY_M);
+    }
+
+    /// Whether the same distance has come so often, although the sonar moved, that it is stuck.
+    fn is_stuck(&mut self, range_m: f32) -> bool {
+        if range_m == self.last_m {
+            self.repeated = self.repeated.saturating_add(1);
+        } else {
+            (self.last_m, self.repeated, self.way_m) = (range_m, 0, 0.0);
+        }
+        self.repeated >= STUCK_AFTER && self.way_m >= STUCK_WAY_M
     }
 
     /// Takes an answer of the sonar.
@@ -92,6 +115,10 @@ impl RangeFilter {
                 }
             }
             Range::Valid(range_m) => {
+                if self.is_stuck(range_m) {
+                    self.declare(Range::Faulty, now);
+                    return;
+                }
                 self.clear = 0;
                 self.faulty = 0;
                 self.take_distance(range_m, now);
@@ -238,6 +265,24 @@ mod tests {
             filter.take(Range::Valid(0.8), now);
         }
         assert!((distance(&filter, now) - 0.8).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_same_answer_for_ever_is_a_stuck_sonar_if_the_robot_moves_and_a_wall_if_it_stands() {
+        let (mut filter, mut now) = fed(&[Range::Valid(0.5); 30]);
+        assert!((distance(&filter, now) - 0.5).abs() < 1e-6);
+        for _ in 0..=STUCK_AFTER {
+            filter.moved(0.01);
+            now = now.after(60_000);
+            filter.take(Range::Valid(0.5), now);
+        }
+        assert_eq!(filter.range(now).range, Range::Faulty);
+        for step in 0..20u8 {
+            filter.moved(0.01);
+            now = now.after(60_000);
+            filter.take(Range::Valid(0.5 + 2e-4 * f32::from(step)), now);
+        }
+        assert!((distance(&filter, now) - 0.5).abs() < 0.01);
     }
 
     #[test]

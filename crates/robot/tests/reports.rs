@@ -175,3 +175,23 @@ fn milliseconds_wrap_after_65_s_and_not_with_the_microseconds() {
     );
     assert!(telemetry.last().is_some_and(|last| last.t_ms < 5_000));
 }
+
+#[test]
+fn in_mode_7_the_text_shows_speeds_references_pose_and_pwm_as_the_original_did() {
+    let mut bench = Bench::alive();
+    bench.heartbeats = false;
+    for line in ["MODE 7", "GOAL 0.5 0", "ON"] {
+        bench.line(line);
+        bench.ticks(5);
+    }
+    bench.ticks(100);
+    let Ok(Row::Waypoints(row)) = Row::parse(bench.lines.last().unwrap()) else {
+        panic!("{:?}", bench.lines.last())
+    };
+    assert!(row.x_m > 0.05 && row.y_m.abs() < 0.05, "{row:?}");
+    assert!(
+        row.reference_rpm.left > 20.0 && row.wheel_rpm.right > 20.0,
+        "{row:?}"
+    );
+    assert!(row.pwm.left > 0 && row.heading_deg.abs() < 20.0, "{row:?}");
+}

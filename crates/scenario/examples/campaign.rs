@@ -15,7 +15,12 @@ fn main() -> ExitCode {
     };
     let only: Vec<String> = args.collect();
     let mut all_met = true;
-    println!("| what | required | {seeds} seeds | |\n|---|---|---|---|");
+    let row = |cells: [&str; 4]| {
+        let [what, required, measured, verdict] = cells;
+        println!("| {what:<61} | {required:<28} | {measured:<22} | {verdict:<6} |");
+    };
+    row(["what", "required", &format!("{seeds} seeds"), ""]);
+    println!("|{:-<63}|{:-<30}|{:-<24}|{:-<8}|", "", "", "", "");
     let show = |finding: Finding| {
         let Finding {
             what,
@@ -24,8 +29,7 @@ fn main() -> ExitCode {
             met,
         } = finding;
         all_met &= met;
-        let verdict = if met { "" } else { "MISSED" };
-        println!("| {what} | {required} | {measured} | {verdict} |");
+        row([&what, &required, &measured, if met { "" } else { "MISSED" }]);
     };
     match campaign(seeds, &only, show) {
         Ok(()) if all_met => ExitCode::SUCCESS,

@@ -70,6 +70,37 @@ fn a_scenario_may_let_sonars_fail() {
 }
 
 #[test]
+fn a_route_is_its_beginning_and_a_command_per_waypoint() {
+    use rumbo_wire::message::Waypoint;
+    let text = SCENARIO.replace("\"manual\"", "\"waypoints\"")
+        + "[[command]]\nat_s = 1\nroute_m = [[1, 0], [1, 0.5, 90]]\nrepeat = true\nframe = \"relative\"\n";
+    let scenario = ScenarioFile::parse("x", "scenarios/x.toml", &text).unwrap();
+    let waypoint = |x_m, y_m, heading_rad| {
+        Command::Waypoint(Waypoint {
+            x_m,
+            y_m,
+            heading_rad,
+        })
+    };
+    let sent: Vec<Command> = scenario
+        .commands
+        .iter()
+        .map(|timed| timed.command)
+        .collect();
+    assert_eq!(
+        sent,
+        [
+            Command::Route {
+                repeat: true,
+                relative: true
+            },
+            waypoint(1.0, 0.0, None),
+            waypoint(1.0, 0.5, Some(std::f32::consts::FRAC_PI_2)),
+        ]
+    );
+}
+
+#[test]
 fn a_file_on_disk_works_as_well_as_a_name() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/mode1.toml");
     let library = Library::new();
@@ -95,7 +126,7 @@ fn scenario_error(text: &str) -> String {
 }
 
 /// What is added to a valid scenario, and the complaint it must give.
-const WRONG_SCENARIOS: [(&str, &str); 18] = [
+const WRONG_SCENARIOS: &[(&str, &str)] = &[
     (
         "[[sonar_fault]]\nat_s = 1\nsonar = \"front\"\nkind = \"broken\"",
         "scenarios/x.toml:10: sonar_fault[1].kind = broken: write \"cut\", \"stuck\", or \"spiking\" with share = 0.3",
@@ -157,12 +188,36 @@ const WRONG_SCENARIOS: [(&str, &str); 18] = [
         "scenarios/x.toml:7: [command[1]] has more than one action (arm, stop): give each its own [[command]]",
     ),
     (
+        "[[command]]\nat_s = 1\nroute_m = [[1, 0]]",
+        "scenarios/x.toml:7: [command[1]] route_m is for mode `waypoints`, and the mode here is `manual`",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmode = 7\n[[command]]\nat_s = 2\nroute_m = [\n  [1, 0],\n  [1, 30],\n]",
+        "scenarios/x.toml:14: command[2].route_m[2] = 30: must be within -20..20 m",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmode = 7\n[[command]]\nat_s = 2\nroute_m = [[1, 0],\n5]",
+        "scenarios/x.toml:13: command[2].route_m[2] = 5: must be [x, y] in m or [x, y, heading_deg]",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmode = 7\n[[command]]\nat_s = 2\nroute_m = 1",
+        "scenarios/x.toml:12: command[2].route_m = 1: must be a list of waypoints [x, y] in m or [x, y, heading_deg]",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmode = 7\n[[command]]\nat_s = 2\nroute_m = [[1, 0]]\nframe = \"map\"",
+        "scenarios/x.toml:13: command[2].frame = \"map\": must be \"absolute\" (from the origin) or \"relative\" (from where the robot starts)",
+    ),
+    (
         "[limits]\n\"a.b_m\" = { max = \"2\" }",
         "scenarios/x.toml:8: limits.a.b_m.max = \"2\": must be a number, without quotes",
     ),
     (
         "[plant.battery]\nopen_circuit_mv = 7400",
         "scenarios/x.toml:8: plant.battery.open_circuit_mv = 7400: unknown key; the key is `open_circuit_v`, in v and not in mv: open_circuit_v = 7.4",
+    ),
+    (
+        "[[command]]\nat_s = 0\nmode = \"mission\"\n[[command]]\nat_s = 1\ngoal = \"here\"",
+        "scenarios/x.toml:12: command[2].goal = \"here\": must be \"world\", the goal of a random world; a place is goal_m = [x, y]",
     ),
     (
         "[start\nx_m = 1",
@@ -172,7 +227,7 @@ const WRONG_SCENARIOS: [(&str, &str); 18] = [
 
 #[test]
 fn a_wrong_scenario_is_told_line_key_value_and_what_is_allowed() {
-    for (wrong, expected) in WRONG_SCENARIOS {
+    for &(wrong, expected) in WRONG_SCENARIOS {
         assert_eq!(scenario_error(&format!("{SCENARIO}{wrong}\n")), expected);
     }
 }
@@ -236,6 +291,65 @@ fn wrong_worlds_and_robots_are_told_what_is_wrong() {
 }
 
 #[test]
+fn a_random_world_is_checked_and_a_fixed_one_has_no_goal_to_give() {
+    let text = "title = \"t\"\n[random]\ngroups = [6, 2]\ngoal_away_m = [0, 4]\nblocked = 2\n";
+    assert_eq!(
+        WorldFile::parse("x", "worlds/x.toml", text)
+            .unwrap_err()
+            .to_string(),
+        "worlds/x.toml:2: [random] groups: the smaller value stands first\n\
+         worlds/x.toml:4: random.goal_away_m = 0: must be within 0.5..15 m\n\
+         worlds/x.toml:5: random.blocked = 2: must be within 0..1"
+    );
+    let overrides = Overrides {
+        world: Some("room".into()),
+        ..Overrides::default()
+    };
+    let error = Library::new()
+        .setup("mode8-random", &overrides)
+        .unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "scenario mode8-random: its goal is that of the world, and world room has none; give a world with [random], or goal_m in place of goal"
+    );
+}
+
+#[test]
+fn a_random_world_without_room_says_so() {
+    let mut setup = Library::new()
+        .setup("mode8-random", &Overrides::default())
+        .unwrap();
+    setup.world.arena.to_m = [0.5, 0.5];
+    let error = setup.of_seed(1).unwrap_err().to_string();
+    assert!(
+        error.starts_with("world random: no room for boxes and a goal with seed 1;"),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_goal_of_the_world_is_told_from_where_the_robot_starts() {
+    let mut setup = Library::new()
+        .setup("mode8-random", &Overrides::default())
+        .unwrap();
+    setup.scenario.start.y_m = 0.5;
+    setup.scenario.start.heading_rad = std::f64::consts::FRAC_PI_2;
+    let own = setup.of_seed(4).unwrap();
+    let [goal_x_m, goal_y_m] = own.world.journey.as_ref().unwrap().goal_m;
+    let Command::Goal { x_m, y_m } = own.scenario.commands[1].command else {
+        panic!("{:?}", own.scenario.commands);
+    };
+    assert!(
+        (f64::from(x_m) - (goal_y_m - 0.5)).abs() < 1e-6,
+        "ahead is the world's y"
+    );
+    assert!(
+        (f64::from(y_m) + goal_x_m).abs() < 1e-6,
+        "left is against the world's x"
+    );
+}
+
+#[test]
 fn a_robot_cannot_start_inside_a_box() {
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("inside.toml");
     let text = SCENARIO.replace("\"open\"", "\"room\"") + "[start]\nx_m = 1.6\n";
@@ -254,8 +368,8 @@ fn a_robot_cannot_start_inside_a_box() {
 fn unknown_names_list_the_near_ones() {
     let library = Library::new();
     assert_eq!(
-        library.scenario("mode55").unwrap_err().to_string(),
-        "unknown scenario `mode55`; did you mean `mode5` or `mode1`?"
+        library.scenario("fre").unwrap_err().to_string(),
+        "unknown scenario `fre`; did you mean `free`?"
     );
     let error = library.world("x").unwrap_err().to_string();
     assert!(

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::Figure;
 use crate::project::{Project, output};
 
-const SCENARIOS: [&str; 2] = ["mode1", "mode5"];
+const SCENARIOS: [&str; 3] = ["mode1", "mode5", "mode8-random"];
 
 /// Wall time to measure over.
 const LONG_ENOUGH: Duration = Duration::from_secs(4);

@@ -13,6 +13,7 @@ pub mod wall_hold;
 pub mod waypoints;
 pub mod wheel_speed;
 
+use crate::beside::Beside;
 use crate::estimate::Estimate;
 use crate::params::{ParamId, Params};
 use crate::range::{MIN_RANGE_M, REACH_M};
@@ -22,7 +23,7 @@ use front_distance::FrontDistance;
 use manual::Manual;
 use mission::{Mission, Task};
 use straight_line::StraightLine;
-use wall_follow::{Sensors, WallFollow};
+use wall_follow::WallFollow;
 use wall_hold::WallHold;
 use waypoints::{FARTHEST_M, Route, Waypoint, Waypoints};
 use wheel_speed::WheelSpeed;
@@ -353,10 +354,10 @@ impl ActiveMode {
         let stale_s = params.get(ParamId::StaleRange);
         match self {
             Self::WallHold(_) => {
-                Sensors::new(params).is_ready(estimate, stale_s, (MIN_WALL_M, MAX_WALL_M))
+                Beside::new(params).is_ready(estimate, stale_s, (MIN_WALL_M, MAX_WALL_M))
             }
             Self::WallFollow(..) => {
-                Sensors::new(params).is_ready(estimate, stale_s, (MIN_RANGE_M, REACH_M))
+                Beside::new(params).is_ready(estimate, stale_s, (MIN_RANGE_M, REACH_M))
             }
             Self::FrontDistance(..) => {
                 matches!(estimate.range(SonarId::Front).range, Range::Valid(_))

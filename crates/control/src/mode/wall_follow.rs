@@ -18,7 +18,7 @@
 //! | 0 measure | mode 3 only: stands and takes the distance | it has it | 1 or 2 |
 //! | 1 approach | drives at the angle limit, on the way to another distance | e asks for less than the limit | 2 |
 //! | 2 follow | keeps the distance | e asks for more than the limit | 1 |
-//! | 3 slow | as 1 or 2, slower: something stands ahead | the way is free | 1 or 2 |
+//! | 3 slow | as 1 or 2, slower: something stands ahead, or a sonar is in doubt | neither any longer | 1 or 2 |
 //!
 //! The integral stands still while the angle or the yaw rate is limited; the speed gives way to steering where a wheel is at its limit.
 //! It stops with a fault when the wall ends (wall lost), a sonar is silent or old, or, on the final rig, something stands ahead (blocked).
@@ -26,12 +26,12 @@
 //! The report closes the same cascade with PI controllers that act on the PWM of one wheel. Ours regulates the yaw rate, damped by the
 //! encoders, and estimates angle and distance with the encoders' help. Derivation and figures: docs/theory/wall_follow.md.
 
-use super::{Action, Look, Mode, Situation};
+use super::{Action, Mode, Situation};
+use crate::beside::{Beside, Unrest};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, sin_cos, sqrt, wrap_angle};
 use crate::params::{ParamId, Params};
-use crate::rig::{Rig, View};
-use crate::types::{Drive, Fault, Range, SIDES, Side, SonarId, TICK_S};
+use crate::types::{Drive, Fault, Range, Side, SonarId, TICK_S};
 use crate::wall::{Wall, WallFilter};
 use core::f32::consts::FRAC_PI_2;
 
@@ -86,16 +86,16 @@ pub struct WallFollow {
     pub beam_rad: f32,
     /// Oldest range to drive on [s].
     pub stale_s: f32,
-    /// The sensors.
-    pub sensors: Sensors,
+    /// The sonars.
+    pub sonars: Beside,
 }
 
-/// Which sonars see a wall beside the robot.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sensors {
-    rig: Rig,
-    /// Where the sonars `Left` and `Right` sit.
-    views: [View; 2],
+/// Where mode 4 stands; 0 is for mode 3, which measures first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    Approach = 1,
+    Follow = 2,
+    Slow = 3,
 }
 
 /// Memory of mode 4.
@@ -104,97 +104,7 @@ pub struct State {
     side: Option<Side>,
     wall: WallFilter,
     integral_rad: f32,
-}
-
-impl Sensors {
-    /// From the parameters.
-    pub fn new(params: &Params) -> Self {
-        let view = |sonar| params.view(sonar, 0.0).unwrap_or_default();
-        Self {
-            rig: params.rig(),
-            views: [view(SonarId::Left), view(SonarId::Right)],
-        }
-    }
-
-    /// The sonars that look to this side.
-    fn sonars(&self, side: Side) -> impl Iterator<Item = (SonarId, View)> + use<> {
-        let (own, pair) = match side {
-            Side::Left => (SonarId::Left, self.rig.paired_side() == Some(side)),
-            Side::Right => (SonarId::Right, self.rig.paired_side() == Some(side)),
-        };
-        [SonarId::Left, SonarId::Right]
-            .into_iter()
-            .zip(self.views)
-            .filter(move |(sonar, _)| pair || *sonar == own)
-    }
-
-    /// The point from which distances to a wall on this side are measured, ahead and left [m].
-    pub fn point_m(&self, side: Side) -> (f32, f32) {
-        let (mut x_m, mut y_m, mut count) = (0.0, 0.0, 0.0);
-        for (_, view) in self.sonars(side) {
-            x_m += view.x_m;
-            y_m += view.y_m;
-            count += 1.0;
-        }
-        (x_m / max(count, 1.0), y_m / max(count, 1.0))
-    }
-
-    /// Whether a sonar is one of those that look to this side.
-    pub fn watches(&self, side: Side, sonar: SonarId) -> bool {
-        self.sonars(side).any(|(own, _)| own == sonar)
-    }
-
-    /// The side with a wall, the nearer one where there are two; `None` without one in sight of all sonars of that side.
-    pub fn side(&self, estimate: &Estimate, stale_s: f32) -> Option<Side> {
-        let mut best: Option<(Side, f32)> = None;
-        for side in SIDES {
-            let possible = match self.rig {
-                Rig::Final => true,
-                rig => rig.paired_side() == Some(side),
-            };
-            if !possible {
-                continue;
-            }
-            let Ok(range_m) = self.nearest_m(side, estimate, stale_s) else {
-                continue;
-            };
-            if best.is_none_or(|(_, best_m)| range_m < best_m) {
-                best = Some((side, range_m));
-            }
-        }
-        best.map(|(side, _)| side)
-    }
-
-    /// The shortest range of the sonars of a side, if all of them see the wall.
-    fn nearest_m(&self, side: Side, estimate: &Estimate, stale_s: f32) -> Result<f32, Fault> {
-        let mut nearest_m = f32::MAX;
-        for (sonar, _) in self.sonars(side) {
-            let range = estimate.range(sonar);
-            match range.range {
-                Range::Valid(_) if range.age_s > stale_s => return Err(Fault::SonarStale),
-                Range::Valid(range_m) => nearest_m = min(nearest_m, range_m),
-                Range::Clear => return Err(Fault::WallLost),
-                Range::Faulty => return Err(Fault::SonarFaulty),
-            }
-        }
-        Ok(nearest_m)
-    }
-
-    /// Whether the robot looks ahead while it follows a wall.
-    fn looks_ahead(&self) -> bool {
-        self.rig == Rig::Final
-    }
-
-    /// Whether the mode may start: a wall beside the robot within `reach`, and a front sonar that works where there is one.
-    pub fn is_ready(&self, estimate: &Estimate, stale_s: f32, reach: (f32, f32)) -> bool {
-        let ahead = estimate.range(SonarId::Front);
-        let sees_ahead =
-            !self.looks_ahead() || (ahead.range != Range::Faulty && ahead.age_s <= stale_s);
-        let beside = self
-            .side(estimate, stale_s)
-            .and_then(|side| self.nearest_m(side, estimate, stale_s).ok());
-        sees_ahead && beside.is_some_and(|range_m| range_m >= reach.0 && range_m <= reach.1)
-    }
+    unrest: Unrest,
 }
 
 /// 1 for the left, -1 for the right.
@@ -221,7 +131,7 @@ impl WallFollow {
             base_m: params.get(ParamId::Base),
             beam_rad: params.get(ParamId::Beam),
             stale_s: params.get(ParamId::StaleRange),
-            sensors: Sensors::new(params),
+            sonars: Beside::new(params),
         }
     }
 
@@ -233,7 +143,7 @@ impl WallFollow {
             state.wall.predict(at.rolled_m, at.turned_rad);
             if let Some(reading) = at.reading
                 && let Range::Valid(range_m) = reading.range
-                && self.sensors.watches(side, reading.sonar)
+                && self.sonars.watches(side, reading.sonar)
             {
                 state.wall.take(&reading.view, self.beam_rad, range_m);
             }
@@ -244,7 +154,7 @@ impl WallFollow {
     /// Starts the estimate from the ranges that were filtered while the robot stood.
     fn begin(&self, state: &mut State, side: Side, at: &Estimate) -> Result<(), Fault> {
         let mut started = false;
-        for (sonar, view) in self.sensors.sonars(side) {
+        for (sonar, view) in self.sonars.sonars(side) {
             let Range::Valid(range_m) = at.range(sonar).range else {
                 return Err(Fault::WallLost);
             };
@@ -261,26 +171,31 @@ impl WallFollow {
 
     /// Distance of the measuring point from the wall [m] and the angle towards the wall [rad].
     fn distance_and_angle(&self, side: Side, wall: &Wall) -> (f32, f32) {
-        let (x_m, y_m) = self.sensors.point_m(side);
+        let (x_m, y_m) = self.sonars.point_m(side);
         let (sin, cos) = sin_cos(wall.bearing_rad);
         let angle_rad = wrap_angle(FRAC_PI_2 - sign(side) * wall.bearing_rad);
         (wall.distance_m - x_m * cos - y_m * sin, angle_rad)
     }
 
-    /// The largest speed that the way ahead allows [m/s].
-    fn free_m_s(&self, at: &Estimate) -> Result<f32, Fault> {
-        if !self.sensors.looks_ahead() {
-            return Ok(self.cruise_m_s);
+    /// The largest speed that the way ahead and the sonars allow [m/s].
+    fn free_m_s(&self, state: &State, at: &Estimate) -> Result<f32, Fault> {
+        let cruise_m_s = if state.unrest.is_uneasy() {
+            0.5 * self.cruise_m_s
+        } else {
+            self.cruise_m_s
+        };
+        if !self.sonars.looks_ahead() {
+            return Ok(cruise_m_s);
         }
         let ahead = at.range(SonarId::Front);
         match ahead.range {
             _ if ahead.age_s > self.stale_s => Err(Fault::SonarStale),
             Range::Faulty => Err(Fault::SonarFaulty),
-            Range::Clear => Ok(self.cruise_m_s),
+            Range::Clear => Ok(cruise_m_s),
             Range::Valid(ahead_m) if ahead_m <= self.stop_m => Err(Fault::Blocked),
             Range::Valid(ahead_m) => {
                 let free = sqrt(2.0 * BRAKE_M_S2 * (ahead_m - self.stop_m));
-                Ok(min(max(free, CREEP_M_S), self.cruise_m_s))
+                Ok(min(max(free, CREEP_M_S), cruise_m_s))
             }
         }
     }
@@ -296,6 +211,45 @@ impl WallFollow {
     }
 }
 
+/// What the robot does about the distance, and how fast it may.
+impl WallFollow {
+    fn drive(&self, state: &mut State, side: Side, at: &Estimate) -> Result<Action, Fault> {
+        self.sonars.nearest_m(side, at, self.stale_s)?;
+        let wall = self.estimate(state, side, at)?;
+        let free_m_s = self.free_m_s(state, at)?;
+        let (distance_m, angle_rad) = self.distance_and_angle(side, &wall);
+        let error_m = distance_m - self.distance_m;
+        let (angle_ref_rad, far) = self.angle_ref_rad(state, error_m, wall.bearing_sd_rad);
+
+        let turn_rad_s = self.heading_kp * (angle_ref_rad - angle_rad);
+        let wanted_rad_s = sign(side) * turn_rad_s - self.damping * at.yaw_rad_s;
+        let half_base_m = 0.5 * self.base_m;
+        let bend_rad_s = max(free_m_s - INNER_M_S, 0.0) / half_base_m;
+        let most_rad_s = min(self.yaw_limit_rad_s, bend_rad_s);
+        let yaw_rad_s = clamp(wanted_rad_s, -most_rad_s, most_rad_s);
+        if !far && abs(wanted_rad_s) <= most_rad_s && abs(error_m) < INTEGRAL_M {
+            let integral_rad = state.integral_rad + self.ki * error_m * TICK_S;
+            state.integral_rad = clamp(integral_rad, -INTEGRAL_RAD, INTEGRAL_RAD);
+        }
+        let steerable_m_s = max(OUTER_M_S - half_base_m * abs(yaw_rad_s), 0.0);
+        let phase = match (free_m_s < self.cruise_m_s, far) {
+            (true, _) => Phase::Slow,
+            (false, true) => Phase::Approach,
+            (false, false) => Phase::Follow,
+        };
+        Ok(Action {
+            drive: Drive::Twist {
+                forward_m_s: min(free_m_s, steerable_m_s),
+                yaw_rad_s,
+            },
+            state: phase as u8,
+            heading_ref_rad: sign(side) * angle_ref_rad,
+            reached: abs(error_m) < REACHED.0 && abs(angle_rad) < REACHED.1,
+            ..Action::default()
+        })
+    }
+}
+
 impl Mode for WallFollow {
     type State = State;
 
@@ -303,48 +257,15 @@ impl Mode for WallFollow {
         let estimate = at.estimate;
         let side = match state.side {
             Some(side) => side,
-            None => self
-                .sensors
-                .side(estimate, self.stale_s)
-                .ok_or(Fault::WallLost)?,
+            None => {
+                let nearer = self.sonars.side(estimate, self.stale_s);
+                nearer.ok_or(Fault::WallLost)?
+            }
         };
         state.side = Some(side);
-        self.sensors.nearest_m(side, estimate, self.stale_s)?;
-        let wall = self.estimate(state, side, estimate)?;
-        let (distance_m, angle_rad) = self.distance_and_angle(side, &wall);
-
-        let error_m = distance_m - self.distance_m;
-        let (angle_ref_rad, far) = self.angle_ref_rad(state, error_m, wall.bearing_sd_rad);
-        let free_m_s = self.free_m_s(estimate)?;
-        let turn_rad_s = self.heading_kp * (angle_ref_rad - angle_rad);
-        let wanted_rad_s = sign(side) * turn_rad_s - self.damping * estimate.yaw_rad_s;
-        let half_base_m = 0.5 * self.base_m;
-        let bend_rad_s = max(free_m_s - INNER_M_S, 0.0) / half_base_m;
-        let most_rad_s = min(self.yaw_limit_rad_s, bend_rad_s);
-        let yaw_rad_s = clamp(wanted_rad_s, -most_rad_s, most_rad_s);
-        let steady = !far && abs(wanted_rad_s) <= most_rad_s && abs(error_m) < INTEGRAL_M;
-        if steady {
-            let integral_rad = state.integral_rad + self.ki * error_m * TICK_S;
-            state.integral_rad = clamp(integral_rad, -INTEGRAL_RAD, INTEGRAL_RAD);
-        }
-        let outer_m_s = max(OUTER_M_S - half_base_m * abs(yaw_rad_s), 0.0);
-        let phase = if free_m_s < self.cruise_m_s {
-            3
-        } else if far {
-            1
-        } else {
-            2
-        };
-        Ok(Action {
-            drive: Drive::Twist {
-                forward_m_s: min(free_m_s, outer_m_s),
-                yaw_rad_s,
-            },
-            look: Look::default(),
-            state: phase,
-            heading_ref_rad: sign(side) * angle_ref_rad,
-            reached: abs(error_m) < REACHED.0 && abs(angle_rad) < REACHED.1,
-            ..Action::default()
-        })
+        let matters = |sonar| sonar == SonarId::Front || self.sonars.watches(side, sonar);
+        state.unrest.take(estimate, matters)?;
+        self.drive(state, side, estimate)
+            .map_err(|fault| state.unrest.cause(fault))
     }
 }

@@ -7,7 +7,7 @@
 //! The report takes the median of the first readings too, to be rid of wrong ones.
 
 use super::wall_follow::{self, WallFollow};
-use super::{Action, Look, MAX_WALL_M, MIN_WALL_M, Mode, Situation};
+use super::{Action, MAX_WALL_M, MIN_WALL_M, Mode, Situation};
 use crate::math::{clamp, max};
 use crate::params::Params;
 use crate::types::{Fault, Range, SonarId, TICK_S};
@@ -78,20 +78,20 @@ impl WallHold {
 
     /// Takes the readings of this tick; the reference, once it is known.
     fn measure(&self, state: &mut State, at: &Situation) -> Result<Option<f32>, Fault> {
-        let sensors = &self.0.sensors;
-        let side = sensors
+        let sonars = &self.0.sonars;
+        let side = sonars
             .side(at.estimate, self.0.stale_s)
             .ok_or(Fault::WallLost)?;
         if let Some(reading) = at.estimate.reading
             && let Range::Valid(range_m) = reading.range
-            && sensors.watches(side, reading.sonar)
+            && sonars.watches(side, reading.sonar)
         {
             state.hear(reading.sonar, range_m);
         }
         state.waited_s += TICK_S;
         let (mut sum_m, mut count) = (0.0, 0.0);
         for sonar in [SonarId::Left, SonarId::Right] {
-            if sensors.watches(side, sonar) {
+            if sonars.watches(side, sonar) {
                 let Some(median_m) = state.median_m(sonar) else {
                     return if state.waited_s > PATIENCE_S {
                         Err(Fault::SonarStale)
@@ -115,10 +115,7 @@ impl Mode for WallHold {
             state.reference_m = self.measure(state, at)?;
         }
         let Some(distance_m) = state.reference_m else {
-            return Ok(Action {
-                look: Look::default(),
-                ..Action::default()
-            });
+            return Ok(Action::default());
         };
         let follow = WallFollow {
             distance_m,

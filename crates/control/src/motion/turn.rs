@@ -138,3 +138,99 @@ impl Turn {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::types::Pose;
+
+    /// A robot that faces `heading_rad` and turns at `yaw_rad_s`; it stands when that is 0.
+    fn facing(heading_rad: f32, yaw_rad_s: f32) -> Estimate {
+        let mut estimate = Estimate {
+            pose: Pose {
+                heading_rad,
+                ..Pose::default()
+            },
+            yaw_rad_s,
+            ..Estimate::default()
+        };
+        estimate.motion.left.standing = yaw_rad_s == 0.0;
+        estimate.motion.right.standing = yaw_rad_s == 0.0;
+        estimate
+    }
+
+    fn step(state: &mut TurnState, estimate: &Estimate, heading_rad: f32) -> TurnStep {
+        Turn::new(&Params::default()).step(state, estimate, heading_rad)
+    }
+
+    fn yaw_rad_s(drive: Drive) -> f32 {
+        match drive {
+            Drive::Twist { yaw_rad_s, .. } => yaw_rad_s,
+            _ => 0.0,
+        }
+    }
+
+    #[test]
+    fn it_turns_the_shorter_way_also_across_half_a_turn() {
+        let from = |heading_rad, to_rad| {
+            let step = step(&mut TurnState::default(), &facing(heading_rad, 0.0), to_rad);
+            yaw_rad_s(step.drive)
+        };
+        assert!(from(0.0, 1.5) > 2.0 && from(0.0, -1.5) < -2.0);
+        assert!(from(3.0, -3.0) > 0.5 && from(-3.0, 3.0) < -0.5);
+    }
+
+    #[test]
+    fn the_planned_rate_can_be_braked_before_the_heading() {
+        let turn = Turn::new(&Params::default());
+        for milliradians in 30..2_000u16 {
+            let error_rad = f32::from(milliradians) * 1e-3;
+            let drive = turn.drive(0.0, error_rad, turn.creep_rad_s);
+            let rate = yaw_rad_s(drive);
+            assert!(
+                rate <= turn.creep_rad_s || rate * rate / (2.0 * turn.brake_rad_s2) <= error_rad,
+                "{rate} rad/s at {error_rad} rad"
+            );
+        }
+    }
+
+    #[test]
+    fn the_wheels_are_released_when_they_would_coast_there() {
+        let turn = Turn::new(&Params::default());
+        let coast_rad = 1.0 / (2.0 * turn.coast_rad_s2);
+        let mut state = TurnState::default();
+        let before = step(&mut state, &facing(0.0, 1.0), coast_rad + 0.05);
+        assert!(yaw_rad_s(before.drive) > 0.0);
+        let after = step(&mut state, &facing(0.05, 1.0), coast_rad + 0.05);
+        assert_eq!((after.drive, after.done), (Drive::Release, false));
+    }
+
+    #[test]
+    fn what_is_missing_is_turned_once_more_but_not_for_ever() {
+        let mut state = TurnState::default();
+        let mut drives = 0;
+        for _ in 0..20 {
+            // Each try ends as far off as it began.
+            if step(&mut state, &facing(0.0, 0.0), 0.1).done {
+                break;
+            }
+            drives += 1;
+            step(&mut state, &facing(0.1, 0.6), 0.1);
+        }
+        assert_eq!(drives, i32::from(MOST_TRIES));
+        let mut state = TurnState::default();
+        step(&mut state, &facing(0.1, 0.6), 0.1);
+        assert!(step(&mut state, &facing(0.095, 0.0), 0.1).done);
+    }
+
+    #[test]
+    fn a_middle_that_has_rolled_forward_is_brought_back() {
+        let mut state = TurnState::default();
+        let mut estimate = facing(0.0, 1.0);
+        estimate.rolled_m = 0.004;
+        match step(&mut state, &estimate, 1.5).drive {
+            Drive::Twist { forward_m_s, .. } => assert!(forward_m_s < -0.01),
+            other => panic!("{other:?}"),
+        }
+    }
+}

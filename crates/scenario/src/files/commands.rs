@@ -12,6 +12,8 @@
 //! | `left_rpm = 60` and `right_rpm = 50` | mode `wheel_speed` |
 //! | `goal_m = [1.0, 0.5]` | modes `mission`, `waypoints`: a point to go to |
 //! | `goal = "world"` | the same with the goal of a random world |
+//! | `route_m = [[1, 0], [1, 1, 90]]` | mode `waypoints`: places, each with a heading in deg if it matters |
+//! | the same with `repeat = true`, `frame = "relative"` | again and again; as seen from where the robot starts |
 //! | `lane = true` | mode `mission`: follow a lane |
 //! | `move = "turn_left"` with `duty = 0.4` or `speed_rpm = 60` | mode `manual`, a basic movement |
 //! | the same with `duty = 0`, `ramp_to_duty = 0.4`, `ramp_s = 12` | open loop, the duty moves by one count of PWM at a time |
@@ -20,15 +22,14 @@
 use super::names::{find_mode, find_movement};
 use super::parameters;
 use super::read::{Allowed, Table};
+use super::route::{self, GOAL, read_route};
 use super::scenario::TimedCommand;
-use rumbo_control::mode::waypoints::FARTHEST_M;
 use rumbo_control::mode::{ModeId, Movement};
 use rumbo_control::{Duty, Wheels};
 use rumbo_wire::message::{Command, Level};
 use std::f64::consts::PI;
 
 const DISTANCE: Allowed = Allowed::new(0.02, 2.5, "m");
-const GOAL: Allowed = Allowed::new(-FARTHEST_M as f64, FARTHEST_M as f64, "m");
 const SPEED: Allowed = Allowed::new(-200.0, 200.0, "rpm");
 const MOVE_SPEED: Allowed = Allowed::new(0.0, 200.0, "rpm");
 const DUTY: Allowed = Allowed::new(0.0, 1.0, "");
@@ -45,7 +46,7 @@ const FLAGS: [(&str, Command); 6] = [
     ("lane", Command::Lane),
 ];
 /// The keys that say which action a command is.
-const ACTIONS: [&str; 14] = [
+const ACTIONS: [&str; 15] = [
     "arm",
     "disarm",
     "stop",
@@ -56,6 +57,7 @@ const ACTIONS: [&str; 14] = [
     "reference_m",
     "goal_m",
     "goal",
+    "route_m",
     "move",
     "speed_rpm",
     "left_rpm",
@@ -95,7 +97,7 @@ pub(crate) fn read_commands(
     commands
 }
 
-/// One command: a list, since a ramp is many.
+/// One command: a list, since a ramp or a route is many.
 fn read_command(
     table: &Table<'_, '_>,
     at_s: f64,
@@ -119,11 +121,15 @@ fn read_command(
             needs_mode(table, "goal", &[ModeId::Mission, ModeId::Waypoints], *mode);
             read_goal_of_world(table, at_s)
         }
+        ["route_m"] => {
+            needs_mode(table, "route_m", &[ModeId::Waypoints], *mode);
+            read_route(table).into_iter().flat_map(single).collect()
+        }
         [key] => read_simple(table, key, mode)
             .map(single)
             .unwrap_or_default(),
         _ => {
-            let known = [&["at_s"][..], &ACTIONS, &COMPANIONS].concat();
+            let known = [&["at_s"][..], &ACTIONS, &COMPANIONS, &route::COMPANIONS].concat();
             for key in &known {
                 table.value(key);
             }

@@ -13,6 +13,7 @@ mod near;
 pub mod parameters;
 mod read;
 mod robot;
+mod route;
 mod scenario;
 mod setup;
 mod value;

@@ -156,6 +156,24 @@ impl<'a, 't> Table<'a, 't> {
         ])
     }
 
+    /// The items of a list with their lines, and the line of the list, if the key is there.
+    pub(crate) fn items(
+        &self,
+        key: &str,
+        what: &str,
+    ) -> Option<(usize, Vec<Placed<&'a DeValue<'t>>>)> {
+        let (line, value) = self.value(key)?;
+        let Some(array) = value.as_array() else {
+            self.complain(key, line, &shown(value), &format!("must be {what}"));
+            return None;
+        };
+        let placed = |item: &'a Spanned<DeValue<'t>>| Placed {
+            value: item.get_ref(),
+            line: self.source.line_of(item.span().start),
+        };
+        Some((line, array.iter().map(placed).collect()))
+    }
+
     /// Two numbers that must be there.
     pub(crate) fn required_pair(&self, key: &str, allowed: Allowed) -> [f64; 2] {
         self.require(
@@ -348,7 +366,8 @@ impl<'a, 't> Table<'a, 't> {
         );
     }
 
-    fn judge_number(
+    /// A value as a number that is allowed; complains if it is none.
+    pub(crate) fn judge_number(
         &self,
         key: &str,
         line: usize,

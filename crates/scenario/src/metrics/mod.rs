@@ -5,6 +5,7 @@
 
 mod journey;
 mod path;
+mod route;
 mod start;
 mod step;
 mod wall;
@@ -39,8 +40,9 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
             start::dead_zones(trace, &mut metrics);
         }
         ModeId::WallHold | ModeId::WallFollow => wall::following(setup, sim, trace, &mut metrics),
-        ModeId::Mission => journey::journey(setup, sim, trace, &mut metrics),
-        ModeId::FrontAlign | ModeId::StraightLine | ModeId::Waypoints => {}
+        ModeId::Mission => journey::journey(setup, sim.worst_contact_m_s(), trace, &mut metrics),
+        ModeId::Waypoints => route::route(setup, trace, &mut metrics),
+        ModeId::FrontAlign | ModeId::StraightLine => {}
     }
     // A billionth of any unit is rounding, not behaviour.
     for value in metrics.values_mut() {

@@ -2,7 +2,9 @@
 
 #![cfg(test)]
 
+mod along_a_wall;
 mod drive;
+mod mode_7;
 
 use rumbo_scenario::files::FileError;
 use rumbo_scenario::files::{Library, Overrides, Setup};

@@ -1,0 +1,330 @@
+//! Pure pursuit: a tracker for a straight line and for any polyline (memoria 6.1.6). Derivation: docs/theory/pursuit.md.
+//!
+//! ```text
+//! place on the path -> point a lookahead L further on -> (x, y) as the robot sees it -> curvature k = 2 y / (x^2 + y^2)
+//! v = min(cruise, sqrt(a_side / |k|), ramp, sqrt(2 a (way left - v measured * lag)))            yaw rate = k v
+//! L = max(L_min, T v), or up to the next point after the nearest one, when points are spread along the path as in the report
+//! ```
+//!
+//! A point on the left has a positive y: steer left. The last piece of the path is prolonged for the lookahead, so the way in which the
+//! robot slows down at the end does not depend on L, and the curvature stays small there. The path is a function from a number to a
+//! point: 0 is the next point, `None` is beyond the end; whoever owns the path moves on when a step says that a point is passed.
+//!
+//! The report heads for the point with its orientation controller and regulates the speed by the distance to it: the nearer the point, the
+//! slower. It is one of a fixed number of points spread over the way, so it jumps.
+
+use crate::estimate::Estimate;
+use crate::math::{abs, atan2, clamp, from_u32, max, min, round, sqrt, wrap_angle};
+use crate::params::{ParamId, Params};
+use crate::types::{Drive, Pose, TICK_S};
+
+/// A place in the world [m].
+pub type Point = (f32, f32);
+
+/// Slowest speed that the wheels hold steadily [m/s].
+const CREEP_M_S: f32 = 0.03;
+/// Most of the wheels' speed that steering may take: no wheel stops, let alone turns backward.
+const STEERING_SHARE: f32 = 0.6;
+/// Bearing of the lookahead from which a standing robot turns to it first [rad].
+const TURN_STANDING_RAD: f32 = 0.35;
+/// The same of a moving one: 75 degrees.
+const TURN_MOVING_RAD: f32 = 1.3;
+/// Longer pieces of way have no direction when shorter than this [m].
+const NO_LENGTH_M: f32 = 1e-3;
+/// Pieces of the path that are looked at ahead.
+const MOST_PIECES: u8 = 20;
+/// Delay of a release: see `motion`.
+const RELEASE_DELAY_S: f32 = 0.015;
+/// Times that a rest is driven once more.
+const MOST_TRIES: u8 = 3;
+
+/// Configuration of a pure pursuit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pursuit {
+    /// Largest speed [m/s].
+    pub cruise_m_s: f32,
+    /// Planned acceleration [m/s^2].
+    pub accel_m_s2: f32,
+    /// Planned deceleration [m/s^2].
+    pub brake_m_s2: f32,
+    /// Time by which the wheels follow late [s].
+    pub lag_s: f32,
+    /// Deceleration of the released wheels at creeping speed [m/s^2].
+    pub coast_m_s2: f32,
+    /// Largest sideways acceleration [m/s^2].
+    pub side_m_s2: f32,
+    /// Lookahead per speed [s].
+    pub lookahead_s: f32,
+    /// Shortest lookahead [m].
+    pub lookahead_m: f32,
+    /// Distance between the points of the report's lookahead [m]; 0: the lookahead goes by the speed.
+    pub spacing_m: f32,
+    /// Way left that is good enough [m].
+    pub tolerance_m: f32,
+    /// Half the distance between the wheels [m].
+    pub half_base_m: f32,
+}
+
+/// Memory of a pure pursuit; the default is its start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PursuitState {
+    /// Start of the present piece of the path.
+    from: Option<Point>,
+    coasting: bool,
+    tries: u8,
+    /// The ramped speed [m/s].
+    speed_m_s: f32,
+}
+
+impl From<Point> for PursuitState {
+    /// The start of a path that begins at this point; of the default one it begins where the robot is.
+    fn from(start: Point) -> Self {
+        Self {
+            from: Some(start),
+            ..Self::default()
+        }
+    }
+}
+
+/// What a pure pursuit asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PursuitStep {
+    /// Of the wheels.
+    pub drive: Drive,
+    /// Direction of the lookahead [rad].
+    pub heading_ref_rad: f32,
+    /// Distance from the path, positive left of it [m].
+    pub cross_m: f32,
+    /// The next point is passed: the one after it is number 0 from now on.
+    pub passed: bool,
+    /// The lookahead is so far to a side that the robot should stand and turn to `heading_ref_rad` first.
+    pub turn: bool,
+    /// The robot stands at the end.
+    pub done: bool,
+}
+
+/// A piece of the path and a place beside it.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    from: Point,
+    /// Its direction; the robot's own where it has no length.
+    unit: Point,
+    length_m: f32,
+    along_m: f32,
+    cross_m: f32,
+}
+
+impl Piece {
+    fn new(from: Point, to: Point, pose: &Pose, fallback: Point) -> Self {
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        let length_m = sqrt(dx * dx + dy * dy);
+        let unit = if length_m < NO_LENGTH_M {
+            fallback
+        } else {
+            (dx / length_m, dy / length_m)
+        };
+        let (px, py) = (pose.x_m - from.0, pose.y_m - from.1);
+        Self {
+            from,
+            unit,
+            length_m,
+            along_m: px * unit.0 + py * unit.1,
+            cross_m: unit.0 * py - unit.1 * px,
+        }
+    }
+
+    fn point(&self, along_m: f32) -> Point {
+        (
+            self.from.0 + along_m * self.unit.0,
+            self.from.1 + along_m * self.unit.1,
+        )
+    }
+
+    /// Distance of the place from the piece [m].
+    fn distance_m(&self) -> f32 {
+        let beyond_m = self.along_m - clamp(self.along_m, 0.0, self.length_m);
+        sqrt(beyond_m * beyond_m + self.cross_m * self.cross_m)
+    }
+}
+
+impl Pursuit {
+    /// From the parameters.
+    pub fn new(params: &Params) -> Self {
+        Self {
+            cruise_m_s: params.get(ParamId::LineCruise),
+            accel_m_s2: params.get(ParamId::LineAccel),
+            brake_m_s2: params.get(ParamId::LineBrake),
+            lag_s: params.get(ParamId::SpeedLag),
+            coast_m_s2: params.get(ParamId::LineCoast),
+            side_m_s2: params.get(ParamId::PursuitSide),
+            lookahead_s: params.get(ParamId::PursuitTime),
+            lookahead_m: params.get(ParamId::PursuitLeast),
+            spacing_m: params.get(ParamId::PursuitSpacing),
+            tolerance_m: params.get(ParamId::LineTolerance),
+            half_base_m: 0.5 * params.get(ParamId::Base),
+        }
+    }
+
+    /// One tick along `path`, at most at `limit_m_s`. Nothing is driven where the path has no point.
+    pub fn step(
+        &self,
+        state: &mut PursuitState,
+        estimate: &Estimate,
+        limit_m_s: f32,
+        path: impl Fn(u8) -> Option<Point>,
+    ) -> PursuitStep {
+        let pose = &estimate.pose;
+        let mut step = PursuitStep {
+            drive: Drive::Release,
+            heading_ref_rad: pose.heading_rad,
+            cross_m: 0.0,
+            passed: false,
+            turn: false,
+            done: false,
+        };
+        let Some(to) = path(0) else {
+            return step;
+        };
+        let from = *state.from.get_or_insert((pose.x_m, pose.y_m));
+        let ahead = crate::math::sin_cos(pose.heading_rad);
+        let piece = Piece::new(from, to, pose, (ahead.1, ahead.0));
+        step.cross_m = piece.cross_m;
+        let lookahead_m = self.lookahead_m(piece.along_m, estimate.forward_m_s);
+        step.passed = is_passed(&piece, to, path(1), pose, lookahead_m);
+        if step.passed {
+            state.from = Some(to);
+        }
+        let (target, left_m) = look(&piece, to, pose, lookahead_m, self.far_m(), &path);
+        let (x_m, y_m) = pose.to_local(target.0, target.1);
+        let bearing_rad = atan2(y_m, x_m);
+        step.heading_ref_rad = wrap_angle(pose.heading_rad + bearing_rad);
+        if self.rests(state, &mut step, estimate, left_m) || limit_m_s <= 0.0 {
+            state.speed_m_s = max(estimate.forward_m_s, 0.0);
+            return step;
+        }
+        let turn_rad = if estimate.standing() {
+            TURN_STANDING_RAD
+        } else {
+            TURN_MOVING_RAD
+        };
+        if abs(bearing_rad) > turn_rad {
+            step.turn = true;
+            state.speed_m_s = 0.0;
+            return step;
+        }
+        let most = STEERING_SHARE / self.half_base_m;
+        let square = max(x_m * x_m + y_m * y_m, self.lookahead_m * self.lookahead_m);
+        let curvature = clamp(2.0 * y_m / square, -most, most);
+        let forward_m_s = self.speed_m_s(state, estimate, left_m, curvature, limit_m_s);
+        step.drive = Drive::Twist {
+            forward_m_s,
+            yaw_rad_s: curvature * forward_m_s,
+        };
+        step
+    }
+
+    /// Whether the wheels are released for the end; says when it is done.
+    fn rests(
+        &self,
+        state: &mut PursuitState,
+        step: &mut PursuitStep,
+        estimate: &Estimate,
+        left_m: f32,
+    ) -> bool {
+        if state.coasting && estimate.standing() {
+            if left_m <= self.tolerance_m || state.tries >= MOST_TRIES {
+                step.done = true;
+                return true;
+            }
+            state.coasting = false;
+        }
+        let v = max(estimate.forward_m_s, 0.0);
+        let coast_m = v * v / (2.0 * self.coast_m_s2) + v * RELEASE_DELAY_S;
+        if !state.coasting && left_m <= max(coast_m, 0.5 * self.tolerance_m) {
+            state.coasting = true;
+            state.tries = state.tries.saturating_add(1);
+        }
+        state.coasting
+    }
+
+    /// Way left from which the end does not matter yet [m]: twice what stopping takes.
+    fn far_m(&self) -> f32 {
+        let stop_s = 0.5 * self.cruise_m_s / self.brake_m_s2 + self.lag_s;
+        2.0 * self.cruise_m_s * stop_s
+    }
+
+    fn lookahead_m(&self, along_m: f32, forward_m_s: f32) -> f32 {
+        if self.spacing_m <= 0.0 {
+            return max(self.lookahead_m, self.lookahead_s * forward_m_s);
+        }
+        let along_m = max(along_m, 0.0);
+        let nearest = round(along_m / self.spacing_m).unsigned_abs();
+        from_u32(nearest.saturating_add(1)) * self.spacing_m - along_m
+    }
+
+    fn speed_m_s(
+        &self,
+        state: &mut PursuitState,
+        estimate: &Estimate,
+        left_m: f32,
+        curvature: f32,
+        limit_m_s: f32,
+    ) -> f32 {
+        let bend = abs(curvature);
+        // The outer wheel turns faster than the middle.
+        let cruise_m_s = self.cruise_m_s / (1.0 + 0.5 * bend * self.half_base_m);
+        let side_m_s = sqrt(self.side_m_s2 / max(bend, 1e-3));
+        let late_m = self.lag_s * max(estimate.forward_m_s, 0.0);
+        let braking_m_s = sqrt(2.0 * self.brake_m_s2 * (left_m - late_m));
+        let wanted = min(min(cruise_m_s, side_m_s), min(limit_m_s, braking_m_s));
+        state.speed_m_s = max(
+            min(wanted, state.speed_m_s + self.accel_m_s2 * TICK_S),
+            min(CREEP_M_S, limit_m_s),
+        );
+        state.speed_m_s
+    }
+}
+
+/// Whether the robot is nearer to the next piece than to this one, or beyond its end. The last piece is never passed.
+fn is_passed(piece: &Piece, to: Point, next: Option<Point>, pose: &Pose, lookahead_m: f32) -> bool {
+    let Some(next) = next else {
+        return false;
+    };
+    let left_m = piece.length_m - piece.along_m;
+    left_m <= 0.0
+        || (left_m < lookahead_m
+            && Piece::new(to, next, pose, piece.unit).distance_m() < piece.distance_m())
+}
+
+/// The point this far along the path from the robot's place on it, and the way left to the end; of an end farther than
+/// `far_m` only that it is farther.
+fn look(
+    first: &Piece,
+    to: Point,
+    pose: &Pose,
+    lookahead_m: f32,
+    far_m: f32,
+    path: &impl Fn(u8) -> Option<Point>,
+) -> (Point, f32) {
+    let start_m = max(first.along_m, 0.0);
+    let (mut piece, mut end) = (*first, to);
+    let (mut before_m, mut found) = (0.0, None);
+    for number in 1..=MOST_PIECES {
+        let next = path(number);
+        let wanted_m = start_m + lookahead_m - before_m;
+        if found.is_none() && (wanted_m <= piece.length_m || next.is_none()) {
+            found = Some(piece.point(wanted_m));
+        }
+        let left_m = before_m + piece.length_m - first.along_m;
+        let Some(next) = next.filter(|_| found.is_none() || left_m < far_m) else {
+            return (found.unwrap_or(end), left_m);
+        };
+        before_m += piece.length_m;
+        piece = Piece::new(end, next, pose, piece.unit);
+        end = next;
+    }
+    (found.unwrap_or(end), far_m)
+}
+
+#[cfg(test)]
+mod tests;
