@@ -15,28 +15,23 @@
 
 use crate::estimate::Estimate;
 use crate::math::{abs, atan2, clamp, from_u32, max, min, round, sqrt, wrap_angle};
+use crate::motion::{CREEP_M_S, Stop, StopState, Stopping};
 use crate::params::{ParamId, Params};
 use crate::types::{Drive, Pose, TICK_S};
 
 /// A place in the world [m].
 pub type Point = (f32, f32);
 
-/// Slowest speed that the wheels hold steadily [m/s].
-const CREEP_M_S: f32 = 0.03;
 /// Most of the wheels' speed that steering may take: no wheel stops, let alone turns backward.
 const STEERING_SHARE: f32 = 0.6;
 /// Bearing of the lookahead from which a standing robot turns to it first [rad].
 const TURN_STANDING_RAD: f32 = 0.35;
 /// The same of a moving one: 75 degrees.
 const TURN_MOVING_RAD: f32 = 1.3;
-/// Longer pieces of way have no direction when shorter than this [m].
+/// Pieces of the path shorter than this have no direction [m].
 const NO_LENGTH_M: f32 = 1e-3;
 /// Pieces of the path that are looked at ahead.
 const MOST_PIECES: u8 = 20;
-/// Delay of a release: see `motion`.
-const RELEASE_DELAY_S: f32 = 0.015;
-/// Times that a rest is driven once more.
-const MOST_TRIES: u8 = 3;
 
 /// Configuration of a pure pursuit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,12 +40,8 @@ pub struct Pursuit {
     pub cruise_m_s: f32,
     /// Planned acceleration [m/s^2].
     pub accel_m_s2: f32,
-    /// Planned deceleration [m/s^2].
-    pub brake_m_s2: f32,
-    /// Time by which the wheels follow late [s].
-    pub lag_s: f32,
-    /// Deceleration of the released wheels at creeping speed [m/s^2].
-    pub coast_m_s2: f32,
+    /// How it comes to rest [m].
+    pub stop: Stop,
     /// Largest sideways acceleration [m/s^2].
     pub side_m_s2: f32,
     /// Lookahead per speed [s].
@@ -59,8 +50,6 @@ pub struct Pursuit {
     pub lookahead_m: f32,
     /// Distance between the points of the report's lookahead [m]; 0: the lookahead goes by the speed.
     pub spacing_m: f32,
-    /// Way left that is good enough [m].
-    pub tolerance_m: f32,
     /// Half the distance between the wheels [m].
     pub half_base_m: f32,
 }
@@ -70,8 +59,7 @@ pub struct Pursuit {
 pub struct PursuitState {
     /// Start of the present piece of the path.
     from: Option<Point>,
-    coasting: bool,
-    tries: u8,
+    stop: StopState,
     /// The ramped speed [m/s].
     speed_m_s: f32,
 }
@@ -153,14 +141,11 @@ impl Pursuit {
         Self {
             cruise_m_s: params.get(ParamId::LineCruise),
             accel_m_s2: params.get(ParamId::LineAccel),
-            brake_m_s2: params.get(ParamId::LineBrake),
-            lag_s: params.get(ParamId::SpeedLag),
-            coast_m_s2: params.get(ParamId::LineCoast),
+            stop: Stop::on_the_way(params),
             side_m_s2: params.get(ParamId::PursuitSide),
             lookahead_s: params.get(ParamId::PursuitTime),
             lookahead_m: params.get(ParamId::PursuitLeast),
             spacing_m: params.get(ParamId::PursuitSpacing),
-            tolerance_m: params.get(ParamId::LineTolerance),
             half_base_m: 0.5 * params.get(ParamId::Base),
         }
     }
@@ -198,8 +183,13 @@ impl Pursuit {
         let (x_m, y_m) = pose.to_local(target.0, target.1);
         let bearing_rad = atan2(y_m, x_m);
         step.heading_ref_rad = wrap_angle(pose.heading_rad + bearing_rad);
-        if self.rests(state, &mut step, estimate, left_m) || limit_m_s <= 0.0 {
-            state.speed_m_s = max(estimate.forward_m_s, 0.0);
+        let v_m_s = estimate.forward_m_s;
+        let stopping = self
+            .stop
+            .step(&mut state.stop, left_m, v_m_s, estimate.standing());
+        step.done = stopping == Stopping::Done;
+        if stopping != Stopping::Drive || limit_m_s <= 0.0 {
+            state.speed_m_s = max(v_m_s, 0.0);
             return step;
         }
         let turn_rad = if estimate.standing() {
@@ -223,33 +213,9 @@ impl Pursuit {
         step
     }
 
-    /// Whether the wheels are released for the end; says when it is done.
-    fn rests(
-        &self,
-        state: &mut PursuitState,
-        step: &mut PursuitStep,
-        estimate: &Estimate,
-        left_m: f32,
-    ) -> bool {
-        if state.coasting && estimate.standing() {
-            if left_m <= self.tolerance_m || state.tries >= MOST_TRIES {
-                step.done = true;
-                return true;
-            }
-            state.coasting = false;
-        }
-        let v = max(estimate.forward_m_s, 0.0);
-        let coast_m = v * v / (2.0 * self.coast_m_s2) + v * RELEASE_DELAY_S;
-        if !state.coasting && left_m <= max(coast_m, 0.5 * self.tolerance_m) {
-            state.coasting = true;
-            state.tries = state.tries.saturating_add(1);
-        }
-        state.coasting
-    }
-
     /// Way left from which the end does not matter yet [m]: twice what stopping takes.
     fn far_m(&self) -> f32 {
-        let stop_s = 0.5 * self.cruise_m_s / self.brake_m_s2 + self.lag_s;
+        let stop_s = 0.5 * self.cruise_m_s / self.stop.brake + self.stop.lag_s;
         2.0 * self.cruise_m_s * stop_s
     }
 
@@ -274,8 +240,7 @@ impl Pursuit {
         // The outer wheel turns faster than the middle.
         let cruise_m_s = self.cruise_m_s / (1.0 + 0.5 * bend * self.half_base_m);
         let side_m_s = sqrt(self.side_m_s2 / max(bend, 1e-3));
-        let late_m = self.lag_s * max(estimate.forward_m_s, 0.0);
-        let braking_m_s = sqrt(2.0 * self.brake_m_s2 * (left_m - late_m));
+        let braking_m_s = self.stop.speed(left_m, estimate.forward_m_s);
         let wanted = min(min(cruise_m_s, side_m_s), min(limit_m_s, braking_m_s));
         state.speed_m_s = max(
             min(wanted, state.speed_m_s + self.accel_m_s2 * TICK_S),

@@ -6,25 +6,21 @@
 //! ```
 //!
 //! Left of the line is a positive cross-track error: steer right, towards a smaller heading. Steering comes before speed: a robot that
-//! does not look along the line slows down. As in a turn, the last bit is left to friction, and what falls short is driven once more;
-//! what went too far is not taken back.
+//! does not look along the line slows down. The end is a planned [`stop`](super::stop); what falls short is driven once more, what went too
+//! far is not taken back.
 
-use super::RELEASE_DELAY_S;
+use super::{CREEP_M_S, Stop, StopState, Stopping};
 use crate::estimate::Estimate;
 use crate::math::{abs, atan2, clamp, max, min, sin_cos, sqrt, wrap_angle};
 use crate::params::{ParamId, Params};
 use crate::types::{Drive, Pose, TICK_S};
 
-/// Slowest speed that the wheels hold steadily [m/s].
-const CREEP_M_S: f32 = 0.03;
 /// Largest angle at which the robot heads for the line [rad]: 30 degrees.
 const MOST_APPROACH_RAD: f32 = 0.52;
 /// Most of the wheels' speed that steering may take: no wheel stops, let alone turns backward.
 const STEERING_SHARE: f32 = 0.6;
 /// Heading error at which the speed is halved [rad].
 const SLOW_RAD: f32 = 0.35;
-/// Times that a rest is driven once more.
-const MOST_TRIES: u8 = 3;
 
 /// A straight piece of way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -82,18 +78,12 @@ pub struct Line {
     pub cruise_m_s: f32,
     /// Planned acceleration [m/s^2].
     pub accel_m_s2: f32,
-    /// Planned deceleration [m/s^2].
-    pub brake_m_s2: f32,
-    /// Time by which the wheels follow late [s].
-    pub lag_s: f32,
-    /// Deceleration of the released wheels at creeping speed [m/s^2].
-    pub coast_m_s2: f32,
+    /// How it comes to rest [m].
+    pub stop: Stop,
     /// Heading per cross-track error [rad/m].
     pub cross_kp: f32,
     /// Yaw rate per heading error [1/s].
     pub heading_kp: f32,
-    /// Way left that is good enough [m].
-    pub tolerance_m: f32,
     /// Half the distance between the wheels [m].
     pub half_base_m: f32,
 }
@@ -101,8 +91,7 @@ pub struct Line {
 /// Memory of a line; the default is its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineState {
-    coasting: bool,
-    tries: u8,
+    stop: StopState,
     /// The ramped speed [m/s].
     speed_m_s: f32,
 }
@@ -126,12 +115,9 @@ impl Line {
         Self {
             cruise_m_s: params.get(ParamId::LineCruise),
             accel_m_s2: params.get(ParamId::LineAccel),
-            brake_m_s2: params.get(ParamId::LineBrake),
-            lag_s: params.get(ParamId::SpeedLag),
-            coast_m_s2: params.get(ParamId::LineCoast),
+            stop: Stop::on_the_way(params),
             cross_kp: params.get(ParamId::LineCross),
             heading_kp: params.get(ParamId::LineHeading),
-            tolerance_m: params.get(ParamId::LineTolerance),
             half_base_m: 0.5 * params.get(ParamId::Base),
         }
     }
@@ -159,19 +145,13 @@ impl Line {
             left_m,
             done: false,
         };
-        if state.coasting && estimate.standing() {
-            if left_m <= self.tolerance_m || state.tries >= MOST_TRIES {
-                step.done = true;
-                return step;
-            }
-            state.coasting = false;
-        }
-        if !state.coasting && self.coasts_there(left_m, estimate.forward_m_s) {
-            state.coasting = true;
-            state.tries = state.tries.saturating_add(1);
-        }
-        if state.coasting || limit_m_s <= 0.0 {
-            state.speed_m_s = max(estimate.forward_m_s, 0.0);
+        let v_m_s = estimate.forward_m_s;
+        let stopping = self
+            .stop
+            .step(&mut state.stop, left_m, v_m_s, estimate.standing());
+        step.done = stopping == Stopping::Done;
+        if stopping != Stopping::Drive || limit_m_s <= 0.0 {
+            state.speed_m_s = max(v_m_s, 0.0);
             return step;
         }
         let error_rad = wrap_angle(heading_ref_rad - pose.heading_rad);
@@ -189,13 +169,6 @@ impl Line {
         }
     }
 
-    fn coasts_there(&self, left_m: f32, forward_m_s: f32) -> bool {
-        let forward_m_s = max(forward_m_s, 0.0);
-        let coast_m =
-            forward_m_s * forward_m_s / (2.0 * self.coast_m_s2) + forward_m_s * RELEASE_DELAY_S;
-        left_m <= max(coast_m, 0.5 * self.tolerance_m)
-    }
-
     fn speed_m_s(
         &self,
         state: &mut LineState,
@@ -204,8 +177,7 @@ impl Line {
         error_rad: f32,
         limit_m_s: f32,
     ) -> f32 {
-        let late_m = self.lag_s * max(estimate.forward_m_s, 0.0);
-        let braking = sqrt(2.0 * self.brake_m_s2 * (left_m - late_m));
+        let braking = self.stop.speed(left_m, estimate.forward_m_s);
         let slow = 1.0 / (1.0 + abs(error_rad) / SLOW_RAD);
         let wanted = min(min(self.cruise_m_s * slow, limit_m_s), braking);
         state.speed_m_s = max(

@@ -1,0 +1,143 @@
+//! How wheels that only coast down are brought to rest at a goal: the speed on the way, and when they are released.
+//!
+//! ```text
+//! speed = sqrt(2 a (left - speed measured * lag))          released when   left <= speed^2 / (2 a_coast) + speed * delay
+//! ```
+//!
+//! `a` is a deceleration that friction gives on any floor; `lag` is how late the speed loops follow a falling reference. The last bit is
+//! left to friction alone; what is then still missing beyond the tolerance is driven once more, a few times at most. The unit is that
+//! of the goal: m along a line, rad in a turn.
+
+use crate::math::{max, sqrt};
+use crate::params::{ParamId, Params};
+
+/// Way that a wheel still rolls at its speed between the release that is asked for and the bridge letting go: the latch of the inputs,
+/// 3 ms to the outputs, and half a pole of the encoder at creeping speed [s].
+const RELEASE_DELAY_S: f32 = 0.015;
+
+/// Configuration of a stop; per second and second squared of the goal's unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// Planned deceleration.
+    pub brake: f32,
+    /// Time by which the wheels follow late [s].
+    pub lag_s: f32,
+    /// Deceleration of the released wheels at creeping speed.
+    pub coast: f32,
+    /// What may be missing in the end.
+    pub tolerance: f32,
+    /// Drives before the goal is taken as it is.
+    pub most_tries: u8,
+}
+
+/// Memory of a stop; the default is the start of a drive.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StopState {
+    coasting: bool,
+    tries: u8,
+}
+
+/// What is to be done now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stopping {
+    /// Drive on.
+    Drive,
+    /// The wheels are released.
+    Coast,
+    /// The wheels stand, near enough or after the last try.
+    Done,
+}
+
+impl Stop {
+    /// At the end of a way [m], from the parameters.
+    pub fn on_the_way(params: &Params) -> Self {
+        Self {
+            brake: params.get(ParamId::LineBrake),
+            lag_s: params.get(ParamId::SpeedLag),
+            coast: params.get(ParamId::LineCoast),
+            tolerance: params.get(ParamId::LineTolerance),
+            most_tries: 3,
+        }
+    }
+
+    /// The speed from which the goal can still be stopped at.
+    pub fn speed(&self, left: f32, measured: f32) -> f32 {
+        sqrt(2.0 * self.brake * (left - self.lag_s * max(measured, 0.0)))
+    }
+
+    /// One tick: `left` is the way left (negative beyond the goal), `measured` the speed towards it, `standing` that both wheels stand.
+    pub fn step(
+        &self,
+        state: &mut StopState,
+        left: f32,
+        measured: f32,
+        standing: bool,
+    ) -> Stopping {
+        if state.coasting && standing {
+            if left <= self.tolerance || state.tries >= self.most_tries {
+                return Stopping::Done;
+            }
+            state.coasting = false;
+        }
+        let speed = max(measured, 0.0);
+        let coast = speed * speed / (2.0 * self.coast) + speed * RELEASE_DELAY_S;
+        if !state.coasting && left <= max(coast, 0.5 * self.tolerance) {
+            state.coasting = true;
+            state.tries = state.tries.saturating_add(1);
+        }
+        if state.coasting {
+            Stopping::Coast
+        } else {
+            Stopping::Drive
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STOP: Stop = Stop {
+        brake: 0.36,
+        lag_s: 0.1,
+        coast: 0.5,
+        tolerance: 0.004,
+        most_tries: 3,
+    };
+
+    #[test]
+    fn the_speed_can_be_braked_before_the_goal_even_when_the_loops_follow_late() {
+        for millimetres in 1..1_000u16 {
+            let left = f32::from(millimetres) * 1e-3;
+            let speed = STOP.speed(left, 0.3);
+            assert!(speed * speed / (2.0 * STOP.brake) <= max(left - 0.03, 0.0) * 1.000_1);
+        }
+    }
+
+    #[test]
+    fn the_wheels_are_released_when_they_would_coast_there_and_not_before() {
+        let coast = 0.04 / (2.0 * STOP.coast) + 0.2 * RELEASE_DELAY_S;
+        let mut state = StopState::default();
+        let mut at = |left| STOP.step(&mut state, left, 0.2, false);
+        assert_eq!(at(coast + 0.001), Stopping::Drive);
+        assert_eq!(at(coast - 0.001), Stopping::Coast);
+    }
+
+    #[test]
+    fn what_is_missing_is_driven_once_more_but_not_for_ever() {
+        let mut state = StopState::default();
+        for _ in 0..STOP.most_tries {
+            assert_eq!(STOP.step(&mut state, 0.02, 0.0, true), Stopping::Drive);
+            assert_eq!(STOP.step(&mut state, 0.001, 0.03, false), Stopping::Coast);
+        }
+        // Pushed back each time: it is taken as it is.
+        assert_eq!(STOP.step(&mut state, 0.02, 0.0, true), Stopping::Done);
+    }
+
+    #[test]
+    fn a_goal_that_was_passed_is_done_when_the_wheels_stand() {
+        let mut state = StopState::default();
+        assert_eq!(STOP.step(&mut state, -0.01, 0.1, false), Stopping::Coast);
+        assert_eq!(STOP.step(&mut state, -0.02, 0.0, true), Stopping::Done);
+    }
+}
