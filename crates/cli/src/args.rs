@@ -33,6 +33,8 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Find the plant's parameters from recorded runs
     Identify(IdentifyArgs),
+    /// Let the robot calibrate itself: dead zones, feedforward, wheels, base
+    Calibrate(CalibrateArgs),
     /// Check a CSV of the original program and convert it to a log (MCAP)
     Import(ImportArgs),
     /// List modes, scenarios, worlds, rigs, robots and parameters
@@ -161,6 +163,40 @@ pub(crate) struct IdentifyArgs {
     /// Folder for plots of measured against simulated, SVG and PNG; made if need be
     #[arg(long, value_name = "DIR")]
     pub(crate) plots: Option<PathBuf>,
+}
+
+/// Options of `rumbo calibrate`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo calibrate
+  rumbo calibrate --seed 7 --json
+  rumbo calibrate --seed 7 --out my_robot.toml
+
+The robot stands 0.3 to 0.5 m beside a wall, along it, on its final rig, with 2.5 m free ahead. It drives along the wall to and fro,
+turns on the spot, and is done in less than three minutes.")]
+pub(crate) struct CalibrateArgs {
+    /// Robot: name or path
+    #[arg(long, value_name = "NAME", default_value = "memoria")]
+    pub(crate) robot: String,
+    /// Rig; it must have a sonar on a side and one ahead
+    #[arg(long, value_name = "NAME")]
+    pub(crate) rig: Option<String>,
+    /// World instead of the one made for it; the robot starts at x = -1.1, y = -0.45 m there, along x
+    #[arg(long, value_name = "NAME")]
+    pub(crate) world: Option<String>,
+    /// Seed that draws the robot and everything random
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Parameter of the control core or the plant (`rumbo list`); may be repeated
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
+    pub(crate) params: Vec<(String, f64)>,
+    /// Robot file whose [parameters] table is rewritten; a new file starts as a copy of the robot's
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) out: Option<PathBuf>,
+    /// The result as JSON on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// Options of `rumbo import`.

@@ -6,6 +6,7 @@ use crate::output;
 use crate::scene::{first_commands, scene};
 use rumbo_control::Wheels;
 use rumbo_scenario::files::{FileError, Library, Overrides, Setup};
+use rumbo_scenario::run;
 use rumbo_scenario::sim::Sim;
 use rumbo_station::{Choice, LabConfig, MapPose, Scene, Simulation, Target, Truth};
 use rumbo_wire::Command;
@@ -83,7 +84,7 @@ fn prepare(
     };
     let setup: Setup = library.setup(&choice.scenario, &overrides)?;
     let setup = setup.of_seed(choice.seed)?;
-    let sim = Sim::new(&setup, choice.seed)?;
+    let sim = Sim::new(&*run::prepare(&setup, choice.seed)?, choice.seed)?;
     let scene = scene(library, &setup, choice)?;
     Ok((sim, scene, first_commands(&setup)))
 }

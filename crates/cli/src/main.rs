@@ -4,6 +4,7 @@
 //! scenario was missed, 2 wrong input. Each file here is one subcommand.
 
 mod args;
+mod calibrate;
 mod failure;
 mod identify;
 mod import;
@@ -36,6 +37,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Lab(args)) => lab::lab(&args),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Identify(args)) => identify::identify(&args),
+        Some(Command::Calibrate(args)) => calibrate::calibrate(&args),
         None => lab::lab(&cli.lab),
     }
 }

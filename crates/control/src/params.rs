@@ -99,6 +99,7 @@ const fn fnv(mut hash: u32, bytes: &[u8]) -> u32 {
 const FRONT: Option<ModeId> = Some(ModeId::FrontDistance);
 const WALL: Option<ModeId> = Some(ModeId::WallFollow);
 const WAYPOINTS: Option<ModeId> = Some(ModeId::Waypoints);
+const STRAIGHT: Option<ModeId> = Some(ModeId::StraightLine);
 const MANUAL: Option<ModeId> = Some(ModeId::Manual);
 
 table! {
@@ -228,6 +229,14 @@ table! {
     WallYawLimit = "wall_yaw_limit_rad_s", "rad/s", 1.5, 0.1 => 5.0, WALL;
     /// Range of the front sonar at which the robot stops before what stands ahead, where the rig looks ahead.
     WallStop = "wall_stop_m", "m", 0.15, 0.05 => 1.0, WALL;
+    /// Yaw rate per difference of distance travelled, as a heading.
+    StraightKp = "straight_kp", "1/s", 4.0, 0.1 => 20.0, STRAIGHT;
+    /// Heading per offset from the line.
+    StraightOffset = "straight_offset_rad_m", "rad/m", 2.0, 0.0 => 20.0, STRAIGHT;
+    /// Slope of the speed when speeding up.
+    StraightAccel = "straight_accel_rad_s2", "rad/s2", 20.0, 1.0 => 100.0, STRAIGHT;
+    /// Slope of the speed when slowing down; beyond about 10 friction alone does not follow.
+    StraightDecel = "straight_decel_rad_s2", "rad/s2", 8.0, 1.0 => 100.0, STRAIGHT;
 }
 
 impl ParamId {

@@ -1,6 +1,7 @@
 //! Rumbo's experiments: the robot against the plant, metrics, identification.
 
 mod board;
+pub mod calibrate;
 pub mod campaign;
 pub mod files;
 pub mod identify;

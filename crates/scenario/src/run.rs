@@ -2,13 +2,15 @@
 //!
 //! A run depends on its setup and seed alone, so its result is the same on one thread and on many.
 
-use crate::files::{FileError, Setup};
+use crate::calibrate::calibrate_simulated;
+use crate::files::{FileError, Program, Setup};
 use crate::metrics::{self, Metrics};
 use crate::operator::Operator;
 use crate::sim::Sim;
 use crate::trace::{SAMPLE_US, Trace};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// What a run gave.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -32,9 +34,10 @@ pub struct RunResult {
 /// Runs a scenario once.
 ///
 /// # Errors
-/// If the setup's values do not fit together.
+/// If the setup's values do not fit together, or the calibration that it asks for came to no end.
 pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
     let setup = &*setup.of_seed(seed)?;
+    let setup = &*prepare(setup, seed)?;
     let scenario = &setup.scenario;
     let mut sim = Sim::new(setup, seed)?;
     let mut operator = Operator::new(setup);
@@ -67,6 +70,29 @@ pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
         failures,
         trace,
     })
+}
+
+/// The setup as it is run: if its scenario asks for it, with the parameters that a calibration of this seed's robot gives. Those of the
+/// scenario itself win over them; the report's program knows none.
+///
+/// # Errors
+/// The calibration came to no end.
+pub fn prepare(setup: &Setup, seed: u64) -> Result<Cow<'_, Setup>, FileError> {
+    if !setup.scenario.calibrated || setup.program == Program::Original {
+        return Ok(Cow::Borrowed(setup));
+    }
+    let (found, _) = calibrate_simulated(setup, seed, false)?;
+    let found = found.map_err(|error| {
+        let name = &setup.scenario.name;
+        FileError::Setting(format!(
+            "scenario {name}, calibration of seed {seed}: {error}"
+        ))
+    })?;
+    let mut setup = setup.clone();
+    let mut parameters = found.parameters();
+    parameters.append(&mut setup.scenario.parameters);
+    setup.scenario.parameters = parameters;
+    Ok(Cow::Owned(setup))
 }
 
 fn known(metrics: &Metrics) -> String {

@@ -52,6 +52,14 @@ impl Sim {
     /// # Errors
     /// If the files' values do not fit together.
     pub fn new(setup: &Setup, seed: u64) -> Result<Self, FileError> {
+        Self::with_noise(setup, seed, 0)
+    }
+
+    /// The same robot on another day: what `seed` draws of it is the same, its noise, slip and floor are those of number `day`.
+    ///
+    /// # Errors
+    /// If the files' values do not fit together.
+    pub(crate) fn with_noise(setup: &Setup, seed: u64, day: u32) -> Result<Self, FileError> {
         let setup = &*setup.of_seed(seed)?;
         let params = drawn_params(setup, seed)?;
         let scenario = &setup.scenario;
@@ -64,7 +72,7 @@ impl Sim {
             rig: setup.rig,
             world,
             seed,
-            robot: 0,
+            robot: day,
             wheels_in_air: scenario.wheels_in_air,
         });
         let state = plant.start(Pose {
@@ -87,7 +95,7 @@ impl Sim {
             Program::Original => Some(Original::new(setup)?),
         };
         let link = LinkParams::default();
-        let noise = Noise::new(seed, 0);
+        let noise = Noise::new(seed, day);
         let mut sonar_faults = SonarFaults::default();
         for fault in &scenario.sonar_faults {
             sonar_faults.add(*fault);

@@ -525,7 +525,7 @@ impl ActiveMode {
                 references: *references,
             }
             .step(&mut (), at),
-            Self::StraightLine(_, state) => StraightLine.step(state, at),
+            Self::StraightLine(rad_s, state) => StraightLine::new(params, *rad_s).step(state, at),
             Self::Waypoints(route, state) => Waypoints::new(params, route).step(state, at),
             Self::Mission(_, state) => Mission.step(state, at),
         }

@@ -57,6 +57,8 @@ pub struct ScenarioFile {
     pub start: Start,
     /// The wheels turn freely: no floor, the body stays where it is.
     pub wheels_in_air: bool,
+    /// A calibration of this seed's robot comes first; its parameters are sent before the first command.
+    pub calibrated: bool,
     /// What the station sends, in order of time, ramps already resolved into single commands.
     pub commands: Vec<TimedCommand>,
     /// Sonars that fail on the way.
@@ -169,6 +171,7 @@ impl ScenarioFile {
             duration_s,
             start: read_start(&root.table("start")),
             wheels_in_air: root.flag("wheels_in_air").is_some_and(|flag| flag.value),
+            calibrated: root.flag("calibrated").is_some_and(|flag| flag.value),
             commands: read_commands(root.tables("command"), mode, duration_s),
             sonar_faults: read_sonar_faults(root.tables("sonar_fault"), duration_s),
             limits: read_limits(&root.table("limits"), ""),

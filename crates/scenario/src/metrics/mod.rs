@@ -8,6 +8,7 @@ mod path;
 mod route;
 mod start;
 mod step;
+mod straight;
 mod wall;
 
 use crate::files::Setup;
@@ -42,7 +43,8 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
         ModeId::WallHold | ModeId::WallFollow => wall::following(setup, sim, trace, &mut metrics),
         ModeId::Mission => journey::journey(setup, sim.worst_contact_m_s(), trace, &mut metrics),
         ModeId::Waypoints => route::route(setup, trace, &mut metrics),
-        ModeId::FrontAlign | ModeId::StraightLine => {}
+        ModeId::StraightLine => straight::drift(trace, &mut metrics),
+        ModeId::FrontAlign => {}
     }
     // A billionth of any unit is rounding, not behaviour.
     for value in metrics.values_mut() {

@@ -4,6 +4,7 @@
 
 mod along_a_wall;
 mod drive;
+mod mode_6;
 mod mode_7;
 
 use rumbo_scenario::files::FileError;

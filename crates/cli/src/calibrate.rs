@@ -1,0 +1,131 @@
+//! `rumbo calibrate`: the robot's own calibration, of a simulated robot, beside what that robot really is.
+
+use crate::args::CalibrateArgs;
+use crate::failure::Failure;
+use crate::output::{self, figure};
+use rumbo_scenario::calibrate::{self, Calibration, Row};
+use rumbo_scenario::files::{Library, Overrides, RobotFile, Setup};
+use serde::Serialize;
+use std::path::Path;
+
+/// The scenario whose robot and rig are calibrated unless told otherwise.
+const SCENARIO: &str = "mode6";
+
+/// The outcome as JSON.
+#[derive(Serialize)]
+struct Report<'a> {
+    robot: &'a str,
+    seed: u64,
+    duration_s: f64,
+    way_m: f64,
+    contacts: u32,
+    quantities: &'a [Row],
+    parameters: Vec<(&'static str, f64)>,
+    written: Option<&'a Path>,
+}
+
+/// Calibrates and prints what came of it.
+pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
+    let overrides = Overrides {
+        robot: Some(args.robot.clone()),
+        rig: args.rig.clone(),
+        world: args.world.clone(),
+        parameters: args.params.clone(),
+        ..Overrides::default()
+    };
+    let setup = Library::new()
+        .setup(SCENARIO, &overrides)
+        .map_err(Failure::input)?;
+    let (found, sim) = calibrate::calibrate_simulated(&setup, args.seed, args.world.is_some())
+        .map_err(Failure::input)?;
+    let found = found.map_err(Failure::input)?;
+    let rows = calibrate::rows(&found, Some(sim.params()));
+    let contacts = sim.truth().contacts;
+    let written = match &args.out {
+        Some(path) => {
+            write(path, &setup, &found)?;
+            Some(path.as_path())
+        }
+        None => None,
+    };
+    let parameters: Vec<(&'static str, f64)> = found
+        .parameters()
+        .into_iter()
+        .map(|(id, value)| (id.name(), rumbo_scenario::files::parameters::exact(value)))
+        .collect();
+    if args.json {
+        return output::json(&Report {
+            robot: &args.robot,
+            seed: args.seed,
+            duration_s: found.duration_s,
+            way_m: found.way_m,
+            contacts,
+            quantities: &rows,
+            parameters,
+            written,
+        });
+    }
+    report(&found, &rows, contacts, args.seed)?;
+    match written {
+        Some(path) => output::line(&format!(
+            "\n{}: its [parameters] table holds what was found",
+            path.display()
+        )),
+        None => {
+            output::line("\n[parameters]")?;
+            parameters
+                .iter()
+                .try_for_each(|(name, value)| output::line(&format!("{name} = {value}")))
+        }
+    }
+}
+
+fn report(found: &Calibration, rows: &[Row], contacts: u32, seed: u64) -> Result<(), Failure> {
+    output::line(&format!(
+        "seed {seed}: {:.1} m along the wall in {:.0} s, contacts {contacts}",
+        found.way_m, found.duration_s
+    ))?;
+    let mut table = vec![
+        ["", "found", "standard error", "truth", "off by"]
+            .map(String::from)
+            .to_vec(),
+    ];
+    for row in rows {
+        let exactly = |value: f64| format!("{value:.6}");
+        table.push(vec![
+            row.name.clone(),
+            exactly(row.found),
+            row.standard_error.map(figure).unwrap_or_default(),
+            row.truth.map(exactly).unwrap_or_default(),
+            row.truth
+                .map(|truth| format!("{:+.3} %", (row.found / truth - 1.0) * 100.0))
+                .unwrap_or_default(),
+        ]);
+    }
+    output::table(&table)?;
+    match found.radius_m {
+        Some(sonar) if sonar.error < found.radius_before_m.error => {
+            output::line("  mean radius: the front sonar's is taken")
+        }
+        Some(_) => output::line(
+            "  mean radius: stays as it is; the front sonar knows it no better than the speed of sound is known, 0.9 % either way",
+        ),
+        None => output::line("  mean radius: stays as it is; the front sonar saw nothing ahead"),
+    }
+}
+
+/// Writes the `[parameters]` table into the file: an existing robot file is rewritten, a new one starts as a copy of the robot's.
+fn write(path: &Path, setup: &Setup, found: &Calibration) -> Result<(), Failure> {
+    let file = path.display().to_string();
+    let wrong = |what: String| Failure::Input(format!("{file}: {what}"));
+    let text = if path.exists() {
+        std::fs::read_to_string(path).map_err(|error| wrong(format!("cannot be read ({error})")))?
+    } else {
+        setup.robot.text.clone()
+    };
+    let today = time::OffsetDateTime::now_utc().date().to_string();
+    let text = calibrate::rewrite(&text, found, &today)
+        .map_err(|error| wrong(format!("is no robot file ({error})")))?;
+    RobotFile::parse("", &file, &text).map_err(Failure::input)?;
+    std::fs::write(path, text).map_err(|error| wrong(format!("cannot be written ({error})")))
+}

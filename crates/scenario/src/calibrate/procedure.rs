@@ -1,0 +1,274 @@
+//! The order of the movements, and what is put together of them.
+
+use super::error::CalibrateError;
+use super::fit::{self, LegFit, Measured, Steady};
+use super::link::Linked;
+use super::station::Station;
+use super::{Calibration, fit::mean};
+use rumbo_control::mode::Movement;
+use rumbo_control::params::ParamId;
+use rumbo_control::{SonarId, Wheels};
+use std::f64::consts::TAU;
+
+/// Longest leg [m].
+const LEG_M: f64 = 1.6;
+/// Speeds of the legs in turn [rad/s]: 60, 40 and 80 rpm.
+const SPEEDS_RAD_S: [f64; 3] = [6.28, 4.19, 8.38];
+/// Distances of a wall to begin at, from the sonar [m].
+const BESIDE_M: std::ops::Range<f64> = 0.18..0.9;
+/// Headings to the wall beyond this are corrected before the next leg [rad]: 1 degree.
+const ASKEW_RAD: f64 = 0.0175;
+/// Legs to and fro before the turns, between them and at the end; whole turns in between.
+const PAIRS: usize = 3;
+/// Whole turns, counter-clockwise positive; a leg to and fro follows each. The first is short: the base is still poorly known.
+const TURNS: [f64; 3] = [1.0, 3.0, -3.0];
+/// Variance of a fitted parabola's curvature over that of the heading's change per way, when the heading wanders.
+const PARABOLA: f64 = 1.43;
+/// A heading at the end of a fitted leg errs as much as slip does over this way [m].
+const HEADING_M: f64 = 0.4;
+/// Standard deviation of the speed of sound about what its parameter says, relative: +-0.9 %, evenly.
+const SOUND: f64 = 0.0052;
+/// Standard deviation of a mean radius as the maker gives it, relative: each wheel +-0.5 %, evenly.
+const MAKER: f64 = 0.002;
+
+/// Calibrates a robot that stands beside a wall, along it, with free floor ahead. It is left disarmed, with the parameters found.
+///
+/// # Errors
+/// Why it came to no end; the robot is stopped.
+pub fn calibrate<R: Linked>(robot: &mut R) -> Result<Calibration, CalibrateError> {
+    let mut station = Station::new(robot);
+    let result = Course::begin(&mut station).and_then(|course| course.run());
+    if result.is_err() {
+        station.stop();
+    }
+    result
+}
+
+/// A calibration on its way.
+struct Course<'s, 'r, R: Linked> {
+    station: &'s mut Station<'r, R>,
+    side: SonarId,
+    ahead_m: f64,
+    radius_m: Wheels<f64>,
+    base_m: f64,
+    /// Heading to the wall where the last leg ended, to the left positive [rad].
+    heading_rad: f64,
+    legs: usize,
+    /// Logarithm of the ratio of the radii of each leg, and its way.
+    ratios: Vec<(f64, f64)>,
+    /// What each turn tells of the base.
+    bases: Vec<Base>,
+    /// True way over the odometry's of each forward leg.
+    scales: Vec<(f64, f64)>,
+    steady: Vec<Steady>,
+}
+
+impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
+    fn begin(station: &'s mut Station<'r, R>) -> Result<Self, CalibrateError> {
+        station.wait(0.6)?;
+        let radius_m = Wheels {
+            left: station.parameter(ParamId::RadiusLeft)?,
+            right: station.parameter(ParamId::RadiusRight)?,
+        };
+        let base_m = station.parameter(ParamId::Base)?;
+        let ahead_m = station.parameter(ParamId::SonarSideX)?;
+        let side = wall_side(station)?;
+        Ok(Self {
+            station,
+            side,
+            ahead_m,
+            radius_m,
+            base_m,
+            heading_rad: 0.0,
+            legs: 0,
+            ratios: Vec::new(),
+            bases: Vec::new(),
+            scales: Vec::new(),
+            steady: Vec::new(),
+        })
+    }
+
+    fn run(mut self) -> Result<Calibration, CalibrateError> {
+        let start_s = self.station.now_s();
+        let before_m = 0.5 * (self.radius_m.left + self.radius_m.right);
+        let dead_zone = [
+            self.dead_zone(Movement::Forward)?,
+            self.dead_zone(Movement::Backward)?,
+        ];
+        for _ in 0..PAIRS {
+            self.straighten(self.heading_rad)?;
+            let (_, back) = self.to_and_fro()?;
+            self.heading_rad = back.end_rad;
+        }
+        for turns in TURNS {
+            self.turn_and_compare(turns)?;
+        }
+        let ratio = mean(&self.ratios).ok_or(CalibrateError::NotDetermined("the wheels' radii"))?;
+        let scale = mean(&self.scales);
+        let calibration = Calibration {
+            ratio: Measured {
+                value: ratio.value.exp(),
+                error: ratio.error,
+            },
+            base_m: self.base(self.base_m),
+            radius_m: scale.map(|scale| Measured {
+                value: before_m * scale.value,
+                error: before_m * scale.error.hypot(SOUND),
+            }),
+            radius_before_m: Measured {
+                value: before_m,
+                error: MAKER * before_m,
+            },
+            dead_zone,
+            feedforward: fit::feedforward(&self.steady)?,
+            duration_s: self.station.now_s() - start_s,
+            way_m: self.ratios.iter().map(|(_, way_m)| way_m).sum(),
+        };
+        for (id, value) in calibration.parameters() {
+            self.station.set_parameter(id, f64::from(value))?;
+        }
+        Ok(calibration)
+    }
+
+    /// Dead zone of both wheels; one breaks away before the other, so the robot then turns back.
+    fn dead_zone(&mut self, movement: Movement) -> Result<Wheels<Option<f64>>, CalibrateError> {
+        let before_rad = self.station.last()?.heading_rad;
+        let found = self.station.break_away(movement)?;
+        let turned_rad = self.station.last()?.heading_rad - before_rad;
+        self.straighten(turned_rad)?;
+        Ok(found)
+    }
+
+    /// Turns back by a heading, unless it is too small to matter.
+    fn straighten(&mut self, heading_rad: f64) -> Result<(), CalibrateError> {
+        if heading_rad.abs() > ASKEW_RAD {
+            self.station.turn(-heading_rad)?;
+        }
+        Ok(())
+    }
+
+    /// A leg along the wall and back the same way; gives both fits, and keeps what they tell.
+    fn to_and_fro(&mut self) -> Result<(LegFit, LegFit), CalibrateError> {
+        let speed_rad_s = SPEEDS_RAD_S[self.legs % SPEEDS_RAD_S.len()];
+        self.legs += 1;
+        let there = self.leg(LEG_M, speed_rad_s)?;
+        let back = self.leg(-there.way_m, speed_rad_s)?;
+        let ratio = self
+            .ratios
+            .iter()
+            .map(|(ratio, way_m)| ratio * way_m)
+            .sum::<f64>()
+            / self.ratios.iter().map(|(_, way_m)| way_m).sum::<f64>();
+        let mean_m = 0.5 * (self.radius_m.left + self.radius_m.right);
+        let left_m = 2.0 * mean_m / (1.0 + ratio.exp());
+        self.radius_m = Wheels {
+            left: left_m,
+            right: left_m * ratio.exp(),
+        };
+        self.station
+            .set_parameter(ParamId::RadiusLeft, self.radius_m.left)?;
+        self.station
+            .set_parameter(ParamId::RadiusRight, self.radius_m.right)?;
+        Ok((there, back))
+    }
+
+    fn leg(&mut self, way_m: f64, speed_rad_s: f64) -> Result<LegFit, CalibrateError> {
+        let mean_m = 0.5 * (self.radius_m.left + self.radius_m.right);
+        let samples = self.station.leg(self.side, way_m, speed_rad_s, mean_m)?;
+        let found = fit::leg(&samples, self.side, self.ahead_m)?;
+        let forward = way_m > 0.0;
+        self.steady.extend(fit::steady(&samples, forward));
+        if forward {
+            self.scales
+                .extend(fit::way_scale(&samples).map(|scale| (scale, 1.0)));
+        }
+        let in_force = (self.radius_m.right / self.radius_m.left).ln();
+        let ratio = in_force + found.curvature_rad_m * self.base_m;
+        self.ratios.push((ratio, found.way_m));
+        Ok(found)
+    }
+
+    /// The base from all turns so far. Too few to scatter: the error is that of the slip which the legs' scatter shows.
+    fn base(&self, in_force_m: f64) -> Measured {
+        let weight: f64 = self.bases.iter().map(Base::weight).sum();
+        if weight == 0.0 {
+            return Measured {
+                value: in_force_m,
+                error: f64::INFINITY,
+            };
+        }
+        let of = |base: &Base| base.weight() / weight;
+        let value: f64 = self.bases.iter().map(|base| of(base) * base.base_m).sum();
+        let slip = mean(&self.ratios).map_or(0.0, |ratio| {
+            let way_m: f64 = self.ratios.iter().map(|(_, way_m)| way_m).sum();
+            (ratio.error / in_force_m).powi(2) * way_m / PARABOLA
+        });
+        let variance: f64 = self
+            .bases
+            .iter()
+            .map(|base| of(base) * of(base) * base.variance(slip))
+            .sum();
+        Measured {
+            value,
+            error: value * variance.sqrt(),
+        }
+    }
+
+    /// Whole turns between two legs: the base is what makes the odometry's turn the true one.
+    fn turn_and_compare(&mut self, turns: f64) -> Result<(), CalibrateError> {
+        let before = self.heading_rad;
+        let from = self.station.last()?;
+        self.station.turn(TAU * turns - before)?;
+        let to = self.station.last()?;
+        let (there, back) = self.to_and_fro()?;
+        let seen_rad = to.heading_rad - from.heading_rad;
+        let true_rad = TAU * turns + there.start_rad - before;
+        let base_m = self.base_m * seen_rad / true_rad;
+        self.bases.push(Base { base_m, turns });
+        self.base_m = self.base(self.base_m).value;
+        self.station.set_parameter(ParamId::Base, self.base_m)?;
+        self.heading_rad = back.end_rad;
+        Ok(())
+    }
+}
+
+/// What a number of whole turns tells of the base.
+struct Base {
+    base_m: f64,
+    turns: f64,
+}
+
+impl Base {
+    /// Weight: an error of the headings before and after counts for less the more turns are in between.
+    fn weight(&self) -> f64 {
+        self.turns * self.turns
+    }
+
+    /// Variance of the base, relative: slip on the way of the wheels, and the two headings. `slip`: variance of the heading per metre.
+    fn variance(&self, slip: f64) -> f64 {
+        let turned_rad = TAU * self.turns;
+        let way_m = 0.5 * self.base_m * turned_rad.abs();
+        slip * (way_m + 2.0 * HEADING_M) / (turned_rad * turned_rad)
+    }
+}
+
+/// The side sonar that sees a wall at a fitting distance, the nearer one if both do.
+fn wall_side<R: Linked>(station: &Station<'_, R>) -> Result<SonarId, CalibrateError> {
+    let sample = station.last()?;
+    let fitting = |sonar| {
+        sample
+            .range_m(sonar)
+            .filter(|range_m| BESIDE_M.contains(range_m))
+            .map(|range_m| (range_m, sonar))
+    };
+    let [left, right] = [SonarId::Left, SonarId::Right].map(fitting);
+    match (left, right) {
+        (Some(left), Some(right)) => Ok(if left.0 < right.0 { left.1 } else { right.1 }),
+        (Some((_, sonar)), None) | (None, Some((_, sonar))) => Ok(sonar),
+        (None, None) => {
+            Err(CalibrateError::NoWall([0, 1].map(|index: usize| {
+                sample.range_m[index].map(|range_m| range_m as f32)
+            })))
+        }
+    }
+}

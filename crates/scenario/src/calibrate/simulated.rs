@@ -1,0 +1,48 @@
+//! The calibration of a simulated robot, in the world made for it.
+
+use super::{CalibrateError, Calibration, calibrate};
+use crate::files::{FileError, Library, ScenarioFile, Setup};
+use crate::sim::Sim;
+
+/// The built-in world of a calibration.
+pub const WORLD: &str = "calibration";
+/// A scenario that only says where the robot stands: along the wall on its right, free floor ahead.
+const SCENARIO: &str = r#"
+title = "Calibration"
+robot = "memoria"
+rig = "final"
+world = "calibration"
+mode = "straight_line"
+duration_s = 300
+[start]
+x_m = -1.1
+y_m = -0.45
+"#;
+
+/// Calibrates the robot that `seed` draws in `setup`, on its final rig in the world of calibrations (or `setup`'s own with `here`), always from the same place.
+/// Floor, slip and noise are others than those of the run itself. Gives the calibration and the simulation at its end.
+///
+/// # Errors
+/// Whatever is wrong with the files; the inner one: why the calibration came to no end.
+pub fn calibrate_simulated(
+    setup: &Setup,
+    seed: u64,
+    here: bool,
+) -> Result<(Result<Calibration, CalibrateError>, Sim), FileError> {
+    let mut own = setup.clone();
+    own.scenario.wheels_in_air = false;
+    own.scenario.sonar_faults.clear();
+    let plan = ScenarioFile::parse("calibration", "calibration", SCENARIO)?;
+    own.scenario.start = plan.start;
+    if !here {
+        own.world = Library::new().world(WORLD)?;
+        own.scenario.world.clone_from(&own.world.name);
+    }
+    if let Some(rig) = own.robot.rigs.get("final") {
+        own.rig = *rig;
+        "final".clone_into(&mut own.scenario.rig);
+    }
+    let mut sim = Sim::with_noise(&own, seed, 1)?;
+    let found = calibrate(&mut sim);
+    Ok((found, sim))
+}

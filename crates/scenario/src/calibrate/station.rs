@@ -1,0 +1,245 @@
+//! The station's end of the link during a calibration: commands until they are acknowledged, heartbeats, telemetry.
+
+use super::error::CalibrateError;
+use super::link::Linked;
+use rumbo_control::params::ParamId;
+use rumbo_control::{Range, SIDES, SonarId, Wheels};
+use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, Telemetry, ToRobot};
+
+/// Time between two looks at the link [us].
+const LOOK_US: u64 = 5_000;
+/// Time between heartbeats [us].
+const HEARTBEAT_US: u64 = 100_000;
+/// Time after which an unanswered command is repeated [us].
+const REPEAT_US: u64 = 200_000;
+/// Repetitions without an answer after which the robot is given up.
+const TRIES: u32 = 15;
+/// Longest line of the original's telemetry.
+const LINE: usize = 160;
+/// Session of the commands: a calibration speaks to the robot alone.
+const SESSION: u8 = 0xCA;
+
+/// What one telemetry frame said.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sample {
+    /// Robot time, unwrapped [s].
+    pub(super) t_s: f64,
+    /// Place by odometry [m].
+    pub(super) x_m: f64,
+    /// Place by odometry [m].
+    pub(super) y_m: f64,
+    /// Heading by odometry, not wrapped [rad].
+    pub(super) heading_rad: f64,
+    /// Wheel speeds [rad/s].
+    pub(super) wheel_rad_s: Wheels<f64>,
+    /// Their references [rad/s]; 0 open loop.
+    pub(super) reference_rad_s: Wheels<f64>,
+    /// Duty of the wheels, -1..=1.
+    pub(super) duty: Wheels<f64>,
+    /// Ranges of the sonars by number [m].
+    pub(super) range_m: [Option<f64>; 3],
+    /// Sonars that answer no more, by number.
+    pub(super) faulty: [bool; 3],
+}
+
+impl Sample {
+    /// The range of a sonar [m].
+    pub(super) fn range_m(&self, sonar: SonarId) -> Option<f64> {
+        self.range_m[sonar as usize]
+    }
+}
+
+/// The station's end.
+pub(super) struct Station<'a, R: Linked> {
+    robot: &'a mut R,
+    number: u16,
+    seq: u8,
+    heartbeat_due_us: u64,
+    decoder: Decoder<LINE>,
+    buffer: Vec<u8>,
+    t_ms: Option<u16>,
+    fault: Option<rumbo_control::Fault>,
+    /// The mode has reached its reference since the last command.
+    pub(super) reached: bool,
+    answer: Option<(u16, Result<f32, rumbo_wire::Refusal>)>,
+    /// Everything that telemetry said.
+    pub(super) samples: Vec<Sample>,
+}
+
+impl<'a, R: Linked> Station<'a, R> {
+    pub(super) fn new(robot: &'a mut R) -> Self {
+        Self {
+            robot,
+            number: 0,
+            seq: 0,
+            heartbeat_due_us: 0,
+            decoder: Decoder::default(),
+            buffer: Vec::new(),
+            t_ms: None,
+            fault: None,
+            reached: false,
+            answer: None,
+            samples: Vec::new(),
+        }
+    }
+
+    /// Time on this side [s].
+    pub(super) fn now_s(&self) -> f64 {
+        self.robot.now_us() as f64 * 1e-6
+    }
+
+    /// The last sample.
+    pub(super) fn last(&self) -> Result<Sample, CalibrateError> {
+        self.samples.last().copied().ok_or(CalibrateError::NoAnswer)
+    }
+
+    /// Sends a command until it is acknowledged; gives the value in force.
+    pub(super) fn command(&mut self, command: Command) -> Result<f32, CalibrateError> {
+        self.number = self.number.wrapping_add(1);
+        self.reached = false;
+        for _ in 0..TRIES {
+            self.say(&ToRobot::Command {
+                session: SESSION,
+                number: self.number,
+                command,
+            });
+            let until_us = self.robot.now_us() + REPEAT_US;
+            while self.robot.now_us() < until_us {
+                self.look();
+                match self.answer.take() {
+                    Some((number, Ok(value))) if number == self.number => return Ok(value),
+                    Some((number, Err(refusal))) if number == self.number => {
+                        return Err(CalibrateError::Refused(command, refusal));
+                    }
+                    _ => {}
+                }
+            }
+        }
+        Err(CalibrateError::NoAnswer)
+    }
+
+    /// A parameter of the robot.
+    pub(super) fn parameter(&mut self, id: ParamId) -> Result<f64, CalibrateError> {
+        self.command(Command::GetParam { id: id as u8 })
+            .map(f64::from)
+    }
+
+    /// Sets a parameter of the robot.
+    pub(super) fn set_parameter(&mut self, id: ParamId, value: f64) -> Result<(), CalibrateError> {
+        let value = value as f32;
+        self.command(Command::SetParam {
+            id: id as u8,
+            value,
+        })?;
+        Ok(())
+    }
+
+    /// Lives on until `done`, asked at each new sample, or the time is over; says which. A fault is an error.
+    pub(super) fn until(
+        &mut self,
+        within_s: f64,
+        mut done: impl FnMut(&Self, &Sample) -> bool,
+    ) -> Result<bool, CalibrateError> {
+        let end_us = self.robot.now_us() + (within_s * 1e6) as u64;
+        let mut seen = self.samples.len();
+        while self.robot.now_us() < end_us {
+            self.look();
+            if let Some(fault) = self.fault {
+                return Err(CalibrateError::Faulted(fault));
+            }
+            while let Some(sample) = self.samples.get(seen).copied() {
+                seen += 1;
+                if done(self, &sample) {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// Lives on for a while.
+    pub(super) fn wait(&mut self, seconds: f64) -> Result<(), CalibrateError> {
+        self.until(seconds, |_, _| false).map(|_| ())
+    }
+
+    /// Stops the robot, whatever has happened before.
+    pub(super) fn stop(&mut self) {
+        // One that answers no more stops by itself: it hears no heartbeat.
+        let _ = self.command(Command::Stop);
+    }
+
+    fn say(&mut self, message: &ToRobot) {
+        self.robot.send(message.frame(self.seq).bytes());
+        self.seq = self.seq.wrapping_add(1);
+    }
+
+    /// A moment passes.
+    fn look(&mut self) {
+        let now_us = self.robot.now_us();
+        if now_us >= self.heartbeat_due_us {
+            self.say(&ToRobot::Heartbeat);
+            self.heartbeat_due_us = now_us + HEARTBEAT_US;
+        }
+        self.robot.wait_until(now_us + LOOK_US);
+        let mut buffer = std::mem::take(&mut self.buffer);
+        buffer.clear();
+        self.robot.receive(&mut buffer);
+        for byte in &buffer {
+            if let Some(Received::Frame(body)) = self.decoder.push(*byte)
+                && let Ok(message) = FromRobot::from_body(&body)
+            {
+                self.hear(&message);
+            }
+        }
+        self.buffer = buffer;
+    }
+
+    fn hear(&mut self, message: &FromRobot) {
+        match message {
+            FromRobot::Telemetry(telemetry) => self.take(telemetry),
+            FromRobot::Ack(ack) if ack.session == SESSION => {
+                self.answer = Some((ack.number, ack.result));
+            }
+            FromRobot::Event(event) => match event.kind {
+                EventKind::Faulted(fault) => self.fault = Some(fault),
+                EventKind::Reached => self.reached = true,
+                _ => {}
+            },
+            _ => {}
+        }
+    }
+
+    fn take(&mut self, telemetry: &Telemetry) {
+        let before = self.samples.last();
+        let passed_ms = self
+            .t_ms
+            .map_or(0, |t_ms| telemetry.t_ms.wrapping_sub(t_ms));
+        self.t_ms = Some(telemetry.t_ms);
+        let wrapped_rad = f64::from(telemetry.pose.heading_rad);
+        let heading_rad = before.map_or(wrapped_rad, |before| {
+            let change = wrapped_rad - before.heading_rad;
+            before.heading_rad + change
+                - std::f64::consts::TAU * (change / std::f64::consts::TAU).round()
+        });
+        let mut duty = Wheels::both(0.0);
+        for side in SIDES {
+            duty[side] = f64::from(telemetry.duty[side].counts()) / 255.0;
+        }
+        self.samples.push(Sample {
+            t_s: before.map_or(0.0, |before| before.t_s) + f64::from(passed_ms) * 1e-3,
+            x_m: f64::from(telemetry.pose.x_m),
+            y_m: f64::from(telemetry.pose.y_m),
+            heading_rad,
+            wheel_rad_s: telemetry.wheel_rad_s[1].map(f64::from),
+            reference_rad_s: telemetry.wheel_ref_rad_s.map(f64::from),
+            duty,
+            range_m: telemetry.ranges.map(|range| match range.range {
+                Range::Valid(range_m) => Some(f64::from(range_m)),
+                Range::Clear | Range::Faulty => None,
+            }),
+            faulty: telemetry
+                .ranges
+                .map(|range| matches!(range.range, Range::Faulty)),
+        });
+    }
+}
