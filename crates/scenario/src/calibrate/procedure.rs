@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 
 /// Longest leg [m].
 const LEG_M: f64 = 1.6;
-/// Speeds of the legs in turn [rad/s]: 60, 40 and 80 rpm.
-const SPEEDS_RAD_S: [f64; 3] = [6.28, 4.19, 8.38];
+/// Speeds of the legs in turn [rpm].
+const SPEEDS_RPM: [f64; 3] = [60.0, 40.0, 80.0];
 /// Distances of a wall to begin at, from the sonar [m].
 const BESIDE_M: std::ops::Range<f64> = 0.18..0.9;
 /// Headings to the wall beyond this are corrected before the next leg [rad]: 1 degree.
@@ -97,7 +97,7 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
         ];
         for _ in 0..PAIRS {
             self.straighten(self.heading_rad)?;
-            let (_, back) = self.to_and_fro()?;
+            let (_, back) = self.leg_and_back()?;
             self.heading_rad = back.end_rad;
         }
         for turns in TURNS {
@@ -148,8 +148,8 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
     }
 
     /// A leg along the wall and back the same way; gives both fits, and keeps what they tell.
-    fn to_and_fro(&mut self) -> Result<(LegFit, LegFit), CalibrateError> {
-        let speed_rad_s = SPEEDS_RAD_S[self.legs % SPEEDS_RAD_S.len()];
+    fn leg_and_back(&mut self) -> Result<(LegFit, LegFit), CalibrateError> {
+        let speed_rad_s = SPEEDS_RPM[self.legs % SPEEDS_RPM.len()] * TAU / 60.0;
         self.legs += 1;
         let there = self.leg(LEG_M, speed_rad_s)?;
         let back = self.leg(-there.way_m, speed_rad_s)?;
@@ -220,7 +220,7 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
         let from = self.station.last()?;
         self.station.turn(TAU * turns - before)?;
         let to = self.station.last()?;
-        let (there, back) = self.to_and_fro()?;
+        let (there, back) = self.leg_and_back()?;
         let seen_rad = to.heading_rad - from.heading_rad;
         let true_rad = TAU * turns + there.start_rad - before;
         let base_m = self.base_m * seen_rad / true_rad;
