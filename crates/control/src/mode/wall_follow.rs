@@ -269,3 +269,121 @@ impl Mode for WallFollow {
             .map_err(|fault| state.unrest.cause(fault))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::Rig;
+    use crate::types::AgedRange;
+
+    const PAIRS: [Rig; 2] = [Rig::SidePairLeft, Rig::SidePairRight];
+
+    fn follow(rig: Rig, distance_m: f32) -> WallFollow {
+        let mut params = Params::default();
+        params.set(ParamId::Rig, f32::from(rig as u8)).unwrap();
+        WallFollow::new(&params, distance_m)
+    }
+
+    /// What the sonars left, right and front say of what stands so far away.
+    fn seeing(left_m: f32, right_m: f32, ahead: Range) -> Estimate {
+        let mut estimate = Estimate::default();
+        let ranges = [Range::Valid(left_m), Range::Valid(right_m), ahead];
+        for (slot, range) in estimate.ranges.iter_mut().zip(ranges) {
+            *slot = AgedRange { range, age_s: 0.0 };
+        }
+        estimate
+    }
+
+    fn first(mode: &WallFollow, estimate: &Estimate) -> Result<(f32, f32), Fault> {
+        let at = Situation { estimate };
+        match mode.step(&mut State::default(), &at)?.drive {
+            Drive::Twist {
+                forward_m_s,
+                yaw_rad_s,
+            } => Ok((forward_m_s, yaw_rad_s)),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Yaw rate towards the wall, of a robot parallel to it.
+    fn towards(rig: Rig, range_m: f32, reference_m: f32) -> f32 {
+        let seen = seeing(range_m, range_m, Range::Clear);
+        let (_, yaw_rad_s) = first(&follow(rig, reference_m), &seen).unwrap();
+        match rig {
+            Rig::SidePairRight => -yaw_rad_s,
+            _ => yaw_rad_s,
+        }
+    }
+
+    #[test]
+    fn too_far_turns_towards_the_wall_and_too_near_away_from_it_on_either_side() {
+        for rig in PAIRS {
+            assert!(towards(rig, 0.5, 0.4) > 0.2, "{rig:?}");
+            assert!(towards(rig, 0.3, 0.4) < -0.2, "{rig:?}");
+            assert!(towards(rig, 0.4, 0.4).abs() < 1e-3, "{rig:?}");
+        }
+    }
+
+    #[test]
+    fn a_robot_askew_is_straightened_on_either_side() {
+        for (rig, sign) in [(Rig::SidePairLeft, 1.0), (Rig::SidePairRight, -1.0)] {
+            // The one in front reads less: it drives towards the wall.
+            let seen = seeing(0.39, 0.41, Range::Clear);
+            let (_, yaw_rad_s) = first(&follow(rig, 0.4), &seen).unwrap();
+            assert!(sign * yaw_rad_s < -0.1, "{rig:?}: {yaw_rad_s}");
+        }
+    }
+
+    #[test]
+    fn a_step_back_and_forth_leaves_no_integral_behind() {
+        let mode = follow(Rig::SidePairLeft, 0.3);
+        let mut state = State::default();
+        let seen = seeing(0.5, 0.5, Range::Clear);
+        for _ in 0..500 {
+            mode.step(&mut state, &Situation { estimate: &seen })
+                .unwrap();
+        }
+        assert_eq!(state.integral_rad, 0.0);
+    }
+
+    #[test]
+    fn a_bend_never_stops_the_inner_wheel_nor_overdrives_the_outer_one() {
+        let mode = follow(Rig::Final, 0.3);
+        for ahead in [Range::Clear, Range::Valid(0.3), Range::Valid(0.16)] {
+            let seen = seeing(1.2, 2.0, ahead);
+            let (forward_m_s, yaw_rad_s) = first(&mode, &seen).unwrap();
+            let half_m_s = 0.5 * mode.base_m * yaw_rad_s.abs();
+            assert!(forward_m_s - half_m_s >= INNER_M_S - 1e-6, "{ahead:?}");
+            assert!(forward_m_s + half_m_s <= OUTER_M_S + 1e-6, "{ahead:?}");
+        }
+    }
+
+    #[test]
+    fn something_ahead_slows_it_and_then_stops_it() {
+        let mode = follow(Rig::Final, 0.5);
+        let speed = |ahead| first(&mode, &seeing(0.5, 2.0, ahead)).map(|(forward, _)| forward);
+        assert_eq!(speed(Range::Clear), Ok(mode.cruise_m_s));
+        assert_eq!(speed(Range::Valid(1.0)), Ok(mode.cruise_m_s));
+        assert!(speed(Range::Valid(0.18)).is_ok_and(|forward| forward < 0.1));
+        assert_eq!(speed(Range::Valid(0.14)), Err(Fault::Blocked));
+        assert_eq!(speed(Range::Faulty), Err(Fault::SonarFaulty));
+    }
+
+    #[test]
+    fn it_never_drives_on_a_lost_stale_or_faulty_range_beside_it() {
+        let mode = follow(Rig::SidePairLeft, 0.5);
+        let mut state = State::default();
+        let mut seen = seeing(0.5, 0.5, Range::Clear);
+        mode.step(&mut state, &Situation { estimate: &seen })
+            .unwrap();
+        for (range, age_s, fault) in [
+            (Range::Clear, 0.0, Fault::WallLost),
+            (Range::Faulty, 0.0, Fault::SonarFaulty),
+            (Range::Valid(0.5), 0.6, Fault::SonarStale),
+        ] {
+            seen.ranges[1] = AgedRange { range, age_s };
+            let stopped = mode.step(&mut state.clone(), &Situation { estimate: &seen });
+            assert_eq!(stopped, Err(fault));
+        }
+    }
+}

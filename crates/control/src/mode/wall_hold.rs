@@ -124,3 +124,70 @@ impl Mode for WallHold {
         follow.step(&mut state.follow, at)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::Estimate;
+    use crate::params::ParamId;
+    use crate::rig::{Rig, View};
+    use crate::types::{AgedRange, Drive, Reading};
+
+    /// A robot with a pair of sonars on its left; gives the tick's action for a reading of one of them.
+    fn hear(state: &mut State, sonar: SonarId, range_m: f32) -> Result<Action, Fault> {
+        let mut params = Params::default();
+        let pair = f32::from(Rig::SidePairLeft as u8);
+        params.set(ParamId::Rig, pair).unwrap();
+        let mut estimate = Estimate::default();
+        for slot in &mut estimate.ranges[..2] {
+            *slot = AgedRange {
+                range: Range::Valid(0.5),
+                age_s: 0.0,
+            };
+        }
+        estimate.reading = Some(Reading {
+            sonar,
+            range: Range::Valid(range_m),
+            view: View::default(),
+            servo_rad: 0.0,
+        });
+        WallHold::new(&params).step(
+            state,
+            &Situation {
+                estimate: &estimate,
+            },
+        )
+    }
+
+    #[test]
+    fn the_reference_is_the_mean_of_both_medians_and_a_wrong_first_reading_does_not_count() {
+        let mut state = State::default();
+        for (left_m, right_m) in [
+            (0.1, 0.52),
+            (0.5, 0.52),
+            (0.49, 2.0),
+            (0.5, 0.53),
+            (0.5, 0.5),
+        ] {
+            assert_eq!(state.reference_m(), 0.0);
+            let stands = hear(&mut state, SonarId::Left, left_m).unwrap();
+            assert_eq!((stands.drive, stands.state), (Drive::Release, 0));
+            hear(&mut state, SonarId::Right, right_m).unwrap();
+        }
+        assert!((state.reference_m() - 0.51).abs() < 1e-6, "{state:?}");
+        let drives = hear(&mut state, SonarId::Left, 0.5).unwrap();
+        assert!(drives.state > 0 && drives.drive != Drive::Release);
+    }
+
+    #[test]
+    fn it_does_not_wait_for_readings_for_ever() {
+        let mut state = State::default();
+        let stopped = (0..1_000).find_map(|_| hear(&mut state, SonarId::Left, 0.5).err());
+        assert_eq!(stopped, Some(Fault::SonarStale));
+    }
+
+    #[test]
+    fn the_memory_of_a_mode_fits_the_chip() {
+        assert!(size_of::<State>() <= 128, "{}", size_of::<State>());
+    }
+}
