@@ -24,7 +24,9 @@
 //! It stops with a fault when the wall ends (wall lost), a sonar is silent or old, or, on the final rig, something stands ahead (blocked).
 //!
 //! The report closes the same cascade with PI controllers that act on the PWM of one wheel. Ours regulates the yaw rate, damped by the
-//! encoders, and estimates angle and distance with the encoders' help. Derivation and figures: docs/theory/wall_follow.md.
+//! encoders, and estimates angle and distance with the encoders' help. Worst of 20 simulated robots against the real one, to within
+//! 2 cm: 59 -> 50 cm in 1.6 s instead of 7.1, 50 -> 30 cm in 3.2 s instead of 6.3, 30 -> 40 cm in 1.6 s instead of 9.0
+//! (`rumbo run mode4 --runs 20`). Derivation and margins: docs/theory/wall_follow.md.
 
 use super::{Action, Mode, Situation};
 use crate::beside::{Beside, Unrest};

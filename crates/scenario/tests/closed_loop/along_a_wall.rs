@@ -6,7 +6,9 @@ use rumbo_control::{Fault, SonarId};
 use rumbo_plant::world::Wall;
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::run::RunResult;
+use rumbo_scenario::sim::Sim;
 use rumbo_scenario::sonar_fault::{SonarFault, TimedSonarFault};
+use rumbo_wire::text::Row;
 use rumbo_wire::{Command, EventKind, FromRobot};
 
 /// The fault that a run reported first.
@@ -255,6 +257,41 @@ fn without_a_wall_beside_it_or_on_a_rig_that_looks_ahead_only_it_does_not_start(
                     .any(|failure| failure.contains("refused"))
             );
             assert!(run.trace.samples.iter().all(|sample| sample.duty == [0; 2]));
+        }
+    }
+}
+
+/// The last whole line that the robot sent while it lived for so long.
+fn last_line(sim: &mut Sim, seconds: f64) -> String {
+    let mut bytes = Vec::new();
+    sim.advance(sim.now_us() + (seconds * 1e6) as u64);
+    sim.receive(&mut bytes);
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    let whole = text.rsplit_once('\n').unwrap_or_default().0;
+    whole.rsplit('\n').next().unwrap().trim().to_owned()
+}
+
+#[test]
+fn in_text_both_modes_send_the_rows_of_the_report_with_the_front_sonar_of_the_pair_as_the_left_one()
+{
+    for (mode, reference_cm) in [(3, 57.5), (4, 45.0)] {
+        let mut sim = Sim::new(&setup("mode3"), 3).unwrap();
+        last_line(&mut sim, 0.5);
+        for line in [format!("MODE {mode}\n"), "REF 45\n".into(), "ON\n".into()] {
+            sim.send(line.as_bytes());
+            last_line(&mut sim, 0.3);
+        }
+        last_line(&mut sim, 0.5);
+        // Mode 4 is on its way to the wall by now: the front one is nearer.
+        let Ok(Row::Distance(row)) = Row::parse(&last_line(&mut sim, 0.4)) else {
+            panic!("mode {mode}")
+        };
+        assert_eq!(row.mode, mode);
+        assert!((row.reference_cm - reference_cm).abs() < 1.0, "{row:?}");
+        assert!((50.0..59.0).contains(&row.left_cm), "{row:?}");
+        assert!(row.pwm.left > 0 && row.pwm.right > 0, "{row:?}");
+        if mode == 4 {
+            assert!(row.left_cm < row.right_cm - 3.0, "{row:?}");
         }
     }
 }
