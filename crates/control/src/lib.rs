@@ -21,6 +21,7 @@ pub mod pursuit;
 pub mod range;
 pub mod rig;
 pub mod speed;
+pub mod sweep;
 pub mod types;
 pub mod wall;
 

@@ -97,6 +97,7 @@ const fn fnv(mut hash: u32, bytes: &[u8]) -> u32 {
 }
 
 const FRONT: Option<ModeId> = Some(ModeId::FrontDistance);
+const ALIGN: Option<ModeId> = Some(ModeId::FrontAlign);
 const WALL: Option<ModeId> = Some(ModeId::WallFollow);
 const WAYPOINTS: Option<ModeId> = Some(ModeId::Waypoints);
 const STRAIGHT: Option<ModeId> = Some(ModeId::StraightLine);
@@ -213,6 +214,12 @@ table! {
     FrontTolerance = "front_tolerance_m", "m", 0.0015, 0.0005 => 0.05, FRONT;
     /// Yaw rate per heading error, to drive straight.
     FrontHeading = "front_heading_kp", "1/s", 4.0, 0.0 => 20.0, FRONT;
+    /// Yaw rate per bearing of the wall's normal, on the way to the reference.
+    AlignKp = "align_kp", "1/s", 3.0, 0.0 => 20.0, ALIGN;
+    /// Angle to the wall that is good enough at rest.
+    AlignTolerance = "align_tolerance_rad", "rad", 0.015, 0.002 => 0.2, ALIGN;
+    /// How far to the sides of the wall's normal the servo looks to learn its bearing.
+    SweepAside = "sweep_aside_rad", "rad", 0.65, 0.35 => 1.0, ALIGN;
     /// Speed along the wall.
     WallCruise = "wall_cruise_m_s", "m/s", 0.16, 0.05 => 0.4, WALL;
     /// Speed towards the wall per distance error.

@@ -13,7 +13,7 @@
 //! Two sonars side by side thus give the bearing, as the report's trigonometry does, exact also for equal readings;
 //! one sonar and odometry do so over some way, and a sonar on the servo by looking to both sides. Derivation: docs/theory/wall.md.
 
-use crate::math::{abs, max, min, sin_cos, sqrt, wrap_angle};
+use crate::math::{abs, atan2, clamp, max, min, sin_cos, sqrt, wrap_angle};
 use crate::rig::View;
 
 /// Most that a beam's edge may meet the wall off its normal, seen from the beam's edge [rad]; beyond, there is no echo.
@@ -26,6 +26,8 @@ const NOISE_FAR_M: f32 = 0.008;
 const BELIEF_SD: f32 = 2.0;
 /// Innovations beyond this many standard deviations are refused.
 const GATE_SD: f32 = 4.0;
+/// Times that a reading is looked at again from where it leads: at the beam's edge ranges are not linear in the bearing.
+const RELOOKS: usize = 2;
 /// Refused readings in a row after which the wall is another one.
 const GIVE_IN: u8 = 6;
 /// Standard deviation of the distance gained per way rolled [m/sqrt(m)].
@@ -90,6 +92,21 @@ impl WallFilter {
         };
     }
 
+    /// Starts from the readings of two sonars that look ahead, `ahead_m` ahead of the wheels' axis and `gap_m` apart.
+    pub fn start_pair(&mut self, ahead_m: f32, gap_m: f32, beam_rad: f32, ranges_m: [f32; 2]) {
+        let [left_m, right_m] = ranges_m;
+        let (normal_m, bearing_rad) = wall_of_pair(left_m, right_m, gap_m, beam_rad);
+        let (_, cos) = sin_cos(bearing_rad);
+        let noise = square(noise_m(normal_m));
+        *self = Self {
+            distance_m: normal_m + ahead_m * cos,
+            bearing_rad,
+            p: [noise, 0.0, 2.0 * noise / square(gap_m * cos) + 1e-4],
+            known: true,
+            refused: 0,
+        };
+    }
+
     /// Moves the wall along with the robot, which rolled `forward_m` and turned `turn_rad` since the last tick.
     pub fn predict(&mut self, forward_m: f32, turn_rad: f32) {
         if !self.known {
@@ -140,11 +157,11 @@ impl WallFilter {
         let Some((expected_m, hd, hb)) = self.expect(view, beam_rad) else {
             return false;
         };
-        let [pdd, pdb, pbb] = self.p;
-        let (gd, gb) = (pdd * hd + pdb * hb, pdb * hd + pbb * hb);
-        let variance = hd * gd + hb * gb + square(noise_m(range_m));
+        let (prior_m, prior_rad) = (self.distance_m, self.bearing_rad);
+        let noise = square(noise_m(range_m));
+        let first = self.gain((hd, hb), noise);
         let innovation_m = range_m - expected_m;
-        if square(innovation_m) > square(GATE_SD) * variance {
+        if square(innovation_m) > square(GATE_SD) * first.variance {
             self.refused = self.refused.saturating_add(1);
             if self.refused >= GIVE_IN {
                 self.known = false;
@@ -152,12 +169,25 @@ impl WallFilter {
             return false;
         }
         self.refused = 0;
-        let most_m = BELIEF_SD * sqrt(variance);
         // A reading further off than that is believed in part only, and makes the estimate in part only surer.
+        let most_m = BELIEF_SD * sqrt(first.variance);
         let share = most_m / max(abs(innovation_m), most_m);
-        let (kd, kb) = (share * gd / variance, share * gb / variance);
-        self.distance_m = max(self.distance_m + kd * innovation_m, 0.0);
-        self.bearing_rad = wrap_angle(self.bearing_rad + kb * innovation_m);
+        let mut gain = first;
+        self.move_to(prior_m, prior_rad, share, &gain, innovation_m);
+        // At the beam's edge the range bends with the bearing: look again from where the reading leads.
+        for _ in 0..RELOOKS {
+            let Some((expected_m, hd, hb)) = self.expect(view, beam_rad) else {
+                break;
+            };
+            gain = self.gain((hd, hb), noise);
+            let moved_m =
+                hd * (prior_m - self.distance_m) + hb * wrap_angle(prior_rad - self.bearing_rad);
+            let left_m = range_m - expected_m - moved_m;
+            self.move_to(prior_m, prior_rad, share, &gain, left_m);
+        }
+        let [pdd, pdb, pbb] = self.p;
+        let (kd, kb) = (share * gain.distance, share * gain.bearing);
+        let [gd, gb] = gain.covariance;
         self.p = [
             max(pdd - kd * gd, 1e-9),
             pdb - kd * gb,
@@ -165,6 +195,50 @@ impl WallFilter {
         ];
         true
     }
+
+    /// What a reading with these slopes and this variance does to the estimate.
+    fn gain(&self, (hd, hb): (f32, f32), noise: f32) -> Gain {
+        let [pdd, pdb, pbb] = self.p;
+        let (gd, gb) = (pdd * hd + pdb * hb, pdb * hd + pbb * hb);
+        let variance = hd * gd + hb * gb + noise;
+        Gain {
+            distance: gd / variance,
+            bearing: gb / variance,
+            variance,
+            covariance: [gd, gb],
+        }
+    }
+
+    fn move_to(&mut self, from_m: f32, from_rad: f32, share: f32, gain: &Gain, innovation_m: f32) {
+        self.distance_m = max(from_m + share * gain.distance * innovation_m, 0.0);
+        self.bearing_rad = wrap_angle(from_rad + share * gain.bearing * innovation_m);
+    }
+}
+
+/// What a reading does to the estimate.
+#[derive(Clone, Copy)]
+struct Gain {
+    distance: f32,
+    bearing: f32,
+    /// Of the innovation.
+    variance: f32,
+    /// Of distance and bearing with the reading.
+    covariance: [f32; 2],
+}
+
+/// Distance along the normal from the middle between two sonars that look ahead, and bearing of the normal.
+///
+/// Within the beams `(right - left) / gap` is the sine of the bearing and the mean the distance, exact also for equal readings. Beyond,
+/// both readings are long by 1 / cos(bearing - beam).
+pub fn wall_of_pair(left_m: f32, right_m: f32, gap_m: f32, beam_rad: f32) -> (f32, f32) {
+    let mut cos_beyond = 1.0;
+    let mut bearing_rad = 0.0;
+    for _ in 0..3 {
+        let sine = clamp((right_m - left_m) / gap_m * cos_beyond, -0.9, 0.9);
+        bearing_rad = atan2(sine, sqrt(1.0 - sine * sine));
+        (_, cos_beyond) = sin_cos(max(abs(bearing_rad) - beam_rad, 0.0));
+    }
+    (0.5 * (left_m + right_m) * cos_beyond, bearing_rad)
 }
 
 /// Standard deviation of a reading [m].

@@ -1,27 +1,295 @@
-//! Mode 2: stop square to a wall at a distance from it (memoria 2.2).
+//! Mode 2: stop at a distance from the wall in front, square to it (memoria 2.2).
+//!
+//! ```text
+//! wall: distance d from the wheels' axis along its normal, bearing b of the normal (from the sonars and the encoders: crate::wall)
+//! e = d - (reference + sonars' place ahead of the axis)     |v| = as in mode 1, sign of e      yaw rate = kp b, limited
+//! ```
+//!
+//! Too far is a positive error and drives forward; a normal to the left is a positive bearing and turns left. Turning on the spot does not
+//! change d, so the two loops do not disturb each other: the robot squares up on the way, and what is left of the angle when it
+//! has arrived it turns on the spot. The reference is the distance from the sonars to the wall once the robot is square to it.
+//!
+//! | state | does | leaves when | to |
+//! |---|---|---|---|
+//! | 0 look | final rig: stands and looks to both sides | the bearing is known | 1 |
+//! | 1 approach | drives, far from the reference | within 5 cm | 2 |
+//! | 2 settle | drives, near the reference | within the tolerance, askew | 3 |
+//! | | | within the tolerance | 4 |
+//! | | | beyond 6 cm | 1 |
+//! | 3 turn | turns on the spot | square | 2 |
+//! | 4 hold | wheels released | error beyond twice the tolerance for 0.15 s | 2 |
+//! | | | askew beyond twice the tolerance for 0.3 s | 3 |
+//! | | | beyond 6 cm | 1 |
+//!
+//! Rigs: the pair in front, or the final one, whose front sonar then looks ahead and aside in turn ([`crate::sweep`]). Whatever any
+//! sonar hears nearer than the wall is not driven at.
+//!
+//! The report adds a PI of the angle to the PWM of one wheel, and takes the angle from the two readings of the moment alone, with the old
+//! distance when they are equal. Ours knows the angle from the encoders between the readings, so it can drive at
+//! mode 1's speed and square up at the same time. Derivation and figures: docs/theory/front_align.md.
 
-use super::{Action, Mode, Situation};
-use crate::types::Fault;
+use super::front_distance::{self, FrontDistance};
+use super::{Action, Look, Mode, Situation};
+use crate::estimate::Estimate;
+use crate::math::{abs, clamp, max, min};
+use crate::motion::{Turn, TurnState};
+use crate::params::{ParamId, Params};
+use crate::rig::Rig;
+use crate::sweep::{Sweep, SweepState};
+use crate::types::{Drive, Fault, Range, SonarId, TICK_S};
+use crate::wall::{Wall, WallFilter};
 
 /// Names of the states.
 #[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 1] = ["approach"];
+pub const STATE_NAMES: [&str; 5] = ["look", "approach", "settle", "turn", "hold"];
 
-/// Configuration.
+/// How far askew the robot may start, one standard deviation [rad].
+const ASKEW_RAD: f32 = 0.3;
+/// Looks aside of the standing robot at the start: at least, at most.
+const FIRST_LOOKS: [u8; 2] = [2, 6];
+/// Standard deviation of the bearing with which it may drive [rad].
+const KNOWN_RAD: f32 = 0.1;
+/// Pings ahead between two looks aside: at the start, driving, at rest.
+const PINGS_AHEAD: [u8; 3] = [1, 2, 16];
+/// How long the angle must be off to turn again [s].
+const ASKEW_S: f32 = 0.3;
+/// A sonar may hear the wall this much nearer than the reference [m], since the robot may be askew.
+const NEARER_M: f32 = 0.03;
+/// Largest yaw rate on the way [rad/s].
+const YAW_RAD_S: f32 = 1.5;
+/// Most of the wheels' speed that steering may take.
+const STEERING_SHARE: f32 = 0.5;
+
+/// Configuration of mode 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrontAlign;
+pub struct FrontAlign {
+    /// The speed towards the reference, as in mode 1.
+    pub approach: FrontDistance,
+    /// The turn on the spot at the end.
+    pub turn: Turn,
+    /// Yaw rate per bearing on the way [1/s].
+    pub kp: f32,
+    /// Angle to the wall that is good enough [rad].
+    pub tolerance_rad: f32,
+    /// How far aside the servo looks [rad].
+    pub aside_rad: f32,
+    /// Two sonars in front; otherwise one on the servo.
+    pub paired: bool,
+    /// Sonars ahead of the wheels' axis [m].
+    pub ahead_m: f32,
+    /// Distance between the two [m].
+    pub gap_m: f32,
+    /// Half angle of a sonar's beam [rad].
+    pub beam_rad: f32,
+}
 
-/// Memory.
+/// Where mode 2 stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Phase {
+    #[default]
+    Look = 0,
+    Approach = 1,
+    Settle = 2,
+    Turn = 3,
+    Hold = 4,
+}
+
+/// Memory of mode 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
-    started: bool,
+    phase: Phase,
+    wall: WallFilter,
+    sweep: SweepState,
+    turn: TurnState,
+    /// How long distance and angle have been too far off to hold [s].
+    off_s: f32,
+    askew_s: f32,
+    /// Time since a reading was last believed [s].
+    deaf_s: f32,
+}
+
+impl FrontAlign {
+    /// From the parameters.
+    pub fn new(params: &Params, distance_m: f32) -> Self {
+        Self {
+            approach: FrontDistance::new(params, distance_m),
+            turn: Turn::new(params),
+            kp: params.get(ParamId::AlignKp),
+            tolerance_rad: params.get(ParamId::AlignTolerance),
+            aside_rad: params.get(ParamId::SweepAside),
+            paired: params.rig() == Rig::FrontPair,
+            ahead_m: params.get(ParamId::SonarFrontX),
+            gap_m: params.get(ParamId::FrontGap),
+            beam_rad: params.get(ParamId::Beam),
+        }
+    }
+
+    /// The sonars that look ahead.
+    fn sonars(&self) -> &'static [SonarId] {
+        if self.paired {
+            &[SonarId::Left, SonarId::Right]
+        } else {
+            &[SonarId::Front]
+        }
+    }
+
+    /// Whether all sonars that look ahead see something.
+    pub fn is_ready(&self, estimate: &Estimate) -> bool {
+        self.nearest_m(estimate).is_ok()
+    }
+
+    /// The nearest thing ahead [m].
+    fn nearest_m(&self, estimate: &Estimate) -> Result<f32, Fault> {
+        let mut nearest_m = f32::MAX;
+        for sonar in self.sonars() {
+            let mut range = estimate.range(*sonar);
+            if !self.paired {
+                // It looks ahead now and then only; readings aside are heard too, see `deaf_s`.
+                range.age_s = 0.0;
+            }
+            nearest_m = min(nearest_m, self.approach.range_m(range)?);
+        }
+        Ok(nearest_m)
+    }
+
+    /// The wall, predicted and corrected by what was heard at this tick.
+    fn wall(&self, state: &mut State, estimate: &Estimate) -> Option<Wall> {
+        let State { wall, sweep, .. } = state;
+        wall.predict(estimate.rolled_m, estimate.turned_rad);
+        state.deaf_s += TICK_S;
+        if let Some(reading) = estimate.reading
+            && self.sonars().contains(&reading.sonar)
+            && (self.paired || sweep.is_from_here(reading.servo_rad))
+            && let Range::Valid(range_m) = reading.range
+            && wall.take(&reading.view, self.beam_rad, range_m)
+        {
+            state.deaf_s = 0.0;
+        }
+        if wall.wall().is_none() {
+            let valid = |sonar| match estimate.range(sonar).range {
+                Range::Valid(range_m) => Some(range_m),
+                Range::Clear | Range::Faulty => None,
+            };
+            if self.paired {
+                let ranges_m = [valid(SonarId::Left)?, valid(SonarId::Right)?];
+                wall.start_pair(self.ahead_m, self.gap_m, self.beam_rad, ranges_m);
+            } else {
+                let ahead = crate::rig::View {
+                    x_m: self.ahead_m,
+                    ..Default::default()
+                };
+                wall.start(&ahead, valid(SonarId::Front)?, 0.0, ASKEW_RAD);
+                *sweep = SweepState::default();
+                state.phase = Phase::Look;
+            }
+        }
+        wall.wall()
+    }
+
+    fn next_phase(&self, state: &mut State, error_m: f32, bearing_rad: f32, turned: bool) -> Phase {
+        let (off, askew) = (abs(error_m), abs(bearing_rad));
+        let lasting = |time_s: f32, too_far: bool| if too_far { time_s + TICK_S } else { 0.0 };
+        state.off_s = lasting(state.off_s, off > 2.0 * self.approach.tolerance_m);
+        state.askew_s = lasting(state.askew_s, askew > 2.0 * self.tolerance_rad);
+        match state.phase {
+            Phase::Look if self.paired || looked(state) => Phase::Approach,
+            Phase::Approach if off < front_distance::NEAR_M => Phase::Settle,
+            Phase::Settle | Phase::Hold if off > front_distance::FAR_M => Phase::Approach,
+            Phase::Settle if off < self.approach.tolerance_m => {
+                if askew > self.tolerance_rad {
+                    Phase::Turn
+                } else {
+                    Phase::Hold
+                }
+            }
+            Phase::Turn if turned => Phase::Settle,
+            Phase::Hold if state.off_s > front_distance::RESTART_S => Phase::Settle,
+            Phase::Hold if state.askew_s > ASKEW_S => Phase::Turn,
+            phase => phase,
+        }
+    }
+
+    /// Towards the reference, turning to the wall's normal on the way; `free_m` is how far nothing stands ahead.
+    fn drive(&self, error_m: f32, bearing_rad: f32, free_m: f32) -> Drive {
+        let error_m = min(error_m, max(free_m, 0.0));
+        if error_m == 0.0 {
+            return Drive::Release;
+        }
+        let forward_m_s = self.approach.speed_m_s(error_m);
+        let most = min(
+            STEERING_SHARE * abs(forward_m_s) / self.turn.half_base_m,
+            YAW_RAD_S,
+        );
+        Drive::Twist {
+            forward_m_s,
+            yaw_rad_s: clamp(self.kp * bearing_rad, -most, most),
+        }
+    }
+
+    fn look(&self, state: &mut State, estimate: &Estimate, bearing_rad: f32) -> Look {
+        if self.paired {
+            return Look {
+                sonars: [true, true, false],
+                ..Look::default()
+            };
+        }
+        let [starting, driving, resting] = PINGS_AHEAD;
+        let sweep = Sweep {
+            aside_rad: self.aside_rad,
+            pings_ahead: match state.phase {
+                Phase::Look => starting,
+                Phase::Approach | Phase::Settle | Phase::Turn => driving,
+                Phase::Hold => resting,
+            },
+        };
+        sweep.step(&mut state.sweep, estimate, bearing_rad)
+    }
+}
+
+/// Whether the servo has looked aside often enough to know the bearing.
+fn looked(state: &State) -> bool {
+    let [least, most] = FIRST_LOOKS;
+    let looks = state.sweep.looks_aside();
+    let known = |wall: Wall| wall.bearing_sd_rad < KNOWN_RAD;
+    looks >= most || (looks >= least && state.wall.wall().is_some_and(known))
 }
 
 impl Mode for FrontAlign {
     type State = State;
 
-    fn step(&self, state: &mut State, _: &Situation) -> Result<Action, Fault> {
-        state.started = true;
-        Ok(Action::default())
+    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
+        let estimate = at.estimate;
+        let nearest_m = self.nearest_m(estimate)?;
+        let wall = self.wall(state, estimate).ok_or(Fault::WallLost)?;
+        if state.deaf_s > self.approach.stale_s {
+            return Err(Fault::SonarStale);
+        }
+        let error_m = wall.distance_m - self.ahead_m - self.approach.distance_m;
+        let free_m = nearest_m - self.approach.distance_m + NEARER_M;
+        let heading_ref_rad = crate::math::wrap_angle(estimate.pose.heading_rad + wall.bearing_rad);
+
+        let turn = match state.phase {
+            Phase::Turn => Some(self.turn.step(&mut state.turn, estimate, heading_ref_rad)),
+            _ => None,
+        };
+        let turned = turn.is_some_and(|turn| turn.done);
+        let phase = self.next_phase(state, error_m, wall.bearing_rad, turned);
+        if phase != state.phase {
+            state.turn = TurnState::default();
+            state.phase = phase;
+        }
+        let drive = match phase {
+            Phase::Look | Phase::Hold => Drive::Release,
+            Phase::Approach | Phase::Settle => self.drive(error_m, wall.bearing_rad, free_m),
+            Phase::Turn => turn.map_or(Drive::Release, |turn| turn.drive),
+        };
+        Ok(Action {
+            drive,
+            look: self.look(state, estimate, wall.bearing_rad),
+            state: phase as u8,
+            heading_ref_rad,
+            reached: phase == Phase::Hold,
+            ..Action::default()
+        })
     }
 }

@@ -25,7 +25,7 @@
 use super::{Action, Look, Mode, Situation};
 use crate::math::{abs, clamp, max, min, sqrt};
 use crate::params::{ParamId, Params};
-use crate::types::{Drive, Fault, Range, SonarId, TICK_S};
+use crate::types::{AgedRange, Drive, Fault, Range, SonarId, TICK_S};
 
 /// Names of the states.
 #[cfg(feature = "names")]
@@ -34,13 +34,13 @@ pub const STATE_NAMES: [&str; 3] = ["approach", "settle", "hold"];
 /// Reference before the first command [m], as in the report.
 pub const DEFAULT_M: f32 = 0.30;
 /// Distance error at which *near* begins [m].
-const NEAR_M: f32 = 0.05;
+pub(super) const NEAR_M: f32 = 0.05;
 /// Distance error at which it ends again [m].
-const FAR_M: f32 = 0.06;
+pub(super) const FAR_M: f32 = 0.06;
 /// Slowest speed that the wheels hold steadily [m/s].
 const CREEP_M_S: f32 = 0.03;
 /// How long an error must last to start the robot again [s].
-const RESTART_S: f32 = 0.15;
+pub(super) const RESTART_S: f32 = 0.15;
 /// Most of the wheels' speed that straightening may take.
 const STEERING_SHARE: f32 = 0.3;
 
@@ -99,6 +99,16 @@ impl FrontDistance {
         }
     }
 
+    /// A range that one may drive on, or why not.
+    pub(super) fn range_m(&self, range: AgedRange) -> Result<f32, Fault> {
+        match range.range {
+            Range::Valid(_) if range.age_s > self.stale_s => Err(Fault::SonarStale),
+            Range::Valid(range_m) => Ok(range_m),
+            Range::Clear => Err(Fault::WallLost),
+            Range::Faulty => Err(Fault::SonarFaulty),
+        }
+    }
+
     fn next_phase(&self, state: &mut State, error_m: f32) -> Phase {
         let off = abs(error_m);
         state.off_s = if off > 2.0 * self.tolerance_m {
@@ -115,7 +125,8 @@ impl FrontDistance {
         }
     }
 
-    fn speed_m_s(&self, error_m: f32) -> f32 {
+    /// The speed at a distance error.
+    pub(super) fn speed_m_s(&self, error_m: f32) -> f32 {
         let off = abs(error_m);
         let braking = sqrt(2.0 * self.brake_m_s2 * off);
         let speed = max(min(min(self.cruise_m_s, braking), self.kp * off), CREEP_M_S);
@@ -127,14 +138,7 @@ impl Mode for FrontDistance {
     type State = State;
 
     fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
-        let range = at.estimate.range(SonarId::Front);
-        let range_m = match range.range {
-            Range::Valid(_) if range.age_s > self.stale_s => return Err(Fault::SonarStale),
-            Range::Valid(range_m) => range_m,
-            Range::Clear => return Err(Fault::WallLost),
-            Range::Faulty => return Err(Fault::SonarFaulty),
-        };
-        let error_m = range_m - self.distance_m;
+        let error_m = self.range_m(at.estimate.range(SonarId::Front))? - self.distance_m;
         state.phase = self.next_phase(state, error_m);
 
         let heading_rad = at.estimate.pose.heading_rad;
@@ -166,7 +170,6 @@ impl Mode for FrontDistance {
 mod tests {
     use super::*;
     use crate::estimate::Estimate;
-    use crate::types::AgedRange;
 
     fn estimate(range: Range, age_s: f32) -> Estimate {
         let mut estimate = Estimate::default();

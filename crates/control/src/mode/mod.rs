@@ -362,6 +362,9 @@ impl ActiveMode {
             Self::FrontDistance(..) => {
                 matches!(estimate.range(SonarId::Front).range, Range::Valid(_))
             }
+            Self::FrontAlign(distance_m, _) => {
+                FrontAlign::new(params, *distance_m).is_ready(estimate)
+            }
             _ => true,
         }
     }
@@ -516,7 +519,9 @@ impl ActiveMode {
             Self::FrontDistance(distance_m, state) => {
                 FrontDistance::new(params, *distance_m).step(state, at)
             }
-            Self::FrontAlign(_, state) => FrontAlign.step(state, at),
+            Self::FrontAlign(distance_m, state) => {
+                FrontAlign::new(params, *distance_m).step(state, at)
+            }
             Self::WallHold(state) => WallHold::new(params).step(state, at),
             Self::WallFollow(distance_m, state) => {
                 WallFollow::new(params, *distance_m).step(state, at)

@@ -3,6 +3,7 @@
 //! Some are given for every run, some depend on the mode; each step of a reference has a group of its own, named after its place in the
 //! scenario: `step1.settling_s`. Names end in their unit; docs/scenarios.md lists them all.
 
+mod align;
 mod journey;
 mod path;
 mod route;
@@ -41,10 +42,10 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
             start::dead_zones(trace, &mut metrics);
         }
         ModeId::WallHold | ModeId::WallFollow => wall::following(setup, sim, trace, &mut metrics),
+        ModeId::FrontAlign => align::aligning(setup, sim, trace, &mut metrics),
         ModeId::Mission => journey::journey(setup, sim.worst_contact_m_s(), trace, &mut metrics),
         ModeId::Waypoints => route::route(setup, trace, &mut metrics),
         ModeId::StraightLine => straight::drift(trace, &mut metrics),
-        ModeId::FrontAlign => {}
     }
     // A billionth of any unit is rounding, not behaviour.
     for value in metrics.values_mut() {

@@ -12,17 +12,17 @@ use rumbo_wire::Command;
 /// Band in which a wheel's speed counts as settled [rad/s]: 3.2 rpm.
 const SPEED_BAND_RAD_S: f64 = 3.2 * std::f64::consts::TAU / 60.0;
 /// Share of a distance step that is its band.
-const DISTANCE_BAND: f64 = 0.05;
+pub(super) const DISTANCE_BAND: f64 = 0.05;
 /// Share of a step, at its end, over which steady error and ripple are taken.
-const STEADY_SHARE: f64 = 0.4;
+pub(super) const STEADY_SHARE: f64 = 0.4;
 /// Speed of sound that the robot reckons with [m/s]: 20 degrees.
 const SOUND_M_S: f64 = 331.3 + 0.606 * 20.0;
 
 /// A step of a reference.
 pub(super) struct Step {
-    from_s: f64,
-    until_s: f64,
-    reference: [f64; 2],
+    pub(super) from_s: f64,
+    pub(super) until_s: f64,
+    pub(super) reference: [f64; 2],
 }
 
 impl Step {
