@@ -36,6 +36,14 @@ pub struct SweepState {
 }
 
 impl SweepState {
+    /// Looks ahead, with so many looks aside done.
+    pub fn after(looks: u8) -> Self {
+        Self {
+            looks,
+            ..Self::default()
+        }
+    }
+
     /// Looks aside so far, at most 255.
     pub fn looks_aside(&self) -> u8 {
         self.looks

@@ -26,8 +26,8 @@ const NOISE_FAR_M: f32 = 0.008;
 const BELIEF_SD: f32 = 2.0;
 /// Innovations beyond this many standard deviations are refused.
 const GATE_SD: f32 = 4.0;
-/// Times that a reading is looked at again from where it leads: at the beam's edge ranges are not linear in the bearing.
-const RELOOKS: usize = 2;
+/// From this far within the beam's edge on, ranges are not linear in the bearing [rad].
+const EDGE_RAD: f32 = 0.15;
 /// Refused readings in a row after which the wall is another one.
 const GIVE_IN: u8 = 6;
 /// Standard deviation of the distance gained per way rolled [m/sqrt(m)].
@@ -157,11 +157,19 @@ impl WallFilter {
         let Some((expected_m, hd, hb)) = self.expect(view, beam_rad) else {
             return false;
         };
-        let (prior_m, prior_rad) = (self.distance_m, self.bearing_rad);
-        let noise = square(noise_m(range_m));
-        let first = self.gain((hd, hb), noise);
+        // At the beam's edge the range bends with the bearing: what the slope misses is noise.
+        let off_rad = wrap_angle(view.axis_rad - self.bearing_rad);
+        let [_, _, pbb] = self.p;
+        let bend = if abs(off_rad) > beam_rad - EDGE_RAD {
+            square(0.5 * range_m * pbb)
+        } else {
+            0.0
+        };
+        let [pdd, pdb, pbb] = self.p;
+        let (gd, gb) = (pdd * hd + pdb * hb, pdb * hd + pbb * hb);
+        let variance = hd * gd + hb * gb + square(noise_m(range_m)) + bend;
         let innovation_m = range_m - expected_m;
-        if square(innovation_m) > square(GATE_SD) * first.variance {
+        if square(innovation_m) > square(GATE_SD) * variance {
             self.refused = self.refused.saturating_add(1);
             if self.refused >= GIVE_IN {
                 self.known = false;
@@ -169,25 +177,12 @@ impl WallFilter {
             return false;
         }
         self.refused = 0;
+        let most_m = BELIEF_SD * sqrt(variance);
         // A reading further off than that is believed in part only, and makes the estimate in part only surer.
-        let most_m = BELIEF_SD * sqrt(first.variance);
         let share = most_m / max(abs(innovation_m), most_m);
-        let mut gain = first;
-        self.move_to(prior_m, prior_rad, share, &gain, innovation_m);
-        // At the beam's edge the range bends with the bearing: look again from where the reading leads.
-        for _ in 0..RELOOKS {
-            let Some((expected_m, hd, hb)) = self.expect(view, beam_rad) else {
-                break;
-            };
-            gain = self.gain((hd, hb), noise);
-            let moved_m =
-                hd * (prior_m - self.distance_m) + hb * wrap_angle(prior_rad - self.bearing_rad);
-            let left_m = range_m - expected_m - moved_m;
-            self.move_to(prior_m, prior_rad, share, &gain, left_m);
-        }
-        let [pdd, pdb, pbb] = self.p;
-        let (kd, kb) = (share * gain.distance, share * gain.bearing);
-        let [gd, gb] = gain.covariance;
+        let (kd, kb) = (share * gd / variance, share * gb / variance);
+        self.distance_m = max(self.distance_m + kd * innovation_m, 0.0);
+        self.bearing_rad = wrap_angle(self.bearing_rad + kb * innovation_m);
         self.p = [
             max(pdd - kd * gd, 1e-9),
             pdb - kd * gb,
@@ -195,35 +190,6 @@ impl WallFilter {
         ];
         true
     }
-
-    /// What a reading with these slopes and this variance does to the estimate.
-    fn gain(&self, (hd, hb): (f32, f32), noise: f32) -> Gain {
-        let [pdd, pdb, pbb] = self.p;
-        let (gd, gb) = (pdd * hd + pdb * hb, pdb * hd + pbb * hb);
-        let variance = hd * gd + hb * gb + noise;
-        Gain {
-            distance: gd / variance,
-            bearing: gb / variance,
-            variance,
-            covariance: [gd, gb],
-        }
-    }
-
-    fn move_to(&mut self, from_m: f32, from_rad: f32, share: f32, gain: &Gain, innovation_m: f32) {
-        self.distance_m = max(from_m + share * gain.distance * innovation_m, 0.0);
-        self.bearing_rad = wrap_angle(from_rad + share * gain.bearing * innovation_m);
-    }
-}
-
-/// What a reading does to the estimate.
-#[derive(Clone, Copy)]
-struct Gain {
-    distance: f32,
-    bearing: f32,
-    /// Of the innovation.
-    variance: f32,
-    /// Of distance and bearing with the reading.
-    covariance: [f32; 2],
 }
 
 /// Distance along the normal from the middle between two sonars that look ahead, and bearing of the normal.

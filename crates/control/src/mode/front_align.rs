@@ -34,23 +34,25 @@ use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min};
 use crate::motion::{Turn, TurnState};
 use crate::params::{ParamId, Params};
-use crate::rig::Rig;
+use crate::rig::{Rig, View};
 use crate::sweep::{Sweep, SweepState};
-use crate::types::{Drive, Fault, Range, SonarId, TICK_S};
+use crate::types::{Drive, Fault, Range, Reading, SonarId, TICK_S};
 use crate::wall::{Wall, WallFilter};
 
 /// Names of the states.
 #[cfg(feature = "names")]
 pub const STATE_NAMES: [&str; 5] = ["look", "approach", "settle", "turn", "hold"];
 
-/// How far askew the robot may start, one standard deviation [rad].
-const ASKEW_RAD: f32 = 0.3;
-/// Looks aside of the standing robot at the start: at least, at most.
-const FIRST_LOOKS: [u8; 2] = [2, 6];
+/// Bearing of a wall that answers only where the servo looks to one side [rad].
+const ONE_SIDED_RAD: f32 = 0.32;
+/// Standard deviation of the bearing after the first look to both sides [rad].
+const ASKEW_RAD: f32 = 0.15;
+/// Looks aside after which the side of the wall is known, after which it is known well, and most.
+const LOOKS: [u8; 3] = [2, 4, 8];
 /// Standard deviation of the bearing with which it may drive [rad].
-const KNOWN_RAD: f32 = 0.1;
+const KNOWN_RAD: f32 = 0.08;
 /// Pings ahead between two looks aside: at the start, driving, at rest.
-const PINGS_AHEAD: [u8; 3] = [1, 2, 16];
+const PINGS_AHEAD: [u8; 3] = [0, 2, 16];
 /// How long the angle must be off to turn again [s].
 const ASKEW_S: f32 = 0.3;
 /// A sonar may hear the wall this much nearer than the reference [m], since the robot may be askew.
@@ -100,6 +102,8 @@ pub struct State {
     phase: Phase,
     wall: WallFilter,
     sweep: SweepState,
+    /// The first looks to the left and to the right gave an echo.
+    echo: [bool; 2],
     turn: TurnState,
     /// How long distance and angle have been too far off to hold [s].
     off_s: f32,
@@ -154,36 +158,89 @@ impl FrontAlign {
 
     /// The wall, predicted and corrected by what was heard at this tick.
     fn wall(&self, state: &mut State, estimate: &Estimate) -> Option<Wall> {
-        let State { wall, sweep, .. } = state;
-        wall.predict(estimate.rolled_m, estimate.turned_rad);
+        state.wall.predict(estimate.rolled_m, estimate.turned_rad);
         state.deaf_s += TICK_S;
         if let Some(reading) = estimate.reading
             && self.sonars().contains(&reading.sonar)
-            && (self.paired || sweep.is_from_here(reading.servo_rad))
+            && (self.paired || state.sweep.is_from_here(reading.servo_rad))
             && let Range::Valid(range_m) = reading.range
-            && wall.take(&reading.view, self.beam_rad, range_m)
+            && self.take(state, &reading, range_m)
         {
             state.deaf_s = 0.0;
         }
-        if wall.wall().is_none() {
-            let valid = |sonar| match estimate.range(sonar).range {
-                Range::Valid(range_m) => Some(range_m),
-                Range::Clear | Range::Faulty => None,
-            };
-            if self.paired {
-                let ranges_m = [valid(SonarId::Left)?, valid(SonarId::Right)?];
-                wall.start_pair(self.ahead_m, self.gap_m, self.beam_rad, ranges_m);
-            } else {
-                let ahead = crate::rig::View {
-                    x_m: self.ahead_m,
-                    ..Default::default()
-                };
-                wall.start(&ahead, valid(SonarId::Front)?, 0.0, ASKEW_RAD);
-                *sweep = SweepState::default();
-                state.phase = Phase::Look;
-            }
+        let anew = state.phase != Phase::Look && state.deaf_s > self.approach.stale_s;
+        if state.wall.wall().is_none() || anew {
+            self.start(state, estimate)?;
         }
-        wall.wall()
+        state.wall.wall()
+    }
+
+    /// Whether a reading was believed. The first looks to both sides only tell on which side the wall's normal is.
+    fn take(&self, state: &mut State, reading: &Reading, range_m: f32) -> bool {
+        let [sides, ..] = LOOKS;
+        let first = state.phase == Phase::Look && state.sweep.looks_aside() < sides;
+        if self.paired || !first || reading.servo_rad == 0.0 {
+            return state.wall.take(&reading.view, self.beam_rad, range_m);
+        }
+        let [left, right] = state.echo;
+        state.echo = [
+            left || reading.servo_rad > 0.0,
+            right || reading.servo_rad < 0.0,
+        ];
+        true
+    }
+
+    /// Where the wall is by the ranges alone.
+    fn start(&self, state: &mut State, estimate: &Estimate) -> Option<()> {
+        let valid = |sonar| match estimate.range(sonar).range {
+            Range::Valid(range_m) => Some(range_m),
+            Range::Clear | Range::Faulty => None,
+        };
+        if self.paired {
+            let ranges_m = [valid(SonarId::Left)?, valid(SonarId::Right)?];
+            state
+                .wall
+                .start_pair(self.ahead_m, self.gap_m, self.beam_rad, ranges_m);
+        } else {
+            // A wall that was known a moment ago is looked for where it was; any other on both sides.
+            let [sides, ..] = LOOKS;
+            let (bearing_rad, looks) = match state.wall.wall() {
+                Some(wall) => (wall.bearing_rad, sides),
+                None => (0.0, 0),
+            };
+            self.start_ahead(state, valid(SonarId::Front)?, bearing_rad);
+            state.deaf_s = 0.0;
+            state.sweep = SweepState::after(looks);
+            state.echo = [false; 2];
+            state.phase = Phase::Look;
+        }
+        Some(())
+    }
+
+    fn start_ahead(&self, state: &mut State, range_m: f32, bearing_rad: f32) {
+        let ahead = View {
+            x_m: self.ahead_m,
+            ..View::default()
+        };
+        state.wall.start(&ahead, range_m, bearing_rad, ASKEW_RAD);
+    }
+
+    /// Final rig, standing: looks to both sides, then again from the bearing that this gave.
+    fn look_first(&self, state: &mut State, ahead_m: f32) {
+        let [sides, well, most] = LOOKS;
+        let looks = state.sweep.looks_aside();
+        if looks == sides && state.echo != [false; 2] {
+            match state.echo {
+                [true, false] => self.start_ahead(state, ahead_m, ONE_SIDED_RAD),
+                [false, true] => self.start_ahead(state, ahead_m, -ONE_SIDED_RAD),
+                _ => {}
+            }
+            state.echo = [false; 2];
+        }
+        let known = |wall: Wall| wall.bearing_sd_rad < KNOWN_RAD;
+        if looks >= most || (looks >= well && state.wall.wall().is_some_and(known)) {
+            state.phase = Phase::Approach;
+        }
     }
 
     fn next_phase(&self, state: &mut State, error_m: f32, bearing_rad: f32, turned: bool) -> Phase {
@@ -192,7 +249,7 @@ impl FrontAlign {
         state.off_s = lasting(state.off_s, off > 2.0 * self.approach.tolerance_m);
         state.askew_s = lasting(state.askew_s, askew > 2.0 * self.tolerance_rad);
         match state.phase {
-            Phase::Look if self.paired || looked(state) => Phase::Approach,
+            Phase::Look if self.paired => Phase::Approach,
             Phase::Approach if off < front_distance::NEAR_M => Phase::Settle,
             Phase::Settle | Phase::Hold if off > front_distance::FAR_M => Phase::Approach,
             Phase::Settle if off < self.approach.tolerance_m => {
@@ -246,14 +303,6 @@ impl FrontAlign {
     }
 }
 
-/// Whether the servo has looked aside often enough to know the bearing.
-fn looked(state: &State) -> bool {
-    let [least, most] = FIRST_LOOKS;
-    let looks = state.sweep.looks_aside();
-    let known = |wall: Wall| wall.bearing_sd_rad < KNOWN_RAD;
-    looks >= most || (looks >= least && state.wall.wall().is_some_and(known))
-}
-
 impl Mode for FrontAlign {
     type State = State;
 
@@ -261,13 +310,16 @@ impl Mode for FrontAlign {
         let estimate = at.estimate;
         let nearest_m = self.nearest_m(estimate)?;
         let wall = self.wall(state, estimate).ok_or(Fault::WallLost)?;
-        if state.deaf_s > self.approach.stale_s {
+        if state.deaf_s > 2.0 * self.approach.stale_s {
             return Err(Fault::SonarStale);
         }
         let error_m = wall.distance_m - self.ahead_m - self.approach.distance_m;
         let free_m = nearest_m - self.approach.distance_m + NEARER_M;
         let heading_ref_rad = crate::math::wrap_angle(estimate.pose.heading_rad + wall.bearing_rad);
 
+        if state.phase == Phase::Look && !self.paired {
+            self.look_first(state, nearest_m);
+        }
         let turn = match state.phase {
             Phase::Turn => Some(self.turn.step(&mut state.turn, estimate, heading_ref_rad)),
             _ => None,
