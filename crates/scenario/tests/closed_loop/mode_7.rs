@@ -14,17 +14,11 @@ fn the_square_is_driven_within_2_5_cm_of_itself_by_odometry_and_in_20_s() {
 }
 
 #[test]
-fn a_robot_that_knows_its_wheels_closes_the_square_within_5_cm() {
+fn a_robot_that_has_calibrated_itself_closes_the_square_within_5_cm_and_others_do_not() {
     let mut setup = setup("mode7");
-    for (key, nominal_m) in [
-        ("wheels.left.radius_m", 0.0325),
-        ("wheels.right.radius_m", 0.0325),
-        ("body.base_m", 0.1),
-    ] {
-        setup.scenario.plant.insert(key.into(), nominal_m);
-    }
-    let runs = seeds(&setup, 1..51);
-    assert!(worst(&runs, "end_error_m") <= 0.05);
+    assert!(worst(&seeds(&setup, 1..51), "end_error_m") <= 0.05);
+    setup.scenario.calibrated = false;
+    assert!(worst(&seeds(&setup, 1..51), "end_error_m") > 0.1);
 }
 
 #[test]
