@@ -5,7 +5,7 @@
 
 use crate::drive::Direction;
 use crate::math::{abs, clamp, sin_cos, wrap_angle};
-use crate::odometry::Geometry;
+use crate::odometry::{Geometry, Piece, PoseDeviation, Uncertainty};
 use crate::params::{ParamId, Params};
 use crate::range::{RangeFilter, range_from_echo};
 use crate::rig::View;
@@ -14,12 +14,18 @@ use crate::types::{AgedRange, Inputs, Pose, Reading, SIDES, ServoAngle, SonarId,
 
 /// The front sonar looks ahead when the servo is within this of it [rad].
 const AHEAD_RAD: f32 = 0.06;
+/// Ticks of way that the uncertainty takes in at once: 20 times a second.
+const PIECE_TICKS: u8 = 5;
 
 /// Memory of the estimators.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimator {
     speed: Wheels<SpeedEstimator>,
     pose: Pose,
+    uncertainty: Uncertainty,
+    piece: Piece,
+    piece_ticks: u8,
+    deviation: PoseDeviation,
     ranges: [RangeFilter; 3],
     servo_rad: f32,
     servo_target_rad: f32,
@@ -53,6 +59,8 @@ pub struct Estimate {
     pub turned_rad: f32,
     /// Pose by odometry.
     pub pose: Pose,
+    /// Standard deviations of that pose since its origin, 20 times a second.
+    pub deviation: PoseDeviation,
     /// Filtered ranges by `SonarId` number; of a sonar on the servo only those ahead.
     pub ranges: [AgedRange; 3],
     /// What a sonar said at this tick, unfiltered.
@@ -93,7 +101,9 @@ impl Estimator {
             wheel_rad[side] = direction.sign(f32::from(motion.edges) * EDGE_RAD);
         }
         let geometry: Geometry = params.geometry();
+        self.doubt(params, &geometry, wheel_rad);
         geometry.advance(&mut self.pose, wheel_rad);
+        estimate.deviation = self.deviation;
         estimate.pose = self.pose;
         (estimate.forward_m_s, estimate.yaw_rad_s) =
             geometry.body_from_wheels(estimate.wheel_rad_s);
@@ -108,6 +118,28 @@ impl Estimator {
             *range = filter.range(inputs.now);
         }
         estimate
+    }
+
+    /// Collects the way since the last tick for the uncertainty, and lets it grow when there is enough of it.
+    fn doubt(&mut self, params: &Params, geometry: &Geometry, wheel_rad: Wheels<f32>) {
+        let (forward_m, turned_rad) = geometry.body_from_wheels(wheel_rad);
+        self.piece.forward_m += forward_m;
+        self.piece.turned_rad += turned_rad;
+        for side in SIDES {
+            self.piece.rolled_m[side] += abs(wheel_rad[side] * geometry.radius_m[side]);
+        }
+        self.piece_ticks += 1;
+        if self.piece_ticks < PIECE_TICKS {
+            return;
+        }
+        // The pose is still that of the last tick; the piece began before it.
+        let last_rad = turned_rad - self.piece.turned_rad;
+        let errors = params.odometry_errors();
+        self.uncertainty
+            .advance(&errors, self.pose.heading_rad + last_rad, &self.piece);
+        self.deviation = self.uncertainty.deviation(&errors);
+        self.piece = Piece::default();
+        self.piece_ticks = 0;
     }
 
     /// What the pilot decided at this tick: where the servo goes, which sonar pings.
@@ -193,6 +225,9 @@ impl Estimator {
             };
         }
         self.pose = Pose::default();
+        self.uncertainty = Uncertainty::default();
+        self.piece = Piece::default();
+        self.deviation = PoseDeviation::default();
     }
 }
 

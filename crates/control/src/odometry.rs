@@ -1,6 +1,9 @@
-//! Pose from the distances of both wheels, by exact arcs. Derivation: docs/theory/odometry.md.
+//! Pose from the distances of both wheels, by exact arcs, and how far it may be off. Derivation: docs/theory/odometry.md.
+//!
+//! Two kinds of error are kept apart. Slip is new at every millimetre: a covariance that grows with the way. Radii and base are off by
+//! the same all the time: the pose's derivatives by each of them, which also shrink again where a way back undoes the error.
 
-use crate::math::{sin_cos, sinc, wrap_angle};
+use crate::math::{abs, max, sin_cos, sinc, sqrt, wrap_angle};
 use crate::types::{Pose, Wheels};
 
 /// The two lengths that odometry needs.
@@ -39,6 +42,149 @@ impl Geometry {
         pose.x_m += chord_m * cos;
         pose.y_m += chord_m * sin;
         pose.heading_rad = wrap_angle(pose.heading_rad + turn_rad);
+    }
+}
+
+/// How well the robot knows itself: standard deviations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OdometryErrors {
+    /// Slip of one wheel: error of its way after 1 m; it grows with the root of the way [m].
+    pub slip_m: f32,
+    /// Ratio of the wheels' radii, relative.
+    pub ratio: f32,
+    /// Angle turned per difference of the wheels' angles (radius over base), relative.
+    pub turn: f32,
+    /// Way per angle (mean radius), relative.
+    pub scale: f32,
+    /// Distance between the wheels [m].
+    pub base_m: f32,
+    /// Way of one encoder edge [m]: where between two edges a wheel is, at the origin and now, nobody knows.
+    pub edge_m: f32,
+}
+
+/// A piece of way, short enough to be straight within a few degrees.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Piece {
+    /// Way forward, signed [m].
+    pub forward_m: f32,
+    /// Angle turned [rad].
+    pub turned_rad: f32,
+    /// Way of each wheel, whatever its sign [m].
+    pub rolled_m: Wheels<f32>,
+}
+
+/// Standard deviations of a pose since its origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PoseDeviation {
+    /// Along x of the origin [m].
+    pub x_m: f32,
+    /// Along y of the origin [m].
+    pub y_m: f32,
+    /// Heading [rad].
+    pub heading_rad: f32,
+}
+
+/// x, y and heading of something: a derivative, or a row of a covariance.
+type Triple = [f32; 3];
+
+/// Memory of the pose's uncertainty; the default is that of the origin, none.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Uncertainty {
+    /// Covariance by slip: xx, xy, yy, xh, yh, hh.
+    slip: [f32; 6],
+    /// Derivatives of the pose by the ratio of the radii, by the turn's scale and by the way's scale, all relative.
+    by: [Triple; 3],
+}
+
+impl Uncertainty {
+    /// Takes in a piece of way that began at `heading_rad`.
+    pub fn advance(&mut self, errors: &OdometryErrors, heading_rad: f32, piece: &Piece) {
+        let (sin, cos) = sin_cos(heading_rad + 0.5 * piece.turned_rad);
+        let (dx, dy) = (piece.forward_m * cos, piece.forward_m * sin);
+        // What a relative error of each kind adds to the piece: to its turn, to its way.
+        let adds = [
+            (
+                piece.forward_m / errors.base_m,
+                0.25 * piece.turned_rad * errors.base_m,
+            ),
+            (piece.turned_rad, 0.0),
+            (0.0, piece.forward_m),
+        ];
+        for ([x, y, h], (turn, way)) in self.by.iter_mut().zip(adds) {
+            let middle = *h + 0.5 * turn;
+            *x += way * cos - dy * middle;
+            *y += way * sin + dx * middle;
+            *h += turn;
+        }
+        self.slip_on(errors, (sin, cos), (dx, dy), &piece.rolled_m);
+    }
+
+    fn slip_on(
+        &mut self,
+        errors: &OdometryErrors,
+        (sin, cos): (f32, f32),
+        (dx, dy): (f32, f32),
+        rolled_m: &Wheels<f32>,
+    ) {
+        let variance = |way_m: f32| errors.slip_m * errors.slip_m * abs(way_m);
+        let (left, right) = (variance(rolled_m.left), variance(rolled_m.right));
+        let way = 0.25 * (left + right);
+        let turn = (left + right) / (errors.base_m * errors.base_m);
+        let both = 0.5 * (right - left) / errors.base_m;
+        let [xx, xy, yy, xh, yh, hh] = self.slip;
+        // The heading's error so far swings the piece: x - dy h, y + dx h; the piece's own error swings half of it.
+        let (ax, ay) = (-0.5 * dy, 0.5 * dx);
+        self.slip = [
+            xx - 2.0 * dy * xh
+                + dy * dy * hh
+                + way * cos * cos
+                + turn * ax * ax
+                + 2.0 * both * cos * ax,
+            xy + dx * xh - dy * yh - dx * dy * hh
+                + way * sin * cos
+                + turn * ax * ay
+                + both * (cos * ay + sin * ax),
+            yy + 2.0 * dx * yh
+                + dx * dx * hh
+                + way * sin * sin
+                + turn * ay * ay
+                + 2.0 * both * sin * ay,
+            xh - dy * hh + turn * ax + both * cos,
+            yh + dx * hh + turn * ay + both * sin,
+            hh + turn,
+        ];
+    }
+
+    /// Covariance of x, y and heading.
+    pub fn covariance(&self, errors: &OdometryErrors) -> [Triple; 3] {
+        let [xx, xy, yy, xh, yh, hh] = self.slip;
+        // Two places of each wheel, evenly anywhere within an edge: variances of a twelfth each.
+        let way = errors.edge_m * errors.edge_m / 12.0;
+        let turn = 4.0 * way / (errors.base_m * errors.base_m);
+        let mut covariance = [[xx + way, xy, xh], [xy, yy + way, yh], [xh, yh, hh + turn]];
+        for (by, error) in self
+            .by
+            .iter()
+            .zip([errors.ratio, errors.turn, errors.scale])
+        {
+            for (row, first) in covariance.iter_mut().zip(by) {
+                for (entry, second) in row.iter_mut().zip(by) {
+                    *entry += error * error * first * second;
+                }
+            }
+        }
+        covariance
+    }
+
+    /// Standard deviations of x, y and heading.
+    pub fn deviation(&self, errors: &OdometryErrors) -> PoseDeviation {
+        let [[xx, _, _], [_, yy, _], [_, _, hh]] = self.covariance(errors);
+        let root = |variance: f32| sqrt(max(variance, 0.0));
+        PoseDeviation {
+            x_m: root(xx),
+            y_m: root(yy),
+            heading_rad: root(hh),
+        }
     }
 }
 
@@ -108,6 +254,97 @@ mod tests {
                 ROBOT.advance(&mut often, Wheels { left: left / 64.0, right: right / 64.0 });
             }
             prop_assert!((once.x_m - often.x_m).abs() < 1e-5 && (once.y_m - often.y_m).abs() < 1e-5);
+        }
+    }
+
+    const ERRORS: OdometryErrors = OdometryErrors {
+        slip_m: 0.000_38,
+        ratio: 0.004,
+        turn: 0.0115,
+        scale: 0.002,
+        base_m: 0.1,
+        edge_m: 0.0,
+    };
+
+    fn drive(uncertainty: &mut Uncertainty, pose: &mut Pose, wheel_rad: Wheels<f32>, times: u32) {
+        for _ in 0..times {
+            let rolled_m = Wheels {
+                left: 0.0325 * wheel_rad.left,
+                right: 0.0325 * wheel_rad.right,
+            };
+            let (forward_m, turned_rad) = ROBOT.body_from_wheels(wheel_rad);
+            let piece = Piece {
+                forward_m,
+                turned_rad,
+                rolled_m,
+            };
+            uncertainty.advance(&ERRORS, pose.heading_rad, &piece);
+            ROBOT.advance(pose, wheel_rad);
+        }
+    }
+
+    #[test]
+    fn the_uncertainty_grows_with_the_way_and_a_way_back_undoes_what_is_systematic() {
+        let (mut uncertainty, mut pose) = (Uncertainty::default(), Pose::default());
+        assert_eq!(uncertainty.deviation(&ERRORS), PoseDeviation::default());
+        let forward = Wheels::both(0.2);
+        drive(&mut uncertainty, &mut pose, forward, 462);
+        let there = uncertainty.deviation(&ERRORS);
+        // 3 m: 0.4 % of ratio are 0.04 rad/m, and slip 0.31 degrees per root metre.
+        assert!((there.heading_rad - 0.12).abs() < 0.002, "{there:?}");
+        assert!(
+            (there.y_m - 0.181).abs() < 0.005 && (there.x_m - 0.006).abs() < 0.001,
+            "{there:?}"
+        );
+        drive(&mut uncertainty, &mut pose, Wheels::both(-0.2), 462);
+        let back = uncertainty.deviation(&ERRORS);
+        let slip_rad = 0.0054 * sqrt(6.0);
+        assert!((back.heading_rad - slip_rad).abs() < 0.001, "{back:?}");
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_pose() {
+        // A path with curves, driven by robots that differ a little from what the odometry believes.
+        let path = |robot: &Geometry| {
+            let mut pose = Pose::default();
+            for step in 0..400u16 {
+                let left = if step % 100 < 50 { 0.1 } else { 0.16 };
+                robot.advance(&mut pose, Wheels { left, right: 0.13 });
+            }
+            pose
+        };
+        let mut uncertainty = Uncertainty::default();
+        let mut pose = Pose::default();
+        for step in 0..400u16 {
+            let left = if step % 100 < 50 { 0.1 } else { 0.16 };
+            drive(&mut uncertainty, &mut pose, Wheels { left, right: 0.13 }, 1);
+        }
+        let nominal = path(&ROBOT);
+        let share = 0.0005;
+        let other = |left: f32, right: f32, base: f32| Geometry {
+            radius_m: Wheels {
+                left: 0.0325 * (1.0 + left * share),
+                right: 0.0325 * (1.0 + right * share),
+            },
+            base_m: 0.1 / (1.0 + base * share),
+        };
+        // The way's scale alone leaves the angles: base and radii grow alike.
+        let robots = [
+            other(-0.5, 0.5, 0.0),
+            other(0.0, 0.0, 1.0),
+            other(1.0, 1.0, -1.0),
+        ];
+        for (robot, [x, y, h]) in robots.iter().zip(uncertainty.by) {
+            let moved = path(robot);
+            assert!(
+                (moved.x_m - nominal.x_m - x * share).abs() < 2e-4,
+                "{robot:?}"
+            );
+            assert!(
+                (moved.y_m - nominal.y_m - y * share).abs() < 2e-4,
+                "{robot:?}"
+            );
+            assert!((wrap_angle(moved.heading_rad - nominal.heading_rad) - h * share).abs() < 1e-4);
         }
     }
 }

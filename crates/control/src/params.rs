@@ -5,8 +5,9 @@
 
 use crate::drive::{Feedforward, SpeedLoop};
 use crate::mode::ModeId;
-use crate::odometry::Geometry;
+use crate::odometry::{Geometry, OdometryErrors};
 use crate::pid::{Gains, Pid};
+use crate::speed::EDGE_RAD;
 use crate::types::{Side, Wheels};
 
 /// Smallest and largest allowed value, and the one without any override.
@@ -110,6 +111,14 @@ table! {
     RadiusRight = "radius_right_m", "m", 0.0325, 0.01 => 0.2, None;
     /// Distance between the wheels' contact points.
     Base = "base_m", "m", 0.10, 0.03 => 1.0, None;
+    /// Slip of one wheel: standard deviation of its way after 1 m.
+    SlipError = "slip_error_m", "m", 0.00038, 0.0 => 0.1, None;
+    /// Standard deviation of the ratio of the radii, relative.
+    RatioError = "ratio_error", "1", 0.0041, 0.0 => 0.1, None;
+    /// Standard deviation of radius over base, relative.
+    TurnError = "turn_error", "1", 0.0117, 0.0 => 0.1, None;
+    /// Standard deviation of the mean radius, relative.
+    ScaleError = "scale_error", "1", 0.002, 0.0 => 0.1, None;
     /// Which sonars the robot carries: 0 `front_single`, 1 `front_pair`, 2 `side_pair_left`, 3 `side_pair_right`, 4 `final`.
     Rig = "rig", "1", 4.0, 0.0 => 4.0, None;
     /// Sonars that look ahead: distance ahead of the wheels' axis.
@@ -305,6 +314,19 @@ impl Params {
                 right: self.get(ParamId::RadiusRight),
             },
             base_m: self.get(ParamId::Base),
+        }
+    }
+
+    /// How well the lengths for odometry are known.
+    pub fn odometry_errors(&self) -> OdometryErrors {
+        let geometry = self.geometry();
+        OdometryErrors {
+            slip_m: self.get(ParamId::SlipError),
+            ratio: self.get(ParamId::RatioError),
+            turn: self.get(ParamId::TurnError),
+            scale: self.get(ParamId::ScaleError),
+            base_m: geometry.base_m,
+            edge_m: 0.5 * EDGE_RAD * (geometry.radius_m.left + geometry.radius_m.right),
         }
     }
 

@@ -88,6 +88,8 @@ impl Calibration {
             (ParamId::StaticRightForward, forward.right.value),
             (ParamId::StaticRightBackward, backward.right.value),
             (ParamId::Velocity, velocity.value),
+            (ParamId::RatioError, self.ratio.error),
+            (ParamId::TurnError, self.base_m.error / self.base_m.value),
         ]
         .into_iter()
         .map(|(id, value)| {

@@ -6,6 +6,7 @@ mod along_a_wall;
 mod drive;
 mod mode_6;
 mod mode_7;
+mod odometry;
 
 use rumbo_scenario::files::FileError;
 use rumbo_scenario::files::{Library, Overrides, Setup};
