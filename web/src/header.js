@@ -8,7 +8,7 @@ import { format } from './units.js';
 /** @typedef {import('./panel.js').Send} Send */
 
 const SPEEDS = [0, 0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
-/** The scenario's own world. */
+/** The scenario's own world or rig. */
 const OWN = '';
 /** Without a word from the server for this long, what is shown is old [ms]. */
 const STALE_MS = 1_500;
@@ -17,6 +17,7 @@ export class Header {
   #form = element('simulation', HTMLFormElement);
   #scenario = element('scenario', HTMLSelectElement);
   #world = element('world', HTMLSelectElement);
+  #rig = element('rig', HTMLSelectElement);
   #seed = element('seed', HTMLInputElement);
   #speed = element('speed', HTMLSelectElement);
   #connection = element('connection', HTMLSpanElement);
@@ -37,7 +38,7 @@ export class Header {
     this.#speed.addEventListener('change', () => send({ type: 'speed', factor: Number(this.#speed.value) }));
     this.#form.addEventListener('submit', (event) => {
       event.preventDefault();
-      send({ type: 'reset', scenario: this.#scenario.value, world: this.#world.value === OWN ? null : this.#world.value, seed: this.#seed.valueAsNumber });
+      send({ type: 'reset', scenario: this.#scenario.value, world: this.#world.value === OWN ? null : this.#world.value, rig: this.#rig.value === OWN ? null : this.#rig.value, seed: this.#seed.valueAsNumber });
     });
     setInterval(() => this.#showConnection(), STALE_MS / 3);
   }
@@ -48,8 +49,10 @@ export class Header {
     if (!scene) return;
     this.#scenario.replaceChildren(...scene.scenarios.map((name) => option(name, name)));
     this.#world.replaceChildren(option(OWN, 'its own'), ...scene.worlds.map((name) => option(name, name)));
+    this.#rig.replaceChildren(option(OWN, scene.choice.rig === null ? `${scene.rig.replaceAll('_', ' ')} (own)` : 'its own'), ...scene.rigs.map((name) => option(name, name.replaceAll('_', ' '))));
     this.#scenario.value = scene.choice.scenario;
     this.#world.value = scene.choice.world ?? OWN;
+    this.#rig.value = scene.choice.rig ?? OWN;
     this.#seed.value = String(scene.choice.seed);
   }
 

@@ -12,8 +12,8 @@ import { WorldMap } from './map.js';
 import { CommandPanel } from './panel.js';
 import { ParameterTable } from './parameters.js';
 import { Plots } from './plots.js';
+import { StateLine, pointerWords } from './stateline.js';
 import { Store } from './store.js';
-import { DEG_PER_RAD, format } from './units.js';
 
 /** @typedef {import('./types.js').FromServer} FromServer */
 /** @typedef {import('./types.js').State} State */
@@ -30,13 +30,17 @@ function send(order) {
 const redraw = onFrame(() => {
   plots.draw();
   map.draw();
-  showPose();
+  stateLine.draw();
+  setText(pointer, pointerWords(map.pointed()));
 });
 const header = new Header(send);
-const panel = new CommandPanel(send);
 const parameters = new ParameterTable(send);
 const events = new EventList();
 const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);
+const panel = new CommandPanel(send, map);
+const stateLine = new StateLine(store, send);
+const pointer = element('pointer', HTMLOutputElement);
+element('fit', HTMLButtonElement).addEventListener('click', () => map.fit());
 const pause = element('pause', HTMLButtonElement);
 const live = element('live', HTMLButtonElement);
 const plots = new Plots(element('plots', HTMLDivElement), store, redraw, (following) => {
@@ -60,13 +64,6 @@ addEventListener('keydown', (event) => {
   if (event.key === 'l') plots.follow(true);
 });
 
-const pose = element('pose', HTMLOutputElement);
-function showPose() {
-  const at = store.latest?.estimated;
-  const text = at ? `x ${format(at.x_m * 100)} cm   y ${format(at.y_m * 100)} cm   heading ${format(at.heading_rad * DEG_PER_RAD)}°` : '';
-  setText(pose, store.latest?.contact ? `${text}   contact!` : text);
-}
-
 /** @param {FromServer} message */
 function receive(message) {
   header.heard();
@@ -76,17 +73,24 @@ function receive(message) {
       events.clear();
       panel.setModes(message.modes);
       plots.modes = message.modes;
+      stateLine.modes = message.modes;
       break;
     case 'scene':
       store.setRun(message.run);
       header.setScene(message.scene);
       map.setScene(message.scene);
+      panel.setScene(message.scene);
+      stateLine.setRig(message.scene?.rig ?? null);
       document.body.classList.toggle('simulated', message.scene !== null);
       break;
     case 'state':
       state = message.state;
       header.show(state);
       panel.show(state);
+      stateLine.show(state);
+      plots.setMode(state.robot.mode);
+      map.target = state.robot.armed && state.robot.errand.route && state.robot.errand.end === null ? state.robot.reference : null;
+      map.setErrand(state.robot.errand);
       parameters.setMode(state.robot.mode, state.robot.foreign);
       map.servo_rad = state.robot.servo_rad;
       break;
@@ -114,5 +118,7 @@ Object.assign(window, {
     series: (name) => store.series(name),
     /** The slow state last received. */
     state: () => state,
+    /** Where a place from the robot's origin is on the map [px]. @param {[number, number]} at */
+    onMap: (at) => map.toCanvas(at),
   },
 });

@@ -1,31 +1,55 @@
 // @ts-check
-/** The map: world, robot as it is and as it believes to be, trails, and the sonars' cones with their readings. */
+/**
+ * The map: world, robot as it is and as it believes to be, trails, sonars, and where it is to go. A click picks a place.
+ *
+ * Goals and routes are told to the robot from its own origin, which moves, and its odometry errs. A goal is drawn where the robot will
+ * really get to when it believes to be there, as far as its error of now tells: in the frame in which the estimated pose is the true one.
+ * What the robot itself takes for the place is drawn dashed, as its estimated pose is; so is a route, a plan that does not follow the
+ * error. With a real robot the two frames are the same.
+ */
+import { IDENTITY, compose, inverse, place } from './geometry.js';
+import { Sketch } from './sketch.js';
 import { colours, onThemeChange } from './theme.js';
 
 /** @typedef {import('./types.js').Scene} Scene */
-/** @typedef {import('./types.js').Cell} Cell */
+/** @typedef {import('./types.js').Errand} Errand */
+/** @typedef {import('./types.js').Pose} Pose */
+/** @typedef {import('./types.js').Route} Route */
 /** @typedef {import('./store.js').Store} Store */
-/** @typedef {import('./store.js').Pose} Pose */
-/** @typedef {import('./theme.js').ColourName} ColourName */
+/** @typedef {[number, number]} Point */
+/** @typedef {{x_m: number, y_m: number, px_per_m: number}} View Middle [m] and scale. */
 
-/** Outline of a robot of which nothing is known [m]. */
-const DEFAULT_FOOTPRINT = /** @type {[number, number][]} */ ([[0.1, 0.075], [-0.1, 0.075], [-0.1, -0.075], [0.1, -0.075]]);
-const SONAR_COLOURS = /** @type {ColourName[]} */ (['left', 'right', 'front']);
 /** Free space around what is to be seen [m]. */
 const MARGIN_M = 0.25;
+/** What is to be seen grows by so much at a time [m]: the view does not creep. */
+const GROWTH_M = 0.5;
 const ZOOM_STEP = 1.25;
 const KEY_PAN_PX = 40;
+/** A press that moves no further than this is a click [px]. */
+const CLICK_PX = 4;
+/** The robot's idea of a goal is drawn beside the goal from this distance on [px]. */
+const APART_PX = 3;
 
 export class WorldMap {
   #canvas;
-  #context;
+  #sketch;
   #store;
   #redraw;
-  /** @type {Scene | null} */
-  #scene = null;
-  /** Middle of the view [m] and its scale; null: everything fits. @type {{x_m: number, y_m: number, px_per_m: number} | null} */
+  /** @type {View | null} Null: everything fits. */
   #view = null;
+  /** @type {Errand | null} */
+  #errand = null;
+  /** @type {Route | null} */
+  #draft = null;
+  /** @type {((at: Point) => void) | null} */
+  #pick = null;
+  /** Places are picked for a plan. */
+  #planning = false;
+  /** Where the pointer is [px]. @type {Point | null} */
+  #pointer = null;
   servo_rad = 0;
+  /** The place of the route that the robot goes to now, from its origin. @type {Point | null} */
+  target = null;
 
   /**
    * @param {HTMLCanvasElement} canvas
@@ -36,23 +60,69 @@ export class WorldMap {
     this.#canvas = canvas;
     const context = canvas.getContext('2d');
     if (!context) throw new Error('the browser has no 2-D canvas');
-    this.#context = context;
+    this.#sketch = new Sketch(canvas, context);
     this.#store = store;
     this.#redraw = redraw;
     new ResizeObserver(redraw).observe(canvas);
     onThemeChange(redraw);
     this.#makeNavigable();
+    this.#makePickable();
   }
 
   /** @param {Scene | null} scene */
   setScene(scene) {
-    this.#scene = scene;
+    this.#sketch.scene = scene;
+    this.fit();
+  }
+
+  /** @param {Errand} errand */
+  setErrand(errand) {
+    this.#errand = errand;
+    this.#redraw();
+  }
+
+  /** A route that is being made. @param {Route | null} draft */
+  setDraft(draft) {
+    this.#draft = draft;
+    this.#redraw();
+  }
+
+  /**
+   * What a click does with its place, from the robot's origin; null: nothing.
+   * @param {((at: Point) => void) | null} pick
+   * @param {boolean} [planning] for a route, which does not follow the error of now
+   */
+  setPick(pick, planning = false) {
+    this.#planning = planning;
+    this.#pick = pick;
+    this.#canvas.classList.toggle('picking', pick !== null);
+    this.#redraw();
+  }
+
+  /** Shows everything. */
+  fit() {
     this.#view = null;
     this.#redraw();
   }
 
+  /** The place under the pointer, from the robot's origin. @returns {Point | null} */
+  pointed() {
+    return this.#pointer && this.#fromOrigin(this.#toWorld(this.#pointer));
+  }
+
+  /** A place from the robot's origin, on the canvas [px]; for tests. @param {Point} at @returns {Point} */
+  toCanvas(at) {
+    const [x_m, y_m] = place(this.#pickFrame(), at);
+    const view = this.#view ?? this.#fitted();
+    return [
+      this.#canvas.clientWidth / 2 + (x_m - view.x_m) * view.px_per_m,
+      this.#canvas.clientHeight / 2 - (y_m - view.y_m) * view.px_per_m,
+    ];
+  }
+
   draw() {
     const canvas = this.#canvas;
+    const sketch = this.#sketch;
     const ratio = devicePixelRatio;
     const width = Math.round(canvas.clientWidth * ratio);
     const height = Math.round(canvas.clientHeight * ratio);
@@ -62,39 +132,109 @@ export class WorldMap {
     }
     const view = this.#view ?? this.#fitted();
     const scale = view.px_per_m * ratio;
-    const context = this.#context;
-    context.setTransform(1, 0, 0, 1, 0, 0);
-    context.clearRect(0, 0, width, height);
+    sketch.context.setTransform(1, 0, 0, 1, 0, 0);
+    sketch.context.clearRect(0, 0, width, height);
     // From here on in metres, y up.
-    context.setTransform(scale, 0, 0, -scale, width / 2 - view.x_m * scale, height / 2 + view.y_m * scale);
+    sketch.context.setTransform(scale, 0, 0, -scale, width / 2 - view.x_m * scale, height / 2 + view.y_m * scale);
     const px = ratio / scale;
-    this.#drawGrid(view, px);
-    this.#drawWorld(px);
-    this.#drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px, this.#identity());
-    this.#drawTrail(this.#store.trails.estimated, colours.dim, px, this.#start());
+    sketch.drawGrid(view, px);
+    sketch.drawWorld(px);
+    sketch.drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px);
+    sketch.drawTrail(this.#store.trails.estimated, colours.dim, px);
+    this.#drawErrand(px);
     const latest = this.#store.latest;
-    if (latest) {
-      const estimated = latest.estimated && compose(this.#start(), latest.estimated);
-      const seen = latest.truth ?? estimated;
-      if (seen) this.#drawSonars(seen, latest.ranges_m, latest.servo_rad ?? this.servo_rad, px);
-      if (estimated) this.#drawRobot(estimated, px, false, false);
-      if (latest.truth) this.#drawRobot(latest.truth, px, true, latest.contact);
-    }
+    if (!latest) return;
+    const estimated = latest.estimated && compose(latest.origin, latest.estimated);
+    const seen = latest.truth ?? estimated;
+    if (seen) sketch.drawSonars(seen, latest.ranges_m, latest.servo_rad ?? this.servo_rad, px);
+    if (estimated) sketch.drawRobot(estimated, px, false, false);
+    if (latest.truth) sketch.drawRobot(latest.truth, px, true, latest.contact);
   }
 
-  #identity() {
-    return { x_m: 0, y_m: 0, heading_rad: 0 };
+  /** @param {number} px */
+  #drawErrand(px) {
+    const sketch = this.#sketch;
+    const { route = null, from = null } = this.#errand ?? {};
+    const goal = this.#errand?.goal ?? this.target;
+    const began = from && { x_m: from[0], y_m: from[1], heading_rad: from[2] };
+    if (route) this.#drawRoute(route, began, false, px);
+    if (this.#draft) this.#drawRoute(this.#draft, null, true, px);
+    if (!goal) return;
+    const robot = this.#robot();
+    const at = place(this.#drivenFrame(), goal);
+    sketch.drawGoal(at, [robot.x_m, robot.y_m], px);
+    const believed = place(this.#origin(), goal);
+    if (Math.hypot(at[0] - believed[0], at[1] - believed[1]) > APART_PX * px) sketch.drawBelievedGoal(believed, px);
+  }
+
+  /**
+   * @param {Route} route
+   * @param {Pose | null} began Where the robot stood then, from its origin.
+   * @param {boolean} draft
+   * @param {number} px
+   */
+  #drawRoute(route, began, draft, px) {
+    const now = this.#store.latest?.estimated ?? IDENTITY;
+    const start = compose(this.#origin(), began ?? now);
+    const base = route.relative ? start : this.#origin();
+    const points = route.waypoints.map(({ x_m, y_m }) => place(base, [x_m, y_m]));
+    this.#sketch.drawRoute(points, { from: draft ? null : [start.x_m, start.y_m], repeat: route.repeat, draft }, px);
+  }
+
+  /** The robot in the world, as well as it is known. */
+  #robot() {
+    const latest = this.#store.latest;
+    return latest?.truth ?? (latest?.estimated ? compose(latest.origin, latest.estimated) : this.#start());
   }
 
   /** Where the odometry began. */
   #start() {
-    return this.#scene?.start ?? this.#identity();
+    return this.#sketch.scene?.start ?? IDENTITY;
   }
 
+  /** The frame in which the robot's estimated pose is its true one: where it will get to when it believes to be somewhere. */
+  #drivenFrame() {
+    const latest = this.#store.latest;
+    if (!latest) return this.#start();
+    return latest.truth && latest.estimated ? compose(latest.truth, inverse(latest.estimated)) : latest.origin;
+  }
+
+  /** The robot's origin, as it takes it to be. */
+  #origin() {
+    return this.#store.latest?.origin ?? this.#start();
+  }
+
+  #pickFrame() {
+    return this.#planning ? this.#origin() : this.#drivenFrame();
+  }
+
+  /** @param {Point} at @returns {Point} */
+  #fromOrigin(at) {
+    return place(inverse(this.#pickFrame()), at);
+  }
+
+  /** @param {Point} pixel @returns {Point} */
+  #toWorld([x_px, y_px]) {
+    const view = this.#view ?? this.#fitted();
+    return [
+      view.x_m + (x_px - this.#canvas.clientWidth / 2) / view.px_per_m,
+      view.y_m - (y_px - this.#canvas.clientHeight / 2) / view.px_per_m,
+    ];
+  }
+
+  /** Everything in sight, with room to pick places where that is what a click does. @returns {View} */
   #fitted() {
-    const points = this.#scene?.obstacles.flatMap((obstacle) => obstacle.corners_m) ?? [];
+    const frame = this.#origin();
     const start = this.#start();
-    const all = [...points, [start.x_m - 0.5, start.y_m - 0.5], [start.x_m + 0.5, start.y_m + 0.5]];
+    const robot = this.#robot();
+    const around_m = this.#pick ? 1.3 : 0.5;
+    const { goal = null, route = null } = this.#errand ?? {};
+    const all = [
+      ...(this.#sketch.scene?.obstacles.flatMap((obstacle) => obstacle.corners_m) ?? []),
+      [start.x_m - around_m, start.y_m - around_m], [start.x_m + around_m, start.y_m + around_m],
+      ...[[robot.x_m, robot.y_m], ...(goal ? [place(frame, goal)] : []), ...(route?.waypoints.map(({ x_m, y_m }) => place(frame, [x_m, y_m])) ?? [])]
+        .map((point) => point.map((each) => Math.round(each / GROWTH_M) * GROWTH_M)),
+    ];
     const xs = all.map(([x]) => x ?? 0);
     const ys = all.map(([, y]) => y ?? 0);
     const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
@@ -105,251 +245,74 @@ export class WorldMap {
     };
   }
 
-  /**
-   * @param {{x_m: number, y_m: number, px_per_m: number}} view
-   * @param {number} px
-   */
-  #drawGrid(view, px) {
-    const step_m = view.px_per_m > 60 ? 0.5 : view.px_per_m > 20 ? 1 : 5;
-    const half_x = this.#canvas.clientWidth / 2 / view.px_per_m;
-    const half_y = this.#canvas.clientHeight / 2 / view.px_per_m;
-    const context = this.#context;
-    context.beginPath();
-    for (let x = Math.ceil((view.x_m - half_x) / step_m) * step_m; x < view.x_m + half_x; x += step_m) {
-      context.moveTo(x, view.y_m - half_y);
-      context.lineTo(x, view.y_m + half_y);
+  /** @param {number} factor @param {Point | null} about Stays where it is [px]; null: the middle. */
+  #zoom(factor, about = null) {
+    const view = this.#view ?? this.#fitted();
+    const fixed = about && this.#toWorld(about);
+    const px_per_m = Math.min(2_000, Math.max(5, view.px_per_m * factor));
+    this.#view = { ...view, px_per_m };
+    if (fixed && about) {
+      const [x_m, y_m] = this.#toWorld(about);
+      this.#view = { x_m: view.x_m + fixed[0] - x_m, y_m: view.y_m + fixed[1] - y_m, px_per_m };
     }
-    for (let y = Math.ceil((view.y_m - half_y) / step_m) * step_m; y < view.y_m + half_y; y += step_m) {
-      context.moveTo(view.x_m - half_x, y);
-      context.lineTo(view.x_m + half_x, y);
-    }
-    context.lineWidth = px;
-    context.strokeStyle = colours.grid;
-    context.stroke();
-    this.#drawScale(step_m, view.px_per_m);
+    this.#redraw();
   }
 
-  /**
-   * A bar as long as a square of the grid.
-   * @param {number} length_m
-   * @param {number} px_per_m
-   */
-  #drawScale(length_m, px_per_m) {
-    const context = this.#context;
-    const ratio = devicePixelRatio;
-    context.save();
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    const bottom = this.#canvas.clientHeight - 10;
-    const right = this.#canvas.clientWidth - 12;
-    context.strokeStyle = context.fillStyle = colours.dim;
-    context.lineWidth = 1.5;
-    context.beginPath();
-    context.moveTo(right - length_m * px_per_m, bottom - 4);
-    context.lineTo(right - length_m * px_per_m, bottom);
-    context.lineTo(right, bottom);
-    context.lineTo(right, bottom - 4);
-    context.stroke();
-    context.font = '11px system-ui, sans-serif';
-    context.textAlign = 'right';
-    context.fillText(`${length_m} m`, right, bottom - 7);
-    context.restore();
-  }
-
-  /** @param {number} px */
-  #drawWorld(px) {
-    const context = this.#context;
-    context.strokeStyle = colours.wall;
-    context.fillStyle = colours.wall;
-    context.lineWidth = 2.5 * px;
-    context.lineJoin = 'round';
-    for (const { corners_m, closed } of this.#scene?.obstacles ?? []) {
-      tracePath(context, corners_m, closed);
-      if (closed) {
-        context.globalAlpha = 0.25;
-        context.fill();
-        context.globalAlpha = 1;
-      }
-      context.stroke();
-    }
-  }
-
-  /**
-   * @param {[number, number][]} trail
-   * @param {string} colour
-   * @param {number} width_m
-   * @param {Pose} origin
-   */
-  #drawTrail(trail, colour, width_m, origin) {
-    if (trail.length < 2) return;
-    const context = this.#context;
-    context.save();
-    context.translate(origin.x_m, origin.y_m);
-    context.rotate(origin.heading_rad);
-    tracePath(context, trail, false);
-    context.strokeStyle = colour;
-    context.lineWidth = width_m;
-    context.globalAlpha = 0.7;
-    context.stroke();
-    context.restore();
-  }
-
-  /**
-   * @param {Pose} at
-   * @param {number} px
-   * @param {boolean} real
-   * @param {boolean} contact
-   */
-  #drawRobot(at, px, real, contact) {
-    const context = this.#context;
-    const scene = this.#scene;
-    context.save();
-    context.translate(at.x_m, at.y_m);
-    context.rotate(at.heading_rad);
-    tracePath(context, scene?.footprint_m.length ? scene.footprint_m : DEFAULT_FOOTPRINT, true);
-    context.lineWidth = 1.5 * px;
-    context.strokeStyle = contact ? colours.bad : real ? colours.robot : colours.text;
-    if (real) {
-      context.globalAlpha = 0.35;
-      context.fillStyle = contact ? colours.bad : colours.robot;
-      context.fill();
-      context.globalAlpha = 1;
-    } else {
-      context.setLineDash([4 * px, 3 * px]);
-    }
-    context.stroke();
-    context.setLineDash([]);
-    if (real && scene) {
-      // Wheels, and an arrow for the heading.
-      context.lineWidth = 0.026;
-      context.beginPath();
-      for (const y of [scene.base_m / 2, -scene.base_m / 2]) {
-        context.moveTo(-scene.wheel_radius_m, y);
-        context.lineTo(scene.wheel_radius_m, y);
-      }
-      context.stroke();
-    }
-    context.lineWidth = 2 * px;
-    context.beginPath();
-    context.moveTo(0, 0);
-    context.lineTo(0.07, 0);
-    context.moveTo(0.045, 0.018);
-    context.lineTo(0.07, 0);
-    context.lineTo(0.045, -0.018);
-    context.stroke();
-    context.restore();
-  }
-
-  /**
-   * @param {Pose} robot
-   * @param {[Cell, Cell, Cell]} ranges_m
-   * @param {number} servo_rad
-   * @param {number} px
-   */
-  #drawSonars(robot, ranges_m, servo_rad, px) {
-    const context = this.#context;
-    for (const sonar of this.#scene?.sonars ?? []) {
-      const reading = ranges_m[sonar.id];
-      const mount = compose(robot, sonar.at);
-      const heading = mount.heading_rad + (sonar.on_servo ? servo_rad : 0);
-      const half = sonar.half_angle_rad;
-      const colour = colours[SONAR_COLOURS[sonar.id] ?? 'front'];
-      const reach_m = typeof reading === 'number' ? reading : reading === 'clear' ? sonar.reach_m : 0.15;
-      context.beginPath();
-      context.moveTo(mount.x_m, mount.y_m);
-      context.arc(mount.x_m, mount.y_m, reach_m, heading - half, heading + half);
-      context.closePath();
-      if (typeof reading === 'number' || reading === 'clear') {
-        context.globalAlpha = typeof reading === 'number' ? 0.18 : 0.07;
-        context.fillStyle = colour;
-        context.fill();
-        context.globalAlpha = 1;
-      } else {
-        // No reading: a short cone in the colour of faults.
-        context.strokeStyle = colours.bad;
-        context.setLineDash([3 * px, 3 * px]);
-        context.lineWidth = px;
-        context.stroke();
-        context.setLineDash([]);
-      }
-      if (typeof reading === 'number') {
-        context.beginPath();
-        context.arc(mount.x_m, mount.y_m, reach_m, heading - half, heading + half);
-        context.strokeStyle = colour;
-        context.lineWidth = 2.5 * px;
-        context.stroke();
-      }
-    }
+  /** @param {number} dx_px @param {number} dy_px */
+  #pan(dx_px, dy_px) {
+    const view = this.#view ?? this.#fitted();
+    this.#view = { ...view, x_m: view.x_m - dx_px / view.px_per_m, y_m: view.y_m + dy_px / view.px_per_m };
+    this.#redraw();
   }
 
   #makeNavigable() {
     const canvas = this.#canvas;
-    /** @param {number} factor */
-    const zoom = (factor) => {
-      const view = this.#view ?? this.#fitted();
-      this.#view = { ...view, px_per_m: Math.min(2_000, Math.max(5, view.px_per_m * factor)) };
-      this.#redraw();
-    };
-    /** @param {number} dx_px @param {number} dy_px */
-    const pan = (dx_px, dy_px) => {
-      const view = this.#view ?? this.#fitted();
-      this.#view = { ...view, x_m: view.x_m - dx_px / view.px_per_m, y_m: view.y_m + dy_px / view.px_per_m };
-      this.#redraw();
-    };
-    const fit = () => {
-      this.#view = null;
-      this.#redraw();
-    };
     canvas.addEventListener('wheel', (event) => {
       event.preventDefault();
-      zoom(event.deltaY > 0 ? 1 / ZOOM_STEP : ZOOM_STEP);
+      this.#zoom(event.deltaY > 0 ? 1 / ZOOM_STEP : ZOOM_STEP, [event.offsetX, event.offsetY]);
     }, { passive: false });
-    canvas.addEventListener('pointerdown', (event) => canvas.setPointerCapture(event.pointerId));
-    canvas.addEventListener('pointermove', (event) => {
-      if (canvas.hasPointerCapture(event.pointerId)) pan(event.movementX, event.movementY);
-    });
-    canvas.addEventListener('dblclick', fit);
     /** @type {Record<string, () => void>} */
     const keys = {
-      '+': () => zoom(ZOOM_STEP),
-      '-': () => zoom(1 / ZOOM_STEP),
-      0: fit,
-      ArrowLeft: () => pan(KEY_PAN_PX, 0),
-      ArrowRight: () => pan(-KEY_PAN_PX, 0),
-      ArrowUp: () => pan(0, KEY_PAN_PX),
-      ArrowDown: () => pan(0, -KEY_PAN_PX),
+      '+': () => this.#zoom(ZOOM_STEP),
+      '-': () => this.#zoom(1 / ZOOM_STEP),
+      0: () => this.fit(),
+      ArrowLeft: () => this.#pan(KEY_PAN_PX, 0),
+      ArrowRight: () => this.#pan(-KEY_PAN_PX, 0),
+      ArrowUp: () => this.#pan(0, KEY_PAN_PX),
+      ArrowDown: () => this.#pan(0, -KEY_PAN_PX),
     };
     canvas.addEventListener('keydown', (event) => {
       const act = keys[event.key];
-      if (!act) return;
+      if (!act || event.defaultPrevented) return;
       event.preventDefault();
       act();
     });
   }
-}
 
-/**
- * A pose in the frame of another one.
- * @param {Pose} frame
- * @param {Pose} at
- * @returns {Pose}
- */
-function compose(frame, at) {
-  const cos = Math.cos(frame.heading_rad);
-  const sin = Math.sin(frame.heading_rad);
-  return {
-    x_m: frame.x_m + cos * at.x_m - sin * at.y_m,
-    y_m: frame.y_m + sin * at.x_m + cos * at.y_m,
-    heading_rad: frame.heading_rad + at.heading_rad,
-  };
-}
-
-/**
- * @param {CanvasRenderingContext2D} context
- * @param {[number, number][]} points
- * @param {boolean} closed
- */
-function tracePath(context, points, closed) {
-  context.beginPath();
-  for (const [x, y] of points) context.lineTo(x, y);
-  if (closed) context.closePath();
+  #makePickable() {
+    const canvas = this.#canvas;
+    /** Where the button went down, until it has moved too far for a click [px]. @type {Point | null} */
+    let pressed = null;
+    canvas.addEventListener('pointerdown', (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      pressed = event.button === 0 ? [event.offsetX, event.offsetY] : null;
+    });
+    canvas.addEventListener('pointermove', (event) => {
+      this.#pointer = [event.offsetX, event.offsetY];
+      this.#redraw();
+      if (!canvas.hasPointerCapture(event.pointerId)) return;
+      if (pressed && Math.hypot(event.offsetX - pressed[0], event.offsetY - pressed[1]) <= CLICK_PX) return;
+      pressed = null;
+      this.#pan(event.movementX, event.movementY);
+    });
+    canvas.addEventListener('pointerup', () => {
+      if (pressed && this.#pick) this.#pick(this.#fromOrigin(this.#toWorld(pressed)));
+      pressed = null;
+    });
+    canvas.addEventListener('pointercancel', () => { pressed = null; });
+    canvas.addEventListener('pointerleave', () => {
+      this.#pointer = null;
+      this.#redraw();
+    });
+  }
 }

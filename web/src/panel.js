@@ -1,29 +1,23 @@
 // @ts-check
-/** The command panel: mode, ON and OFF, the mode's reference, the basic movements. */
-import { create, element, setText } from './dom.js';
+/** The command panel: mode, ON and OFF, STOP, and the controls of the mode. */
+import { create, element, number, setText } from './dom.js';
+import { Movements } from './movements.js';
+import { Places } from './places.js';
 import { CM_PER_M, RPM_PER_RAD_S, format } from './units.js';
 
 /** @typedef {import('./types.js').ModeEntry} ModeEntry */
+/** @typedef {import('./types.js').Scene} Scene */
 /** @typedef {import('./types.js').State} State */
 /** @typedef {(order: import('./types.js').Order) => void} Send */
-
-/** The movements, by their numbers, as they lie around the robot. */
-const MOVEMENTS = [
-  { id: 9, sign: '↖', name: 'arc left' }, { id: 1, sign: '↑', name: 'forward' }, { id: 10, sign: '↗', name: 'arc right' },
-  { id: 3, sign: '↺', name: 'turn left about the centre' }, { id: 0, sign: '■', name: 'release both wheels' }, { id: 4, sign: '↻', name: 'turn right about the centre' },
-  { id: 11, sign: '↙', name: 'arc backward, centre on the left' }, { id: 2, sign: '↓', name: 'backward' }, { id: 12, sign: '↘', name: 'arc backward, centre on the right' },
-  { id: 5, sign: 'L ↑', name: 'pivot on the left wheel, forward' }, { id: 6, sign: 'L ↓', name: 'pivot on the left wheel, backward' },
-  { id: 7, sign: 'R ↑', name: 'pivot on the right wheel, forward' }, { id: 8, sign: 'R ↓', name: 'pivot on the right wheel, backward' },
-];
 
 export class CommandPanel {
   #send;
   #modes = element('modes', HTMLDivElement);
+  #about = element('about', HTMLSpanElement);
   #reference = element('reference', HTMLFormElement);
-  #movements = element('movements', HTMLDivElement);
   #armed = element('armed', HTMLOutputElement);
-  #fault = element('fault', HTMLDivElement);
-  #faultText = element('fault-text', HTMLSpanElement);
+  #movements;
+  #places;
   /** @type {ModeEntry[]} */
   #entries = [];
   /** The mode the panel is laid out for. @type {number | null} */
@@ -31,13 +25,14 @@ export class CommandPanel {
   /** @type {HTMLOutputElement | null} */
   #inForce = null;
 
-  /** @param {Send} send */
-  constructor(send) {
+  /** @param {Send} send @param {import('./map.js').WorldMap} map */
+  constructor(send, map) {
     this.#send = send;
+    this.#movements = new Movements(send);
+    this.#places = new Places(send, map);
     element('stop', HTMLButtonElement).addEventListener('click', () => send({ type: 'stop' }));
     element('on', HTMLButtonElement).addEventListener('click', () => send({ type: 'arm' }));
     element('off', HTMLButtonElement).addEventListener('click', () => send({ type: 'disarm' }));
-    element('clear-fault', HTMLButtonElement).addEventListener('click', () => send({ type: 'clear_fault' }));
     // Space stops, wherever the focus is: ahead of whatever else it would do there.
     for (const type of /** @type {const} */ (['keydown', 'keyup'])) {
       addEventListener(type, (event) => {
@@ -47,7 +42,6 @@ export class CommandPanel {
         if (type === 'keydown' && !event.repeat) send({ type: 'stop' });
       }, { capture: true });
     }
-    this.#layOutMovements();
   }
 
   /** @param {ModeEntry[]} modes */
@@ -61,60 +55,75 @@ export class CommandPanel {
     }));
   }
 
+  /** @param {Scene | null} scene */
+  setScene(scene) {
+    this.#places.setScene(scene);
+  }
+
   /** @param {State} state */
   show(state) {
     const { mode, armed, fault } = state.robot;
+    const entry = this.#entries.find((each) => each.id === mode) ?? null;
     for (const button of this.#modes.querySelectorAll('button')) {
+      const own = this.#entries.find((each) => String(each.id) === button.value);
       button.setAttribute('aria-pressed', String(button.value === String(mode)));
       button.disabled = armed && button.value !== String(mode);
-      button.title = button.disabled ? 'Switch OFF first' : '';
+      button.title = button.disabled ? 'Switch OFF first' : (own?.about ?? '');
     }
     setText(this.#armed, fault ? 'fault' : armed ? 'armed' : 'off');
     this.#armed.className = `chip ${fault ? 'bad' : armed ? 'good' : ''}`;
-    this.#fault.hidden = fault === null;
-    setText(this.#faultText, fault ?? '');
-    if (this.#shown !== mode) {
+    this.#movements.show(entry?.movements ?? false, armed);
+    if (this.#shown !== mode && entry) {
       this.#shown = mode;
-      this.#layOut(this.#entries.find((entry) => entry.id === mode));
+      this.#layOut(entry);
+      this.#places.layOut(entry);
     }
-    this.#showReference(state);
+    this.#showReference(state, entry);
   }
 
-  /** @param {State} state */
-  #showReference(state) {
+  /** @param {State} state @param {ModeEntry | null} mode */
+  #showReference(state, mode) {
     if (!this.#inForce) return;
-    const entry = this.#entries.find((each) => each.id === this.#shown);
     const [left, right] = state.robot.reference;
-    if (entry?.reference?.kind === 'distance') setText(this.#inForce, `now ${format(left * CM_PER_M)} cm`);
-    if (entry?.reference?.kind === 'wheel_speed') {
-      setText(this.#inForce, `now ${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)} rpm`);
-    }
+    const kind = mode?.reference?.kind;
+    if (kind === 'distance') setText(this.#inForce, `now ${format(left * CM_PER_M)} cm`);
+    if (kind === 'speed') setText(this.#inForce, `now ${format(left * RPM_PER_RAD_S, 0)} rpm`);
+    if (kind === 'wheel_speed') setText(this.#inForce, `now ${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)} rpm`);
   }
 
-  /** @param {ModeEntry | undefined} mode */
+  /** @param {ModeEntry} mode */
   #layOut(mode) {
-    this.#movements.hidden = !mode?.movements;
+    setText(this.#about, mode.about);
     this.#inForce = create('output', { className: 'hint' });
-    const reference = mode?.reference;
-    if (reference?.kind === 'distance') this.#layOutDistance(reference.min * CM_PER_M, reference.max * CM_PER_M);
-    else if (reference?.kind === 'wheel_speed') this.#layOutSpeeds(reference.min * RPM_PER_RAD_S, reference.max * RPM_PER_RAD_S);
-    else {
+    const reference = mode.reference;
+    this.#reference.hidden = reference === null || reference.kind === 'goal';
+    this.#reference.replaceChildren();
+    this.#reference.onsubmit = (event) => event.preventDefault();
+    if (reference?.kind === 'distance') {
+      this.#layOutOne('reference-cm', mode.id === 4 ? 50 : 30, 'cm', CM_PER_M, reference);
+    } else if (reference?.kind === 'speed') {
+      this.#layOutOne('reference-rpm', 40, 'rpm', RPM_PER_RAD_S, reference);
+    } else if (reference?.kind === 'wheel_speed') {
+      this.#layOutSpeeds(reference.min * RPM_PER_RAD_S, reference.max * RPM_PER_RAD_S);
+    } else {
       this.#inForce = null;
-      this.#reference.replaceChildren();
-      this.#reference.onsubmit = (event) => event.preventDefault();
     }
   }
 
   /**
-   * @param {number} min_cm
-   * @param {number} max_cm
+   * @param {string} id
+   * @param {number} value
+   * @param {string} unit
+   * @param {number} factor From the SI unit.
+   * @param {{min: number, max: number}} limits In the SI unit.
    */
-  #layOutDistance(min_cm, max_cm) {
-    const input = number('reference-cm', 30, min_cm, max_cm);
-    this.#reference.replaceChildren(create('label', {}, 'reference ', input, ' cm'), submit('Set'), this.#inForce ?? '');
+  #layOutOne(id, value, unit, factor, { min, max }) {
+    const input = number(id, value, min * factor, max * factor);
+    const range = create('span', { className: 'hint', textContent: `${format(min * factor, 0)} to ${format(max * factor, 0)} ${unit}` });
+    this.#reference.replaceChildren(create('label', {}, 'reference ', input, ` ${unit}`), submit('Set'), this.#inForce ?? '', range);
     this.#reference.onsubmit = (event) => {
       event.preventDefault();
-      this.#send({ type: 'reference', value: input.valueAsNumber / CM_PER_M });
+      this.#send({ type: 'reference', value: input.valueAsNumber / factor });
     };
   }
 
@@ -142,38 +151,6 @@ export class CommandPanel {
       this.#send({ type: 'wheel_reference', left: left.valueAsNumber / RPM_PER_RAD_S, right: right.valueAsNumber / RPM_PER_RAD_S });
     };
   }
-
-  #layOutMovements() {
-    const level = number('level', 35, 0, 100);
-    const unit = create('select', { id: 'level-unit', title: 'Open loop by PWM, or closed loop by speed' },
-      create('option', { value: 'duty', textContent: '% PWM' }), create('option', { value: 'speed', textContent: 'rpm' }));
-    unit.addEventListener('change', () => {
-      const duty = unit.value === 'duty';
-      level.max = duty ? '100' : '190';
-      level.value = duty ? '35' : '60';
-    });
-    const pad = create('div', { className: 'pad' }, ...MOVEMENTS.map(({ id, sign, name }) => {
-      const button = create('button', { type: 'button', title: name, textContent: sign, value: String(id) });
-      button.setAttribute('aria-label', name);
-      button.addEventListener('click', () => {
-        if (!level.reportValidity()) return;
-        if (unit.value === 'duty') this.#send({ type: 'move_duty', movement: id, duty: level.valueAsNumber / 100 });
-        else this.#send({ type: 'move_speed', movement: id, speed_rad_s: level.valueAsNumber / RPM_PER_RAD_S });
-      });
-      return button;
-    }), create('span', { className: 'hint', textContent: 'pivot on' }));
-    this.#movements.replaceChildren(pad, create('label', {}, 'level ', level), unit);
-  }
-}
-
-/**
- * @param {string} id
- * @param {number} value
- * @param {number} min
- * @param {number} max
- */
-function number(id, value, min, max) {
-  return create('input', { type: 'number', id, value: String(value), min: String(Math.ceil(min * 10) / 10), max: String(Math.floor(max * 10) / 10), step: 'any', required: true });
 }
 
 /** @param {string} text */

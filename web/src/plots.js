@@ -3,68 +3,32 @@
  * The plots: one time axis, cursors in step. The view follows the newest data, or holds still while data goes on arriving.
  */
 import uPlot from '../vendor/uplot/uPlot.js';
-import { create, setText } from './dom.js';
+import { create, element, setText } from './dom.js';
+import { OF_MODE, PLOTS } from './plot_specs.js';
 import { colours, onThemeChange, stateColour } from './theme.js';
 import { format } from './units.js';
 
 /** @typedef {import('./store.js').Store} Store */
 /** @typedef {import('./store.js').Stretch} Stretch */
 /** @typedef {import('./types.js').ModeEntry} ModeEntry */
-/** @typedef {import('./theme.js').ColourName} ColourName */
-
-/**
- * @typedef {object} Curve
- * @property {string} name As in the store.
- * @property {string} label
- * @property {ColourName} colour
- * @property {'measured' | 'reference' | 'true'} kind
- */
-
-/** @type {{title: string, unit: string, table: 'slow' | 'fast', step: number, decimals: number, weight: number, curves: Curve[]}[]} */
-const PLOTS = [
-  {
-    title: 'distance', unit: 'cm', table: 'slow', step: 10, decimals: 1, weight: 5,
-    curves: [
-      { name: 'true_range_left_cm', label: 'true l.', colour: 'left', kind: 'true' },
-      { name: 'true_range_right_cm', label: 'true r.', colour: 'right', kind: 'true' },
-      { name: 'true_range_front_cm', label: 'true front', colour: 'front', kind: 'true' },
-      { name: 'range_left_cm', label: 'left', colour: 'left', kind: 'measured' },
-      { name: 'range_right_cm', label: 'right', colour: 'right', kind: 'measured' },
-      { name: 'range_front_cm', label: 'front', colour: 'front', kind: 'measured' },
-      { name: 'reference_cm', label: 'reference', colour: 'reference', kind: 'reference' },
-    ],
-  },
-  {
-    title: 'wheels', unit: 'rpm', table: 'fast', step: 20, decimals: 0, weight: 5,
-    curves: [
-      { name: 'true_left_rpm', label: 'true l.', colour: 'left', kind: 'true' },
-      { name: 'true_right_rpm', label: 'true r.', colour: 'right', kind: 'true' },
-      { name: 'left_rpm', label: 'left', colour: 'left', kind: 'measured' },
-      { name: 'right_rpm', label: 'right', colour: 'right', kind: 'measured' },
-      { name: 'left_ref_rpm', label: 'ref. l.', colour: 'left', kind: 'reference' },
-      { name: 'right_ref_rpm', label: 'ref. r.', colour: 'right', kind: 'reference' },
-    ],
-  },
-  {
-    title: 'PWM', unit: 'of 255', table: 'slow', step: 50, decimals: 0, weight: 3,
-    curves: [
-      { name: 'left_pwm', label: 'left', colour: 'left', kind: 'measured' },
-      { name: 'right_pwm', label: 'right', colour: 'right', kind: 'measured' },
-    ],
-  },
-];
+/** @typedef {import('./plot_specs.js').Curve} Curve */
+/** @typedef {import('./plot_specs.js').PlotSpec} PlotSpec */
 
 const GUTTER_PX = 46;
 const FONT = '11px system-ui, sans-serif';
 const BAND_PX = 46;
+/** Height of a plot's title, as in the style sheet. */
+const HEAD_PX = 20;
 const SYNC = 'rumbo';
 /** Shortest time that can be zoomed into [s]. */
 const MIN_WINDOW_S = 0.2;
 
 /** One plot on the page with its curves' buttons. */
 class Panel {
-  /** @param {uPlot} plot @param {() => void} fill @param {() => void} label */
-  constructor(plot, fill, label) {
+  /** @param {HTMLElement[]} parts @param {uPlot} plot @param {() => void} fill @param {() => void} label */
+  constructor(parts, plot, fill, label) {
+    this.parts = parts;
+    this.shown = true;
     this.plot = plot;
     this.fill = fill;
     this.label = label;
@@ -76,6 +40,11 @@ export class Plots {
   #store;
   /** @type {Panel[]} */
   #panels = [];
+  #choices = element('plot-choice', HTMLDivElement);
+  /** The mode the plots are shown for. */
+  #mode = -1;
+  /** The plots chosen in a mode, while the page lives. @type {Map<number, string[]>} */
+  #chosen = new Map();
   #window_s = 20;
   #following = true;
   /** @type {[number, number]} */
@@ -98,6 +67,8 @@ export class Plots {
     this.#onFollow = onFollow;
     for (const spec of PLOTS) this.#panels.push(this.#plotPanel(spec));
     this.#panels.push(this.#bandPanel());
+    this.#offerChoices();
+    this.setMode(0);
     new ResizeObserver(() => this.#fit()).observe(root);
     this.#fit();
     onThemeChange(() => this.draw());
@@ -138,6 +109,7 @@ export class Plots {
     }
     const [min, max] = this.#range_s;
     for (const panel of this.#panels) {
+      if (!panel.shown) continue;
       panel.plot.batch(() => {
         panel.fill();
         panel.plot.setScale('x', { min, max });
@@ -146,19 +118,53 @@ export class Plots {
     }
   }
 
+  /** Shows the plots that the mode begins with, or those that were chosen in it. @param {number} mode */
+  setMode(mode) {
+    if (mode === this.#mode) return;
+    this.#mode = mode;
+    this.#show(this.#chosen.get(mode) ?? OF_MODE[mode] ?? OF_MODE[0] ?? []);
+  }
+
+  /** @param {string[]} titles */
+  #show(titles) {
+    PLOTS.forEach((spec, index) => {
+      const panel = this.#panels[index];
+      if (!panel) return;
+      panel.shown = titles.includes(spec.title);
+      for (const part of panel.parts) part.hidden = !panel.shown;
+    });
+    for (const choice of this.#choices.querySelectorAll('button')) choice.setAttribute('aria-pressed', String(titles.includes(choice.value)));
+    this.#fit();
+    this.#redraw();
+  }
+
+  /** One button for each plot: shown or not. */
+  #offerChoices() {
+    this.#choices.replaceChildren(...PLOTS.map(({ title }, index) => {
+      const button = create('button', { type: 'button', value: title, textContent: title, title: `Plot ${title}, or not` });
+      button.addEventListener('click', () => {
+        const titles = PLOTS.filter((_spec, each) => (each === index) !== this.#panels[each]?.shown).map((spec) => spec.title);
+        this.#chosen.set(this.#mode, titles);
+        this.#show(titles);
+      });
+      return button;
+    }));
+  }
+
   #fit() {
     const width = this.#root.clientWidth;
-    const weights = PLOTS.reduce((sum, spec) => sum + spec.weight, 0);
-    const heads_px = PLOTS.length * 20;
-    const free_px = this.#root.clientHeight - BAND_PX - heads_px;
+    const shown = PLOTS.filter((_spec, index) => this.#panels[index]?.shown);
+    const weights = shown.reduce((sum, spec) => sum + spec.weight, 0);
+    const free_px = this.#root.clientHeight - BAND_PX - shown.length * HEAD_PX;
     this.#panels.forEach((panel, index) => {
       const weight = PLOTS[index]?.weight;
+      if (!panel.shown) return;
       const height = weight === undefined ? BAND_PX : Math.max(50, Math.floor((free_px * weight) / weights));
       panel.plot.setSize({ width, height });
     });
   }
 
-  /** @param {typeof PLOTS[number]} spec */
+  /** @param {PlotSpec} spec */
   #plotPanel(spec) {
     const table = this.#store[spec.table];
     const data = /** @type {uPlot.AlignedData} */ ([table.t, ...spec.curves.map((curve) => table.columns.get(curve.name) ?? [])]);
@@ -199,7 +205,7 @@ export class Plots {
         setText(value, format(column[at] ?? column[at - 1], spec.decimals));
       }
     };
-    return new Panel(plot, () => plot.setData(data, false), label);
+    return new Panel([head, body], plot, () => plot.setData(data, false), label);
   }
 
   /** The states of the mode's machine, along the time axis. */
@@ -217,7 +223,7 @@ export class Plots {
       hooks: { ...options.hooks, drawAxes: [(/** @type {uPlot} */ each) => this.#drawBand(each)] },
     }, data, body);
     this.#makeNavigable(plot);
-    return new Panel(plot, () => plot.setData(data, false), () => {});
+    return new Panel([body], plot, () => plot.setData(data, false), () => {});
   }
 
   /** @param {uPlot} plot */
@@ -282,7 +288,7 @@ export class Plots {
 
   /** A moved cursor changes the numbers shown, not the curves. */
   #redrawLabels() {
-    for (const panel of this.#panels) panel.label();
+    for (const panel of this.#panels) if (panel.shown) panel.label();
   }
 
   /** @param {uPlot} plot */

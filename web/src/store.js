@@ -3,9 +3,12 @@
  * The signals received, in columns as uPlot takes them: a slow table with a line for each telemetry frame, and a fast one for the wheel
  * speeds, of which a frame brings two.
  *
+ * Places are in metres from the robot's origin, the true ones too, and headings go on through 180 degrees up to 270.
+ *
  * In a column null is a gap, and undefined means that this line has no such value and the curve goes on.
  */
-import { CM_PER_M, RPM_PER_RAD_S } from './units.js';
+import { IDENTITY, compose, inverse, near } from './geometry.js';
+import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S } from './units.js';
 
 /** @typedef {import('./types.js').Cell} Cell */
 /** @typedef {(number | null | undefined)[]} Column */
@@ -67,31 +70,41 @@ export class Table {
 const SLOW = [
   'reference_cm', 'range_left_cm', 'range_right_cm', 'range_front_cm',
   'true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'left_pwm', 'right_pwm',
+  'heading_deg', 'heading_ref_deg', 'true_heading_deg', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m', 'true_x_m', 'true_y_m',
 ];
 const FAST = ['left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm', 'true_left_rpm', 'true_right_rpm'];
 
-/** The mode whose reference is a distance. */
-const FRONT_DISTANCE = 1;
+/** The modes whose reference is a distance, those whose it is a place, and those that want a heading. */
+const DISTANCE_MODES = [1, 2, 3, 4];
+const PLACE_MODES = [7, 8];
+export const HEADING_MODES = [2, 3, 4, 6, 7, 8];
+/** A heading is plotted on through 180 degrees up to here [deg]. */
+const FARTHEST_DEG = 270;
 
 /**
  * A stretch of time in one state.
  * @typedef {{from_s: number, to_s: number, mode: number, state: number, armed: boolean, faulted: boolean}} Stretch
  */
 
-/** @typedef {{x_m: number, y_m: number, heading_rad: number}} Pose */
+/** @typedef {import('./types.js').Pose} Pose */
 
 /**
  * The newest sample, for the map and the numbers.
  * @typedef {object} Latest
  * @property {number} t_s
- * @property {Pose | null} estimated
- * @property {Pose | null} truth
+ * @property {number} mode
+ * @property {number} state Of the mode's machine.
+ * @property {boolean} armed
+ * @property {Pose} origin The robot's origin in the world, as it was when it was last moved.
+ * @property {Pose | null} estimated From the origin.
+ * @property {Pose | null} truth In the world.
+ * @property {number | null} heading_ref_rad What the mode wants; null where it wants none.
  * @property {[Cell, Cell, Cell]} ranges_m Left, right, front.
  * @property {number | null} servo_rad
  * @property {boolean} contact
  */
 
-/** Points kept of each trail, one every 2 cm at least. */
+/** Points kept of each trail, in the world, one every 2 cm at least. */
 const TRAIL_POINTS = 2_000;
 const TRAIL_STEP_M = 0.02;
 
@@ -105,6 +118,8 @@ export class Store {
   /** @type {{estimated: [number, number][], truth: [number, number][]}} */
   trails = { estimated: [], truth: [] };
   #run = 0;
+  /** The heading plotted last [deg]. */
+  #heading_deg = 0;
   /** @type {Map<string, number>} */
   #index = new Map();
 
@@ -145,9 +160,15 @@ export class Store {
     const t_s = number(cell('t_s'));
     if (t_s === null) return;
     const mode = number(cell('mode')) ?? 0;
+    const armed = cell('armed') === 1;
+    const estimated = pose(cell('x_m'), cell('y_m'), cell('heading_rad'));
+    const truth = pose(cell('true_x_m'), cell('true_y_m'), cell('true_heading_rad'));
+    const origin = pose(cell('origin_x_m'), cell('origin_y_m'), cell('origin_heading_rad')) ?? IDENTITY;
+    const heading_ref_rad = armed && HEADING_MODES.includes(mode) ? number(cell('heading_ref_rad')) : null;
+    const toPlace = armed && PLACE_MODES.includes(mode) && (mode === 7 || cell('reference_left') !== 0 || cell('reference_right') !== 0);
 
     this.slow.push(t_s, {
-      reference_cm: mode === FRONT_DISTANCE ? cm('reference_left') : null,
+      reference_cm: DISTANCE_MODES.includes(mode) && cell('reference_left') !== 0 ? cm('reference_left') : null,
       range_left_cm: cm('range_left_m'),
       range_right_cm: cm('range_right_m'),
       range_front_cm: cm('range_front_m'),
@@ -156,6 +177,9 @@ export class Store {
       true_range_front_cm: cm('true_range_front_m'),
       left_pwm: number(cell('left_pwm')),
       right_pwm: number(cell('right_pwm')),
+      ...this.#placeAndHeading(estimated, truth && compose(inverse(origin), truth), heading_ref_rad),
+      goal_x_m: toPlace ? number(cell('reference_left')) : null,
+      goal_y_m: toPlace ? number(cell('reference_right')) : null,
     });
     this.fast.push(t_s - EARLIER_S, {
       left_rpm: rpm('left_before_rad_s'),
@@ -171,19 +195,47 @@ export class Store {
       true_left_rpm: rpm('true_left_rad_s'),
       true_right_rpm: rpm('true_right_rad_s'),
     });
-    this.#pushStretch(t_s, mode, number(cell('state')) ?? 0, cell('armed') === 1, cell('faulted') === 1);
+    this.#pushStretch(t_s, mode, number(cell('state')) ?? 0, armed, cell('faulted') === 1);
 
-    const estimated = pose(cell('x_m'), cell('y_m'), cell('heading_rad'));
-    const truth = pose(cell('true_x_m'), cell('true_y_m'), cell('true_heading_rad'));
-    lengthen(this.trails.estimated, estimated);
+    lengthen(this.trails.estimated, estimated && compose(origin, estimated));
     lengthen(this.trails.truth, truth);
     this.latest = {
       t_s,
+      mode,
+      state: number(cell('state')) ?? 0,
+      armed,
+      origin,
       estimated,
       truth,
+      heading_ref_rad,
       ranges_m: [cell('range_left_m') ?? null, cell('range_right_m') ?? null, cell('range_front_m') ?? null],
-      servo_rad: number(cell('true_servo_rad')),
+      servo_rad: number(cell('true_servo_rad')) ?? number(cell('servo_rad')),
       contact: cell('contact') === 1,
+    };
+  }
+
+  /**
+   * @param {Pose | null} estimated
+   * @param {Pose | null} truth From the robot's origin.
+   * @param {number | null} heading_ref_rad
+   */
+  #placeAndHeading(estimated, truth, heading_ref_rad) {
+    if (!estimated) return {};
+    const wrapped_deg = estimated.heading_rad * DEG_PER_RAD;
+    const before_deg = this.#heading_deg;
+    const on_deg = near(wrapped_deg, before_deg);
+    const heading_deg = Math.abs(on_deg) > FARTHEST_DEG ? wrapped_deg : on_deg;
+    this.#heading_deg = heading_deg;
+    /** A gap where the curve starts over. @param {number | null} angle_deg */
+    const curve = (angle_deg) => (angle_deg === null || Math.abs(heading_deg - before_deg) > 180 ? null : near(angle_deg, heading_deg));
+    return {
+      x_m: estimated.x_m,
+      y_m: estimated.y_m,
+      true_x_m: truth?.x_m ?? null,
+      true_y_m: truth?.y_m ?? null,
+      heading_deg: curve(heading_deg),
+      heading_ref_deg: curve(heading_ref_rad === null ? null : heading_ref_rad * DEG_PER_RAD),
+      true_heading_deg: curve(truth ? truth.heading_rad * DEG_PER_RAD : null),
     };
   }
 

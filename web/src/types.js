@@ -7,18 +7,28 @@
  * @typedef {object} ModeEntry
  * @property {number} id
  * @property {string} name
- * @property {{kind: 'distance' | 'wheel_speed', min: number, max: number} | null} reference What its reference is [m or rad/s].
+ * @property {string} about What it does, in a few words.
+ * @property {{kind: 'distance' | 'wheel_speed' | 'speed' | 'goal', min: number, max: number} | null} reference What its reference is [m or rad/s].
  * @property {boolean} movements Takes basic movements.
+ * @property {number | null} route Takes a route of at most so many places.
+ * @property {boolean} lane Follows a lane on command.
  * @property {string[]} states
  *
  * @typedef {{x_m: number, y_m: number, heading_rad: number}} Pose World frame, counter-clockwise heading.
  * @typedef {{id: number, at: Pose, half_angle_rad: number, reach_m: number, on_servo: boolean}} SonarMount
  * @typedef {{corners_m: [number, number][], closed: boolean}} Obstacle
  *
+ * @typedef {{x_m: number, y_m: number, heading_rad: number | null}} Place
+ * @typedef {{repeat: boolean, relative: boolean, waypoints: Place[]}} Route From the robot's origin, or from where it starts.
+ *
  * @typedef {object} Scene
- * @property {{scenario: string, world: string | null, seed: number}} choice
+ * @property {{scenario: string, world: string | null, rig: string | null, seed: number}} choice
  * @property {string[]} scenarios
  * @property {string[]} worlds
+ * @property {string[]} rigs
+ * @property {string} rig What the robot carries.
+ * @property {[number, number][]} goals The experiment's goals, from the origin [m].
+ * @property {Route[]} routes The experiment's routes.
  * @property {string} robot
  * @property {Pose} start Origin of the odometry in the world.
  * @property {Obstacle[]} obstacles
@@ -40,6 +50,13 @@
  * @property {boolean} pending
  * @property {string | null} refused
  *
+ * @typedef {object} Errand What the robot is asked to reach, from its origin.
+ * @property {[number, number] | null} goal
+ * @property {boolean} lane
+ * @property {Route | null} route
+ * @property {[number, number, number] | null} from Where it stood when it was armed: x, y [m] and heading [rad].
+ * @property {'reached' | 'unreachable' | null} end
+ *
  * @typedef {object} State
  * @property {number} t_s
  * @property {boolean} simulated
@@ -48,7 +65,7 @@
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
  *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number}} link
  * @property {{mode: number, armed: boolean, fault: string | null, battery_v: number | null, true_battery_v: number | null,
- *   reference: [number, number], overruns: number, servo_rad: number, foreign: boolean}} robot
+ *   reference: [number, number], overruns: number, servo_rad: number, rig: string | null, errand: Errand, foreign: boolean}} robot
  *
  * @typedef {{t_s: number, level: 'info' | 'good' | 'warning' | 'fault', text: string}} LoggedEvent
  *
@@ -64,10 +81,15 @@
  *   | {type: 'mode', mode: number}
  *   | {type: 'reference', value: number}
  *   | {type: 'wheel_reference', left: number, right: number}
- *   | {type: 'move_duty', movement: number, duty: number}
- *   | {type: 'move_speed', movement: number, speed_rad_s: number}
+ *   | {type: 'move_duty', movement: number, duty: number, held?: boolean}
+ *   | {type: 'move_speed', movement: number, speed_rad_s: number, held?: boolean}
+ *   | {type: 'goal', x_m: number, y_m: number}
+ *   | {type: 'lane'}
+ *   | {type: 'route', repeat: boolean, relative: boolean, waypoints: {x_m: number, y_m: number}[]}
+ *   | {type: 'waypoint', x_m: number, y_m: number}
+ *   | {type: 'rig', rig: string}
  *   | {type: 'set_param', id: number, value: number}
  *   | {type: 'speed', factor: number}
- *   | {type: 'reset', scenario: string, world: string | null, seed: number}} Order
+ *   | {type: 'reset', scenario: string, world: string | null, rig: string | null, seed: number}} Order
  */
 export {};

@@ -128,7 +128,7 @@ test('the page connects, and the robot is not armed by it', async () => {
 });
 
 test('mode 1 holds 30 cm, and the distance follows the reference to 50 cm', async () => {
-  await page.getByRole('button', { name: 'front distance' }).click();
+  // The lab begins in the scenario's mode.
   await page.waitForSelector('#reference-cm');
   await setReference(30);
   await page.locator('#on').click();
@@ -140,6 +140,34 @@ test('mode 1 holds 30 cm, and the distance follows the reference to 50 cm', asyn
   await settles(distance, 50, 2);
   if (process.env['SCREENSHOT']) await page.screenshot({ path: process.env['SCREENSHOT'] });
 });
+
+/** Starts a scenario again, paused or not as before. @param {string} scenario */
+async function startScenario(scenario) {
+  await page.locator('#scenario').selectOption(scenario);
+  await page.locator('#world').selectOption('');
+  await page.locator('#rig').selectOption('');
+  await page.locator('#simulation button[type=submit]').click();
+  await page.waitForFunction((scenario) => [...document.querySelectorAll('#events li')][0]?.textContent?.includes('done')
+    && [...document.querySelectorAll('#events li')].some((line) => line.textContent?.includes(`reset: ${scenario}, `)), scenario);
+}
+
+/** Clicks the map at a place from the robot's origin [m]. @param {[number, number]} at */
+async function clickMap(at) {
+  const [x, y] = await page.evaluate((at) => /** @type {any} */ (window).rumbo.onMap(at), at);
+  await page.locator('#map').click({ position: { x, y } });
+}
+
+/** @typedef {NonNullable<ReturnType<Rumbo['state']>>['robot']['errand']} Errand */
+
+/** @returns {Promise<Errand>} */
+function errand() {
+  return page.evaluate(() => /** @type {any} */ (window).rumbo.state().robot.errand);
+}
+
+/** Waits until the state line has said each of these, in turn. @param {string[]} states */
+async function saysInTurn(states) {
+  for (const state of states) await page.waitForFunction((state) => document.querySelector('#state')?.textContent === state, state);
+}
 
 test('STOP stops the wheels, by the button and by Space from anywhere', async () => {
   await setReference(30);
@@ -191,6 +219,92 @@ test('the view held still loses no data', async () => {
   const { t } = await page.evaluate(() => /** @type {any} */ (window).rumbo.series('left_pwm'));
   const gaps = t.slice(1).map((/** @type {number} */ each, /** @type {number} */ index) => each - t[index]);
   assert.ok(Math.max(...gaps) < 0.5, `a gap of ${Math.max(...gaps)} s`);
+});
+
+test('mode 8: a click on the map sets the goal, which stands where the click was', async () => {
+  await startScenario('mode8-random');
+  await page.waitForSelector('#goal');
+  await clickMap([0.6, 0.2]);
+  await page.waitForFunction(() => Math.abs((/** @type {any} */ (window).rumbo.state().robot.errand.goal?.[0] ?? 9) - 0.6) < 0.02);
+  const { goal } = await errand();
+  assert.ok(goal && Math.abs(goal[1] - 0.2) < 0.02, String(goal));
+  await page.waitForFunction(() => /goal \(0\.[56]\d*, 0\.[12]\d*\) m, 0\.6\d m away/.test(document.querySelector('#aim')?.textContent ?? ''));
+
+  await page.getByRole('button', { name: '(0.5, −0.5)' }).click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.goal?.[1] === -0.5);
+  await page.locator('#goal-x').fill('19.5');
+  await page.locator('#goal-y').fill('-2');
+  await page.locator('#goal button').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.goal?.[0] === 19.5);
+  await page.locator('#lane').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.lane);
+});
+
+test('mode 7: a route made by clicks is driven place by place, and the state line tells', async () => {
+  await startScenario('mode7');
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.route?.waypoints.length === 4);
+  await clickMap([0.3, 0]);
+  await clickMap([0.3, 0.3]);
+  assert.deepEqual(await page.locator('.place b').allTextContents(), ['1', '2']);
+  await clickMap([-1, -1]);
+  await page.locator('.place').nth(2).click();
+  await page.locator('#route-set').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.route?.waypoints.length === 2);
+  await page.locator('#on').click();
+  await isArmed(true);
+  await saysInTurn(['drive', 'turn', 'drive']);
+  await page.waitForFunction(() => document.querySelector('#end')?.textContent === 'reached');
+  const [x] = await lastValues('x_m', 1);
+  const [y] = await lastValues('y_m', 1);
+  assert.ok(x !== undefined && y !== undefined && Math.hypot(x - 0.3, y - 0.3) < 0.1, `${x}, ${y}`);
+  await page.locator('#off').click();
+  await isArmed(false);
+});
+
+test('mode 0: an arrow key drives while it is held, and losing the focus stops', async () => {
+  await startScenario('free');
+  await page.locator('#on').click();
+  await isArmed(true);
+  await page.keyboard.down('ArrowUp');
+  await wheelsTurn();
+  await page.keyboard.up('ArrowUp');
+  await settles('left_pwm', 0, 0);
+  await page.keyboard.down('ArrowLeft');
+  await wheelsTurn();
+  await page.locator('#level').focus();
+  await settles('left_pwm', 0, 0);
+  await page.keyboard.up('ArrowLeft');
+  await page.locator('#off').click();
+  await isArmed(false);
+});
+
+test('a rig that the robot does not carry is warned about, and the robot can be told', async () => {
+  await page.locator('#rig').selectOption('front_single');
+  await page.locator('#simulation button[type=submit]').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.rig === 'front_single');
+  assert.equal(await page.locator('#rig-warning').isVisible(), false);
+  await page.locator('#reset-parameters').click();
+  await page.waitForSelector('#rig-warning');
+  assert.match(await page.locator('#rig-text').innerText(), /believes to carry the rig final, and carries front_single/);
+  await page.locator('#rig-tell').click();
+  await page.waitForSelector('#rig-warning', { state: 'hidden' });
+});
+
+test('each mode has its controls, and nothing moves when the mode changes', async () => {
+  /** @type {Record<string, string>} */
+  const controls = {
+    0: '#movements', 1: '#reference-cm', 2: '#reference-cm', 3: '#about', 4: '#reference-cm', 5: '#reference-left-rpm', 6: '#reference-rpm',
+    7: '#route-set', 8: '#lane',
+  };
+  const places = new Set();
+  for (const [mode, selector] of Object.entries(controls)) {
+    await page.locator(`#modes button[value="${mode}"]`).click();
+    await page.waitForFunction((mode) => String(/** @type {any} */ (window).rumbo.state().robot.mode) === mode, mode);
+    await page.waitForSelector(selector);
+    assert.ok(await page.locator('#state').innerText(), 'the state line says something');
+    places.add(JSON.stringify(await page.locator('#on').boundingBox()));
+  }
+  assert.equal(places.size, 1, [...places].join());
 });
 
 test('a reset starts again with the seed asked for', async () => {

@@ -321,6 +321,61 @@ async fn commands_are_acknowledged_stop_disarms_and_a_reset_starts_anew() {
     .await;
 }
 
+#[tokio::test]
+async fn a_goal_and_a_route_are_passed_on_and_shown_once_the_robot_took_them() {
+    let lab = start(8.0);
+    let cookie = open(&lab);
+    let mut page = connect_own(&lab, &cookie).await;
+    wait_for(&mut page, |message| event(message, "connected")).await;
+    let errand = |message: &Value| {
+        let errand = &message["state"]["robot"]["errand"];
+        errand.is_object().then(|| errand.clone())
+    };
+    say(&mut page, json!({"type": "mode", "mode": 8})).await;
+    say(&mut page, json!({"type": "goal", "x_m": 1.5, "y_m": -0.5})).await;
+    wait_for(&mut page, |message| {
+        (errand(message)?["goal"] == json!([1.5, -0.5])).then_some(())
+    })
+    .await;
+    say(&mut page, json!({"type": "lane"})).await;
+    wait_for(&mut page, |message| {
+        let errand = errand(message)?;
+        (errand["lane"] == true && errand["goal"].is_null()).then_some(())
+    })
+    .await;
+
+    say(&mut page, json!({"type": "mode", "mode": 7})).await;
+    let places = json!([{"x_m": 1.0, "y_m": 0.5}, {"x_m": 0.0, "y_m": 0.0, "heading_rad": 1.5}]);
+    say(
+        &mut page,
+        json!({"type": "route", "repeat": true, "relative": true, "waypoints": places}),
+    )
+    .await;
+    let shown = json!([{"x_m": 1.0, "y_m": 0.5, "heading_rad": null},
+                       {"x_m": 0.0, "y_m": 0.0, "heading_rad": 1.5}]);
+    let route = wait_for(&mut page, |message| {
+        let route = errand(message)?["route"].clone();
+        (route["waypoints"] == shown).then_some(route)
+    })
+    .await;
+    assert!(route["repeat"] == true && route["relative"] == true);
+}
+
+#[tokio::test]
+async fn a_held_movement_ends_when_the_page_says_no_more() {
+    let lab = start(1.0);
+    let cookie = open(&lab);
+    let mut page = connect_own(&lab, &cookie).await;
+    wait_for(&mut page, |message| event(message, "connected")).await;
+    say(
+        &mut page,
+        json!({"type": "move_duty", "movement": 1, "duty": 0.4, "held": true}),
+    )
+    .await;
+    wait_for(&mut page, |message| event(message, "Forward")).await;
+    wait_for(&mut page, |message| event(message, "movement Stop")).await;
+}
+
 fn parameter<'a>(message: &'a Value, name: &str) -> Option<&'a Value> {
     let all = message["parameters"].as_array()?;
     all.iter().find(|parameter| parameter["name"] == name)

@@ -1,0 +1,62 @@
+// @ts-check
+/** Poses in frames: x forward, y left, counter-clockwise headings. */
+
+/** @typedef {import('./types.js').Pose} Pose */
+
+/** @type {Pose} */
+export const IDENTITY = { x_m: 0, y_m: 0, heading_rad: 0 };
+
+/**
+ * A pose in `frame`, in the frame around it.
+ * @param {Pose} frame
+ * @param {Pose} at
+ * @returns {Pose}
+ */
+export function compose(frame, at) {
+  const cos = Math.cos(frame.heading_rad);
+  const sin = Math.sin(frame.heading_rad);
+  return {
+    x_m: frame.x_m + cos * at.x_m - sin * at.y_m,
+    y_m: frame.y_m + sin * at.x_m + cos * at.y_m,
+    heading_rad: wrapped(frame.heading_rad + at.heading_rad),
+  };
+}
+
+/**
+ * The frame around `at`, as seen from there.
+ * @param {Pose} at
+ * @returns {Pose}
+ */
+export function inverse(at) {
+  const cos = Math.cos(at.heading_rad);
+  const sin = Math.sin(at.heading_rad);
+  return { x_m: -cos * at.x_m - sin * at.y_m, y_m: sin * at.x_m - cos * at.y_m, heading_rad: -at.heading_rad };
+}
+
+/**
+ * A point in `frame`, in the frame around it.
+ * @param {Pose} frame
+ * @param {[number, number]} point
+ * @returns {[number, number]}
+ */
+export function place(frame, [x_m, y_m]) {
+  const at = compose(frame, { x_m, y_m, heading_rad: 0 });
+  return [at.x_m, at.y_m];
+}
+
+/**
+ * The same direction in (-pi, pi].
+ * @param {number} angle_rad
+ */
+export function wrapped(angle_rad) {
+  return Math.atan2(Math.sin(angle_rad), Math.cos(angle_rad));
+}
+
+/**
+ * The same direction in degrees, near another angle.
+ * @param {number} angle_deg
+ * @param {number} other_deg
+ */
+export function near(angle_deg, other_deg) {
+  return angle_deg + 360 * Math.round((other_deg - angle_deg) / 360);
+}

@@ -1,0 +1,125 @@
+// @ts-check
+/**
+ * The basic movements of mode 0: buttons that go on until the next one, and the arrow keys, which drive while they are held.
+ *
+ * A held key is told to the station again and again, and the station lets go when it hears nothing: a page that hangs or is gone stops
+ * the robot too. Letting go, another window, another field: the wheels are released.
+ */
+import { create, element, number } from './dom.js';
+import { RPM_PER_RAD_S } from './units.js';
+
+/** @typedef {import('./panel.js').Send} Send */
+
+/** The movements, by their numbers, as they lie around the robot. */
+const MOVEMENTS = [
+  { id: 9, sign: '↖', name: 'arc left' }, { id: 1, sign: '↑', name: 'forward' }, { id: 10, sign: '↗', name: 'arc right' },
+  { id: 3, sign: '↺', name: 'turn left about the centre' }, { id: 0, sign: '■', name: 'release both wheels' }, { id: 4, sign: '↻', name: 'turn right about the centre' },
+  { id: 11, sign: '↙', name: 'arc backward, centre on the left' }, { id: 2, sign: '↓', name: 'backward' }, { id: 12, sign: '↘', name: 'arc backward, centre on the right' },
+  { id: 5, sign: 'L ↑', name: 'pivot on the left wheel, forward' }, { id: 6, sign: 'L ↓', name: 'pivot on the left wheel, backward' },
+  { id: 7, sign: 'R ↑', name: 'pivot on the right wheel, forward' }, { id: 8, sign: 'R ↓', name: 'pivot on the right wheel, backward' },
+];
+const RELEASE = 0;
+/** Forward and backward, left and right, to a movement. @type {Record<string, number>} */
+const BY_KEYS = {
+  '1,0': 1, '-1,0': 2, '0,1': 3, '0,-1': 4, '1,1': 9, '1,-1': 10, '-1,1': 11, '-1,-1': 12,
+};
+/** A held key is told again after this long, a third of the station's patience [ms]. */
+const REPEAT_MS = 200;
+
+export class Movements {
+  #send;
+  #root = element('movements', HTMLDivElement);
+  #level = number('level', 35, 0, 100);
+  #unit = create('select', { id: 'level-unit', title: 'Open loop by PWM, or closed loop by speed' },
+    create('option', { value: 'duty', textContent: '% PWM' }), create('option', { value: 'speed', textContent: 'rpm' }));
+  /** @type {Set<string>} */
+  #keys = new Set();
+  /** The movement that keys hold; null: none. @type {number | null} */
+  #held = null;
+  /** Keys drive: mode 0 is armed. */
+  #live = false;
+
+  /** @param {Send} send */
+  constructor(send) {
+    this.#send = send;
+    this.#layOut();
+    addEventListener('keydown', (event) => this.#press(event), { capture: true });
+    addEventListener('keyup', (event) => {
+      if (this.#keys.delete(event.key)) this.#follow();
+    }, { capture: true });
+    addEventListener('blur', () => this.#letGo());
+    document.addEventListener('visibilitychange', () => this.#letGo());
+    document.addEventListener('focusin', (event) => {
+      if (isField(event.target)) this.#letGo();
+    });
+    setInterval(() => {
+      if (this.#held !== null) this.#order(this.#held, true);
+    }, REPEAT_MS);
+  }
+
+  /** @param {boolean} shown @param {boolean} armed */
+  show(shown, armed) {
+    this.#root.hidden = !shown;
+    this.#live = shown && armed;
+    if (!this.#live) {
+      this.#keys.clear();
+      this.#held = null;
+    }
+  }
+
+  /** @param {KeyboardEvent} event */
+  #press(event) {
+    if (!this.#live || !event.key.startsWith('Arrow') || event.ctrlKey || event.metaKey || event.altKey || isField(event.target)) return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (event.repeat) return;
+    this.#keys.add(event.key);
+    this.#follow();
+  }
+
+  #letGo() {
+    this.#keys.clear();
+    this.#follow();
+  }
+
+  /** Does what the keys that are down say. */
+  #follow() {
+    const down = (/** @type {string} */ key) => Number(this.#keys.has(key));
+    const wanted = BY_KEYS[`${down('ArrowUp') - down('ArrowDown')},${down('ArrowLeft') - down('ArrowRight')}`] ?? null;
+    if (wanted === this.#held) return;
+    if (wanted !== null && !this.#level.reportValidity()) return;
+    this.#held = wanted;
+    this.#order(wanted ?? RELEASE, wanted !== null);
+  }
+
+  /** @param {number} movement @param {boolean} held */
+  #order(movement, held) {
+    if (movement === RELEASE) this.#send({ type: 'move_duty', movement, duty: 0 });
+    else if (this.#unit.value === 'duty') this.#send({ type: 'move_duty', movement, duty: this.#level.valueAsNumber / 100, held });
+    else this.#send({ type: 'move_speed', movement, speed_rad_s: this.#level.valueAsNumber / RPM_PER_RAD_S, held });
+  }
+
+  #layOut() {
+    this.#unit.addEventListener('change', () => {
+      const duty = this.#unit.value === 'duty';
+      this.#level.max = duty ? '100' : '190';
+      this.#level.value = duty ? '35' : '60';
+    });
+    const pad = create('div', { className: 'pad' }, ...MOVEMENTS.map(({ id, sign, name }) => {
+      const button = create('button', { type: 'button', title: name, textContent: sign, value: String(id) });
+      button.setAttribute('aria-label', name);
+      button.addEventListener('click', () => {
+        if (this.#level.reportValidity()) this.#order(id, false);
+      });
+      return button;
+    }), create('span', { className: 'hint', textContent: 'pivot on' }));
+    const level = create('div', { className: 'row' }, create('label', {}, 'level ', this.#level), this.#unit);
+    const hint = create('span', { className: 'hint', textContent: 'Armed, the arrow keys drive while they are held.' });
+    this.#root.replaceChildren(pad, create('div', { className: 'stack' }, level, hint));
+  }
+}
+
+/** @param {EventTarget | null} target */
+function isField(target) {
+  return target instanceof HTMLInputElement || target instanceof HTMLSelectElement;
+}

@@ -1,0 +1,313 @@
+// @ts-check
+/** What the map shows, drawn on a canvas in metres: world, trails, robot, the sonars' cones with their readings, goal and route. */
+import { compose } from './geometry.js';
+import { colours } from './theme.js';
+
+/** @typedef {import('./types.js').Scene} Scene */
+/** @typedef {import('./types.js').Cell} Cell */
+/** @typedef {import('./types.js').Pose} Pose */
+/** @typedef {import('./theme.js').ColourName} ColourName */
+/** @typedef {[number, number]} Point In the world [m]. */
+
+/** Outline of a robot of which nothing is known [m]. */
+const DEFAULT_FOOTPRINT = /** @type {[number, number][]} */ ([[0.1, 0.075], [-0.1, 0.075], [-0.1, -0.075], [0.1, -0.075]]);
+const SONAR_COLOURS = /** @type {ColourName[]} */ (['left', 'right', 'front']);
+/** Size of a goal's mark [px]. */
+const GOAL_PX = 9;
+
+/** Draws the parts of the map. */
+export class Sketch {
+  /** @type {Scene | null} */
+  scene = null;
+
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {CanvasRenderingContext2D} context
+   */
+  constructor(canvas, context) {
+    this.canvas = canvas;
+    this.context = context;
+  }
+
+  /**
+   * @param {{x_m: number, y_m: number, px_per_m: number}} view
+   * @param {number} px
+   */
+  drawGrid(view, px) {
+    const step_m = view.px_per_m > 60 ? 0.5 : view.px_per_m > 20 ? 1 : 5;
+    const half_x = this.canvas.clientWidth / 2 / view.px_per_m;
+    const half_y = this.canvas.clientHeight / 2 / view.px_per_m;
+    const context = this.context;
+    context.beginPath();
+    for (let x = Math.ceil((view.x_m - half_x) / step_m) * step_m; x < view.x_m + half_x; x += step_m) {
+      context.moveTo(x, view.y_m - half_y);
+      context.lineTo(x, view.y_m + half_y);
+    }
+    for (let y = Math.ceil((view.y_m - half_y) / step_m) * step_m; y < view.y_m + half_y; y += step_m) {
+      context.moveTo(view.x_m - half_x, y);
+      context.lineTo(view.x_m + half_x, y);
+    }
+    context.lineWidth = px;
+    context.strokeStyle = colours.grid;
+    context.stroke();
+    this.#drawScale(step_m, view.px_per_m);
+  }
+
+  /**
+   * A bar as long as a square of the grid.
+   * @param {number} length_m
+   * @param {number} px_per_m
+   */
+  #drawScale(length_m, px_per_m) {
+    const context = this.context;
+    const ratio = devicePixelRatio;
+    context.save();
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    const bottom = this.canvas.clientHeight - 10;
+    const right = this.canvas.clientWidth - 12;
+    context.strokeStyle = context.fillStyle = colours.dim;
+    context.lineWidth = 1.5;
+    context.beginPath();
+    context.moveTo(right - length_m * px_per_m, bottom - 4);
+    context.lineTo(right - length_m * px_per_m, bottom);
+    context.lineTo(right, bottom);
+    context.lineTo(right, bottom - 4);
+    context.stroke();
+    context.font = '11px system-ui, sans-serif';
+    context.textAlign = 'right';
+    context.fillText(`${length_m} m`, right, bottom - 7);
+    context.restore();
+  }
+
+  /** @param {number} px */
+  drawWorld(px) {
+    const context = this.context;
+    context.strokeStyle = colours.wall;
+    context.fillStyle = colours.wall;
+    context.lineWidth = 2.5 * px;
+    context.lineJoin = 'round';
+    for (const { corners_m, closed } of this.scene?.obstacles ?? []) {
+      tracePath(context, corners_m, closed);
+      if (closed) {
+        context.globalAlpha = 0.25;
+        context.fill();
+        context.globalAlpha = 1;
+      }
+      context.stroke();
+    }
+  }
+
+  /**
+   * @param {[number, number][]} trail In the world.
+   * @param {string} colour
+   * @param {number} width_m
+   */
+  drawTrail(trail, colour, width_m) {
+    if (trail.length < 2) return;
+    const context = this.context;
+    tracePath(context, trail, false);
+    context.strokeStyle = colour;
+    context.lineWidth = width_m;
+    context.globalAlpha = 0.7;
+    context.stroke();
+    context.globalAlpha = 1;
+  }
+
+  /**
+   * @param {Pose} at
+   * @param {number} px
+   * @param {boolean} real
+   * @param {boolean} contact
+   */
+  drawRobot(at, px, real, contact) {
+    const context = this.context;
+    const scene = this.scene;
+    context.save();
+    context.translate(at.x_m, at.y_m);
+    context.rotate(at.heading_rad);
+    tracePath(context, scene?.footprint_m.length ? scene.footprint_m : DEFAULT_FOOTPRINT, true);
+    context.lineWidth = 1.5 * px;
+    context.strokeStyle = contact ? colours.bad : real ? colours.robot : colours.text;
+    if (real) {
+      context.globalAlpha = 0.35;
+      context.fillStyle = contact ? colours.bad : colours.robot;
+      context.fill();
+      context.globalAlpha = 1;
+    } else {
+      context.setLineDash([4 * px, 3 * px]);
+    }
+    context.stroke();
+    context.setLineDash([]);
+    if (real && scene) {
+      // Wheels, and an arrow for the heading.
+      context.lineWidth = 0.026;
+      context.beginPath();
+      for (const y of [scene.base_m / 2, -scene.base_m / 2]) {
+        context.moveTo(-scene.wheel_radius_m, y);
+        context.lineTo(scene.wheel_radius_m, y);
+      }
+      context.stroke();
+    }
+    context.lineWidth = 2 * px;
+    context.beginPath();
+    context.moveTo(0, 0);
+    context.lineTo(0.07, 0);
+    context.moveTo(0.045, 0.018);
+    context.lineTo(0.07, 0);
+    context.lineTo(0.045, -0.018);
+    context.stroke();
+    context.restore();
+  }
+
+  /**
+   * @param {Pose} robot
+   * @param {[Cell, Cell, Cell]} ranges_m
+   * @param {number} servo_rad
+   * @param {number} px
+   */
+  drawSonars(robot, ranges_m, servo_rad, px) {
+    const context = this.context;
+    for (const sonar of this.scene?.sonars ?? []) {
+      const reading = ranges_m[sonar.id];
+      const mount = compose(robot, sonar.at);
+      const heading = mount.heading_rad + (sonar.on_servo ? servo_rad : 0);
+      const half = sonar.half_angle_rad;
+      const colour = colours[SONAR_COLOURS[sonar.id] ?? 'front'];
+      const reach_m = typeof reading === 'number' ? reading : reading === 'clear' ? sonar.reach_m : 0.15;
+      context.beginPath();
+      context.moveTo(mount.x_m, mount.y_m);
+      context.arc(mount.x_m, mount.y_m, reach_m, heading - half, heading + half);
+      context.closePath();
+      if (typeof reading === 'number' || reading === 'clear') {
+        context.globalAlpha = typeof reading === 'number' ? 0.18 : 0.07;
+        context.fillStyle = colour;
+        context.fill();
+        context.globalAlpha = 1;
+      } else {
+        // No reading: a short cone in the colour of faults.
+        context.strokeStyle = colours.bad;
+        context.setLineDash([3 * px, 3 * px]);
+        context.lineWidth = px;
+        context.stroke();
+        context.setLineDash([]);
+      }
+      if (typeof reading === 'number') {
+        context.beginPath();
+        context.arc(mount.x_m, mount.y_m, reach_m, heading - half, heading + half);
+        context.strokeStyle = colour;
+        context.lineWidth = 2.5 * px;
+        context.stroke();
+      }
+    }
+  }
+
+  /**
+   * Where the robot is to go.
+   * @param {Point} at
+   * @param {Point | null} from
+   * @param {number} px
+   */
+  drawGoal(at, from, px) {
+    const context = this.context;
+    context.strokeStyle = context.fillStyle = colours.goal;
+    if (from) {
+      context.lineWidth = px;
+      context.setLineDash([2 * px, 5 * px]);
+      tracePath(context, [from, at], false);
+      context.stroke();
+      context.setLineDash([]);
+    }
+    context.lineWidth = 2 * px;
+    context.beginPath();
+    context.arc(at[0], at[1], GOAL_PX * px, 0, 2 * Math.PI);
+    for (const [x, y] of [[1, 0], [0, 1]]) {
+      const reach = 1.6 * GOAL_PX * px;
+      context.moveTo(at[0] - /** @type {number} */ (x) * reach, at[1] - /** @type {number} */ (y) * reach);
+      context.lineTo(at[0] + /** @type {number} */ (x) * reach, at[1] + /** @type {number} */ (y) * reach);
+    }
+    context.stroke();
+  }
+
+  /**
+   * Where the robot takes the goal to be.
+   * @param {Point} at
+   * @param {number} px
+   */
+  drawBelievedGoal(at, px) {
+    const context = this.context;
+    context.strokeStyle = colours.text;
+    context.lineWidth = px;
+    context.setLineDash([3 * px, 3 * px]);
+    context.beginPath();
+    context.arc(at[0], at[1], GOAL_PX * px, 0, 2 * Math.PI);
+    context.stroke();
+    context.setLineDash([]);
+  }
+
+  /**
+   * A route with its numbered places; a draft is dashed.
+   * @param {Point[]} points
+   * @param {{from: Point | null, repeat: boolean, draft: boolean}} how `from`: where it begins.
+   * @param {number} px
+   */
+  drawRoute(points, { from, repeat, draft }, px) {
+    if (points.length === 0) return;
+    const context = this.context;
+    context.strokeStyle = context.fillStyle = draft ? colours.text : colours.goal;
+    context.globalAlpha = draft ? 0.6 : 0.9;
+    context.lineWidth = 1.5 * px;
+    context.setLineDash(draft ? [6 * px, 4 * px] : []);
+    tracePath(context, from ? [from, ...points] : points, false);
+    context.stroke();
+    const [first, last] = [points[0], points.at(-1)];
+    if (repeat && first && last) {
+      context.setLineDash([2 * px, 4 * px]);
+      tracePath(context, [last, first], false);
+      context.stroke();
+    }
+    context.setLineDash([]);
+    /** Places that are visited twice get both numbers. @type {Map<string, {at: Point, label: string}>} */
+    const labels = new Map();
+    points.forEach((at, index) => {
+      const key = at.map((each) => each.toFixed(2)).join();
+      const known = labels.get(key);
+      labels.set(key, { at, label: known ? `${known.label}, ${index + 1}` : String(index + 1) });
+    });
+    for (const { at, label } of labels.values()) {
+      context.beginPath();
+      context.arc(at[0], at[1], 3.5 * px, 0, 2 * Math.PI);
+      context.fill();
+      this.#write(label, at, px);
+    }
+    context.globalAlpha = 1;
+  }
+
+  /**
+   * @param {string} text
+   * @param {Point} at
+   * @param {number} px
+   */
+  #write(text, [x, y], px) {
+    const context = this.context;
+    context.save();
+    context.translate(x, y);
+    // Text is upright where y is down.
+    context.scale(px, -px);
+    context.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
+    context.textAlign = 'left';
+    context.textBaseline = 'bottom';
+    context.fillText(text, 7, -4);
+    context.restore();
+  }
+}
+
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {[number, number][]} points
+ * @param {boolean} closed
+ */
+function tracePath(context, points, closed) {
+  context.beginPath();
+  for (const [x, y] of points) context.lineTo(x, y);
+  if (closed) context.closePath();
+}

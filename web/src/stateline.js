@@ -1,0 +1,139 @@
+// @ts-check
+/** The line that says what the robot is doing: state, heading, goal and how far, reached or not; or the fault, and the rig if it is a wrong one. */
+import { element, setText } from './dom.js';
+import { near, wrapped } from './geometry.js';
+import { inWords } from './places.js';
+import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S, format } from './units.js';
+
+/** @typedef {import('./types.js').ModeEntry} ModeEntry */
+/** @typedef {import('./types.js').State} State */
+/** @typedef {import('./types.js').Cell} Cell */
+/** @typedef {import('./store.js').Store} Store */
+/** @typedef {import('./panel.js').Send} Send */
+
+const SONARS = /** @type {const} */ (['left', 'right', 'front']);
+
+export class StateLine {
+  #state = element('state', HTMLOutputElement);
+  #aim = element('aim', HTMLOutputElement);
+  #end = element('end', HTMLOutputElement);
+  #fault = element('fault', HTMLDivElement);
+  #faultText = element('fault-text', HTMLSpanElement);
+  #pose = element('pose', HTMLOutputElement);
+  #rig = element('rig-warning', HTMLDivElement);
+  #rigText = element('rig-text', HTMLSpanElement);
+  #tell = element('rig-tell', HTMLButtonElement);
+  #store;
+  /** @type {ModeEntry[]} */
+  modes = [];
+  /** Name of the simulated rig; null with a real robot. @type {string | null} */
+  #carried = null;
+  /** @type {State | null} */
+  #slow = null;
+
+  /** @param {Store} store @param {Send} send */
+  constructor(store, send) {
+    this.#store = store;
+    element('clear-fault', HTMLButtonElement).addEventListener('click', () => send({ type: 'clear_fault' }));
+    this.#tell.addEventListener('click', () => {
+      if (this.#carried) send({ type: 'rig', rig: this.#carried });
+    });
+  }
+
+  /** @param {string | null} rig */
+  setRig(rig) {
+    this.#carried = rig;
+    this.#showRig();
+  }
+
+  /** @param {State} state */
+  show(state) {
+    this.#slow = state;
+    this.#showRig();
+    this.draw();
+  }
+
+  #showRig() {
+    const believed = this.#slow?.robot.rig ?? null;
+    const wrong = this.#carried !== null && believed !== null && believed !== this.#carried;
+    this.#rig.hidden = !wrong;
+    if (wrong) setText(this.#rigText, `The robot believes to carry the rig ${believed}, and carries ${this.#carried}: it misreads its sonars.`);
+  }
+
+  draw() {
+    const slow = this.#slow;
+    if (!slow) return;
+    const { fault, errand } = slow.robot;
+    this.#fault.hidden = fault === null;
+    setText(this.#faultText, fault ?? '');
+    setText(this.#state, this.#stateWords(slow));
+    setText(this.#aim, this.#aimWords(slow));
+    const end = errand.end;
+    setText(this.#end, end ?? '');
+    this.#end.className = end === null ? '' : `chip ${end === 'reached' ? 'good' : 'warning'}`;
+    this.#showPose(slow);
+  }
+
+  /** @param {State} slow */
+  #stateWords({ robot }) {
+    const latest = this.#store.latest;
+    const mode = this.modes.find((each) => each.id === robot.mode);
+    if (robot.fault !== null) return 'fault';
+    if (!robot.armed) return 'off';
+    const current = latest?.mode === robot.mode ? latest.state : 0;
+    return mode?.states[current] ?? `state ${current}`;
+  }
+
+  /** @param {State} slow */
+  #aimWords({ robot }) {
+    const latest = this.#store.latest;
+    const mode = this.modes.find((each) => each.id === robot.mode);
+    const [left, right] = robot.reference;
+    const words = [];
+    const at = latest?.estimated;
+    const to = latest?.heading_ref_rad ?? null;
+    if (at && to !== null) words.push(`heading ${degrees(at.heading_rad)} → ${format(near(to * DEG_PER_RAD, at.heading_rad * DEG_PER_RAD), 0)}°`);
+    const kind = mode?.reference?.kind;
+    if (kind === 'distance' || (mode && !kind && left !== 0)) words.push(`reference ${format(left * CM_PER_M)} cm`);
+    if (kind === 'speed') words.push(`reference ${format(left * RPM_PER_RAD_S, 0)} rpm`);
+    if (kind === 'wheel_speed') words.push(`references ${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)} rpm`);
+    const { goal, lane, route } = robot.errand;
+    if (lane) words.push('follows the lane');
+    if (route) words.push(`route of ${route.waypoints.length}${route.repeat ? ', again and again' : ''}`);
+    /** @type {[number, number] | null} */
+    const target = goal ?? (route && robot.armed && robot.errand.end === null ? [left, right] : null);
+    if (target) {
+      const away_m = at ? Math.hypot(target[0] - at.x_m, target[1] - at.y_m) : null;
+      words.push(`${goal ? 'goal' : 'to'} ${inWords(target)} m${away_m === null ? '' : `, ${format(away_m, 2)} m away`}`);
+    }
+    return words.join(' · ');
+  }
+
+  /** @param {State} slow */
+  #showPose({ robot }) {
+    const latest = this.#store.latest;
+    const at = latest?.estimated;
+    if (!latest || !at) return setText(this.#pose, '');
+    const lines = [`x ${format(at.x_m * CM_PER_M)} cm   y ${format(at.y_m * CM_PER_M)} cm   heading ${degrees(at.heading_rad)}`];
+    const ranges = SONARS.map((name, id) => `${name} ${inReach(latest.ranges_m[id] ?? null)}`);
+    lines.push(`${robot.rig === null ? '' : `${robot.rig.replaceAll('_', ' ')}:  `}${ranges.join('   ')}`);
+    if (latest.contact) lines.push('contact!');
+    return setText(this.#pose, lines.join('\n'));
+  }
+}
+
+/** @param {number} angle_rad */
+function degrees(angle_rad) {
+  return `${format(wrapped(angle_rad) * DEG_PER_RAD, 0)}°`;
+}
+
+/** @param {Cell} range_m */
+function inReach(range_m) {
+  return range_m === null ? 'no reading' : range_m === 'clear' ? 'clear' : `${format(range_m * CM_PER_M)} cm`;
+}
+
+/** For the map's corner: a place. @param {[number, number] | null} at */
+export function pointerWords(at) {
+  return at ? `x ${format(at[0], 2)}  y ${format(at[1], 2)} m` : '';
+}
+
