@@ -23,6 +23,7 @@ pub mod rig;
 pub mod speed;
 pub mod sweep;
 pub mod types;
+pub mod unrest;
 pub mod wall;
 
 pub use types::*;

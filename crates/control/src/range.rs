@@ -25,6 +25,8 @@ const CLEAR_AFTER: u8 = 3;
 const STUCK_AFTER: u8 = 8;
 /// Way in which they must have come [m].
 const STUCK_WAY_M: f32 = 0.03;
+/// The same answer so often is enough when the robot has come this much nearer meanwhile by its encoders [m].
+const STUCK_SOON: (u8, f32) = (3, 0.04);
 /// Gain on the distance at close range, where readings err by a millimetre.
 const GAIN_NEAR: f32 = 0.45;
 /// Gain on the distance at 1 m and beyond, where they err by centimetres.
@@ -63,10 +65,12 @@ pub struct RangeFilter {
     refused: u8,
     clear: u8,
     faulty: u8,
-    /// The last distance answered, as it was, how often it came again, and the way of the sonar since it first came.
+    /// The last distance answered, as it was, how often it came again, and the way of the sonar since it first came: on the floor, and
+    /// towards what it sees.
     last_m: f32,
     repeated: u8,
     way_m: f32,
+    closer_m: f32,
     range: Range,
     updated: Micros,
     ever: bool,
@@ -78,6 +82,7 @@ impl RangeFilter {
         for recent in &mut self.recent_m {
             *recent -= closer_m;
         }
+        self.closer_m = clamp(self.closer_m + closer_m, -1.0, 1.0);
         if let Range::Valid(_) = self.range {
             self.distance_m = max(self.distance_m - closer_m + self.rate_m_s * TICK_S, 0.0);
             self.range = Range::Valid(self.distance_m);
@@ -94,9 +99,11 @@ impl RangeFilter {
         if range_m == self.last_m {
             self.repeated = self.repeated.saturating_add(1);
         } else {
-            (self.last_m, self.repeated, self.way_m) = (range_m, 0, 0.0);
+            (self.last_m, self.repeated, self.way_m, self.closer_m) = (range_m, 0, 0.0, 0.0);
         }
-        self.repeated >= STUCK_AFTER && self.way_m >= STUCK_WAY_M
+        let (soon, closer_m) = STUCK_SOON;
+        (self.repeated >= STUCK_AFTER && self.way_m >= STUCK_WAY_M)
+            || (self.repeated >= soon && abs(self.closer_m) >= closer_m)
     }
 
     /// Takes an answer of the sonar.
@@ -283,6 +290,17 @@ mod tests {
             filter.take(Range::Valid(0.5 + 2e-4 * f32::from(step)), now);
         }
         assert!((distance(&filter, now) - 0.5).abs() < 0.01);
+    }
+
+    #[test]
+    fn the_same_answer_while_the_wall_comes_nearer_is_a_stuck_sonar_at_once() {
+        let (mut filter, mut now) = fed(&[Range::Valid(1.5), Range::Valid(1.5), Range::Valid(1.0)]);
+        for _ in 0..3 {
+            filter.predict(0.02);
+            now = now.after(60_000);
+            filter.take(Range::Valid(1.0), now);
+        }
+        assert_eq!(filter.range(now).range, Range::Faulty);
     }
 
     #[test]

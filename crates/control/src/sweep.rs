@@ -95,3 +95,86 @@ impl Sweep {
         };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::estimate::Estimator;
+    use crate::params::Params;
+    use crate::types::{Echo, Inputs, Micros, Wheels};
+    use std::vec::Vec;
+
+    /// Where the servo pointed at each ping, and the number of its tick, over some ticks with a sonar that answers 20 ms later.
+    fn pings(sweep: &Sweep, bearing_rad: f32, ticks: u32) -> Vec<(u32, f32)> {
+        let (mut estimator, mut state) = (Estimator::default(), SweepState::default());
+        let (mut pings, mut last): (Vec<(u32, f32)>, _) = (Vec::new(), None);
+        for tick in 0..ticks {
+            let answered = last == Some(tick.wrapping_sub(2));
+            let inputs = Inputs {
+                now: Micros(tick * 10_000),
+                echo: answered.then_some((SonarId::Front, Echo::Pulse(3_000))),
+                ..Inputs::default()
+            };
+            let estimate = estimator.step(&Params::default(), &inputs, Wheels::default());
+            let look = sweep.step(&mut state, &estimate, bearing_rad);
+            let [_, _, front] = look.sonars;
+            let ping = front && last.is_none_or(|last| tick >= last + 6);
+            if ping {
+                last = Some(tick);
+                pings.push((tick, estimate.servo_rad));
+            }
+            estimator.commanded(look.servo, ping.then_some(SonarId::Front));
+        }
+        pings
+    }
+
+    #[test]
+    fn it_looks_ahead_and_to_both_sides_of_the_normal_in_turn_and_pings_only_at_rest() {
+        let sweep = Sweep {
+            aside_rad: 0.65,
+            pings_ahead: 2,
+        };
+        let seen: Vec<f32> = pings(&sweep, 0.1, 200)
+            .into_iter()
+            .map(|(_, servo_rad)| servo_rad)
+            .collect();
+        for (seen, expected) in seen
+            .iter()
+            .zip([0.0, 0.0, 0.75, 0.0, 0.0, -0.55, 0.0, 0.0, 0.75])
+        {
+            assert!((seen - expected).abs() < 1e-6, "{seen} for {expected}");
+        }
+        assert!(seen.len() >= 9);
+    }
+
+    #[test]
+    fn a_look_aside_and_back_takes_less_than_a_third_of_a_second() {
+        let sweep = Sweep {
+            aside_rad: 0.65,
+            pings_ahead: 2,
+        };
+        let ahead: Vec<u32> = pings(&sweep, 0.0, 300)
+            .into_iter()
+            .filter(|(_, servo_rad)| *servo_rad == 0.0)
+            .map(|(tick, _)| tick)
+            .collect();
+        assert!(
+            ahead.windows(2).all(|two| two[1] - two[0] <= 32),
+            "{ahead:?}"
+        );
+    }
+
+    #[test]
+    fn without_pings_ahead_it_goes_straight_from_side_to_side() {
+        let sweep = Sweep {
+            aside_rad: 0.65,
+            pings_ahead: 0,
+        };
+        let seen = pings(&sweep, 0.0, 200);
+        assert!(
+            seen.len() >= 5 && seen.iter().all(|(_, servo_rad)| servo_rad.abs() > 0.6),
+            "{seen:?}"
+        );
+    }
+}

@@ -268,6 +268,32 @@ mod tests {
     }
 
     #[test]
+    fn a_pair_in_front_starts_it_exactly_also_with_equal_readings_and_beyond_the_beam() {
+        let [left, right] = [0.06, -0.06].map(|y_m| View {
+            x_m: 0.13,
+            y_m,
+            axis_rad: 0.0,
+        });
+        for bearing_rad in [0.0, 0.1, -0.3, 0.45, -0.52] {
+            for distance_m in [0.3, 1.3] {
+                let ranges_m = [&left, &right].map(|view| range(view, distance_m, bearing_rad));
+                let mut filter = WallFilter::default();
+                filter.start_pair(0.13, 0.12, BEAM, ranges_m);
+                let wall = filter.wall().unwrap();
+                assert!(
+                    (wall.bearing_rad - bearing_rad).abs() < 5e-3,
+                    "{bearing_rad}: {wall:?}"
+                );
+                assert!(
+                    (wall.distance_m - distance_m).abs() < 2e-3,
+                    "{distance_m}: {wall:?}"
+                );
+            }
+        }
+        assert_eq!(wall_of_pair(0.3, 0.3, 0.12, BEAM), (0.3, 0.0));
+    }
+
+    #[test]
     fn one_sonar_and_the_encoders_tell_them_over_some_way() {
         let (mut distance_m, bearing_rad) = (0.5, FRAC_PI_2 + 0.1);
         let (mut filter, view) = (WallFilter::default(), side(0.03));

@@ -187,7 +187,9 @@ impl Pilot {
 
     /// Whether the mode's sensors are good enough to arm.
     pub(crate) fn ready(&self) -> Result<(), Refusal> {
-        if self.mode.is_ready(&self.params, &self.estimate) {
+        if !self.mode.fits(self.params.rig()) {
+            Err(Refusal::WrongRig)
+        } else if self.mode.is_ready(&self.params, &self.estimate) {
             Ok(())
         } else {
             Err(Refusal::SonarNotReady)

@@ -257,11 +257,13 @@ pub enum Refusal {
     NoLink = 8,
     /// The command could not be understood.
     Malformed = 9,
+    /// The rig lacks the sonars that the mode needs.
+    WrongRig = 10,
 }
 
 impl Refusal {
     /// All refusals, by number.
-    pub const ALL: [Refusal; 9] = [
+    pub const ALL: [Refusal; 10] = [
         Refusal::NotFinite,
         Refusal::OutOfRange,
         Refusal::UnknownParam,
@@ -271,6 +273,7 @@ impl Refusal {
         Refusal::SonarNotReady,
         Refusal::NoLink,
         Refusal::Malformed,
+        Refusal::WrongRig,
     ];
 
     /// The refusal with this number.

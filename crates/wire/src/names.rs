@@ -25,6 +25,9 @@ impl Refusal {
             Refusal::Malformed => {
                 "the robot did not understand the command; use the same version at both ends"
             }
+            Refusal::WrongRig => {
+                "the robot's sonars do not sit where this mode needs them; mount them so and set the parameter `rig`"
+            }
         }
     }
 }

@@ -37,6 +37,7 @@ use crate::params::{ParamId, Params};
 use crate::rig::{Rig, View};
 use crate::sweep::{Sweep, SweepState};
 use crate::types::{Drive, Fault, Range, Reading, SonarId, TICK_S};
+use crate::unrest::Unrest;
 use crate::wall::{Wall, WallFilter};
 
 /// Names of the states.
@@ -110,6 +111,7 @@ pub struct State {
     askew_s: f32,
     /// Time since a reading was last believed [s].
     deaf_s: f32,
+    unrest: Unrest,
 }
 
 impl FrontAlign {
@@ -139,16 +141,16 @@ impl FrontAlign {
 
     /// Whether all sonars that look ahead see something.
     pub fn is_ready(&self, estimate: &Estimate) -> bool {
-        self.nearest_m(estimate).is_ok()
+        self.nearest_m(estimate, true).is_ok()
     }
 
-    /// The nearest thing ahead [m].
-    fn nearest_m(&self, estimate: &Estimate) -> Result<f32, Fault> {
+    /// The nearest thing ahead [m]. Unless `fresh`, it may be old where one sonar looks ahead now and then only: readings aside are heard
+    /// too, see `deaf_s`.
+    fn nearest_m(&self, estimate: &Estimate, fresh: bool) -> Result<f32, Fault> {
         let mut nearest_m = f32::MAX;
         for sonar in self.sonars() {
             let mut range = estimate.range(*sonar);
-            if !self.paired {
-                // It looks ahead now and then only; readings aside are heard too, see `deaf_s`.
+            if !self.paired && !fresh {
                 range.age_s = 0.0;
             }
             nearest_m = min(nearest_m, self.approach.range_m(range)?);
@@ -267,12 +269,12 @@ impl FrontAlign {
     }
 
     /// Towards the reference, turning to the wall's normal on the way; `free_m` is how far nothing stands ahead.
-    fn drive(&self, error_m: f32, bearing_rad: f32, free_m: f32) -> Drive {
+    fn drive(&self, error_m: f32, bearing_rad: f32, free_m: f32, uneasy: bool) -> Drive {
         let error_m = min(error_m, max(free_m, 0.0));
         if error_m == 0.0 {
             return Drive::Release;
         }
-        let forward_m_s = self.approach.speed_m_s(error_m);
+        let forward_m_s = self.approach.speed_m_s(error_m, uneasy);
         let most = min(
             STEERING_SHARE * abs(forward_m_s) / self.turn.half_base_m,
             YAW_RAD_S,
@@ -308,10 +310,15 @@ impl Mode for FrontAlign {
 
     fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
         let estimate = at.estimate;
-        let nearest_m = self.nearest_m(estimate)?;
+        let aside = estimate.reading.is_some_and(|heard| heard.servo_rad != 0.0);
+        let matters = |sonar| self.sonars().contains(&sonar) && !(aside && !self.paired);
+        state.unrest.take(estimate, matters)?;
+        let nearest_m = self
+            .nearest_m(estimate, false)
+            .map_err(|fault| state.unrest.cause(fault))?;
         let wall = self.wall(state, estimate).ok_or(Fault::WallLost)?;
         if state.deaf_s > 2.0 * self.approach.stale_s {
-            return Err(Fault::SonarStale);
+            return Err(state.unrest.cause(Fault::SonarStale));
         }
         let error_m = wall.distance_m - self.ahead_m - self.approach.distance_m;
         let free_m = nearest_m - self.approach.distance_m + NEARER_M;
@@ -332,7 +339,10 @@ impl Mode for FrontAlign {
         }
         let drive = match phase {
             Phase::Look | Phase::Hold => Drive::Release,
-            Phase::Approach | Phase::Settle => self.drive(error_m, wall.bearing_rad, free_m),
+            Phase::Approach | Phase::Settle => {
+                let uneasy = state.unrest.is_uneasy();
+                self.drive(error_m, wall.bearing_rad, free_m, uneasy)
+            }
             Phase::Turn => turn.map_or(Drive::Release, |turn| turn.drive),
         };
         Ok(Action {
@@ -343,5 +353,134 @@ impl Mode for FrontAlign {
             reached: phase == Phase::Hold,
             ..Action::default()
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::types::AgedRange;
+
+    fn mode(rig: Rig) -> FrontAlign {
+        let mut params = Params::default();
+        params.set(ParamId::Rig, f32::from(rig as u8)).unwrap();
+        FrontAlign::new(&params, 0.3)
+    }
+
+    /// What the sonars left, right and front say; 0 is nothing in sight.
+    fn seeing(ranges_m: [f32; 3]) -> Estimate {
+        let mut estimate = Estimate::default();
+        for (slot, range_m) in estimate.ranges.iter_mut().zip(ranges_m) {
+            let range = if range_m > 0.0 {
+                Range::Valid(range_m)
+            } else {
+                Range::Clear
+            };
+            *slot = AgedRange { range, age_s: 0.0 };
+        }
+        estimate
+    }
+
+    /// A tick of the pair.
+    fn step(state: &mut State, left_m: f32, right_m: f32) -> Result<Action, Fault> {
+        let estimate = &seeing([left_m, right_m, 0.0]);
+        mode(Rig::FrontPair).step(state, &Situation { estimate })
+    }
+
+    fn twist(action: &Action) -> (f32, f32) {
+        match action.drive {
+            Drive::Twist {
+                forward_m_s,
+                yaw_rad_s,
+            } => (forward_m_s, yaw_rad_s),
+            _ => (0.0, 0.0),
+        }
+    }
+
+    #[test]
+    fn too_far_drives_forward_too_near_backward_and_both_turn_to_the_walls_normal() {
+        for (middle_m, sign) in [(1.0, 1.0), (0.2, -1.0)] {
+            let left_nearer =
+                step(&mut State::default(), middle_m - 0.01, middle_m + 0.01).unwrap();
+            let (forward_m_s, yaw_rad_s) = twist(&left_nearer);
+            assert!(
+                sign * forward_m_s > 0.1 && yaw_rad_s > 0.1,
+                "{left_nearer:?}"
+            );
+            let square = step(&mut State::default(), middle_m, middle_m).unwrap();
+            assert_eq!(twist(&square).1, 0.0);
+        }
+    }
+
+    #[test]
+    fn at_the_distance_it_turns_on_the_spot_and_once_square_it_holds() {
+        let mut state = State::default();
+        step(&mut state, 0.31, 0.33).unwrap();
+        step(&mut state, 0.31, 0.33).unwrap();
+        let mut state = State {
+            wall: WallFilter::default(),
+            ..state
+        };
+        // 0.3 m from the axis plus the sonars' place, askew by 0.1 rad.
+        let askew = (0.43 - 0.13 * 0.995, 0.06 * 0.1);
+        let turning = step(&mut state, askew.0 - askew.1, askew.0 + askew.1).unwrap();
+        assert_eq!(turning.state, Phase::Turn as u8);
+        let turning = step(&mut state, askew.0 - askew.1, askew.0 + askew.1).unwrap();
+        let (forward_m_s, yaw_rad_s) = twist(&turning);
+        assert!(forward_m_s == 0.0 && yaw_rad_s > 0.3, "{turning:?}");
+        let mut square = State {
+            phase: Phase::Settle,
+            ..State::default()
+        };
+        let held = step(&mut square, 0.3, 0.3).unwrap();
+        assert_eq!((held.drive, held.reached), (Drive::Release, true));
+    }
+
+    #[test]
+    fn what_stands_nearer_than_the_wall_is_not_driven_at() {
+        let mut state = State::default();
+        assert!(twist(&step(&mut state, 1.0, 1.0).unwrap()).0 > 0.3);
+        for left_m in [0.28, 0.2, 0.05] {
+            let (forward_m_s, _) = twist(&step(&mut state, left_m, 1.0).unwrap());
+            assert!(forward_m_s <= 0.1, "{forward_m_s} at {left_m}");
+        }
+        assert_eq!(step(&mut state, 0.2, 1.0).unwrap().drive, Drive::Release);
+    }
+
+    #[test]
+    fn it_is_ready_only_when_every_sonar_it_needs_sees_the_wall() {
+        let ready = |rig, ranges_m| mode(rig).is_ready(&seeing(ranges_m));
+        assert!(ready(Rig::FrontPair, [1.0, 1.0, 0.0]));
+        assert!(!ready(Rig::FrontPair, [1.0, 0.0, 1.0]));
+        assert!(ready(Rig::Final, [0.0, 0.0, 1.0]));
+        assert!(!ready(Rig::Final, [1.0, 1.0, 0.0]));
+    }
+
+    #[test]
+    fn it_never_drives_on_a_stale_lost_or_silent_sonar() {
+        let mut old = seeing([1.0, 1.0, 0.0]);
+        old.ranges[1].age_s = 0.6;
+        let mut silent = seeing([1.0, 1.0, 0.0]);
+        silent.ranges[0].range = Range::Faulty;
+        for (estimate, fault) in [
+            (old, Fault::SonarStale),
+            (seeing([1.0, 0.0, 0.0]), Fault::WallLost),
+            (silent, Fault::SonarFaulty),
+        ] {
+            let at = Situation {
+                estimate: &estimate,
+            };
+            let stopped = mode(Rig::FrontPair).step(&mut State::default(), &at);
+            assert_eq!(stopped, Err(fault));
+        }
+    }
+
+    #[test]
+    fn with_one_sonar_on_the_servo_it_first_stands_and_looks_aside() {
+        let (mut state, mode) = (State::default(), mode(Rig::Final));
+        let estimate = &seeing([0.0, 0.0, 1.0]);
+        let first = mode.step(&mut state, &Situation { estimate }).unwrap();
+        assert_eq!((first.drive, first.state), (Drive::Release, 0));
+        assert!(first.look.servo.0.abs() > 0.5, "{:?}", first.look);
     }
 }

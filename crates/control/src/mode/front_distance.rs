@@ -26,6 +26,7 @@ use super::{Action, Look, Mode, Situation};
 use crate::math::{abs, clamp, max, min, sqrt};
 use crate::params::{ParamId, Params};
 use crate::types::{AgedRange, Drive, Fault, Range, SonarId, TICK_S};
+use crate::unrest::Unrest;
 
 /// Names of the states.
 #[cfg(feature = "names")]
@@ -41,6 +42,8 @@ pub(super) const FAR_M: f32 = 0.06;
 const CREEP_M_S: f32 = 0.03;
 /// How long an error must last to start the robot again [s].
 pub(super) const RESTART_S: f32 = 0.15;
+/// Share of the cruise speed with a sonar whose readings are wild ([`crate::unrest`]).
+const UNEASY_SHARE: f32 = 0.3;
 /// Most of the wheels' speed that straightening may take.
 const STEERING_SHARE: f32 = 0.3;
 
@@ -82,6 +85,7 @@ pub struct State {
     heading_rad: Option<f32>,
     /// How long the error has been too large to hold [s].
     off_s: f32,
+    unrest: Unrest,
 }
 
 impl FrontDistance {
@@ -125,11 +129,13 @@ impl FrontDistance {
         }
     }
 
-    /// The speed at a distance error.
-    pub(super) fn speed_m_s(&self, error_m: f32) -> f32 {
+    /// The speed at a distance error, slow where the sonars are `uneasy`.
+    pub(super) fn speed_m_s(&self, error_m: f32, uneasy: bool) -> f32 {
         let off = abs(error_m);
         let braking = sqrt(2.0 * self.brake_m_s2 * off);
-        let speed = max(min(min(self.cruise_m_s, braking), self.kp * off), CREEP_M_S);
+        let share = if uneasy { UNEASY_SHARE } else { 1.0 };
+        let cruise = share * self.cruise_m_s;
+        let speed = max(min(min(cruise, braking), self.kp * off), CREEP_M_S);
         if error_m < 0.0 { -speed } else { speed }
     }
 }
@@ -138,7 +144,12 @@ impl Mode for FrontDistance {
     type State = State;
 
     fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
-        let error_m = self.range_m(at.estimate.range(SonarId::Front))? - self.distance_m;
+        let front = |sonar| sonar == SonarId::Front;
+        state.unrest.take(at.estimate, front)?;
+        let range_m = self
+            .range_m(at.estimate.range(SonarId::Front))
+            .map_err(|fault| state.unrest.cause(fault))?;
+        let error_m = range_m - self.distance_m;
         state.phase = self.next_phase(state, error_m);
 
         let heading_rad = at.estimate.pose.heading_rad;
@@ -146,7 +157,7 @@ impl Mode for FrontDistance {
         let drive = match state.phase {
             Phase::Hold => Drive::Release,
             Phase::Approach | Phase::Settle => {
-                let forward_m_s = self.speed_m_s(error_m);
+                let forward_m_s = self.speed_m_s(error_m, state.unrest.is_uneasy());
                 let most = STEERING_SHARE * abs(forward_m_s) / (0.5 * self.base_m);
                 let error_rad = crate::math::wrap_angle(start_rad - heading_rad);
                 Drive::Twist {

@@ -17,7 +17,8 @@ use crate::beside::Beside;
 use crate::estimate::Estimate;
 use crate::params::{ParamId, Params};
 use crate::range::{MIN_RANGE_M, REACH_M};
-use crate::types::{Drive, Fault, Range, ServoAngle, SonarId, Wheels};
+use crate::rig::Rig;
+use crate::types::{Drive, Fault, ServoAngle, SonarId, Wheels};
 use front_align::FrontAlign;
 use front_distance::FrontDistance;
 use manual::Manual;
@@ -349,6 +350,22 @@ impl ActiveMode {
         }
     }
 
+    /// Whether the mode can do its work with the sonars of this rig.
+    pub fn fits(&self, rig: Rig) -> bool {
+        match self {
+            Self::FrontDistance(..) => matches!(rig, Rig::FrontSingle | Rig::Final),
+            Self::FrontAlign(..) => matches!(rig, Rig::FrontPair | Rig::Final),
+            Self::WallHold(_) | Self::WallFollow(..) => {
+                rig.paired_side().is_some() || rig == Rig::Final
+            }
+            Self::Mission(..) => rig == Rig::Final,
+            Self::Manual(_)
+            | Self::WheelSpeed(_)
+            | Self::StraightLine(..)
+            | Self::Waypoints(..) => true,
+        }
+    }
+
     /// Whether the sensors it needs give good readings.
     pub fn is_ready(&self, params: &Params, estimate: &Estimate) -> bool {
         let stale_s = params.get(ParamId::StaleRange);
@@ -359,9 +376,9 @@ impl ActiveMode {
             Self::WallFollow(..) => {
                 Beside::new(params).is_ready(estimate, stale_s, (MIN_RANGE_M, REACH_M))
             }
-            Self::FrontDistance(..) => {
-                matches!(estimate.range(SonarId::Front).range, Range::Valid(_))
-            }
+            Self::FrontDistance(distance_m, _) => FrontDistance::new(params, *distance_m)
+                .range_m(estimate.range(SonarId::Front))
+                .is_ok(),
             Self::FrontAlign(distance_m, _) => {
                 FrontAlign::new(params, *distance_m).is_ready(estimate)
             }
@@ -550,6 +567,7 @@ fn within(value: f32, min: f32, max: f32) -> Result<f32, SetpointError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::types::Range;
 
     #[test]
     fn a_reference_out_of_range_is_refused_and_the_last_one_stays() {
@@ -589,9 +607,24 @@ mod tests {
         assert!(!mode.is_ready(&params, &estimate));
         estimate.ranges[SonarId::Front as usize].range = Range::Clear;
         assert!(!mode.is_ready(&params, &estimate));
-        estimate.ranges[SonarId::Front as usize].range = Range::Valid(0.8);
+        let front = &mut estimate.ranges[SonarId::Front as usize];
+        front.range = Range::Valid(0.8);
+        assert!(!mode.is_ready(&params, &estimate), "an old reading");
+        estimate.ranges[SonarId::Front as usize].age_s = 0.1;
         assert!(mode.is_ready(&params, &estimate));
         assert!(ActiveMode::new(ModeId::Manual).is_ready(&params, &Estimate::default()));
+    }
+
+    #[test]
+    fn a_mode_fits_the_rigs_that_carry_its_sonars() {
+        let fits = |id| Rig::ALL.map(|rig| ActiveMode::new(id).fits(rig));
+        assert_eq!(
+            fits(ModeId::FrontDistance),
+            [true, false, false, false, true]
+        );
+        assert_eq!(fits(ModeId::FrontAlign), [false, true, false, false, true]);
+        assert_eq!(fits(ModeId::WallFollow), [false, false, true, true, true]);
+        assert_eq!(fits(ModeId::Waypoints), [true; 5]);
     }
 
     #[test]

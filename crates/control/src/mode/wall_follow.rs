@@ -29,11 +29,12 @@
 //! (`rumbo run mode4 --runs 20`). Derivation and margins: docs/theory/wall_follow.md.
 
 use super::{Action, Mode, Situation};
-use crate::beside::{Beside, Unrest};
+use crate::beside::Beside;
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, sin_cos, sqrt, wrap_angle};
 use crate::params::{ParamId, Params};
 use crate::types::{Drive, Fault, Range, Side, SonarId, TICK_S};
+use crate::unrest::Unrest;
 use crate::wall::{Wall, WallFilter};
 use core::f32::consts::FRAC_PI_2;
 

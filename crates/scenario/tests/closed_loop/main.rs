@@ -3,6 +3,7 @@
 #![cfg(test)]
 
 mod along_a_wall;
+mod before_a_wall;
 mod drive;
 mod mode_6;
 mod mode_7;
