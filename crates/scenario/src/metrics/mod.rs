@@ -4,6 +4,7 @@
 //! scenario: `step1.settling_s`. Names end in their unit; docs/scenarios.md lists them all.
 
 mod align;
+mod curve;
 mod journey;
 mod path;
 mod route;
@@ -40,6 +41,7 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
         ModeId::Manual => {
             path::movement(setup, trace, &mut metrics);
             start::dead_zones(trace, &mut metrics);
+            curve::curve(setup, trace, &mut metrics);
         }
         ModeId::WallHold | ModeId::WallFollow => wall::following(setup, sim, trace, &mut metrics),
         ModeId::FrontAlign => align::aligning(setup, sim, trace, &mut metrics),
