@@ -1,9 +1,12 @@
 //! An ATmega2560, exact to the cycle. It knows the chip only: what is wired to its pins is its caller's business.
 //!
-//! image file -> [`image`] -> flash -> [`decode`] -> [`cpu`], which meets the peripherals through [`io::Io`].
+//! image file -> [`image`] -> flash -> [`decode`] -> [`cpu`], which meets the peripherals ([`devices`]) through
+//! [`io::Io`]. [`chip::Chip`] is all of it.
 
+pub mod chip;
 pub mod cpu;
 pub mod decode;
+pub mod devices;
 pub mod image;
 pub mod io;
 pub mod status;

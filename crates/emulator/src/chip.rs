@@ -1,0 +1,71 @@
+//! The chip: the CPU with its peripherals, and what a caller does with it.
+
+use crate::cpu::{Cpu, Stopped};
+use crate::devices::{Devices, Input, Output, Unmodelled};
+use crate::image::Image;
+
+/// An ATmega2560 with a program. A clone is a snapshot: it goes on exactly as the original.
+#[derive(Clone, Debug)]
+pub struct Chip {
+    cpu: Cpu,
+    devices: Devices,
+}
+
+impl Chip {
+    /// A chip after power-on.
+    pub fn new(image: &Image) -> Chip {
+        let mut cpu = Cpu::new(image.flash());
+        if let Some(end) = image.data_end() {
+            cpu.set_stack_floor(end);
+        }
+        Chip {
+            cpu,
+            devices: Devices::default(),
+        }
+    }
+
+    /// Runs until `cycle` cycles have passed since power-on, to the end of the instruction that passes it.
+    pub fn run_until(&mut self, cycle: u64) -> Stopped {
+        self.cpu.run(&mut self.devices, cycle)
+    }
+
+    /// Runs one instruction, also where a breakpoint stands.
+    pub fn step(&mut self) -> Stopped {
+        self.cpu.step(&mut self.devices)
+    }
+
+    /// Something from outside at a cycle; what lies in the past happens at once.
+    pub fn input(&mut self, cycle: u64, input: Input) {
+        self.devices.input(cycle, input);
+    }
+
+    /// What the chip did since the last call, in order.
+    pub fn take_outputs(&mut self) -> Vec<Output> {
+        self.devices.take_outputs()
+    }
+
+    /// The CPU.
+    pub fn cpu(&self) -> &Cpu {
+        &self.cpu
+    }
+
+    /// The CPU, to change registers and memory or to set breakpoints.
+    pub fn cpu_mut(&mut self) -> &mut Cpu {
+        &mut self.cpu
+    }
+
+    /// The peripherals, to look at pins.
+    pub fn devices(&self) -> &Devices {
+        &self.devices
+    }
+
+    /// The peripherals, to read and write their registers as a debugger does.
+    pub fn devices_mut(&mut self) -> &mut Devices {
+        &mut self.devices
+    }
+
+    /// Accesses to what is not modelled, each address once.
+    pub fn unmodelled(&self) -> &[Unmodelled] {
+        self.devices.unmodelled()
+    }
+}

@@ -1,0 +1,146 @@
+//! The data space as instructions see it: registers, the CPU's own I/O registers, peripherals, SRAM; and the stack.
+
+use super::{Cpu, FLASH_BYTES, SRAM_BYTES, SRAM_START};
+use crate::decode::FLASH_WORDS;
+use crate::io::{Access, Io};
+use crate::status::Status;
+use crate::verdict::Verdict;
+
+const RAMPZ: u16 = 0x5B;
+const EIND: u16 = 0x5C;
+const SPL: u16 = 0x5D;
+const SPH: u16 = 0x5E;
+const SREG: u16 = 0x5F;
+
+impl Cpu {
+    #[inline(always)]
+    pub(super) fn pair(&self, low: usize) -> u16 {
+        u16::from_le_bytes([self.registers[low & 31], self.registers[(low + 1) & 31]])
+    }
+
+    #[inline(always)]
+    pub(super) fn set_pair(&mut self, low: usize, value: u16) {
+        let [l, h] = value.to_le_bytes();
+        self.registers[low & 31] = l;
+        self.registers[(low + 1) & 31] = h;
+    }
+
+    #[inline(always)]
+    pub(super) fn load<I: Io>(&mut self, io: &mut I, address: u16, at: Access) -> u8 {
+        let index = usize::from(address.wrapping_sub(SRAM_START));
+        if index < SRAM_BYTES {
+            self.sram[index]
+        } else {
+            self.load_elsewhere(io, address, at)
+        }
+    }
+
+    #[inline(never)]
+    pub(super) fn load_elsewhere<I: Io>(&mut self, io: &mut I, address: u16, at: Access) -> u8 {
+        match address {
+            0..32 => self.registers[usize::from(address) & 31],
+            RAMPZ => self.rampz,
+            EIND => self.eind,
+            SPL => self.stack_pointer.to_le_bytes()[0],
+            SPH => self.stack_pointer.to_le_bytes()[1],
+            SREG => self.status.bits(),
+            _ => io.read(address, at),
+        }
+    }
+
+    /// Stores a byte; says whether the limit must be set anew.
+    #[inline(always)]
+    pub(super) fn store<I: Io>(&mut self, io: &mut I, address: u16, value: u8, at: Access) -> bool {
+        let index = usize::from(address.wrapping_sub(SRAM_START));
+        if index < SRAM_BYTES {
+            self.sram[index] = value;
+            false
+        } else {
+            self.store_elsewhere(io, address, value, at);
+            true
+        }
+    }
+
+    #[inline(never)]
+    pub(super) fn store_elsewhere<I: Io>(
+        &mut self,
+        io: &mut I,
+        address: u16,
+        value: u8,
+        at: Access,
+    ) {
+        let [low, high] = self.stack_pointer.to_le_bytes();
+        match address {
+            0..32 => self.registers[usize::from(address) & 31] = value,
+            RAMPZ => self.rampz = value & 3,
+            EIND => self.eind = value & 1,
+            SPL => self.stack_pointer = u16::from_le_bytes([value, high]),
+            SPH => self.stack_pointer = u16::from_le_bytes([low, value]),
+            SREG => {
+                let enabled_before = self.status.interrupts;
+                self.status = Status::from_bits(value);
+                self.shadow |= self.status.interrupts && !enabled_before;
+            }
+            _ => io.write(address, value, at),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn push<I: Io>(&mut self, io: &mut I, value: u8, cycle: u64) {
+        let at = Access {
+            cycle,
+            program_counter: self.program_counter,
+        };
+        self.store(io, self.stack_pointer, value, at);
+        self.stack_pointer = self.stack_pointer.wrapping_sub(1);
+        if self.stack_pointer.wrapping_add(1) < self.stack_floor {
+            self.stack_overflow(cycle);
+        }
+    }
+
+    #[cold]
+    pub(super) fn stack_overflow(&mut self, cycle: u64) {
+        self.end(Verdict::StackOverflow {
+            program_counter: self.program_counter,
+            stack_pointer: self.stack_pointer,
+            floor: self.stack_floor,
+            cycle,
+        });
+    }
+
+    #[cold]
+    pub(super) fn end(&mut self, verdict: Verdict) {
+        self.verdict.get_or_insert(verdict);
+    }
+
+    #[inline(always)]
+    pub(super) fn pop<I: Io>(&mut self, io: &mut I, cycle: u64) -> u8 {
+        let at = Access {
+            cycle,
+            program_counter: self.program_counter,
+        };
+        self.stack_pointer = self.stack_pointer.wrapping_add(1);
+        self.load(io, self.stack_pointer, at)
+    }
+
+    #[inline(always)]
+    pub(super) fn push_address<I: Io>(&mut self, io: &mut I, words: u32, cycle: u64) {
+        let [low, middle, high, _] = words.to_le_bytes();
+        self.push(io, low, cycle);
+        self.push(io, middle, cycle);
+        self.push(io, high, cycle);
+    }
+
+    #[inline(always)]
+    pub(super) fn pop_address<I: Io>(&mut self, io: &mut I, cycle: u64) -> u32 {
+        let high = self.pop(io, cycle);
+        let middle = self.pop(io, cycle);
+        let low = self.pop(io, cycle);
+        u32::from_le_bytes([low, middle, high, 0]) % FLASH_WORDS as u32
+    }
+
+    #[inline(always)]
+    pub(super) fn program_byte(&self, address: u32) -> u8 {
+        self.flash[address as usize % FLASH_BYTES]
+    }
+}

@@ -1,0 +1,302 @@
+//! The CPU: registers, memories, and the loop that runs predecoded operations.
+//!
+//! # Theory of operation
+//!
+//! The loop runs until `limit`, the cycle of whatever comes first: the caller's end, an event of the peripherals, or
+//! nothing at all when an interrupt may be due. Only there does it look up from the program: it lets the peripherals
+//! catch up, enters an interrupt, or sleeps. An access to a peripheral may change when the next event is, so it sets
+//! the limit anew. Cost thus grows with what happens, not with what exists.
+//!
+//! Instruction timing: DS40002549 (ATmega640/1280/1281/2560/2561), section 33; interrupts take 5 cycles to enter, 5 more
+//! out of sleep, and the instruction after SEI or RETI always runs first (sections 7.7 and 7.8).
+
+mod bus;
+mod execute;
+
+use crate::decode::{Code, FLASH_WORDS, Op, decode};
+use crate::io::Io;
+use crate::status::Status;
+use crate::verdict::Verdict;
+
+/// First address of SRAM in the data space.
+pub const SRAM_START: u16 = 0x200;
+/// Bytes of SRAM.
+pub const SRAM_BYTES: usize = 0x2000;
+/// Last address of SRAM.
+pub const RAMEND: u16 = 0x21FF;
+/// Bytes of flash.
+pub const FLASH_BYTES: usize = 2 * FLASH_WORDS;
+
+/// Cycles from the recognition of an interrupt to the first instruction of its routine: a jump in the table.
+const ENTRY_CYCLES: u64 = 5;
+/// Cycles more out of sleep.
+const WAKE_CYCLES: u64 = 5;
+
+/// Why [`Cpu::run`] returned.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Stopped {
+    /// The cycle was reached.
+    Reached,
+    /// A breakpoint stands at the program counter; nothing of the instruction has been done.
+    Breakpoint,
+    /// The program cannot go on.
+    Ended(Verdict),
+}
+
+/// The processor with its memories.
+#[derive(Clone, Debug)]
+pub struct Cpu {
+    registers: [u8; 32],
+    status: Status,
+    stack_pointer: u16,
+    program_counter: u32,
+    cycle: u64,
+    rampz: u8,
+    eind: u8,
+    sram: Box<[u8; SRAM_BYTES]>,
+    flash: Box<[u8]>,
+    operations: Box<[Op; FLASH_WORDS]>,
+    breakpoints: Vec<u32>,
+    /// Pushing below this address runs the stack into data.
+    stack_floor: u16,
+    sleeping: bool,
+    /// The next instruction runs before any interrupt.
+    shadow: bool,
+    verdict: Option<Verdict>,
+}
+
+impl Cpu {
+    /// A processor after power-on with this program in its flash; what `flash` does not fill is erased.
+    ///
+    /// Anything beyond [`FLASH_BYTES`] is ignored: loaders refuse it before.
+    pub fn new(program: &[u8]) -> Cpu {
+        let mut flash = vec![0xFF; FLASH_BYTES];
+        let fits = program.len().min(FLASH_BYTES);
+        flash[..fits].copy_from_slice(&program[..fits]);
+        let nothing = Op {
+            code: Code::Erased,
+            a: 0,
+            b: 0xFFFF,
+        };
+        let operations: Box<[Op; FLASH_WORDS]> = match vec![nothing; FLASH_WORDS].try_into() {
+            Ok(operations) => operations,
+            Err(_) => unreachable!("as long as it was made"),
+        };
+        let mut cpu = Cpu {
+            registers: [0; 32],
+            status: Status::default(),
+            stack_pointer: RAMEND,
+            program_counter: 0,
+            cycle: 0,
+            rampz: 0,
+            eind: 0,
+            sram: Box::new([0; SRAM_BYTES]),
+            flash: flash.into(),
+            operations,
+            breakpoints: Vec::new(),
+            stack_floor: SRAM_START,
+            sleeping: false,
+            shadow: false,
+            verdict: None,
+        };
+        cpu.status = Status::from_bits(0);
+        for word in 0..fits.div_ceil(2) as u32 {
+            cpu.predecode(word);
+        }
+        cpu
+    }
+
+    /// Starts over at address `program_counter` [words], as after a reset: memories keep what they hold.
+    pub fn reset(&mut self, program_counter: u32) {
+        self.status = Status::from_bits(0);
+        self.stack_pointer = RAMEND;
+        self.program_counter = program_counter % FLASH_WORDS as u32;
+        self.rampz = 0;
+        self.eind = 0;
+        self.sleeping = false;
+        self.shadow = false;
+        self.verdict = None;
+    }
+
+    /// Cycles since power-on.
+    pub fn cycle(&self) -> u64 {
+        self.cycle
+    }
+
+    /// Address of the next instruction [words].
+    pub fn program_counter(&self) -> u32 {
+        self.program_counter
+    }
+
+    /// Continues at another instruction [words].
+    pub fn set_program_counter(&mut self, words: u32) {
+        self.program_counter = words % FLASH_WORDS as u32;
+    }
+
+    /// The registers r0 to r31.
+    pub fn registers(&self) -> &[u8; 32] {
+        &self.registers
+    }
+
+    /// The same, to change them.
+    pub fn registers_mut(&mut self) -> &mut [u8; 32] {
+        &mut self.registers
+    }
+
+    /// The status register.
+    pub fn status(&self) -> Status {
+        self.status
+    }
+
+    /// Sets the status register.
+    pub fn set_status(&mut self, status: Status) {
+        self.status = status;
+    }
+
+    /// The stack pointer.
+    pub fn stack_pointer(&self) -> u16 {
+        self.stack_pointer
+    }
+
+    /// Sets the stack pointer.
+    pub fn set_stack_pointer(&mut self, address: u16) {
+        self.stack_pointer = address;
+    }
+
+    /// The SRAM, from [`SRAM_START`] on.
+    pub fn sram(&self) -> &[u8; SRAM_BYTES] {
+        &self.sram
+    }
+
+    /// The same, to change it.
+    pub fn sram_mut(&mut self) -> &mut [u8; SRAM_BYTES] {
+        &mut self.sram
+    }
+
+    /// The flash.
+    pub fn flash(&self) -> &[u8] {
+        &self.flash
+    }
+
+    /// The CPU sleeps until an interrupt.
+    pub fn is_sleeping(&self) -> bool {
+        self.sleeping
+    }
+
+    /// Pushing below this address is a stack that has run into data.
+    pub fn set_stack_floor(&mut self, address: u16) {
+        self.stack_floor = address.max(SRAM_START);
+    }
+
+    /// Stops before the instruction at `word`; takes no time until it is reached.
+    pub fn set_breakpoint(&mut self, word: u32) {
+        let word = word % FLASH_WORDS as u32;
+        if !self.breakpoints.contains(&word) {
+            self.breakpoints.push(word);
+        }
+        self.predecode(word);
+    }
+
+    /// Removes a breakpoint.
+    pub fn clear_breakpoint(&mut self, word: u32) {
+        let word = word % FLASH_WORDS as u32;
+        self.breakpoints.retain(|other| *other != word);
+        self.predecode(word);
+    }
+
+    /// Writes a word of flash, as SPM does.
+    pub fn write_flash(&mut self, word: u32, value: u16) {
+        let word = word % FLASH_WORDS as u32;
+        let at = 2 * word as usize;
+        let [low, high] = value.to_le_bytes();
+        self.flash[at] = low;
+        self.flash[at + 1] = high;
+        // The word before may be a skip that must know how long this one is, or the first half of it.
+        self.predecode(word.wrapping_sub(1) % FLASH_WORDS as u32);
+        self.predecode(word);
+    }
+
+    fn flash_word(&self, word: u32) -> u16 {
+        let at = 2 * (word as usize % FLASH_WORDS);
+        u16::from_le_bytes([self.flash[at], self.flash[at + 1]])
+    }
+
+    fn original(&self, word: u32) -> Op {
+        decode(word, self.flash_word(word), self.flash_word(word + 1))
+    }
+
+    fn predecode(&mut self, word: u32) {
+        let mut op = self.original(word);
+        if self.breakpoints.contains(&word) {
+            op.code = Code::Breakpoint;
+        }
+        self.operations[word as usize % FLASH_WORDS] = op;
+    }
+
+    /// Runs until `until` cycles have passed since power-on, to the end of the instruction that passes them.
+    pub fn run<I: Io>(&mut self, io: &mut I, until: u64) -> Stopped {
+        loop {
+            if let Some(verdict) = &self.verdict {
+                return Stopped::Ended(verdict.clone());
+            }
+            if self.cycle >= until {
+                return Stopped::Reached;
+            }
+            io.advance(self.cycle);
+            if !self.shadow {
+                if self.sleeping && !self.wake(io, until) {
+                    continue;
+                }
+                self.enter_interrupt(io);
+            }
+            // One instruction only while an interrupt waits for it, else up to the next event.
+            let limit = if self.shadow {
+                self.cycle
+            } else {
+                io.deadline(self.status.interrupts).min(until)
+            };
+            self.shadow = false;
+            if self.step_until(io, limit, until) {
+                return Stopped::Breakpoint;
+            }
+        }
+    }
+
+    /// Runs the instruction at a breakpoint, and no other.
+    pub fn step<I: Io>(&mut self, io: &mut I) -> Stopped {
+        let here = self.program_counter;
+        let held = self.breakpoints.contains(&here);
+        if held {
+            self.operations[here as usize % FLASH_WORDS] = self.original(here);
+        }
+        let stopped = self.run(io, self.cycle + 1);
+        if held {
+            self.predecode(here);
+        }
+        stopped
+    }
+
+    /// Sleeps on to the next event; says whether the CPU is awake.
+    fn wake<I: Io>(&mut self, io: &mut I, until: u64) -> bool {
+        if io.pending().is_some() {
+            self.sleeping = false;
+            self.cycle += WAKE_CYCLES;
+            return true;
+        }
+        let next = io.deadline(true).max(self.cycle + 1);
+        self.cycle = next.min(until);
+        false
+    }
+
+    fn enter_interrupt<I: Io>(&mut self, io: &mut I) {
+        if !self.status.interrupts {
+            return;
+        }
+        let Some(vector) = io.pending() else { return };
+        io.acknowledge(vector, self.cycle);
+        self.push_address(io, self.program_counter, self.cycle);
+        self.status.interrupts = false;
+        self.program_counter = u32::from(vector) * 2 + io.vector_base();
+        self.cycle += ENTRY_CYCLES;
+    }
+}

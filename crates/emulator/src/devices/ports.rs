@@ -1,0 +1,382 @@
+//! The ports A to L: direction, output, pull-up, toggling by writing PIN, overrides by timers.
+//!
+//! A level that changes in cycle c is read from cycle c + 2 on: the synchroniser holds it for one clock and a half at most
+//! (DS40002549, section 13.2.4: an OUT and the IN that reads it back need a NOP in between).
+
+/// How many ports there are: A to H and J to L.
+pub const PORTS: usize = 11;
+const LETTERS: [u8; PORTS] = *b"ABCDEFGHJKL";
+/// Cycles after which a changed level is read.
+const SYNCHRONISER: u64 = 2;
+
+/// A pin of the chip: port and bit.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Pin(u8);
+
+impl Pin {
+    /// Bit `bit` of port `letter` (`A` to `H`, `J` to `L`); `None` if the chip has no such pin.
+    pub const fn new(letter: char, bit: u8) -> Option<Pin> {
+        let mut port = 0;
+        while port < PORTS {
+            if LETTERS[port] as char == letter && bit < 8 {
+                return Some(Pin(port as u8 * 8 + bit));
+            }
+            port += 1;
+        }
+        None
+    }
+
+    pub(crate) const fn at(port: usize, bit: u8) -> Pin {
+        Pin(port as u8 * 8 + bit)
+    }
+
+    /// Number of its port, 0 for A.
+    pub const fn port(self) -> usize {
+        self.0 as usize / 8
+    }
+
+    /// Its bit in the port.
+    pub const fn bit(self) -> u8 {
+        self.0 % 8
+    }
+
+    pub(crate) const fn mask(self) -> u8 {
+        1 << (self.0 % 8)
+    }
+}
+
+impl std::fmt::Debug for Pin {
+    fn fmt(&self, out: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(out, "{}", self)
+    }
+}
+
+/// As the datasheet calls it: `PB7`.
+impl std::fmt::Display for Pin {
+    fn fmt(&self, out: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let letter = char::from(LETTERS[self.port() % PORTS]);
+        write!(out, "P{letter}{}", self.bit())
+    }
+}
+
+/// What the chip does to a pin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drive {
+    /// Nothing: an input.
+    Floating,
+    /// Pulls it up weakly: an input with its pull-up.
+    PullUp,
+    /// Low.
+    Low,
+    /// High.
+    High,
+}
+
+/// One port.
+#[derive(Clone, Copy, Debug, Default)]
+struct Port {
+    output: u8,
+    direction: u8,
+    /// Pins that something outside drives, and to what.
+    driven_outside: u8,
+    outside: u8,
+    /// Pins whose output a peripheral takes over.
+    output_override: u8,
+    output_value: u8,
+    level: u8,
+    level_before: u8,
+    changed: u64,
+}
+
+impl Port {
+    fn outputs(&self) -> u8 {
+        self.output & !self.output_override | self.output_value & self.output_override
+    }
+
+    /// What the chip does to bit `mask`.
+    fn drive(&self, mask: u8, pull_ups: bool) -> Drive {
+        if self.direction & mask != 0 {
+            if self.outputs() & mask != 0 {
+                Drive::High
+            } else {
+                Drive::Low
+            }
+        } else if self.output & mask != 0 && pull_ups {
+            Drive::PullUp
+        } else {
+            Drive::Floating
+        }
+    }
+}
+
+/// What a change did to a port.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Change {
+    pub(crate) port: usize,
+    /// Levels that changed.
+    pub(crate) levels: u8,
+    /// Pins to which the chip does something else than before.
+    pub(crate) driven: u8,
+}
+
+/// All ports.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Ports {
+    ports: [Port; PORTS],
+    pull_ups_disabled: bool,
+}
+
+/// What a register of a port is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Register {
+    Pin,
+    Direction,
+    Output,
+}
+
+/// Port and register at an address of the data space.
+fn register(address: u16) -> Option<(usize, Register)> {
+    let index = match address {
+        0x20..=0x34 => address - 0x20,
+        0x100..=0x10B => address - 0x100 + 21,
+        _ => return None,
+    };
+    let register = match index % 3 {
+        0 => Register::Pin,
+        1 => Register::Direction,
+        _ => Register::Output,
+    };
+    Some((usize::from(index / 3), register))
+}
+
+impl Ports {
+    /// The address is that of a port.
+    pub(crate) fn has(address: u16) -> bool {
+        register(address).is_some()
+    }
+
+    pub(crate) fn read(&self, address: u16, cycle: u64) -> u8 {
+        let Some((index, register)) = register(address) else {
+            return 0;
+        };
+        let port = &self.ports[index];
+        match register {
+            Register::Direction => port.direction,
+            Register::Output => port.output,
+            Register::Pin if cycle < port.changed + SYNCHRONISER => port.level_before,
+            Register::Pin => port.level,
+        }
+    }
+
+    pub(crate) fn write(&mut self, address: u16, value: u8, cycle: u64) -> Option<Change> {
+        let (index, register) = register(address)?;
+        self.change(index, cycle, |port| match register {
+            Register::Pin => port.output ^= value,
+            Register::Direction => port.direction = value,
+            Register::Output => port.output = value,
+        })
+    }
+
+    /// SBI and CBI change one bit; SBI on PIN toggles it.
+    pub(crate) fn write_bit(
+        &mut self,
+        address: u16,
+        mask: u8,
+        set: bool,
+        cycle: u64,
+    ) -> Option<Change> {
+        let (index, register) = register(address)?;
+        let put = |value: &mut u8| *value = if set { *value | mask } else { *value & !mask };
+        self.change(index, cycle, |port| match register {
+            Register::Pin => port.output ^= if set { mask } else { 0 },
+            Register::Direction => put(&mut port.direction),
+            Register::Output => put(&mut port.output),
+        })
+    }
+
+    /// Something outside drives a pin, or lets it go (`None`).
+    pub(crate) fn set_outside(&mut self, pin: Pin, level: Option<bool>, cycle: u64) -> Change {
+        let mask = pin.mask();
+        let change = self.change(pin.port(), cycle, |port| {
+            port.driven_outside &= !mask;
+            port.outside &= !mask;
+            if let Some(level) = level {
+                port.driven_outside |= mask;
+                port.outside |= if level { mask } else { 0 };
+            }
+        });
+        change.unwrap_or(Change {
+            port: pin.port(),
+            levels: 0,
+            driven: 0,
+        })
+    }
+
+    /// A peripheral takes over a pin's output, or gives it back (`None`).
+    pub(crate) fn override_output(
+        &mut self,
+        pin: Pin,
+        level: Option<bool>,
+        cycle: u64,
+    ) -> Option<Change> {
+        let mask = pin.mask();
+        self.change(pin.port(), cycle, |port| {
+            port.output_override &= !mask;
+            port.output_value &= !mask;
+            if let Some(level) = level {
+                port.output_override |= mask;
+                port.output_value |= if level { mask } else { 0 };
+            }
+        })
+    }
+
+    /// PUD of MCUCR; gives what it changes.
+    pub(crate) fn disable_pull_ups(&mut self, disabled: bool, cycle: u64) -> Vec<Change> {
+        if self.pull_ups_disabled == disabled {
+            return Vec::new();
+        }
+        let before = self.ports;
+        self.pull_ups_disabled = disabled;
+        (0..PORTS)
+            .filter_map(|index| self.settle(index, &before[index], !disabled, cycle))
+            .collect()
+    }
+
+    /// The level of a pin now, without the synchroniser.
+    pub(crate) fn level(&self, pin: Pin) -> bool {
+        self.ports[pin.port() % PORTS].level & pin.mask() != 0
+    }
+
+    /// What the chip does to a pin.
+    pub(crate) fn drive(&self, pin: Pin) -> Drive {
+        self.ports[pin.port() % PORTS].drive(pin.mask(), !self.pull_ups_disabled)
+    }
+
+    fn change(
+        &mut self,
+        index: usize,
+        cycle: u64,
+        apply: impl FnOnce(&mut Port),
+    ) -> Option<Change> {
+        let port = self.ports.get_mut(index)?;
+        let before = *port;
+        apply(port);
+        self.settle(index, &before, self.pull_ups_disabled, cycle)
+    }
+
+    /// Works out the levels after a change.
+    fn settle(
+        &mut self,
+        index: usize,
+        before: &Port,
+        pull_ups_disabled_before: bool,
+        cycle: u64,
+    ) -> Option<Change> {
+        let pull_ups = if self.pull_ups_disabled { 0 } else { 0xFF };
+        let port = self.ports.get_mut(index)?;
+        let directions = port.direction;
+        let pulled = port.output & pull_ups;
+        let inputs = port.outside & port.driven_outside | pulled & !port.driven_outside;
+        let level = port.outputs() & directions | inputs & !directions;
+        let levels = level ^ port.level;
+        if levels != 0 {
+            // Two changes in a row: what was already visible stays so until the second one is.
+            if cycle >= port.changed + SYNCHRONISER {
+                port.level_before = port.level;
+            }
+            port.level = level;
+            port.changed = cycle;
+        }
+        let port = *port;
+        let driven = (0..8).fold(0, |driven, bit| {
+            let mask = 1 << bit;
+            let was = before.drive(mask, !pull_ups_disabled_before);
+            let is = port.drive(mask, pull_ups != 0);
+            driven | if was == is { 0 } else { mask }
+        });
+        (levels | driven != 0).then_some(Change {
+            port: index,
+            levels,
+            driven,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PINB: u16 = 0x23;
+    const DDRB: u16 = 0x24;
+    const PORTB: u16 = 0x25;
+
+    fn pin(letter: char, bit: u8) -> Pin {
+        Pin::new(letter, bit).unwrap()
+    }
+
+    #[test]
+    fn registers_lie_where_the_datasheet_has_them() {
+        for (address, expected) in [
+            (0x20, (0, Register::Pin)),
+            (0x25, (1, Register::Output)),
+            (0x34, (6, Register::Output)),
+            (0x100, (7, Register::Pin)),
+            (0x104, (8, Register::Direction)),
+            (0x10B, (10, Register::Output)),
+        ] {
+            assert_eq!(register(address), Some(expected));
+        }
+        assert_eq!(register(0x35), None);
+        assert_eq!(format!("{} {}", pin('H', 3), pin('J', 0)), "PH3 PJ0");
+        assert_eq!(Pin::new('I', 0), None);
+    }
+
+    #[test]
+    fn an_output_is_read_back_two_cycles_later() {
+        let mut ports = Ports::default();
+        ports.write(DDRB, 0xFF, 5);
+        ports.write(PORTB, 0x81, 10);
+        assert_eq!(ports.read(PINB, 11), 0x00);
+        assert_eq!(ports.read(PINB, 12), 0x81);
+    }
+
+    #[test]
+    fn writing_a_one_to_pin_toggles_the_output() {
+        let mut ports = Ports::default();
+        ports.write(PORTB, 0x0F, 0);
+        ports.write(PINB, 0x03, 1);
+        assert_eq!(ports.read(PORTB, 2), 0x0C);
+        ports.write_bit(PINB, 0x04, true, 3);
+        ports.write_bit(PINB, 0x08, false, 4);
+        assert_eq!(ports.read(PORTB, 5), 0x08);
+    }
+
+    #[test]
+    fn an_input_is_what_is_outside_or_its_pull_up() {
+        let mut ports = Ports::default();
+        let b0 = pin('B', 0);
+        assert_eq!((ports.level(b0), ports.drive(b0)), (false, Drive::Floating));
+        let change = ports.write(PORTB, 1, 10).unwrap();
+        assert_eq!((change.levels, change.driven), (1, 1));
+        assert_eq!((ports.level(b0), ports.drive(b0)), (true, Drive::PullUp));
+        ports.set_outside(b0, Some(false), 20);
+        assert!(!ports.level(b0));
+        ports.set_outside(b0, None, 30);
+        assert!(ports.level(b0));
+        let changes = ports.disable_pull_ups(true, 40);
+        assert_eq!((changes.len(), changes[0].levels), (1, 1));
+        assert_eq!((ports.level(b0), ports.drive(b0)), (false, Drive::Floating));
+    }
+
+    #[test]
+    fn a_peripheral_takes_over_an_output_and_gives_it_back() {
+        let mut ports = Ports::default();
+        let b7 = pin('B', 7);
+        ports.write(DDRB, 0x80, 0);
+        ports.override_output(b7, Some(true), 1);
+        assert_eq!(ports.drive(b7), Drive::High);
+        assert_eq!(ports.read(PORTB, 9), 0, "the register is as it was");
+        ports.override_output(b7, None, 2);
+        assert_eq!(ports.drive(b7), Drive::Low);
+    }
+}

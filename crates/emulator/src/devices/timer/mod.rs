@@ -1,0 +1,381 @@
+//! Timers 0 to 5: clock, registers, pins. What the counter does is in [`wave`] (DS40002549, sections 16 to 20).
+//!
+//! A timer is not stepped: it knows the cycle up to which it is reckoned, and catches up when it is looked at or when something is due
+//! that others notice, an enabled interrupt or an edge on a connected pin.
+//!
+//! Counter and capture register are 16 bits behind an 8-bit bus: reading the low byte latches the high one, and writing the low byte
+//! takes the high one along (section 17.3). Compare registers are latched for writing only.
+
+mod place;
+mod wave;
+
+use super::Core;
+use super::ports::Pin;
+use super::schedule::Source;
+use crate::io::Access;
+use place::{PLACES, Place, Register};
+use wave::{CAPTURE, CHANNELS, MATCH, Mode, OVERFLOW, Top, Wave};
+
+/// GTCCR: the prescalers' resets.
+pub(crate) const GTCCR: u16 = 0x43;
+const TSM: u8 = 0x80;
+const PSRASY: u8 = 0x02;
+const PSRSYNC: u8 = 0x01;
+/// Noise canceller and edge of the capture pin, in control register B.
+const ICNC: u8 = 0x80;
+const ICES: u8 = 0x40;
+/// Cycles for which the noise canceller wants the same level.
+const NOISE_CYCLES: u64 = 4;
+
+/// A prescaler: timers 0, 1, 3, 4 and 5 share one, timer 2 has its own.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Prescaler {
+    /// The cycle in which it last was 0.
+    reset: u64,
+    held: bool,
+}
+
+impl Prescaler {
+    /// Its ticks in front of `divisor` from the reset to `cycle`.
+    fn ticks(self, divisor: u64, cycle: u64) -> u64 {
+        (cycle - self.reset) / divisor
+    }
+}
+
+/// What drives a timer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Clock {
+    Stopped,
+    /// The system clock over this.
+    Divided(u64),
+    /// Its pin, on falling or rising edges.
+    Pin {
+        rising: bool,
+    },
+}
+
+/// One timer.
+#[derive(Clone, Debug)]
+pub(crate) struct Timer {
+    index: usize,
+    wave: Wave,
+    clock: Clock,
+    control: [u8; 3],
+    enabled: u8,
+    latch: u8,
+    asynchronous: u8,
+    /// The cycle up to which the counter is reckoned.
+    reckoned: u64,
+    /// A level on the capture pin that must last until this cycle.
+    capture_due: Option<u64>,
+    /// The pins were last given these outputs.
+    driven: [Option<bool>; CHANNELS],
+}
+
+/// All six after reset.
+pub(crate) fn all() -> [Timer; 6] {
+    [0, 1, 2, 3, 4, 5].map(|index| Timer {
+        index,
+        wave: Wave::new(!matches!(index, 0 | 2)),
+        clock: Clock::Stopped,
+        control: [0; 3],
+        enabled: 0,
+        latch: 0,
+        asynchronous: 0,
+        reckoned: 0,
+        capture_due: None,
+        driven: [None; CHANNELS],
+    })
+}
+
+/// The timer that has a register at this address.
+pub(crate) fn at(address: u16) -> Option<usize> {
+    PLACES
+        .iter()
+        .position(|place| place.register(address).is_some())
+}
+
+/// The timer that has this interrupt vector.
+pub(crate) fn of_vector(vector: u8) -> Option<usize> {
+    PLACES.iter().position(|place| place.flag(vector).is_some())
+}
+
+/// A register of flags, in which SBI touches one bit alone.
+pub(crate) fn is_flags(address: u16) -> bool {
+    PLACES.iter().any(|place| place.flags == address)
+}
+
+impl Timer {
+    fn place(&self) -> &'static Place {
+        &PLACES[self.index]
+    }
+
+    fn is_wide(&self) -> bool {
+        self.wave.max == 0xFFFF
+    }
+
+    fn prescaler(&self, core: &Core) -> Prescaler {
+        core.prescalers[usize::from(self.index == 2)]
+    }
+
+    /// Reckons the counter up to `cycle`.
+    pub(crate) fn catch_up(&mut self, core: &mut Core, cycle: u64) {
+        let prescaler = self.prescaler(core);
+        if let Clock::Divided(divisor) = self.clock
+            && !prescaler.held
+            && cycle > self.reckoned
+        {
+            let before = prescaler.ticks(divisor, self.reckoned);
+            let mut left = prescaler.ticks(divisor, cycle) - before;
+            let mut tick = before;
+            if self.listened().is_none() {
+                let (first, period) = (u64::from(self.wave.max) + 1, self.wave.period());
+                // Nobody sees more of it than where it ends and that all flags are up.
+                if left > first + 2 * period {
+                    let skipped = (left - first - period) / period * period;
+                    left -= skipped;
+                    tick += skipped;
+                }
+            }
+            while left > 0 {
+                let step = self.wave.quiet_ticks(0xFF).min(left);
+                left -= step;
+                tick += step;
+                if self.wave.tick(step) {
+                    self.show(core, prescaler.reset + tick * divisor);
+                }
+            }
+        }
+        self.reckoned = self.reckoned.max(cycle);
+        if self.capture_due.is_some_and(|due| due <= cycle) {
+            self.capture_due = None;
+            self.capture(core, cycle);
+        }
+    }
+
+    /// What others notice: the channels whose matches count, or `None` if nothing is noticed at all.
+    fn listened(&self) -> Option<u8> {
+        let waiting = self.enabled & !self.wave.flags;
+        let mut channels = 0;
+        for (channel, flag) in MATCH.into_iter().enumerate().take(self.wave.channels) {
+            if waiting & flag != 0 || self.wave.is_connected(channel) {
+                channels |= 1 << channel;
+            }
+        }
+        (channels != 0 || waiting & (OVERFLOW | CAPTURE) != 0).then_some(channels)
+    }
+
+    /// Tells when it must be looked at next.
+    fn reschedule(&self, core: &mut Core) {
+        let prescaler = self.prescaler(core);
+        let next = match (self.clock, self.listened()) {
+            (Clock::Divided(divisor), Some(channels)) if !prescaler.held => {
+                let tick =
+                    prescaler.ticks(divisor, self.reckoned) + self.wave.quiet_ticks(channels);
+                Some(prescaler.reset + tick * divisor)
+            }
+            _ => None,
+        };
+        let next = [next, self.capture_due].into_iter().flatten().min();
+        core.schedule.set(Source::timer(self.index), next);
+    }
+
+    /// Its event is due.
+    pub(crate) fn happen(&mut self, core: &mut Core, cycle: u64) {
+        self.catch_up(core, cycle);
+        self.reschedule(core);
+    }
+
+    /// Gives flags and outputs to whom they concern.
+    fn show(&mut self, core: &mut Core, cycle: u64) {
+        let place = self.place();
+        for (flag, vector) in place.vectors {
+            let requested = self.wave.flags & self.enabled & flag != 0;
+            core.interrupts.set(vector, requested);
+        }
+        for channel in 0..self.wave.channels {
+            let output = self
+                .wave
+                .is_connected(channel)
+                .then_some(self.wave.output[channel]);
+            if output != self.driven[channel] {
+                self.driven[channel] = output;
+                let change = core
+                    .ports
+                    .override_output(place.outputs[channel], output, cycle);
+                core.note(change, cycle);
+            }
+        }
+    }
+
+    pub(crate) fn read(&mut self, core: &mut Core, address: u16, at: Access) -> u8 {
+        self.catch_up(core, at.cycle);
+        let Some(register) = self.place().register(address) else {
+            return 0;
+        };
+        let [low, high] = match register {
+            Register::Count => self.wave.count,
+            Register::Capture => self.wave.capture,
+            Register::Compare(channel) => self.wave.buffered[channel],
+            Register::CountHigh | Register::CaptureHigh => return self.latch,
+            Register::CompareHigh(channel) => self.wave.buffered[channel] >> 8,
+            Register::ControlA => u16::from(self.control[0]),
+            Register::ControlB => u16::from(self.control[1]),
+            // The force bits read as zero.
+            Register::ControlC => 0,
+            Register::Flags => u16::from(self.wave.flags),
+            Register::Enabled => u16::from(self.enabled),
+            Register::Asynchronous => u16::from(self.asynchronous),
+        }
+        .to_le_bytes();
+        if matches!(register, Register::Count | Register::Capture) {
+            self.latch = high;
+        }
+        low
+    }
+
+    pub(crate) fn write(&mut self, core: &mut Core, address: u16, value: u8, at: Access) {
+        self.catch_up(core, at.cycle);
+        let Some(register) = self.place().register(address) else {
+            return;
+        };
+        let word = u16::from_le_bytes([value, if self.is_wide() { self.latch } else { 0 }]);
+        match register {
+            Register::Count => {
+                self.wave.count = word;
+                self.wave.blocked = self.clock != Clock::Stopped;
+            }
+            // Without a mode that has it as its top, the capture register is read only.
+            Register::Capture if self.wave.mode.top == Top::Capture => self.wave.capture = word,
+            Register::Capture => {}
+            Register::Compare(channel) => self.wave.set_compare(channel, word),
+            Register::CountHigh | Register::CaptureHigh | Register::CompareHigh(_) => {
+                self.latch = value;
+            }
+            Register::ControlA => self.set_control(0, value),
+            Register::ControlB => self.set_control(1, value),
+            Register::ControlC => self.force(value, [0x80, 0x40, 0x20]),
+            Register::Flags => self.wave.flags &= !value,
+            Register::Enabled => self.enabled = value & (OVERFLOW | 0x0E | CAPTURE),
+            Register::Asynchronous => {
+                self.asynchronous = value & 0x60;
+                self.set_clock();
+            }
+        }
+        self.show(core, at.cycle);
+        self.reschedule(core);
+    }
+
+    fn set_control(&mut self, index: usize, value: u8) {
+        self.control[index] = value;
+        let [a, b, _] = self.control;
+        let mode = if self.is_wide() {
+            Mode::wide(a & 3 | b >> 1 & 0x0C)
+        } else {
+            Mode::narrow(a & 3 | b >> 1 & 4)
+        };
+        if mode != self.wave.mode {
+            self.wave.set_mode(mode);
+        }
+        self.wave.pin_mode = [a >> 6, a >> 4 & 3, a >> 2 & 3];
+        if !self.is_wide() {
+            self.wave.pin_mode[2] = 0;
+            if index == 1 {
+                self.control[1] &= 0x0F;
+                self.force(value, [0x80, 0x40, 0]);
+            }
+        }
+        self.set_clock();
+    }
+
+    fn force(&mut self, value: u8, bits: [u8; CHANNELS]) {
+        for (channel, bit) in bits.into_iter().enumerate() {
+            if value & bit != 0 {
+                self.wave.force(channel);
+            }
+        }
+    }
+
+    fn set_clock(&mut self) {
+        const SYNCHRONOUS: [u64; 6] = [0, 1, 8, 64, 256, 1024];
+        const OWN: [u64; 8] = [0, 1, 8, 32, 64, 128, 256, 1024];
+        let select = usize::from(self.control[1] & 7);
+        self.clock = match (self.index, select) {
+            (_, 0) => Clock::Stopped,
+            // The crystal's pins of timer 2 are not connected on a Mega: it stands.
+            (2, _) if self.asynchronous & 0x20 != 0 => Clock::Stopped,
+            (2, _) => Clock::Divided(OWN[select]),
+            (_, 6 | 7) => Clock::Pin {
+                rising: select == 7,
+            },
+            _ => Clock::Divided(SYNCHRONOUS[select]),
+        };
+    }
+
+    /// A pin has changed: the timer's clock, or its capture.
+    pub(crate) fn pin_changed(&mut self, core: &mut Core, pin: Pin, level: bool, cycle: u64) {
+        let place = self.place();
+        if place.clock == Some(pin) && self.clock == (Clock::Pin { rising: level }) {
+            self.catch_up(core, cycle);
+            if self.wave.tick(1) {
+                self.show(core, cycle);
+            }
+        }
+        if place.capture == Some(pin) && self.wave.mode.top != Top::Capture {
+            let [_, control, _] = self.control;
+            let meant = (control & ICES != 0) == level;
+            self.capture_due = None;
+            if meant && control & ICNC != 0 {
+                self.capture_due = Some(cycle + NOISE_CYCLES);
+            } else if meant {
+                self.catch_up(core, cycle);
+                self.capture(core, cycle);
+            }
+            self.reschedule(core);
+        }
+    }
+
+    fn capture(&mut self, core: &mut Core, cycle: u64) {
+        self.wave.capture = self.wave.count;
+        self.wave.flags |= CAPTURE;
+        self.show(core, cycle);
+    }
+
+    /// One of its interrupts is entered.
+    pub(crate) fn acknowledge(&mut self, core: &mut Core, vector: u8, cycle: u64) {
+        self.catch_up(core, cycle);
+        if let Some(flag) = self.place().flag(vector) {
+            self.wave.flags &= !flag;
+        }
+        self.show(core, cycle);
+        self.reschedule(core);
+    }
+}
+
+/// Writes GTCCR: resets the prescalers, or holds them at 0 as long as TSM is set.
+pub(crate) fn write_general_control(
+    timers: &mut [Timer; 6],
+    core: &mut Core,
+    value: u8,
+    cycle: u64,
+) {
+    for timer in timers.iter_mut() {
+        timer.catch_up(core, cycle);
+    }
+    for (prescaler, bit) in core.prescalers.iter_mut().zip([PSRSYNC, PSRASY]) {
+        if value & bit != 0 || prescaler.held {
+            prescaler.reset = cycle;
+        }
+        prescaler.held = value & bit != 0 && value & TSM != 0;
+    }
+    for timer in timers {
+        timer.reschedule(core);
+    }
+}
+
+/// GTCCR as it reads: the reset bits clear themselves unless they are held.
+pub(crate) fn read_general_control(core: &Core) -> u8 {
+    let [synchronous, own] = core.prescalers.map(|prescaler| prescaler.held);
+    let held = if synchronous || own { TSM } else { 0 };
+    held | if synchronous { PSRSYNC } else { 0 } | if own { PSRASY } else { 0 }
+}

@@ -1,0 +1,66 @@
+//! A few instructions, and a chip that runs them.
+#![allow(dead_code, reason = "each test file uses some of it")]
+
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::devices::ports::{Drive, Pin};
+use rumbo_emulator::devices::{Event, Output};
+use rumbo_emulator::image::Image;
+
+pub(crate) const NOP: u16 = 0x0000;
+pub(crate) const SEI: u16 = 0x9478;
+pub(crate) const RETI: u16 = 0x9518;
+pub(crate) const SLEEP: u16 = 0x9588;
+
+pub(crate) fn ldi(register: u8, value: u8) -> u16 {
+    let (d, k) = (u16::from(register & 0xF), u16::from(value));
+    0xE000 | (k & 0xF0) << 4 | d << 4 | k & 0xF
+}
+
+pub(crate) fn out(address: u8, register: u8) -> u16 {
+    let a = u16::from(address);
+    0xB800 | (a & 0x30) << 5 | u16::from(register) << 4 | a & 0xF
+}
+
+pub(crate) fn sbi(address: u8, bit: u8) -> u16 {
+    0x9A00 | u16::from(address) << 3 | u16::from(bit)
+}
+
+pub(crate) fn sts(address: u16, register: u8) -> [u16; 2] {
+    [0x9200 | u16::from(register) << 4, address]
+}
+
+/// A chip with these words in its flash.
+pub(crate) fn chip_of(words: &[u16]) -> Chip {
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    Chip::new(&Image::parse(hex(&bytes).as_bytes()).unwrap())
+}
+
+fn hex(bytes: &[u8]) -> String {
+    let mut records: Vec<ihex::Record> = bytes
+        .chunks(16)
+        .enumerate()
+        .map(|(index, chunk)| ihex::Record::Data {
+            offset: index as u16 * 16,
+            value: chunk.to_vec(),
+        })
+        .collect();
+    records.push(ihex::Record::EndOfFile);
+    ihex::create_object_file_representation(&records).unwrap()
+}
+
+pub(crate) fn pin(letter: char, bit: u8) -> Pin {
+    Pin::new(letter, bit).unwrap()
+}
+
+/// When the chip drove a pin to another level, and to which.
+pub(crate) fn edges(chip: &mut Chip, wanted: Pin) -> Vec<(u64, bool)> {
+    chip.take_outputs()
+        .into_iter()
+        .filter_map(|Output { cycle, event }| match event {
+            Event::Pin(at, drive @ (Drive::High | Drive::Low)) if at == wanted => {
+                Some((cycle, drive == Drive::High))
+            }
+            Event::Pin(..) => None,
+        })
+        .collect()
+}
