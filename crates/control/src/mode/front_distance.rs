@@ -21,6 +21,8 @@
 //! The report drives the PWM by the distance, proportional far and PI near, around a PWM at which the robot just moves. Ours closes
 //! the speed loops inside, so the same approach works on any floor and battery, and brakes as late as friction allows. Worst of 20 simulated robots against the
 //! real one: 107 -> 30 cm in 2.0 s instead of 3.0, 30 -> 50 cm in 1.03 s instead of 1.2 (`rumbo run mode1 --runs 20`).
+//!
+//! A sonar whose readings are wild slows the robot, then stops it ([`crate::unrest`]). Derivation, margins and figures: docs/theory/front_distance.md.
 
 use super::{Action, Look, Mode, Situation};
 use crate::math::{abs, clamp, max, min, sqrt};

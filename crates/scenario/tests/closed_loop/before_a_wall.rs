@@ -1,12 +1,14 @@
 //! Modes 1 and 2: what they promise before a wall, on each rig, and with a sonar that fails.
 
-use crate::{seeds, setup, twenty, worst};
+use crate::{Person, seeds, setup, twenty, worst};
+use rumbo_control::mode::ModeId;
 use rumbo_control::{Fault, SonarId};
 use rumbo_plant::world::Block;
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::run::RunResult;
+use rumbo_scenario::sim::Sim;
 use rumbo_scenario::sonar_fault::{SonarFault, TimedSonarFault};
-use rumbo_wire::{EventKind, FromRobot};
+use rumbo_wire::{Command, EventKind, FromRobot, Message, ToRobot};
 
 /// The fault that a run reported first.
 fn fault(run: &RunResult) -> Option<Fault> {
@@ -67,6 +69,72 @@ fn mode_1_does_the_same_on_the_final_rig() {
     assert!(worst(&runs, "step2.settling_s") <= 1.1);
     assert!(worst(&runs, "step1.steady_error_m") <= 0.005);
     assert_eq!(worst(&runs, "contacts"), 0.0);
+}
+
+/// Errors of the bearing that mode 2 reckons with [rad], from the heading reference on the link: on the way beyond and
+/// within 0.7 m of the wall, and at rest.
+fn bearing_errors(scenario: &str, seed: u64) -> [Vec<f64>; 3] {
+    let mut person = Person::at(scenario);
+    person.sim = Sim::new(&setup(scenario), seed).unwrap();
+    let (mut errors, mut truth, mut wanted_rad) = ([const { Vec::new() }; 3], Vec::new(), None);
+    for tick in 0..850u64 {
+        match tick {
+            20 => person.command(Command::Mode(ModeId::FrontAlign)),
+            50 => person.command(Command::Arm),
+            tick if tick % 10 == 0 => person.sim.send(ToRobot::Heartbeat.frame(0).bytes()),
+            _ => {}
+        }
+        truth.push(person.sim.truth().pose);
+        for message in person.listen_until((tick + 1) * 10_000) {
+            match message {
+                FromRobot::HeadingRef(heading_rad) => wanted_rad = Some(heading_rad),
+                FromRobot::Telemetry(frame) => {
+                    let Some(wanted_rad) = wanted_rad.take() else {
+                        continue;
+                    };
+                    let bearing_rad = f64::from(wanted_rad - frame.pose.heading_rad);
+                    // The wall's normal is the world's x axis.
+                    let pose = truth[usize::from(frame.t_ms) / 10];
+                    let error_rad = bearing_rad + pose.heading_rad;
+                    match frame.state {
+                        1 if pose.x_m < 0.37 => errors[0].push(error_rad),
+                        1 | 2 => errors[1].push(error_rad),
+                        4 => errors[2].push(error_rad),
+                        _ => {}
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    errors
+}
+
+#[test]
+fn it_knows_the_bearing_of_the_wall_within_2_degrees_near_it_and_half_a_degree_at_rest() {
+    for scenario in ["mode2", "mode2-final"] {
+        let runs: Vec<_> = (1..21).map(|seed| bearing_errors(scenario, seed)).collect();
+        for (index, (state, most_deg)) in [("far", 4.0), ("near", 2.0), ("at rest", 0.5)]
+            .iter()
+            .enumerate()
+        {
+            let errors: Vec<f64> = runs.iter().flat_map(|run| run[index].clone()).collect();
+            let mean_square = errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64;
+            let rms_deg = mean_square.sqrt().to_degrees();
+            let worst_deg = errors
+                .iter()
+                .fold(0.0, |worst: f64, e| worst.max(e.abs()))
+                .to_degrees();
+            println!(
+                "{scenario} {state}: {} values, rms {rms_deg:.2} deg, worst {worst_deg:.2} deg",
+                errors.len()
+            );
+            assert!(
+                errors.len() >= 20 && rms_deg <= *most_deg,
+                "{scenario} {state}: {rms_deg}"
+            );
+        }
+    }
 }
 
 /// Modes 1 and 2 on their rigs, with the sonars that they need.
