@@ -8,6 +8,7 @@
 //! the polynomials of [`math`] are used. Nothing here panics, allocates, loops without bound or formats text.
 #![no_std]
 
+pub mod ahead;
 pub mod beside;
 pub mod drive;
 pub mod estimate;

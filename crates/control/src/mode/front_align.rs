@@ -30,31 +30,20 @@
 //! --runs 20`). Derivation and figures: docs/theory/front_align.md.
 
 use super::front_distance::{self, FrontDistance};
-use super::{Action, Look, Mode, Situation};
+use super::{Action, Mode, Situation};
+use crate::ahead::{Ahead, AheadState};
 use crate::estimate::Estimate;
-use crate::math::{abs, clamp, max, min};
+use crate::math::{abs, clamp, max, min, wrap_angle};
 use crate::motion::{Turn, TurnState};
 use crate::params::{ParamId, Params};
-use crate::rig::{Rig, View};
-use crate::sweep::{Sweep, SweepState};
-use crate::types::{Drive, Fault, Range, Reading, SonarId, TICK_S};
+use crate::types::{Drive, Fault, TICK_S};
 use crate::unrest::Unrest;
-use crate::wall::{Wall, WallFilter};
+use crate::wall::Wall;
 
 /// Names of the states.
 #[cfg(feature = "names")]
 pub const STATE_NAMES: [&str; 5] = ["look", "approach", "settle", "turn", "hold"];
 
-/// Bearing of a wall that answers only where the servo looks to one side [rad].
-const ONE_SIDED_RAD: f32 = 0.32;
-/// Standard deviation of the bearing after the first look to both sides [rad].
-const ASKEW_RAD: f32 = 0.15;
-/// Looks aside after which the side of the wall is known, after which it is known well, and most.
-const LOOKS: [u8; 3] = [2, 4, 8];
-/// Standard deviation of the bearing with which it may drive [rad].
-const KNOWN_RAD: f32 = 0.08;
-/// Pings ahead between two looks aside: at the start, driving, at rest.
-const PINGS_AHEAD: [u8; 3] = [0, 2, 16];
 /// Share of the tolerance beyond which a lasting angle is turned again.
 const ASKEW_SHARE: f32 = 1.5;
 /// How long the angle must be off to turn again [s].
@@ -77,16 +66,8 @@ pub struct FrontAlign {
     pub kp: f32,
     /// Angle to the wall that is good enough [rad].
     pub tolerance_rad: f32,
-    /// How far aside the servo looks [rad].
-    pub aside_rad: f32,
-    /// Two sonars in front; otherwise one on the servo.
-    pub paired: bool,
-    /// Sonars ahead of the wheels' axis [m].
-    pub ahead_m: f32,
-    /// Distance between the two [m].
-    pub gap_m: f32,
-    /// Half angle of a sonar's beam [rad].
-    pub beam_rad: f32,
+    /// The sonars.
+    pub ahead: Ahead,
 }
 
 /// Where mode 2 stands.
@@ -104,16 +85,11 @@ enum Phase {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     phase: Phase,
-    wall: WallFilter,
-    sweep: SweepState,
-    /// The first looks to the left and to the right gave an echo.
-    echo: [bool; 2],
+    ahead: AheadState,
     turn: TurnState,
     /// How long distance and angle have been too far off to hold [s].
     off_s: f32,
     askew_s: f32,
-    /// Time since a reading was last believed [s].
-    deaf_s: f32,
     unrest: Unrest,
 }
 
@@ -125,127 +101,14 @@ impl FrontAlign {
             turn: Turn::new(params),
             kp: params.get(ParamId::AlignKp),
             tolerance_rad: params.get(ParamId::AlignTolerance),
-            aside_rad: params.get(ParamId::SweepAside),
-            paired: params.rig() == Rig::FrontPair,
-            ahead_m: params.get(ParamId::SonarFrontX),
-            gap_m: params.get(ParamId::FrontGap),
-            beam_rad: params.get(ParamId::Beam),
+            ahead: Ahead::new(params),
         }
     }
 
-    /// The sonars that look ahead.
-    fn sonars(&self) -> &'static [SonarId] {
-        if self.paired {
-            &[SonarId::Left, SonarId::Right]
-        } else {
-            &[SonarId::Front]
-        }
-    }
-
-    /// Whether all sonars that look ahead see something.
-    pub fn is_ready(&self, estimate: &Estimate) -> bool {
-        self.nearest_m(estimate, true).is_ok()
-    }
-
-    /// The nearest thing ahead [m]. Unless `fresh`, it may be old where one sonar looks ahead now and then only: readings aside are heard
-    /// too, see `deaf_s`.
-    fn nearest_m(&self, estimate: &Estimate, fresh: bool) -> Result<f32, Fault> {
-        let mut nearest_m = f32::MAX;
-        for sonar in self.sonars() {
-            let mut range = estimate.range(*sonar);
-            if !self.paired && !fresh {
-                range.age_s = 0.0;
-            }
-            nearest_m = min(nearest_m, self.approach.range_m(range)?);
-        }
-        Ok(nearest_m)
-    }
-
-    /// The wall, predicted and corrected by what was heard at this tick.
-    fn wall(&self, state: &mut State, estimate: &Estimate) -> Option<Wall> {
-        state.wall.predict(estimate.rolled_m, estimate.turned_rad);
-        state.deaf_s += TICK_S;
-        if let Some(reading) = estimate.reading
-            && self.sonars().contains(&reading.sonar)
-            && (self.paired || state.sweep.is_from_here(reading.servo_rad))
-            && let Range::Valid(range_m) = reading.range
-            && self.take(state, &reading, range_m)
-        {
-            state.deaf_s = 0.0;
-        }
-        let anew = state.phase != Phase::Look && state.deaf_s > self.approach.stale_s;
-        if state.wall.wall().is_none() || anew {
-            self.start(state, estimate)?;
-        }
-        state.wall.wall()
-    }
-
-    /// Whether a reading was believed. The first looks to both sides only tell on which side the wall's normal is.
-    fn take(&self, state: &mut State, reading: &Reading, range_m: f32) -> bool {
-        let [sides, ..] = LOOKS;
-        let first = state.phase == Phase::Look && state.sweep.looks_aside() < sides;
-        if self.paired || !first || reading.servo_rad == 0.0 {
-            return state.wall.take(&reading.view, self.beam_rad, range_m);
-        }
-        let [left, right] = state.echo;
-        state.echo = [
-            left || reading.servo_rad > 0.0,
-            right || reading.servo_rad < 0.0,
-        ];
-        true
-    }
-
-    /// Where the wall is by the ranges alone.
-    fn start(&self, state: &mut State, estimate: &Estimate) -> Option<()> {
-        let valid = |sonar| match estimate.range(sonar).range {
-            Range::Valid(range_m) => Some(range_m),
-            Range::Clear | Range::Faulty => None,
-        };
-        if self.paired {
-            let ranges_m = [valid(SonarId::Left)?, valid(SonarId::Right)?];
-            state
-                .wall
-                .start_pair(self.ahead_m, self.gap_m, self.beam_rad, ranges_m);
-        } else {
-            // A wall that was known a moment ago is looked for where it was; any other on both sides.
-            let [sides, ..] = LOOKS;
-            let (bearing_rad, looks) = match state.wall.wall() {
-                Some(wall) => (wall.bearing_rad, sides),
-                None => (0.0, 0),
-            };
-            self.start_ahead(state, valid(SonarId::Front)?, bearing_rad);
-            state.deaf_s = 0.0;
-            state.sweep = SweepState::after(looks);
-            state.echo = [false; 2];
-            state.phase = Phase::Look;
-        }
-        Some(())
-    }
-
-    fn start_ahead(&self, state: &mut State, range_m: f32, bearing_rad: f32) {
-        let ahead = View {
-            x_m: self.ahead_m,
-            ..View::default()
-        };
-        state.wall.start(&ahead, range_m, bearing_rad, ASKEW_RAD);
-    }
-
-    /// Final rig, standing: looks to both sides, then again from the bearing that this gave.
-    fn look_first(&self, state: &mut State, ahead_m: f32) {
-        let [sides, well, most] = LOOKS;
-        let looks = state.sweep.looks_aside();
-        if looks == sides && state.echo != [false; 2] {
-            match state.echo {
-                [true, false] => self.start_ahead(state, ahead_m, ONE_SIDED_RAD),
-                [false, true] => self.start_ahead(state, ahead_m, -ONE_SIDED_RAD),
-                _ => {}
-            }
-            state.echo = [false; 2];
-        }
-        let known = |wall: Wall| wall.bearing_sd_rad < KNOWN_RAD;
-        if looks >= most || (looks >= well && state.wall.wall().is_some_and(known)) {
-            state.phase = Phase::Approach;
-        }
+    /// The nearest thing and the wall.
+    fn see(&self, state: &mut AheadState, estimate: &Estimate) -> Result<(f32, Wall), Fault> {
+        let nearest_m = self.ahead.nearest_m(estimate)?;
+        Ok((nearest_m, self.ahead.wall(state, estimate)?))
     }
 
     fn next_phase(&self, state: &mut State, error_m: f32, bearing_rad: f32, turned: bool) -> Phase {
@@ -254,7 +117,8 @@ impl FrontAlign {
         state.off_s = lasting(state.off_s, off > 2.0 * self.approach.tolerance_m);
         state.askew_s = lasting(state.askew_s, askew > ASKEW_SHARE * self.tolerance_rad);
         match state.phase {
-            Phase::Look if self.paired => Phase::Approach,
+            _ if !state.ahead.is_known() => Phase::Look,
+            Phase::Look => Phase::Approach,
             Phase::Approach if off < front_distance::NEAR_M => Phase::Settle,
             Phase::Settle | Phase::Hold if off > front_distance::FAR_M => Phase::Approach,
             Phase::Settle if off < self.approach.tolerance_m => {
@@ -287,25 +151,6 @@ impl FrontAlign {
             yaw_rad_s: clamp(self.kp * bearing_rad, -most, most),
         }
     }
-
-    fn look(&self, state: &mut State, estimate: &Estimate, bearing_rad: f32) -> Look {
-        if self.paired {
-            return Look {
-                sonars: [true, true, false],
-                ..Look::default()
-            };
-        }
-        let [starting, driving, resting] = PINGS_AHEAD;
-        let sweep = Sweep {
-            aside_rad: self.aside_rad,
-            pings_ahead: match state.phase {
-                Phase::Look => starting,
-                Phase::Approach | Phase::Settle | Phase::Turn => driving,
-                Phase::Hold => resting,
-            },
-        };
-        sweep.step(&mut state.sweep, estimate, bearing_rad)
-    }
 }
 
 impl Mode for FrontAlign {
@@ -313,23 +158,15 @@ impl Mode for FrontAlign {
 
     fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
         let estimate = at.estimate;
-        let aside = estimate.reading.is_some_and(|heard| heard.servo_rad != 0.0);
-        let matters = |sonar| self.sonars().contains(&sonar) && !(aside && !self.paired);
-        state.unrest.take(estimate, matters)?;
-        let nearest_m = self
-            .nearest_m(estimate, false)
+        let watches = |sonar| self.ahead.watches(estimate, sonar);
+        state.unrest.take(estimate, watches)?;
+        let (nearest_m, wall) = self
+            .see(&mut state.ahead, estimate)
             .map_err(|fault| state.unrest.cause(fault))?;
-        let wall = self.wall(state, estimate).ok_or(Fault::WallLost)?;
-        if state.deaf_s > 2.0 * self.approach.stale_s {
-            return Err(state.unrest.cause(Fault::SonarStale));
-        }
-        let error_m = wall.distance_m - self.ahead_m - self.approach.distance_m;
+        let error_m = wall.distance_m - self.ahead.ahead_m - self.approach.distance_m;
         let free_m = nearest_m - self.approach.distance_m + NEARER_M;
-        let heading_ref_rad = crate::math::wrap_angle(estimate.pose.heading_rad + wall.bearing_rad);
+        let heading_ref_rad = wrap_angle(estimate.pose.heading_rad + wall.bearing_rad);
 
-        if state.phase == Phase::Look && !self.paired {
-            self.look_first(state, nearest_m);
-        }
         let turn = match state.phase {
             Phase::Turn => Some(self.turn.step(&mut state.turn, estimate, heading_ref_rad)),
             _ => None,
@@ -348,9 +185,13 @@ impl Mode for FrontAlign {
             }
             Phase::Turn => turn.map_or(Drive::Release, |turn| turn.drive),
         };
+        let resting = phase == Phase::Hold;
+        let look = self
+            .ahead
+            .look(&mut state.ahead, estimate, wall.bearing_rad, resting);
         Ok(Action {
             drive,
-            look: self.look(state, estimate, wall.bearing_rad),
+            look,
             state: phase as u8,
             heading_ref_rad,
             reached: phase == Phase::Hold,
@@ -362,7 +203,8 @@ impl Mode for FrontAlign {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::types::AgedRange;
+    use crate::rig::Rig;
+    use crate::types::{AgedRange, Range};
 
     fn mode(rig: Rig) -> FrontAlign {
         let mut params = Params::default();
@@ -420,10 +262,7 @@ mod tests {
         let mut state = State::default();
         step(&mut state, 0.31, 0.33).unwrap();
         step(&mut state, 0.31, 0.33).unwrap();
-        let mut state = State {
-            wall: WallFilter::default(),
-            ..state
-        };
+        state.ahead = AheadState::default();
         // 0.3 m from the axis plus the sonars' place, askew by 0.1 rad.
         let askew = (0.43 - 0.13 * 0.995, 0.06 * 0.1);
         let turning = step(&mut state, askew.0 - askew.1, askew.0 + askew.1).unwrap();
@@ -452,7 +291,7 @@ mod tests {
 
     #[test]
     fn it_is_ready_only_when_every_sonar_it_needs_sees_the_wall() {
-        let ready = |rig, ranges_m| mode(rig).is_ready(&seeing(ranges_m));
+        let ready = |rig, ranges_m| mode(rig).ahead.is_ready(&seeing(ranges_m));
         assert!(ready(Rig::FrontPair, [1.0, 1.0, 0.0]));
         assert!(!ready(Rig::FrontPair, [1.0, 0.0, 1.0]));
         assert!(ready(Rig::Final, [0.0, 0.0, 1.0]));

@@ -25,9 +25,11 @@
 //! A sonar whose readings are wild slows the robot, then stops it ([`crate::unrest`]). Derivation, margins and figures: docs/theory/front_distance.md.
 
 use super::{Action, Look, Mode, Situation};
+use crate::ahead::drivable_m;
+use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, sqrt};
 use crate::params::{ParamId, Params};
-use crate::types::{AgedRange, Drive, Fault, Range, SonarId, TICK_S};
+use crate::types::{Drive, Fault, SonarId, TICK_S};
 use crate::unrest::Unrest;
 
 /// Names of the states.
@@ -105,14 +107,9 @@ impl FrontDistance {
         }
     }
 
-    /// A range that one may drive on, or why not.
-    pub(super) fn range_m(&self, range: AgedRange) -> Result<f32, Fault> {
-        match range.range {
-            Range::Valid(_) if range.age_s > self.stale_s => Err(Fault::SonarStale),
-            Range::Valid(range_m) => Ok(range_m),
-            Range::Clear => Err(Fault::WallLost),
-            Range::Faulty => Err(Fault::SonarFaulty),
-        }
+    /// Whether the sonar sees something.
+    pub fn is_ready(&self, estimate: &Estimate) -> bool {
+        drivable_m(estimate.range(SonarId::Front), self.stale_s).is_ok()
     }
 
     fn next_phase(&self, state: &mut State, error_m: f32) -> Phase {
@@ -148,8 +145,7 @@ impl Mode for FrontDistance {
     fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
         let front = |sonar| sonar == SonarId::Front;
         state.unrest.take(at.estimate, front)?;
-        let range_m = self
-            .range_m(at.estimate.range(SonarId::Front))
+        let range_m = drivable_m(at.estimate.range(SonarId::Front), self.stale_s)
             .map_err(|fault| state.unrest.cause(fault))?;
         let error_m = range_m - self.distance_m;
         state.phase = self.next_phase(state, error_m);
@@ -182,7 +178,7 @@ impl Mode for FrontDistance {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::Estimate;
+    use crate::types::{AgedRange, Range};
 
     fn estimate(range: Range, age_s: f32) -> Estimate {
         let mut estimate = Estimate::default();

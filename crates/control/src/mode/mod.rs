@@ -13,6 +13,7 @@ pub mod wall_hold;
 pub mod waypoints;
 pub mod wheel_speed;
 
+use crate::ahead::Ahead;
 use crate::beside::Beside;
 use crate::estimate::Estimate;
 use crate::params::{ParamId, Params};
@@ -376,12 +377,10 @@ impl ActiveMode {
             Self::WallFollow(..) => {
                 Beside::new(params).is_ready(estimate, stale_s, (MIN_RANGE_M, REACH_M))
             }
-            Self::FrontDistance(distance_m, _) => FrontDistance::new(params, *distance_m)
-                .range_m(estimate.range(SonarId::Front))
-                .is_ok(),
-            Self::FrontAlign(distance_m, _) => {
-                FrontAlign::new(params, *distance_m).is_ready(estimate)
+            Self::FrontDistance(distance_m, _) => {
+                FrontDistance::new(params, *distance_m).is_ready(estimate)
             }
+            Self::FrontAlign(..) => Ahead::new(params).is_ready(estimate),
             _ => true,
         }
     }
