@@ -25,6 +25,7 @@ export class Header {
   #load = element('load', HTMLOutputElement);
   #crc = element('crc', HTMLOutputElement);
   #battery = element('battery', HTMLOutputElement);
+  #batteryChip = element('battery-chip', HTMLSpanElement);
   /** @type {State | null} */
   #state = null;
   #open = false;
@@ -80,10 +81,12 @@ export class Header {
     if (document.activeElement !== this.#speed) this.#speed.value = speed;
     const { link, robot } = state;
     setText(this.#roundTrip, link.round_trip_ms === null ? '–' : `${link.round_trip_ms} ms`);
-    setText(this.#load, `↓ ${format(link.down_load * 100, 0)} % ↑ ${format(link.up_load * 100, 0)} %`);
+    setText(this.#load, `↓ ${format(link.down_load * 100, 0)} ↑ ${format(link.up_load * 100, 0)} %`);
     setText(this.#crc, `${link.crc_errors_down} | ${link.crc_errors_up}`);
     this.#crc.classList.toggle('bad', link.crc_errors_down + link.crc_errors_up > 0);
-    setText(this.#battery, `${format(robot.battery_v ?? robot.true_battery_v)} V${robot.battery_v === null && robot.true_battery_v !== null ? ' (true)' : ''}`);
+    setText(this.#battery, `${format(robot.battery_v ?? robot.true_battery_v)} V`);
+    this.#batteryChip.title = robot.battery_v === null && robot.true_battery_v !== null
+      ? 'Battery of the simulation; the robot has nothing wired to measure it' : 'Battery, as the robot measures it';
     this.#showConnection();
   }
 

@@ -80,7 +80,7 @@ function receive(message) {
       header.setScene(message.scene);
       map.setScene(message.scene);
       panel.setScene(message.scene);
-      stateLine.setRig(message.scene?.rig ?? null);
+      stateLine.setScene(message.scene);
       document.body.classList.toggle('simulated', message.scene !== null);
       break;
     case 'state':

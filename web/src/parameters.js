@@ -61,6 +61,8 @@ class Line {
     this.parameter = parameter;
     const held = formatFloat(parameter.value);
     const refused = parameter.refused === this.dismissed ? null : parameter.refused;
+    // What has not been read yet is not wrong.
+    this.input.required = parameter.value !== null;
     // What is being typed is not overwritten; a refused value stays to be corrected.
     if (!this.edited && !refused && !parameter.pending && this.input.value !== held) this.input.value = held;
     this.apply.hidden = this.revert.hidden = this.input.value === held && !refused;

@@ -6,6 +6,7 @@ import { inWords } from './places.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S, format } from './units.js';
 
 /** @typedef {import('./types.js').ModeEntry} ModeEntry */
+/** @typedef {import('./types.js').Scene} Scene */
 /** @typedef {import('./types.js').State} State */
 /** @typedef {import('./types.js').Cell} Cell */
 /** @typedef {import('./store.js').Store} Store */
@@ -28,6 +29,8 @@ export class StateLine {
   modes = [];
   /** Name of the simulated rig; null with a real robot. @type {string | null} */
   #carried = null;
+  /** The sonars to speak of, by number. */
+  #sonars = [0, 1, 2];
   /** @type {State | null} */
   #slow = null;
 
@@ -40,9 +43,10 @@ export class StateLine {
     });
   }
 
-  /** @param {string | null} rig */
-  setRig(rig) {
-    this.#carried = rig;
+  /** @param {Scene | null} scene */
+  setScene(scene) {
+    this.#carried = scene?.rig ?? null;
+    this.#sonars = scene?.sonars.map((sonar) => sonar.id) ?? [0, 1, 2];
     this.#showRig();
   }
 
@@ -67,7 +71,9 @@ export class StateLine {
     this.#fault.hidden = fault === null;
     setText(this.#faultText, fault ?? '');
     setText(this.#state, this.#stateWords(slow));
-    setText(this.#aim, this.#aimWords(slow));
+    const aim = this.#aimWords(slow);
+    setText(this.#aim, aim);
+    if (this.#aim.title !== aim) this.#aim.title = aim;
     const end = errand.end;
     setText(this.#end, end ?? '');
     this.#end.className = end === null ? '' : `chip ${end === 'reached' ? 'good' : 'warning'}`;
@@ -115,7 +121,7 @@ export class StateLine {
     const at = latest?.estimated;
     if (!latest || !at) return setText(this.#pose, '');
     const lines = [`x ${format(at.x_m * CM_PER_M)} cm   y ${format(at.y_m * CM_PER_M)} cm   heading ${degrees(at.heading_rad)}`];
-    const ranges = SONARS.map((name, id) => `${name} ${inReach(latest.ranges_m[id] ?? null)}`);
+    const ranges = this.#sonars.map((id) => `${SONARS[id]} ${inReach(latest.ranges_m[id] ?? null)}`);
     lines.push(`${robot.rig === null ? '' : `${robot.rig.replaceAll('_', ' ')}:  `}${ranges.join('   ')}`);
     if (latest.contact) lines.push('contact!');
     return setText(this.#pose, lines.join('\n'));

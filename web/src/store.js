@@ -3,7 +3,7 @@
  * The signals received, in columns as uPlot takes them: a slow table with a line for each telemetry frame, and a fast one for the wheel
  * speeds, of which a frame brings two.
  *
- * Places are in metres from the robot's origin, the true ones too, and headings go on through 180 degrees up to 270.
+ * Places are in metres from the robot's origin, the true ones too, and headings go on through 180 degrees up to 315.
  *
  * In a column null is a gap, and undefined means that this line has no such value and the curve goes on.
  */
@@ -79,7 +79,7 @@ const DISTANCE_MODES = [1, 2, 3, 4];
 const PLACE_MODES = [7, 8];
 export const HEADING_MODES = [2, 3, 4, 6, 7, 8];
 /** A heading is plotted on through 180 degrees up to here [deg]. */
-const FARTHEST_DEG = 270;
+const FARTHEST_DEG = 315;
 
 /**
  * A stretch of time in one state.
