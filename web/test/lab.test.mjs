@@ -310,6 +310,7 @@ test('each mode has its controls, and nothing moves when the mode changes', asyn
 test('a reset starts again with the seed asked for', async () => {
   await page.locator('#seed').fill('7');
   await page.locator('#simulation button[type=submit]').click();
+  await page.waitForFunction(() => [...document.querySelectorAll('#events li')].some((line) => line.textContent?.includes('seed 7')));
   await page.waitForFunction(() => {
     const { t } = /** @type {any} */ (window).rumbo.series('left_pwm');
     return t.length > 0 && t.at(-1) < 5 && t[0] < 1;
