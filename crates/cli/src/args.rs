@@ -179,7 +179,7 @@ pub(crate) struct CalibrateArgs {
     /// Robot: name or path
     #[arg(long, value_name = "NAME", default_value = "memoria")]
     pub(crate) robot: String,
-    /// Rig; it must have a sonar on a side and one ahead
+    /// Rig instead of `final`; it must have a sonar ahead and one on each side
     #[arg(long, value_name = "NAME")]
     pub(crate) rig: Option<String>,
     /// World instead of the one made for it; the robot starts at x = -1.1, y = -0.45 m there, along x

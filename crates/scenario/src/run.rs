@@ -81,7 +81,13 @@ pub fn prepare(setup: &Setup, seed: u64) -> Result<Cow<'_, Setup>, FileError> {
     if !setup.scenario.calibrated || setup.program == Program::Original {
         return Ok(Cow::Borrowed(setup));
     }
-    let (found, _) = calibrate_simulated(setup, seed, false)?;
+    // Whatever rig the experiment has: sonars are moved back after a calibration, wheels stay.
+    let mut own = setup.clone();
+    if let Some(rig) = own.robot.rigs.get("final") {
+        own.rig = *rig;
+        "final".clone_into(&mut own.scenario.rig);
+    }
+    let (found, _) = calibrate_simulated(&own, seed, false)?;
     let found = found.map_err(|error| {
         let name = &setup.scenario.name;
         FileError::Setting(format!(

@@ -13,6 +13,8 @@ pub enum CalibrateError {
     Refused(Command, Refusal),
     /// A fault latched.
     Faulted(Fault),
+    /// The robot carries another rig than the final one.
+    WrongRig,
     /// No side sonar sees a wall at a fitting distance; the ranges of the left and the right one [m].
     NoWall([Option<f32>; 2]),
     /// A movement took too long.
@@ -31,13 +33,17 @@ impl fmt::Display for CalibrateError {
                 write!(f, "{command:?} was refused: {}", refusal.explanation())
             }
             Self::Faulted(fault) => write!(f, "the robot stopped: {}", fault.explanation()),
+            Self::WrongRig => write!(
+                f,
+                "a calibration needs a sonar ahead and one on each side; mount the rig `final` and set the parameter rig"
+            ),
             Self::NoWall(ranges) => {
                 let word = |range: Option<f32>| {
                     range.map_or("nothing".to_owned(), |range_m| format!("{range_m:.2} m"))
                 };
                 write!(
                     f,
-                    "no wall beside the robot (left {}, right {}); put it 0.3 to 0.5 m beside a wall, along it, with 2.5 m free ahead and 1 m of wall behind, on the final rig",
+                    "no wall beside the robot (left {}, right {}); put it 0.3 to 0.5 m beside a wall, along it, with 2.5 m free ahead",
                     word(ranges[0]),
                     word(ranges[1])
                 )

@@ -7,6 +7,7 @@ use super::station::Station;
 use super::{Calibration, fit::mean};
 use rumbo_control::mode::Movement;
 use rumbo_control::params::ParamId;
+use rumbo_control::rig::Rig;
 use rumbo_control::{SonarId, Wheels};
 use std::f64::consts::TAU;
 
@@ -66,6 +67,9 @@ struct Course<'s, 'r, R: Linked> {
 impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
     fn begin(station: &'s mut Station<'r, R>) -> Result<Self, CalibrateError> {
         station.wait(0.6)?;
+        if station.parameter(ParamId::Rig)? != f64::from(Rig::Final as u8) {
+            return Err(CalibrateError::WrongRig);
+        }
         let radius_m = Wheels {
             left: station.parameter(ParamId::RadiusLeft)?,
             right: station.parameter(ParamId::RadiusRight)?,

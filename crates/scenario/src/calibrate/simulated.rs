@@ -19,7 +19,7 @@ x_m = -1.1
 y_m = -0.45
 "#;
 
-/// Calibrates the robot that `seed` draws in `setup`, on its final rig in the world of calibrations (or `setup`'s own with `here`), always from the same place.
+/// Calibrates the robot that `seed` draws in `setup`, on its rig in the world of calibrations (or `setup`'s own with `here`), always from the same place.
 /// Floor, slip and noise are others than those of the run itself. Gives the calibration and the simulation at its end.
 ///
 /// # Errors
@@ -37,10 +37,6 @@ pub fn calibrate_simulated(
     if !here {
         own.world = Library::new().world(WORLD)?;
         own.scenario.world.clone_from(&own.world.name);
-    }
-    if let Some(rig) = own.robot.rigs.get("final") {
-        own.rig = *rig;
-        "final".clone_into(&mut own.scenario.rig);
     }
     let mut sim = Sim::with_noise(&own, seed, 1)?;
     let found = calibrate(&mut sim);

@@ -4,7 +4,7 @@ use super::{Person, seeds, setup, twenty, worst};
 use rumbo_control::SonarId;
 use rumbo_control::mode::ModeId;
 use rumbo_scenario::calibrate::{
-    CalibrateError, Calibration, Linked, calibrate, calibrate_simulated,
+    CalibrateError, Calibration, Linked, calibrate, calibrate_simulated, rewrite,
 };
 use rumbo_scenario::files::{Library, Overrides};
 use rumbo_scenario::sim::Sim;
@@ -71,6 +71,30 @@ fn without_a_wall_beside_it_the_robot_does_not_move() {
     let (found, sim) = calibrate_simulated(&setup, 1, true).unwrap();
     assert!(matches!(found, Err(CalibrateError::NoWall(_))), "{found:?}");
     assert_eq!(sim.truth().pose.x_m, -1.1);
+}
+
+#[test]
+fn a_robot_without_the_sonars_it_takes_is_told_so() {
+    let rig = Overrides {
+        rig: Some("side_pair_right".into()),
+        ..Overrides::default()
+    };
+    let setup = Library::new().setup("mode6", &rig).unwrap();
+    let (found, _) = calibrate_simulated(&setup, 1, false).unwrap();
+    assert_eq!(found, Err(CalibrateError::WrongRig));
+}
+
+#[test]
+fn what_a_calibration_found_goes_into_the_robots_file_and_nothing_else_changes() {
+    let text = "# mine\ntitle = \"x\"\n\n[parameters]\nbase_m = 0.11 # measured\nkick = 0.31\n";
+    let (found, _) = calibrated(3);
+    let once = rewrite(text, &found, "2026-01-01").unwrap();
+    for kept in ["# mine", "title = \"x\"", "# measured", "kick = 0.31"] {
+        assert!(once.contains(kept), "{kept}: {once}");
+    }
+    assert!(!once.contains("0.11 ") && once.contains("radius_left_m = "));
+    let twice = rewrite(&once, &found, "2026-01-01").unwrap();
+    assert_eq!(once, twice);
 }
 
 /// A robot one of whose sonars is cut at some time.
