@@ -27,9 +27,13 @@ impl Pid {
         }
     }
 
-    /// Forgets everything but the gains.
+    /// Forgets the sum and the last error. The time of the last call stays: the report's listing sets it to zero, after
+    /// which a first call that saturates would leave the whole time since the start in the sum; the recorded square
+    /// shows one period of the loop there.
     pub(super) fn reset(&mut self) {
-        *self = Self::new(self.gains, self.limit);
+        self.sum = 0.0;
+        self.last_error = 0.0;
+        self.first = true;
     }
 
     /// The output for an error, a whole number; `now_ms` is the program's clock. The time since the last call counts,
