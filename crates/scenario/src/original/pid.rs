@@ -27,13 +27,9 @@ impl Pid {
         }
     }
 
-    /// Forgets the sum and the last error. The time of the last call stays: the report's listing sets it to zero, after
-    /// which a first call that saturates would leave the whole time since the start in the sum; the recorded square
-    /// shows one period of the loop there.
+    /// Forgets everything but the gains.
     pub(super) fn reset(&mut self) {
-        self.sum = 0.0;
-        self.last_error = 0.0;
-        self.first = true;
+        *self = Self::new(self.gains, self.limit);
     }
 
     /// The output for an error, a whole number; `now_ms` is the program's clock. The time since the last call counts,
@@ -41,18 +37,21 @@ impl Pid {
     pub(super) fn step(&mut self, error: f64, now_ms: u64) -> f64 {
         let now_ms = now_ms as f64;
         let passed_ms = now_ms - self.last_ms;
+        // The report's listing takes an error back on a first call too, where none was added: the whole time since the
+        // start would be in the sum. Its recorded turns show that the program that ran did not.
+        let added = if self.first { 0.0 } else { error * passed_ms };
+        self.sum += added;
         let slope = if self.first {
-            self.first = false;
             0.0
         } else {
-            self.sum += error * passed_ms;
             // Two calls within a millisecond would divide by zero; the report's gains of this term are all zero.
             (error - self.last_error) / passed_ms.max(1.0)
         };
+        self.first = false;
         let Gains(kp, ki, kd) = self.gains;
         let output = (kp * error + ki * self.sum + kd * slope).round();
         if output.abs() > self.limit {
-            self.sum -= error * passed_ms;
+            self.sum -= added;
         }
         self.last_error = error;
         self.last_ms = now_ms;
