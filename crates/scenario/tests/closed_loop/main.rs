@@ -8,6 +8,7 @@ mod drive;
 mod mode_6;
 mod mode_7;
 mod odometry;
+mod original;
 
 use rumbo_scenario::files::FileError;
 use rumbo_scenario::files::{Library, Overrides, Setup};
