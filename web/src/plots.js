@@ -5,7 +5,7 @@
 import uPlot from '../vendor/uplot/uPlot.js';
 import { create, element, setText } from './dom.js';
 import { OF_MODE, PLOTS } from './plot_specs.js';
-import { colours, onThemeChange, stateColour } from './theme.js';
+import { STATE_COLOURS, colours, onThemeChange, stateColour } from './theme.js';
 import { format } from './units.js';
 
 /** @typedef {import('./store.js').Store} Store */
@@ -241,10 +241,13 @@ export class Plots {
       if (stretch.to_s < from_s || stretch.from_s > to_s) continue;
       const left = plot.valToPos(Math.max(stretch.from_s, from_s), 'x', true);
       const right = plot.valToPos(Math.min(stretch.to_s, to_s), 'x', true);
-      ctx.globalAlpha = stretch.armed || stretch.faulted ? 0.55 : 0.25;
+      // More states than colours: the later ones are paler, and each begins with a line.
+      ctx.globalAlpha = stretch.faulted ? 0.55 : stretch.armed ? (stretch.state < STATE_COLOURS ? 0.55 : 0.3) : 0.25;
       ctx.fillStyle = stretch.faulted ? colours.bad : stretch.armed ? stateColour(stretch.state) : colours.dim;
       ctx.fillRect(left, bbox.top, right - left, bbox.height);
       ctx.globalAlpha = 1;
+      ctx.fillStyle = colours.panel;
+      ctx.fillRect(left, bbox.top, devicePixelRatio, bbox.height);
       const name = this.#stretchName(stretch);
       if (ctx.measureText(name).width + 8 < right - left) {
         ctx.fillStyle = colours.text;

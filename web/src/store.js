@@ -165,7 +165,8 @@ export class Store {
     const truth = pose(cell('true_x_m'), cell('true_y_m'), cell('true_heading_rad'));
     const origin = pose(cell('origin_x_m'), cell('origin_y_m'), cell('origin_heading_rad')) ?? IDENTITY;
     const heading_ref_rad = armed && HEADING_MODES.includes(mode) ? number(cell('heading_ref_rad')) : null;
-    const toPlace = armed && PLACE_MODES.includes(mode) && (mode === 7 || cell('reference_left') !== 0 || cell('reference_right') !== 0);
+    // Mode 8 waits in its first state, and its last goal is from an origin of before.
+    const toPlace = armed && PLACE_MODES.includes(mode) && (mode !== 8 || cell('state') !== 0);
 
     this.slow.push(t_s, {
       reference_cm: DISTANCE_MODES.includes(mode) && cell('reference_left') !== 0 ? cm('reference_left') : null,

@@ -35,10 +35,13 @@ matchMedia('(prefers-color-scheme: light)').addEventListener('change', () => {
   for (const listener of listeners) listener();
 });
 
+/** How many colours states have. */
+export const STATE_COLOURS = 6;
+
 /**
  * The colour of a state of a mode.
  * @param {number} state
  */
 export function stateColour(state) {
-  return colours[/** @type {ColourName} */ (`state-${state % 6}`)];
+  return colours[/** @type {ColourName} */ (`state-${state % STATE_COLOURS}`)];
 }
