@@ -1,0 +1,221 @@
+//! What the sonars have seen lately: points of obstacles in the frame of the odometry, as many as fit.
+//!
+//! A reading says two things. *Something is on this arc*: up to three points across the beam are put down. *Nothing is
+//! nearer in this beam*: points in it that are nearer and that were seen from about the same direction lose belief, and
+//! go when they have none left. From another direction silence says nothing: a face gives no echo when it is turned
+//! away by more than the beam's half angle and the incidence limit, 0.31 + 0.55 rad (docs/theory/mission.md).
+//!
+//! Millimetres in 16 bits and a direction in 8 keep a point in 6 bytes and its arithmetic in integers: the memory is
+//! read some ten times as often as it is written.
+
+use crate::math::{clamp, round, sin_cos};
+use crate::types::{Pose, Range, Reading, SonarId};
+
+/// How many points are remembered.
+pub const CAPACITY: usize = 48;
+/// Points nearer to each other than this are one [mm].
+const MERGE_MM: i32 = 50;
+/// Most belief in a point.
+const MOST_BELIEF: u8 = 4;
+/// Farthest point put down, of the front sonar and of one at a side [mm].
+const HORIZON_MM: [i32; 2] = [1_300, 700];
+/// Half width of the part of a beam in which a point would surely be heard, as a tangent in 256ths: 0.21 rad.
+const SURE_TANGENT: i32 = 54;
+/// A reading this much beyond a point contradicts it: [mm] and 256ths of the range.
+const BEYOND_MM: i32 = 50;
+const BEYOND_SHARE: i32 = 20;
+/// Directions alike, in 256ths of a turn: 0.47 rad.
+const ALIKE: i8 = 19;
+/// Offsets from the axis at which an arc gets points [rad].
+const ACROSS_RAD: [f32; 3] = [0.0, 0.2, -0.2];
+/// Arcs shorter than this get one point [m].
+const SHORT_M: f32 = 0.18;
+
+/// A place on the floor [mm].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// Along x.
+    pub x_mm: i16,
+    /// Along y.
+    pub y_mm: i16,
+}
+
+impl Place {
+    /// From metres; saturates at 32 m.
+    pub fn new(x_m: f32, y_m: f32) -> Self {
+        Self {
+            x_mm: to_i16(1_000.0 * x_m),
+            y_mm: to_i16(1_000.0 * y_m),
+        }
+    }
+
+    /// In metres.
+    pub fn metres(self) -> (f32, f32) {
+        (
+            f32::from(self.x_mm) * 1e-3,
+            f32::from(self.y_mm) * 1e-3,
+        )
+    }
+
+    /// From `from` to here [mm].
+    pub fn from(self, from: Place) -> (i32, i32) {
+        (
+            i32::from(self.x_mm) - i32::from(from.x_mm),
+            i32::from(self.y_mm) - i32::from(from.y_mm),
+        )
+    }
+
+    /// Square of the distance [mm^2].
+    pub fn square_mm2(self, to: Place) -> i32 {
+        let (x, y) = self.from(to);
+        // Beyond 32 m in both: saturates.
+        x.saturating_mul(x).saturating_add(y.saturating_mul(y))
+    }
+}
+
+/// A remembered point of an obstacle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Echo {
+    at: Place,
+    /// The beam's axis when it was last heard, in 256ths of a turn.
+    axis: i8,
+    /// How often it was heard of late; 0: no point.
+    belief: u8,
+}
+
+/// The memory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Echoes {
+    points: [Echo; CAPACITY],
+}
+
+impl Default for Echoes {
+    fn default() -> Self {
+        Self {
+            points: [Echo::default(); CAPACITY],
+        }
+    }
+}
+
+impl Echoes {
+    /// All points, with their numbers.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, Place)> + '_ {
+        self.points
+            .iter()
+            .enumerate()
+            .filter(|(_, point)| point.belief > 0)
+            .map(|(number, point)| (number, point.at))
+    }
+
+    /// The point with this number.
+    pub fn get(&self, number: usize) -> Option<Place> {
+        let point = self.points.get(number)?;
+        (point.belief > 0).then_some(point.at)
+    }
+
+    /// Takes a reading, made with the robot at `pose`.
+    pub fn take(&mut self, pose: &Pose, reading: &Reading) {
+        let view = &reading.view;
+        let (x_m, y_m) = pose.to_world(view.x_m, view.y_m);
+        let apex = Place::new(x_m, y_m);
+        let axis_rad = pose.heading_rad + view.axis_rad;
+        let [front_mm, side_mm] = HORIZON_MM;
+        let (range_mm, heard) = match reading.range {
+            Range::Valid(range_m) => (round(1_000.0 * range_m), true),
+            Range::Clear => (2_500, false),
+            Range::Faulty => return,
+        };
+        self.clear(apex, axis_rad, range_mm);
+        let horizon_mm = if reading.sonar == SonarId::Front {
+            front_mm
+        } else {
+            side_mm
+        };
+        if !heard || range_mm > horizon_mm {
+            return;
+        }
+        let range_m = 1e-3 * crate::math::from_u32(range_mm.unsigned_abs());
+        let robot = Place::new(pose.x_m, pose.y_m);
+        let count = if range_m < SHORT_M { 1 } else { ACROSS_RAD.len() };
+        for offset_rad in ACROSS_RAD.iter().take(count) {
+            let (sin, cos) = sin_cos(axis_rad + offset_rad);
+            let at = Place::new(x_m + range_m * cos, y_m + range_m * sin);
+            self.put(at, direction(axis_rad), robot);
+        }
+    }
+
+    /// Takes belief from the points that a beam as far as `range_mm` would have heard.
+    fn clear(&mut self, apex: Place, axis_rad: f32, range_mm: i32) {
+        let (sin, cos) = sin_cos(axis_rad);
+        let (sin, cos) = (round(sin * 16_384.0), round(cos * 16_384.0));
+        let axis = direction(axis_rad);
+        let until_mm = range_mm - BEYOND_MM - range_mm * BEYOND_SHARE / 256;
+        for point in self.points.iter_mut().filter(|point| point.belief > 0) {
+            let (x, y) = point.at.from(apex);
+            if x.abs() > until_mm || y.abs() > until_mm {
+                continue;
+            }
+            let along = (x * cos + y * sin) >> 14;
+            let across = (y * cos - x * sin) >> 14;
+            if along > 0
+                && along < until_mm
+                && across.abs() * 256 < along * SURE_TANGENT
+                && point.axis.wrapping_sub(axis).unsigned_abs() <= ALIKE.unsigned_abs()
+            {
+                point.belief -= 1;
+            }
+        }
+    }
+
+    /// Puts a point down: into one that is there already, into a free slot, or into that of the farthest.
+    fn put(&mut self, at: Place, axis: i8, robot: Place) {
+        let mut slot = None;
+        // Farther than anything: a free slot is the first choice.
+        let mut worst = at.square_mm2(robot);
+        for (number, point) in self.points.iter_mut().enumerate() {
+            let badness = if point.belief == 0 {
+                i32::MAX
+            } else if point.at.square_mm2(at) < MERGE_MM * MERGE_MM {
+                point.at = at;
+                point.axis = axis;
+                point.belief = (point.belief + 1).min(MOST_BELIEF);
+                return;
+            } else {
+                point.at.square_mm2(robot)
+            };
+            if badness > worst {
+                worst = badness;
+                slot = Some(number);
+            }
+        }
+        if let Some(point) = slot.and_then(|number| self.points.get_mut(number)) {
+            *point = Echo {
+                at,
+                axis,
+                belief: 1,
+            };
+        }
+    }
+
+    /// The place at `origin` becomes the origin.
+    pub fn move_origin(&mut self, origin: &Pose) {
+        for point in self.points.iter_mut().filter(|point| point.belief > 0) {
+            let (x_m, y_m) = point.at.metres();
+            let (ahead_m, left_m) = origin.to_local(x_m, y_m);
+            point.at = Place::new(ahead_m, left_m);
+            point.axis = point.axis.wrapping_sub(direction(origin.heading_rad));
+        }
+    }
+}
+
+/// A direction in 256ths of a turn.
+fn direction(angle_rad: f32) -> i8 {
+    let wrapped = crate::math::wrap_angle(angle_rad);
+    let turns = round(wrapped * (128.0 / core::f32::consts::PI));
+    // 128 is half a turn, as -128 is.
+    i8::try_from(turns).unwrap_or(i8::MIN)
+}
+
+fn to_i16(value: f32) -> i16 {
+    i16::try_from(round(clamp(value, -32_000.0, 32_000.0))).unwrap_or(0)
+}

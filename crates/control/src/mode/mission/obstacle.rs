@@ -1,0 +1,239 @@
+//! The obstacle in the way: the remembered points that hang together, and the directions that just pass them.
+//!
+//! Two points hang together when the robot does not fit between them. From one that blocks the way the search spreads,
+//! a few points per tick, and carries each point's bearing along without a wrap: an obstacle that reaches around the
+//! robot has its left end beyond +180 degrees or its right end beyond -180.
+//!
+//! ```text
+//! a point at distance d and bearing b blocks the directions b +- asin(R / d)      R: half of what the robot needs
+//! ```
+//!
+//! Their union is one interval, since neighbours are nearer than 2 R: its two ends are the ways around.
+
+use super::echoes::{CAPACITY, Echoes, Place};
+use crate::math::{abs, atan2, max, min, sqrt, wrap_angle};
+use core::f32::consts::{FRAC_PI_2, PI, TAU};
+
+/// Two points nearer than this hang together [mm].
+pub const LINK_MM: i32 = 290;
+/// Half of the width that the robot takes for itself when it passes a point [m].
+pub const PASS_M: f32 = 0.16;
+/// Half of the width of the way to the goal that must be clear [m].
+pub const WAY_M: f32 = 0.125;
+/// Points searched per tick.
+const PER_TICK: usize = 4;
+/// Points farther than this from the robot do not carry the search on [m].
+const SPREAD_M: f32 = 1.6;
+/// Steps of the bearings that are carried along [rad].
+const COARSE_RAD: f32 = TAU / 64.0;
+
+/// One end of an obstacle as the robot sees it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct End {
+    /// The direction that just passes it, beyond +-pi where the obstacle reaches around the robot [rad].
+    pub pass_rad: f32,
+    /// The point passed.
+    pub at: Place,
+}
+
+/// What stands in the way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Obstacle {
+    /// Its left end.
+    pub left: End,
+    /// Its right end.
+    pub right: End,
+    /// Distance to its nearest point [m].
+    pub nearest_m: f32,
+}
+
+impl Obstacle {
+    /// No direction is left.
+    pub fn closed(&self) -> bool {
+        self.left.pass_rad - self.right.pass_rad > TAU - 0.1
+    }
+}
+
+/// The search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Search {
+    /// Points that belong to it, and those of them whose neighbours are still to be found.
+    member: u64,
+    open: u64,
+    bearing: [i8; CAPACITY],
+    so_far: Obstacle,
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self {
+            member: 0,
+            open: 0,
+            bearing: [0; CAPACITY],
+            so_far: Obstacle::default(),
+        }
+    }
+}
+
+/// From where and for what is looked.
+#[derive(Clone, Copy, Debug)]
+pub struct Way {
+    /// Where the robot is [m].
+    pub x_m: f32,
+    /// Where the robot is [m].
+    pub y_m: f32,
+    /// Which way [rad].
+    pub heading_rad: f32,
+    /// How far [m].
+    pub length_m: f32,
+}
+
+impl Echoes {
+    /// The point that blocks a way soonest, and how far along [m].
+    pub fn blocking(&self, way: &Way, half_width_m: f32) -> Option<(usize, f32)> {
+        let (sin, cos) = crate::math::sin_cos(way.heading_rad);
+        let (sin, cos) = (
+            crate::math::round(sin * 16_384.0),
+            crate::math::round(cos * 16_384.0),
+        );
+        let from = Place::new(way.x_m, way.y_m);
+        let most_mm = crate::math::round(way.length_m * 1_000.0);
+        let half_mm = crate::math::round(half_width_m * 1_000.0);
+        let mut nearest_mm = most_mm;
+        let mut found = None;
+        for (number, point) in self.iter() {
+            let (x, y) = point.from(from);
+            if x.abs() > most_mm || y.abs() > most_mm {
+                continue;
+            }
+            let along = (x * cos + y * sin) >> 14;
+            let across = (y * cos - x * sin) >> 14;
+            if along > 0 && along < nearest_mm && across.abs() < half_mm {
+                nearest_mm = along;
+                found = Some(number);
+            }
+        }
+        found.map(|number| {
+            (
+                number,
+                crate::math::from_u32(nearest_mm.unsigned_abs()) * 1e-3,
+            )
+        })
+    }
+
+    /// The point nearest to a place, and its distance [m].
+    pub fn nearest(&self, x_m: f32, y_m: f32) -> Option<(usize, f32)> {
+        let from = Place::new(x_m, y_m);
+        let (number, square) = self
+            .iter()
+            .map(|(number, point)| (number, point.square_mm2(from)))
+            .min_by_key(|(_, square)| *square)?;
+        let square = crate::math::from_u32(square.unsigned_abs());
+        Some((number, sqrt(square) * 1e-3))
+    }
+}
+
+impl Search {
+    /// Begins anew at a point that blocks the way in direction `about_rad`: bearings are counted on from there.
+    pub fn begin(&mut self, echoes: &Echoes, seed: usize, x_m: f32, y_m: f32, about_rad: f32) {
+        self.member = 0;
+        self.open = 0;
+        self.so_far = Obstacle {
+            left: End {
+                pass_rad: f32::MIN,
+                at: Place::default(),
+            },
+            right: End {
+                pass_rad: f32::MAX,
+                at: Place::default(),
+            },
+            nearest_m: f32::MAX,
+        };
+        self.join(echoes, seed, x_m, y_m, about_rad);
+    }
+
+    /// Adds a point, whose bearing is near `about_rad`.
+    pub fn join(&mut self, echoes: &Echoes, number: usize, x_m: f32, y_m: f32, about_rad: f32) {
+        let Some(point) = echoes.get(number) else {
+            return;
+        };
+        let bit = 1u64 << number.min(63);
+        if self.member & bit != 0 {
+            return;
+        }
+        self.member |= bit;
+        let (px_m, py_m) = point.metres();
+        let (dx, dy) = (px_m - x_m, py_m - y_m);
+        let distance_m = sqrt(dx * dx + dy * dy);
+        if distance_m < SPREAD_M {
+            self.open |= bit;
+        }
+        let bearing_rad = about_rad + wrap_angle(atan2(dy, dx) - about_rad);
+        if let Some(slot) = self.bearing.get_mut(number) {
+            let coarse = crate::math::round(bearing_rad / COARSE_RAD);
+            *slot = i8::try_from(coarse.clamp(-127, 127)).unwrap_or(0);
+        }
+        let half_rad = half_angle(distance_m);
+        let (left_rad, right_rad) = (bearing_rad + half_rad, bearing_rad - half_rad);
+        if left_rad > self.so_far.left.pass_rad {
+            self.so_far.left = End {
+                pass_rad: left_rad,
+                at: point,
+            };
+        }
+        if right_rad < self.so_far.right.pass_rad {
+            self.so_far.right = End {
+                pass_rad: right_rad,
+                at: point,
+            };
+        }
+        self.so_far.nearest_m = min(self.so_far.nearest_m, distance_m);
+    }
+
+    /// Goes on; gives the obstacle when it is whole.
+    pub fn step(&mut self, echoes: &Echoes, x_m: f32, y_m: f32) -> Option<Obstacle> {
+        for _ in 0..PER_TICK {
+            if self.open == 0 {
+                break;
+            }
+            let number = usize::try_from(self.open.trailing_zeros()).unwrap_or(0);
+            self.open &= self.open - 1;
+            let Some(centre) = echoes.get(number) else {
+                continue;
+            };
+            let about_rad =
+                f32::from(self.bearing.get(number).copied().unwrap_or(0)) * COARSE_RAD;
+            for (other, point) in echoes.iter() {
+                if self.member & (1u64 << other.min(63)) == 0
+                    && point.square_mm2(centre) < LINK_MM * LINK_MM
+                {
+                    self.join(echoes, other, x_m, y_m, about_rad);
+                }
+            }
+        }
+        (self.open == 0 && self.member != 0).then_some(self.so_far)
+    }
+
+    /// Whether a point belongs to the obstacle.
+    pub fn has(&self, number: usize) -> bool {
+        self.member & (1u64 << number.min(63)) != 0
+    }
+}
+
+/// Half of the angle that a point at this distance blocks; beyond a right angle where the robot is too near already.
+pub fn half_angle(distance_m: f32) -> f32 {
+    if distance_m > PASS_M {
+        let along_m = sqrt(distance_m * distance_m - PASS_M * PASS_M);
+        atan2(PASS_M, along_m)
+    } else {
+        min(
+            FRAC_PI_2 + 0.8 * (PASS_M - distance_m) / PASS_M * FRAC_PI_2,
+            PI,
+        )
+    }
+}
+
+/// How far a way is from a direction, either way round.
+pub fn off_rad(a_rad: f32, b_rad: f32) -> f32 {
+    abs(wrap_angle(max(a_rad, b_rad) - min(a_rad, b_rad)))
+}
