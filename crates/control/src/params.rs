@@ -102,6 +102,7 @@ const ALIGN: Option<ModeId> = Some(ModeId::FrontAlign);
 const WALL: Option<ModeId> = Some(ModeId::WallFollow);
 const WAYPOINTS: Option<ModeId> = Some(ModeId::Waypoints);
 const STRAIGHT: Option<ModeId> = Some(ModeId::StraightLine);
+const MISSION: Option<ModeId> = Some(ModeId::Mission);
 const MANUAL: Option<ModeId> = Some(ModeId::Manual);
 
 table! {
@@ -253,6 +254,14 @@ table! {
     StraightAccel = "straight_accel_rad_s2", "rad/s2", 20.0, 1.0 => 100.0, STRAIGHT;
     /// Slope of the speed when slowing down; beyond about 10 friction alone does not follow.
     StraightDecel = "straight_decel_rad_s2", "rad/s2", 8.0, 1.0 => 100.0, STRAIGHT;
+    /// Largest speed on the way to a goal and in a lane.
+    MissionCruise = "mission_cruise_m_s", "m/s", 0.40, 0.05 => 0.8, MISSION;
+    /// Largest speed around an obstacle.
+    MissionAround = "mission_around_m_s", "m/s", 0.22, 0.05 => 0.6, MISSION;
+    /// Time after which a goal that has not been reached is given up.
+    MissionGiveUp = "mission_give_up_s", "s", 150.0, 5.0 => 3600.0, MISSION;
+    /// Each goal reached becomes the origin: 1 yes, 0 no.
+    MissionResetOrigin = "mission_reset_origin", "1", 1.0, 0.0 => 1.0, MISSION;
 }
 
 impl ParamId {

@@ -339,7 +339,10 @@ impl ActiveMode {
             Self::WallFollow(_, state) => *state = wall_follow::State::default(),
             Self::StraightLine(_, state) => *state = straight_line::State::default(),
             Self::Waypoints(_, state) => *state = waypoints::State::default(),
-            Self::Mission(_, state) => *state = mission::State::default(),
+            Self::Mission(_, state) => {
+                *state = mission::State::default();
+                state.renew();
+            }
         }
     }
 
@@ -459,7 +462,10 @@ impl ActiveMode {
             within(y_m, -FARTHEST_M, FARTHEST_M)?,
         );
         match self {
-            Self::Mission(task, _) => *task = Task::Goal { x_m, y_m },
+            Self::Mission(task, state) => {
+                *task = Task::Goal { x_m, y_m };
+                state.renew();
+            }
             Self::Waypoints(..) => {
                 let mut route = Route::empty(false, false);
                 route.push(Waypoint {
@@ -479,10 +485,11 @@ impl ActiveMode {
     /// # Errors
     /// Another mode is selected.
     pub fn follow_lane(&mut self) -> Result<(), SetpointError> {
-        let Self::Mission(task, _) = self else {
+        let Self::Mission(task, state) = self else {
             return Err(SetpointError::NotInThisMode);
         };
         *task = Task::Lane;
+        state.renew();
         Ok(())
     }
 
@@ -548,7 +555,7 @@ impl ActiveMode {
             .step(&mut (), at),
             Self::StraightLine(rad_s, state) => StraightLine::new(params, *rad_s).step(state, at),
             Self::Waypoints(route, state) => Waypoints::new(params, route).step(state, at),
-            Self::Mission(_, state) => Mission.step(state, at),
+            Self::Mission(task, state) => Mission::new(params, *task).step(state, at),
         }
     }
 }

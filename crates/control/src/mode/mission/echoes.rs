@@ -24,10 +24,17 @@ const SURE_TANGENT: i32 = 54;
 /// A reading this much beyond a point contradicts it: [mm] and 256ths of the range.
 const BEYOND_MM: i32 = 50;
 const BEYOND_SHARE: i32 = 20;
+/// Half width of a beam, as a tangent in 256ths: 0.33 rad.
+const BEAM_TANGENT: i32 = 88;
+/// An echo this near to the distance of a point may be the point's: [mm] and 256ths of the range.
+const ALIKE_MM: i32 = 25;
+const ALIKE_SHARE: i32 = 8;
 /// Directions alike, in 256ths of a turn: 0.47 rad.
 const ALIKE: i8 = 19;
 /// Offsets from the axis at which an arc gets points [rad].
 const ACROSS_RAD: [f32; 3] = [0.0, 0.2, -0.2];
+/// Echoes nearer than this always leave a point: what is near must not be missed [mm].
+const NEAR_MM: i32 = 300;
 /// Arcs shorter than this get one point [m].
 const SHORT_M: f32 = 0.18;
 
@@ -51,10 +58,7 @@ impl Place {
 
     /// In metres.
     pub fn metres(self) -> (f32, f32) {
-        (
-            f32::from(self.x_mm) * 1e-3,
-            f32::from(self.y_mm) * 1e-3,
-        )
+        (f32::from(self.x_mm) * 1e-3, f32::from(self.y_mm) * 1e-3)
     }
 
     /// From `from` to here [mm].
@@ -135,8 +139,16 @@ impl Echoes {
             return;
         }
         let range_m = 1e-3 * crate::math::from_u32(range_mm.unsigned_abs());
+        let explained = self.explain(apex, axis_rad, range_mm);
+        if explained && range_mm > NEAR_MM {
+            return;
+        }
         let robot = Place::new(pose.x_m, pose.y_m);
-        let count = if range_m < SHORT_M { 1 } else { ACROSS_RAD.len() };
+        let count = if explained || range_m < SHORT_M {
+            1
+        } else {
+            ACROSS_RAD.len()
+        };
         for offset_rad in ACROSS_RAD.iter().take(count) {
             let (sin, cos) = sin_cos(axis_rad + offset_rad);
             let at = Place::new(x_m + range_m * cos, y_m + range_m * sin);
@@ -165,6 +177,38 @@ impl Echoes {
                 point.belief -= 1;
             }
         }
+    }
+
+    /// Whether a point that is known already can have given this echo: it is believed more then, and the echo says nothing new.
+    fn explain(&mut self, apex: Place, axis_rad: f32, range_mm: i32) -> bool {
+        let (sin, cos) = sin_cos(axis_rad);
+        let (sin, cos) = (round(sin * 16_384.0), round(cos * 16_384.0));
+        let within_mm = ALIKE_MM + range_mm * ALIKE_SHARE / 256;
+        let (near_mm, far_mm) = (range_mm - within_mm, range_mm + within_mm);
+        let (near_mm2, far_mm2) = (near_mm * near_mm, far_mm * far_mm);
+        let mut best: Option<&mut Echo> = None;
+        for point in self.points.iter_mut().filter(|point| point.belief > 0) {
+            let (x, y) = point.at.from(apex);
+            if x.abs() > far_mm || y.abs() > far_mm {
+                continue;
+            }
+            let square_mm2 = x * x + y * y;
+            let along = (x * cos + y * sin) >> 14;
+            let across = (y * cos - x * sin) >> 14;
+            if square_mm2 > near_mm2
+                && square_mm2 < far_mm2
+                && across.abs() * 256 < along * BEAM_TANGENT
+                && best.as_ref().is_none_or(|best| best.belief < point.belief)
+            {
+                best = Some(point);
+            }
+        }
+        let Some(point) = best else {
+            return false;
+        };
+        point.axis = direction(axis_rad);
+        point.belief = (point.belief + 1).min(MOST_BELIEF);
+        true
     }
 
     /// Puts a point down: into one that is there already, into a free slot, or into that of the farthest.

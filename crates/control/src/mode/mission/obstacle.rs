@@ -11,7 +11,7 @@
 //! Their union is one interval, since neighbours are nearer than 2 R: its two ends are the ways around.
 
 use super::echoes::{CAPACITY, Echoes, Place};
-use crate::math::{abs, atan2, max, min, sqrt, wrap_angle};
+use crate::math::{atan2, from_u32, min, round, sin_cos, sqrt, wrap_angle};
 use core::f32::consts::{FRAC_PI_2, PI, TAU};
 
 /// Two points nearer than this hang together [mm].
@@ -91,19 +91,26 @@ pub struct Way {
 impl Echoes {
     /// The point that blocks a way soonest, and how far along [m].
     pub fn blocking(&self, way: &Way, half_width_m: f32) -> Option<(usize, f32)> {
-        let (sin, cos) = crate::math::sin_cos(way.heading_rad);
-        let (sin, cos) = (
-            crate::math::round(sin * 16_384.0),
-            crate::math::round(cos * 16_384.0),
-        );
+        self.blocking_but(way, half_width_m, |_| false)
+    }
+
+    /// The same, some points left out.
+    pub fn blocking_but(
+        &self,
+        way: &Way,
+        half_width_m: f32,
+        leave_out: impl Fn(usize) -> bool,
+    ) -> Option<(usize, f32)> {
+        let (sin, cos) = sin_cos(way.heading_rad);
+        let (sin, cos) = (round(sin * 16_384.0), round(cos * 16_384.0));
         let from = Place::new(way.x_m, way.y_m);
-        let most_mm = crate::math::round(way.length_m * 1_000.0);
-        let half_mm = crate::math::round(half_width_m * 1_000.0);
+        let most_mm = round(way.length_m * 1_000.0);
+        let half_mm = round(half_width_m * 1_000.0);
         let mut nearest_mm = most_mm;
         let mut found = None;
         for (number, point) in self.iter() {
             let (x, y) = point.from(from);
-            if x.abs() > most_mm || y.abs() > most_mm {
+            if x.abs() > most_mm || y.abs() > most_mm || leave_out(number) {
                 continue;
             }
             let along = (x * cos + y * sin) >> 14;
@@ -113,12 +120,8 @@ impl Echoes {
                 found = Some(number);
             }
         }
-        found.map(|number| {
-            (
-                number,
-                crate::math::from_u32(nearest_mm.unsigned_abs()) * 1e-3,
-            )
-        })
+        let along_m = from_u32(nearest_mm.unsigned_abs()) * 1e-3;
+        found.map(|number| (number, along_m))
     }
 
     /// The point nearest to a place, and its distance [m].
@@ -128,7 +131,7 @@ impl Echoes {
             .iter()
             .map(|(number, point)| (number, point.square_mm2(from)))
             .min_by_key(|(_, square)| *square)?;
-        let square = crate::math::from_u32(square.unsigned_abs());
+        let square = from_u32(square.unsigned_abs());
         Some((number, sqrt(square) * 1e-3))
     }
 }
@@ -170,7 +173,7 @@ impl Search {
         }
         let bearing_rad = about_rad + wrap_angle(atan2(dy, dx) - about_rad);
         if let Some(slot) = self.bearing.get_mut(number) {
-            let coarse = crate::math::round(bearing_rad / COARSE_RAD);
+            let coarse = round(bearing_rad / COARSE_RAD);
             *slot = i8::try_from(coarse.clamp(-127, 127)).unwrap_or(0);
         }
         let half_rad = half_angle(distance_m);
@@ -201,8 +204,7 @@ impl Search {
             let Some(centre) = echoes.get(number) else {
                 continue;
             };
-            let about_rad =
-                f32::from(self.bearing.get(number).copied().unwrap_or(0)) * COARSE_RAD;
+            let about_rad = f32::from(self.bearing.get(number).copied().unwrap_or(0)) * COARSE_RAD;
             for (other, point) in echoes.iter() {
                 if self.member & (1u64 << other.min(63)) == 0
                     && point.square_mm2(centre) < LINK_MM * LINK_MM
@@ -231,9 +233,4 @@ pub fn half_angle(distance_m: f32) -> f32 {
             PI,
         )
     }
-}
-
-/// How far a way is from a direction, either way round.
-pub fn off_rad(a_rad: f32, b_rad: f32) -> f32 {
-    abs(wrap_angle(max(a_rad, b_rad) - min(a_rad, b_rad)))
 }

@@ -1,0 +1,103 @@
+//! What the remembered points mean for the way to the goal: clear, or an obstacle with two ends.
+//!
+//! One round takes a few ticks: look along the way, find the obstacle that blocks it, publish. While the robot goes around an obstacle
+//! the round starts from the point nearest to the side that it keeps to it, so that it follows that one and not the next.
+
+use super::echoes::{Echoes, Place};
+use super::obstacle::{Obstacle, Search, WAY_M, Way, half_angle};
+use crate::math::{atan2, wrap_angle};
+use crate::types::{Pose, Side};
+use core::f32::consts::FRAC_PI_2;
+
+/// How far ahead the way to the goal is judged [m].
+pub const HORIZON_M: f32 = 1.3;
+/// The obstacle that the robot goes around is no farther than this [m].
+const BESIDE_M: f32 = 0.45;
+/// Where the obstacle that is gone around is looked for, beside the middle of the axis [m].
+const BESIDE_CENTRE_M: f32 = 0.15;
+/// Within this length a way past an obstacle must be clear of others [m].
+const PAST_M: f32 = 0.5;
+
+/// The planner's memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Plan {
+    search: Search,
+    busy: bool,
+    /// The obstacle of the last round.
+    pub obstacle: Option<Obstacle>,
+    /// How far the way to the goal is clear, as far as known; beyond [`HORIZON_M`] where nothing blocks it [m].
+    pub clear_m: f32,
+    /// What blocks it is the obstacle of the last round.
+    pub same: bool,
+}
+
+impl Plan {
+    /// One tick; says whether a round has ended. `way` leads to the goal, `around` is the side on which the obstacle is passed.
+    pub fn step(&mut self, echoes: &Echoes, pose: &Pose, way: &Way, around: Option<Side>) -> bool {
+        if !self.busy {
+            let blocking = echoes.blocking(way, WAY_M);
+            self.clear_m = blocking.map_or(f32::MAX, |(_, along_m)| along_m);
+            self.same = blocking.is_some_and(|(number, _)| self.search.has(number));
+            let beside = around.and_then(|side| beside(echoes, pose, side));
+            let seed = beside.or(blocking.map(|(number, _)| (number, way.heading_rad)));
+            let Some((number, about_rad)) = seed else {
+                self.obstacle = None;
+                return true;
+            };
+            self.search
+                .begin(echoes, number, pose.x_m, pose.y_m, about_rad);
+            self.busy = true;
+        }
+        let Some(obstacle) = self.search.step(echoes, pose.x_m, pose.y_m) else {
+            return false;
+        };
+        self.obstacle = Some(obstacle);
+        self.busy = false;
+        true
+    }
+
+    /// The direction that passes the obstacle on a side, in the middle of what others leave [rad].
+    pub fn past_rad(&self, echoes: &Echoes, pose: &Pose, side: Side) -> Option<f32> {
+        let obstacle = self.obstacle?;
+        let (pass_rad, sign) = match side {
+            Side::Left => (obstacle.left.pass_rad, 1.0),
+            Side::Right => (obstacle.right.pass_rad, -1.0),
+        };
+        let mut past_rad = wrap_angle(pass_rad);
+        let way = Way {
+            x_m: pose.x_m,
+            y_m: pose.y_m,
+            heading_rad: past_rad,
+            length_m: PAST_M,
+        };
+        let other = echoes.blocking_but(&way, WAY_M, |number| self.search.has(number));
+        if let Some(point) = other.and_then(|(number, _)| echoes.get(number)) {
+            let (bearing_rad, distance_m) = seen_from(pose, point);
+            let limit_rad = bearing_rad - sign * half_angle(distance_m);
+            let over_rad = sign * wrap_angle(limit_rad - past_rad);
+            if over_rad < 0.0 {
+                past_rad = wrap_angle(past_rad + 0.5 * sign * over_rad);
+            }
+        }
+        Some(past_rad)
+    }
+}
+
+/// Direction and distance of a place [rad, m].
+fn seen_from(pose: &Pose, place: Place) -> (f32, f32) {
+    let (x_m, y_m) = place.metres();
+    let (dx, dy) = (x_m - pose.x_m, y_m - pose.y_m);
+    (atan2(dy, dx), crate::math::sqrt(dx * dx + dy * dy))
+}
+
+/// The point of the obstacle that is passed on `side`, and about where it lies [rad].
+fn beside(echoes: &Echoes, pose: &Pose, side: Side) -> Option<(usize, f32)> {
+    // What is passed on the left is on the right.
+    let sign = match side {
+        Side::Left => -1.0,
+        Side::Right => 1.0,
+    };
+    let (x_m, y_m) = pose.to_world(0.0, sign * BESIDE_CENTRE_M);
+    let (number, distance_m) = echoes.nearest(x_m, y_m)?;
+    (distance_m < BESIDE_M).then_some((number, pose.heading_rad + sign * FRAC_PI_2))
+}
