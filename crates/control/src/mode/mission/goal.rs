@@ -16,6 +16,17 @@ const LOOK_M: f32 = 0.62;
 /// The servo looks this far to each side on the way, while sweeping, and to the far side of an obstacle that is followed [rad].
 const SWING_RAD: f32 = 0.75;
 const SWEEP_RAD: f32 = 1.5;
+/// To the side where something is near, and to the other [rad].
+const WIDE_RAD: f32 = 1.0;
+const NARROW_RAD: f32 = 0.35;
+/// Near is what a sonar at the side sees within this [m].
+const NEAR_M: f32 = 0.3;
+/// A heading error beyond this is a turn [rad].
+const TURNS_RAD: f32 = 0.2;
+/// Something within this of the middle of the axis makes the robot careful [m].
+const CAREFUL_M: f32 = 0.33;
+/// Heading error that halves the speed then [rad].
+const CAREFUL_RAD: f32 = 0.2;
 /// Heading errors beyond this are turned on the spot [rad].
 const SPOT_RAD: f32 = 0.7;
 /// Until this is left [rad].
@@ -80,10 +91,7 @@ impl Mission {
             detour.way_m += abs(estimate.rolled_m);
         }
         let around = state.detour.as_ref().map(|detour| detour.side);
-        let following = matches!(
-            state.phase,
-            Phase::AvoidanceTurn | Phase::Seek | Phase::Along | Phase::SafeDistance
-        );
+        let following = following(state.phase);
         let planned = state
             .plan
             .step(&state.echoes, pose, &way, around.filter(|_| following));
@@ -182,7 +190,11 @@ impl Mission {
             }
             return Drive::Release;
         }
-        let limit_m_s = min(self.free_m_s(state), self.cruise_m_s);
+        let error_rad = wrap_angle(state.heading_ref_rad - estimate.pose.heading_rad);
+        let limit_m_s = min(
+            self.free_m_s(state),
+            self.careful_m_s(state, estimate, error_rad),
+        );
         let step = self
             .line
             .step(&mut state.line, estimate, &state.segment, limit_m_s);
@@ -202,6 +214,17 @@ impl Mission {
     fn free_m_s(&self, state: &State) -> f32 {
         let room_m = max(state.gap_m - KEEP_M, 0.0);
         sqrt(2.0 * self.brake_m_s2 * room_m)
+    }
+
+    /// Fastest speed with what is near.
+    fn careful_m_s(&self, state: &State, estimate: &Estimate, error_rad: f32) -> f32 {
+        let pose = &estimate.pose;
+        match state.echoes.nearest(pose.x_m, pose.y_m) {
+            Some((_, distance_m)) if distance_m < CAREFUL_M => {
+                self.around_m_s / (1.0 + abs(error_rad) / CAREFUL_RAD)
+            }
+            _ => self.cruise_m_s,
+        }
     }
 
     fn sweep(&self, state: &mut State, estimate: &Estimate, left_m: f32) -> Drive {
@@ -306,8 +329,8 @@ impl Mission {
             return Drive::Release;
         }
         state.phase = self.beside(state, estimate, detour.side);
-        let slow = 1.0 / (1.0 + abs(error_rad) / 0.3);
-        let speed_m_s = min(self.free_m_s(state), self.around_m_s * slow);
+        let careful_m_s = self.careful_m_s(state, estimate, error_rad);
+        let speed_m_s = min(self.free_m_s(state), min(self.around_m_s, careful_m_s));
         if speed_m_s < 0.03 {
             state.phase = Phase::AvoidanceTurn;
             state.turn = TurnState::default();
@@ -380,6 +403,36 @@ fn around_m(here: (f32, f32), past: Place, goal_m: (f32, f32)) -> f32 {
     leg(here, (x_m, y_m)) + leg((x_m, y_m), goal_m)
 }
 
+/// How far to the right and to the left the servo swings: mostly to where something is near, or where the robot turns to.
+fn swing(state: &State, estimate: &Estimate) -> (f32, f32) {
+    use crate::types::{Range, SonarId};
+    let near =
+        |sonar| matches!(estimate.range(sonar).range, Range::Valid(range_m) if range_m < NEAR_M);
+    let (mut right, mut left) = (near(SonarId::Right), near(SonarId::Left));
+    let error_rad = wrap_angle(state.heading_ref_rad - estimate.pose.heading_rad);
+    if following(state.phase) {
+        match state.detour.map(|detour| detour.side) {
+            Some(Side::Left) => right = true,
+            Some(Side::Right) => left = true,
+            None => {}
+        }
+    }
+    left |= error_rad > TURNS_RAD;
+    right |= error_rad < -TURNS_RAD;
+    match (right, left) {
+        (true, false) => (-WIDE_RAD, NARROW_RAD),
+        (false, true) => (-NARROW_RAD, WIDE_RAD),
+        _ => (-SWING_RAD, SWING_RAD),
+    }
+}
+
+fn following(phase: Phase) -> bool {
+    matches!(
+        phase,
+        Phase::AvoidanceTurn | Phase::Seek | Phase::Along | Phase::SafeDistance
+    )
+}
+
 /// Where the servo points: to and fro.
 fn look(state: &mut State, estimate: &Estimate) -> Look {
     let (right_rad, left_rad) = match state.phase {
@@ -391,7 +444,7 @@ fn look(state: &mut State, estimate: &Estimate) -> Look {
             state.servo_left = true;
             (0.0, SWEEP_RAD)
         }
-        _ => (-SWING_RAD, SWING_RAD),
+        _ => swing(state, estimate),
     };
     if estimate.servo_rad >= left_rad {
         state.servo_left = false;
