@@ -111,6 +111,7 @@ impl Mission {
             Phase::Wait | Phase::Unreachable => Drive::Release,
             Phase::Initialise => {
                 state.age_s = 0.0;
+                state.laps = 0;
                 state.detour = None;
                 self.face(state, pose, goal_m, 0.1);
                 Drive::Release
@@ -293,7 +294,14 @@ impl Mission {
             detour.away = true;
         }
         if detour.away && detour.way_m > 1.2 && from_met_mm2 < back_mm * back_mm {
-            state.phase = Phase::Unreachable;
+            if state.plan.same || state.laps > 0 {
+                state.phase = Phase::Unreachable;
+            } else {
+                // Once around something that is not in the way.
+                state.laps += 1;
+                state.detour = None;
+                self.face(state, pose, goal_m, SPOT_RAD);
+            }
             return Drive::Release;
         }
         if planned {

@@ -121,6 +121,8 @@ pub struct State {
     gap_m: f32,
     age_s: f32,
     servo_left: bool,
+    /// Times once around something.
+    laps: u8,
 }
 
 impl State {

@@ -126,9 +126,20 @@ impl Echoes {
 
     /// The point nearest to a place, and its distance [m].
     pub fn nearest(&self, x_m: f32, y_m: f32) -> Option<(usize, f32)> {
+        self.nearest_of(x_m, y_m, |_| true)
+    }
+
+    /// The same among some of the points.
+    pub fn nearest_of(
+        &self,
+        x_m: f32,
+        y_m: f32,
+        among: impl Fn(usize) -> bool,
+    ) -> Option<(usize, f32)> {
         let from = Place::new(x_m, y_m);
         let (number, square) = self
             .iter()
+            .filter(|(number, _)| among(*number))
             .map(|(number, point)| (number, point.square_mm2(from)))
             .min_by_key(|(_, square)| *square)?;
         let square = from_u32(square.unsigned_abs());

@@ -38,7 +38,7 @@ impl Plan {
             let blocking = echoes.blocking(way, WAY_M);
             self.clear_m = blocking.map_or(f32::MAX, |(_, along_m)| along_m);
             self.same = blocking.is_some_and(|(number, _)| self.search.has(number));
-            let beside = around.and_then(|side| beside(echoes, pose, side));
+            let beside = around.and_then(|side| self.beside(echoes, pose, side));
             let seed = beside.or(blocking.map(|(number, _)| (number, way.heading_rad)));
             let Some((number, about_rad)) = seed else {
                 self.obstacle = None;
@@ -54,6 +54,18 @@ impl Plan {
         self.obstacle = Some(obstacle);
         self.busy = false;
         true
+    }
+
+    /// The point of the last round's obstacle that is nearest to the side on which it is kept, and about where it lies [rad].
+    fn beside(&self, echoes: &Echoes, pose: &Pose, side: Side) -> Option<(usize, f32)> {
+        // What is passed on the left is on the right.
+        let sign = match side {
+            Side::Left => -1.0,
+            Side::Right => 1.0,
+        };
+        let (x_m, y_m) = pose.to_world(0.0, sign * BESIDE_CENTRE_M);
+        let (number, distance_m) = echoes.nearest_of(x_m, y_m, |number| self.search.has(number))?;
+        (distance_m < BESIDE_M).then_some((number, pose.heading_rad + sign * FRAC_PI_2))
     }
 
     /// The direction that passes the obstacle on a side, in the middle of what others leave [rad].
@@ -88,16 +100,4 @@ fn seen_from(pose: &Pose, place: Place) -> (f32, f32) {
     let (x_m, y_m) = place.metres();
     let (dx, dy) = (x_m - pose.x_m, y_m - pose.y_m);
     (atan2(dy, dx), crate::math::sqrt(dx * dx + dy * dy))
-}
-
-/// The point of the obstacle that is passed on `side`, and about where it lies [rad].
-fn beside(echoes: &Echoes, pose: &Pose, side: Side) -> Option<(usize, f32)> {
-    // What is passed on the left is on the right.
-    let sign = match side {
-        Side::Left => -1.0,
-        Side::Right => 1.0,
-    };
-    let (x_m, y_m) = pose.to_world(0.0, sign * BESIDE_CENTRE_M);
-    let (number, distance_m) = echoes.nearest(x_m, y_m)?;
-    (distance_m < BESIDE_M).then_some((number, pose.heading_rad + sign * FRAC_PI_2))
 }
