@@ -15,8 +15,10 @@ use crate::types::{Pose, Range, Reading, SonarId};
 pub const CAPACITY: usize = 48;
 /// Points nearer to each other than this are one [mm].
 const MERGE_MM: i32 = 50;
-/// Most belief in a point.
-const MOST_BELIEF: u8 = 4;
+/// Belief in a point heard once, in one heard again, and the most.
+const FRESH: u8 = 2;
+const FIRM: u8 = 3;
+const MOST_BELIEF: u8 = 6;
 /// Farthest point put down, of the front sonar and of one at a side [mm].
 const HORIZON_MM: [i32; 2] = [1_300, 700];
 /// Half width of the part of a beam in which a point would surely be heard, as a tangent in 256ths: 0.21 rad.
@@ -111,6 +113,22 @@ impl Echoes {
             .map(|(number, point)| (number, point.at))
     }
 
+    /// The points that have been heard more than once.
+    pub fn firm(&self) -> impl Iterator<Item = (usize, Place)> + '_ {
+        self.points
+            .iter()
+            .enumerate()
+            .filter(|(_, point)| point.belief >= FIRM)
+            .map(|(number, point)| (number, point.at))
+    }
+
+    /// Forgets what was heard once, some time ago. To be called now and then.
+    pub fn fade(&mut self) {
+        for point in self.points.iter_mut().filter(|point| point.belief < FIRM) {
+            point.belief = point.belief.saturating_sub(1);
+        }
+    }
+
     /// The point with this number.
     pub fn get(&self, number: usize) -> Option<Place> {
         let point = self.points.get(number)?;
@@ -174,7 +192,11 @@ impl Echoes {
                 && across.abs() * 256 < along * SURE_TANGENT
                 && point.axis.wrapping_sub(axis).unsigned_abs() <= ALIKE.unsigned_abs()
             {
-                point.belief -= 1;
+                point.belief = if point.belief < FIRM {
+                    0
+                } else {
+                    point.belief - 1
+                };
             }
         }
     }
@@ -207,7 +229,7 @@ impl Echoes {
             return false;
         };
         point.axis = direction(axis_rad);
-        point.belief = (point.belief + 1).min(MOST_BELIEF);
+        point.belief = (point.belief + 1).clamp(FIRM, MOST_BELIEF);
         true
     }
 
@@ -222,7 +244,7 @@ impl Echoes {
             } else if point.at.square_mm2(at) < MERGE_MM * MERGE_MM {
                 point.at = at;
                 point.axis = axis;
-                point.belief = (point.belief + 1).min(MOST_BELIEF);
+                point.belief = (point.belief + 1).clamp(FIRM, MOST_BELIEF);
                 return;
             } else {
                 point.at.square_mm2(robot)
@@ -236,7 +258,7 @@ impl Echoes {
             *point = Echo {
                 at,
                 axis,
-                belief: 1,
+                belief: FRESH,
             };
         }
     }

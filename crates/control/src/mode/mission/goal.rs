@@ -87,6 +87,11 @@ impl Mission {
             return action;
         }
         state.age_s += TICK_S;
+        state.fade_s += TICK_S;
+        if state.fade_s > FADE_S {
+            state.fade_s = 0.0;
+            state.echoes.fade();
+        }
         if let Some(detour) = &mut state.detour {
             detour.way_m += abs(estimate.rolled_m);
         }
@@ -322,8 +327,8 @@ impl Mission {
                     detour.side = side;
                 }
             }
-            if let Some(past_rad) = state.plan.past_rad(&state.echoes, pose, detour.side) {
-                state.heading_ref_rad = past_rad;
+            if state.plan.obstacle.is_some() {
+                state.heading_ref_rad = state.plan.past_rad;
             }
         }
         state.detour = Some(detour);
@@ -410,6 +415,9 @@ fn around_m(here: (f32, f32), past: Place, goal_m: (f32, f32)) -> f32 {
     };
     leg(here, (x_m, y_m)) + leg((x_m, y_m), goal_m)
 }
+
+/// Time between two fadings of the memory [s].
+const FADE_S: f32 = 1.0;
 
 /// How far to the right and to the left the servo swings: mostly to where something is near, or where the robot turns to.
 fn swing(state: &State, estimate: &Estimate) -> (f32, f32) {

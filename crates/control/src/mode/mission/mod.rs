@@ -120,6 +120,7 @@ pub struct State {
     lost_m: f32,
     gap_m: f32,
     age_s: f32,
+    fade_s: f32,
     servo_left: bool,
     /// Times once around something.
     laps: u8,

@@ -91,37 +91,12 @@ pub struct Way {
 impl Echoes {
     /// The point that blocks a way soonest, and how far along [m].
     pub fn blocking(&self, way: &Way, half_width_m: f32) -> Option<(usize, f32)> {
-        self.blocking_but(way, half_width_m, |_| false)
+        blocking(self.iter(), way, half_width_m)
     }
 
-    /// The same, some points left out.
-    pub fn blocking_but(
-        &self,
-        way: &Way,
-        half_width_m: f32,
-        leave_out: impl Fn(usize) -> bool,
-    ) -> Option<(usize, f32)> {
-        let (sin, cos) = sin_cos(way.heading_rad);
-        let (sin, cos) = (round(sin * 16_384.0), round(cos * 16_384.0));
-        let from = Place::new(way.x_m, way.y_m);
-        let most_mm = round(way.length_m * 1_000.0);
-        let half_mm = round(half_width_m * 1_000.0);
-        let mut nearest_mm = most_mm;
-        let mut found = None;
-        for (number, point) in self.iter() {
-            let (x, y) = point.from(from);
-            if x.abs() > most_mm || y.abs() > most_mm || leave_out(number) {
-                continue;
-            }
-            let along = (x * cos + y * sin) >> 14;
-            let across = (y * cos - x * sin) >> 14;
-            if along > 0 && along < nearest_mm && across.abs() < half_mm {
-                nearest_mm = along;
-                found = Some(number);
-            }
-        }
-        let along_m = from_u32(nearest_mm.unsigned_abs()) * 1e-3;
-        found.map(|number| (number, along_m))
+    /// The same among the points that have been heard more than once.
+    pub fn surely_blocking(&self, way: &Way, half_width_m: f32) -> Option<(usize, f32)> {
+        blocking(self.firm(), way, half_width_m)
     }
 
     /// The point nearest to a place, and its distance [m].
@@ -216,7 +191,7 @@ impl Search {
                 continue;
             };
             let about_rad = f32::from(self.bearing.get(number).copied().unwrap_or(0)) * COARSE_RAD;
-            for (other, point) in echoes.iter() {
+            for (other, point) in echoes.firm() {
                 if self.member & (1u64 << other.min(63)) == 0
                     && point.square_mm2(centre) < LINK_MM * LINK_MM
                 {
@@ -244,4 +219,33 @@ pub fn half_angle(distance_m: f32) -> f32 {
             PI,
         )
     }
+}
+
+/// The point among some that blocks a way soonest, and how far along [m].
+pub fn blocking(
+    points: impl Iterator<Item = (usize, Place)>,
+    way: &Way,
+    half_width_m: f32,
+) -> Option<(usize, f32)> {
+    let (sin, cos) = sin_cos(way.heading_rad);
+    let (sin, cos) = (round(sin * 16_384.0), round(cos * 16_384.0));
+    let from = Place::new(way.x_m, way.y_m);
+    let most_mm = round(way.length_m * 1_000.0);
+    let half_mm = round(half_width_m * 1_000.0);
+    let mut nearest_mm = most_mm;
+    let mut found = None;
+    for (number, point) in points {
+        let (x, y) = point.from(from);
+        if x.abs() > most_mm || y.abs() > most_mm {
+            continue;
+        }
+        let along = (x * cos + y * sin) >> 14;
+        let across = (y * cos - x * sin) >> 14;
+        if along > 0 && along < nearest_mm && across.abs() < half_mm {
+            nearest_mm = along;
+            found = Some(number);
+        }
+    }
+    let along_m = from_u32(nearest_mm.unsigned_abs()) * 1e-3;
+    found.map(|number| (number, along_m))
 }

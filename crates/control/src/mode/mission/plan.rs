@@ -4,7 +4,7 @@
 //! the round starts from the point nearest to the side that it keeps to it, so that it follows that one and not the next.
 
 use super::echoes::{Echoes, Place};
-use super::obstacle::{Obstacle, Search, WAY_M, Way, half_angle};
+use super::obstacle::{Obstacle, Search, WAY_M, Way, blocking, half_angle};
 use crate::math::{atan2, wrap_angle};
 use crate::types::{Pose, Side};
 use core::f32::consts::FRAC_PI_2;
@@ -17,6 +17,8 @@ const BESIDE_M: f32 = 0.45;
 const BESIDE_CENTRE_M: f32 = 0.15;
 /// Within this length a way past an obstacle must be clear of others [m].
 const PAST_M: f32 = 0.5;
+/// Another obstacle that leaves less than this much too little is passed in the middle [rad].
+const TIGHT_RAD: f32 = 0.35;
 
 /// The planner's memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,6 +27,8 @@ pub struct Plan {
     busy: bool,
     /// The obstacle of the last round.
     pub obstacle: Option<Obstacle>,
+    /// The direction that passes it on the side that was asked for [rad].
+    pub past_rad: f32,
     /// How far the way to the goal is clear, as far as known; beyond [`HORIZON_M`] where nothing blocks it [m].
     pub clear_m: f32,
     /// What blocks it is the obstacle of the last round.
@@ -35,11 +39,11 @@ impl Plan {
     /// One tick; says whether a round has ended. `way` leads to the goal, `around` is the side on which the obstacle is passed.
     pub fn step(&mut self, echoes: &Echoes, pose: &Pose, way: &Way, around: Option<Side>) -> bool {
         if !self.busy {
-            let blocking = echoes.blocking(way, WAY_M);
-            self.clear_m = blocking.map_or(f32::MAX, |(_, along_m)| along_m);
-            self.same = blocking.is_some_and(|(number, _)| self.search.has(number));
+            let in_way = echoes.surely_blocking(way, WAY_M);
+            self.clear_m = in_way.map_or(f32::MAX, |(_, along_m)| along_m);
+            self.same = in_way.is_some_and(|(number, _)| self.search.has(number));
             let beside = around.and_then(|side| self.beside(echoes, pose, side));
-            let seed = beside.or(blocking.map(|(number, _)| (number, way.heading_rad)));
+            let seed = beside.or(in_way.map(|(number, _)| (number, way.heading_rad)));
             let Some((number, about_rad)) = seed else {
                 self.obstacle = None;
                 return true;
@@ -51,9 +55,57 @@ impl Plan {
         let Some(obstacle) = self.search.step(echoes, pose.x_m, pose.y_m) else {
             return false;
         };
+        self.past_rad = wrap_angle(obstacle.left.pass_rad);
+        if let Some(side) = around {
+            let (past_rad, joined) = self.past(echoes, pose, side, &obstacle);
+            if joined {
+                return false;
+            }
+            self.past_rad = past_rad;
+        }
         self.obstacle = Some(obstacle);
         self.busy = false;
         true
+    }
+
+    /// The direction that passes the obstacle on a side, in the middle of what others leave [rad]; or another leaves nothing,
+    /// and is part of the obstacle from now on.
+    fn past(
+        &mut self,
+        echoes: &Echoes,
+        pose: &Pose,
+        side: Side,
+        obstacle: &Obstacle,
+    ) -> (f32, bool) {
+        let (pass_rad, sign) = match side {
+            Side::Left => (obstacle.left.pass_rad, 1.0),
+            Side::Right => (obstacle.right.pass_rad, -1.0),
+        };
+        let way = Way {
+            x_m: pose.x_m,
+            y_m: pose.y_m,
+            heading_rad: wrap_angle(pass_rad),
+            length_m: PAST_M,
+        };
+        let others = echoes
+            .firm()
+            .filter(|(number, _)| !self.search.has(*number));
+        let other = blocking(others, &way, WAY_M);
+        let Some((number, point)) =
+            other.and_then(|(number, _)| Some((number, echoes.get(number)?)))
+        else {
+            return (way.heading_rad, false);
+        };
+        let (bearing_rad, distance_m) = seen_from(pose, point);
+        let limit_rad = bearing_rad - sign * half_angle(distance_m);
+        let over_rad = sign * wrap_angle(limit_rad - way.heading_rad);
+        if over_rad < -TIGHT_RAD {
+            self.search
+                .join(echoes, number, pose.x_m, pose.y_m, pass_rad);
+            return (way.heading_rad, true);
+        }
+        let aside_rad = 0.5 * sign * crate::math::min(over_rad, 0.0);
+        (wrap_angle(way.heading_rad + aside_rad), false)
     }
 
     /// The point of the last round's obstacle that is nearest to the side on which it is kept, and about where it lies [rad].
@@ -66,32 +118,6 @@ impl Plan {
         let (x_m, y_m) = pose.to_world(0.0, sign * BESIDE_CENTRE_M);
         let (number, distance_m) = echoes.nearest_of(x_m, y_m, |number| self.search.has(number))?;
         (distance_m < BESIDE_M).then_some((number, pose.heading_rad + sign * FRAC_PI_2))
-    }
-
-    /// The direction that passes the obstacle on a side, in the middle of what others leave [rad].
-    pub fn past_rad(&self, echoes: &Echoes, pose: &Pose, side: Side) -> Option<f32> {
-        let obstacle = self.obstacle?;
-        let (pass_rad, sign) = match side {
-            Side::Left => (obstacle.left.pass_rad, 1.0),
-            Side::Right => (obstacle.right.pass_rad, -1.0),
-        };
-        let mut past_rad = wrap_angle(pass_rad);
-        let way = Way {
-            x_m: pose.x_m,
-            y_m: pose.y_m,
-            heading_rad: past_rad,
-            length_m: PAST_M,
-        };
-        let other = echoes.blocking_but(&way, WAY_M, |number| self.search.has(number));
-        if let Some(point) = other.and_then(|(number, _)| echoes.get(number)) {
-            let (bearing_rad, distance_m) = seen_from(pose, point);
-            let limit_rad = bearing_rad - sign * half_angle(distance_m);
-            let over_rad = sign * wrap_angle(limit_rad - past_rad);
-            if over_rad < 0.0 {
-                past_rad = wrap_angle(past_rad + 0.5 * sign * over_rad);
-            }
-        }
-        Some(past_rad)
     }
 }
 
