@@ -19,6 +19,8 @@ const MERGE_MM: i32 = 50;
 const FRESH: u8 = 2;
 const FIRM: u8 = 3;
 const MOST_BELIEF: u8 = 6;
+/// What is nearer to the robot than this counts even if it was heard once [mm].
+const CLOSE_MM: i32 = 350;
 /// Farthest point put down, of the front sonar and of one at a side [mm].
 const HORIZON_MM: [i32; 2] = [1_300, 700];
 /// Half width of the part of a beam in which a point would surely be heard, as a tangent in 256ths: 0.21 rad.
@@ -113,12 +115,15 @@ impl Echoes {
             .map(|(number, point)| (number, point.at))
     }
 
-    /// The points that have been heard more than once.
-    pub fn firm(&self) -> impl Iterator<Item = (usize, Place)> + '_ {
+    /// The points that have been heard more than once, or are near the robot, which is `here`.
+    pub fn firm(&self, here: Place) -> impl Iterator<Item = (usize, Place)> + '_ {
         self.points
             .iter()
             .enumerate()
-            .filter(|(_, point)| point.belief >= FIRM)
+            .filter(move |(_, point)| {
+                point.belief >= FIRM
+                    || (point.belief > 0 && point.at.square_mm2(here) < CLOSE_MM * CLOSE_MM)
+            })
             .map(|(number, point)| (number, point.at))
     }
 

@@ -96,7 +96,7 @@ impl Echoes {
 
     /// The same among the points that have been heard more than once.
     pub fn surely_blocking(&self, way: &Way, half_width_m: f32) -> Option<(usize, f32)> {
-        blocking(self.firm(), way, half_width_m)
+        blocking(self.firm(Place::new(way.x_m, way.y_m)), way, half_width_m)
     }
 
     /// The point nearest to a place, and its distance [m].
@@ -181,6 +181,7 @@ impl Search {
 
     /// Goes on; gives the obstacle when it is whole.
     pub fn step(&mut self, echoes: &Echoes, x_m: f32, y_m: f32) -> Option<Obstacle> {
+        let here = Place::new(x_m, y_m);
         for _ in 0..PER_TICK {
             if self.open == 0 {
                 break;
@@ -191,7 +192,7 @@ impl Search {
                 continue;
             };
             let about_rad = f32::from(self.bearing.get(number).copied().unwrap_or(0)) * COARSE_RAD;
-            for (other, point) in echoes.firm() {
+            for (other, point) in echoes.firm(here) {
                 if self.member & (1u64 << other.min(63)) == 0
                     && point.square_mm2(centre) < LINK_MM * LINK_MM
                 {

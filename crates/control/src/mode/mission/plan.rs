@@ -87,8 +87,10 @@ impl Plan {
             heading_rad: wrap_angle(pass_rad),
             length_m: PAST_M,
         };
+        let here = Place::new(pose.x_m, pose.y_m);
+        let here = Place::new(pose.x_m, pose.y_m);
         let others = echoes
-            .firm()
+            .firm(here)
             .filter(|(number, _)| !self.search.has(*number));
         let other = blocking(others, &way, WAY_M);
         let Some((number, point)) =
