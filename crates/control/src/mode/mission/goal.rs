@@ -9,7 +9,7 @@ use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
 use crate::motion::{LineState, TurnState};
 use crate::types::TICK_S;
-use core::f32::consts::FRAC_PI_2;
+use core::f32::consts::{FRAC_PI_2, TAU};
 
 /// An obstacle this near on the way is looked at [m].
 const LOOK_M: f32 = 0.62;
@@ -35,6 +35,8 @@ const TURNED_RAD: f32 = 0.12;
 const PROGRESS_M: f32 = 0.05;
 /// Back where the obstacle was met: within this, having been farther away than twice as much [m].
 const BACK_M: f32 = 0.2;
+/// Once around the goal without getting nearer to it, and a little more [rad].
+const WOUND_RAD: f32 = TAU + 0.3;
 /// A side is changed for another whose way is this much shorter [m].
 const CHANGE_M: f32 = 0.2;
 /// A sonar at the side sees the obstacle within this [m].
@@ -52,7 +54,7 @@ const TIGHT_M: f32 = 0.155;
 /// Yaw rate there [rad/s].
 const TIGHT_RAD_S: f32 = 0.6;
 /// Yaw rate per distance beyond [rad/s/m].
-const TIGHT_SLOPE: f32 = 40.0;
+const TIGHT_SLOPE: f32 = 15.0;
 /// An obstacle that reaches beyond a right angle from the way to the goal costs this much more [m/rad].
 const BEHIND_M: f32 = 0.35;
 
@@ -94,6 +96,12 @@ impl Mission {
         }
         if let Some(detour) = &mut state.detour {
             detour.way_m += abs(estimate.rolled_m);
+            // Seen from the goal the robot moves along its own bearing, half a turn off.
+            detour.wound_rad += wrap_angle(way.heading_rad - detour.bearing_rad);
+            detour.bearing_rad = way.heading_rad;
+            if abs(detour.wound_rad) > WOUND_RAD {
+                state.phase = Phase::Unreachable;
+            }
         }
         let around = state.detour.as_ref().map(|detour| detour.side);
         let following = following(state.phase);
@@ -275,6 +283,8 @@ impl Mission {
             away: false,
             vain: 0,
             changes: 0,
+            wound_rad: 0.0,
+            bearing_rad: atan2(dy, dx),
         });
         state.phase = Phase::Seek;
     }

@@ -99,6 +99,10 @@ struct Detour {
     vain: u8,
     /// Changes of the side.
     changes: u8,
+    /// Angle by which the robot has gone around the goal since then [rad].
+    wound_rad: f32,
+    /// The goal's bearing at the last tick [rad].
+    bearing_rad: f32,
 }
 
 /// Memory of mode 8.
