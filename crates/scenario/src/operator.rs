@@ -5,7 +5,7 @@ use crate::files::{Program, Setup, TimedCommand};
 use crate::sim::Sim;
 use crate::trace::Heard;
 use rumbo_control::mode::ModeId;
-use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, ToRobot};
+use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, ToRobot};
 
 /// Time between heartbeats [us].
 const HEARTBEAT_US: u64 = 100_000;
@@ -26,6 +26,8 @@ pub(crate) struct Operator<'a> {
     /// The command that waits for its acknowledgement, and when it was last sent.
     pending: Option<(Command, u64)>,
     heartbeat_due_us: u64,
+    /// The robot has said that it reached its goal since the last command was sent.
+    reached: bool,
     decoder: Decoder<LINE>,
     buffer: Vec<u8>,
     /// What the robot refused or reported.
@@ -45,6 +47,7 @@ impl<'a> Operator<'a> {
             seq: 0,
             pending: None,
             heartbeat_due_us: 0,
+            reached: false,
             decoder: Decoder::default(),
             buffer: Vec::new(),
             complaints: Vec::new(),
@@ -83,18 +86,22 @@ impl<'a> Operator<'a> {
     /// The next command of the scenario, if it is time for it.
     fn due(&mut self, now_us: u64) -> Option<Command> {
         let timed = self.commands.get(self.next)?;
-        if timed.at_s * 1e6 > now_us as f64 {
+        let soon = timed.after_reached && self.reached;
+        if timed.at_s * 1e6 > now_us as f64 && !soon {
             return None;
         }
         self.next += 1;
+        self.reached = false;
         Some(timed.command)
     }
 
     /// The same with the report's program, which has no link of ours.
     fn order(&mut self, sim: &mut Sim) {
         let t_s = sim.now_us() as f64 * 1e-6;
-        let told = sim.told().into_iter().map(|what| Heard { t_s, what });
-        self.heard.extend(told);
+        let told = sim.told();
+        self.reached |= told.iter().any(has_reached);
+        self.heard
+            .extend(told.into_iter().map(|what| Heard { t_s, what }));
         while let Some(command) = self.due(sim.now_us()) {
             sim.order(command);
         }
@@ -126,6 +133,7 @@ impl<'a> Operator<'a> {
             let message = FromRobot::from_body(&body);
             if let Ok(what @ (FromRobot::Telemetry(_) | FromRobot::Event(_))) = message {
                 let t_s = sim.now_us() as f64 * 1e-6;
+                self.reached |= has_reached(&what);
                 self.heard.push(Heard { t_s, what });
             }
             match message {
@@ -138,7 +146,7 @@ impl<'a> Operator<'a> {
                     }
                 }
                 Ok(FromRobot::Event(event)) => {
-                    if let rumbo_wire::EventKind::Faulted(fault) = event.kind {
+                    if let EventKind::Faulted(fault) = event.kind {
                         let now_s = sim.now_us() as f64 * 1e-6;
                         self.complaints
                             .push(format!("at {now_s:.2} s fault: {}", fault.explanation()));
@@ -149,4 +157,8 @@ impl<'a> Operator<'a> {
         }
         self.buffer = buffer;
     }
+}
+
+fn has_reached(message: &FromRobot) -> bool {
+    matches!(message, FromRobot::Event(event) if event.kind == EventKind::Reached)
 }

@@ -1,6 +1,7 @@
 //! The `[[command]]` tables of a scenario: what the station sends to the robot, and when.
 //!
-//! Each has `at_s` and one action:
+//! Each has `at_s` and one action. With `after_reached = true` it is sent sooner than that, as soon as the robot says that it has reached
+//! what the command before asked for: `at_s` is then the latest time.
 //!
 //! | keys | does |
 //! |---|---|
@@ -88,7 +89,12 @@ pub(crate) fn read_commands(
             );
             table.complain("at_s", at.line, &at.value.to_string(), &remedy);
         }
-        commands.extend(read_command(&table, at_s, &mut mode, duration_s));
+        let after_reached = table.flag("after_reached").is_some_and(|flag| flag.value);
+        let mut group = read_command(&table, at_s, &mut mode, duration_s);
+        if let Some(first) = group.first_mut() {
+            first.after_reached = after_reached;
+        }
+        commands.append(&mut group);
         earliest_s = commands
             .last()
             .map_or(earliest_s, |last| last.at_s.max(earliest_s));
@@ -109,6 +115,7 @@ fn read_command(
         vec![TimedCommand {
             at_s,
             command,
+            after_reached: false,
             goal_of_world: false,
         }]
     };
@@ -129,7 +136,13 @@ fn read_command(
             .map(single)
             .unwrap_or_default(),
         _ => {
-            let known = [&["at_s"][..], &ACTIONS, &COMPANIONS, &route::COMPANIONS].concat();
+            let known = [
+                &["at_s", "after_reached"][..],
+                &ACTIONS,
+                &COMPANIONS,
+                &route::COMPANIONS,
+            ]
+            .concat();
             for key in &known {
                 table.value(key);
             }
@@ -233,6 +246,7 @@ fn read_goal_of_world(table: &Table<'_, '_>, at_s: f64) -> Vec<TimedCommand> {
     vec![TimedCommand {
         at_s,
         command: Command::Goal { x_m: 0.0, y_m: 0.0 },
+        after_reached: false,
         goal_of_world: true,
     }]
 }
@@ -263,6 +277,7 @@ fn read_move(table: &Table<'_, '_>, at_s: f64, duration_s: f64) -> Vec<TimedComm
     vec![TimedCommand {
         at_s,
         command: Command::Move { movement, level },
+        after_reached: false,
         goal_of_world: false,
     }]
 }
@@ -292,6 +307,7 @@ fn read_ramp(
             TimedCommand {
                 at_s: at_s + part * ramp_s,
                 command: Command::Move { movement, level },
+                after_reached: false,
                 goal_of_world: false,
             }
         })

@@ -90,6 +90,8 @@ pub struct Start {
 pub struct TimedCommand {
     /// Time since the start, in s.
     pub at_s: f64,
+    /// It is sent sooner, as soon as the robot says that it has reached what the command before asked for.
+    pub after_reached: bool,
     /// What is sent, in the units of the link (m, rad/s, fraction of full PWM).
     pub command: Command,
     /// The goal is the one of the seed's world: `command` is put in by [`super::Setup::of_seed`].

@@ -2,9 +2,10 @@
 //! it was right about a goal that cannot be reached.
 
 use super::Metrics;
+use super::mission::way_m;
 use crate::files::Setup;
 use crate::random_world::Journey;
-use crate::trace::{Sample, Trace};
+use crate::trace::Trace;
 use rumbo_wire::{Command, EventKind, FromRobot};
 
 /// How far from the goal the robot may think that it is there: 4 cm, and what odometry loses on the way.
@@ -31,13 +32,6 @@ fn verdict(trace: &Trace, from_s: f64) -> Option<Verdict> {
         })
         .map(|(t_s, reached)| Verdict { t_s, reached })
         .next()
-}
-
-fn way_m(samples: &[Sample]) -> f64 {
-    let steps = samples.windows(2);
-    steps
-        .map(|two| (two[1].x_m - two[0].x_m).hypot(two[1].y_m - two[0].y_m))
-        .sum()
 }
 
 /// The metrics of a scenario whose goal is that of its world; none for others.

@@ -6,6 +6,7 @@
 mod align;
 mod curve;
 mod journey;
+mod mission;
 mod path;
 mod route;
 mod start;
@@ -45,7 +46,10 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
         }
         ModeId::WallHold | ModeId::WallFollow => wall::following(setup, sim, trace, &mut metrics),
         ModeId::FrontAlign => align::aligning(setup, sim, trace, &mut metrics),
-        ModeId::Mission => journey::journey(setup, sim.worst_contact_m_s(), trace, &mut metrics),
+        ModeId::Mission => {
+            journey::journey(setup, sim.worst_contact_m_s(), trace, &mut metrics);
+            mission::mission(setup, sim.worst_contact_m_s(), trace, &mut metrics);
+        }
         ModeId::Waypoints => route::route(setup, trace, &mut metrics),
         ModeId::StraightLine => straight::drift(trace, &mut metrics),
     }

@@ -276,6 +276,7 @@ mod tests {
         let at = |at_s, command| TimedCommand {
             at_s,
             command,
+            after_reached: false,
             goal_of_world: false,
         };
         let commands = [

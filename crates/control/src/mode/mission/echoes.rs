@@ -12,7 +12,7 @@ use crate::math::{clamp, round, sin_cos};
 use crate::types::{Pose, Range, Reading, SonarId};
 
 /// How many points are remembered.
-pub const CAPACITY: usize = 48;
+pub(super) const CAPACITY: usize = 48;
 /// Points nearer to each other than this are one [mm].
 const MERGE_MM: i32 = 50;
 /// Belief in a point heard once, in one heard again, and the most.
@@ -44,7 +44,7 @@ const SHORT_M: f32 = 0.18;
 
 /// A place on the floor [mm].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Place {
+pub(super) struct Place {
     /// Along x.
     pub x_mm: i16,
     /// Along y.
@@ -53,7 +53,7 @@ pub struct Place {
 
 impl Place {
     /// From metres; saturates at 32 m.
-    pub fn new(x_m: f32, y_m: f32) -> Self {
+    pub(super) fn new(x_m: f32, y_m: f32) -> Self {
         Self {
             x_mm: to_i16(1_000.0 * x_m),
             y_mm: to_i16(1_000.0 * y_m),
@@ -61,12 +61,12 @@ impl Place {
     }
 
     /// In metres.
-    pub fn metres(self) -> (f32, f32) {
+    pub(super) fn metres(self) -> (f32, f32) {
         (f32::from(self.x_mm) * 1e-3, f32::from(self.y_mm) * 1e-3)
     }
 
     /// From `from` to here [mm].
-    pub fn from(self, from: Place) -> (i32, i32) {
+    pub(super) fn from(self, from: Place) -> (i32, i32) {
         (
             i32::from(self.x_mm) - i32::from(from.x_mm),
             i32::from(self.y_mm) - i32::from(from.y_mm),
@@ -74,7 +74,7 @@ impl Place {
     }
 
     /// Square of the distance [mm^2].
-    pub fn square_mm2(self, to: Place) -> i32 {
+    pub(super) fn square_mm2(self, to: Place) -> i32 {
         let (x, y) = self.from(to);
         // Beyond 32 m in both: saturates.
         x.saturating_mul(x).saturating_add(y.saturating_mul(y))
@@ -93,7 +93,7 @@ struct Echo {
 
 /// The memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Echoes {
+pub(super) struct Echoes {
     points: [Echo; CAPACITY],
 }
 
@@ -107,7 +107,7 @@ impl Default for Echoes {
 
 impl Echoes {
     /// All points, with their numbers.
-    pub fn iter(&self) -> impl Iterator<Item = (usize, Place)> + '_ {
+    pub(super) fn iter(&self) -> impl Iterator<Item = (usize, Place)> + '_ {
         self.points
             .iter()
             .enumerate()
@@ -116,7 +116,7 @@ impl Echoes {
     }
 
     /// The points that have been heard more than once, or are near the robot, which is `here`.
-    pub fn firm(&self, here: Place) -> impl Iterator<Item = (usize, Place)> + '_ {
+    pub(super) fn firm(&self, here: Place) -> impl Iterator<Item = (usize, Place)> + '_ {
         self.points
             .iter()
             .enumerate()
@@ -128,20 +128,20 @@ impl Echoes {
     }
 
     /// Forgets what was heard once, some time ago. To be called now and then.
-    pub fn fade(&mut self) {
+    pub(super) fn fade(&mut self) {
         for point in self.points.iter_mut().filter(|point| point.belief < FIRM) {
             point.belief = point.belief.saturating_sub(1);
         }
     }
 
     /// The point with this number.
-    pub fn get(&self, number: usize) -> Option<Place> {
+    pub(super) fn get(&self, number: usize) -> Option<Place> {
         let point = self.points.get(number)?;
         (point.belief > 0).then_some(point.at)
     }
 
     /// Takes a reading, made with the robot at `pose`.
-    pub fn take(&mut self, pose: &Pose, reading: &Reading) {
+    pub(super) fn take(&mut self, pose: &Pose, reading: &Reading) {
         let view = &reading.view;
         let (x_m, y_m) = pose.to_world(view.x_m, view.y_m);
         let apex = Place::new(x_m, y_m);
@@ -269,7 +269,7 @@ impl Echoes {
     }
 
     /// The place at `origin` becomes the origin.
-    pub fn move_origin(&mut self, origin: &Pose) {
+    pub(super) fn move_origin(&mut self, origin: &Pose) {
         for point in self.points.iter_mut().filter(|point| point.belief > 0) {
             let (x_m, y_m) = point.at.metres();
             let (ahead_m, left_m) = origin.to_local(x_m, y_m);

@@ -2,8 +2,8 @@
 
 use super::obstacle::Obstacle;
 use super::{
-    Action, Detour, Drive, Echoes, Look, Mission, Phase, Place, Pose, Segment, ServoAngle, Side,
-    State, Way, abs, min, sqrt,
+    Action, Detour, Drive, Look, Mission, Phase, Place, Pose, Segment, ServoAngle, Side, State,
+    Way, abs, min, sqrt,
 };
 use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
@@ -33,8 +33,8 @@ const SPOT_RAD: f32 = 0.7;
 const TURNED_RAD: f32 = 0.12;
 /// Progress that counts [m].
 const PROGRESS_M: f32 = 0.05;
-/// Back where the obstacle was met: within this, having been farther away than twice as much [m].
-const BACK_M: f32 = 0.2;
+/// Back where the obstacle was met: within this, having been farther away than twice as much [mm].
+const BACK_MM: i32 = 200;
 /// Once around the goal without getting nearer to it, and a little more [rad].
 const WOUND_RAD: f32 = TAU + 0.3;
 /// A side is changed for another whose way is this much shorter [m].
@@ -304,11 +304,10 @@ impl Mission {
         };
         let here = Place::new(pose.x_m, pose.y_m);
         let from_met_mm2 = here.square_mm2(detour.met);
-        let back_mm = 200i32;
-        if from_met_mm2 > 4 * back_mm * back_mm {
+        if from_met_mm2 > 4 * BACK_MM * BACK_MM {
             detour.away = true;
         }
-        if detour.away && detour.way_m > 1.2 && from_met_mm2 < back_mm * back_mm {
+        if detour.away && detour.way_m > 1.2 && from_met_mm2 < BACK_MM * BACK_MM {
             if state.plan.same || state.laps > 0 {
                 state.phase = Phase::Unreachable;
             } else {

@@ -15,11 +15,11 @@ use crate::math::{atan2, from_u32, min, round, sin_cos, sqrt, wrap_angle};
 use core::f32::consts::{FRAC_PI_2, PI, TAU};
 
 /// Two points nearer than this hang together [mm].
-pub const LINK_MM: i32 = 290;
+pub(super) const LINK_MM: i32 = 290;
 /// Half of the width that the robot takes for itself when it passes a point [m].
-pub const PASS_M: f32 = 0.16;
+pub(super) const PASS_M: f32 = 0.16;
 /// Half of the width of the way to the goal that must be clear [m].
-pub const WAY_M: f32 = 0.125;
+pub(super) const WAY_M: f32 = 0.125;
 /// Points searched per tick.
 const PER_TICK: usize = 4;
 /// Points farther than this from the robot do not carry the search on [m].
@@ -29,7 +29,7 @@ const COARSE_RAD: f32 = TAU / 64.0;
 
 /// One end of an obstacle as the robot sees it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct End {
+pub(super) struct End {
     /// The direction that just passes it, beyond +-pi where the obstacle reaches around the robot [rad].
     pub pass_rad: f32,
     /// The point passed.
@@ -38,7 +38,7 @@ pub struct End {
 
 /// What stands in the way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Obstacle {
+pub(super) struct Obstacle {
     /// Its left end.
     pub left: End,
     /// Its right end.
@@ -47,16 +47,9 @@ pub struct Obstacle {
     pub nearest_m: f32,
 }
 
-impl Obstacle {
-    /// No direction is left.
-    pub fn closed(&self) -> bool {
-        self.left.pass_rad - self.right.pass_rad > TAU - 0.1
-    }
-}
-
 /// The search.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Search {
+pub(super) struct Search {
     /// Points that belong to it, and those of them whose neighbours are still to be found.
     member: u64,
     open: u64,
@@ -77,7 +70,7 @@ impl Default for Search {
 
 /// From where and for what is looked.
 #[derive(Clone, Copy, Debug)]
-pub struct Way {
+pub(super) struct Way {
     /// Where the robot is [m].
     pub x_m: f32,
     /// Where the robot is [m].
@@ -90,22 +83,22 @@ pub struct Way {
 
 impl Echoes {
     /// The point that blocks a way soonest, and how far along [m].
-    pub fn blocking(&self, way: &Way, half_width_m: f32) -> Option<(usize, f32)> {
+    pub(super) fn blocking(&self, way: &Way, half_width_m: f32) -> Option<(usize, f32)> {
         blocking(self.iter(), way, half_width_m)
     }
 
     /// The same among the points that have been heard more than once.
-    pub fn surely_blocking(&self, way: &Way, half_width_m: f32) -> Option<(usize, f32)> {
+    pub(super) fn surely_blocking(&self, way: &Way, half_width_m: f32) -> Option<(usize, f32)> {
         blocking(self.firm(Place::new(way.x_m, way.y_m)), way, half_width_m)
     }
 
     /// The point nearest to a place, and its distance [m].
-    pub fn nearest(&self, x_m: f32, y_m: f32) -> Option<(usize, f32)> {
+    pub(super) fn nearest(&self, x_m: f32, y_m: f32) -> Option<(usize, f32)> {
         self.nearest_of(x_m, y_m, |_| true)
     }
 
     /// The same among some of the points.
-    pub fn nearest_of(
+    pub(super) fn nearest_of(
         &self,
         x_m: f32,
         y_m: f32,
@@ -124,7 +117,14 @@ impl Echoes {
 
 impl Search {
     /// Begins anew at a point that blocks the way in direction `about_rad`: bearings are counted on from there.
-    pub fn begin(&mut self, echoes: &Echoes, seed: usize, x_m: f32, y_m: f32, about_rad: f32) {
+    pub(super) fn begin(
+        &mut self,
+        echoes: &Echoes,
+        seed: usize,
+        x_m: f32,
+        y_m: f32,
+        about_rad: f32,
+    ) {
         self.member = 0;
         self.open = 0;
         self.so_far = Obstacle {
@@ -142,7 +142,14 @@ impl Search {
     }
 
     /// Adds a point, whose bearing is near `about_rad`.
-    pub fn join(&mut self, echoes: &Echoes, number: usize, x_m: f32, y_m: f32, about_rad: f32) {
+    pub(super) fn join(
+        &mut self,
+        echoes: &Echoes,
+        number: usize,
+        x_m: f32,
+        y_m: f32,
+        about_rad: f32,
+    ) {
         let Some(point) = echoes.get(number) else {
             return;
         };
@@ -180,7 +187,7 @@ impl Search {
     }
 
     /// Goes on; gives the obstacle when it is whole.
-    pub fn step(&mut self, echoes: &Echoes, x_m: f32, y_m: f32) -> Option<Obstacle> {
+    pub(super) fn step(&mut self, echoes: &Echoes, x_m: f32, y_m: f32) -> Option<Obstacle> {
         let here = Place::new(x_m, y_m);
         for _ in 0..PER_TICK {
             if self.open == 0 {
@@ -204,13 +211,13 @@ impl Search {
     }
 
     /// Whether a point belongs to the obstacle.
-    pub fn has(&self, number: usize) -> bool {
+    pub(super) fn has(&self, number: usize) -> bool {
         self.member & (1u64 << number.min(63)) != 0
     }
 }
 
 /// Half of the angle that a point at this distance blocks; beyond a right angle where the robot is too near already.
-pub fn half_angle(distance_m: f32) -> f32 {
+pub(super) fn half_angle(distance_m: f32) -> f32 {
     if distance_m > PASS_M {
         let along_m = sqrt(distance_m * distance_m - PASS_M * PASS_M);
         atan2(PASS_M, along_m)
@@ -223,7 +230,7 @@ pub fn half_angle(distance_m: f32) -> f32 {
 }
 
 /// The point among some that blocks a way soonest, and how far along [m].
-pub fn blocking(
+pub(super) fn blocking(
     points: impl Iterator<Item = (usize, Place)>,
     way: &Way,
     half_width_m: f32,

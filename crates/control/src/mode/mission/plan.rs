@@ -10,7 +10,7 @@ use crate::types::{Pose, Side};
 use core::f32::consts::FRAC_PI_2;
 
 /// How far ahead the way to the goal is judged [m].
-pub const HORIZON_M: f32 = 1.3;
+pub(super) const HORIZON_M: f32 = 1.3;
 /// The obstacle that the robot goes around is no farther than this [m].
 const BESIDE_M: f32 = 0.45;
 /// Where the obstacle that is gone around is looked for, beside the middle of the axis [m].
@@ -22,7 +22,7 @@ const TIGHT_RAD: f32 = 0.35;
 
 /// The planner's memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Plan {
+pub(super) struct Plan {
     search: Search,
     busy: bool,
     /// The obstacle of the last round.
@@ -37,7 +37,13 @@ pub struct Plan {
 
 impl Plan {
     /// One tick; says whether a round has ended. `way` leads to the goal, `around` is the side on which the obstacle is passed.
-    pub fn step(&mut self, echoes: &Echoes, pose: &Pose, way: &Way, around: Option<Side>) -> bool {
+    pub(super) fn step(
+        &mut self,
+        echoes: &Echoes,
+        pose: &Pose,
+        way: &Way,
+        around: Option<Side>,
+    ) -> bool {
         if !self.busy {
             let in_way = echoes.surely_blocking(way, WAY_M);
             self.clear_m = in_way.map_or(f32::MAX, |(_, along_m)| along_m);
@@ -87,7 +93,6 @@ impl Plan {
             heading_rad: wrap_angle(pass_rad),
             length_m: PAST_M,
         };
-        let here = Place::new(pose.x_m, pose.y_m);
         let here = Place::new(pose.x_m, pose.y_m);
         let others = echoes
             .firm(here)

@@ -15,7 +15,7 @@ const MOVED_M: f32 = 0.002;
 
 /// Memory of the watch, by `SonarId` number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Watch {
+pub(super) struct Watch {
     faulty: [u8; 3],
     same: [u8; 3],
     last_m: [f32; 3],
@@ -29,7 +29,7 @@ impl Watch {
     ///
     /// # Errors
     /// What is wrong with a sonar.
-    pub fn step(&mut self, estimate: &Estimate, stale_s: f32) -> Result<(), Fault> {
+    pub(super) fn step(&mut self, estimate: &Estimate, stale_s: f32) -> Result<(), Fault> {
         for age_s in &mut self.age_s {
             *age_s += TICK_S;
             if *age_s > stale_s {
