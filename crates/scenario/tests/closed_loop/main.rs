@@ -7,6 +7,7 @@ mod before_a_wall;
 mod drive;
 mod mode_6;
 mod mode_7;
+mod mode_8;
 mod odometry;
 mod original;
 

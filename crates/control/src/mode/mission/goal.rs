@@ -37,6 +37,9 @@ const PROGRESS_M: f32 = 0.05;
 const BACK_MM: i32 = 200;
 /// Once around the goal without getting nearer to it, and a little more [rad].
 const WOUND_RAD: f32 = TAU + 0.3;
+/// After so little way the side of the last obstacle is the next one's too, unless the other way is this much shorter [m].
+const SOON_M: f32 = 0.8;
+const STAY_M: f32 = 0.5;
 /// A side is changed for another whose way is this much shorter [m].
 const CHANGE_M: f32 = 0.2;
 /// A sonar at the side sees the obstacle within this [m].
@@ -89,6 +92,9 @@ impl Mission {
             return action;
         }
         state.age_s += TICK_S;
+        if let Some((_, way_m)) = &mut state.last {
+            *way_m += abs(estimate.rolled_m);
+        }
         state.fade_s += TICK_S;
         if state.fade_s > FADE_S {
             state.fade_s = 0.0;
@@ -125,6 +131,7 @@ impl Mission {
             Phase::Initialise => {
                 state.age_s = 0.0;
                 state.laps = 0;
+                state.last = None;
                 state.detour = None;
                 self.face(state, pose, goal_m, 0.1);
                 Drive::Release
@@ -189,6 +196,7 @@ impl Mission {
             .detour
             .is_some_and(|detour| left_m < detour.least_m - PROGRESS_M)
         {
+            state.last = state.detour.map(|detour| (detour.side, 0.0));
             state.detour = None;
         }
         if state.plan.clear_m < LOOK_M && state.plan.obstacle.is_some() {
@@ -269,7 +277,12 @@ impl Mission {
             return;
         };
         let here = (pose.x_m, pose.y_m);
-        let (left, right) = self.costs(&obstacle, here, goal_m);
+        let (mut left, mut right) = self.costs(&obstacle, here, goal_m);
+        match state.last {
+            Some((Side::Left, way_m)) if way_m < SOON_M => right += STAY_M,
+            Some((Side::Right, way_m)) if way_m < SOON_M => left += STAY_M,
+            _ => {}
+        }
         let (dx, dy) = (goal_m.0 - pose.x_m, goal_m.1 - pose.y_m);
         state.detour = Some(Detour {
             side: if left < right {

@@ -1,4 +1,32 @@
-//! Mode 8: a goal around obstacles, or a lane of boxes (memoria 5).
+//! Mode 8: a goal around obstacles, or a lane of boxes (memoria 6).
+//!
+//! ```text
+//! echoes -> remembered points -> the obstacle that blocks the way, with two ends -> a side -> the direction that just passes that end
+//!        -> forward speed and yaw rate -> wheel-speed loops                  angles count counter-clockwise, left is positive
+//! ```
+//!
+//! | state | does | leaves when | to |
+//! |---|---|---|---|
+//! | 0 wait for goal | wheels released | a goal arrives; at any other time too | 2 |
+//! | 1 initial turn | turns on the spot to the goal | it faces it | 3 |
+//! | 2 initialise | forgets the last goal's detour | at once | 1, or 3 if it faces the goal |
+//! | 3 go to goal | follows the straight line to the goal | it stands there: *reached*, the origin moves there | 0 |
+//! | | | an obstacle is 0.6 m ahead on the way: a new one | 4 |
+//! | | | the one it has just left | 8 |
+//! | 4, 5 sweep right, left | goes on slowly, the servo looks 86 degrees aside | the servo has been there | 5, 6 |
+//! | 6 decide | takes the side past whose end the way to the goal is shorter | at once | 8 |
+//! | 7 avoidance turn | turns on the spot to the direction that passes the end | it faces there | 8 |
+//! | 8 advance seeking the obstacle | drives in that direction, the sonar beside not yet seeing it | the sonar sees it | 9 |
+//! | 9 advance along it | the same along the obstacle | the sonar loses it | 10 |
+//! | 10 advance a safe distance | the same around its corner | 12.5 cm on; the sonar sees it | 8; 9 |
+//! | (8, 9, 10) | | that direction is far from ahead | 7 |
+//! | (7 to 10) | | the way to the goal is clear and leads nearer to it than the robot ever was | 3 |
+//! | | | back where it met the obstacle, or once around the goal | 11 |
+//! | 11 unreachable | wheels released: *unreachable* | a goal arrives | 2 |
+//!
+//! The report turns by 90 degrees to the side on which the obstacle's edge appears at the smaller angle, follows its faces by turns of
+//! 90 degrees, and leaves when the bearing to the goal is the line's again. Ours needs no right angles, looks while it drives, goes straight
+//! past what it remembers, leaves early, and knows when to give up. Derivation, proof of termination and figures: docs/theory/mission.md.
 
 mod echoes;
 mod goal;
@@ -126,6 +154,8 @@ pub struct State {
     age_s: f32,
     fade_s: f32,
     servo_left: bool,
+    /// The side on which the last obstacle was passed, and the way since [m].
+    last: Option<(Side, f32)>,
     /// Times once around something.
     laps: u8,
 }
