@@ -95,6 +95,7 @@ mod tests {
     use super::*;
     use crate::files::{Library, Overrides};
     use crate::trace::Heard;
+    use crate::trace::Sample;
     use rumbo_wire::Event;
 
     /// Metrics of a robot that drives straight from the start to a point of a world, in 10 s, and then says something.
