@@ -1,6 +1,6 @@
 //! The peripherals, as far as the pins reach.
 //!
-//! Each is a module with its registers; what they share is in [`Core`]: interrupt requests, ports, the schedule of
+//! Each is a module with its registers; what they share is in `Core`: interrupt requests, ports, the schedule of
 //! events and the stream of outputs. An access first lets everything happen that is due before it.
 
 pub(crate) mod external;
