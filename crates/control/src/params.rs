@@ -258,6 +258,8 @@ table! {
     MissionCruise = "mission_cruise_m_s", "m/s", 0.40, 0.05 => 0.8, MISSION;
     /// Largest speed around an obstacle.
     MissionAround = "mission_around_m_s", "m/s", 0.22, 0.05 => 0.6, MISSION;
+    /// Range of the front sonar at which a lane turns.
+    LaneSafe = "lane_safe_m", "m", 0.25, 0.15 => 1.0, MISSION;
     /// Time after which a goal that has not been reached is given up.
     MissionGiveUp = "mission_give_up_s", "s", 150.0, 5.0 => 3600.0, MISSION;
     /// Each goal reached becomes the origin: 1 yes, 0 no.

@@ -6,6 +6,7 @@
 mod align;
 mod curve;
 mod journey;
+mod lane;
 mod mission;
 mod path;
 mod route;
@@ -49,6 +50,7 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
         ModeId::Mission => {
             journey::journey(setup, sim.worst_contact_m_s(), trace, &mut metrics);
             mission::mission(setup, sim.worst_contact_m_s(), trace, &mut metrics);
+            lane::lane(setup, trace, &mut metrics);
         }
         ModeId::Waypoints => route::route(setup, trace, &mut metrics),
         ModeId::StraightLine => straight::drift(trace, &mut metrics),

@@ -30,6 +30,7 @@
 
 mod echoes;
 mod goal;
+mod lane;
 mod obstacle;
 mod plan;
 mod watch;
@@ -46,7 +47,7 @@ use watch::Watch;
 
 /// Names of the states.
 #[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 12] = [
+pub const STATE_NAMES: [&str; 13] = [
     "wait for goal",
     "initial turn",
     "initialise",
@@ -59,6 +60,7 @@ pub const STATE_NAMES: [&str; 12] = [
     "advance along it",
     "advance a safe distance",
     "unreachable",
+    "straight on",
 ];
 
 /// What the mission is.
@@ -109,6 +111,7 @@ pub struct Mission {
     give_up_s: f32,
     reset_origin: bool,
     stale_s: f32,
+    safe_m: f32,
 }
 
 /// The obstacle that is gone around.
@@ -158,6 +161,7 @@ pub struct State {
     last: Option<(Side, f32)>,
     /// Times once around something.
     laps: u8,
+    lane: lane::Lane,
 }
 
 impl State {
@@ -180,6 +184,7 @@ impl Mission {
             give_up_s: params.get(ParamId::MissionGiveUp),
             reset_origin: params.get(ParamId::MissionResetOrigin) > 0.5,
             stale_s: params.get(ParamId::StaleRange),
+            safe_m: params.get(ParamId::LaneSafe),
         }
     }
 }
@@ -194,7 +199,8 @@ impl Mode for Mission {
         }
         match self.task {
             Task::Goal { x_m, y_m } => Ok(self.goal(state, at.estimate, (x_m, y_m))),
-            Task::Wait | Task::Lane => Ok(Action::default()),
+            Task::Lane => Ok(self.lane(state, at.estimate)),
+            Task::Wait => Ok(Action::default()),
         }
     }
 }
