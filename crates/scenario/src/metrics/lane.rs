@@ -42,10 +42,12 @@ fn straights(samples: &[Sample]) -> Vec<Straight> {
             .all(|rad_s| rad_s.abs() < STANDS_RAD_S);
         let forward = two[1].wheel_rad_s.iter().sum::<f64>() > STANDS_RAD_S;
         let step_m = (two[1].x_m - two[0].x_m).hypot(two[1].y_m - two[0].y_m);
-        match &mut current {
-            Some(straight) if straight.quarter == quarter && !stands => straight.way_m += step_m,
-            Some(_) => {
-                let mut straight = current.take().expect("it was there");
+        match current.take() {
+            Some(mut straight) if straight.quarter == quarter && !stands => {
+                straight.way_m += step_m;
+                current = Some(straight);
+            }
+            Some(mut straight) => {
                 straight.end_s = two[1].t_s;
                 if straight.way_m > STRAIGHT_M {
                     match found.last_mut() {
