@@ -7,6 +7,7 @@ pub(crate) mod external;
 pub(crate) mod interrupts;
 pub mod ports;
 pub(crate) mod schedule;
+mod signal;
 pub(crate) mod timer;
 
 use std::collections::VecDeque;
@@ -16,6 +17,7 @@ use external::External;
 use interrupts::Interrupts;
 use ports::{Change, Drive, Pin, Ports};
 use schedule::{Schedule, Source};
+pub use signal::{Cause, Event, Input, Output, Pwm};
 use timer::{Prescaler, Timer};
 
 const GPIOR0: u16 = 0x3E;
@@ -36,29 +38,6 @@ const IVCE: u8 = 1;
 const IVCE_CYCLES: u64 = 4;
 /// Start of the largest boot section [words], as the fuses are shipped.
 const BOOT_WORDS: u32 = 0x1_F000;
-
-/// Something from outside.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Input {
-    /// A pin is driven to a level, or let go (`None`).
-    Pin(Pin, Option<bool>),
-}
-
-/// Something to the outside, at its cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Output {
-    /// When.
-    pub cycle: u64,
-    /// What.
-    pub event: Event,
-}
-
-/// What the chip did.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Event {
-    /// It drives a pin in another way.
-    Pin(Pin, Drive),
-}
 
 /// An access to a register that is not modelled; each address is told once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -168,6 +147,11 @@ impl Devices {
                             let change = self.core.ports.set_outside(pin, level, cycle);
                             self.core.note(Some(change), cycle);
                         }
+                        // Nothing takes these in yet.
+                        Input::Serial { .. }
+                        | Input::Frame { .. }
+                        | Input::Volts { .. }
+                        | Input::Reset(_) => {}
                     }
                 }
                 self.schedule_input();

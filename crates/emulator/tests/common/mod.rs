@@ -60,7 +60,7 @@ pub(crate) fn edges(chip: &mut Chip, wanted: Pin) -> Vec<(u64, bool)> {
             Event::Pin(at, drive @ (Drive::High | Drive::Low)) if at == wanted => {
                 Some((cycle, drive == Drive::High))
             }
-            Event::Pin(..) => None,
+            _ => None,
         })
         .collect()
 }

@@ -1,0 +1,97 @@
+//! What crosses the border of the chip: inputs with the cycle at which they happen, events with theirs.
+
+use super::ports::{Drive, Pin};
+
+/// Something from outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Input {
+    /// A pin is driven to a level, or let go (`None`).
+    Pin(Pin, Option<bool>),
+    /// A byte arrives at a USART's RXD pin as a frame of 8 data bits, no parity and one stop bit, whose start bit begins at
+    /// this cycle, or when the frame before it is over. The line idles high. What the chip makes of it depends on the USART's own
+    /// settings: another `baud` gives other bytes and frame errors.
+    Serial {
+        /// USART 0 to 3.
+        usart: u8,
+        /// What is sent.
+        byte: u8,
+        /// The sender's rate [bit/s].
+        baud: u32,
+    },
+    /// The same with any frame: 9 data bits, parity, a break.
+    Frame {
+        /// USART 0 to 3.
+        usart: u8,
+        /// The line's levels after the start bit, the lowest bit first: data, parity, stop bits.
+        bits: u16,
+        /// How many of them count, up to 16.
+        count: u8,
+        /// The sender's rate [bit/s].
+        baud: u32,
+    },
+    /// The voltage on an analog input from now on.
+    Volts {
+        /// ADC0 to ADC15.
+        channel: u8,
+        /// Against ground [V].
+        volts: f64,
+    },
+    /// The chip is reset.
+    Reset(Cause),
+}
+
+/// Something to the outside, at its cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Output {
+    /// When.
+    pub cycle: u64,
+    /// What.
+    pub event: Event,
+}
+
+/// What the chip did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// It drives a pin in another way. Edges of PWM and of serial lines are among these.
+    Pin(Pin, Drive),
+    /// A USART has sent a frame: the end of its last stop bit.
+    Byte {
+        /// USART 0 to 3.
+        usart: u8,
+        /// Its data bits, 5 to 9.
+        byte: u16,
+        /// The rate at which the chip sent it [bit/s].
+        baud: f64,
+    },
+    /// A timer drives a pin with another PWM from this cycle on; `None` when it lets go of the pin or counts without PWM.
+    Duty {
+        /// The output.
+        pin: Pin,
+        /// What it does there.
+        pwm: Option<Pwm>,
+    },
+    /// The chip was reset, and starts over.
+    Reset(Cause),
+}
+
+/// A pulse-width modulated output.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pwm {
+    /// Share of the time for which the pin is high, 0 to 1.
+    pub share: f64,
+    /// Cycles from one pulse to the next; `None` if the level is constant (the timer stands) or a pin clocks the timer.
+    pub period_cycles: Option<u64>,
+}
+
+/// Why the chip was reset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// The supply was switched on.
+    PowerOn,
+    /// The reset pin.
+    External,
+    /// The supply sagged.
+    BrownOut,
+    /// The watchdog ran out.
+    Watchdog,
+}
