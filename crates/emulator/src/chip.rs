@@ -1,6 +1,7 @@
 //! The chip: the CPU with its peripherals, and what a caller does with it.
 
 use crate::cpu::{Cpu, Stopped};
+use crate::devices::ports::Pin;
 use crate::devices::{Devices, Input, Output, Unmodelled};
 use crate::image::Image;
 
@@ -37,6 +38,11 @@ impl Chip {
     /// Something from outside at a cycle; what lies in the past happens at once.
     pub fn input(&mut self, cycle: u64, input: Input) {
         self.devices.input(cycle, input);
+    }
+
+    /// From now on a run pauses ([`Stopped::Output`]) after an instruction in which the chip drives one of these pins in another way.
+    pub fn watch(&mut self, pins: &[Pin]) {
+        self.devices.watch(pins);
     }
 
     /// What the chip did since the last call, in order.

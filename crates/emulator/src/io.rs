@@ -24,8 +24,13 @@ pub trait Io {
     fn advance(&mut self, cycle: u64);
 
     /// The cycle at which [`Io::advance`] must be called at the latest; 0 if an interrupt is pending and
-    /// `interrupts_enabled`.
+    /// `interrupts_enabled`, or the run is to pause.
     fn deadline(&self, interrupts_enabled: bool) -> u64;
+
+    /// Something has happened for which the caller wants the run to pause; asked once, it is forgotten.
+    fn take_notice(&mut self) -> bool {
+        false
+    }
 
     /// The pending and enabled interrupt of the highest priority.
     fn pending(&self) -> Option<u8>;

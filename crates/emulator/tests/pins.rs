@@ -112,6 +112,22 @@ fn a_snapshot_goes_on_exactly_as_the_original() {
 }
 
 #[test]
+fn a_run_pauses_after_the_instruction_that_drives_a_watched_pin() {
+    let mut main = vec![ldi(16, 0x80), out(0x04, 16)];
+    main.extend([NOP; 10]);
+    main.extend([sbi(0x03, 6), sbi(0x03, 7), NOP, NOP, NOP]);
+    let mut chip = chip(&main);
+    chip.watch(&[pin('B', 7)]);
+    // JMP 3, LDI 1; OUT makes it an output.
+    assert_eq!(chip.run_until(100), Stopped::Output);
+    assert_eq!(chip.cpu().cycle(), 5);
+    // PB6 is no output and not watched; SBI PINB, 7 ends in cycle 5 + 10 + 2 + 2.
+    assert_eq!(chip.run_until(100), Stopped::Output);
+    assert_eq!(chip.cpu().cycle(), 19);
+    assert_eq!(chip.run_until(21), Stopped::Reached);
+}
+
+#[test]
 fn an_access_to_what_is_not_modelled_is_told_once_with_its_place() {
     let mut main = Vec::from(sts(0x7C, 16));
     main.extend(sts(0x7C, 17));

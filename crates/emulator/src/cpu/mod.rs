@@ -39,6 +39,8 @@ pub enum Stopped {
     Reached,
     /// A breakpoint stands at the program counter; nothing of the instruction has been done.
     Breakpoint,
+    /// The chip does something else to a pin that is watched ([`crate::chip::Chip::watch`]).
+    Output,
     /// The program cannot go on.
     Ended(Verdict),
 }
@@ -239,10 +241,16 @@ impl Cpu {
             if let Some(verdict) = &self.verdict {
                 return Stopped::Ended(verdict.clone());
             }
+            if io.take_notice() {
+                return Stopped::Output;
+            }
             if self.cycle >= until {
                 return Stopped::Reached;
             }
             io.advance(self.cycle);
+            if io.take_notice() {
+                return Stopped::Output;
+            }
             if !self.shadow {
                 if self.sleeping && !self.wake(io, until) {
                     continue;

@@ -62,9 +62,20 @@ pub(crate) struct Core {
     /// The one that timers 0, 1, 3, 4 and 5 share, and timer 2's.
     pub(crate) prescalers: [Prescaler; 2],
     changes: VecDeque<(Change, u64)>,
+    /// Pins whose outputs pause the run, by their number.
+    watched: u128,
+    noticed: bool,
 }
 
 impl Core {
+    /// Says what the chip does, at its cycle.
+    pub(crate) fn say(&mut self, cycle: u64, event: Event) {
+        if let Event::Pin(pin, _) | Event::Duty { pin, .. } = event {
+            self.noticed |= self.watched >> pin.number() & 1 != 0;
+        }
+        self.outputs.push(Output { cycle, event });
+    }
+
     /// Notes what changed on a port; whoever listens to pins hears of it before the access ends.
     pub(crate) fn note(&mut self, change: Option<Change>, cycle: u64) {
         self.changes.extend(change.map(|change| (change, cycle)));
@@ -116,6 +127,12 @@ impl Devices {
     /// What the chip did since the last call, in order.
     pub fn take_outputs(&mut self) -> Vec<Output> {
         std::mem::take(&mut self.core.outputs)
+    }
+
+    /// From now on a run pauses after an instruction in which the chip drives one of these pins in another way.
+    pub fn watch(&mut self, pins: &[Pin]) {
+        let bits = pins.iter().map(|pin| 1 << pin.number());
+        self.core.watched = bits.fold(0, |all, bit: u128| all | bit);
     }
 
     /// The level of a pin now.
@@ -171,7 +188,7 @@ impl Devices {
                 if change.driven >> bit & 1 != 0 {
                     let pin = Pin::at(change.port, bit);
                     let event = Event::Pin(pin, self.core.ports.drive(pin));
-                    self.core.outputs.push(Output { cycle, event });
+                    self.core.say(cycle, event);
                 }
             }
             if change.levels != 0 {
@@ -305,11 +322,15 @@ impl Io for Devices {
 
     #[inline(always)]
     fn deadline(&self, interrupts_enabled: bool) -> u64 {
-        if interrupts_enabled && self.core.interrupts.any() {
+        if self.core.noticed || interrupts_enabled && self.core.interrupts.any() {
             0
         } else {
             self.core.schedule.next()
         }
+    }
+
+    fn take_notice(&mut self) -> bool {
+        std::mem::take(&mut self.core.noticed)
     }
 
     fn pending(&self) -> Option<u8> {

@@ -40,6 +40,11 @@ impl Pin {
         self.0 % 8
     }
 
+    /// Its number among all pins, below 88.
+    pub(crate) const fn number(self) -> u8 {
+        self.0
+    }
+
     pub(crate) const fn mask(self) -> u8 {
         1 << (self.0 % 8)
     }
