@@ -1,0 +1,126 @@
+//! Twenty seeds of a scenario with one program at the pins.
+
+use rumbo_scenario::files::{Kind, Library, Overrides, Program, Setup};
+use rumbo_scenario::run::{RunResult, run_all};
+use rumbo_scenario::sim::Sim;
+use rumbo_scenario::trace::Sample;
+
+pub(crate) const SEEDS: u64 = 20;
+
+/// What differs from the scenario as it is.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Change {
+    pub(crate) program: Program,
+    /// Longer than the scenario, for a program that needs it [s].
+    pub(crate) duration_s: Option<f64>,
+    /// Commands from the third on come this many times later.
+    pub(crate) later: Option<f64>,
+    /// A number of the plant.
+    pub(crate) plant: Option<(&'static str, f64)>,
+}
+
+/// The report's program, as it is.
+pub(crate) const ORIGINAL: Change = Change {
+    program: Program::Original,
+    duration_s: None,
+    later: None,
+    plant: None,
+};
+pub(crate) const OURS: Change = Change {
+    program: Program::Rumbo,
+    ..ORIGINAL
+};
+
+/// The runs, and what is needed to read them.
+pub(crate) struct Runs {
+    pub(crate) setup: Setup,
+    pub(crate) results: Vec<RunResult>,
+    /// For each run: distances times this are those of a robot that hears sound at 343.4 m/s.
+    scales: Vec<f64>,
+}
+
+/// The seeds of a scenario; none if there is no such scenario yet.
+pub(crate) fn runs(scenario: &str, change: Change) -> Result<Option<Runs>, String> {
+    let library = Library::new();
+    if !library
+        .list(Kind::Scenario)
+        .iter()
+        .any(|name| name == scenario)
+    {
+        return Ok(None);
+    }
+    let overrides = Overrides {
+        program: change.program,
+        parameters: change
+            .plant
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), *value))
+            .collect(),
+        ..Overrides::default()
+    };
+    let mut setup = library
+        .setup(scenario, &overrides)
+        .map_err(|error| error.to_string())?;
+    if let Some(duration_s) = change.duration_s {
+        setup.scenario.duration_s = duration_s;
+    }
+    for timed in setup.scenario.commands.iter_mut().skip(2) {
+        timed.at_s *= change.later.unwrap_or(1.0);
+    }
+    let jobs: Vec<_> = (1..=SEEDS).map(|seed| (&setup, seed)).collect();
+    let mut results = Vec::new();
+    run_all(&jobs, |_, result| {
+        results.push(result);
+        Ok(())
+    })
+    .map_err(|error: rumbo_scenario::files::FileError| error.to_string())?;
+    let scale = |seed| {
+        let temperature_c = Sim::new(&setup, seed)?.params().sonar.temperature_c;
+        Ok(343.42 / (331.3 + 0.606 * temperature_c))
+    };
+    let scales = (1..=SEEDS)
+        .map(scale)
+        .collect::<Result<_, rumbo_scenario::files::FileError>>()
+        .map_err(|error| error.to_string())?;
+    Ok(Some(Runs {
+        setup,
+        results,
+        scales,
+    }))
+}
+
+impl Runs {
+    /// A signal over time in each run; the scale of its distances comes with the sample.
+    pub(crate) fn over_time(&self, signal: impl Fn(&Sample, f64) -> f64) -> Vec<Vec<(f64, f64)>> {
+        self.each(|sample, scale| (sample.t_s, signal(sample, scale)))
+    }
+
+    /// A curve in each run.
+    pub(crate) fn each(&self, point: impl Fn(&Sample, f64) -> (f64, f64)) -> Vec<Vec<(f64, f64)>> {
+        self.results
+            .iter()
+            .zip(&self.scales)
+            .map(|(result, &scale)| {
+                let samples = result.trace.samples.iter();
+                samples.map(|sample| point(sample, scale)).collect()
+            })
+            .collect()
+    }
+
+    /// Median and worst of a metric; what never happened is the worst there is. `None` where no run has it.
+    pub(crate) fn median_and_worst(&self, metric: &str, least_is_worst: bool) -> Option<[f64; 2]> {
+        let mut values: Vec<f64> = self
+            .results
+            .iter()
+            .filter_map(|result| result.metrics.get(metric).copied())
+            .map(|value| if value.is_nan() { f64::INFINITY } else { value })
+            .collect();
+        values.sort_by(f64::total_cmp);
+        let worst = if least_is_worst {
+            values.first()
+        } else {
+            values.last()
+        };
+        Some([*values.get(values.len() / 2)?, *worst?])
+    }
+}
