@@ -1,12 +1,13 @@
 //! The project's chores, run as `cargo xtask <command>`.
 //!
 //! [`test`] is everything that must hold before a change is merged, [`tidy`] the rules no compiler checks,
-//! [`bench`] the figures of the README, [`campaign`] what must hold over thousands of seeds. Each prints what it does; none needs anything but cargo to start.
+//! [`bench`] the figures of the README, [`campaign`] what must hold over thousands of seeds, [`figures`] the figures and tables of docs/theory. Each prints what it does; none needs anything but cargo to start.
 
 use std::process::ExitCode;
 
 mod bench;
 mod campaign;
+mod figures;
 mod lab;
 mod markdown;
 mod project;
@@ -21,12 +22,15 @@ The project's chores.
 Usage: cargo xtask <command> [options]
 
 Commands:
-  test [--only STEP]...    every check, in order: format, tidy, clippy, docs, tests, dashboard, browser, README
+  test [--only STEP]...    every check, in order: format, tidy, clippy, docs, tests, figures, dashboard,
+                           browser, README
   tidy                     the rules of ARCHITECTURE.md: dependencies, no_std, files, links
   bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
   campaign [--seeds N] [--only SCENARIO]...
                            every scenario with 1,000 seeds or N, and mode 8 in as many random worlds:
                            what is required beside what was measured
+
+  figures [--only NAME]... the figures and tables of docs/theory, from runs of both programs
 
 Options:
   --help, -h    this text; after a command, its steps or parts
@@ -37,6 +41,7 @@ Examples:
   cargo xtask tidy
   cargo xtask bench --only headless
   cargo xtask campaign --seeds 100 --only mode8-random
+  cargo xtask figures --only mode1
 
 With CI=true in the environment a check that cannot run is a failure, otherwise it is skipped with the remedy.
 Exit status: 0 all well, 1 something failed, 2 wrong usage.";
@@ -80,6 +85,7 @@ fn main() -> ExitCode {
         "tidy" if only.is_empty() => tidy::run(&project),
         "bench" => bench::run(&project, &only),
         "campaign" => campaign::run(&project, seeds, &only),
+        "figures" => figures::run(&project, &only),
         "tidy" => return usage("tidy takes no options"),
         other => return usage(&format!("unknown command `{other}`")),
     };

@@ -45,7 +45,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 9] = [
+const STEPS: [Step; 10] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
@@ -75,6 +75,11 @@ const STEPS: [Step; 9] = [
         name: "build",
         what: "the rumbo binary, as users build it",
         check: build,
+    },
+    Step {
+        name: "figures",
+        what: "the figures and tables of docs/theory are those of the sources",
+        check: figures,
     },
     Step {
         name: "web",
@@ -216,6 +221,11 @@ fn tests(project: &Project) -> Result<(), Stop> {
 fn build(project: &Project) -> Result<(), Stop> {
     project.release_binary()?;
     Ok(())
+}
+
+/// The same sources give the same bytes, so that a difference is a change of behaviour that the pages do not tell yet.
+fn figures(project: &Project) -> Result<(), Stop> {
+    Ok(crate::figures::check(project)?)
 }
 
 #[cfg(test)]

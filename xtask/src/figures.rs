@@ -1,0 +1,27 @@
+//! `cargo xtask figures`: the figures and tables of docs/theory, drawn by `crates/scenario/examples/figures/`.
+
+use crate::project::{Project, run as run_command};
+
+/// Writes what is out of date: all sections, or those of these names.
+pub(crate) fn run(project: &Project, only: &[String]) -> Result<bool, String> {
+    draw(project, only).map(|()| true)
+}
+
+/// Fails if a figure or a table differs from what the sources give; writes nothing.
+pub(crate) fn check(project: &Project) -> Result<(), String> {
+    draw(project, &["--check".to_owned()])
+}
+
+fn draw(project: &Project, args: &[String]) -> Result<(), String> {
+    let program = [
+        "run",
+        "--release",
+        "--locked",
+        "-p",
+        "rumbo-scenario",
+        "--example",
+        "figures",
+        "--",
+    ];
+    run_command(project.cargo(&program).args(args))
+}
