@@ -148,7 +148,8 @@ impl Chart {
                     let thin = colour.mix(0.55).stroke_width(1);
                     for points in runs {
                         context.draw_series(
-                            broken(&fewer(points)).map(|part| PathElement::new(part, thin)),
+                            broken(&within(fewer(points), x_range, y_range))
+                                .map(|part| PathElement::new(part, thin)),
                         )?;
                     }
                     (name, colour.stroke_width(2))
@@ -274,6 +275,14 @@ fn fewer(points: &Points) -> Points {
         .copied()
         .step_by(stride(points.len()))
         .collect()
+}
+
+/// What lies outside of the chart is no value: drawn, it would be a line along the border.
+fn within(points: Points, x_range: [f64; 2], y_range: [f64; 2]) -> Points {
+    let inside = |[least, most]: [f64; 2], value| (least..=most).contains(&value);
+    let seen = |(x, y)| inside(x_range, x) && inside(y_range, y);
+    let mark = |point: (f64, f64)| (point.0, if seen(point) { point.1 } else { f64::NAN });
+    points.into_iter().map(mark).collect()
 }
 
 /// The parts of a curve between values that are none.

@@ -2,7 +2,7 @@
 
 use crate::chart::{Chart, Curve, Legend, ORIGINAL, OURS, THIRD, map, over_time, svg};
 use crate::runs::{self, Change, Runs, runs};
-use crate::table::{Row, row, table};
+use crate::table::{Row, row, spread, table};
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::trace::Sample;
 use rumbo_wire::Command;
@@ -33,9 +33,10 @@ pub(crate) const PAGES: &[Page] = &[
     page("mode6", "straight_line.md", mode6),
     page("mode7", "waypoints.md", mode7),
     page("pursuit", "pursuit.md", pursuit),
-    page("mode8-goals", "mission.md", mode8_goals),
-    page("mode8-obstacles", "mission.md", mode8_obstacles),
-    page("mode8-lane", "mission.md", mode8_lane),
+    page("mode8-lane", "lane.md", mode8_lane),
+    page("mode8-goals", "original.md", mode8_goals),
+    page("mode8-obstacles", "original.md", mode8_obstacles),
+    page("original", "original.md", original),
 ];
 
 const fn page(
@@ -101,10 +102,13 @@ fn pwm(of: &[Runs; 2]) -> Chart {
     )
 }
 
-/// The words below a figure of both programs.
-fn words(of: &[Runs; 2], scenario: &str, rows: &[Row]) -> String {
+/// The words below a figure of both programs; a third column may stand between them.
+fn words(of: &[Runs; 2], third: Option<(&str, &Runs)>, scenario: &str, rows: &[Row]) -> String {
     let [original, ours] = of;
-    let columns = [("the report's program", original), ("ours", ours)];
+    let mut columns = vec![("the report's program", original), ("ours", ours)];
+    if let Some(third) = third {
+        columns.insert(1, third);
+    }
     let end = if original.setup.scenario.duration_s > ours.setup.scenario.duration_s {
         format!(
             "; the report's was given {} s",
@@ -176,7 +180,7 @@ fn mode1() -> Result<Option<Made>, String> {
             "Distance to the wall and PWM over time: ours reaches each reference sooner and without passing it",
             svg(&charts, 1, WIDE)?,
         )],
-        words: words(&of, "mode1", &rows),
+        words: words(&of, None, "mode1", &rows),
     }))
 }
 
@@ -186,7 +190,10 @@ fn ahead_m(sample: &Sample) -> f64 {
 }
 
 fn mode2() -> Result<Option<Made>, String> {
-    let Some(of) = both("mode2", runs::ORIGINAL)? else {
+    let (Some(of), Some(turning)) = (
+        both("mode2", runs::ORIGINAL)?,
+        runs("mode2-final", runs::OURS)?,
+    ) else {
         return Ok(None);
     };
     let mut distance = signal(&of, |sample, _| 100.0 * ahead_m(sample));
@@ -239,7 +246,12 @@ fn mode2() -> Result<Option<Made>, String> {
             "Distance and angle to the wall over time: ours stands square at every reference",
             svg(&charts, 1, WIDE)?,
         )],
-        words: words(&of, "mode2", &rows),
+        words: words(
+            &of,
+            Some(("ours, one sonar on the servo (`mode2-final`)", &turning)),
+            "mode2",
+            &rows,
+        ),
     }))
 }
 
@@ -446,7 +458,7 @@ fn mode5() -> Result<Option<Made>, String> {
             "Speed of the left wheel over time: ours is there within a third of a second",
             svg(&charts, 1, WIDE)?,
         )],
-        words: words(&of, "mode5", &rows),
+        words: words(&of, None, "mode5", &rows),
     }))
 }
 
@@ -461,7 +473,11 @@ fn ways(runs: &Runs) -> Vec<Vec<(f64, f64)>> {
 }
 
 fn mode6() -> Result<Option<Made>, String> {
-    let Some(of) = both("mode6", runs::ORIGINAL)? else {
+    let raw = Change {
+        uncalibrated: true,
+        ..runs::OURS
+    };
+    let (Some(of), Some(raw)) = (both("mode6", runs::ORIGINAL)?, runs("mode6", raw)?) else {
         return Ok(None);
     };
     let drift = |runs: &Runs| -> Vec<Vec<(f64, f64)>> {
@@ -514,7 +530,12 @@ fn mode6() -> Result<Option<Made>, String> {
             "Sideways drift over the way ahead: ours stays within four centimetres",
             svg(&[chart], 1, WIDE)?,
         )],
-        words: words(&of, "mode6", &rows),
+        words: words(
+            &of,
+            Some(("ours, `calibrated = false`", &raw)),
+            "mode6",
+            &rows,
+        ),
     }))
 }
 
@@ -548,12 +569,19 @@ fn maps(
     svg(&charts, 2, (430, 430))
 }
 
+/// The report's program needs longer than the scenario lasts.
+const SLOW_SQUARE: Change = Change {
+    duration_s: Some(60.0),
+    ..runs::ORIGINAL
+};
+const SLOW_MISSION: Change = Change {
+    duration_s: Some(150.0),
+    later: Some(4.0),
+    ..runs::ORIGINAL
+};
+
 fn mode7() -> Result<Option<Made>, String> {
-    let slow = Change {
-        duration_s: Some(60.0),
-        ..runs::ORIGINAL
-    };
-    let Some(of) = both("mode7", slow)? else {
+    let Some(of) = both("mode7", SLOW_SQUARE)? else {
         return Ok(None);
     };
     let square = || {
@@ -595,7 +623,7 @@ fn mode7() -> Result<Option<Made>, String> {
             "True ways of 20 robots around a square of 1 m: ours all but on it",
             maps(&of, titles, square, ways, range, range)?,
         )],
-        words: words(&of, "mode7", &rows),
+        words: words(&of, None, "mode7", &rows),
     }))
 }
 
@@ -686,12 +714,7 @@ fn mission(
     range: [Option<[f64; 2]>; 2],
     rows: &[Row],
 ) -> Result<Option<Made>, String> {
-    let slow = Change {
-        duration_s: Some(150.0),
-        later: Some(4.0),
-        ..runs::ORIGINAL
-    };
-    let Some(of) = both(scenario, slow)? else {
+    let Some(of) = both(scenario, SLOW_MISSION)? else {
         return Ok(None);
     };
     let titles = ["the report's program", "Mode 8: ours"];
@@ -705,7 +728,7 @@ fn mission(
     )?;
     Ok(Some(Made {
         figures: vec![(scenario, alt, figure)],
-        words: words(&of, scenario, rows),
+        words: words(&of, None, scenario, rows),
     }))
 }
 
@@ -745,13 +768,181 @@ fn mode8_obstacles() -> Result<Option<Made>, String> {
 
 fn mode8_lane() -> Result<Option<Made>, String> {
     let rows = [
-        row("time", "total_time_s", 1.0, "s", "57.8 s"),
+        row("time of the four straights", "finish_s", 1.0, "s", "57.8 s"),
+        Row {
+            least_is_worst: true,
+            ..row("straights driven", "straights", 1.0, "", "4")
+        },
         row("contacts", "contacts", 1.0, "", "0"),
+        Row {
+            least_is_worst: true,
+            ..row("least clearance", "clearance_m", 100.0, "cm", "")
+        },
     ];
     mission(
         "mode8-lane",
         "True ways of 20 robots along a lane of boxes",
-        [None, None],
+        [Some([-0.6, 2.8]), Some([-1.0, 1.4])],
         &rows,
     )
+}
+
+/// How near the program comes to what its robot did.
+fn original() -> Result<Option<Made>, String> {
+    let experiments: [(&str, &str, Change, &[Row]); 7] = [
+        (
+            "mode 1",
+            "mode1",
+            runs::ORIGINAL,
+            &[
+                row(
+                    "107 -> 30 cm, within 5 %",
+                    "step1.settling_s",
+                    1.0,
+                    "s",
+                    "3.0 s",
+                ),
+                row(
+                    "30 -> 50 cm, within 5 %",
+                    "step2.settling_s",
+                    1.0,
+                    "s",
+                    "1.2 s",
+                ),
+                row("overshoot", "step1.overshoot_m", 100.0, "cm", "0.6 cm"),
+                row(
+                    "period of the loop",
+                    "control_period_s",
+                    1000.0,
+                    "ms",
+                    "65 ms",
+                ),
+            ],
+        ),
+        (
+            "mode 2",
+            "mode2",
+            runs::ORIGINAL,
+            &[row(
+                "119 -> 30 cm, within 5 %",
+                "step1.settling_s",
+                1.0,
+                "s",
+                "3.4 s",
+            )],
+        ),
+        (
+            "mode 3, easy to turn",
+            "mode3",
+            LIGHT,
+            &[
+                row(
+                    "distance error, rms",
+                    "distance_rms_m",
+                    100.0,
+                    "cm",
+                    "1.2 cm",
+                ),
+                row(
+                    "distance error, worst",
+                    "distance_worst_m",
+                    100.0,
+                    "cm",
+                    "4.6 cm",
+                ),
+            ],
+        ),
+        (
+            "mode 5",
+            "mode5",
+            runs::ORIGINAL,
+            &[
+                row(
+                    "0 -> 60 rpm, within 3.2 rpm",
+                    "step1.settling_s",
+                    1.0,
+                    "s",
+                    "3.7 s",
+                ),
+                row("50 -> 100 rpm", "step3.settling_s", 1.0, "s", "1.8 s"),
+                row("0 -> -100 rpm", "step6.settling_s", 1.0, "s", "5.3 s"),
+                row("0 -> 40 rpm", "step9.settling_s", 1.0, "s", "5.5 s"),
+                row(
+                    "ripple at 60 rpm",
+                    "step1.ripple_rad_s",
+                    RPM,
+                    "rpm",
+                    "0.9 to 2.1 rpm",
+                ),
+                row(
+                    "period of the loop",
+                    "control_period_s",
+                    1000.0,
+                    "ms",
+                    "41 ms",
+                ),
+            ],
+        ),
+        (
+            "mode 7",
+            "mode7",
+            SLOW_SQUARE,
+            &[
+                row("once round", "finish_s", 1.0, "s", "30 s"),
+                row(
+                    "off the square by odometry, worst",
+                    "odometry_worst_m",
+                    100.0,
+                    "cm",
+                    "6 cm",
+                ),
+                row("the same, rms", "odometry_rms_m", 100.0, "cm", "2.4 cm"),
+                row(
+                    "period of the loop",
+                    "control_period_s",
+                    1000.0,
+                    "ms",
+                    "67 ms",
+                ),
+            ],
+        ),
+        (
+            "mode 8, goals",
+            "mode8-goals",
+            SLOW_MISSION,
+            &[
+                row("all four", "total_time_s", 1.0, "s", "32 s"),
+                row("way", "path_m", 1.0, "m", "4.3 m"),
+            ],
+        ),
+        (
+            "mode 8, obstacles",
+            "mode8-obstacles",
+            SLOW_MISSION,
+            &[
+                row("time", "total_time_s", 1.0, "s", "73.6 s"),
+                row("way", "path_m", 1.0, "m", "4.16 m"),
+            ],
+        ),
+    ];
+    let mut words = String::from(
+        "| experiment | | the report's robot, one run | its program here, median | least | most |\n|---|---|---|---|---|---|\n",
+    );
+    for (name, scenario, change, rows) in experiments {
+        let Some(runs) = runs(scenario, change)? else {
+            return Ok(None);
+        };
+        for row in rows {
+            words += &format!(
+                "| {name} | {} | {} | {} |\n",
+                row.what,
+                row.real,
+                spread(row, &runs)
+            );
+        }
+    }
+    Ok(Some(Made {
+        figures: Vec::new(),
+        words,
+    }))
 }

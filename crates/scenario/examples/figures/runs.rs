@@ -15,6 +15,8 @@ pub(crate) struct Change {
     pub(crate) duration_s: Option<f64>,
     /// Commands from the third on come this many times later.
     pub(crate) later: Option<f64>,
+    /// As the robot comes, whatever the scenario says.
+    pub(crate) uncalibrated: bool,
     /// A number of the plant.
     pub(crate) plant: Option<(&'static str, f64)>,
 }
@@ -24,6 +26,7 @@ pub(crate) const ORIGINAL: Change = Change {
     program: Program::Original,
     duration_s: None,
     later: None,
+    uncalibrated: false,
     plant: None,
 };
 pub(crate) const OURS: Change = Change {
@@ -64,6 +67,7 @@ pub(crate) fn runs(scenario: &str, change: Change) -> Result<Option<Runs>, Strin
     if let Some(duration_s) = change.duration_s {
         setup.scenario.duration_s = duration_s;
     }
+    setup.scenario.calibrated &= !change.uncalibrated;
     for timed in setup.scenario.commands.iter_mut().skip(2) {
         timed.at_s *= change.later.unwrap_or(1.0);
     }

@@ -58,6 +58,25 @@ pub(crate) fn table(columns: &[(&str, &Runs)], rows: &[Row]) -> String {
     text
 }
 
+/// Median, least and most, as three cells.
+pub(crate) fn spread(row: &Row, runs: &Runs) -> String {
+    let [median, most] = runs
+        .median_and_worst(row.metric, false)
+        .unwrap_or([f64::NAN; 2]);
+    let [_, least] = runs
+        .median_and_worst(row.metric, true)
+        .unwrap_or([f64::NAN; 2]);
+    [median, least, most]
+        .map(|value| {
+            if value.is_finite() {
+                with_unit(value, row)
+            } else {
+                "never".into()
+            }
+        })
+        .join(" | ")
+}
+
 fn cell(row: &Row, runs: &Runs) -> String {
     match runs.median_and_worst(row.metric, row.least_is_worst) {
         None => "-".into(),
