@@ -1,0 +1,163 @@
+//! How near the report's program comes to what its robot did.
+
+use super::*;
+
+/// Medians of its runs beside the recorded ones.
+pub(super) fn original() -> Result<Option<Made>, String> {
+    let experiments: [(&str, &str, Change, &[Row]); 7] = [
+        (
+            "mode 1",
+            "mode1",
+            runs::ORIGINAL,
+            &[
+                row(
+                    "107 -> 30 cm, within 5 %",
+                    "step1.settling_s",
+                    1.0,
+                    "s",
+                    "3.0 s",
+                ),
+                row(
+                    "30 -> 50 cm, within 5 %",
+                    "step2.settling_s",
+                    1.0,
+                    "s",
+                    "1.2 s",
+                ),
+                row("overshoot", "step1.overshoot_m", 100.0, "cm", "0.6 cm"),
+                row(
+                    "period of the loop",
+                    "control_period_s",
+                    1000.0,
+                    "ms",
+                    "65 ms",
+                ),
+            ],
+        ),
+        (
+            "mode 2",
+            "mode2",
+            runs::ORIGINAL,
+            &[row(
+                "119 -> 30 cm, within 5 %",
+                "step1.settling_s",
+                1.0,
+                "s",
+                "3.4 s",
+            )],
+        ),
+        (
+            "mode 3, easy to turn",
+            "mode3",
+            LIGHT,
+            &[
+                row(
+                    "distance error, rms",
+                    "distance_rms_m",
+                    100.0,
+                    "cm",
+                    "1.2 cm",
+                ),
+                row(
+                    "distance error, worst",
+                    "distance_worst_m",
+                    100.0,
+                    "cm",
+                    "4.6 cm",
+                ),
+            ],
+        ),
+        (
+            "mode 5",
+            "mode5",
+            runs::ORIGINAL,
+            &[
+                row(
+                    "0 -> 60 rpm, within 3.2 rpm",
+                    "step1.settling_s",
+                    1.0,
+                    "s",
+                    "3.7 s",
+                ),
+                row("50 -> 100 rpm", "step3.settling_s", 1.0, "s", "1.8 s"),
+                row("0 -> -100 rpm", "step6.settling_s", 1.0, "s", "5.3 s"),
+                row("0 -> 40 rpm", "step9.settling_s", 1.0, "s", "5.5 s"),
+                row(
+                    "ripple at 60 rpm",
+                    "step1.ripple_rad_s",
+                    RPM,
+                    "rpm",
+                    "0.9 to 2.1 rpm",
+                ),
+                row(
+                    "period of the loop",
+                    "control_period_s",
+                    1000.0,
+                    "ms",
+                    "41 ms",
+                ),
+            ],
+        ),
+        (
+            "mode 7",
+            "mode7",
+            SLOW_SQUARE,
+            &[
+                row("once round", "finish_s", 1.0, "s", "30 s"),
+                row(
+                    "off the square by odometry, worst",
+                    "odometry_worst_m",
+                    100.0,
+                    "cm",
+                    "6 cm",
+                ),
+                row("the same, rms", "odometry_rms_m", 100.0, "cm", "2.4 cm"),
+                row(
+                    "period of the loop",
+                    "control_period_s",
+                    1000.0,
+                    "ms",
+                    "67 ms",
+                ),
+            ],
+        ),
+        (
+            "mode 8, goals",
+            "mode8-goals",
+            SLOW_MISSION,
+            &[
+                row("all four", "total_time_s", 1.0, "s", "32 s"),
+                row("way", "path_m", 1.0, "m", "4.3 m"),
+            ],
+        ),
+        (
+            "mode 8, obstacles",
+            "mode8-obstacles",
+            SLOW_MISSION,
+            &[
+                row("time", "total_time_s", 1.0, "s", "73.6 s"),
+                row("way", "path_m", 1.0, "m", "4.16 m"),
+            ],
+        ),
+    ];
+    let mut words = String::from(
+        "| experiment | | the report's robot, one run | its program here, median | least | most |\n|---|---|---|---|---|---|\n",
+    );
+    for (name, scenario, change, rows) in experiments {
+        let Some(runs) = runs(scenario, change)? else {
+            return Ok(None);
+        };
+        for row in rows {
+            words += &format!(
+                "| {name} | {} | {} | {} |\n",
+                row.what,
+                row.real,
+                spread(row, &runs)
+            );
+        }
+    }
+    Ok(Some(Made {
+        figures: Vec::new(),
+        words,
+    }))
+}

@@ -1,0 +1,161 @@
+//! What each page of docs/theory shows.
+
+mod baseline;
+mod walls;
+mod ways;
+mod wheels;
+
+use crate::chart::{Chart, Curve, Legend, ORIGINAL, OURS, THIRD, map, over_time, svg};
+use crate::runs::{self, Change, Runs, runs};
+use crate::table::{Row, row, spread, table};
+use rumbo_scenario::files::Setup;
+use rumbo_scenario::trace::Sample;
+use rumbo_wire::Command;
+
+const RPM: f64 = 30.0 / std::f64::consts::PI;
+const DEG: f64 = 180.0 / std::f64::consts::PI;
+const WIDE: (u32, u32) = (860, 290);
+
+/// A section of a page.
+pub(crate) struct Page {
+    pub(crate) name: &'static str,
+    pub(crate) file: &'static str,
+    pub(crate) make: fn() -> Result<Option<Made>, String>,
+}
+
+/// What is to stand in it: figures with name, alternative text and SVG, and the words below them.
+pub(crate) struct Made {
+    pub(crate) figures: Vec<(&'static str, &'static str, String)>,
+    pub(crate) words: String,
+}
+
+pub(crate) const PAGES: &[Page] = &[
+    page("mode1", "front_distance.md", walls::mode1),
+    page("mode2", "front_align.md", walls::mode2),
+    page("mode3", "wall_follow.md", walls::mode3),
+    page("mode4", "wall_follow.md", walls::mode4),
+    page("mode5", "wheel_speed.md", wheels::mode5),
+    page("mode6", "straight_line.md", wheels::mode6),
+    page("mode7", "waypoints.md", ways::mode7),
+    page("pursuit", "pursuit.md", ways::pursuit),
+    page("mode8-lane", "lane.md", ways::mode8_lane),
+    page("mode8-goals", "original.md", ways::mode8_goals),
+    page("mode8-obstacles", "original.md", ways::mode8_obstacles),
+    page("original", "original.md", baseline::original),
+];
+
+const fn page(
+    name: &'static str,
+    file: &'static str,
+    make: fn() -> Result<Option<Made>, String>,
+) -> Page {
+    Page { name, file, make }
+}
+
+/// Both programs' runs of a scenario, the report's first.
+fn both(scenario: &str, original: Change) -> Result<Option<[Runs; 2]>, String> {
+    Ok(runs(scenario, original)?
+        .zip(runs(scenario, runs::OURS)?)
+        .map(|(original, ours)| [original, ours]))
+}
+
+/// A signal over time, of both programs.
+fn signal(of: &[Runs; 2], signal: impl Fn(&Sample, f64) -> f64) -> Vec<Curve> {
+    let [original, ours] = of;
+    vec![
+        Curve::Seeds {
+            name: "the report's program",
+            colour: ORIGINAL,
+            runs: original.over_time(&signal),
+        },
+        Curve::Seeds {
+            name: "ours",
+            colour: OURS,
+            runs: ours.over_time(&signal),
+        },
+    ]
+}
+
+/// The reference over time, in its unit times `factor`.
+fn reference(setup: &Setup, factor: f64) -> Curve {
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    for timed in &setup.scenario.commands {
+        let value = match timed.command {
+            Command::Reference(value) => f64::from(value),
+            Command::WheelReference(wheels) => f64::from(wheels.left),
+            _ => continue,
+        } * factor;
+        if let Some(&(_, last)) = points.last() {
+            points.push((timed.at_s, last));
+        }
+        points.push((timed.at_s, value));
+    }
+    if let Some(&(_, last)) = points.last() {
+        points.push((setup.scenario.duration_s, last));
+    }
+    Curve::Given {
+        name: "reference",
+        points,
+    }
+}
+
+fn pwm(of: &[Runs; 2]) -> Chart {
+    over_time(
+        "PWM of the left wheel",
+        "of 255",
+        signal(of, |sample, _| f64::from(sample.duty[0])),
+    )
+}
+
+/// The words below a figure of both programs; a third column may stand between them.
+fn words(of: &[Runs; 2], third: Option<(&str, &Runs)>, scenario: &str, rows: &[Row]) -> String {
+    let [original, ours] = of;
+    let mut columns = vec![("the report's program", original), ("ours", ours)];
+    if let Some(third) = third {
+        columns.insert(1, third);
+    }
+    let end = if original.setup.scenario.duration_s > ours.setup.scenario.duration_s {
+        format!(
+            "; the report's was given {} s",
+            original.setup.scenario.duration_s
+        )
+    } else {
+        String::new()
+    };
+    format!(
+        "{}\nThe same {} simulated robots with both programs: median, and the range of all. `rumbo run {scenario} --runs {}`, and with `--program original`{end}.\n",
+        table(&columns, rows),
+        runs::SEEDS,
+        runs::SEEDS,
+    )
+}
+
+/// The yaw inertia that the footprint alone would have.
+const LIGHT: Change = Change {
+    plant: Some(("body.yaw_inertia_kg_m2", 0.0047)),
+    ..runs::ORIGINAL
+};
+
+/// The report's program needs longer than the scenario lasts.
+const SLOW_SQUARE: Change = Change {
+    duration_s: Some(60.0),
+    ..runs::ORIGINAL
+};
+const SLOW_MISSION: Change = Change {
+    duration_s: Some(150.0),
+    later: Some(4.0),
+    ..runs::ORIGINAL
+};
+
+/// Every seed's way.
+type Ways = Vec<Vec<(f64, f64)>>;
+
+/// Every seed's way as seen from the start.
+fn ways(runs: &Runs) -> Ways {
+    let start = runs.setup.scenario.start;
+    let (sin, cos) = start.heading_rad.sin_cos();
+    runs.each(|sample, _| {
+        let (dx, dy) = (sample.x_m - start.x_m, sample.y_m - start.y_m);
+        (cos * dx + sin * dy, cos * dy - sin * dx)
+    })
+}

@@ -1,0 +1,269 @@
+//! Modes 1 to 4: before a wall and along one.
+
+use super::*;
+
+pub(super) fn mode1() -> Result<Option<Made>, String> {
+    let Some(of) = both("mode1", runs::ORIGINAL)? else {
+        return Ok(None);
+    };
+    let mut distance = signal(&of, |sample, scale| 100.0 * sample.range_m[2] * scale);
+    distance.insert(0, reference(&of[1].setup, 100.0));
+    let charts = [
+        over_time("Mode 1: distance to the wall", "cm", distance),
+        pwm(&of),
+    ];
+    let rows = [
+        row(
+            "107 -> 30 cm, within 5 %",
+            "step1.settling_s",
+            1.0,
+            "s",
+            "3.0 s",
+        ),
+        row("overshoot", "step1.overshoot_m", 100.0, "cm", "0.6 cm"),
+        row(
+            "steady error",
+            "step1.steady_error_m",
+            100.0,
+            "cm",
+            "0.02 cm",
+        ),
+        row(
+            "30 -> 50 cm, within 5 %",
+            "step2.settling_s",
+            1.0,
+            "s",
+            "1.2 s",
+        ),
+        row("overshoot", "step2.overshoot_m", 100.0, "cm", ""),
+        row(
+            "driven against its motion",
+            "reverse_drive_rad_s",
+            1.0,
+            "rad/s",
+            "",
+        ),
+        row(
+            "time between two settings of the PWM",
+            "control_period_s",
+            1000.0,
+            "ms",
+            "65 ms",
+        ),
+    ];
+    Ok(Some(Made {
+        figures: vec![(
+            "mode1",
+            "Distance to the wall and PWM over time: ours reaches each reference sooner and without passing it",
+            svg(&charts, 1, WIDE)?,
+        )],
+        words: words(&of, None, "mode1", &rows),
+    }))
+}
+
+/// Distance of the middle of the front pair from the wall at x = 1.2 m.
+fn ahead_m(sample: &Sample) -> f64 {
+    1.2 - sample.x_m - 0.13 * sample.heading_rad.cos()
+}
+
+pub(super) fn mode2() -> Result<Option<Made>, String> {
+    let (Some(of), Some(turning)) = (
+        both("mode2", runs::ORIGINAL)?,
+        runs("mode2-final", runs::OURS)?,
+    ) else {
+        return Ok(None);
+    };
+    let mut distance = signal(&of, |sample, _| 100.0 * ahead_m(sample));
+    distance.insert(0, reference(&of[1].setup, 100.0));
+    let mut charts = [
+        over_time("Mode 2: distance to the wall", "cm", distance),
+        over_time(
+            "Angle to the wall's normal",
+            "deg",
+            signal(&of, |sample, _| DEG * sample.heading_rad),
+        ),
+    ];
+    charts[0].y_range = Some([0.0, 125.0]);
+    charts[1].y_range = Some([-60.0, 90.0]);
+    let rows = [
+        row(
+            "119 -> 30 cm, within 5 %",
+            "step1.settling_s",
+            1.0,
+            "s",
+            "3.4 s",
+        ),
+        row(
+            "steady error",
+            "step1.steady_error_m",
+            100.0,
+            "cm",
+            "0.64 cm",
+        ),
+        row(
+            "angle to the wall at rest",
+            "step1.angle_rad",
+            DEG,
+            "deg",
+            "not measured",
+        ),
+        row(
+            "50 -> 15 cm, within 2 cm",
+            "step3.within_2cm_s",
+            1.0,
+            "s",
+            "5.5 s",
+        ),
+        row("overshoot", "step3.overshoot_m", 100.0, "cm", "5.7 cm"),
+        row("contacts", "contacts", 1.0, "", "0"),
+    ];
+    Ok(Some(Made {
+        figures: vec![(
+            "mode2",
+            "Distance and angle to the wall over time: ours stands square at every reference",
+            svg(&charts, 1, WIDE)?,
+        )],
+        words: words(
+            &of,
+            Some(("ours, one sonar on the servo (`mode2-final`)", &turning)),
+            "mode2",
+            &rows,
+        ),
+    }))
+}
+
+/// Distance of the middle of the side pair from the wall at y = 0.65 m.
+fn beside_m(sample: &Sample) -> f64 {
+    let (sin, cos) = sample.heading_rad.sin_cos();
+    0.65 - sample.y_m - 0.03 * sin - 0.075 * cos
+}
+
+const LIGHT_WORDS: &str = "The third column is the report's program on a robot that turns as easily as its footprint alone would (`--param \
+body.yaw_inertia_kg_m2=0.0047`); the identified robot has three times that, which takes up the resistance of its castor.";
+
+pub(super) fn mode3() -> Result<Option<Made>, String> {
+    let (Some([original, ours]), Some(light)) =
+        (both("mode3", runs::ORIGINAL)?, runs("mode3", LIGHT)?)
+    else {
+        return Ok(None);
+    };
+    let error = |runs: &Runs| runs.over_time(|sample, _| 100.0 * (beside_m(sample) - 0.575));
+    let curves = vec![
+        Curve::Seeds {
+            name: "the report's program",
+            colour: ORIGINAL,
+            runs: error(&original),
+        },
+        Curve::Seeds {
+            name: "the same, easy to turn",
+            colour: THIRD,
+            runs: error(&light),
+        },
+        Curve::Seeds {
+            name: "ours",
+            colour: OURS,
+            runs: error(&ours),
+        },
+    ];
+    let mut chart = over_time("Mode 3: error of the distance to the wall", "cm", curves);
+    chart.y_range = Some([-40.0, 60.0]);
+    chart.legend = Legend::UpperLeft;
+    let rows = [
+        row(
+            "distance error, rms",
+            "distance_rms_m",
+            100.0,
+            "cm",
+            "1.2 cm",
+        ),
+        row("worst", "distance_worst_m", 100.0, "cm", "4.6 cm"),
+        Row {
+            least_is_worst: true,
+            ..row("slowest half second", "cruise_m_s", 1.0, "m/s", "")
+        },
+        row("contacts", "contacts", 1.0, "", "0"),
+    ];
+    let columns = [
+        ("the report's program", &original),
+        ("easy to turn", &light),
+        ("ours", &ours),
+    ];
+    Ok(Some(Made {
+        figures: vec![(
+            "mode3",
+            "Error of the distance to the wall over time: ours stays within half a centimetre",
+            svg(&[chart], 1, WIDE)?,
+        )],
+        words: format!(
+            "{}\n{LIGHT_WORDS} `rumbo run mode3 --runs 20`, and with `--program original`.\n",
+            table(&columns, &rows)
+        ),
+    }))
+}
+
+pub(super) fn mode4() -> Result<Option<Made>, String> {
+    let (Some([original, ours]), Some(light)) =
+        (both("mode4", runs::ORIGINAL)?, runs("mode4", LIGHT)?)
+    else {
+        return Ok(None);
+    };
+    let distance = |runs: &Runs| runs.over_time(|sample, _| 100.0 * beside_m(sample));
+    let curves = vec![
+        reference(&ours.setup, 100.0),
+        Curve::Seeds {
+            name: "the report's program, easy to turn",
+            colour: THIRD,
+            runs: distance(&light),
+        },
+        Curve::Seeds {
+            name: "ours",
+            colour: OURS,
+            runs: distance(&ours),
+        },
+    ];
+    let mut chart = over_time("Mode 4: distance to the wall", "cm", curves);
+    chart.y_range = Some([0.0, 90.0]);
+    let rows = [
+        row(
+            "59 -> 50 cm, within 2 cm",
+            "step1.within_2cm_s",
+            1.0,
+            "s",
+            "7.1 s",
+        ),
+        row("50 -> 30 cm", "step2.within_2cm_s", 1.0, "s", "6.3 s"),
+        row("30 -> 40 cm", "step3.within_2cm_s", 1.0, "s", "9.0 s"),
+        row(
+            "swing at 50 cm, standard deviation",
+            "step1.ripple_m",
+            100.0,
+            "cm",
+            "",
+        ),
+        row("swing at 30 cm", "step2.ripple_m", 100.0, "cm", ""),
+        row(
+            "overshoot of 50 -> 30 cm",
+            "step2.overshoot_m",
+            100.0,
+            "cm",
+            "",
+        ),
+        row("contacts", "contacts", 1.0, "", "0"),
+    ];
+    let columns = [
+        ("the report's program", &original),
+        ("easy to turn", &light),
+        ("ours", &ours),
+    ];
+    Ok(Some(Made {
+        figures: vec![(
+            "mode4",
+            "Distance to the wall over time: ours takes each step without swinging",
+            svg(&[chart], 1, WIDE)?,
+        )],
+        words: format!(
+            "{}\nOn these robots the report's program swings by more than 2 cm about its references, or does not start on a weak battery, so that it never counts as settled. `rumbo run mode4 --runs 20`, and with `--program original`.\n",
+            table(&columns, &rows)
+        ),
+    }))
+}
