@@ -72,14 +72,14 @@ const STEPS: [Step; 10] = [
         check: tests,
     },
     Step {
-        name: "build",
-        what: "the rumbo binary, as users build it",
-        check: build,
-    },
-    Step {
         name: "figures",
         what: "the figures and tables of docs/theory are those of the sources",
         check: figures,
+    },
+    Step {
+        name: "build",
+        what: "the rumbo binary, as users build it",
+        check: build,
     },
     Step {
         name: "web",
