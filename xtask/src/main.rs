@@ -1,7 +1,9 @@
 //! The project's chores, run as `cargo xtask <command>`.
 //!
 //! [`test`] is everything that must hold before a change is merged, [`tidy`] the rules no compiler checks,
-//! [`bench`] the figures of the README, [`campaign`] what must hold over thousands of seeds, [`figures`] the figures and tables of docs/theory. Each prints what it does; none needs anything but cargo to start.
+//! [`bench`] the figures of the README, [`campaign`] what must hold over thousands of seeds, [`sketches`] the images that
+//! tests and examples run, [`figures`] the figures and tables of docs/theory. Each prints what it does; none needs
+//! anything but cargo to start.
 
 use std::process::ExitCode;
 
@@ -11,6 +13,7 @@ mod figures;
 mod lab;
 mod markdown;
 mod project;
+mod sketches;
 mod test;
 mod tidy;
 
@@ -22,10 +25,11 @@ The project's chores.
 Usage: cargo xtask <command> [options]
 
 Commands:
-  test [--only STEP]...    every check, in order: format, tidy, clippy, docs, tests, figures, dashboard,
+  test [--only STEP]...    every check, in order: format, tidy, clippy, docs, sketches, tests, figures, dashboard,
                            browser, README
   tidy                     the rules of ARCHITECTURE.md: dependencies, no_std, files, links
   bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
+  sketches                 the Arduino sketches of examples and tests, compiled into target/sketches/*.elf
   campaign [--seeds N] [--only SCENARIO]...
                            every scenario with 1,000 seeds or N, and mode 8 in as many random worlds:
                            what is required beside what was measured
@@ -39,6 +43,7 @@ Examples:
   cargo xtask test
   cargo xtask test --only fmt --only clippy
   cargo xtask tidy
+  cargo xtask sketches
   cargo xtask bench --only headless
   cargo xtask campaign --seeds 100 --only mode8-random
   cargo xtask figures --only mode1
@@ -86,6 +91,8 @@ fn main() -> ExitCode {
         "bench" => bench::run(&project, &only),
         "campaign" => campaign::run(&project, seeds, &only),
         "figures" => figures::run(&project, &only),
+        "sketches" if only.is_empty() => sketches::run(&project),
+        "sketches" => return usage("sketches takes no options"),
         "tidy" => return usage("tidy takes no options"),
         other => return usage(&format!("unknown command `{other}`")),
     };

@@ -5,7 +5,7 @@
 //! browser and the README, so nothing is built twice in the same way.
 
 mod readme;
-mod tools;
+pub(crate) mod tools;
 mod web;
 
 use std::time::{Duration, Instant};
@@ -26,7 +26,7 @@ enum Outcome {
 }
 
 /// Why a step did not pass.
-enum Stop {
+pub(crate) enum Stop {
     /// The check ran, or should have run, and failed.
     Failed(String),
     /// A tool is missing and cannot be installed from here; says which and how to get it.
@@ -65,6 +65,11 @@ const STEPS: [Step; 10] = [
         name: "doc",
         what: "the API documentation builds without a warning",
         check: doc,
+    },
+    Step {
+        name: "sketches",
+        what: "the Arduino sketches build: images for the tests",
+        check: crate::sketches::build,
     },
     Step {
         name: "test",

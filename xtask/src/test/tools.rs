@@ -58,6 +58,19 @@ pub(crate) fn simavr(project: &Project) -> Result<PathBuf, Stop> {
     )
 }
 
+/// The folder `avr` of the Arduino core; the compiler and its library come with the package.
+pub(crate) fn arduino_core(project: &Project) -> Result<PathBuf, Stop> {
+    let core = PathBuf::from("/usr/share/arduino/hardware/arduino/avr");
+    let find = || (core.is_dir() && find_program("avr-gcc").is_some()).then(|| core.clone());
+    install(
+        project,
+        "the Arduino core",
+        &["arduino-core-avr", "gcc-avr", "avr-libc"],
+        "Debian's and Ubuntu's packages",
+        find,
+    )
+}
+
 /// Node and npm, with the packages of `web/package-lock.json` installed.
 pub(crate) fn node(project: &Project) -> Result<PathBuf, Stop> {
     let node = program(project, "node", &["nodejs", "npm"], "Node 20 or newer")?;
@@ -77,7 +90,18 @@ pub(crate) fn node(project: &Project) -> Result<PathBuf, Stop> {
 
 /// A program on the search path; as root on Debian, `packages` are installed to get it.
 fn program(project: &Project, name: &str, packages: &[&str], hint: &str) -> Result<PathBuf, Stop> {
-    if let Some(path) = find_program(name) {
+    install(project, name, packages, hint, || find_program(name))
+}
+
+/// What `find` finds; as root on Debian, `packages` are installed to get it.
+fn install(
+    project: &Project,
+    name: &str,
+    packages: &[&str],
+    hint: &str,
+    find: impl Fn() -> Option<PathBuf>,
+) -> Result<PathBuf, Stop> {
+    if let Some(path) = find() {
         return Ok(path);
     }
     let remedy = format!(
@@ -94,7 +118,7 @@ fn program(project: &Project, name: &str, packages: &[&str], hint: &str) -> Resu
             .args(["-qq", "install", "--yes", "--no-install-recommends"])
             .args(packages))
     });
-    match (install, find_program(name)) {
+    match (install, find()) {
         (Ok(()), Some(path)) => Ok(path),
         (Err(error), _) => Err(Stop::Missing(format!("{remedy}; {error}"))),
         _ => Err(Stop::Missing(remedy)),

@@ -1,0 +1,5 @@
+//! Arduino sketches on the chip: what their pins do, and when. `cargo xtask sketches` builds the images.
+#![cfg(test)]
+
+mod board;
+mod pins;

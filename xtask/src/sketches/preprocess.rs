@@ -1,0 +1,153 @@
+//! What the Arduino IDE does to `.ino` files: joins them, includes `Arduino.h`, declares every function before the first.
+
+use std::path::{Path, PathBuf};
+
+use super::{name_of, read};
+
+/// The C++ file of a sketch: the file of its name first, the others after it.
+pub(super) fn join(sketch: &Path, files: &[PathBuf]) -> Result<String, String> {
+    let mut parts: Vec<&PathBuf> = files
+        .iter()
+        .filter(|file| file.extension().is_some_and(|ending| ending == "ino"))
+        .collect();
+    let main = sketch.join(format!("{}.ino", name_of(sketch)));
+    parts.sort_by_key(|file| **file != main);
+    let mut text = String::new();
+    for part in parts {
+        text += &format!("#line 1 \"{}\"\n{}\n", part.display(), read(part)?);
+    }
+    Ok(with_declarations(&text))
+}
+
+/// Headers that a source includes.
+pub(super) fn includes(text: &str) -> Vec<String> {
+    text.lines()
+        .filter_map(|line| line.trim().strip_prefix("#include"))
+        .filter_map(|rest| {
+            rest.trim()
+                .strip_prefix(['<', '"'])?
+                .split(['>', '"'])
+                .next()
+        })
+        .map(str::to_owned)
+        .collect()
+}
+
+fn with_declarations(text: &str) -> String {
+    let functions = functions(text);
+    let declarations: String = functions
+        .iter()
+        .map(|(_, head)| format!("{head};\n"))
+        .collect();
+    let (before, after) = text.split_at(functions.first().map_or(text.len(), |(at, _)| *at));
+    // What stands after goes on with the number of its line.
+    let file = before.rfind("#line 1 ").unwrap_or(0);
+    let name = before[file..]
+        .lines()
+        .next()
+        .and_then(|line| line.strip_prefix("#line 1 "))
+        .unwrap_or("\"sketch\"");
+    let line = before[file..].matches('\n').count();
+    format!("#include <Arduino.h>\n{before}{declarations}#line {line} {name}\n{after}")
+}
+
+/// Where each function at the outermost level starts, and its head up to the parenthesis that closes.
+fn functions(text: &str) -> Vec<(usize, String)> {
+    let blank = blanked(text);
+    let mut found = Vec::new();
+    let (mut depth, mut start) = (0usize, 0);
+    for (at, character) in blank.char_indices() {
+        match character {
+            '{' => {
+                let head = blank[start..at].trim();
+                if depth == 0 && is_function(head) {
+                    let begin = start + blank[start..].len() - blank[start..].trim_start().len();
+                    let words: Vec<&str> = head.split_whitespace().collect();
+                    found.push((begin, words.join(" ")));
+                }
+                depth += 1;
+            }
+            '}' => {
+                depth = depth.saturating_sub(1);
+                start = at + 1;
+            }
+            ';' if depth == 0 => start = at + 1,
+            _ => {}
+        }
+    }
+    found
+}
+
+/// `type name(arguments)`, and neither a class, an interrupt routine, an initialiser nor a member.
+fn is_function(head: &str) -> bool {
+    let name = head.split('(').next().unwrap_or_default();
+    head.ends_with(')')
+        && name.split_whitespace().count() >= 2
+        && !head.contains('=')
+        && !name.contains("::")
+}
+
+/// The text with comments, strings and preprocessor lines made blank, each character in its place.
+fn blanked(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    let mut line_start = true;
+    while let Some(character) = rest.chars().next() {
+        let length = if rest.starts_with("//") || (line_start && character == '#') {
+            rest.find('\n').unwrap_or(rest.len())
+        } else if rest.starts_with("/*") {
+            rest.find("*/").map_or(rest.len(), |end| end + 2)
+        } else if character == '"' || character == '\'' {
+            literal(rest, character)
+        } else {
+            line_start = character == '\n' || (line_start && character.is_whitespace());
+            out.push(character);
+            rest = &rest[character.len_utf8()..];
+            continue;
+        };
+        let (skipped, after) = rest.split_at(length);
+        out.extend(skipped.bytes().map(|b| if b == b'\n' { '\n' } else { ' ' }));
+        rest = after;
+    }
+    out
+}
+
+/// Length of a literal with its quotes.
+fn literal(text: &str, quote: char) -> usize {
+    let mut escaped = false;
+    for (at, character) in text.char_indices().skip(1) {
+        match character {
+            _ if escaped => escaped = false,
+            '\\' => escaped = true,
+            _ if character == quote => return at + 1,
+            _ => {}
+        }
+    }
+    text.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_function_is_declared_before_the_first() {
+        let text = "#line 1 \"a.ino\"\n#include <Servo.h>\nint x = f('{');\n\
+                    // void no() {\nvoid setup() {\n  g(1);\n}\nISR(INT0_vect) { }\n\
+                    struct S { void m() { } };\nstatic long g(int a,\n  S *b) { return 1; }\n";
+        let made = with_declarations(text);
+        let expected = "// void no() {\nvoid setup();\nstatic long g(int a, S *b);\n\
+                        #line 4 \"a.ino\"\nvoid setup() {";
+        assert!(made.starts_with("#include <Arduino.h>\n#line 1"), "{made}");
+        assert!(made.contains(expected), "{made}");
+        assert!(!made.contains("m();") && !made.contains("vect);"), "{made}");
+    }
+
+    #[test]
+    fn libraries_are_known_by_what_is_included() {
+        assert_eq!(
+            includes("#include <Servo.h>\n  #include \"pid.h\" // x\nint a;\n"),
+            ["Servo.h", "pid.h"]
+        );
+    }
+}
