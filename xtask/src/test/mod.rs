@@ -45,7 +45,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 10] = [
+const STEPS: [Step; 11] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
