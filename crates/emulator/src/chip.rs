@@ -4,12 +4,14 @@ use crate::cpu::{Cpu, Stopped};
 use crate::devices::ports::Pin;
 use crate::devices::{Devices, Input, Output, Unmodelled};
 use crate::image::Image;
+use crate::observe::{self, Observers};
 
 /// An ATmega2560 with a program. A clone is a snapshot: it goes on exactly as the original.
 #[derive(Clone, Debug)]
 pub struct Chip {
     cpu: Cpu,
     devices: Devices,
+    observers: Observers,
 }
 
 impl Chip {
@@ -22,17 +24,18 @@ impl Chip {
         Chip {
             cpu,
             devices: Devices::default(),
+            observers: Observers::default(),
         }
     }
 
     /// Runs until `cycle` cycles have passed since power-on, to the end of the instruction that passes it.
     pub fn run_until(&mut self, cycle: u64) -> Stopped {
-        self.cpu.run(&mut self.devices, cycle)
+        observe::run(&mut self.cpu, &mut self.devices, &mut self.observers, cycle)
     }
 
-    /// Runs one instruction, also where a breakpoint stands.
+    /// Runs one instruction, also where a breakpoint stands; or sleeps on, or enters an interrupt that is due before it.
     pub fn step(&mut self) -> Stopped {
-        self.cpu.step(&mut self.devices)
+        observe::step(&mut self.cpu, &mut self.devices, &mut self.observers)
     }
 
     /// Something from outside at a cycle; what lies in the past happens at once.
@@ -68,6 +71,16 @@ impl Chip {
     /// The peripherals, to read and write their registers as a debugger does.
     pub fn devices_mut(&mut self) -> &mut Devices {
         &mut self.devices
+    }
+
+    /// What looks at the program while it runs.
+    pub fn observers(&self) -> &Observers {
+        &self.observers
+    }
+
+    /// The same, to ask for watchpoints, a trace, a profile.
+    pub fn observers_mut(&mut self) -> &mut Observers {
+        &mut self.observers
     }
 
     /// Accesses to what is not modelled, each address once.

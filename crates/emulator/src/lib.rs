@@ -1,13 +1,16 @@
 //! An ATmega2560, exact to the cycle. It knows the chip only: what is wired to its pins is its caller's business.
 //!
 //! image file -> [`image`] -> flash -> [`decode`] -> [`cpu`], which meets the peripherals ([`devices`]) through
-//! [`io::Io`]. [`chip::Chip`] is all of it.
+//! [`io::Io`]. [`chip::Chip`] is all of it, and [`observe`] looks at a program while it
+//! runs.
 
 pub mod chip;
 pub mod cpu;
 pub mod decode;
 pub mod devices;
+pub mod disassemble;
 pub mod image;
 pub mod io;
+pub mod observe;
 pub mod status;
 pub mod verdict;

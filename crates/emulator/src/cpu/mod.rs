@@ -15,6 +15,7 @@ mod execute;
 
 use crate::decode::{Code, FLASH_WORDS, Op, decode};
 use crate::io::Io;
+use crate::observe::Watchpoint;
 use crate::status::Status;
 use crate::verdict::Verdict;
 
@@ -41,8 +42,39 @@ pub enum Stopped {
     Breakpoint,
     /// The chip does something else to a pin that is watched ([`crate::chip::Chip::watch`]).
     Output,
+    /// An instruction touched what is watched, and is done.
+    Watched {
+        /// The first address of those that it touched.
+        address: u16,
+        /// What watched.
+        watchpoint: Watchpoint,
+    },
     /// The program cannot go on.
     Ended(Verdict),
+}
+
+/// How far a turn of the loop goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pace {
+    /// Over one instruction.
+    One,
+    /// To the next event, or to the caller's end.
+    ToEvent,
+}
+
+/// What a turn of the loop was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Turn {
+    /// Sleep, or waking up.
+    Slept,
+    /// The routine of this interrupt was entered.
+    Entered(u8),
+    /// Instructions.
+    Ran,
+    /// Nothing: a breakpoint stands here.
+    Breakpoint,
+    /// Nothing: the peripherals did something for which the run is to pause.
+    Noticed,
 }
 
 /// The processor with its memories.
@@ -237,6 +269,22 @@ impl Cpu {
 
     /// Runs until `until` cycles have passed since power-on, to the end of the instruction that passes them.
     pub fn run<I: Io>(&mut self, io: &mut I, until: u64) -> Stopped {
+        self.run_by(io, until, |cpu, io| {
+            match cpu.turn(io, until, Pace::ToEvent) {
+                Turn::Breakpoint => Some(Stopped::Breakpoint),
+                Turn::Noticed => Some(Stopped::Output),
+                Turn::Slept | Turn::Entered(_) | Turn::Ran => None,
+            }
+        })
+    }
+
+    /// The same by turns that the caller goes through, until one of them gives a reason to stop.
+    pub(crate) fn run_by<I: Io>(
+        &mut self,
+        io: &mut I,
+        until: u64,
+        mut turn: impl FnMut(&mut Cpu, &mut I) -> Option<Stopped>,
+    ) -> Stopped {
         loop {
             if let Some(verdict) = &self.verdict {
                 return Stopped::Ended(verdict.clone());
@@ -247,64 +295,86 @@ impl Cpu {
             if self.cycle >= until {
                 return Stopped::Reached;
             }
-            io.advance(self.cycle);
-            if io.take_notice() {
-                return Stopped::Output;
-            }
-            if !self.shadow {
-                if self.sleeping && !self.wake(io, until) {
-                    continue;
-                }
-                self.enter_interrupt(io);
-            }
-            // One instruction only while an interrupt waits for it, else up to the next event.
-            let limit = if self.shadow {
-                self.cycle
-            } else {
-                io.deadline(self.status.interrupts).min(until)
-            };
-            self.shadow = false;
-            if self.step_until(io, limit, until) {
-                return Stopped::Breakpoint;
+            if let Some(stopped) = turn(self, io) {
+                return stopped;
             }
         }
     }
 
-    /// Runs the instruction at a breakpoint, and no other.
+    /// Runs one instruction, also where a breakpoint stands; or sleeps on, or enters an interrupt that is due before it.
     pub fn step<I: Io>(&mut self, io: &mut I) -> Stopped {
+        self.past_breakpoint(|cpu| cpu.run(io, cpu.cycle + 1))
+    }
+
+    /// Does something as if no breakpoint stood at the program counter.
+    pub(crate) fn past_breakpoint(&mut self, run: impl FnOnce(&mut Cpu) -> Stopped) -> Stopped {
         let here = self.program_counter;
         let held = self.breakpoints.contains(&here);
         if held {
             self.operations[here as usize % FLASH_WORDS] = self.original(here);
         }
-        let stopped = self.run(io, self.cycle + 1);
+        let stopped = run(self);
         if held {
             self.predecode(here);
         }
         stopped
     }
 
-    /// Sleeps on to the next event; says whether the CPU is awake.
-    fn wake<I: Io>(&mut self, io: &mut I, until: u64) -> bool {
-        if io.pending().is_some() {
-            self.sleeping = false;
-            self.cycle += WAKE_CYCLES;
-            return true;
-        }
-        let next = io.deadline(true).max(self.cycle + 1);
-        self.cycle = next.min(until);
-        false
+    /// The operation that comes next, whether a breakpoint stands there or not.
+    pub(crate) fn next_operation(&self) -> Op {
+        self.original(self.program_counter)
     }
 
-    fn enter_interrupt<I: Io>(&mut self, io: &mut I) {
-        if !self.status.interrupts {
-            return;
+    /// One turn of the loop, which a caller that observes the program goes through itself; not after a verdict.
+    pub(crate) fn turn<I: Io>(&mut self, io: &mut I, until: u64, pace: Pace) -> Turn {
+        io.advance(self.cycle);
+        if io.take_notice() {
+            return Turn::Noticed;
         }
-        let Some(vector) = io.pending() else { return };
+        if !self.shadow {
+            if self.sleeping {
+                self.sleep_on(io, until);
+                return Turn::Slept;
+            }
+            if let Some(vector) = self.enter_interrupt(io) {
+                return Turn::Entered(vector);
+            }
+        }
+        // One instruction only while an interrupt waits for it, else up to the next event.
+        let (limit, until) = match pace {
+            Pace::One => (self.cycle, self.cycle + 1),
+            Pace::ToEvent if self.shadow => (self.cycle, until),
+            Pace::ToEvent => (io.deadline(self.status.interrupts).min(until), until),
+        };
+        self.shadow = false;
+        if self.step_until(io, limit, until) {
+            Turn::Breakpoint
+        } else {
+            Turn::Ran
+        }
+    }
+
+    /// Sleeps to the next event, or wakes up: only an interrupt that is enabled in every way does that.
+    fn sleep_on<I: Io>(&mut self, io: &mut I, until: u64) {
+        if self.status.interrupts && io.pending().is_some() {
+            self.sleeping = false;
+            self.cycle += WAKE_CYCLES;
+        } else {
+            let next = io.deadline(self.status.interrupts).max(self.cycle + 1);
+            self.cycle = next.min(until);
+        }
+    }
+
+    fn enter_interrupt<I: Io>(&mut self, io: &mut I) -> Option<u8> {
+        if !self.status.interrupts {
+            return None;
+        }
+        let vector = io.pending()?;
         io.acknowledge(vector, self.cycle);
         self.push_address(io, self.program_counter, self.cycle);
         self.status.interrupts = false;
         self.program_counter = u32::from(vector) * 2 + io.vector_base();
         self.cycle += ENTRY_CYCLES;
+        Some(vector)
     }
 }

@@ -7,16 +7,43 @@ pub(crate) mod vector {
 }
 
 /// The requested interrupts.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Interrupts {
     requested: u64,
+    now: u64,
+    /// The cycle in which each vector was requested last.
+    since: [u64; 64],
+}
+
+impl Default for Interrupts {
+    fn default() -> Self {
+        Interrupts {
+            requested: 0,
+            now: 0,
+            since: [0; 64],
+        }
+    }
 }
 
 impl Interrupts {
+    /// What is requested from here on is requested in this cycle.
+    #[inline(always)]
+    pub(crate) fn set_time(&mut self, cycle: u64) {
+        self.now = cycle;
+    }
+
+    /// The cycle in which a vector was requested last, entered since or not.
+    pub(crate) fn since(&self, vector: u8) -> u64 {
+        self.since[usize::from(vector & 63)]
+    }
+
     /// Requests a vector or withdraws the request.
     pub(crate) fn set(&mut self, vector: u8, requested: bool) {
         let mask = 1 << (vector & 63);
         if requested {
+            if self.requested & mask == 0 {
+                self.since[usize::from(vector & 63)] = self.now;
+            }
             self.requested |= mask;
         } else {
             self.requested &= !mask;
@@ -49,5 +76,18 @@ mod tests {
         assert_eq!(interrupts.first(), Some(20));
         interrupts.set(20, false);
         assert!(!interrupts.any());
+    }
+
+    #[test]
+    fn a_request_is_as_old_as_its_first_cause() {
+        let mut interrupts = Interrupts::default();
+        for (cycle, requested) in [(10, true), (20, true), (30, false)] {
+            interrupts.set_time(cycle);
+            interrupts.set(5, requested);
+        }
+        assert_eq!(interrupts.since(5), 10);
+        interrupts.set_time(40);
+        interrupts.set(5, true);
+        assert_eq!(interrupts.since(5), 40);
     }
 }

@@ -135,6 +135,11 @@ impl Devices {
         self.core.watched = bits.fold(0, |all, bit: u128| all | bit);
     }
 
+    /// The cycle in which an interrupt was requested last: flag raised and enabled, whether the CPU serves it or not.
+    pub fn requested_since(&self, vector: u8) -> u64 {
+        self.core.interrupts.since(vector)
+    }
+
     /// The level of a pin now.
     pub fn level(&self, pin: Pin) -> bool {
         self.core.ports.level(pin)
@@ -156,6 +161,7 @@ impl Devices {
     }
 
     fn happen(&mut self, source: Source, cycle: u64) {
+        self.core.interrupts.set_time(cycle);
         match source {
             Source::Input => {
                 if let Some((_, input)) = self.inputs.pop_front() {
@@ -318,6 +324,7 @@ impl Io for Devices {
         while let Some((source, at)) = self.core.schedule.due(cycle) {
             self.happen(source, at);
         }
+        self.core.interrupts.set_time(cycle);
     }
 
     #[inline(always)]
