@@ -1,113 +1,36 @@
 //! Program images: ELF with symbols and EEPROM contents, or Intel HEX.
-//!
-//! The toolchain's ELF files put memories side by side in one space: flash from 0, data at 0x800000, EEPROM at 0x810000,
-//! fuses, lock bits and signature beyond. Loading goes by the program headers' physical addresses: where initial data lie in flash.
 
-use crate::cpu::{FLASH_BYTES, SRAM_START};
-use object::read::elf::{FileHeader, ProgramHeader};
-use object::{Endianness, Object, ObjectSymbol, SymbolKind, elf};
-use std::fmt;
+mod elf;
+mod error;
+mod hex;
+
+pub use error::ImageError;
+
+use crate::cpu::FLASH_BYTES;
 
 /// Bytes of EEPROM.
 pub const EEPROM_BYTES: usize = 0x1000;
-/// Where the toolchain puts data.
-const DATA_SPACE: u64 = 0x80_0000;
-/// Where it puts EEPROM contents.
-const EEPROM_SPACE: u64 = 0x81_0000;
-/// What lies beyond is no memory to load: fuses, lock bits, signature.
-const FUSE_SPACE: u64 = 0x82_0000;
-/// Architecture number of chips with a 22-bit program counter in the ELF header's flags.
-const AVR6: u32 = 6;
-/// Bits of the flags that hold it.
-const ARCHITECTURE: u32 = 0x7F;
 
 /// A program for the chip.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Image {
     flash: Vec<u8>,
     eeprom: Vec<u8>,
-    /// Functions by address [words], ascending.
-    functions: Vec<(u32, String)>,
-    /// Variables by address in the data space, ascending.
-    variables: Vec<(u16, String)>,
+    functions: Vec<Symbol>,
+    variables: Vec<Symbol>,
     data_end: Option<u16>,
 }
 
-/// Why a file is no program for this chip.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ImageError {
-    /// Neither ELF nor Intel HEX.
-    Unknown,
-    /// An ELF file that cannot be read, or is cut off.
-    Elf(String),
-    /// An ELF file for another processor.
-    Processor(u16),
-    /// An AVR program, but for a chip of another architecture.
-    Chip(u32),
-    /// A line of a HEX file is wrong.
-    Hex {
-        /// Its number, from 1.
-        line: usize,
-        /// What is wrong.
-        what: String,
-    },
-    /// A HEX file without its end record.
-    Truncated,
-    /// Two parts of the file want the same byte.
-    Overlap(usize),
-    /// Something lies beyond the end of a memory.
-    TooLarge {
-        /// Which memory.
-        memory: &'static str,
-        /// First byte after the end of what should go there.
-        end: u64,
-        /// Its size.
-        size: usize,
-    },
-    /// There is nothing in it.
-    Empty,
+/// A function or a variable.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Symbol {
+    /// Where it starts: of a function [words], of a variable its address in the data space.
+    pub address: u32,
+    /// How long it is, in the same unit; 0 if the image does not say.
+    pub size: u32,
+    /// As it is written in the source: C++ and Rust with their paths.
+    pub name: String,
 }
-
-impl fmt::Display for ImageError {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            ImageError::Unknown => write!(
-                out,
-                "neither an ELF file nor Intel HEX; give the .elf or .hex that the compiler made"
-            ),
-            ImageError::Elf(what) => {
-                write!(out, "the ELF file cannot be read ({what}); build it again")
-            }
-            ImageError::Processor(machine) => write!(
-                out,
-                "an ELF file for another processor (machine {machine}, an AVR is {}); build for the ATmega2560",
-                elf::EM_AVR
-            ),
-            ImageError::Chip(architecture) => write!(
-                out,
-                "an AVR program for another chip (architecture avr{architecture}, the ATmega2560 is avr{AVR6}); build with -mmcu=atmega2560"
-            ),
-            ImageError::Hex { line, what } => {
-                write!(out, "line {line} of the HEX file is wrong: {what}")
-            }
-            ImageError::Truncated => write!(
-                out,
-                "the HEX file ends without its end record: it is cut off; copy it again"
-            ),
-            ImageError::Overlap(address) => write!(
-                out,
-                "two parts of the file want flash address 0x{address:05x}; link it again"
-            ),
-            ImageError::TooLarge { memory, end, size } => write!(
-                out,
-                "too large: {memory} ends at 0x{size:x}, the program at 0x{end:x}"
-            ),
-            ImageError::Empty => write!(out, "there is no program in it"),
-        }
-    }
-}
-
-impl std::error::Error for ImageError {}
 
 impl Image {
     /// Reads an ELF file or Intel HEX, whichever `bytes` are.
@@ -115,10 +38,10 @@ impl Image {
     /// # Errors
     /// Why they are no program for this chip.
     pub fn parse(bytes: &[u8]) -> Result<Image, ImageError> {
-        let image = if bytes.starts_with(&elf::ELFMAG) {
-            read_elf(bytes)
-        } else if let Some(text) = hex_text(bytes) {
-            read_hex(text)
+        let image = if elf::is_elf(bytes) {
+            elf::read(bytes)
+        } else if let Some(text) = hex::text(bytes) {
+            hex::read(text)
         } else {
             Err(ImageError::Unknown)
         }?;
@@ -143,21 +66,38 @@ impl Image {
         self.data_end
     }
 
-    /// Functions by address [words], ascending.
-    pub fn functions(&self) -> &[(u32, String)] {
+    /// Functions by address, ascending.
+    pub fn functions(&self) -> &[Symbol] {
         &self.functions
     }
 
-    /// Variables by address in the data space, ascending.
-    pub fn variables(&self) -> &[(u16, String)] {
+    /// Variables by address, ascending.
+    pub fn variables(&self) -> &[Symbol] {
         &self.variables
+    }
+
+    /// The variable of this name.
+    pub fn variable(&self, name: &str) -> Option<&Symbol> {
+        self.variables.iter().find(|variable| variable.name == name)
+    }
+
+    /// The function of this name.
+    pub fn function_named(&self, name: &str) -> Option<&Symbol> {
+        self.functions.iter().find(|function| function.name == name)
     }
 
     /// The function that an instruction [words] is in, if the image has symbols.
     pub fn function(&self, word: u32) -> Option<&str> {
-        let after = self.functions.partition_point(|(start, _)| *start <= word);
-        let (_, name) = self.functions.get(after.checked_sub(1)?)?;
-        Some(name)
+        let after = self
+            .functions
+            .partition_point(|function| function.address <= word);
+        let function = self.functions.get(after.checked_sub(1)?)?;
+        let end = match function.size {
+            // A label of the assembler: to the end of the program, if no other follows.
+            0 => self.flash.len().div_ceil(2) as u32,
+            size => function.address + size,
+        };
+        (word < end).then_some(&function.name)
     }
 
     /// An instruction's place for people: the byte address that listings show, and the function.
@@ -190,133 +130,6 @@ impl Image {
         self.flash[start..end].copy_from_slice(bytes);
         Ok(())
     }
-}
-
-/// The text, if the first mark in it is that of a HEX record.
-fn hex_text(bytes: &[u8]) -> Option<&str> {
-    let text = str::from_utf8(bytes).ok()?;
-    text.trim_start().starts_with(':').then_some(text)
-}
-
-fn read_hex(text: &str) -> Result<Image, ImageError> {
-    use ihex::Record;
-    let mut image = Image::default();
-    let (mut filled, mut base, mut ended) = (Vec::new(), 0u64, false);
-    for (index, line) in text.lines().enumerate() {
-        let line = line.trim();
-        if line.is_empty() {
-            continue;
-        }
-        let wrong = |what: String| ImageError::Hex {
-            line: index + 1,
-            what,
-        };
-        if ended {
-            return Err(wrong("something follows the end record".into()));
-        }
-        let record = Record::from_record_string(line).map_err(|error| wrong(error.to_string()))?;
-        match record {
-            Record::Data { offset, value } => {
-                image.put(&mut filled, base + u64::from(offset), &value)?;
-            }
-            Record::ExtendedSegmentAddress(segment) => base = u64::from(segment) << 4,
-            Record::ExtendedLinearAddress(high) => base = u64::from(high) << 16,
-            Record::EndOfFile => ended = true,
-            Record::StartSegmentAddress { .. } | Record::StartLinearAddress(_) => {}
-        }
-    }
-    if ended {
-        Ok(image)
-    } else {
-        Err(ImageError::Truncated)
-    }
-}
-
-fn read_elf(bytes: &[u8]) -> Result<Image, ImageError> {
-    let broken = |error: object::Error| ImageError::Elf(error.to_string());
-    // Not every file is 32 bits wide, but every AVR's is.
-    let header = match elf::FileHeader32::<Endianness>::parse(bytes) {
-        Ok(header) => header,
-        Err(_) => {
-            let other = elf::FileHeader64::<Endianness>::parse(bytes).map_err(broken)?;
-            let endian = other.endian().map_err(broken)?;
-            return Err(ImageError::Processor(other.e_machine(endian)));
-        }
-    };
-    let endian = header.endian().map_err(broken)?;
-    if header.e_machine(endian) != elf::EM_AVR {
-        return Err(ImageError::Processor(header.e_machine(endian)));
-    }
-    let architecture = header.e_flags(endian) & ARCHITECTURE;
-    if architecture != AVR6 {
-        return Err(ImageError::Chip(architecture));
-    }
-    let mut image = Image::default();
-    let mut filled = Vec::new();
-    for segment in header.program_headers(endian, bytes).map_err(broken)? {
-        if segment.p_type(endian) != elf::PT_LOAD || segment.p_filesz(endian) == 0 {
-            continue;
-        }
-        let data = segment
-            .data(endian, bytes)
-            .map_err(|()| ImageError::Elf("a segment lies beyond the end of the file".into()))?;
-        let at = u64::from(segment.p_paddr(endian));
-        match at {
-            0..DATA_SPACE => image.put(&mut filled, at, data)?,
-            EEPROM_SPACE..FUSE_SPACE => put_eeprom(&mut image, at - EEPROM_SPACE, data)?,
-            _ => {}
-        }
-    }
-    read_symbols(&mut image, bytes).map_err(broken)?;
-    Ok(image)
-}
-
-fn put_eeprom(image: &mut Image, at: u64, data: &[u8]) -> Result<(), ImageError> {
-    let end = at + data.len() as u64;
-    if end > EEPROM_BYTES as u64 {
-        return Err(ImageError::TooLarge {
-            memory: "EEPROM",
-            end,
-            size: EEPROM_BYTES,
-        });
-    }
-    let (start, end) = (at as usize, end as usize);
-    if image.eeprom.len() < end {
-        image.eeprom.resize(end, 0xFF);
-    }
-    image.eeprom[start..end].copy_from_slice(data);
-    Ok(())
-}
-
-fn read_symbols(image: &mut Image, bytes: &[u8]) -> Result<(), object::Error> {
-    let file = object::File::parse(bytes)?;
-    for symbol in file.symbols() {
-        let Ok(name) = symbol.name() else { continue };
-        let address = symbol.address();
-        if name == "_end" || name == "__heap_start" {
-            image.data_end = u16::try_from(address.wrapping_sub(DATA_SPACE))
-                .ok()
-                .filter(|end| *end >= SRAM_START);
-        }
-        let code = symbol.kind() == SymbolKind::Text
-            || symbol.kind() == SymbolKind::Label && name.starts_with("__vector");
-        match u16::try_from(address.wrapping_sub(DATA_SPACE)) {
-            _ if name.is_empty() => {}
-            Ok(place) if symbol.kind() == SymbolKind::Data => {
-                image.variables.push((place, name.to_owned()));
-            }
-            _ if code && address < FLASH_BYTES as u64 => {
-                image
-                    .functions
-                    .push(((address / 2) as u32, name.to_owned()));
-            }
-            _ => {}
-        }
-    }
-    image.functions.sort();
-    image.functions.dedup_by_key(|(start, _)| *start);
-    image.variables.sort();
-    Ok(())
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Why a program cannot go on.
 
+use crate::image::Image;
 use std::fmt;
 
 /// How a run of a program ended before its time. Addresses in words; [`crate::image::Image::place`] names them.
@@ -51,27 +52,35 @@ impl Verdict {
     }
 }
 
-impl fmt::Display for Verdict {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        let byte = 2 * self.program_counter();
+impl Verdict {
+    /// The verdict with the name of the function in which it happened, if the image knows it.
+    pub fn told(&self, image: &Image) -> String {
+        self.text(&image.place(self.program_counter()))
+    }
+
+    fn text(&self, place: &str) -> String {
         match self {
-            Verdict::ErasedFlash { cycle, .. } => write!(
-                out,
-                "ran into erased flash at 0x{byte:05x} in cycle {cycle}: a jump through a wrong pointer, or a return address overwritten"
+            Verdict::ErasedFlash { cycle, .. } => format!(
+                "ran into erased flash at {place} in cycle {cycle}: a jump through a wrong pointer, or a return address overwritten"
             ),
-            Verdict::IllegalInstruction { word, cycle, .. } => write!(
-                out,
-                "illegal instruction 0x{word:04x} at 0x{byte:05x} in cycle {cycle}: this image is for another chip, or the program ran into data"
+            Verdict::IllegalInstruction { word, cycle, .. } => format!(
+                "illegal instruction 0x{word:04x} at {place} in cycle {cycle}: this image is for another chip, or the program ran into data"
             ),
             Verdict::StackOverflow {
                 stack_pointer,
                 floor,
                 cycle,
                 ..
-            } => write!(
-                out,
-                "stack overflow at 0x{byte:05x} in cycle {cycle}: the stack has come down to 0x{stack_pointer:04x}, the data end at 0x{floor:04x}"
+            } => format!(
+                "stack overflow at {place} in cycle {cycle}: the stack has come down to 0x{stack_pointer:04x}, the data end at 0x{floor:04x}"
             ),
         }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let place = format!("0x{:05x}", 2 * self.program_counter());
+        out.write_str(&self.text(&place))
     }
 }

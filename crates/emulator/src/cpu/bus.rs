@@ -11,6 +11,8 @@ const EIND: u16 = 0x5C;
 const SPL: u16 = 0x5D;
 const SPH: u16 = 0x5E;
 const SREG: u16 = 0x5F;
+/// Bytes by which a function moves the stack pointer at most.
+const LARGEST_FRAME: u16 = 1024;
 
 impl Cpu {
     #[inline(always)]
@@ -74,14 +76,25 @@ impl Cpu {
             0..32 => self.registers[usize::from(address) & 31] = value,
             RAMPZ => self.rampz = value & 3,
             EIND => self.eind = value & 1,
-            SPL => self.stack_pointer = u16::from_le_bytes([value, high]),
-            SPH => self.stack_pointer = u16::from_le_bytes([low, value]),
+            SPL => self.move_stack(u16::from_le_bytes([value, high])),
+            SPH => self.move_stack(u16::from_le_bytes([low, value])),
             SREG => {
                 let enabled_before = self.status.interrupts;
                 self.status = Status::from_bits(value);
                 self.shadow |= self.status.interrupts && !enabled_before;
             }
             _ => io.write(address, value, at),
+        }
+    }
+
+    /// The program sets the stack pointer. A frame is not larger than [`LARGEST_FRAME`]: beyond that it is another stack, such
+    /// as a scheduler's tasks have among the data, and nobody knows where it must end.
+    fn move_stack(&mut self, to: u16) {
+        let from = std::mem::replace(&mut self.stack_pointer, to);
+        if to >= self.stack_floor {
+            self.stack_known = true;
+        } else if from.wrapping_sub(to) > LARGEST_FRAME {
+            self.stack_known = false;
         }
     }
 
@@ -100,6 +113,9 @@ impl Cpu {
 
     #[cold]
     pub(super) fn stack_overflow(&mut self, cycle: u64) {
+        if !self.stack_known && self.stack_pointer >= SRAM_START {
+            return;
+        }
         self.end(Verdict::StackOverflow {
             program_counter: self.program_counter,
             stack_pointer: self.stack_pointer,

@@ -93,6 +93,8 @@ pub struct Cpu {
     breakpoints: Vec<u32>,
     /// Pushing below this address runs the stack into data.
     stack_floor: u16,
+    /// The stack is the one that ends there.
+    stack_known: bool,
     sleeping: bool,
     /// The next instruction runs before any interrupt.
     shadow: bool,
@@ -129,6 +131,7 @@ impl Cpu {
             operations,
             breakpoints: Vec::new(),
             stack_floor: SRAM_START,
+            stack_known: true,
             sleeping: false,
             shadow: false,
             verdict: None,
@@ -144,6 +147,7 @@ impl Cpu {
     pub fn reset(&mut self, program_counter: u32) {
         self.status = Status::from_bits(0);
         self.stack_pointer = RAMEND;
+        self.stack_known = true;
         self.program_counter = program_counter % FLASH_WORDS as u32;
         self.rampz = 0;
         self.eind = 0;

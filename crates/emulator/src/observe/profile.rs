@@ -115,17 +115,17 @@ impl Profile {
         });
         profile.asleep = profile.named("(asleep)".to_owned());
         let functions = image.functions();
-        for (index, (start, name)) in functions.iter().enumerate() {
+        for (index, function) in functions.iter().enumerate() {
             let end = match functions.get(index + 1) {
-                Some((next, _)) => *next as usize,
+                Some(next) => next.address as usize,
                 None => image.flash().len().div_ceil(2),
             };
-            let number = profile.named(name.clone());
-            if name == "main" {
+            let number = profile.named(function.name.clone());
+            if function.name == "main" {
                 profile.main = Some(number);
             }
             // The table of vectors belongs to the interrupts.
-            let start = (*start as usize).max(2 * vectors::COUNT);
+            let start = (function.address as usize).max(2 * vectors::COUNT);
             if let Some(words) = profile.function_at.get_mut(start..end) {
                 words.fill(number);
             }

@@ -83,12 +83,9 @@ impl Board {
 
     /// Bytes of a variable of the sketch.
     pub(crate) fn variable<const N: usize>(&self, name: &str, index: usize) -> [u8; N] {
-        let variables = self.image.variables();
-        let (address, _) = variables
-            .iter()
-            .find(|(_, known)| known == name)
-            .unwrap_or_else(|| panic!("no variable {name}"));
-        let start = usize::from(address - SRAM_START) + index * N;
+        let variable = self.image.variable(name);
+        let variable = variable.unwrap_or_else(|| panic!("no variable {name}"));
+        let start = variable.address as usize - usize::from(SRAM_START) + index * N;
         self.chip.cpu().sram()[start..start + N].try_into().unwrap()
     }
 
