@@ -4,20 +4,7 @@
 mod common;
 
 use common::*;
-use rumbo_emulator::chip::Chip;
 use rumbo_emulator::devices::Input;
-
-/// Writes to registers, in this order, then waits for ever: the chip, and the cycle in which the last write acts.
-fn set_up(writes: &[(u16, u8)]) -> (Chip, u64) {
-    let mut words = Vec::new();
-    for (address, value) in writes {
-        words.push(ldi(16, *value));
-        words.extend(sts(*address, 16));
-    }
-    // RJMP to itself.
-    words.push(0xCFFF);
-    (chip_of(&words), 3 * writes.len() as u64 - 1)
-}
 
 /// Distances between the edges of a pin, from its `first` on.
 fn distances(edges: &[(u64, bool)], rising: bool) -> Vec<u64> {
@@ -175,18 +162,6 @@ fn an_edge_on_the_capture_pin_takes_the_count() {
         let expected = (4_001 + late) / 8 - start / 8;
         assert_eq!(u64::from(count_of(&mut chip, 0xA6)), expected);
     }
-}
-
-/// A 16-bit register, read as a program would.
-fn count_of(chip: &mut Chip, address: u16) -> u16 {
-    use rumbo_emulator::io::{Access, Io};
-    let at = Access {
-        cycle: chip.cpu().cycle(),
-        program_counter: 0,
-    };
-    let low = chip.devices_mut().read(address, at);
-    let high = chip.devices_mut().read(address + 1, at);
-    u16::from_le_bytes([low, high])
 }
 
 #[test]

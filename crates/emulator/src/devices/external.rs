@@ -40,10 +40,6 @@ fn pin(number: u8) -> Pin {
 }
 
 impl External {
-    pub(crate) fn has(address: u16) -> bool {
-        matches!(address, PCIFR..=EIMSK | PCICR..=PCMSK2)
-    }
-
     pub(crate) fn read(&self, address: u16) -> u8 {
         let [low, high] = self.sense.to_le_bytes();
         match address {

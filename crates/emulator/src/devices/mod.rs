@@ -1,43 +1,32 @@
-//! The peripherals, as far as the pins reach.
+//! The peripherals.
 //!
 //! Each is a module with its registers; what they share is in `Core`: interrupt requests, ports, the schedule of
 //! events and the stream of outputs. An access first lets everything happen that is due before it.
 
+mod bus;
 pub(crate) mod external;
 pub(crate) mod interrupts;
+mod map;
 pub mod ports;
 pub(crate) mod schedule;
 mod signal;
+mod system;
 pub(crate) mod timer;
+pub(crate) mod usart;
 
 use std::collections::VecDeque;
 
-use crate::io::{Access, Io};
 use external::External;
 use interrupts::Interrupts;
 use ports::{Change, Drive, Pin, Ports};
 use schedule::{Schedule, Source};
 pub use signal::{Cause, Event, Input, Output, Pwm};
+use system::System;
 use timer::{Prescaler, Timer};
+use usart::Usart;
 
-const GPIOR0: u16 = 0x3E;
-const GPIOR1: u16 = 0x4A;
-const GPIOR2: u16 = 0x4B;
-const SMCR: u16 = 0x53;
-const MCUSR: u16 = 0x54;
-const MCUCR: u16 = 0x55;
-
-/// Sleep enable in SMCR.
-const SE: u8 = 1;
-/// Pull-up disable in MCUCR.
-const PUD: u8 = 0x10;
-/// Vectors in the boot section, and the permission to change that, in MCUCR.
-const IVSEL: u8 = 2;
-const IVCE: u8 = 1;
-/// Cycles for which IVCE permits.
-const IVCE_CYCLES: u64 = 4;
-/// Start of the largest boot section [words], as the fuses are shipped.
-const BOOT_WORDS: u32 = 0x1_F000;
+/// Cycles of the crystal in a second.
+pub const CLOCK_HZ: u64 = 16_000_000;
 
 /// An access to a register that is not modelled; each address is told once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,11 +77,8 @@ pub struct Devices {
     core: Core,
     external: External,
     timers: [Timer; 6],
-    general: [u8; 3],
-    sleep_control: u8,
-    reset_cause: u8,
-    control: u8,
-    control_open_until: u64,
+    usarts: [Usart; 4],
+    system: System,
     inputs: VecDeque<(u64, Input)>,
     unmodelled: Vec<Unmodelled>,
 }
@@ -104,12 +90,8 @@ impl Default for Devices {
             core: Core::default(),
             external: External::default(),
             timers: timer::all(),
-            general: [0; 3],
-            sleep_control: 0,
-            // PORF: the power was applied.
-            reset_cause: 1,
-            control: 0,
-            control_open_until: 0,
+            usarts: usart::all(),
+            system: System::after(Cause::PowerOn),
             inputs: VecDeque::new(),
             unmodelled: Vec::new(),
         }
@@ -165,26 +147,42 @@ impl Devices {
         match source {
             Source::Input => {
                 if let Some((_, input)) = self.inputs.pop_front() {
-                    match input {
-                        Input::Pin(pin, level) => {
-                            let change = self.core.ports.set_outside(pin, level, cycle);
-                            self.core.note(Some(change), cycle);
-                        }
-                        // Nothing takes these in yet.
-                        Input::Serial { .. }
-                        | Input::Frame { .. }
-                        | Input::Volts { .. }
-                        | Input::Reset(_) => {}
-                    }
+                    self.take(input, cycle);
                 }
                 self.schedule_input();
             }
-            _ => {
-                let index = source as usize - Source::Timer0 as usize;
-                self.timers[index].happen(&mut self.core, cycle);
-            }
+            Source::Timer(index) => self.timers[index].happen(&mut self.core, cycle),
+            Source::Usart(index) => self.usarts[index].happen(&mut self.core, cycle),
         }
         self.settle();
+    }
+
+    /// An input's time has come.
+    fn take(&mut self, input: Input, cycle: u64) {
+        let core = &mut self.core;
+        match input {
+            Input::Pin(pin, level) => {
+                let change = core.ports.set_outside(pin, level, cycle);
+                core.note(Some(change), cycle);
+            }
+            Input::Serial { usart, byte, baud } => {
+                if let Some(usart) = self.usarts.get_mut(usize::from(usart)) {
+                    usart.receive(core, u16::from(byte) | 0x100, 9, baud, cycle);
+                }
+            }
+            Input::Frame {
+                usart,
+                bits,
+                count,
+                baud,
+            } => {
+                if let Some(usart) = self.usarts.get_mut(usize::from(usart)) {
+                    usart.receive(core, bits, count, baud, cycle);
+                }
+            }
+            // Nothing takes these in yet.
+            Input::Volts { .. } | Input::Reset(_) => {}
+        }
     }
 
     /// Lets those who listen to pins hear what changed, until nothing changes any more.
@@ -201,12 +199,12 @@ impl Devices {
                 let ports = &self.core.ports;
                 self.external.changed(change.port, change.levels, ports);
                 self.external.request(&mut self.core.interrupts, ports);
-                self.tell_timers(&change, cycle);
+                self.tell_pins(&change, cycle);
             }
         }
     }
 
-    fn tell_timers(&mut self, change: &Change, cycle: u64) {
+    fn tell_pins(&mut self, change: &Change, cycle: u64) {
         for bit in 0..8 {
             if change.levels >> bit & 1 != 0 {
                 let pin = Pin::at(change.port, bit);
@@ -214,164 +212,10 @@ impl Devices {
                 for timer in &mut self.timers {
                     timer.pin_changed(&mut self.core, pin, level, cycle);
                 }
-            }
-        }
-    }
-
-    fn not_modelled(&mut self, address: u16, at: Access, written: bool) {
-        let known = self.unmodelled.iter().any(|other| other.address == address);
-        if !known {
-            self.unmodelled.push(Unmodelled {
-                address,
-                program_counter: at.program_counter,
-                cycle: at.cycle,
-                written,
-            });
-        }
-    }
-
-    /// MCUCR: IVSEL changes only within four cycles after IVCE was written.
-    fn write_control(&mut self, value: u8, cycle: u64) {
-        let kept = PUD | 0x80;
-        let select = if cycle <= self.control_open_until && value & IVCE == 0 {
-            value & IVSEL
-        } else {
-            self.control & IVSEL
-        };
-        if value & IVCE != 0 {
-            self.control_open_until = cycle + IVCE_CYCLES;
-        }
-        self.control = value & kept | select;
-        let changes = self.core.ports.disable_pull_ups(value & PUD != 0, cycle);
-        for change in changes {
-            self.core.note(Some(change), cycle);
-        }
-    }
-}
-
-impl Io for Devices {
-    fn read(&mut self, address: u16, at: Access) -> u8 {
-        self.advance(at.cycle);
-        match address {
-            _ if Ports::has(address) => self.core.ports.read(address, at.cycle),
-            _ if External::has(address) => self.external.read(address),
-            timer::GTCCR => timer::read_general_control(&self.core),
-            GPIOR0 => self.general[0],
-            GPIOR1 => self.general[1],
-            GPIOR2 => self.general[2],
-            SMCR => self.sleep_control,
-            MCUSR => self.reset_cause,
-            MCUCR => self.control,
-            _ => match timer::at(address) {
-                Some(index) => self.timers[index].read(&mut self.core, address, at),
-                None => {
-                    self.not_modelled(address, at, false);
-                    0
+                for usart in &mut self.usarts {
+                    usart.pin_changed(&mut self.core, pin, cycle);
                 }
-            },
-        }
-    }
-
-    fn write(&mut self, address: u16, value: u8, at: Access) {
-        self.advance(at.cycle);
-        match address {
-            _ if Ports::has(address) => {
-                let change = self.core.ports.write(address, value, at.cycle);
-                self.core.note(change, at.cycle);
             }
-            _ if External::has(address) => {
-                self.external.write(address, value);
-                let Core {
-                    interrupts, ports, ..
-                } = &mut self.core;
-                self.external.request(interrupts, ports);
-            }
-            GPIOR0 => self.general[0] = value,
-            GPIOR1 => self.general[1] = value,
-            GPIOR2 => self.general[2] = value,
-            SMCR => self.sleep_control = value & 0x0F,
-            // Flags of the reset: a zero clears, a one leaves.
-            MCUSR => self.reset_cause &= value,
-            MCUCR => self.write_control(value, at.cycle),
-            timer::GTCCR => {
-                timer::write_general_control(&mut self.timers, &mut self.core, value, at.cycle);
-            }
-            _ => match timer::at(address) {
-                Some(index) => self.timers[index].write(&mut self.core, address, value, at),
-                None => self.not_modelled(address, at, true),
-            },
         }
-        self.settle();
-    }
-
-    /// A flag register takes the bit alone: a one clears it, and no other flag is touched.
-    fn write_bit(&mut self, address: u16, mask: u8, set: bool, at: Access) {
-        if Ports::has(address) {
-            self.advance(at.cycle);
-            let change = self.core.ports.write_bit(address, mask, set, at.cycle);
-            self.core.note(change, at.cycle);
-            self.settle();
-        } else if matches!(address, external::PCIFR | external::EIFR) || timer::is_flags(address) {
-            self.write(address, if set { mask } else { 0 }, at);
-        } else {
-            let before = self.read(address, at);
-            let value = if set { before | mask } else { before & !mask };
-            self.write(address, value, at);
-        }
-    }
-
-    fn advance(&mut self, cycle: u64) {
-        while let Some((source, at)) = self.core.schedule.due(cycle) {
-            self.happen(source, at);
-        }
-        self.core.interrupts.set_time(cycle);
-    }
-
-    #[inline(always)]
-    fn deadline(&self, interrupts_enabled: bool) -> u64 {
-        if self.core.noticed || interrupts_enabled && self.core.interrupts.any() {
-            0
-        } else {
-            self.core.schedule.next()
-        }
-    }
-
-    fn take_notice(&mut self) -> bool {
-        std::mem::take(&mut self.core.noticed)
-    }
-
-    fn pending(&self) -> Option<u8> {
-        self.core.interrupts.first()
-    }
-
-    fn acknowledge(&mut self, vector: u8, cycle: u64) {
-        if (interrupts::vector::INT0..interrupts::vector::PCINT0 + 3).contains(&vector) {
-            self.external.acknowledge(vector);
-            let Core {
-                interrupts, ports, ..
-            } = &mut self.core;
-            self.external.request(interrupts, ports);
-        } else if let Some(index) = timer::of_vector(vector) {
-            self.timers[index].acknowledge(&mut self.core, vector, cycle);
-        }
-        self.settle();
-    }
-
-    fn vector_base(&self) -> u32 {
-        if self.control & IVSEL != 0 {
-            BOOT_WORDS
-        } else {
-            0
-        }
-    }
-
-    fn sleep(&mut self, _: u64) -> bool {
-        self.sleep_control & SE != 0
-    }
-
-    fn reset_watchdog(&mut self, _: u64) {}
-
-    fn store_program(&mut self, _: u32, _: u16, _: Access) -> Vec<(u32, u16)> {
-        Vec::new()
     }
 }

@@ -88,19 +88,27 @@ struct Port {
     /// Pins whose output a peripheral takes over.
     output_override: u8,
     output_value: u8,
+    /// Pins whose direction a peripheral takes over, to input or to output.
+    forced_input: u8,
+    forced_output: u8,
     level: u8,
     level_before: u8,
     changed: u64,
 }
 
 impl Port {
+    /// The directions in force: ones are outputs.
+    fn directions(&self) -> u8 {
+        (self.direction | self.forced_output) & !self.forced_input
+    }
+
     fn outputs(&self) -> u8 {
         self.output & !self.output_override | self.output_value & self.output_override
     }
 
     /// What the chip does to bit `mask`.
     fn drive(&self, mask: u8, pull_ups: bool) -> Drive {
-        if self.direction & mask != 0 {
+        if self.directions() & mask != 0 {
             if self.outputs() & mask != 0 {
                 Drive::High
             } else {
@@ -112,6 +120,17 @@ impl Port {
             Drive::Floating
         }
     }
+}
+
+/// How a peripheral takes a pin over, direction and all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Force {
+    /// Not at all.
+    None,
+    /// It is an input, with the pull-up as the port's registers have it.
+    Input,
+    /// It is an output with this level.
+    Output(bool),
 }
 
 /// What a change did to a port.
@@ -155,11 +174,6 @@ fn register(address: u16) -> Option<(usize, Register)> {
 }
 
 impl Ports {
-    /// The address is that of a port.
-    pub(crate) fn has(address: u16) -> bool {
-        register(address).is_some()
-    }
-
     pub(crate) fn read(&self, address: u16, cycle: u64) -> u8 {
         let Some((index, register)) = register(address) else {
             return 0;
@@ -235,6 +249,33 @@ impl Ports {
         })
     }
 
+    /// A peripheral takes over a pin's direction, and its level if it is an output.
+    pub(crate) fn force(&mut self, pin: Pin, force: Force, cycle: u64) -> Option<Change> {
+        let mask = pin.mask();
+        self.change(pin.port(), cycle, |port| {
+            let overridden = port.forced_output & mask;
+            port.forced_input &= !mask;
+            port.forced_output &= !mask;
+            // A timer's override of another pin of the port stays.
+            port.output_override &= !overridden;
+            port.output_value &= !overridden;
+            match force {
+                Force::None => {}
+                Force::Input => port.forced_input |= mask,
+                Force::Output(level) => {
+                    port.forced_output |= mask;
+                    port.output_override |= mask;
+                    port.output_value |= if level { mask } else { 0 };
+                }
+            }
+        })
+    }
+
+    /// Something outside drives the pin.
+    pub(crate) fn is_driven_outside(&self, pin: Pin) -> bool {
+        self.ports[pin.port() % PORTS].driven_outside & pin.mask() != 0
+    }
+
     /// PUD of MCUCR; gives what it changes.
     pub(crate) fn disable_pull_ups(&mut self, disabled: bool, cycle: u64) -> Vec<Change> {
         if self.pull_ups_disabled == disabled {
@@ -279,7 +320,7 @@ impl Ports {
     ) -> Option<Change> {
         let pull_ups = if self.pull_ups_disabled { 0 } else { 0xFF };
         let port = self.ports.get_mut(index)?;
-        let directions = port.direction;
+        let directions = port.directions();
         let pulled = port.output & pull_ups;
         let inputs = port.outside & port.driven_outside | pulled & !port.driven_outside;
         let level = port.outputs() & directions | inputs & !directions;
@@ -371,6 +412,22 @@ mod tests {
         let changes = ports.disable_pull_ups(true, 40);
         assert_eq!((changes.len(), changes[0].levels), (1, 1));
         assert_eq!((ports.level(b0), ports.drive(b0)), (false, Drive::Floating));
+    }
+
+    #[test]
+    fn a_peripheral_takes_over_a_direction_and_gives_it_back() {
+        let mut ports = Ports::default();
+        let e1 = pin('E', 1);
+        ports.force(e1, Force::Output(true), 1);
+        assert_eq!((ports.drive(e1), ports.level(e1)), (Drive::High, true));
+        assert_eq!(ports.read(0x2D, 9), 0, "the register is as it was");
+        ports.force(e1, Force::Input, 10);
+        assert_eq!(ports.drive(e1), Drive::Floating);
+        ports.write(0x2E, 2, 11);
+        assert_eq!(ports.drive(e1), Drive::PullUp);
+        ports.force(e1, Force::None, 12);
+        ports.write(0x2D, 2, 13);
+        assert_eq!(ports.drive(e1), Drive::High);
     }
 
     #[test]

@@ -2,44 +2,37 @@
 
 /// What can happen by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
 pub(crate) enum Source {
     /// The caller's next input.
     Input,
-    /// The timers.
-    Timer0,
-    Timer1,
-    Timer2,
-    Timer3,
-    Timer4,
-    Timer5,
+    /// A timer, 0 to 5.
+    Timer(usize),
+    /// A USART, 0 to 3, with the line that leads to it.
+    Usart(usize),
 }
 
-impl Source {
-    pub(crate) const ALL: [Source; 7] = [
-        Source::Input,
-        Source::Timer0,
-        Source::Timer1,
-        Source::Timer2,
-        Source::Timer3,
-        Source::Timer4,
-        Source::Timer5,
-    ];
+/// Slots of the timers and of the USARTs.
+const TIMERS: usize = 1;
+const USARTS: usize = TIMERS + 6;
+const COUNT: usize = USARTS + 4;
 
-    /// Timer number `index`.
-    pub(crate) const fn timer(index: usize) -> Source {
-        match index {
-            0 => Source::Timer0,
-            1 => Source::Timer1,
-            2 => Source::Timer2,
-            3 => Source::Timer3,
-            4 => Source::Timer4,
-            _ => Source::Timer5,
+impl Source {
+    const fn slot(self) -> usize {
+        match self {
+            Source::Input => 0,
+            Source::Timer(index) => TIMERS + index % 6,
+            Source::Usart(index) => USARTS + index % 4,
+        }
+    }
+
+    const fn of_slot(slot: usize) -> Source {
+        match slot {
+            0 => Source::Input,
+            TIMERS..USARTS => Source::Timer(slot - TIMERS),
+            _ => Source::Usart(slot - USARTS),
         }
     }
 }
-
-const COUNT: usize = Source::ALL.len();
 
 /// The cycle of each source's next event.
 #[derive(Clone, Debug)]
@@ -60,8 +53,13 @@ impl Default for Schedule {
 impl Schedule {
     /// The source's next event is at `cycle`; `None` if it has none.
     pub(crate) fn set(&mut self, source: Source, cycle: Option<u64>) {
-        self.due[source as usize] = cycle.unwrap_or(u64::MAX);
-        self.next = self.due.iter().copied().fold(u64::MAX, u64::min);
+        let cycle = cycle.unwrap_or(u64::MAX);
+        let before = std::mem::replace(&mut self.due[source.slot()], cycle);
+        if cycle < self.next {
+            self.next = cycle;
+        } else if before == self.next {
+            self.next = self.due.iter().copied().fold(u64::MAX, u64::min);
+        }
     }
 
     /// The cycle of the next event of all.
@@ -75,9 +73,31 @@ impl Schedule {
         if self.next > cycle {
             return None;
         }
-        Source::ALL
-            .into_iter()
-            .find(|source| self.due[*source as usize] == self.next)
-            .map(|source| (source, self.next))
+        let slot = self.due.iter().position(|due| *due == self.next)?;
+        Some((Source::of_slot(slot), self.next))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_earliest_goes_first_and_the_first_declared_of_two_at_once() {
+        let mut schedule = Schedule::default();
+        assert_eq!(schedule.due(u64::MAX - 1), None);
+        for (source, cycle) in [
+            (Source::Usart(3), 50),
+            (Source::Timer(5), 50),
+            (Source::Input, 60),
+        ] {
+            schedule.set(source, Some(cycle));
+        }
+        assert_eq!(schedule.due(49), None);
+        assert_eq!(schedule.due(50), Some((Source::Timer(5), 50)));
+        schedule.set(Source::Timer(5), Some(70));
+        assert_eq!(schedule.due(70), Some((Source::Usart(3), 50)));
+        schedule.set(Source::Usart(3), None);
+        assert_eq!(schedule.due(70), Some((Source::Input, 60)));
     }
 }

@@ -5,6 +5,7 @@ use rumbo_emulator::chip::Chip;
 use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_emulator::devices::{Event, Output};
 use rumbo_emulator::image::Image;
+use rumbo_emulator::io::{Access, Io};
 
 pub(crate) const NOP: u16 = 0x0000;
 pub(crate) const SEI: u16 = 0x9478;
@@ -63,4 +64,48 @@ pub(crate) fn edges(chip: &mut Chip, wanted: Pin) -> Vec<(u64, bool)> {
             _ => None,
         })
         .collect()
+}
+
+/// Writes to registers, in this order, then waits for ever: the chip, and the cycle in which the last write acts.
+pub(crate) fn set_up(writes: &[(u16, u8)]) -> (Chip, u64) {
+    let mut words = Vec::new();
+    for (address, value) in writes {
+        words.push(ldi(16, *value));
+        words.extend(sts(*address, 16));
+    }
+    // RJMP to itself.
+    words.push(0xCFFF);
+    (chip_of(&words), 3 * writes.len() as u64 - 1)
+}
+
+/// A 16-bit register, read as a program would.
+pub(crate) fn count_of(chip: &mut Chip, address: u16) -> u16 {
+    let low = read(chip, address);
+    let high = read(chip, address + 1);
+    u16::from_le_bytes([low, high])
+}
+
+/// A register now.
+pub(crate) fn read(chip: &mut Chip, address: u16) -> u8 {
+    let cycle = chip.cpu().cycle();
+    read_at(chip, address, cycle)
+}
+
+/// A register at a cycle; the program has run up to one or two before it at the most.
+pub(crate) fn read_at(chip: &mut Chip, address: u16, cycle: u64) -> u8 {
+    chip.run_until(cycle.saturating_sub(2));
+    let at = Access {
+        cycle,
+        program_counter: 0,
+    };
+    chip.devices_mut().read(address, at)
+}
+
+/// Writes a register now, as a program would.
+pub(crate) fn write(chip: &mut Chip, address: u16, value: u8) {
+    let at = Access {
+        cycle: chip.cpu().cycle(),
+        program_counter: 0,
+    };
+    chip.devices_mut().write(address, value, at);
 }

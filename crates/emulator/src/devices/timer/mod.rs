@@ -16,8 +16,7 @@ use crate::io::Access;
 use place::{PLACES, Place, Register};
 use wave::{CAPTURE, CHANNELS, MATCH, Mode, OVERFLOW, Top, Wave};
 
-/// GTCCR: the prescalers' resets.
-pub(crate) const GTCCR: u16 = 0x43;
+/// In GTCCR: the prescalers' resets.
 const TSM: u8 = 0x80;
 const PSRASY: u8 = 0x02;
 const PSRSYNC: u8 = 0x01;
@@ -88,21 +87,9 @@ pub(crate) fn all() -> [Timer; 6] {
     })
 }
 
-/// The timer that has a register at this address.
-pub(crate) fn at(address: u16) -> Option<usize> {
-    PLACES
-        .iter()
-        .position(|place| place.register(address).is_some())
-}
-
 /// The timer that has this interrupt vector.
 pub(crate) fn of_vector(vector: u8) -> Option<usize> {
     PLACES.iter().position(|place| place.flag(vector).is_some())
-}
-
-/// A register of flags, in which SBI touches one bit alone.
-pub(crate) fn is_flags(address: u16) -> bool {
-    PLACES.iter().any(|place| place.flags == address)
 }
 
 impl Timer {
@@ -177,7 +164,7 @@ impl Timer {
             _ => None,
         };
         let next = [next, self.capture_due].into_iter().flatten().min();
-        core.schedule.set(Source::timer(self.index), next);
+        core.schedule.set(Source::Timer(self.index), next);
     }
 
     /// Its event is due.

@@ -1,0 +1,151 @@
+//! The peripherals as the CPU meets them: an access finds its register, after everything that is due has happened.
+
+use super::map::{Owner, is_flags, owner};
+use super::{Core, Devices, Unmodelled, system, timer, usart};
+use crate::devices::interrupts::vector;
+use crate::io::{Access, Io};
+
+/// Start of the largest boot section [words], as the fuses are shipped.
+const BOOT_WORDS: u32 = 0x1_F000;
+
+impl Devices {
+    fn not_modelled(&mut self, address: u16, at: Access, written: bool) {
+        let known = self.unmodelled.iter().any(|other| other.address == address);
+        if !known {
+            self.unmodelled.push(Unmodelled {
+                address,
+                program_counter: at.program_counter,
+                cycle: at.cycle,
+                written,
+            });
+        }
+    }
+
+    fn request_external(&mut self) {
+        let Core {
+            interrupts, ports, ..
+        } = &mut self.core;
+        self.external.request(interrupts, ports);
+    }
+
+    fn write_system(&mut self, address: u16, value: u8, cycle: u64) {
+        self.system.write(address, value, cycle);
+        if address == system::MCUCR {
+            let disabled = self.system.pull_ups_disabled();
+            let changes = self.core.ports.disable_pull_ups(disabled, cycle);
+            for change in changes {
+                self.core.note(Some(change), cycle);
+            }
+        }
+    }
+}
+
+impl Io for Devices {
+    fn read(&mut self, address: u16, at: Access) -> u8 {
+        self.advance(at.cycle);
+        match owner(address) {
+            Owner::Ports => self.core.ports.read(address, at.cycle),
+            Owner::External => self.external.read(address),
+            Owner::Timer(index) => self.timers[index].read(&mut self.core, address, at),
+            Owner::TimerPrescalers => timer::read_general_control(&self.core),
+            Owner::Usart(index) => self.usarts[index].read(&mut self.core, address, at),
+            Owner::System => self.system.read(address),
+            Owner::Nobody => {
+                self.not_modelled(address, at, false);
+                0
+            }
+        }
+    }
+
+    fn write(&mut self, address: u16, value: u8, at: Access) {
+        self.advance(at.cycle);
+        match owner(address) {
+            Owner::Ports => {
+                let change = self.core.ports.write(address, value, at.cycle);
+                self.core.note(change, at.cycle);
+            }
+            Owner::External => {
+                self.external.write(address, value);
+                self.request_external();
+            }
+            Owner::Timer(index) => self.timers[index].write(&mut self.core, address, value, at),
+            Owner::TimerPrescalers => {
+                timer::write_general_control(&mut self.timers, &mut self.core, value, at.cycle);
+            }
+            Owner::Usart(index) => self.usarts[index].write(&mut self.core, address, value, at),
+            Owner::System => self.write_system(address, value, at.cycle),
+            Owner::Nobody => self.not_modelled(address, at, true),
+        }
+        self.settle();
+    }
+
+    /// A flag register takes the bit alone: a one clears it, and no other flag is touched.
+    fn write_bit(&mut self, address: u16, mask: u8, set: bool, at: Access) {
+        if owner(address) == Owner::Ports {
+            self.advance(at.cycle);
+            let change = self.core.ports.write_bit(address, mask, set, at.cycle);
+            self.core.note(change, at.cycle);
+            self.settle();
+        } else if is_flags(address) {
+            self.write(address, if set { mask } else { 0 }, at);
+        } else {
+            let before = self.read(address, at);
+            let value = if set { before | mask } else { before & !mask };
+            self.write(address, value, at);
+        }
+    }
+
+    fn advance(&mut self, cycle: u64) {
+        while let Some((source, at)) = self.core.schedule.due(cycle) {
+            self.happen(source, at);
+        }
+        self.core.interrupts.set_time(cycle);
+    }
+
+    #[inline(always)]
+    fn deadline(&self, interrupts_enabled: bool) -> u64 {
+        if self.core.noticed || interrupts_enabled && self.core.interrupts.any() {
+            0
+        } else {
+            self.core.schedule.next()
+        }
+    }
+
+    fn take_notice(&mut self) -> bool {
+        std::mem::take(&mut self.core.noticed)
+    }
+
+    fn pending(&self) -> Option<u8> {
+        self.core.interrupts.first()
+    }
+
+    fn acknowledge(&mut self, vector: u8, cycle: u64) {
+        if (vector::INT0..vector::PCINT0 + 3).contains(&vector) {
+            self.external.acknowledge(vector);
+            self.request_external();
+        } else if let Some(index) = timer::of_vector(vector) {
+            self.timers[index].acknowledge(&mut self.core, vector, cycle);
+        } else if let Some(index) = usart::of_vector(vector) {
+            self.usarts[index].acknowledge(&mut self.core, vector, cycle);
+        }
+        self.settle();
+    }
+
+    fn vector_base(&self) -> u32 {
+        if self.system.vectors_in_boot() {
+            BOOT_WORDS
+        } else {
+            0
+        }
+    }
+
+    fn sleep(&mut self, _: u64) -> bool {
+        self.system.sleep_enabled()
+    }
+
+    fn reset_watchdog(&mut self, _: u64) {}
+
+    fn store_program(&mut self, _: u32, _: u16, _: Access) -> Vec<(u32, u16)> {
+        Vec::new()
+    }
+}

@@ -1,0 +1,105 @@
+//! Registers of the chip as a whole: sleep, reset causes, MCU control, and the three that are a program's own
+//! (DS40002549, sections 11, 12, 13.4 and 14.2).
+
+use super::Cause;
+
+const GPIOR0: u16 = 0x3E;
+const GPIOR1: u16 = 0x4A;
+const GPIOR2: u16 = 0x4B;
+const SMCR: u16 = 0x53;
+const MCUSR: u16 = 0x54;
+pub(super) const MCUCR: u16 = 0x55;
+
+/// Sleep enable in SMCR.
+const SE: u8 = 1;
+/// Pull-up disable in MCUCR.
+const PUD: u8 = 0x10;
+/// Disables JTAG.
+const JTD: u8 = 0x80;
+/// Vectors in the boot section, and the permission to change that, in MCUCR.
+const IVSEL: u8 = 2;
+const IVCE: u8 = 1;
+/// Cycles for which IVCE permits.
+const IVCE_CYCLES: u64 = 4;
+
+/// State of the registers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct System {
+    general: [u8; 3],
+    sleep_control: u8,
+    /// MCUSR.
+    reset_causes: u8,
+    control: u8,
+    control_open_until: u64,
+}
+
+/// The flag of MCUSR that tells of a reset.
+const fn flag(cause: Cause) -> u8 {
+    match cause {
+        Cause::PowerOn => 1,
+        Cause::External => 2,
+        Cause::BrownOut => 4,
+        Cause::Watchdog => 8,
+    }
+}
+
+impl System {
+    /// After a reset.
+    pub(super) fn after(cause: Cause) -> System {
+        System {
+            reset_causes: flag(cause),
+            ..System::default()
+        }
+    }
+
+    pub(super) fn read(&self, address: u16) -> u8 {
+        match address {
+            GPIOR0 => self.general[0],
+            GPIOR1 => self.general[1],
+            GPIOR2 => self.general[2],
+            SMCR => self.sleep_control,
+            MCUSR => self.reset_causes,
+            MCUCR => self.control,
+            _ => 0,
+        }
+    }
+
+    pub(super) fn write(&mut self, address: u16, value: u8, cycle: u64) {
+        match address {
+            GPIOR0 => self.general[0] = value,
+            GPIOR1 => self.general[1] = value,
+            GPIOR2 => self.general[2] = value,
+            SMCR => self.sleep_control = value & 0x0F,
+            // Flags of the reset: a zero clears, a one leaves.
+            MCUSR => self.reset_causes &= value,
+            MCUCR => self.write_control(value, cycle),
+            _ => {}
+        }
+    }
+
+    /// IVSEL changes only within four cycles after IVCE was written.
+    fn write_control(&mut self, value: u8, cycle: u64) {
+        let select = if cycle <= self.control_open_until && value & IVCE == 0 {
+            value & IVSEL
+        } else {
+            self.control & IVSEL
+        };
+        if value & IVCE != 0 {
+            self.control_open_until = cycle + IVCE_CYCLES;
+        }
+        self.control = value & (PUD | JTD) | select;
+    }
+
+    pub(super) fn pull_ups_disabled(&self) -> bool {
+        self.control & PUD != 0
+    }
+
+    pub(super) fn sleep_enabled(&self) -> bool {
+        self.sleep_control & SE != 0
+    }
+
+    /// The interrupt vectors are in the boot section.
+    pub(super) fn vectors_in_boot(&self) -> bool {
+        self.control & IVSEL != 0
+    }
+}
