@@ -53,6 +53,16 @@ impl Chip {
         self.devices.take_outputs()
     }
 
+    /// What an instruction would read at an address of the data space; nothing happens because of it.
+    pub fn read_data(&self, address: u16) -> u8 {
+        self.cpu.peek(&self.devices, address)
+    }
+
+    /// Writes to the data space as an instruction does now.
+    pub fn write_data(&mut self, address: u16, value: u8) {
+        self.cpu.poke(&mut self.devices, address, value);
+    }
+
     /// The CPU.
     pub fn cpu(&self) -> &Cpu {
         &self.cpu

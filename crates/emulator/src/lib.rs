@@ -9,6 +9,7 @@ pub mod cpu;
 pub mod decode;
 pub mod devices;
 pub mod disassemble;
+pub mod gdb;
 pub mod image;
 pub mod io;
 pub mod observe;

@@ -28,7 +28,7 @@ impl Cpu {
     }
 
     #[inline(always)]
-    pub(super) fn load<I: Io>(&mut self, io: &mut I, address: u16, at: Access) -> u8 {
+    pub(super) fn load<I: Io>(&self, io: &mut I, address: u16, at: Access) -> u8 {
         let index = usize::from(address.wrapping_sub(SRAM_START));
         if index < SRAM_BYTES {
             self.sram[index]
@@ -38,7 +38,7 @@ impl Cpu {
     }
 
     #[inline(never)]
-    pub(super) fn load_elsewhere<I: Io>(&mut self, io: &mut I, address: u16, at: Access) -> u8 {
+    pub(super) fn load_elsewhere<I: Io>(&self, io: &mut I, address: u16, at: Access) -> u8 {
         match address {
             0..32 => self.registers[usize::from(address) & 31],
             RAMPZ => self.rampz,
@@ -47,6 +47,27 @@ impl Cpu {
             SPH => self.stack_pointer.to_le_bytes()[1],
             SREG => self.status.bits(),
             _ => io.read(address, at),
+        }
+    }
+
+    /// What an instruction would read now, without its effects on the peripherals.
+    pub(crate) fn peek<I: Io + Clone>(&self, io: &I, address: u16) -> u8 {
+        let index = usize::from(address.wrapping_sub(SRAM_START));
+        match self.sram.get(index) {
+            Some(byte) => *byte,
+            None => self.load_elsewhere(&mut io.clone(), address, self.now()),
+        }
+    }
+
+    /// Writes as an instruction does now.
+    pub(crate) fn poke<I: Io>(&mut self, io: &mut I, address: u16, value: u8) {
+        self.store(io, address, value, self.now());
+    }
+
+    fn now(&self) -> Access {
+        Access {
+            cycle: self.cycle,
+            program_counter: self.program_counter,
         }
     }
 

@@ -324,6 +324,11 @@ impl Cpu {
         stopped
     }
 
+    /// How the program ended, if it has.
+    pub fn verdict(&self) -> Option<&Verdict> {
+        self.verdict.as_ref()
+    }
+
     /// The operation that comes next, whether a breakpoint stands there or not.
     pub(crate) fn next_operation(&self) -> Op {
         self.original(self.program_counter)

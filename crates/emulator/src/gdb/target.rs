@@ -1,0 +1,417 @@
+//! What a debugger's requests mean for the chip.
+//!
+//! | address | memory |
+//! |---|---|
+//! | 0 to 0x3FFFF | flash |
+//! | 0x800000 | data space: registers, peripherals, SRAM |
+//! | 0x810000 | EEPROM |
+//! | 0x840000 | signature |
+
+use super::Machine;
+use super::arch::{Avr, AvrRegisters};
+use crate::cpu::{FLASH_BYTES, Stopped};
+use crate::observe::Watchpoint;
+use crate::status::Status;
+use crate::verdict::Verdict;
+use gdbstub::common::Signal;
+use gdbstub::conn::{Connection, ConnectionExt};
+use gdbstub::stub::SingleThreadStopReason;
+use gdbstub::stub::run_blocking::{BlockingEventLoop, Event, WaitForStopReasonError};
+use gdbstub::target::ext::base::BaseOps;
+use gdbstub::target::ext::base::singlethread::{
+    SingleThreadBase, SingleThreadRangeStepping, SingleThreadRangeSteppingOps, SingleThreadResume,
+    SingleThreadResumeOps, SingleThreadSingleStep, SingleThreadSingleStepOps,
+};
+use gdbstub::target::ext::breakpoints::{
+    Breakpoints, BreakpointsOps, HwBreakpoint, HwBreakpointOps, HwWatchpoint, HwWatchpointOps,
+    SwBreakpoint, SwBreakpointOps, WatchKind,
+};
+use gdbstub::target::ext::monitor_cmd::{ConsoleOutput, MonitorCmd, MonitorCmdOps, outputln};
+use gdbstub::target::{Target, TargetError, TargetResult};
+use std::convert::Infallible;
+use std::marker::PhantomData;
+use std::net::TcpStream;
+use std::ops::Range;
+
+const FLASH: Range<u32> = 0..FLASH_BYTES as u32;
+const DATA: Range<u32> = 0x80_0000..0x80_2200;
+const SIGNATURE: Range<u32> = 0x84_0000..0x84_0003;
+/// Of the ATmega2560 (DS40002549, section 29.3).
+const SIGNATURE_BYTES: [u8; 3] = [0x1E, 0x98, 0x01];
+/// "Bad address", as GDB's protocol numbers it.
+const EFAULT: u8 = 14;
+/// Steps between two looks at the connection.
+const STEPS: u32 = 10_000;
+
+/// How the debugger wants the program to go on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Motion {
+    Continue,
+    Step,
+    /// Steps as long as the program counter [bytes] is in here.
+    Within(Range<u32>),
+}
+
+/// A machine in the hands of a debugger.
+pub(super) struct Debugger<'a, M> {
+    machine: &'a mut M,
+    motion: Motion,
+    breakpoints: Vec<u32>,
+    watchpoints: Vec<Watchpoint>,
+}
+
+impl<'a, M: Machine> Debugger<'a, M> {
+    pub(super) fn new(machine: &'a mut M) -> Self {
+        Debugger {
+            machine,
+            motion: Motion::Continue,
+            breakpoints: Vec::new(),
+            watchpoints: Vec::new(),
+        }
+    }
+
+    /// Removes what the debugger left behind.
+    pub(super) fn clear(&mut self) {
+        for word in std::mem::take(&mut self.breakpoints) {
+            self.machine.chip_mut().cpu_mut().clear_breakpoint(word);
+        }
+        for watchpoint in std::mem::take(&mut self.watchpoints) {
+            self.machine.chip_mut().observers_mut().unwatch(&watchpoint);
+        }
+    }
+
+    fn program_counter(&self) -> u32 {
+        2 * self.machine.chip().cpu().program_counter()
+    }
+
+    /// Lets the program go on until it stops, or `interrupted` says that the debugger has something to say.
+    fn go(&mut self, mut interrupted: impl FnMut() -> bool) -> Option<SingleThreadStopReason<u32>> {
+        // Off a breakpoint at which it may stand.
+        let stopped = self.step();
+        if let Some(reason) = self.stop_reason(stopped) {
+            return Some(reason);
+        }
+        let mut steps = 0;
+        loop {
+            let stopped = match &self.motion {
+                Motion::Step if !self.machine.chip().cpu().is_sleeping() => {
+                    return Some(SingleThreadStopReason::DoneStep);
+                }
+                Motion::Within(range) if !range.contains(&self.program_counter()) => {
+                    return Some(SingleThreadStopReason::DoneStep);
+                }
+                Motion::Continue => self.machine.go(),
+                Motion::Step | Motion::Within(_) => self.step(),
+            };
+            if let Some(reason) = self.stop_reason(stopped) {
+                return Some(reason);
+            }
+            if self.machine.is_over() {
+                return Some(SingleThreadStopReason::Exited(0));
+            }
+            steps += 1;
+            if (self.motion == Motion::Continue || steps % STEPS == 0) && interrupted() {
+                return None;
+            }
+        }
+    }
+
+    fn step(&mut self) -> Stopped {
+        let stopped = self.machine.chip_mut().step();
+        self.machine.follow();
+        stopped
+    }
+
+    /// What to tell the debugger about a stop, if it was one.
+    fn stop_reason(&self, stopped: Stopped) -> Option<SingleThreadStopReason<u32>> {
+        match stopped {
+            Stopped::Reached | Stopped::Output => None,
+            Stopped::Breakpoint => Some(SingleThreadStopReason::SwBreak(())),
+            Stopped::Watched {
+                address,
+                watchpoint,
+            } => Some(SingleThreadStopReason::Watch {
+                tid: (),
+                kind: match (watchpoint.reads, watchpoint.writes) {
+                    (true, true) => WatchKind::ReadWrite,
+                    (true, false) => WatchKind::Read,
+                    (false, _) => WatchKind::Write,
+                },
+                addr: DATA.start + u32::from(address),
+            }),
+            Stopped::Ended(Verdict::StackOverflow { .. }) => {
+                Some(SingleThreadStopReason::Signal(Signal::SIGSEGV))
+            }
+            Stopped::Ended(_) => Some(SingleThreadStopReason::Signal(Signal::SIGILL)),
+        }
+    }
+
+    fn read(&self, address: u32) -> Option<u8> {
+        let chip = self.machine.chip();
+        if FLASH.contains(&address) {
+            chip.cpu().flash().get(address as usize).copied()
+        } else if DATA.contains(&address) {
+            Some(chip.read_data((address - DATA.start) as u16))
+        } else if SIGNATURE.contains(&address) {
+            let index = (address - SIGNATURE.start) as usize;
+            SIGNATURE_BYTES.get(index).copied()
+        } else {
+            None
+        }
+    }
+
+    /// Says whether there is something to write to.
+    fn write(&mut self, address: u32, value: u8) -> bool {
+        let chip = self.machine.chip_mut();
+        if DATA.contains(&address) {
+            chip.write_data((address - DATA.start) as u16, value);
+        } else if FLASH.contains(&address) {
+            let word = address / 2;
+            let at = 2 * word as usize;
+            let flash = chip.cpu().flash();
+            let [low, high] = [flash[at], flash[at + 1]];
+            let bytes = if address.is_multiple_of(2) {
+                [value, high]
+            } else {
+                [low, value]
+            };
+            chip.cpu_mut().write_flash(word, u16::from_le_bytes(bytes));
+        } else {
+            return false;
+        }
+        true
+    }
+}
+
+impl<M: Machine> Target for Debugger<'_, M> {
+    type Arch = Avr;
+    type Error = Infallible;
+
+    fn base_ops(&mut self) -> BaseOps<'_, Avr, Infallible> {
+        BaseOps::SingleThread(self)
+    }
+
+    fn support_breakpoints(&mut self) -> Option<BreakpointsOps<'_, Self>> {
+        Some(self)
+    }
+
+    fn support_monitor_cmd(&mut self) -> Option<MonitorCmdOps<'_, Self>> {
+        Some(self)
+    }
+}
+
+impl<M: Machine> SingleThreadBase for Debugger<'_, M> {
+    fn read_registers(&mut self, registers: &mut AvrRegisters) -> TargetResult<(), Self> {
+        let cpu = self.machine.chip().cpu();
+        *registers = AvrRegisters {
+            general: *cpu.registers(),
+            status: cpu.status().bits(),
+            stack_pointer: cpu.stack_pointer(),
+            program_counter: self.program_counter(),
+        };
+        Ok(())
+    }
+
+    fn write_registers(&mut self, registers: &AvrRegisters) -> TargetResult<(), Self> {
+        let cpu = self.machine.chip_mut().cpu_mut();
+        *cpu.registers_mut() = registers.general;
+        cpu.set_status(Status::from_bits(registers.status));
+        cpu.set_stack_pointer(registers.stack_pointer);
+        cpu.set_program_counter(registers.program_counter / 2);
+        Ok(())
+    }
+
+    fn read_addrs(&mut self, start: u32, data: &mut [u8]) -> TargetResult<usize, Self> {
+        let mut read = 0;
+        for (place, address) in data.iter_mut().zip(start..) {
+            let Some(byte) = self.read(address) else {
+                break;
+            };
+            *place = byte;
+            read += 1;
+        }
+        if read == 0 {
+            return Err(TargetError::Errno(EFAULT));
+        }
+        Ok(read)
+    }
+
+    fn write_addrs(&mut self, start: u32, data: &[u8]) -> TargetResult<(), Self> {
+        for (byte, address) in data.iter().zip(start..) {
+            if !self.write(address, *byte) {
+                return Err(TargetError::Errno(EFAULT));
+            }
+        }
+        Ok(())
+    }
+
+    fn support_resume(&mut self) -> Option<SingleThreadResumeOps<'_, Self>> {
+        Some(self)
+    }
+}
+
+impl<M: Machine> SingleThreadResume for Debugger<'_, M> {
+    fn resume(&mut self, _: Option<Signal>) -> Result<(), Infallible> {
+        self.motion = Motion::Continue;
+        Ok(())
+    }
+
+    fn support_single_step(&mut self) -> Option<SingleThreadSingleStepOps<'_, Self>> {
+        Some(self)
+    }
+
+    fn support_range_step(&mut self) -> Option<SingleThreadRangeSteppingOps<'_, Self>> {
+        Some(self)
+    }
+}
+
+impl<M: Machine> SingleThreadSingleStep for Debugger<'_, M> {
+    fn step(&mut self, _: Option<Signal>) -> Result<(), Infallible> {
+        self.motion = Motion::Step;
+        Ok(())
+    }
+}
+
+impl<M: Machine> SingleThreadRangeStepping for Debugger<'_, M> {
+    fn resume_range_step(&mut self, start: u32, end: u32) -> Result<(), Infallible> {
+        self.motion = Motion::Within(start..end);
+        Ok(())
+    }
+}
+
+impl<M: Machine> Breakpoints for Debugger<'_, M> {
+    fn support_sw_breakpoint(&mut self) -> Option<SwBreakpointOps<'_, Self>> {
+        Some(self)
+    }
+
+    fn support_hw_breakpoint(&mut self) -> Option<HwBreakpointOps<'_, Self>> {
+        Some(self)
+    }
+
+    fn support_hw_watchpoint(&mut self) -> Option<HwWatchpointOps<'_, Self>> {
+        Some(self)
+    }
+}
+
+impl<M: Machine> SwBreakpoint for Debugger<'_, M> {
+    fn add_sw_breakpoint(&mut self, address: u32, _: usize) -> TargetResult<bool, Self> {
+        if !FLASH.contains(&address) {
+            return Ok(false);
+        }
+        self.breakpoints.push(address / 2);
+        self.machine
+            .chip_mut()
+            .cpu_mut()
+            .set_breakpoint(address / 2);
+        Ok(true)
+    }
+
+    fn remove_sw_breakpoint(&mut self, address: u32, _: usize) -> TargetResult<bool, Self> {
+        let word = address / 2;
+        let known = self.breakpoints.contains(&word);
+        self.breakpoints.retain(|other| *other != word);
+        self.machine.chip_mut().cpu_mut().clear_breakpoint(word);
+        Ok(known)
+    }
+}
+
+impl<M: Machine> HwBreakpoint for Debugger<'_, M> {
+    fn add_hw_breakpoint(&mut self, address: u32, kind: usize) -> TargetResult<bool, Self> {
+        self.add_sw_breakpoint(address, kind)
+    }
+
+    fn remove_hw_breakpoint(&mut self, address: u32, kind: usize) -> TargetResult<bool, Self> {
+        self.remove_sw_breakpoint(address, kind)
+    }
+}
+
+/// Data addresses that are watched; `None` if they are not in the data space.
+fn watchpoint(address: u32, length: u32, kind: WatchKind) -> Option<Watchpoint> {
+    let start = DATA.contains(&address).then(|| address - DATA.start)?;
+    let end = start.saturating_add(length).min(DATA.end - DATA.start);
+    Some(Watchpoint {
+        addresses: start as u16..end as u16,
+        reads: kind != WatchKind::Write,
+        writes: kind != WatchKind::Read,
+    })
+}
+
+impl<M: Machine> HwWatchpoint for Debugger<'_, M> {
+    fn add_hw_watchpoint(
+        &mut self,
+        address: u32,
+        length: u32,
+        kind: WatchKind,
+    ) -> TargetResult<bool, Self> {
+        let Some(watchpoint) = watchpoint(address, length, kind) else {
+            return Ok(false);
+        };
+        self.watchpoints.push(watchpoint.clone());
+        self.machine.chip_mut().observers_mut().watch(watchpoint);
+        Ok(true)
+    }
+
+    fn remove_hw_watchpoint(
+        &mut self,
+        address: u32,
+        length: u32,
+        kind: WatchKind,
+    ) -> TargetResult<bool, Self> {
+        let Some(watchpoint) = watchpoint(address, length, kind) else {
+            return Ok(false);
+        };
+        self.watchpoints.retain(|other| *other != watchpoint);
+        Ok(self.machine.chip_mut().observers_mut().unwatch(&watchpoint))
+    }
+}
+
+impl<M: Machine> MonitorCmd for Debugger<'_, M> {
+    fn handle_monitor_cmd(
+        &mut self,
+        command: &[u8],
+        mut out: ConsoleOutput<'_>,
+    ) -> Result<(), Infallible> {
+        let cpu = self.machine.chip().cpu();
+        match command.trim_ascii() {
+            b"cycle" => outputln!(out, "{}", cpu.cycle()),
+            b"verdict" => match cpu.verdict() {
+                Some(verdict) => outputln!(out, "{verdict}"),
+                None => outputln!(out, "the program can go on"),
+            },
+            _ => outputln!(
+                out,
+                "cycle    cycles since power-on\nverdict  why the program cannot go on"
+            ),
+        }
+        Ok(())
+    }
+}
+
+/// How the protocol's loop gets at the program and the connection.
+pub(super) struct Events<'a, M>(PhantomData<&'a mut M>);
+
+impl<'a, M: Machine> BlockingEventLoop for Events<'a, M> {
+    type Target = Debugger<'a, M>;
+    type Connection = TcpStream;
+    type StopReason = SingleThreadStopReason<u32>;
+
+    fn wait_for_stop_reason(
+        debugger: &mut Debugger<'a, M>,
+        connection: &mut TcpStream,
+    ) -> Result<
+        Event<Self::StopReason>,
+        WaitForStopReasonError<Infallible, <TcpStream as Connection>::Error>,
+    > {
+        let reason = debugger.go(|| !matches!(ConnectionExt::peek(connection), Ok(None)));
+        match reason {
+            Some(reason) => Ok(Event::TargetStopped(reason)),
+            None => ConnectionExt::read(connection)
+                .map(Event::IncomingData)
+                .map_err(WaitForStopReasonError::Connection),
+        }
+    }
+
+    fn on_interrupt(_: &mut Debugger<'a, M>) -> Result<Option<Self::StopReason>, Infallible> {
+        Ok(Some(SingleThreadStopReason::Signal(Signal::SIGINT)))
+    }
+}
