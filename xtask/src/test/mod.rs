@@ -216,11 +216,11 @@ fn doc(project: &Project) -> Result<(), Stop> {
     Ok(run_command(doc.env("RUSTDOCFLAGS", "-D warnings"))?)
 }
 
-/// Where simavr is missing, the tests that compare with it skip themselves, and so this step is not whole.
+/// Where simavr or avr-gdb is missing, the tests that need it skip themselves, and so this step is not whole.
 fn tests(project: &Project) -> Result<(), Stop> {
-    let simavr = tools::simavr(project);
+    let tools = [tools::simavr(project), tools::avr_gdb(project)];
     run_command(&mut project.cargo(&["test", "--workspace", "--no-fail-fast", "--locked"]))?;
-    simavr.map(|_| ())
+    tools.into_iter().try_for_each(|tool| tool.map(|_| ()))
 }
 
 fn build(project: &Project) -> Result<(), Stop> {

@@ -71,6 +71,11 @@ pub(crate) fn arduino_core(project: &Project) -> Result<PathBuf, Stop> {
     )
 }
 
+/// The debugger that the tests attach to the emulated chip.
+pub(crate) fn avr_gdb(project: &Project) -> Result<PathBuf, Stop> {
+    program(project, "avr-gdb", &["gdb-avr"], "GDB for the AVR")
+}
+
 /// Node and npm, with the packages of `web/package-lock.json` installed.
 pub(crate) fn node(project: &Project) -> Result<PathBuf, Stop> {
     let node = program(project, "node", &["nodejs", "npm"], "Node 20 or newer")?;
