@@ -118,9 +118,12 @@ impl Compiler {
         std::fs::write(&joined, preprocess::join(sketch, &sources.files)?)
             .map_err(|error| format!("{}: {error}", joined.display()))?;
         let flags = [macros, &["-Wall", "-Wextra"]].concat();
+        let quiet = [macros, &["-w"]].concat();
         let mut objects = vec![self.compile(&joined, &folder, &sources.includes, &flags)?];
         for file in sources.files.iter().filter(|file| is_source(file)) {
-            objects.push(self.compile(file, &folder, &sources.includes, &flags)?);
+            let own = file.starts_with(sketch);
+            let flags = if own { &flags } else { &quiet };
+            objects.push(self.compile(file, &folder, &sources.includes, flags)?);
         }
         run(Command::new("avr-gcc")
             .args(CHIP)
@@ -149,7 +152,10 @@ impl Compiler {
             let headers = preprocess::includes(&read(file)?);
             for folder in headers.iter().filter_map(|header| self.library(header)) {
                 if !includes.contains(&folder) {
-                    files.extend(files_of(&folder)?.into_iter().filter(|file| file.is_file()));
+                    let parts = [folder.clone(), folder.join("utility")];
+                    for part in parts.iter().filter(|part| part.is_dir()) {
+                        files.extend(files_of(part)?.into_iter().filter(|file| file.is_file()));
+                    }
                     includes.push(folder);
                 }
             }

@@ -3,7 +3,7 @@
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::{SRAM_START, Stopped};
 use rumbo_emulator::devices::ports::{Drive, Pin};
-use rumbo_emulator::devices::{Event, Input};
+use rumbo_emulator::devices::{Cause, Event, Input};
 use rumbo_emulator::image::Image;
 use std::path::Path;
 
@@ -17,6 +17,8 @@ pub(crate) struct Board {
     pub(crate) chip: Chip,
     image: Image,
     edges: Vec<Edge>,
+    bytes: Vec<(u64, u8, u8)>,
+    resets: Vec<(u64, Cause)>,
 }
 
 impl Board {
@@ -35,6 +37,8 @@ impl Board {
             chip: Chip::new(&image),
             image,
             edges: Vec::new(),
+            bytes: Vec::new(),
+            resets: Vec::new(),
         })
     }
 
@@ -49,10 +53,27 @@ impl Board {
             .collect();
         assert!(strange.is_empty(), "{strange:?}");
         for output in self.chip.take_outputs() {
-            if let Event::Pin(pin, drive @ (Drive::High | Drive::Low)) = output.event {
-                self.edges.push((output.cycle, pin, drive == Drive::High));
+            let cycle = output.cycle;
+            match output.event {
+                Event::Pin(pin, drive @ (Drive::High | Drive::Low)) => {
+                    self.edges.push((cycle, pin, drive == Drive::High));
+                }
+                Event::Byte { usart, byte, .. } => self.bytes.push((cycle, usart, byte as u8)),
+                Event::Reset(cause) => self.resets.push((cycle, cause)),
+                Event::Pin(..) | Event::Duty { .. } => {}
             }
         }
+    }
+
+    /// The bytes that a USART has sent: cycle and byte.
+    pub(crate) fn sent(&self, usart: u8) -> Vec<(u64, u8)> {
+        let bytes = self.bytes.iter().filter(|(_, by, _)| *by == usart);
+        bytes.map(|(cycle, _, byte)| (*cycle, *byte)).collect()
+    }
+
+    /// The resets since power-on.
+    pub(crate) fn resets(&self) -> &[(u64, Cause)] {
+        &self.resets
     }
 
     /// The edges of a pin of the Mega so far: cycle and level.
@@ -65,9 +86,10 @@ impl Board {
             .collect()
     }
 
-    /// Forgets what the pins did so far.
+    /// Forgets what pins and USARTs did so far.
     pub(crate) fn forget(&mut self) {
         self.edges.clear();
+        self.bytes.clear();
     }
 
     /// Drives a pin of the Mega from outside at a cycle.
