@@ -3,7 +3,7 @@
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::{SRAM_START, Stopped};
 use rumbo_emulator::devices::ports::{Drive, Pin};
-use rumbo_emulator::devices::{Cause, Event, Input};
+use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
 use std::path::Path;
 
@@ -18,7 +18,6 @@ pub(crate) struct Board {
     image: Image,
     edges: Vec<Edge>,
     bytes: Vec<(u64, u8, u8)>,
-    resets: Vec<(u64, Cause)>,
 }
 
 impl Board {
@@ -38,7 +37,6 @@ impl Board {
             image,
             edges: Vec::new(),
             bytes: Vec::new(),
-            resets: Vec::new(),
         })
     }
 
@@ -46,11 +44,9 @@ impl Board {
     pub(crate) fn run_us(&mut self, us: u64) {
         let end = self.chip.cpu().cycle() + us * CYCLES_PER_US;
         assert_eq!(self.chip.run_until(end), Stopped::Reached);
-        // The core touches ADCSRA and UCSR0B at its start.
+        // The core touches ADCSRA at its start.
         let strange = self.chip.unmodelled().iter();
-        let strange: Vec<_> = strange
-            .filter(|access| !matches!(access.address, 0x7A | 0xC1))
-            .collect();
+        let strange: Vec<_> = strange.filter(|access| access.address != 0x7A).collect();
         assert!(strange.is_empty(), "{strange:?}");
         for output in self.chip.take_outputs() {
             let cycle = output.cycle;
@@ -59,8 +55,7 @@ impl Board {
                     self.edges.push((cycle, pin, drive == Drive::High));
                 }
                 Event::Byte { usart, byte, .. } => self.bytes.push((cycle, usart, byte as u8)),
-                Event::Reset(cause) => self.resets.push((cycle, cause)),
-                Event::Pin(..) | Event::Duty { .. } => {}
+                Event::Pin(..) | Event::Duty { .. } | Event::Reset(_) => {}
             }
         }
     }
@@ -69,11 +64,6 @@ impl Board {
     pub(crate) fn sent(&self, usart: u8) -> Vec<(u64, u8)> {
         let bytes = self.bytes.iter().filter(|(_, by, _)| *by == usart);
         bytes.map(|(cycle, _, byte)| (*cycle, *byte)).collect()
-    }
-
-    /// The resets since power-on.
-    pub(crate) fn resets(&self) -> &[(u64, Cause)] {
-        &self.resets
     }
 
     /// The edges of a pin of the Mega so far: cycle and level.

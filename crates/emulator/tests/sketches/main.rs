@@ -2,6 +2,5 @@
 #![cfg(test)]
 
 mod board;
-mod memory;
 mod pins;
 mod serial;
