@@ -2,7 +2,7 @@
 
 use crate::cpu::{Cpu, Stopped};
 use crate::devices::ports::Pin;
-use crate::devices::{Devices, Input, Output, Unmodelled};
+use crate::devices::{Devices, Input, Level, Output, Unmodelled};
 use crate::image::Image;
 use crate::observe::{self, Observers};
 
@@ -51,6 +51,16 @@ impl Chip {
     /// What the chip did since the last call, in order.
     pub fn take_outputs(&mut self) -> Vec<Output> {
         self.devices.take_outputs()
+    }
+
+    /// From now on every change of a pin's level is kept, whoever drives it, beginning with the levels now.
+    pub fn record_levels(&mut self) {
+        self.devices.record_levels(self.cpu.cycle());
+    }
+
+    /// The levels kept since the last call, in order.
+    pub fn take_levels(&mut self) -> Vec<Level> {
+        self.devices.take_levels()
     }
 
     /// What an instruction would read at an address of the data space; nothing happens because of it.

@@ -10,6 +10,7 @@ use rumbo_emulator::devices::Input;
 use rumbo_emulator::image::Image;
 use rumbo_emulator::observe::Watchpoint;
 use rumbo_emulator::observe::profile::{InterruptUse, Profile};
+use rumbo_emulator::observe::waveform::Waveform;
 
 const RCALL_OVER_2: u16 = 0xD002;
 const RET: u16 = 0x9508;
@@ -161,4 +162,48 @@ fn a_program_runs_the_same_whether_it_is_looked_at_or_not() {
         assert_eq!(seen.cpu().registers(), unseen.cpu().registers());
         assert_eq!(seen.take_outputs(), unseen.take_outputs());
     }
+}
+
+#[test]
+fn a_waveform_has_inputs_and_outputs_at_their_times() {
+    let mut chip = busy();
+    chip.record_levels();
+    chip.run_until(150);
+    let mut file = Vec::new();
+    let names = [("INT0 edge", pin('D', 0)), ("led", pin('B', 7))]
+        .map(|(name, pin)| (name.to_owned(), pin));
+    let mut waveform = Waveform::new(&mut file, &names).unwrap();
+    for level in chip.take_levels() {
+        waveform.put(level).unwrap();
+    }
+    waveform.finish(chip.cpu().cycle()).unwrap();
+    let mut read = vcd::Parser::new(file.as_slice());
+    let header = read.parse_header().unwrap();
+    assert_eq!(header.timescale, Some((100, vcd::TimescaleUnit::PS)));
+    let [edge, led] =
+        ["INT0_edge", "led"].map(|name| header.find_var(&["mega", name]).unwrap().code);
+    let mut now = 0;
+    let mut changes = Vec::new();
+    for command in read {
+        match command.unwrap() {
+            vcd::Command::Timestamp(time) => now = time,
+            vcd::Command::ChangeScalar(id, value) => {
+                changes.push((now as f64 / 625.0, id == edge, value))
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    assert_ne!(edge, led);
+    let (high, low) = (vcd::Value::V1, vcd::Value::V0);
+    // The edge, and 5 + 3 + 1 cycles later what its routine does; the second meets RCALL or RET.
+    assert_eq!(
+        changes[..4],
+        [
+            (0.0, false, low),
+            (0.0, true, low),
+            (50.0, true, high),
+            (59.0, false, high)
+        ]
+    );
+    assert_eq!(changes[4], (133.0, true, low));
 }

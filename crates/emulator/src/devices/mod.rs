@@ -20,7 +20,7 @@ use external::External;
 use interrupts::Interrupts;
 use ports::{Change, Drive, Pin, Ports};
 use schedule::{Schedule, Source};
-pub use signal::{Cause, Event, Input, Output, Pwm};
+pub use signal::{Cause, Event, Input, Level, Output, Pwm};
 use system::System;
 use timer::{Prescaler, Timer};
 use usart::Usart;
@@ -54,6 +54,8 @@ pub(crate) struct Core {
     /// Pins whose outputs pause the run, by their number.
     watched: u128,
     noticed: bool,
+    /// Levels since they were last asked for, if somebody wants to know.
+    levels: Option<Vec<Level>>,
 }
 
 impl Core {
@@ -109,6 +111,26 @@ impl Devices {
     /// What the chip did since the last call, in order.
     pub fn take_outputs(&mut self) -> Vec<Output> {
         std::mem::take(&mut self.core.outputs)
+    }
+
+    /// From now on every level of a pin that changes is kept, beginning with those that all pins have in this cycle.
+    pub(crate) fn record_levels(&mut self, cycle: u64) {
+        let now = |pin| Level {
+            cycle,
+            pin,
+            high: self.core.ports.level(pin),
+        };
+        let pins = (0..ports::PORTS).flat_map(|port| (0..8).map(move |bit| Pin::at(port, bit)));
+        self.core.levels = Some(pins.map(now).collect());
+    }
+
+    /// Levels that changed since the last call, in order.
+    pub(crate) fn take_levels(&mut self) -> Vec<Level> {
+        self.core
+            .levels
+            .as_mut()
+            .map(std::mem::take)
+            .unwrap_or_default()
     }
 
     /// From now on a run pauses after an instruction in which the chip drives one of these pins in another way.
@@ -209,6 +231,10 @@ impl Devices {
             if change.levels >> bit & 1 != 0 {
                 let pin = Pin::at(change.port, bit);
                 let level = self.core.ports.level(pin);
+                if let Some(levels) = &mut self.core.levels {
+                    let high = level;
+                    levels.push(Level { cycle, pin, high });
+                }
                 for timer in &mut self.timers {
                     timer.pin_changed(&mut self.core, pin, level, cycle);
                 }

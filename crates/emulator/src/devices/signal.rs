@@ -95,3 +95,14 @@ pub enum Cause {
     /// The watchdog ran out.
     Watchdog,
 }
+
+/// A level that a pin has from a cycle on, whoever drives it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Level {
+    /// When.
+    pub cycle: u64,
+    /// Which pin.
+    pub pin: Pin,
+    /// The level.
+    pub high: bool,
+}

@@ -8,6 +8,7 @@ pub mod profile;
 pub mod touch;
 pub mod trace;
 pub mod vectors;
+pub mod waveform;
 
 use crate::cpu::{Cpu, Pace, Stopped, Turn};
 use crate::decode::Op;
