@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use rumbo_scenario::files::TimedText;
 use std::path::PathBuf;
 
 /// Rumbo: the lab of a small robot. Without a subcommand, `lab`.
@@ -84,6 +85,7 @@ Examples:
   rumbo run mode5 --runs 20 --json
   rumbo run mode5 --runs 20 --program original
   rumbo run mode1 --rig final --world room
+  rumbo run mode5 --firmware my_sketch.elf --command 'REF 40@20'
   rumbo run mode1 --seed 7 --param battery.open_circuit_v=6.9 --out out/mode1")]
 pub(crate) struct RunArgs {
     /// Scenarios: names, or paths of files
@@ -108,6 +110,15 @@ pub(crate) struct RunArgs {
     /// count for that one)
     #[arg(long, value_enum, value_name = "NAME", default_value_t)]
     pub(crate) program: ProgramName,
+    /// Program image for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
+    #[arg(long, value_name = "IMAGE", conflicts_with = "program")]
+    pub(crate) firmware: Option<PathBuf>,
+    /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own image]
+    #[arg(long, value_name = "NAME", requires = "firmware")]
+    pub(crate) wiring: Option<String>,
+    /// Line of text sent over the link at a time, e.g. 'REF 40@6'; may be repeated
+    #[arg(long = "command", value_name = "TEXT@SECONDS", value_parser = timed_text)]
+    pub(crate) commands: Vec<TimedText>,
     /// Parameter of the control core or the plant (`rumbo list`); may be repeated
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
     pub(crate) params: Vec<(String, f64)>,
@@ -276,6 +287,22 @@ fn speed(text: &str) -> Result<f64, String> {
         Ok(speed) if (0.0..=100.0).contains(&speed) => Ok(speed),
         _ => Err("must be a number within 0..100".into()),
     }
+}
+
+fn timed_text(text: &str) -> Result<TimedText, String> {
+    let wrong = || "write it as TEXT@SECONDS, e.g. 'REF 40@6'".to_owned();
+    let (line, at_s) = text.rsplit_once('@').ok_or_else(wrong)?;
+    let at_s: f64 = at_s.trim().parse().map_err(|_| wrong())?;
+    if !at_s.is_finite() || at_s < 0.0 {
+        return Err("the time must be 0 or more seconds".into());
+    }
+    if line.is_empty() || !line.bytes().all(|byte| (b' '..=b'~').contains(&byte)) {
+        return Err("the text must be one line of ASCII".into());
+    }
+    Ok(TimedText {
+        at_s,
+        text: line.to_owned(),
+    })
 }
 
 fn parameter(text: &str) -> Result<(String, f64), String> {

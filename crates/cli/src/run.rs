@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::output::{self, figure};
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_scenario::files::{Library, Overrides, Program, ScenarioFile, Setup};
+use rumbo_scenario::mega::console::readable;
 use rumbo_scenario::run::{self, RunResult};
 use rumbo_scenario::trace::Trace;
 use std::collections::BTreeMap;
@@ -21,6 +22,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
             ProgramName::Rumbo => Program::Rumbo,
             ProgramName::Original => Program::Original,
         },
+        firmware: args.firmware.clone(),
+        wiring: args.wiring.clone(),
+        texts: args.commands.clone(),
     };
     let library = Library::new();
     let setup = |name: &String| library.setup(name, &overrides).map_err(Failure::input);
@@ -84,6 +88,12 @@ fn record(folder: &Path, result: &RunResult) -> Result<(), Failure> {
     let path = folder.join(format!("{stem}.json"));
     let text = serde_json::to_string(result).map_err(Failure::input)?;
     std::fs::write(&path, text + "\n").map_err(|error| unwritable(&path, &error))?;
+    for (usart, said) in result.trace.consoles.iter().enumerate() {
+        if !said.is_empty() {
+            let path = folder.join(format!("{stem}-usart{usart}.txt"));
+            std::fs::write(&path, readable(said)).map_err(|error| unwritable(&path, &error))?;
+        }
+    }
     result
         .trace
         .write_csv(&folder.join(format!("{stem}.csv")))
@@ -134,6 +144,9 @@ fn report(scenario: &ScenarioFile, results: &[RunResult]) -> Result<(), Failure>
     for result in results {
         for failure in &result.failures {
             output::line(&format!("  FAILED, seed {}: {failure}", result.seed))?;
+        }
+        for note in &result.notes {
+            output::line(&format!("  note, seed {}: {note}", result.seed))?;
         }
     }
     Ok(())

@@ -16,6 +16,7 @@ pub(crate) fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<
         rig,
         world,
         program: _,
+        texts: _,
     } = setup;
     let plant = &robot.plant;
     let obstacles = world

@@ -154,8 +154,19 @@ impl Drivetrain {
 
     /// Sets one half of the bridge; it holds until set again.
     pub fn set_bridge(&self, state: &mut State, side: Side, bridge: Bridge) {
+        self.set_bridge_at(state, side, bridge, None);
+    }
+
+    /// The same with a PWM of another frequency [Hz] than the parameters'.
+    pub fn set_bridge_at(
+        &self,
+        state: &mut State,
+        side: Side,
+        bridge: Bridge,
+        pwm_hz: Option<f64>,
+    ) {
         let command = &mut state.wheels[side.index()].command;
-        *command = self.winding.command(bridge, *command);
+        *command = self.winding.command(bridge, pwm_hz, *command);
     }
 
     /// Terminal voltage of the battery, V.

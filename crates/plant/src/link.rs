@@ -145,6 +145,12 @@ impl Link {
         self.line_free_ns.div_ceil(1000)
     }
 
+    /// What it does to the bytes.
+    #[must_use]
+    pub const fn params(&self) -> &LinkParams {
+        &self.params
+    }
+
     /// Changes the faults, for instance to cut the link while it runs. Bytes under way are not touched; the baud rate stays.
     pub fn set_faults(&mut self, params: LinkParams) {
         self.params = LinkParams {

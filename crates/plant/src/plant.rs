@@ -155,6 +155,18 @@ impl Plant {
             .set_bridge(&mut state.drivetrain, side, bridge);
     }
 
+    /// The same with a PWM of another frequency [Hz] on the enable pin than the parameters'.
+    pub fn set_bridge_at(
+        &self,
+        state: &mut State,
+        side: Side,
+        bridge: Bridge,
+        pwm_hz: Option<f64>,
+    ) {
+        self.drivetrain
+            .set_bridge_at(&mut state.drivetrain, side, bridge, pwm_hz);
+    }
+
     /// Tells the servo where to point from now on: 0 ahead, positive to the left.
     pub fn set_servo(&self, state: &mut State, angle_rad: f64) {
         state.servo.command(&self.servo, angle_rad);
@@ -321,6 +333,12 @@ impl Plant {
     pub const fn wheel_rad_s(&self, state: &State) -> [f64; 2] {
         let [left, right] = &state.drivetrain.wheels;
         [left.speed_rad_s, right.speed_rad_s]
+    }
+
+    /// Levels of both Hall sensors, left and right.
+    #[must_use]
+    pub fn encoder_levels(&self, state: &State) -> [bool; 2] {
+        [0, 1].map(|index| self.encoders[index].level(&state.encoders[index]))
     }
 
     /// True if the robot was set up with its wheels off the floor.

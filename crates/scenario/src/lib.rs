@@ -5,6 +5,7 @@ pub mod calibrate;
 pub mod campaign;
 pub mod files;
 pub mod identify;
+pub mod mega;
 pub mod metrics;
 mod operator;
 mod original;

@@ -4,6 +4,7 @@
 
 use crate::calibrate::calibrate_simulated;
 use crate::files::{FileError, Program, Setup};
+use crate::mega::Mega;
 use crate::metrics::{self, Metrics};
 use crate::operator::Operator;
 use crate::sim::Sim;
@@ -26,6 +27,9 @@ pub struct RunResult {
     /// Why it did not pass, a line each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub failures: Vec<String>,
+    /// What a reader should know besides, a line each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// What really happened.
     #[serde(skip)]
     pub trace: Trace,
@@ -42,16 +46,24 @@ pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
     let mut sim = Sim::new(setup, seed)?;
     let mut operator = Operator::new(setup);
     let mut trace = Trace::default();
+    operator.brief(&mut sim)?;
     let end_us = (scenario.duration_s * 1e6) as u64;
     trace.samples.reserve((end_us / SAMPLE_US) as usize + 1);
     while sim.now_us() < end_us {
         operator.step(&mut sim);
         sim.advance((sim.now_us() + SAMPLE_US).min(end_us));
         trace.take(&sim);
+        trace.listen(&mut sim);
+        if sim.verdict().is_some() {
+            break;
+        }
     }
     trace.heard = operator.heard;
     let metrics = metrics::compute(setup, &sim, &trace);
     let mut failures = operator.complaints;
+    failures.extend(sim.verdict());
+    let mut notes = operator.notes;
+    notes.extend(sim.mega().map(Mega::notes).into_iter().flatten());
     for (name, bounds) in &scenario.limits {
         match metrics.get(name) {
             Some(value) if bounds.admit(*value) => {}
@@ -68,6 +80,7 @@ pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
         pass: failures.is_empty(),
         metrics,
         failures,
+        notes,
         trace,
     })
 }
@@ -78,11 +91,13 @@ pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
 /// # Errors
 /// The calibration came to no end.
 pub fn prepare(setup: &Setup, seed: u64) -> Result<Cow<'_, Setup>, FileError> {
-    if !setup.scenario.calibrated || setup.program == Program::Original {
+    if !setup.scenario.calibrated || !setup.takes_parameters() {
         return Ok(Cow::Borrowed(setup));
     }
     // Whatever rig the experiment has: sonars are moved back after a calibration, wheels stay.
     let mut own = setup.clone();
+    // An image that speaks our frames has our control core: the native one gives the same parameters sooner.
+    own.program = Program::Rumbo;
     if let Some(rig) = own.robot.rigs.get("final") {
         own.rig = *rig;
         "final".clone_into(&mut own.scenario.rig);

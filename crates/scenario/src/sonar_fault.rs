@@ -87,16 +87,47 @@ impl SonarFaults {
         };
         (sonar, heard)
     }
+
+    /// For how long a line that has just risen stays high whatever its sonar hears [us]; `None` if that decides.
+    pub(crate) fn width_us(&mut self, noise: &Noise, sonar: SonarId, now_us: u64) -> Option<u64> {
+        self.answers += 1;
+        match self.now(sonar, now_us)? {
+            SonarFault::Cut => None,
+            SonarFault::Stuck => match self.last[sonar as usize] {
+                Some(Echo::Pulse(width_us)) => Some(width_us.into()),
+                _ => None,
+            },
+            SonarFault::Spiking(share) => {
+                let source = SPIKES + 2 * sonar as u32;
+                noise
+                    .chance(source, self.answers, share)
+                    .then(|| spike_us(noise.uniform(source + 1, self.answers)).into())
+            }
+        }
+    }
+
+    /// A line has fallen this long after it rose: the sonar's own answer.
+    pub(crate) fn sounded(&mut self, sonar: SonarId, width_us: u64, now_us: u64) {
+        let sound = !matches!(self.now(sonar, now_us), Some(SonarFault::Stuck));
+        let last = &mut self.last[sonar as usize];
+        if sound || last.is_none() {
+            *last = Some(Echo::Pulse(u32::try_from(width_us).unwrap_or(u32::MAX)));
+        }
+    }
 }
 
 /// A random answer from a number in [0, 1).
 fn spike(uniform: f64) -> Echo {
+    Echo::Pulse(spike_us(uniform))
+}
+
+fn spike_us(uniform: f64) -> u32 {
     let us = if uniform < 0.5 {
         2.0 * uniform * LONGEST_CREDIBLE_US
     } else {
         (2.0 * uniform - 1.0) * LONGEST_SPIKE_US
     };
-    Echo::Pulse(us as u32)
+    us as u32
 }
 
 #[cfg(test)]

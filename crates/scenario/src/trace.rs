@@ -48,6 +48,8 @@ pub struct Trace {
     pub heard: Vec<Heard>,
     /// The samples, in order of time.
     pub samples: Vec<Sample>,
+    /// What each USART of an emulated Mega has sent.
+    pub consoles: [Vec<u8>; 4],
 }
 
 impl Trace {
@@ -74,6 +76,15 @@ impl Trace {
             servo_rad: truth.servo_rad,
             battery_v: truth.battery_v,
         });
+    }
+
+    /// Adds what the USARTs of an emulated Mega have sent since.
+    pub(crate) fn listen(&mut self, sim: &mut Sim) {
+        if let Some(mega) = sim.mega_mut() {
+            for (usart, console) in (0..).zip(&mut self.consoles) {
+                console.append(&mut mega.take_console(usart));
+            }
+        }
     }
 
     /// The samples from `from_s` to just before `until_s`.

@@ -7,9 +7,12 @@
 
 use core::fmt;
 
+use rumbo_control::math::round;
+use rumbo_control::mode::ModeId;
 use rumbo_control::{Range, Side, Wheels};
 
 use crate::decimal::{self, Text};
+use crate::message::Command;
 
 pub use crate::text_row::{DistanceRow, MissionRow, Row, RowKind, SpeedRow, WaypointsRow};
 
@@ -198,6 +201,37 @@ impl fmt::Display for TextCommand {
             }
             TextCommand::Mode(number) => write!(out, "MODE {number}"),
         }
+    }
+}
+
+/// A command of the link in the original's words, for a robot in this mode: a line, or one for each wheel; none where it
+/// has no words.
+pub fn lines_of(command: &Command, mode: ModeId) -> [Option<TextCommand>; 2] {
+    // Two decimals are what the original prints, and all that its units need.
+    let short = |value: f32| round(value * 100.0) as f32 / 100.0;
+    let single = |command| [Some(command), None];
+    match *command {
+        Command::Arm => single(TextCommand::On),
+        Command::Stop | Command::Disarm => single(TextCommand::Off),
+        Command::Mode(mode) => single(TextCommand::Mode(mode as u8)),
+        Command::Goal { x_m, y_m } => single(TextCommand::Goal { x_m, y_m }),
+        Command::Reference(value) => {
+            let value = match mode {
+                ModeId::WheelSpeed | ModeId::StraightLine => value / RAD_S_PER_RPM,
+                _ => value * CM_PER_M,
+            };
+            single(TextCommand::Reference(short(value)))
+        }
+        Command::WheelReference(rad_s) => {
+            let line = |side| {
+                Some(TextCommand::WheelReference(
+                    side,
+                    short(rad_s[side] / RAD_S_PER_RPM),
+                ))
+            };
+            [line(Side::Right), line(Side::Left)]
+        }
+        _ => [None; 2],
     }
 }
 

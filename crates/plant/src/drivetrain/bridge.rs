@@ -16,8 +16,8 @@ pub enum Bridge {
     Forward(f64),
     /// Backward with this duty on the enable pin.
     Backward(f64),
-    /// Enable high and both inputs alike: the motor is shorted.
-    Brake,
+    /// Both inputs alike and this duty on the enable pin: the motor is shorted while it is high.
+    Brake(f64),
 }
 
 /// Voltages and time constants of bridge and winding.
@@ -26,8 +26,10 @@ pub(super) struct Winding {
     drop_v: f64,
     diode_v: f64,
     loop_ohm: f64,
-    /// Electrical time constant in PWM periods.
-    periods: f64,
+    /// Electrical time constant.
+    time_constant_s: f64,
+    /// The frequency of the PWM where nobody says otherwise.
+    pwm_hz: f64,
 }
 
 /// A bridge setting with the exponential its mean current needs, computed once per setting.
@@ -37,6 +39,8 @@ pub(super) struct Command {
     direction: f64,
     braking: bool,
     duty: f64,
+    /// Electrical time constant in PWM periods.
+    periods: f64,
     /// 1 - exp(-on-time / time constant): share of the final current reached at the end of the on-time.
     reached: f64,
 }
@@ -45,6 +49,7 @@ pub(super) const RELEASED: Command = Command {
     direction: 0.0,
     braking: false,
     duty: 0.0,
+    periods: 0.0,
     reached: 0.0,
 };
 
@@ -55,24 +60,28 @@ impl Winding {
             drop_v: params.bridge.drop_v,
             diode_v: params.bridge.diode_v,
             loop_ohm,
-            periods: params.motor.inductance_h / loop_ohm * params.bridge.pwm_hz,
+            time_constant_s: params.motor.inductance_h / loop_ohm,
+            pwm_hz: params.bridge.pwm_hz,
         }
     }
 
     /// The setting for these pins; the same as before costs no exponential.
-    pub(super) fn command(&self, bridge: Bridge, before: Command) -> Command {
+    pub(super) fn command(&self, bridge: Bridge, pwm_hz: Option<f64>, before: Command) -> Command {
         let (direction, duty) = match bridge {
             Bridge::Forward(duty) => (1.0, duty),
             Bridge::Backward(duty) => (-1.0, duty),
-            Bridge::Brake => {
+            Bridge::Brake(share) => {
                 return Command {
                     braking: true,
+                    duty: if share > 0.0 { share.min(1.0) } else { 0.0 },
                     ..RELEASED
                 };
             }
             Bridge::Released => return RELEASED,
         };
-        if direction == before.direction && duty == before.duty {
+        let periods = self.time_constant_s * pwm_hz.unwrap_or(self.pwm_hz);
+        let same = direction == before.direction && duty == before.duty;
+        if same && periods == before.periods {
             return before;
         }
         if duty > 0.0 {
@@ -81,7 +90,8 @@ impl Winding {
                 direction,
                 braking: false,
                 duty,
-                reached: 1.0 - libm::exp(-duty / self.periods),
+                periods,
+                reached: 1.0 - libm::exp(-duty / periods),
             }
         } else {
             RELEASED
@@ -92,7 +102,7 @@ impl Winding {
     pub(super) fn current(&self, command: &Command, emf_v: f64, supply_v: f64) -> (f64, f64) {
         if command.direction == 0.0 {
             return if command.braking {
-                (self.braking_current_a(emf_v), 0.0)
+                (command.duty * self.braking_current_a(emf_v), 0.0)
             } else {
                 (0.0, 0.0)
             };
@@ -111,11 +121,11 @@ impl Winding {
             0.05 * on_a
         };
         let peak_a = on_a * command.reached;
-        let fall = self.periods * ln_1p(peak_a / off_a);
+        let fall = command.periods * ln_1p(peak_a / off_a);
         let off = 1.0 - command.duty;
         if fall < off {
             let mean_a = on_a * command.duty - off_a * fall;
-            let drawn_a = mean_a + 2.0 * (off_a * fall - self.periods * peak_a);
+            let drawn_a = mean_a + 2.0 * (off_a * fall - command.periods * peak_a);
             (command.direction * mean_a, drawn_a)
         } else {
             let mean_a = on_a * command.duty - off_a * off;

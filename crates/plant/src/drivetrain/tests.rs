@@ -94,7 +94,26 @@ fn a_brake_stops_sooner_than_coasting() {
         drive(&drivetrain, &mut state, [bridge; 2], 2.0);
         state.wheels[0].angle_rad - from
     };
-    assert!(way(Bridge::Brake) < 0.9 * way(Bridge::Released));
+    assert!(way(Bridge::Brake(1.0)) < 0.9 * way(Bridge::Released));
+    assert!(way(Bridge::Brake(1.0)) < way(Bridge::Brake(0.3)));
+    assert_eq!(way(Bridge::Brake(0.0)), way(Bridge::Released));
+}
+
+#[test]
+fn a_faster_pwm_leaves_no_time_for_the_current_to_die() {
+    let drivetrain = nominal();
+    let speed = |pwm_hz| {
+        let mut state = drivetrain.start();
+        for _ in 0..1_000 {
+            drivetrain.set_bridge_at(&mut state, Side::Left, Bridge::Forward(0.7), pwm_hz);
+            drivetrain.step(&mut state, 1e-3, [0.0; 2]);
+        }
+        state.wheels[0].speed_rad_s
+    };
+    let hz = Params::default().bridge.pwm_hz;
+    assert_eq!(speed(None), speed(Some(hz)));
+    // Twenty periods in a time constant: the mean voltage decides, and while the enable is low that is the supply's, reversed.
+    assert!(speed(Some(60_000.0)) < 0.9 * speed(None));
 }
 
 #[test]

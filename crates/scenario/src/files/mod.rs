@@ -24,5 +24,5 @@ pub use library::{Kind, Library};
 pub use names::{MOVEMENTS, find_mode, find_movement};
 pub use robot::{FirmwareCaps, RobotFile, SIGNALS, Wiring};
 pub use scenario::{Bounds, ScenarioFile, Spread, Start, TimedCommand};
-pub use setup::{Overrides, Program, Setup};
+pub use setup::{Overrides, Program, Setup, TimedText};
 pub use world::{Arena, WorldFile};

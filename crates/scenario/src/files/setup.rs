@@ -4,6 +4,7 @@ use super::error::FileError;
 use super::near::{near, near_or_all};
 use super::read::Allowed;
 use super::{Library, RobotFile, ScenarioFile, Start, WorldFile, parameters};
+use crate::mega::firmware::{Firmware, Language};
 use crate::random_world::{Site, Size};
 use rumbo_control::params::ParamId;
 use rumbo_plant::contact::{Footprint, Pose};
@@ -12,15 +13,28 @@ use rumbo_plant::plant::{Mount, Rig};
 use rumbo_plant::world::Point;
 use rumbo_wire::Command;
 use std::borrow::Cow;
+use std::path::PathBuf;
+use std::sync::Arc;
 
 /// The program that drives the robot.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Program {
     /// Ours, behind its link.
     #[default]
     Rumbo,
     /// The report's, written anew as a baseline (docs/theory/original.md).
     Original,
+    /// An image for the Mega, on an emulated one.
+    Firmware(Arc<Firmware>),
+}
+
+/// A line of text and when it is sent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimedText {
+    /// Time since the start [s].
+    pub at_s: f64,
+    /// The line, without its end.
+    pub text: String,
 }
 
 /// What the command line sets in place of the scenario's own.
@@ -36,6 +50,12 @@ pub struct Overrides {
     pub parameters: Vec<(String, f64)>,
     /// The program that drives the robot.
     pub program: Program,
+    /// An image for an emulated Mega, in place of `program`.
+    pub firmware: Option<PathBuf>,
+    /// Another wiring for it.
+    pub wiring: Option<String>,
+    /// Lines of text sent over the link besides the scenario's commands.
+    pub texts: Vec<TimedText>,
 }
 
 /// A scenario ready to be run.
@@ -51,6 +71,8 @@ pub struct Setup {
     pub world: WorldFile,
     /// The program that drives the robot.
     pub program: Program,
+    /// Lines of text sent over the link besides its commands, in order of time.
+    pub texts: Vec<TimedText>,
 }
 
 impl Library {
@@ -89,12 +111,22 @@ impl Library {
                 name: scenario.rig.clone(),
                 near: near_or_all(&scenario.rig, robot.rigs.keys().map(String::as_str)),
             })?;
+        let wiring = overrides.wiring.as_deref();
+        let program = match &overrides.firmware {
+            Some(path) => {
+                Program::Firmware(Arc::new(Firmware::load(path, wiring, &robot, &scenario)?))
+            }
+            None => overrides.program.clone(),
+        };
+        let mut texts = overrides.texts.clone();
+        texts.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));
         Ok(Setup {
             scenario,
             robot,
             rig,
             world,
-            program: overrides.program,
+            program,
+            texts,
         })
     }
 }
@@ -134,6 +166,26 @@ impl Setup {
         }
         own.world.journey = Some(drawn.journey);
         Ok(Cow::Owned(own))
+    }
+
+    /// Whether the program takes the control core's parameters: our own does, and an image that speaks its frames.
+    pub fn takes_parameters(&self) -> bool {
+        match &self.program {
+            Program::Rumbo => true,
+            Program::Original => false,
+            Program::Firmware(firmware) => firmware.language() == Language::Frames,
+        }
+    }
+
+    /// The control parameters of a run before its first command: the rig's, the robot file's, the scenario's; later ones win.
+    ///
+    /// # Errors
+    /// As for [`Setup::rig_parameters`].
+    pub fn control_parameters(&self) -> Result<Vec<(ParamId, f32)>, FileError> {
+        let mut parameters = self.rig_parameters()?;
+        parameters.extend(&self.robot.parameters);
+        parameters.extend(&self.scenario.parameters);
+        Ok(parameters)
     }
 
     /// What the robot must be told about the rig it carries, as control parameters.

@@ -124,6 +124,7 @@ mod tests {
                 what: FromRobot::Event(event),
             }],
             samples: (0..=1000).map(at).collect(),
+            ..Trace::default()
         };
         let mut metrics = Metrics::new();
         journey(setup, 0.0, &trace, &mut metrics);

@@ -1,42 +1,52 @@
-//! The robot of `rumbo-robot` in the plant of `rumbo-plant`, on one clock, behind a simulated serial link.
+//! A simulated robot: a program at the pins of the robot of `rumbo-plant`, on one clock, behind a simulated serial link.
 //!
-//! Ticks fall on multiples of 10 ms and latch what the plant's edges left in the board; the outputs reach the plant
-//! exactly 3 ms later, as on the chip. Bytes go through [`Link`]s at 9600 baud: whoever uses a [`Sim`] meets the robot
-//! as it would behind a real port.
+//! | program | file | |
+//! |---|---|---|
+//! | our robot, native | `native` | ticks on multiples of 10 ms; outputs reach the plant exactly 3 ms later, as on the chip |
+//! | the report's, native | `report` | keeps its own time; [`Sim::order`] hands it commands without a link |
+//! | any image, on an emulated Mega | `emulated` | chip and plant in lockstep |
 //!
-//! Instead of our robot the report's program can be at the pins ([`Program::Original`]): it keeps its own time, and
-//! [`Sim::order`] hands it commands without a link.
+//! Bytes go through [`Link`]s at 9600 baud: whoever uses a [`Sim`] meets the robot as it would behind a real port. A clone is a
+//! snapshot, which goes on to the same bits.
 
-use crate::board::{Board, micros};
+mod emulated;
+mod native;
+mod report;
+
 use crate::files::{FileError, Program, Setup, Spread};
+use crate::mega::Mega;
 use crate::original::Original;
 use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
-use rumbo_control::params::ParamId;
-use rumbo_control::{Duty, Inputs, OUTPUT_DELAY_US, Outputs, SIDES, SonarId, TICK_US, Wheels};
+use native::Native;
+use rumbo_control::{Duty, SIDES, SonarId, Wheels};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::link::{Direction, Link, LinkParams};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Event, Plant, State, Truth};
-use rumbo_robot::{Config, Robot};
-use rumbo_wire::{Command, FromRobot, ResetCause};
+use rumbo_wire::{Command, FromRobot};
+
+/// What is at the robot's pins.
+#[derive(Clone, Debug)]
+enum Controller {
+    Rumbo(Box<Native>),
+    Original(Box<Original>),
+    Mega(Box<Mega>),
+}
 
 /// A simulated robot in its world.
 #[derive(Clone, Debug)]
 pub struct Sim {
     plant: Plant,
     params: Params,
+    start: Pose,
     state: State,
-    robot: Robot,
-    /// The report's program, if it is at the pins in the robot's place.
-    original: Option<Original>,
-    board: Board,
+    /// Taken out only while it runs.
+    controller: Option<Controller>,
     uplink: Link,
     downlink: Link,
     baud: u32,
-    next_tick_us: u64,
-    pending: Option<(u64, Outputs)>,
     duty: Wheels<Duty>,
     worst_reverse_rad_s: f64,
     worst_contact_m_s: f64,
@@ -75,24 +85,21 @@ impl Sim {
             robot: day,
             wheels_in_air: scenario.wheels_in_air,
         });
-        let state = plant.start(Pose {
+        let start = Pose {
             x_m: scenario.start.x_m,
             y_m: scenario.start.y_m,
             heading_rad: scenario.start.heading_rad,
-        });
-        let mut robot = Robot::new(Config {
-            image: 0,
-            reset: ResetCause::PowerOn,
-        });
-        for (id, value) in setup.rig_parameters()? {
-            set_param(&mut robot, id, value)?;
-        }
-        for (id, value) in setup.robot.parameters.iter().chain(&scenario.parameters) {
-            set_param(&mut robot, *id, *value)?;
-        }
-        let original = match setup.program {
-            Program::Rumbo => None,
-            Program::Original => Some(Original::new(setup)?),
+        };
+        let state = plant.start(start);
+        let controller = match &setup.program {
+            Program::Rumbo => {
+                Controller::Rumbo(Box::new(Native::new(&setup.control_parameters()?)?))
+            }
+            Program::Original => Controller::Original(Box::new(Original::new(setup)?)),
+            Program::Firmware(firmware) => {
+                let encoders = plant.encoder_levels(&state);
+                Controller::Mega(Box::new(Mega::new(firmware.clone(), encoders)))
+            }
         };
         let link = LinkParams::default();
         let noise = Noise::new(seed, day);
@@ -103,15 +110,12 @@ impl Sim {
         Ok(Self {
             plant,
             params,
+            start,
             state,
-            robot,
-            original,
-            board: Board::default(),
+            controller: Some(controller),
             baud: link.baud,
             uplink: Link::new(link.clone(), noise, Direction::ToRobot),
             downlink: Link::new(link, noise, Direction::ToStation),
-            next_tick_us: 0,
-            pending: None,
             duty: Wheels::default(),
             worst_reverse_rad_s: 0.0,
             worst_contact_m_s: 0.0,
@@ -186,116 +190,85 @@ impl Sim {
         });
     }
 
-    /// Hands a command to the report's program, as a line of text would. False if our robot is at the pins: it listens to
-    /// the link.
+    /// Hands a command to the report's native program, as a line of text would. False if another program is at the pins: it
+    /// listens to the link.
     pub fn order(&mut self, command: Command) -> bool {
-        let Some(original) = &mut self.original else {
+        let Some(Controller::Original(original)) = &mut self.controller else {
             return false;
         };
         original.command(command);
         true
     }
 
-    /// What the report's program has told since it was last asked; nothing if our robot is at the pins.
+    /// What the report's native program has told since it was last asked; nothing from others, who speak on the link.
     pub fn told(&mut self) -> Vec<FromRobot> {
-        self.original
-            .as_mut()
-            .map(Original::told)
-            .unwrap_or_default()
+        match &mut self.controller {
+            Some(Controller::Original(original)) => original.told(),
+            _ => Vec::new(),
+        }
     }
 
-    /// Lets robot and plant live until this time [us].
+    /// The emulated Mega, if one is at the pins.
+    pub fn mega(&self) -> Option<&Mega> {
+        match &self.controller {
+            Some(Controller::Mega(mega)) => Some(mega),
+            _ => None,
+        }
+    }
+
+    /// The same, as a debugger or a terminal holds it.
+    pub fn mega_mut(&mut self) -> Option<&mut Mega> {
+        match &mut self.controller {
+            Some(Controller::Mega(mega)) => Some(mega),
+            _ => None,
+        }
+    }
+
+    /// How the program at the pins ended, if it could not go on.
+    pub fn verdict(&self) -> Option<String> {
+        self.mega().and_then(Mega::verdict)
+    }
+
+    /// The clock starts over and the robot is back at its start, at rest; the program goes on and notices nothing. For a program
+    /// that is told its parameters over the link before its run begins.
+    pub(crate) fn restart_clock(&mut self) {
+        self.state = self.plant.start(self.start);
+        self.uplink = Link::new(self.uplink.params().clone(), self.noise, Direction::ToRobot);
+        self.downlink = Link::new(
+            self.downlink.params().clone(),
+            self.noise,
+            Direction::ToStation,
+        );
+        self.worst_reverse_rad_s = 0.0;
+        self.worst_contact_m_s = 0.0;
+        self.outputs_us = (0, 0, 0);
+        let encoders = self.plant.encoder_levels(&self.state);
+        if let Some(mega) = self.mega_mut() {
+            mega.restart_clock(encoders);
+        }
+    }
+
+    /// Lets program and plant live until this time [us], or to a breakpoint.
     pub fn advance(&mut self, until_us: u64) {
-        loop {
-            let mut next_us = self.next_tick_us.min(until_us);
-            if let Some((at_us, _)) = self.pending {
-                next_us = next_us.min(at_us);
-            }
-            let (board, original) = (&mut self.board, &mut self.original);
-            let worst_contact_m_s = &mut self.worst_contact_m_s;
-            self.plant.advance(&mut self.state, next_us, &mut |event| {
-                if let Event::Contact { speed_m_s, .. } = event {
-                    *worst_contact_m_s = worst_contact_m_s.max(speed_m_s);
-                }
-                match original {
-                    Some(original) => original.take(event),
-                    None => board.take(event),
-                }
-            });
-            self.watch_reverse();
-            if let Some((at_us, outputs)) = self.pending
-                && at_us == next_us
-            {
-                self.pending = None;
-                self.apply(&outputs);
-            }
-            if self.next_tick_us == next_us && next_us < until_us {
-                self.tick();
-            }
-            if next_us == until_us {
-                return;
-            }
+        let mut controller = self.controller.take();
+        match &mut controller {
+            Some(Controller::Rumbo(native)) => self.advance_native(native, until_us),
+            Some(Controller::Original(original)) => self.advance_original(original, until_us),
+            Some(Controller::Mega(mega)) => self.advance_mega(mega, until_us),
+            None => {}
         }
+        self.controller = controller;
     }
 
-    fn tick(&mut self) {
-        if self.original.is_some() {
-            return self.tick_original();
-        }
-        let now_us = self.now_us();
-        while let Some((_, byte)) = self.uplink.pop(now_us) {
-            self.robot.receive(byte);
-        }
-        let echo = self
-            .board
-            .echo(now_us)
-            .map(|answer| self.sonar_faults.answer(&self.noise, answer, now_us));
-        let outputs = self.robot.tick(&Inputs {
-            now: micros(now_us),
-            encoders: self.board.encoders(),
-            echo,
-            battery_v: None,
+    fn advance_plant(&mut self, until_us: u64, take: &mut impl FnMut(Event)) {
+        let worst_contact_m_s = &mut self.worst_contact_m_s;
+        self.plant.advance(&mut self.state, until_us, &mut |event| {
+            if let Event::Contact { speed_m_s, .. } = event {
+                *worst_contact_m_s = worst_contact_m_s.max(speed_m_s);
+            }
+            take(event);
         });
-        self.pending = Some((now_us + u64::from(OUTPUT_DELAY_US), outputs));
-        self.next_tick_us += u64::from(TICK_US);
-        // The transmit interrupt hands a byte to the line whenever the line is free.
-        while self.downlink.line_free_us() < self.next_tick_us {
-            let Some(byte) = self.robot.transmit() else {
-                break;
-            };
-            self.downlink.send(now_us, &[byte]);
-        }
-    }
-
-    /// What the report's program does takes effect at once.
-    fn tick_original(&mut self) {
-        let now_us = self.now_us();
-        let Some(original) = &mut self.original else {
-            return;
-        };
-        let pins = original.tick(now_us);
-        self.next_tick_us = original.next_us();
-        if let Some(drive) = pins.drive {
-            self.set_bridges(drive);
-        }
-        if let Some(servo_rad) = pins.servo_rad {
-            self.plant.set_servo(&mut self.state, servo_rad);
-        }
-        for sonar in SonarId::ALL {
-            if pins.pings[sonar as usize] {
-                self.trigger(sonar);
-            }
-        }
-    }
-
-    fn apply(&mut self, outputs: &Outputs) {
-        self.set_bridges(outputs.drive);
-        self.plant
-            .set_servo(&mut self.state, f64::from(outputs.servo.0));
-        if let Some(sonar) = outputs.ping {
-            self.trigger(sonar);
-            self.board.pinged(sonar, self.state.now_us());
-        }
+        self.watch_reverse();
     }
 
     fn trigger(&mut self, sonar: SonarId) {
@@ -305,16 +278,21 @@ impl Sim {
     }
 
     fn set_bridges(&mut self, drive: Wheels<Duty>) {
+        for side in SIDES {
+            self.plant
+                .set_bridge(&mut self.state, plant_side(side), bridge(drive[side]));
+        }
+        self.driven(drive);
+    }
+
+    /// The bridges have been set.
+    fn driven(&mut self, drive: Wheels<Duty>) {
         let now_us = self.now_us();
         self.outputs_us = match self.outputs_us {
             (0, ..) => (now_us, now_us, 0),
             (first_us, _, count) => (first_us, now_us, count + 1),
         };
         self.duty = drive;
-        for side in SIDES {
-            self.plant
-                .set_bridge(&mut self.state, plant_side(side), bridge(drive[side]));
-        }
         self.watch_reverse();
     }
 
@@ -339,19 +317,6 @@ fn drawn_params(setup: &Setup, seed: u64) -> Result<Params, FileError> {
             .map_err(|error| FileError::Setting(error.to_string()))?;
     }
     Ok(params)
-}
-
-fn set_param(robot: &mut Robot, id: ParamId, value: f32) -> Result<(), FileError> {
-    robot
-        .set_param(id as u8, value)
-        .map(|_| ())
-        .map_err(|refusal| {
-            FileError::Setting(format!(
-                "parameter {} = {value}: {}",
-                id.name(),
-                refusal.explanation()
-            ))
-        })
 }
 
 fn bridge(duty: Duty) -> Bridge {

@@ -1,24 +1,48 @@
-//! Sends a scenario's commands at their times, as a person at the dashboard would: over the link, one at a time,
-//! repeated until they are acknowledged, with a heartbeat in between.
+//! Sends a scenario's commands at their times, as a person at the dashboard would: over the link, in the language of the
+//! program at its other end.
+//!
+//! | program | language |
+//! |---|---|
+//! | ours, or an image that speaks its frames | one command at a time, repeated until it is acknowledged, with a heartbeat in between |
+//! | any other image | lines of the original's text: [`text`] |
+//! | the report's, native | handed over directly |
+//!
+//! Lines given on the command line ([`Setup::texts`]) go out as they are, whatever the language.
 
-use crate::files::{Program, Setup, TimedCommand};
+mod goal;
+mod text;
+
+use crate::files::{FileError, Program, Setup, TimedCommand, TimedText};
 use crate::sim::Sim;
 use crate::trace::Heard;
 use rumbo_control::mode::ModeId;
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, ToRobot};
+use text::Terminal;
 
 /// Time between heartbeats [us].
 const HEARTBEAT_US: u64 = 100_000;
 /// Time after which an unanswered command is repeated [us].
 const REPEAT_US: u64 = 200_000;
+/// A robot that has not answered for this long before its run begins never will [us].
+const PATIENCE_US: u64 = 3_000_000;
+/// Time between two looks at the link before the run [us].
+const BRIEF_STEP_US: u64 = 10_000;
 /// Longest line of the original's telemetry.
 const LINE: usize = 160;
 
+/// How the program at the pins is spoken to.
+enum Speech {
+    Frames,
+    Text(Box<Terminal>),
+    Direct,
+}
+
 /// The sending side of a run.
 pub(crate) struct Operator<'a> {
+    setup: &'a Setup,
     commands: &'a [TimedCommand],
-    /// Commands go to the report's program, not over the link.
-    direct: bool,
+    texts: &'a [TimedText],
+    speech: Speech,
     mode: Option<ModeId>,
     next: usize,
     number: u16,
@@ -32,15 +56,24 @@ pub(crate) struct Operator<'a> {
     buffer: Vec<u8>,
     /// What the robot refused or reported.
     pub(crate) complaints: Vec<String>,
+    /// What else a reader of the result should know.
+    pub(crate) notes: Vec<String>,
     /// Telemetry and events received.
     pub(crate) heard: Vec<Heard>,
 }
 
 impl<'a> Operator<'a> {
     pub(crate) fn new(setup: &'a Setup) -> Self {
+        let speech = match &setup.program {
+            Program::Original => Speech::Direct,
+            _ if setup.takes_parameters() => Speech::Frames,
+            _ => Speech::Text(Box::new(Terminal::new(setup))),
+        };
         Self {
+            setup,
             commands: &setup.scenario.commands,
-            direct: setup.program == Program::Original,
+            texts: &setup.texts,
+            speech,
             mode: Some(setup.scenario.mode),
             next: 0,
             number: 0,
@@ -51,26 +84,64 @@ impl<'a> Operator<'a> {
             decoder: Decoder::default(),
             buffer: Vec::new(),
             complaints: Vec::new(),
+            notes: Vec::new(),
             heard: Vec::new(),
         }
+    }
+
+    /// Tells an image that speaks our frames its parameters. The clock of the run begins after that, as that of the native robot
+    /// does, which knows them from the start.
+    ///
+    /// # Errors
+    /// It does not answer.
+    pub(crate) fn brief(&mut self, sim: &mut Sim) -> Result<(), FileError> {
+        let (Program::Firmware(firmware), Speech::Frames) = (&self.setup.program, &self.speech)
+        else {
+            return Ok(());
+        };
+        for (id, value) in self.setup.control_parameters()? {
+            self.number = self.number.wrapping_add(1);
+            let id = id as u8;
+            self.send(sim, Command::SetParam { id, value });
+            let since_us = sim.now_us();
+            while self.pending.is_some() {
+                sim.advance(sim.now_us() + BRIEF_STEP_US);
+                self.listen(sim);
+                if let Some(verdict) = sim.verdict() {
+                    return Err(FileError::Setting(verdict));
+                }
+                if sim.now_us() >= since_us + PATIENCE_US {
+                    return Err(FileError::Setting(format!(
+                        "firmware {}: does not acknowledge commands on the link of wiring {}; choose another with --wiring",
+                        firmware.name(),
+                        firmware.wiring()
+                    )));
+                }
+                self.repeat(sim);
+            }
+        }
+        sim.restart_clock();
+        self.heard.clear();
+        self.heartbeat_due_us = 0;
+        Ok(())
     }
 
     /// Listens, then says what is due.
     pub(crate) fn step(&mut self, sim: &mut Sim) {
         let now_us = sim.now_us();
-        if self.direct {
-            return self.order(sim);
+        self.type_texts(sim);
+        match &mut self.speech {
+            Speech::Direct => return self.order(sim),
+            Speech::Text(_) => return self.write(sim),
+            Speech::Frames => {}
         }
         self.listen(sim);
         if now_us >= self.heartbeat_due_us {
             self.say(sim, &ToRobot::Heartbeat);
             self.heartbeat_due_us = now_us + HEARTBEAT_US;
         }
-        if let Some((command, sent_us)) = self.pending {
-            if now_us >= sent_us + REPEAT_US {
-                self.send(sim, command);
-            }
-            return;
+        if self.pending.is_some() {
+            return self.repeat(sim);
         }
         let command = match self.mode.take() {
             Some(mode) => Command::Mode(mode),
@@ -81,6 +152,41 @@ impl<'a> Operator<'a> {
         };
         self.number = self.number.wrapping_add(1);
         self.send(sim, command);
+    }
+
+    fn repeat(&mut self, sim: &mut Sim) {
+        if let Some((command, sent_us)) = self.pending
+            && sim.now_us() >= sent_us + REPEAT_US
+        {
+            self.send(sim, command);
+        }
+    }
+
+    /// Sends the lines of the command line that are due.
+    fn type_texts(&mut self, sim: &mut Sim) {
+        while let Some((timed, later)) = self.texts.split_first()
+            && timed.at_s * 1e6 <= sim.now_us() as f64
+        {
+            self.texts = later;
+            sim.send(timed.text.as_bytes());
+            sim.send(b"\n");
+        }
+    }
+
+    /// The same with an image that reads lines.
+    fn write(&mut self, sim: &mut Sim) {
+        self.buffer.clear();
+        sim.receive(&mut self.buffer);
+        let Speech::Text(terminal) = &mut self.speech else {
+            return;
+        };
+        terminal.read(&self.buffer, sim.now_us(), &mut self.heard);
+        self.reached |= terminal.watch(sim, &mut self.heard);
+        while let Some(command) = self.due(sim.now_us()) {
+            if let Speech::Text(terminal) = &mut self.speech {
+                self.notes.extend(terminal.write(sim, command));
+            }
+        }
     }
 
     /// The next command of the scenario, if it is time for it.
@@ -95,7 +201,7 @@ impl<'a> Operator<'a> {
         Some(timed.command)
     }
 
-    /// The same with the report's program, which has no link of ours.
+    /// The same with the report's native program, which has no link.
     fn order(&mut self, sim: &mut Sim) {
         let t_s = sim.now_us() as f64 * 1e-6;
         let told = sim.told();

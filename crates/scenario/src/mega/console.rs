@@ -1,0 +1,66 @@
+//! What a USART has sent, for a person to read.
+
+use std::collections::VecDeque;
+
+/// Bytes kept that nobody has asked for.
+const KEPT: usize = 1 << 16;
+/// The rate of a USART that has not spoken yet [baud].
+const SILENT_BAUD: u32 = 9600;
+
+/// One USART's output.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Console {
+    bytes: VecDeque<u8>,
+    baud: Option<u32>,
+}
+
+impl Console {
+    pub(super) fn push(&mut self, byte: u8, baud: f64) {
+        if self.bytes.len() == KEPT {
+            self.bytes.pop_front();
+        }
+        self.bytes.push_back(byte);
+        self.baud = Some(baud.round() as u32);
+    }
+
+    pub(super) fn take(&mut self) -> Vec<u8> {
+        self.bytes.drain(..).collect()
+    }
+
+    pub(super) fn baud(&self) -> u32 {
+        self.baud.unwrap_or(SILENT_BAUD)
+    }
+}
+
+/// Bytes as text: what cannot be printed is shown as a terminal's caret notation or in hexadecimal.
+pub fn readable(bytes: &[u8]) -> String {
+    let mut text = String::new();
+    for byte in bytes {
+        match *byte {
+            b'\n' => text.push('\n'),
+            b'\r' => {}
+            b' '..=b'~' | b'\t' => text.push(char::from(*byte)),
+            other => text.push_str(&format!("\\x{other:02x}")),
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_stays_and_the_rest_becomes_visible() {
+        assert_eq!(readable(b"on\r\n12\t\x00\xffz"), "on\n12\t\\x00\\xffz");
+    }
+
+    #[test]
+    fn a_console_nobody_reads_keeps_the_latest_bytes() {
+        let mut console = Console::default();
+        (0..KEPT + 3).for_each(|n| console.push(n as u8, 9615.4));
+        let bytes = console.take();
+        assert_eq!((bytes.len(), bytes[0], console.baud()), (KEPT, 3, 9615));
+        assert!(console.take().is_empty());
+    }
+}

@@ -1,0 +1,161 @@
+//! A program image for the Mega: what it is, which language it speaks on its link, and the wiring that it is for.
+
+use super::CYCLES_PER_US;
+use super::pins::{Wires, chip_pin};
+use crate::files::{FileError, RobotFile, ScenarioFile, Wiring};
+use rumbo_control::mode::ModeId;
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::cpu::Stopped;
+use rumbo_emulator::devices::{Event, Input};
+use rumbo_emulator::image::Image;
+use rumbo_wire::{Decoder, FromRobot, Message, Received};
+use std::path::Path;
+
+/// Rate of the Bluetooth module [baud].
+pub const LINK_BAUD: f64 = 9600.0;
+/// The report's robot has a USART's receiver on these pins of the board.
+const RECEIVERS: [u8; 4] = [0, 19, 17, 15];
+/// Our program says HELLO as soon as it runs; this long is waited for it [us].
+const BOOT_US: u64 = 600_000;
+/// Room for what a robot says at once.
+const LINE: usize = 128;
+
+/// What a program speaks on its link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// The frames of docs/protocol.md.
+    Frames,
+    /// The original's lines of text, or nothing.
+    Text,
+}
+
+/// A program with all that is known of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Firmware {
+    name: String,
+    image: Image,
+    language: Language,
+    wiring: String,
+    wires: Wires,
+}
+
+impl Firmware {
+    /// Reads an image, listens to how it begins, and wires it: as `wiring` says, or else as the language and the scenario
+    /// suggest.
+    ///
+    /// # Errors
+    /// The file is no program for this chip, or the robot has no such wiring.
+    pub fn load(
+        path: &Path,
+        wiring: Option<&str>,
+        robot: &RobotFile,
+        scenario: &ScenarioFile,
+    ) -> Result<Self, FileError> {
+        let shown = path.display();
+        let bytes = std::fs::read(path).map_err(|error| {
+            FileError::Setting(format!("firmware {shown}: cannot be read ({error}); give the .elf or .hex that the compiler made"))
+        })?;
+        let image = Image::parse(&bytes)
+            .map_err(|error| FileError::Setting(format!("firmware {shown}: {error}")))?;
+        let name = path.file_name().map_or_else(
+            || shown.to_string(),
+            |name| name.to_string_lossy().into_owned(),
+        );
+        let language = language(&image);
+        let wiring = match wiring {
+            Some(wiring) => wiring.to_owned(),
+            None => default_wiring(language, robot, scenario),
+        };
+        let wires = Wires::new(&wiring, find(robot, &wiring)?)?;
+        Ok(Self {
+            name,
+            image,
+            language,
+            wiring,
+            wires,
+        })
+    }
+
+    /// The file's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The program.
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
+    /// What it speaks on its link.
+    pub fn language(&self) -> Language {
+        self.language
+    }
+
+    /// Name of the wiring.
+    pub fn wiring(&self) -> &str {
+        &self.wiring
+    }
+
+    /// The USART that the Bluetooth module is on, if the wiring has one.
+    pub fn link_usart(&self) -> Option<u8> {
+        self.wires.link
+    }
+
+    pub(super) fn wires(&self) -> &Wires {
+        &self.wires
+    }
+}
+
+fn find<'a>(robot: &'a RobotFile, wiring: &str) -> Result<&'a Wiring, FileError> {
+    robot.wirings.get(wiring).ok_or_else(|| FileError::Unknown {
+        kind: "wiring",
+        name: wiring.to_owned(),
+        near: robot.wirings.keys().cloned().collect(),
+    })
+}
+
+/// Our program knows the final build only; of another one, the report's build for this experiment.
+fn default_wiring(language: Language, robot: &RobotFile, scenario: &ScenarioFile) -> String {
+    let name = match (language, scenario.rig.as_str(), scenario.mode) {
+        (Language::Frames, ..) => "final",
+        (_, "front_single", ModeId::FrontDistance) => "mode_1",
+        (_, "front_pair" | "side_pair_left" | "side_pair_right", _) => "modes_2_to_4",
+        (_, _, ModeId::WheelSpeed | ModeId::StraightLine | ModeId::Waypoints | ModeId::Manual) => {
+            "modes_5_to_7"
+        }
+        _ => "final",
+    };
+    match robot.wirings.keys().next() {
+        Some(only) if robot.wirings.len() == 1 => only.clone(),
+        _ => name.to_owned(),
+    }
+}
+
+/// Lets a chip with nothing attached begin, and looks for a frame of ours among what it sends.
+fn language(image: &Image) -> Language {
+    let mut chip = Chip::new(image);
+    for pin in RECEIVERS.into_iter().filter_map(chip_pin) {
+        chip.input(0, Input::Pin(pin, Some(true)));
+    }
+    let mut decoders: [Decoder<LINE>; 4] = Default::default();
+    // In slices, so that what is said is seen soon.
+    for slice in 1..=10 {
+        let stopped = chip.run_until(slice * BOOT_US / 10 * CYCLES_PER_US);
+        for output in chip.take_outputs() {
+            let Event::Byte { usart, byte, .. } = output.event else {
+                continue;
+            };
+            let decoder = decoders.get_mut(usize::from(usart));
+            let received = decoder.and_then(|decoder| decoder.push(byte as u8));
+            if let Some(Received::Frame(body)) = received
+                && FromRobot::from_body(&body).is_ok()
+            {
+                return Language::Frames;
+            }
+        }
+        if matches!(stopped, Stopped::Ended(_)) {
+            break;
+        }
+    }
+    Language::Text
+}

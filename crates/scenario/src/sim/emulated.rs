@@ -1,0 +1,122 @@
+//! The emulated Mega and the plant in lockstep.
+//!
+//! The plant looks at most a millisecond ahead on a copy of its state, and announces the edges it finds. The chip runs, each
+//! edge in place at its cycle, until it does something that the robot feels. Then the plant follows to that microsecond for
+//! good, takes it in, and looks ahead again: what was announced for later is taken back, none of it has reached the chip.
+
+use super::Sim;
+use crate::mega::{Action, Faults, Mega, Pause};
+use rumbo_control::{Duty, SonarId};
+use rumbo_plant::drivetrain::{Bridge, Side};
+use rumbo_plant::plant::Event;
+
+/// How far the plant looks ahead, and the grid it keeps to [us].
+const AHEAD_US: u64 = 1_000;
+/// A byte of the link takes ten bits at 9600 baud [us].
+const BYTE_US: u64 = 1_042;
+
+impl Sim {
+    /// Lets chip and plant live until this time [us], or to a breakpoint.
+    pub(super) fn advance_mega(&mut self, mega: &mut Mega, until_us: u64) {
+        while self.now_us() < until_us {
+            let end_us = ((self.now_us() / AHEAD_US + 1) * AHEAD_US).min(until_us);
+            self.bytes_to(mega, end_us);
+            let halted = self.lockstep(mega, end_us);
+            for (at_us, byte) in mega.take_sent() {
+                // The link counts the byte's own time, which has passed on the chip's line.
+                self.downlink.send(at_us.saturating_sub(BYTE_US), &[byte]);
+            }
+            if halted {
+                return;
+            }
+        }
+    }
+
+    /// Bytes whose first bit reaches the chip before this time.
+    fn bytes_to(&mut self, mega: &mut Mega, end_us: u64) {
+        while let Some((at_us, byte)) = self.uplink.pop(end_us + BYTE_US) {
+            mega.receive(at_us, byte, self.baud);
+        }
+    }
+
+    /// One look ahead; says whether a breakpoint ended it.
+    fn lockstep(&mut self, mega: &mut Mega, end_us: u64) -> bool {
+        loop {
+            let mut ahead = self.state;
+            let mut contact_m_s: f64 = 0.0;
+            self.plant.advance(&mut ahead, end_us, &mut |event| {
+                if let Event::Contact { speed_m_s, .. } = event {
+                    contact_m_s = contact_m_s.max(speed_m_s);
+                }
+                mega.expect(event);
+            });
+            let pause = mega.run(
+                end_us,
+                &mut Faults {
+                    sonars: &mut self.sonar_faults,
+                    noise: &self.noise,
+                },
+            );
+            let at_us = match pause {
+                Pause::Reached => {
+                    self.state = ahead;
+                    self.worst_contact_m_s = self.worst_contact_m_s.max(contact_m_s);
+                    self.watch_reverse();
+                    return false;
+                }
+                Pause::Act(at_us) | Pause::Halted(at_us) => at_us,
+            };
+            mega.expect_nothing();
+            self.follow(mega, at_us);
+            for action in mega.take_actions() {
+                self.act(action);
+            }
+            if matches!(pause, Pause::Halted(_)) {
+                return true;
+            }
+        }
+    }
+
+    /// The plant follows the chip for good. Its step is another one than in the look ahead, so an edge may fall a little
+    /// otherwise.
+    fn follow(&mut self, mega: &mut Mega, at_us: u64) {
+        let mut faults = Faults {
+            sonars: &mut self.sonar_faults,
+            noise: &self.noise,
+        };
+        let worst_contact_m_s = &mut self.worst_contact_m_s;
+        self.plant.advance(&mut self.state, at_us, &mut |event| {
+            if let Event::Contact { speed_m_s, .. } = event {
+                *worst_contact_m_s = worst_contact_m_s.max(speed_m_s);
+            }
+            mega.correct(event, &mut faults);
+        });
+    }
+
+    fn act(&mut self, action: Action) {
+        match action {
+            Action::Bridge(side, bridge, pwm_hz) => {
+                self.plant
+                    .set_bridge_at(&mut self.state, side, bridge, pwm_hz);
+                let mut duty = self.duty;
+                match side {
+                    Side::Left => duty.left = duty_of(bridge),
+                    Side::Right => duty.right = duty_of(bridge),
+                }
+                self.driven(duty);
+            }
+            Action::Servo(angle_rad) => self.plant.set_servo(&mut self.state, angle_rad),
+            Action::Trigger(sonar) => self.trigger(SonarId::ALL[sonar.index()]),
+        }
+    }
+}
+
+/// A bridge in counts of PWM; a motor that is shorted is not driven.
+fn duty_of(bridge: Bridge) -> Duty {
+    let share = match bridge {
+        Bridge::Forward(share) => share,
+        Bridge::Backward(share) => -share,
+        Bridge::Released | Bridge::Brake(_) => 0.0,
+    };
+    Duty::new((share * f64::from(Duty::MAX)).round() as i16)
+}
