@@ -343,8 +343,13 @@ mod tests {
             {
                 // A description may follow, set off by blanks.
                 let line = example.split_once("  ").map_or(example, |(line, _)| line);
-                Cli::try_parse_from(line.split_whitespace())
-                    .unwrap_or_else(|error| panic!("{line}: {error}"));
+                // As a shell does: what is quoted is one word.
+                let words = line.split('\'').enumerate();
+                let words = words.flat_map(|(part, text)| match part % 2 {
+                    0 => text.split_whitespace().collect(),
+                    _ => vec![text],
+                });
+                Cli::try_parse_from(words).unwrap_or_else(|error| panic!("{line}: {error}"));
                 seen += 1;
             }
         }

@@ -15,8 +15,7 @@ pub(crate) fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<
         robot,
         rig,
         world,
-        program: _,
-        texts: _,
+        ..
     } = setup;
     let plant = &robot.plant;
     let obstacles = world

@@ -3,7 +3,7 @@
 //! A run depends on its setup and seed alone, so its result is the same on one thread and on many.
 
 use crate::calibrate::calibrate_simulated;
-use crate::files::{FileError, Program, Setup};
+use crate::files::{FileError, Setup};
 use crate::mega::Mega;
 use crate::metrics::{self, Metrics};
 use crate::operator::Operator;
@@ -97,7 +97,7 @@ pub fn prepare(setup: &Setup, seed: u64) -> Result<Cow<'_, Setup>, FileError> {
     // Whatever rig the experiment has: sonars are moved back after a calibration, wheels stay.
     let mut own = setup.clone();
     // An image that speaks our frames has our control core: the native one gives the same parameters sooner.
-    own.program = Program::Rumbo;
+    own.firmware = None;
     if let Some(rig) = own.robot.rigs.get("final") {
         own.rig = *rig;
         "final".clone_into(&mut own.scenario.rig);

@@ -16,16 +16,14 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The program that drives the robot.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// The program that drives the robot natively, as part of the simulator.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Program {
     /// Ours, behind its link.
     #[default]
     Rumbo,
     /// The report's, written anew as a baseline (docs/theory/original.md).
     Original,
-    /// An image for the Mega, on an emulated one.
-    Firmware(Arc<Firmware>),
 }
 
 /// A line of text and when it is sent.
@@ -69,8 +67,10 @@ pub struct Setup {
     pub rig: Rig,
     /// Its world.
     pub world: WorldFile,
-    /// The program that drives the robot.
+    /// The native program that drives the robot.
     pub program: Program,
+    /// An image on an emulated Mega that does, in its place.
+    pub firmware: Option<Arc<Firmware>>,
     /// Lines of text sent over the link besides its commands, in order of time.
     pub texts: Vec<TimedText>,
 }
@@ -112,12 +112,8 @@ impl Library {
                 near: near_or_all(&scenario.rig, robot.rigs.keys().map(String::as_str)),
             })?;
         let wiring = overrides.wiring.as_deref();
-        let program = match &overrides.firmware {
-            Some(path) => {
-                Program::Firmware(Arc::new(Firmware::load(path, wiring, &robot, &scenario)?))
-            }
-            None => overrides.program.clone(),
-        };
+        let load = |path: &PathBuf| Firmware::load(path, wiring, &robot, &scenario).map(Arc::new);
+        let firmware = overrides.firmware.as_ref().map(load).transpose()?;
         let mut texts = overrides.texts.clone();
         texts.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));
         Ok(Setup {
@@ -125,7 +121,8 @@ impl Library {
             robot,
             rig,
             world,
-            program,
+            program: overrides.program,
+            firmware,
             texts,
         })
     }
@@ -170,10 +167,9 @@ impl Setup {
 
     /// Whether the program takes the control core's parameters: our own does, and an image that speaks its frames.
     pub fn takes_parameters(&self) -> bool {
-        match &self.program {
-            Program::Rumbo => true,
-            Program::Original => false,
-            Program::Firmware(firmware) => firmware.language() == Language::Frames,
+        match &self.firmware {
+            Some(firmware) => firmware.language() == Language::Frames,
+            None => self.program == Program::Rumbo,
         }
     }
 

@@ -12,7 +12,7 @@
 mod goal;
 mod text;
 
-use crate::files::{FileError, Program, Setup, TimedCommand, TimedText};
+use crate::files::{FileError, Setup, TimedCommand, TimedText};
 use crate::sim::Sim;
 use crate::trace::Heard;
 use rumbo_control::mode::ModeId;
@@ -64,10 +64,12 @@ pub(crate) struct Operator<'a> {
 
 impl<'a> Operator<'a> {
     pub(crate) fn new(setup: &'a Setup) -> Self {
-        let speech = match &setup.program {
-            Program::Original => Speech::Direct,
-            _ if setup.takes_parameters() => Speech::Frames,
-            _ => Speech::Text(Box::new(Terminal::new(setup))),
+        let speech = if setup.takes_parameters() {
+            Speech::Frames
+        } else if setup.firmware.is_some() {
+            Speech::Text(Box::new(Terminal::new(setup)))
+        } else {
+            Speech::Direct
         };
         Self {
             setup,
@@ -95,8 +97,7 @@ impl<'a> Operator<'a> {
     /// # Errors
     /// It does not answer.
     pub(crate) fn brief(&mut self, sim: &mut Sim) -> Result<(), FileError> {
-        let (Program::Firmware(firmware), Speech::Frames) = (&self.setup.program, &self.speech)
-        else {
+        let (Some(firmware), Speech::Frames) = (&self.setup.firmware, &self.speech) else {
             return Ok(());
         };
         for (id, value) in self.setup.control_parameters()? {

@@ -84,7 +84,7 @@ impl Terminal {
             // The report's mission calls each goal its new origin.
             self.origin = truth.pose;
         }
-        let t_ms = (at_us / 1_000 & 0xffff) as u16;
+        let t_ms = ((at_us / 1_000) & 0xffff) as u16;
         let kind = EventKind::Reached;
         heard.push(Heard {
             t_s: at_us as f64 * 1e-6,

@@ -91,12 +91,12 @@ impl Sim {
             heading_rad: scenario.start.heading_rad,
         };
         let state = plant.start(start);
-        let controller = match &setup.program {
-            Program::Rumbo => {
+        let controller = match (&setup.firmware, setup.program) {
+            (None, Program::Rumbo) => {
                 Controller::Rumbo(Box::new(Native::new(&setup.control_parameters()?)?))
             }
-            Program::Original => Controller::Original(Box::new(Original::new(setup)?)),
-            Program::Firmware(firmware) => {
+            (None, Program::Original) => Controller::Original(Box::new(Original::new(setup)?)),
+            (Some(firmware), _) => {
                 let encoders = plant.encoder_levels(&state);
                 Controller::Mega(Box::new(Mega::new(firmware.clone(), encoders)))
             }
