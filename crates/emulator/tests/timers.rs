@@ -4,7 +4,9 @@
 mod common;
 
 use common::*;
-use rumbo_emulator::devices::Input;
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::devices::ports::Pin;
+use rumbo_emulator::devices::{Event, Input, Output, Pwm};
 
 /// Distances between the edges of a pin, from its `first` on.
 fn distances(edges: &[(u64, bool)], rising: bool) -> Vec<u64> {
@@ -178,4 +180,53 @@ fn an_unwatched_timer_that_is_skipped_over_stands_where_a_watched_one_does() {
         let (lazy, watched) = (count_of(&mut lazy, 0x94), count_of(&mut watched, 0x94));
         assert_eq!(lazy, watched, "over {divisor}");
     }
+}
+
+/// What was told of a pin's modulation.
+fn duties(chip: &mut Chip, wanted: Pin) -> Vec<(u64, Option<Pwm>)> {
+    let outputs = chip.take_outputs().into_iter();
+    outputs
+        .filter_map(|Output { cycle, event }| match event {
+            Event::Duty { pin, pwm } if pin == wanted => Some((cycle, pwm)),
+            _ => None,
+        })
+        .collect()
+}
+
+fn pwm(share: f64, period_cycles: u64) -> Option<Pwm> {
+    let period_cycles = Some(period_cycles);
+    Some(Pwm {
+        share,
+        period_cycles,
+    })
+}
+
+#[test]
+fn a_duty_is_told_when_it_comes_into_force_and_when_the_timer_lets_go() {
+    // Timer 3, mode 1, over 64, OC3A on PE3: 100 of 255.
+    let (mut chip, start) = set_up(&[(0x2D, 0x08), (0x98, 100), (0x90, 0x81), (0x91, 0x03)]);
+    chip.run_until(100_000);
+    let e3 = pin('E', 3);
+    let told = duties(&mut chip, e3);
+    assert_eq!(told.last().unwrap(), &(start, pwm(100.0 / 255.0, 32_640)));
+    // A new value waits for the top, tick 255, 765 and so on of the prescaler that began in cycle 0.
+    write(&mut chip, 0x98, 200);
+    chip.run_until(150_000);
+    let [(cycle, new)] = duties(&mut chip, e3)[..] else {
+        panic!()
+    };
+    assert_eq!(new, pwm(200.0 / 255.0, 32_640));
+    assert_eq!((cycle - start / 64 * 64) % 32_640, 256 * 64);
+    // Direction, digitalWrite (which disconnects), and a standing timer.
+    write(&mut chip, 0x2D, 0);
+    write(&mut chip, 0x2D, 0x08);
+    write(&mut chip, 0x90, 0x01);
+    write(&mut chip, 0x90, 0x81);
+    write(&mut chip, 0x91, 0);
+    let told: Vec<_> = duties(&mut chip, e3)
+        .into_iter()
+        .map(|told| told.1)
+        .collect();
+    assert_eq!(told[..4], [None, new, None, new]);
+    assert_eq!(told[4].unwrap().period_cycles, None);
 }

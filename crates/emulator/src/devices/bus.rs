@@ -1,6 +1,7 @@
 //! The peripherals as the CPU meets them: an access finds its register, after everything that is due has happened.
 
 use super::map::{Owner, is_flags, owner};
+use super::ports::{self, Change};
 use super::{Core, Devices, Unmodelled, system, timer, usart};
 use crate::devices::interrupts::vector;
 use crate::io::{Access, Io};
@@ -18,6 +19,16 @@ impl Devices {
                 cycle: at.cycle,
                 written,
             });
+        }
+    }
+
+    /// A register of a port was written; an output that a timer modulates may have become one, or an input.
+    fn write_port(&mut self, address: u16, change: Option<Change>, cycle: u64) {
+        self.core.note(change, cycle);
+        if change.is_some() && ports::is_direction(address) {
+            for timer in &mut self.timers {
+                timer.tell_duty(&mut self.core, cycle);
+            }
         }
     }
 
@@ -62,7 +73,7 @@ impl Io for Devices {
         match owner(address) {
             Owner::Ports => {
                 let change = self.core.ports.write(address, value, at.cycle);
-                self.core.note(change, at.cycle);
+                self.write_port(address, change, at.cycle);
             }
             Owner::External => {
                 self.external.write(address, value);
@@ -84,7 +95,7 @@ impl Io for Devices {
         if owner(address) == Owner::Ports {
             self.advance(at.cycle);
             let change = self.core.ports.write_bit(address, mask, set, at.cycle);
-            self.core.note(change, at.cycle);
+            self.write_port(address, change, at.cycle);
             self.settle();
         } else if is_flags(address) {
             self.write(address, if set { mask } else { 0 }, at);

@@ -173,6 +173,11 @@ fn register(address: u16) -> Option<(usize, Register)> {
     Some((usize::from(index / 3), register))
 }
 
+/// A register of directions.
+pub(crate) fn is_direction(address: u16) -> bool {
+    matches!(register(address), Some((_, Register::Direction)))
+}
+
 impl Ports {
     pub(crate) fn read(&self, address: u16, cycle: u64) -> u8 {
         let Some((index, register)) = register(address) else {
@@ -291,6 +296,11 @@ impl Ports {
     /// The level of a pin now, without the synchroniser.
     pub(crate) fn level(&self, pin: Pin) -> bool {
         self.ports[pin.port() % PORTS].level & pin.mask() != 0
+    }
+
+    /// The pin is an output.
+    pub(crate) fn is_output(&self, pin: Pin) -> bool {
+        self.ports[pin.port() % PORTS].directions() & pin.mask() != 0
     }
 
     /// What the chip does to a pin.

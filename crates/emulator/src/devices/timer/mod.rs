@@ -6,12 +6,13 @@
 //! Counter and capture register are 16 bits behind an 8-bit bus: reading the low byte latches the high one, and writing the low byte
 //! takes the high one along (section 17.3). Compare registers are latched for writing only.
 
+mod duty;
 mod place;
 mod wave;
 
-use super::Core;
 use super::ports::Pin;
 use super::schedule::Source;
+use super::{Core, Event, Pwm};
 use crate::io::Access;
 use place::{PLACES, Place, Register};
 use wave::{CAPTURE, CHANNELS, MATCH, Mode, OVERFLOW, Top, Wave};
@@ -69,6 +70,9 @@ pub(crate) struct Timer {
     capture_due: Option<u64>,
     /// The pins were last given these outputs.
     driven: [Option<bool>; CHANNELS],
+    /// The PWM that was last told of each, and whether something of it may have changed.
+    told: [Option<Pwm>; CHANNELS],
+    duty_due: bool,
 }
 
 /// All six after reset.
@@ -84,6 +88,8 @@ pub(crate) fn all() -> [Timer; 6] {
         reckoned: 0,
         capture_due: None,
         driven: [None; CHANNELS],
+        told: [None; CHANNELS],
+        duty_due: false,
     })
 }
 
@@ -193,6 +199,22 @@ impl Timer {
                 core.note(change, cycle);
             }
         }
+        if std::mem::take(&mut self.wave.updated) | std::mem::take(&mut self.duty_due) {
+            self.tell_duty(core, cycle);
+        }
+    }
+
+    /// Tells how the pins are modulated, where that has changed.
+    pub(crate) fn tell_duty(&mut self, core: &mut Core, cycle: u64) {
+        for channel in 0..self.wave.channels {
+            let pin = self.place().outputs[channel];
+            let pwm =
+                duty::pwm(&self.wave, channel, self.clock).filter(|_| core.ports.is_output(pin));
+            if pwm != self.told[channel] {
+                self.told[channel] = pwm;
+                core.say(cycle, Event::Duty { pin, pwm });
+            }
+        }
     }
 
     pub(crate) fn read(&mut self, core: &mut Core, address: u16, at: Access) -> u8 {
@@ -249,6 +271,7 @@ impl Timer {
                 self.set_clock();
             }
         }
+        self.duty_due = true;
         self.show(core, at.cycle);
         self.reschedule(core);
     }

@@ -121,6 +121,8 @@ pub(crate) struct Wave {
     pub(crate) flags: u8,
     /// The counter was written: the next tick brings no match.
     pub(crate) blocked: bool,
+    /// Other compare values have come into force.
+    pub(crate) updated: bool,
 }
 
 impl Wave {
@@ -138,6 +140,7 @@ impl Wave {
             output: [false; CHANNELS],
             flags: 0,
             blocked: false,
+            updated: false,
         }
     }
 
@@ -281,25 +284,31 @@ impl Wave {
             Kind::Fast => {
                 self.flags |= OVERFLOW;
                 self.count = 0;
-                self.compare = self.buffered;
+                self.take_over();
                 self.set_at_bottom();
             }
             Kind::PhaseCorrect | Kind::PhaseFrequencyCorrect if self.down => {
                 self.flags |= OVERFLOW;
                 if self.mode.kind == Kind::PhaseFrequencyCorrect {
-                    self.compare = self.buffered;
+                    self.take_over();
                 }
                 self.down = false;
                 self.count = u16::from(self.top() > 0);
             }
             Kind::PhaseCorrect | Kind::PhaseFrequencyCorrect => {
                 if self.mode.kind == Kind::PhaseCorrect {
-                    self.compare = self.buffered;
+                    self.take_over();
                 }
                 self.down = true;
                 self.count = self.count.saturating_sub(1);
             }
         }
+    }
+
+    /// The compare values that were written come into force.
+    fn take_over(&mut self) {
+        self.updated |= self.compare != self.buffered;
+        self.compare = self.buffered;
     }
 
     /// A match acts on its channel's output; `falling` where the counter counts down.
