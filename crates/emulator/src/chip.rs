@@ -3,7 +3,7 @@
 use crate::cpu::{Cpu, Stopped};
 use crate::devices::ports::Pin;
 use crate::devices::{Devices, Input, Level, Output, Unmodelled};
-use crate::image::Image;
+use crate::image::{EEPROM_BYTES, Image};
 use crate::observe::{self, Observers};
 
 /// An ATmega2560 with a program. A clone is a snapshot: it goes on exactly as the original.
@@ -21,9 +21,13 @@ impl Chip {
         if let Some(end) = image.data_end() {
             cpu.set_stack_floor(end);
         }
+        let mut devices = Devices::default();
+        let eeprom = image.eeprom();
+        let fits = eeprom.len().min(EEPROM_BYTES);
+        devices.eeprom_mut()[..fits].copy_from_slice(&eeprom[..fits]);
         Chip {
             cpu,
-            devices: Devices::default(),
+            devices,
             observers: Observers::default(),
         }
     }

@@ -9,6 +9,20 @@ pub struct Access {
     pub program_counter: u32,
 }
 
+/// What the peripherals want of the CPU between two instructions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Demand {
+    /// It stands for some cycles.
+    Stall(u64),
+    /// It was reset in this cycle, and starts over at an address.
+    Reset {
+        /// Where [words].
+        program_counter: u32,
+        /// When it starts.
+        cycle: u64,
+    },
+}
+
 /// The peripherals as the CPU sees them. Addresses are those of the data space, 0x20 to 0x1FF, and beyond SRAM.
 pub trait Io {
     /// Reads a register.
@@ -30,6 +44,11 @@ pub trait Io {
     /// Something has happened for which the caller wants the run to pause; asked once, it is forgotten.
     fn take_notice(&mut self) -> bool {
         false
+    }
+
+    /// What they want of the CPU before it goes on; asked once, it is forgotten. Until then [`Io::deadline`] is 0.
+    fn take_demand(&mut self) -> Option<Demand> {
+        None
     }
 
     /// The pending and enabled interrupt of the highest priority.

@@ -14,7 +14,7 @@ mod bus;
 mod execute;
 
 use crate::decode::{Code, FLASH_WORDS, Op, decode};
-use crate::io::Io;
+use crate::io::{Demand, Io};
 use crate::observe::Watchpoint;
 use crate::status::Status;
 use crate::verdict::Verdict;
@@ -71,6 +71,8 @@ pub(crate) enum Turn {
     Entered(u8),
     /// Instructions.
     Ran,
+    /// It stood still, or was reset.
+    Held,
     /// Nothing: a breakpoint stands here.
     Breakpoint,
     /// Nothing: the peripherals did something for which the run is to pause.
@@ -277,7 +279,7 @@ impl Cpu {
             match cpu.turn(io, until, Pace::ToEvent) {
                 Turn::Breakpoint => Some(Stopped::Breakpoint),
                 Turn::Noticed => Some(Stopped::Output),
-                Turn::Slept | Turn::Entered(_) | Turn::Ran => None,
+                Turn::Slept | Turn::Held | Turn::Entered(_) | Turn::Ran => None,
             }
         })
     }
@@ -340,6 +342,10 @@ impl Cpu {
         if io.take_notice() {
             return Turn::Noticed;
         }
+        if let Some(demand) = io.take_demand() {
+            self.obey(demand);
+            return Turn::Held;
+        }
         if !self.shadow {
             if self.sleeping {
                 self.sleep_on(io, until);
@@ -360,6 +366,19 @@ impl Cpu {
             Turn::Breakpoint
         } else {
             Turn::Ran
+        }
+    }
+
+    fn obey(&mut self, demand: Demand) {
+        match demand {
+            Demand::Stall(cycles) => self.cycle += cycles,
+            Demand::Reset {
+                program_counter,
+                cycle,
+            } => {
+                self.reset(program_counter);
+                self.cycle = self.cycle.max(cycle);
+            }
         }
     }
 

@@ -1,10 +1,10 @@
 //! The peripherals as the CPU meets them: an access finds its register, after everything that is due has happened.
 
+use super::interrupts::vector;
 use super::map::{Owner, is_flags, owner};
 use super::ports::{self, Change};
 use super::{Core, Devices, Unmodelled, system, timer, usart};
-use crate::devices::interrupts::vector;
-use crate::io::{Access, Io};
+use crate::io::{Access, Demand, Io};
 
 /// Start of the largest boot section [words], as the fuses are shipped.
 const BOOT_WORDS: u32 = 0x1_F000;
@@ -60,6 +60,8 @@ impl Io for Devices {
             Owner::Timer(index) => self.timers[index].read(&mut self.core, address, at),
             Owner::TimerPrescalers => timer::read_general_control(&self.core),
             Owner::Usart(index) => self.usarts[index].read(&mut self.core, address, at),
+            Owner::Eeprom => self.eeprom.read(address, at.cycle),
+            Owner::Watchdog => self.watchdog.read(at.cycle),
             Owner::System => self.system.read(address),
             Owner::Nobody => {
                 self.not_modelled(address, at, false);
@@ -84,6 +86,11 @@ impl Io for Devices {
                 timer::write_general_control(&mut self.timers, &mut self.core, value, at.cycle);
             }
             Owner::Usart(index) => self.usarts[index].write(&mut self.core, address, value, at),
+            Owner::Eeprom => self.eeprom.write(&mut self.core, address, value, at.cycle),
+            Owner::Watchdog => {
+                let held = self.system.watchdog_held();
+                self.watchdog.write(&mut self.core, value, held, at.cycle);
+            }
             Owner::System => self.write_system(address, value, at.cycle),
             Owner::Nobody => self.not_modelled(address, at, true),
         }
@@ -115,7 +122,7 @@ impl Io for Devices {
 
     #[inline(always)]
     fn deadline(&self, interrupts_enabled: bool) -> u64 {
-        if self.core.noticed || interrupts_enabled && self.core.interrupts.any() {
+        if self.core.is_wanted() || interrupts_enabled && self.core.interrupts.any() {
             0
         } else {
             self.core.schedule.next()
@@ -124,6 +131,10 @@ impl Io for Devices {
 
     fn take_notice(&mut self) -> bool {
         std::mem::take(&mut self.core.noticed)
+    }
+
+    fn take_demand(&mut self) -> Option<Demand> {
+        self.core.demand.take()
     }
 
     fn pending(&self) -> Option<u8> {
@@ -138,6 +149,8 @@ impl Io for Devices {
             self.timers[index].acknowledge(&mut self.core, vector, cycle);
         } else if let Some(index) = usart::of_vector(vector) {
             self.usarts[index].acknowledge(&mut self.core, vector, cycle);
+        } else if vector == vector::WATCHDOG {
+            self.watchdog.acknowledge(&mut self.core, cycle);
         }
         self.settle();
     }
@@ -154,7 +167,10 @@ impl Io for Devices {
         self.system.sleep_enabled()
     }
 
-    fn reset_watchdog(&mut self, _: u64) {}
+    fn reset_watchdog(&mut self, cycle: u64) {
+        self.advance(cycle);
+        self.watchdog.restart(&mut self.core, cycle);
+    }
 
     fn store_program(&mut self, _: u32, _: u16, _: Access) -> Vec<(u32, u16)> {
         Vec::new()

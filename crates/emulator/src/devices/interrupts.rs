@@ -4,6 +4,8 @@
 pub(crate) mod vector {
     pub(crate) const INT0: u8 = 1;
     pub(crate) const PCINT0: u8 = 9;
+    pub(crate) const WATCHDOG: u8 = 12;
+    pub(crate) const EEPROM_READY: u8 = 30;
 }
 
 /// The requested interrupts.
@@ -48,6 +50,11 @@ impl Interrupts {
         } else {
             self.requested &= !mask;
         }
+    }
+
+    /// Withdraws all requests.
+    pub(crate) fn clear(&mut self) {
+        self.requested = 0;
     }
 
     /// The one that is entered next.

@@ -9,6 +9,8 @@ pub(super) enum Owner {
     /// GTCCR, which concerns all timers.
     TimerPrescalers,
     Usart(usize),
+    Eeprom,
+    Watchdog,
     System,
     /// Nothing, or nothing that is modelled.
     Nobody,
@@ -21,8 +23,10 @@ pub(super) const fn owner(address: u16) -> Owner {
         0x35..=0x3A => Owner::Timer((address - 0x35) as usize),
         0x3B..=0x3D | 0x68..=0x6A | 0x6B..=0x6D => Owner::External,
         0x3E | 0x4A | 0x4B | 0x53..=0x55 => Owner::System,
+        0x3F..=0x42 => Owner::Eeprom,
         0x43 => Owner::TimerPrescalers,
         0x44..=0x48 => Owner::Timer(0),
+        0x60 => Owner::Watchdog,
         0x6E..=0x73 => Owner::Timer((address - 0x6E) as usize),
         0x80..=0x82 | 0x84..=0x8D => Owner::Timer(1),
         0x90..=0x92 | 0x94..=0x9D => Owner::Timer(3),

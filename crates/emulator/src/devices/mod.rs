@@ -4,6 +4,7 @@
 //! events and the stream of outputs. An access first lets everything happen that is due before it.
 
 mod bus;
+mod eeprom;
 pub(crate) mod external;
 pub(crate) mod interrupts;
 mod map;
@@ -13,9 +14,13 @@ mod signal;
 mod system;
 pub(crate) mod timer;
 pub(crate) mod usart;
+mod watchdog;
 
 use std::collections::VecDeque;
 
+use crate::image::EEPROM_BYTES;
+use crate::io::Demand;
+use eeprom::Eeprom;
 use external::External;
 use interrupts::Interrupts;
 use ports::{Change, Drive, Pin, Ports};
@@ -24,9 +29,13 @@ pub use signal::{Cause, Event, Input, Level, Output, Pwm};
 use system::System;
 use timer::{Prescaler, Timer};
 use usart::Usart;
+use watchdog::{TimeOut, Watchdog};
 
 /// Cycles of the crystal in a second.
 pub const CLOCK_HZ: u64 = 16_000_000;
+
+/// From a reset to the first instruction: 14 cycles and 65 ms, as the fuses of the Mega have it (DS40002549, table 10-4).
+const RESET_CYCLES: u64 = 14 + 65 * CLOCK_HZ / 1000;
 
 /// An access to a register that is not modelled; each address is told once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +65,7 @@ pub(crate) struct Core {
     noticed: bool,
     /// Levels since they were last asked for, if somebody wants to know.
     levels: Option<Vec<Level>>,
+    demand: Option<Demand>,
 }
 
 impl Core {
@@ -65,6 +75,21 @@ impl Core {
             self.noticed |= self.watched >> pin.number() & 1 != 0;
         }
         self.outputs.push(Output { cycle, event });
+    }
+
+    /// The CPU stands for some cycles.
+    pub(crate) fn stall(&mut self, cycles: u64) {
+        match &mut self.demand {
+            Some(Demand::Stall(already)) => *already += cycles,
+            Some(Demand::Reset { .. }) => {}
+            None => self.demand = Some(Demand::Stall(cycles)),
+        }
+    }
+
+    /// The CPU is not to go on by itself: someone wants something of it.
+    #[inline(always)]
+    fn is_wanted(&self) -> bool {
+        self.noticed || self.demand.is_some()
     }
 
     /// Notes what changed on a port; whoever listens to pins hears of it before the access ends.
@@ -80,7 +105,11 @@ pub struct Devices {
     external: External,
     timers: [Timer; 6],
     usarts: [Usart; 4],
+    eeprom: Eeprom,
+    watchdog: Watchdog,
     system: System,
+    /// Where the program starts after a reset [words].
+    start: u32,
     inputs: VecDeque<(u64, Input)>,
     unmodelled: Vec<Unmodelled>,
 }
@@ -93,7 +122,10 @@ impl Default for Devices {
             external: External::default(),
             timers: timer::all(),
             usarts: usart::all(),
-            system: System::after(Cause::PowerOn),
+            eeprom: Eeprom::default(),
+            watchdog: Watchdog::default(),
+            system: System::default().after_reset(Cause::PowerOn),
+            start: 0,
             inputs: VecDeque::new(),
             unmodelled: Vec::new(),
         }
@@ -154,6 +186,16 @@ impl Devices {
         self.core.ports.drive(pin)
     }
 
+    /// What the EEPROM holds.
+    pub fn eeprom(&self) -> &[u8; EEPROM_BYTES] {
+        &self.eeprom.bytes
+    }
+
+    /// The same, to change it.
+    pub fn eeprom_mut(&mut self) -> &mut [u8; EEPROM_BYTES] {
+        &mut self.eeprom.bytes
+    }
+
     /// Accesses to what is not modelled, each address once.
     pub fn unmodelled(&self) -> &[Unmodelled] {
         &self.unmodelled
@@ -175,6 +217,12 @@ impl Devices {
             }
             Source::Timer(index) => self.timers[index].happen(&mut self.core, cycle),
             Source::Usart(index) => self.usarts[index].happen(&mut self.core, cycle),
+            Source::Eeprom => self.eeprom.happen(&mut self.core),
+            Source::Watchdog => {
+                if self.watchdog.happen(&mut self.core, cycle) == TimeOut::Reset {
+                    self.reset(Cause::Watchdog, cycle);
+                }
+            }
         }
         self.settle();
     }
@@ -203,8 +251,37 @@ impl Devices {
                 }
             }
             // Nothing takes these in yet.
-            Input::Volts { .. } | Input::Reset(_) => {}
+            Input::Volts { .. } => {}
+            Input::Reset(cause) => self.reset(cause, cycle),
         }
+    }
+
+    /// Everything starts over but memories and what is outside; the CPU follows when the oscillator has settled.
+    fn reset(&mut self, cause: Cause, cycle: u64) {
+        let start = cycle + RESET_CYCLES;
+        for change in self.core.ports.reset(cycle) {
+            self.core.note(Some(change), cycle);
+        }
+        self.core.interrupts.clear();
+        self.core.prescalers = Default::default();
+        self.external = External::default();
+        for timer in &mut self.timers {
+            timer.reset(&mut self.core, cycle);
+        }
+        for usart in &mut self.usarts {
+            usart.reset(&mut self.core);
+        }
+        self.eeprom.reset();
+        self.core.schedule.set(Source::Eeprom, None);
+        self.watchdog = Watchdog::after_reset(cause == Cause::Watchdog, start);
+        self.watchdog.reschedule(&mut self.core, start);
+        self.system = self.system.after_reset(cause);
+        self.core.demand = Some(Demand::Reset {
+            program_counter: self.start,
+            cycle: start,
+        });
+        self.settle();
+        self.core.say(cycle, Event::Reset(cause));
     }
 
     /// Lets those who listen to pins hear what changed, until nothing changes any more.

@@ -276,6 +276,26 @@ impl Ports {
         })
     }
 
+    /// All registers start over: every pin is an input again. Gives what that changes.
+    pub(crate) fn reset(&mut self, cycle: u64) -> Vec<Change> {
+        let (before, disabled) = (self.ports, self.pull_ups_disabled);
+        self.pull_ups_disabled = false;
+        (0..PORTS)
+            .filter_map(|index| {
+                let port = &mut self.ports[index];
+                *port = Port {
+                    driven_outside: port.driven_outside,
+                    outside: port.outside,
+                    level: port.level,
+                    level_before: port.level_before,
+                    changed: port.changed,
+                    ..Port::default()
+                };
+                self.settle(index, &before[index], disabled, cycle)
+            })
+            .collect()
+    }
+
     /// Something outside drives the pin.
     pub(crate) fn is_driven_outside(&self, pin: Pin) -> bool {
         self.ports[pin.port() % PORTS].driven_outside & pin.mask() != 0

@@ -9,12 +9,18 @@ pub(crate) enum Source {
     Timer(usize),
     /// A USART, 0 to 3, with the line that leads to it.
     Usart(usize),
+    /// The end of a write to the EEPROM.
+    Eeprom,
+    /// The watchdog's end.
+    Watchdog,
 }
 
 /// Slots of the timers and of the USARTs.
 const TIMERS: usize = 1;
 const USARTS: usize = TIMERS + 6;
-const COUNT: usize = USARTS + 4;
+const EEPROM: usize = USARTS + 4;
+const WATCHDOG: usize = EEPROM + 1;
+const COUNT: usize = WATCHDOG + 1;
 
 impl Source {
     const fn slot(self) -> usize {
@@ -22,6 +28,8 @@ impl Source {
             Source::Input => 0,
             Source::Timer(index) => TIMERS + index % 6,
             Source::Usart(index) => USARTS + index % 4,
+            Source::Eeprom => EEPROM,
+            Source::Watchdog => WATCHDOG,
         }
     }
 
@@ -29,7 +37,9 @@ impl Source {
         match slot {
             0 => Source::Input,
             TIMERS..USARTS => Source::Timer(slot - TIMERS),
-            _ => Source::Usart(slot - USARTS),
+            USARTS..EEPROM => Source::Usart(slot - USARTS),
+            EEPROM => Source::Eeprom,
+            _ => Source::Watchdog,
         }
     }
 }

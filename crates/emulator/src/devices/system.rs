@@ -44,10 +44,15 @@ const fn flag(cause: Cause) -> u8 {
 }
 
 impl System {
-    /// After a reset.
-    pub(super) fn after(cause: Cause) -> System {
+    /// After a reset: the causes add up until a program clears them, or the supply was off.
+    pub(super) fn after_reset(&self, cause: Cause) -> System {
+        let before = if cause == Cause::PowerOn {
+            0
+        } else {
+            self.reset_causes
+        };
         System {
-            reset_causes: flag(cause),
+            reset_causes: before | flag(cause),
             ..System::default()
         }
     }
@@ -88,6 +93,11 @@ impl System {
             self.control_open_until = cycle + IVCE_CYCLES;
         }
         self.control = value & (PUD | JTD) | select;
+    }
+
+    /// A reset by the watchdog keeps it on.
+    pub(super) fn watchdog_held(&self) -> bool {
+        self.reset_causes & flag(Cause::Watchdog) != 0
     }
 
     pub(super) fn pull_ups_disabled(&self) -> bool {

@@ -147,7 +147,7 @@ fn turn(
     let touched = match turn {
         Turn::Breakpoint => return Some(Stopped::Breakpoint),
         Turn::Noticed => return Some(Stopped::Output),
-        Turn::Slept => None,
+        Turn::Slept | Turn::Held => None,
         Turn::Entered(_) => Some(Touch::pushed_address(before.stack_pointer)),
         Turn::Ran => touched,
     };

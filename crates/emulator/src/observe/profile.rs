@@ -155,6 +155,7 @@ impl Profile {
                 let node = self.child(ROOT, self.asleep);
                 self.nodes[node].cycles += cycles;
             }
+            Turn::Held => self.nodes[self.here].cycles += cycles,
             Turn::Entered(vector) => self.enter(cpu, before, vector, requested(vector)),
             Turn::Ran | Turn::Breakpoint | Turn::Noticed => {
                 self.find(before.program_counter);

@@ -119,7 +119,7 @@ impl Trace {
         self.left -= 1;
         let what = match turn {
             Turn::Entered(vector) => What::Interrupt(vector),
-            Turn::Slept => What::Sleep,
+            Turn::Slept | Turn::Held => What::Sleep,
             Turn::Ran | Turn::Breakpoint | Turn::Noticed => What::Instruction(before.operation),
         };
         let pairs = before.registers.iter().zip(cpu.registers());

@@ -77,7 +77,11 @@ pub(crate) struct Timer {
 
 /// All six after reset.
 pub(crate) fn all() -> [Timer; 6] {
-    [0, 1, 2, 3, 4, 5].map(|index| Timer {
+    [0, 1, 2, 3, 4, 5].map(new)
+}
+
+fn new(index: usize) -> Timer {
+    Timer {
         index,
         wave: Wave::new(!matches!(index, 0 | 2)),
         clock: Clock::Stopped,
@@ -90,7 +94,7 @@ pub(crate) fn all() -> [Timer; 6] {
         driven: [None; CHANNELS],
         told: [None; CHANNELS],
         duty_due: false,
-    })
+    }
 }
 
 /// The timer that has this interrupt vector.
@@ -99,6 +103,20 @@ pub(crate) fn of_vector(vector: u8) -> Option<usize> {
 }
 
 impl Timer {
+    /// Starts over.
+    pub(crate) fn reset(&mut self, core: &mut Core, cycle: u64) {
+        let told = self.told;
+        *self = new(self.index);
+        self.reckoned = cycle;
+        for (channel, told) in told.into_iter().enumerate() {
+            if told.is_some() {
+                let pin = self.place().outputs[channel];
+                core.say(cycle, Event::Duty { pin, pwm: None });
+            }
+        }
+        self.reschedule(core);
+    }
+
     fn place(&self) -> &'static Place {
         &PLACES[self.index]
     }

@@ -57,7 +57,11 @@ pub(crate) struct Usart {
 
 /// All four after reset.
 pub(crate) fn all() -> [Usart; 4] {
-    [0, 1, 2, 3].map(|index| Usart {
+    [0, 1, 2, 3].map(new)
+}
+
+fn new(index: usize) -> Usart {
+    Usart {
         index,
         settings: 0,
         control_b: 0,
@@ -73,10 +77,20 @@ pub(crate) fn all() -> [Usart; 4] {
         transmitter: Transmitter::default(),
         receiver: Receiver::default(),
         line: Line::default(),
-    })
+    }
 }
 
 impl Usart {
+    /// Starts over; the sender outside goes on.
+    pub(crate) fn reset(&mut self, core: &mut Core) {
+        let line = std::mem::take(&mut self.line);
+        *self = Usart {
+            line,
+            ..new(self.index)
+        };
+        self.reschedule(core);
+    }
+
     fn place(&self) -> &'static Place {
         &PLACES[self.index]
     }

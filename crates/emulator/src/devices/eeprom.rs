@@ -1,0 +1,158 @@
+//! The EEPROM and its registers (DS40002549, sections 8.3 and 8.6).
+//!
+//! A write is armed by EEMPE and begun by EEPE within four cycles. It takes its time while the program goes on; a byte read takes
+//! none, but the CPU stands for four cycles.
+
+use super::Core;
+use super::interrupts::vector;
+use super::schedule::Source;
+use crate::image::EEPROM_BYTES;
+
+const EECR: u16 = 0x3F;
+const EEDR: u16 = 0x40;
+const EEARL: u16 = 0x41;
+const EEARH: u16 = 0x42;
+
+const EERE: u8 = 0x01;
+const EEPE: u8 = 0x02;
+const EEMPE: u8 = 0x04;
+const EERIE: u8 = 0x08;
+const EEPM: u8 = 0x30;
+
+/// Cycles for which EEMPE arms.
+const ARMED_CYCLES: u64 = 4;
+/// Cycles for which the CPU stands after a read and after the start of a write.
+const READ_STALL: u64 = 4;
+const WRITE_STALL: u64 = 2;
+/// Table 8-1: 3.4 ms to erase and write, 1.8 ms for either alone [cycles].
+const ERASE_AND_WRITE_CYCLES: u64 = 54_400;
+const HALF_CYCLES: u64 = 28_800;
+
+/// A write on its way.
+#[derive(Clone, Copy, Debug)]
+struct Write {
+    address: usize,
+    value: u8,
+}
+
+/// The memory with its registers.
+#[derive(Clone, Debug)]
+pub(super) struct Eeprom {
+    pub(super) bytes: Box<[u8; EEPROM_BYTES]>,
+    address: u16,
+    data: u8,
+    /// EERIE and EEPM.
+    control: u8,
+    armed_until: Option<u64>,
+    write: Option<Write>,
+}
+
+impl Default for Eeprom {
+    /// Erased.
+    fn default() -> Eeprom {
+        Eeprom {
+            bytes: Box::new([0xFF; EEPROM_BYTES]),
+            address: 0,
+            data: 0,
+            control: 0,
+            armed_until: None,
+            write: None,
+        }
+    }
+}
+
+impl Eeprom {
+    /// The registers start over; what is in the cells stays, and a write that has begun is finished.
+    pub(super) fn reset(&mut self) {
+        self.finish();
+        *self = Eeprom {
+            bytes: std::mem::replace(&mut self.bytes, Box::new([0; EEPROM_BYTES])),
+            ..Eeprom::default()
+        };
+    }
+
+    /// The write is over.
+    fn finish(&mut self) {
+        if let Some(Write { address, value }) = self.write.take() {
+            self.bytes[address % EEPROM_BYTES] = value;
+        }
+    }
+
+    /// A write is on its way.
+    pub(super) fn is_busy(&self) -> bool {
+        self.write.is_some()
+    }
+
+    fn armed(&self, cycle: u64) -> bool {
+        self.armed_until.is_some_and(|until| cycle <= until)
+    }
+
+    pub(super) fn read(&self, address: u16, cycle: u64) -> u8 {
+        let [low, high] = self.address.to_le_bytes();
+        match address {
+            EECR => {
+                let armed = if self.armed(cycle) { EEMPE } else { 0 };
+                let busy = if self.is_busy() { EEPE } else { 0 };
+                self.control | armed | busy
+            }
+            EEDR => self.data,
+            EEARL => low,
+            EEARH => high,
+            _ => 0,
+        }
+    }
+
+    pub(super) fn write(&mut self, core: &mut Core, address: u16, value: u8, cycle: u64) {
+        let [low, high] = self.address.to_le_bytes();
+        match address {
+            EECR => self.command(core, value, cycle),
+            EEDR => self.data = value,
+            // During a write the address is held.
+            EEARL if !self.is_busy() => self.address = u16::from_le_bytes([value, high]),
+            EEARH if !self.is_busy() => self.address = u16::from_le_bytes([low, value & 0x0F]),
+            _ => {}
+        }
+    }
+
+    fn command(&mut self, core: &mut Core, value: u8, cycle: u64) {
+        let armed = self.armed(cycle);
+        let modes = if self.is_busy() { self.control } else { value } & EEPM;
+        self.control = value & EERIE | modes;
+        if value & EERE != 0 && !self.is_busy() {
+            self.data = self.bytes[usize::from(self.address) % EEPROM_BYTES];
+            core.stall(READ_STALL);
+        }
+        if value & EEPE != 0 && armed && !self.is_busy() {
+            self.begin(core, cycle);
+        } else if value & EEMPE != 0 && !armed {
+            self.armed_until = Some(cycle + ARMED_CYCLES);
+        }
+        self.request(core);
+    }
+
+    fn begin(&mut self, core: &mut Core, cycle: u64) {
+        let address = usize::from(self.address) % EEPROM_BYTES;
+        let (value, cycles) = match self.control & EEPM {
+            0x10 => (0xFF, HALF_CYCLES),
+            // Without erasing, a write can only clear bits.
+            0x20 => (self.bytes[address] & self.data, HALF_CYCLES),
+            _ => (self.data, ERASE_AND_WRITE_CYCLES),
+        };
+        self.write = Some(Write { address, value });
+        self.armed_until = None;
+        core.schedule.set(Source::Eeprom, Some(cycle + cycles));
+        core.stall(WRITE_STALL);
+    }
+
+    /// The write's end is due.
+    pub(super) fn happen(&mut self, core: &mut Core) {
+        self.finish();
+        core.schedule.set(Source::Eeprom, None);
+        self.request(core);
+    }
+
+    fn request(&self, core: &mut Core) {
+        let requested = self.control & EERIE != 0 && !self.is_busy();
+        core.interrupts.set(vector::EEPROM_READY, requested);
+    }
+}
