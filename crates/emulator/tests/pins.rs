@@ -129,8 +129,8 @@ fn a_run_pauses_after_the_instruction_that_drives_a_watched_pin() {
 
 #[test]
 fn an_access_to_what_is_not_modelled_is_told_once_with_its_place() {
-    let mut main = Vec::from(sts(0x7C, 16));
-    main.extend(sts(0x7C, 17));
+    let mut main = Vec::from(sts(0x62, 16));
+    main.extend(sts(0x62, 17));
     main.extend([NOP; 4]);
     let mut chip = chip(&main);
     chip.run_until(9);
@@ -139,6 +139,6 @@ fn an_access_to_what_is_not_modelled_is_told_once_with_its_place() {
     };
     assert_eq!(
         (only.address, only.program_counter, only.written),
-        (0x7C, 0x80, true)
+        (0x62, 0x80, true)
     );
 }

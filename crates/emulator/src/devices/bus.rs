@@ -1,8 +1,10 @@
 //! The peripherals as the CPU meets them: an access finds its register, after everything that is due has happened.
 
+use super::analog::Trigger;
 use super::interrupts::vector;
 use super::map::{Owner, is_flags, owner};
 use super::ports::{self, Change};
+use super::system::Sleep;
 use super::{Core, Devices, Unmodelled, system, timer, usart};
 use crate::io::{Access, Demand, Io};
 
@@ -39,6 +41,26 @@ impl Devices {
         self.external.request(interrupts, ports);
     }
 
+    /// The converter has other sources of its trigger, or pins another digital input.
+    fn write_analog(&mut self, address: u16, value: u8, at: Access) {
+        self.analog.write(&mut self.core, address, value, at.cycle);
+        for (port, disabled) in self.analog.disabled_digital() {
+            let change = self.core.ports.disable_inputs(port, disabled, at.cycle);
+            self.core.note(change, at.cycle);
+        }
+        let trigger = self.analog.trigger();
+        for (index, timer) in self.timers.iter_mut().enumerate().take(2) {
+            let flag = match trigger {
+                Some(Trigger::Timer(which, flag)) if which == index => flag,
+                _ => 0,
+            };
+            timer.want(&mut self.core, flag, at.cycle);
+        }
+        if self.analog.captures() {
+            self.not_modelled(address, at, true);
+        }
+    }
+
     fn write_system(&mut self, address: u16, value: u8, cycle: u64) {
         self.system.write(address, value, cycle);
         if address == system::MCUCR {
@@ -60,6 +82,7 @@ impl Io for Devices {
             Owner::Timer(index) => self.timers[index].read(&mut self.core, address, at),
             Owner::TimerPrescalers => timer::read_general_control(&self.core),
             Owner::Usart(index) => self.usarts[index].read(&mut self.core, address, at),
+            Owner::Analog => self.analog.read(address),
             Owner::Eeprom => self.eeprom.read(address, at.cycle),
             Owner::Watchdog => self.watchdog.read(at.cycle),
             Owner::System => self.system.read(address),
@@ -86,6 +109,7 @@ impl Io for Devices {
                 timer::write_general_control(&mut self.timers, &mut self.core, value, at.cycle);
             }
             Owner::Usart(index) => self.usarts[index].write(&mut self.core, address, value, at),
+            Owner::Analog => self.write_analog(address, value, at),
             Owner::Eeprom => self.eeprom.write(&mut self.core, address, value, at.cycle),
             Owner::Watchdog => {
                 let held = self.system.watchdog_held();
@@ -151,6 +175,8 @@ impl Io for Devices {
             self.usarts[index].acknowledge(&mut self.core, vector, cycle);
         } else if vector == vector::WATCHDOG {
             self.watchdog.acknowledge(&mut self.core, cycle);
+        } else if matches!(vector, vector::CONVERTED | vector::COMPARED) {
+            self.analog.acknowledge(&mut self.core, vector);
         }
         self.settle();
     }
@@ -163,8 +189,15 @@ impl Io for Devices {
         }
     }
 
-    fn sleep(&mut self, _: u64) -> bool {
-        self.system.sleep_enabled()
+    fn sleep(&mut self, cycle: u64) -> bool {
+        self.advance(cycle);
+        if !self.system.sleep_enabled() {
+            return false;
+        }
+        if self.system.sleep_mode() == Sleep::QuietForAnalog {
+            self.analog.start_asleep(&mut self.core, cycle);
+        }
+        true
     }
 
     fn reset_watchdog(&mut self, cycle: u64) {

@@ -109,6 +109,11 @@ impl External {
         }
     }
 
+    /// The flag of INT0 is up.
+    pub(crate) fn int0_flag(&self) -> bool {
+        self.flags & 1 != 0
+    }
+
     /// Its routine is entered.
     pub(crate) fn acknowledge(&mut self, number: u8) {
         match number.checked_sub(vector::PCINT0) {

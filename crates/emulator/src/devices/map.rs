@@ -10,6 +10,7 @@ pub(super) enum Owner {
     TimerPrescalers,
     Usart(usize),
     Eeprom,
+    Analog,
     Watchdog,
     System,
     /// Nothing, or nothing that is modelled.
@@ -26,6 +27,7 @@ pub(super) const fn owner(address: u16) -> Owner {
         0x3F..=0x42 => Owner::Eeprom,
         0x43 => Owner::TimerPrescalers,
         0x44..=0x48 => Owner::Timer(0),
+        0x50 | 0x78..=0x7F => Owner::Analog,
         0x60 => Owner::Watchdog,
         0x6E..=0x73 => Owner::Timer((address - 0x6E) as usize),
         0x80..=0x82 | 0x84..=0x8D => Owner::Timer(1),

@@ -3,6 +3,7 @@
 //! Each is a module with its registers; what they share is in `Core`: interrupt requests, ports, the schedule of
 //! events and the stream of outputs. An access first lets everything happen that is due before it.
 
+mod analog;
 mod bus;
 mod eeprom;
 pub(crate) mod external;
@@ -20,6 +21,7 @@ use std::collections::VecDeque;
 
 use crate::image::EEPROM_BYTES;
 use crate::io::Demand;
+use analog::{Analog, Trigger};
 use eeprom::Eeprom;
 use external::External;
 use interrupts::Interrupts;
@@ -34,6 +36,10 @@ use watchdog::{TimeOut, Watchdog};
 /// Cycles of the crystal in a second.
 pub const CLOCK_HZ: u64 = 16_000_000;
 
+/// The supply [V].
+const SUPPLY_V: f64 = 5.0;
+/// AIN0 and AIN1, PE2 and PE3.
+const COMPARATOR_PINS: [Pin; 2] = [Pin::at(4, 2), Pin::at(4, 3)];
 /// From a reset to the first instruction: 14 cycles and 65 ms, as the fuses of the Mega have it (DS40002549, table 10-4).
 const RESET_CYCLES: u64 = 14 + 65 * CLOCK_HZ / 1000;
 
@@ -66,6 +72,8 @@ pub(crate) struct Core {
     /// Levels since they were last asked for, if somebody wants to know.
     levels: Option<Vec<Level>>,
     demand: Option<Demand>,
+    /// The flag that starts a conversion was raised in this cycle.
+    triggered: Option<u64>,
 }
 
 impl Core {
@@ -105,6 +113,7 @@ pub struct Devices {
     external: External,
     timers: [Timer; 6],
     usarts: [Usart; 4],
+    analog: Analog,
     eeprom: Eeprom,
     watchdog: Watchdog,
     system: System,
@@ -122,6 +131,7 @@ impl Default for Devices {
             external: External::default(),
             timers: timer::all(),
             usarts: usart::all(),
+            analog: Analog::default(),
             eeprom: Eeprom::default(),
             watchdog: Watchdog::default(),
             system: System::default().after_reset(Cause::PowerOn),
@@ -218,6 +228,7 @@ impl Devices {
             Source::Timer(index) => self.timers[index].happen(&mut self.core, cycle),
             Source::Usart(index) => self.usarts[index].happen(&mut self.core, cycle),
             Source::Eeprom => self.eeprom.happen(&mut self.core),
+            Source::Analog => self.analog.happen(&mut self.core, cycle),
             Source::Watchdog => {
                 if self.watchdog.happen(&mut self.core, cycle) == TimeOut::Reset {
                     self.reset(Cause::Watchdog, cycle);
@@ -234,6 +245,10 @@ impl Devices {
             Input::Pin(pin, level) => {
                 let change = core.ports.set_outside(pin, level, cycle);
                 core.note(Some(change), cycle);
+                if let (Some(channel), Some(level)) = (analog::channel(pin), level) {
+                    let volts = if level { SUPPLY_V } else { 0.0 };
+                    self.analog.set_volts(core, channel, volts, cycle);
+                }
             }
             Input::Serial { usart, byte, baud } => {
                 if let Some(usart) = self.usarts.get_mut(usize::from(usart)) {
@@ -250,8 +265,14 @@ impl Devices {
                     usart.receive(core, bits, count, baud, cycle);
                 }
             }
-            // Nothing takes these in yet.
-            Input::Volts { .. } => {}
+            Input::Volts { channel, volts } => {
+                self.analog.set_volts(core, channel, volts, cycle);
+                if let Some(pin) = analog::pin(channel) {
+                    let level = volts >= SUPPLY_V / 2.0;
+                    let change = core.ports.set_outside(pin, Some(level), cycle);
+                    core.note(Some(change), cycle);
+                }
+            }
             Input::Reset(cause) => self.reset(cause, cycle),
         }
     }
@@ -271,6 +292,7 @@ impl Devices {
         for usart in &mut self.usarts {
             usart.reset(&mut self.core);
         }
+        self.analog.reset(&mut self.core);
         self.eeprom.reset();
         self.core.schedule.set(Source::Eeprom, None);
         self.watchdog = Watchdog::after_reset(cause == Cause::Watchdog, start);
@@ -296,14 +318,31 @@ impl Devices {
             }
             if change.levels != 0 {
                 let ports = &self.core.ports;
+                let raised = self.external.int0_flag();
                 self.external.changed(change.port, change.levels, ports);
                 self.external.request(&mut self.core.interrupts, ports);
+                if !raised
+                    && self.external.int0_flag()
+                    && self.analog.trigger() == Some(Trigger::External0)
+                {
+                    self.core.triggered = Some(cycle);
+                }
                 self.tell_pins(&change, cycle);
             }
+        }
+        if let Some(cycle) = self.core.triggered.take() {
+            self.analog.triggered(&mut self.core, cycle);
         }
     }
 
     fn tell_pins(&mut self, change: &Change, cycle: u64) {
+        let [positive, negative] = COMPARATOR_PINS;
+        if change.port == positive.port()
+            && change.levels & (positive.mask() | negative.mask()) != 0
+        {
+            let pins = COMPARATOR_PINS.map(|pin| self.core.ports.level(pin));
+            self.analog.set_pins(&mut self.core, pins, cycle);
+        }
         for bit in 0..8 {
             if change.levels >> bit & 1 != 0 {
                 let pin = Pin::at(change.port, bit);

@@ -91,6 +91,8 @@ struct Port {
     /// Pins whose direction a peripheral takes over, to input or to output.
     forced_input: u8,
     forced_output: u8,
+    /// Pins whose digital input is off: they read as low.
+    disabled: u8,
     level: u8,
     level_before: u8,
     changed: u64,
@@ -296,6 +298,11 @@ impl Ports {
             .collect()
     }
 
+    /// The digital inputs of these pins of a port are off, and no others.
+    pub(crate) fn disable_inputs(&mut self, port: usize, pins: u8, cycle: u64) -> Option<Change> {
+        self.change(port, cycle, |port| port.disabled = pins)
+    }
+
     /// Something outside drives the pin.
     pub(crate) fn is_driven_outside(&self, pin: Pin) -> bool {
         self.ports[pin.port() % PORTS].driven_outside & pin.mask() != 0
@@ -353,7 +360,7 @@ impl Ports {
         let directions = port.directions();
         let pulled = port.output & pull_ups;
         let inputs = port.outside & port.driven_outside | pulled & !port.driven_outside;
-        let level = port.outputs() & directions | inputs & !directions;
+        let level = (port.outputs() & directions | inputs & !directions) & !port.disabled;
         let levels = level ^ port.level;
         if levels != 0 {
             // Two changes in a row: what was already visible stays so until the second one is.

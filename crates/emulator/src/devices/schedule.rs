@@ -13,6 +13,8 @@ pub(crate) enum Source {
     Eeprom,
     /// The watchdog's end.
     Watchdog,
+    /// A conversion's sample or end.
+    Analog,
 }
 
 /// Slots of the timers and of the USARTs.
@@ -20,7 +22,8 @@ const TIMERS: usize = 1;
 const USARTS: usize = TIMERS + 6;
 const EEPROM: usize = USARTS + 4;
 const WATCHDOG: usize = EEPROM + 1;
-const COUNT: usize = WATCHDOG + 1;
+const ANALOG: usize = WATCHDOG + 1;
+const COUNT: usize = ANALOG + 1;
 
 impl Source {
     const fn slot(self) -> usize {
@@ -30,6 +33,7 @@ impl Source {
             Source::Usart(index) => USARTS + index % 4,
             Source::Eeprom => EEPROM,
             Source::Watchdog => WATCHDOG,
+            Source::Analog => ANALOG,
         }
     }
 
@@ -39,7 +43,8 @@ impl Source {
             TIMERS..USARTS => Source::Timer(slot - TIMERS),
             USARTS..EEPROM => Source::Usart(slot - USARTS),
             EEPROM => Source::Eeprom,
-            _ => Source::Watchdog,
+            WATCHDOG => Source::Watchdog,
+            _ => Source::Analog,
         }
     }
 }

@@ -29,11 +29,12 @@ pub enum Input {
         /// The sender's rate [bit/s].
         baud: u32,
     },
-    /// The voltage on an analog input from now on.
+    /// The voltage on an analog input from now on; as a digital level, a half of the supply and above is high. A pin that is driven to a
+    /// level has the supply's voltage or none.
     Volts {
-        /// ADC0 to ADC15.
+        /// ADC0 to ADC15; 16 is the pin AREF.
         channel: u8,
-        /// Against ground [V].
+        /// Against ground [V], 0 to 5.
         volts: f64,
     },
     /// The chip is reset.

@@ -33,6 +33,23 @@ pub(super) struct System {
     control_open_until: u64,
 }
 
+/// What sleeps (table 11-2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sleep {
+    /// The CPU.
+    Idle,
+    /// The clock of most peripherals too.
+    QuietForAnalog,
+    /// All clocks, and the crystal.
+    PowerDown,
+    /// The same, but for timer 2 if it has a clock of its own.
+    PowerSave,
+    /// As power-down, but the crystal goes on.
+    Standby,
+    /// As power-save, but the crystal goes on.
+    ExtendedStandby,
+}
+
 /// The flag of MCUSR that tells of a reset.
 const fn flag(cause: Cause) -> u8 {
     match cause {
@@ -102,6 +119,18 @@ impl System {
 
     pub(super) fn pull_ups_disabled(&self) -> bool {
         self.control & PUD != 0
+    }
+
+    pub(super) fn sleep_mode(&self) -> Sleep {
+        match self.sleep_control >> 1 & 7 {
+            1 => Sleep::QuietForAnalog,
+            2 => Sleep::PowerDown,
+            3 => Sleep::PowerSave,
+            6 => Sleep::Standby,
+            7 => Sleep::ExtendedStandby,
+            // 4 and 5 are reserved.
+            _ => Sleep::Idle,
+        }
     }
 
     pub(super) fn sleep_enabled(&self) -> bool {

@@ -73,6 +73,9 @@ pub(crate) struct Timer {
     /// The PWM that was last told of each, and whether something of it may have changed.
     told: [Option<Pwm>; CHANNELS],
     duty_due: bool,
+    /// Flags that start a conversion, and those that were up when last looked at.
+    wanted: u8,
+    shown: u8,
 }
 
 /// All six after reset.
@@ -94,6 +97,8 @@ fn new(index: usize) -> Timer {
         driven: [None; CHANNELS],
         told: [None; CHANNELS],
         duty_due: false,
+        wanted: 0,
+        shown: 0,
     }
 }
 
@@ -166,7 +171,7 @@ impl Timer {
 
     /// What others notice: the channels whose matches count, or `None` if nothing is noticed at all.
     fn listened(&self) -> Option<u8> {
-        let waiting = self.enabled & !self.wave.flags;
+        let waiting = (self.enabled | self.wanted) & !self.wave.flags;
         let mut channels = 0;
         for (channel, flag) in MATCH.into_iter().enumerate().take(self.wave.channels) {
             if waiting & flag != 0 || self.wave.is_connected(channel) {
@@ -204,6 +209,10 @@ impl Timer {
             let requested = self.wave.flags & self.enabled & flag != 0;
             core.interrupts.set(vector, requested);
         }
+        if self.wave.flags & !self.shown & self.wanted != 0 {
+            core.triggered = Some(cycle);
+        }
+        self.shown = self.wave.flags;
         for channel in 0..self.wave.channels {
             let output = self
                 .wave
@@ -232,6 +241,16 @@ impl Timer {
                 self.told[channel] = pwm;
                 core.say(cycle, Event::Duty { pin, pwm });
             }
+        }
+    }
+
+    /// These flags start conversions from now on.
+    pub(crate) fn want(&mut self, core: &mut Core, flags: u8, cycle: u64) {
+        if flags != self.wanted {
+            self.catch_up(core, cycle);
+            self.wanted = flags;
+            self.shown = self.wave.flags;
+            self.reschedule(core);
         }
     }
 

@@ -1,0 +1,375 @@
+//! The analog-to-digital converter and the analog comparator (DS40002549, sections 25 and 26).
+//!
+//! A conversion begins at an edge of the converter's clock, samples its input 1.5 of its cycles later and ends after 13; the
+//! first one after switching on takes 12 more. A trigger resets the prescaler, and its conversion takes 13.5.
+
+mod inputs;
+
+use super::interrupts::vector;
+use super::ports::Pin;
+use super::schedule::Source;
+use super::{Core, SUPPLY_V};
+use inputs::Inputs;
+
+const ACSR: u16 = 0x50;
+const ADCL: u16 = 0x78;
+const ADCH: u16 = 0x79;
+const ADCSRA: u16 = 0x7A;
+const ADCSRB: u16 = 0x7B;
+const ADMUX: u16 = 0x7C;
+const DIDR2: u16 = 0x7D;
+const DIDR0: u16 = 0x7E;
+const DIDR1: u16 = 0x7F;
+
+/// ADCSRA.
+const ADEN: u8 = 0x80;
+const ADSC: u8 = 0x40;
+const ADATE: u8 = 0x20;
+const ADIF: u8 = 0x10;
+const ADIE: u8 = 0x08;
+const ADPS: u8 = 0x07;
+/// ADCSRB.
+const ACME: u8 = 0x40;
+const MUX5: u8 = 0x08;
+const ADTS: u8 = 0x07;
+/// ADMUX.
+const ADLAR: u8 = 0x20;
+/// ACSR.
+const ACD: u8 = 0x80;
+const ACBG: u8 = 0x40;
+const ACO: u8 = 0x20;
+const ACI: u8 = 0x10;
+const ACIE: u8 = 0x08;
+const ACIC: u8 = 0x04;
+
+const PORT_E: usize = 4;
+const PORT_F: usize = 5;
+const PORT_K: usize = 9;
+
+/// Cycles of the CPU by which a trigger is late.
+const TRIGGER_CYCLES: u64 = 3;
+
+/// What can start a conversion, in the order of ADTS.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Trigger {
+    Comparator,
+    External0,
+    /// A flag of timer 0 or 1.
+    Timer(usize, u8),
+}
+
+/// The analog input that is on a pin, if one is.
+pub(crate) fn channel(pin: Pin) -> Option<u8> {
+    match pin.port() {
+        PORT_F => Some(pin.bit()),
+        PORT_K => Some(8 + pin.bit()),
+        _ => None,
+    }
+}
+
+/// The pin that an analog input is on.
+pub(crate) fn pin(channel: u8) -> Option<Pin> {
+    match channel {
+        0..8 => Some(Pin::at(PORT_F, channel)),
+        8..16 => Some(Pin::at(PORT_K, channel - 8)),
+        _ => None,
+    }
+}
+
+/// A conversion on its way.
+#[derive(Clone, Copy, Debug)]
+struct Conversion {
+    /// When its input is sampled; `None` afterwards.
+    sample: Option<u64>,
+    end: u64,
+    references: u8,
+    mux: u8,
+    result: u16,
+}
+
+/// Converter and comparator.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Analog {
+    inputs: Inputs,
+    control_a: u8,
+    control_b: u8,
+    select: u8,
+    disabled_digital: [u8; 3],
+    flag: bool,
+    result: u16,
+    /// The low byte was read: the result stays until the high one is.
+    locked: bool,
+    /// The cycle from which the converter's clock counts.
+    origin: u64,
+    /// The next conversion is the first one.
+    first: bool,
+    conversion: Option<Conversion>,
+    comparator: u8,
+    /// The comparator's output.
+    higher: bool,
+    /// AIN0 and AIN1 as digital levels.
+    pins: [bool; 2],
+}
+
+impl Analog {
+    /// Starts over; what is connected stays.
+    pub(crate) fn reset(&mut self, core: &mut Core) {
+        let (inputs, pins) = (self.inputs, self.pins);
+        *self = Analog {
+            inputs,
+            pins,
+            ..Analog::default()
+        };
+        self.reschedule(core);
+    }
+
+    /// A voltage changes.
+    pub(crate) fn set_volts(&mut self, core: &mut Core, channel: u8, volts: f64, cycle: u64) {
+        self.inputs.set(channel, volts);
+        self.compare(core, cycle);
+    }
+
+    /// The comparator's pins AIN0 and AIN1 have these levels.
+    pub(crate) fn set_pins(&mut self, core: &mut Core, pins: [bool; 2], cycle: u64) {
+        if self.pins != pins {
+            self.pins = pins;
+            self.compare(core, cycle);
+        }
+    }
+
+    /// Cycles of the CPU in one of the converter.
+    fn divisor(&self) -> u64 {
+        1 << (self.control_a & ADPS).max(1)
+    }
+
+    fn mux(&self) -> u8 {
+        self.select & 0x1F | (self.control_b & MUX5) << 2
+    }
+
+    /// What starts conversions, if anything does.
+    pub(crate) fn trigger(&self) -> Option<Trigger> {
+        if self.control_a & (ADEN | ADATE) != ADEN | ADATE {
+            return None;
+        }
+        match self.control_b & ADTS {
+            0 => None,
+            1 => Some(Trigger::Comparator),
+            2 => Some(Trigger::External0),
+            3 => Some(Trigger::Timer(0, 0x02)),
+            4 => Some(Trigger::Timer(0, 0x01)),
+            5 => Some(Trigger::Timer(1, 0x04)),
+            6 => Some(Trigger::Timer(1, 0x01)),
+            _ => Some(Trigger::Timer(1, 0x20)),
+        }
+    }
+
+    fn runs_freely(&self) -> bool {
+        self.control_a & ADATE != 0 && self.control_b & ADTS == 0
+    }
+
+    pub(crate) fn read(&mut self, address: u16) -> u8 {
+        let [low, high] = if self.select & ADLAR != 0 {
+            self.result << 6
+        } else {
+            self.result
+        }
+        .to_le_bytes();
+        match address {
+            ADCL => {
+                self.locked = true;
+                low
+            }
+            ADCH => {
+                self.locked = false;
+                high
+            }
+            ADCSRA => {
+                let busy = if self.conversion.is_some() { ADSC } else { 0 };
+                let flag = if self.flag { ADIF } else { 0 };
+                self.control_a | busy | flag
+            }
+            ADCSRB => self.control_b,
+            ADMUX => self.select,
+            DIDR0 => self.disabled_digital[0],
+            DIDR1 => self.disabled_digital[1],
+            DIDR2 => self.disabled_digital[2],
+            ACSR => self.comparator | if self.higher { ACO } else { 0 },
+            _ => 0,
+        }
+    }
+
+    pub(crate) fn write(&mut self, core: &mut Core, address: u16, value: u8, cycle: u64) {
+        match address {
+            ADCSRA => self.write_control(value, cycle),
+            ADCSRB => self.control_b = value & (ACME | MUX5 | ADTS),
+            ADMUX => self.select = value,
+            DIDR0 => self.disabled_digital[0] = value,
+            DIDR1 => self.disabled_digital[1] = value & 3,
+            DIDR2 => self.disabled_digital[2] = value,
+            ACSR => {
+                let flag = self.comparator & ACI & !value;
+                self.comparator = value & !(ACO | ACI) | flag;
+            }
+            _ => {}
+        }
+        self.compare(core, cycle);
+        self.reschedule(core);
+    }
+
+    fn write_control(&mut self, value: u8, cycle: u64) {
+        let was_on = self.control_a & ADEN != 0;
+        self.control_a = value & (ADEN | ADATE | ADIE | ADPS);
+        self.flag &= value & ADIF == 0;
+        if value & ADEN == 0 {
+            self.conversion = None;
+        } else if !was_on {
+            self.origin = cycle;
+            self.first = true;
+        }
+        if value & ADEN != 0 && value & ADSC != 0 && self.conversion.is_none() {
+            self.start(cycle);
+        }
+    }
+
+    /// Sleep modes that quieten the chip start a conversion.
+    pub(crate) fn start_asleep(&mut self, core: &mut Core, cycle: u64) {
+        if self.control_a & ADEN != 0 && self.conversion.is_none() {
+            self.start(cycle);
+            self.reschedule(core);
+        }
+    }
+
+    fn start(&mut self, cycle: u64) {
+        let divisor = self.divisor();
+        let waited = (cycle + 1 - self.origin).div_ceil(divisor);
+        let extra = if self.first { 12 } else { 0 };
+        self.begin(self.origin + waited * divisor, 2 * extra + 3, 13 + extra);
+    }
+
+    /// A conversion whose clock starts at `start`: `sample` half cycles to its sample, `length` cycles to its end.
+    fn begin(&mut self, start: u64, sample: u64, length: u64) {
+        let divisor = self.divisor();
+        self.first = false;
+        self.conversion = Some(Conversion {
+            sample: Some(start + sample * divisor / 2),
+            end: start + length * divisor,
+            references: self.select >> 6,
+            mux: self.mux(),
+            result: 0,
+        });
+    }
+
+    /// The flag of the trigger was raised.
+    pub(crate) fn triggered(&mut self, core: &mut Core, cycle: u64) {
+        if self.conversion.is_some() {
+            return;
+        }
+        if self.first {
+            self.start(cycle);
+        } else {
+            self.origin = cycle + TRIGGER_CYCLES;
+            self.begin(self.origin, 4, 13);
+            let half = self.divisor() / 2;
+            if let Some(conversion) = &mut self.conversion {
+                conversion.end += half;
+            }
+        }
+        self.reschedule(core);
+    }
+
+    /// The sample or the end of the conversion is due.
+    pub(crate) fn happen(&mut self, core: &mut Core, cycle: u64) {
+        if let Some(conversion) = &mut self.conversion {
+            if conversion
+                .sample
+                .take_if(|sample| *sample <= cycle)
+                .is_some()
+            {
+                let (references, mux) = (conversion.references, conversion.mux);
+                conversion.result = self.inputs.convert(references, mux);
+            } else if conversion.end <= cycle {
+                let result = conversion.result;
+                self.finish(result, cycle);
+            }
+        }
+        self.reschedule(core);
+    }
+
+    fn finish(&mut self, result: u16, cycle: u64) {
+        if !self.locked {
+            self.result = result;
+        }
+        self.flag = true;
+        self.conversion = None;
+        if self.runs_freely() {
+            self.begin(cycle, 3, 13);
+        }
+    }
+
+    fn reschedule(&self, core: &mut Core) {
+        let next = self
+            .conversion
+            .map(|conversion| conversion.sample.unwrap_or(conversion.end));
+        core.schedule.set(Source::Analog, next);
+        let converted = self.flag && self.control_a & ADIE != 0;
+        core.interrupts.set(vector::CONVERTED, converted);
+        let compared = self.comparator & (ACI | ACIE) == ACI | ACIE;
+        core.interrupts.set(vector::COMPARED, compared);
+    }
+
+    /// The comparator looks at its inputs.
+    fn compare(&mut self, core: &mut Core, cycle: u64) {
+        let volts = |level: bool| if level { SUPPLY_V } else { 0.0 };
+        let positive = match self.comparator & ACBG {
+            0 => volts(self.pins[0]),
+            _ => self.inputs.single(0x1E).unwrap_or_default(),
+        };
+        let multiplexed = self.control_b & ACME != 0 && self.control_a & ADEN == 0;
+        let negative = if multiplexed {
+            let channel = self.mux() & 0x27;
+            self.inputs.single(channel).unwrap_or_default()
+        } else {
+            volts(self.pins[1])
+        };
+        let higher = self.comparator & ACD == 0 && positive > negative;
+        if higher == self.higher {
+            return;
+        }
+        self.higher = higher;
+        // ACIS: toggle, reserved, falling, rising.
+        let meant = match self.comparator & 3 {
+            2 => !higher,
+            3 => higher,
+            _ => true,
+        };
+        if self.comparator & ACD == 0 && meant {
+            let raised = self.comparator & ACI == 0;
+            self.comparator |= ACI;
+            if raised && self.trigger() == Some(Trigger::Comparator) {
+                self.triggered(core, cycle);
+            }
+        }
+        self.reschedule(core);
+    }
+
+    /// The comparator is to take the place of timer 1's capture pin.
+    pub(crate) fn captures(&self) -> bool {
+        self.comparator & ACIC != 0
+    }
+
+    /// Pins whose digital input is off: those of ports E, F and K.
+    pub(crate) fn disabled_digital(&self) -> [(usize, u8); 3] {
+        let [low, comparator, high] = self.disabled_digital;
+        [(PORT_E, comparator << 2), (PORT_F, low), (PORT_K, high)]
+    }
+
+    /// One of the two interrupts is entered.
+    pub(crate) fn acknowledge(&mut self, core: &mut Core, vector: u8) {
+        if vector == vector::CONVERTED {
+            self.flag = false;
+        } else {
+            self.comparator &= !ACI;
+        }
+        self.reschedule(core);
+    }
+}
