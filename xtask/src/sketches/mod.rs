@@ -14,7 +14,11 @@ use crate::test::{Stop, tools};
 use compiler::Compiler;
 
 /// Folders of sketches: each sketch is a folder with a file of its name.
-const FOLDERS: [&str; 2] = ["crates/emulator/tests/sketches", "examples/arduino"];
+const FOLDERS: [&str; 3] = [
+    "crates/emulator/tests/sketches",
+    "crates/scenario/tests/sketches",
+    "examples/arduino",
+];
 
 /// One of the images of a sketch with a choice at build time: what its name ends in, and the macros.
 type Variant = (&'static str, &'static [&'static str]);
