@@ -63,6 +63,11 @@ pub trait Io {
     /// SLEEP; says whether sleeping is enabled.
     fn sleep(&mut self, cycle: u64) -> bool;
 
+    /// The CPU wakes up; gives the cycles until its clock runs.
+    fn wake(&mut self, _: u64) -> u64 {
+        0
+    }
+
     /// WDR.
     fn reset_watchdog(&mut self, cycle: u64);
 

@@ -386,7 +386,7 @@ impl Cpu {
     fn sleep_on<I: Io>(&mut self, io: &mut I, until: u64) {
         if self.status.interrupts && io.pending().is_some() {
             self.sleeping = false;
-            self.cycle += WAKE_CYCLES;
+            self.cycle += io.wake(self.cycle) + WAKE_CYCLES;
         } else {
             let next = io.deadline(self.status.interrupts).max(self.cycle + 1);
             self.cycle = next.min(until);

@@ -85,6 +85,7 @@ impl Io for Devices {
             Owner::Analog => self.analog.read(address),
             Owner::Eeprom => self.eeprom.read(address, at.cycle),
             Owner::Watchdog => self.watchdog.read(at.cycle),
+            Owner::Power => self.power.read(address, at.cycle),
             Owner::System => self.system.read(address),
             Owner::Nobody => {
                 self.not_modelled(address, at, false);
@@ -114,6 +115,12 @@ impl Io for Devices {
             Owner::Watchdog => {
                 let held = self.system.watchdog_held();
                 self.watchdog.write(&mut self.core, value, held, at.cycle);
+            }
+            Owner::Power => {
+                if self.power.write(address, value, at.cycle) {
+                    self.not_modelled(address, at, true);
+                }
+                self.set_clocks(at.cycle);
             }
             Owner::System => self.write_system(address, value, at.cycle),
             Owner::Nobody => self.not_modelled(address, at, true),
@@ -194,10 +201,21 @@ impl Io for Devices {
         if !self.system.sleep_enabled() {
             return false;
         }
-        if self.system.sleep_mode() == Sleep::QuietForAnalog {
+        let mode = self.system.sleep_mode();
+        if mode == Sleep::QuietForAnalog {
             self.analog.start_asleep(&mut self.core, cycle);
         }
+        if mode != Sleep::Idle {
+            self.power.sleep(mode);
+            self.set_clocks(cycle);
+        }
         true
+    }
+
+    fn wake(&mut self, cycle: u64) -> u64 {
+        let delay = self.power.wake();
+        self.set_clocks(cycle + delay);
+        delay
     }
 
     fn reset_watchdog(&mut self, cycle: u64) {

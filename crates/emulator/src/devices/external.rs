@@ -73,10 +73,11 @@ impl External {
     }
 
     /// Levels of a port have changed: those in `levels`, to what they are in `ports` now.
-    pub(crate) fn changed(&mut self, port: usize, levels: u8, ports: &Ports) {
+    /// Edges of INT4 to INT7 are seen with the peripherals' clock only (section 15.1).
+    pub(crate) fn changed(&mut self, port: usize, levels: u8, ports: &Ports, clocked: bool) {
         let numbers = match port {
             PORT_D => 0..4,
-            PORT_E => 4..8,
+            PORT_E if clocked => 4..8,
             _ => 0..0,
         };
         for number in numbers {

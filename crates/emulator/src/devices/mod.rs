@@ -10,6 +10,7 @@ pub(crate) mod external;
 pub(crate) mod interrupts;
 mod map;
 pub mod ports;
+mod power;
 pub(crate) mod schedule;
 mod signal;
 mod system;
@@ -26,6 +27,7 @@ use eeprom::Eeprom;
 use external::External;
 use interrupts::Interrupts;
 use ports::{Change, Drive, Pin, Ports};
+use power::Power;
 use schedule::{Schedule, Source};
 pub use signal::{Cause, Event, Input, Level, Output, Pwm};
 use system::System;
@@ -116,7 +118,10 @@ pub struct Devices {
     analog: Analog,
     eeprom: Eeprom,
     watchdog: Watchdog,
+    power: Power,
     system: System,
+    /// The cycle in which the clock of the peripherals was stopped.
+    stopped_at: Option<u64>,
     /// Where the program starts after a reset [words].
     start: u32,
     inputs: VecDeque<(u64, Input)>,
@@ -134,7 +139,9 @@ impl Default for Devices {
             analog: Analog::default(),
             eeprom: Eeprom::default(),
             watchdog: Watchdog::default(),
+            power: Power::default(),
             system: System::default().after_reset(Cause::PowerOn),
+            stopped_at: None,
             start: 0,
             inputs: VecDeque::new(),
             unmodelled: Vec::new(),
@@ -285,6 +292,8 @@ impl Devices {
         }
         self.core.interrupts.clear();
         self.core.prescalers = Default::default();
+        self.power = Power::default();
+        self.stopped_at = None;
         self.external = External::default();
         for timer in &mut self.timers {
             timer.reset(&mut self.core, cycle);
@@ -306,6 +315,27 @@ impl Devices {
         self.core.say(cycle, Event::Reset(cause));
     }
 
+    /// Gives a clock to whom it is due, and takes it from the others.
+    fn set_clocks(&mut self, cycle: u64) {
+        if !self.power.io_runs() {
+            self.stopped_at.get_or_insert(cycle);
+        } else if let Some(stopped) = self.stopped_at.take() {
+            for prescaler in &mut self.core.prescalers {
+                prescaler.delay(cycle - stopped);
+            }
+        }
+        for (index, timer) in self.timers.iter_mut().enumerate() {
+            let runs = self.power.timer_runs(index);
+            timer.set_running(&mut self.core, runs, cycle);
+        }
+        for (index, usart) in self.usarts.iter_mut().enumerate() {
+            let runs = self.power.usart_runs(index);
+            usart.set_running(&mut self.core, runs, cycle);
+        }
+        let runs = self.power.analog_runs();
+        self.analog.set_running(&mut self.core, runs, cycle);
+    }
+
     /// Lets those who listen to pins hear what changed, until nothing changes any more.
     fn settle(&mut self) {
         while let Some((change, cycle)) = self.core.changes.pop_front() {
@@ -319,7 +349,9 @@ impl Devices {
             if change.levels != 0 {
                 let ports = &self.core.ports;
                 let raised = self.external.int0_flag();
-                self.external.changed(change.port, change.levels, ports);
+                let clocked = self.power.io_runs();
+                self.external
+                    .changed(change.port, change.levels, ports, clocked);
                 self.external.request(&mut self.core.interrupts, ports);
                 if !raised
                     && self.external.int0_flag()

@@ -109,6 +109,8 @@ pub(crate) struct Analog {
     higher: bool,
     /// AIN0 and AIN1 as digital levels.
     pins: [bool; 2],
+    /// The cycle in which the converter lost its clock.
+    stopped: Option<u64>,
 }
 
 impl Analog {
@@ -135,6 +137,25 @@ impl Analog {
             self.pins = pins;
             self.compare(core, cycle);
         }
+    }
+
+    /// The converter has a clock from now on, or has none.
+    pub(crate) fn set_running(&mut self, core: &mut Core, runs: bool, cycle: u64) {
+        match self.stopped {
+            None if !runs => self.stopped = Some(cycle),
+            Some(stopped) if runs => {
+                self.stopped = None;
+                self.origin += cycle - stopped;
+                if let Some(conversion) = &mut self.conversion {
+                    conversion.end += cycle - stopped;
+                    if let Some(sample) = &mut conversion.sample {
+                        *sample += cycle - stopped;
+                    }
+                }
+            }
+            _ => return,
+        }
+        self.reschedule(core);
     }
 
     /// Cycles of the CPU in one of the converter.
@@ -307,9 +328,8 @@ impl Analog {
     }
 
     fn reschedule(&self, core: &mut Core) {
-        let next = self
-            .conversion
-            .map(|conversion| conversion.sample.unwrap_or(conversion.end));
+        let running = self.conversion.filter(|_| self.stopped.is_none());
+        let next = running.map(|conversion| conversion.sample.unwrap_or(conversion.end));
         core.schedule.set(Source::Analog, next);
         let converted = self.flag && self.control_a & ADIE != 0;
         core.interrupts.set(vector::CONVERTED, converted);

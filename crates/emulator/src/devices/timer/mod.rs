@@ -36,6 +36,11 @@ pub(crate) struct Prescaler {
 }
 
 impl Prescaler {
+    /// Its clock stood for some cycles.
+    pub(crate) fn delay(&mut self, cycles: u64) {
+        self.reset += cycles;
+    }
+
     /// Its ticks in front of `divisor` from the reset to `cycle`.
     fn ticks(self, divisor: u64, cycle: u64) -> u64 {
         (cycle - self.reset) / divisor
@@ -76,6 +81,8 @@ pub(crate) struct Timer {
     /// Flags that start a conversion, and those that were up when last looked at.
     wanted: u8,
     shown: u8,
+    /// It has no clock.
+    stopped: bool,
 }
 
 /// All six after reset.
@@ -99,6 +106,7 @@ fn new(index: usize) -> Timer {
         duty_due: false,
         wanted: 0,
         shown: 0,
+        stopped: false,
     }
 }
 
@@ -139,6 +147,7 @@ impl Timer {
         let prescaler = self.prescaler(core);
         if let Clock::Divided(divisor) = self.clock
             && !prescaler.held
+            && !self.stopped
             && cycle > self.reckoned
         {
             let before = prescaler.ticks(divisor, self.reckoned);
@@ -185,7 +194,7 @@ impl Timer {
     fn reschedule(&self, core: &mut Core) {
         let prescaler = self.prescaler(core);
         let next = match (self.clock, self.listened()) {
-            (Clock::Divided(divisor), Some(channels)) if !prescaler.held => {
+            (Clock::Divided(divisor), Some(channels)) if !prescaler.held && !self.stopped => {
                 let tick =
                     prescaler.ticks(divisor, self.reckoned) + self.wave.quiet_ticks(channels);
                 Some(prescaler.reset + tick * divisor)
@@ -241,6 +250,15 @@ impl Timer {
                 self.told[channel] = pwm;
                 core.say(cycle, Event::Duty { pin, pwm });
             }
+        }
+    }
+
+    /// It has a clock from now on, or has none.
+    pub(crate) fn set_running(&mut self, core: &mut Core, runs: bool, cycle: u64) {
+        if runs == self.stopped {
+            self.catch_up(core, cycle);
+            self.stopped = !runs;
+            self.reschedule(core);
         }
     }
 
@@ -362,6 +380,9 @@ impl Timer {
     /// A pin has changed: the timer's clock, or its capture.
     pub(crate) fn pin_changed(&mut self, core: &mut Core, pin: Pin, level: bool, cycle: u64) {
         let place = self.place();
+        if self.stopped {
+            return;
+        }
         if place.clock == Some(pin) && self.clock == (Clock::Pin { rising: level }) {
             self.catch_up(core, cycle);
             if self.wave.tick(1) {

@@ -53,6 +53,8 @@ pub(crate) struct Usart {
     transmitter: Transmitter,
     receiver: Receiver,
     line: Line,
+    /// The cycle in which it lost its clock.
+    stopped: Option<u64>,
 }
 
 /// All four after reset.
@@ -77,6 +79,7 @@ fn new(index: usize) -> Usart {
         transmitter: Transmitter::default(),
         receiver: Receiver::default(),
         line: Line::default(),
+        stopped: None,
     }
 }
 
@@ -127,6 +130,9 @@ impl Usart {
 
     /// Everything of transmitter and receiver that is due.
     fn catch_up(&mut self, core: &mut Core, cycle: u64) {
+        if self.stopped.is_some() {
+            return;
+        }
         while let Some(at) = self.transmitter.next(self.rate)
             && at <= cycle
         {
@@ -160,13 +166,32 @@ impl Usart {
 
     /// The RXD pin, if it is that, has changed.
     pub(crate) fn pin_changed(&mut self, core: &mut Core, pin: Pin, cycle: u64) {
-        if pin == self.place().receive && self.listens() {
+        if pin == self.place().receive && self.listens() && self.stopped.is_none() {
             let (level, accept) = (self.line_level(core), self.acceptor());
             self.receiver
                 .change(level, cycle, self.format, self.rate, accept);
             self.request(core);
             self.reschedule(core);
         }
+    }
+
+    /// It has a clock from now on, or has none.
+    pub(crate) fn set_running(&mut self, core: &mut Core, runs: bool, cycle: u64) {
+        match self.stopped {
+            None if !runs => {
+                self.catch_up(core, cycle);
+                self.stopped = Some(cycle);
+            }
+            Some(stopped) if runs => {
+                self.stopped = None;
+                let cycles = cycle - stopped;
+                self.rate.origin += cycles;
+                self.transmitter.delay(cycles);
+                self.receiver.delay(cycles, self.line_level(core));
+            }
+            _ => return,
+        }
+        self.reschedule(core);
     }
 
     /// The level that the receiver sees; a line that nothing drives counts as idle.
@@ -176,8 +201,13 @@ impl Usart {
     }
 
     fn reschedule(&self, core: &mut Core) {
-        let transmitter = self.transmitter.next(self.rate);
-        let receiver = self.receiver.next(self.format, self.rate);
+        let (transmitter, receiver) = match self.stopped {
+            Some(_) => (None, None),
+            None => (
+                self.transmitter.next(self.rate),
+                self.receiver.next(self.format, self.rate),
+            ),
+        };
         let next = [self.line.next(), transmitter, receiver];
         core.schedule
             .set(Source::Usart(self.index), next.into_iter().flatten().min());

@@ -79,6 +79,15 @@ impl Receiver {
         self.sampled = self.sampled.max(cycle);
     }
 
+    /// Its clock stood for some cycles; the line has this level now.
+    pub(super) fn delay(&mut self, cycles: u64, level: bool) {
+        self.sampled += cycles;
+        self.level = level;
+        if let Phase::Frame { first } = &mut self.phase {
+            *first += cycles;
+        }
+    }
+
     /// The character that is read next.
     pub(super) fn first(&self) -> Option<Received> {
         (self.filled > 0).then_some(self.buffer[0])

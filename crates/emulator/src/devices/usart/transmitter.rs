@@ -122,6 +122,13 @@ impl Transmitter {
         Some(Step::Sent(data))
     }
 
+    /// Its clock stood for some cycles.
+    pub(super) fn delay(&mut self, cycles: u64) {
+        if let Some(frame) = &mut self.frame {
+            frame.start += cycles;
+        }
+    }
+
     /// The rate changes at `cycle`: the bit that is going out lasts a whole one of the new kind from there.
     pub(super) fn change_rate(&mut self, from: Rate, to: Rate, cycle: u64) {
         if let Some(frame) = &mut self.frame {
