@@ -2,7 +2,7 @@
 
 use crate::cpu::{Cpu, Stopped};
 use crate::devices::ports::Pin;
-use crate::devices::{Devices, Input, Level, Output, Unmodelled};
+use crate::devices::{Devices, Fuses, Input, Level, Output, Unmodelled};
 use crate::image::{EEPROM_BYTES, Image};
 use crate::observe::{self, Observers};
 
@@ -15,13 +15,22 @@ pub struct Chip {
 }
 
 impl Chip {
-    /// A chip after power-on.
+    /// A chip after power-on, with the fuses of a Mega. Without anything in the boot section it starts at 0, where a
+    /// boot loader would go on.
     pub fn new(image: &Image) -> Chip {
+        Chip::with_fuses(image, Fuses::default())
+    }
+
+    /// The same with other fuses.
+    pub fn with_fuses(image: &Image, fuses: Fuses) -> Chip {
         let mut cpu = Cpu::new(image.flash());
         if let Some(end) = image.data_end() {
             cpu.set_stack_floor(end);
         }
         let mut devices = Devices::default();
+        let boot = image.flash().get(2 * fuses.boot_start() as usize..);
+        let boot = boot.is_some_and(|boot| boot.iter().take(2).any(|byte| *byte != 0xFF));
+        cpu.set_program_counter(devices.set_fuses(fuses, boot));
         let eeprom = image.eeprom();
         let fits = eeprom.len().min(EEPROM_BYTES);
         devices.eeprom_mut()[..fits].copy_from_slice(&eeprom[..fits]);

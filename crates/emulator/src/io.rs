@@ -23,6 +23,17 @@ pub enum Demand {
     },
 }
 
+/// What SPM does to the flash.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Stored {
+    /// Nothing, or nothing yet.
+    Nothing,
+    /// A page is erased, from this word on.
+    Erased(u32),
+    /// A page is written, from this word on: bits are cleared where these words have zeros.
+    Written(u32, Box<[u16; 128]>),
+}
+
 /// The peripherals as the CPU sees them. Addresses are those of the data space, 0x20 to 0x1FF, and beyond SRAM.
 pub trait Io {
     /// Reads a register.
@@ -71,6 +82,11 @@ pub trait Io {
     /// WDR.
     fn reset_watchdog(&mut self, cycle: u64);
 
-    /// SPM at a byte address with r1:r0; gives the words of flash that change now.
-    fn store_program(&mut self, address: u32, value: u16, at: Access) -> Vec<(u32, u16)>;
+    /// SPM at a byte address with r1:r0.
+    fn store_program(&mut self, address: u32, value: u16, at: Access) -> Stored;
+
+    /// LPM at a byte address, once a program has written SPMCSR: what it reads there if that is not the program.
+    fn load_program(&mut self, _: u32, _: Access) -> Option<u8> {
+        None
+    }
 }

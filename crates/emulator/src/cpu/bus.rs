@@ -2,12 +2,13 @@
 
 use super::{Cpu, FLASH_BYTES, SRAM_BYTES, SRAM_START};
 use crate::decode::FLASH_WORDS;
-use crate::io::{Access, Io};
+use crate::io::{Access, Io, Stored};
 use crate::status::Status;
 use crate::verdict::Verdict;
 
 const RAMPZ: u16 = 0x5B;
 const EIND: u16 = 0x5C;
+const SPMCSR: u16 = 0x57;
 const SPL: u16 = 0x5D;
 const SPH: u16 = 0x5E;
 const SREG: u16 = 0x5F;
@@ -104,7 +105,10 @@ impl Cpu {
                 self.status = Status::from_bits(value);
                 self.shadow |= self.status.interrupts && !enabled_before;
             }
-            _ => io.write(address, value, at),
+            _ => {
+                self.programming |= address == SPMCSR;
+                io.write(address, value, at);
+            }
         }
     }
 
@@ -176,8 +180,36 @@ impl Cpu {
         u32::from_le_bytes([low, middle, high, 0]) % FLASH_WORDS as u32
     }
 
+    /// What LPM reads: fuses and signature too, once the program has asked for something like it.
     #[inline(always)]
-    pub(super) fn program_byte(&self, address: u32) -> u8 {
+    pub(super) fn load_program<I: Io>(&mut self, io: &mut I, address: u32, at: Access) -> u8 {
+        if self.programming
+            && let Some(value) = io.load_program(address, at)
+        {
+            return value;
+        }
+        self.program_byte(address)
+    }
+
+    /// SPM has changed the flash.
+    #[cold]
+    pub(super) fn program(&mut self, stored: Stored) {
+        match stored {
+            Stored::Nothing => {}
+            Stored::Erased(page) => {
+                (page..page + 128).for_each(|word| self.write_flash(word, 0xFFFF))
+            }
+            Stored::Written(page, words) => {
+                for (word, value) in (page..).zip(*words) {
+                    let value = value & self.flash_word(word);
+                    self.write_flash(word, value);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn program_byte(&self, address: u32) -> u8 {
         self.flash[address as usize % FLASH_BYTES]
     }
 }

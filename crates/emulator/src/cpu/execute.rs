@@ -196,7 +196,7 @@ impl Cpu {
                 }
                 Code::Lpm | Code::Elpm => {
                     let address = self.program_pointer(op.code == Code::Elpm);
-                    self.registers[a] = self.program_byte(address);
+                    self.registers[a] = self.load_program(io, address, at!(3));
                     cycles = 3;
                 }
                 Code::LpmInc | Code::ElpmInc => {
@@ -207,16 +207,14 @@ impl Cpu {
                     if extended {
                         self.rampz = (next >> 16) as u8 & 3;
                     }
-                    self.registers[a] = self.program_byte(address);
+                    self.registers[a] = self.load_program(io, address, at!(3));
                     cycles = 3;
                 }
                 Code::Spm => {
                     let address = self.program_pointer(true);
                     let value = self.pair(0);
-                    let held = io.store_program(address, value, at!(1));
-                    for (word, value) in held {
-                        self.write_flash(word, value);
-                    }
+                    let stored = io.store_program(address, value, at!(1));
+                    self.program(stored);
                     look_up!();
                 }
                 Code::Push => {

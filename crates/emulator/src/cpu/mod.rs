@@ -98,6 +98,8 @@ pub struct Cpu {
     /// The stack is the one that ends there.
     stack_known: bool,
     sleeping: bool,
+    /// SPMCSR was written: LPM may read something else than the program.
+    programming: bool,
     /// The next instruction runs before any interrupt.
     shadow: bool,
     verdict: Option<Verdict>,
@@ -135,6 +137,7 @@ impl Cpu {
             stack_floor: SRAM_START,
             stack_known: true,
             sleeping: false,
+            programming: false,
             shadow: false,
             verdict: None,
         };

@@ -6,10 +6,7 @@ use super::map::{Owner, is_flags, owner};
 use super::ports::{self, Change};
 use super::system::Sleep;
 use super::{Core, Devices, Unmodelled, system, timer, usart};
-use crate::io::{Access, Demand, Io};
-
-/// Start of the largest boot section [words], as the fuses are shipped.
-const BOOT_WORDS: u32 = 0x1_F000;
+use crate::io::{Access, Demand, Io, Stored};
 
 impl Devices {
     fn not_modelled(&mut self, address: u16, at: Access, written: bool) {
@@ -85,6 +82,7 @@ impl Io for Devices {
             Owner::Analog => self.analog.read(address),
             Owner::Eeprom => self.eeprom.read(address, at.cycle),
             Owner::Watchdog => self.watchdog.read(at.cycle),
+            Owner::Programming => self.programming.read(at.cycle),
             Owner::Power => self.power.read(address, at.cycle),
             Owner::System => self.system.read(address),
             Owner::Nobody => {
@@ -116,6 +114,7 @@ impl Io for Devices {
                 let held = self.system.watchdog_held();
                 self.watchdog.write(&mut self.core, value, held, at.cycle);
             }
+            Owner::Programming => self.programming.write(&mut self.core, value, at.cycle),
             Owner::Power => {
                 if self.power.write(address, value, at.cycle) {
                     self.not_modelled(address, at, true);
@@ -190,7 +189,7 @@ impl Io for Devices {
 
     fn vector_base(&self) -> u32 {
         if self.system.vectors_in_boot() {
-            BOOT_WORDS
+            self.programming.fuses.boot_start()
         } else {
             0
         }
@@ -223,7 +222,13 @@ impl Io for Devices {
         self.watchdog.restart(&mut self.core, cycle);
     }
 
-    fn store_program(&mut self, _: u32, _: u16, _: Access) -> Vec<(u32, u16)> {
-        Vec::new()
+    fn store_program(&mut self, address: u32, value: u16, at: Access) -> Stored {
+        self.advance(at.cycle);
+        self.programming.store(&mut self.core, address, value, at)
+    }
+
+    fn load_program(&mut self, address: u32, at: Access) -> Option<u8> {
+        self.advance(at.cycle);
+        self.programming.load(address, at.cycle)
     }
 }

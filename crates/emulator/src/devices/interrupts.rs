@@ -8,6 +8,7 @@ pub(crate) mod vector {
     pub(crate) const COMPARED: u8 = 28;
     pub(crate) const CONVERTED: u8 = 29;
     pub(crate) const EEPROM_READY: u8 = 30;
+    pub(crate) const PROGRAMMED: u8 = 40;
 }
 
 /// The requested interrupts.

@@ -13,6 +13,7 @@ pub(super) enum Owner {
     Analog,
     Watchdog,
     Power,
+    Programming,
     System,
     /// Nothing, or nothing that is modelled.
     Nobody,
@@ -29,6 +30,7 @@ pub(super) const fn owner(address: u16) -> Owner {
         0x43 => Owner::TimerPrescalers,
         0x44..=0x48 => Owner::Timer(0),
         0x50 | 0x78..=0x7F => Owner::Analog,
+        0x57 => Owner::Programming,
         0x60 => Owner::Watchdog,
         0x61 | 0x64..=0x66 => Owner::Power,
         0x6E..=0x73 => Owner::Timer((address - 0x6E) as usize),

@@ -11,6 +11,7 @@ pub(crate) mod interrupts;
 mod map;
 pub mod ports;
 mod power;
+mod programming;
 pub(crate) mod schedule;
 mod signal;
 mod system;
@@ -28,6 +29,8 @@ use external::External;
 use interrupts::Interrupts;
 use ports::{Change, Drive, Pin, Ports};
 use power::Power;
+pub use programming::Fuses;
+use programming::Programming;
 use schedule::{Schedule, Source};
 pub use signal::{Cause, Event, Input, Level, Output, Pwm};
 use system::System;
@@ -119,6 +122,7 @@ pub struct Devices {
     eeprom: Eeprom,
     watchdog: Watchdog,
     power: Power,
+    programming: Programming,
     system: System,
     /// The cycle in which the clock of the peripherals was stopped.
     stopped_at: Option<u64>,
@@ -140,6 +144,7 @@ impl Default for Devices {
             eeprom: Eeprom::default(),
             watchdog: Watchdog::default(),
             power: Power::default(),
+            programming: Programming::default(),
             system: System::default().after_reset(Cause::PowerOn),
             stopped_at: None,
             start: 0,
@@ -203,6 +208,17 @@ impl Devices {
         self.core.ports.drive(pin)
     }
 
+    /// Programs the fuses; `boot` if there is a program in the boot section. Gives where a reset leads [words].
+    pub(crate) fn set_fuses(&mut self, fuses: Fuses, boot: bool) -> u32 {
+        self.programming.fuses = fuses;
+        self.start = if fuses.starts_in_boot() && boot {
+            fuses.boot_start()
+        } else {
+            0
+        };
+        self.start
+    }
+
     /// What the EEPROM holds.
     pub fn eeprom(&self) -> &[u8; EEPROM_BYTES] {
         &self.eeprom.bytes
@@ -235,6 +251,7 @@ impl Devices {
             Source::Timer(index) => self.timers[index].happen(&mut self.core, cycle),
             Source::Usart(index) => self.usarts[index].happen(&mut self.core, cycle),
             Source::Eeprom => self.eeprom.happen(&mut self.core),
+            Source::Programming => self.programming.happen(&mut self.core),
             Source::Analog => self.analog.happen(&mut self.core, cycle),
             Source::Watchdog => {
                 if self.watchdog.happen(&mut self.core, cycle) == TimeOut::Reset {
@@ -293,6 +310,7 @@ impl Devices {
         self.core.interrupts.clear();
         self.core.prescalers = Default::default();
         self.power = Power::default();
+        self.programming.reset(&mut self.core);
         self.stopped_at = None;
         self.external = External::default();
         for timer in &mut self.timers {

@@ -15,6 +15,8 @@ pub(crate) enum Source {
     Watchdog,
     /// A conversion's sample or end.
     Analog,
+    /// A page of flash is erased or written.
+    Programming,
 }
 
 /// Slots of the timers and of the USARTs.
@@ -23,7 +25,8 @@ const USARTS: usize = TIMERS + 6;
 const EEPROM: usize = USARTS + 4;
 const WATCHDOG: usize = EEPROM + 1;
 const ANALOG: usize = WATCHDOG + 1;
-const COUNT: usize = ANALOG + 1;
+const PROGRAMMING: usize = ANALOG + 1;
+const COUNT: usize = PROGRAMMING + 1;
 
 impl Source {
     const fn slot(self) -> usize {
@@ -34,6 +37,7 @@ impl Source {
             Source::Eeprom => EEPROM,
             Source::Watchdog => WATCHDOG,
             Source::Analog => ANALOG,
+            Source::Programming => PROGRAMMING,
         }
     }
 
@@ -44,7 +48,8 @@ impl Source {
             USARTS..EEPROM => Source::Usart(slot - USARTS),
             EEPROM => Source::Eeprom,
             WATCHDOG => Source::Watchdog,
-            _ => Source::Analog,
+            ANALOG => Source::Analog,
+            _ => Source::Programming,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The little that a test program needs around the CPU: a timer that counts cycles, and a line out.
 
-use rumbo_emulator::io::{Access, Io};
+use rumbo_emulator::io::{Access, Io, Stored};
 
 pub(crate) const TCNT1L: u16 = 0x84;
 pub(crate) const TCNT1H: u16 = 0x85;
@@ -81,7 +81,7 @@ impl Io for Bench {
 
     fn reset_watchdog(&mut self, _: u64) {}
 
-    fn store_program(&mut self, _: u32, _: u16, _: Access) -> Vec<(u32, u16)> {
-        Vec::new()
+    fn store_program(&mut self, _: u32, _: u16, _: Access) -> Stored {
+        Stored::Nothing
     }
 }

@@ -1,0 +1,224 @@
+//! Self-programming: SPM, the page buffer, fuses and signature as a program reads them (DS40002549, section 29).
+//!
+//! SPM works from the boot section only, within four cycles after SPMCSR said what for. While a page outside of the last 8 KB is
+//! erased or written the program goes on, but cannot use that part of flash; for the others the CPU stands.
+
+use super::Core;
+use super::interrupts::vector;
+use super::schedule::Source;
+use crate::io::{Access, Stored};
+
+const SPMIE: u8 = 0x80;
+const RWWSB: u8 = 0x40;
+const SIGRD: u8 = 0x20;
+const RWWSRE: u8 = 0x10;
+const BLBSET: u8 = 0x08;
+const PGWRT: u8 = 0x04;
+const PGERS: u8 = 0x02;
+const SPMEN: u8 = 0x01;
+
+/// Cycles in which SPM must follow, and LPM that reads fuses or signature.
+const OPEN_CYCLES: u64 = 4;
+/// Erasing or writing a page: 4.5 ms (table 29-11).
+const PAGE_CYCLES: u64 = 72_000;
+/// Words of a page.
+pub(crate) const PAGE_WORDS: usize = 128;
+/// Start of the section that the CPU cannot run beside its programming [words].
+const NO_READ_WHILE_WRITE: u32 = 0x1_F000;
+/// The signature of the ATmega2560.
+const SIGNATURE: [u8; 3] = [0x1E, 0x98, 0x01];
+/// Where the signature row has the calibration of the oscillator, and what it is there.
+const CALIBRATION: (u32, u8) = (1, 0x8D);
+
+/// What the fuses and lock bits are programmed to; zeros are programmed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fuses {
+    /// Clock source, start-up time.
+    pub low: u8,
+    /// BOOTRST (bit 0), BOOTSZ (bits 1 and 2), WDTON (bit 4), EESAVE, SPIEN, JTAGEN, OCDEN.
+    pub high: u8,
+    /// Brown-out detection.
+    pub extended: u8,
+    /// Lock bits.
+    pub lock: u8,
+}
+
+impl Default for Fuses {
+    /// As a Mega is delivered: crystal, boot section of 8 KB with the reset in it.
+    fn default() -> Fuses {
+        Fuses {
+            low: 0xFF,
+            high: 0xD8,
+            extended: 0xFD,
+            lock: 0xCF,
+        }
+    }
+}
+
+impl Fuses {
+    /// Where the boot section starts [words].
+    pub const fn boot_start(self) -> u32 {
+        0x2_0000 - (4096 >> (self.high >> 1 & 3))
+    }
+
+    /// A reset leads to the boot section.
+    pub const fn starts_in_boot(self) -> bool {
+        self.high & 1 == 0
+    }
+}
+
+/// Registers and buffer.
+#[derive(Clone, Debug)]
+pub(super) struct Programming {
+    pub(super) fuses: Fuses,
+    control: u8,
+    /// Until when SPM and LPM are what SPMCSR said.
+    open_until: u64,
+    /// A page is being erased or written.
+    busy: bool,
+    buffer: [Option<u16>; PAGE_WORDS],
+}
+
+impl Default for Programming {
+    fn default() -> Programming {
+        Programming {
+            fuses: Fuses::default(),
+            control: 0,
+            open_until: 0,
+            busy: false,
+            buffer: [None; PAGE_WORDS],
+        }
+    }
+}
+
+impl Programming {
+    /// Starts over; fuses stay.
+    pub(super) fn reset(&mut self, core: &mut Core) {
+        *self = Programming {
+            fuses: self.fuses,
+            ..Programming::default()
+        };
+        core.schedule.set(Source::Programming, None);
+    }
+
+    fn is_open(&self, cycle: u64) -> bool {
+        self.busy || self.control & SPMEN != 0 && cycle <= self.open_until
+    }
+
+    pub(super) fn read(&self, cycle: u64) -> u8 {
+        let lasting = self.control & (SPMIE | RWWSB);
+        if self.is_open(cycle) {
+            self.control
+        } else {
+            lasting
+        }
+    }
+
+    pub(super) fn write(&mut self, core: &mut Core, value: u8, cycle: u64) {
+        if self.busy {
+            return;
+        }
+        self.control = value & !RWWSB | self.control & RWWSB;
+        self.open_until = cycle + OPEN_CYCLES;
+        self.request(core);
+    }
+
+    fn request(&self, core: &mut Core) {
+        let ready = self.control & SPMIE != 0 && !self.busy;
+        core.interrupts.set(vector::PROGRAMMED, ready);
+    }
+
+    /// SPM at a byte address.
+    pub(super) fn store(
+        &mut self,
+        core: &mut Core,
+        address: u32,
+        value: u16,
+        at: Access,
+    ) -> Stored {
+        let from_boot = at.program_counter >= self.fuses.boot_start();
+        if self.busy || !from_boot || !self.is_open(at.cycle) {
+            return Stored::Nothing;
+        }
+        let word = address / 2;
+        let page = word / PAGE_WORDS as u32 * PAGE_WORDS as u32;
+        let command = self.control & (SIGRD | RWWSRE | BLBSET | PGWRT | PGERS | SPMEN);
+        self.control &= !(SIGRD | RWWSRE | BLBSET | PGWRT | PGERS | SPMEN);
+        match command {
+            SPMEN => {
+                // A word of the buffer is written once.
+                let place = &mut self.buffer[word as usize % PAGE_WORDS];
+                place.get_or_insert(value);
+                Stored::Nothing
+            }
+            0x03 => {
+                self.begin(core, command, page, at.cycle);
+                Stored::Erased(page)
+            }
+            0x05 => {
+                self.begin(core, command, page, at.cycle);
+                let words = self.buffer.map(|word| word.unwrap_or(0xFFFF));
+                self.buffer = [None; PAGE_WORDS];
+                Stored::Written(page, Box::new(words))
+            }
+            0x11 => {
+                self.control &= !RWWSB;
+                self.buffer = [None; PAGE_WORDS];
+                Stored::Nothing
+            }
+            0x09 => {
+                // Lock bits can only be programmed.
+                self.fuses.lock &= value.to_le_bytes()[0] | 0xC3;
+                Stored::Nothing
+            }
+            _ => Stored::Nothing,
+        }
+    }
+
+    fn begin(&mut self, core: &mut Core, command: u8, page: u32, cycle: u64) {
+        if page >= NO_READ_WHILE_WRITE {
+            core.stall(PAGE_CYCLES);
+            return;
+        }
+        self.busy = true;
+        self.control |= command | RWWSB;
+        core.schedule
+            .set(Source::Programming, Some(cycle + PAGE_CYCLES));
+        self.request(core);
+    }
+
+    /// The page is done.
+    pub(super) fn happen(&mut self, core: &mut Core) {
+        self.busy = false;
+        self.control &= SPMIE | RWWSB;
+        core.schedule.set(Source::Programming, None);
+        self.request(core);
+    }
+
+    /// What LPM reads at a byte address in place of the program.
+    pub(super) fn load(&mut self, address: u32, cycle: u64) -> Option<u8> {
+        let command = self.control & (SIGRD | BLBSET);
+        if !self.busy && self.is_open(cycle) && command != 0 {
+            self.control &= !(SIGRD | BLBSET | SPMEN);
+            let index = address & 7;
+            return Some(if command & BLBSET != 0 {
+                let Fuses {
+                    low,
+                    high,
+                    extended,
+                    lock,
+                } = self.fuses;
+                [low, lock, extended, high][index as usize & 3]
+            } else if index == CALIBRATION.0 {
+                CALIBRATION.1
+            } else {
+                let byte = SIGNATURE.get(index as usize / 2);
+                byte.copied()
+                    .filter(|_| index.is_multiple_of(2))
+                    .unwrap_or(0xFF)
+            });
+        }
+        let held = self.control & RWWSB != 0 && address / 2 < NO_READ_WHILE_WRITE;
+        held.then_some(0xFF)
+    }
+}
