@@ -5,6 +5,9 @@
  */
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
+import { mkdtempSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { createInterface } from 'node:readline';
 import { request } from 'node:http';
 import { after, before, test } from 'node:test';
@@ -35,7 +38,7 @@ const complaints = [];
 before(async () => {
   const program = process.env['RUMBO_BIN'];
   assert.ok(program, 'RUMBO_BIN names the program to test');
-  lab = spawn(program, ['lab', '--no-browser', '--port', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
+  lab = spawn(program, ['lab', '--no-browser', '--port', '0', '--out', mkdtempSync(join(tmpdir(), 'rumbo-'))], { stdio: ['ignore', 'pipe', 'inherit'] });
   assert.ok(lab.stdout);
   for await (const line of createInterface({ input: lab.stdout })) {
     const found = line.match(/http:\/\/\S+/);

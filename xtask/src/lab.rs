@@ -19,10 +19,13 @@ pub(crate) struct Lab {
 }
 
 impl Lab {
-    /// Starts `command` with `--no-browser --port 0` added and waits for the address it prints.
+    /// Starts `command` with `--no-browser --port 0` and a folder for logs added and waits for the address it prints.
     pub(crate) fn start(mut command: Command) -> Result<Self, String> {
+        // Not among the logs of whoever tests.
+        let logs = std::env::temp_dir().join("rumbo-xtask-logs");
         command
-            .args(["--no-browser", "--port", "0"])
+            .args(["--no-browser", "--port", "0", "--out"])
+            .arg(logs)
             .stdin(Stdio::null())
             .stdout(Stdio::piped());
         let mut child = command

@@ -38,6 +38,8 @@ pub(crate) enum Command {
     Calibrate(CalibrateArgs),
     /// Check a CSV of the original program and convert it to a log (MCAP)
     Import(ImportArgs),
+    /// Run a recorded simulation again and compare it bit for bit
+    Rerun(RerunArgs),
     /// List modes, scenarios, worlds, rigs, robots and parameters
     List(ListArgs),
 }
@@ -75,6 +77,9 @@ pub(crate) struct LabArgs {
     /// Seed of everything random
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
+    /// Folder for the log of each run; made if need be [default: rumbo/logs in the user's data folder]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 /// Options of `rumbo run`.
@@ -122,7 +127,7 @@ pub(crate) struct RunArgs {
     /// Parameter of the control core or the plant (`rumbo list`); may be repeated
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
     pub(crate) params: Vec<(String, f64)>,
-    /// Folder for the results of each run; made if need be
+    /// Folder for the log, the result and the true signals of each run; made if need be
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// One JSON object per run on stdout
@@ -228,6 +233,23 @@ pub(crate) struct ImportArgs {
     pub(crate) json: bool,
 }
 
+/// Options of `rumbo rerun`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo rerun out/mode1-7.mcap
+  rumbo rerun out/mode1-7.mcap --json
+
+Exit status 0 if the run is the same, 1 if it differs.")]
+pub(crate) struct RerunArgs {
+    /// Log of a simulated run: of `rumbo run --out` or `rumbo lab`
+    #[arg(value_name = "LOG")]
+    pub(crate) log: PathBuf,
+    /// The result as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
 /// Options of `rumbo list`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -235,6 +257,7 @@ Examples:
   rumbo list
   rumbo list modes
   rumbo list parameters
+  rumbo list logs
   rumbo list scenarios --json")]
 pub(crate) struct ListArgs {
     /// One topic only
@@ -263,6 +286,8 @@ pub(crate) enum Topic {
     Parameters,
     /// Numbers of the plant
     Plant,
+    /// Recorded runs of `rumbo lab`, newest last
+    Logs,
 }
 
 /// Shows help and version; turns a wrong argument into one line.

@@ -2,12 +2,15 @@
 
 use crate::args::LabArgs;
 use crate::failure::Failure;
+use crate::logs;
+use crate::manifest;
 use crate::output;
 use crate::scene::{first_commands, scene};
 use rumbo_control::Wheels;
 use rumbo_scenario::files::{FileError, Library, Overrides, Setup};
 use rumbo_scenario::run;
 use rumbo_scenario::sim::Sim;
+use rumbo_station::log::{Kind, Manifest, Recording};
 use rumbo_station::{Choice, LabConfig, MapPose, Scene, Simulation, Target, Truth};
 use rumbo_wire::Command;
 use std::io::Write;
@@ -24,6 +27,7 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
     let config = LabConfig {
         port: args.port,
         speed: args.speed,
+        recording: logs::folder(args.out.as_deref()).map(|folder| Recording { folder }),
     };
     let lab = rumbo_station::serve(config, Box::new(robot)).map_err(Failure::input)?;
     output::line(lab.url())?;
@@ -43,6 +47,7 @@ struct SimulatedRobot {
     /// Robot instead of the scenario's own.
     robot: Option<String>,
     sim: Sim,
+    manifest: Manifest,
     scene: Scene,
     first_commands: Vec<Command>,
 }
@@ -50,13 +55,14 @@ struct SimulatedRobot {
 impl SimulatedRobot {
     fn new(robot: Option<String>, choice: Choice) -> Result<Self, FileError> {
         let library = Library::new();
-        let (sim, mut scene, first_commands) = prepare(&library, robot.clone(), choice)?;
+        let (sim, mut scene, first_commands, manifest) = prepare(&library, robot.clone(), choice)?;
         offer(&mut scene.scenarios, Some(&scene.choice.scenario));
         offer(&mut scene.worlds, scene.choice.world.as_ref());
         Ok(Self {
             library,
             robot,
             sim,
+            manifest,
             scene,
             first_commands,
         })
@@ -75,7 +81,7 @@ fn prepare(
     library: &Library,
     robot: Option<String>,
     choice: Choice,
-) -> Result<(Sim, Scene, Vec<Command>), FileError> {
+) -> Result<(Sim, Scene, Vec<Command>, Manifest), FileError> {
     let overrides = Overrides {
         robot,
         world: choice.world.clone(),
@@ -83,10 +89,11 @@ fn prepare(
         ..Overrides::default()
     };
     let setup: Setup = library.setup(&choice.scenario, &overrides)?;
+    let manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
     let setup = setup.of_seed(choice.seed)?;
     let sim = Sim::new(&*run::prepare(&setup, choice.seed)?, choice.seed)?;
     let scene = scene(library, &setup, choice)?;
-    Ok((sim, scene, first_commands(&setup)))
+    Ok((sim, scene, first_commands(&setup), manifest))
 }
 
 impl Target for SimulatedRobot {
@@ -110,6 +117,10 @@ impl Target for SimulatedRobot {
 
     fn baud(&self) -> u32 {
         self.sim.baud()
+    }
+
+    fn manifest(&self) -> Manifest {
+        self.manifest.clone()
     }
 
     fn simulation(&mut self) -> Option<&mut dyn Simulation> {
@@ -154,14 +165,15 @@ impl Simulation for SimulatedRobot {
             return Err("no such scenario or world here; choose one of the list".into());
         }
         let fresh = prepare(&self.library, self.robot.clone(), choice.clone());
-        let (sim, scene, first_commands) = fresh.map_err(|error| error.to_string())?;
+        let (sim, scene, first_commands, manifest) = fresh.map_err(|error| error.to_string())?;
         // What the command line added to the lists stays there.
         let Scene {
             scenarios, worlds, ..
         } = std::mem::take(&mut self.scene);
-        (self.sim, self.first_commands, self.scene) = (
+        (self.sim, self.first_commands, self.manifest, self.scene) = (
             sim,
             first_commands,
+            manifest,
             Scene {
                 scenarios,
                 worlds,

@@ -2,6 +2,7 @@
 
 use crate::args::{ListArgs, Topic};
 use crate::failure::Failure;
+use crate::logs;
 use crate::output::{self, figure};
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
@@ -52,6 +53,7 @@ fn name(topic: Topic) -> &'static str {
         Topic::Movements => "movements",
         Topic::Parameters => "parameters",
         Topic::Plant => "plant",
+        Topic::Logs => "logs",
     }
 }
 
@@ -101,6 +103,7 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
                     "default": exact(limits.default), "unit": id.unit(), "help": id.help(),
                     "mode": id.mode().map(ModeId::name) })
         })),
+        Topic::Logs => entries = logs::entries()?,
         Topic::Plant => entries.extend(Params::limits().iter().map(|limit| {
             json!({ "name": limit.key, "min": limit.min, "max": limit.max, "default": limit.nominal,
                     "unit": limit.unit, "help": limit.help })
@@ -216,6 +219,9 @@ fn row(entry: &Value) -> Vec<String> {
     }
     if entry.get("sonars").is_some() {
         return rig_row(entry);
+    }
+    if entry.get("bytes").is_some() {
+        return logs::row(entry);
     }
     let text = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
     let number = |key: &str| entry[key].as_f64().map(figure);

@@ -10,7 +10,10 @@ mod identify;
 mod import;
 mod lab;
 mod list;
+mod logs;
+mod manifest;
 mod output;
+mod rerun;
 mod run;
 mod scene;
 
@@ -36,6 +39,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::List(args)) => list::list(&args),
         Some(Command::Lab(args)) => lab::lab(&args),
         Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Rerun(args)) => rerun::rerun(&args),
         Some(Command::Identify(args)) => identify::identify(&args),
         Some(Command::Calibrate(args)) => calibrate::calibrate(&args),
         None => lab::lab(&cli.lab),

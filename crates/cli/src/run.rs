@@ -2,6 +2,7 @@
 
 use crate::args::{ProgramName, RunArgs};
 use crate::failure::Failure;
+use crate::logs;
 use crate::output::{self, figure};
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_scenario::files::{Library, Overrides, Program, ScenarioFile, Setup};
@@ -52,6 +53,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         passed &= result.pass;
         if let Some(folder) = &args.out {
             record(folder, &result)?;
+            logs::write_run(folder, &library, setup, &overrides, &result)?;
         }
         if args.json {
             return progress.suspend(|| output::json(&result));

@@ -152,7 +152,7 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
 
 #[test]
 fn every_subcommand_shows_an_example_in_its_help() {
-    for subcommand in ["lab", "run", "identify", "import", "list"] {
+    for subcommand in ["lab", "run", "identify", "import", "list", "rerun"] {
         let help = stdout(&rumbo(&[subcommand, "--help"]));
         let (_, examples) = help.split_once("Examples:").unwrap();
         assert!(examples.contains(&format!("rumbo {subcommand}")), "{help}");
@@ -381,7 +381,8 @@ fn the_lab_says_when_its_port_is_taken_and_prints_its_address_when_not() {
     );
 
     let mut lab = Command::new(env!("CARGO_BIN_EXE_rumbo"))
-        .args(["--no-browser", "--port", "0"])
+        .args(["--no-browser", "--port", "0", "--out"])
+        .arg(env!("CARGO_TARGET_TMPDIR"))
         .stdout(Stdio::piped())
         .spawn()
         .unwrap();

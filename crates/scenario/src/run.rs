@@ -47,6 +47,7 @@ pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
     let mut operator = Operator::new(setup);
     let mut trace = Trace::default();
     operator.brief(&mut sim)?;
+    sim.tap_link();
     let end_us = (scenario.duration_s * 1e6) as u64;
     trace.samples.reserve((end_us / SAMPLE_US) as usize + 1);
     while sim.now_us() < end_us {
@@ -59,6 +60,7 @@ pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
         }
     }
     trace.heard = operator.heard;
+    trace.link = sim.take_tapped();
     let metrics = metrics::compute(setup, &sim, &trace);
     let mut failures = operator.complaints;
     failures.extend(sim.verdict());

@@ -30,6 +30,19 @@ pub struct Sample {
     pub servo_rad: f64,
     /// Battery at its terminals [V].
     pub battery_v: f64,
+    /// The body touches something.
+    pub touching: bool,
+}
+
+/// Raw bytes that crossed the link together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Burst {
+    /// When they were sent to the robot, or had arrived from it [us].
+    pub t_us: u64,
+    /// To the robot, or from it.
+    pub to_robot: bool,
+    /// What.
+    pub bytes: Vec<u8>,
 }
 
 /// Something that crossed the link and that metrics need.
@@ -48,6 +61,8 @@ pub struct Trace {
     pub heard: Vec<Heard>,
     /// The samples, in order of time.
     pub samples: Vec<Sample>,
+    /// What crossed the link, in order.
+    pub link: Vec<Burst>,
     /// What each USART of an emulated Mega has sent.
     pub consoles: [Vec<u8>; 4],
 }
@@ -75,6 +90,7 @@ impl Trace {
                 .map(|range_m| range_m.unwrap_or(f64::INFINITY)),
             servo_rad: truth.servo_rad,
             battery_v: truth.battery_v,
+            touching: truth.touching,
         });
     }
 
@@ -118,6 +134,7 @@ impl Trace {
                     range_m,
                     servo_rad,
                     battery_v,
+                    touching: _,
                 } = sample;
                 let [left_m, right_m, front_m] = range_m.map(|range_m| {
                     if range_m.is_finite() {

@@ -6,9 +6,12 @@
 
 use crate::catalogue::ParameterState;
 use crate::errand::Errand;
-use crate::signals::Sample;
+use crate::log::Burst;
+use crate::log::recorder::{Entry, Recorder};
+use crate::row::Row;
 use crate::target::Scene;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
@@ -32,6 +35,18 @@ pub(crate) enum Level {
     Fault,
 }
 
+impl Level {
+    /// Its name, as in logs.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Info => "info",
+            Self::Good => "good",
+            Self::Warning => "warning",
+            Self::Fault => "fault",
+        }
+    }
+}
+
 /// Something that happened, as people read it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct LoggedEvent {
@@ -43,7 +58,7 @@ pub(crate) struct LoggedEvent {
 }
 
 /// What changes slowly.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     pub(crate) t_s: f64,
     /// A simulation: its speed can be set and it can be reset.
@@ -57,7 +72,7 @@ pub(crate) struct State {
 }
 
 /// The link, for the page.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LinkState {
     pub(crate) connected: bool,
     pub(crate) telemetry_hz: f64,
@@ -79,19 +94,19 @@ pub(crate) struct LinkState {
 }
 
 /// The robot's slow signals, for the page.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RobotState {
     pub(crate) mode: u8,
     pub(crate) armed: bool,
     /// The latched fault and what to do about it.
-    pub(crate) fault: Option<&'static str>,
+    pub(crate) fault: Option<Cow<'static, str>>,
     pub(crate) battery_v: Option<f64>,
     pub(crate) true_battery_v: Option<f64>,
     pub(crate) reference: [f32; 2],
     pub(crate) overruns: u8,
     pub(crate) servo_rad: f32,
     /// Name of the rig that the robot believes to carry; `None` until it has said so.
-    pub(crate) rig: Option<&'static str>,
+    pub(crate) rig: Option<Cow<'static, str>>,
     pub(crate) errand: Errand,
     /// The robot has another parameter table, or another protocol: its parameters are neither shown nor written.
     pub(crate) foreign: bool,
@@ -159,7 +174,7 @@ impl<T: PartialEq> Versioned<T> {
 #[derive(Debug)]
 struct Contents {
     run: u32,
-    samples: Ring<Sample>,
+    samples: Ring<Row>,
     events: Ring<LoggedEvent>,
     scene: Versioned<Option<Scene>>,
     parameters: Versioned<Vec<ParameterState>>,
@@ -170,6 +185,8 @@ struct Contents {
 #[derive(Debug)]
 pub(crate) struct Board {
     contents: Mutex<Contents>,
+    /// Records what is put on the board.
+    recorder: Mutex<Option<Recorder>>,
     changed: watch::Sender<()>,
 }
 
@@ -192,7 +209,7 @@ pub(crate) struct News {
     pub(crate) scene: Option<Option<Scene>>,
     pub(crate) parameters: Option<Vec<ParameterState>>,
     pub(crate) state: Option<State>,
-    pub(crate) samples: Vec<Sample>,
+    pub(crate) samples: Vec<Row>,
     pub(crate) events: Vec<LoggedEvent>,
     /// Events that left the ring before the page took them.
     pub(crate) events_gone: u64,
@@ -209,6 +226,7 @@ impl Board {
                 parameters: Versioned::default(),
                 state: Versioned::default(),
             }),
+            recorder: Mutex::new(None),
             changed: watch::Sender::new(()),
         }
     }
@@ -218,15 +236,47 @@ impl Board {
         self.contents.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    fn recorder(&self) -> MutexGuard<'_, Option<Recorder>> {
+        self.recorder.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// From now on everything put on the board is recorded. What was recorded before is complete.
+    pub(crate) fn record(&self, recorder: Recorder) {
+        *self.recorder() = Some(recorder);
+    }
+
+    /// Ends the recording and gives its recorder.
+    pub(crate) fn end_recording(&self) -> Option<Recorder> {
+        self.recorder().take()
+    }
+
+    /// What has gone wrong with the recording since it was last asked.
+    pub(crate) fn recording_trouble(&self) -> Option<String> {
+        self.recorder().as_ref().and_then(Recorder::trouble)
+    }
+
+    /// Records something that is not shown.
+    pub(crate) fn take(&self, entry: Entry) {
+        if let Some(recorder) = &mut *self.recorder() {
+            recorder.take(entry);
+        }
+    }
+
+    /// Records raw bytes of the link.
+    pub(crate) fn link(&self, burst: Burst) {
+        self.take(Entry::Burst(burst));
+    }
+
     /// Wakes its holder when something new is on the board.
     pub(crate) fn subscribe(&self) -> watch::Receiver<()> {
         self.changed.subscribe()
     }
 
-    pub(crate) fn push_samples(&self, samples: &[Sample]) {
+    pub(crate) fn push_samples(&self, samples: &[Row]) {
         if samples.is_empty() {
             return;
         }
+        self.take(Entry::Rows(samples.to_vec()));
         let mut contents = self.lock();
         samples
             .iter()
@@ -235,23 +285,27 @@ impl Board {
     }
 
     pub(crate) fn push_event(&self, event: LoggedEvent) {
+        self.take(Entry::Event(event.clone()));
         self.lock().events.push(event);
         self.changed.send_replace(());
     }
 
     pub(crate) fn set_scene(&self, scene: Option<Scene>) {
+        self.take(Entry::Scene(scene.clone().map(Box::new)));
         if self.lock().scene.set(scene) {
             self.changed.send_replace(());
         }
     }
 
     pub(crate) fn set_parameters(&self, parameters: &[ParameterState]) {
+        self.take(Entry::Parameters(parameters.to_vec()));
         if self.lock().parameters.set(parameters.to_vec()) {
             self.changed.send_replace(());
         }
     }
 
     pub(crate) fn set_state(&self, state: State) {
+        self.take(Entry::State(Box::new(state.clone())));
         if self.lock().state.set(state) {
             self.changed.send_replace(());
         }
@@ -294,21 +348,9 @@ fn take_new<T: Clone>(versioned: &Versioned<T>, seen: &mut u64) -> Option<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::target::MapPose;
-    use rumbo_control::Wheels;
-    use rumbo_control::mode::ModeId;
-    use rumbo_wire::Telemetry;
 
-    fn sample(t_ms: i64) -> Sample {
-        Sample {
-            t_ms,
-            mode: ModeId::Manual,
-            reference: Wheels::both(0.0),
-            heading_ref_rad: 0.0,
-            telemetry: Telemetry::default(),
-            origin: MapPose::default(),
-            truth: None,
-        }
+    fn sample(t_ms: i64) -> Row {
+        Row::unknown(t_ms)
     }
 
     fn event(number: usize) -> LoggedEvent {

@@ -156,6 +156,11 @@ impl RobotClient {
         to_robot.extend_from_slice(frame.bytes());
     }
 
+    /// Notes that somebody else sent bytes to the robot.
+    pub(crate) fn said(&mut self, bytes: usize, now_us: u64) {
+        self.up.add(bytes, now_us);
+    }
+
     /// Takes bytes that arrived from the robot and appends what they say.
     pub fn hear(&mut self, bytes: &[u8], now_us: u64, heard: &mut Vec<Heard>) {
         self.down.add(bytes.len(), now_us);
@@ -173,7 +178,8 @@ impl RobotClient {
         self.report_outcomes(heard);
     }
 
-    fn understand(&mut self, message: FromRobot, now_us: u64, heard: &mut Vec<Heard>) {
+    /// Takes a message from the robot and appends what it says.
+    pub(crate) fn understand(&mut self, message: FromRobot, now_us: u64, heard: &mut Vec<Heard>) {
         self.last_heard_us = now_us;
         self.frames.add(
             usize::from(matches!(message, FromRobot::Telemetry(_))),

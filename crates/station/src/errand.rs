@@ -7,10 +7,10 @@ use rumbo_control::Pose;
 use rumbo_control::mode::ModeId;
 use rumbo_control::mode::waypoints::Route;
 use rumbo_wire::{Command, EventKind};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How it ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum End {
     Reached,
@@ -18,7 +18,7 @@ pub(crate) enum End {
 }
 
 /// What the robot is asked to reach. Places are from the robot's origin.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Errand {
     /// The goal of mode 8 \[m\]; `None` once it is reached, since the origin may have moved there.
     pub(crate) goal: Option<[f32; 2]>,

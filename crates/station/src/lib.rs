@@ -11,6 +11,7 @@ pub mod client;
 pub mod commands;
 mod errand;
 mod guard;
+pub mod log;
 mod meter;
 mod observer;
 mod orders;
@@ -18,15 +19,18 @@ mod origin;
 mod pace;
 mod robot_clock;
 mod round_trip;
+mod row;
 mod serve;
 mod session;
 mod signals;
 mod socket;
+mod state;
 mod target;
 mod web;
 mod words;
 
 pub use catalogue::{ModeEntry, Reference, ReferenceKind, modes};
+pub use row::Row;
 pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeError, serve};
 pub use target::{
     Choice, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation, SonarMount, Target, Truth,

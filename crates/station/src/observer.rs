@@ -5,7 +5,9 @@ use crate::catalogue::{self, ParameterState};
 use crate::client::{Heard, RobotClient};
 use crate::commands::{Fate, Outcome};
 use crate::errand::Errand;
+use crate::log::Burst;
 use crate::origin::Origin;
+use crate::row::Row;
 use crate::signals::{EARLIER_MS, Sample, TruthLog};
 use crate::target::{Scene, Truth};
 use crate::words;
@@ -26,7 +28,7 @@ pub(crate) struct Observer {
     rig: Option<Rig>,
     parameters: Vec<ParameterState>,
     truths: TruthLog,
-    samples: Vec<Sample>,
+    samples: Vec<Row>,
     /// The state changed in a way that the operator waits for.
     urgent: bool,
 }
@@ -102,6 +104,11 @@ impl Observer {
         });
     }
 
+    /// Notes raw bytes of the link.
+    pub(crate) fn link(&self, burst: Burst) {
+        self.board.link(burst);
+    }
+
     /// Puts the samples on the board; whether the state is to follow at once.
     pub(crate) fn publish(&mut self) -> bool {
         self.board.push_samples(&self.samples);
@@ -163,7 +170,7 @@ impl Observer {
         self.pose = telemetry.pose;
         let truth = self.truths.at(t_ms - EARLIER_MS).zip(self.truths.at(t_ms));
         let true_pose = truth.map(|(_, at)| at.pose);
-        self.samples.push(Sample {
+        let sample = Sample {
             t_ms,
             mode: client.mode(),
             reference: client.reference(),
@@ -171,7 +178,8 @@ impl Observer {
             telemetry,
             origin: self.origin.follow(t_ms, telemetry.pose, true_pose),
             truth: truth.map(|(before, at)| [before, at]),
-        });
+        };
+        self.samples.push(sample.row());
     }
 
     fn event(&mut self, t_ms: i64, kind: EventKind) {

@@ -70,7 +70,7 @@ fn turn_rad(from_rad: f64, to_rad: f64) -> f64 {
 }
 
 /// A pose in `frame`, in the frame around it.
-fn compose(frame: MapPose, at: MapPose) -> MapPose {
+pub(crate) fn compose(frame: MapPose, at: MapPose) -> MapPose {
     let (sin, cos) = frame.heading_rad.sin_cos();
     MapPose {
         x_m: frame.x_m + cos * at.x_m - sin * at.y_m,

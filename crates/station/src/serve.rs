@@ -2,6 +2,7 @@
 
 use crate::board::Board;
 use crate::guard::Guard;
+use crate::log::Recording;
 use crate::orders::Order;
 use crate::session::{Orders, Session};
 use crate::socket::Hub;
@@ -26,6 +27,8 @@ pub struct LabConfig {
     pub port: u16,
     /// Seconds of the target per second of the wall clock; 0 starts paused. A real robot's is 1.
     pub speed: f64,
+    /// Where runs are recorded; `None` for nowhere.
+    pub recording: Option<Recording>,
 }
 
 impl Default for LabConfig {
@@ -33,6 +36,7 @@ impl Default for LabConfig {
         Self {
             port: DEFAULT_PORT,
             speed: 1.0,
+            recording: None,
         }
     }
 }
@@ -83,11 +87,13 @@ impl Lab {
         &self.url
     }
 
-    /// Returns when the session has ended by itself: the target is gone.
+    /// Returns when the session has ended: the target is gone, or the process was asked to end.
     ///
     /// # Errors
     /// What the target said when it went.
     pub fn wait(mut self) -> Result<(), String> {
+        // Asked to end, the web side lets go of the session, which stops the robot and completes the log.
+        drop(self.orders.take());
         match self.session.take().map(JoinHandle::join) {
             Some(Ok(ended)) => ended,
             Some(Err(_)) => Err("the session ended by a fault of its own; please report it".into()),
@@ -105,6 +111,30 @@ impl Drop for Lab {
         let session = self.session.take().map(JoinHandle::join);
         // Nobody is left to hear of a fault.
         drop((web, session));
+    }
+}
+
+/// Ends when the process is interrupted or terminated by the system.
+async fn asked_to_end() {
+    // Without a handler the process ends at once, as it does anyway.
+    let interrupted = async {
+        if tokio::signal::ctrl_c().await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    };
+    #[cfg(unix)]
+    let terminated = async {
+        use tokio::signal::unix::{SignalKind, signal};
+        match signal(SignalKind::terminate()) {
+            Ok(mut signal) => drop(signal.recv().await),
+            Err(_) => std::future::pending().await,
+        }
+    };
+    #[cfg(not(unix))]
+    let terminated = std::future::pending::<()>();
+    tokio::select! {
+        () = interrupted => {}
+        () = terminated => {}
     }
 }
 
@@ -137,6 +167,7 @@ pub fn serve(config: LabConfig, target: Box<dyn Target>) -> Result<Lab, ServeErr
             stop: Arc::clone(&stop),
         },
         config.speed,
+        config.recording,
     );
     let session = std::thread::Builder::new()
         .name("session".into())
@@ -167,6 +198,7 @@ pub fn serve(config: LabConfig, target: Box<dyn Target>) -> Result<Lab, ServeErr
                 tokio::select! {
                     _ = async { axum::serve(listener, router).await } => {}
                     _ = ended => {}
+                    () = asked_to_end() => {}
                 }
             });
         })?;

@@ -4,15 +4,17 @@
 //! speed factor ([`Pace`]); feeds what arrived to the [`RobotClient`] and what that heard to the [`Observer`], who
 //! keeps the board up to date. Nothing waits for a page.
 
-use crate::board::{self, Board, LinkState, RobotState, State};
+use crate::board::{self, Board, State};
 use crate::client::{Heard, KnownTable, RobotClient};
+use crate::log::recorder::Recorder;
+use crate::log::{Burst, Manifest, Recording};
 use crate::observer::Observer;
 use crate::orders::{self, MAX_SPEED, Order};
 use crate::pace::{Pace, SLICE_US};
+use crate::state::{self, Around};
 use crate::target::{Choice, Target};
 use crate::words;
 use rumbo_control::mode::Movement;
-use rumbo_control::rig::Rig;
 use rumbo_wire::{Command, Level};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -43,6 +45,9 @@ pub(crate) struct Session {
     target: Box<dyn Target>,
     client: RobotClient,
     observer: Observer,
+    board: Arc<Board>,
+    /// Where to record; nowhere in tests.
+    recording: Option<Recording>,
     orders: Orders,
     pace: Pace,
     simulated: bool,
@@ -63,12 +68,15 @@ impl Session {
         board: Arc<Board>,
         orders: Orders,
         speed: f64,
+        recording: Option<Recording>,
     ) -> Self {
         let simulated = target.simulation().is_some();
         Self {
             client: new_client(simulated),
             target,
-            observer: Observer::new(board),
+            observer: Observer::new(Arc::clone(&board)),
+            board,
+            recording,
             orders,
             pace: Pace::new(if simulated {
                 speed.clamp(0.0, MAX_SPEED)
@@ -97,6 +105,7 @@ impl Session {
     }
 
     fn run_until_ended(&mut self) -> Result<(), String> {
+        self.record();
         self.show_scene();
         loop {
             let wait = if self.pace.speed > 0.0 {
@@ -207,10 +216,10 @@ impl Session {
         self.client
             .poll(self.target.now_us(), &mut self.bytes, &mut self.heard);
         if self.bytes.is_empty() {
-            Ok(())
-        } else {
-            self.target.send(&self.bytes)
+            return Ok(());
         }
+        self.note_bytes(true);
+        self.target.send(&self.bytes)
     }
 
     fn reset(&mut self, choice: &Choice) {
@@ -227,6 +236,7 @@ impl Session {
         self.heard.clear();
         self.held = None;
         self.briefed = false;
+        self.record();
         self.observer.start_run();
         self.pace = Pace::new(self.pace.speed);
         self.state_noted = None;
@@ -270,6 +280,7 @@ impl Session {
             }
             self.bytes.clear();
             self.target.receive(&mut self.bytes);
+            self.note_bytes(false);
             self.client.hear(&self.bytes, now_us, &mut self.heard);
             self.send()?;
             self.observer
@@ -282,6 +293,17 @@ impl Session {
         Ok(())
     }
 
+    /// Records the bytes at hand.
+    fn note_bytes(&self, to_robot: bool) {
+        if !self.bytes.is_empty() && self.recording.is_some() {
+            self.observer.link(Burst {
+                t_us: self.target.now_us(),
+                to_robot,
+                bytes: self.bytes.clone(),
+            });
+        }
+    }
+
     fn note(&mut self, level: board::Level, text: String) {
         self.observer.note(to_ms(self.target.now_us()), level, text);
     }
@@ -290,6 +312,9 @@ impl Session {
         let now_ms = to_ms(self.target.now_us());
         self.observer
             .digest(&mut self.heard, &mut self.client, now_ms);
+        if let Some(trouble) = self.board.recording_trouble() {
+            self.note(board::Level::Warning, trouble);
+        }
         let urgent = self.observer.publish();
         let now = Instant::now();
         if urgent
@@ -304,57 +329,54 @@ impl Session {
     }
 
     fn state(&mut self) -> State {
-        let now_us = self.target.now_us();
-        let link = self.client.link(now_us);
-        let baud = self.target.baud();
-        // Ten bits to a byte.
-        let load = |bytes_s: f64| rounded(bytes_s * 10.0 / f64::from(baud), 1e3);
-        let status = self.observer.status();
-        let reference = self.client.reference();
-        let true_battery_v = self
-            .target
-            .simulation()
-            .map(|simulation| simulation.truth().battery_v);
-        State {
-            t_s: now_us as f64 / 1e6,
+        let simulation = self.target.simulation();
+        let around = Around {
+            true_battery_v: simulation.map(|simulation| simulation.truth().battery_v),
+            t_us: self.target.now_us(),
             simulated: self.simulated,
             speed: self.pace.speed,
-            achieved_speed: rounded(self.pace.achieved(), 1e2),
-            link: LinkState {
-                connected: self.client.connected(),
-                telemetry_hz: rounded(link.telemetry_hz, 10.0),
-                down_load: load(link.down_bytes_s),
-                up_load: load(link.up_bytes_s),
-                baud,
-                round_trip_ms: link
-                    .round_trip_us
-                    .map(|round_trip_us| round_trip_us / 1_000),
-                crc_errors_down: link.crc_errors,
-                crc_errors_up: status.crc_errors,
-                frames_lost: link.frames_lost,
-                dropped: status.dropped,
-                unacknowledged: link.unacknowledged,
-            },
-            robot: RobotState {
-                mode: self.client.mode() as u8,
-                armed: status.armed,
-                fault: status.fault.map(rumbo_control::Fault::explanation),
-                battery_v: status.battery_v.map(|volts| rounded(volts.into(), 1e2)),
-                true_battery_v: true_battery_v.map(|volts| rounded(volts, 1e2)),
-                reference: [reference.left, reference.right],
-                overruns: status.overruns,
-                servo_rad: self.observer.servo_rad(),
-                rig: self.observer.rig().map(Rig::name),
-                errand: self.observer.errand().clone(),
-                foreign: self.client.hello().is_some() && !self.client.table_matches(),
-            },
+            achieved_speed: self.pace.achieved(),
+            baud: self.target.baud(),
+        };
+        state::describe(&around, &mut self.client, &self.observer)
+    }
+
+    /// Begins the log of a run; what was recorded before is complete.
+    fn record(&mut self) {
+        let Some(recording) = &self.recording else {
+            return;
+        };
+        let manifest = Manifest {
+            started: Some(now()),
+            version: env!("CARGO_PKG_VERSION").into(),
+            baud: self.target.baud(),
+            step_us: SLICE_US,
+            ..self.target.manifest()
+        };
+        match Recorder::in_folder(&recording.folder, &manifest) {
+            Ok(recorder) => {
+                let text = format!("recording to {}", recorder.path().display());
+                self.board.record(recorder);
+                self.note(board::Level::Info, text);
+            }
+            Err(error) => self.note(board::Level::Warning, format!("not recording: {error}")),
         }
     }
 }
 
-/// To `1 / per_unit`: more digits would only be more to send.
-fn rounded(value: f64, per_unit: f64) -> f64 {
-    (value * per_unit).round() / per_unit
+/// The time of day, UTC.
+fn now() -> String {
+    let now = time::OffsetDateTime::now_utc();
+    let (date, clock) = (now.date(), now.time());
+    format!(
+        "{}-{:02}-{:02}T{:02}:{:02}:{:02}Z",
+        date.year(),
+        u8::from(date.month()),
+        date.day(),
+        clock.hour(),
+        clock.minute(),
+        clock.second()
+    )
 }
 
 fn to_ms(us: u64) -> i64 {

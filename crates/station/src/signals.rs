@@ -1,10 +1,10 @@
 //! Samples of the signals: what the robot said of one instant, beside what was really the case.
 
+use crate::row::Row;
 use crate::target::{MapPose, Truth};
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Range, Wheels};
 use rumbo_wire::Telemetry;
-use serde::Serialize;
 use std::collections::VecDeque;
 
 /// The signals at one instant.
@@ -29,83 +29,61 @@ pub(crate) struct Sample {
 /// The first of the two wheel speeds in a telemetry frame is this much older \[ms\].
 pub(crate) const EARLIER_MS: i64 = 20;
 
-/// One value of a row as the page gets it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-pub(crate) enum Cell {
-    Number(f64),
-    /// A range in which there is nothing: no gap in the measurement, but no number either.
-    Word(&'static str),
-    /// Not known (null).
-    Unknown(Option<()>),
+/// Not known.
+const UNKNOWN: f32 = f32::NAN;
+
+fn optional(value: Option<f64>) -> f32 {
+    value.map_or(UNKNOWN, |value| value as f32)
 }
 
-const UNKNOWN: Cell = Cell::Unknown(None);
-
-impl Cell {
-    /// Four decimals: a tenth of a millimetre, less than any signal's own step.
-    fn number(value: impl Into<f64>) -> Cell {
-        let value = value.into();
-        if value.is_finite() {
-            Cell::Number((value * 1e4).round() / 1e4)
-        } else {
-            UNKNOWN
-        }
-    }
-
-    fn optional(value: Option<f64>) -> Cell {
-        value.map_or(UNKNOWN, Cell::number)
-    }
-
-    fn range(range: Range) -> Cell {
-        match range {
-            Range::Valid(range_m) => Cell::number(range_m),
-            Range::Clear => Cell::Word("clear"),
-            Range::Faulty => UNKNOWN,
-        }
+/// Infinite where there is nothing in reach.
+fn measured(range: Range) -> f32 {
+    match range {
+        Range::Valid(range_m) => range_m,
+        Range::Clear => f32::INFINITY,
+        Range::Faulty => UNKNOWN,
     }
 }
 
 /// Values in a row.
-const COLUMNS: usize = 38;
+pub(crate) const COLUMNS: usize = 38;
 
 impl Sample {
     /// The row of this sample, each value with its name. The page finds the values by the names.
-    pub(crate) fn named_row(&self) -> [(&'static str, Cell); COLUMNS] {
+    pub(crate) fn named_row(&self) -> [(&'static str, f32); COLUMNS] {
         let said = &self.telemetry;
         let [before, at] = said.wheel_rad_s;
-        let [left, right, front] = said.ranges.map(|aged| Cell::range(aged.range));
-        let was =
-            |value: fn(&Truth) -> f64| Cell::optional(self.truth.as_ref().map(|[_, at]| value(at)));
+        let [left, right, front] = said.ranges.map(|aged| measured(aged.range));
+        let was = |value: fn(&Truth) -> f64| optional(self.truth.as_ref().map(|[_, at]| value(at)));
         let was_before = |value: fn(&Truth) -> f64| {
-            Cell::optional(self.truth.as_ref().map(|[before, _]| value(before)))
+            optional(self.truth.as_ref().map(|[before, _]| value(before)))
         };
         let was_range =
-            |id: usize| Cell::optional(self.truth.as_ref().and_then(|[_, at]| at.range_m[id]));
+            |id: usize| optional(self.truth.as_ref().and_then(|[_, at]| at.range_m[id]));
         [
-            ("t_s", Cell::number(self.t_ms as f64 / 1e3)),
-            ("mode", Cell::number(self.mode as u8)),
-            ("state", Cell::number(said.state)),
-            ("armed", Cell::number(u8::from(said.armed))),
-            ("faulted", Cell::number(u8::from(said.faulted))),
-            ("reference_left", Cell::number(self.reference.left)),
-            ("reference_right", Cell::number(self.reference.right)),
-            ("x_m", Cell::number(said.pose.x_m)),
-            ("y_m", Cell::number(said.pose.y_m)),
-            ("heading_rad", Cell::number(said.pose.heading_rad)),
-            ("heading_ref_rad", Cell::number(self.heading_ref_rad)),
-            ("origin_x_m", Cell::number(self.origin.x_m)),
-            ("origin_y_m", Cell::number(self.origin.y_m)),
-            ("origin_heading_rad", Cell::number(self.origin.heading_rad)),
-            ("servo_rad", Cell::number(said.servo_rad)),
-            ("left_before_rad_s", Cell::number(before.left)),
-            ("right_before_rad_s", Cell::number(before.right)),
-            ("left_rad_s", Cell::number(at.left)),
-            ("right_rad_s", Cell::number(at.right)),
-            ("left_ref_rad_s", Cell::number(said.wheel_ref_rad_s.left)),
-            ("right_ref_rad_s", Cell::number(said.wheel_ref_rad_s.right)),
-            ("left_pwm", Cell::number(said.duty.left.counts())),
-            ("right_pwm", Cell::number(said.duty.right.counts())),
+            ("t_s", (self.t_ms as f64 / 1e3) as f32),
+            ("mode", f32::from(self.mode as u8)),
+            ("state", f32::from(said.state)),
+            ("armed", f32::from(u8::from(said.armed))),
+            ("faulted", f32::from(u8::from(said.faulted))),
+            ("reference_left", self.reference.left),
+            ("reference_right", self.reference.right),
+            ("x_m", said.pose.x_m),
+            ("y_m", said.pose.y_m),
+            ("heading_rad", said.pose.heading_rad),
+            ("heading_ref_rad", self.heading_ref_rad),
+            ("origin_x_m", self.origin.x_m as f32),
+            ("origin_y_m", self.origin.y_m as f32),
+            ("origin_heading_rad", self.origin.heading_rad as f32),
+            ("servo_rad", said.servo_rad),
+            ("left_before_rad_s", before.left),
+            ("right_before_rad_s", before.right),
+            ("left_rad_s", at.left),
+            ("right_rad_s", at.right),
+            ("left_ref_rad_s", said.wheel_ref_rad_s.left),
+            ("right_ref_rad_s", said.wheel_ref_rad_s.right),
+            ("left_pwm", f32::from(said.duty.left.counts())),
+            ("right_pwm", f32::from(said.duty.right.counts())),
             ("range_left_m", left),
             ("range_right_m", right),
             ("range_front_m", front),
@@ -131,13 +109,13 @@ impl Sample {
     }
 
     /// The values of the row.
-    pub(crate) fn row(&self) -> Vec<Cell> {
-        self.named_row().into_iter().map(|(_, cell)| cell).collect()
+    pub(crate) fn row(&self) -> Row {
+        Row::new(self.t_ms, self.named_row().map(|(_, value)| value))
     }
 
-    /// The names of the row's values, in their order.
-    pub(crate) fn columns() -> [&'static str; COLUMNS] {
-        let empty = Sample {
+    /// A sample of a robot of which nothing is known.
+    pub(crate) fn empty() -> Self {
+        Self {
             t_ms: 0,
             mode: ModeId::default(),
             reference: Wheels::both(0.0),
@@ -145,8 +123,7 @@ impl Sample {
             telemetry: Telemetry::default(),
             origin: MapPose::default(),
             truth: None,
-        };
-        empty.named_row().map(|(name, _)| name)
+        }
     }
 }
 
@@ -208,13 +185,8 @@ mod tests {
             origin: MapPose::default(),
             truth: None,
         };
-        let json = serde_json::to_value(sample.row()).unwrap();
-        let column = |name: &str| {
-            Sample::columns()
-                .iter()
-                .position(|column| *column == name)
-                .unwrap()
-        };
+        let json = serde_json::to_value(sample.row().cells()).unwrap();
+        let column = |name: &str| Row::column(name).unwrap();
         assert_eq!(json[column("t_s")], 1.04);
         assert_eq!(json[column("range_left_m")], "clear");
         assert!(json[column("range_right_m")].is_null());

@@ -6,7 +6,7 @@
 use crate::board::{Board, Cursor, LoggedEvent, News, State};
 use crate::catalogue::{self, ModeEntry, ParameterState};
 use crate::orders::{self, Order};
-use crate::signals::{Cell, Sample};
+use crate::row::{Cell, Row};
 use crate::target::Scene;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use futures_util::stream::{SplitSink, SplitStream};
@@ -142,7 +142,7 @@ async fn take_orders(mut from_page: SplitStream<WebSocket>, hub: &Hub) -> Option
 async fn tell_news(out: &mut SplitSink<WebSocket, Message>, board: &Board) -> Option<Goodbye> {
     let mut changed = board.subscribe();
     let mut cursor = Cursor::default();
-    let columns = Sample::columns();
+    let columns: Vec<_> = Row::names().collect();
     let hello = ToPage::Hello {
         version: env!("CARGO_PKG_VERSION"),
         columns: &columns,
@@ -188,7 +188,7 @@ async fn send_news(out: &mut SplitSink<WebSocket, Message>, news: News) -> Optio
             out,
             &ToPage::Samples {
                 run,
-                rows: chunk.iter().map(Sample::row).collect(),
+                rows: chunk.iter().map(Row::cells).collect(),
             },
         )
         .await?;

@@ -4,10 +4,11 @@
 //! bytes for the robot and takes the bytes that came back. Whatever is known of a simulated robot beyond those bytes comes
 //! through [`Simulation`], and goes to the eyes only: commands and measurements take the link, as with a real robot.
 
+use crate::log::Manifest;
 use rumbo_control::Wheels;
 use rumbo_control::mode::waypoints::Waypoint;
 use rumbo_wire::Command;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A robot at the other end of a byte link.
 pub trait Target: Send {
@@ -31,6 +32,11 @@ pub trait Target: Send {
 
     /// Speed of the link \[baud\], ten bits to a byte.
     fn baud(&self) -> u32;
+
+    /// What runs, for the log. When it began is put in by whoever records.
+    fn manifest(&self) -> Manifest {
+        Manifest::default()
+    }
 
     /// What only a simulation can do and tell; `None` for a real robot.
     fn simulation(&mut self) -> Option<&mut dyn Simulation> {
@@ -59,7 +65,7 @@ pub trait Simulation {
 }
 
 /// A place on the map: world frame, x east, y north, counter-clockwise heading (REP 103).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MapPose {
     /// \[m\].
     pub x_m: f64,
@@ -88,7 +94,7 @@ pub struct Truth {
 }
 
 /// What surrounds a simulated robot.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// What is running.
     pub choice: Choice,
@@ -121,7 +127,7 @@ pub struct Scene {
 }
 
 /// The places of a route.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RoutePlan {
     /// Starts over at the end.
     pub repeat: bool,
@@ -132,7 +138,7 @@ pub struct RoutePlan {
 }
 
 /// A place of a route.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Place {
     /// Forward of the origin \[m\].
     pub x_m: f32,
@@ -158,7 +164,7 @@ impl From<Waypoint> for Place {
 }
 
 /// A wall or a box, seen from above.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Obstacle {
     /// Corners in the world frame \[m\].
     pub corners_m: Vec<[f64; 2]>,
@@ -167,7 +173,7 @@ pub struct Obstacle {
 }
 
 /// Where a sonar sits and what it can see.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SonarMount {
     /// `SonarId` number.
     pub id: u8,
@@ -182,7 +188,7 @@ pub struct SonarMount {
 }
 
 /// Which simulation to run.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Choice {
     /// Name of the scenario.
     pub scenario: String,

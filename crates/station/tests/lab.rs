@@ -18,7 +18,15 @@ use tokio_tungstenite::tungstenite::{Error, Message};
 const PATIENCE: Duration = Duration::from_secs(20);
 
 fn start(speed: f64) -> Lab {
-    serve(LabConfig { port: 0, speed }, Box::new(Toy::default())).unwrap()
+    serve(
+        LabConfig {
+            port: 0,
+            speed,
+            recording: None,
+        },
+        Box::new(Toy::default()),
+    )
+    .unwrap()
 }
 
 fn host(lab: &Lab) -> String {
@@ -181,7 +189,15 @@ fn another_host_or_origin_is_refused_even_with_the_cookie() {
 fn a_port_in_use_is_named_with_the_remedy() {
     let lab = start(0.0);
     let port = host(&lab).rsplit_once(':').unwrap().1.parse().unwrap();
-    let error = serve(LabConfig { port, speed: 0.0 }, Box::new(Toy::default())).unwrap_err();
+    let error = serve(
+        LabConfig {
+            port,
+            speed: 0.0,
+            recording: None,
+        },
+        Box::new(Toy::default()),
+    )
+    .unwrap_err();
     assert!(matches!(error, ServeError::PortInUse(used) if used == port));
     let text = error.to_string();
     assert!(
@@ -195,7 +211,15 @@ fn ending_the_lab_frees_its_port() {
     let lab = start(1.0);
     let port = host(&lab).rsplit_once(':').unwrap().1.parse().unwrap();
     drop(lab);
-    serve(LabConfig { port, speed: 0.0 }, Box::new(Toy::default())).unwrap();
+    serve(
+        LabConfig {
+            port,
+            speed: 0.0,
+            recording: None,
+        },
+        Box::new(Toy::default()),
+    )
+    .unwrap();
 }
 
 #[tokio::test]

@@ -4,6 +4,7 @@ use super::error::FileError;
 use super::near::near_or_all;
 use super::{RobotFile, ScenarioFile, WorldFile};
 use rust_embed::RustEmbed;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 #[derive(RustEmbed)]
@@ -19,7 +20,7 @@ struct Worlds;
 struct Scenarios;
 
 /// The kinds of file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// `robots/*.toml`
     Robot,
@@ -69,6 +70,8 @@ impl Kind {
 pub struct Library {
     /// Paths are relative to this folder; empty for the current one.
     base: PathBuf,
+    /// Files held in memory by kind and name; they come before the built-in ones.
+    held: BTreeMap<(Kind, String), String>,
 }
 
 /// A file's text and how to speak of it.
@@ -93,7 +96,15 @@ impl Library {
             .flatten();
         Self {
             base: folder.map_or_else(|| self.base.clone(), |folder| self.base.join(folder)),
+            held: self.held.clone(),
         }
+    }
+
+    /// The same with a file of this name, in place of a built-in one.
+    #[must_use]
+    pub fn holding(mut self, kind: Kind, name: &str, text: &str) -> Self {
+        self.held.insert((kind, name.to_owned()), text.to_owned());
+        self
     }
 
     /// A robot.
@@ -130,6 +141,13 @@ impl Library {
     }
 
     fn find(&self, kind: Kind, name_or_path: &str) -> Result<Found, FileError> {
+        if let Some(text) = self.held.get(&(kind, name_or_path.to_owned())) {
+            return Ok(Found {
+                name: name_or_path.to_owned(),
+                file: format!("{} {name_or_path}", kind.word()),
+                text: text.clone(),
+            });
+        }
         if is_path(name_or_path) {
             let path = self.base.join(name_or_path);
             let text = std::fs::read_to_string(&path).map_err(|error| FileError::Unreadable {

@@ -112,6 +112,7 @@ mod tests {
                 range_m: [f64::INFINITY; 3],
                 servo_rad: 0.0,
                 battery_v: 7.4,
+                touching: false,
             }
         };
         let event = Event {

@@ -228,6 +228,7 @@ mod tests {
                 range_m: [f64::INFINITY, f64::INFINITY, signal(t_s)],
                 servo_rad: 0.0,
                 battery_v: 7.4,
+                touching: false,
             })
             .collect()
     }

@@ -17,6 +17,7 @@ use crate::files::{FileError, Program, Setup, Spread};
 use crate::mega::Mega;
 use crate::original::Original;
 use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
+use crate::trace::Burst;
 use native::Native;
 use rumbo_control::{Duty, SIDES, SonarId, Wheels};
 use rumbo_plant::contact::Pose;
@@ -54,6 +55,8 @@ pub struct Sim {
     noise: Noise,
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
+    /// What crossed the link, if somebody wants to know.
+    tapped: Option<Vec<Burst>>,
 }
 
 impl Sim {
@@ -122,6 +125,7 @@ impl Sim {
             sonar_faults,
             noise,
             outputs_us: (0, 0, 0),
+            tapped: None,
         })
     }
 
@@ -168,12 +172,38 @@ impl Sim {
 
     /// Puts bytes for the robot on the line.
     pub fn send(&mut self, bytes: &[u8]) {
+        self.note(true, bytes);
         self.uplink.send(self.now_us(), bytes);
     }
 
     /// Appends the bytes that have arrived from the robot.
     pub fn receive(&mut self, into: &mut Vec<u8>) {
+        let from = into.len();
         self.downlink.receive(self.now_us(), into);
+        self.note(false, into.get(from..).unwrap_or_default());
+    }
+
+    /// From now on notes what crosses the link.
+    pub(crate) fn tap_link(&mut self) {
+        self.tapped = Some(Vec::new());
+    }
+
+    /// What crossed the link since it was tapped.
+    pub(crate) fn take_tapped(&mut self) -> Vec<Burst> {
+        self.tapped.take().unwrap_or_default()
+    }
+
+    fn note(&mut self, to_robot: bool, bytes: &[u8]) {
+        let t_us = self.now_us();
+        if let Some(tapped) = &mut self.tapped
+            && !bytes.is_empty()
+        {
+            tapped.push(Burst {
+                t_us,
+                to_robot,
+                bytes: bytes.to_vec(),
+            });
+        }
     }
 
     /// Makes a sonar fail at a time. The report's program, which times its own edges, notices a cut one only.

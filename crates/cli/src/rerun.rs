@@ -1,0 +1,224 @@
+//! `rumbo rerun`: the run of a log once more, compared byte by byte with what the robot said then.
+//!
+//! A run without a window is run again as it was. A session of the lab is driven again by the recorded bytes to the robot, each at
+//! the simulated instant at which it was sent.
+
+use crate::args::RerunArgs;
+use crate::failure::Failure;
+use crate::logs;
+use crate::manifest;
+use crate::output;
+use rumbo_scenario::files::Setup;
+use rumbo_scenario::run;
+use rumbo_scenario::sim::Sim;
+use rumbo_station::log::{Burst, Kind, Log};
+use rumbo_wire::{Decoder, FromRobot, Message, Received};
+use serde_json::json;
+use std::collections::BTreeMap;
+
+/// Longest line of text from a robot that is put together.
+const LINE: usize = 160;
+
+/// What came of the comparison.
+enum Verdict {
+    Equal,
+    /// First difference: time \[s\], and what was and is there.
+    Differs(f64, String),
+}
+
+/// Runs the log's run again and says whether it is the same.
+pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
+    let log = Log::read(&args.log).map_err(Failure::input)?;
+    let shown = args.log.display();
+    let Some(recorded) = &log.manifest else {
+        return Err(Failure::Input(format!(
+            "{shown}: has no manifest; only logs of `rumbo lab` and `rumbo run --out` can be run again"
+        )));
+    };
+    let (setup, seed) = manifest::setup(&args.log, recorded)?;
+    let verdict = match recorded.kind {
+        Kind::Run => again(&log, &setup, seed)?,
+        Kind::Lab => session(&log, &setup, seed, recorded.step_us)?,
+        Kind::Robot => {
+            return Err(Failure::Input(format!(
+                "{shown}: is of a real robot; only simulated runs can be run again"
+            )));
+        }
+    };
+    let from_robot: usize = log
+        .link
+        .iter()
+        .filter(|burst| !burst.to_robot)
+        .map(|burst| burst.bytes.len())
+        .sum();
+    let version = env!("CARGO_PKG_VERSION");
+    let other = (recorded.version != version).then(|| {
+        format!(
+            "; recorded by version {}, this is {version}",
+            recorded.version
+        )
+    });
+    let other = other.unwrap_or_default();
+    let (equal, first) = match &verdict {
+        Verdict::Equal => (true, None),
+        Verdict::Differs(t_s, what) => (false, Some((t_s, what))),
+    };
+    if args.json {
+        output::json(
+            &json!({ "log": args.log, "equal": equal, "duration_s": log.duration_s(), "bytes": from_robot,
+            "first_difference_s": first.map(|(t_s, _)| t_s), "difference": first.map(|(_, what)| what) }),
+        )?;
+    } else {
+        output::line(&match first {
+            None => format!(
+                "{shown}: equal, {from_robot} bytes from the robot in {:.2} s{other}",
+                log.duration_s()
+            ),
+            Some((t_s, what)) => format!("{shown}: differs first at {t_s:.3} s: {what}{other}"),
+        })?;
+    }
+    if equal {
+        Ok(())
+    } else {
+        Err(Failure::LimitMissed)
+    }
+}
+
+fn again(log: &Log, setup: &Setup, seed: u64) -> Result<Verdict, Failure> {
+    let result = run::run(setup, seed)?;
+    let link: Vec<Burst> = result.trace.link.iter().map(logs::burst).collect();
+    if let Some(difference) = first_difference(&log.link, &link, log.cut.is_some()) {
+        return Ok(difference);
+    }
+    let Some(outcome) = &log.outcome else {
+        return Ok(Verdict::Equal);
+    };
+    // To the last digit: metrics are of the truth, of which the robot tells only a part.
+    let now: BTreeMap<String, f64> = result.metrics.into_iter().collect();
+    let differs = |(name, value): (&String, &f64)| {
+        let other = now.get(name).copied().unwrap_or(f64::NAN);
+        (value.to_bits() != other.to_bits() && !(value.is_nan() && other.is_nan()))
+            .then(|| format!("{name} was {value}, is {other}"))
+    };
+    Ok(match outcome.metrics.iter().find_map(differs) {
+        Some(what) => Verdict::Differs(log.duration_s(), what),
+        None => Verdict::Equal,
+    })
+}
+
+fn session(log: &Log, setup: &Setup, seed: u64, step_us: u64) -> Result<Verdict, Failure> {
+    let setup = &*setup.of_seed(seed)?;
+    let mut sim = Sim::new(&*run::prepare(setup, seed)?, seed)?;
+    let Some(end_us) = log.link.last().map(|burst| burst.t_us) else {
+        return Ok(Verdict::Equal);
+    };
+    let mut commands = log.link.iter().filter(|burst| burst.to_robot).peekable();
+    let mut link = Vec::new();
+    loop {
+        let t_us = sim.now_us();
+        let mut bytes = Vec::new();
+        sim.receive(&mut bytes);
+        if !bytes.is_empty() {
+            link.push(Burst {
+                t_us,
+                to_robot: false,
+                bytes,
+            });
+        }
+        while let Some(burst) = commands.next_if(|burst| burst.t_us <= t_us) {
+            sim.send(&burst.bytes);
+        }
+        if t_us >= end_us {
+            break;
+        }
+        sim.advance(t_us + step_us.max(1));
+    }
+    let said: Vec<Burst> = log
+        .link
+        .iter()
+        .filter(|burst| !burst.to_robot)
+        .cloned()
+        .collect();
+    Ok(first_difference(&said, &link, true).unwrap_or(Verdict::Equal))
+}
+
+/// Where two records of a link part; a record that was cut off may end first.
+fn first_difference(was: &[Burst], is: &[Burst], cut: bool) -> Option<Verdict> {
+    let parted = was.iter().zip(is).find(|(was, is)| was != is);
+    if let Some((was, is)) = parted {
+        let t_s = was.t_us.min(is.t_us) as f64 / 1e6;
+        return Some(Verdict::Differs(
+            t_s,
+            format!("was {}, is {}", words(was), words(is)),
+        ));
+    }
+    if was.len() > is.len() || (was.len() < is.len() && !cut) {
+        let longer = if was.len() > is.len() { was } else { is };
+        let next = longer.get(was.len().min(is.len()))?;
+        let which = if was.len() > is.len() {
+            "the recorded run goes on with"
+        } else {
+            "the run goes on now with"
+        };
+        return Some(Verdict::Differs(
+            next.t_us as f64 / 1e6,
+            format!("{which} {}", words(next)),
+        ));
+    }
+    None
+}
+
+/// A burst for people: who, when, and the message that it completes, else its bytes.
+fn words(burst: &Burst) -> String {
+    let who = if burst.to_robot {
+        "to the robot"
+    } else {
+        "from the robot"
+    };
+    let mut decoder = Decoder::<LINE>::default();
+    let message = burst
+        .bytes
+        .iter()
+        .find_map(|byte| match decoder.push(*byte) {
+            Some(Received::Frame(body)) => FromRobot::from_body(&body)
+                .ok()
+                .map(|message| format!("{message:?}")),
+            Some(Received::Line(_)) | None => None,
+        });
+    let content = message.unwrap_or_else(|| {
+        burst
+            .bytes
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
+    });
+    format!("{who} at {:.3} s {content}", burst.t_us as f64 / 1e6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn link(bytes: &[u8]) -> Vec<Burst> {
+        let burst = |(index, byte): (usize, &u8)| Burst {
+            t_us: 10_000 * index as u64,
+            to_robot: false,
+            bytes: vec![*byte],
+        };
+        bytes.iter().enumerate().map(burst).collect()
+    }
+
+    #[test]
+    fn the_first_difference_is_found_wherever_it_is() {
+        let at = |was: &[u8], is: &[u8], cut| match first_difference(&link(was), &link(is), cut) {
+            Some(Verdict::Differs(t_s, _)) => Some(t_s),
+            _ => None,
+        };
+        assert_eq!(at(b"abc", b"abc", false), None);
+        assert_eq!(at(b"abc", b"abd", false), Some(0.02));
+        assert_eq!(at(b"abc", b"ab", false), Some(0.02));
+        assert_eq!(at(b"ab", b"abc", false), Some(0.02));
+        assert_eq!(at(b"ab", b"abc", true), None);
+        assert_eq!(at(b"abc", b"ab", true), Some(0.02));
+    }
+}

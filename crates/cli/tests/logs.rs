@@ -1,0 +1,167 @@
+//! Logs, as a user meets them: what is recorded, what is left after a crash, and what is said of files that are no logs.
+
+#![cfg(test)]
+
+use rumbo_station::log::Log;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
+
+fn rumbo(arguments: &[&str], folder: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_rumbo"))
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// A lab that records into a folder, once it is up.
+fn lab(folder: &Path, speed: &str) -> Child {
+    let mut lab = Command::new(env!("CARGO_BIN_EXE_rumbo"))
+        .args([
+            "lab",
+            "--no-browser",
+            "--port",
+            "0",
+            "--speed",
+            speed,
+            "--out",
+        ])
+        .arg(folder)
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut address = String::new();
+    BufReader::new(lab.stdout.take().unwrap())
+        .read_line(&mut address)
+        .unwrap();
+    lab
+}
+
+fn only_log(folder: &Path) -> PathBuf {
+    let mut logs: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|file| file.unwrap().path())
+        .collect();
+    assert_eq!(logs.len(), 1, "{logs:?}");
+    logs.remove(0)
+}
+
+#[test]
+fn a_run_is_recorded_whole_and_the_same_run_is_the_same_file() {
+    let folder = tempfile::tempdir().unwrap();
+    for out in ["one", "two"] {
+        let done = rumbo(
+            &[
+                "run", "mode1", "--seed", "7", "--param", "kv=0.03", "--out", out,
+            ],
+            folder.path(),
+        );
+        assert!(
+            done.status.code().is_some_and(|status| status < 2),
+            "{}",
+            text(&done.stderr)
+        );
+    }
+    let path = folder.path().join("one/mode1-7.mcap");
+    assert_eq!(
+        std::fs::read(&path).unwrap(),
+        std::fs::read(folder.path().join("two/mode1-7.mcap")).unwrap()
+    );
+    let log = Log::read(&path).unwrap();
+    assert_eq!(log.cut, None);
+    let manifest = log.manifest.as_ref().unwrap();
+    assert_eq!(
+        (manifest.scenario.as_deref(), manifest.seed),
+        (Some("mode1"), Some(7))
+    );
+    assert_eq!(manifest.parameters, [("kv".to_owned(), 0.03)]);
+    assert!(
+        manifest.files["world"].contains("[[wall]]") || manifest.files["world"].contains("wall")
+    );
+    assert!(log.rows.len() > 200, "{}", log.rows.len());
+    assert!(
+        log.link.iter().any(|burst| burst.to_robot) && log.link.iter().any(|burst| !burst.to_robot)
+    );
+    assert!(
+        log.events()
+            .any(|(_, _, text)| text.starts_with("sent: ON"))
+    );
+    assert!(log.outcome.unwrap().metrics.len() > 3);
+    let again = rumbo(&["rerun", "one/mode1-7.mcap"], folder.path());
+    assert_eq!(
+        again.status.code(),
+        Some(0),
+        "{}{}",
+        text(&again.stdout),
+        text(&again.stderr)
+    );
+    // The truth is there beside what was measured.
+    let last = log.rows.last().unwrap();
+    let (measured_m, true_m) = (
+        last.signal("range_front_m").unwrap(),
+        last.signal("true_range_front_m").unwrap(),
+    );
+    assert!((measured_m - true_m).abs() < 0.02, "{measured_m} {true_m}");
+}
+
+#[test]
+fn a_lab_that_is_killed_leaves_a_log_that_can_be_read() {
+    for lived_ms in [300, 1_400, 2_700] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut lab = lab(folder.path(), "8");
+        std::thread::sleep(Duration::from_millis(lived_ms));
+        lab.kill().unwrap();
+        lab.wait().unwrap();
+        let log = Log::read(&only_log(folder.path())).unwrap();
+        assert!(log.manifest.is_some());
+        assert!(log.cut.is_some());
+        assert!(lived_ms < 1_000 || !log.rows.is_empty());
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_lab_that_is_asked_to_end_completes_its_log() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut lab = lab(folder.path(), "8");
+    std::thread::sleep(Duration::from_millis(1_200));
+    let asked = Command::new("kill")
+        .args(["-TERM", &lab.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(asked.success());
+    assert_eq!(lab.wait().unwrap().code(), Some(0));
+    let log = Log::read(&only_log(folder.path())).unwrap();
+    assert_eq!(log.cut, None);
+    assert!(log.rows.len() > 20, "{}", log.rows.len());
+    let stop = log.link.iter().rev().find(|burst| burst.to_robot).unwrap();
+    assert!(!stop.bytes.is_empty());
+    drop(log);
+    let path = only_log(folder.path());
+    let again = rumbo(&["rerun", path.to_str().unwrap()], folder.path());
+    assert_eq!(
+        again.status.code(),
+        Some(0),
+        "{}{}",
+        text(&again.stdout),
+        text(&again.stderr)
+    );
+}
+
+#[test]
+fn a_lab_that_cannot_record_runs_all_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a_file");
+    std::fs::write(&file, "").unwrap();
+    let mut lab = lab(&file, "1");
+    std::thread::sleep(Duration::from_millis(300));
+    assert_eq!(lab.try_wait().unwrap(), None);
+    lab.kill().unwrap();
+    lab.wait().unwrap();
+}

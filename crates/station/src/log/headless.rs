@@ -1,0 +1,156 @@
+//! The log of a run without a window, made when the run is over: what crossed the link goes the way that it takes in a live session.
+
+use super::recorder::{Entry, Recorder};
+use super::{Burst, LogError, Manifest, Outcome};
+use crate::board::{Board, Level};
+use crate::client::{Heard, KnownTable, RobotClient};
+use crate::observer::Observer;
+use crate::state;
+use crate::target::{Scene, Truth};
+use crate::words;
+use rumbo_control::mode::ModeId;
+use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, ToRobot};
+use std::path::Path;
+use std::sync::Arc;
+
+/// The state is noted this often \[us\].
+const STATE_PERIOD_US: u64 = 200_000;
+/// Longest line of text that the decoder must pass over.
+const LINE: usize = 160;
+
+/// What a run left behind.
+#[derive(Debug)]
+pub struct Run<'a> {
+    /// What surrounds the robot.
+    pub scene: Option<Scene>,
+    /// What was really the case, with its time \[us\], in order.
+    pub truths: &'a [(u64, Truth)],
+    /// What crossed the link, in order.
+    pub link: &'a [Burst],
+    /// What a program without a link of ours has told, with its time \[us\], in order.
+    pub told: &'a [(u64, FromRobot)],
+    /// How it ended.
+    pub outcome: Outcome,
+}
+
+/// Writes the log of a run.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn record_run(path: &Path, manifest: &Manifest, run: Run<'_>) -> Result<(), LogError> {
+    let board = Arc::new(Board::new());
+    board.record(Recorder::at(path, manifest)?);
+    let mut teller = Teller {
+        observer: Observer::new(Arc::clone(&board)),
+        client: RobotClient::new(0, true, KnownTable::OURS),
+        heard: Vec::new(),
+        decoder: Decoder::default(),
+        sent: None,
+        baud: manifest.baud,
+        battery_v: None,
+    };
+    teller.observer.show_scene(run.scene.clone());
+    let (mut link, mut told) = (run.link.iter().peekable(), run.told.iter().peekable());
+    let mut state_due_us = 0;
+    for (t_us, truth) in run.truths {
+        while let Some(burst) = link.next_if(|burst| burst.t_us <= *t_us) {
+            teller.burst(burst);
+        }
+        while let Some((at_us, message)) = told.next_if(|(at_us, _)| at_us <= t_us) {
+            teller
+                .client
+                .understand(*message, *at_us, &mut teller.heard);
+            teller.digest(*at_us);
+        }
+        teller.observer.truth(to_ms(*t_us), *truth);
+        teller.battery_v = Some(truth.battery_v);
+        teller.observer.publish();
+        if *t_us >= state_due_us {
+            teller.state(*t_us);
+            state_due_us = *t_us + STATE_PERIOD_US;
+        }
+    }
+    board.take(Entry::Outcome(run.outcome));
+    match board.end_recording() {
+        Some(recorder) => recorder.finish(),
+        None => Ok(()),
+    }
+}
+
+fn to_ms(us: u64) -> i64 {
+    (us / 1_000) as i64
+}
+
+struct Teller {
+    observer: Observer,
+    client: RobotClient,
+    heard: Vec<Heard>,
+    decoder: Decoder<LINE>,
+    /// The command sent last: a repetition is no news.
+    sent: Option<(u8, u16)>,
+    baud: u32,
+    battery_v: Option<f64>,
+}
+
+impl Teller {
+    fn burst(&mut self, burst: &Burst) {
+        self.observer.link(burst.clone());
+        if burst.to_robot {
+            self.client.said(burst.bytes.len(), burst.t_us);
+            return self.sent(burst);
+        }
+        self.client.hear(&burst.bytes, burst.t_us, &mut self.heard);
+        self.digest(burst.t_us);
+    }
+
+    fn digest(&mut self, t_us: u64) {
+        self.observer
+            .digest(&mut self.heard, &mut self.client, to_ms(t_us));
+    }
+
+    /// Notes the commands in what was sent.
+    fn sent(&mut self, burst: &Burst) {
+        for byte in &burst.bytes {
+            let message = match self.decoder.push(*byte) {
+                Some(Received::Frame(body)) => ToRobot::from_body(&body),
+                Some(Received::Line(_)) | None => continue,
+            };
+            let Ok(ToRobot::Command {
+                session,
+                number,
+                command,
+            }) = message
+            else {
+                continue;
+            };
+            if self.sent.replace((session, number)) != Some((session, number)) {
+                let mode = self.mode(&command);
+                self.observer.note(
+                    to_ms(burst.t_us),
+                    Level::Info,
+                    format!("sent: {}", words::command(&command, mode)),
+                );
+            }
+        }
+    }
+
+    fn mode(&self, command: &Command) -> ModeId {
+        match command {
+            Command::Mode(mode) => *mode,
+            _ => self.client.mode(),
+        }
+    }
+
+    fn state(&mut self, t_us: u64) {
+        let around = state::Around {
+            t_us,
+            simulated: true,
+            speed: 1.0,
+            achieved_speed: 1.0,
+            baud: self.baud,
+            true_battery_v: self.battery_v,
+        };
+        let state = state::describe(&around, &mut self.client, &self.observer);
+        self.observer.show_state(state);
+    }
+}

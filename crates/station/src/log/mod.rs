@@ -1,0 +1,66 @@
+//! Logs: every run as an MCAP file, from which it can be shown, exported, compared and run again.
+//!
+//! | topic | schema | what |
+//! |---|---|---|
+//! | `/telemetry` | `rumbo.Telemetry` | the signals of the dashboard, one message per telemetry frame |
+//! | `/state` | `rumbo.State` | what changes slowly: mode, faults, battery, figures of the link |
+//! | `/parameters` | `rumbo.Parameters` | the values the robot acknowledged, by name |
+//! | `/events` | `foxglove.Log` | what happened, in words |
+//! | `/pose/estimated`, `/pose/true` | `foxglove.PoseInFrame` | the two poses in the world |
+//! | `/world` | `foxglove.SceneUpdate` | walls and boxes |
+//! | `/scene` | `rumbo.Scene` | what the dashboard draws around the robot |
+//! | `/link/from_robot`, `/link/to_robot` | `rumbo.Bytes` | the raw bytes of the link, base64 |
+//!
+//! Messages are JSON with JSON schemas, times are the run's own, from 0. A metadata record `manifest` says what ran
+//! ([`Manifest`]); the files it was made of are attached. Chunks are compressed and closed every
+//! [`recorder::FLUSH`], so that a log whose writer was killed is readable up to there.
+
+mod headless;
+mod manifest;
+mod reader;
+pub(crate) mod recorder;
+mod schema;
+mod writer;
+
+pub use headless::{Run, record_run};
+pub use manifest::{Kind, Manifest, Outcome};
+pub use reader::Log;
+pub use recorder::Recording;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Raw bytes that crossed the link together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Burst {
+    /// When, in the target's time \[us\].
+    pub t_us: u64,
+    /// To the robot, or from it.
+    pub to_robot: bool,
+    /// What.
+    pub bytes: Vec<u8>,
+}
+
+/// What is wrong with a log, or with writing one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LogError {
+    path: PathBuf,
+    what: String,
+}
+
+impl LogError {
+    pub(crate) fn new(path: &Path, what: impl fmt::Display) -> Self {
+        Self {
+            path: path.into(),
+            what: what.to_string(),
+        }
+    }
+}
+
+impl fmt::Display for LogError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.path.display(), self.what)
+    }
+}
+
+impl std::error::Error for LogError {}

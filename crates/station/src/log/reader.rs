@@ -1,0 +1,276 @@
+//! Reads a log, whole or cut off.
+//!
+//! A log without an end, of a writer that was killed, is read as far as it goes, and says so ([`Log::cut`]). Logs that `rumbo import`
+//! made of the original program's CSV are read too, as far as their signals have a place in a [`Row`].
+
+use super::schema::Topic;
+use super::{Burst, LogError, Manifest, Outcome};
+use crate::board::{Level, LoggedEvent, State};
+use crate::row::Row;
+use crate::target::Scene;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use mcap::MAGIC;
+use mcap::read::{ChunkFlattener, Options};
+use mcap::records::Record;
+use serde::Deserialize;
+use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashMap};
+use std::fmt;
+use std::path::Path;
+
+/// The topic of a log made by `rumbo import`.
+const IMPORTED: &str = "telemetry";
+
+/// A log in memory.
+#[derive(Clone, Debug, Default)]
+pub struct Log {
+    /// What ran, where the log says so.
+    pub manifest: Option<Manifest>,
+    /// How it ended, where somebody judged.
+    pub outcome: Option<Outcome>,
+    /// The signals, in order of time.
+    pub rows: Vec<Row>,
+    /// What happened, with its time \[s\].
+    pub(crate) events: Vec<LoggedEvent>,
+    /// The slow state, in order of time.
+    pub(crate) states: Vec<State>,
+    /// What surrounded the robot.
+    pub(crate) scene: Option<Scene>,
+    /// The parameters' values, each with its time \[ms\].
+    pub(crate) parameters: Vec<(i64, BTreeMap<String, f32>)>,
+    /// What crossed the link, in order.
+    pub link: Vec<Burst>,
+    /// Why the log ends early, where it does.
+    pub cut: Option<String>,
+}
+
+/// What messages of a channel are.
+#[derive(Clone, Copy)]
+enum Channel {
+    Ours(Topic),
+    Imported,
+}
+
+impl Log {
+    /// Reads a log.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is no log, or holds nothing known.
+    pub fn read(path: &Path) -> Result<Self, LogError> {
+        let wrong = |what: String| LogError::new(path, what);
+        let bytes = std::fs::read(path).map_err(|error| {
+            wrong(format!(
+                "cannot be read ({error}); `rumbo list logs` shows what there is"
+            ))
+        })?;
+        if !bytes.starts_with(MAGIC) {
+            let what = if bytes.is_empty() {
+                "is empty"
+            } else {
+                "is no MCAP log"
+            };
+            return Err(wrong(format!(
+                "{what}; give a log of rumbo, or convert a CSV with `rumbo import`"
+            )));
+        }
+        let mut log = Self::default();
+        if let Err(error) = log.take_all(&bytes) {
+            log.cut = Some(error);
+        }
+        if log.manifest.is_none() && log.rows.is_empty() {
+            return Err(wrong(
+                "holds neither a manifest nor signals of rumbo; is it another program's log?"
+                    .into(),
+            ));
+        }
+        log.rows.sort_by_key(|row| row.t_ms);
+        Ok(log)
+    }
+
+    /// Events as lines: time \[s\], level, text.
+    pub fn events(&self) -> impl Iterator<Item = (f64, &'static str, &str)> {
+        self.events
+            .iter()
+            .map(|event| (event.t_s, event.level.name(), event.text.as_str()))
+    }
+
+    /// Length of the log \[s\].
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        let row_s = self.rows.last().map_or(0.0, |row| row.t_ms as f64 / 1e3);
+        let state_s = self.states.last().map_or(0.0, |state| state.t_s);
+        let link_s = self
+            .link
+            .last()
+            .map_or(0.0, |burst| burst.t_us as f64 / 1e6);
+        row_s.max(state_s).max(link_s)
+    }
+
+    fn take_all(&mut self, bytes: &[u8]) -> Result<(), String> {
+        let options = Options::IgnoreEndMagic | Options::ValidateChunkCrcs;
+        let records =
+            ChunkFlattener::new_with_options(bytes, options).map_err(|error| error.to_string())?;
+        let mut channels = HashMap::new();
+        for record in records {
+            match record.map_err(|error| error.to_string())? {
+                Record::Channel(channel) => {
+                    let known = match Topic::find(&channel.topic) {
+                        Some(topic) => Some(Channel::Ours(topic)),
+                        None => (channel.topic == IMPORTED).then_some(Channel::Imported),
+                    };
+                    channels.insert(channel.id, known);
+                }
+                Record::Message { header, data } => {
+                    if let Some(Some(channel)) = channels.get(&header.channel_id) {
+                        self.take(*channel, header.log_time, &data)
+                            .map_err(|error| {
+                                format!(
+                                    "a message at {:.3} s is damaged ({error})",
+                                    header.log_time as f64 / 1e9
+                                )
+                            })?;
+                    }
+                }
+                Record::Metadata(metadata) => match metadata.name.as_str() {
+                    "manifest" => self.manifest = Manifest::from_metadata(&metadata.metadata),
+                    "outcome" => self.outcome = Some(Outcome::from_metadata(&metadata.metadata)),
+                    _ => {}
+                },
+                Record::Attachment { header, data, .. } => {
+                    if let (Some(manifest), Some(name)) =
+                        (&mut self.manifest, header.name.strip_suffix(".toml"))
+                    {
+                        manifest
+                            .files
+                            .insert(name.into(), String::from_utf8_lossy(&data).into_owned());
+                    }
+                }
+                Record::DataEnd(_) => return Ok(()),
+                _ => {}
+            }
+        }
+        Err("the log has no end: its writer was stopped".into())
+    }
+
+    fn take(&mut self, channel: Channel, time_ns: u64, data: &[u8]) -> serde_json::Result<()> {
+        let t_us = time_ns / 1_000;
+        let t_ms = (t_us / 1_000) as i64;
+        let topic = match channel {
+            Channel::Ours(topic) => topic,
+            Channel::Imported => Topic::Telemetry,
+        };
+        match topic {
+            Topic::Telemetry => {
+                let Signals(mut row) = serde_json::from_slice(data)?;
+                row.t_ms = t_ms;
+                self.rows.push(row);
+            }
+            Topic::State => self.states.push(serde_json::from_slice(data)?),
+            Topic::Parameters => self.parameters.push((t_ms, serde_json::from_slice(data)?)),
+            Topic::Events => self.events.push(event(t_ms, serde_json::from_slice(data)?)),
+            Topic::Scene => {
+                let Around { scene } = serde_json::from_slice(data)?;
+                self.scene = scene;
+            }
+            Topic::FromRobot | Topic::ToRobot => {
+                let Bytes { data } = serde_json::from_slice(data)?;
+                let bytes = STANDARD
+                    .decode(data.as_bytes())
+                    .map_err(serde::de::Error::custom)?;
+                self.link.push(Burst {
+                    t_us,
+                    to_robot: topic == Topic::ToRobot,
+                    bytes,
+                });
+            }
+            // Made of what the others hold.
+            Topic::Estimated | Topic::True | Topic::World => {}
+        }
+        Ok(())
+    }
+}
+
+#[derive(Deserialize)]
+struct Around {
+    scene: Option<Scene>,
+}
+
+#[derive(Deserialize)]
+struct Bytes<'a> {
+    #[serde(borrow)]
+    data: Cow<'a, str>,
+}
+
+#[derive(Deserialize)]
+struct Said {
+    level: u8,
+    message: String,
+    name: String,
+}
+
+fn event(t_ms: i64, said: Said) -> LoggedEvent {
+    let level = match (said.level, said.name.as_str()) {
+        (_, "good") => Level::Good,
+        (3, _) => Level::Warning,
+        (4.., _) => Level::Fault,
+        _ => Level::Info,
+    };
+    LoggedEvent {
+        t_s: t_ms as f64 / 1e3,
+        level,
+        text: said.message,
+    }
+}
+
+/// A row from its JSON object, whatever the order of the names.
+struct Signals(Row);
+
+impl<'de> Deserialize<'de> for Signals {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(RowVisitor).map(Self)
+    }
+}
+
+struct RowVisitor;
+
+impl<'de> Visitor<'de> for RowVisitor {
+    type Value = Row;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object of signals")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Row, A::Error> {
+        let mut row = Row::unknown(0);
+        while let Some(name) = map.next_key::<Cow<'de, str>>()? {
+            if let Some(range) = name.strip_suffix("_clear") {
+                map.next_value::<IgnoredAny>()?;
+                row.set(range, f64::INFINITY);
+            } else if let Some(value) = map.next_value::<Option<f64>>()? {
+                set(&mut row, &name, value);
+            }
+        }
+        Ok(row)
+    }
+}
+
+/// Sets a signal, under our name for it or under that of `rumbo import`.
+fn set(row: &mut Row, name: &str, value: f64) {
+    match name {
+        "left_range_m" => row.set("range_left_m", value),
+        "right_range_m" => row.set("range_right_m", value),
+        "front_range_m" => row.set("range_front_m", value),
+        "left_speed_rad_s" => row.set("left_rad_s", value),
+        "right_speed_rad_s" => row.set("right_rad_s", value),
+        "left_reference_rad_s" => row.set("left_ref_rad_s", value),
+        "right_reference_rad_s" => row.set("right_ref_rad_s", value),
+        "reference_rad_s" => {
+            row.set("left_ref_rad_s", value);
+            row.set("right_ref_rad_s", value);
+        }
+        "reference_m" => row.set("reference_left", value),
+        _ => row.set(name, value),
+    }
+}

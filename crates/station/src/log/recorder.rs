@@ -1,0 +1,312 @@
+//! Records while things happen: whoever has something to record hands it to a thread, and never waits for the disk.
+//!
+//! What a slow disk cannot take is dropped and counted; a disk that fails ends the recording. Both are reported
+//! ([`Recorder::trouble`]), and the robot goes on.
+
+use super::writer::LogWriter;
+use super::{Burst, LogError, Manifest, Outcome};
+use crate::board::{LoggedEvent, State};
+use crate::catalogue::ParameterState;
+use crate::row::Row;
+use crate::target::Scene;
+use mcap::McapResult;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// What has been recorded reaches the file within this time: half of what may be missing after a crash.
+pub(crate) const FLUSH: Duration = Duration::from_millis(400);
+/// Entries that wait for the disk: several seconds of a session in real time.
+const WAITING: usize = 4_096;
+
+/// Where runs are recorded.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// The folder for their logs; made if need be.
+    pub folder: PathBuf,
+}
+
+/// Something to record.
+#[derive(Debug)]
+pub(crate) enum Entry {
+    Burst(Burst),
+    Rows(Vec<Row>),
+    Event(LoggedEvent),
+    Scene(Option<Box<Scene>>),
+    State(Box<State>),
+    Parameters(Vec<ParameterState>),
+    Outcome(Outcome),
+}
+
+/// What went wrong so far, told once.
+type Trouble = Arc<Mutex<Option<String>>>;
+
+/// Records one run. Dropping it completes the log.
+#[derive(Debug)]
+pub(crate) struct Recorder {
+    path: PathBuf,
+    /// `None` only while it is dropped.
+    entries: Option<SyncSender<Entry>>,
+    trouble: Trouble,
+    thread: Option<JoinHandle<()>>,
+    /// Waits for the disk rather than drop anything.
+    patient: bool,
+    dropped: u64,
+}
+
+impl Recorder {
+    /// A new log in a folder, named after its manifest.
+    pub(crate) fn in_folder(folder: &Path, manifest: &Manifest) -> Result<Self, LogError> {
+        let failed = |path: &Path, error: std::io::Error| {
+            LogError::new(
+                path,
+                format!("cannot be written ({error}); choose another folder for logs with --out"),
+            )
+        };
+        std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
+        let stem = manifest.stem();
+        let mut number = 1;
+        let (path, file) = loop {
+            let name = match number {
+                1 => format!("{stem}.mcap"),
+                _ => format!("{stem}-{number}.mcap"),
+            };
+            let path = folder.join(name);
+            match File::create_new(&path) {
+                Ok(file) => break (path, file),
+                Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => number += 1,
+                Err(error) => return Err(failed(&path, error)),
+            }
+        };
+        Self::start(path, file, manifest, false)
+    }
+
+    /// A log of this name, in place of what was there; nothing of it is dropped, however slow the disk.
+    pub(crate) fn at(path: &Path, manifest: &Manifest) -> Result<Self, LogError> {
+        let file = File::create(path).map_err(|error| {
+            LogError::new(
+                path,
+                format!("cannot be written ({error}); choose another folder with --out"),
+            )
+        })?;
+        Self::start(path.into(), file, manifest, true)
+    }
+
+    fn start(
+        path: PathBuf,
+        file: File,
+        manifest: &Manifest,
+        patient: bool,
+    ) -> Result<Self, LogError> {
+        let (sender, entries) = sync_channel(WAITING);
+        let trouble = Trouble::default();
+        let (manifest, told) = (manifest.clone(), Arc::clone(&trouble));
+        let thread = std::thread::Builder::new()
+            .name("recorder".into())
+            .spawn(move || {
+                if let Err(error) = write(file, &manifest, &entries) {
+                    tell(&told, format!("recording ended: the log cannot be written ({error}); is the disk full?"));
+                }
+            })
+            .map_err(|error| LogError::new(&path, format!("no thread to write it ({error})")))?;
+        Ok(Self {
+            path,
+            entries: Some(sender),
+            trouble,
+            thread: Some(thread),
+            patient,
+            dropped: 0,
+        })
+    }
+
+    /// The log's file.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Takes something to record.
+    pub(crate) fn take(&mut self, entry: Entry) {
+        let Some(entries) = &self.entries else {
+            return;
+        };
+        if self.patient {
+            // A recording that has ended has said why.
+            let _ = entries.send(entry);
+            return;
+        }
+        match entries.try_send(entry) {
+            Ok(()) if self.dropped > 0 => {
+                let dropped = std::mem::take(&mut self.dropped);
+                tell(
+                    &self.trouble,
+                    format!(
+                        "recording: the disk is slow, {dropped} entries are missing in the log"
+                    ),
+                );
+            }
+            Ok(()) | Err(TrySendError::Disconnected(_)) => {}
+            Err(TrySendError::Full(_)) => self.dropped += 1,
+        }
+    }
+
+    /// What has gone wrong since it was last asked.
+    pub(crate) fn trouble(&self) -> Option<String> {
+        self.trouble
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take()
+    }
+
+    /// Completes the log.
+    pub(crate) fn finish(mut self) -> Result<(), LogError> {
+        self.close();
+        match self.trouble() {
+            Some(what) => Err(LogError::new(&self.path, what)),
+            None => Ok(()),
+        }
+    }
+
+    fn close(&mut self) {
+        drop(self.entries.take());
+        if let Some(thread) = self.thread.take()
+            && thread.join().is_err()
+        {
+            tell(
+                &self.trouble,
+                "recording ended by a fault of its own; please report it".into(),
+            );
+        }
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        self.close();
+    }
+}
+
+fn tell(trouble: &Trouble, what: String) {
+    *trouble.lock().unwrap_or_else(PoisonError::into_inner) = Some(what);
+}
+
+/// Writes what comes until the sender is gone.
+fn write(file: File, manifest: &Manifest, entries: &Receiver<Entry>) -> McapResult<()> {
+    let mut log = LogWriter::new(BufWriter::new(file), manifest)?;
+    log.flush()?;
+    let mut now_us = 0;
+    let (mut dirty, mut due) = (false, Instant::now() + FLUSH);
+    loop {
+        let entry = match dirty {
+            true => entries.recv_timeout(due.saturating_duration_since(Instant::now())),
+            false => entries.recv().map_err(|_| RecvTimeoutError::Disconnected),
+        };
+        match entry {
+            Ok(entry) => {
+                if !dirty {
+                    (dirty, due) = (true, Instant::now() + FLUSH);
+                }
+                put(&mut log, entry, &mut now_us)?;
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return log.finish(),
+        }
+        if dirty && Instant::now() >= due {
+            log.flush()?;
+            dirty = false;
+        }
+    }
+}
+
+/// Scene and parameters have no time of their own: they are of the time that was recorded last.
+fn put(log: &mut LogWriter<BufWriter<File>>, entry: Entry, now_us: &mut u64) -> McapResult<()> {
+    match entry {
+        Entry::Burst(burst) => {
+            *now_us = burst.t_us;
+            log.burst(&burst)
+        }
+        Entry::Rows(rows) => rows.iter().try_for_each(|row| log.row(row)),
+        Entry::Event(event) => log.event(&event),
+        Entry::State(state) => log.state(&state),
+        Entry::Scene(scene) => log.scene(*now_us, scene.as_deref()),
+        Entry::Parameters(parameters) => log.parameters(*now_us, &parameters),
+        Entry::Outcome(outcome) => log.outcome(&outcome),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::Log;
+
+    fn burst(t_us: u64) -> Entry {
+        Entry::Burst(Burst {
+            t_us,
+            to_robot: false,
+            bytes: vec![7; 100],
+        })
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_reported_and_nobody_waits_for_it() {
+        let file = File::options().write(true).open("/dev/full").unwrap();
+        let mut recorder =
+            Recorder::start("/dev/full".into(), file, &Manifest::default(), false).unwrap();
+        (0..100).for_each(|number| recorder.take(burst(number)));
+        let error = recorder.finish().unwrap_err().to_string();
+        assert!(error.contains("is the disk full?"), "{error}");
+    }
+
+    #[test]
+    fn a_log_cut_anywhere_is_read_up_to_there_and_a_complete_one_is_not_called_cut() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("whole.mcap");
+        let mut recorder = Recorder::at(&path, &Manifest::default()).unwrap();
+        for number in 0..6 {
+            (0..50).for_each(|each| recorder.take(burst(1_000 * (50 * number + each))));
+            std::thread::sleep(FLUSH / 2);
+        }
+        recorder.finish().unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        let log = Log::read(&path).unwrap();
+        assert_eq!((log.cut.as_deref(), log.link.len()), (None, 300));
+        let cut = folder.path().join("cut.mcap");
+        let mut lengths = Vec::new();
+        for part in 1..40 {
+            std::fs::write(&cut, &whole[..whole.len() * part / 40]).unwrap();
+            match Log::read(&cut) {
+                Ok(log) => lengths.push(log.link.len()),
+                // Not even the manifest is whole.
+                Err(error) => assert!(lengths.is_empty(), "{error}"),
+            }
+        }
+        assert!(
+            lengths.is_sorted() && lengths.last() == Some(&300),
+            "{lengths:?}"
+        );
+        assert!(
+            lengths.iter().any(|length| (1..300).contains(length)),
+            "{lengths:?}"
+        );
+    }
+
+    #[test]
+    fn what_is_no_log_gets_one_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.mcap");
+        for (bytes, said) in [
+            (&b""[..], "is empty"),
+            (b"t_s,x_m\n0,0\n", "is no MCAP log"),
+            (mcap::MAGIC, "neither a manifest"),
+        ] {
+            std::fs::write(&path, bytes).unwrap();
+            let error = Log::read(&path).unwrap_err().to_string();
+            assert!(error.contains(said) && !error.contains('\n'), "{error}");
+        }
+        assert!(Log::read(&folder.path().join("none.mcap")).is_err());
+    }
+}
