@@ -190,6 +190,7 @@ impl Drivetrain {
             torque_n_m[i] = motor_a * model.torque_n_m_a - model.params.viscous_n_m_s * old[i];
         }
         self.battery.draw(&mut state.battery, supply_a, dt_s);
+        self.damp_yaw(old, &mut torque_n_m);
 
         let turning = if old == [0.0; 2] {
             turning_share(torque_n_m)
@@ -210,6 +211,18 @@ impl Drivetrain {
             self.roll(i, &mut state.wheels[i], new[i], wheel_rad[i], dt_s);
         }
         self.motion(state, wheel_rad)
+    }
+
+    /// Takes the moment that the floor sets against turning from the wheels, as a couple.
+    fn damp_yaw(&self, speed_rad_s: [f64; 2], torque_n_m: &mut [f64; 2]) {
+        if !self.on_floor || self.floor.yaw_damping_n_m_s == 0.0 {
+            return;
+        }
+        let radius_m = self.wheels.map(|wheel| wheel.params.radius_m);
+        let yaw_rad_s = (radius_m[1] * speed_rad_s[1] - radius_m[0] * speed_rad_s[0]) / self.base_m;
+        let force_n = self.floor.yaw_damping_n_m_s * yaw_rad_s / self.base_m;
+        torque_n_m[0] += radius_m[0] * force_n;
+        torque_n_m[1] -= radius_m[1] * force_n;
     }
 
     /// Largest dry friction on a wheel, N m: its own in the direction it turns (or would), plus the floor's.

@@ -227,6 +227,8 @@ section! {
         rolling_n_m = 0.01, 0.0 => 1.0, "N m";
         /// Dry resistance per wheel added when turning on the spot: scrubbing tyres and castor.
         scrub_n_m = 0.01, 0.0 => 1.0, "N m";
+        /// Moment against turning, per rad/s of yaw: tyres that spin while they roll, and the castor. None identified yet.
+        yaw_damping_n_m_s = 0.0, 0.0 => 1.0, "N m s";
         /// Standard deviation of that resistance along the way, relative.
         roughness = 0.09, 0.0 => 0.5, "1";
         /// Distance over which the floor changes.

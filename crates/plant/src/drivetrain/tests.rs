@@ -302,3 +302,26 @@ fn a_duty_that_is_no_number_releases_the_bridge() {
     );
     assert_eq!(speeds(&state), [0.0, 0.0]);
 }
+
+#[test]
+fn yaw_damping_slows_a_turn_on_the_floor_and_nothing_else() {
+    let after = |damping: f64, bridges: [Bridge; 2], on_floor: bool| {
+        let mut params = Params::default();
+        smooth(&mut params);
+        params.floor.yaw_damping_n_m_s = damping;
+        let drivetrain = Drivetrain::new(&params, Noise::new(1, 0), on_floor);
+        let mut state = drivetrain.start();
+        drive(&drivetrain, &mut state, bridges, 1.0);
+        speeds(&state)
+    };
+    let arc = [Bridge::Forward(0.5), Bridge::Forward(0.6)];
+    let [free, damped] = [0.0, 0.05].map(|damping| after(damping, arc, true));
+    assert!(damped[1] - damped[0] < 0.6 * (free[1] - free[0]));
+    assert!(
+        damped[0] > free[0] && damped[1] < free[1],
+        "a couple: it takes from one wheel and gives to the other"
+    );
+    assert_eq!(after(0.0, arc, false), after(0.05, arc, false));
+    let straight = [Bridge::Forward(0.5); 2];
+    assert_eq!(after(0.0, straight, true), after(0.05, straight, true));
+}

@@ -18,7 +18,6 @@ const TEXT: RGBColor = RGBColor(0x33, 0x33, 0x33);
 /// Of the colour-blind-safe palette of Okabe and Ito.
 pub(crate) const OURS: RGBColor = RGBColor(0x00, 0x72, 0xb2);
 pub(crate) const ORIGINAL: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
-pub(crate) const THIRD: RGBColor = RGBColor(0x00, 0x9e, 0x73);
 const GIVEN: RGBColor = RGBColor(0x66, 0x66, 0x66);
 
 /// What is drawn in one chart.
@@ -167,10 +166,20 @@ impl Chart {
             };
             if !name.is_empty() {
                 named = true;
+                // A reference is dashed in its name as well.
+                let gap = if matches!(curve, Curve::Given { .. }) {
+                    4
+                } else {
+                    0
+                };
                 context
                     .draw_series(std::iter::empty::<PathElement<(f64, f64)>>())?
                     .label(*name)
-                    .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
+                    .legend(move |(x, y)| {
+                        EmptyElement::at((x, y))
+                            + PathElement::new([(0, 0), (9 - gap / 2, 0)], style)
+                            + PathElement::new([(9 + gap / 2, 0), (18, 0)], style)
+                    });
             }
         }
         if named {

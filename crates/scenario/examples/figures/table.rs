@@ -58,37 +58,36 @@ pub(crate) fn table(columns: &[(&str, &Runs)], rows: &[Row]) -> String {
     text
 }
 
-/// Median, least and most, as three cells.
+/// Median, and in parentheses least and most.
 pub(crate) fn spread(row: &Row, runs: &Runs) -> String {
-    let [median, most] = runs
-        .median_and_worst(row.metric, false)
-        .unwrap_or([f64::NAN; 2]);
-    let [_, least] = runs
+    let Some([median, most]) = runs.median_and_worst(row.metric, false) else {
+        return "-".into();
+    };
+    let least = runs
         .median_and_worst(row.metric, true)
-        .unwrap_or([f64::NAN; 2]);
-    [median, least, most]
-        .map(|value| {
-            if value.is_finite() {
-                with_unit(value, row)
-            } else {
-                "never".into()
-            }
-        })
-        .join(" | ")
+        .map_or(f64::NAN, |[_, least]| least);
+    let [median, least, most] = [median, least, most].map(|value| in_words(value, row));
+    let numbers = format!("{median} ({least} to {most})");
+    if median == "never" {
+        numbers
+    } else {
+        format!("{numbers} {}", row.unit)
+    }
+}
+
+fn in_words(value: f64, row: &Row) -> String {
+    if value.is_finite() {
+        number(value * row.factor)
+    } else {
+        "never".into()
+    }
 }
 
 fn cell(row: &Row, runs: &Runs) -> String {
     match runs.median_and_worst(row.metric, row.least_is_worst) {
         None => "-".into(),
         Some([median, worst]) => {
-            let in_words = |value: f64| {
-                if value.is_finite() {
-                    number(value * row.factor)
-                } else {
-                    "never".into()
-                }
-            };
-            let (median, worst) = (in_words(median), in_words(worst));
+            let (median, worst) = (in_words(median, row), in_words(worst, row));
             let numbers = format!("{median} ({worst})");
             if median == "never" {
                 numbers

@@ -168,8 +168,9 @@ impl Walls {
         }
     }
 
-    /// Distance and angle from the readings, as the report computes them: for a negative angle the half gap counts with
-    /// the wrong sign, and equal readings leave the distance as it was.
+    /// Distance and angle from the readings. The report's listing counts the half gap with the wrong sign at negative
+    /// angles; the PWM of its recorded run along a wall follows from the readings with the right one only. Mode 2 keeps
+    /// its distance when both readings agree.
     fn locate(&mut self) {
         let [d1, d2] = self.readings_cm;
         if self.task == Task::Distance {
@@ -177,8 +178,8 @@ impl Walls {
             return;
         }
         let angle_rad = ((d2 - d1) / self.gap_cm).atan();
-        if d1 != d2 {
-            self.distance_cm = d1.max(d2) * angle_rad.cos() - 0.5 * self.gap_cm * angle_rad.sin();
+        if d1 != d2 || self.task != Task::Align {
+            self.distance_cm = 0.5 * (d1 + d2) * angle_rad.cos();
         }
         self.angle_deg = angle_rad.to_degrees();
     }
@@ -200,5 +201,34 @@ fn shared(signal: f64, more: f64, positive: bool) -> [f64; 2] {
         [signal, signal + more]
     } else {
         [signal - more, signal]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Distance [cm] after two pairs of readings [cm], rear and front of a side pair, or right and left of a front one.
+    fn distance_cm(task: Task, readings_cm: [[f64; 2]; 2]) -> f64 {
+        let mut walls = Walls::new(task, false);
+        for readings_cm in readings_cm {
+            walls.readings_cm = readings_cm;
+            walls.locate();
+        }
+        walls.distance_cm
+    }
+
+    #[test]
+    fn the_distance_is_that_of_the_middle_at_either_sign_of_the_angle() {
+        let away = distance_cm(Task::Hold, [[50.0; 2], [50.0, 52.0]]);
+        let towards = distance_cm(Task::Hold, [[50.0; 2], [52.0, 50.0]]);
+        assert!((away - 50.49).abs() < 0.01 && (away - towards).abs() < 1e-9);
+    }
+
+    #[test]
+    fn mode_2_alone_keeps_its_distance_when_both_readings_agree() {
+        let readings_cm = [[50.0, 51.0], [40.0; 2]];
+        assert_eq!(distance_cm(Task::Follow, readings_cm), 40.0);
+        assert!(distance_cm(Task::Align, readings_cm) > 50.0);
     }
 }

@@ -14,6 +14,19 @@ fn original(scenario: &str) -> Setup {
     Library::new().setup(scenario, &overrides).unwrap()
 }
 
+/// The report's program on robots that turn as its own did along its wall (docs/theory/original.md).
+fn turning_as_recorded(scenario: &str) -> Setup {
+    let overrides = Overrides {
+        program: Program::Original,
+        parameters: vec![
+            ("body.yaw_inertia_kg_m2".to_owned(), 0.0047),
+            ("floor.yaw_damping_n_m_s".to_owned(), 0.016),
+        ],
+        ..Overrides::default()
+    };
+    Library::new().setup(scenario, &overrides).unwrap()
+}
+
 /// The median of a metric; what never happened counts as later than anything.
 fn median(runs: &[RunResult], metric: &str) -> f64 {
     let mut values: Vec<f64> = runs.iter().map(|run| run.metrics[metric]).collect();
@@ -32,6 +45,33 @@ fn the_original_takes_about_3_s_to_30_cm_from_a_wall_at_15_passes_a_second() {
     assert_within(median(&runs, "step1.settling_s"), 2.2..=3.8);
     assert_within(median(&runs, "step2.settling_s"), 0.8..=2.5);
     assert_within(median(&runs, "control_period_s"), 0.062..=0.070);
+}
+
+#[test]
+fn the_original_keeps_to_its_wall_within_5_cm_where_the_robot_turns_as_recorded() {
+    let runs = seeds(&turning_as_recorded("mode3"), 1..21);
+    // Recorded: 1.2 cm rms, 4.6 cm at worst.
+    assert_within(median(&runs, "distance_rms_m"), 0.008..=0.03);
+    assert_within(median(&runs, "distance_worst_m"), 0.03..=0.07);
+}
+
+#[test]
+fn the_original_reaches_its_four_goals_in_about_32_s_where_the_robot_turns_as_recorded() {
+    let mut setup = turning_as_recorded("mode8-goals");
+    setup.scenario.duration_s = 60.0;
+    let runs = seeds(&setup, 1..21);
+    // Recorded: 32 s, 4.3 m.
+    assert_within(median(&runs, "total_time_s"), 26.0..=38.0);
+    assert_within(median(&runs, "path_m"), 4.1..=4.7);
+}
+
+#[test]
+fn the_original_drives_all_four_straights_of_the_lane_where_the_robot_turns_as_recorded() {
+    let mut setup = turning_as_recorded("mode8-lane");
+    setup.scenario.duration_s = 120.0;
+    let runs = seeds(&setup, 1..21);
+    // Recorded: 57.8 s.
+    assert_within(median(&runs, "finish_s"), 45.0..=100.0);
 }
 
 #[test]

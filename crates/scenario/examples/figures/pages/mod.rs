@@ -5,7 +5,7 @@ mod walls;
 mod ways;
 mod wheels;
 
-use crate::chart::{Chart, Curve, Legend, ORIGINAL, OURS, THIRD, map, over_time, svg};
+use crate::chart::{Chart, Curve, Legend, ORIGINAL, OURS, map, over_time, svg};
 use crate::runs::{self, Change, Runs, runs};
 use crate::table::{Row, row, spread, table};
 use rumbo_scenario::files::Setup;
@@ -59,12 +59,20 @@ fn both(scenario: &str, original: Change) -> Result<Option<[Runs; 2]>, String> {
         .map(|(original, ours)| [original, ours]))
 }
 
+/// The report's program, the same on robots that turn as its own did, and ours.
+fn three(scenario: &str, original: Change) -> Result<Option<[Runs; 3]>, String> {
+    let Some(recorded) = runs(scenario, runs::as_recorded(scenario, original))? else {
+        return Ok(None);
+    };
+    let both = both(scenario, original)?;
+    Ok(both.map(|[original, ours]| [original, recorded, ours]))
+}
+
 /// A signal over time, of both programs.
-fn signal(of: &[Runs; 2], signal: impl Fn(&Sample, f64) -> f64) -> Vec<Curve> {
-    let [original, ours] = of;
+fn signal(original: &Runs, ours: &Runs, signal: impl Fn(&Sample, f64) -> f64) -> Vec<Curve> {
     vec![
         Curve::Seeds {
-            name: "the report's program",
+            name: REPORT,
             colour: ORIGINAL,
             runs: original.over_time(&signal),
         },
@@ -99,44 +107,48 @@ fn reference(setup: &Setup, factor: f64) -> Curve {
     }
 }
 
-fn pwm(of: &[Runs; 2]) -> Chart {
+fn pwm(original: &Runs, ours: &Runs) -> Chart {
     over_time(
         "PWM of the left wheel",
         "of 255",
-        signal(of, |sample, _| f64::from(sample.duty[0])),
+        signal(original, ours, |sample, _| f64::from(sample.duty[0])),
     )
 }
 
-/// The words below a figure of both programs; a third column may stand between them.
-fn words(of: &[Runs; 2], third: Option<(&str, &Runs)>, scenario: &str, rows: &[Row]) -> String {
-    let [original, ours] = of;
-    let mut columns = vec![("the report's program", original), ("ours", ours)];
-    if let Some(third) = third {
-        columns.insert(1, third);
-    }
-    let end = if original.setup.scenario.duration_s > ours.setup.scenario.duration_s {
-        format!(
-            "; the report's was given {} s",
-            original.setup.scenario.duration_s
-        )
-    } else {
-        String::new()
+const REPORT: &str = "the report's program";
+const AS_RECORDED: &str = "on robots as recorded";
+const EXPLAINED: &str = "*As recorded*: the same robots, made to turn (and, along or before a wall, to roll or to hear) as the report's own did \
+([why](original.md)); the figure shows its program on these. ";
+
+/// The words below a figure of both programs: the table, and what was run.
+fn words(columns: &[(&str, &Runs)], scenario: &str, rows: &[Row]) -> String {
+    let end = match columns {
+        [(_, original), .., (_, ours)]
+            if original.setup.scenario.duration_s > ours.setup.scenario.duration_s =>
+        {
+            format!(
+                "; the report's was given {} s",
+                original.setup.scenario.duration_s
+            )
+        }
+        _ => String::new(),
     };
+    let recorded = columns.iter().any(|(name, _)| *name == AS_RECORDED);
     format!(
-        "{}\nThe same {} simulated robots with both programs: median, and the range of all. `rumbo run {scenario} --runs {}`, and with `--program original`{end}.\n",
-        table(&columns, rows),
-        runs::SEEDS,
-        runs::SEEDS,
+        "{}\nThe same {seeds} simulated robots with both programs: median, and the range of all. {}`rumbo run {scenario} --runs {seeds}`, and with \
+`--program original`{end}.\n",
+        table(columns, rows),
+        if recorded { EXPLAINED } else { "" },
+        seeds = runs::SEEDS,
     )
 }
-
-/// The yaw inertia that the footprint alone would have.
-const LIGHT: Change = Change {
-    plant: Some(("body.yaw_inertia_kg_m2", 0.0047)),
-    ..runs::ORIGINAL
-};
 
 /// The report's program needs longer than the scenario lasts.
+const SLOW_STEPS: Change = Change {
+    duration_s: Some(30.0),
+    later: Some(1.4),
+    ..runs::ORIGINAL
+};
 const SLOW_SQUARE: Change = Change {
     duration_s: Some(60.0),
     ..runs::ORIGINAL

@@ -3,14 +3,16 @@
 use super::*;
 
 pub(super) fn mode1() -> Result<Option<Made>, String> {
-    let Some(of) = both("mode1", runs::ORIGINAL)? else {
+    let Some([original, ours]) = both("mode1", runs::ORIGINAL)? else {
         return Ok(None);
     };
-    let mut distance = signal(&of, |sample, scale| 100.0 * sample.range_m[2] * scale);
-    distance.insert(0, reference(&of[1].setup, 100.0));
+    let mut distance = signal(&original, &ours, |sample, scale| {
+        100.0 * sample.range_m[2] * scale
+    });
+    distance.insert(0, reference(&ours.setup, 100.0));
     let charts = [
         over_time("Mode 1: distance to the wall", "cm", distance),
-        pwm(&of),
+        pwm(&original, &ours),
     ];
     let rows = [
         row(
@@ -57,7 +59,7 @@ pub(super) fn mode1() -> Result<Option<Made>, String> {
             "Distance to the wall and PWM over time: ours reaches each reference sooner and without passing it",
             svg(&charts, 1, WIDE)?,
         )],
-        words: words(&of, None, "mode1", &rows),
+        words: words(&[(REPORT, &original), ("ours", &ours)], "mode1", &rows),
     }))
 }
 
@@ -67,24 +69,24 @@ fn ahead_m(sample: &Sample) -> f64 {
 }
 
 pub(super) fn mode2() -> Result<Option<Made>, String> {
-    let (Some(of), Some(turning)) = (
-        both("mode2", runs::ORIGINAL)?,
+    let (Some([original, recorded, ours]), Some(turning)) = (
+        three("mode2", runs::ORIGINAL)?,
         runs("mode2-final", runs::OURS)?,
     ) else {
         return Ok(None);
     };
-    let mut distance = signal(&of, |sample, _| 100.0 * ahead_m(sample));
-    distance.insert(0, reference(&of[1].setup, 100.0));
+    let mut distance = signal(&recorded, &ours, |sample, _| 100.0 * ahead_m(sample));
+    distance.insert(0, reference(&ours.setup, 100.0));
     let mut charts = [
         over_time("Mode 2: distance to the wall", "cm", distance),
         over_time(
             "Angle to the wall's normal",
             "deg",
-            signal(&of, |sample, _| DEG * sample.heading_rad),
+            signal(&recorded, &ours, |sample, _| DEG * sample.heading_rad),
         ),
     ];
     charts[0].y_range = Some([0.0, 125.0]);
-    charts[1].y_range = Some([-60.0, 90.0]);
+    charts[1].y_range = Some([-20.0, 40.0]);
     let rows = [
         row(
             "119 -> 30 cm, within 5 %",
@@ -124,8 +126,12 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
             svg(&charts, 1, WIDE)?,
         )],
         words: words(
-            &of,
-            Some(("ours, one sonar on the servo (`mode2-final`)", &turning)),
+            &[
+                (REPORT, &original),
+                (AS_RECORDED, &recorded),
+                ("ours, one sonar on the servo (`mode2-final`)", &turning),
+                ("ours", &ours),
+            ],
             "mode2",
             &rows,
         ),
@@ -138,35 +144,14 @@ fn beside_m(sample: &Sample) -> f64 {
     0.65 - sample.y_m - 0.03 * sin - 0.075 * cos
 }
 
-const LIGHT_WORDS: &str = "The third column is the report's program on a robot that turns as easily as its footprint alone would (`--param \
-body.yaw_inertia_kg_m2=0.0047`); the identified robot has three times that, which takes up the resistance of its castor.";
-
 pub(super) fn mode3() -> Result<Option<Made>, String> {
-    let (Some([original, ours]), Some(light)) =
-        (both("mode3", runs::ORIGINAL)?, runs("mode3", LIGHT)?)
-    else {
+    let Some([original, recorded, ours]) = three("mode3", runs::ORIGINAL)? else {
         return Ok(None);
     };
-    let error = |runs: &Runs| runs.over_time(|sample, _| 100.0 * (beside_m(sample) - 0.575));
-    let curves = vec![
-        Curve::Seeds {
-            name: "the report's program",
-            colour: ORIGINAL,
-            runs: error(&original),
-        },
-        Curve::Seeds {
-            name: "the same, easy to turn",
-            colour: THIRD,
-            runs: error(&light),
-        },
-        Curve::Seeds {
-            name: "ours",
-            colour: OURS,
-            runs: error(&ours),
-        },
-    ];
+    let curves = signal(&recorded, &ours, |sample, _| {
+        100.0 * (beside_m(sample) - 0.575)
+    });
     let mut chart = over_time("Mode 3: error of the distance to the wall", "cm", curves);
-    chart.y_range = Some([-40.0, 60.0]);
     chart.legend = Legend::UpperLeft;
     let rows = [
         row(
@@ -183,46 +168,49 @@ pub(super) fn mode3() -> Result<Option<Made>, String> {
         },
         row("contacts", "contacts", 1.0, "", "0"),
     ];
-    let columns = [
-        ("the report's program", &original),
-        ("easy to turn", &light),
-        ("ours", &ours),
-    ];
     Ok(Some(Made {
         figures: vec![(
             "mode3",
             "Error of the distance to the wall over time: ours stays within half a centimetre",
             svg(&[chart], 1, WIDE)?,
         )],
-        words: format!(
-            "{}\n{LIGHT_WORDS} `rumbo run mode3 --runs 20`, and with `--program original`.\n",
-            table(&columns, &rows)
+        words: words(
+            &[
+                (REPORT, &original),
+                (AS_RECORDED, &recorded),
+                ("ours", &ours),
+            ],
+            "mode3",
+            &rows,
         ),
     }))
 }
 
 pub(super) fn mode4() -> Result<Option<Made>, String> {
-    let (Some([original, ours]), Some(light)) =
-        (both("mode4", runs::ORIGINAL)?, runs("mode4", LIGHT)?)
-    else {
+    let Some([original, recorded, ours]) = three("mode4", SLOW_STEPS)? else {
         return Ok(None);
     };
-    let distance = |runs: &Runs| runs.over_time(|sample, _| 100.0 * beside_m(sample));
-    let curves = vec![
-        reference(&ours.setup, 100.0),
-        Curve::Seeds {
-            name: "the report's program, easy to turn",
-            colour: THIRD,
-            runs: distance(&light),
-        },
-        Curve::Seeds {
-            name: "ours",
-            colour: OURS,
-            runs: distance(&ours),
-        },
+    let chart = |title, name, colour, runs: &Runs| {
+        let distance = Curve::Seeds {
+            name,
+            colour,
+            runs: runs.over_time(|sample, _| 100.0 * beside_m(sample)),
+        };
+        Chart {
+            x_range: Some([-1.0, 31.0]),
+            y_range: Some([20.0, 70.0]),
+            ..over_time(title, "cm", vec![reference(&runs.setup, 100.0), distance])
+        }
+    };
+    let charts = [
+        chart(
+            "Mode 4: distance to the wall, the report's program",
+            REPORT,
+            ORIGINAL,
+            &recorded,
+        ),
+        chart("ours, its references sooner", "ours", OURS, &ours),
     ];
-    let mut chart = over_time("Mode 4: distance to the wall", "cm", curves);
-    chart.y_range = Some([0.0, 90.0]);
     let rows = [
         row(
             "59 -> 50 cm, within 2 cm",
@@ -250,20 +238,20 @@ pub(super) fn mode4() -> Result<Option<Made>, String> {
         ),
         row("contacts", "contacts", 1.0, "", "0"),
     ];
-    let columns = [
-        ("the report's program", &original),
-        ("easy to turn", &light),
-        ("ours", &ours),
-    ];
     Ok(Some(Made {
         figures: vec![(
             "mode4",
             "Distance to the wall over time: ours takes each step without swinging",
-            svg(&[chart], 1, WIDE)?,
+            svg(&charts, 1, WIDE)?,
         )],
-        words: format!(
-            "{}\nOn these robots the report's program swings by more than 2 cm about its references, or does not start on a weak battery, so that it never counts as settled. `rumbo run mode4 --runs 20`, and with `--program original`.\n",
-            table(&columns, &rows)
+        words: words(
+            &[
+                (REPORT, &original),
+                (AS_RECORDED, &recorded),
+                ("ours", &ours),
+            ],
+            "mode4",
+            &rows,
         ),
     }))
 }

@@ -4,7 +4,7 @@ use super::*;
 
 /// Maps of both programs beside each other, in the frame of the world or of the start.
 fn maps(
-    of: &[Runs; 2],
+    of: [&Runs; 2],
     titles: [&'static str; 2],
     around: impl Fn() -> Vec<Curve>,
     way: fn(&Runs) -> Ways,
@@ -12,7 +12,7 @@ fn maps(
     y_range: Option<[f64; 2]>,
 ) -> Result<String, String> {
     let charts: Vec<Chart> = of
-        .iter()
+        .into_iter()
         .zip(titles)
         .zip([ORIGINAL, OURS])
         .map(|((runs, title), colour)| {
@@ -33,7 +33,7 @@ fn maps(
 }
 
 pub(super) fn mode7() -> Result<Option<Made>, String> {
-    let Some(of) = both("mode7", SLOW_SQUARE)? else {
+    let Some([original, recorded, ours]) = three("mode7", SLOW_SQUARE)? else {
         return Ok(None);
     };
     let square = || {
@@ -67,15 +67,23 @@ pub(super) fn mode7() -> Result<Option<Made>, String> {
         ),
         row("once round", "finish_s", 1.0, "s", "30 s"),
     ];
-    let titles = ["the report's program", "Mode 7: ours, calibrated"];
+    let titles = ["Mode 7: the report's program", "ours, calibrated"];
     let range = Some([-0.3, 1.3]);
     Ok(Some(Made {
         figures: vec![(
             "mode7",
             "True ways of 20 robots around a square of 1 m: ours all but on it",
-            maps(&of, titles, square, ways, range, range)?,
+            maps([&recorded, &ours], titles, square, ways, range, range)?,
         )],
-        words: words(&of, None, "mode7", &rows),
+        words: words(
+            &[
+                (REPORT, &original),
+                (AS_RECORDED, &recorded),
+                ("ours", &ours),
+            ],
+            "mode7",
+            &rows,
+        ),
     }))
 }
 
@@ -166,21 +174,29 @@ fn mission(
     range: [Option<[f64; 2]>; 2],
     rows: &[Row],
 ) -> Result<Option<Made>, String> {
-    let Some(of) = both(scenario, SLOW_MISSION)? else {
+    let Some([original, recorded, ours]) = three(scenario, SLOW_MISSION)? else {
         return Ok(None);
     };
-    let titles = ["the report's program", "Mode 8: ours"];
+    let titles = ["Mode 8: the report's program", "ours"];
     let figure = maps(
-        &of,
+        [&recorded, &ours],
         titles,
-        || shapes(&of[1].setup),
+        || shapes(&ours.setup),
         in_the_world,
         range[0],
         range[1],
     )?;
     Ok(Some(Made {
         figures: vec![(scenario, alt, figure)],
-        words: words(&of, None, scenario, rows),
+        words: words(
+            &[
+                (REPORT, &original),
+                (AS_RECORDED, &recorded),
+                ("ours", &ours),
+            ],
+            scenario,
+            rows,
+        ),
     }))
 }
 

@@ -3,12 +3,12 @@
 use super::*;
 
 pub(super) fn mode5() -> Result<Option<Made>, String> {
-    let Some(of) = both("mode5", runs::ORIGINAL)? else {
+    let Some([original, ours]) = both("mode5", runs::ORIGINAL)? else {
         return Ok(None);
     };
     let speed = || {
-        let mut curves = signal(&of, |sample, _| RPM * sample.wheel_rad_s[0]);
-        curves.insert(0, reference(&of[1].setup, RPM));
+        let mut curves = signal(&original, &ours, |sample, _| RPM * sample.wheel_rad_s[0]);
+        curves.insert(0, reference(&ours.setup, RPM));
         curves
     };
     let mut charts = [
@@ -63,7 +63,7 @@ pub(super) fn mode5() -> Result<Option<Made>, String> {
             "Speed of the left wheel over time: ours is there within a third of a second",
             svg(&charts, 1, WIDE)?,
         )],
-        words: words(&of, None, "mode5", &rows),
+        words: words(&[(REPORT, &original), ("ours", &ours)], "mode5", &rows),
     }))
 }
 
@@ -72,7 +72,9 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
         uncalibrated: true,
         ..runs::OURS
     };
-    let (Some(of), Some(raw)) = (both("mode6", runs::ORIGINAL)?, runs("mode6", raw)?) else {
+    let (Some([original, recorded, ours]), Some(raw)) =
+        (three("mode6", runs::ORIGINAL)?, runs("mode6", raw)?)
+    else {
         return Ok(None);
     };
     let drift = |runs: &Runs| -> Ways {
@@ -82,7 +84,6 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
             .map(|way| way.into_iter().map(in_cm).collect())
             .collect()
     };
-    let [original, ours] = &of;
     let chart = Chart {
         x: "way ahead, m",
         legend: Legend::UpperLeft,
@@ -91,14 +92,14 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
             "cm",
             vec![
                 Curve::Ways {
-                    name: "the report's program",
+                    name: REPORT,
                     colour: ORIGINAL,
-                    runs: drift(original),
+                    runs: drift(&recorded),
                 },
                 Curve::Ways {
                     name: "ours, calibrated",
                     colour: OURS,
-                    runs: drift(ours),
+                    runs: drift(&ours),
                 },
             ],
         )
@@ -126,8 +127,12 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
             svg(&[chart], 1, WIDE)?,
         )],
         words: words(
-            &of,
-            Some(("ours, `calibrated = false`", &raw)),
+            &[
+                (REPORT, &original),
+                (AS_RECORDED, &recorded),
+                ("ours, `calibrated = false`", &raw),
+                ("ours", &ours),
+            ],
             "mode6",
             &rows,
         ),
