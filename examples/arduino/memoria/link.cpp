@@ -10,7 +10,7 @@ float referenceA = 50, referenceB = 50;
 #else
 float referenceA = 0, referenceB = 0;
 #endif
-float goalX = 0, goalY = 0;
+float orderedX = 0, orderedY = 0;
 bool goalArrived = false;
 Gains newGains[2];
 bool gainsArrived[2] = {false, false};
@@ -64,8 +64,8 @@ void obey() {
   } else if (!strcmp(word, "REF")) {
     setReference();
   } else if (!strcmp(word, "GOAL")) {
-    goalX = nextNumber();
-    goalY = nextNumber();
+    orderedX = nextNumber();
+    orderedY = nextNumber();
     goalArrived = true;
   } else if (!strcmp(word, "PID")) {
     setGains();

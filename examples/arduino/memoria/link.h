@@ -9,8 +9,8 @@
 
 extern bool isOn;
 extern float referenceA, referenceB;
-extern float goalX, goalY;  // m
-extern bool goalArrived;    // since it was last taken
+extern float orderedX, orderedY;  // the goal that came last [m]
+extern bool goalArrived;          // since it was last taken
 
 struct Gains {
   float kp, ki, kd;

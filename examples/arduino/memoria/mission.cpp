@@ -35,6 +35,7 @@ const float CRUISE_RPM = 50;
 Servo eye;
 volatile State state = LANE ? SEEK : WAIT;
 volatile bool watching = LANE;  // something ahead starts a sweep
+float goalX = 0, goalY = 0;     // m
 float angleDeg = 0;             // to hold, or to turn to
 float lineDeg = 0;              // of the straight line to the goal
 float cornerX, cornerY;
@@ -71,7 +72,7 @@ void onFrontReading() {
   }
 }
 
-// Weak: blocks; the robot hears nothing but the link.
+// A goal that comes while the robot is on its way has to wait for the end of it.
 void waitForGoal() {
   wheelsStop();
   resetPose();
@@ -80,6 +81,8 @@ void waitForGoal() {
   }
   if (goalArrived) {
     goalArrived = false;
+    goalX = orderedX;
+    goalY = orderedY;
     state = INITIALISE;
   }
 }

@@ -3,7 +3,7 @@
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::{SRAM_START, Stopped};
 use rumbo_emulator::devices::ports::{Drive, Pin};
-use rumbo_emulator::devices::{Event, Input};
+use rumbo_emulator::devices::{Cause, Event, Input};
 use rumbo_emulator::image::Image;
 use std::path::Path;
 
@@ -18,6 +18,7 @@ pub(crate) struct Board {
     image: Image,
     edges: Vec<Edge>,
     bytes: Vec<(u64, u8, u8)>,
+    resets: Vec<(u64, Cause)>,
 }
 
 impl Board {
@@ -37,6 +38,7 @@ impl Board {
             image,
             edges: Vec::new(),
             bytes: Vec::new(),
+            resets: Vec::new(),
         })
     }
 
@@ -55,7 +57,8 @@ impl Board {
                     self.edges.push((cycle, pin, drive == Drive::High));
                 }
                 Event::Byte { usart, byte, .. } => self.bytes.push((cycle, usart, byte as u8)),
-                Event::Pin(..) | Event::Duty { .. } | Event::Reset(_) => {}
+                Event::Reset(cause) => self.resets.push((cycle, cause)),
+                Event::Pin(..) | Event::Duty { .. } => {}
             }
         }
     }
@@ -64,6 +67,11 @@ impl Board {
     pub(crate) fn sent(&self, usart: u8) -> Vec<(u64, u8)> {
         let bytes = self.bytes.iter().filter(|(_, by, _)| *by == usart);
         bytes.map(|(cycle, _, byte)| (*cycle, *byte)).collect()
+    }
+
+    /// The resets since power-on.
+    pub(crate) fn resets(&self) -> &[(u64, Cause)] {
+        &self.resets
     }
 
     /// The edges of a pin of the Mega so far: cycle and level.

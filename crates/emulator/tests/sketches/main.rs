@@ -2,5 +2,6 @@
 #![cfg(test)]
 
 mod board;
+mod memory;
 mod pins;
 mod serial;

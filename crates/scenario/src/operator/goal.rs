@@ -40,6 +40,11 @@ impl GoalWatch {
         });
     }
 
+    /// It is on its way to a goal.
+    pub(super) fn is_set(&self) -> bool {
+        self.goal.is_some()
+    }
+
     /// When it came to rest at its goal [us], said once.
     pub(super) fn reached(&mut self, truth: &Truth) -> Option<u64> {
         let goal = self.goal.as_mut()?;

@@ -23,6 +23,10 @@ pub(super) struct Terminal {
     /// Where goals are counted from, in the world.
     origin: contact::Pose,
     goal: GoalWatch,
+    /// State of mode 8 in the last row; 0 is *wait for goal*.
+    state: u8,
+    /// A row has said that the goal is reached.
+    told: bool,
 }
 
 impl Terminal {
@@ -38,6 +42,8 @@ impl Terminal {
                 heading_rad: start.heading_rad,
             },
             goal: GoalWatch::default(),
+            state: 0,
+            told: false,
         }
     }
 
@@ -71,15 +77,17 @@ impl Terminal {
         self.goal.send(at_m, &sim.truth());
     }
 
-    /// Notes a goal reached, which the original's text does not tell.
+    /// Notes a goal reached. Mode 8 tells it by its state; else the truth is asked.
     pub(super) fn watch(&mut self, sim: &Sim, heard: &mut Vec<Heard>) -> bool {
         if !matches!(self.mode, ModeId::Mission | ModeId::Waypoints) {
             return false;
         }
         let truth = sim.truth();
-        let Some(at_us) = self.goal.reached(&truth) else {
+        let told_us = std::mem::take(&mut self.told).then_some(truth.now_us);
+        let Some(at_us) = told_us.or_else(|| self.goal.reached(&truth)) else {
             return false;
         };
+        self.goal = GoalWatch::default();
         if self.mode == ModeId::Mission {
             // The report's mission calls each goal its new origin.
             self.origin = truth.pose;
@@ -105,6 +113,10 @@ impl Terminal {
             let line = std::mem::take(&mut self.line);
             let row = str::from_utf8(&line).ok().map(str::trim);
             if let Some(Ok(row)) = row.map(Row::parse) {
+                if let Row::Mission(row) = &row {
+                    self.told |= row.state == 0 && self.state != 0 && self.goal.is_set();
+                    self.state = row.state;
+                }
                 heard.push(Heard {
                     t_s: now_us as f64 * 1e-6,
                     what: FromRobot::Telemetry(self.telemetry(&row)),
