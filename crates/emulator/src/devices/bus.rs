@@ -10,8 +10,7 @@ use crate::io::{Access, Demand, Io, Stored};
 
 impl Devices {
     fn not_modelled(&mut self, address: u16, at: Access, written: bool) {
-        let known = self.unmodelled.iter().any(|other| other.address == address);
-        if !known {
+        if self.strange.insert(address) {
             self.unmodelled.push(Unmodelled {
                 address,
                 program_counter: at.program_counter,
@@ -24,6 +23,9 @@ impl Devices {
     /// A register of a port was written; an output that a timer modulates may have become one, or an input.
     fn write_port(&mut self, address: u16, change: Option<Change>, cycle: u64) {
         self.core.note(change, cycle);
+        if self.core.shared[0].is_some() {
+            self.core.modulate(cycle);
+        }
         if change.is_some() && ports::is_direction(address) {
             for timer in &mut self.timers {
                 timer.tell_duty(&mut self.core, cycle);
@@ -83,6 +85,8 @@ impl Io for Devices {
             Owner::Eeprom => self.eeprom.read(address, at.cycle),
             Owner::Watchdog => self.watchdog.read(at.cycle),
             Owner::Programming => self.programming.read(at.cycle),
+            Owner::Spi => self.spi.read(&mut self.core, address),
+            Owner::Twi => self.twi.read(address),
             Owner::Power => self.power.read(address, at.cycle),
             Owner::System => self.system.read(address),
             Owner::Nobody => {
@@ -115,13 +119,20 @@ impl Io for Devices {
                 self.watchdog.write(&mut self.core, value, held, at.cycle);
             }
             Owner::Programming => self.programming.write(&mut self.core, value, at.cycle),
+            Owner::Spi => self.spi.write(&mut self.core, address, value, at.cycle),
+            Owner::Twi => self.twi.write(&mut self.core, address, value, at.cycle),
             Owner::Power => {
                 if self.power.write(address, value, at.cycle) {
                     self.not_modelled(address, at, true);
                 }
                 self.set_clocks(at.cycle);
             }
-            Owner::System => self.write_system(address, value, at.cycle),
+            Owner::System => {
+                self.write_system(address, value, at.cycle);
+                if address == system::XMCRA && self.system.external_memory() {
+                    self.not_modelled(address, at, true);
+                }
+            }
             Owner::Nobody => self.not_modelled(address, at, true),
         }
         self.settle();
@@ -183,6 +194,8 @@ impl Io for Devices {
             self.watchdog.acknowledge(&mut self.core, cycle);
         } else if matches!(vector, vector::CONVERTED | vector::COMPARED) {
             self.analog.acknowledge(&mut self.core, vector);
+        } else if vector == vector::SPI {
+            self.spi.acknowledge(&mut self.core);
         }
         self.settle();
     }

@@ -14,12 +14,14 @@ mod power;
 mod programming;
 pub(crate) mod schedule;
 mod signal;
+mod spi;
 mod system;
 pub(crate) mod timer;
+mod twi;
 pub(crate) mod usart;
 mod watchdog;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 use crate::image::EEPROM_BYTES;
 use crate::io::Demand;
@@ -33,14 +35,18 @@ pub use programming::Fuses;
 use programming::Programming;
 use schedule::{Schedule, Source};
 pub use signal::{Cause, Event, Input, Level, Output, Pwm};
+use spi::Spi;
 use system::System;
 use timer::{Prescaler, Timer};
+use twi::Twi;
 use usart::Usart;
 use watchdog::{TimeOut, Watchdog};
 
 /// Cycles of the crystal in a second.
 pub const CLOCK_HZ: u64 = 16_000_000;
 
+/// OC0A and OC1C, PB7.
+const SHARED_OUTPUT: Pin = Pin::at(1, 7);
 /// The supply [V].
 const SUPPLY_V: f64 = 5.0;
 /// AIN0 and AIN1, PE2 and PE3.
@@ -79,6 +85,8 @@ pub(crate) struct Core {
     demand: Option<Demand>,
     /// The flag that starts a conversion was raised in this cycle.
     triggered: Option<u64>,
+    /// What OC0A and OC1C have for the pin they share.
+    shared: [Option<bool>; 2],
 }
 
 impl Core {
@@ -105,6 +113,36 @@ impl Core {
         self.noticed || self.demand.is_some()
     }
 
+    /// A timer's output drives its pin, or lets it go.
+    pub(crate) fn drive_output(
+        &mut self,
+        timer: usize,
+        pin: Pin,
+        output: Option<bool>,
+        cycle: u64,
+    ) {
+        if pin == SHARED_OUTPUT {
+            self.shared[timer % 2] = output;
+            self.modulate(cycle);
+        } else {
+            let change = self.ports.override_output(pin, output, cycle);
+            self.note(change, cycle);
+        }
+    }
+
+    /// Where both drive it, the pin that OC0A and OC1C share has both, or either if PORTB7 is set (section 19).
+    fn modulate(&mut self, cycle: u64) {
+        let output = match self.shared {
+            [Some(first), Some(second)] if self.ports.output(SHARED_OUTPUT) => {
+                Some(first || second)
+            }
+            [Some(first), Some(second)] => Some(first && second),
+            [first, second] => first.or(second),
+        };
+        let change = self.ports.override_output(SHARED_OUTPUT, output, cycle);
+        self.note(change, cycle);
+    }
+
     /// Notes what changed on a port; whoever listens to pins hears of it before the access ends.
     pub(crate) fn note(&mut self, change: Option<Change>, cycle: u64) {
         self.changes.extend(change.map(|change| (change, cycle)));
@@ -118,6 +156,8 @@ pub struct Devices {
     external: External,
     timers: [Timer; 6],
     usarts: [Usart; 4],
+    spi: Spi,
+    twi: Twi,
     analog: Analog,
     eeprom: Eeprom,
     watchdog: Watchdog,
@@ -130,6 +170,8 @@ pub struct Devices {
     start: u32,
     inputs: VecDeque<(u64, Input)>,
     unmodelled: Vec<Unmodelled>,
+    /// Their addresses.
+    strange: BTreeSet<u16>,
 }
 
 /// Peripherals after power-on.
@@ -140,6 +182,8 @@ impl Default for Devices {
             external: External::default(),
             timers: timer::all(),
             usarts: usart::all(),
+            spi: Spi::default(),
+            twi: Twi::default(),
             analog: Analog::default(),
             eeprom: Eeprom::default(),
             watchdog: Watchdog::default(),
@@ -150,6 +194,7 @@ impl Default for Devices {
             start: 0,
             inputs: VecDeque::new(),
             unmodelled: Vec::new(),
+            strange: BTreeSet::new(),
         }
     }
 }
@@ -252,6 +297,8 @@ impl Devices {
             Source::Usart(index) => self.usarts[index].happen(&mut self.core, cycle),
             Source::Eeprom => self.eeprom.happen(&mut self.core),
             Source::Programming => self.programming.happen(&mut self.core),
+            Source::Spi => self.spi.happen(&mut self.core),
+            Source::Twi => self.twi.happen(&mut self.core, cycle),
             Source::Analog => self.analog.happen(&mut self.core, cycle),
             Source::Watchdog => {
                 if self.watchdog.happen(&mut self.core, cycle) == TimeOut::Reset {
@@ -309,6 +356,7 @@ impl Devices {
         }
         self.core.interrupts.clear();
         self.core.prescalers = Default::default();
+        self.core.shared = [None; 2];
         self.power = Power::default();
         self.programming.reset(&mut self.core);
         self.stopped_at = None;
@@ -319,6 +367,8 @@ impl Devices {
         for usart in &mut self.usarts {
             usart.reset(&mut self.core);
         }
+        self.spi.reset(&mut self.core);
+        self.twi.reset(&mut self.core);
         self.analog.reset(&mut self.core);
         self.eeprom.reset();
         self.core.schedule.set(Source::Eeprom, None);
@@ -350,6 +400,9 @@ impl Devices {
             let runs = self.power.usart_runs(index);
             usart.set_running(&mut self.core, runs, cycle);
         }
+        let (spi, twi) = (self.power.spi_runs(), self.power.twi_runs());
+        self.spi.set_running(&mut self.core, spi, cycle);
+        self.twi.set_running(&mut self.core, twi, cycle);
         let runs = self.power.analog_runs();
         self.analog.set_running(&mut self.core, runs, cycle);
     }
@@ -386,6 +439,9 @@ impl Devices {
     }
 
     fn tell_pins(&mut self, change: &Change, cycle: u64) {
+        if change.port == spi::SELECT.port() && change.levels & spi::SELECT.mask() != 0 {
+            self.spi.look_at_select(&mut self.core, cycle);
+        }
         let [positive, negative] = COMPARATOR_PINS;
         if change.port == positive.port()
             && change.levels & (positive.mask() | negative.mask()) != 0

@@ -325,6 +325,11 @@ impl Ports {
         self.ports[pin.port() % PORTS].level & pin.mask() != 0
     }
 
+    /// The bit of the output register.
+    pub(crate) fn output(&self, pin: Pin) -> bool {
+        self.ports[pin.port() % PORTS].output & pin.mask() != 0
+    }
+
     /// The pin is an output.
     pub(crate) fn is_output(&self, pin: Pin) -> bool {
         self.ports[pin.port() % PORTS].directions() & pin.mask() != 0

@@ -23,6 +23,8 @@ const STANDBY_CYCLES: u64 = 6;
 const TIMERS: [(usize, u8); 6] = [(0, 5), (0, 3), (0, 6), (1, 3), (1, 4), (1, 5)];
 const USARTS: [(usize, u8); 4] = [(0, 1), (1, 0), (1, 1), (1, 2)];
 const ANALOG: (usize, u8) = (0, 0);
+const SPI: (usize, u8) = (0, 2);
+const TWI: (usize, u8) = (0, 7);
 
 /// The state of the clocks.
 #[derive(Clone, Debug)]
@@ -104,6 +106,14 @@ impl Power {
 
     pub(super) fn usart_runs(&self, index: usize) -> bool {
         self.io_runs() && !self.is_reduced(USARTS[index % 4])
+    }
+
+    pub(super) fn spi_runs(&self) -> bool {
+        self.io_runs() && !self.is_reduced(SPI)
+    }
+
+    pub(super) fn twi_runs(&self) -> bool {
+        self.io_runs() && !self.is_reduced(TWI)
     }
 
     pub(super) fn analog_runs(&self) -> bool {

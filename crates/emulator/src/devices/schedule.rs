@@ -17,6 +17,10 @@ pub(crate) enum Source {
     Analog,
     /// A page of flash is erased or written.
     Programming,
+    /// A transfer is through.
+    Spi,
+    /// A condition or a byte is through.
+    Twi,
 }
 
 /// Slots of the timers and of the USARTs.
@@ -26,7 +30,9 @@ const EEPROM: usize = USARTS + 4;
 const WATCHDOG: usize = EEPROM + 1;
 const ANALOG: usize = WATCHDOG + 1;
 const PROGRAMMING: usize = ANALOG + 1;
-const COUNT: usize = PROGRAMMING + 1;
+const SPI: usize = PROGRAMMING + 1;
+const TWI: usize = SPI + 1;
+const COUNT: usize = TWI + 1;
 
 impl Source {
     const fn slot(self) -> usize {
@@ -38,6 +44,8 @@ impl Source {
             Source::Watchdog => WATCHDOG,
             Source::Analog => ANALOG,
             Source::Programming => PROGRAMMING,
+            Source::Spi => SPI,
+            Source::Twi => TWI,
         }
     }
 
@@ -49,7 +57,9 @@ impl Source {
             EEPROM => Source::Eeprom,
             WATCHDOG => Source::Watchdog,
             ANALOG => Source::Analog,
-            _ => Source::Programming,
+            PROGRAMMING => Source::Programming,
+            SPI => Source::Spi,
+            _ => Source::Twi,
         }
     }
 }

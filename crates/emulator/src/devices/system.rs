@@ -1,15 +1,21 @@
-//! Registers of the chip as a whole: sleep, reset causes, MCU control, and the three that are a program's own
-//! (DS40002549, sections 11, 12, 13.4 and 14.2).
+//! Registers of the chip as a whole: sleep, reset causes, MCU control, the three that are a program's own, and those
+//! of what a Mega does not have, memory and debugger outside (DS40002549, sections 9, 11, 12, 13.4, 14.2 and 27).
 
 use super::Cause;
 
 const GPIOR0: u16 = 0x3E;
 const GPIOR1: u16 = 0x4A;
 const GPIOR2: u16 = 0x4B;
+const OCDR: u16 = 0x51;
 const SMCR: u16 = 0x53;
 const MCUSR: u16 = 0x54;
 pub(super) const MCUCR: u16 = 0x55;
 
+pub(super) const XMCRA: u16 = 0x74;
+const XMCRB: u16 = 0x75;
+
+/// External memory enable in XMCRA.
+const SRE: u8 = 0x80;
 /// Sleep enable in SMCR.
 const SE: u8 = 1;
 /// Pull-up disable in MCUCR.
@@ -31,6 +37,9 @@ pub(super) struct System {
     reset_causes: u8,
     control: u8,
     control_open_until: u64,
+    /// OCDR, XMCRA and XMCRB.
+    debug: u8,
+    external_memory: [u8; 2],
 }
 
 /// What sleeps (table 11-2).
@@ -82,6 +91,9 @@ impl System {
             SMCR => self.sleep_control,
             MCUSR => self.reset_causes,
             MCUCR => self.control,
+            OCDR => self.debug,
+            XMCRA => self.external_memory[0],
+            XMCRB => self.external_memory[1],
             _ => 0,
         }
     }
@@ -95,6 +107,9 @@ impl System {
             // Flags of the reset: a zero clears, a one leaves.
             MCUSR => self.reset_causes &= value,
             MCUCR => self.write_control(value, cycle),
+            OCDR => self.debug = value,
+            XMCRA => self.external_memory[0] = value,
+            XMCRB => self.external_memory[1] = value & 0x87,
             _ => {}
         }
     }
@@ -115,6 +130,11 @@ impl System {
     /// A reset by the watchdog keeps it on.
     pub(super) fn watchdog_held(&self) -> bool {
         self.reset_causes & flag(Cause::Watchdog) != 0
+    }
+
+    /// External memory is enabled: ports A and C are its bus.
+    pub(super) fn external_memory(&self) -> bool {
+        self.external_memory[0] & SRE != 0
     }
 
     pub(super) fn pull_ups_disabled(&self) -> bool {

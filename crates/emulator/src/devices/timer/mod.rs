@@ -24,6 +24,10 @@ const PSRSYNC: u8 = 0x01;
 /// Noise canceller and edge of the capture pin, in control register B.
 const ICNC: u8 = 0x80;
 const ICES: u8 = 0x40;
+/// ASSR of timer 2: its clock is at its own pins, and what waits for an edge of it.
+const EXCLK: u8 = 0x40;
+const AS2: u8 = 0x20;
+const UPDATES: u8 = 0x1F;
 /// Cycles for which the noise canceller wants the same level.
 const NOISE_CYCLES: u64 = 4;
 
@@ -134,6 +138,11 @@ impl Timer {
         &PLACES[self.index]
     }
 
+    /// Timer 2 waits for a clock at pins where a Mega has none.
+    fn is_asynchronous(&self) -> bool {
+        self.asynchronous & AS2 != 0
+    }
+
     fn is_wide(&self) -> bool {
         self.wave.max == 0xFFFF
     }
@@ -229,10 +238,7 @@ impl Timer {
                 .then_some(self.wave.output[channel]);
             if output != self.driven[channel] {
                 self.driven[channel] = output;
-                let change = core
-                    .ports
-                    .override_output(place.outputs[channel], output, cycle);
-                core.note(change, cycle);
+                core.drive_output(self.index, place.outputs[channel], output, cycle);
             }
         }
         if std::mem::take(&mut self.wave.updated) | std::mem::take(&mut self.duty_due) {
@@ -303,6 +309,13 @@ impl Timer {
         let Some(register) = self.place().register(address) else {
             return;
         };
+        if self.is_asynchronous()
+            && let Some(busy) = register.busy()
+        {
+            // Without the clock's next edge it is not taken over.
+            self.asynchronous |= busy;
+            return;
+        }
         let word = u16::from_le_bytes([value, if self.is_wide() { self.latch } else { 0 }]);
         match register {
             Register::Count => {
@@ -322,7 +335,10 @@ impl Timer {
             Register::Flags => self.wave.flags &= !value,
             Register::Enabled => self.enabled = value & (OVERFLOW | 0x0E | CAPTURE),
             Register::Asynchronous => {
-                self.asynchronous = value & 0x60;
+                self.asynchronous = value & (EXCLK | AS2) | self.asynchronous & UPDATES;
+                if value & AS2 == 0 {
+                    self.asynchronous &= !UPDATES;
+                }
                 self.set_clock();
             }
         }
@@ -368,7 +384,7 @@ impl Timer {
         self.clock = match (self.index, select) {
             (_, 0) => Clock::Stopped,
             // The crystal's pins of timer 2 are not connected on a Mega: it stands.
-            (2, _) if self.asynchronous & 0x20 != 0 => Clock::Stopped,
+            (2, _) if self.is_asynchronous() => Clock::Stopped,
             (2, _) => Clock::Divided(OWN[select]),
             (_, 6 | 7) => Clock::Pin {
                 rising: select == 7,

@@ -20,6 +20,20 @@ pub(super) enum Register {
     Asynchronous,
 }
 
+impl Register {
+    /// The bit of ASSR that says that its new value waits for the clock.
+    pub(super) const fn busy(self) -> Option<u8> {
+        match self {
+            Register::Count => Some(0x10),
+            Register::Compare(0) => Some(0x08),
+            Register::Compare(_) => Some(0x04),
+            Register::ControlA => Some(0x02),
+            Register::ControlB => Some(0x01),
+            _ => None,
+        }
+    }
+}
+
 /// The place of one timer.
 pub(super) struct Place {
     /// Address of control register A.
