@@ -39,6 +39,11 @@ const ALIKE: i8 = 19;
 const ACROSS_RAD: [f32; 3] = [0.0, 0.2, -0.2];
 /// Echoes nearer than this always leave a point: what is near must not be missed [mm].
 const NEAR_MM: i32 = 300;
+/// What a sonar at the side sees within this goes on ahead of it, for so much [mm, m].
+const BESIDE_MM: i32 = 200;
+const GOES_ON_M: f32 = 0.1;
+/// A point that has been heard more than once and is nearer than this would be heard again [mm].
+const DENIED_MM: i32 = 800;
 /// Arcs shorter than this get one point [m].
 const SHORT_M: f32 = 0.18;
 
@@ -140,8 +145,8 @@ impl Echoes {
         (point.belief > 0).then_some(point.at)
     }
 
-    /// Takes a reading, made with the robot at `pose`.
-    pub(super) fn take(&mut self, pose: &Pose, reading: &Reading) {
+    /// Takes a reading, made with the robot at `pose`; says whether it denies a near point that has been heard more than once.
+    pub(super) fn take(&mut self, pose: &Pose, reading: &Reading) -> bool {
         let view = &reading.view;
         let (x_m, y_m) = pose.to_world(view.x_m, view.y_m);
         let apex = Place::new(x_m, y_m);
@@ -150,21 +155,21 @@ impl Echoes {
         let (range_mm, heard) = match reading.range {
             Range::Valid(range_m) => (round(1_000.0 * range_m), true),
             Range::Clear => (2_500, false),
-            Range::Faulty => return,
+            Range::Faulty => return false,
         };
-        self.clear(apex, axis_rad, range_mm);
+        let denies = self.clear(apex, axis_rad, range_mm);
         let horizon_mm = if reading.sonar == SonarId::Front {
             front_mm
         } else {
             side_mm
         };
         if !heard || range_mm > horizon_mm {
-            return;
+            return denies;
         }
         let range_m = 1e-3 * crate::math::from_u32(range_mm.unsigned_abs());
         let explained = self.explain(apex, axis_rad, range_mm);
         if explained && range_mm > NEAR_MM {
-            return;
+            return denies;
         }
         let robot = Place::new(pose.x_m, pose.y_m);
         let count = if explained || range_m < SHORT_M {
@@ -177,10 +182,22 @@ impl Echoes {
             let at = Place::new(x_m + range_m * cos, y_m + range_m * sin);
             self.put(at, direction(axis_rad), robot);
         }
+        if reading.sonar != SonarId::Front && range_mm < BESIDE_MM {
+            // A wall beside the robot is taken to go on as far as the robot's front, until the sonar has been there.
+            let (sin, cos) = sin_cos(axis_rad);
+            let (ahead_sin, ahead_cos) = sin_cos(pose.heading_rad);
+            let at = Place::new(
+                x_m + range_m * cos + GOES_ON_M * ahead_cos,
+                y_m + range_m * sin + GOES_ON_M * ahead_sin,
+            );
+            self.put(at, direction(axis_rad), robot);
+        }
+        denies
     }
 
-    /// Takes belief from the points that a beam as far as `range_mm` would have heard.
-    fn clear(&mut self, apex: Place, axis_rad: f32, range_mm: i32) {
+    /// Takes belief from the points that a beam as far as `range_mm` would have heard; says whether a near one was firm.
+    fn clear(&mut self, apex: Place, axis_rad: f32, range_mm: i32) -> bool {
+        let mut denies = false;
         let (sin, cos) = sin_cos(axis_rad);
         let (sin, cos) = (round(sin * 16_384.0), round(cos * 16_384.0));
         let axis = direction(axis_rad);
@@ -197,6 +214,7 @@ impl Echoes {
                 && across.abs() * 256 < along * SURE_TANGENT
                 && point.axis.wrapping_sub(axis).unsigned_abs() <= ALIKE.unsigned_abs()
             {
+                denies |= point.belief >= FIRM && along < DENIED_MM;
                 point.belief = if point.belief < FIRM {
                     0
                 } else {
@@ -204,6 +222,7 @@ impl Echoes {
                 };
             }
         }
+        denies
     }
 
     /// Whether a point that is known already can have given this echo: it is believed more then, and the echo says nothing new.
@@ -289,4 +308,111 @@ fn direction(angle_rad: f32) -> i8 {
 
 fn to_i16(value: f32) -> i16 {
     i16::try_from(round(clamp(value, -32_000.0, 32_000.0))).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::View;
+
+    /// An answer of the front sonar, which looks in a direction from the origin.
+    fn answer(range: Range, axis_rad: f32) -> Reading {
+        Reading {
+            sonar: SonarId::Front,
+            range,
+            view: View {
+                axis_rad,
+                ..View::default()
+            },
+            servo_rad: axis_rad,
+        }
+    }
+
+    fn heard(answers: &[(Range, f32)]) -> Echoes {
+        let mut echoes = Echoes::default();
+        for (range, axis_rad) in answers {
+            echoes.take(&Pose::default(), &answer(*range, *axis_rad));
+        }
+        echoes
+    }
+
+    fn firm(echoes: &Echoes) -> usize {
+        // Far from everything: nothing counts for being near.
+        echoes.firm(Place::new(20.0, 20.0)).count()
+    }
+
+    #[test]
+    fn an_echo_leaves_points_across_the_beam_and_the_next_one_makes_one_firm() {
+        let once = heard(&[(Range::Valid(0.8), 0.0)]);
+        assert_eq!((once.iter().count(), firm(&once)), (3, 0));
+        let twice = heard(&[(Range::Valid(0.8), 0.0), (Range::Valid(0.805), 0.05)]);
+        assert_eq!((twice.iter().count(), firm(&twice)), (3, 1));
+    }
+
+    #[test]
+    fn a_beam_that_goes_on_farther_takes_what_was_heard_once() {
+        let mut echoes = heard(&[(Range::Valid(0.8), 0.0), (Range::Clear, -0.2)]);
+        // Of -0.2, 0 and 0.2 rad the beam about -0.2 covers the first two.
+        assert_eq!(echoes.iter().count(), 1);
+        echoes.take(&Pose::default(), &answer(Range::Faulty, 0.2));
+        assert_eq!(echoes.iter().count(), 1, "a faulty sonar says nothing");
+        echoes.take(&Pose::default(), &answer(Range::Valid(0.82), 1.4));
+        assert_eq!(
+            echoes.iter().count(),
+            4,
+            "nor does one that looks elsewhere"
+        );
+    }
+
+    #[test]
+    fn silence_from_another_direction_says_nothing() {
+        let mut echoes = heard(&[(Range::Valid(0.5), 0.0), (Range::Valid(0.5), 0.0)]);
+        let beside = Pose {
+            x_m: 0.5,
+            y_m: -0.6,
+            heading_rad: 1.57,
+        };
+        let before = echoes.iter().count();
+        for _ in 0..10 {
+            echoes.take(&beside, &answer(Range::Clear, 0.0));
+        }
+        assert_eq!(echoes.iter().count(), before);
+    }
+
+    #[test]
+    fn what_is_heard_once_fades_and_what_is_firm_stays() {
+        let mut echoes = heard(&[(Range::Valid(0.8), 0.0), (Range::Valid(0.8), 0.0)]);
+        for _ in 0..10 {
+            echoes.fade();
+        }
+        assert_eq!((echoes.iter().count(), firm(&echoes)), (1, 1));
+    }
+
+    #[test]
+    fn a_full_memory_gives_up_the_farthest_point_and_keeps_its_size() {
+        let mut echoes = Echoes::default();
+        for step in 0..200u16 {
+            let pose = Pose {
+                x_m: 0.1 * f32::from(step),
+                ..Pose::default()
+            };
+            echoes.take(&pose, &answer(Range::Valid(0.15), 1.57));
+        }
+        assert_eq!(echoes.iter().count(), CAPACITY);
+        let nearest = echoes.iter().map(|(_, at)| at.x_mm).min().unwrap();
+        assert!(nearest > 14_000, "{nearest}");
+    }
+
+    #[test]
+    fn a_moved_origin_leaves_the_points_where_they_are() {
+        let mut echoes = heard(&[(Range::Valid(0.8), 0.0)]);
+        echoes.move_origin(&Pose {
+            x_m: 0.8,
+            y_m: 0.1,
+            heading_rad: core::f32::consts::FRAC_PI_2,
+        });
+        let (_, at) = echoes.iter().next().unwrap();
+        let (x_m, y_m) = at.metres();
+        assert!((x_m + 0.1).abs() < 2e-3 && y_m.abs() < 2e-3, "{at:?}");
+    }
 }

@@ -50,6 +50,8 @@ const AHEAD_M: f32 = 0.1;
 const FRONT_M: f32 = 0.13;
 /// Distance kept ahead [m].
 const KEEP_M: f32 = 0.05;
+/// Speed while the front sonar may be deaf [m/s].
+const DOUBT_M_S: f32 = 0.08;
 /// Speed during a sweep [m/s].
 const SWEEP_M_S: f32 = 0.1;
 /// Nearer than this the robot turns slowly on the spot: its corners reach 0.15 m [m].
@@ -94,11 +96,6 @@ impl Mission {
         state.age_s += TICK_S;
         if let Some((_, way_m)) = &mut state.last {
             *way_m += abs(estimate.rolled_m);
-        }
-        state.fade_s += TICK_S;
-        if state.fade_s > FADE_S {
-            state.fade_s = 0.0;
-            state.echoes.fade();
         }
         if let Some(detour) = &mut state.detour {
             detour.way_m += abs(estimate.rolled_m);
@@ -235,7 +232,12 @@ impl Mission {
     /// Fastest speed from which the robot stops before what is ahead.
     fn free_m_s(&self, state: &State) -> f32 {
         let room_m = max(state.gap_m - KEEP_M, 0.0);
-        sqrt(2.0 * self.brake_m_s2 * room_m)
+        let free_m_s = sqrt(2.0 * self.brake_m_s2 * room_m);
+        if state.watch.doubts() {
+            min(free_m_s, DOUBT_M_S)
+        } else {
+            free_m_s
+        }
     }
 
     /// Fastest speed with what is near.
@@ -347,6 +349,9 @@ impl Mission {
                 if obstacle.nearest_m > BESIDE_M && detour.changes < 1 && other + CHANGE_M < own {
                     detour.changes += 1;
                     detour.side = side;
+                    detour.met = Place::new(pose.x_m, pose.y_m);
+                    detour.way_m = 0.0;
+                    detour.away = false;
                 }
             }
             if state.plan.obstacle.is_some() {
@@ -437,9 +442,6 @@ fn around_m(here: (f32, f32), past: Place, goal_m: (f32, f32)) -> f32 {
     };
     leg(here, (x_m, y_m)) + leg((x_m, y_m), goal_m)
 }
-
-/// Time between two fadings of the memory [s].
-const FADE_S: f32 = 1.0;
 
 /// How far to the right and to the left the servo swings: mostly to where something is near, or where the robot turns to.
 fn swing(state: &State, estimate: &Estimate) -> (f32, f32) {

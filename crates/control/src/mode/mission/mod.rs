@@ -39,11 +39,14 @@ use super::{Action, Look, Mode, Situation};
 use crate::math::{abs, min, sqrt};
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
 use crate::params::{ParamId, Params};
-use crate::types::{Drive, Fault, Pose, ServoAngle, Side};
+use crate::types::{Drive, Fault, Pose, ServoAngle, Side, TICK_S};
 use echoes::{Echoes, Place};
 use obstacle::Way;
 use plan::Plan;
 use watch::Watch;
+
+/// Time between two fadings of the memory [s].
+const FADE_S: f32 = 1.0;
 
 /// Names of the states.
 #[cfg(feature = "names")]
@@ -193,9 +196,15 @@ impl Mode for Mission {
     type State = State;
 
     fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
-        state.watch.step(at.estimate, self.stale_s)?;
-        if let Some(reading) = &at.estimate.reading {
-            state.echoes.take(&at.estimate.pose, reading);
+        let denies = match &at.estimate.reading {
+            Some(reading) => state.echoes.take(&at.estimate.pose, reading),
+            None => false,
+        };
+        state.watch.step(at.estimate, denies, self.stale_s)?;
+        state.fade_s += TICK_S;
+        if state.fade_s > FADE_S {
+            state.fade_s = 0.0;
+            state.echoes.fade();
         }
         match self.task {
             Task::Goal { x_m, y_m } => Ok(self.goal(state, at.estimate, (x_m, y_m))),

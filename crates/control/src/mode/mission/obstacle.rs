@@ -17,7 +17,7 @@ use core::f32::consts::{FRAC_PI_2, PI, TAU};
 /// Two points nearer than this hang together [mm].
 pub(super) const LINK_MM: i32 = 290;
 /// Half of the width that the robot takes for itself when it passes a point [m].
-pub(super) const PASS_M: f32 = 0.16;
+pub(super) const PASS_M: f32 = 0.17;
 /// Half of the width of the way to the goal that must be clear [m].
 pub(super) const WAY_M: f32 = 0.125;
 /// Points searched per tick.

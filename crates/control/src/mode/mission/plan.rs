@@ -134,3 +134,115 @@ fn seen_from(pose: &Pose, place: Place) -> (f32, f32) {
     let (dx, dy) = (x_m - pose.x_m, y_m - pose.y_m);
     (atan2(dy, dx), crate::math::sqrt(dx * dx + dy * dy))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::View;
+    use crate::types::{Range, Reading, SonarId};
+
+    /// A memory of points, each heard twice by a sonar close to it.
+    fn remembered(points_m: &[(f32, f32)]) -> Echoes {
+        let mut echoes = Echoes::default();
+        for (x_m, y_m) in points_m.iter().chain(points_m) {
+            let from = Pose {
+                x_m: x_m - 0.1,
+                y_m: *y_m,
+                heading_rad: 0.0,
+            };
+            let reading = Reading {
+                sonar: SonarId::Front,
+                range: Range::Valid(0.1),
+                view: View::default(),
+                servo_rad: 0.0,
+            };
+            echoes.take(&from, &reading);
+        }
+        echoes
+    }
+
+    /// A wall across x = 0.6 m, with a point every 10 cm.
+    fn wall(from_cm: i16, to_cm: i16) -> Echoes {
+        let mut points_m = [(0.0, 0.0); 16];
+        let count = usize::try_from((to_cm - from_cm) / 10 + 1).unwrap();
+        for (index, point) in (0..).zip(points_m.iter_mut().take(count)) {
+            *point = (0.6, f32::from(from_cm + 10 * index) * 0.01);
+        }
+        remembered(&points_m[..count])
+    }
+
+    /// The plan of a robot at the origin with its goal 2 m ahead.
+    fn plan(echoes: &Echoes, around: Option<Side>) -> Plan {
+        let mut plan = Plan::default();
+        let way = Way {
+            x_m: 0.0,
+            y_m: 0.0,
+            heading_rad: 0.0,
+            length_m: HORIZON_M,
+        };
+        let mut rounds = 0;
+        for _ in 0..100 {
+            rounds += u32::from(plan.step(echoes, &Pose::default(), &way, around));
+        }
+        assert!(rounds > 2);
+        plan
+    }
+
+    #[test]
+    fn an_empty_memory_is_a_clear_way() {
+        let plan = plan(&Echoes::default(), None);
+        assert!(plan.obstacle.is_none() && plan.clear_m > HORIZON_M);
+    }
+
+    #[test]
+    fn a_wall_across_the_way_has_two_ends_and_room_for_the_robot_beside_them() {
+        let plan = plan(&wall(-30, 20), None);
+        assert!((plan.clear_m - 0.6).abs() < 0.01);
+        let obstacle = plan.obstacle.unwrap();
+        let (x_m, left_m) = obstacle.left.at.metres();
+        assert!((x_m - 0.6).abs() < 0.01 && (left_m - 0.2).abs() < 0.01);
+        // The direction passes the end at half the width that the robot needs.
+        for (end, sign) in [(obstacle.left, 1.0), (obstacle.right, -1.0)] {
+            let (sin, cos) = crate::math::sin_cos(end.pass_rad);
+            let (x_m, y_m) = end.at.metres();
+            let beside_m = sign * (x_m * sin - y_m * cos);
+            assert!((beside_m - super::super::obstacle::PASS_M).abs() < 5e-3);
+        }
+    }
+
+    #[test]
+    fn points_with_room_between_them_are_two_obstacles() {
+        let apart = remembered(&[(0.6, 0.0), (0.6, 0.4)]);
+        let one = plan(&apart, None).obstacle.unwrap();
+        assert_eq!(one.left.at, one.right.at);
+        let together = remembered(&[(0.6, 0.0), (0.6, 0.22)]);
+        let both = plan(&together, None).obstacle.unwrap();
+        assert_ne!(both.left.at, both.right.at);
+    }
+
+    #[test]
+    fn an_obstacle_that_reaches_around_the_robot_ends_beyond_half_a_turn() {
+        // A pocket that is open to the back right.
+        let pocket = remembered(&[
+            (0.4, -0.1),
+            (0.4, 0.1),
+            (0.3, 0.3),
+            (0.1, 0.4),
+            (-0.1, 0.4),
+            (-0.3, 0.3),
+            (-0.4, 0.1),
+            (-0.4, -0.1),
+        ]);
+        let obstacle = plan(&pocket, None).obstacle.unwrap();
+        assert!(obstacle.left.pass_rad > core::f32::consts::PI);
+        assert!(obstacle.right.pass_rad < 0.0);
+    }
+
+    #[test]
+    fn another_obstacle_beside_the_end_is_passed_in_the_middle_of_the_gap() {
+        let gap = remembered(&[(0.5, -0.2), (0.5, 0.0), (0.4, 0.275)]);
+        let past_rad = plan(&gap, Some(Side::Left)).past_rad;
+        // Past the end alone 0.347 rad, past the other on its right 0.244 rad.
+        assert!((past_rad - 0.295).abs() < 0.01, "{past_rad}");
+    }
+}
