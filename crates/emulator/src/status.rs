@@ -2,37 +2,55 @@
 //!
 //! | bit | flag | kept as |
 //! |---|---|---|
-//! | 0 | C carry | bit 7 of `carries` |
+//! | 0 | C carry | `carry`, 0 or 1 |
 //! | 1 | Z zero | `nonzero` is 0 |
 //! | 2 | N negative | bit 7 of `negative` |
 //! | 3 | V two's complement overflow | bit 7 of `overflow` |
-//! | 4 | S sign, N xor V | bit 7 of `sign` |
-//! | 5 | H half carry | bit 3 of `carries` |
+//! | 4 | S sign | N xor V; not so if bit 8 of `negative` is set, which only a program that writes the register can do |
+//! | 5 | H half carry | bit 4 of `half` |
 //! | 6 | T copy bit | `copy` |
 //! | 7 | I interrupts enabled | `interrupts` |
+//!
+//! No operation needs to know a flag that it leaves as it was: the parts of one can be computed while those of the last are
+//! still on their way.
 
 /// The status register in parts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Status {
-    carries: u8,
+    carry: u8,
     nonzero: u8,
-    negative: u8,
+    negative: u16,
     overflow: u8,
-    sign: u8,
+    half: u8,
     copy: bool,
     /// The global interrupt enable.
     pub(crate) interrupts: bool,
 }
 
+/// Two are the same if the register reads the same.
+impl PartialEq for Status {
+    fn eq(&self, other: &Status) -> bool {
+        self.bits() == other.bits()
+    }
+}
+
+impl Eq for Status {}
+
+/// In `negative`: S is not N xor V.
+const ODD: u16 = 0x100;
+/// Where H stands in `half`.
+const HALF: u8 = 0x10;
+
 impl Status {
     /// From the register's value.
     pub const fn from_bits(bits: u8) -> Status {
+        let odd = (bits >> 4 ^ bits >> 3 ^ bits >> 2) & 1;
         Status {
-            carries: (bits & 1) << 7 | (bits >> 5 & 1) << 3,
+            carry: bits & 1,
             nonzero: !bits >> 1 & 1,
-            negative: bits << 5 & 0x80,
+            negative: (bits << 5 & 0x80) as u16 | (odd as u16 * ODD),
             overflow: bits << 4 & 0x80,
-            sign: bits << 3 & 0x80,
+            half: bits >> 1 & HALF,
             copy: bits & 0x40 != 0,
             interrupts: bits & 0x80 != 0,
         }
@@ -40,19 +58,18 @@ impl Status {
 
     /// The register's value.
     pub const fn bits(self) -> u8 {
-        self.carries >> 7
-            | ((self.nonzero == 0) as u8) << 1
-            | self.negative >> 5 & 4
-            | self.overflow >> 4 & 8
-            | self.sign >> 3 & 0x10
-            | self.carries << 2 & 0x20
-            | (self.copy as u8) << 6
-            | (self.interrupts as u8) << 7
+        let mut bits = 0;
+        let mut bit = 0;
+        while bit < 8 {
+            bits |= (self.bit(bit) as u8) << bit;
+            bit += 1;
+        }
+        bits
     }
 
     #[inline(always)]
     pub(crate) const fn carry(self) -> bool {
-        self.carries & 0x80 != 0
+        self.carry != 0
     }
 
     #[inline(always)]
@@ -78,47 +95,59 @@ impl Status {
             1 => self.zero(),
             2 => self.negative & 0x80 != 0,
             3 => self.overflow & 0x80 != 0,
-            4 => self.sign & 0x80 != 0,
-            5 => self.carries & 8 != 0,
+            4 => (self.negative ^ self.overflow as u16 ^ self.negative >> 1) & 0x80 != 0,
+            5 => self.half & HALF != 0,
             6 => self.copy,
             _ => self.interrupts,
         }
     }
 
     #[inline(always)]
-    fn arithmetic(&mut self, result: u8, carries: u8, overflow: u8) {
-        self.carries = carries;
-        self.negative = result;
+    fn result(&mut self, result: u8, overflow: u8) {
+        self.negative = u16::from(result);
         self.overflow = overflow;
-        self.sign = result ^ overflow;
     }
 
     /// a + b + carry.
     #[inline(always)]
-    pub(crate) fn add(&mut self, a: u8, b: u8, carry: bool) -> u8 {
-        let result = a.wrapping_add(b).wrapping_add(u8::from(carry));
-        let carries = a & b | (a | b) & !result;
-        self.arithmetic(result, carries, (a ^ result) & (b ^ result));
+    pub(crate) fn add(&mut self, a: u8, b: u8, carry: u8) -> u8 {
+        let wide = u32::from(a) + u32::from(b) + u32::from(carry);
+        let result = wide as u8;
+        self.carry = (wide >> 8) as u8;
+        self.half = a ^ b ^ result;
+        self.result(result, (a ^ result) & (b ^ result));
         self.nonzero = result;
+        result
+    }
+
+    /// a + b + C.
+    #[inline(always)]
+    pub(crate) fn add_on(&mut self, a: u8, b: u8) -> u8 {
+        self.add(a, b, self.carry)
+    }
+
+    #[inline(always)]
+    fn difference(&mut self, a: u8, b: u8, borrow: u8) -> u8 {
+        let wide = i32::from(a) - i32::from(b) - i32::from(borrow);
+        let result = wide as u8;
+        self.carry = u8::from(wide < 0);
+        self.half = a ^ b ^ result;
+        self.result(result, (a ^ b) & (a ^ result));
         result
     }
 
     /// a - b.
     #[inline(always)]
     pub(crate) fn subtract(&mut self, a: u8, b: u8) -> u8 {
-        let result = a.wrapping_sub(b);
-        let borrows = !a & b | (!a | b) & result;
-        self.arithmetic(result, borrows, (a ^ b) & (a ^ result));
+        let result = self.difference(a, b, 0);
         self.nonzero = result;
         result
     }
 
-    /// a - b - carry; zero only if it was zero before too.
+    /// a - b - C; zero only if it was zero before too.
     #[inline(always)]
     pub(crate) fn subtract_on(&mut self, a: u8, b: u8) -> u8 {
-        let result = a.wrapping_sub(b).wrapping_sub(u8::from(self.carry()));
-        let borrows = !a & b | (!a | b) & result;
-        self.arithmetic(result, borrows, (a ^ b) & (a ^ result));
+        let result = self.difference(a, b, self.carry);
         self.nonzero |= result;
         result
     }
@@ -127,15 +156,13 @@ impl Status {
     #[inline(always)]
     pub(crate) fn logic(&mut self, result: u8) -> u8 {
         self.nonzero = result;
-        self.negative = result;
-        self.overflow = 0;
-        self.sign = result;
+        self.result(result, 0);
         result
     }
 
     #[inline(always)]
     pub(crate) fn complement(&mut self, a: u8) -> u8 {
-        self.carries |= 0x80;
+        self.carry = 1;
         self.logic(!a)
     }
 
@@ -152,22 +179,23 @@ impl Status {
     #[inline(always)]
     fn count(&mut self, result: u8, overflows_to: u8) -> u8 {
         self.nonzero = result;
-        self.negative = result;
-        self.overflow = u8::from(result == overflows_to) << 7;
-        self.sign = result ^ self.overflow;
+        self.result(result, u8::from(result == overflows_to) << 7);
         result
     }
 
     /// The flags of a shift to the right that pushed out the lowest bit of `a`.
     #[inline(always)]
     pub(crate) fn shifted(&mut self, a: u8, result: u8) -> u8 {
-        let out = a << 7;
-        self.carries = self.carries & 0x7F | out;
+        self.carry = a & 1;
         self.nonzero = result;
-        self.negative = result;
-        self.overflow = result ^ out;
-        self.sign = out;
+        self.result(result, result ^ a << 7);
         result
+    }
+
+    /// C as the highest bit of a byte.
+    #[inline(always)]
+    pub(crate) fn carry_on_top(self) -> u8 {
+        self.carry << 7
     }
 
     /// The flags of a word operation: C and V change places between addition and subtraction.
@@ -176,19 +204,17 @@ impl Status {
         let (before_high, high) = ((before >> 8) as u8, (result >> 8) as u8);
         let (up, down) = (!before_high & high, before_high & !high);
         let (overflow, carry) = if adding { (up, down) } else { (down, up) };
-        self.carries = self.carries & 0x7F | carry & 0x80;
-        self.nonzero = u8::from(result != 0);
-        self.negative = high;
-        self.overflow = overflow;
-        self.sign = high ^ overflow;
+        self.carry = carry >> 7;
+        self.nonzero = high | result as u8;
+        self.result(high, overflow);
     }
 
-    /// The flags of a multiplication with this product, `shifted` by one for the fractional ones.
+    /// The flags of a multiplication with this product, `shifted` by one for the fractional ones: C and Z.
     #[inline(always)]
     pub(crate) fn product(&mut self, product: u16, fractional: bool) -> u16 {
         let result = if fractional { product << 1 } else { product };
-        self.carries = self.carries & 0x7F | (product >> 8) as u8 & 0x80;
-        self.nonzero = u8::from(result != 0);
+        self.carry = (product >> 15) as u8;
+        self.nonzero = (result >> 8) as u8 | result as u8;
         result
     }
 }
@@ -233,7 +259,7 @@ mod tests {
             for carry in [false, true] {
                 let start = Status::from_bits(u8::from(carry) | 2);
                 let mut status = start;
-                let sum = status.add(a, b, carry);
+                let sum = status.add(a, b, carry.into());
                 assert_eq!(sum, a.wrapping_add(b).wrapping_add(carry.into()));
                 let found = [status.bit(0), status.bit(5), status.bit(3)];
                 assert_eq!(found, manual_add(a, b, sum), "{a} + {b} + {carry}");

@@ -1,7 +1,6 @@
 //! The data space as instructions see it: registers, the CPU's own I/O registers, peripherals, SRAM; and the stack.
 
 use super::{Cpu, FLASH_BYTES, SRAM_BYTES, SRAM_START};
-use crate::decode::FLASH_WORDS;
 use crate::io::{Access, Io, Stored};
 use crate::status::Status;
 use crate::verdict::Verdict;
@@ -28,24 +27,14 @@ impl Cpu {
         self.registers[(low + 1) & 31] = h;
     }
 
-    #[inline(always)]
-    pub(super) fn load<I: Io>(&self, io: &mut I, address: u16, at: Access) -> u8 {
-        let index = usize::from(address.wrapping_sub(SRAM_START));
-        if index < SRAM_BYTES {
-            self.sram[index]
-        } else {
-            self.load_elsewhere(io, address, at)
-        }
-    }
-
     #[inline(never)]
     pub(super) fn load_elsewhere<I: Io>(&self, io: &mut I, address: u16, at: Access) -> u8 {
         match address {
             0..32 => self.registers[usize::from(address) & 31],
             RAMPZ => self.rampz,
             EIND => self.eind,
-            SPL => self.stack_pointer.to_le_bytes()[0],
-            SPH => self.stack_pointer.to_le_bytes()[1],
+            SPL => self.stack_pointer().to_le_bytes()[0],
+            SPH => self.stack_pointer().to_le_bytes()[1],
             SREG => self.status.bits(),
             _ => io.read(address, at),
         }
@@ -93,7 +82,7 @@ impl Cpu {
         value: u8,
         at: Access,
     ) {
-        let [low, high] = self.stack_pointer.to_le_bytes();
+        let [low, high] = self.stack_pointer().to_le_bytes();
         match address {
             0..32 => self.registers[usize::from(address) & 31] = value,
             RAMPZ => self.rampz = value & 3,
@@ -115,7 +104,8 @@ impl Cpu {
     /// The program sets the stack pointer. A frame is not larger than [`LARGEST_FRAME`]: beyond that it is another stack, such
     /// as a scheduler's tasks have among the data, and nobody knows where it must end.
     fn move_stack(&mut self, to: u16) {
-        let from = std::mem::replace(&mut self.stack_pointer, to);
+        let from = self.stack_pointer();
+        self.set_stack_pointer(to);
         if to >= self.stack_floor {
             self.stack_known = true;
         } else if from.wrapping_sub(to) > LARGEST_FRAME {
@@ -129,21 +119,21 @@ impl Cpu {
             cycle,
             program_counter: self.program_counter,
         };
-        self.store(io, self.stack_pointer, value, at);
-        self.stack_pointer = self.stack_pointer.wrapping_sub(1);
-        if self.stack_pointer.wrapping_add(1) < self.stack_floor {
-            self.stack_overflow(cycle);
+        self.store(io, self.stack_pointer(), value, at);
+        self.set_stack_pointer(self.stack_pointer().wrapping_sub(1));
+        if self.stack_pointer().wrapping_add(1) < self.stack_floor {
+            self.stack_overflow(self.program_counter, cycle);
         }
     }
 
     #[cold]
-    pub(super) fn stack_overflow(&mut self, cycle: u64) {
-        if !self.stack_known && self.stack_pointer >= SRAM_START {
+    pub(super) fn stack_overflow(&mut self, program_counter: u32, cycle: u64) {
+        if !self.stack_known && self.stack_pointer() >= SRAM_START {
             return;
         }
         self.end(Verdict::StackOverflow {
-            program_counter: self.program_counter,
-            stack_pointer: self.stack_pointer,
+            program_counter,
+            stack_pointer: self.stack_pointer(),
             floor: self.stack_floor,
             cycle,
         });
@@ -155,29 +145,11 @@ impl Cpu {
     }
 
     #[inline(always)]
-    pub(super) fn pop<I: Io>(&mut self, io: &mut I, cycle: u64) -> u8 {
-        let at = Access {
-            cycle,
-            program_counter: self.program_counter,
-        };
-        self.stack_pointer = self.stack_pointer.wrapping_add(1);
-        self.load(io, self.stack_pointer, at)
-    }
-
-    #[inline(always)]
     pub(super) fn push_address<I: Io>(&mut self, io: &mut I, words: u32, cycle: u64) {
         let [low, middle, high, _] = words.to_le_bytes();
         self.push(io, low, cycle);
         self.push(io, middle, cycle);
         self.push(io, high, cycle);
-    }
-
-    #[inline(always)]
-    pub(super) fn pop_address<I: Io>(&mut self, io: &mut I, cycle: u64) -> u32 {
-        let high = self.pop(io, cycle);
-        let middle = self.pop(io, cycle);
-        let low = self.pop(io, cycle);
-        u32::from_le_bytes([low, middle, high, 0]) % FLASH_WORDS as u32
     }
 
     /// What LPM reads: fuses and signature too, once the program has asked for something like it.

@@ -1,6 +1,6 @@
 //! The loop over instructions: what each does and how many cycles it takes.
 
-use super::{Cpu, SRAM_START};
+use super::{Cpu, SRAM_BYTES, SRAM_START};
 use crate::decode::{Code, FLASH_WORDS};
 use crate::io::{Access, Io};
 use crate::status::Status;
@@ -15,11 +15,11 @@ impl Cpu {
     pub(super) fn step_until<I: Io>(&mut self, io: &mut I, mut limit: u64, until: u64) -> bool {
         let mut pc = self.program_counter;
         let mut cycle = self.cycle;
+        // In registers of the machine as long as possible: back to its place for whoever else looks at it.
+        let mut status = self.status;
         loop {
             let op = self.operations[pc as usize % FLASH_WORDS];
-            let here = pc;
-            pc += 1;
-            let (a, b) = (usize::from(op.a) & 31, usize::from(op.b) & 31);
+            let (a, b) = (usize::from(op.a), usize::from(op.b as u8));
             let mut cycles = 1;
 
             /// Where and when an access of this instruction takes place: in its last cycle.
@@ -27,7 +27,7 @@ impl Cpu {
                 ($cycles:expr) => {
                     Access {
                         cycle: cycle + $cycles - 1,
-                        program_counter: here,
+                        program_counter: pc,
                     }
                 };
             }
@@ -37,29 +37,89 @@ impl Cpu {
                     limit = if self.shadow {
                         0
                     } else {
-                        io.deadline(self.status.interrupts).min(until)
+                        io.deadline(status.interrupts).min(until)
                     }
                 };
+            }
+            /// Back to where others look for it.
+            macro_rules! save {
+                () => {
+                    self.status = status
+                };
+            }
+            macro_rules! load_elsewhere {
+                ($address:expr, $at:expr) => {{
+                    save!();
+                    let value = self.load_elsewhere(io, $address, $at);
+                    look_up!();
+                    value
+                }};
+            }
+            macro_rules! store_elsewhere {
+                ($address:expr, $value:expr, $at:expr) => {{
+                    save!();
+                    self.store_elsewhere(io, $address, $value, $at);
+                    status = self.status;
+                    look_up!();
+                }};
             }
             macro_rules! load {
                 ($address:expr) => {{
                     cycles = 2;
                     let address = $address;
-                    let value = self.load(io, address, at!(2));
-                    if address < SRAM_START {
-                        look_up!();
+                    match self.sram.get(usize::from(address.wrapping_sub(SRAM_START))) {
+                        Some(value) => *value,
+                        None => load_elsewhere!(address, at!(2)),
                     }
-                    value
                 }};
             }
             macro_rules! store {
                 ($address:expr, $value:expr) => {{
                     cycles = 2;
-                    let value = $value;
-                    if self.store(io, $address, value, at!(2)) {
-                        look_up!();
+                    let (address, value) = ($address, $value);
+                    match self
+                        .sram
+                        .get_mut(usize::from(address.wrapping_sub(SRAM_START)))
+                    {
+                        Some(place) => *place = value,
+                        None => store_elsewhere!(address, value, at!(2)),
                     }
                 }};
+            }
+            /// A byte onto the stack, in the last cycle of the instruction.
+            macro_rules! push {
+                ($cycles:expr, $value:expr) => {{
+                    let (address, value) = (self.stack_pointer(), $value);
+                    match self
+                        .sram
+                        .get_mut(usize::from(address.wrapping_sub(SRAM_START)))
+                    {
+                        Some(place) => *place = value,
+                        None => store_elsewhere!(address, value, at!($cycles)),
+                    }
+                    self.set_stack_pointer(address.wrapping_sub(1));
+                }};
+            }
+            macro_rules! pop {
+                ($cycles:expr) => {{
+                    let address = self.stack_pointer().wrapping_add(1);
+                    self.set_stack_pointer(address);
+                    match self.sram.get(usize::from(address.wrapping_sub(SRAM_START))) {
+                        Some(value) => *value,
+                        None => load_elsewhere!(address, at!($cycles)),
+                    }
+                }};
+            }
+            /// After a push: below its floor the stack has overflowed.
+            macro_rules! check_stack {
+                () => {
+                    if self.stack_pointer().wrapping_add(1) < self.stack_floor {
+                        self.stack_overflow(pc, cycle + cycles - 1);
+                        if self.verdict.is_some() {
+                            limit = 0;
+                        }
+                    }
+                };
             }
             macro_rules! skip_if {
                 ($condition:expr) => {
@@ -70,10 +130,16 @@ impl Cpu {
                     }
                 };
             }
+            /// The next instruction is there: the end of the loop adds a word.
+            macro_rules! jump {
+                ($target:expr) => {
+                    pc = $target.wrapping_sub(1)
+                };
+            }
             macro_rules! branch_if {
                 ($condition:expr, $target:expr) => {
                     if $condition {
-                        pc = $target;
+                        jump!($target);
                         cycles = 2;
                     }
                 };
@@ -88,69 +154,66 @@ impl Cpu {
                 Code::Muls | Code::Fmuls => {
                     let product = i16::from(self.registers[a].cast_signed())
                         * i16::from(self.registers[b].cast_signed());
-                    self.multiply(product.cast_unsigned(), op.code == Code::Fmuls);
+                    let result = status.product(product.cast_unsigned(), op.code == Code::Fmuls);
+                    self.set_pair(0, result);
                     cycles = 2;
                 }
                 Code::Mulsu | Code::Fmulsu => {
                     let product = i16::from(self.registers[a].cast_signed())
                         .wrapping_mul(i16::from(self.registers[b]));
-                    self.multiply(product.cast_unsigned(), op.code == Code::Fmulsu);
+                    let result = status.product(product.cast_unsigned(), op.code == Code::Fmulsu);
+                    self.set_pair(0, result);
                     cycles = 2;
                 }
                 Code::Mul | Code::Fmul => {
                     let product = u16::from(self.registers[a]) * u16::from(self.registers[b]);
-                    self.multiply(product, op.code == Code::Fmul);
+                    let result = status.product(product, op.code == Code::Fmul);
+                    self.set_pair(0, result);
                     cycles = 2;
                 }
                 Code::Add => {
-                    self.registers[a] =
-                        self.status.add(self.registers[a], self.registers[b], false);
+                    self.registers[a] = status.add(self.registers[a], self.registers[b], 0);
                 }
                 Code::Adc => {
-                    let carry = self.status.carry();
-                    self.registers[a] =
-                        self.status.add(self.registers[a], self.registers[b], carry);
+                    self.registers[a] = status.add_on(self.registers[a], self.registers[b]);
                 }
                 Code::Sub => {
-                    self.registers[a] = self.status.subtract(self.registers[a], self.registers[b]);
+                    self.registers[a] = status.subtract(self.registers[a], self.registers[b]);
                 }
                 Code::Sbc => {
-                    self.registers[a] = self
-                        .status
-                        .subtract_on(self.registers[a], self.registers[b]);
+                    self.registers[a] = status.subtract_on(self.registers[a], self.registers[b]);
                 }
                 Code::Cp => {
-                    self.status.subtract(self.registers[a], self.registers[b]);
+                    status.subtract(self.registers[a], self.registers[b]);
                 }
                 Code::Cpc => {
-                    self.status
-                        .subtract_on(self.registers[a], self.registers[b]);
+                    status.subtract_on(self.registers[a], self.registers[b]);
                 }
                 Code::Cpse => skip_if!(self.registers[a] == self.registers[b]),
                 Code::And => {
-                    self.registers[a] = self.status.logic(self.registers[a] & self.registers[b]);
+                    self.registers[a] = status.logic(self.registers[a] & self.registers[b]);
                 }
                 Code::Or => {
-                    self.registers[a] = self.status.logic(self.registers[a] | self.registers[b]);
+                    self.registers[a] = status.logic(self.registers[a] | self.registers[b]);
                 }
                 Code::Eor => {
-                    self.registers[a] = self.status.logic(self.registers[a] ^ self.registers[b]);
+                    self.registers[a] = status.logic(self.registers[a] ^ self.registers[b]);
                 }
                 Code::Mov => self.registers[a] = self.registers[b],
                 Code::Cpi => {
-                    self.status.subtract(self.registers[a], op.b as u8);
+                    status.subtract(self.registers[a], op.b as u8);
                 }
                 Code::Subi => {
-                    self.registers[a] = self.status.subtract(self.registers[a], op.b as u8);
+                    self.registers[a] = status.subtract(self.registers[a], op.b as u8);
                 }
                 Code::Sbci => {
-                    self.registers[a] = self.status.subtract_on(self.registers[a], op.b as u8);
+                    self.registers[a] = status.subtract_on(self.registers[a], op.b as u8);
                 }
                 Code::Ori => {
-                    self.registers[a] = self.status.logic(self.registers[a] | op.b as u8);
+                    self.registers[a] = status.logic(self.registers[a] | op.b as u8);
                 }
                 Code::Andi => {
-                    self.registers[a] = self.status.logic(self.registers[a] & op.b as u8);
+                    self.registers[a] = status.logic(self.registers[a] & op.b as u8);
                 }
                 Code::Ldi => self.registers[a] = op.b as u8,
 
@@ -187,12 +250,12 @@ impl Cpu {
                     store!(address, value);
                 }
                 Code::Lds => {
-                    pc += 1;
                     self.registers[a] = load!(op.b);
+                    pc += 1;
                 }
                 Code::Sts => {
-                    pc += 1;
                     store!(op.b, self.registers[a]);
+                    pc += 1;
                 }
                 Code::Lpm | Code::Elpm => {
                     let address = self.program_pointer(op.code == Code::Elpm);
@@ -218,43 +281,39 @@ impl Cpu {
                     look_up!();
                 }
                 Code::Push => {
-                    self.program_counter = here;
                     let value = self.registers[a];
-                    self.push(io, value, cycle + 1);
+                    push!(2, value);
                     cycles = 2;
-                    if self.verdict.is_some() {
-                        limit = 0;
-                    }
+                    check_stack!();
                 }
                 Code::Pop => {
-                    self.program_counter = here;
-                    self.registers[a] = self.pop(io, cycle + 1);
+                    self.registers[a] = pop!(2);
                     cycles = 2;
                 }
 
-                Code::Com => self.registers[a] = self.status.complement(self.registers[a]),
-                Code::Neg => self.registers[a] = self.status.subtract(0, self.registers[a]),
+                Code::Com => self.registers[a] = status.complement(self.registers[a]),
+                Code::Neg => self.registers[a] = status.subtract(0, self.registers[a]),
                 Code::Swap => self.registers[a] = self.registers[a].rotate_left(4),
-                Code::Inc => self.registers[a] = self.status.increment(self.registers[a]),
-                Code::Dec => self.registers[a] = self.status.decrement(self.registers[a]),
+                Code::Inc => self.registers[a] = status.increment(self.registers[a]),
+                Code::Dec => self.registers[a] = status.decrement(self.registers[a]),
                 Code::Asr => {
                     let before = self.registers[a];
-                    self.registers[a] = self.status.shifted(before, before >> 1 | before & 0x80);
+                    self.registers[a] = status.shifted(before, before >> 1 | before & 0x80);
                 }
                 Code::Lsr => {
                     let before = self.registers[a];
-                    self.registers[a] = self.status.shifted(before, before >> 1);
+                    self.registers[a] = status.shifted(before, before >> 1);
                 }
                 Code::Ror => {
                     let before = self.registers[a];
-                    let carry = u8::from(self.status.carry()) << 7;
-                    self.registers[a] = self.status.shifted(before, before >> 1 | carry);
+                    let carry = status.carry_on_top();
+                    self.registers[a] = status.shifted(before, before >> 1 | carry);
                 }
                 Code::Bset | Code::Bclr => {
                     let mask = 1 << op.a;
-                    let bits = self.status.bits();
+                    let bits = status.bits();
                     let set = op.code == Code::Bset;
-                    self.status = Status::from_bits(if set { bits | mask } else { bits & !mask });
+                    status = Status::from_bits(if set { bits | mask } else { bits & !mask });
                     if op.a == 7 {
                         self.shadow = set && bits & 0x80 == 0;
                         look_up!();
@@ -263,13 +322,13 @@ impl Cpu {
                 Code::Bld => {
                     let mask = op.b as u8;
                     let register = self.registers[a];
-                    self.registers[a] = if self.status.copy() {
+                    self.registers[a] = if status.copy() {
                         register | mask
                     } else {
                         register & !mask
                     };
                 }
-                Code::Bst => self.status.set_copy(self.registers[a] & op.b as u8 != 0),
+                Code::Bst => status.set_copy(self.registers[a] & op.b as u8 != 0),
                 Code::Adiw | Code::Sbiw => {
                     let adding = op.code == Code::Adiw;
                     let before = self.pair(a);
@@ -279,18 +338,17 @@ impl Cpu {
                         before.wrapping_sub(op.b)
                     };
                     self.set_pair(a, result);
-                    self.status.word(before, result, adding);
+                    status.word(before, result, adding);
                     cycles = 2;
                 }
 
                 Code::In => {
-                    self.registers[a] = self.load_elsewhere(io, 0x20 + (op.b & 0x3F), at!(1));
-                    look_up!();
+                    let address = 0x20 + (op.b & 0x3F);
+                    self.registers[a] = load_elsewhere!(address, at!(1));
                 }
                 Code::Out => {
-                    let value = self.registers[a];
-                    self.store_elsewhere(io, 0x20 + (op.b & 0x3F), value, at!(1));
-                    look_up!();
+                    let address = 0x20 + (op.b & 0x3F);
+                    store_elsewhere!(address, self.registers[a], at!(1));
                 }
                 Code::Sbi | Code::Cbi => {
                     cycles = 2;
@@ -308,55 +366,74 @@ impl Cpu {
                 Code::Sbrs => skip_if!(self.registers[a] & op.b as u8 != 0),
 
                 Code::Rjmp => {
-                    pc = op.address();
+                    jump!(op.address());
                     cycles = 2;
                 }
                 Code::Jmp => {
-                    pc = op.address();
+                    jump!(op.address());
                     cycles = 3;
                 }
                 Code::Ijmp => {
-                    pc = u32::from(self.pair(Z));
+                    jump!(u32::from(self.pair(Z)));
                     cycles = 2;
                 }
                 Code::Eijmp => {
-                    pc = u32::from(self.eind) << 16 | u32::from(self.pair(Z));
+                    jump!((u32::from(self.eind) << 16 | u32::from(self.pair(Z))));
                     cycles = 2;
                 }
                 Code::Rcall | Code::Call | Code::Icall | Code::Eicall => {
+                    let mut back = pc + 1;
                     let (target, took) = match op.code {
                         Code::Rcall => (op.address(), 4),
                         Code::Call => {
-                            pc += 1;
+                            back += 1;
                             (op.address(), 5)
                         }
                         Code::Icall => (u32::from(self.pair(Z)), 4),
                         _ => (u32::from(self.eind) << 16 | u32::from(self.pair(Z)), 4),
                     };
-                    self.program_counter = here;
-                    self.push_address(io, pc % FLASH_WORDS as u32, cycle + took - 1);
-                    pc = target;
+                    back %= FLASH_WORDS as u32;
+                    let [low, middle, high] = [back as u8, (back >> 8) as u8, (back >> 16) as u8];
+                    let lowest = self.stack_pointer().wrapping_sub(2);
                     cycles = took;
-                    if self.verdict.is_some() {
-                        limit = 0;
+                    match room_for_address(&mut self.sram, lowest) {
+                        Some(places) => {
+                            *places = [high, middle, low];
+                            self.set_stack_pointer(lowest.wrapping_sub(1));
+                        }
+                        None => {
+                            push!(took, low);
+                            push!(took, middle);
+                            push!(took, high);
+                        }
                     }
+                    check_stack!();
+                    jump!(target);
                 }
                 Code::Ret | Code::Reti => {
-                    self.program_counter = here;
-                    pc = self.pop_address(io, cycle + 4);
+                    let lowest = self.stack_pointer().wrapping_add(1);
+                    let [high, middle, low] = match address_in(&self.sram, lowest) {
+                        Some(bytes) => {
+                            self.set_stack_pointer(lowest.wrapping_add(2));
+                            bytes
+                        }
+                        None => [pop!(5), pop!(5), pop!(5)],
+                    };
+                    let target = u32::from(high) << 16 | u32::from(middle) << 8 | u32::from(low);
+                    jump!(target);
                     cycles = 5;
                     if op.code == Code::Reti {
-                        self.status.interrupts = true;
+                        status.interrupts = true;
                         self.shadow = true;
                         limit = 0;
                     }
                 }
-                Code::Breq => branch_if!(self.status.zero(), op.address()),
-                Code::Brne => branch_if!(!self.status.zero(), op.address()),
-                Code::Brcs => branch_if!(self.status.carry(), op.address()),
-                Code::Brcc => branch_if!(!self.status.carry(), op.address()),
-                Code::Brbs => branch_if!(self.status.bit(op.a), near(here, op.b)),
-                Code::Brbc => branch_if!(!self.status.bit(op.a), near(here, op.b)),
+                Code::Breq => branch_if!(status.zero(), op.address()),
+                Code::Brne => branch_if!(!status.zero(), op.address()),
+                Code::Brcs => branch_if!(status.carry(), op.address()),
+                Code::Brcc => branch_if!(!status.carry(), op.address()),
+                Code::Brbs => branch_if!(status.bit(op.a), near(pc, op.b)),
+                Code::Brbc => branch_if!(!status.bit(op.a), near(pc, op.b)),
 
                 Code::Sleep => {
                     if io.sleep(cycle) {
@@ -371,37 +448,41 @@ impl Cpu {
                 // Without a debugger on the chip it does nothing.
                 Code::Break => {}
                 Code::Breakpoint => {
-                    self.program_counter = here % FLASH_WORDS as u32;
-                    self.cycle = cycle;
+                    self.rest(pc, cycle, status);
                     return true;
                 }
                 Code::Erased => {
                     self.end(Verdict::ErasedFlash {
-                        program_counter: here,
+                        program_counter: pc,
                         cycle,
                     });
-                    self.program_counter = here;
-                    self.cycle = cycle;
+                    self.rest(pc, cycle, status);
                     return false;
                 }
                 Code::Illegal => {
                     self.end(Verdict::IllegalInstruction {
-                        program_counter: here,
+                        program_counter: pc,
                         word: op.b,
                         cycle,
                     });
-                    self.program_counter = here;
-                    self.cycle = cycle;
+                    self.rest(pc, cycle, status);
                     return false;
                 }
             }
+            pc = pc.wrapping_add(1);
             cycle += cycles;
             if cycle >= limit {
-                self.program_counter = pc % FLASH_WORDS as u32;
-                self.cycle = cycle;
+                self.rest(pc, cycle, status);
                 return false;
             }
         }
+    }
+
+    /// Leaves everything where it is found again.
+    fn rest(&mut self, program_counter: u32, cycle: u64, status: Status) {
+        self.program_counter = program_counter % FLASH_WORDS as u32;
+        self.cycle = cycle;
+        self.status = status;
     }
 
     #[inline(always)]
@@ -413,12 +494,20 @@ impl Cpu {
         };
         high | u32::from(self.pair(Z))
     }
+}
 
-    #[inline(always)]
-    fn multiply(&mut self, product: u16, fractional: bool) {
-        let result = self.status.product(product, fractional);
-        self.set_pair(0, result);
-    }
+/// The bytes of a return address from the data address `lowest` on, if all of them are in SRAM: the high one first.
+#[inline(always)]
+fn room_for_address(sram: &mut [u8; SRAM_BYTES], lowest: u16) -> Option<&mut [u8; 3]> {
+    let start = usize::from(lowest.wrapping_sub(SRAM_START));
+    sram.get_mut(start..start + 3)?.first_chunk_mut()
+}
+
+/// The same bytes, to read.
+#[inline(always)]
+fn address_in(sram: &[u8; SRAM_BYTES], lowest: u16) -> Option<[u8; 3]> {
+    let start = usize::from(lowest.wrapping_sub(SRAM_START));
+    sram.get(start..start + 3)?.first_chunk().copied()
 }
 
 /// The pointer register of a load or store that moves it.

@@ -82,9 +82,11 @@ pub(crate) enum Turn {
 /// The processor with its memories.
 #[derive(Clone, Debug)]
 pub struct Cpu {
-    registers: [u8; 32],
+    /// The first 32; as many as a byte can name, so that no index needs a check.
+    registers: [u8; 256],
     status: Status,
-    stack_pointer: u16,
+    /// The stack pointer, as wide as the machine likes to load it: behind a narrower store a wider load would wait.
+    stack: u32,
     program_counter: u32,
     cycle: u64,
     rampz: u8,
@@ -123,9 +125,9 @@ impl Cpu {
             Err(_) => unreachable!("as long as it was made"),
         };
         let mut cpu = Cpu {
-            registers: [0; 32],
+            registers: [0; 256],
             status: Status::default(),
-            stack_pointer: RAMEND,
+            stack: u32::from(RAMEND),
             program_counter: 0,
             cycle: 0,
             rampz: 0,
@@ -151,7 +153,7 @@ impl Cpu {
     /// Starts over at address `program_counter` [words], as after a reset: memories keep what they hold.
     pub fn reset(&mut self, program_counter: u32) {
         self.status = Status::from_bits(0);
-        self.stack_pointer = RAMEND;
+        self.set_stack_pointer(RAMEND);
         self.stack_known = true;
         self.program_counter = program_counter % FLASH_WORDS as u32;
         self.rampz = 0;
@@ -178,12 +180,18 @@ impl Cpu {
 
     /// The registers r0 to r31.
     pub fn registers(&self) -> &[u8; 32] {
-        &self.registers
+        match self.registers.first_chunk() {
+            Some(registers) => registers,
+            None => unreachable!("there are more"),
+        }
     }
 
     /// The same, to change them.
     pub fn registers_mut(&mut self) -> &mut [u8; 32] {
-        &mut self.registers
+        match self.registers.first_chunk_mut() {
+            Some(registers) => registers,
+            None => unreachable!("there are more"),
+        }
     }
 
     /// The status register.
@@ -197,13 +205,15 @@ impl Cpu {
     }
 
     /// The stack pointer.
+    #[inline(always)]
     pub fn stack_pointer(&self) -> u16 {
-        self.stack_pointer
+        self.stack as u16
     }
 
     /// Sets the stack pointer.
+    #[inline(always)]
     pub fn set_stack_pointer(&mut self, address: u16) {
-        self.stack_pointer = address;
+        self.stack = u32::from(address);
     }
 
     /// The SRAM, from [`SRAM_START`] on.

@@ -8,7 +8,7 @@ const REPORT: u16 = 0x2180;
 /// 32 registers, SREG, SPL, SPH, TCNT1L, TCNT1H.
 const REPORT_BYTES: u8 = 37;
 /// Programs store between these.
-const DATA: std::ops::Range<u16> = 0x300..0x2000;
+const DATA: std::ops::Range<u16> = 0x300..0xA00;
 /// Their stack starts here: they may pop more than they pushed.
 const STACK: u16 = 0x2100;
 /// GPIOR0, a register without side effects in reach of SBI.
