@@ -13,6 +13,7 @@ pub mod ports;
 mod power;
 mod programming;
 pub(crate) mod schedule;
+mod shared;
 mod signal;
 mod spi;
 mod system;
@@ -28,16 +29,16 @@ use crate::io::Demand;
 use analog::{Analog, Trigger};
 use eeprom::Eeprom;
 use external::External;
-use interrupts::Interrupts;
-use ports::{Change, Drive, Pin, Ports};
+use ports::{Change, Drive, Pin};
 use power::Power;
 pub use programming::Fuses;
 use programming::Programming;
-use schedule::{Schedule, Source};
+use schedule::Source;
+pub(crate) use shared::Core;
 pub use signal::{Cause, Event, Input, Level, Output, Pwm};
 use spi::Spi;
 use system::System;
-use timer::{Prescaler, Timer};
+use timer::Timer;
 use twi::Twi;
 use usart::Usart;
 use watchdog::{TimeOut, Watchdog};
@@ -45,8 +46,6 @@ use watchdog::{TimeOut, Watchdog};
 /// Cycles of the crystal in a second.
 pub const CLOCK_HZ: u64 = 16_000_000;
 
-/// OC0A and OC1C, PB7.
-const SHARED_OUTPUT: Pin = Pin::at(1, 7);
 /// The supply [V].
 const SUPPLY_V: f64 = 5.0;
 /// AIN0 and AIN1, PE2 and PE3.
@@ -65,88 +64,6 @@ pub struct Unmodelled {
     pub cycle: u64,
     /// It was written.
     pub written: bool,
-}
-
-/// What all peripherals share.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Core {
-    pub(crate) interrupts: Interrupts,
-    pub(crate) ports: Ports,
-    pub(crate) schedule: Schedule,
-    pub(crate) outputs: Vec<Output>,
-    /// The one that timers 0, 1, 3, 4 and 5 share, and timer 2's.
-    pub(crate) prescalers: [Prescaler; 2],
-    changes: VecDeque<(Change, u64)>,
-    /// Pins whose outputs pause the run, by their number.
-    watched: u128,
-    noticed: bool,
-    /// Levels since they were last asked for, if somebody wants to know.
-    levels: Option<Vec<Level>>,
-    demand: Option<Demand>,
-    /// The flag that starts a conversion was raised in this cycle.
-    triggered: Option<u64>,
-    /// What OC0A and OC1C have for the pin they share.
-    shared: [Option<bool>; 2],
-}
-
-impl Core {
-    /// Says what the chip does, at its cycle.
-    pub(crate) fn say(&mut self, cycle: u64, event: Event) {
-        if let Event::Pin(pin, _) | Event::Duty { pin, .. } = event {
-            self.noticed |= self.watched >> pin.number() & 1 != 0;
-        }
-        self.outputs.push(Output { cycle, event });
-    }
-
-    /// The CPU stands for some cycles.
-    pub(crate) fn stall(&mut self, cycles: u64) {
-        match &mut self.demand {
-            Some(Demand::Stall(already)) => *already += cycles,
-            Some(Demand::Reset { .. }) => {}
-            None => self.demand = Some(Demand::Stall(cycles)),
-        }
-    }
-
-    /// The CPU is not to go on by itself: someone wants something of it.
-    #[inline(always)]
-    fn is_wanted(&self) -> bool {
-        self.noticed || self.demand.is_some()
-    }
-
-    /// A timer's output drives its pin, or lets it go.
-    pub(crate) fn drive_output(
-        &mut self,
-        timer: usize,
-        pin: Pin,
-        output: Option<bool>,
-        cycle: u64,
-    ) {
-        if pin == SHARED_OUTPUT {
-            self.shared[timer % 2] = output;
-            self.modulate(cycle);
-        } else {
-            let change = self.ports.override_output(pin, output, cycle);
-            self.note(change, cycle);
-        }
-    }
-
-    /// Where both drive it, the pin that OC0A and OC1C share has both, or either if PORTB7 is set (section 19).
-    fn modulate(&mut self, cycle: u64) {
-        let output = match self.shared {
-            [Some(first), Some(second)] if self.ports.output(SHARED_OUTPUT) => {
-                Some(first || second)
-            }
-            [Some(first), Some(second)] => Some(first && second),
-            [first, second] => first.or(second),
-        };
-        let change = self.ports.override_output(SHARED_OUTPUT, output, cycle);
-        self.note(change, cycle);
-    }
-
-    /// Notes what changed on a port; whoever listens to pins hears of it before the access ends.
-    pub(crate) fn note(&mut self, change: Option<Change>, cycle: u64) {
-        self.changes.extend(change.map(|change| (change, cycle)));
-    }
 }
 
 /// The peripherals.
