@@ -38,6 +38,10 @@ pub(crate) enum Command {
     Calibrate(CalibrateArgs),
     /// Check a CSV of the original program and convert it to a log (MCAP)
     Import(ImportArgs),
+    /// Write a log as CSV, SVG or PNG
+    Export(ExportArgs),
+    /// Metrics of several logs side by side, with their differences
+    Compare(CompareArgs),
     /// Run a recorded simulation again and compare it bit for bit
     Rerun(RerunArgs),
     /// List modes, scenarios, worlds, rigs, robots and parameters
@@ -233,6 +237,63 @@ pub(crate) struct ImportArgs {
     pub(crate) json: bool,
 }
 
+/// Options of `rumbo export`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo export out/mode1-7.mcap
+  rumbo export out/mode1-7.mcap --format png --out figures
+
+CSV: one row per telemetry frame, time and units in the names of the columns; empty where a value is not known, inf where a sonar
+hears nothing within its reach; events in a second file.")]
+pub(crate) struct ExportArgs {
+    /// The log
+    #[arg(value_name = "LOG")]
+    pub(crate) log: PathBuf,
+    /// What to write; may be repeated [default: csv and svg]
+    #[arg(long = "format", value_enum, value_name = "FORMAT")]
+    pub(crate) formats: Vec<Format>,
+    /// Folder for the files; made if need be [default: the current one]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// What a log can be written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// Signals and events as tables
+    Csv,
+    /// Figures as vector graphics
+    Svg,
+    /// Figures as an image
+    Png,
+}
+
+/// Options of `rumbo compare`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo compare out/mode1-7.mcap out/mode1-8.mcap
+  rumbo compare before/mode1-7.mcap after/mode1-7.mcap --tolerance 5
+  rumbo compare a.mcap b.mcap c.mcap --out overlaid.svg --json
+
+With --tolerance, exit status 1 if a metric of a later log differs from the first one's by more, or a run fails where the first
+passed.")]
+pub(crate) struct CompareArgs {
+    /// The logs; differences are from the first
+    #[arg(required = true, num_args = 2.., value_name = "LOG")]
+    pub(crate) logs: Vec<PathBuf>,
+    /// Largest allowed difference of a metric, in percent of the first log's value
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    pub(crate) tolerance: Option<f64>,
+    /// Figure with all runs over each other
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) out: Option<PathBuf>,
+    /// The result as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
 /// Options of `rumbo rerun`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -328,6 +389,13 @@ fn timed_text(text: &str) -> Result<TimedText, String> {
         at_s,
         text: line.to_owned(),
     })
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(percent) if (0.0..=1000.0).contains(&percent) => Ok(percent),
+        _ => Err("must be a number within 0..1000".into()),
+    }
 }
 
 fn parameter(text: &str) -> Result<(String, f64), String> {

@@ -5,7 +5,10 @@
 
 mod args;
 mod calibrate;
+mod compare;
+mod export;
 mod failure;
+mod figures;
 mod identify;
 mod import;
 mod lab;
@@ -39,6 +42,8 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::List(args)) => list::list(&args),
         Some(Command::Lab(args)) => lab::lab(&args),
         Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Export(args)) => export::export(&args),
+        Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Rerun(args)) => rerun::rerun(&args),
         Some(Command::Identify(args)) => identify::identify(&args),
         Some(Command::Calibrate(args)) => calibrate::calibrate(&args),

@@ -111,6 +111,107 @@ fn a_run_is_recorded_whole_and_the_same_run_is_the_same_file() {
 }
 
 #[test]
+fn a_log_is_exported_with_units_and_compared_with_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let done = rumbo(
+        &["run", "mode1", "--runs", "2", "--out", "."],
+        folder.path(),
+    );
+    assert!(
+        done.status.code().is_some_and(|status| status < 2),
+        "{}",
+        text(&done.stderr)
+    );
+    let done = rumbo(
+        &[
+            "export",
+            "mode1-1.mcap",
+            "--out",
+            "x",
+            "--format",
+            "csv",
+            "--format",
+            "svg",
+            "--format",
+            "png",
+        ],
+        folder.path(),
+    );
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let csv = std::fs::read_to_string(folder.path().join("x/mode1-1.csv")).unwrap();
+    let (header, rows) = csv.split_once('\n').unwrap();
+    assert!(
+        header.starts_with("t_s,mode,state,") && header.contains(",range_front_m,"),
+        "{header}"
+    );
+    assert!(
+        rows.lines()
+            .all(|row| row.split(',').count() == header.split(',').count())
+    );
+    assert!(
+        std::fs::read_to_string(folder.path().join("x/mode1-1.events.csv"))
+            .unwrap()
+            .contains(",\"sent: ON\"")
+    );
+    assert!(
+        std::fs::read_to_string(folder.path().join("x/mode1-1.svg"))
+            .unwrap()
+            .contains("Distances")
+    );
+    assert!(
+        std::fs::read(folder.path().join("x/mode1-1.png"))
+            .unwrap()
+            .starts_with(b"\x89PNG")
+    );
+
+    let pair = [
+        "compare",
+        "mode1-1.mcap",
+        "mode1-2.mcap",
+        "--json",
+        "--out",
+        "both.svg",
+    ];
+    let done = rumbo(&pair, folder.path());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    assert!(text(&done.stdout).contains("\"log.way_m\":"));
+    assert!(folder.path().join("both.svg").exists());
+    let other = rumbo(&[&pair[..], &["--tolerance", "0"]].concat(), folder.path());
+    assert_eq!(other.status.code(), Some(1));
+    let same = rumbo(
+        &[
+            "compare",
+            "mode1-1.mcap",
+            "mode1-1.mcap",
+            "--tolerance",
+            "0",
+        ],
+        folder.path(),
+    );
+    assert_eq!(same.status.code(), Some(0), "{}", text(&same.stdout));
+}
+
+#[test]
+fn what_is_no_log_gets_one_line_and_status_2() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("table.mcap"), "t_s,x_m\n0,0\n").unwrap();
+    for arguments in [
+        &["export", "table.mcap"][..],
+        &["rerun", "table.mcap"],
+        &["compare", "table.mcap", "none.mcap"],
+        &["export", "none.mcap"],
+    ] {
+        let done = rumbo(arguments, folder.path());
+        let said = text(&done.stderr);
+        assert_eq!(
+            (done.status.code(), said.lines().count()),
+            (Some(2), 1),
+            "{said}"
+        );
+    }
+}
+
+#[test]
 fn a_lab_that_is_killed_leaves_a_log_that_can_be_read() {
     for lived_ms in [300, 1_400, 2_700] {
         let folder = tempfile::tempdir().unwrap();

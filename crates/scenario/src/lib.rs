@@ -3,6 +3,7 @@
 mod board;
 pub mod calibrate;
 pub mod campaign;
+pub mod chart;
 pub mod files;
 pub mod identify;
 pub mod mega;

@@ -96,6 +96,12 @@ impl Log {
             .map(|event| (event.t_s, event.level.name(), event.text.as_str()))
     }
 
+    /// What surrounded the robot, if it was simulated.
+    #[must_use]
+    pub fn scene(&self) -> Option<&Scene> {
+        self.scene.as_ref()
+    }
+
     /// Length of the log \[s\].
     #[must_use]
     pub fn duration_s(&self) -> f64 {

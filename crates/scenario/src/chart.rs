@@ -1,62 +1,104 @@
-//! Charts as SVG: signals over time with the range of all seeds, and maps with every seed's way.
+//! Charts as SVG and PNG: signals over time, of one run or with the range of all seeds, and maps with every way.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::FontStyle;
 
-pub(crate) use plotters::chart::SeriesLabelPosition as Legend;
+pub use plotters::chart::SeriesLabelPosition as Legend;
+use std::path::Path;
 
-type Points = Vec<(f64, f64)>;
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+/// Points of a curve; what is not finite is a gap.
+pub type Points = Vec<(f64, f64)>;
+type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
 /// Most points of one curve: the eye sees no more, and the files stay small.
 const MOST_POINTS: usize = 360;
+/// The same of a curve that stands alone.
+const MOST_OF_ONE: usize = 4_000;
 /// Readable on a light and on a dark page.
 const PAPER: RGBColor = RGBColor(0xfb, 0xfb, 0xf9);
 const TEXT: RGBColor = RGBColor(0x33, 0x33, 0x33);
-/// Of the colour-blind-safe palette of Okabe and Ito.
-pub(crate) const OURS: RGBColor = RGBColor(0x00, 0x72, 0xb2);
-pub(crate) const ORIGINAL: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
+/// The first of the colour-blind-safe palette of Okabe and Ito: our program.
+pub const OURS: RGBColor = RGBColor(0x00, 0x72, 0xb2);
+/// The second: the report's program.
+pub const ORIGINAL: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
+/// The third.
+pub const THIRD: RGBColor = RGBColor(0x00, 0x9e, 0x73);
+/// The whole palette, for curves that have no other order.
+pub const PALETTE: [RGBColor; 7] = [
+    OURS,
+    ORIGINAL,
+    THIRD,
+    RGBColor(0xcc, 0x79, 0xa7),
+    RGBColor(0xe6, 0x9f, 0x00),
+    RGBColor(0x56, 0xb4, 0xe9),
+    RGBColor(0x33, 0x33, 0x33),
+];
 const GIVEN: RGBColor = RGBColor(0x66, 0x66, 0x66);
 
 /// What is drawn in one chart.
-pub(crate) enum Curve {
+pub enum Curve<'a> {
     /// The median of all seeds, and between which values all of them are, as time goes on.
     Seeds {
-        name: &'static str,
+        /// As in the legend.
+        name: &'a str,
+        /// Of the lines.
         colour: RGBColor,
+        /// One of each seed.
         runs: Vec<Points>,
+    },
+    /// A curve that stands alone.
+    Line {
+        /// As in the legend.
+        name: &'a str,
+        /// Of the line.
+        colour: RGBColor,
+        /// In order.
+        points: Points,
     },
     /// Every seed's own curve.
     Ways {
-        name: &'static str,
+        /// As in the legend.
+        name: &'a str,
+        /// Of the lines.
         colour: RGBColor,
+        /// One of each seed.
         runs: Vec<Points>,
     },
     /// What was asked for.
-    Given { name: &'static str, points: Points },
+    Given {
+        /// As in the legend.
+        name: &'a str,
+        /// In order.
+        points: Points,
+    },
     /// Something that stands there.
     Shape(Points),
 }
 
 /// One diagram.
-pub(crate) struct Chart {
-    pub(crate) title: &'static str,
-    pub(crate) x: &'static str,
-    pub(crate) y: &'static str,
+pub struct Chart<'a> {
+    /// Above it.
+    pub title: &'a str,
+    /// What the axis shows, and its unit.
+    pub x: &'a str,
+    /// The same of the other axis.
+    pub y: &'a str,
     /// What the axis shows at most; else all there is.
-    pub(crate) y_range: Option<[f64; 2]>,
-    pub(crate) x_range: Option<[f64; 2]>,
+    pub y_range: Option<[f64; 2]>,
+    /// The same of the other axis.
+    pub x_range: Option<[f64; 2]>,
     /// A metre is as long in x as in y.
-    pub(crate) map: bool,
+    pub map: bool,
     /// Where the names of the curves stand.
-    pub(crate) legend: Legend,
-    pub(crate) curves: Vec<Curve>,
+    pub legend: Legend,
+    /// What is drawn, the first below the others.
+    pub curves: Vec<Curve<'a>>,
 }
 
 /// A signal over time in seconds.
-pub(crate) fn over_time(title: &'static str, y: &'static str, curves: Vec<Curve>) -> Chart {
+#[must_use]
+pub fn over_time<'a>(title: &'a str, y: &'a str, curves: Vec<Curve<'a>>) -> Chart<'a> {
     Chart {
         title,
         x: "time, s",
@@ -70,7 +112,8 @@ pub(crate) fn over_time(title: &'static str, y: &'static str, curves: Vec<Curve>
 }
 
 /// A map in metres.
-pub(crate) fn map(title: &'static str, curves: Vec<Curve>) -> Chart {
+#[must_use]
+pub fn map<'a>(title: &'a str, curves: Vec<Curve<'a>>) -> Chart<'a> {
     Chart {
         title,
         x: "x, m",
@@ -83,30 +126,58 @@ pub(crate) fn map(title: &'static str, curves: Vec<Curve>) -> Chart {
     }
 }
 
-/// The charts below each other (`columns` 1) or beside each other, each of this size in pixels.
-pub(crate) fn svg(charts: &[Chart], columns: usize, size: (u32, u32)) -> Result<String, String> {
-    // The bytes are a font, so that registering them cannot fail; doing it again changes nothing.
-    let _ =
-        plotters::style::register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular());
-    let rows = charts.len().div_ceil(columns);
-    let whole = (size.0 * columns as u32, size.1 * rows as u32);
+/// The charts below each other (`columns` 1) or beside each other, each of this size in pixels, as SVG.
+///
+/// # Errors
+/// What the drawing library says.
+pub fn svg(charts: &[Chart<'_>], columns: usize, size: (u32, u32)) -> Result<String, String> {
     let mut text = String::new();
+    let whole = whole(charts, columns, size);
     {
         let area = SVGBackend::with_string(&mut text, whole).into_drawing_area();
-        let draw = || -> Drawn {
-            area.fill(&PAPER)?;
-            for (part, chart) in area.split_evenly((rows, columns)).iter().zip(charts) {
-                chart.draw(part, size)?;
-            }
-            area.present()
-        };
-        draw().map_err(|error| error.to_string())?;
+        draw_all(&area, charts, columns, size).map_err(|error| error.to_string())?;
     }
     Ok(text)
 }
 
-impl Chart {
-    fn draw(&self, area: &Area<'_>, size: (u32, u32)) -> Drawn {
+/// The same into a PNG file.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn png(
+    charts: &[Chart<'_>],
+    columns: usize,
+    size: (u32, u32),
+    path: &Path,
+) -> Result<(), String> {
+    let area = BitMapBackend::new(path, whole(charts, columns, size)).into_drawing_area();
+    draw_all(&area, charts, columns, size).map_err(|error| error.to_string())
+}
+
+fn whole(charts: &[Chart<'_>], columns: usize, size: (u32, u32)) -> (u32, u32) {
+    let rows = charts.len().div_ceil(columns.max(1)).max(1);
+    (size.0 * columns.max(1) as u32, size.1 * rows as u32)
+}
+
+fn draw_all<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    charts: &[Chart<'_>],
+    columns: usize,
+    size: (u32, u32),
+) -> Drawn<B> {
+    // The bytes are a font, so that registering them cannot fail; doing it again changes nothing.
+    let _ =
+        plotters::style::register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular());
+    let rows = charts.len().div_ceil(columns.max(1)).max(1);
+    area.fill(&PAPER)?;
+    for (part, chart) in area.split_evenly((rows, columns.max(1))).iter().zip(charts) {
+        chart.draw(part, size)?;
+    }
+    area.present()
+}
+
+impl Chart<'_> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>, size: (u32, u32)) -> Drawn<B> {
         let [x_range, y_range] = self.ranges(size);
         let font = |size: i32| ("sans-serif", size).into_font().color(&TEXT);
         let mut context = ChartBuilder::on(area)
@@ -147,11 +218,25 @@ impl Chart {
                     let thin = colour.mix(0.55).stroke_width(1);
                     for points in runs {
                         context.draw_series(
-                            broken(&within(fewer(points), x_range, y_range))
+                            broken(&within(fewer(points, MOST_POINTS), x_range, y_range))
                                 .map(|part| PathElement::new(part, thin)),
                         )?;
                     }
                     (name, colour.stroke_width(2))
+                }
+                Curve::Line {
+                    name,
+                    colour,
+                    points,
+                } => {
+                    // A wider line gets spikes at its sharp corners where it is drawn in pixels.
+                    let style = colour.stroke_width(1);
+                    let points = fewer(points, MOST_OF_ONE);
+                    context.draw_series(
+                        broken(&within(points, x_range, y_range))
+                            .map(|part| PathElement::new(part, style)),
+                    )?;
+                    (name, style)
                 }
                 Curve::Given { name, points } => {
                     let style = GIVEN.stroke_width(1);
@@ -202,7 +287,9 @@ impl Chart {
                 Curve::Seeds { runs, .. } | Curve::Ways { runs, .. } => {
                     points.extend(runs.iter().flatten().copied());
                 }
-                Curve::Given { points: given, .. } | Curve::Shape(given) => points.extend(given),
+                Curve::Given { points: given, .. }
+                | Curve::Line { points: given, .. }
+                | Curve::Shape(given) => points.extend(given),
             }
         }
         let range = |fixed: Option<[f64; 2]>, of: fn(&(f64, f64)) -> f64| {
@@ -253,7 +340,7 @@ impl Band {
             high: Vec::new(),
         };
         let length = runs.iter().map(Vec::len).min().unwrap_or(0);
-        for index in (0..length).step_by(stride(length)) {
+        for index in (0..length).step_by(stride(length, MOST_POINTS)) {
             let at = runs[0][index].0;
             let mut values: Vec<f64> = runs.iter().map(|points| points[index].1).collect();
             values.sort_by(f64::total_cmp);
@@ -274,15 +361,15 @@ impl Band {
     }
 }
 
-fn stride(length: usize) -> usize {
-    length.div_ceil(MOST_POINTS).max(1)
+fn stride(length: usize, most: usize) -> usize {
+    length.div_ceil(most).max(1)
 }
 
-fn fewer(points: &Points) -> Points {
+fn fewer(points: &Points, most: usize) -> Points {
     points
         .iter()
         .copied()
-        .step_by(stride(points.len()))
+        .step_by(stride(points.len(), most))
         .collect()
 }
 

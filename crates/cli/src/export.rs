@@ -1,0 +1,104 @@
+//! `rumbo export`: a log as CSV, SVG and PNG.
+
+use crate::args::{ExportArgs, Format};
+use crate::failure::Failure;
+use crate::figures;
+use crate::output;
+use rumbo_scenario::chart;
+use rumbo_station::Row;
+use rumbo_station::log::Log;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// Writes what was asked for and prints the paths.
+pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
+    let log = Log::read(&args.log).map_err(Failure::input)?;
+    warn_if_cut(&args.log, &log);
+    let folder = args.out.clone().unwrap_or_default();
+    if !folder.as_os_str().is_empty() {
+        std::fs::create_dir_all(&folder).map_err(|error| unwritable(&folder, &error))?;
+    }
+    let stem = args.log.file_stem().unwrap_or(args.log.as_os_str());
+    let path = |ending: &str| folder.join(stem).with_extension(ending);
+    let formats = if args.formats.is_empty() {
+        &[Format::Csv, Format::Svg][..]
+    } else {
+        &args.formats
+    };
+    for format in formats {
+        match format {
+            Format::Csv => {
+                write(&path("csv"), &signals(&log))?;
+                write(&path("events.csv"), &events(&log))?;
+            }
+            Format::Svg => {
+                let text =
+                    chart::svg(&figures::of_one(&log), 1, figures::SIZE).map_err(Failure::Input)?;
+                write(&path("svg"), &text)?;
+            }
+            Format::Png => {
+                let path = path("png");
+                chart::png(&figures::of_one(&log), 1, figures::SIZE, &path).map_err(|error| {
+                    Failure::Input(format!(
+                        "{}: cannot be written ({error}); choose another folder with --out",
+                        path.display()
+                    ))
+                })?;
+                output::line(&path.display().to_string())?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Says on stderr that a log ends early.
+pub(crate) fn warn_if_cut(path: &Path, log: &Log) {
+    use std::io::Write;
+    if let Some(why) = &log.cut {
+        // A closed stderr leaves nobody to tell.
+        let _ = writeln!(
+            std::io::stderr(),
+            "note: {} ends at {:.1} s: {why}",
+            path.display(),
+            log.duration_s()
+        );
+    }
+}
+
+fn write(path: &PathBuf, text: &str) -> Result<(), Failure> {
+    std::fs::write(path, text).map_err(|error| unwritable(path, &error))?;
+    output::line(&path.display().to_string())
+}
+
+pub(crate) fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::Input(format!(
+        "{}: cannot be written ({error}); choose another folder with --out",
+        path.display()
+    ))
+}
+
+/// The signals, one row per telemetry frame: a unit in each name, nothing where a value is unknown, `inf` where a range is clear.
+fn signals(log: &Log) -> String {
+    let names: Vec<&str> = Row::names().collect();
+    let mut text = names.join(",") + "\n";
+    for row in &log.rows {
+        let cells: Vec<String> = (0..names.len())
+            .map(|column| {
+                row.get(column)
+                    .map_or_else(String::new, |value| value.to_string())
+            })
+            .collect();
+        text += &cells.join(",");
+        text.push('\n');
+    }
+    text
+}
+
+fn events(log: &Log) -> String {
+    let mut text = String::from("t_s,level,event\n");
+    for (t_s, level, event) in log.events() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{t_s:.3},{level},\"{}\"", event.replace('"', "\"\""));
+    }
+    text
+}

@@ -1,0 +1,255 @@
+//! Figures of logs: the signals of one, or those of several over each other.
+
+use rumbo_scenario::chart::{Chart, Curve, Legend, PALETTE, Points, map, over_time};
+use rumbo_station::Row;
+use rumbo_station::log::Log;
+use std::f64::consts::{PI, TAU};
+
+/// Size of one chart \[px\].
+pub(crate) const SIZE: (u32, u32) = (900, 320);
+const RPM_PER_RAD_S: f64 = 30.0 / PI;
+const CM_PER_M: f64 = 100.0;
+const DEG_PER_RAD: f64 = 180.0 / PI;
+/// The modes whose reference is a distance.
+const DISTANCE_MODES: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
+
+/// A signal of a figure: its column, its name for people, and what it is multiplied with.
+type Signal = (&'static str, &'static str, f64);
+
+/// Charts that show signals over time: title, unit, signals.
+const OVER_TIME: [(&str, &str, &[Signal]); 4] = [
+    (
+        "Distances",
+        "cm",
+        &[
+            ("range_front_m", "front", CM_PER_M),
+            ("range_left_m", "left", CM_PER_M),
+            ("range_right_m", "right", CM_PER_M),
+        ],
+    ),
+    (
+        "Wheel speeds",
+        "rpm",
+        &[
+            ("left_rad_s", "left", RPM_PER_RAD_S),
+            ("right_rad_s", "right", RPM_PER_RAD_S),
+        ],
+    ),
+    (
+        "PWM",
+        "of 255",
+        &[("left_pwm", "left", 1.0), ("right_pwm", "right", 1.0)],
+    ),
+    (
+        "Heading",
+        "degrees",
+        &[
+            ("heading_rad", "estimated", DEG_PER_RAD),
+            ("true_heading_rad", "true", DEG_PER_RAD),
+        ],
+    ),
+];
+
+/// The charts of one log: what it has of distances, speeds, PWM and heading over time, and the map.
+pub(crate) fn of_one(log: &Log) -> Vec<Chart<'static>> {
+    let mut charts = Vec::new();
+    for (title, unit, signals) in OVER_TIME {
+        let mut curves: Vec<Curve<'static>> = signals
+            .iter()
+            .zip(PALETTE)
+            .filter_map(|((column, name, factor), colour)| {
+                let points = over(log, column, *factor);
+                has_values(&points).then_some(Curve::Line {
+                    name,
+                    colour,
+                    points,
+                })
+            })
+            .collect();
+        if curves.is_empty() {
+            continue;
+        }
+        curves.extend(references(log, title));
+        charts.push(over_time(title, unit, curves));
+    }
+    let mut ways = shapes(log);
+    let truth = way(log, ["true_x_m", "true_y_m"]);
+    let told = told_way(log);
+    if told.len() > 1 {
+        ways.push(Curve::Line {
+            name: "estimated",
+            colour: PALETTE[0],
+            points: told,
+        });
+    }
+    if truth.len() > 1 {
+        ways.push(Curve::Line {
+            name: "true",
+            colour: PALETTE[1],
+            points: truth,
+        });
+    }
+    charts.push(map_chart(ways));
+    charts
+}
+
+/// The same charts with all logs over each other, each in its colour.
+pub(crate) fn of_many<'a>(logs: &[(&'a str, &Log)]) -> Vec<Chart<'a>> {
+    let coloured = || logs.iter().zip(PALETTE.into_iter().cycle());
+    let mut charts = Vec::new();
+    for (_, unit, signals) in OVER_TIME {
+        for (column, _, factor) in signals {
+            let curves: Vec<Curve<'a>> = coloured()
+                .filter_map(|((name, log), colour)| {
+                    let points = over(log, column, *factor);
+                    has_values(&points).then_some(Curve::Line {
+                        name,
+                        colour,
+                        points,
+                    })
+                })
+                .collect();
+            if !curves.is_empty() {
+                charts.push(over_time(title_of(column), unit, curves));
+            }
+        }
+    }
+    let mut ways = logs.first().map_or_else(Vec::new, |(_, log)| shapes(log));
+    for ((name, log), colour) in coloured() {
+        let truth = way(log, ["true_x_m", "true_y_m"]);
+        let points = if truth.len() > 1 {
+            truth
+        } else {
+            told_way(log)
+        };
+        ways.push(Curve::Line {
+            name,
+            colour,
+            points,
+        });
+    }
+    charts.push(map_chart(ways));
+    charts
+}
+
+fn title_of(column: &str) -> &'static str {
+    match column {
+        "range_front_m" => "Distance ahead",
+        "range_left_m" => "Distance on the left",
+        "range_right_m" => "Distance on the right",
+        "left_rad_s" => "Speed of the left wheel",
+        "right_rad_s" => "Speed of the right wheel",
+        "left_pwm" => "PWM of the left wheel",
+        "right_pwm" => "PWM of the right wheel",
+        "heading_rad" => "Heading, estimated",
+        _ => "Heading, true",
+    }
+}
+
+fn map_chart(curves: Vec<Curve<'_>>) -> Chart<'_> {
+    Chart {
+        legend: Legend::UpperLeft,
+        ..map("Way", curves)
+    }
+}
+
+fn has_values(points: &Points) -> bool {
+    points.iter().filter(|(_, y)| y.is_finite()).count() > 1
+}
+
+/// A signal over time, gaps where it is unknown or clear. Angles go on through a half turn.
+fn over(log: &Log, column: &str, factor: f64) -> Points {
+    let Some(at) = Row::column(column) else {
+        return Vec::new();
+    };
+    let mut before: Option<f64> = None;
+    log.rows
+        .iter()
+        .map(|row| {
+            let mut value = row.get(at).filter(|value| value.is_finite());
+            if column.ends_with("heading_rad") {
+                value = value.map(|angle| {
+                    before.map_or(angle, |before| {
+                        angle + TAU * ((before - angle) / TAU).round()
+                    })
+                });
+                before = value.or(before);
+            }
+            (
+                row.t_ms as f64 / 1e3,
+                value.map_or(f64::NAN, |value| value * factor),
+            )
+        })
+        .collect()
+}
+
+/// What the robot was asked for, as far as it belongs into this chart.
+fn references(log: &Log, title: &str) -> Vec<Curve<'static>> {
+    let given = |name, points: Points| has_values(&points).then_some(Curve::Given { name, points });
+    match title {
+        "Distances" => {
+            let points = log.rows.iter().map(|row| {
+                let mode = row.signal("mode").unwrap_or(-1.0);
+                let value = row
+                    .signal("reference_left")
+                    .filter(|value| *value != 0.0 && DISTANCE_MODES.contains(&mode));
+                (
+                    row.t_ms as f64 / 1e3,
+                    value.map_or(f64::NAN, |value| value * CM_PER_M),
+                )
+            });
+            let points: Points = points.filter(|(_, value)| value.is_finite()).collect();
+            given("reference", points).into_iter().collect()
+        }
+        "Wheel speeds" => [
+            ("left_ref_rad_s", "left reference"),
+            ("right_ref_rad_s", "right reference"),
+        ]
+        .into_iter()
+        .filter_map(|(column, name)| given(name, over(log, column, RPM_PER_RAD_S)))
+        .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Walls and boxes.
+fn shapes(log: &Log) -> Vec<Curve<'static>> {
+    let obstacles = log
+        .scene()
+        .map(|scene| scene.obstacles.as_slice())
+        .unwrap_or_default();
+    let corners = |corners_m: &[[f64; 2]]| -> Points {
+        corners_m.iter().map(|[x_m, y_m]| (*x_m, *y_m)).collect()
+    };
+    obstacles
+        .iter()
+        .map(|obstacle| match obstacle.closed {
+            true => Curve::Shape(corners(&obstacle.corners_m)),
+            false => Curve::Line {
+                name: "",
+                colour: PALETTE[6],
+                points: corners(&obstacle.corners_m),
+            },
+        })
+        .collect()
+}
+
+fn way(log: &Log, columns: [&str; 2]) -> Points {
+    let point = |row: &Row| Some((row.signal(columns[0])?, row.signal(columns[1])?));
+    log.rows.iter().filter_map(point).collect()
+}
+
+/// The estimated way in the world.
+fn told_way(log: &Log) -> Points {
+    let point = |row: &Row| {
+        let (x_m, y_m) = (row.signal("x_m")?, row.signal("y_m")?);
+        let place = ["origin_x_m", "origin_y_m", "origin_heading_rad"]
+            .map(|name| row.signal(name).unwrap_or(0.0));
+        let (sin, cos) = place[2].sin_cos();
+        Some((
+            place[0] + cos * x_m - sin * y_m,
+            place[1] + sin * x_m + cos * y_m,
+        ))
+    };
+    log.rows.iter().filter_map(point).collect()
+}
