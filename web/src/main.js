@@ -4,6 +4,7 @@
  *
  * For tests and for the browser's console, `window.rumbo` gives the signals as plotted.
  */
+import { Consoles } from './consoles.js';
 import { element, onFrame, setText } from './dom.js';
 import { EventList } from './events.js';
 import { Header } from './header.js';
@@ -36,6 +37,9 @@ const redraw = onFrame(() => {
 const header = new Header(send);
 const parameters = new ParameterTable(send);
 const events = new EventList();
+const consoles = new Consoles(send);
+/** The run that the consoles are of. @type {number | null} */
+let consoleRun = null;
 const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);
 const panel = new CommandPanel(send, map);
 const stateLine = new StateLine(store, send);
@@ -71,12 +75,14 @@ function receive(message) {
     case 'hello':
       store.begin(message.columns);
       events.clear();
+      consoles.clear();
       panel.setModes(message.modes);
       plots.modes = message.modes;
       stateLine.modes = message.modes;
       break;
     case 'scene':
       store.setRun(message.run);
+      if (message.run !== consoleRun) consoles.clear();
       header.setScene(message.scene);
       map.setScene(message.scene);
       panel.setScene(message.scene);
@@ -99,6 +105,11 @@ function receive(message) {
       break;
     case 'events':
       events.add(message.events);
+      break;
+    case 'consoles':
+      if (message.run !== consoleRun) consoles.clear();
+      consoleRun = message.run;
+      consoles.add(message.said);
       break;
     case 'samples':
       store.setRun(message.run);

@@ -33,10 +33,11 @@ export class CommandPanel {
     element('stop', HTMLButtonElement).addEventListener('click', () => send({ type: 'stop' }));
     element('on', HTMLButtonElement).addEventListener('click', () => send({ type: 'arm' }));
     element('off', HTMLButtonElement).addEventListener('click', () => send({ type: 'disarm' }));
-    // Space stops, wherever the focus is: ahead of whatever else it would do there.
+    // Space stops, wherever the focus is: ahead of whatever else it would do there. Only in a line of text it is a blank.
     for (const type of /** @type {const} */ (['keydown', 'keyup'])) {
       addEventListener(type, (event) => {
-        if (event.code !== 'Space') return;
+        const typing = event.target instanceof HTMLInputElement && event.target.type === 'text';
+        if (event.code !== 'Space' || typing) return;
         event.preventDefault();
         event.stopPropagation();
         if (type === 'keydown' && !event.repeat) send({ type: 'stop' });

@@ -69,12 +69,15 @@
  *
  * @typedef {{t_s: number, level: 'info' | 'good' | 'warning' | 'fault', text: string}} LoggedEvent
  *
+ * @typedef {{usart: number, text: string}} ConsoleText What a USART of an emulated chip said.
+ *
  * @typedef {{type: 'hello', version: string, columns: string[], modes: ModeEntry[]}
  *   | {type: 'scene', run: number, scene: Scene | null}
  *   | {type: 'parameters', parameters: Parameter[]}
  *   | {type: 'state', state: State}
  *   | {type: 'samples', run: number, rows: Cell[][]}
  *   | {type: 'events', events: LoggedEvent[]}
+ *   | {type: 'consoles', run: number, said: ConsoleText[]}
  *   | {type: 'error', text: string}} FromServer
  *
  * @typedef {{type: 'stop' | 'arm' | 'disarm' | 'clear_fault' | 'reset_params' | 'reset_pose'}
@@ -89,6 +92,7 @@
  *   | {type: 'waypoint', x_m: number, y_m: number}
  *   | {type: 'rig', rig: string}
  *   | {type: 'set_param', id: number, value: number}
+ *   | {type: 'type', usart: number, text: string}
  *   | {type: 'speed', factor: number}
  *   | {type: 'reset', scenario: string, world: string | null, rig: string | null, seed: number}} Order
  */

@@ -55,6 +55,7 @@ Examples:
   rumbo lab
   rumbo lab --scenario mode5 --speed 4
   rumbo lab --scenario mode1 --rig final --world room
+  rumbo lab --scenario mode1 --firmware my_sketch.elf --wiring final
   rumbo lab --port 9000 --no-browser")]
 pub(crate) struct LabArgs {
     /// Scenario that the robot starts in: name or path
@@ -69,6 +70,12 @@ pub(crate) struct LabArgs {
     /// Rig instead of the scenario's own: where the sonars sit
     #[arg(long, value_name = "NAME")]
     pub(crate) rig: Option<String>,
+    /// Program image for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
+    #[arg(long, value_name = "IMAGE")]
+    pub(crate) firmware: Option<PathBuf>,
+    /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own image]
+    #[arg(long, value_name = "NAME", requires = "firmware")]
+    pub(crate) wiring: Option<String>,
     /// Port on 127.0.0.1; 0 takes any free one
     #[arg(long, value_name = "N", default_value_t = rumbo_station::DEFAULT_PORT)]
     pub(crate) port: u16,

@@ -7,7 +7,10 @@ use crate::manifest;
 use crate::output;
 use crate::scene::{first_commands, scene};
 use rumbo_control::Wheels;
+use rumbo_control::mode::ModeId;
 use rumbo_scenario::files::{FileError, Library, Overrides, Setup};
+use rumbo_scenario::mega::console::readable;
+use rumbo_scenario::mega::firmware::Language;
 use rumbo_scenario::run;
 use rumbo_scenario::sim::Sim;
 use rumbo_station::log::{Kind, Manifest, Recording};
@@ -23,7 +26,13 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
         rig: args.rig.clone(),
         seed: args.seed,
     };
-    let robot = SimulatedRobot::new(args.robot.clone(), choice).map_err(Failure::input)?;
+    let overrides = Overrides {
+        robot: args.robot.clone(),
+        firmware: args.firmware.clone(),
+        wiring: args.wiring.clone(),
+        ..Overrides::default()
+    };
+    let robot = SimulatedRobot::new(overrides, choice).map_err(Failure::input)?;
     let config = LabConfig {
         port: args.port,
         speed: args.speed,
@@ -44,25 +53,36 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
 /// The simulation as the station drives it.
 struct SimulatedRobot {
     library: Library,
-    /// Robot instead of the scenario's own.
-    robot: Option<String>,
+    /// What the command line says; the page chooses scenario, world and rig.
+    overrides: Overrides,
     sim: Sim,
     manifest: Manifest,
+    mode: ModeId,
+    /// The emulated program's end has been told.
+    ended: bool,
     scene: Scene,
     first_commands: Vec<Command>,
 }
 
 impl SimulatedRobot {
-    fn new(robot: Option<String>, choice: Choice) -> Result<Self, FileError> {
+    fn new(overrides: Overrides, choice: Choice) -> Result<Self, FileError> {
         let library = Library::new();
-        let (sim, mut scene, first_commands, manifest) = prepare(&library, robot.clone(), choice)?;
+        let Prepared {
+            sim,
+            mode,
+            mut scene,
+            first_commands,
+            manifest,
+        } = prepare(&library, &overrides, choice)?;
         offer(&mut scene.scenarios, Some(&scene.choice.scenario));
         offer(&mut scene.worlds, scene.choice.world.as_ref());
         Ok(Self {
             library,
-            robot,
+            overrides,
             sim,
             manifest,
+            mode,
+            ended: false,
             scene,
             first_commands,
         })
@@ -77,23 +97,53 @@ fn offer(names: &mut Vec<String>, chosen: Option<&String>) {
 }
 
 /// A simulation at time 0 and what surrounds it.
+struct Prepared {
+    sim: Sim,
+    mode: ModeId,
+    scene: Scene,
+    first_commands: Vec<Command>,
+    manifest: Manifest,
+}
+
 fn prepare(
     library: &Library,
-    robot: Option<String>,
+    overrides: &Overrides,
     choice: Choice,
-) -> Result<(Sim, Scene, Vec<Command>, Manifest), FileError> {
+) -> Result<Prepared, FileError> {
     let overrides = Overrides {
-        robot,
         world: choice.world.clone(),
         rig: choice.rig.clone(),
-        ..Overrides::default()
+        ..overrides.clone()
     };
     let setup: Setup = library.setup(&choice.scenario, &overrides)?;
     let manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
     let setup = setup.of_seed(choice.seed)?;
-    let sim = Sim::new(&*run::prepare(&setup, choice.seed)?, choice.seed)?;
-    let scene = scene(library, &setup, choice)?;
-    Ok((sim, scene, first_commands(&setup), manifest))
+    let ready = run::prepare(&setup, choice.seed)?;
+    Ok(Prepared {
+        sim: Sim::new(&ready, choice.seed)?,
+        mode: setup.scenario.mode,
+        scene: scene(library, &setup, choice)?,
+        first_commands: first_words(&ready)?,
+        manifest,
+    })
+}
+
+/// What the robot is told first. An image does not know its parameters yet, and one that speaks text has its own mode.
+fn first_words(setup: &Setup) -> Result<Vec<Command>, FileError> {
+    let mut commands = first_commands(setup);
+    if setup.firmware.is_none() {
+        return Ok(commands);
+    }
+    if !setup.takes_parameters() {
+        commands.retain(|command| !matches!(command, Command::Mode(_)));
+        return Ok(commands);
+    }
+    let parameters = setup.control_parameters()?.into_iter();
+    let parameters = parameters.map(|(id, value)| Command::SetParam {
+        id: id as u8,
+        value,
+    });
+    Ok(parameters.chain(commands).collect())
 }
 
 impl Target for SimulatedRobot {
@@ -150,6 +200,39 @@ impl Simulation for SimulatedRobot {
         self.scene.clone()
     }
 
+    fn speaks_text(&self) -> Option<ModeId> {
+        let firmware = self.sim.mega()?.firmware();
+        (firmware.language() == Language::Text).then_some(self.mode)
+    }
+
+    fn consoles(&mut self) -> Vec<(u8, String)> {
+        let Some(mega) = self.sim.mega_mut() else {
+            return Vec::new();
+        };
+        let said = (0..4).map(|usart| (usart, readable(&mega.take_console(usart))));
+        said.filter(|(_, text)| !text.is_empty()).collect()
+    }
+
+    fn ended(&mut self) -> Option<String> {
+        let verdict = self.sim.verdict().filter(|_| !self.ended)?;
+        self.ended = true;
+        Some(verdict)
+    }
+
+    fn type_in(&mut self, usart: u8, line: &str) -> Result<(), String> {
+        let link = match self.sim.mega() {
+            Some(mega) => mega.firmware().link_usart() == Some(usart),
+            None => return Err("there is no emulated chip; start the lab with --firmware".into()),
+        };
+        let bytes = format!("{line}\n");
+        if link {
+            self.sim.send(bytes.as_bytes());
+        } else if let Some(mega) = self.sim.mega_mut() {
+            mega.type_in(usart, bytes.as_bytes());
+        }
+        Ok(())
+    }
+
     fn first_commands(&self) -> Vec<Command> {
         self.first_commands.clone()
     }
@@ -164,22 +247,22 @@ impl Simulation for SimulatedRobot {
         if !offered {
             return Err("no such scenario or world here; choose one of the list".into());
         }
-        let fresh = prepare(&self.library, self.robot.clone(), choice.clone());
-        let (sim, scene, first_commands, manifest) = fresh.map_err(|error| error.to_string())?;
+        let fresh = prepare(&self.library, &self.overrides, choice.clone());
+        let fresh = fresh.map_err(|error| error.to_string())?;
         // What the command line added to the lists stays there.
         let Scene {
             scenarios, worlds, ..
         } = std::mem::take(&mut self.scene);
-        (self.sim, self.first_commands, self.manifest, self.scene) = (
-            sim,
-            first_commands,
-            manifest,
-            Scene {
-                scenarios,
-                worlds,
-                ..scene
-            },
-        );
+        self.sim = fresh.sim;
+        self.mode = fresh.mode;
+        self.ended = false;
+        self.first_commands = fresh.first_commands;
+        self.manifest = fresh.manifest;
+        self.scene = Scene {
+            scenarios,
+            worlds,
+            ..fresh.scene
+        };
         Ok(())
     }
 }

@@ -25,6 +25,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "index.html": HTML,
     "style.css": CSS,
     "icon.svg": SVG,
+    "src/consoles.js": SCRIPT,
     "src/dom.js": SCRIPT,
     "src/events.js": SCRIPT,
     "src/geometry.js": SCRIPT,

@@ -21,6 +21,16 @@ pub(crate) const SAMPLES_KEPT: usize = 7_500;
 /// Events kept.
 pub(crate) const EVENTS_KEPT: usize = 1_000;
 
+/// Pieces of console text kept: of each slice of time in which a USART spoke, one.
+pub(crate) const CONSOLES_KEPT: usize = 2_000;
+
+/// What a USART of an emulated chip said.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct ConsoleText {
+    pub(crate) usart: u8,
+    pub(crate) text: String,
+}
+
 /// How an event is to be seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -176,6 +186,7 @@ struct Contents {
     run: u32,
     samples: Ring<Row>,
     events: Ring<LoggedEvent>,
+    consoles: Ring<ConsoleText>,
     scene: Versioned<Option<Scene>>,
     parameters: Versioned<Vec<ParameterState>>,
     state: Versioned<State>,
@@ -196,6 +207,7 @@ pub(crate) struct Cursor {
     run: u32,
     samples: u64,
     events: u64,
+    consoles: u64,
     scene: u64,
     parameters: u64,
     state: u64,
@@ -211,6 +223,7 @@ pub(crate) struct News {
     pub(crate) state: Option<State>,
     pub(crate) samples: Vec<Row>,
     pub(crate) events: Vec<LoggedEvent>,
+    pub(crate) consoles: Vec<ConsoleText>,
     /// Events that left the ring before the page took them.
     pub(crate) events_gone: u64,
 }
@@ -222,6 +235,7 @@ impl Board {
                 run: 1,
                 samples: Ring::new(SAMPLES_KEPT),
                 events: Ring::new(EVENTS_KEPT),
+                consoles: Ring::new(CONSOLES_KEPT),
                 scene: Versioned::default(),
                 parameters: Versioned::default(),
                 state: Versioned::default(),
@@ -290,6 +304,11 @@ impl Board {
         self.changed.send_replace(());
     }
 
+    pub(crate) fn push_console(&self, said: ConsoleText) {
+        self.lock().consoles.push(said);
+        self.changed.send_replace(());
+    }
+
     pub(crate) fn set_scene(&self, scene: Option<Scene>) {
         self.take(Entry::Scene(scene.clone().map(Box::new)));
         if self.lock().scene.set(scene) {
@@ -311,11 +330,12 @@ impl Board {
         }
     }
 
-    /// A new run begins: the samples of the old one are over, its events stay.
+    /// A new run begins: samples and consoles of the old one are over, its events stay.
     pub(crate) fn start_run(&self) {
         let mut contents = self.lock();
         contents.run += 1;
         contents.samples.clear();
+        contents.consoles.clear();
     }
 
     /// What is new since `cursor`, which moves on.
@@ -323,6 +343,7 @@ impl Board {
         let contents = self.lock();
         let (samples, _) = contents.samples.read(&mut cursor.samples);
         let (events, gone) = contents.events.read(&mut cursor.events);
+        let (consoles, _) = contents.consoles.read(&mut cursor.consoles);
         let first_time = cursor.run == 0;
         cursor.run = contents.run;
         News {
@@ -332,6 +353,7 @@ impl Board {
             state: take_new(&contents.state, &mut cursor.state),
             samples,
             events,
+            consoles,
             // What left the ring before the page came was not its to take.
             events_gone: if first_time { 0 } else { gone },
         }

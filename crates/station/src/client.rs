@@ -7,6 +7,7 @@
 use crate::commands::{CommandManager, Fate, Outcome, QueueFull};
 use crate::meter::Meter;
 use crate::robot_clock::RobotClock;
+use crate::terminal::Terminal;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params;
@@ -69,6 +70,8 @@ pub struct RobotClient {
     table: KnownTable,
     clock: RobotClock,
     decoder: Decoder<LINE_BYTES>,
+    /// In place of frames, with a robot that speaks text.
+    terminal: Option<Terminal>,
     manager: CommandManager,
     sequence: u8,
     hello: Option<Hello>,
@@ -97,6 +100,7 @@ impl RobotClient {
             table,
             clock,
             decoder: Decoder::default(),
+            terminal: None,
             manager: CommandManager::new(session),
             sequence: 0,
             hello: None,
@@ -114,6 +118,34 @@ impl RobotClient {
         }
     }
 
+    /// A client for a robot that speaks the original's text and is in this mode: it needs no greeting.
+    pub fn of_text(mode: ModeId, clock_known: bool) -> Self {
+        Self {
+            terminal: Some(Terminal::new()),
+            connected: true,
+            mode,
+            ..Self::new(0, clock_known, KnownTable::OURS)
+        }
+    }
+
+    /// Takes a command from the operator for a robot that speaks text; `None` if it speaks frames, false if text has no words for it.
+    pub fn submit_text(&mut self, command: &Command) -> Option<bool> {
+        let terminal = self.terminal.as_mut()?;
+        match *command {
+            Command::Mode(mode) => self.mode = mode,
+            Command::Reference(value) => self.reference = Wheels::both(value),
+            Command::WheelReference(wheels) => self.reference = wheels,
+            Command::Goal { x_m, y_m } => {
+                self.reference = Wheels {
+                    left: x_m,
+                    right: y_m,
+                };
+            }
+            _ => {}
+        }
+        Some(terminal.submit(command, self.mode))
+    }
+
     /// Takes a command from the operator.
     ///
     /// # Errors
@@ -124,6 +156,11 @@ impl RobotClient {
 
     /// Appends the bytes to be sent now. To be called after every step of time.
     pub fn poll(&mut self, now_us: u64, to_robot: &mut Vec<u8>, heard: &mut Vec<Heard>) {
+        if let Some(terminal) = &mut self.terminal {
+            let before = to_robot.len();
+            terminal.poll(to_robot);
+            return self.up.add(to_robot.len() - before, now_us);
+        }
         if self.connected && now_us.saturating_sub(self.last_heard_us) > SILENCE_US {
             self.connected = false;
             self.hello_sent_us = None;
@@ -164,6 +201,9 @@ impl RobotClient {
     /// Takes bytes that arrived from the robot and appends what they say.
     pub fn hear(&mut self, bytes: &[u8], now_us: u64, heard: &mut Vec<Heard>) {
         self.down.add(bytes.len(), now_us);
+        if self.terminal.is_some() {
+            return self.hear_text(bytes, now_us, heard);
+        }
         for byte in bytes {
             let body = match self.decoder.push(*byte) {
                 Some(Received::Frame(body)) => body,
@@ -176,6 +216,22 @@ impl RobotClient {
             }
         }
         self.report_outcomes(heard);
+    }
+
+    fn hear_text(&mut self, bytes: &[u8], now_us: u64, heard: &mut Vec<Heard>) {
+        for byte in bytes {
+            let told = self
+                .terminal
+                .as_mut()
+                .and_then(|terminal| terminal.hear(*byte));
+            let Some((telemetry, mode)) = told else {
+                continue;
+            };
+            self.mode = mode.unwrap_or(self.mode);
+            self.frames.add(1, now_us);
+            // A row says how long after the one before it was sent, not when.
+            heard.push(Heard::Telemetry((now_us / 1_000) as i64, telemetry));
+        }
     }
 
     /// Takes a message from the robot and appends what it says.

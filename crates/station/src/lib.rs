@@ -26,6 +26,7 @@ mod signals;
 mod socket;
 mod state;
 mod target;
+mod terminal;
 mod web;
 mod words;
 

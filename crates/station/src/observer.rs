@@ -1,6 +1,6 @@
 //! Keeps the board up to date with what was heard: samples, events in words, the status, the parameters' values.
 
-use crate::board::{Board, Level, LoggedEvent, State};
+use crate::board::{Board, ConsoleText, Level, LoggedEvent, State};
 use crate::catalogue::{self, ParameterState};
 use crate::client::{Heard, RobotClient};
 use crate::commands::{Fate, Outcome};
@@ -107,6 +107,13 @@ impl Observer {
     /// Notes raw bytes of the link.
     pub(crate) fn link(&self, burst: Burst) {
         self.board.link(burst);
+    }
+
+    /// Puts what the USARTs of an emulated chip said on the board.
+    pub(crate) fn consoles(&self, said: Vec<(u8, String)>) {
+        for (usart, text) in said {
+            self.board.push_console(ConsoleText { usart, text });
+        }
     }
 
     /// Puts the samples on the board; whether the state is to follow at once.

@@ -14,6 +14,8 @@ use std::fmt;
 pub(crate) const MAX_SPEED: f64 = 100.0;
 /// Longest name of a scenario or world.
 const MAX_NAME: usize = 100;
+/// Longest line typed.
+const MAX_LINE: usize = 200;
 
 /// What the session is to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +26,8 @@ pub(crate) enum Order {
     Hold(Command),
     /// A route for the robot: the command that begins it and its places.
     Route(Vec<Command>),
+    /// A line for a USART of an emulated chip.
+    Type(u8, String),
     /// Seconds of the target per second of the wall clock; 0 pauses.
     Speed(f64),
     /// Start the simulation again.
@@ -106,6 +110,10 @@ enum Message {
     },
     ResetParams {},
     ResetPose {},
+    Type {
+        usart: u8,
+        text: String,
+    },
     Speed {
         factor: f64,
     },
@@ -126,6 +134,18 @@ struct Place {
     y_m: f32,
     #[serde(default)]
     heading_rad: Option<f32>,
+}
+
+/// A line as a person types it.
+fn text_line(text: String) -> Result<String, BadOrder> {
+    let printable = text.bytes().all(|byte| (b' '..=b'~').contains(&byte));
+    if printable && text.len() <= MAX_LINE {
+        Ok(text)
+    } else {
+        Err(BadOrder(format!(
+            "a line is at most {MAX_LINE} characters of ASCII"
+        )))
+    }
 }
 
 /// The order in a page's text.
@@ -181,6 +201,7 @@ pub(crate) fn parse(text: &str) -> Result<Order, BadOrder> {
         }),
         Message::ResetParams {} => Order::Robot(Command::ResetParams),
         Message::ResetPose {} => Order::Robot(Command::ResetPose),
+        Message::Type { usart, text } => Order::Type(usart, text_line(text)?),
         Message::Speed { factor } if (0.0..=MAX_SPEED).contains(&factor) => Order::Speed(factor),
         Message::Speed { factor } => {
             return Err(BadOrder(format!(

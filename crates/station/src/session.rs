@@ -72,7 +72,7 @@ impl Session {
     ) -> Self {
         let simulated = target.simulation().is_some();
         Self {
-            client: new_client(simulated),
+            client: new_client(target.as_mut()),
             target,
             observer: Observer::new(Arc::clone(&board)),
             board,
@@ -146,6 +146,14 @@ impl Session {
                     self.command(command)?;
                 }
             }
+            Order::Type(usart, line) => {
+                let simulation = self.target.simulation();
+                let refused = "a real robot has no such console".to_owned();
+                let typed = simulation.map_or(Err(refused), |chip| chip.type_in(usart, &line));
+                if let Err(why) = typed {
+                    self.note(board::Level::Warning, format!("{line}: not sent, {why}"));
+                }
+            }
             Order::Speed(factor) if self.simulated => {
                 self.pace = Pace::new(factor);
                 self.state_noted = None;
@@ -160,6 +168,15 @@ impl Session {
     }
 
     fn command(&mut self, command: Command) -> Result<(), String> {
+        if let Some(sent) = self.client.submit_text(&command) {
+            if sent {
+                return self.send();
+            }
+            return self.refuse(
+                &command,
+                "this robot speaks the original's text, which has no words for it",
+            );
+        }
         if let Command::SetParam { id, .. } = command
             && !(self.client.table_matches() && self.observer.parameter_pending(id))
         {
@@ -232,7 +249,7 @@ impl Session {
         if let Err(why) = simulation.reset(choice) {
             return self.note(board::Level::Warning, format!("reset: refused, {why}"));
         }
-        self.client = new_client(self.simulated);
+        self.client = new_client(self.target.as_mut());
         self.heard.clear();
         self.held = None;
         self.briefed = false;
@@ -277,6 +294,10 @@ impl Session {
             let now_us = self.target.now_us();
             if let Some(simulation) = self.target.simulation() {
                 self.observer.truth(to_ms(now_us), simulation.truth());
+                self.observer.consoles(simulation.consoles());
+                if let Some(why) = simulation.ended() {
+                    self.observer.note(to_ms(now_us), board::Level::Fault, why);
+                }
             }
             self.bytes.clear();
             self.target.receive(&mut self.bytes);
@@ -383,8 +404,13 @@ fn to_ms(us: u64) -> i64 {
     (us / 1_000) as i64
 }
 
-fn new_client(clock_known: bool) -> RobotClient {
-    RobotClient::new(random_session(), clock_known, KnownTable::OURS)
+fn new_client(target: &mut dyn Target) -> RobotClient {
+    let simulation = target.simulation();
+    let clock_known = simulation.is_some();
+    match simulation.and_then(|simulation| simulation.speaks_text()) {
+        Some(mode) => RobotClient::of_text(mode, clock_known),
+        None => RobotClient::new(random_session(), clock_known, KnownTable::OURS),
+    }
 }
 
 /// A session id; from the clock where there is no randomness to be had.

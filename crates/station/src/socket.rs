@@ -3,7 +3,7 @@
 //! The two directions do not wait for each other: a page that is slow to read can still stop the robot. A page that
 //! sends what is no order is told why and closed; the robot goes on.
 
-use crate::board::{Board, Cursor, LoggedEvent, News, State};
+use crate::board::{Board, ConsoleText, Cursor, LoggedEvent, News, State};
 use crate::catalogue::{self, ModeEntry, ParameterState};
 use crate::orders::{self, Order};
 use crate::row::{Cell, Row};
@@ -56,6 +56,8 @@ enum ToPage<'a> {
     Samples { run: u32, rows: Vec<Vec<Cell>> },
     /// What happened.
     Events { events: &'a [LoggedEvent] },
+    /// What the USARTs of an emulated chip said.
+    Consoles { run: u32, said: &'a [ConsoleText] },
     /// Why the connection is closed now.
     Error { text: &'a str },
 }
@@ -182,6 +184,10 @@ async fn send_news(out: &mut SplitSink<WebSocket, Message>, news: News) -> Optio
             },
         )
         .await?;
+    }
+    if !news.consoles.is_empty() {
+        let said = &news.consoles;
+        send(out, &ToPage::Consoles { run, said }).await?;
     }
     for chunk in news.samples.chunks(ROWS_PER_MESSAGE) {
         send(

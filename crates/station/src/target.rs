@@ -6,6 +6,7 @@
 
 use crate::log::Manifest;
 use rumbo_control::Wheels;
+use rumbo_control::mode::ModeId;
 use rumbo_control::mode::waypoints::Waypoint;
 use rumbo_wire::Command;
 use serde::{Deserialize, Serialize};
@@ -55,6 +56,29 @@ pub trait Simulation {
     /// What a robot that has just started is told first: the mode and the setpoints of the experiment. Never to arm.
     fn first_commands(&self) -> Vec<Command> {
         Vec::new()
+    }
+
+    /// The mode of a robot that speaks the original's text on its link; `None` for one that speaks our frames.
+    fn speaks_text(&self) -> Option<ModeId> {
+        None
+    }
+
+    /// What the USARTs of an emulated chip have sent since the last call: their numbers and text in which everything is visible.
+    fn consoles(&mut self) -> Vec<(u8, String)> {
+        Vec::new()
+    }
+
+    /// Why the program of an emulated chip cannot go on, told once.
+    fn ended(&mut self) -> Option<String> {
+        None
+    }
+
+    /// Sends a line that a person typed to a USART of an emulated chip.
+    ///
+    /// # Errors
+    /// There is no such chip.
+    fn type_in(&mut self, _usart: u8, _line: &str) -> Result<(), String> {
+        Err("there is no emulated chip; start the lab with --firmware".into())
     }
 
     /// Starts again from time 0 with the choice given.

@@ -21,6 +21,7 @@ mod names;
 mod quantise;
 pub mod text;
 mod text_row;
+mod text_telemetry;
 
 pub use codec::{Malformed, Message};
 pub use decoder::{Decoder, Received};

@@ -24,7 +24,8 @@ pub(crate) fn browser(project: &Project) -> Result<(), Stop> {
     let mut test = project.command(node);
     test.current_dir(&web)
         .env("RUMBO_BIN", rumbo)
-        .env("CHROMIUM", chromium);
+        .env("CHROMIUM", chromium)
+        .env("SKETCHES", project.target.join("sketches"));
     Ok(run(test
         .args(["--test", "--test-reporter=spec"])
         .args(tests))?)

@@ -5,10 +5,9 @@ use crate::files::Setup;
 use crate::sim::Sim;
 use crate::trace::Heard;
 use rumbo_control::mode::ModeId;
-use rumbo_control::{AgedRange, Pose, SonarId, Wheels};
 use rumbo_plant::contact;
 use rumbo_wire::message::Event;
-use rumbo_wire::text::{self, RAD_PER_DEG, RAD_S_PER_RPM, Row};
+use rumbo_wire::text::{self, Row};
 use rumbo_wire::{Command, EventKind, FromRobot, Telemetry};
 
 /// A line longer than this is none.
@@ -127,54 +126,7 @@ impl Terminal {
 
     /// What a row tells, as a telemetry frame.
     fn telemetry(&mut self, row: &Row) -> Telemetry {
-        let rad_s = |wheels: Wheels<f32>| wheels.map(|rpm| rpm * RAD_S_PER_RPM);
-        let pose = |x_m, y_m, heading_deg: f32| Pose {
-            x_m,
-            y_m,
-            heading_rad: heading_deg * RAD_PER_DEG,
-        };
-        let mut told = Telemetry {
-            armed: true,
-            ..Telemetry::default()
-        };
-        let mut range = |sonar: SonarId, cm: f32| {
-            told.ranges[sonar as usize] = AgedRange {
-                range: text::range_from_cm(cm),
-                ..AgedRange::default()
-            };
-        };
-        let dt_ms = match row {
-            Row::Distance(row) => {
-                range(SonarId::Left, row.left_cm);
-                range(SonarId::Right, row.right_cm);
-                told.duty = row.pwm.map(rumbo_control::Duty::new);
-                row.dt_ms
-            }
-            Row::Speed(row) => {
-                told.wheel_rad_s = [rad_s(row.wheel_rpm); 2];
-                told.wheel_ref_rad_s = rad_s(Wheels::both(row.reference_rpm));
-                told.duty = row.pwm.map(rumbo_control::Duty::new);
-                row.dt_ms
-            }
-            Row::Waypoints(row) => {
-                told.wheel_rad_s = [rad_s(row.wheel_rpm); 2];
-                told.wheel_ref_rad_s = rad_s(row.reference_rpm);
-                told.pose = pose(row.x_m, row.y_m, row.heading_deg);
-                told.duty = row.pwm.map(rumbo_control::Duty::new);
-                row.dt_ms
-            }
-            Row::Mission(row) => {
-                range(SonarId::Left, row.left_cm);
-                range(SonarId::Right, row.right_cm);
-                range(SonarId::Front, row.front_cm);
-                told.wheel_ref_rad_s = rad_s(row.reference_rpm);
-                told.pose = pose(row.x_m, row.y_m, row.heading_deg);
-                told.state = row.state;
-                row.dt_ms
-            }
-        };
-        self.clock_ms = self.clock_ms.wrapping_add(dt_ms);
-        told.t_ms = (self.clock_ms & 0xffff) as u16;
-        told
+        self.clock_ms = self.clock_ms.wrapping_add(row.dt_ms());
+        row.telemetry((self.clock_ms & 0xffff) as u16, true)
     }
 }
