@@ -39,7 +39,12 @@ void drive() {
   if (distance > ARRIVED_M) {
     angleDeg = bearingDeg(x, y);
   }
-  driveAt(distanceController.output(0 - distance), angleDeg);
+  const float rpm = distanceController.output(0 - distance);
+  driveAt(rpm, angleDeg);
+  // The correction once more on the wheel that it speeds up.
+  const float correction = wantedA - wantedB;
+  wantedA += max(correction, 0.0f);
+  wantedB += max(-correction, 0.0f);
   if (distance < ARRIVED_M) {
     orientation.reset();
     state = CHOOSE;

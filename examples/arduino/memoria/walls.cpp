@@ -64,9 +64,9 @@ void measure() {
   }
   cmB = readSonar(PIN_TRIGGER_B, PIN_ECHO_B);
   const float theta = atan((cmB - cmA) / GAP_CM);
-  // Weak: the half gap counts with the wrong sign for negative angles, and equal readings leave the old distance.
-  if (cmA != cmB) {
-    distanceCm = max(cmA, cmB) * cos(theta) - GAP_CM / 2 * sin(theta);
+  // Weak: in mode 2 equal readings leave the old distance.
+  if (MODE != 2 || cmA != cmB) {
+    distanceCm = (cmA + cmB) / 2 * cos(theta);
   }
   thetaDeg = theta * 180 / PI;
 }
