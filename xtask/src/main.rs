@@ -12,6 +12,7 @@ mod campaign;
 mod figures;
 mod lab;
 mod markdown;
+mod memoria;
 mod project;
 mod sketches;
 mod test;
@@ -30,6 +31,9 @@ Commands:
   tidy                     the rules of ARCHITECTURE.md: dependencies, no_std, files, links
   bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
   sketches                 the Arduino sketches of examples and tests, compiled into target/sketches/*.elf
+  memoria [--seeds N] [--only SCENARIO]...
+                           the report's program as an Arduino sketch on the emulated Mega, beside its native form
+                           and our core: tables of 5 robots or N, and where the chip's time goes
   campaign [--seeds N] [--only SCENARIO]...
                            every scenario with 1,000 seeds or N, and mode 8 in as many random worlds:
                            what is required beside what was measured
@@ -44,6 +48,7 @@ Examples:
   cargo xtask test --only fmt --only clippy
   cargo xtask tidy
   cargo xtask sketches
+  cargo xtask memoria --seeds 1 --only mode5
   cargo xtask bench --only headless
   cargo xtask campaign --seeds 100 --only mode8-random
   cargo xtask figures --only mode1
@@ -82,8 +87,8 @@ fn main() -> ExitCode {
         Ok(project) => project,
         Err(error) => return failure(&error),
     };
-    if seeds.is_some() && command != "campaign" {
-        return usage("--seeds is for campaign");
+    if seeds.is_some() && !matches!(command.as_str(), "campaign" | "memoria") {
+        return usage("--seeds is for campaign and memoria");
     }
     let outcome = match command.as_str() {
         "test" => test::run(&project, &only),
@@ -91,6 +96,7 @@ fn main() -> ExitCode {
         "bench" => bench::run(&project, &only),
         "campaign" => campaign::run(&project, seeds, &only),
         "figures" => figures::run(&project, &only),
+        "memoria" => memoria::run(&project, seeds, &only),
         "sketches" if only.is_empty() => sketches::run(&project),
         "sketches" => return usage("sketches takes no options"),
         "tidy" => return usage("tidy takes no options"),

@@ -1,4 +1,4 @@
-//! What outlives a reset, and what causes one; analog inputs.
+//! What outlives a reset, and what causes one; analog inputs and buses.
 
 use crate::board::{Board, CYCLES_PER_US};
 use rumbo_emulator::devices::{Cause, Input};
@@ -71,4 +71,15 @@ fn analog_inputs_are_read_in_their_time() {
     // 13 periods of 125 kHz each, 104 us, and the call.
     let each_us = board.long("conversions_us", 0) / 16;
     assert!((104..125).contains(&each_us), "{each_us}");
+}
+
+#[test]
+fn buses_with_nothing_connected_do_not_block() {
+    let Some(mut board) = Board::with("buses") else {
+        return;
+    };
+    board.run_us(100_000);
+    assert_eq!(board.variable("done", 0), [1]);
+    // 2: nobody acknowledged the address.
+    assert_eq!(board.variable("wire_result", 0), [2]);
 }

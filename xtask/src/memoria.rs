@@ -1,0 +1,24 @@
+//! `cargo xtask memoria`: the report's program as an Arduino sketch, its native form and our core, scenario by scenario.
+//!
+//! The tables of docs/theory/original.md come from here; `crates/scenario/examples/memoria/` runs and prints them.
+
+use crate::project::{Project, run as run_command};
+use crate::sketches;
+
+/// Prints the tables: of `seeds` robots, of the scenarios in `only` (all if empty).
+pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Result<bool, String> {
+    sketches::run(project)?;
+    let mut program = project.cargo(&[
+        "run",
+        "--locked",
+        "-p",
+        "rumbo-scenario",
+        "--example",
+        "memoria",
+        "--",
+    ]);
+    program
+        .args(seeds.map(|seeds| seeds.to_string()))
+        .args(only);
+    run_command(&mut program).map(|()| true)
+}
