@@ -1,0 +1,132 @@
+//! Encoders: every edge leaves its stamp in a ring; the loop makes counts and times of them.
+//!
+//! The handler does no more than that, so it is short. A ring holds 64 edges, 6,400 a second: ten times what the
+//! wheels can make. Noise beyond that overwrites stamps, which the count survives.
+
+use core::sync::atomic::{AtomicU8, Ordering::Relaxed};
+
+use super::clock::{self, SharedStamp, Stamp};
+use super::registers::{external, put};
+use rumbo_control::{Edges, Micros, Wheels};
+
+/// Stamps in a ring, a power of two.
+const RING: u8 = 64;
+/// Edges of a motor turn.
+const POLES: usize = 8;
+
+struct Ring {
+    stamps: [SharedStamp; RING as usize],
+    /// Edges so far, wrapping.
+    count: AtomicU8,
+    /// The same at the tick.
+    latched: AtomicU8,
+}
+
+impl Ring {
+    const fn new() -> Self {
+        Self {
+            stamps: [const { SharedStamp::new() }; RING as usize],
+            count: AtomicU8::new(0),
+            latched: AtomicU8::new(0),
+        }
+    }
+
+    #[inline(always)]
+    fn edge(&self) {
+        let count = self.count.load(Relaxed);
+        self.slot(count).set(clock::now());
+        self.count.store(count.wrapping_add(1), Relaxed);
+    }
+
+    #[inline(always)]
+    fn slot(&self, count: u8) -> &SharedStamp {
+        // Masked to the ring's length: the compiler leaves the check out.
+        &self.stamps[usize::from(count % RING)]
+    }
+}
+
+static LEFT: Ring = Ring::new();
+static RIGHT: Ring = Ring::new();
+
+/// Both edges of INT0 and INT1.
+pub(super) fn start() {
+    // Any edge interrupts, on INT0 to INT3 (encoders and side echoes).
+    put!(external().eicra(), 0b0101_0101);
+    // And on INT5 (front echo).
+    put!(external().eicrb(), 0b0000_0100);
+    // Flags that setting this up has raised.
+    put!(external().eifr(), 0b0010_1111);
+    put!(external().eimsk(), 0b0010_1111);
+}
+
+/// At the tick: what comes later belongs to the next one.
+#[inline(always)]
+pub(super) fn latch() {
+    LEFT.latched.store(LEFT.count.load(Relaxed), Relaxed);
+    RIGHT.latched.store(RIGHT.count.load(Relaxed), Relaxed);
+}
+
+#[avr_device::interrupt(atmega2560)]
+fn INT0() {
+    LEFT.edge();
+}
+
+#[avr_device::interrupt(atmega2560)]
+fn INT1() {
+    RIGHT.edge();
+}
+
+/// What the loop knows of one encoder.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counter {
+    edges: Edges,
+    poles: [Micros; POLES],
+    seen: u8,
+    taken: u8,
+}
+
+impl Counter {
+    fn take(&mut self, ring: &Ring, tick: Stamp, now: Micros) {
+        let latched = ring.latched.load(Relaxed);
+        let new = latched.wrapping_sub(self.taken);
+        if new > RING {
+            // Overwritten before it was read: counted, and their times unknown.
+            let lost = new - RING;
+            self.taken = self.taken.wrapping_add(lost);
+            self.edges.count = self.edges.count.wrapping_add(u16::from(lost));
+            self.seen = 0;
+            self.edges.turn_us = 0;
+        }
+        while self.taken != latched {
+            let age = tick.since(ring.slot(self.taken).get());
+            self.taken = self.taken.wrapping_add(1);
+            self.edge(Micros(now.0.wrapping_sub(u32::from(age / 2))));
+        }
+    }
+
+    fn edge(&mut self, at: Micros) {
+        self.edges.count = self.edges.count.wrapping_add(1);
+        if let Some(pole) = self.poles.get_mut(usize::from(self.edges.count) % POLES) {
+            if usize::from(self.seen) < POLES {
+                self.seen += 1;
+            } else {
+                self.edges.turn_us = at.since(*pole);
+            }
+            *pole = at;
+        }
+        self.edges.last = at;
+    }
+}
+
+/// Both encoders, as the loop sees them.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Encoders(Wheels<Counter>);
+
+impl Encoders {
+    /// What latched at the tick `tick`, which is at `now`.
+    pub fn read(&mut self, tick: Stamp, now: Micros) -> Wheels<Edges> {
+        self.0.left.take(&LEFT, tick, now);
+        self.0.right.take(&RIGHT, tick, now);
+        self.0.map(|counter| counter.edges)
+    }
+}

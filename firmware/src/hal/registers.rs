@@ -1,0 +1,59 @@
+//! Registers as shared blocks, read and written whole.
+
+use avr_device::atmega2560 as pac;
+
+macro_rules! blocks {
+    ($( $name:ident: $module:ident, $Peripheral:ident; )+) => { $(
+        /// The registers of the peripheral.
+        #[inline(always)]
+        pub(super) fn $name() -> &'static pac::$module::RegisterBlock {
+            // SAFETY: the block lies at this address for ever, and its registers are cells with volatile access. What
+            // an access means is the business of the modules above, none of which shares a register with another one
+            // outside interrupt handlers and `start`.
+            unsafe { &*pac::$Peripheral::PTR }
+        }
+    )+ };
+}
+
+blocks! {
+    cpu: cpu, CPU;
+    eeprom: eeprom, EEPROM;
+    external: exint, EXINT;
+    port_b: portb, PORTB;
+    port_d: portd, PORTD;
+    port_e: porte, PORTE;
+    port_g: portg, PORTG;
+    port_h: porth, PORTH;
+    port_j: portj, PORTJ;
+    timer_1: tc1, TC1;
+    timer_2: tc2, TC2;
+    timer_3: tc3, TC3;
+    timer_4: tc4, TC4;
+    usart_2: usart2, USART2;
+    watchdog: wdt, WDT;
+}
+
+/// Writes a register whole.
+macro_rules! put {
+    ($register:expr, $value:expr) => {
+        // SAFETY: the datasheet gives every value of this register a meaning, and none of them touches memory.
+        $register.write(|to| unsafe { to.bits($value) })
+    };
+}
+
+/// Reads a register whole.
+macro_rules! get {
+    ($register:expr) => {
+        $register.read().bits()
+    };
+}
+
+/// Sets some bits of a register and clears others; only where no interrupt can come between.
+macro_rules! change {
+    ($register:expr, set $set:expr, clear $clear:expr) => {
+        // SAFETY: as for `put`.
+        $register.modify(|was, to| unsafe { to.bits((was.bits() & !$clear) | $set) })
+    };
+}
+
+pub(super) use {change, get, put};

@@ -1,0 +1,69 @@
+//! Rumbo on the Arduino Mega: the same robot as everywhere, between the pins of an ATmega2560.
+//!
+//! A tick of timer 1 wakes the loop: what latched becomes [`rumbo_control::Inputs`], one [`Robot::tick`] makes
+//! [`rumbo_control::Outputs`] of it, and those wait for the timer to write them 3 ms after the tick. Bytes come and go
+//! through rings. Nothing in the loop waits for anything but the next tick.
+#![no_std]
+#![no_main]
+#![feature(abi_avr_interrupt)]
+#![deny(unsafe_op_in_unsafe_fn)]
+
+mod hal;
+mod pins;
+
+use hal::{clock, encoder::Encoders, link, outputs, power, sonar::Listener};
+use rumbo_control::{Inputs, OUTPUT_DELAY_US, TICK_US};
+use rumbo_robot::{Config, Robot};
+
+/// Hash of the image, written into it by `cargo xtask firmware`; 0 where that has not been done.
+#[unsafe(no_mangle)]
+static RUMBO_IMAGE_HASH: u32 = 0;
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    loop {}
+}
+
+#[avr_device::entry]
+fn main() -> ! {
+    let reset = power::reset_cause();
+    power::start_watchdog();
+    hal::start();
+    let image = core::hint::black_box(RUMBO_IMAGE_HASH);
+    let mut robot = Robot::new(Config { image, reset });
+    let mut encoders = Encoders::default();
+    let mut listener = Listener::default();
+    let mut inputs = Inputs::default();
+    let mut tick = clock::ticks();
+    hal::enable_interrupts();
+    loop {
+        power::sleep_after(tick);
+        power::feed_watchdog();
+        // A tick that was missed still counts.
+        let passed = clock::ticks().wrapping_sub(tick);
+        tick = tick.wrapping_add(passed);
+        let stamp = clock::tick_stamp();
+        let now = inputs.now.after(u32::from(passed) * TICK_US);
+        inputs = Inputs {
+            now,
+            encoders: encoders.read(stamp, now),
+            echo: listener.read(stamp),
+            battery_v: None,
+        };
+        while let Some(byte) = link::receive() {
+            robot.receive(byte);
+        }
+        let out = robot.tick(&inputs);
+        outputs::leave(&out);
+        if let Some(sonar) = out.ping {
+            let delay = (OUTPUT_DELAY_US * 2) as u16;
+            listener.pinged(sonar, clock::Stamp(stamp.0.wrapping_add(delay)));
+        }
+        while link::has_room() {
+            match robot.transmit() {
+                Some(byte) => link::send(byte),
+                None => break,
+            }
+        }
+    }
+}
