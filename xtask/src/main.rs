@@ -10,6 +10,7 @@ use std::process::ExitCode;
 mod bench;
 mod campaign;
 mod figures;
+mod firmware;
 mod lab;
 mod markdown;
 mod memoria;
@@ -30,6 +31,7 @@ Commands:
                            browser, README
   tidy                     the rules of ARCHITECTURE.md: dependencies, no_std, files, links
   bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
+  firmware                 the image for the Mega, target/firmware/rumbo.elf and .hex, with its sizes
   sketches                 the Arduino sketches of examples and tests, compiled into target/sketches/*.elf
   memoria [--seeds N] [--only SCENARIO]...
                            the report's program as an Arduino sketch on the emulated Mega, beside its native form
@@ -47,6 +49,7 @@ Examples:
   cargo xtask test
   cargo xtask test --only fmt --only clippy
   cargo xtask tidy
+  cargo xtask firmware
   cargo xtask sketches
   cargo xtask memoria --seeds 1 --only mode5
   cargo xtask bench --only headless
@@ -97,6 +100,8 @@ fn main() -> ExitCode {
         "campaign" => campaign::run(&project, seeds, &only),
         "figures" => figures::run(&project, &only),
         "memoria" => memoria::run(&project, seeds, &only),
+        "firmware" if only.is_empty() => firmware::run(&project),
+        "firmware" => return usage("firmware takes no options"),
         "sketches" if only.is_empty() => sketches::run(&project),
         "sketches" => return usage("sketches takes no options"),
         "tidy" => return usage("tidy takes no options"),

@@ -45,7 +45,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 11] = [
+const STEPS: [Step; 12] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
@@ -70,6 +70,11 @@ const STEPS: [Step; 11] = [
         name: "sketches",
         what: "the Arduino sketches build: images for the tests",
         check: crate::sketches::build,
+    },
+    Step {
+        name: "firmware",
+        what: "the image for the Mega builds and keeps to its caps",
+        check: crate::firmware::build,
     },
     Step {
         name: "test",

@@ -99,13 +99,13 @@ fn program(project: &Project, name: &str, packages: &[&str], hint: &str) -> Resu
 }
 
 /// What `find` finds; as root on Debian, `packages` are installed to get it.
-fn install(
+pub(crate) fn install<T>(
     project: &Project,
     name: &str,
     packages: &[&str],
     hint: &str,
-    find: impl Fn() -> Option<PathBuf>,
-) -> Result<PathBuf, Stop> {
+    find: impl Fn() -> Option<T>,
+) -> Result<T, Stop> {
     if let Some(path) = find() {
         return Ok(path);
     }
