@@ -9,15 +9,15 @@
 #![deny(unsafe_op_in_unsafe_fn)]
 
 mod hal;
+#[allow(
+    dead_code,
+    reason = "the whole table; some pins are the hardware's own"
+)]
 mod pins;
 
-use hal::{clock, encoder::Encoders, link, outputs, power, sonar::Listener};
+use hal::{clock, encoder::Encoders, link, outputs, power, record, sonar::Listener};
 use rumbo_control::{Inputs, OUTPUT_DELAY_US, TICK_US};
 use rumbo_robot::{Config, Robot};
-
-/// Hash of the image, written into it by `cargo xtask firmware`; 0 where that has not been done.
-#[unsafe(no_mangle)]
-static RUMBO_IMAGE_HASH: u32 = 0;
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
@@ -29,8 +29,10 @@ fn main() -> ! {
     let reset = power::reset_cause();
     power::start_watchdog();
     hal::start();
-    let image = core::hint::black_box(RUMBO_IMAGE_HASH);
-    let mut robot = Robot::new(Config { image, reset });
+    let mut robot = Robot::new(Config {
+        image: hal::image_hash(),
+        reset,
+    });
     let mut encoders = Encoders::default();
     let mut listener = Listener::default();
     let mut inputs = Inputs::default();
@@ -53,8 +55,9 @@ fn main() -> ! {
         while let Some(byte) = link::receive() {
             robot.receive(byte);
         }
-        let out = robot.tick(&inputs);
-        outputs::leave(&out);
+        let out = robot.tick(&record::inputs(&inputs));
+        outputs::leave(&out, tick);
+        record::outputs(&out);
         if let Some(sonar) = out.ping {
             let delay = (OUTPUT_DELAY_US * 2) as u16;
             listener.pinged(sonar, clock::Stamp(stamp.0.wrapping_add(delay)));

@@ -18,6 +18,7 @@ pub struct Pin {
 
 impl Pin {
     /// Its bit, in place.
+    #[inline(always)]
     pub const fn mask(self) -> u8 {
         1 << self.bit
     }

@@ -4,7 +4,7 @@
 //! moved along with the distance in between. The servo's place is reckoned from its commands and its speed: it tells nothing.
 
 use crate::drive::Direction;
-use crate::math::{abs, clamp, sin_cos, wrap_angle};
+use crate::math::{abs, clamp, wrap_angle};
 use crate::odometry::{Geometry, Piece, PoseDeviation, Uncertainty};
 use crate::params::{ParamId, Params};
 use crate::range::{RangeFilter, range_from_echo};
@@ -191,9 +191,8 @@ impl Estimator {
     fn step_ranges(&mut self, params: &Params, inputs: &Inputs, estimate: &Estimate) {
         for (sonar, filter) in SonarId::ALL.into_iter().zip(&mut self.ranges) {
             // Rolling forward brings a sonar that looks ahead nearer to what it sees; what others see slides by.
-            if let Some(view) = params.view(sonar, 0.0) {
-                let (_, cos) = sin_cos(view.axis_rad);
-                filter.predict(estimate.rolled_m * cos);
+            if let Some(share) = params.ahead_share(sonar) {
+                filter.predict(estimate.rolled_m * share);
             }
             filter.moved(abs(estimate.rolled_m));
             if let Some(reading) = estimate.reading

@@ -11,21 +11,25 @@ use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 const ROUNDER: f32 = 12_582_912.0;
 /// Bits of [`ROUNDER`].
 const ROUNDER_BITS: i32 = 0x4B40_0000;
+/// The bit of a float's sign.
+const SIGN: u32 = 0x8000_0000;
+/// The bit of a float's mantissa that is not stored.
+const IMPLICIT: u32 = 0x0080_0000;
 /// Largest magnitude that [`ROUNDER`] rounds.
 const ROUND_LIMIT: f32 = 4_194_303.0;
 
 /// The larger of two finite numbers.
-pub fn max(a: f32, b: f32) -> f32 {
+pub const fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
 /// The smaller of two finite numbers.
-pub fn min(a: f32, b: f32) -> f32 {
+pub const fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 /// `x` limited to `low..=high`.
-pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
+pub const fn clamp(x: f32, low: f32, high: f32) -> f32 {
     if x < low {
         low
     } else if x > high {
@@ -36,22 +40,73 @@ pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
 }
 
 /// Magnitude.
-pub fn abs(x: f32) -> f32 {
-    if x < 0.0 { -x } else { x }
+pub const fn abs(x: f32) -> f32 {
+    // By its bits: of minus zero the sign stays, as it would with a comparison.
+    if x.to_bits() > SIGN { -x } else { x }
 }
 
 /// Square root, correctly rounded; 0 for anything that is not positive.
+///
+/// Digit by digit, as fdlibm's `e_sqrtf.c` does it: no table and no wide product, which the AVR has no room and no time for.
 pub fn sqrt(x: f32) -> f32 {
-    if x > 0.0 { libm::sqrtf(x) } else { 0.0 }
+    if x.is_nan() || x <= 0.0 {
+        return 0.0;
+    }
+    if x.is_infinite() {
+        return x;
+    }
+    let mut rest = x.to_bits();
+    let mut exponent = (rest >> 23) as i16;
+    if exponent == 0 {
+        exponent = 1;
+        // At most 23 times: the number is not zero.
+        while rest < IMPLICIT {
+            rest <<= 1;
+            exponent -= 1;
+        }
+    }
+    exponent -= 127;
+    rest = (rest & (IMPLICIT - 1)) | IMPLICIT;
+    // An even exponent halves.
+    rest <<= 1 + (exponent & 1);
+    exponent >>= 1;
+    let (mut root, mut twice) = (0u32, 0u32);
+    let mut digit = IMPLICIT << 1;
+    while digit != 0 {
+        let tried = twice + digit;
+        if tried <= rest {
+            twice = tried + digit;
+            rest -= tried;
+            root += digit;
+        }
+        rest <<= 1;
+        digit >>= 1;
+    }
+    // The last digit is half of the result's last: it rounds. No root lies just between two floats.
+    root += root & 1;
+    f32::from_bits((root >> 1) + ((u32::from((exponent + 126).cast_unsigned())) << 23))
 }
 
 /// The nearest integer, ties to even; saturates at +-4 194 303, and 0 for what is not a number.
-pub fn round(x: f32) -> i32 {
+pub const fn round(x: f32) -> i32 {
     if x.is_nan() {
         return 0;
     }
-    let rounded = clamp(x, -ROUND_LIMIT, ROUND_LIMIT) + ROUNDER;
-    rounded.to_bits().cast_signed() - ROUNDER_BITS
+    from_rounder(limited(x) + ROUNDER)
+}
+
+/// `x` limited to what [`ROUNDER`] rounds; by its bits, which costs the AVR a twentieth of two comparisons.
+const fn limited(x: f32) -> f32 {
+    if x.to_bits() & !SIGN <= ROUND_LIMIT.to_bits() {
+        x
+    } else {
+        clamp(x, -ROUND_LIMIT, ROUND_LIMIT)
+    }
+}
+
+/// The integer in the low bits of a sum with [`ROUNDER`].
+const fn from_rounder(sum: f32) -> i32 {
+    sum.to_bits().cast_signed() - ROUNDER_BITS
 }
 
 /// An integer as a float, rounded once. Exact below 2^24.
@@ -62,9 +117,15 @@ pub fn from_u32(x: u32) -> f32 {
 }
 
 /// `x` less its nearest multiple of the period; exact to rounding for up to some thousand periods.
-fn reduce(x: f32, inverse: f32, parts: [f32; 3]) -> (f32, i32) {
-    let turns = round(x * inverse);
-    let count = clamp(x * inverse, -ROUND_LIMIT, ROUND_LIMIT) + ROUNDER - ROUNDER;
+const fn reduce(x: f32, inverse: f32, parts: [f32; 3]) -> (f32, i32) {
+    let scaled = x * inverse;
+    let sum = limited(scaled) + ROUNDER;
+    let turns = if scaled.is_nan() {
+        0
+    } else {
+        from_rounder(sum)
+    };
+    let count = sum - ROUNDER;
     (
         ((x - count * parts[0]) - count * parts[1]) - count * parts[2],
         turns,
@@ -93,7 +154,7 @@ pub fn wrap_angle(angle_rad: f32) -> f32 {
 }
 
 /// Sine and cosine of an angle [rad].
-pub fn sin_cos(angle_rad: f32) -> (f32, f32) {
+pub const fn sin_cos(angle_rad: f32) -> (f32, f32) {
     let (x, quadrant) = reduce(angle_rad, 1.0 / FRAC_PI_2, HALF_PI);
     let z = x * x;
     let sin = ((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * x + x;

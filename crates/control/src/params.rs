@@ -296,7 +296,10 @@ impl Default for Params {
 impl Params {
     /// A parameter's value.
     pub fn get(&self, id: ParamId) -> f32 {
-        self.values.get(id as usize).copied().unwrap_or_default()
+        match self.values.get(id as usize) {
+            Some(value) => *value,
+            None => 0.0,
+        }
     }
 
     /// Sets a parameter; gives the value in force.

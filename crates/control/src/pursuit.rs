@@ -263,6 +263,8 @@ fn is_passed(piece: &Piece, to: Point, next: Option<Point>, pose: &Pose, lookahe
 
 /// The point this far along the path from the robot's place on it, and the way left to the end; of an end farther than
 /// `far_m` only that it is farther.
+// In its only caller: the AVR has no registers for all its arguments.
+#[inline(always)]
 fn look(
     first: &Piece,
     to: Point,

@@ -8,7 +8,7 @@
 //! | 3 | `side_pair_right` | to the right, in front | to the right, behind | |
 //! | 4 | `final` (mode 8) | to the left | to the right | ahead, on the servo |
 
-use crate::math::round;
+use crate::math::sin_cos;
 use crate::params::{ParamId, Params};
 use crate::types::{Side, SonarId};
 use core::f32::consts::FRAC_PI_2;
@@ -81,8 +81,38 @@ pub struct View {
 impl Params {
     /// The rig in force.
     pub fn rig(&self) -> Rig {
-        let number = round(self.get(ParamId::Rig)).clamp(0, 4) as u8;
-        Rig::from_number(number).unwrap_or_default()
+        // The nearest number, ties to even; each tick asks some times, and comparisons are cheaper than rounding.
+        let number = self.get(ParamId::Rig);
+        if number >= 3.5 {
+            Rig::Final
+        } else if number <= 0.5 {
+            Rig::FrontSingle
+        } else if number < 1.5 {
+            Rig::FrontPair
+        } else if number <= 2.5 {
+            Rig::SidePairLeft
+        } else {
+            Rig::SidePairRight
+        }
+    }
+
+    /// Whether the rig has this sonar.
+    pub fn carries(&self, sonar: SonarId) -> bool {
+        match self.rig() {
+            Rig::FrontSingle => sonar == SonarId::Front,
+            Rig::Final => true,
+            Rig::FrontPair | Rig::SidePairLeft | Rig::SidePairRight => sonar != SonarId::Front,
+        }
+    }
+
+    /// Cosine of the direction in which a sonar looks, with the servo ahead; `None` where the rig has no such sonar.
+    pub fn ahead_share(&self, sonar: SonarId) -> Option<f32> {
+        const ASIDE: f32 = sin_cos(FRAC_PI_2).1;
+        if !self.carries(sonar) {
+            return None;
+        }
+        let ahead = sonar == SonarId::Front || self.rig() == Rig::FrontPair;
+        Some(if ahead { 1.0 } else { ASIDE })
     }
 
     /// From where a sonar looks, with the servo at `servo_rad`; `None` where the rig has no such sonar.
@@ -138,6 +168,11 @@ mod tests {
                 _ => [true, true, false],
             };
             assert_eq!(carried, expected, "{rig:?}");
+            assert_eq!(SonarId::ALL.map(|sonar| params.carries(sonar)), expected);
+            for sonar in SonarId::ALL {
+                let cosine = params.view(sonar, 0.0).map(|view| sin_cos(view.axis_rad).1);
+                assert_eq!(params.ahead_share(sonar), cosine);
+            }
         }
         assert_eq!(Rig::from_number(5), None);
     }

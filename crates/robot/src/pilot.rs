@@ -88,7 +88,7 @@ impl Pilot {
     /// Of the sonars that are wanted, those that the rig has.
     fn carried(&self, mut wanted: [bool; 3]) -> [bool; 3] {
         for (sonar, wanted) in SonarId::ALL.into_iter().zip(&mut wanted) {
-            *wanted &= self.params.view(sonar, 0.0).is_some();
+            *wanted &= self.params.carries(sonar);
         }
         wanted
     }

@@ -1,11 +1,11 @@
 //! The clock: timer 1 at 2 MHz, never stopped, never set.
 //!
 //! Compare A is the tick: each one lies exactly 20,000 counts after the one before, whatever delayed the handler.
-//! Compare B, set by the tick, lies 6,000 counts (3 ms) later and writes the outputs.
+//! Compare B, set by the tick, lies 6,000 counts (3 ms) later and writes the outputs; compare C, at the same instant and
+//! so right after it, begins a ping, and ends it.
 
-use core::sync::atomic::{AtomicU8, AtomicU16, Ordering::Relaxed};
-
-use super::registers::{get, put, timer_1};
+use super::registers::{get, handler, put, timer_1};
+use super::shared::{Byte, CriticalSection, Word};
 use super::{encoder, outputs, sonar};
 use rumbo_control::{OUTPUT_DELAY_US, TICK_US};
 
@@ -27,54 +27,32 @@ impl Stamp {
     }
 }
 
-/// A stamp that an interrupt writes.
-#[derive(Debug)]
-pub struct SharedStamp(AtomicU16);
-
-impl SharedStamp {
-    /// At zero.
-    pub const fn new() -> Self {
-        Self(AtomicU16::new(0))
-    }
-
-    /// Reads it whole.
-    pub fn get(&self) -> Stamp {
-        Stamp(self.0.load(Relaxed))
-    }
-
-    /// Writes it whole.
-    pub fn set(&self, stamp: Stamp) {
-        self.0.store(stamp.0, Relaxed);
-    }
-}
-
 /// Ticks since the start, wrapping.
-static TICKS: AtomicU8 = AtomicU8::new(0);
+static TICKS: Byte = Byte::new(0);
 /// The last tick's instant.
-static TICK: SharedStamp = SharedStamp::new();
+static TICK: Word = Word::new(0);
 
 /// Now. Only for interrupt handlers: the timer's halves are read through a latch that the handlers share.
 #[inline(always)]
-pub(super) fn now() -> Stamp {
-    Stamp(get!(timer_1().tcnt1()))
+pub(super) fn now(_: CriticalSection<'_>) -> u16 {
+    get!(timer_1().tcnt1())
 }
 
-/// Interrupts after `counts`, by compare C.
+/// Compare C interrupts again after `counts`; for its handler.
 #[inline(always)]
-pub(super) fn end_of_trigger_in(counts: u16) {
-    put!(timer_1().ocr1c(), now().0.wrapping_add(counts));
-    // Bit 3: an old match does not count.
-    put!(timer_1().tifr1(), 1 << 3);
+pub(super) fn trigger_again_in(counts: u16, section: CriticalSection<'_>) {
+    put!(timer_1().ocr1c(), now(section).wrapping_add(counts));
 }
 
 /// Ticks so far, wrapping.
+#[inline(always)]
 pub fn ticks() -> u8 {
-    TICKS.load(Relaxed)
+    TICKS.get()
 }
 
 /// The instant of the last tick.
 pub fn tick_stamp() -> Stamp {
-    TICK.get()
+    Stamp(avr_device::interrupt::free(|section| TICK.get(section)))
 }
 
 /// Free running, clock / 8; compare A, B and C interrupt.
@@ -82,27 +60,25 @@ pub(super) fn start() {
     put!(timer_1().tccr1a(), 0);
     put!(timer_1().ocr1a(), TICK_COUNTS);
     put!(timer_1().ocr1b(), OUTPUT_COUNTS);
+    put!(timer_1().ocr1c(), OUTPUT_COUNTS);
     put!(timer_1().timsk1(), 0b1110);
     put!(timer_1().tccr1b(), 0b010);
 }
 
-#[avr_device::interrupt(atmega2560)]
-fn TIMER1_COMPA() {
+handler! { __vector_17, "TIMER1_COMPA", |section| {
     let tick = get!(timer_1().ocr1a());
     put!(timer_1().ocr1a(), tick.wrapping_add(TICK_COUNTS));
     put!(timer_1().ocr1b(), tick.wrapping_add(OUTPUT_COUNTS));
-    TICK.set(Stamp(tick));
+    put!(timer_1().ocr1c(), tick.wrapping_add(OUTPUT_COUNTS));
+    TICK.set(tick, section);
     encoder::latch();
-    outputs::tick();
-    TICKS.store(TICKS.load(Relaxed).wrapping_add(1), Relaxed);
-}
+    TICKS.set(TICKS.get().wrapping_add(1));
+} }
 
-#[avr_device::interrupt(atmega2560)]
-fn TIMER1_COMPB() {
-    outputs::apply();
-}
+handler! { __vector_18, "TIMER1_COMPB", |section| {
+    outputs::apply(ticks(), section);
+} }
 
-#[avr_device::interrupt(atmega2560)]
-fn TIMER1_COMPC() {
-    sonar::end_trigger();
-}
+handler! { __vector_19, "TIMER1_COMPC", |section| {
+    sonar::trigger(section);
+} }

@@ -3,10 +3,9 @@
 //! The handler does no more than that, so it is short. A ring holds 64 edges, 6,400 a second: ten times what the
 //! wheels can make. Noise beyond that overwrites stamps, which the count survives.
 
-use core::sync::atomic::{AtomicU8, Ordering::Relaxed};
-
-use super::clock::{self, SharedStamp, Stamp};
-use super::registers::{external, put};
+use super::clock::{self, Stamp};
+use super::registers::{external, handler, put};
+use super::shared::{Byte, CriticalSection, Word};
 use rumbo_control::{Edges, Micros, Wheels};
 
 /// Stamps in a ring, a power of two.
@@ -15,31 +14,31 @@ const RING: u8 = 64;
 const POLES: usize = 8;
 
 struct Ring {
-    stamps: [SharedStamp; RING as usize],
+    stamps: [Word; RING as usize],
     /// Edges so far, wrapping.
-    count: AtomicU8,
+    count: Byte,
     /// The same at the tick.
-    latched: AtomicU8,
+    latched: Byte,
 }
 
 impl Ring {
     const fn new() -> Self {
         Self {
-            stamps: [const { SharedStamp::new() }; RING as usize],
-            count: AtomicU8::new(0),
-            latched: AtomicU8::new(0),
+            stamps: [const { Word::new(0) }; RING as usize],
+            count: Byte::new(0),
+            latched: Byte::new(0),
         }
     }
 
     #[inline(always)]
-    fn edge(&self) {
-        let count = self.count.load(Relaxed);
-        self.slot(count).set(clock::now());
-        self.count.store(count.wrapping_add(1), Relaxed);
+    fn edge(&self, section: CriticalSection<'_>) {
+        let count = self.count.get();
+        self.slot(count).set(clock::now(section), section);
+        self.count.set(count.wrapping_add(1));
     }
 
     #[inline(always)]
-    fn slot(&self, count: u8) -> &SharedStamp {
+    fn slot(&self, count: u8) -> &Word {
         // Masked to the ring's length: the compiler leaves the check out.
         &self.stamps[usize::from(count % RING)]
     }
@@ -62,19 +61,17 @@ pub(super) fn start() {
 /// At the tick: what comes later belongs to the next one.
 #[inline(always)]
 pub(super) fn latch() {
-    LEFT.latched.store(LEFT.count.load(Relaxed), Relaxed);
-    RIGHT.latched.store(RIGHT.count.load(Relaxed), Relaxed);
+    LEFT.latched.set(LEFT.count.get());
+    RIGHT.latched.set(RIGHT.count.get());
 }
 
-#[avr_device::interrupt(atmega2560)]
-fn INT0() {
-    LEFT.edge();
-}
+handler! { __vector_1, "INT0", |section| {
+    LEFT.edge(section);
+} }
 
-#[avr_device::interrupt(atmega2560)]
-fn INT1() {
-    RIGHT.edge();
-}
+handler! { __vector_2, "INT1", |section| {
+    RIGHT.edge(section);
+} }
 
 /// What the loop knows of one encoder.
 #[derive(Clone, Copy, Debug, Default)]
@@ -87,7 +84,7 @@ struct Counter {
 
 impl Counter {
     fn take(&mut self, ring: &Ring, tick: Stamp, now: Micros) {
-        let latched = ring.latched.load(Relaxed);
+        let latched = ring.latched.get();
         let new = latched.wrapping_sub(self.taken);
         if new > RING {
             // Overwritten before it was read: counted, and their times unknown.
@@ -98,7 +95,9 @@ impl Counter {
             self.edges.turn_us = 0;
         }
         while self.taken != latched {
-            let age = tick.since(ring.slot(self.taken).get());
+            let slot = ring.slot(self.taken);
+            let at = avr_device::interrupt::free(|section| slot.get(section));
+            let age = tick.since(Stamp(at));
             self.taken = self.taken.wrapping_add(1);
             self.edge(Micros(now.0.wrapping_sub(u32::from(age / 2))));
         }

@@ -1,40 +1,41 @@
 //! The link: USART 2 at 9600 baud, a ring for each direction, filled and emptied by interrupts.
 
-use core::sync::atomic::{AtomicU8, Ordering::Relaxed};
-
-use super::registers::{change, get, put, usart_2};
+use super::registers::{change, get, handler, put, usart_2};
+use super::shared::Byte;
 
 /// 9600 baud with doubled speed: 16 MHz / 8 / 208 = 9615.
 const DIVIDER: u16 = 207;
 /// Bytes in a ring, a power of two.
 const RING: u8 = 64;
 
+/// A ring; laid out as written, for tests that put bytes in.
+#[repr(C)]
 struct Ring {
-    bytes: [AtomicU8; RING as usize],
+    bytes: [Byte; RING as usize],
     /// Bytes put in and taken out so far, wrapping.
-    put: AtomicU8,
-    taken: AtomicU8,
+    put: Byte,
+    taken: Byte,
 }
 
 impl Ring {
     const fn new() -> Self {
         Self {
-            bytes: [const { AtomicU8::new(0) }; RING as usize],
-            put: AtomicU8::new(0),
-            taken: AtomicU8::new(0),
+            bytes: [const { Byte::new(0) }; RING as usize],
+            put: Byte::new(0),
+            taken: Byte::new(0),
         }
     }
 
     #[inline(always)]
     fn len(&self) -> u8 {
-        self.put.load(Relaxed).wrapping_sub(self.taken.load(Relaxed))
+        self.put.get().wrapping_sub(self.taken.get())
     }
 
     #[inline(always)]
     fn push(&self, byte: u8) {
-        let put = self.put.load(Relaxed);
-        self.bytes[usize::from(put % RING)].store(byte, Relaxed);
-        self.put.store(put.wrapping_add(1), Relaxed);
+        let put = self.put.get();
+        self.bytes[usize::from(put % RING)].set(byte);
+        self.put.set(put.wrapping_add(1));
     }
 
     #[inline(always)]
@@ -42,14 +43,18 @@ impl Ring {
         if self.len() == 0 {
             return None;
         }
-        let taken = self.taken.load(Relaxed);
-        let byte = self.bytes[usize::from(taken % RING)].load(Relaxed);
-        self.taken.store(taken.wrapping_add(1), Relaxed);
+        let taken = self.taken.get();
+        let byte = self.bytes[usize::from(taken % RING)].get();
+        self.taken.set(taken.wrapping_add(1));
         Some(byte)
     }
 }
 
+// SAFETY: the name is used once.
+#[unsafe(export_name = "RUMBO_RECEIVED")]
 static RECEIVED: Ring = Ring::new();
+// SAFETY: the name is used once.
+#[unsafe(export_name = "RUMBO_SENDING")]
 static SENDING: Ring = Ring::new();
 
 /// 8 data bits, no parity, one stop bit, which is what the register holds after a reset.
@@ -79,20 +84,18 @@ pub fn send(byte: u8) {
     });
 }
 
-#[avr_device::interrupt(atmega2560)]
-fn USART2_RX() {
+handler! { __vector_51, "USART2_RX", |_section| {
     // A frame error is a break or noise: no byte at all.
     let broken = get!(usart_2().ucsr2a()) & 1 << 4 != 0;
     let byte = get!(usart_2().udr2());
     if !broken && RECEIVED.len() < RING {
         RECEIVED.push(byte);
     }
-}
+} }
 
-#[avr_device::interrupt(atmega2560)]
-fn USART2_UDRE() {
+handler! { __vector_52, "USART2_UDRE", |_section| {
     match SENDING.pop() {
         Some(byte) => put!(usart_2().udr2(), byte),
         None => change!(usart_2().ucsr2b(), set 0, clear 1 << 5),
     };
-}
+} }

@@ -1,7 +1,6 @@
 //! The chip: everything that touches a register, and all the `unsafe` of the image.
 //!
-//! Interrupts and the main loop share nothing but atomics ([`core::sync::atomic`] bytes and words, which the compiler
-//! reads and writes whole on this 8-bit machine), so a torn value cannot be written down. Timer 1 is the one clock: it
+//! Interrupts and the main loop share nothing but bytes, and words that only go whole ([`shared`]). Timer 1 is the one clock: it
 //! runs at 2 MHz and wraps after 32.768 ms; every stamp is younger than that when it is used.
 //!
 //! | resource | use |
@@ -12,17 +11,20 @@
 //! | timer 2, 250 kHz | the servo's edges on OC2B ([`servo`]) |
 //! | timers 3 and 4 | PWM of the right and the left motor ([`motors`]) |
 //! | USART 2 | the link, two rings ([`link`]) |
-//! | watchdog, EEPROM, sleep | [`power`], [`eeprom`] |
+//! | watchdog, sleep | [`power`] |
+//!
+//! [`record`] shows tests what the loop takes and gives.
 
 pub mod clock;
-pub mod eeprom;
 pub mod encoder;
 pub mod link;
 pub mod motors;
 pub mod outputs;
 pub mod power;
+pub mod record;
 mod registers;
 pub mod servo;
+mod shared;
 pub mod sonar;
 
 /// Sets every peripheral up, outputs at rest; interrupts are still off.
@@ -37,6 +39,18 @@ pub fn start() {
 
 /// Interrupts on.
 pub fn enable_interrupts() {
-    // SAFETY: every interrupt that is enabled has its handler, and handlers share only atomics.
+    // SAFETY: every interrupt that is enabled has its handler, and handlers share only bytes and whole words.
     unsafe { avr_device::interrupt::enable() }
+}
+
+/// Hash of the image, written into the file by `cargo xtask firmware`; 0 where that has not been done.
+// SAFETY: the name is used once.
+#[used]
+#[unsafe(no_mangle)]
+static RUMBO_IMAGE_HASH: u32 = 0;
+
+/// What was written there.
+pub fn image_hash() -> u32 {
+    // SAFETY: a valid, aligned word that nobody writes; volatile, since the compiler would know it to be 0.
+    unsafe { core::ptr::read_volatile(&raw const RUMBO_IMAGE_HASH) }
 }

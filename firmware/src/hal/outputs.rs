@@ -1,68 +1,51 @@
 //! Outputs take effect exactly 3 ms after their tick: the loop leaves them here, compare B writes them.
 
-use core::sync::atomic::{AtomicU8, AtomicU16, Ordering::Relaxed};
-
 use super::motors::Bridge;
-use super::{servo, sonar};
-use rumbo_control::{Outputs, SonarId};
+use super::shared::{Byte, CriticalSection, Word};
+use super::{clock, servo, sonar};
+use rumbo_control::Outputs;
 
-/// No ping.
-const NONE: u8 = 0xFF;
+static LEFT: Byte = Byte::new(0);
+static RIGHT_E: Byte = Byte::new(0);
+static RIGHT_G: Byte = Byte::new(0);
+static LEFT_PWM: Byte = Byte::new(0);
+static RIGHT_PWM: Byte = Byte::new(0);
+static SERVO: Word = Word::new(servo::AHEAD_COUNTS);
+/// The number of the tick whose outputs have had their time.
+static APPLIED: Byte = Byte::new(0);
 
-static LEFT: AtomicU8 = AtomicU8::new(0);
-static RIGHT_E: AtomicU8 = AtomicU8::new(0);
-static RIGHT_G: AtomicU8 = AtomicU8::new(0);
-static LEFT_PWM: AtomicU8 = AtomicU8::new(0);
-static RIGHT_PWM: AtomicU8 = AtomicU8::new(0);
-static SERVO: AtomicU16 = AtomicU16::new(servo::AHEAD_COUNTS);
-static PING: AtomicU8 = AtomicU8::new(NONE);
-/// The outputs of the last tick have had their time.
-static DUE: AtomicU8 = AtomicU8::new(0);
-
-/// Leaves outputs for compare B; if they are late, writes them now. Says whether they were in time.
-pub fn leave(outputs: &Outputs) -> bool {
+/// Leaves the outputs of tick number `tick` for compare B; if they are late, writes them now. Says whether they were in
+/// time.
+pub fn leave(outputs: &Outputs, tick: u8) -> bool {
     let bridge = Bridge::of(outputs.drive);
     let servo = servo::counts(outputs.servo);
-    let ping = outputs.ping.map_or(NONE, |sonar| sonar as u8);
-    avr_device::interrupt::free(|_| {
-        LEFT.store(bridge.left, Relaxed);
-        RIGHT_E.store(bridge.right_e, Relaxed);
-        RIGHT_G.store(bridge.right_g, Relaxed);
-        LEFT_PWM.store(bridge.left_pwm, Relaxed);
-        RIGHT_PWM.store(bridge.right_pwm, Relaxed);
-        SERVO.store(servo, Relaxed);
-        PING.store(ping, Relaxed);
-        let in_time = DUE.load(Relaxed) == 0;
+    avr_device::interrupt::free(|section| {
+        LEFT.set(bridge.left);
+        RIGHT_E.set(bridge.right_e);
+        RIGHT_G.set(bridge.right_g);
+        LEFT_PWM.set(bridge.left_pwm);
+        RIGHT_PWM.set(bridge.right_pwm);
+        SERVO.set(servo, section);
+        sonar::ask(outputs.ping);
+        let in_time = APPLIED.get() != tick && clock::ticks() == tick;
         if !in_time {
-            apply();
+            apply(tick, section);
         }
         in_time
     })
 }
 
-/// At the tick.
-#[inline(always)]
-pub(super) fn tick() {
-    DUE.store(0, Relaxed);
-}
-
 /// Writes what was left.
-pub(super) fn apply() {
+#[inline(always)]
+pub(super) fn apply(tick: u8, section: CriticalSection<'_>) {
     Bridge {
-        left: LEFT.load(Relaxed),
-        right_e: RIGHT_E.load(Relaxed),
-        right_g: RIGHT_G.load(Relaxed),
-        left_pwm: LEFT_PWM.load(Relaxed),
-        right_pwm: RIGHT_PWM.load(Relaxed),
+        left: LEFT.get(),
+        right_e: RIGHT_E.get(),
+        right_g: RIGHT_G.get(),
+        left_pwm: LEFT_PWM.get(),
+        right_pwm: RIGHT_PWM.get(),
     }
     .write();
-    servo::point(SERVO.load(Relaxed));
-    match PING.load(Relaxed) {
-        0 => sonar::trigger(SonarId::Left),
-        1 => sonar::trigger(SonarId::Right),
-        2 => sonar::trigger(SonarId::Front),
-        _ => {}
-    }
-    PING.store(NONE, Relaxed);
-    DUE.store(1, Relaxed);
+    servo::point(SERVO.get(section), section);
+    APPLIED.set(tick);
 }

@@ -17,7 +17,6 @@ macro_rules! blocks {
 
 blocks! {
     cpu: cpu, CPU;
-    eeprom: eeprom, EEPROM;
     external: exint, EXINT;
     port_b: portb, PORTB;
     port_d: portd, PORTD;
@@ -56,4 +55,19 @@ macro_rules! change {
     };
 }
 
-pub(super) use {change, get, put};
+/// An interrupt handler: its vector, its name in the datasheet, what it does. Without the call in between that
+/// `avr_device::interrupt` makes, for which every register would have to be saved.
+macro_rules! handler {
+    ($vector:ident, $name:literal, |$section:ident| $body:block) => {
+        #[doc = $name]
+        // SAFETY: the vector's name is known to the startup code alone, and used once.
+        #[unsafe(no_mangle)]
+        extern "avr-interrupt" fn $vector() {
+            // SAFETY: the chip enters a handler with interrupts off, and none turns them on.
+            let $section = unsafe { avr_device::interrupt::CriticalSection::new() };
+            $body
+        }
+    };
+}
+
+pub(super) use {change, get, handler, put};

@@ -7,9 +7,8 @@
 //! The pulse starts at count 192 of wrap 0. With a length of 136 to 600 counts it ends 328 to 792 counts after that
 //! wrap's start.
 
-use core::sync::atomic::{AtomicU8, AtomicU16, Ordering::Relaxed};
-
-use super::registers::{change, port_h, put, timer_2};
+use super::registers::{change, handler, port_h, put, timer_2};
+use super::shared::{Byte, CriticalSection, Word};
 use crate::pins;
 use rumbo_control::ServoAngle;
 use rumbo_control::math::{clamp, round};
@@ -27,13 +26,13 @@ const SET: u8 = 0b0011_0000;
 const CLEAR: u8 = 0b0010_0000;
 
 /// Length of the next pulse.
-static LENGTH: AtomicU16 = AtomicU16::new(AHEAD_COUNTS);
+static LENGTH: Word = Word::new(AHEAD_COUNTS);
 /// Half wraps since the period began; the first interrupt is a compare A, the one after it begins a period.
-static HALF: AtomicU8 = AtomicU8::new(HALVES - 1);
+static HALF: Byte = Byte::new(HALVES - 1);
 /// The half wrap that sets the falling edge up.
-static FALL_HALF: AtomicU8 = AtomicU8::new(0);
+static FALL_HALF: Byte = Byte::new(0);
 /// The count at which the pulse falls.
-static FALL_COUNT: AtomicU8 = AtomicU8::new(0);
+static FALL_COUNT: Byte = Byte::new(0);
 
 /// Pulse of an angle; positive is to the left, a longer pulse.
 pub(super) fn counts(angle: ServoAngle) -> u16 {
@@ -44,8 +43,8 @@ pub(super) fn counts(angle: ServoAngle) -> u16 {
 
 /// From the next period on.
 #[inline(always)]
-pub(super) fn point(counts: u16) {
-    LENGTH.store(counts, Relaxed);
+pub(super) fn point(counts: u16, section: CriticalSection<'_>) {
+    LENGTH.set(counts, section);
 }
 
 pub(super) fn start() {
@@ -60,28 +59,26 @@ pub(super) fn start() {
 
 /// Half a wrap of the timer has passed.
 #[inline(always)]
-fn half() {
-    let half = HALF.load(Relaxed);
+fn half(section: CriticalSection<'_>) {
+    let half = HALF.get();
     if half == 0 {
         put!(timer_2().ocr2b(), (START % 256) as u8);
         put!(timer_2().tccr2a(), SET);
         // The fall, in counts from the start of this wrap, is set up by the last half wrap 64 counts before it.
-        let fall = START + LENGTH.load(Relaxed);
-        FALL_HALF.store(((fall - 64) >> 7) as u8, Relaxed);
-        FALL_COUNT.store((fall & 0xFF) as u8, Relaxed);
-    } else if half == FALL_HALF.load(Relaxed) {
-        put!(timer_2().ocr2b(), FALL_COUNT.load(Relaxed));
+        let fall = START + LENGTH.get(section);
+        FALL_HALF.set(((fall - 64) >> 7) as u8);
+        FALL_COUNT.set((fall & 0xFF) as u8);
+    } else if half == FALL_HALF.get() {
+        put!(timer_2().ocr2b(), FALL_COUNT.get());
         put!(timer_2().tccr2a(), CLEAR);
     }
-    HALF.store(if half + 1 == HALVES { 0 } else { half + 1 }, Relaxed);
+    HALF.set(if half + 1 == HALVES { 0 } else { half + 1 });
 }
 
-#[avr_device::interrupt(atmega2560)]
-fn TIMER2_OVF() {
-    half();
-}
+handler! { __vector_15, "TIMER2_OVF", |section| {
+    half(section);
+} }
 
-#[avr_device::interrupt(atmega2560)]
-fn TIMER2_COMPA() {
-    half();
-}
+handler! { __vector_13, "TIMER2_COMPA", |section| {
+    half(section);
+} }

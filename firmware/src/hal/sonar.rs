@@ -3,10 +3,9 @@
 //! The handler of an echo pin notes the instants of the first rise and the fall after it; what that means is decided
 //! at the tick. The level is read, never toggled: a lost edge costs one reading.
 
-use core::sync::atomic::{AtomicU8, Ordering::Relaxed};
-
-use super::clock::{self, SharedStamp, Stamp};
-use super::registers::{change, get, port_b, port_d, port_e, port_j, put};
+use super::clock::{self, Stamp};
+use super::registers::{change, get, handler, port_b, port_d, port_e, port_j, put};
+use super::shared::{Byte, CriticalSection, Word};
 use crate::pins;
 use rumbo_control::{Echo, SonarId};
 
@@ -28,36 +27,52 @@ const RISEN: u8 = 2;
 const FALLEN: u8 = 3;
 
 struct Line {
-    state: AtomicU8,
-    rise: SharedStamp,
-    fall: SharedStamp,
+    state: Byte,
+    rise: Word,
+    fall: Word,
 }
 
 impl Line {
     const fn new() -> Self {
         Self {
-            state: AtomicU8::new(IDLE),
-            rise: SharedStamp::new(),
-            fall: SharedStamp::new(),
+            state: Byte::new(IDLE),
+            rise: Word::new(0),
+            fall: Word::new(0),
         }
     }
 
+    /// State, rise and fall, of one moment.
+    fn read(&self) -> (u8, Stamp, Stamp) {
+        avr_device::interrupt::free(|section| {
+            (
+                self.state.get(),
+                Stamp(self.rise.get(section)),
+                Stamp(self.fall.get(section)),
+            )
+        })
+    }
+
     #[inline(always)]
-    fn edge(&self, high: bool) {
-        let now = clock::now();
-        match (self.state.load(Relaxed), high) {
+    fn edge(&self, high: bool, section: CriticalSection<'_>) {
+        let now = clock::now(section);
+        match (self.state.get(), high) {
             (PINGED, true) => {
-                self.rise.set(now);
-                self.state.store(RISEN, Relaxed);
+                self.rise.set(now, section);
+                self.state.set(RISEN);
             }
             (RISEN, false) => {
-                self.fall.set(now);
-                self.state.store(FALLEN, Relaxed);
+                self.fall.set(now, section);
+                self.state.set(FALLEN);
             }
             _ => {}
         }
     }
 }
+
+/// No ping.
+const NONE: u8 = 0xFF;
+/// The sonar to be triggered, by its number.
+static PING: Byte = Byte::new(NONE);
 
 static LEFT: Line = Line::new();
 static RIGHT: Line = Line::new();
@@ -77,39 +92,50 @@ pub(super) fn start() {
     change!(port_b().ddrb(), set TRIGGERS_B, clear 0);
 }
 
-/// Raises a trigger; the line's state starts over.
+/// Asks for a ping when compare C comes.
 #[inline(always)]
-pub(super) fn trigger(sonar: SonarId) {
-    line(sonar).state.store(PINGED, Relaxed);
-    match sonar {
-        SonarId::Left => change!(port_j().portj(), set pins::LEFT_TRIGGER.mask(), clear 0),
-        SonarId::Right => change!(port_b().portb(), set pins::RIGHT_TRIGGER.mask(), clear 0),
-        SonarId::Front => change!(port_j().portj(), set pins::FRONT_TRIGGER.mask(), clear 0),
-    };
-    clock::end_of_trigger_in(TRIGGER_COUNTS);
+pub(super) fn ask(ping: Option<SonarId>) {
+    PING.set(ping.map_or(NONE, |sonar| sonar as u8));
 }
 
-/// Lowers all triggers.
+/// Compare C: raises the trigger that was asked for, and lowers it the next time.
 #[inline(always)]
-pub(super) fn end_trigger() {
-    change!(port_j().portj(), set 0, clear TRIGGERS_J);
-    change!(port_b().portb(), set 0, clear TRIGGERS_B);
+pub(super) fn trigger(section: CriticalSection<'_>) {
+    let ping = PING.get();
+    PING.set(NONE);
+    match ping {
+        0 => {
+            LEFT.state.set(PINGED);
+            change!(port_j().portj(), set pins::LEFT_TRIGGER.mask(), clear 0);
+        }
+        1 => {
+            RIGHT.state.set(PINGED);
+            change!(port_b().portb(), set pins::RIGHT_TRIGGER.mask(), clear 0);
+        }
+        2 => {
+            FRONT.state.set(PINGED);
+            change!(port_j().portj(), set pins::FRONT_TRIGGER.mask(), clear 0);
+        }
+        _ => {
+            change!(port_j().portj(), set 0, clear TRIGGERS_J);
+            change!(port_b().portb(), set 0, clear TRIGGERS_B);
+            return;
+        }
+    }
+    clock::trigger_again_in(TRIGGER_COUNTS, section);
 }
 
-#[avr_device::interrupt(atmega2560)]
-fn INT2() {
-    LEFT.edge(get!(port_d().pind()) & pins::LEFT_ECHO.mask() != 0);
-}
+handler! { __vector_3, "INT2", |section| {
+    LEFT.edge(get!(port_d().pind()) & pins::LEFT_ECHO.mask() != 0, section);
+} }
 
-#[avr_device::interrupt(atmega2560)]
-fn INT3() {
-    RIGHT.edge(get!(port_d().pind()) & pins::RIGHT_ECHO.mask() != 0);
-}
+handler! { __vector_4, "INT3", |section| {
+    RIGHT.edge(get!(port_d().pind()) & pins::RIGHT_ECHO.mask() != 0, section);
+} }
 
-#[avr_device::interrupt(atmega2560)]
-fn INT5() {
-    FRONT.edge(get!(port_e().pine()) & pins::FRONT_ECHO.mask() != 0);
-}
+handler! { __vector_6, "INT5", |section| {
+    FRONT.edge(get!(port_e().pine()) & pins::FRONT_ECHO.mask() != 0, section);
+} }
 
 const _: () = assert!(ECHOES_D == 0b1100 && pins::FRONT_ECHO.bit == 5);
 
@@ -128,10 +154,10 @@ impl Listener {
     /// What became of the last ping, once, at the tick `tick`.
     pub fn read(&mut self, tick: Stamp) -> Option<(SonarId, Echo)> {
         let (sonar, at) = self.waiting?;
-        let line = line(sonar);
-        let echo = match line.state.load(Relaxed) {
-            FALLEN => Echo::Pulse(u32::from(line.fall.get().since(line.rise.get()) / 2)),
-            RISEN if tick.since(line.rise.get()) >= REACH_COUNTS => Echo::Clear,
+        let (state, rise, fall) = line(sonar).read();
+        let echo = match state {
+            FALLEN => Echo::Pulse(u32::from(fall.since(rise) / 2)),
+            RISEN if tick.since(rise) >= REACH_COUNTS => Echo::Clear,
             PINGED if tick.since(at) >= RISE_COUNTS => Echo::Silent,
             _ => return None,
         };

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
+use object::LittleEndian;
 use object::elf::{FileHeader32, SHF_ALLOC, SHF_WRITE, SHT_NOBITS, STT_FUNC};
 use object::read::elf::{FileHeader, SectionHeader, Sym};
-use object::LittleEndian;
 
 use super::stack_arguments;
 
@@ -48,7 +48,11 @@ impl fmt::Display for Report {
             let sram = if *in_sram { *size } else { 0 };
             writeln!(f, "{name:<8} {flash:>7} bytes of flash {sram:>6} of SRAM")?;
         }
-        writeln!(f, "accesses to arguments on the stack repaired: {}", self.repaired)?;
+        writeln!(
+            f,
+            "accesses to arguments on the stack repaired: {}",
+            self.repaired
+        )?;
         write!(f, "hash {:08x}", self.hash)
     }
 }
@@ -58,7 +62,9 @@ pub(crate) fn finish(bytes: &mut [u8], repair: bool) -> Result<Report, String> {
     let wrong = |error: object::read::Error| format!("the linked image: {error}");
     let layout = Layout::read(bytes).map_err(wrong)?;
     if let Some(name) = layout.forbidden.first() {
-        return Err(format!("the image contains {name}: the core must not be able to panic or format text"));
+        return Err(format!(
+            "the image contains {name}: the core must not be able to panic or format text"
+        ));
     }
     let mut report = Report {
         sections: layout.sections,
@@ -69,8 +75,12 @@ pub(crate) fn finish(bytes: &mut [u8], repair: bool) -> Result<Report, String> {
             report.repaired += repair_function(bytes, function)?;
         }
     }
-    let place = layout.hash.ok_or(format!("the image has no {HASH_SYMBOL}"))?;
-    let target = bytes.get_mut(place..place + 4).ok_or("the hash lies outside the file")?;
+    let place = layout
+        .hash
+        .ok_or(format!("the image has no {HASH_SYMBOL}"))?;
+    let target = bytes
+        .get_mut(place..place + 4)
+        .ok_or("the hash lies outside the file")?;
     target.fill(0);
     report.hash = layout.loaded.iter().fold(0x811C_9DC5, |hash, (from, to)| {
         let loaded = bytes.get(*from..*to).unwrap_or_default();
@@ -134,7 +144,8 @@ impl Layout {
             }
             let in_file = section.sh_type(endian) != SHT_NOBITS;
             let in_sram = flags & SHF_WRITE != 0;
-            let name = String::from_utf8_lossy(sections.section_name(endian, section)?).into_owned();
+            let name =
+                String::from_utf8_lossy(sections.section_name(endian, section)?).into_owned();
             layout.sections.push((name, size, in_file, in_sram));
             if in_file {
                 let from = section.sh_offset(endian) as usize;
@@ -143,11 +154,15 @@ impl Layout {
         }
         let symbols = sections.symbols(endian, bytes, object::elf::SHT_SYMTAB)?;
         for symbol in symbols.iter() {
-            let name = String::from_utf8_lossy(symbol.name(endian, symbols.strings())?).into_owned();
-            let Ok(section) = sections.section(object::SectionIndex(usize::from(symbol.st_shndx(endian)))) else {
+            let name =
+                String::from_utf8_lossy(symbol.name(endian, symbols.strings())?).into_owned();
+            let Ok(section) =
+                sections.section(object::SectionIndex(usize::from(symbol.st_shndx(endian))))
+            else {
                 continue;
             };
-            let place = (symbol.st_value(endian) - section.sh_addr(endian).min(symbol.st_value(endian))
+            let place = (symbol.st_value(endian)
+                - section.sh_addr(endian).min(symbol.st_value(endian))
                 + section.sh_offset(endian)) as usize;
             if name == HASH_SYMBOL {
                 layout.hash = Some(place);
@@ -156,7 +171,11 @@ impl Layout {
                 // Only what rustc compiled: the C library's code is right.
                 if name.starts_with("_R") {
                     let to = place + symbol.st_size(endian) as usize;
-                    layout.functions.push(Function { name: name.clone(), from: place, to });
+                    layout.functions.push(Function {
+                        name: name.clone(),
+                        from: place,
+                        to,
+                    });
                 }
                 if FORBIDDEN.iter().any(|word| name.contains(word)) {
                     layout.forbidden.push(name);

@@ -69,7 +69,9 @@ fn check(project: &Project, report: &image::Report) -> Result<(), String> {
         let cap = cap(&text, key).ok_or_else(|| format!("{ROBOT}: no `{key}` in [firmware]"))?;
         println!("{key}: {used} of {cap}");
         if used > cap {
-            return Err(format!("the image takes {used} {key}, {ROBOT} allows {cap}"));
+            return Err(format!(
+                "the image takes {used} {key}, {ROBOT} allows {cap}"
+            ));
         }
     }
     Ok(())
@@ -94,7 +96,14 @@ impl Toolchain {
             .map_err(|error| format!("{}: {error}", source.display()))?;
         output(
             self.command("rustc")
-                .args(["--target=avr-none", "-Ctarget-cpu=atmega2560", "-O", "--emit=asm", "-Awarnings", "-o"])
+                .args([
+                    "--target=avr-none",
+                    "-Ctarget-cpu=atmega2560",
+                    "-O",
+                    "--emit=asm",
+                    "-Awarnings",
+                    "-o",
+                ])
                 .args([&assembly, &source]),
         )?;
         let text = String::from_utf8_lossy(&read(&assembly)?).into_owned();
@@ -104,7 +113,10 @@ impl Toolchain {
         } else if text.contains("ldd\tr22, Y+6") {
             Ok(false)
         } else {
-            Err(format!("{}: not the code that is known", assembly.display()))
+            Err(format!(
+                "{}: not the code that is known",
+                assembly.display()
+            ))
         }
     }
 }

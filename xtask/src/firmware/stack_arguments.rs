@@ -78,7 +78,11 @@ impl Shift {
     fn read(words: &[u16], at: usize) -> Option<Self> {
         let next = words.get(at + 1).copied().map_or(Op::Other, decode);
         match (decode(words[at]), next) {
-            (Op::Move(by), _) => Some(Self { at, by, pair: false }),
+            (Op::Move(by), _) => Some(Self {
+                at,
+                by,
+                pair: false,
+            }),
             (Op::SubtractLow(low), Op::SubtractHigh(high)) => Some(Self {
                 at,
                 by: -i32::from(i16::from_le_bytes([low, high])),
@@ -108,13 +112,20 @@ impl Shift {
 
 /// Repairs one function, given its words; says how many accesses were wrong.
 pub(crate) fn repair(words: &mut [u16]) -> Result<usize, String> {
-    let pushes = words.iter().take_while(|word| decode(**word) == Op::Push).count();
+    let pushes = words
+        .iter()
+        .take_while(|word| decode(**word) == Op::Push)
+        .count();
     if words.get(pushes..pushes + 2) != Some(&[IN_R28_SPL, IN_R29_SPH]) {
         return Ok(0);
     }
     let mut at = pushes + 2;
     let mut frame = 0;
-    if let Some(shift) = words.get(at).and_then(|_| Shift::read(words, at)).filter(|shift| shift.by < 0) {
+    if let Some(shift) = words
+        .get(at)
+        .and_then(|_| Shift::read(words, at))
+        .filter(|shift| shift.by < 0)
+    {
         frame = shift.by.unsigned_abs() as usize;
         at += if shift.pair { 2 } else { 1 };
         // The stack pointer follows; that is no epilogue.
@@ -181,7 +192,9 @@ fn repair_far(
     if beyond != accesses.len() {
         return Err("an access across the border of the frame".to_owned());
     }
-    let fits = accesses.iter().all(|at| displacement(words[*at]) < FARTHEST);
+    let fits = accesses
+        .iter()
+        .all(|at| displacement(words[*at]) < FARTHEST);
     if fits {
         for at in accesses {
             words[*at] = with_displacement(words[*at], displacement(words[*at]) + 1);
@@ -214,7 +227,12 @@ mod tests {
     fn locals_stay_where_they_are() {
         // sbiw r28, 2; in r0, 0x3f; cli; out 0x3e, r29; out 0x3f, r0; out 0x3d, r28; ldd r22, Y+5
         let frame = [0x9722, 0xB60F, 0x94F8, 0xBFDE, 0xBE0F, OUT_SPL_R28];
-        let mut words = [&[PUSH_R28, PUSH_R29, IN_R28_SPL, IN_R29_SPH][..], &frame, &[LDD_R22_Y5, RET]].concat();
+        let mut words = [
+            &[PUSH_R28, PUSH_R29, IN_R28_SPL, IN_R29_SPH][..],
+            &frame,
+            &[LDD_R22_Y5, RET],
+        ]
+        .concat();
         let before = words.clone();
         assert_eq!(repair(&mut words), Ok(0));
         assert_eq!(words, before);
@@ -230,7 +248,9 @@ mod tests {
     #[test]
     fn a_far_argument_is_reached_by_moving_y_farther() {
         // adiw r28, 8; ldd r24, Y+62; ldd r25, Y+63; sbiw r28, 8
-        let mut words = [PUSH_R28, PUSH_R29, IN_R28_SPL, IN_R29_SPH, 0x9628, 0xAD8E, 0xAD9F, 0x9728, RET];
+        let mut words = [
+            PUSH_R28, PUSH_R29, IN_R28_SPL, IN_R29_SPH, 0x9628, 0xAD8E, 0xAD9F, 0x9728, RET,
+        ];
         assert_eq!(repair(&mut words), Ok(2));
         assert_eq!(words[4..8], [0x9629, 0xAD8E, 0xAD9F, 0x9729]);
     }

@@ -46,7 +46,9 @@ impl Toolchain {
             Self::Debian => {
                 let mut command = Command::new(Path::new("/usr/bin").join(program));
                 // The package is a release; only a nightly may build its own library.
-                command.env("RUSTC_BOOTSTRAP", "1").env("PATH", "/usr/bin:/bin");
+                command
+                    .env("RUSTC_BOOTSTRAP", "1")
+                    .env("PATH", "/usr/bin:/bin");
                 command
             }
             Self::Nightly(rustup) => {
@@ -55,7 +57,14 @@ impl Toolchain {
                 command
             }
         };
-        for name in ["CARGO", "RUSTC", "RUSTDOC", "RUSTFLAGS", "RUSTUP_TOOLCHAIN", "CARGO_ENCODED_RUSTFLAGS"] {
+        for name in [
+            "CARGO",
+            "RUSTC",
+            "RUSTDOC",
+            "RUSTFLAGS",
+            "RUSTUP_TOOLCHAIN",
+            "CARGO_ENCODED_RUSTFLAGS",
+        ] {
             command.env_remove(name);
         }
         command

@@ -1,0 +1,149 @@
+//! What the loop took at a tick and what it gave, at known places in SRAM.
+//!
+//! A test that runs this very image stops at [`rumbo_inputs_latched`], reads the inputs or puts others there, and reads
+//! the outputs at [`rumbo_outputs_left`]: native robot and chip can so be given the same and compared.
+
+use core::cell::UnsafeCell;
+
+use rumbo_control::{Echo, Edges, Inputs, Micros, Outputs, SonarId, Wheels};
+
+/// One encoder.
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct EdgesRecord {
+    count: u16,
+    last_us: u32,
+    turn_us: u32,
+}
+
+/// The inputs, in this order, little-endian, without gaps.
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct InputsRecord {
+    now_us: u32,
+    left: EdgesRecord,
+    right: EdgesRecord,
+    /// 0 none, 1 pulse, 2 clear, 3 silent.
+    echo: u8,
+    /// Number of the sonar.
+    sonar: u8,
+    pulse_us: u32,
+}
+
+/// The outputs, likewise.
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct OutputsRecord {
+    left: i16,
+    right: i16,
+    servo_rad: f32,
+    /// Number of the sonar, or 255.
+    ping: u8,
+}
+
+struct Shown<T>(UnsafeCell<T>);
+
+// SAFETY: only the loop touches it.
+unsafe impl<T> Sync for Shown<T> {}
+
+const NO_EDGES: EdgesRecord = EdgesRecord {
+    count: 0,
+    last_us: 0,
+    turn_us: 0,
+};
+
+// SAFETY, for the names here and below: each is used once.
+#[unsafe(no_mangle)]
+static RUMBO_INPUTS: Shown<InputsRecord> = Shown(UnsafeCell::new(InputsRecord {
+    now_us: 0,
+    left: NO_EDGES,
+    right: NO_EDGES,
+    echo: 0,
+    sonar: 0,
+    pulse_us: 0,
+}));
+#[unsafe(no_mangle)]
+static RUMBO_OUTPUTS: Shown<OutputsRecord> = Shown(UnsafeCell::new(OutputsRecord {
+    left: 0,
+    right: 0,
+    servo_rad: 0.0,
+    ping: 255,
+}));
+
+/// Does nothing; where a test stops to see the inputs of a tick.
+#[unsafe(no_mangle)]
+#[inline(never)]
+extern "C" fn rumbo_inputs_latched() {
+    avr_device::asm::nop();
+}
+
+/// Does nothing; where a test stops to see the outputs of a tick.
+#[unsafe(no_mangle)]
+#[inline(never)]
+extern "C" fn rumbo_outputs_left() {
+    // Two of them: equal functions would become one.
+    avr_device::asm::nop();
+    avr_device::asm::nop();
+}
+
+/// Shows the inputs of a tick; gives those to be used.
+pub fn inputs(inputs: &Inputs) -> Inputs {
+    let edges = |edges: Edges| EdgesRecord {
+        count: edges.count,
+        last_us: edges.last.0,
+        turn_us: edges.turn_us,
+    };
+    let (echo, sonar, pulse_us) = match inputs.echo {
+        None => (0, 0, 0),
+        Some((sonar, Echo::Pulse(us))) => (1, sonar as u8, us),
+        Some((sonar, Echo::Clear)) => (2, sonar as u8, 0),
+        Some((sonar, Echo::Silent)) => (3, sonar as u8, 0),
+    };
+    // SAFETY: only the loop touches it, and no reference to it is left; volatile, for whoever stops the program here.
+    let taken = unsafe {
+        RUMBO_INPUTS.0.get().write_volatile(InputsRecord {
+            now_us: inputs.now.0,
+            left: edges(inputs.encoders.left),
+            right: edges(inputs.encoders.right),
+            echo,
+            sonar,
+            pulse_us,
+        });
+        rumbo_inputs_latched();
+        RUMBO_INPUTS.0.get().read_volatile()
+    };
+    let edges = |record: EdgesRecord| Edges {
+        count: record.count,
+        last: Micros(record.last_us),
+        turn_us: record.turn_us,
+    };
+    let sonar = SonarId::ALL.get(usize::from(taken.sonar)).copied();
+    Inputs {
+        now: Micros(taken.now_us),
+        encoders: Wheels {
+            left: edges(taken.left),
+            right: edges(taken.right),
+        },
+        echo: sonar.and_then(|sonar| match taken.echo {
+            1 => Some((sonar, Echo::Pulse(taken.pulse_us))),
+            2 => Some((sonar, Echo::Clear)),
+            3 => Some((sonar, Echo::Silent)),
+            _ => None,
+        }),
+        battery_v: inputs.battery_v,
+    }
+}
+
+/// Shows the outputs of a tick.
+pub fn outputs(outputs: &Outputs) {
+    // SAFETY: as above.
+    unsafe {
+        RUMBO_OUTPUTS.0.get().write_volatile(OutputsRecord {
+            left: outputs.drive.left.counts(),
+            right: outputs.drive.right.counts(),
+            servo_rad: outputs.servo.0,
+            ping: outputs.ping.map_or(255, |sonar| sonar as u8),
+        });
+    }
+    rumbo_outputs_left();
+}

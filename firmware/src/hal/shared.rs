@@ -1,0 +1,56 @@
+//! What interrupt handlers and the loop share: values that cannot be read or written in halves.
+//!
+//! The chip moves a byte at a time. A [`Byte`] may therefore be touched from anywhere, a [`Word`] only by who shows
+//! that no interrupt can come in between: a handler, or the loop within `avr_device::interrupt::free`.
+
+use core::cell::UnsafeCell;
+
+pub(super) use avr_device::interrupt::CriticalSection;
+
+/// A shared byte.
+pub(super) struct Byte(UnsafeCell<u8>);
+
+// SAFETY: one core, and each access is a single instruction.
+unsafe impl Sync for Byte {}
+
+impl Byte {
+    pub(super) const fn new(value: u8) -> Self {
+        Self(UnsafeCell::new(value))
+    }
+
+    #[inline(always)]
+    pub(super) fn get(&self) -> u8 {
+        // SAFETY: valid for as long as the cell; volatile, since a handler may have changed it.
+        unsafe { self.0.get().read_volatile() }
+    }
+
+    #[inline(always)]
+    pub(super) fn set(&self, value: u8) {
+        // SAFETY: as above.
+        unsafe { self.0.get().write_volatile(value) }
+    }
+}
+
+/// A shared word.
+pub(super) struct Word(UnsafeCell<u16>);
+
+// SAFETY: one core, and whoever has a `CriticalSection` is not interrupted.
+unsafe impl Sync for Word {}
+
+impl Word {
+    pub(super) const fn new(value: u16) -> Self {
+        Self(UnsafeCell::new(value))
+    }
+
+    #[inline(always)]
+    pub(super) fn get(&self, _: CriticalSection<'_>) -> u16 {
+        // SAFETY: nobody writes meanwhile.
+        unsafe { self.0.get().read_volatile() }
+    }
+
+    #[inline(always)]
+    pub(super) fn set(&self, value: u16, _: CriticalSection<'_>) {
+        // SAFETY: nobody reads or writes meanwhile.
+        unsafe { self.0.get().write_volatile(value) }
+    }
+}
