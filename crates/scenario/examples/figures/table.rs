@@ -71,7 +71,7 @@ pub(crate) fn spread(row: &Row, runs: &Runs) -> String {
     if median == "never" {
         numbers
     } else {
-        format!("{numbers} {}", row.unit)
+        format!("{numbers} {}", row.unit).trim_end().to_owned()
     }
 }
 

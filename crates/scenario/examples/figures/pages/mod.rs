@@ -1,11 +1,12 @@
 //! What each page of docs/theory shows.
 
 mod baseline;
+mod manual;
 mod walls;
 mod ways;
 mod wheels;
 
-use crate::chart::{Chart, Curve, Legend, ORIGINAL, OURS, map, over_time, svg};
+use crate::chart::{Chart, Curve, Legend, ORIGINAL, OURS, THIRD, map, over_time, svg};
 use crate::runs::{self, Change, Runs, runs};
 use crate::table::{Row, row, spread, table};
 use rumbo_scenario::files::Setup;
@@ -30,6 +31,7 @@ pub(crate) struct Made {
 }
 
 pub(crate) const PAGES: &[Page] = &[
+    page("manual", "manual.md", manual::manual),
     page("mode1", "front_distance.md", walls::mode1),
     page("mode2", "front_align.md", walls::mode2),
     page("mode3", "wall_follow.md", walls::mode3),
