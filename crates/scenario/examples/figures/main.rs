@@ -11,7 +11,7 @@
 
 /// The library's charts, with names that are known beforehand.
 mod chart {
-    pub(crate) use rumbo_scenario::chart::{Legend, ORIGINAL, OURS, map, over_time, svg};
+    pub(crate) use rumbo_scenario::chart::{Legend, ORIGINAL, OURS, THIRD, map, over_time, svg};
     pub(crate) type Chart = rumbo_scenario::chart::Chart<'static>;
     pub(crate) type Curve = rumbo_scenario::chart::Curve<'static>;
 }
