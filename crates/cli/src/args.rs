@@ -102,6 +102,8 @@ Examples:
   rumbo run mode5 --runs 20 --program original
   rumbo run mode1 --rig final --world room
   rumbo run mode5 --firmware my_sketch.elf --command 'REF 40@20'
+  rumbo run mode5 --firmware my_sketch.elf --profile cycles.folded --vcd pins.vcd
+  rumbo run mode5 --firmware my_sketch.elf --gdb 1234   # then: avr-gdb my_sketch.elf -ex 'target remote :1234'
   rumbo run mode1 --seed 7 --param battery.open_circuit_v=6.9 --out out/mode1")]
 pub(crate) struct RunArgs {
     /// Scenarios: names, or paths of files
@@ -144,6 +146,15 @@ pub(crate) struct RunArgs {
     /// One JSON object per run on stdout
     #[arg(long)]
     pub(crate) json: bool,
+    /// File for the firmware's cycles by function, for flame graphs; what it comes to goes to stderr. One run
+    #[arg(long, value_name = "FILE", requires = "firmware")]
+    pub(crate) profile: Option<PathBuf>,
+    /// File for the Mega's pins over time, for a viewer of waveforms such as GTKWave. One run
+    #[arg(long, value_name = "FILE", requires = "firmware")]
+    pub(crate) vcd: Option<PathBuf>,
+    /// Port on 127.0.0.1 where the run waits for avr-gdb; 0 takes any free one. One run
+    #[arg(long, value_name = "PORT", requires = "firmware")]
+    pub(crate) gdb: Option<u16>,
     /// Threads [default: one per core]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,

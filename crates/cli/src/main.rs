@@ -15,6 +15,7 @@ mod lab;
 mod list;
 mod logs;
 mod manifest;
+mod observe;
 mod output;
 mod rerun;
 mod run;

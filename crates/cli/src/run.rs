@@ -3,6 +3,7 @@
 use crate::args::{ProgramName, RunArgs};
 use crate::failure::Failure;
 use crate::logs;
+use crate::observe;
 use crate::output::{self, figure};
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_scenario::files::{Library, Overrides, Program, ScenarioFile, Setup};
@@ -48,7 +49,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         .collect();
     let progress = progress_bar(jobs.len());
     let (mut passed, mut results) = (true, Vec::new());
-    run::run_all(&jobs, |setup, mut result| {
+    let handle = |setup: &Setup, mut result: RunResult| {
         progress.inc(1);
         passed &= result.pass;
         if let Some(folder) = &args.out {
@@ -66,13 +67,29 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         }
         let results = std::mem::take(&mut results);
         progress.suspend(|| report(&setup.scenario, &results))
-    })?;
+    };
+    run_jobs(args, &jobs, handle)?;
     progress.finish_and_clear();
     if passed {
         Ok(())
     } else {
         Err(Failure::LimitMissed)
     }
+}
+
+/// All of them at once; the one whose program is looked at by itself.
+fn run_jobs(
+    args: &RunArgs,
+    jobs: &[(&Setup, u64)],
+    mut handle: impl FnMut(&Setup, RunResult) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    if !observe::is_wanted(args) {
+        return run::run_all(jobs, handle);
+    }
+    let result = observe::run(args, jobs)?;
+    jobs.iter()
+        .take(1)
+        .try_for_each(|(setup, _)| handle(setup, result.clone()))
 }
 
 /// On stderr, and only where that is a terminal and there is something to wait for.

@@ -8,6 +8,7 @@ pub mod files;
 pub mod identify;
 pub mod mega;
 pub mod metrics;
+pub mod observe;
 mod operator;
 mod original;
 pub mod random_world;

@@ -6,12 +6,14 @@ use crate::calibrate::calibrate_simulated;
 use crate::files::{FileError, Setup};
 use crate::mega::Mega;
 use crate::metrics::{self, Metrics};
+use crate::observe::Waves;
 use crate::operator::Operator;
 use crate::sim::Sim;
 use crate::trace::{SAMPLE_US, Trace};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::borrow::Cow;
+use std::io;
 
 /// What a run gave.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -35,56 +37,157 @@ pub struct RunResult {
     pub trace: Trace,
 }
 
+/// A run under way.
+pub struct Run<'a> {
+    setup: &'a Setup,
+    seed: u64,
+    sim: Sim,
+    operator: Operator<'a>,
+    trace: Trace,
+    end_us: u64,
+    /// Where the sample under way ends [us].
+    sample_us: u64,
+    /// Where the pins are drawn, if anybody wants to see them.
+    waves: Option<Waves>,
+    undrawn: io::Result<()>,
+}
+
+impl<'a> Run<'a> {
+    fn new(setup: &'a Setup, seed: u64) -> Result<Self, FileError> {
+        let mut sim = Sim::new(setup, seed)?;
+        let mut operator = Operator::new(setup);
+        operator.brief(&mut sim)?;
+        sim.tap_link();
+        let end_us = (setup.scenario.duration_s * 1e6) as u64;
+        let mut trace = Trace::default();
+        trace.samples.reserve((end_us / SAMPLE_US) as usize + 1);
+        Ok(Self {
+            setup,
+            seed,
+            sample_us: sim.now_us(),
+            sim,
+            operator,
+            trace,
+            end_us,
+            waves: None,
+            undrawn: Ok(()),
+        })
+    }
+
+    /// Robot and program.
+    pub fn sim(&mut self) -> &mut Sim {
+        &mut self.sim
+    }
+
+    pub(crate) fn mega(&self) -> Option<&Mega> {
+        self.sim.mega()
+    }
+
+    /// The time is over, or the program has ended.
+    pub fn is_over(&self) -> bool {
+        self.sim.now_us() >= self.end_us || self.sim.verdict().is_some()
+    }
+
+    /// Goes on to the end of a sample, or to where a debugger halts the program.
+    pub fn advance(&mut self) {
+        if self.sim.now_us() >= self.sample_us {
+            self.operator.step(&mut self.sim);
+            self.sample_us = (self.sim.now_us() + SAMPLE_US).min(self.end_us);
+        }
+        self.sim.advance(self.sample_us);
+        self.draw_levels();
+        if self.sim.now_us() >= self.sample_us || self.sim.verdict().is_some() {
+            self.trace.take(&self.sim);
+            self.trace.listen(&mut self.sim);
+        }
+    }
+
+    /// From here on the pins are drawn there.
+    pub(crate) fn draw(&mut self, waves: Waves) {
+        self.waves = Some(waves);
+    }
+
+    fn draw_levels(&mut self) {
+        if let (Some(waves), Some(mega)) = (&mut self.waves, self.sim.mega_mut()) {
+            for level in mega.chip_mut().take_levels() {
+                if self.undrawn.is_ok() {
+                    self.undrawn = waves.put(level);
+                }
+            }
+        }
+    }
+
+    /// The drawing ends here.
+    ///
+    /// # Errors
+    /// It could not be written.
+    pub(crate) fn finish_drawing(&mut self) -> io::Result<()> {
+        self.draw_levels();
+        std::mem::replace(&mut self.undrawn, Ok(()))?;
+        match (self.waves.take(), self.sim.mega()) {
+            (Some(waves), Some(mega)) => waves.finish(mega.chip().cpu().cycle()),
+            _ => Ok(()),
+        }
+    }
+
+    fn judge(mut self) -> RunResult {
+        let (setup, scenario) = (self.setup, &self.setup.scenario);
+        self.trace.heard = self.operator.heard;
+        self.trace.link = self.sim.take_tapped();
+        let metrics = metrics::compute(setup, &self.sim, &self.trace);
+        let mut failures = self.operator.complaints;
+        failures.extend(self.sim.verdict());
+        let mut notes = self.operator.notes;
+        notes.extend(self.sim.mega().map(Mega::notes).into_iter().flatten());
+        for (name, bounds) in &scenario.limits {
+            match metrics.get(name) {
+                Some(value) if bounds.admit(*value) => {}
+                Some(value) => failures.push(format!("{name} = {value:.4}: limit {bounds}")),
+                None => failures.push(format!(
+                    "{name}: this scenario has no such metric; it has {}",
+                    known(&metrics)
+                )),
+            }
+        }
+        RunResult {
+            scenario: scenario.name.clone(),
+            seed: self.seed,
+            pass: failures.is_empty(),
+            metrics,
+            failures,
+            notes,
+            trace: self.trace,
+        }
+    }
+}
+
 /// Runs a scenario once.
 ///
 /// # Errors
 /// If the setup's values do not fit together, or the calibration that it asks for came to no end.
 pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
+    run_by(setup, seed, |run| {
+        while !run.is_over() {
+            run.advance();
+        }
+        Ok(())
+    })
+}
+
+/// Runs a scenario once as the caller lets it go on; what it has come to by then is judged.
+///
+/// # Errors
+/// As [`run`], or the caller's.
+pub fn run_by<E: From<FileError>>(
+    setup: &Setup,
+    seed: u64,
+    go_on: impl FnOnce(&mut Run<'_>) -> Result<(), E>,
+) -> Result<RunResult, E> {
     let setup = &*setup.of_seed(seed)?;
     let setup = &*prepare(setup, seed)?;
-    let scenario = &setup.scenario;
-    let mut sim = Sim::new(setup, seed)?;
-    let mut operator = Operator::new(setup);
-    let mut trace = Trace::default();
-    operator.brief(&mut sim)?;
-    sim.tap_link();
-    let end_us = (scenario.duration_s * 1e6) as u64;
-    trace.samples.reserve((end_us / SAMPLE_US) as usize + 1);
-    while sim.now_us() < end_us {
-        operator.step(&mut sim);
-        sim.advance((sim.now_us() + SAMPLE_US).min(end_us));
-        trace.take(&sim);
-        trace.listen(&mut sim);
-        if sim.verdict().is_some() {
-            break;
-        }
-    }
-    trace.heard = operator.heard;
-    trace.link = sim.take_tapped();
-    let metrics = metrics::compute(setup, &sim, &trace);
-    let mut failures = operator.complaints;
-    failures.extend(sim.verdict());
-    let mut notes = operator.notes;
-    notes.extend(sim.mega().map(Mega::notes).into_iter().flatten());
-    for (name, bounds) in &scenario.limits {
-        match metrics.get(name) {
-            Some(value) if bounds.admit(*value) => {}
-            Some(value) => failures.push(format!("{name} = {value:.4}: limit {bounds}")),
-            None => failures.push(format!(
-                "{name}: this scenario has no such metric; it has {}",
-                known(&metrics)
-            )),
-        }
-    }
-    Ok(RunResult {
-        scenario: scenario.name.clone(),
-        seed,
-        pass: failures.is_empty(),
-        metrics,
-        failures,
-        notes,
-        trace,
-    })
+    let mut run = Run::new(setup, seed)?;
+    go_on(&mut run)?;
+    Ok(run.judge())
 }
 
 /// The setup as it is run: if its scenario asks for it, with the parameters that a calibration of this seed's robot gives. Those of the

@@ -24,11 +24,11 @@ pub trait Machine {
     /// The chip, to change it while it stands.
     fn chip_mut(&mut self) -> &mut Chip;
 
-    /// Goes on for about a millisecond of the chip's time, or until the program stops; what is connected goes along.
+    /// Goes on for some milliseconds of the chip's time, or until the program stops; what is connected goes along.
     fn go(&mut self) -> Stopped;
 
-    /// The chip alone has done an instruction: what is connected catches up with it.
-    fn follow(&mut self);
+    /// One instruction, also where a breakpoint stands; what is connected goes along.
+    fn step(&mut self) -> Stopped;
 
     /// The run is over: there is nothing to go on with.
     fn is_over(&self) -> bool {
@@ -48,12 +48,14 @@ impl Machine for Chip {
 
     fn go(&mut self) -> Stopped {
         let stopped = self.run_until(self.cpu().cycle() + MILLISECOND);
-        self.follow();
+        self.take_outputs();
         stopped
     }
 
-    fn follow(&mut self) {
+    fn step(&mut self) -> Stopped {
+        let stopped = Chip::step(self);
         self.take_outputs();
+        stopped
     }
 }
 

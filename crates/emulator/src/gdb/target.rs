@@ -87,7 +87,7 @@ impl<'a, M: Machine> Debugger<'a, M> {
     /// Lets the program go on until it stops, or `interrupted` says that the debugger has something to say.
     fn go(&mut self, mut interrupted: impl FnMut() -> bool) -> Option<SingleThreadStopReason<u32>> {
         // Off a breakpoint at which it may stand.
-        let stopped = self.step();
+        let stopped = self.machine.step();
         if let Some(reason) = self.stop_reason(stopped) {
             return Some(reason);
         }
@@ -101,7 +101,7 @@ impl<'a, M: Machine> Debugger<'a, M> {
                     return Some(SingleThreadStopReason::DoneStep);
                 }
                 Motion::Continue => self.machine.go(),
-                Motion::Step | Motion::Within(_) => self.step(),
+                Motion::Step | Motion::Within(_) => self.machine.step(),
             };
             if let Some(reason) = self.stop_reason(stopped) {
                 return Some(reason);
@@ -114,12 +114,6 @@ impl<'a, M: Machine> Debugger<'a, M> {
                 return None;
             }
         }
-    }
-
-    fn step(&mut self) -> Stopped {
-        let stopped = self.machine.chip_mut().step();
-        self.machine.follow();
-        stopped
     }
 
     /// What to tell the debugger about a stop, if it was one.

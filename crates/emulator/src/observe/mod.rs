@@ -5,6 +5,7 @@
 //! the program cannot tell the difference.
 
 pub mod profile;
+mod report;
 pub mod touch;
 pub mod trace;
 pub mod vectors;

@@ -1,11 +1,12 @@
 //! A program image for the Mega: what it is, which language it speaks on its link, and the wiring that it is for.
 
 use super::CYCLES_PER_US;
-use super::pins::{Wires, chip_pin};
+use super::pins::{Wires, board_signals, chip_pin};
 use crate::files::{FileError, RobotFile, ScenarioFile, Wiring};
 use rumbo_control::mode::ModeId;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
+use rumbo_emulator::devices::ports::Pin;
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
 use rumbo_wire::{Decoder, FromRobot, Message, Received};
@@ -84,6 +85,13 @@ impl Firmware {
     /// The program.
     pub fn image(&self) -> &Image {
         &self.image
+    }
+
+    /// Names for pins: the wired ones by what they are for, and all of the board by their numbers.
+    pub fn signals(&self) -> Vec<(String, Pin)> {
+        let mut signals = self.wires.signals();
+        signals.extend(board_signals());
+        signals
     }
 
     /// What it speaks on its link.

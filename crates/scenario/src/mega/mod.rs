@@ -69,7 +69,7 @@ pub(crate) enum Pause {
     Reached,
     /// There are actions, all at this time [us].
     Act(u64),
-    /// A breakpoint: time stands still here [us].
+    /// A debugger has the program: time stands still here [us].
     Halted(u64),
 }
 
@@ -99,6 +99,10 @@ pub struct Mega {
     sent: Vec<(u64, u8)>,
     consoles: [Console; 4],
     verdict: Option<Verdict>,
+    /// The program does one instruction and halts.
+    stepping: bool,
+    /// Why the program stands, until a debugger lets it go on.
+    halt: Option<Stopped>,
 }
 
 impl Mega {
@@ -120,6 +124,8 @@ impl Mega {
             sent: Vec::new(),
             consoles: Default::default(),
             verdict: None,
+            stepping: false,
+            halt: None,
             firmware,
         };
         for pin in mega.wires().receivers.into_iter().flatten() {
@@ -170,6 +176,16 @@ impl Mega {
     /// The chip, as a debugger holds it.
     pub fn chip_mut(&mut self) -> &mut Chip {
         &mut self.chip
+    }
+
+    /// From here on the program does one instruction, and halts.
+    pub(crate) fn step(&mut self) {
+        self.stepping = true;
+    }
+
+    /// Why the program stands; it goes on at the next advance.
+    pub(crate) fn take_halt(&mut self) -> Option<Stopped> {
+        self.halt.take()
     }
 
     /// How the program ended, if it could not go on: what, where, when.
@@ -269,6 +285,10 @@ impl Mega {
         let until = self.cycle_of(until_us);
         loop {
             let now = self.chip.cpu().cycle();
+            if self.halt.is_some() {
+                let at_us = (now - self.zero_cycle) / CYCLES_PER_US;
+                return Pause::Halted(at_us.min(until_us));
+            }
             if self.verdict.is_some() || now >= until {
                 self.deliver_up_to(until, faults);
                 return Pause::Reached;
@@ -278,18 +298,21 @@ impl Mega {
             let target = waves
                 .chain(self.next_input().map(|cycle| cycle - AHEAD_CYCLES))
                 .fold(until, u64::min);
-            let stopped = self.chip.run_until(target.max(now + 1));
+            let stepping = std::mem::take(&mut self.stepping);
+            let stopped = if stepping {
+                self.chip.step()
+            } else {
+                self.chip.run_until(target.max(now + 1))
+            };
             let acted = self.listen();
             if let Stopped::Ended(verdict) = &stopped {
                 self.verdict = Some(verdict.clone());
+            } else if stepping || matches!(stopped, Stopped::Breakpoint | Stopped::Watched { .. }) {
+                self.halt = Some(stopped);
             }
             if let Some(cycle) = acted {
                 let at_us = (cycle - self.zero_cycle).div_ceil(CYCLES_PER_US);
                 return Pause::Act(at_us.min(until_us));
-            }
-            if stopped == Stopped::Breakpoint {
-                let at_us = (self.chip.cpu().cycle() - self.zero_cycle) / CYCLES_PER_US;
-                return Pause::Halted(at_us.min(until_us));
             }
         }
     }

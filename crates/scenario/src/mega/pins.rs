@@ -87,6 +87,12 @@ pub fn chip_pin(number: u8) -> Option<Pin> {
     Pin::new(letter, bit)
 }
 
+/// The board's pins by their numbers: `pin_02`.
+pub(super) fn board_signals() -> impl Iterator<Item = (String, Pin)> {
+    let numbers = 0..PINS.len() as u8;
+    numbers.filter_map(|number| Some((format!("pin_{number:02}"), chip_pin(number)?)))
+}
+
 /// Enable and direction inputs of one half of the bridge; what is not wired stays low.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct BridgePins {
@@ -107,6 +113,31 @@ pub(super) struct Wires {
     pub(super) link: Option<u8>,
     /// Lines that idle high because something sends on them.
     pub(super) receivers: [Option<Pin>; 2],
+}
+
+impl Wires {
+    /// The wired pins by what they are for: `left_enable`, `front_echo`, `servo`.
+    pub(super) fn signals(&self) -> Vec<(String, Pin)> {
+        let mut named = Vec::new();
+        for (side, (bridge, encoder)) in ["left", "right"]
+            .into_iter()
+            .zip(self.bridges.iter().zip(self.encoders))
+        {
+            named.extend([
+                (format!("{side}_enable"), bridge.enable),
+                (format!("{side}_forward"), bridge.forward),
+                (format!("{side}_backward"), bridge.backward),
+                (format!("{side}_encoder"), encoder),
+            ]);
+        }
+        for (index, sonar) in ["left", "right", "front"].into_iter().enumerate() {
+            named.push((format!("{sonar}_trigger"), self.triggers[index]));
+            named.push((format!("{sonar}_echo"), self.echoes[index]));
+        }
+        named.push(("servo".to_owned(), self.servo));
+        let wired = |(name, pin): (String, Option<Pin>)| Some((name, pin?));
+        named.into_iter().filter_map(wired).collect()
+    }
 }
 
 impl Wires {

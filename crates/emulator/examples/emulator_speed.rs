@@ -1,4 +1,4 @@
-//! How fast the chip runs a program: `cargo run --release --example speed -- IMAGE SECONDS`.
+//! How fast the chip runs a program: `cargo run --release --example emulator_speed -- IMAGE SECONDS`.
 //!
 //! Nothing is wired to it: what `rumbo run --firmware` adds is the plant.
 

@@ -1,0 +1,97 @@
+//! A profile as tables for people.
+
+use super::profile::{FunctionUse, InterruptUse, Profile};
+use super::vectors;
+
+/// Cycles in a second and in a microsecond at the Mega's 16 MHz.
+const HERTZ: f64 = 16e6;
+const CYCLES_PER_US: f64 = 16.0;
+/// Most functions that are listed.
+const FUNCTIONS: usize = 20;
+
+impl Profile {
+    /// What it comes to: time asleep, the most expensive functions, every interrupt.
+    pub fn report(&self) -> String {
+        let all = self.cycles().max(1) as f64;
+        let percent = |cycles: u64| format!("{:.1}", 100.0 * cycles as f64 / all);
+        let mut text = format!(
+            "{} cycles ({:.3} s), {} % asleep\n",
+            self.cycles(),
+            self.cycles() as f64 / HERTZ,
+            percent(self.cycles_asleep())
+        );
+        let mut rows =
+            vec![["function", "calls", "every ms", "own %", "with calls %"].map(String::from)];
+        let functions = self.functions();
+        let listed = functions
+            .iter()
+            .filter(|function| function.calls > 0)
+            .take(FUNCTIONS);
+        rows.extend(listed.map(
+            |FunctionUse {
+                 name,
+                 calls,
+                 own,
+                 total,
+             }| {
+                let every_ms = 1e3 * all / HERTZ / *calls as f64;
+                [
+                    name.clone(),
+                    calls.to_string(),
+                    format!("{every_ms:.3}"),
+                    percent(*own),
+                    percent(*total),
+                ]
+            },
+        ));
+        text += &table(&rows);
+        let interrupts = self.interrupts();
+        if !interrupts.is_empty() {
+            let titles = ["interrupt", "count", "total %", "longest", "worst latency"];
+            let mut rows = vec![titles.map(String::from)];
+            rows.extend(interrupts.iter().map(|interrupt| {
+                let InterruptUse {
+                    vector,
+                    count,
+                    total,
+                    longest,
+                    worst_latency,
+                } = *interrupt;
+                [
+                    vectors::name(vector).to_owned(),
+                    count.to_string(),
+                    percent(total),
+                    time(longest),
+                    time(worst_latency),
+                ]
+            }));
+            text += &table(&rows);
+        }
+        text
+    }
+}
+
+/// Cycles and microseconds.
+fn time(cycles: u64) -> String {
+    format!("{cycles} ({:.1} us)", cycles as f64 / CYCLES_PER_US)
+}
+
+/// The first column to the left, the others to the right.
+fn table(rows: &[[String; 5]]) -> String {
+    let width = |column: usize| {
+        rows.iter()
+            .map(|row| row[column].chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let widths: [usize; 5] = std::array::from_fn(width);
+    let mut text = String::new();
+    for [name, rest @ ..] in rows {
+        text += &format!("  {name:<0$}", widths[0]);
+        for (cell, width) in rest.iter().zip(&widths[1..]) {
+            text += &format!("  {cell:>width$}");
+        }
+        text += "\n";
+    }
+    text
+}

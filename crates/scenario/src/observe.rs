@@ -1,0 +1,141 @@
+//! A run whose program is looked at: a profile, pins over time, a debugger.
+//!
+//! None of it changes the run: robot and world stand still in time while a debugger holds the program.
+
+use crate::files::FileError;
+use crate::mega::Mega;
+use crate::run::Run;
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::cpu::Stopped;
+use rumbo_emulator::gdb::{self, Farewell, Machine};
+use rumbo_emulator::observe::profile::Profile;
+use rumbo_emulator::observe::waveform::Waveform;
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+
+/// What is to be seen of the program.
+#[derive(Debug, Default)]
+pub struct Wanted {
+    /// A file for cycles by function, as tools that draw flame graphs read them.
+    pub profile: Option<PathBuf>,
+    /// A file for the pins over time, as viewers of waveforms read them.
+    pub vcd: Option<PathBuf>,
+    /// A debugger that is connected.
+    pub debugger: Option<TcpStream>,
+}
+
+/// What was seen.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Seen {
+    /// The profile in tables.
+    pub profile: Option<String>,
+    /// The debugger ended the run before its time.
+    pub ended: bool,
+}
+
+/// The file of a run's waveforms.
+pub(crate) type Waves = Waveform<BufWriter<File>>;
+
+/// Lets a run go on to its end, and shows what is wanted of its program.
+///
+/// # Errors
+/// There is no image in the robot, a file cannot be written, or the line to the debugger broke.
+pub fn go_on(run: &mut Run<'_>, wanted: Wanted) -> Result<Seen, FileError> {
+    let Some(mega) = run.sim().mega_mut() else {
+        let what = "nothing of the program can be seen without --firmware";
+        return Err(FileError::Setting(what.into()));
+    };
+    let image = mega.firmware().image().clone();
+    let signals = mega.firmware().signals();
+    if wanted.profile.is_some() {
+        mega.chip_mut()
+            .observers_mut()
+            .profile(Profile::new(&image));
+    }
+    if let Some(path) = &wanted.vcd {
+        mega.chip_mut().record_levels();
+        let file = File::create(path).map(BufWriter::new);
+        let waves = file.and_then(|file| Waveform::new(file, &signals));
+        run.draw(waves.map_err(|error| unwritten(path, &error))?);
+    }
+    let mut seen = Seen::default();
+    if let Some(connection) = wanted.debugger {
+        let farewell = gdb::serve(&mut Debugged(run), connection);
+        let farewell = farewell.map_err(|error| FileError::Setting(error.to_string()))?;
+        seen.ended = farewell == Farewell::Ended && !run.is_over();
+    }
+    while !seen.ended && !run.is_over() {
+        run.advance();
+    }
+    if let Some(path) = &wanted.vcd {
+        run.finish_drawing()
+            .map_err(|error| unwritten(path, &error))?;
+    }
+    if let Some(path) = &wanted.profile
+        && let Some(profile) = run
+            .mega()
+            .and_then(|mega| mega.chip().observers().profiled())
+    {
+        std::fs::write(path, profile.folded()).map_err(|error| unwritten(path, &error))?;
+        seen.profile = Some(profile.report());
+    }
+    Ok(seen)
+}
+
+fn unwritten(path: &Path, error: &io::Error) -> FileError {
+    FileError::Setting(format!(
+        "{}: cannot be written ({error}); choose another file",
+        path.display()
+    ))
+}
+
+/// A run with an emulated Mega in it, in the hands of a debugger.
+struct Debugged<'r, 'a>(&'r mut Run<'a>);
+
+impl Debugged<'_, '_> {
+    fn mega(&mut self) -> &mut Mega {
+        match self.0.sim().mega_mut() {
+            Some(mega) => mega,
+            None => unreachable!("there was one at the beginning"),
+        }
+    }
+
+    fn go_on(&mut self) -> Stopped {
+        self.0.advance();
+        if let Some(stopped) = self.mega().take_halt() {
+            return stopped;
+        }
+        match self.chip().cpu().verdict() {
+            Some(verdict) => Stopped::Ended(verdict.clone()),
+            None => Stopped::Reached,
+        }
+    }
+}
+
+impl Machine for Debugged<'_, '_> {
+    fn chip(&self) -> &Chip {
+        match self.0.mega() {
+            Some(mega) => mega.chip(),
+            None => unreachable!("there was one at the beginning"),
+        }
+    }
+
+    fn chip_mut(&mut self) -> &mut Chip {
+        self.mega().chip_mut()
+    }
+
+    fn go(&mut self) -> Stopped {
+        self.go_on()
+    }
+
+    fn step(&mut self) -> Stopped {
+        self.mega().step();
+        self.go_on()
+    }
+
+    fn is_over(&self) -> bool {
+        self.0.is_over()
+    }
+}
