@@ -41,13 +41,28 @@ impl Chip {
         }
     }
 
-    /// Runs until `cycle` cycles have passed since power-on, to the end of the instruction that passes it.
+    /// Cycles of the crystal since power-on. Inputs and outputs have their time in these; those of the CPU are the same unless the
+    /// program divides its clock.
+    pub fn cycle(&self) -> u64 {
+        self.devices.clock().time(self.cpu.cycle())
+    }
+
+    /// Runs until `cycle` cycles of the crystal have passed since power-on, to the end of the instruction that passes it.
     pub fn run_until(&mut self, cycle: u64) -> Stopped {
-        observe::run(&mut self.cpu, &mut self.devices, &mut self.observers, cycle)
+        loop {
+            let until = self.devices.clock().cycle(cycle);
+            let stopped =
+                observe::run(&mut self.cpu, &mut self.devices, &mut self.observers, until);
+            let rescaled = self.devices.take_rescaled();
+            if !rescaled || !matches!(stopped, Stopped::Reached | Stopped::Output) {
+                return stopped;
+            }
+        }
     }
 
     /// Runs one instruction, also where a breakpoint stands; or sleeps on, or enters an interrupt that is due before it.
     pub fn step(&mut self) -> Stopped {
+        self.devices.take_rescaled();
         observe::step(&mut self.cpu, &mut self.devices, &mut self.observers)
     }
 
@@ -68,7 +83,7 @@ impl Chip {
 
     /// From now on every change of a pin's level is kept, whoever drives it, beginning with the levels now.
     pub fn record_levels(&mut self) {
-        self.devices.record_levels(self.cpu.cycle());
+        self.devices.record_levels(self.cycle());
     }
 
     /// The levels kept since the last call, in order.

@@ -178,10 +178,68 @@ fn a_peripheral_without_its_clock_stands() {
 fn the_clock_s_prescaler_changes_in_its_timed_sequence_only() {
     let (mut chip, _) = set_up(&[(0x81, 0x01)]);
     chip.run_until(100);
-    write(&mut chip, 0x61, 0x00);
+    write(&mut chip, 0x61, 0x03);
+    assert_eq!(read(&mut chip, 0x61), 0x00);
     write(&mut chip, 0x61, 0x80);
     assert_eq!(read(&mut chip, 0x61), 0x80);
-    write(&mut chip, 0x61, 0x00);
-    assert_eq!(read(&mut chip, 0x61), 0x00);
-    assert_eq!(chip.unmodelled(), []);
+    write(&mut chip, 0x61, 0x03);
+    assert_eq!(read(&mut chip, 0x61), 0x03);
+}
+
+#[test]
+fn a_divided_clock_slows_the_chip_and_not_what_is_around_it() {
+    // CLKPR: over 8, in the second of two STS, cycle 5; then timer 1 on, OC1A toggling at each count of 100, a byte, and the watchdog.
+    let mut words = vec![ldi(16, 0x80), ldi(17, 0x03)];
+    words.extend(sts(0x61, 16));
+    words.extend(sts(0x61, 17));
+    for (address, value) in [
+        (0x24, 0x20),
+        (0x88, 99),
+        (0x80, 0x40),
+        (0x81, 0x09),
+        (0xC1, 0x18),
+        (0xC6, 0x55),
+        (0x60, 0x08),
+    ] {
+        words.push(ldi(16, value));
+        words.extend(sts(address, 16));
+    }
+    words.push(0xCFFF);
+    let mut chip = chip_of(&words);
+    // UBRR 0 over 16: 128 cycles of the crystal a bit.
+    let serial = Input::Serial {
+        usart: 0,
+        byte: 0x69,
+        baud: 125_000,
+    };
+    chip.input(20_000, serial);
+    chip.run_until(60_000);
+    assert!(chip.cycle().abs_diff(60_000) <= 16, "{}", chip.cycle());
+    assert!(chip.cpu().cycle().abs_diff(60_000 / 8) <= 8);
+    assert_eq!(read(&mut chip, 0xC6), 0x69);
+    let mut snapshot = chip.clone();
+    let outputs = snapshot.take_outputs();
+    let sent = outputs.iter().find_map(|output| match output.event {
+        Event::Byte { byte, baud, .. } => Some((byte, baud)),
+        _ => None,
+    });
+    assert_eq!(sent, Some((0x55, 125_000.0)));
+    let toggles = edges(&mut chip, pin('B', 5));
+    assert!(
+        toggles
+            .windows(2)
+            .skip(1)
+            .all(|two| two[1].0 - two[0].0 == 800),
+        "{toggles:?}"
+    );
+    // The watchdog was set in cycle 5 + 7 of 3 each, the one and the other of the CPU's.
+    chip.run_until(300_000);
+    let reset = chip
+        .take_outputs()
+        .into_iter()
+        .find(|output| matches!(output.event, Event::Reset(_)));
+    let started = 5 + 8 * 21;
+    assert!(reset.unwrap().cycle.abs_diff(started + 256_000) <= 8);
+    chip.run_until(1_400_000);
+    assert_eq!(read(&mut chip, 0x61), 0x03, "set anew by the program");
 }

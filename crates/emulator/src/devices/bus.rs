@@ -14,7 +14,7 @@ impl Devices {
             self.unmodelled.push(Unmodelled {
                 address,
                 program_counter: at.program_counter,
-                cycle: at.cycle,
+                cycle: self.core.clock.time(at.cycle),
                 written,
             });
         }
@@ -122,9 +122,8 @@ impl Io for Devices {
             Owner::Spi => self.spi.write(&mut self.core, address, value, at.cycle),
             Owner::Twi => self.twi.write(&mut self.core, address, value, at.cycle),
             Owner::Power => {
-                if self.power.write(address, value, at.cycle) {
-                    self.not_modelled(address, at, true);
-                }
+                self.power.write(address, value, at.cycle);
+                self.set_divisor(at.cycle);
                 self.set_clocks(at.cycle);
             }
             Owner::System => {
@@ -171,7 +170,7 @@ impl Io for Devices {
     }
 
     fn take_notice(&mut self) -> bool {
-        std::mem::take(&mut self.core.noticed)
+        std::mem::take(&mut self.core.noticed) || self.core.rescaled
     }
 
     fn take_demand(&mut self) -> Option<Demand> {
@@ -225,7 +224,10 @@ impl Io for Devices {
     }
 
     fn wake(&mut self, cycle: u64) -> u64 {
-        let delay = self.power.wake();
+        if self.power.io_runs() {
+            return 0;
+        }
+        let delay = self.core.clock.cycles(self.power.wake());
         self.set_clocks(cycle + delay);
         delay
     }

@@ -24,7 +24,7 @@ const ARMED_CYCLES: u64 = 4;
 /// Cycles for which the CPU stands after a read and after the start of a write.
 const READ_STALL: u64 = 4;
 const WRITE_STALL: u64 = 2;
-/// Table 8-1: 3.4 ms to erase and write, 1.8 ms for either alone [cycles].
+/// Table 8-1: 3.4 ms to erase and write, 1.8 ms for either alone [cycles of the crystal].
 const ERASE_AND_WRITE_CYCLES: u64 = 54_400;
 const HALF_CYCLES: u64 = 28_800;
 
@@ -33,6 +33,8 @@ const HALF_CYCLES: u64 = 28_800;
 struct Write {
     address: usize,
     value: u8,
+    /// The time when it is done.
+    end: u64,
 }
 
 /// The memory with its registers.
@@ -73,7 +75,7 @@ impl Eeprom {
 
     /// The write is over.
     fn finish(&mut self) {
-        if let Some(Write { address, value }) = self.write.take() {
+        if let Some(Write { address, value, .. }) = self.write.take() {
             self.bytes[address % EEPROM_BYTES] = value;
         }
     }
@@ -138,16 +140,25 @@ impl Eeprom {
             0x20 => (self.bytes[address] & self.data, HALF_CYCLES),
             _ => (self.data, ERASE_AND_WRITE_CYCLES),
         };
-        self.write = Some(Write { address, value });
+        self.write = Some(Write {
+            address,
+            value,
+            end: core.clock.time(cycle) + cycles,
+        });
         self.armed_until = None;
-        core.schedule.set(Source::Eeprom, Some(cycle + cycles));
+        self.reschedule(core);
         core.stall(WRITE_STALL);
+    }
+
+    pub(super) fn reschedule(&self, core: &mut Core) {
+        let due = self.write.map(|write| core.clock.cycle(write.end));
+        core.schedule.set(Source::Eeprom, due);
     }
 
     /// The write's end is due.
     pub(super) fn happen(&mut self, core: &mut Core) {
         self.finish();
-        core.schedule.set(Source::Eeprom, None);
+        self.reschedule(core);
         self.request(core);
     }
 

@@ -5,6 +5,7 @@
 
 mod analog;
 mod bus;
+mod clock;
 mod eeprom;
 pub(crate) mod external;
 pub(crate) mod interrupts;
@@ -27,6 +28,7 @@ use std::collections::{BTreeSet, VecDeque};
 use crate::image::EEPROM_BYTES;
 use crate::io::Demand;
 use analog::{Analog, Trigger};
+use clock::Clock;
 use eeprom::Eeprom;
 use external::External;
 use ports::{Change, Drive, Pin};
@@ -117,7 +119,7 @@ impl Default for Devices {
 }
 
 impl Devices {
-    /// Something from outside at `cycle`, in any order; what lies in the past happens at once.
+    /// Something from outside at `cycle` of the crystal, in any order; what lies in the past happens at once.
     pub fn input(&mut self, cycle: u64, input: Input) {
         let at = self.inputs.partition_point(|(other, _)| *other <= cycle);
         self.inputs.insert(at, (cycle, input));
@@ -173,6 +175,8 @@ impl Devices {
     /// Programs the fuses; `boot` if there is a program in the boot section. Gives where a reset leads [words].
     pub(crate) fn set_fuses(&mut self, fuses: Fuses, boot: bool) -> u32 {
         self.programming.fuses = fuses;
+        self.power = Power::after_reset(fuses.divides_clock());
+        self.set_divisor(0);
         self.start = if fuses.starts_in_boot() && boot {
             fuses.boot_start()
         } else {
@@ -197,7 +201,8 @@ impl Devices {
     }
 
     fn schedule_input(&mut self) {
-        let next = self.inputs.front().map(|(cycle, _)| *cycle);
+        let clock = self.core.clock;
+        let next = self.inputs.front().map(|(time, _)| clock.cycle(*time));
         self.core.schedule.set(Source::Input, next);
     }
 
@@ -267,6 +272,9 @@ impl Devices {
 
     /// Everything starts over but memories and what is outside; the CPU follows when the oscillator has settled.
     fn reset(&mut self, cause: Cause, cycle: u64) {
+        let divides = self.programming.fuses.divides_clock();
+        self.power = Power::after_reset(divides);
+        self.core.clock.set_divisor(1, cycle);
         let start = cycle + RESET_CYCLES;
         for change in self.core.ports.reset(cycle) {
             self.core.note(Some(change), cycle);
@@ -274,7 +282,6 @@ impl Devices {
         self.core.interrupts.clear();
         self.core.prescalers = Default::default();
         self.core.shared = [None; 2];
-        self.power = Power::default();
         self.programming.reset(&mut self.core);
         self.stopped_at = None;
         self.external = External::default();
@@ -289,7 +296,8 @@ impl Devices {
         self.analog.reset(&mut self.core);
         self.eeprom.reset();
         self.core.schedule.set(Source::Eeprom, None);
-        self.watchdog = Watchdog::after_reset(cause == Cause::Watchdog, start);
+        self.watchdog =
+            Watchdog::after_reset(cause == Cause::Watchdog, self.core.clock.time(start));
         self.watchdog.reschedule(&mut self.core, start);
         self.system = self.system.after_reset(cause);
         self.core.demand = Some(Demand::Reset {
@@ -298,6 +306,39 @@ impl Devices {
         });
         self.settle();
         self.core.say(cycle, Event::Reset(cause));
+        self.set_divisor(start);
+    }
+
+    /// The system clock divides the crystal's as CLKPR has it, from a cycle on.
+    fn set_divisor(&mut self, cycle: u64) {
+        let divisor = self.power.divisor();
+        if divisor == self.core.clock.divisor() {
+            return;
+        }
+        let core = &mut self.core;
+        core.clock.set_divisor(divisor, cycle);
+        core.rescaled = true;
+        // Whoever counts the crystal's cycles is due in another one of ours.
+        self.watchdog.reschedule(core, cycle);
+        self.eeprom.reschedule(core);
+        self.programming.reschedule(core);
+        for usart in &self.usarts {
+            usart.reschedule(core);
+        }
+        for timer in &mut self.timers {
+            timer.tell_duty(core, cycle);
+        }
+        self.schedule_input();
+    }
+
+    /// How cycles and time belong together now.
+    pub(crate) fn clock(&self) -> Clock {
+        self.core.clock
+    }
+
+    /// The clock's divisor has changed; asked once, it is forgotten.
+    pub(crate) fn take_rescaled(&mut self) -> bool {
+        std::mem::take(&mut self.core.rescaled)
     }
 
     /// Gives a clock to whom it is due, and takes it from the others.
@@ -372,6 +413,7 @@ impl Devices {
                 let level = self.core.ports.level(pin);
                 if let Some(levels) = &mut self.core.levels {
                     let high = level;
+                    let cycle = self.core.clock.time(cycle);
                     levels.push(Level { cycle, pin, high });
                 }
                 for timer in &mut self.timers {

@@ -60,21 +60,31 @@ impl Power {
         }
     }
 
-    /// Says whether the system clock is to be divided from now on.
-    pub(super) fn write(&mut self, address: u16, value: u8, cycle: u64) -> bool {
+    pub(super) fn write(&mut self, address: u16, value: u8, cycle: u64) {
         match address {
             CLKPR if value == CLKPCE => self.open_until = Some(cycle + OPEN_CYCLES),
             CLKPR if self.open_until.is_some_and(|until| cycle <= until) && value & CLKPCE == 0 => {
                 self.prescaler = value & 0x0F;
                 self.open_until = None;
-                return self.prescaler != 0;
             }
             PRR0 => self.reduced[0] = value & 0xEF,
             PRR1 => self.reduced[1] = value & 0x3F,
             OSCCAL => self.calibration = value,
             _ => {}
         }
-        false
+    }
+
+    /// After a reset; CKDIV8 divides the clock by eight.
+    pub(super) fn after_reset(divides: bool) -> Power {
+        Power {
+            prescaler: if divides { 3 } else { 0 },
+            ..Power::default()
+        }
+    }
+
+    /// Over what the system clock divides the crystal's; beyond 256 is reserved.
+    pub(super) fn divisor(&self) -> u64 {
+        1 << self.prescaler.min(8)
     }
 
     /// The CPU falls asleep.
@@ -82,7 +92,7 @@ impl Power {
         self.asleep = Some(mode);
     }
 
-    /// It wakes up; gives the cycles until the clocks run.
+    /// It wakes up; gives the crystal's cycles until the clocks run.
     pub(super) fn wake(&mut self) -> u64 {
         match self.asleep.take() {
             None | Some(Sleep::Idle | Sleep::QuietForAnalog) => 0,

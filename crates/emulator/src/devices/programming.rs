@@ -19,7 +19,7 @@ const SPMEN: u8 = 0x01;
 
 /// Cycles in which SPM must follow, and LPM that reads fuses or signature.
 const OPEN_CYCLES: u64 = 4;
-/// Erasing or writing a page: 4.5 ms (table 29-11).
+/// Erasing or writing a page: 4.5 ms (table 29-11) [cycles of the crystal].
 const PAGE_CYCLES: u64 = 72_000;
 /// Words of a page.
 pub(crate) const PAGE_WORDS: usize = 128;
@@ -33,7 +33,7 @@ const CALIBRATION: (u32, u8) = (1, 0x8D);
 /// What the fuses and lock bits are programmed to; zeros are programmed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fuses {
-    /// Clock source, start-up time.
+    /// Clock source, start-up time, CKDIV8 (bit 7).
     pub low: u8,
     /// BOOTRST (bit 0), BOOTSZ (bits 1 and 2), WDTON (bit 4), EESAVE, SPIEN, JTAGEN, OCDEN.
     pub high: u8,
@@ -61,6 +61,11 @@ impl Fuses {
         0x2_0000 - (4096 >> (self.high >> 1 & 3))
     }
 
+    /// CKDIV8: the system clock starts with an eighth of the crystal's.
+    pub(crate) const fn divides_clock(self) -> bool {
+        self.low & 0x80 == 0
+    }
+
     /// A reset leads to the boot section.
     pub const fn starts_in_boot(self) -> bool {
         self.high & 1 == 0
@@ -74,8 +79,8 @@ pub(super) struct Programming {
     control: u8,
     /// Until when SPM and LPM are what SPMCSR said.
     open_until: u64,
-    /// A page is being erased or written.
-    busy: bool,
+    /// A page is being erased or written, and it is done at this time.
+    busy: Option<u64>,
     buffer: [Option<u16>; PAGE_WORDS],
 }
 
@@ -85,7 +90,7 @@ impl Default for Programming {
             fuses: Fuses::default(),
             control: 0,
             open_until: 0,
-            busy: false,
+            busy: None,
             buffer: [None; PAGE_WORDS],
         }
     }
@@ -102,7 +107,7 @@ impl Programming {
     }
 
     fn is_open(&self, cycle: u64) -> bool {
-        self.busy || self.control & SPMEN != 0 && cycle <= self.open_until
+        self.busy.is_some() || self.control & SPMEN != 0 && cycle <= self.open_until
     }
 
     pub(super) fn read(&self, cycle: u64) -> u8 {
@@ -115,7 +120,7 @@ impl Programming {
     }
 
     pub(super) fn write(&mut self, core: &mut Core, value: u8, cycle: u64) {
-        if self.busy {
+        if self.busy.is_some() {
             return;
         }
         self.control = value & !RWWSB | self.control & RWWSB;
@@ -124,7 +129,7 @@ impl Programming {
     }
 
     fn request(&self, core: &mut Core) {
-        let ready = self.control & SPMIE != 0 && !self.busy;
+        let ready = self.control & SPMIE != 0 && self.busy.is_none();
         core.interrupts.set(vector::PROGRAMMED, ready);
     }
 
@@ -137,7 +142,7 @@ impl Programming {
         at: Access,
     ) -> Stored {
         let from_boot = at.program_counter >= self.fuses.boot_start();
-        if self.busy || !from_boot || !self.is_open(at.cycle) {
+        if self.busy.is_some() || !from_boot || !self.is_open(at.cycle) {
             return Stored::Nothing;
         }
         let word = address / 2;
@@ -177,28 +182,32 @@ impl Programming {
 
     fn begin(&mut self, core: &mut Core, command: u8, page: u32, cycle: u64) {
         if page >= NO_READ_WHILE_WRITE {
-            core.stall(PAGE_CYCLES);
+            core.stall(core.clock.cycles(PAGE_CYCLES));
             return;
         }
-        self.busy = true;
+        self.busy = Some(core.clock.time(cycle) + PAGE_CYCLES);
         self.control |= command | RWWSB;
-        core.schedule
-            .set(Source::Programming, Some(cycle + PAGE_CYCLES));
+        self.reschedule(core);
         self.request(core);
+    }
+
+    pub(super) fn reschedule(&self, core: &mut Core) {
+        let due = self.busy.map(|end| core.clock.cycle(end));
+        core.schedule.set(Source::Programming, due);
     }
 
     /// The page is done.
     pub(super) fn happen(&mut self, core: &mut Core) {
-        self.busy = false;
+        self.busy = None;
         self.control &= SPMIE | RWWSB;
-        core.schedule.set(Source::Programming, None);
+        self.reschedule(core);
         self.request(core);
     }
 
     /// What LPM reads at a byte address in place of the program.
     pub(super) fn load(&mut self, address: u32, cycle: u64) -> Option<u8> {
         let command = self.control & (SIGRD | BLBSET);
-        if !self.busy && self.is_open(cycle) && command != 0 {
+        if self.busy.is_none() && self.is_open(cycle) && command != 0 {
             self.control &= !(SIGRD | BLBSET | SPMEN);
             let index = address & 7;
             return Some(if command & BLBSET != 0 {

@@ -1,5 +1,6 @@
 //! What all peripherals share: interrupt requests, ports, the schedule of events, the stream of outputs.
 
+use super::clock::Clock;
 use super::interrupts::Interrupts;
 use super::ports::{Change, Pin, Ports};
 use super::schedule::Schedule;
@@ -17,6 +18,7 @@ pub(crate) struct Core {
     pub(crate) interrupts: Interrupts,
     pub(crate) ports: Ports,
     pub(crate) schedule: Schedule,
+    pub(crate) clock: Clock,
     pub(crate) outputs: Vec<Output>,
     /// The one that timers 0, 1, 3, 4 and 5 share, and timer 2's.
     pub(crate) prescalers: [Prescaler; 2],
@@ -26,6 +28,8 @@ pub(crate) struct Core {
     pub(super) noticed: bool,
     /// Levels since they were last asked for, if somebody wants to know.
     pub(super) levels: Option<Vec<Level>>,
+    /// The system clock has another divisor.
+    pub(super) rescaled: bool,
     pub(super) demand: Option<Demand>,
     /// The flag that starts a conversion was raised in this cycle.
     pub(super) triggered: Option<u64>,
@@ -39,6 +43,7 @@ impl Core {
         if let Event::Pin(pin, _) | Event::Duty { pin, .. } = event {
             self.noticed |= self.watched >> pin.number() & 1 != 0;
         }
+        let cycle = self.clock.time(cycle);
         self.outputs.push(Output { cycle, event });
     }
 
@@ -54,7 +59,7 @@ impl Core {
     /// The CPU is not to go on by itself: someone wants something of it.
     #[inline(always)]
     pub(super) fn is_wanted(&self) -> bool {
-        self.noticed || self.demand.is_some()
+        self.noticed || self.rescaled || self.demand.is_some()
     }
 
     /// A timer's output drives its pin, or lets it go.

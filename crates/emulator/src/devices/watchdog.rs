@@ -16,7 +16,7 @@ const WDP: u8 = 0x07;
 
 /// Cycles for which WDCE permits.
 const OPEN_CYCLES: u64 = 4;
-/// Cycles of the CPU in one of the oscillator: 16 MHz over 128 kHz.
+/// Cycles of the crystal in one of the oscillator: 16 MHz over 128 kHz.
 const TICK: u64 = 125;
 /// Ticks of the shortest time.
 const SHORTEST: u64 = 2048;
@@ -35,16 +35,16 @@ pub(super) struct Watchdog {
     control: u8,
     flag: bool,
     open_until: Option<u64>,
-    /// The cycle in which it last started from 0.
+    /// The time when it last started from 0.
     started: u64,
 }
 
 impl Watchdog {
     /// After a reset, which may have been its own.
-    pub(super) fn after_reset(by_itself: bool, cycle: u64) -> Watchdog {
+    pub(super) fn after_reset(by_itself: bool, time: u64) -> Watchdog {
         Watchdog {
             control: if by_itself { WDE } else { 0 },
-            started: cycle,
+            started: time,
             ..Watchdog::default()
         }
     }
@@ -78,7 +78,7 @@ impl Watchdog {
             self.open_until = None;
         }
         if !ran {
-            self.started = cycle;
+            self.started = core.clock.time(cycle);
         }
         self.reschedule(core, cycle);
     }
@@ -87,7 +87,7 @@ impl Watchdog {
         self.control & (WDE | WDIE) != 0
     }
 
-    /// Cycles to its end: 16 ms at least, 8 s at most.
+    /// Time to its end: 16 ms at least, 8 s at most.
     fn period(&self) -> u64 {
         let select = self.control & WDP | (self.control & WDP3) >> 2;
         (SHORTEST << select.min(9)) * TICK
@@ -95,7 +95,8 @@ impl Watchdog {
 
     pub(super) fn reschedule(&self, core: &mut Core, cycle: u64) {
         let end = self.started + self.period();
-        let due = self.runs().then(|| end.max(cycle + 1));
+        let due = core.clock.cycle(end).max(cycle + 1);
+        let due = self.runs().then_some(due);
         core.schedule.set(Source::Watchdog, due);
         let requested = self.flag && self.control & WDIE != 0;
         core.interrupts.set(vector::WATCHDOG, requested);
@@ -103,13 +104,13 @@ impl Watchdog {
 
     /// WDR.
     pub(super) fn restart(&mut self, core: &mut Core, cycle: u64) {
-        self.started = cycle;
+        self.started = core.clock.time(cycle);
         self.reschedule(core, cycle);
     }
 
     /// Its time is over.
     pub(super) fn happen(&mut self, core: &mut Core, cycle: u64) -> TimeOut {
-        self.started = cycle;
+        self.started = core.clock.time(cycle);
         // An interrupt that was not entered in time counts as none.
         if self.control & WDIE == 0 || self.control & WDE != 0 && self.flag {
             return TimeOut::Reset;

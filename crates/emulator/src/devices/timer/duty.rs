@@ -5,7 +5,9 @@ use super::wave::{Kind, Wave};
 use crate::devices::Pwm;
 
 /// The PWM on a channel's pin; `None` without one.
-pub(super) fn pwm(wave: &Wave, channel: usize, clock: Clock) -> Option<Pwm> {
+///
+/// `clock_divisor` are the crystal's cycles in one of the system clock.
+pub(super) fn pwm(wave: &Wave, channel: usize, clock: Clock, clock_divisor: u64) -> Option<Pwm> {
     if !wave.is_connected(channel) || !wave.mode.is_pwm() {
         return None;
     }
@@ -17,7 +19,7 @@ pub(super) fn pwm(wave: &Wave, channel: usize, clock: Clock) -> Option<Pwm> {
     let divisor = match clock {
         Clock::Stopped => return Some(constant(output)),
         Clock::Pin { .. } => None,
-        Clock::Divided(divisor) => Some(divisor),
+        Clock::Divided(divisor) => Some(divisor * clock_divisor),
     };
     let (compare, top) = (wave.compare[channel], wave.top());
     let period = wave.period();

@@ -242,8 +242,9 @@ impl Timer {
     pub(crate) fn tell_duty(&mut self, core: &mut Core, cycle: u64) {
         for channel in 0..self.wave.channels {
             let pin = self.place().outputs[channel];
-            let pwm =
-                duty::pwm(&self.wave, channel, self.clock).filter(|_| core.ports.is_output(pin));
+            let divisor = core.clock.divisor();
+            let pwm = duty::pwm(&self.wave, channel, self.clock, divisor)
+                .filter(|_| core.ports.is_output(pin));
             if pwm != self.told[channel] {
                 self.told[channel] = pwm;
                 core.say(cycle, Event::Duty { pin, pwm });

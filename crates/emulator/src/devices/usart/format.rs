@@ -8,6 +8,9 @@ pub(super) struct Format {
     pub(super) parity: Option<Parity>,
     /// Stop bits sent; the receiver looks at the first one only.
     pub(super) stop: u32,
+    /// As a master of SPI: eight bits without a frame, the highest first unless `lowest_first`.
+    pub(super) bare: bool,
+    lowest_first: bool,
 }
 
 /// What the parity bit makes the number of ones.
@@ -20,6 +23,15 @@ pub(super) enum Parity {
 impl Format {
     /// From UCSZ2 to UCSZ0, and UCSRC.
     pub(super) fn new(size: u8, control: u8) -> Format {
+        if control >> 6 == 3 {
+            return Format {
+                data: 8,
+                parity: None,
+                stop: 0,
+                bare: true,
+                lowest_first: control & 4 != 0,
+            };
+        }
         Format {
             data: match size & 7 {
                 7 => 9,
@@ -32,6 +44,8 @@ impl Format {
                 _ => None,
             },
             stop: if control & 8 != 0 { 2 } else { 1 },
+            bare: false,
+            lowest_first: true,
         }
     }
 
@@ -51,6 +65,15 @@ impl Format {
 
     /// The levels of a whole frame, start bit first, and how many there are.
     pub(super) fn frame(self, data: u16) -> (u32, u32) {
+        if self.bare {
+            let [byte, _] = data.to_le_bytes();
+            let bits = if self.lowest_first {
+                byte
+            } else {
+                byte.reverse_bits()
+            };
+            return (u32::from(bits), 8);
+        }
         let mut bits = u32::from(data) << 1;
         let mut count = 1 + self.data;
         if let Some(parity) = self.parity_bit(data) {
@@ -97,6 +120,7 @@ mod tests {
             let taken = format.take_apart(bits >> 1);
             assert_eq!(taken, (data, false, true), "{format:?}");
         }
+        assert_eq!(Format::new(3, 0xC0).frame(0x35), (0xAC, 8), "SPI");
         let even = Format::new(2, 0x2C);
         assert_eq!(even.take_apart(0b1_1100_0100), (0x44, true, true));
         assert_eq!(even.take_apart(0b0_1100_0101), (0x45, false, false));

@@ -1,4 +1,4 @@
-//! The sender at the other end of a serial line: frames that come in, as levels of the RXD pin.
+//! The sender at the other end of a serial line: frames that come in, as levels of the RXD pin. Its times are those of the crystal's cycles.
 
 use std::collections::VecDeque;
 
@@ -26,13 +26,13 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// A frame whose start bit begins at `cycle`, or when those before it are over: `count` levels after the start bit.
-    pub(super) fn send(&mut self, bits: u16, count: u8, baud: u32, cycle: u64) {
+    /// A frame whose start bit begins at `time`, or when those before it are over: `count` levels after the start bit.
+    pub(super) fn send(&mut self, bits: u16, count: u8, baud: u32, time: u64) {
         let count = u32::from(count.min(16));
         let bits = (u32::from(bits) & ((1 << count) - 1)) << 1;
         let bit = (super::CLOCK_HZ * UNIT).div_ceil(u64::from(baud.max(1)));
         if self.frames.is_empty() {
-            self.start = self.start.max(cycle * UNIT);
+            self.start = self.start.max(time * UNIT);
         }
         self.frames.push_back(Frame {
             bits,
@@ -52,7 +52,7 @@ impl Line {
             .unwrap_or(frame.count)
     }
 
-    /// The cycle of the next change.
+    /// The time of the next change.
     pub(super) fn next(&self) -> Option<u64> {
         let frame = self.frames.front()?;
         let at = self.start + u64::from(self.next_change(frame)) * frame.bit;

@@ -3,7 +3,8 @@
 //! Bytes come in through [`line`] as levels of the RXD pin, which the [`receiver`] samples; the [`transmitter`] moves the TXD pin.
 //! Each has a next event, and the USART is woken at the earliest.
 //!
-//! Synchronous modes: as master they run at their rate, without the clock on XCK; as slave nothing clocks them.
+//! Synchronous modes run at their rate as a master's, without the clock on XCK; as master of SPI a byte comes in for each that goes
+//! out, with the level of the pin. Where XCK is an input, nothing clocks them on the chip; here they run as a master's.
 
 mod format;
 mod line;
@@ -110,13 +111,13 @@ impl Usart {
             let change = core.ports.set_outside(pin, Some(true), cycle);
             core.note(Some(change), cycle);
         }
-        self.line.send(bits, count, baud, cycle);
+        self.line.send(bits, count, baud, core.clock.time(cycle));
         self.reschedule(core);
     }
 
     /// Its event is due.
     pub(crate) fn happen(&mut self, core: &mut Core, cycle: u64) {
-        if self.line.next().is_some_and(|next| next <= cycle) {
+        if self.line_due(core).is_some_and(|due| due <= cycle) {
             let level = self.line.step();
             let change = core
                 .ports
@@ -141,16 +142,20 @@ impl Usart {
                     let event = Event::Byte {
                         usart: self.index as u8,
                         byte,
-                        baud: CLOCK_HZ as f64 / self.rate.bit() as f64,
+                        baud: CLOCK_HZ as f64 / (self.rate.bit() * core.clock.divisor()) as f64,
                     };
                     core.say(at, event);
+                    if self.format.bare && self.listens() {
+                        self.receiver
+                            .shift_in(core.ports.level(self.place().receive));
+                    }
                     self.drive_pins(core, at);
                 }
                 Some(Step::Level(_)) => self.drive_pins(core, at),
                 None => {}
             }
         }
-        if self.listens() {
+        if self.listens() && !self.format.bare {
             let accept = self.acceptor();
             self.receiver
                 .sample_before(cycle + 1, self.format, self.rate, accept);
@@ -166,7 +171,8 @@ impl Usart {
 
     /// The RXD pin, if it is that, has changed.
     pub(crate) fn pin_changed(&mut self, core: &mut Core, pin: Pin, cycle: u64) {
-        if pin == self.place().receive && self.listens() && self.stopped.is_none() {
+        let framed = self.listens() && !self.format.bare;
+        if pin == self.place().receive && framed && self.stopped.is_none() {
             let (level, accept) = (self.line_level(core), self.acceptor());
             self.receiver
                 .change(level, cycle, self.format, self.rate, accept);
@@ -200,7 +206,12 @@ impl Usart {
         core.ports.level(pin) || !core.ports.is_driven_outside(pin)
     }
 
-    fn reschedule(&self, core: &mut Core) {
+    /// The cycle in which the sender changes the line's level.
+    fn line_due(&self, core: &Core) -> Option<u64> {
+        self.line.next().map(|time| core.clock.cycle(time))
+    }
+
+    pub(crate) fn reschedule(&self, core: &mut Core) {
         let (transmitter, receiver) = match self.stopped {
             Some(_) => (None, None),
             None => (
@@ -208,7 +219,7 @@ impl Usart {
                 self.receiver.next(self.format, self.rate),
             ),
         };
-        let next = [self.line.next(), transmitter, receiver];
+        let next = [self.line_due(core), transmitter, receiver];
         core.schedule
             .set(Source::Usart(self.index), next.into_iter().flatten().min());
     }

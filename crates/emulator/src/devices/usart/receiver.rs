@@ -106,6 +106,15 @@ impl Receiver {
         taken
     }
 
+    /// A byte has been clocked in, all of one level.
+    pub(super) fn shift_in(&mut self, level: bool) {
+        self.lost |= self.waiting.take().is_some();
+        self.put(Received {
+            data: if level { 0xFF } else { 0 },
+            ..Received::default()
+        });
+    }
+
     fn put(&mut self, mut received: Received) {
         match self.buffer.get_mut(self.filled) {
             Some(place) => {
