@@ -151,7 +151,7 @@ impl Mega {
 
     /// The plant's clock starts over now; what the chip drives goes on.
     pub(crate) fn restart_clock(&mut self, encoders: [bool; 2]) {
-        let cycle = self.chip.cpu().cycle();
+        let cycle = self.chip.cycle();
         self.begin(cycle, encoders);
         for index in 0..2 {
             self.driven[index] = (Bridge::Released, None);
@@ -226,7 +226,7 @@ impl Mega {
         let Some(console) = self.consoles.get(usize::from(usart)) else {
             return;
         };
-        let (cycle, baud) = (self.chip.cpu().cycle(), console.baud());
+        let (cycle, baud) = (self.chip.cycle(), console.baud());
         for byte in bytes {
             let byte = *byte;
             self.chip.input(cycle, Input::Serial { usart, byte, baud });
@@ -284,7 +284,7 @@ impl Mega {
     pub(crate) fn run(&mut self, until_us: u64, faults: &mut Faults<'_>) -> Pause {
         let until = self.cycle_of(until_us);
         loop {
-            let now = self.chip.cpu().cycle();
+            let now = self.chip.cycle();
             if self.halt.is_some() {
                 let at_us = (now - self.zero_cycle) / CYCLES_PER_US;
                 return Pause::Halted(at_us.min(until_us));
@@ -385,7 +385,7 @@ impl Mega {
                 acted = Some(cycle);
             }
         }
-        let cycle = self.chip.cpu().cycle();
+        let cycle = self.chip.cycle();
         let late = self.bridges.iter().filter_map(HalfBridge::expires_cycle);
         if late.min().is_some_and(|due| due <= cycle) {
             self.bridges.iter_mut().for_each(|half| half.expire(cycle));
