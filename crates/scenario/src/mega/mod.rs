@@ -9,12 +9,12 @@
 //! | file | part |
 //! |---|---|
 //! | [`pins`] | the board's pin numbers, a wiring as pins of the chip |
-//! | [`bridge`], [`servo`], [`module`] | what driver, servo and Bluetooth module make of their lines |
-//! | [`echo`] | echo lines, and sonars that fail |
+//! | `bridge`, `servo`, `module` | what driver, servo and Bluetooth module make of their lines |
+//! | `echo` | echo lines, and sonars that fail |
 //! | [`console`] | what the USARTs said, for people |
 //! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
 //!
-//! [`Mega::run`] runs the chip until something happens that the plant must know of, so that the plant can follow to the same
+//! `Mega::run` runs the chip until something happens that the plant must know of, so that the plant can follow to the same
 //! microsecond before anything else happens: see `sim::emulated`.
 
 pub mod console;
@@ -248,7 +248,7 @@ impl Mega {
         std::mem::take(&mut self.sent)
     }
 
-    /// The actions that [`Pause::Act`] spoke of.
+    /// The actions that the pause spoke of.
     pub(crate) fn take_actions(&mut self) -> Vec<Action> {
         std::mem::take(&mut self.actions)
     }

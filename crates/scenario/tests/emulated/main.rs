@@ -45,6 +45,10 @@ fn every_edge_of_both_encoders_reaches_its_interrupt() {
     };
     person.say("DUTY 200");
     person.wait_s(1.0);
+    // Many outputs split many steps of the plant: no edge may be lost or doubled by that.
+    person.say("SERVO 40");
+    person.say("SOFT 60");
+    person.wait_s(1.0);
     person.say("COAST");
     person.wait_s(1.5);
     let wheels = person.sim.truth().wheel_rad;
