@@ -13,6 +13,14 @@ const SIGNS = { info: '·', good: '✓', warning: '!', fault: '✕' };
 export class EventList {
   #list = element('events', HTMLOListElement);
 
+  /** @param {(t_s: number) => void} chosen Called with the time of an event that is clicked. */
+  constructor(chosen) {
+    this.#list.addEventListener('click', (event) => {
+      const line = event.target instanceof Element ? event.target.closest('li') : null;
+      if (line?.dataset['t']) chosen(Number(line.dataset['t']));
+    });
+  }
+
   clear() {
     this.#list.replaceChildren();
   }
@@ -21,6 +29,7 @@ export class EventList {
   add(events) {
     const lines = events.slice(-KEPT).map(({ t_s, level, text }) => create('li', { className: level },
       create('time', { textContent: `${format(t_s, 2)} s` }), create('span', { className: 'sign', textContent: SIGNS[level], title: level }), text));
+    lines.forEach((line, index) => { line.dataset['t'] = String(events.slice(-KEPT)[index]?.t_s); });
     this.#list.prepend(...lines.reverse());
     while (this.#list.children.length > KEPT) this.#list.lastElementChild?.remove();
   }

@@ -102,6 +102,7 @@ export class Header {
     const state = this.#state;
     if (!this.#open) return [`no connection${this.#why ? `: ${this.#why}` : ''}, trying again…`, 'bad'];
     if (!state) return ['connecting…', 'bad'];
+    if (state.replay) return state.speed === 0 ? ['replay, paused', 'warning'] : [`replay × ${state.speed}`, 'good'];
     if (state.speed === 0) return ['simulation paused', 'warning'];
     if (performance.now() - this.#heard_ms > STALE_MS) return ['the station is silent', 'bad'];
     if (!state.link.connected) return ['no answer from the robot', 'bad'];

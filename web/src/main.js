@@ -13,6 +13,7 @@ import { WorldMap } from './map.js';
 import { CommandPanel } from './panel.js';
 import { ParameterTable } from './parameters.js';
 import { Plots } from './plots.js';
+import { ReplayBar } from './replay.js';
 import { StateLine, pointerWords } from './stateline.js';
 import { Store } from './store.js';
 
@@ -36,7 +37,10 @@ const redraw = onFrame(() => {
 });
 const header = new Header(send);
 const parameters = new ParameterTable(send);
-const events = new EventList();
+const replay = new ReplayBar(send);
+const events = new EventList((t_s) => {
+  if (replay.shown) replay.seek(t_s);
+});
 const consoles = new Consoles(send);
 /** The run that the consoles are of. @type {number | null} */
 let consoleRun = null;
@@ -66,6 +70,10 @@ addEventListener('keydown', (event) => {
   if (typing || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === 'p') plots.follow(!plots.following);
   if (event.key === 'l') plots.follow(true);
+  if (!replay.shown) return;
+  if (event.key === 'k') replay.toggle();
+  if (event.key === ',') replay.step(-1);
+  if (event.key === '.') replay.step(1);
 });
 
 /** @param {FromServer} message */
@@ -92,6 +100,7 @@ function receive(message) {
     case 'state':
       state = message.state;
       header.show(state);
+      replay.show(state);
       panel.show(state);
       stateLine.show(state);
       plots.setMode(state.robot.mode);

@@ -62,6 +62,7 @@
  * @property {boolean} simulated
  * @property {number} speed
  * @property {number} achieved_speed
+ * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
  *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number}} link
  * @property {{mode: number, armed: boolean, fault: string | null, battery_v: number | null, true_battery_v: number | null,
@@ -94,6 +95,8 @@
  *   | {type: 'set_param', id: number, value: number}
  *   | {type: 'type', usart: number, text: string}
  *   | {type: 'speed', factor: number}
+ *   | {type: 'seek', t_s: number}
+ *   | {type: 'step', frames: number}
  *   | {type: 'reset', scenario: string, world: string | null, rig: string | null, seed: number}} Order
  */
 export {};

@@ -38,6 +38,8 @@ pub(crate) enum Command {
     Calibrate(CalibrateArgs),
     /// Check a CSV of the original program and convert it to a log (MCAP)
     Import(ImportArgs),
+    /// Show a log in the dashboard: play, pause, step, scrub
+    Replay(ReplayArgs),
     /// Write a log as CSV, SVG or PNG
     Export(ExportArgs),
     /// Metrics of several logs side by side, with their differences
@@ -253,6 +255,28 @@ pub(crate) struct ImportArgs {
     /// The summary as JSON on stdout
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Options of `rumbo replay`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo replay out/mode1-7.mcap
+  rumbo replay out/mode1-7.mcap --speed 4
+  rumbo replay out/mode1-7.mcap --port 0 --no-browser")]
+pub(crate) struct ReplayArgs {
+    /// The log
+    #[arg(value_name = "LOG")]
+    pub(crate) log: PathBuf,
+    /// Port on 127.0.0.1; 0 takes any free one
+    #[arg(long, value_name = "N", default_value_t = rumbo_station::DEFAULT_PORT)]
+    pub(crate) port: u16,
+    /// Do not open the browser
+    #[arg(long)]
+    pub(crate) no_browser: bool,
+    /// Seconds of the log per second; 0 starts paused
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
+    pub(crate) speed: f64,
 }
 
 /// Options of `rumbo export`.

@@ -14,7 +14,7 @@ use rumbo_scenario::mega::firmware::Language;
 use rumbo_scenario::run;
 use rumbo_scenario::sim::Sim;
 use rumbo_station::log::{Kind, Manifest, Recording};
-use rumbo_station::{Choice, LabConfig, MapPose, Scene, Simulation, Target, Truth};
+use rumbo_station::{Choice, Lab, LabConfig, MapPose, Scene, Simulation, Target, Truth};
 use rumbo_wire::Command;
 use std::io::Write;
 
@@ -39,8 +39,13 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
         recording: logs::folder(args.out.as_deref()).map(|folder| Recording { folder }),
     };
     let lab = rumbo_station::serve(config, Box::new(robot)).map_err(Failure::input)?;
+    show(lab, args.no_browser)
+}
+
+/// Prints the address, opens the browser, and returns when the lab has ended.
+pub(crate) fn show(lab: Lab, no_browser: bool) -> Result<(), Failure> {
     output::line(lab.url())?;
-    if !args.no_browser && open::that_detached(lab.url()).is_err() {
+    if !no_browser && open::that_detached(lab.url()).is_err() {
         // The address is on stdout; nobody may be reading stderr.
         let _ = writeln!(
             std::io::stderr(),

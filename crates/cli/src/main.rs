@@ -17,6 +17,7 @@ mod logs;
 mod manifest;
 mod observe;
 mod output;
+mod replay;
 mod rerun;
 mod run;
 mod scene;
@@ -43,6 +44,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::List(args)) => list::list(&args),
         Some(Command::Lab(args)) => lab::lab(&args),
         Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Replay(args)) => replay::replay(&args),
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Rerun(args)) => rerun::rerun(&args),

@@ -39,6 +39,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/places.js": SCRIPT,
     "src/plot_specs.js": SCRIPT,
     "src/plots.js": SCRIPT,
+    "src/replay.js": SCRIPT,
     "src/sketch.js": SCRIPT,
     "src/stateline.js": SCRIPT,
     "src/store.js": SCRIPT,

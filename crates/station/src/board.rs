@@ -79,6 +79,16 @@ pub(crate) struct State {
     pub(crate) achieved_speed: f64,
     pub(crate) link: LinkState,
     pub(crate) robot: RobotState,
+    /// A log is being shown, of this length; `t_s` is where.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) replay: Option<ReplayState>,
+}
+
+/// A log being shown, for the page.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ReplayState {
+    pub(crate) name: String,
+    pub(crate) duration_s: f64,
 }
 
 /// The link, for the page.

@@ -17,6 +17,7 @@ mod observer;
 mod orders;
 mod origin;
 mod pace;
+mod replay;
 mod robot_clock;
 mod round_trip;
 mod row;
@@ -32,7 +33,7 @@ mod words;
 
 pub use catalogue::{ModeEntry, Reference, ReferenceKind, modes};
 pub use row::Row;
-pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeError, serve};
+pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeError, serve, serve_log};
 pub use target::{
     Choice, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation, SonarMount, Target, Truth,
 };

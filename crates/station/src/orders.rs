@@ -32,6 +32,10 @@ pub(crate) enum Order {
     Speed(f64),
     /// Start the simulation again.
     Reset(Choice),
+    /// Show a log from this time on \[s\].
+    Seek(f64),
+    /// Show a log so many telemetry frames further on, or back.
+    Step(i32),
 }
 
 /// The orders as they are to be obeyed when STOP was pressed (`stop`): no older command to the robot comes after it.
@@ -116,6 +120,12 @@ enum Message {
     },
     Speed {
         factor: f64,
+    },
+    Seek {
+        t_s: f64,
+    },
+    Step {
+        frames: i32,
     },
     Reset {
         scenario: String,
@@ -208,6 +218,9 @@ pub(crate) fn parse(text: &str) -> Result<Order, BadOrder> {
                 "factor {factor} is not within 0 to {MAX_SPEED}"
             )));
         }
+        Message::Seek { t_s } if t_s.is_finite() => Order::Seek(t_s),
+        Message::Seek { .. } => return Err(BadOrder("t_s is too large".into())),
+        Message::Step { frames } => Order::Step(frames),
         Message::Reset {
             scenario,
             world,

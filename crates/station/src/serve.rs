@@ -2,8 +2,9 @@
 
 use crate::board::Board;
 use crate::guard::Guard;
-use crate::log::Recording;
+use crate::log::{Log, Recording};
 use crate::orders::Order;
+use crate::replay::Replay;
 use crate::session::{Orders, Session};
 use crate::socket::Hub;
 use crate::target::Target;
@@ -146,12 +147,37 @@ const ORDERS_WAITING: usize = 256;
 /// # Errors
 /// [`ServeError`], when the port cannot be opened.
 pub fn serve(config: LabConfig, target: Box<dyn Target>) -> Result<Lab, ServeError> {
-    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, config.port)).map_err(|error| {
-        match error.kind() {
-            io::ErrorKind::AddrInUse => ServeError::PortInUse(config.port),
+    let LabConfig {
+        port,
+        speed,
+        recording,
+    } = config;
+    start(port, move |board, orders| {
+        Session::new(target, board, orders, speed, recording).run()
+    })
+}
+
+/// Serves the same dashboard for a log, which it shows under this name.
+///
+/// # Errors
+/// [`ServeError`], when the port cannot be opened.
+pub fn serve_log(port: u16, speed: f64, name: String, log: Log) -> Result<Lab, ServeError> {
+    start(port, move |board, orders| {
+        Replay::new(name, log, board, orders, speed).run();
+        Ok(())
+    })
+}
+
+/// Serves a board that `session` writes, in a thread of its own, until there are no more orders.
+fn start(
+    port: u16,
+    session: impl FnOnce(Arc<Board>, Orders) -> Result<(), String> + Send + 'static,
+) -> Result<Lab, ServeError> {
+    let listener =
+        TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| match error.kind() {
+            io::ErrorKind::AddrInUse => ServeError::PortInUse(port),
             _ => ServeError::Io(error),
-        }
-    })?;
+        })?;
     listener.set_nonblocking(true)?;
     let guard = Guard::new(listener.local_addr()?.port()).map_err(io::Error::other)?;
     let url = guard.url();
@@ -159,19 +185,16 @@ pub fn serve(config: LabConfig, target: Box<dyn Target>) -> Result<Lab, ServeErr
     let board = Arc::new(Board::new());
     let stop = Arc::new(AtomicBool::new(false));
     let (orders, queue) = mpsc::sync_channel(ORDERS_WAITING);
-    let session = Session::new(
-        target,
+    let (shown, waiting) = (
         Arc::clone(&board),
         Orders {
             queue,
             stop: Arc::clone(&stop),
         },
-        config.speed,
-        config.recording,
     );
     let session = std::thread::Builder::new()
         .name("session".into())
-        .spawn(move || session.run())?;
+        .spawn(move || session(shown, waiting))?;
 
     let router = web::router(
         Arc::new(guard),

@@ -59,6 +59,7 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
             errand: observer.errand().clone(),
             foreign: client.hello().is_some() && !client.table_matches(),
         },
+        replay: None,
     }
 }
 

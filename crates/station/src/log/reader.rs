@@ -59,6 +59,18 @@ impl Log {
     /// # Errors
     /// A file that cannot be read, is no log, or holds nothing known.
     pub fn read(path: &Path) -> Result<Self, LogError> {
+        Self::read_parts(path, true)
+    }
+
+    /// Reads a log without the raw bytes of its link, for showing.
+    ///
+    /// # Errors
+    /// As [`Log::read`].
+    pub fn read_signals(path: &Path) -> Result<Self, LogError> {
+        Self::read_parts(path, false)
+    }
+
+    fn read_parts(path: &Path, with_link: bool) -> Result<Self, LogError> {
         let wrong = |what: String| LogError::new(path, what);
         let bytes = std::fs::read(path).map_err(|error| {
             wrong(format!(
@@ -76,7 +88,7 @@ impl Log {
             )));
         }
         let mut log = Self::default();
-        if let Err(error) = log.take_all(&bytes) {
+        if let Err(error) = log.take_all(&bytes, with_link) {
             log.cut = Some(error);
         }
         if log.manifest.is_none() && log.rows.is_empty() {
@@ -114,7 +126,7 @@ impl Log {
         row_s.max(state_s).max(link_s)
     }
 
-    fn take_all(&mut self, bytes: &[u8]) -> Result<(), String> {
+    fn take_all(&mut self, bytes: &[u8], with_link: bool) -> Result<(), String> {
         let options = Options::IgnoreEndMagic | Options::ValidateChunkCrcs;
         let records =
             ChunkFlattener::new_with_options(bytes, options).map_err(|error| error.to_string())?;
@@ -123,6 +135,7 @@ impl Log {
             match record.map_err(|error| error.to_string())? {
                 Record::Channel(channel) => {
                     let known = match Topic::find(&channel.topic) {
+                        Some(Topic::FromRobot | Topic::ToRobot) if !with_link => None,
                         Some(topic) => Some(Channel::Ours(topic)),
                         None => (channel.topic == IMPORTED).then_some(Channel::Imported),
                     };

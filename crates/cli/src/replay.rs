@@ -1,0 +1,22 @@
+//! `rumbo replay`: a log in the dashboard.
+
+use crate::args::ReplayArgs;
+use crate::export::warn_if_cut;
+use crate::failure::Failure;
+use crate::lab;
+use rumbo_station::log::Log;
+
+/// Serves the dashboard with the log.
+pub(crate) fn replay(args: &ReplayArgs) -> Result<(), Failure> {
+    let log = Log::read_signals(&args.log).map_err(Failure::input)?;
+    warn_if_cut(&args.log, &log);
+    let name = args
+        .log
+        .file_stem()
+        .unwrap_or(args.log.as_os_str())
+        .to_string_lossy()
+        .into_owned();
+    let served =
+        rumbo_station::serve_log(args.port, args.speed, name, log).map_err(Failure::input)?;
+    lab::show(served, args.no_browser)
+}

@@ -1,0 +1,226 @@
+//! Shows a log as if it happened now: the same board and the same page as a live session, with a playhead that can be moved.
+//!
+//! Nothing is sent to any robot: orders to one are answered with a note. Moving the playhead begins a new run on the board, so that pages
+//! forget what they had, and fills it with the [`BEFORE_MS`] before the new place.
+
+use crate::board::{Board, Level, LoggedEvent, ReplayState, State};
+use crate::catalogue::{self, ParameterState};
+use crate::log::Log;
+use crate::orders::Order;
+use crate::session::Orders;
+use std::sync::Arc;
+use std::sync::mpsc::RecvTimeoutError;
+use std::time::{Duration, Instant};
+
+/// How much before the playhead a page gets \[ms\]: the longest window of the plots that is quick to send.
+const BEFORE_MS: i64 = 60_000;
+/// Time between two moves of the playhead.
+const WAKE: Duration = Duration::from_millis(20);
+/// The same while it stands.
+const WAKE_PAUSED: Duration = Duration::from_millis(250);
+
+/// A log being shown.
+pub(crate) struct Replay {
+    name: String,
+    log: Log,
+    board: Arc<Board>,
+    orders: Orders,
+    /// Where the playhead is \[ms\].
+    at_ms: f64,
+    end_ms: f64,
+    /// The first row that is not on the board yet.
+    next_row: usize,
+    speed: f64,
+    last: Option<Instant>,
+    shown: Option<(usize, usize)>,
+    warned: bool,
+}
+
+impl Replay {
+    /// A replay that begins at the log's start.
+    pub(crate) fn new(
+        name: String,
+        log: Log,
+        board: Arc<Board>,
+        orders: Orders,
+        speed: f64,
+    ) -> Self {
+        let end_ms = log.duration_s() * 1e3;
+        Self {
+            name,
+            log,
+            board,
+            orders,
+            at_ms: 0.0,
+            end_ms,
+            next_row: 0,
+            speed,
+            last: None,
+            shown: None,
+            warned: false,
+        }
+    }
+
+    /// Runs until the sender of orders is gone.
+    pub(crate) fn run(mut self) {
+        self.board.set_scene(self.log.scene.clone());
+        for event in &self.log.events {
+            self.board.push_event(event.clone());
+        }
+        if let Some(why) = &self.log.cut {
+            self.note(format!("the log ends early: {why}"));
+        }
+        self.seek(0.0);
+        loop {
+            let wait = if self.speed > 0.0 { WAKE } else { WAKE_PAUSED };
+            match self.orders.queue.recv_timeout(wait) {
+                Ok(order) => self.obey(&order),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+            while let Ok(order) = self.orders.queue.try_recv() {
+                self.obey(&order);
+            }
+            self.play(Instant::now());
+            self.show();
+        }
+    }
+
+    fn obey(&mut self, order: &Order) {
+        match order {
+            Order::Speed(speed) => {
+                // Played to its end, it begins again.
+                if *speed > 0.0 && self.at_ms >= self.end_ms {
+                    self.seek(0.0);
+                }
+                self.speed = *speed;
+                self.last = None;
+            }
+            Order::Seek(t_s) => self.seek(t_s * 1e3),
+            Order::Step(frames) => self.step(*frames),
+            Order::Reset(_) => self.seek(0.0),
+            Order::Robot(_) | Order::Hold(_) | Order::Route(_) | Order::Type(..)
+                if !self.warned =>
+            {
+                self.warned = true;
+                self.note("this is a replay: nothing is sent to a robot".into());
+            }
+            Order::Robot(_) | Order::Hold(_) | Order::Route(_) | Order::Type(..) => {}
+        }
+    }
+
+    fn note(&self, text: String) {
+        self.board.push_event(LoggedEvent {
+            t_s: self.at_ms / 1e3,
+            level: Level::Warning,
+            text,
+        });
+    }
+
+    /// The first row after a time.
+    fn row_after(&self, t_ms: f64) -> usize {
+        self.log.rows.partition_point(|row| row.t_ms as f64 <= t_ms)
+    }
+
+    fn seek(&mut self, t_ms: f64) {
+        self.at_ms = t_ms.clamp(0.0, self.end_ms);
+        self.last = None;
+        self.board.start_run();
+        let from = self.row_after(self.at_ms - BEFORE_MS as f64);
+        self.next_row = self.row_after(self.at_ms);
+        self.board
+            .push_samples(self.log.rows.get(from..self.next_row).unwrap_or_default());
+    }
+
+    /// To the next telemetry frame, or to the one before; the playhead stands there.
+    fn step(&mut self, frames: i32) {
+        self.speed = 0.0;
+        let now = self.row_after(self.at_ms) as i64 - 1;
+        let wanted =
+            (now + i64::from(frames)).clamp(0, self.log.rows.len().saturating_sub(1) as i64);
+        if let Some(row) = self.log.rows.get(wanted as usize) {
+            let t_ms = row.t_ms as f64;
+            if frames > 0 {
+                self.advance(t_ms)
+            } else {
+                self.seek(t_ms)
+            }
+        }
+    }
+
+    fn play(&mut self, now: Instant) {
+        let passed_s = self.last.map_or(0.0, |last| (now - last).as_secs_f64());
+        self.last = Some(now);
+        if self.speed > 0.0 {
+            self.advance(self.at_ms + passed_s * 1e3 * self.speed);
+            if self.at_ms >= self.end_ms {
+                self.speed = 0.0;
+            }
+        }
+    }
+
+    fn advance(&mut self, t_ms: f64) {
+        self.at_ms = t_ms.min(self.end_ms);
+        let until = self.row_after(self.at_ms);
+        self.board
+            .push_samples(self.log.rows.get(self.next_row..until).unwrap_or_default());
+        self.next_row = until.max(self.next_row);
+    }
+
+    /// Puts the slow state and the parameters of the playhead on the board.
+    fn show(&mut self) {
+        let t_s = self.at_ms / 1e3;
+        let index = self.log.states.partition_point(|state| state.t_s <= t_s);
+        // An imported recording has no state: its rows tell the mode.
+        let mut state = index
+            .checked_sub(1)
+            .and_then(|last| self.log.states.get(last))
+            .cloned()
+            .unwrap_or_else(|| self.state_of_row());
+        state.t_s = t_s;
+        state.simulated = self.log.scene.is_some();
+        state.speed = self.speed;
+        state.achieved_speed = self.speed;
+        state.replay = Some(ReplayState {
+            name: self.name.clone(),
+            duration_s: self.end_ms / 1e3,
+        });
+        self.board.set_state(state);
+        let known = self
+            .log
+            .parameters
+            .partition_point(|(t_ms, _)| *t_ms as f64 <= self.at_ms);
+        if self.shown != Some((known, self.log.parameters.len())) {
+            self.shown = Some((known, self.log.parameters.len()));
+            self.board.set_parameters(&self.parameters(known));
+        }
+    }
+
+    fn state_of_row(&self) -> State {
+        let mut state = State::default();
+        let row = self
+            .next_row
+            .checked_sub(1)
+            .and_then(|last| self.log.rows.get(last));
+        if let Some(row) = row {
+            state.link.connected = true;
+            state.robot.mode = row.signal("mode").map_or(0, |mode| mode as u8);
+            state.robot.armed = row.signal("armed") != Some(0.0);
+        }
+        state
+    }
+
+    fn parameters(&self, known: usize) -> Vec<ParameterState> {
+        let values = known
+            .checked_sub(1)
+            .and_then(|last| self.log.parameters.get(last));
+        catalogue::table()
+            .map(|entry| ParameterState {
+                entry,
+                value: values.and_then(|(_, values)| values.get(entry.name).copied()),
+                pending: false,
+                refused: None,
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,87 @@
+// @ts-check
+/** The bar of a replay: play, pause, step by telemetry frame, speed, and where in the log the page is. */
+import { create, element, setText } from './dom.js';
+import { format } from './units.js';
+
+/** @typedef {import('./types.js').State} State */
+/** @typedef {import('./panel.js').Send} Send */
+
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
+/** While the pointer drags, a place is asked for this often at most [ms]. */
+const SCRUB_MS = 60;
+
+export class ReplayBar {
+  #bar = element('replay', HTMLDivElement);
+  #play = element('replay-play', HTMLButtonElement);
+  #scrub = element('replay-scrub', HTMLInputElement);
+  #speed = element('replay-speed', HTMLSelectElement);
+  #time = element('replay-time', HTMLOutputElement);
+  #send;
+  #playing = false;
+  #dragging = false;
+  #asked_ms = 0;
+
+  /** @param {Send} send */
+  constructor(send) {
+    this.#send = send;
+    this.#speed.replaceChildren(...SPEEDS.map((factor) => create('option', { value: String(factor), textContent: `× ${factor}` })));
+    this.#speed.value = '1';
+    this.#play.addEventListener('click', () => this.toggle());
+    this.#speed.addEventListener('change', () => {
+      if (this.#playing) send({ type: 'speed', factor: Number(this.#speed.value) });
+    });
+    element('replay-back', HTMLButtonElement).addEventListener('click', () => this.step(-1));
+    element('replay-on', HTMLButtonElement).addEventListener('click', () => this.step(1));
+    this.#scrub.addEventListener('input', () => {
+      this.#dragging = true;
+      if (performance.now() - this.#asked_ms > SCRUB_MS) this.#seek();
+    });
+    this.#scrub.addEventListener('change', () => {
+      this.#dragging = false;
+      this.#seek();
+    });
+  }
+
+  /** A log is shown. */
+  get shown() {
+    return !this.#bar.hidden;
+  }
+
+  /** Plays or pauses. */
+  toggle() {
+    this.#send({ type: 'speed', factor: this.#playing ? 0 : Number(this.#speed.value) });
+  }
+
+  /** @param {number} frames */
+  step(frames) {
+    this.#send({ type: 'step', frames });
+  }
+
+  /** @param {number} t_s */
+  seek(t_s) {
+    this.#send({ type: 'seek', t_s });
+  }
+
+  #seek() {
+    this.#asked_ms = performance.now();
+    this.seek(this.#scrub.valueAsNumber);
+  }
+
+  /** @param {State} state */
+  show(state) {
+    const { replay } = state;
+    this.#bar.hidden = !replay;
+    document.body.classList.toggle('replay', Boolean(replay));
+    // Nothing is sent to a robot from here.
+    element('command-section', HTMLElement).inert = Boolean(replay);
+    element('parameter-section', HTMLElement).inert = Boolean(replay);
+    if (!replay) return;
+    this.#playing = state.speed > 0;
+    setText(this.#play, this.#playing ? 'Pause' : 'Play');
+    if (this.#playing) this.#speed.value = String(state.speed);
+    this.#scrub.max = String(replay.duration_s);
+    if (!this.#dragging) this.#scrub.value = String(state.t_s);
+    setText(this.#time, `${format(state.t_s, 2)} of ${format(replay.duration_s, 1)} s`);
+    element('replay-name', HTMLSpanElement).textContent = replay.name;
+  }
+}
