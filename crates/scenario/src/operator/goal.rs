@@ -66,3 +66,52 @@ impl GoalWatch {
         Some(since_us)
     }
 }
+
+/// How near a program goes to a corner, by its own odometry [m]: the report's 10 cm, and what a row rounds.
+const PASSED_M: f32 = 0.12;
+
+/// A route driven by a program that tells its pose and nothing else.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RouteWatch {
+    points_m: Vec<[f32; 2]>,
+    next: usize,
+}
+
+impl RouteWatch {
+    /// One more point at the end of the route.
+    pub(super) fn add(&mut self, x_m: f32, y_m: f32) {
+        self.points_m.push([x_m, y_m]);
+    }
+
+    /// The robot believes to be here; true once, at the last point after all others.
+    pub(super) fn passes(&mut self, here_x_m: f32, here_y_m: f32) -> bool {
+        let Some([x_m, y_m]) = self.points_m.get(self.next).copied() else {
+            return false;
+        };
+        let (dx_m, dy_m) = (here_x_m - x_m, here_y_m - y_m);
+        if dx_m * dx_m + dy_m * dy_m > PASSED_M * PASSED_M {
+            return false;
+        }
+        self.next += 1;
+        self.next == self.points_m.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_route_is_driven_when_its_points_were_passed_in_order() {
+        let mut route = RouteWatch::default();
+        assert!(!route.passes(0.0, 0.0));
+        for [x_m, y_m] in [[1.0, 0.0], [1.0, 1.0], [0.0, 0.0]] {
+            route.add(x_m, y_m);
+        }
+        // At the end of the route, but not yet round.
+        let way = [[0.05, 0.0], [0.91, 0.0], [1.02, 0.93], [0.5, 0.5]];
+        assert!(way.iter().all(|[x_m, y_m]| !route.passes(*x_m, *y_m)));
+        assert!(route.passes(0.07, 0.05));
+        assert!(!route.passes(0.07, 0.05));
+    }
+}

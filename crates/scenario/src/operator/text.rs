@@ -1,6 +1,6 @@
 //! The link to a program that speaks the original's text: lines out, rows of telemetry in.
 
-use super::goal::GoalWatch;
+use super::goal::{GoalWatch, RouteWatch};
 use crate::files::Setup;
 use crate::sim::Sim;
 use crate::trace::Heard;
@@ -22,9 +22,10 @@ pub(super) struct Terminal {
     /// Where goals are counted from, in the world.
     origin: contact::Pose,
     goal: GoalWatch,
+    route: RouteWatch,
     /// State of mode 8 in the last row; 0 is *wait for goal*.
     state: u8,
-    /// A row has said that the goal is reached.
+    /// A row has said that the goal or the end of the route is reached.
     told: bool,
 }
 
@@ -41,6 +42,7 @@ impl Terminal {
                 heading_rad: start.heading_rad,
             },
             goal: GoalWatch::default(),
+            route: RouteWatch::default(),
             state: 0,
             told: false,
         }
@@ -51,7 +53,11 @@ impl Terminal {
         match command {
             Command::Mode(mode) => self.mode = mode,
             Command::Goal { x_m, y_m } => self.send_to(sim, x_m, y_m),
-            Command::Waypoint(place) => self.send_to(sim, place.x_m, place.y_m),
+            Command::Route { .. } => self.route = RouteWatch::default(),
+            Command::Waypoint(place) => {
+                self.send_to(sim, place.x_m, place.y_m);
+                self.route.add(place.x_m, place.y_m);
+            }
             _ => {}
         }
         let lines = text::lines_of(&command, self.mode);
@@ -76,7 +82,7 @@ impl Terminal {
         self.goal.send(at_m, &sim.truth());
     }
 
-    /// Notes a goal reached. Mode 8 tells it by its state; else the truth is asked.
+    /// Notes a goal reached. Mode 8 tells it by its state, mode 7 by its pose; else the truth is asked.
     pub(super) fn watch(&mut self, sim: &Sim, heard: &mut Vec<Heard>) -> bool {
         if !matches!(self.mode, ModeId::Mission | ModeId::Waypoints) {
             return false;
@@ -112,9 +118,13 @@ impl Terminal {
             let line = std::mem::take(&mut self.line);
             let row = str::from_utf8(&line).ok().map(str::trim);
             if let Some(Ok(row)) = row.map(Row::parse) {
-                if let Row::Mission(row) = &row {
-                    self.told |= row.state == 0 && self.state != 0 && self.goal.is_set();
-                    self.state = row.state;
+                match &row {
+                    Row::Mission(row) => {
+                        self.told |= row.state == 0 && self.state != 0 && self.goal.is_set();
+                        self.state = row.state;
+                    }
+                    Row::Waypoints(row) => self.told |= self.route.passes(row.x_m, row.y_m),
+                    _ => {}
                 }
                 heard.push(Heard {
                     t_s: now_us as f64 * 1e-6,
