@@ -2,6 +2,7 @@
 //!
 //! The figures are of the machine at hand, whatever else it does at the time: they are printed, never asserted.
 
+mod emulator;
 mod headless;
 mod lab;
 mod page;
@@ -32,7 +33,12 @@ struct Part {
     measure: fn(&Project) -> Result<Vec<Figure>, String>,
 }
 
-const PARTS: [Part; 3] = [
+const PARTS: [Part; 4] = [
+    Part {
+        name: "emulator",
+        what: "simulated time over the processor's of firmware on the emulated Mega, beside simavr",
+        measure: emulator::measure,
+    },
     Part {
         name: "headless",
         what: "simulated time over wall time of `rumbo run`, one robot, one thread",

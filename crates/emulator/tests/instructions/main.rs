@@ -1,15 +1,16 @@
-//! Instructions and their cycles, against simavr as a separate program, on random programs.
+//! Instructions and their cycles, against simavr as a separate program, on random programs and on compiled ones.
 #![cfg(test)]
 
 mod assembler;
 mod bench;
+mod compiled;
 mod program;
+mod simavr;
 
 use bench::Bench;
 use program::Program;
 use rumbo_emulator::cpu::{Cpu, Stopped};
 use std::path::Path;
-use std::process::Command;
 
 /// Programs in an image: each takes about 350 words.
 const PROGRAMS: u16 = 320;
@@ -35,30 +36,7 @@ fn simavrs(program: &Program, name: &str) -> Option<Vec<String>> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let path = folder.join(format!("{name}.hex"));
     std::fs::write(&path, hex(&bytes(&program.words))).unwrap();
-    let output = Command::new("simavr")
-        .args(["-m", "atmega2560", "-f", "16000000"])
-        .arg(&path)
-        .output();
-    let Ok(output) = output else {
-        assert!(
-            std::env::var_os("CI").is_none(),
-            "simavr is missing: install the package simavr"
-        );
-        println!("skipped: simavr is not installed");
-        return None;
-    };
-    let text = String::from_utf8_lossy(&output.stdout).into_owned()
-        + &String::from_utf8_lossy(&output.stderr);
-    let is_report =
-        |line: &&str| line.len() == 2 * 39 && line.bytes().all(|b| b.is_ascii_hexdigit());
-    Some(
-        text.lines()
-            // It colours what it prints: the text follows the last `m` and ends in a dot for the line feed.
-            .map(|line| line.rsplit('m').next().unwrap_or("").trim_end_matches('.'))
-            .filter(is_report)
-            .map(str::to_owned)
-            .collect(),
-    )
+    simavr::reports(&path)
 }
 
 fn hex(bytes: &[u8]) -> String {

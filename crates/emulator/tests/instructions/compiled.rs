@@ -1,0 +1,66 @@
+//! Compiled C programs: what they report on both, for every level of optimisation.
+
+use crate::simavr;
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::cpu::Stopped;
+use rumbo_emulator::devices::Event;
+use rumbo_emulator::image::Image;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Parts of the program, and rounds through them.
+const REPORTS: usize = 6 * 3;
+
+/// Builds `compiled.c`; `None` where the compiler is not installed.
+fn build(level: &str) -> Option<PathBuf> {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs/compiled.c");
+    let image = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("compiled{level}.elf"));
+    let mut compiler = Command::new("avr-gcc");
+    compiler.args([
+        "-mmcu=atmega2560",
+        level,
+        "-std=gnu11",
+        "-Wno-array-bounds",
+        "-o",
+    ]);
+    let Ok(status) = compiler.arg(&image).arg(source).arg("-lm").status() else {
+        assert!(
+            std::env::var_os("CI").is_none(),
+            "avr-gcc is missing: install the packages gcc-avr and avr-libc"
+        );
+        println!("skipped: avr-gcc is not installed");
+        return None;
+    };
+    assert!(status.success(), "{level}");
+    Some(image)
+}
+
+/// What our chip sends over USART0, a line for each part.
+fn ours(path: &Path) -> Vec<String> {
+    let image = Image::parse(&std::fs::read(path).unwrap()).unwrap();
+    let mut chip = Chip::new(&image);
+    assert_eq!(chip.run_until(100_000_000), Stopped::Reached);
+    assert!(chip.cpu().is_sleeping());
+    let bytes = chip
+        .take_outputs()
+        .into_iter()
+        .filter_map(|output| match output.event {
+            Event::Byte { usart: 0, byte, .. } => Some(byte as u8),
+            _ => None,
+        });
+    let text = String::from_utf8(bytes.collect()).unwrap();
+    text.lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn compiled_programs_leave_the_same_registers_flags_memory_and_cycles() {
+    for level in ["-O0", "-O1", "-O2", "-O3", "-Os"] {
+        let Some(path) = build(level) else { return };
+        let ours = ours(&path);
+        assert_eq!(ours.len(), REPORTS);
+        let Some(theirs) = simavr::reports(&path) else {
+            return;
+        };
+        assert_eq!(ours, theirs, "{level}");
+    }
+}

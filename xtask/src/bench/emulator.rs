@@ -1,0 +1,135 @@
+//! How much faster than real time a firmware runs: the emulated Mega with the simulated robot around it, and simavr with the same
+//! image and nothing around it.
+//!
+//! Both by the processor's time that they take, which others who use the machine at the same time change little.
+
+use std::path::{Path, PathBuf};
+
+use super::Figure;
+use crate::project::{Project, output, run};
+
+/// Simulated seconds: what the scenario lasts, and a little more than that for the image, which then ends simavr.
+const SCENARIO: &str = "free";
+const SCENARIO_S: f64 = 10.0;
+const IMAGE_S: f64 = 11.0;
+/// Of several measurements the shortest is the least disturbed one.
+const TIMES: usize = 5;
+
+/// Factors over real time of a firmware that waits in a loop, and of one that sleeps.
+pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
+    let [busy, sleepy] = [image(project, "busy")?, image(project, "sleepy")?];
+    let start_s = shortest(|| cpu_s(project, &project.release_binary_path(), &["list"]))?;
+    let ours = |image: &Path| {
+        let path = image.display().to_string();
+        let arguments = [
+            "run",
+            SCENARIO,
+            "--threads",
+            "1",
+            "--json",
+            "--firmware",
+            &path,
+        ];
+        shortest(|| cpu_s(project, &project.release_binary_path(), &arguments))
+            .map(|cpu_s| SCENARIO_S / (cpu_s - start_s).max(0.001))
+    };
+    let (busy_factor, sleepy_factor) = (ours(&busy)?, ours(&sleepy)?);
+    let what = |image| {
+        format!("`rumbo run {SCENARIO} --firmware {image}.elf`: float PID and odometry at 1 kHz")
+    };
+    let mut figures = vec![
+        Figure::new(
+            what("busy"),
+            format!("{busy_factor:.0} x real time"),
+            "20 x",
+        ),
+        Figure::new(
+            what("sleepy") + ", asleep between",
+            format!("{sleepy_factor:.0} x real time"),
+            "60 x",
+        ),
+    ];
+    let path = busy.display().to_string();
+    let arguments = ["-m", "atmega2560", "-f", "16000000", &path];
+    let simavr_s = shortest(|| cpu_s(project, Path::new("simavr"), &arguments))?;
+    let factor = IMAGE_S / simavr_s.max(0.001);
+    figures.push(Figure::new(
+        "the same busy.elf on simavr, without a robot",
+        format!("{factor:.1} x real time"),
+        "",
+    ));
+    figures.push(Figure::new(
+        "ours over simavr's",
+        format!("{:.1}", busy_factor / factor),
+        "3",
+    ));
+    Ok(figures)
+}
+
+/// Builds a program of the emulator's tests.
+fn image(project: &Project, name: &str) -> Result<PathBuf, String> {
+    let folder = project.target.join("bench");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let image = folder.join(format!("{name}.elf"));
+    let source = project
+        .root
+        .join("crates/emulator/tests/programs")
+        .join(format!("{name}.c"));
+    let seconds = format!("-DSECONDS={IMAGE_S}");
+    let options = [
+        "-mmcu=atmega2560",
+        "-Os",
+        "-std=gnu11",
+        "-DF_CPU=16000000UL",
+        &seconds,
+    ];
+    run(project
+        .command("avr-gcc")
+        .args(options)
+        .arg(source)
+        .arg("-o")
+        .arg(&image)
+        .arg("-lm"))
+    .map_err(|error| format!("{error}; `apt-get install gcc-avr avr-libc simavr`"))?;
+    Ok(image)
+}
+
+fn shortest(mut measure: impl FnMut() -> Result<f64, String>) -> Result<f64, String> {
+    let times: Result<Vec<f64>, String> = (0..TIMES).map(|_| measure()).collect();
+    Ok(times?.into_iter().fold(f64::INFINITY, f64::min))
+}
+
+/// The processor's time that a program takes; how it ends does not matter.
+fn cpu_s(project: &Project, program: &Path, arguments: &[&str]) -> Result<f64, String> {
+    let mut shell = project.command("sh");
+    // The shell knows what its children took.
+    shell
+        .args(["-c", "\"$@\" >/dev/null 2>&1; times", "sh"])
+        .arg(program)
+        .args(arguments);
+    let text = output(&mut shell)?;
+    children_s(&text).ok_or_else(|| format!("`times` says `{text}`"))
+}
+
+/// The second line of what `times` prints: user and system time of the children, such as `0m1.42s 0m0.07s`.
+fn children_s(text: &str) -> Option<f64> {
+    let seconds = |word: &str| {
+        let (minutes, rest) = word.strip_suffix('s')?.split_once('m')?;
+        Some(60.0 * minutes.parse::<f64>().ok()? + rest.parse::<f64>().ok()?)
+    };
+    text.lines().nth(1)?.split_whitespace().map(seconds).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_childrens_time_is_the_second_line() {
+        assert_eq!(
+            children_s("0m0.00s 0m0.01s\n1m2.50s 0m0.25s\n"),
+            Some(62.75)
+        );
+        assert_eq!(children_s("0m0.00s 0m0.01s\n"), None);
+    }
+}
