@@ -82,7 +82,17 @@ impl Place {
     pub(super) fn square_mm2(self, to: Place) -> i32 {
         let (x, y) = self.from(to);
         // Beyond 32 m in both: saturates.
-        x.saturating_mul(x).saturating_add(y.saturating_mul(y))
+        square(x).saturating_add(square(y))
+    }
+}
+
+/// `x * x`, saturating; without the product of twice the width by which the processor would find that out.
+fn square(x: i32) -> i32 {
+    const ROOT_OF_MOST: i32 = 46_340;
+    if x.abs() > ROOT_OF_MOST {
+        i32::MAX
+    } else {
+        x * x
     }
 }
 

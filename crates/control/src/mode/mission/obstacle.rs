@@ -47,12 +47,47 @@ pub(super) struct Obstacle {
     pub nearest_m: f32,
 }
 
+/// A set of points, by their numbers; in bytes, since the AVR shifts long words bit by bit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Points {
+    has: [bool; CAPACITY],
+}
+
+impl Points {
+    const NONE: Self = Self {
+        has: [false; CAPACITY],
+    };
+
+    fn has(&self, number: usize) -> bool {
+        self.has.get(number).copied().unwrap_or_default()
+    }
+
+    fn insert(&mut self, number: usize) {
+        if let Some(slot) = self.has.get_mut(number) {
+            *slot = true;
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        !self.has.contains(&true)
+    }
+
+    /// The point with the lowest number, which is no longer in the set.
+    fn take_first(&mut self) -> Option<usize> {
+        let number = self.has.iter().position(|has| *has)?;
+        if let Some(slot) = self.has.get_mut(number) {
+            *slot = false;
+        }
+        Some(number)
+    }
+}
+
 /// The search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Search {
     /// Points that belong to it, and those of them whose neighbours are still to be found.
-    member: u64,
-    open: u64,
+    member: Points,
+    open: Points,
     bearing: [i8; CAPACITY],
     so_far: Obstacle,
 }
@@ -60,8 +95,8 @@ pub(super) struct Search {
 impl Default for Search {
     fn default() -> Self {
         Self {
-            member: 0,
-            open: 0,
+            member: Points::NONE,
+            open: Points::NONE,
             bearing: [0; CAPACITY],
             so_far: Obstacle::default(),
         }
@@ -125,8 +160,8 @@ impl Search {
         y_m: f32,
         about_rad: f32,
     ) {
-        self.member = 0;
-        self.open = 0;
+        self.member = Points::NONE;
+        self.open = Points::NONE;
         self.so_far = Obstacle {
             left: End {
                 pass_rad: f32::MIN,
@@ -153,16 +188,15 @@ impl Search {
         let Some(point) = echoes.get(number) else {
             return;
         };
-        let bit = 1u64 << number.min(63);
-        if self.member & bit != 0 {
+        if self.member.has(number) {
             return;
         }
-        self.member |= bit;
+        self.member.insert(number);
         let (px_m, py_m) = point.metres();
         let (dx, dy) = (px_m - x_m, py_m - y_m);
         let distance_m = sqrt(dx * dx + dy * dy);
         if distance_m < SPREAD_M {
-            self.open |= bit;
+            self.open.insert(number);
         }
         let bearing_rad = about_rad + wrap_angle(atan2(dy, dx) - about_rad);
         if let Some(slot) = self.bearing.get_mut(number) {
@@ -190,29 +224,25 @@ impl Search {
     pub(super) fn step(&mut self, echoes: &Echoes, x_m: f32, y_m: f32) -> Option<Obstacle> {
         let here = Place::new(x_m, y_m);
         for _ in 0..PER_TICK {
-            if self.open == 0 {
+            let Some(number) = self.open.take_first() else {
                 break;
-            }
-            let number = usize::try_from(self.open.trailing_zeros()).unwrap_or(0);
-            self.open &= self.open - 1;
+            };
             let Some(centre) = echoes.get(number) else {
                 continue;
             };
             let about_rad = f32::from(self.bearing.get(number).copied().unwrap_or(0)) * COARSE_RAD;
             for (other, point) in echoes.firm(here) {
-                if self.member & (1u64 << other.min(63)) == 0
-                    && point.square_mm2(centre) < LINK_MM * LINK_MM
-                {
+                if !self.member.has(other) && point.square_mm2(centre) < LINK_MM * LINK_MM {
                     self.join(echoes, other, x_m, y_m, about_rad);
                 }
             }
         }
-        (self.open == 0 && self.member != 0).then_some(self.so_far)
+        (self.open.is_empty() && !self.member.is_empty()).then_some(self.so_far)
     }
 
     /// Whether a point belongs to the obstacle.
     pub(super) fn has(&self, number: usize) -> bool {
-        self.member & (1u64 << number.min(63)) != 0
+        self.member.has(number)
     }
 }
 

@@ -1,0 +1,176 @@
+//! The chip with our image, stopped at each tick where the image shows its inputs and its outputs.
+
+use rumbo_control::{Echo, Inputs, Outputs};
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::cpu::{SRAM_START, Stopped};
+use rumbo_emulator::devices::Event;
+use rumbo_emulator::image::Image;
+use std::path::Path;
+
+/// Where in one of the image's rings the count of bytes put in lies: behind its 64 bytes.
+const RING: usize = 64;
+
+/// The image; `None` where it has not been built.
+pub(crate) fn image() -> Option<Image> {
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
+    let path = target.join("firmware/rumbo.elf");
+    let Ok(bytes) = std::fs::read(&path) else {
+        let remedy = format!("{} is missing: run `cargo xtask firmware`", path.display());
+        assert!(std::env::var_os("CI").is_none(), "{remedy}");
+        println!("skipped: {remedy}");
+        return None;
+    };
+    Some(Image::parse(&bytes).unwrap())
+}
+
+/// The chip at its ticks.
+pub(crate) struct Board {
+    chip: Chip,
+    inputs_latched: u32,
+    outputs_left: u32,
+    inputs: usize,
+    outputs: usize,
+    received: usize,
+    sending: usize,
+    moved: u8,
+    hash: u32,
+    sent: Vec<u8>,
+}
+
+impl Board {
+    pub(crate) fn new(image: &Image) -> Board {
+        let function = |name| image.function_named(name).unwrap().address;
+        let variable =
+            |name| image.variable(name).unwrap().address as usize - usize::from(SRAM_START);
+        let mut chip = Chip::new(image);
+        let (inputs_latched, outputs_left) = (
+            function("rumbo_inputs_latched"),
+            function("rumbo_outputs_left"),
+        );
+        chip.cpu_mut().set_breakpoint(inputs_latched);
+        chip.cpu_mut().set_breakpoint(outputs_left);
+        let mut board = Board {
+            chip,
+            inputs_latched,
+            outputs_left,
+            inputs: variable("RUMBO_INPUTS"),
+            outputs: variable("RUMBO_OUTPUTS"),
+            received: variable("RUMBO_RECEIVED"),
+            sending: variable("RUMBO_SENDING"),
+            moved: 0,
+            hash: 0,
+            sent: Vec::new(),
+        };
+        board.run_to(inputs_latched);
+        let at = variable("RUMBO_IMAGE_HASH");
+        board.hash = u32::from_le_bytes(board.chip.cpu().sram()[at..at + 4].try_into().unwrap());
+        board
+    }
+
+    /// Runs to a function that does nothing.
+    fn run_to(&mut self, function: u32) {
+        loop {
+            let stopped = self.chip.run_until(u64::MAX / 2);
+            assert_eq!(
+                stopped,
+                Stopped::Breakpoint,
+                "{:?}",
+                self.chip.cpu().verdict()
+            );
+            if self.chip.cpu().program_counter() == function {
+                break;
+            }
+            // Where an interrupt comes first, the breakpoint is met once more after it.
+            self.chip.step();
+        }
+        for output in self.chip.take_outputs() {
+            match output.event {
+                Event::Byte { byte, .. } => self.sent.push(byte as u8),
+                Event::Reset(cause) => panic!("reset: {cause:?}"),
+                Event::Pin(..) | Event::Duty { .. } => {}
+            }
+        }
+    }
+
+    /// The image's hash, as it tells it.
+    pub(crate) fn hash(&self) -> u32 {
+        self.hash
+    }
+
+    /// How many bytes the loop has handed to the link since the last call.
+    pub(crate) fn handed_over(&mut self) -> u8 {
+        let put = self.chip.cpu().sram()[self.sending + RING];
+        let handed_over = put.wrapping_sub(self.moved);
+        self.moved = put;
+        handed_over
+    }
+
+    /// What has left the chip.
+    pub(crate) fn sent(&self) -> &[u8] {
+        &self.sent
+    }
+
+    /// Bytes that the robot receives at the next tick; not more than fit into the ring.
+    pub(crate) fn arrive(&mut self, bytes: &[u8]) {
+        let ring = &mut self.chip.cpu_mut().sram_mut()[self.received..];
+        for byte in bytes {
+            let put = ring[RING];
+            ring[usize::from(put) % RING] = *byte;
+            ring[RING] = put.wrapping_add(1);
+        }
+    }
+
+    /// One tick with these inputs: what the image leaves, and the cycles it took.
+    pub(crate) fn tick(&mut self, inputs: &Inputs) -> ([u8; 9], u64) {
+        let record = inputs_record(inputs);
+        self.chip.cpu_mut().sram_mut()[self.inputs..self.inputs + record.len()]
+            .copy_from_slice(&record);
+        let start = self.chip.cpu().cycle();
+        self.chip.step();
+        self.run_to(self.outputs_left);
+        let cycles = self.chip.cpu().cycle() - start;
+        let left = self.chip.cpu().sram()[self.outputs..self.outputs + 9]
+            .try_into()
+            .unwrap();
+        self.chip.step();
+        self.run_to(self.inputs_latched);
+        (left, cycles)
+    }
+}
+
+/// Inputs as the image has them in `RUMBO_INPUTS`.
+fn inputs_record(inputs: &Inputs) -> Vec<u8> {
+    let mut record = inputs.now.0.to_le_bytes().to_vec();
+    for edges in [inputs.encoders.left, inputs.encoders.right] {
+        record.extend(edges.count.to_le_bytes());
+        record.extend(edges.last.0.to_le_bytes());
+        record.extend(edges.turn_us.to_le_bytes());
+    }
+    let (kind, sonar, pulse_us) = match inputs.echo {
+        None => (0, 0, 0),
+        Some((sonar, Echo::Pulse(us))) => (1, sonar as u8, us),
+        Some((sonar, Echo::Clear)) => (2, sonar as u8, 0),
+        Some((sonar, Echo::Silent)) => (3, sonar as u8, 0),
+    };
+    record.extend([kind, sonar]);
+    record.extend(pulse_us.to_le_bytes());
+    record
+}
+
+/// Outputs as the image has them in `RUMBO_OUTPUTS`.
+pub(crate) fn outputs_record(outputs: &Outputs) -> [u8; 9] {
+    let [a, b] = outputs.drive.left.counts().to_le_bytes();
+    let [c, d] = outputs.drive.right.counts().to_le_bytes();
+    let [e, f, g, h] = outputs.servo.0.to_le_bytes();
+    [
+        a,
+        b,
+        c,
+        d,
+        e,
+        f,
+        g,
+        h,
+        outputs.ping.map_or(255, |sonar| sonar as u8),
+    ]
+}

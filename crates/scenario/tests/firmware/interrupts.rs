@@ -1,0 +1,98 @@
+//! How long the interrupt handlers take, and how long they let others wait, while everything happens at once.
+
+use crate::board::image;
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::devices::ports::Pin;
+use rumbo_emulator::devices::{Event, Input};
+use rumbo_emulator::observe::profile::Profile;
+use rumbo_wire::{Decoder, FromRobot, Message, Received};
+
+const CYCLES_PER_MS: u64 = 16_000;
+/// Vectors of the encoders, and of the echoes.
+const ENCODERS: [u8; 2] = [1, 2];
+const ECHOES: [u8; 3] = [3, 4, 6];
+
+fn pin(port: char, bit: u8) -> Pin {
+    Pin::new(port, bit).unwrap()
+}
+
+#[test]
+fn handlers_are_short_and_wait_little_while_both_wheels_turn_echoes_come_and_bytes_flood() {
+    let Some(image) = image() else {
+        return;
+    };
+    let mut chip = Chip::new(&image);
+    // Once it runs: flags that rise before interrupts are on would count as waiting.
+    chip.run_until(20 * CYCLES_PER_MS);
+    chip.observers_mut().profile(Profile::new(&image));
+    for ms in 20..1_020 {
+        let at = ms * CYCLES_PER_MS;
+        let level = |period_ms: u64| Some(ms / period_ms % 2 == 0);
+        // Not in step with each other, nor with the tick.
+        chip.input(at + 97 * ms % 16_000, Input::Pin(pin('D', 0), level(1)));
+        chip.input(at + 89 * ms % 16_000, Input::Pin(pin('D', 1), level(1)));
+        chip.input(at + 83 * ms % 16_000, Input::Pin(pin('D', 2), level(3)));
+        chip.input(at + 79 * ms % 16_000, Input::Pin(pin('D', 3), level(4)));
+        chip.input(at + 73 * ms % 16_000, Input::Pin(pin('E', 5), level(5)));
+        let (usart, byte, baud) = (2, (ms * 31) as u8, 9_600);
+        chip.input(at, Input::Serial { usart, byte, baud });
+        chip.run_until(at + CYCLES_PER_MS);
+        chip.take_outputs();
+    }
+    let profile = chip.observers().profiled().unwrap();
+    let used = profile.interrupts();
+    for vector in ENCODERS.into_iter().chain(ECHOES) {
+        assert!(
+            used.iter()
+                .any(|used| used.vector == vector && used.count > 150),
+            "{vector}"
+        );
+    }
+    for used in used {
+        println!("{used:?}");
+        let (longest, latency) = match used.vector {
+            vector if ENCODERS.contains(&vector) => (110, 240),
+            vector if ECHOES.contains(&vector) => (160, 400),
+            _ => (160, u64::MAX),
+        };
+        assert!(
+            used.longest <= longest && used.worst_latency <= latency,
+            "{used:?}"
+        );
+    }
+}
+
+#[test]
+fn it_introduces_itself_at_once_and_tells_25_times_a_second() {
+    let Some(image) = image() else {
+        return;
+    };
+    let mut chip = Chip::new(&image);
+    chip.observers_mut().measure_stack();
+    chip.run_until(2_000 * CYCLES_PER_MS);
+    let (mut decoder, mut told) = (Decoder::<48>::default(), Vec::new());
+    for output in chip.take_outputs() {
+        let Event::Byte { usart, byte, baud } = output.event else {
+            continue;
+        };
+        assert_eq!((usart, baud.round()), (2, 9_615.0));
+        if let Some(Received::Frame(body)) = decoder.push(byte as u8) {
+            told.push(FromRobot::from_body(&body).unwrap());
+        }
+    }
+    assert!(
+        matches!(told.first(), Some(FromRobot::Hello(hello)) if hello.image != 0),
+        "{told:?}"
+    );
+    let telemetry = told
+        .iter()
+        .filter(|told| matches!(told, FromRobot::Telemetry(_)))
+        .count();
+    assert!((48..=50).contains(&telemetry), "{telemetry}");
+    assert_eq!(decoder.crc_errors(), 0);
+    // What lies between the variables and the deepest that the stack has been.
+    let lowest = chip.observers().lowest_stack_pointer().unwrap();
+    let margin = lowest - image.data_end().unwrap();
+    println!("stack margin {margin} bytes");
+    assert!(margin >= 2_048, "{margin}");
+}

@@ -1,0 +1,9 @@
+//! Our own image for the Mega, on the emulated chip: the same bits as the native robot, and its interrupts' times.
+//! `cargo xtask firmware` builds it.
+#![cfg(test)]
+
+mod board;
+mod interrupts;
+mod pins;
+mod same_bits;
+mod world;

@@ -1,0 +1,67 @@
+//! The image and the native robot, given the same, give the same: every output and every byte on the link.
+
+use crate::board::{Board, image, outputs_record};
+use crate::world::World;
+use rumbo_control::Outputs;
+use rumbo_robot::{Config, Robot};
+use rumbo_wire::ResetCause;
+
+/// Ticks of one run, two minutes: eight modes one after the other, some twice.
+const TICKS: u32 = 12_000;
+
+/// Runs both with a seed; prints the cycles of the ticks by mode.
+fn compare(seed: u64) {
+    let Some(image) = image() else {
+        return;
+    };
+    let mut board = Board::new(&image);
+    let mut robot = Robot::new(Config {
+        image: board.hash(),
+        reset: ResetCause::PowerOn,
+    });
+    let (mut world, mut outputs, mut told) = (World::new(seed), Outputs::default(), Vec::new());
+    let (mut worst, mut driven) = ([0; 9], 0);
+    for tick in 1..=TICKS {
+        let inputs = world.inputs(tick, &outputs);
+        outputs = robot.tick(&inputs);
+        let bytes = world.bytes(tick);
+        board.arrive(&bytes);
+        let (left, cycles) = board.tick(&inputs);
+        assert_eq!(
+            left,
+            outputs_record(&outputs),
+            "seed {seed}, tick {tick}: {inputs:?} {outputs:?}"
+        );
+        for byte in bytes {
+            robot.receive(byte);
+        }
+        let handed_over = usize::from(board.handed_over());
+        told.extend(std::iter::from_fn(|| robot.transmit()).take(handed_over));
+        let sent = board.sent();
+        assert_eq!(
+            sent,
+            &told[..sent.len().min(told.len())],
+            "seed {seed}, tick {tick}"
+        );
+        worst[world.mode() as usize] = cycles.max(worst[world.mode() as usize]);
+        driven += u32::from(outputs.drive != Outputs::default().drive);
+    }
+    println!(
+        "seed {seed}: {TICKS} ticks, {driven} of them driven, most cycles of a tick by mode {worst:?}"
+    );
+    assert!(
+        driven > TICKS / 5 && told.len() > 50_000,
+        "{driven} {}",
+        told.len()
+    );
+}
+
+#[test]
+fn the_image_computes_the_same_bits_as_the_native_robot() {
+    (1..=2).for_each(compare);
+}
+
+#[test]
+fn and_with_other_inputs() {
+    (3..=4).for_each(compare);
+}
