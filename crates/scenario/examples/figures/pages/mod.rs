@@ -119,8 +119,8 @@ fn pwm(original: &Runs, ours: &Runs) -> Chart {
 
 const REPORT: &str = "the report's program";
 const AS_RECORDED: &str = "on robots as recorded";
-const EXPLAINED: &str = "*As recorded*: the same robots, made to turn (and, along or before a wall, to roll or to hear) as the report's own did \
-([why](original.md)); the figure shows its program on these. ";
+const EXPLAINED: &str = "\n*As recorded*: the same robots, made to turn (and, along or before a wall, to roll or to hear) as the report's own \
+did ([why](original.md)); the figure shows its program on these.";
 
 /// The words below a figure of both programs: the table, and what was run.
 fn words(columns: &[(&str, &Runs)], scenario: &str, rows: &[Row]) -> String {
@@ -137,8 +137,8 @@ fn words(columns: &[(&str, &Runs)], scenario: &str, rows: &[Row]) -> String {
     };
     let recorded = columns.iter().any(|(name, _)| *name == AS_RECORDED);
     format!(
-        "{}\nThe same {seeds} simulated robots with both programs: median, and the range of all. {}`rumbo run {scenario} --runs {seeds}`, and with \
-`--program original`{end}.\n",
+        "{}\nThe same {seeds} simulated robots with both programs: median, and the range of all.{}\n`rumbo run {scenario} --runs {seeds}`, and \
+with `--program original`{end}.\n",
         table(columns, rows),
         if recorded { EXPLAINED } else { "" },
         seeds = runs::SEEDS,
