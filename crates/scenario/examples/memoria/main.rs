@@ -137,7 +137,7 @@ fn cell(metric: &Metric, runs: &[RunResult]) -> String {
     let shown = |value: f64| match value * metric.factor {
         value if !value.is_finite() => "never".to_owned(),
         value if value.abs() >= 10.0 => format!("{value:.1}"),
-        value if value == 0.0 => "0".to_owned(),
+        0.0 => "0".to_owned(),
         value => format!("{value:.2}"),
     };
     let median = values[values.len() / 2];

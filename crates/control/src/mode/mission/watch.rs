@@ -83,14 +83,12 @@ impl Watch {
                 ear.hear(reading.range);
             }
             match (reading.sonar, reading.range) {
-                (SonarId::Front, Range::Clear) => {
-                    if denies {
-                        self.deaf = self.deaf.saturating_add(1);
-                        self.denied_m = 0.0;
-                    }
+                (SonarId::Front, Range::Clear) if denies => {
+                    self.deaf = self.deaf.saturating_add(1);
+                    self.denied_m = 0.0;
                 }
+                (SonarId::Front, Range::Clear) | (SonarId::Left | SonarId::Right, _) => {}
                 (SonarId::Front, _) => self.deaf = 0,
-                _ => {}
             }
         }
         self.denied_m += abs(estimate.rolled_m);
@@ -191,7 +189,7 @@ mod tests {
             (1..400).find_map(|tick: u16| {
                 let reading = Some(Reading {
                     sonar: SonarId::ALL[usize::from(tick % 3)],
-                    range: if tick % every == 0 {
+                    range: if tick.is_multiple_of(every) {
                         near(tick)
                     } else {
                         Range::Clear
