@@ -137,7 +137,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "NAME", requires = "firmware")]
     pub(crate) wiring: Option<String>,
     /// Line of text sent over the link at a time, e.g. 'REF 40@6'; may be repeated
-    #[arg(long = "command", value_name = "TEXT@SECONDS", value_parser = timed_text)]
+    #[arg(long = "command", value_name = "TEXT@SECONDS", value_parser = timed_text, conflicts_with = "program")]
     pub(crate) commands: Vec<TimedText>,
     /// Parameter of the control core or the plant (`rumbo list`); may be repeated
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]

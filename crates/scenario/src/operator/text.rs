@@ -61,6 +61,11 @@ impl Terminal {
             _ => {}
         }
         let lines = text::lines_of(&command, self.mode);
+        // The route itself has been noted.
+        let of_route = matches!(command, Command::Waypoint(_));
+        if lines == [None; 2] && of_route {
+            return None;
+        }
         if lines == [None; 2] {
             return Some(format!(
                 "the original's text has no words for {command:?}: not sent"
