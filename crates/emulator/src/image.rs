@@ -51,6 +51,14 @@ impl Image {
         Ok(image)
     }
 
+    /// A program of these bytes of flash, without names; what lies beyond the end of the flash is ignored.
+    pub fn of_flash(bytes: &[u8]) -> Image {
+        Image {
+            flash: bytes[..bytes.len().min(FLASH_BYTES)].to_vec(),
+            ..Image::default()
+        }
+    }
+
     /// The flash from address 0 to the end of the program.
     pub fn flash(&self) -> &[u8] {
         &self.flash

@@ -33,20 +33,7 @@ pub(crate) fn sts(address: u16, register: u8) -> [u16; 2] {
 /// A chip with these words in its flash.
 pub(crate) fn chip_of(words: &[u16]) -> Chip {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    Chip::new(&Image::parse(hex(&bytes).as_bytes()).unwrap())
-}
-
-fn hex(bytes: &[u8]) -> String {
-    let mut records: Vec<ihex::Record> = bytes
-        .chunks(16)
-        .enumerate()
-        .map(|(index, chunk)| ihex::Record::Data {
-            offset: index as u16 * 16,
-            value: chunk.to_vec(),
-        })
-        .collect();
-    records.push(ihex::Record::EndOfFile);
-    ihex::create_object_file_representation(&records).unwrap()
+    Chip::new(&Image::of_flash(&bytes))
 }
 
 pub(crate) fn pin(letter: char, bit: u8) -> Pin {

@@ -1,0 +1,12 @@
+//! Any file is a program for the chip or gets one line that says why not.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use rumbo_emulator::image::Image;
+
+fuzz_target!(|bytes: &[u8]| {
+    match Image::parse(bytes) {
+        Ok(image) => assert!(!image.flash().is_empty()),
+        Err(error) => assert!(!error.to_string().contains('\n')),
+    }
+});
