@@ -207,3 +207,65 @@ fn a_waveform_has_inputs_and_outputs_at_their_times() {
     );
     assert_eq!(changes[4], (133.0, true, low));
 }
+
+#[test]
+fn a_profile_of_a_compiled_program_names_its_functions() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs");
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("sleepy.elf");
+    let mut compiler = std::process::Command::new("avr-gcc");
+    compiler.args(["-mmcu=atmega2560", "-Os", "-std=gnu11", "-DSECONDS=1", "-o"]);
+    let Ok(status) = compiler
+        .arg(&path)
+        .arg(folder.join("sleepy.c"))
+        .arg("-lm")
+        .status()
+    else {
+        assert!(
+            std::env::var_os("CI").is_none(),
+            "avr-gcc is missing: install the packages gcc-avr and avr-libc"
+        );
+        println!("skipped: avr-gcc is not installed");
+        return;
+    };
+    assert!(status.success());
+    let image = Image::parse(&std::fs::read(&path).unwrap()).unwrap();
+    let mut chip = Chip::new(&image);
+    chip.observers_mut().profile(Profile::new(&image));
+    // The last of the thousand ticks is not over: at 16 MHz each takes 16,000 cycles.
+    chip.run_until(15_990_000);
+    let profile = chip.observers().profiled().unwrap();
+    let calls = |name: &str| {
+        profile
+            .functions()
+            .iter()
+            .find(|function| function.name == name)
+            .unwrap()
+            .calls
+    };
+    assert_eq!((calls("main"), calls("step")), (1, 2 * 999));
+    let [
+        InterruptUse {
+            vector: 17,
+            count: 999,
+            ..
+        },
+    ] = profile.interrupts()[..]
+    else {
+        panic!("{:?}", profile.interrupts());
+    };
+    assert!(profile.cycles_asleep() > profile.cycles() / 10);
+    let folded = profile.folded();
+    for part in [
+        "main;step;__mulsf3",
+        "interrupt TIMER1_COMPA;__vector_17 ",
+        "(asleep) ",
+    ] {
+        assert!(folded.contains(part), "{part} is not in\n{folded}");
+    }
+    assert!(profile.report().contains("TIMER1_COMPA"));
+    // The pieces of a division are no calls of their own.
+    assert!(!folded.contains("__divsf3x;__divsf3x"));
+    let step = image.function_named("step").unwrap();
+    assert_eq!(image.function(step.address + step.size - 1), Some("step"));
+    assert_eq!(image.variable("left").unwrap().size, 18);
+}

@@ -205,8 +205,14 @@ impl Profile {
     fn call(&mut self, target: u32, before: &Moment) {
         self.unwind(before.stack_pointer, before.cycle);
         let function = self.function(target);
-        self.calls[usize::from(function)] += 1;
         self.push(before.stack_pointer, None);
+        let before_target = target.wrapping_sub(1) as usize % FLASH_WORDS;
+        let inside = function != UNKNOWN && self.function_at[before_target] == function;
+        if inside && self.nodes[self.here].function == function {
+            // A piece of itself that a function written in assembly calls.
+            return;
+        }
+        self.calls[usize::from(function)] += 1;
         let above = if Some(function) == self.main {
             ROOT
         } else {
