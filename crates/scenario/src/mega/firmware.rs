@@ -6,6 +6,7 @@ use crate::files::{FileError, RobotFile, ScenarioFile, Wiring};
 use rumbo_control::mode::ModeId;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
+use rumbo_emulator::devices::ports::Drive;
 use rumbo_emulator::devices::ports::Pin;
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
@@ -14,8 +15,9 @@ use std::path::Path;
 
 /// Rate of the Bluetooth module [baud].
 pub const LINK_BAUD: f64 = 9600.0;
-/// The report's robot has a USART's receiver on these pins of the board.
+/// Receiving and transmitting pins of the USARTs on the board.
 const RECEIVERS: [u8; 4] = [0, 19, 17, 15];
+const TRANSMITTERS: [u8; 4] = [1, 18, 16, 14];
 /// Our program says HELLO as soon as it runs; this long is waited for it [us].
 const BOOT_US: u64 = 600_000;
 /// Room for what a robot says at once.
@@ -62,10 +64,10 @@ impl Firmware {
             || shown.to_string(),
             |name| name.to_string_lossy().into_owned(),
         );
-        let language = language(&image);
+        let (language, transmits) = begin(&image);
         let wiring = match wiring {
             Some(wiring) => wiring.to_owned(),
-            None => default_wiring(language, robot, scenario),
+            None => default_wiring(language, transmits, robot, scenario),
         };
         let wires = Wires::new(&wiring, find(robot, &wiring)?)?;
         Ok(Self {
@@ -122,8 +124,14 @@ fn find<'a>(robot: &'a RobotFile, wiring: &str) -> Result<&'a Wiring, FileError>
     })
 }
 
-/// Our program knows the final build only; of another one, the report's build for this experiment.
-fn default_wiring(language: Language, robot: &RobotFile, scenario: &ScenarioFile) -> String {
+/// Our program knows the final build only; of another one, the report's build for this experiment. If the program has not
+/// switched on the transmitter of that build's link, but that of another build's: that one.
+fn default_wiring(
+    language: Language,
+    transmits: [bool; 4],
+    robot: &RobotFile,
+    scenario: &ScenarioFile,
+) -> String {
     let name = match (language, scenario.rig.as_str(), scenario.mode) {
         (Language::Frames, ..) => "final",
         (_, "front_single", ModeId::FrontDistance) => "mode_1",
@@ -133,14 +141,23 @@ fn default_wiring(language: Language, robot: &RobotFile, scenario: &ScenarioFile
         }
         _ => "final",
     };
-    match robot.wirings.keys().next() {
-        Some(only) if robot.wirings.len() == 1 => only.clone(),
-        _ => name.to_owned(),
-    }
+    let fits = |name: &str| {
+        let wiring = robot.wirings.get(name);
+        let wires = wiring.and_then(|wiring| Wires::new(name, wiring).ok());
+        let link = wires.and_then(|wires| wires.link);
+        link.is_some_and(|usart| transmits[usize::from(usart)])
+    };
+    let mut names = robot.wirings.keys();
+    let found = match names.len() {
+        0 | 1 => names.next(),
+        _ if fits(name) => None,
+        _ => names.find(|other| fits(other)),
+    };
+    found.map_or_else(|| name.to_owned(), Clone::clone)
 }
 
-/// Lets a chip with nothing attached begin, and looks for a frame of ours among what it sends.
-fn language(image: &Image) -> Language {
+/// Lets a chip with nothing attached begin, looks for a frame of ours among what it sends, and for the USARTs whose transmitter is on.
+fn begin(image: &Image) -> (Language, [bool; 4]) {
     let mut chip = Chip::new(image);
     for pin in RECEIVERS.into_iter().filter_map(chip_pin) {
         chip.input(0, Input::Pin(pin, Some(true)));
@@ -158,12 +175,17 @@ fn language(image: &Image) -> Language {
             if let Some(Received::Frame(body)) = received
                 && FromRobot::from_body(&body).is_ok()
             {
-                return Language::Frames;
+                return (Language::Frames, [false; 4]);
             }
         }
         if matches!(stopped, Stopped::Ended(_)) {
             break;
         }
     }
-    Language::Text
+    // A transmitter that is on holds its idle line high.
+    let transmits = TRANSMITTERS.map(|number| {
+        let pin = chip_pin(number);
+        pin.is_some_and(|pin| chip.devices().drive(pin) == Drive::High)
+    });
+    (Language::Text, transmits)
 }

@@ -99,3 +99,24 @@ fn what_is_no_image_or_no_wiring_is_refused_in_one_line() {
         "{wiring}"
     );
 }
+
+#[test]
+fn without_a_wiring_the_report_s_build_is_taken_unless_the_program_uses_another_build_s_link() {
+    let wiring = |scenario: &str, sketch: &str| {
+        let overrides = Overrides {
+            firmware: Some(image(sketch)?),
+            ..Overrides::default()
+        };
+        let setup = Library::new().setup(scenario, &overrides).unwrap();
+        setup.firmware.map(|firmware| firmware.wiring().to_owned())
+    };
+    let Some(of_mode_5) = wiring("mode5", "memoria-mode5") else {
+        return;
+    };
+    assert_eq!(of_mode_5, "modes_5_to_7");
+    assert_eq!(wiring("mode8-goals", "memoria-mode8").unwrap(), "final");
+    // Its link is Serial2.
+    assert_eq!(wiring("mode5", "bench").unwrap(), "final");
+    // It uses no link at all.
+    assert_eq!(wiring("mode5", "blink").unwrap(), "modes_5_to_7");
+}
