@@ -30,6 +30,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Drive a simulated robot from a dashboard in the browser
     Lab(LabArgs),
+    /// Drive a real robot from the same dashboard, over a serial port or TCP
+    Connect(ConnectArgs),
     /// Run scenarios as fast as the machine can and judge their metrics
     Run(RunArgs),
     /// Find the plant's parameters from recorded runs
@@ -58,7 +60,8 @@ Examples:
   rumbo lab --scenario mode5 --speed 4
   rumbo lab --scenario mode1 --rig final --world room
   rumbo lab --scenario mode1 --firmware my_sketch.elf --wiring final
-  rumbo lab --port 9000 --no-browser")]
+  rumbo lab --port 9000 --no-browser
+  rumbo lab --pty")]
 pub(crate) struct LabArgs {
     /// Scenario that the robot starts in: name or path
     #[arg(long, value_name = "NAME", default_value = "mode1")]
@@ -91,6 +94,39 @@ pub(crate) struct LabArgs {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
     /// Folder for the log of each run; made if need be [default: rumbo/logs in the user's data folder]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Offer the robot as a serial port to other programs, without a dashboard; prints the port's name
+    #[cfg(unix)]
+    #[arg(long, conflicts_with_all = ["port", "no_browser", "out"])]
+    pub(crate) pty: bool,
+}
+
+/// Options of `rumbo connect`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo connect /dev/ttyACM0
+  rumbo connect /dev/rfcomm0 --baud 9600
+  rumbo connect COM5
+  rumbo connect tcp:192.168.1.7:2000 --no-browser
+
+`rumbo list ports` shows the serial ports of this computer. Connecting arms nothing. Should the port go, the robot stops by itself; it is
+found again when the port is back.")]
+pub(crate) struct ConnectArgs {
+    /// Serial port by its name, or tcp:host:port
+    #[arg(value_name = "PORT")]
+    pub(crate) address: String,
+    /// Speed of the serial port; the robot's is 9600
+    #[arg(long, value_name = "N", default_value_t = rumbo_station::port::DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(300..=2_000_000))]
+    pub(crate) baud: u32,
+    /// Port of the dashboard on 127.0.0.1; 0 takes any free one
+    #[arg(long, value_name = "N", default_value_t = rumbo_station::DEFAULT_PORT)]
+    pub(crate) port: u16,
+    /// Do not open the browser
+    #[arg(long)]
+    pub(crate) no_browser: bool,
+    /// Folder for the log; made if need be [default: rumbo/logs in the user's data folder]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }
@@ -389,6 +425,8 @@ pub(crate) enum Topic {
     Parameters,
     /// Numbers of the plant
     Plant,
+    /// Serial ports of this computer
+    Ports,
     /// Recorded runs of `rumbo lab`, newest last
     Logs,
 }

@@ -33,6 +33,10 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
         ..Overrides::default()
     };
     let robot = SimulatedRobot::new(overrides, choice).map_err(Failure::input)?;
+    #[cfg(unix)]
+    if args.pty {
+        return crate::pty::offer(robot, args.speed);
+    }
     let config = LabConfig {
         port: args.port,
         speed: args.speed,

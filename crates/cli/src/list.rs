@@ -54,6 +54,7 @@ fn name(topic: Topic) -> &'static str {
         Topic::Parameters => "parameters",
         Topic::Plant => "plant",
         Topic::Logs => "logs",
+        Topic::Ports => "ports",
     }
 }
 
@@ -103,6 +104,11 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
                     "default": exact(limits.default), "unit": id.unit(), "help": id.help(),
                     "mode": id.mode().map(ModeId::name) })
         })),
+        Topic::Ports => {
+            let ports = rumbo_station::port::serial_ports().map_err(Failure::Input)?;
+            let entry = |(name, what): (String, String)| json!({ "name": name, "title": what });
+            entries.extend(ports.into_iter().map(entry));
+        }
         Topic::Logs => entries = logs::entries()?,
         Topic::Plant => entries.extend(Params::limits().iter().map(|limit| {
             json!({ "name": limit.key, "min": limit.min, "max": limit.max, "default": limit.nominal,

@@ -6,6 +6,7 @@
 mod args;
 mod calibrate;
 mod compare;
+mod connect;
 mod export;
 mod failure;
 mod figures;
@@ -17,6 +18,8 @@ mod logs;
 mod manifest;
 mod observe;
 mod output;
+#[cfg(unix)]
+mod pty;
 mod replay;
 mod rerun;
 mod run;
@@ -43,6 +46,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Import(args)) => import::import(&args),
         Some(Command::List(args)) => list::list(&args),
         Some(Command::Lab(args)) => lab::lab(&args),
+        Some(Command::Connect(args)) => connect::connect(&args),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Replay(args)) => replay::replay(&args),
         Some(Command::Export(args)) => export::export(&args),

@@ -153,7 +153,8 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
 #[test]
 fn every_subcommand_shows_an_example_in_its_help() {
     for subcommand in [
-        "lab", "run", "identify", "import", "list", "replay", "export", "compare", "rerun",
+        "lab", "run", "identify", "import", "list", "connect", "replay", "export", "compare",
+        "rerun",
     ] {
         let help = stdout(&rumbo(&[subcommand, "--help"]));
         let (_, examples) = help.split_once("Examples:").unwrap();

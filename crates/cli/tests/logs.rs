@@ -266,3 +266,52 @@ fn a_lab_that_cannot_record_runs_all_the_same() {
     lab.kill().unwrap();
     lab.wait().unwrap();
 }
+
+#[cfg(unix)]
+#[test]
+fn a_simulated_robot_behind_a_pseudo_terminal_is_connected_to_and_recorded_like_a_real_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = |arguments: &[&str]| {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_rumbo"))
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().unwrap())
+            .read_line(&mut line)
+            .unwrap();
+        (child, line.trim().to_owned())
+    };
+    let (mut robot, port) = start(&["lab", "--pty", "--scenario", "mode5"]);
+    assert!(port.starts_with("/dev/"), "{port}");
+    let out = folder.path().to_str().unwrap();
+    let (mut station, address) = start(&[
+        "connect",
+        &port,
+        "--no-browser",
+        "--port",
+        "0",
+        "--out",
+        out,
+    ]);
+    assert!(address.starts_with("http://127.0.0.1:"), "{address}");
+    std::thread::sleep(Duration::from_millis(2_500));
+    let asked = Command::new("kill")
+        .args(["-TERM", &station.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(asked.success());
+    assert_eq!(station.wait().unwrap().code(), Some(0));
+    robot.kill().unwrap();
+    robot.wait().unwrap();
+    let log = Log::read(&only_log(folder.path())).unwrap();
+    assert!(log.rows.len() > 10, "{}", log.rows.len());
+    assert!(log.rows.iter().all(|row| row.signal("armed") == Some(0.0)));
+    assert_eq!(log.manifest.unwrap().port, Some(port));
+    let again = rumbo(
+        &["rerun", only_log(folder.path()).to_str().unwrap()],
+        folder.path(),
+    );
+    assert_eq!(again.status.code(), Some(2));
+}

@@ -17,6 +17,7 @@ mod observer;
 mod orders;
 mod origin;
 mod pace;
+pub mod port;
 mod replay;
 mod robot_clock;
 mod round_trip;
@@ -35,5 +36,6 @@ pub use catalogue::{ModeEntry, Reference, ReferenceKind, modes};
 pub use row::Row;
 pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeError, serve, serve_log};
 pub use target::{
-    Choice, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation, SonarMount, Target, Truth,
+    Choice, LinkNews, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation, SonarMount, Target,
+    Truth,
 };

@@ -12,7 +12,7 @@ use crate::observer::Observer;
 use crate::orders::{self, MAX_SPEED, Order};
 use crate::pace::{Pace, SLICE_US};
 use crate::state::{self, Around};
-use crate::target::{Choice, Target};
+use crate::target::{Choice, LinkNews, Target};
 use crate::words;
 use rumbo_control::mode::Movement;
 use rumbo_wire::{Command, Level};
@@ -337,6 +337,13 @@ impl Session {
         let now_ms = to_ms(self.target.now_us());
         self.observer
             .digest(&mut self.heard, &mut self.client, now_ms);
+        while let Some(news) = self.target.news() {
+            let (level, text) = match news {
+                LinkNews::Lost(text) => (board::Level::Fault, text),
+                LinkNews::Back(text) => (board::Level::Good, text),
+            };
+            self.note(level, text);
+        }
         if let Some(trouble) = self.board.recording_trouble() {
             self.note(board::Level::Warning, trouble);
         }

@@ -39,10 +39,24 @@ pub trait Target: Send {
         Manifest::default()
     }
 
+    /// What has become of the port since it was last asked, oldest first.
+    fn news(&mut self) -> Option<LinkNews> {
+        None
+    }
+
     /// What only a simulation can do and tell; `None` for a real robot.
     fn simulation(&mut self) -> Option<&mut dyn Simulation> {
         None
     }
+}
+
+/// What becomes of a port, in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LinkNews {
+    /// It is gone; it is waited for.
+    Lost(String),
+    /// It is back.
+    Back(String),
 }
 
 /// The extras of a simulated robot, whose clock starts with [`Target::now_us`] at 0.

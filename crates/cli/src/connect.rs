@@ -1,0 +1,21 @@
+//! `rumbo connect`: a real robot behind the station's dashboard.
+
+use crate::args::ConnectArgs;
+use crate::failure::Failure;
+use crate::lab;
+use crate::logs;
+use rumbo_station::LabConfig;
+use rumbo_station::log::Recording;
+use rumbo_station::port::Port;
+
+/// Opens the port and serves the dashboard.
+pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
+    let robot = Port::open(&args.address, args.baud).map_err(Failure::input)?;
+    let config = LabConfig {
+        port: args.port,
+        speed: 1.0,
+        recording: logs::folder(args.out.as_deref()).map(|folder| Recording { folder }),
+    };
+    let served = rumbo_station::serve(config, Box::new(robot)).map_err(Failure::input)?;
+    lab::show(served, args.no_browser)
+}

@@ -1,0 +1,41 @@
+//! `rumbo lab --pty`: the simulated robot as a serial port for other programs, without a dashboard of its own.
+
+use crate::failure::Failure;
+use crate::output;
+use rumbo_station::Target;
+use rumbo_station::port::Pty;
+use std::time::Instant;
+
+/// The simulation advances in steps of this length \[us\].
+const STEP_US: u64 = 5_000;
+/// A simulation that is late by more lets the rest go \[us\].
+const CATCH_UP_US: u64 = 100_000;
+
+/// Offers the robot until the process is ended. Prints the name of the port first thing.
+pub(crate) fn offer(mut robot: impl Target, speed: f64) -> Result<(), Failure> {
+    let mut pty = Pty::new().map_err(|error| {
+        Failure::Input(format!(
+            "no pseudo terminal to be had ({error}); close other programs that use some"
+        ))
+    })?;
+    output::line(pty.path())?;
+    let mut bytes = Vec::new();
+    let (mut last, mut due_us) = (Instant::now(), 0);
+    loop {
+        bytes.clear();
+        // This waits a little, so that the loop does not spin.
+        pty.read(&mut bytes);
+        robot.send(&bytes).map_err(Failure::Input)?;
+        let passed_us = last.elapsed().as_secs_f64() * 1e6;
+        last = Instant::now();
+        due_us =
+            (due_us + (passed_us * speed) as u64).min((CATCH_UP_US as f64 * speed.max(1.0)) as u64);
+        while due_us >= STEP_US {
+            due_us -= STEP_US;
+            robot.advance(STEP_US).map_err(Failure::Input)?;
+        }
+        bytes.clear();
+        robot.receive(&mut bytes);
+        pty.write(&bytes);
+    }
+}

@@ -1,0 +1,76 @@
+//! Why a port cannot be opened, with what to do about it on this system.
+
+use std::{fmt, io};
+
+/// A port that cannot be opened.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PortError(String);
+
+impl PortError {
+    pub(super) fn new(address: &str, error: &io::Error) -> Self {
+        let remedy = match error.kind() {
+            _ if address.starts_with(super::TCP) => {
+                "write it as tcp:host:port, and see that something listens there".into()
+            }
+            io::ErrorKind::PermissionDenied => permission(address),
+            io::ErrorKind::NotFound | io::ErrorKind::InvalidInput => present(),
+            io::ErrorKind::ResourceBusy => "another program has it open: close that one".into(),
+            _ => format!("is another program using it? {}", present()),
+        };
+        Self(format!(
+            "port {address} cannot be opened ({error}): {remedy}"
+        ))
+    }
+}
+
+impl fmt::Display for PortError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for PortError {}
+
+/// Who may open it.
+fn permission(address: &str) -> String {
+    if cfg!(target_os = "linux") {
+        let group = group(address).unwrap_or_else(|| "dialout".into());
+        return format!("join its group with `sudo usermod -aG {group} $USER`, then log in again");
+    }
+    if cfg!(windows) {
+        return "another program has it open; close that one, such as the serial monitor of the Arduino IDE".into();
+    }
+    "check its permissions with `ls -l`; on macOS use the /dev/cu.* name, and close the Arduino IDE's serial monitor".into()
+}
+
+/// The group that a file belongs to.
+#[cfg(unix)]
+fn group(path: &str) -> Option<String> {
+    use std::os::unix::fs::MetadataExt;
+    let id = std::fs::metadata(path).ok()?.gid().to_string();
+    let groups = std::fs::read_to_string("/etc/group").ok()?;
+    groups.lines().find_map(|line| {
+        let mut fields = line.split(':');
+        let name = fields.next()?;
+        (fields.nth(1)? == id).then(|| name.to_owned())
+    })
+}
+
+#[cfg(not(unix))]
+fn group(_path: &str) -> Option<String> {
+    None
+}
+
+/// What there is instead.
+fn present() -> String {
+    let names: Vec<String> = super::serial_ports()
+        .unwrap_or_default()
+        .into_iter()
+        .map(|(name, _)| name)
+        .collect();
+    if names.is_empty() {
+        "this computer has no serial port now; is the robot plugged in, or its Bluetooth bound (`rfcomm bind`)?".into()
+    } else {
+        format!("there is {}", names.join(", "))
+    }
+}

@@ -1,0 +1,314 @@
+//! A robot behind a real port: serial (USB, rfcomm, a PTY) or TCP.
+//!
+//! Two threads read and write, so that the session never waits for the port. When it goes, it is opened again and again until it is
+//! back; what was to be sent meanwhile is dropped, since nothing old is to happen afterwards. The robot has stopped by then, for lack
+//! of a heartbeat, and nothing here arms it.
+
+mod error;
+#[cfg(unix)]
+mod pty;
+
+pub use error::PortError;
+#[cfg(unix)]
+pub use pty::Pty;
+
+use crate::log::{Kind, Manifest};
+use crate::target::{LinkNews, Target};
+use std::io::{self, Read, Write};
+use std::net::{TcpStream, ToSocketAddrs};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// Speed of the robot's Bluetooth module \[baud\].
+pub const DEFAULT_BAUD: u32 = 9_600;
+/// A port that is gone is tried again this often.
+const AGAIN: Duration = Duration::from_millis(250);
+/// A thread that waits for the port looks this often whether it is still needed.
+const LOOK: Duration = Duration::from_millis(100);
+/// Longest wait for a computer to answer.
+const TCP_PATIENCE: Duration = Duration::from_secs(2);
+/// Pieces that wait for the session.
+const WAITING: usize = 1_024;
+/// A serial port that is ready to be read and holds nothing, this often in turn, is gone.
+const EMPTY_READS: u32 = 3;
+
+/// What is written before the address of a TCP port.
+const TCP: &str = "tcp:";
+
+type Reader = Box<dyn Read + Send>;
+type Writer = Box<dyn Write + Send>;
+
+/// What the threads share with the target.
+#[derive(Clone, Debug, Default)]
+struct Shared {
+    news: Arc<Mutex<Vec<LinkNews>>>,
+    ended: Arc<AtomicBool>,
+}
+
+impl Shared {
+    fn tell(&self, news: LinkNews) {
+        self.news
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(news);
+    }
+}
+
+/// A port with a robot behind it.
+#[derive(Debug)]
+pub struct Port {
+    address: String,
+    baud: u32,
+    began: Instant,
+    incoming: Receiver<Vec<u8>>,
+    /// `None` only while it is dropped.
+    outgoing: Option<Sender<Vec<u8>>>,
+    shared: Shared,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Port {
+    /// Opens a serial port by its name, or `tcp:host:port`.
+    ///
+    /// # Errors
+    /// [`PortError`], if it cannot be opened now. Later it is waited for.
+    pub fn open(address: &str, baud: u32) -> Result<Self, PortError> {
+        let opened = open(address, baud).map_err(|error| PortError::new(address, &error))?;
+        let (bytes, incoming) = sync_channel(WAITING);
+        let (outgoing, commands) = channel();
+        let shared = Shared::default();
+        let keeper = Keeper {
+            address: address.to_owned(),
+            baud,
+            bytes,
+            commands,
+            shared: shared.clone(),
+        };
+        let thread = std::thread::Builder::new()
+            .name("port".into())
+            .spawn(move || keeper.keep(opened))
+            .map_err(|error| PortError::new(address, &error))?;
+        Ok(Self {
+            address: address.to_owned(),
+            baud,
+            began: Instant::now(),
+            incoming,
+            outgoing: Some(outgoing),
+            shared,
+            thread: Some(thread),
+        })
+    }
+}
+
+impl Drop for Port {
+    fn drop(&mut self) {
+        // What was given to be sent, such as the last STOP, is sent before the thread ends.
+        drop(self.outgoing.take());
+        self.shared.ended.store(true, Ordering::SeqCst);
+        let ended = self.thread.take().map(JoinHandle::join);
+        drop(ended);
+    }
+}
+
+impl Target for Port {
+    fn now_us(&self) -> u64 {
+        u64::try_from(self.began.elapsed().as_micros()).unwrap_or(u64::MAX)
+    }
+
+    fn advance(&mut self, _dt_us: u64) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), String> {
+        let sent = self
+            .outgoing
+            .as_ref()
+            .map(|outgoing| outgoing.send(bytes.to_vec()));
+        match sent {
+            Some(Ok(())) => Ok(()),
+            _ => Err(format!(
+                "{}: the thread of the port has ended; please report it",
+                self.address
+            )),
+        }
+    }
+
+    fn receive(&mut self, into: &mut Vec<u8>) {
+        self.incoming
+            .try_iter()
+            .for_each(|bytes| into.extend(bytes));
+    }
+
+    fn baud(&self) -> u32 {
+        self.baud
+    }
+
+    fn manifest(&self) -> Manifest {
+        Manifest {
+            kind: Kind::Robot,
+            program: "unknown".into(),
+            port: Some(self.address.clone()),
+            ..Manifest::default()
+        }
+    }
+
+    fn news(&mut self) -> Option<LinkNews> {
+        let mut news = self
+            .shared
+            .news
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        (!news.is_empty()).then(|| news.remove(0))
+    }
+}
+
+fn open(address: &str, baud: u32) -> io::Result<(Reader, Writer)> {
+    if let Some(host) = address.strip_prefix(TCP) {
+        let mut last = io::Error::new(io::ErrorKind::NotFound, "no such host");
+        for at in host.to_socket_addrs()? {
+            match TcpStream::connect_timeout(&at, TCP_PATIENCE) {
+                Ok(stream) => {
+                    stream.set_nodelay(true)?;
+                    stream.set_read_timeout(Some(LOOK))?;
+                    return Ok((Box::new(stream.try_clone()?), Box::new(stream)));
+                }
+                Err(error) => last = error,
+            }
+        }
+        return Err(last);
+    }
+    let port = serialport::new(address, baud).timeout(LOOK).open()?;
+    Ok((Box::new(port.try_clone()?), Box::new(port)))
+}
+
+/// Names of the serial ports of this computer, and what is behind them as far as the system knows.
+///
+/// # Errors
+/// If the system does not tell.
+pub fn serial_ports() -> Result<Vec<(String, String)>, String> {
+    use serialport::SerialPortType;
+    let ports = serialport::available_ports().map_err(|error| error.to_string())?;
+    let what = |kind: SerialPortType| match kind {
+        SerialPortType::UsbPort(usb) => usb
+            .product
+            .unwrap_or_else(|| format!("USB {:04x}:{:04x}", usb.vid, usb.pid)),
+        SerialPortType::BluetoothPort => "Bluetooth".into(),
+        SerialPortType::PciPort => "built in".into(),
+        SerialPortType::Unknown => String::new(),
+    };
+    Ok(ports
+        .into_iter()
+        .map(|port| (port.port_name, what(port.port_type)))
+        .collect())
+}
+
+/// Keeps the port open.
+struct Keeper {
+    address: String,
+    baud: u32,
+    bytes: SyncSender<Vec<u8>>,
+    commands: Receiver<Vec<u8>>,
+    shared: Shared,
+}
+
+impl Keeper {
+    fn keep(self, opened: (Reader, Writer)) {
+        let mut opened = Some(opened);
+        loop {
+            if let Some((reader, writer)) = opened.take() {
+                match self.talk(reader, writer) {
+                    Ok(()) => return,
+                    Err(error) => self.shared.tell(LinkNews::Lost(format!(
+                        "port {} is gone ({error}); waiting for it",
+                        self.address
+                    ))),
+                }
+            }
+            // What is asked of a robot that is not there is asked of nobody.
+            match self.commands.recv_timeout(AGAIN) {
+                Err(RecvTimeoutError::Disconnected) => return,
+                Ok(_) => {
+                    std::thread::sleep(AGAIN);
+                    while self.commands.try_recv().is_ok() {}
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            if let Ok(again) = open(&self.address, self.baud) {
+                while self.commands.try_recv().is_ok() {}
+                self.shared
+                    .tell(LinkNews::Back(format!("port {} is back", self.address)));
+                opened = Some(again);
+            }
+        }
+    }
+
+    /// Talks until nobody wants to any more, or the port is gone.
+    fn talk(&self, reader: Reader, mut writer: Writer) -> io::Result<()> {
+        let (lost, gone) = channel();
+        let (bytes, ended) = (self.bytes.clone(), Arc::new(AtomicBool::new(false)));
+        let over = Arc::clone(&ended);
+        let listening = std::thread::Builder::new()
+            .name("port reader".into())
+            .spawn(move || {
+                if let Err(error) = listen(reader, &bytes, &over) {
+                    // Whoever asked has noticed by himself.
+                    let _ = lost.send(error);
+                }
+            })?;
+        let outcome = loop {
+            if let Ok(error) = gone.try_recv() {
+                break Err(error);
+            }
+            match self.commands.recv_timeout(LOOK) {
+                Ok(bytes) => match writer.write_all(&bytes).and_then(|()| writer.flush()) {
+                    // A port that takes nothing now: the bytes are repeated by whoever needs an answer.
+                    Err(error) if error.kind() == io::ErrorKind::TimedOut => {}
+                    Err(error) => break Err(error),
+                    Ok(()) => {}
+                },
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break Ok(()),
+            }
+        };
+        ended.store(true, Ordering::SeqCst);
+        // A reader that failed has told.
+        drop(listening.join());
+        outcome
+    }
+}
+
+/// Hands on what arrives.
+fn listen(mut reader: Reader, bytes: &SyncSender<Vec<u8>>, ended: &AtomicBool) -> io::Result<()> {
+    let (mut buffer, mut empty) = ([0; 4_096], 0);
+    while !ended.load(Ordering::SeqCst) {
+        match reader.read(&mut buffer) {
+            Ok(0) => {
+                empty += 1;
+                if empty >= EMPTY_READS {
+                    return Err(io::ErrorKind::UnexpectedEof.into());
+                }
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            Ok(count) => {
+                empty = 0;
+                if bytes.send(buffer[..count].to_vec()).is_err() {
+                    return Ok(());
+                }
+            }
+            Err(error) if is_patience(error.kind()) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}
+
+/// Nothing arrived for a while.
+fn is_patience(kind: io::ErrorKind) -> bool {
+    matches!(
+        kind,
+        io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted
+    )
+}

@@ -1,0 +1,66 @@
+//! A pseudo terminal: a serial port without hardware, for other programs to open.
+
+use serialport::{SerialPort, TTYPort};
+use std::io::{self, Read, Write};
+use std::time::Duration;
+
+/// Longest wait for the other side to take what is written.
+const PATIENCE: Duration = Duration::from_millis(5);
+
+/// The robot's side of a pseudo terminal.
+#[derive(Debug)]
+pub struct Pty {
+    master: TTYPort,
+    path: String,
+    /// Somebody has the other side open.
+    heard: bool,
+}
+
+impl Pty {
+    /// A new one.
+    ///
+    /// # Errors
+    /// If the system has none left.
+    pub fn new() -> io::Result<Self> {
+        let (mut master, slave) = TTYPort::pair()?;
+        master.set_timeout(PATIENCE)?;
+        let path = slave
+            .name()
+            .ok_or_else(|| io::Error::other("a pseudo terminal without a name"))?;
+        Ok(Self {
+            master,
+            path,
+            heard: false,
+        })
+    }
+
+    /// What other programs open.
+    #[must_use]
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// Appends what the other side has written. Waits a few milliseconds for it.
+    pub fn read(&mut self, into: &mut Vec<u8>) {
+        let mut buffer = [0; 1_024];
+        match self.master.read(&mut buffer) {
+            Ok(count) => {
+                self.heard = true;
+                into.extend_from_slice(&buffer[..count]);
+            }
+            Err(error) if error.kind() == io::ErrorKind::TimedOut => self.heard = true,
+            Err(_) => {
+                self.heard = false;
+                std::thread::sleep(PATIENCE);
+            }
+        }
+    }
+
+    /// Writes to the other side. What nobody listens to is lost, as on a real line.
+    pub fn write(&mut self, bytes: &[u8]) {
+        if self.heard {
+            // Lost, as on a real line.
+            let _ = self.master.write_all(bytes);
+        }
+    }
+}

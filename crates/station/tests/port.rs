@@ -1,0 +1,165 @@
+//! A robot behind a serial port that is pulled out and put back.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod support;
+
+use rumbo_station::Target;
+use rumbo_station::client::{Heard, KnownTable, RobotClient};
+use rumbo_station::port::{DEFAULT_BAUD, Port, Pty};
+use rumbo_wire::Command;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+use support::Toy;
+
+/// Long enough for any machine; nothing is judged by it.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A toy robot behind a pseudo terminal, plugged in under a name.
+struct Plugged {
+    out: Arc<AtomicBool>,
+    thread: JoinHandle<Vec<Command>>,
+}
+
+impl Plugged {
+    fn new(name: &Path) -> Self {
+        let mut pty = Pty::new().unwrap();
+        let _ = std::fs::remove_file(name);
+        std::os::unix::fs::symlink(pty.path(), name).unwrap();
+        let out = Arc::new(AtomicBool::new(false));
+        let pulled = Arc::clone(&out);
+        let thread = std::thread::spawn(move || {
+            let (mut toy, began, mut bytes) = (Toy::default(), Instant::now(), Vec::new());
+            while !pulled.load(Ordering::SeqCst) {
+                bytes.clear();
+                pty.read(&mut bytes);
+                toy.send(&bytes).unwrap();
+                let due_us = began.elapsed().as_micros() as u64;
+                toy.advance(due_us.saturating_sub(toy.now_us())).unwrap();
+                bytes.clear();
+                toy.receive(&mut bytes);
+                pty.write(&bytes);
+            }
+            toy.applied
+        });
+        Self { out, thread }
+    }
+
+    /// Pulls it out; gives the commands that it has applied.
+    fn pull(self, name: &Path) -> Vec<Command> {
+        std::fs::remove_file(name).unwrap();
+        self.out.store(true, Ordering::SeqCst);
+        self.thread.join().unwrap()
+    }
+}
+
+/// A station's side of it.
+struct Station {
+    port: Port,
+    client: RobotClient,
+    heard: Vec<Heard>,
+}
+
+impl Station {
+    fn live_until(&mut self, wanted: impl Fn(&Self) -> bool) {
+        let until = Instant::now() + PATIENCE;
+        let mut bytes = Vec::new();
+        while !wanted(self) {
+            assert!(
+                Instant::now() < until,
+                "in vain, heard {:?}",
+                self.heard.last()
+            );
+            bytes.clear();
+            self.port.receive(&mut bytes);
+            let now_us = self.port.now_us();
+            self.client.hear(&bytes, now_us, &mut self.heard);
+            bytes.clear();
+            self.client.poll(now_us, &mut bytes, &mut self.heard);
+            self.port.send(&bytes).unwrap();
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    fn count(&self, wanted: impl Fn(&Heard) -> bool) -> usize {
+        self.heard.iter().filter(|heard| wanted(heard)).count()
+    }
+}
+
+#[test]
+fn a_port_that_is_pulled_out_and_put_back_is_found_again_and_nothing_is_armed_by_that() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = folder.path().join("port");
+    let robot = Plugged::new(&name);
+    let mut station = Station {
+        port: Port::open(name.to_str().unwrap(), DEFAULT_BAUD).unwrap(),
+        client: RobotClient::new(7, false, KnownTable::OURS),
+        heard: Vec::new(),
+    };
+    station.live_until(|station| station.count(|heard| matches!(heard, Heard::Telemetry(..))) > 3);
+    let now_us = station.port.now_us();
+    station.client.submit(Command::Arm, now_us).unwrap();
+    station.live_until(|station| {
+        station.count(|heard| matches!(heard, Heard::Telemetry(_, telemetry) if telemetry.armed))
+            > 0
+    });
+    assert!(robot.pull(&name).contains(&Command::Arm));
+    station.live_until(|station| !station.client.connected());
+    assert!(matches!(
+        station.port.news(),
+        Some(rumbo_station::LinkNews::Lost(_))
+    ));
+    // Asked of a robot that is not there.
+    let now_us = station.port.now_us();
+    station.client.submit(Command::Arm, now_us).unwrap();
+    station.live_until(|station| station.count(|heard| matches!(heard, Heard::Ended(_))) > 1);
+
+    let robot = Plugged::new(&name);
+    let before = station.count(|heard| matches!(heard, Heard::Telemetry(..)));
+    station.live_until(|station| {
+        station.client.connected()
+            && station.count(|heard| matches!(heard, Heard::Telemetry(..))) > before + 3
+    });
+    assert!(matches!(
+        station.port.news(),
+        Some(rumbo_station::LinkNews::Back(_))
+    ));
+    let applied = robot.pull(&name);
+    assert!(!applied.contains(&Command::Arm), "{applied:?}");
+}
+
+#[test]
+fn a_port_that_cannot_be_opened_says_what_there_is_and_what_to_do() {
+    let error = Port::open("/dev/no_such_port", DEFAULT_BAUD)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.starts_with("port /dev/no_such_port cannot be opened") && !error.contains('\n'),
+        "{error}"
+    );
+    let error = Port::open("tcp:127.0.0.1:1", DEFAULT_BAUD)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("tcp:host:port"), "{error}");
+}
+
+#[test]
+fn a_robot_behind_tcp_is_talked_to_like_one_behind_a_wire() {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = format!("tcp:{}", listener.local_addr().unwrap());
+    let mut port = Port::open(&address, DEFAULT_BAUD).unwrap();
+    let (mut robot, _) = listener.accept().unwrap();
+    port.send(b"to it").unwrap();
+    let mut bytes = [0; 5];
+    std::io::Read::read_exact(&mut robot, &mut bytes).unwrap();
+    assert_eq!(&bytes, b"to it");
+    std::io::Write::write_all(&mut robot, b"from it").unwrap();
+    let (mut heard, until) = (Vec::new(), Instant::now() + PATIENCE);
+    while heard.len() < 7 && Instant::now() < until {
+        port.receive(&mut heard);
+    }
+    assert_eq!(heard, b"from it");
+}
