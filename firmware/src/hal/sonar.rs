@@ -4,7 +4,7 @@
 //! at the tick. The level is read, never toggled: a lost edge costs one reading.
 
 use super::clock::{self, Stamp};
-use super::registers::{change, get, handler, port_b, port_d, port_e, port_j, put};
+use super::registers::{change, get, handler, port_b, port_d, port_e, port_j};
 use super::shared::{Byte, CriticalSection, Word};
 use crate::pins;
 use rumbo_control::{Echo, SonarId};

@@ -78,6 +78,12 @@ impl Place {
         )
     }
 
+    /// Whether the distance is less than `limit_mm`. Most are not by one coordinate alone.
+    pub(super) fn is_within(self, limit_mm: i32, of: Place) -> bool {
+        let (x, y) = self.from(of);
+        x.abs() < limit_mm && y.abs() < limit_mm && x * x + y * y < limit_mm * limit_mm
+    }
+
     /// Square of the distance [mm^2].
     pub(super) fn square_mm2(self, to: Place) -> i32 {
         let (x, y) = self.from(to);
@@ -136,8 +142,7 @@ impl Echoes {
             .iter()
             .enumerate()
             .filter(move |(_, point)| {
-                point.belief >= FIRM
-                    || (point.belief > 0 && point.at.square_mm2(here) < CLOSE_MM * CLOSE_MM)
+                point.belief >= FIRM || (point.belief > 0 && point.at.is_within(CLOSE_MM, here))
             })
             .map(|(number, point)| (number, point.at))
     }
@@ -275,7 +280,7 @@ impl Echoes {
         for (number, point) in self.points.iter_mut().enumerate() {
             let badness = if point.belief == 0 {
                 i32::MAX
-            } else if point.at.square_mm2(at) < MERGE_MM * MERGE_MM {
+            } else if point.at.is_within(MERGE_MM, at) {
                 point.at = at;
                 point.axis = axis;
                 point.belief = (point.belief + 1).clamp(FIRM, MOST_BELIEF);

@@ -232,7 +232,7 @@ impl Search {
             };
             let about_rad = f32::from(self.bearing.get(number).copied().unwrap_or(0)) * COARSE_RAD;
             for (other, point) in echoes.firm(here) {
-                if !self.member.has(other) && point.square_mm2(centre) < LINK_MM * LINK_MM {
+                if !self.member.has(other) && point.is_within(LINK_MM, centre) {
                     self.join(echoes, other, x_m, y_m, about_rad);
                 }
             }
