@@ -145,3 +145,96 @@ pub(super) fn lane(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
         put("clearance_m", clearance_m(&world, &outline, samples));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rumbo_plant::world::Block;
+
+    /// A robot that drives each piece, a way [m] along its heading or a turn on the spot [rad], and stands for a moment after it.
+    fn driven(pieces: &[(f64, f64)]) -> Vec<Sample> {
+        const STEPS: i32 = 50;
+        let mut sample = Sample {
+            t_s: 0.0,
+            x_m: 0.0,
+            y_m: 0.0,
+            heading_rad: 0.3,
+            wheel_rad_s: [0.0; 2],
+            duty: [0; 2],
+            range_m: [f64::INFINITY; 3],
+            servo_rad: 0.0,
+            battery_v: 7.4,
+            touching: false,
+        };
+        let mut samples = vec![sample];
+        for (way_m, turn_rad) in pieces {
+            for _ in 0..STEPS {
+                let step_m = way_m / f64::from(STEPS);
+                sample.t_s += 0.01;
+                sample.x_m += step_m * sample.heading_rad.cos();
+                sample.y_m += step_m * sample.heading_rad.sin();
+                sample.heading_rad += turn_rad / f64::from(STEPS);
+                let (forward, turn) = (10.0 * way_m, 2.0 * turn_rad);
+                sample.wheel_rad_s = [forward - turn, forward + turn];
+                samples.push(sample);
+            }
+            sample.t_s += 0.01;
+            sample.wheel_rad_s = [0.0; 2];
+            samples.push(sample);
+        }
+        samples
+    }
+
+    #[test]
+    fn straights_are_what_is_driven_between_quarter_turns() {
+        let samples = driven(&[
+            (0.5, 0.0),
+            (0.0, FRAC_PI_2),
+            (0.65, 0.0),
+            (0.0, -1.5),
+            (0.95, 0.0),
+        ]);
+        let found = straights(&samples);
+        let quarters: Vec<_> = found.iter().map(|straight| straight.quarter).collect();
+        assert_eq!(quarters, [0.0, 1.0, 0.0]);
+        for (straight, way_m) in found.iter().zip([0.5, 0.65, 0.95]) {
+            assert!((straight.way_m - way_m).abs() < 0.02, "{}", straight.way_m);
+        }
+        let end_s = samples.last().unwrap().t_s;
+        assert!((found[2].end_s - end_s).abs() < 1e-9);
+        let turned_rad = found[2].begin.heading_rad - 0.3;
+        assert!(
+            (turned_rad - (FRAC_PI_2 - 1.5)).abs() < 0.01,
+            "{turned_rad}"
+        );
+    }
+
+    #[test]
+    fn a_stop_on_the_way_does_not_make_two_straights_and_a_nudge_makes_none() {
+        let stopped = straights(&driven(&[(0.5, 0.0), (0.4, 0.0)]));
+        assert_eq!(stopped.len(), 1);
+        assert!((stopped[0].way_m - 0.9).abs() < 0.02);
+        let nudged = straights(&driven(&[(0.5, 0.0), (0.0, FRAC_PI_2), (0.05, 0.0)]));
+        assert_eq!(nudged.len(), 1);
+        assert!(straights(&[]).is_empty());
+    }
+
+    #[test]
+    fn the_clearance_is_that_of_the_bodys_nearest_point() {
+        let block = Block {
+            center_m: [1.0, 0.5],
+            size_m: [0.4, 0.4],
+            heading_rad: 0.0,
+        };
+        let world = World::new(&[], &[block]).unwrap();
+        let body = outline([-0.07, -0.075], [0.13, 0.075]);
+        let sample = Sample {
+            x_m: 1.0,
+            heading_rad: 0.0,
+            ..driven(&[])[0]
+        };
+        // The box begins at y = 0.3, the body ends at y = 0.075.
+        let least_m = clearance_m(&world, &body, &[sample]);
+        assert!((least_m - 0.225).abs() < 1e-9, "{least_m}");
+    }
+}

@@ -219,6 +219,29 @@ fn a_spiking_sonar_slows_or_stops_it_and_never_leads_it_astray() {
 }
 
 #[test]
+fn a_spiking_sonar_on_the_way_to_another_distance_never_leads_it_into_a_wall() {
+    for (scenario, sonar) in [
+        ("mode4", SonarId::Left),
+        ("mode4-right", SonarId::Right),
+        ("mode4-final", SonarId::Left),
+    ] {
+        // On the way from 50 to 30 cm.
+        for run in seeds(
+            &failing(scenario, sonar, 8.2, SonarFault::Spiking(0.4)),
+            1..11,
+        ) {
+            let what = format!("{scenario}, seed {}", run.seed);
+            assert_eq!(run.metrics["contacts"], 0.0, "{what}");
+            let side = sonar as usize;
+            let after = run.trace.between(8.2, f64::INFINITY);
+            let least_m = after.iter().map(|sample| sample.range_m[side]);
+            let least_m = least_m.fold(f64::INFINITY, f64::min);
+            assert!(least_m > 0.2, "{what}: {least_m} m");
+        }
+    }
+}
+
+#[test]
 fn a_distance_out_of_range_is_refused_and_the_robot_keeps_its_last_one() {
     let mut person = Person::at("mode4");
     person.wait_s(0.5);

@@ -333,3 +333,6 @@ fn aside_rad(estimate: &Estimate) -> f32 {
     };
     clamp(MIDDLE_RAD_M * off_m, -MOST_ASIDE_RAD, MOST_ASIDE_RAD)
 }
+
+#[cfg(test)]
+mod tests;

@@ -28,7 +28,9 @@
 //! 90 degrees, and leaves when the bearing to the goal is the line's again. Ours needs no right angles, looks while it drives, goes straight
 //! past what it remembers, leaves early, and knows when to give up. Derivation, proof of termination and figures: docs/theory/mission.md.
 
+mod detour;
 mod echoes;
+mod gaze;
 mod goal;
 mod lane;
 mod obstacle;
@@ -211,5 +213,16 @@ impl Mode for Mission {
             Task::Lane => Ok(self.lane(state, at.estimate)),
             Task::Wait => Ok(Action::default()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_that_is_remembered_fits_into_700_bytes() {
+        let bytes = core::mem::size_of::<State>();
+        assert!(bytes <= 700, "{bytes}");
     }
 }

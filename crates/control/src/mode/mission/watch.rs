@@ -87,8 +87,9 @@ impl Watch {
                     self.deaf = self.deaf.saturating_add(1);
                     self.denied_m = 0.0;
                 }
-                (SonarId::Front, Range::Clear) | (SonarId::Left | SonarId::Right, _) => {}
+                (SonarId::Front, Range::Clear) => {}
                 (SonarId::Front, _) => self.deaf = 0,
+                _ => {}
             }
         }
         self.denied_m += abs(estimate.rolled_m);

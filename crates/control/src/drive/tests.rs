@@ -1,0 +1,178 @@
+//! The drive layer: feedforward, reversal, saturation.
+
+use super::*;
+
+const TURNING: WheelMotion = WheelMotion {
+    speed_rad_s: 6.0,
+    edges: 4,
+    standing: false,
+};
+const STANDING: WheelMotion = WheelMotion {
+    speed_rad_s: 0.0,
+    edges: 0,
+    standing: true,
+};
+
+fn step(layer: &mut DriveLayer, drive: Drive, motion: WheelMotion) -> Wheels<Duty> {
+    layer
+        .step(&Params::default(), &drive, &Wheels::both(motion), None)
+        .unwrap()
+        .duty
+}
+
+fn speed(rad_s: f32) -> Drive {
+    Drive::WheelSpeed(Wheels::both(rad_s))
+}
+
+#[test]
+fn a_turning_wheel_is_released_until_it_stands_before_it_is_driven_back() {
+    let mut layer = DriveLayer::default();
+    assert!(step(&mut layer, speed(6.0), TURNING).left.counts() > 0);
+    for _ in 0..20 {
+        assert_eq!(
+            step(&mut layer, speed(-6.0), TURNING),
+            Wheels::both(Duty::RELEASED)
+        );
+        assert_eq!(
+            step(&mut layer, Drive::Duty(Wheels::both(-0.5)), TURNING),
+            Wheels::both(Duty::RELEASED)
+        );
+    }
+    assert_eq!(layer.directions(), Wheels::both(Direction::Forward));
+    assert!(step(&mut layer, speed(-6.0), STANDING).left.counts() < 0);
+    assert_eq!(layer.directions(), Wheels::both(Direction::Backward));
+}
+
+fn wheels(left: WheelMotion, right: WheelMotion) -> Wheels<WheelMotion> {
+    Wheels { left, right }
+}
+
+fn both(layer: &mut DriveLayer, left: f32, right: f32, motion: Wheels<WheelMotion>) -> [i16; 2] {
+    let drive = Drive::WheelSpeed(Wheels { left, right });
+    let duty = layer
+        .step(&Params::default(), &drive, &motion, None)
+        .unwrap()
+        .duty;
+    [duty.left.counts(), duty.right.counts()]
+}
+
+#[test]
+fn after_a_reversal_the_wheel_that_stands_first_waits_for_the_other() {
+    let mut layer = DriveLayer::default();
+    both(&mut layer, 6.0, 6.0, Wheels::both(TURNING));
+    for _ in 0..20 {
+        let duty = both(&mut layer, -6.0, -6.0, wheels(STANDING, TURNING));
+        assert_eq!(duty, [0, 0]);
+    }
+    let [left, right] = both(&mut layer, -6.0, -6.0, wheels(STANDING, STANDING));
+    assert!(left < 0 && left == right, "{left} {right}");
+}
+
+#[test]
+fn a_wheel_that_rolls_the_right_way_gains_no_speed_while_the_other_must_stop() {
+    let mut layer = DriveLayer::default();
+    for _ in 0..50 {
+        both(&mut layer, 6.0, 6.0, Wheels::both(TURNING));
+    }
+    for _ in 0..20 {
+        let [left, right] = both(&mut layer, -9.0, 9.0, Wheels::both(TURNING));
+        assert!(left == 0 && right > 0);
+    }
+    assert!(layer.wheels.right.ramp_rad_s.unwrap() <= 6.0);
+    for _ in 0..20 {
+        both(&mut layer, -9.0, 9.0, wheels(STANDING, TURNING));
+    }
+    assert!(layer.wheels.right.ramp_rad_s.unwrap() > 8.0);
+}
+
+#[test]
+fn a_wheel_that_nothing_is_asked_of_holds_nobody_back() {
+    let mut layer = DriveLayer::default();
+    both(&mut layer, 6.0, 6.0, Wheels::both(TURNING));
+    let [left, right] = both(&mut layer, -6.0, 0.0, wheels(STANDING, TURNING));
+    assert!(left < 0 && right == 0);
+}
+
+#[test]
+fn the_duty_never_brakes_by_reversing() {
+    let mut layer = DriveLayer::default();
+    let fast = WheelMotion {
+        speed_rad_s: 15.0,
+        ..TURNING
+    };
+    for _ in 0..200 {
+        assert!(step(&mut layer, speed(1.0), fast).left.counts() >= 0);
+    }
+}
+
+#[test]
+fn a_standing_wheel_is_kicked_harder_until_it_moves() {
+    let mut layer = DriveLayer::default();
+    let first = step(&mut layer, speed(0.5), STANDING).left.counts();
+    assert!(first >= 76, "{first}");
+    let later = (0..50)
+        .map(|_| step(&mut layer, speed(0.5), STANDING).left.counts())
+        .last()
+        .unwrap();
+    assert!(later > first + 50, "{first} -> {later}");
+    let moving = WheelMotion {
+        speed_rad_s: 0.5,
+        edges: 1,
+        standing: false,
+    };
+    assert!(step(&mut layer, speed(0.5), moving).left.counts() < later - 30);
+}
+
+#[test]
+fn a_low_battery_gets_more_duty() {
+    let duty = |battery_v| {
+        let mut layer = DriveLayer::default();
+        let motion = Wheels::both(TURNING);
+        layer
+            .step(&Params::default(), &speed(6.0), &motion, battery_v)
+            .unwrap()
+            .duty
+            .left
+            .counts()
+    };
+    assert!(duty(Some(6.4)) > duty(Some(7.4)));
+    assert_eq!(duty(Some(7.4)), duty(None));
+}
+
+#[test]
+fn zero_releases_both_wheels_and_forgets() {
+    let mut layer = DriveLayer::default();
+    for _ in 0..50 {
+        step(&mut layer, speed(8.0), TURNING);
+    }
+    assert_eq!(
+        step(&mut layer, speed(0.0), TURNING),
+        Wheels::both(Duty::RELEASED)
+    );
+    assert_eq!(layer.wheels.left.pid, PidState::default());
+    assert_eq!(
+        step(&mut layer, Drive::Release, TURNING),
+        Wheels::both(Duty::RELEASED)
+    );
+}
+
+#[test]
+fn a_request_that_is_not_finite_is_refused() {
+    for drive in [speed(f32::NAN), Drive::Duty(Wheels::both(f32::INFINITY))] {
+        let mut layer = DriveLayer::default();
+        assert!(
+            layer
+                .step(&Params::default(), &drive, &Wheels::both(STANDING), None)
+                .is_err()
+        );
+    }
+}
+
+#[test]
+fn a_held_wheel_does_not_wind_the_ramp_up() {
+    let mut layer = DriveLayer::default();
+    for _ in 0..500 {
+        step(&mut layer, speed(20.0), STANDING);
+    }
+    assert!(layer.wheels.left.ramp_rad_s.unwrap() <= RAMP_LEAD_RAD_S);
+}

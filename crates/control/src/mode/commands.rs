@@ -1,0 +1,256 @@
+//! What the running mode takes from outside: references, goals, routes, movements; and what it refuses.
+
+use super::mission::Task;
+use super::waypoints::{self, FARTHEST_M, Route, Waypoint};
+use super::{
+    ActiveMode, Level, MAX_DISTANCE_M, MAX_WALL_M, MAX_WHEEL_RAD_S, MIN_DISTANCE_M, MIN_WALL_M,
+    Movement, SetpointError, manual,
+};
+use crate::types::Wheels;
+
+impl ActiveMode {
+    /// Sets the reference: distance [m] in modes 1, 2 and 4, speed of both wheels [rad/s] in modes 5 and 6.
+    ///
+    /// # Errors
+    /// Why it is refused; the last one stays.
+    pub fn set_reference(&mut self, value: f32) -> Result<(), SetpointError> {
+        match self {
+            Self::Manual(_) | Self::WallHold(_) | Self::Waypoints(..) | Self::Mission(..) => {
+                Err(SetpointError::NotInThisMode)
+            }
+            Self::FrontDistance(distance_m, _) | Self::FrontAlign(distance_m, _) => {
+                *distance_m = within(value, MIN_DISTANCE_M, MAX_DISTANCE_M)?;
+                Ok(())
+            }
+            Self::WallFollow(distance_m, _) => {
+                *distance_m = within(value, MIN_WALL_M, MAX_WALL_M)?;
+                Ok(())
+            }
+            Self::StraightLine(rad_s, _) => {
+                *rad_s = within(value, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
+                Ok(())
+            }
+            Self::WheelSpeed(references) => {
+                *references = Wheels::both(within(value, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?);
+                Ok(())
+            }
+        }
+    }
+
+    /// Sets the reference of each wheel [rad/s] in mode 5.
+    ///
+    /// # Errors
+    /// Why it is refused; the last one stays.
+    pub fn set_wheel_reference(&mut self, value: Wheels<f32>) -> Result<(), SetpointError> {
+        let Self::WheelSpeed(references) = self else {
+            return Err(SetpointError::NotInThisMode);
+        };
+        let left = within(value.left, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
+        let right = within(value.right, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
+        *references = Wheels { left, right };
+        Ok(())
+    }
+
+    /// Sets the goal: the task of mode 8, a route of one waypoint in mode 7. It may arrive at any time.
+    ///
+    /// # Errors
+    /// Why it is refused; the last one stays.
+    pub fn set_goal(&mut self, x_m: f32, y_m: f32) -> Result<(), SetpointError> {
+        let (x_m, y_m) = (
+            within(x_m, -FARTHEST_M, FARTHEST_M)?,
+            within(y_m, -FARTHEST_M, FARTHEST_M)?,
+        );
+        match self {
+            Self::Mission(task, state) => {
+                *task = Task::Goal { x_m, y_m };
+                state.renew();
+            }
+            Self::Waypoints(..) => {
+                let mut route = Route::empty(false, false);
+                route.push(Waypoint {
+                    x_m,
+                    y_m,
+                    heading_rad: None,
+                })?;
+                *self = Self::Waypoints(route, waypoints::State::default());
+            }
+            _ => return Err(SetpointError::NotInThisMode),
+        }
+        Ok(())
+    }
+
+    /// Makes following a lane the task of mode 8.
+    ///
+    /// # Errors
+    /// Another mode is selected.
+    pub fn follow_lane(&mut self) -> Result<(), SetpointError> {
+        let Self::Mission(task, state) = self else {
+            return Err(SetpointError::NotInThisMode);
+        };
+        *task = Task::Lane;
+        state.renew();
+        Ok(())
+    }
+
+    /// Begins a new route of mode 7, without waypoints: the robot waits.
+    ///
+    /// # Errors
+    /// Another mode is selected.
+    pub fn begin_route(&mut self, repeat: bool, relative: bool) -> Result<(), SetpointError> {
+        let Self::Waypoints(..) = self else {
+            return Err(SetpointError::NotInThisMode);
+        };
+        *self = Self::Waypoints(Route::empty(repeat, relative), waypoints::State::default());
+        Ok(())
+    }
+
+    /// Appends a waypoint to the route of mode 7.
+    ///
+    /// # Errors
+    /// Why it is refused; the route is as before.
+    pub fn add_waypoint(&mut self, waypoint: Waypoint) -> Result<(), SetpointError> {
+        let Self::Waypoints(route, _) = self else {
+            return Err(SetpointError::NotInThisMode);
+        };
+        route.push(waypoint)
+    }
+
+    /// Sets the movement of mode 0.
+    ///
+    /// # Errors
+    /// Why it is refused; the last one stays.
+    pub fn set_movement(&mut self, movement: Movement, level: Level) -> Result<(), SetpointError> {
+        let Self::Manual(setpoint) = self else {
+            return Err(SetpointError::NotInThisMode);
+        };
+        let level = match level {
+            Level::Duty(duty) => Level::Duty(within(duty, 0.0, 1.0)?),
+            Level::Speed(rad_s) => Level::Speed(within(rad_s, 0.0, MAX_WHEEL_RAD_S)?),
+        };
+        *setpoint = manual::Setpoint { movement, level };
+        Ok(())
+    }
+}
+
+/// The value, if it is finite and in range.
+pub(super) fn within(value: f32, min: f32, max: f32) -> Result<f32, SetpointError> {
+    if !value.is_finite() {
+        Err(SetpointError::NotFinite)
+    } else if value < min || value > max {
+        Err(SetpointError::OutOfRange)
+    } else {
+        Ok(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mode::ModeId;
+
+    #[test]
+    fn a_reference_out_of_range_is_refused_and_the_last_one_stays() {
+        let mut mode = ActiveMode::new(ModeId::FrontDistance);
+        assert_eq!(mode.set_reference(0.5), Ok(()));
+        assert_eq!(mode.set_reference(-0.1), Err(SetpointError::OutOfRange));
+        assert_eq!(mode.set_reference(2.2), Err(SetpointError::OutOfRange));
+        assert_eq!(mode.set_reference(f32::NAN), Err(SetpointError::NotFinite));
+        assert_eq!(mode.reference(), Wheels::both(0.5));
+        assert_eq!(
+            mode.set_wheel_reference(Wheels::both(1.0)),
+            Err(SetpointError::NotInThisMode)
+        );
+    }
+
+    #[test]
+    fn half_a_valid_pair_of_references_is_refused_whole() {
+        let mut mode = ActiveMode::new(ModeId::WheelSpeed);
+        assert_eq!(
+            mode.set_wheel_reference(Wheels {
+                left: 3.0,
+                right: 50.0
+            }),
+            Err(SetpointError::OutOfRange)
+        );
+        assert_eq!(mode.reference(), Wheels::both(0.0));
+        assert_eq!(
+            mode.set_movement(Movement::Forward, Level::Duty(0.5)),
+            Err(SetpointError::NotInThisMode)
+        );
+    }
+
+    #[test]
+    fn every_mode_refuses_what_is_out_of_its_range_and_keeps_what_it_has() {
+        let cases = [
+            (ModeId::FrontDistance, 0.4, [-0.2, 2.1]),
+            (ModeId::FrontAlign, 0.4, [0.01, 2.1]),
+            (ModeId::WallFollow, 0.4, [0.09, 1.6]),
+            (ModeId::WheelSpeed, 6.0, [-20.1, 20.1]),
+            (ModeId::StraightLine, -6.0, [-20.1, 20.1]),
+        ];
+        for (id, good, bad) in cases {
+            let mut mode = ActiveMode::new(id);
+            assert_eq!(mode.set_reference(good), Ok(()), "{id:?}");
+            for value in bad {
+                let refused = Err(SetpointError::OutOfRange);
+                assert_eq!(mode.set_reference(value), refused, "{id:?} {value}");
+            }
+            for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+                assert_eq!(
+                    mode.set_reference(value),
+                    Err(SetpointError::NotFinite),
+                    "{id:?}"
+                );
+            }
+            assert_eq!(mode.reference(), Wheels::both(good), "{id:?}");
+        }
+    }
+
+    #[test]
+    fn modes_without_such_a_reference_say_so() {
+        for id in [
+            ModeId::Manual,
+            ModeId::WallHold,
+            ModeId::Waypoints,
+            ModeId::Mission,
+        ] {
+            let refused = Err(SetpointError::NotInThisMode);
+            assert_eq!(ActiveMode::new(id).set_reference(0.4), refused, "{id:?}");
+        }
+        let refused = Err(SetpointError::NotInThisMode);
+        assert_eq!(
+            ActiveMode::new(ModeId::WheelSpeed).set_goal(0.4, 0.0),
+            refused
+        );
+    }
+
+    #[test]
+    fn a_goal_or_a_movement_out_of_range_is_refused_and_the_last_one_stays() {
+        let mut mission = ActiveMode::new(ModeId::Mission);
+        assert_eq!(mission.set_goal(1.0, -0.5), Ok(()));
+        for (x_m, y_m) in [(FARTHEST_M + 0.1, 0.0), (0.0, -FARTHEST_M - 0.1)] {
+            assert_eq!(mission.set_goal(x_m, y_m), Err(SetpointError::OutOfRange));
+        }
+        assert_eq!(
+            mission.set_goal(0.0, f32::NAN),
+            Err(SetpointError::NotFinite)
+        );
+        let (left, right) = (1.0, -0.5);
+        assert_eq!(mission.reference(), Wheels { left, right });
+        let mut manual = ActiveMode::new(ModeId::Manual);
+        assert_eq!(
+            manual.set_movement(Movement::Forward, Level::Duty(0.5)),
+            Ok(())
+        );
+        let before = manual;
+        for level in [
+            Level::Duty(1.1),
+            Level::Duty(-0.1),
+            Level::Speed(20.1),
+            Level::Speed(f32::NAN),
+        ] {
+            assert!(manual.set_movement(Movement::Backward, level).is_err());
+        }
+        assert_eq!(manual, before);
+    }
+}

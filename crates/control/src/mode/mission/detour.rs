@@ -1,0 +1,225 @@
+//! Around an obstacle: which side, how near, when to leave it, and when there is no way.
+
+use super::goal::{PROGRESS_M, SPOT_RAD, near_m};
+use super::obstacle::Obstacle;
+use super::{Detour, Drive, Mission, Phase, Place, Pose, Side, State, abs, min, sqrt};
+use crate::estimate::Estimate;
+use crate::math::{atan2, max, wrap_angle};
+use crate::motion::TurnState;
+use crate::types::{Range, SonarId};
+use core::f32::consts::FRAC_PI_2;
+
+/// Back where the obstacle was met: within this, having been farther away than twice as much [mm].
+const BACK_MM: i32 = 200;
+/// After so little way the side of the last obstacle is the next one's too, unless the other way is this much shorter [m].
+const SOON_M: f32 = 0.8;
+const STAY_M: f32 = 0.5;
+/// A side is changed for another whose way is this much shorter [m].
+const CHANGE_M: f32 = 0.2;
+/// A sonar at the side sees the obstacle within this [m].
+const BESIDE_M: f32 = 0.35;
+/// With something this near to the middle of the axis the robot's corners are slow [m].
+const CLOSE_M: f32 = 0.19;
+/// Yaw rate then; forward speed goes down with it, so that the way is the same [rad/s].
+const CLOSE_RAD_S: f32 = 0.5;
+/// An obstacle that reaches beyond a right angle from the way to the goal costs this much more [m/rad].
+const BEHIND_M: f32 = 0.35;
+
+impl Mission {
+    pub(super) fn decide(&self, state: &mut State, pose: &Pose, goal_m: (f32, f32)) {
+        let Some(obstacle) = state.plan.obstacle else {
+            state.phase = Phase::GoToGoal;
+            return;
+        };
+        let here = (pose.x_m, pose.y_m);
+        let (mut left, mut right) = self.costs(&obstacle, here, goal_m);
+        match state.last {
+            Some((Side::Left, way_m)) if way_m < SOON_M => right += STAY_M,
+            Some((Side::Right, way_m)) if way_m < SOON_M => left += STAY_M,
+            _ => {}
+        }
+        let (dx, dy) = (goal_m.0 - pose.x_m, goal_m.1 - pose.y_m);
+        state.detour = Some(Detour {
+            side: if left < right {
+                Side::Left
+            } else {
+                Side::Right
+            },
+            met: Place::new(pose.x_m, pose.y_m),
+            least_m: sqrt(dx * dx + dy * dy),
+            way_m: 0.0,
+            away: false,
+            vain: 0,
+            changes: 0,
+            wound_rad: 0.0,
+            bearing_rad: atan2(dy, dx),
+        });
+        state.phase = Phase::Seek;
+    }
+
+    pub(super) fn around(
+        &self,
+        state: &mut State,
+        estimate: &Estimate,
+        goal_m: (f32, f32),
+        left_m: f32,
+        planned: bool,
+    ) -> Drive {
+        let pose = &estimate.pose;
+        let Some(mut detour) = state.detour else {
+            self.face(state, pose, goal_m, SPOT_RAD);
+            return Drive::Release;
+        };
+        let here = Place::new(pose.x_m, pose.y_m);
+        let from_met_mm2 = here.square_mm2(detour.met);
+        if from_met_mm2 > 4 * BACK_MM * BACK_MM {
+            detour.away = true;
+        }
+        if detour.away && detour.way_m > 1.2 && from_met_mm2 < BACK_MM * BACK_MM {
+            if state.plan.same || state.laps > 0 {
+                state.phase = Phase::Unreachable;
+            } else {
+                // Once around something that is not in the way.
+                state.laps += 1;
+                state.detour = None;
+                self.face(state, pose, goal_m, SPOT_RAD);
+            }
+            return Drive::Release;
+        }
+        if planned {
+            if self.may_leave(state, &detour, left_m) {
+                state.detour = Some(detour);
+                self.face(state, pose, goal_m, SPOT_RAD);
+                return Drive::Release;
+            }
+            if let Some(obstacle) = state.plan.obstacle {
+                let here = (pose.x_m, pose.y_m);
+                let (left, right) = self.costs(&obstacle, here, goal_m);
+                let (own, other, side) = match detour.side {
+                    Side::Left => (left, right, Side::Right),
+                    Side::Right => (right, left, Side::Left),
+                };
+                if obstacle.nearest_m > BESIDE_M && detour.changes < 1 && other + CHANGE_M < own {
+                    detour.changes += 1;
+                    detour.side = side;
+                    detour.met = Place::new(pose.x_m, pose.y_m);
+                    detour.way_m = 0.0;
+                    detour.away = false;
+                }
+            }
+            if state.plan.obstacle.is_some() {
+                state.heading_ref_rad = state.plan.past_rad;
+            }
+        }
+        state.detour = Some(detour);
+        let error_rad = wrap_angle(state.heading_ref_rad - pose.heading_rad);
+        if state.phase == Phase::AvoidanceTurn {
+            return self.turn(state, estimate, state.heading_ref_rad, Phase::Seek);
+        }
+        if abs(error_rad) > SPOT_RAD {
+            state.phase = Phase::AvoidanceTurn;
+            state.turn = TurnState::default();
+            return Drive::Release;
+        }
+        state.phase = self.beside(state, estimate, detour.side);
+        let near_m = near_m(state, estimate);
+        let careful_m_s = self.careful_m_s(near_m, error_rad);
+        let speed_m_s = min(self.free_m_s(state), min(self.around_m_s, careful_m_s));
+        if speed_m_s < 0.03 {
+            state.phase = Phase::AvoidanceTurn;
+            state.turn = TurnState::default();
+            return Drive::Release;
+        }
+        let drive = self.line.steer(speed_m_s, error_rad);
+        if near_m < CLOSE_M || state.watch.doubts() {
+            slow_corners(drive)
+        } else {
+            drive
+        }
+    }
+
+    /// The state of an advance: what the sonar towards the obstacle sees.
+    fn beside(&self, state: &mut State, estimate: &Estimate, side: Side) -> Phase {
+        let towards = match side {
+            Side::Left => SonarId::Right,
+            Side::Right => SonarId::Left,
+        };
+        let sees =
+            matches!(estimate.range(towards).range, Range::Valid(range_m) if range_m < BESIDE_M);
+        match state.phase {
+            _ if sees => {
+                state.lost_m = 0.0;
+                Phase::Along
+            }
+            Phase::Along | Phase::SafeDistance if state.lost_m < 0.125 => {
+                state.lost_m += abs(estimate.rolled_m);
+                Phase::SafeDistance
+            }
+            _ => Phase::Seek,
+        }
+    }
+
+    fn may_leave(&self, state: &State, detour: &Detour, left_m: f32) -> bool {
+        let plan = &state.plan;
+        if plan.obstacle.is_none() {
+            return true;
+        }
+        let free_m = if plan.clear_m > super::plan::HORIZON_M {
+            min(left_m, 1.0)
+        } else if plan.same || plan.clear_m < 0.7 {
+            return false;
+        } else {
+            plan.clear_m - 0.3
+        };
+        let gained_m = if detour.vain == 0 { free_m } else { 0.0 };
+        left_m - gained_m < detour.least_m - PROGRESS_M
+    }
+
+    /// Ways past both ends of an obstacle to the goal [m].
+    fn costs(&self, obstacle: &Obstacle, here: (f32, f32), goal_m: (f32, f32)) -> (f32, f32) {
+        let goal_rad = atan2(goal_m.1 - here.1, goal_m.0 - here.0);
+        let middle_rad = 0.5 * (obstacle.left.pass_rad + obstacle.right.pass_rad);
+        // The goal's bearing on the obstacle's own count.
+        let goal_rad = middle_rad + wrap_angle(goal_rad - middle_rad);
+        let behind = |off_rad: f32| BEHIND_M * max(off_rad - FRAC_PI_2, 0.0);
+        (
+            around_m(here, obstacle.left.at, goal_m) + behind(obstacle.left.pass_rad - goal_rad),
+            around_m(here, obstacle.right.at, goal_m) + behind(goal_rad - obstacle.right.pass_rad),
+        )
+    }
+}
+
+/// The same way at a yaw rate at which a corner of the robot touches gently.
+fn slow_corners(drive: Drive) -> Drive {
+    match drive {
+        Drive::Twist {
+            forward_m_s,
+            yaw_rad_s,
+        } if abs(yaw_rad_s) > CLOSE_RAD_S => {
+            let share = CLOSE_RAD_S / abs(yaw_rad_s);
+            Drive::Twist {
+                forward_m_s: forward_m_s * share,
+                yaw_rad_s: yaw_rad_s * share,
+            }
+        }
+        other => other,
+    }
+}
+
+/// Way from here past a point to the goal.
+fn around_m(here: (f32, f32), past: Place, goal_m: (f32, f32)) -> f32 {
+    let (x_m, y_m) = past.metres();
+    let leg = |from: (f32, f32), to: (f32, f32)| {
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        sqrt(dx * dx + dy * dy)
+    };
+    leg(here, (x_m, y_m)) + leg((x_m, y_m), goal_m)
+}
+
+/// The robot goes around something.
+pub(super) fn following(phase: Phase) -> bool {
+    matches!(
+        phase,
+        Phase::AvoidanceTurn | Phase::Seek | Phase::Along | Phase::SafeDistance
+    )
+}

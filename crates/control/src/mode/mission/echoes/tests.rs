@@ -1,0 +1,105 @@
+//! The memory of echoes: what counts, what fades, what gives way.
+
+use super::*;
+use crate::rig::View;
+
+/// An answer of the front sonar, which looks in a direction from the origin.
+fn answer(range: Range, axis_rad: f32) -> Reading {
+    Reading {
+        sonar: SonarId::Front,
+        range,
+        view: View {
+            axis_rad,
+            ..View::default()
+        },
+        servo_rad: axis_rad,
+    }
+}
+
+fn heard(answers: &[(Range, f32)]) -> Echoes {
+    let mut echoes = Echoes::default();
+    for (range, axis_rad) in answers {
+        echoes.take(&Pose::default(), &answer(*range, *axis_rad));
+    }
+    echoes
+}
+
+fn firm(echoes: &Echoes) -> usize {
+    // Far from everything: nothing counts for being near.
+    echoes.firm(Place::new(20.0, 20.0)).count()
+}
+
+#[test]
+fn an_echo_leaves_points_across_the_beam_and_the_next_one_makes_one_firm() {
+    let once = heard(&[(Range::Valid(0.8), 0.0)]);
+    assert_eq!((once.iter().count(), firm(&once)), (3, 0));
+    let twice = heard(&[(Range::Valid(0.8), 0.0), (Range::Valid(0.805), 0.05)]);
+    assert_eq!((twice.iter().count(), firm(&twice)), (3, 1));
+}
+
+#[test]
+fn a_beam_that_goes_on_farther_takes_what_was_heard_once() {
+    let mut echoes = heard(&[(Range::Valid(0.8), 0.0), (Range::Clear, -0.2)]);
+    // Of -0.2, 0 and 0.2 rad the beam about -0.2 covers the first two.
+    assert_eq!(echoes.iter().count(), 1);
+    echoes.take(&Pose::default(), &answer(Range::Faulty, 0.2));
+    assert_eq!(echoes.iter().count(), 1, "a faulty sonar says nothing");
+    echoes.take(&Pose::default(), &answer(Range::Valid(0.82), 1.4));
+    assert_eq!(
+        echoes.iter().count(),
+        4,
+        "nor does one that looks elsewhere"
+    );
+}
+
+#[test]
+fn silence_from_another_direction_says_nothing() {
+    let mut echoes = heard(&[(Range::Valid(0.5), 0.0), (Range::Valid(0.5), 0.0)]);
+    let beside = Pose {
+        x_m: 0.5,
+        y_m: -0.6,
+        heading_rad: 1.57,
+    };
+    let before = echoes.iter().count();
+    for _ in 0..10 {
+        echoes.take(&beside, &answer(Range::Clear, 0.0));
+    }
+    assert_eq!(echoes.iter().count(), before);
+}
+
+#[test]
+fn what_is_heard_once_fades_and_what_is_firm_stays() {
+    let mut echoes = heard(&[(Range::Valid(0.8), 0.0), (Range::Valid(0.8), 0.0)]);
+    for _ in 0..10 {
+        echoes.fade();
+    }
+    assert_eq!((echoes.iter().count(), firm(&echoes)), (1, 1));
+}
+
+#[test]
+fn a_full_memory_gives_up_the_farthest_point_and_keeps_its_size() {
+    let mut echoes = Echoes::default();
+    for step in 0..200u16 {
+        let pose = Pose {
+            x_m: 0.1 * f32::from(step),
+            ..Pose::default()
+        };
+        echoes.take(&pose, &answer(Range::Valid(0.15), 1.57));
+    }
+    assert_eq!(echoes.iter().count(), CAPACITY);
+    let nearest = echoes.iter().map(|(_, at)| at.x_mm).min().unwrap();
+    assert!(nearest > 14_000, "{nearest}");
+}
+
+#[test]
+fn a_moved_origin_leaves_the_points_where_they_are() {
+    let mut echoes = heard(&[(Range::Valid(0.8), 0.0)]);
+    echoes.move_origin(&Pose {
+        x_m: 0.8,
+        y_m: 0.1,
+        heading_rad: core::f32::consts::FRAC_PI_2,
+    });
+    let (_, at) = echoes.iter().next().unwrap();
+    let (x_m, y_m) = at.metres();
+    assert!((x_m + 0.1).abs() < 2e-3 && y_m.abs() < 2e-3, "{at:?}");
+}
