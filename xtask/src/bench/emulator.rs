@@ -11,50 +11,47 @@ use crate::project::{Project, output, run};
 /// Simulated seconds: what the scenario lasts, and a little more than that for the image, which then ends simavr.
 const SCENARIO: &str = "free";
 const SCENARIO_S: f64 = 10.0;
+/// Runs in one go, for the clock of `times` is coarse.
+const RUNS: u32 = 5;
 const IMAGE_S: f64 = 11.0;
 /// Of several measurements the shortest is the least disturbed one.
 const TIMES: usize = 5;
 
-/// Factors over real time of a firmware that waits in a loop, and of one that sleeps.
+/// Factors over real time of a firmware that waits in a loop, and of ones that sleep.
 pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
-    let [busy, sleepy] = [image(project, "busy")?, image(project, "sleepy")?];
+    let busy = image(project, "busy", 1000)?;
     let start_s = shortest(|| cpu_s(project, &project.release_binary_path(), &["list"]))?;
     let ours = |image: &Path| {
         let path = image.display().to_string();
-        let arguments = [
-            "run",
-            SCENARIO,
-            "--threads",
-            "1",
-            "--json",
-            "--firmware",
-            &path,
-        ];
+        let runs = RUNS.to_string();
+        let head = ["run", SCENARIO, "--threads", "1", "--json", "--runs", &runs];
+        let arguments = [&head[..], &["--firmware", &path]].concat();
         shortest(|| cpu_s(project, &project.release_binary_path(), &arguments))
-            .map(|cpu_s| SCENARIO_S / (cpu_s - start_s).max(0.001))
+            .map(|cpu_s| f64::from(RUNS) * SCENARIO_S / (cpu_s - start_s).max(0.001))
     };
-    let (busy_factor, sleepy_factor) = (ours(&busy)?, ours(&sleepy)?);
-    let what = |image| {
-        format!("`rumbo run {SCENARIO} --firmware {image}.elf`: float PID and odometry at 1 kHz")
+    let what = |how, hertz| {
+        format!(
+            "`rumbo run {SCENARIO} --firmware`: float PID and odometry at {hertz} Hz, {how} between"
+        )
     };
-    let mut figures = vec![
-        Figure::new(
-            what("busy"),
-            format!("{busy_factor:.0} x real time"),
-            "20 x",
-        ),
-        Figure::new(
-            what("sleepy") + ", asleep between",
-            format!("{sleepy_factor:.0} x real time"),
-            "60 x",
-        ),
-    ];
+    let busy_factor = ours(&busy)?;
+    let times = |factor| format!("{factor:.0} x real time");
+    let mut figures = vec![Figure::new(
+        what("waiting", 1000),
+        times(busy_factor),
+        "20 x",
+    )];
+    // A thousand times a second it computes for three quarters of the time.
+    for (hertz, budget) in [(1000, ""), (100, "60 x")] {
+        let factor = ours(&image(project, "sleepy", hertz)?)?;
+        figures.push(Figure::new(what("asleep", hertz), times(factor), budget));
+    }
     let path = busy.display().to_string();
     let arguments = ["-m", "atmega2560", "-f", "16000000", &path];
     let simavr_s = shortest(|| cpu_s(project, Path::new("simavr"), &arguments))?;
     let factor = IMAGE_S / simavr_s.max(0.001);
     figures.push(Figure::new(
-        "the same busy.elf on simavr, without a robot",
+        "the same image, waiting, on simavr without a robot",
         format!("{factor:.1} x real time"),
         "",
     ));
@@ -67,21 +64,22 @@ pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
 }
 
 /// Builds a program of the emulator's tests.
-fn image(project: &Project, name: &str) -> Result<PathBuf, String> {
+fn image(project: &Project, name: &str, hertz: u32) -> Result<PathBuf, String> {
     let folder = project.target.join("bench");
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let image = folder.join(format!("{name}.elf"));
+    let image = folder.join(format!("{name}{hertz}.elf"));
     let source = project
         .root
         .join("crates/emulator/tests/programs")
         .join(format!("{name}.c"));
-    let seconds = format!("-DSECONDS={IMAGE_S}");
+    let (seconds, hertz) = (format!("-DSECONDS={IMAGE_S}"), format!("-DHERTZ={hertz}"));
     let options = [
         "-mmcu=atmega2560",
         "-Os",
         "-std=gnu11",
         "-DF_CPU=16000000UL",
         &seconds,
+        &hertz,
     ];
     run(project
         .command("avr-gcc")

@@ -1,7 +1,7 @@
 //! GDB's remote protocol: `avr-gdb` breaks, steps and reads variables of a program on the chip.
 //!
 //! The crate `gdbstub` speaks the protocol; here is what it does not know: the AVR ([`arch`]) and what its requests mean for
-//! the chip ([`target`]). Time passes on the chip, and for all around it, only while the program runs: [`Machine`] is whoever
+//! the chip (`target`). Time passes on the chip, and for all around it, only while the program runs: [`Machine`] is whoever
 //! has the chip, and moves the rest of the world along with it.
 //!
 //! Source: GDB's manual, appendix "Remote Serial Protocol"; the places of the memories are the toolchain's (see `image`).

@@ -1,4 +1,4 @@
-/* Computes once a millisecond and waits in a loop for the next one. */
+/* Computes at every tick and waits in a loop for the next one. */
 #include "control.h"
 
 #ifndef SECONDS
@@ -9,7 +9,7 @@ int main(void)
 {
     uint8_t done = 0;
     set_up();
-    for (uint16_t count = 0; count < 1000 * SECONDS; count++) {
+    for (uint16_t count = 0; count < (uint16_t)(HERTZ * SECONDS); count++) {
         while (ticks == done)
             ;
         done++;

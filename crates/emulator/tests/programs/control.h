@@ -1,9 +1,13 @@
-/* What a student's control loop computes: two speed loops in floating point and odometry, once a millisecond. */
+/* What a student's control loop computes: two speed loops in floating point and odometry, HERTZ times a second. */
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/sleep.h>
 #include <math.h>
 #include <stdint.h>
+
+#ifndef HERTZ
+#define HERTZ 1000
+#endif
 
 static volatile uint8_t ticks;
 
@@ -19,7 +23,7 @@ static float x_m, y_m, heading_rad;
 
 static uint8_t step(struct wheel *wheel, uint16_t count)
 {
-    const float period_s = 0.001f, rad_per_edge = 0.00327f;
+    const float period_s = 1.0f / HERTZ, rad_per_edge = 0.00327f;
     int16_t edges = count - wheel->last_count;
     wheel->last_count = count;
     wheel->speed_rad_s += 0.1f * (edges * rad_per_edge / period_s - wheel->speed_rad_s);
@@ -33,7 +37,7 @@ static uint8_t step(struct wheel *wheel, uint16_t count)
 
 static void tick(void)
 {
-    const float radius_m = 0.033f, base_m = 0.15f, period_s = 0.001f;
+    const float radius_m = 0.033f, base_m = 0.15f, period_s = 1.0f / HERTZ;
     static uint16_t counts[2];
     counts[0] += 3;
     counts[1] += 3 - (counts[0] & 1);
@@ -54,8 +58,8 @@ static void set_up(void)
     /* 490 Hz, phase-correct. */
     TCCR3A = TCCR4A = 0x81;
     TCCR3B = TCCR4B = 0x03;
-    /* 16 MHz / 8 / 2000 = 1 kHz. */
-    OCR1A = 1999;
+    /* 16 MHz / 8. */
+    OCR1A = 2000000UL / HERTZ - 1;
     TIMSK1 = 0x02;
     TCCR1B = 0x0A;
     set_sleep_mode(SLEEP_MODE_IDLE);
