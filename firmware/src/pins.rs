@@ -5,21 +5,21 @@
 
 /// One pin of the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pin {
+pub(crate) struct Pin {
     /// Its name in the robot file.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// Its number on the board.
-    pub arduino: u8,
+    pub(crate) arduino: u8,
     /// Its port on the chip, a letter.
-    pub port: u8,
+    pub(crate) port: u8,
     /// Its bit in the port.
-    pub bit: u8,
+    pub(crate) bit: u8,
 }
 
 impl Pin {
     /// Its bit, in place.
     #[inline(always)]
-    pub const fn mask(self) -> u8 {
+    pub(crate) const fn mask(self) -> u8 {
         1 << self.bit
     }
 }
@@ -28,11 +28,11 @@ macro_rules! pins {
     ($( $id:ident = $name:literal, $arduino:literal, $port:literal, $bit:literal; )+) => {
         $(
             #[doc = concat!("`", $name, "`")]
-            pub const $id: Pin = Pin { name: $name, arduino: $arduino, port: $port, bit: $bit };
+            pub(crate) const $id: Pin = Pin { name: $name, arduino: $arduino, port: $port, bit: $bit };
         )+
 
         /// All of them.
-        pub const ALL: &[Pin] = &[ $( $id, )+ ];
+        pub(crate) const ALL: &[Pin] = &[ $( $id, )+ ];
     };
 }
 

@@ -27,7 +27,7 @@ fn handlers_are_short_and_wait_little_while_both_wheels_turn_echoes_come_and_byt
     chip.observers_mut().profile(Profile::new(&image));
     for ms in 20..1_020 {
         let at = ms * CYCLES_PER_MS;
-        let level = |period_ms: u64| Some(ms / period_ms % 2 == 0);
+        let level = |period_ms: u64| Some((ms / period_ms).is_multiple_of(2));
         // Not in step with each other, nor with the tick.
         chip.input(at + 97 * ms % 16_000, Input::Pin(pin('D', 0), level(1)));
         chip.input(at + 89 * ms % 16_000, Input::Pin(pin('D', 1), level(1)));
