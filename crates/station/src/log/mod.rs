@@ -13,7 +13,7 @@
 //!
 //! Messages are JSON with JSON schemas, times are the run's own, from 0. A metadata record `manifest` says what ran
 //! ([`Manifest`]); the files it was made of are attached. Chunks are compressed and closed every
-//! [`recorder::FLUSH`], so that a log whose writer was killed is readable up to there.
+//! 0.4 s (`recorder::FLUSH`), so that a log whose writer was killed is readable up to there.
 
 mod headless;
 mod manifest;
