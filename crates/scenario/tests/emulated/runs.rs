@@ -62,7 +62,7 @@ fn a_program_that_runs_into_erased_flash_ends_the_run_with_that_verdict() {
     }];
     let result = run(&setup, 1).unwrap();
     assert!(!result.pass);
-    // The verdict alone: metrics that the run did not live to have are no news.
+    // The verdict alone: that a run cut short misses its limits is no news.
     let [verdict] = &result.failures[..] else {
         panic!("{:?}", result.failures);
     };
