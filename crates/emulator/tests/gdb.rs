@@ -5,7 +5,7 @@ mod common;
 
 use common::*;
 use rumbo_emulator::chip::Chip;
-use rumbo_emulator::gdb::{Farewell, serve};
+use rumbo_emulator::gdb::{Farewell, Machine, serve};
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::process::Command;
@@ -17,6 +17,24 @@ const STAY: u16 = 0xCFFF;
 fn counter() -> Chip {
     let [store, address] = sts(0x300, 16);
     chip_of(&[ldi(16, 0), 0x9503, store, address, 0xCFFC, STAY])
+}
+
+#[test]
+fn time_goes_on_under_a_debugger_also_where_the_program_divides_its_clock() {
+    // CLKPR: the change is allowed, then the crystal is divided by 8.
+    let mut words = Vec::new();
+    for value in [0x80, 0x03] {
+        words.push(ldi(16, value));
+        words.extend(sts(0x61, 16));
+    }
+    words.push(STAY);
+    let mut chip = chip_of(&words);
+    for _ in 0..10 {
+        chip.go();
+    }
+    let crystal = chip.cycle();
+    assert!((160_000..160_000 + 10 * 16).contains(&crystal), "{crystal}");
+    assert!(chip.cpu().cycle() < 160_000 / 7);
 }
 
 /// A chip that waits for a debugger; gives the port.

@@ -125,7 +125,7 @@ impl<'a> Run<'a> {
         self.draw_levels();
         std::mem::replace(&mut self.undrawn, Ok(()))?;
         match (self.waves.take(), self.sim.mega()) {
-            (Some(waves), Some(mega)) => waves.finish(mega.chip().cpu().cycle()),
+            (Some(waves), Some(mega)) => waves.finish(mega.chip().cycle()),
             _ => Ok(()),
         }
     }

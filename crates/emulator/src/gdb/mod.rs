@@ -47,7 +47,7 @@ impl Machine for Chip {
     }
 
     fn go(&mut self) -> Stopped {
-        let stopped = self.run_until(self.cpu().cycle() + MILLISECOND);
+        let stopped = self.run_until(Chip::cycle(self) + MILLISECOND);
         self.take_outputs();
         stopped
     }
@@ -59,7 +59,7 @@ impl Machine for Chip {
     }
 }
 
-/// In cycles at 16 MHz.
+/// In cycles of a crystal of 16 MHz.
 const MILLISECOND: u64 = 16_000;
 
 /// How a debugger's visit ended.
