@@ -1,66 +1,26 @@
 // @ts-check
-/**
- * The dashboard in a real browser, on the real lab: RUMBO_BIN is the program, CHROMIUM the browser (default /usr/bin/chromium),
- * SCREENSHOT a file for a picture of the page.
- */
+/** The dashboard on the real lab. SCREENSHOT is a file for a picture of the page. */
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
-import { mkdtempSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { createInterface } from 'node:readline';
 import { request } from 'node:http';
 import { after, before, test } from 'node:test';
-import { chromium } from 'playwright-core';
+import { folder, open } from './dashboard.mjs';
 
 /** @typedef {{series: (name: string) => {t: number[], y: (number | null | undefined)[]}, state: () => import('../src/types.js').State | null}} Rumbo */
 
-const BROWSER_ARGS = [
-  '--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
-  '--disable-component-update', '--disable-sync',
-];
-/** Long enough for any machine; nothing is judged by it [ms]. */
-const PATIENCE_MS = 30_000;
 /** Below this a wheel stands [rpm]. */
 const STANDING_RPM = 3;
 
-/** @type {import('node:child_process').ChildProcess} */
-let lab;
-/** @type {string} */
-let url;
-/** @type {import('playwright-core').Browser} */
-let browser;
+/** @type {Awaited<ReturnType<typeof open>>} */
+let dashboard;
 /** @type {import('playwright-core').Page} */
 let page;
-/** @type {string[]} */
-const complaints = [];
 
 before(async () => {
-  const program = process.env['RUMBO_BIN'];
-  assert.ok(program, 'RUMBO_BIN names the program to test');
-  lab = spawn(program, ['lab', '--no-browser', '--port', '0', '--out', mkdtempSync(join(tmpdir(), 'rumbo-'))], { stdio: ['ignore', 'pipe', 'inherit'] });
-  assert.ok(lab.stdout);
-  for await (const line of createInterface({ input: lab.stdout })) {
-    const found = line.match(/http:\/\/\S+/);
-    if (found) {
-      url = found[0];
-      break;
-    }
-  }
-  browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
-  page = await browser.newPage({ viewport: { width: 1280, height: 720 }, colorScheme: 'dark' });
-  page.setDefaultTimeout(PATIENCE_MS);
-  page.on('pageerror', (error) => complaints.push(String(error)));
-  page.on('console', (message) => {
-    if (message.type() === 'error') complaints.push(message.text());
-  });
-  await page.goto(url);
+  dashboard = await open(['lab', '--out', folder()]);
+  page = dashboard.page;
 });
 
-after(async () => {
-  await browser?.close();
-  lab?.kill();
-});
+after(() => dashboard?.close());
 
 /**
  * The last values plotted of a signal, gaps left out.
@@ -323,10 +283,10 @@ test('a reset starts again with the seed asked for', async () => {
 
 test('a page of another origin gets no WebSocket', async () => {
   const cookie = (await page.context().cookies()).map(({ name, value }) => `${name}=${value}`).join('; ');
-  for (const [origin, expected] of [['http://evil.example', 403], [new URL(url).origin, 101]]) {
+  for (const [origin, expected] of [['http://evil.example', 403], [new URL(dashboard.url).origin, 101]]) {
     /** @type {number | undefined} */
     const status = await new Promise((resolve, reject) => {
-      const asked = request(new URL('/ws', url), {
+      const asked = request(new URL('/ws', dashboard.url), {
         headers: {
           Cookie: cookie, Origin: String(origin), Connection: 'Upgrade', Upgrade: 'websocket', 'Sec-WebSocket-Version': '13',
           'Sec-WebSocket-Key': 'AAAAAAAAAAAAAAAAAAAAAA==',
@@ -365,5 +325,5 @@ test('garbage is told why and closed, while the robot goes on and the page too',
 });
 
 test('the browser has nothing to complain about', () => {
-  assert.deepEqual(complaints, []);
+  assert.deepEqual(dashboard.complaints, []);
 });

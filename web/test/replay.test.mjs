@@ -1,53 +1,24 @@
 // @ts-check
-/** A log in the dashboard, in a real browser: RUMBO_BIN is the program, CHROMIUM the browser (default /usr/bin/chromium). */
+/** A log in the dashboard. */
 import assert from 'node:assert/strict';
-import { spawn, spawnSync } from 'node:child_process';
-import { mkdtempSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { spawnSync } from 'node:child_process';
 import { join } from 'node:path';
-import { createInterface } from 'node:readline';
 import { after, before, test } from 'node:test';
-import { chromium } from 'playwright-core';
+import { folder, open, program } from './dashboard.mjs';
 
-const BROWSER_ARGS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking'];
-/** Long enough for any machine; nothing is judged by it [ms]. */
-const PATIENCE_MS = 30_000;
-
-/** @type {import('node:child_process').ChildProcess} */
-let replay;
-/** @type {import('playwright-core').Browser} */
-let browser;
+/** @type {Awaited<ReturnType<typeof open>>} */
+let dashboard;
 /** @type {import('playwright-core').Page} */
 let page;
-/** @type {string[]} */
-const complaints = [];
 
 before(async () => {
-  const program = process.env['RUMBO_BIN'];
-  assert.ok(program, 'RUMBO_BIN names the program to test');
-  const folder = mkdtempSync(join(tmpdir(), 'rumbo-'));
-  spawnSync(program, ['run', 'mode1', '--seed', '3', '--out', folder]);
-  replay = spawn(program, ['replay', join(folder, 'mode1-3.mcap'), '--no-browser', '--port', '0', '--speed', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
-  assert.ok(replay.stdout);
-  let url = '';
-  for await (const line of createInterface({ input: replay.stdout })) {
-    url = line;
-    break;
-  }
-  browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
-  page = await browser.newPage({ viewport: { width: 1280, height: 720 }, colorScheme: 'dark' });
-  page.setDefaultTimeout(PATIENCE_MS);
-  page.on('pageerror', (error) => complaints.push(String(error)));
-  page.on('console', (message) => {
-    if (message.type() === 'error') complaints.push(message.text());
-  });
-  await page.goto(url);
+  const out = folder();
+  spawnSync(program(), ['run', 'mode1', '--seed', '3', '--out', out]);
+  dashboard = await open(['replay', join(out, 'mode1-3.mcap'), '--speed', '0']);
+  page = dashboard.page;
 });
 
-after(async () => {
-  await browser?.close();
-  replay?.kill();
-});
+after(() => dashboard?.close());
 
 /** The time of the last range plotted [s]. */
 const plotted_s = () => page.evaluate(() => /** @type {number} */ (/** @type {any} */ (window).rumbo.series('range_front_cm').t.at(-1) ?? -1));
@@ -109,5 +80,5 @@ test('a click on an event goes to its time', async () => {
 });
 
 test('no script failed on the way', () => {
-  assert.deepEqual(complaints, []);
+  assert.deepEqual(dashboard.complaints, []);
 });
