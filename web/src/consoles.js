@@ -1,11 +1,14 @@
 // @ts-check
-/** What the USARTs of an emulated chip say, and a line to type to them. */
+/** What the USARTs of an emulated chip say, or a robot that speaks text, and a line to type to them. */
 import { create, element } from './dom.js';
 
 /** @typedef {import('./types.js').ConsoleText} ConsoleText */
 
 /** Characters kept of each USART. */
 const KEPT = 40_000;
+
+/** In place of a USART: the link to a robot that speaks text. */
+const LINK = 255;
 
 export class Consoles {
   #section = element('console-section', HTMLElement);
@@ -47,7 +50,7 @@ export class Consoles {
 
   /** The USART has spoken for the first time. @param {number} usart */
   #offer(usart) {
-    const button = create('button', { type: 'button', value: String(usart) }, `USART${usart}`);
+    const button = create('button', { type: 'button', value: String(usart) }, usart === LINK ? 'link' : `USART${usart}`);
     button.addEventListener('click', () => {
       this.#shown = usart;
       this.#show();

@@ -24,7 +24,10 @@ pub(crate) const EVENTS_KEPT: usize = 1_000;
 /// Pieces of console text kept: of each slice of time in which a USART spoke, one.
 pub(crate) const CONSOLES_KEPT: usize = 2_000;
 
-/// What a USART of an emulated chip said.
+/// In place of a USART's number: the link to a real robot that speaks text.
+pub(crate) const LINK_CONSOLE: u8 = 255;
+
+/// What a USART of an emulated chip said, or a robot that speaks text.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct ConsoleText {
     pub(crate) usart: u8,

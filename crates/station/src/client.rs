@@ -2,15 +2,16 @@
 //!
 //! Knows the protocol and nothing of browsers, threads or wall clocks: time is an argument, in the target's time. It asks for
 //! HELLO until the robot answers, then reads the parameters, sends heartbeats, and notices silence and restarts. It
-//! never arms.
+//! never arms. A robot that leaves HELLO unanswered and sends rows of the original's text is talked to in text.
 
 use crate::commands::{CommandManager, Fate, Outcome, QueueFull};
 use crate::meter::Meter;
 use crate::robot_clock::RobotClock;
-use crate::terminal::Terminal;
+use crate::terminal::{Terminal, Told};
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params;
+use rumbo_wire::text::RowKind;
 use rumbo_wire::{
     Ack, Command, Decoder, EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received,
     Status, Telemetry, ToRobot,
@@ -24,6 +25,12 @@ const HELLO_PERIOD_US: u64 = 300_000;
 const HELLO_ANSWER_US: u64 = 1_000_000;
 /// A sign of life goes out this often, a third of the 500 ms after which the robot stops \[us\].
 const HEARTBEAT_PERIOD_US: u64 = 150_000;
+/// So many HELLOs without an answer, and the robot does not speak frames.
+const HELLOS_UNANSWERED: u32 = 4;
+/// So many rows of text, and it speaks text. As many frames, and it speaks frames after all.
+const WORDS_KNOWN: u32 = 2;
+/// The original program is silent for up to 4 s while it drives \[us\].
+const TEXT_SILENCE_US: u64 = 6_000_000;
 /// The link counts as lost after this long without a frame: 25 telemetry frames \[us\].
 const SILENCE_US: u64 = 1_000_000;
 
@@ -32,6 +39,8 @@ const SILENCE_US: u64 = 1_000_000;
 pub enum Heard {
     /// The robot answered for the first time, or after silence.
     Connected(Hello),
+    /// The robot sends rows of the original's text, for the first time or after silence.
+    Text,
     /// The robot's program started again by itself.
     Restarted(Hello),
     /// Nothing came for a second.
@@ -70,8 +79,20 @@ pub struct RobotClient {
     table: KnownTable,
     clock: RobotClock,
     decoder: Decoder<LINE_BYTES>,
-    /// In place of frames, with a robot that speaks text.
-    terminal: Option<Terminal>,
+    /// What is heard and said in text.
+    terminal: Terminal,
+    /// The robot speaks text.
+    text: bool,
+    /// It may turn out to speak the other language.
+    undecided: bool,
+    /// HELLOs since the robot last answered one, or was last lost.
+    hellos: u32,
+    /// Anything was heard at this port.
+    heard_any: bool,
+    /// Words of the other language heard in a row.
+    words: u32,
+    /// Columns of the row heard last.
+    row_kind: Option<RowKind>,
     manager: CommandManager,
     sequence: u8,
     hello: Option<Hello>,
@@ -100,7 +121,13 @@ impl RobotClient {
             table,
             clock,
             decoder: Decoder::default(),
-            terminal: None,
+            terminal: Terminal::new(),
+            text: false,
+            undecided: true,
+            hellos: 0,
+            heard_any: false,
+            words: 0,
+            row_kind: None,
             manager: CommandManager::new(session),
             sequence: 0,
             hello: None,
@@ -121,29 +148,54 @@ impl RobotClient {
     /// A client for a robot that speaks the original's text and is in this mode: it needs no greeting.
     pub fn of_text(mode: ModeId, clock_known: bool) -> Self {
         Self {
-            terminal: Some(Terminal::new()),
+            text: true,
+            undecided: false,
             connected: true,
             mode,
             ..Self::new(0, clock_known, KnownTable::OURS)
         }
     }
 
-    /// Takes a command from the operator for a robot that speaks text; `None` if it speaks frames, false if text has no words for it.
-    pub fn submit_text(&mut self, command: &Command) -> Option<bool> {
-        let terminal = self.terminal.as_mut()?;
-        match *command {
-            Command::Mode(mode) => self.mode = mode,
-            Command::Reference(value) => self.reference = Wheels::both(value),
-            Command::WheelReference(wheels) => self.reference = wheels,
-            Command::Goal { x_m, y_m } => {
-                self.reference = Wheels {
-                    left: x_m,
-                    right: y_m,
-                };
-            }
-            _ => {}
+    /// The robot speaks the original's text.
+    pub fn speaks_text(&self) -> bool {
+        self.text
+    }
+
+    /// Which columns the row heard last had, where the robot speaks text.
+    pub(crate) fn row_kind(&self) -> Option<RowKind> {
+        self.row_kind.filter(|_| self.text)
+    }
+
+    /// Nothing at all was heard, though the robot was asked again and again: the original program before its first ON is like that.
+    pub fn is_mute(&self) -> bool {
+        !self.text && self.hello.is_none() && self.hellos >= HELLOS_UNANSWERED && !self.heard_any
+    }
+
+    /// Takes a command from the operator for a robot that speaks text; false if text has no words for it.
+    pub fn submit_text(&mut self, command: &Command) -> bool {
+        let mode = match *command {
+            Command::Mode(mode) => mode,
+            _ => self.mode,
+        };
+        self.terminal.submit(command, mode)
+    }
+
+    /// Takes a line that a person typed for a robot that speaks text.
+    pub fn type_in(&mut self, line: &str) {
+        self.terminal.type_in(line);
+    }
+
+    /// Another robot may be at the port now: which language it speaks is to be found out, unless that is known from elsewhere.
+    pub fn port_is_back(&mut self) {
+        if self.undecided && self.text {
+            self.text = false;
+            self.connected = false;
         }
-        Some(terminal.submit(command, self.mode))
+        self.heard_any = false;
+        if !self.connected {
+            self.hello_sent_us = None;
+            (self.hellos, self.words) = (0, 0);
+        }
     }
 
     /// Takes a command from the operator.
@@ -156,14 +208,25 @@ impl RobotClient {
 
     /// Appends the bytes to be sent now. To be called after every step of time.
     pub fn poll(&mut self, now_us: u64, to_robot: &mut Vec<u8>, heard: &mut Vec<Heard>) {
-        if let Some(terminal) = &mut self.terminal {
-            let before = to_robot.len();
-            terminal.poll(to_robot);
-            return self.up.add(to_robot.len() - before, now_us);
+        let before = to_robot.len();
+        self.terminal.poll(to_robot);
+        self.up.add(to_robot.len() - before, now_us);
+        if self.text {
+            let quiet_us = now_us.saturating_sub(self.last_heard_us);
+            if self.undecided
+                && self.connected
+                && self.terminal.armed()
+                && quiet_us > TEXT_SILENCE_US
+            {
+                self.connected = false;
+                heard.push(Heard::Lost);
+            }
+            return;
         }
         if self.connected && now_us.saturating_sub(self.last_heard_us) > SILENCE_US {
             self.connected = false;
             self.hello_sent_us = None;
+            (self.hellos, self.words) = (0, 0);
             heard.push(Heard::Lost);
         }
         let hello_due = self
@@ -171,6 +234,7 @@ impl RobotClient {
             .is_none_or(|sent_us| now_us >= sent_us + HELLO_PERIOD_US);
         if !self.connected && hello_due {
             self.hello_sent_us = Some(now_us);
+            self.hellos = self.hellos.saturating_add(1);
             self.say(ToRobot::Hello, now_us, to_robot);
         }
         if let Some(command) = self.manager.poll(now_us) {
@@ -189,6 +253,7 @@ impl RobotClient {
         let frame = message.frame(self.sequence);
         self.sequence = self.sequence.wrapping_add(1);
         self.last_sent_us = Some(now_us);
+        self.terminal.frames_sent();
         self.up.add(frame.bytes().len(), now_us);
         to_robot.extend_from_slice(frame.bytes());
     }
@@ -201,16 +266,18 @@ impl RobotClient {
     /// Takes bytes that arrived from the robot and appends what they say.
     pub fn hear(&mut self, bytes: &[u8], now_us: u64, heard: &mut Vec<Heard>) {
         self.down.add(bytes.len(), now_us);
-        if self.terminal.is_some() {
-            return self.hear_text(bytes, now_us, heard);
-        }
+        self.heard_any |= !bytes.is_empty();
         for byte in bytes {
+            if let Some(told) = self.terminal.hear(*byte, (now_us / 1_000) as i64) {
+                self.hear_row(told, now_us, heard);
+            }
             let body = match self.decoder.push(*byte) {
                 Some(Received::Frame(body)) => body,
                 // A robot addressed in binary answers so; a line is left from before.
                 Some(Received::Line(_)) | None => continue,
             };
             match FromRobot::from_body(&body) {
+                Ok(_) if self.text => self.hear_frame_in_text(),
                 Ok(message) => self.understand(message, now_us, heard),
                 Err(_) => self.malformed = self.malformed.wrapping_add(1),
             }
@@ -218,19 +285,38 @@ impl RobotClient {
         self.report_outcomes(heard);
     }
 
-    fn hear_text(&mut self, bytes: &[u8], now_us: u64, heard: &mut Vec<Heard>) {
-        for byte in bytes {
-            let told = self
-                .terminal
-                .as_mut()
-                .and_then(|terminal| terminal.hear(*byte));
-            let Some((telemetry, mode)) = told else {
-                continue;
-            };
-            self.mode = mode.unwrap_or(self.mode);
-            self.frames.add(1, now_us);
-            // A row says how long after the one before it was sent, not when.
-            heard.push(Heard::Telemetry((now_us / 1_000) as i64, telemetry));
+    /// Takes a row of text, which may tell that the robot speaks no frames.
+    fn hear_row(&mut self, told: Told, now_us: u64, heard: &mut Vec<Heard>) {
+        if !self.text {
+            self.words = self.words.saturating_add(1);
+            let no_frames = !self.connected && self.hellos >= HELLOS_UNANSWERED;
+            if !(no_frames && self.words >= WORDS_KNOWN) {
+                return;
+            }
+            self.text = true;
+            self.manager.forget();
+        }
+        self.words = 0;
+        self.last_heard_us = now_us;
+        if !std::mem::replace(&mut self.connected, true) {
+            heard.push(Heard::Text);
+        }
+        self.mode = told.mode.unwrap_or(self.mode);
+        self.reference = told.reference.unwrap_or(self.reference);
+        self.heading_ref_rad = told.heading_ref_rad.unwrap_or_default();
+        self.row_kind = Some(told.kind);
+        self.frames.add(1, now_us);
+        heard.push(Heard::Telemetry(told.t_ms, told.telemetry));
+    }
+
+    /// A robot that was taken for one of text, and speaks frames.
+    fn hear_frame_in_text(&mut self) {
+        self.words += 1;
+        if self.undecided && self.words >= WORDS_KNOWN {
+            self.text = false;
+            self.connected = false;
+            self.hello_sent_us = None;
+            (self.hellos, self.words) = (0, 0);
         }
     }
 
@@ -271,6 +357,7 @@ impl RobotClient {
         let answer = self
             .hello_sent_us
             .is_some_and(|sent_us| now_us < sent_us + HELLO_ANSWER_US);
+        (self.hellos, self.words) = (0, 0);
         let known = self.hello.replace(hello).is_some();
         if known && !answer {
             self.manager.robot_restarted();

@@ -142,6 +142,13 @@ impl CommandManager {
         }
     }
 
+    /// The robot speaks another language: nothing is asked of it in this one any more.
+    pub(crate) fn forget(&mut self) {
+        self.waiting.clear();
+        self.background.clear();
+        self.in_flight = None;
+    }
+
     fn give_up_waiting(&mut self, fate: Fate) {
         self.outcomes.extend(
             self.waiting

@@ -1,6 +1,6 @@
 //! Keeps the board up to date with what was heard: samples, events in words, the status, the parameters' values.
 
-use crate::board::{Board, ConsoleText, Level, LoggedEvent, State};
+use crate::board::{Board, ConsoleText, LINK_CONSOLE, Level, LoggedEvent, State};
 use crate::catalogue::{self, ParameterState};
 use crate::client::{Heard, RobotClient};
 use crate::commands::{Fate, Outcome};
@@ -10,6 +10,7 @@ use crate::origin::Origin;
 use crate::row::Row;
 use crate::signals::{EARLIER_MS, Sample, TruthLog};
 use crate::target::{Scene, Truth};
+use crate::terminal;
 use crate::words;
 use rumbo_control::Pose;
 use rumbo_control::rig::Rig;
@@ -116,6 +117,20 @@ impl Observer {
         }
     }
 
+    /// Puts the text of a robot on the board, as it came.
+    pub(crate) fn said_in_text(&self, bytes: &[u8]) {
+        let visible = |byte: &u8| match byte {
+            b'\n' | b' '..=b'~' => Some(char::from(*byte)),
+            b'\r' => None,
+            _ => Some('\u{b7}'),
+        };
+        let text: String = bytes.iter().filter_map(visible).collect();
+        if !text.is_empty() {
+            let usart = LINK_CONSOLE;
+            self.board.push_console(ConsoleText { usart, text });
+        }
+    }
+
     /// Puts the samples on the board; whether the state is to follow at once.
     pub(crate) fn publish(&mut self) -> bool {
         self.board.push_samples(&self.samples);
@@ -151,6 +166,10 @@ impl Observer {
                 }
                 Heard::Ended(outcome) => self.end_command(&outcome, client, now_ms),
                 Heard::Connected(hello) => self.connected(hello, client.table_matches(), now_ms),
+                Heard::Text => {
+                    let text = "connected; the robot speaks the original program's text: nothing is acknowledged, and it goes on by itself when the link is lost";
+                    self.note(now_ms, Level::Good, text.into());
+                }
                 Heard::Restarted(hello) => {
                     self.parameters = unread_parameters();
                     self.board.set_parameters(&self.parameters);
@@ -160,6 +179,10 @@ impl Observer {
                         Level::Fault,
                         format!("the robot's program started again: {why}"),
                     );
+                }
+                Heard::Lost if client.speaks_text() => {
+                    let text = "nothing heard from the robot for some seconds, though it is on";
+                    self.note(now_ms, Level::Warning, text.into());
                 }
                 Heard::Lost => {
                     let text = "link lost: nothing heard from the robot for a second; trying again";
@@ -186,7 +209,10 @@ impl Observer {
             origin: self.origin.follow(t_ms, telemetry.pose, true_pose),
             truth: truth.map(|(before, at)| [before, at]),
         };
-        self.samples.push(sample.row());
+        let mut row = sample.row();
+        let untold = client.row_kind().into_iter().flat_map(terminal::untold);
+        untold.for_each(|name| row.set(name, f64::NAN));
+        self.samples.push(row);
     }
 
     fn event(&mut self, t_ms: i64, kind: EventKind) {

@@ -56,6 +56,8 @@ pub(crate) struct Session {
     held: Option<(Command, Instant)>,
     /// The robot has been told what to begin with.
     briefed: bool,
+    /// The port is waited for.
+    port_gone: bool,
     /// Kept to spare allocations.
     heard: Vec<Heard>,
     bytes: Vec<u8>,
@@ -87,6 +89,7 @@ impl Session {
             state_noted: None,
             held: None,
             briefed: false,
+            port_gone: false,
             heard: Vec::new(),
             bytes: Vec::new(),
         }
@@ -146,14 +149,7 @@ impl Session {
                     self.command(command)?;
                 }
             }
-            Order::Type(usart, line) => {
-                let simulation = self.target.simulation();
-                let refused = "a real robot has no such console".to_owned();
-                let typed = simulation.map_or(Err(refused), |chip| chip.type_in(usart, &line));
-                if let Err(why) = typed {
-                    self.note(board::Level::Warning, format!("{line}: not sent, {why}"));
-                }
-            }
+            Order::Type(usart, line) => return self.type_in(usart, &line),
             Order::Speed(factor) if self.simulated => {
                 self.pace = Pace::new(factor);
                 self.state_noted = None;
@@ -172,14 +168,11 @@ impl Session {
     }
 
     fn command(&mut self, command: Command) -> Result<(), String> {
-        if let Some(sent) = self.client.submit_text(&command) {
-            if sent {
-                return self.send();
-            }
-            return self.refuse(
-                &command,
-                "this robot speaks the original's text, which has no words for it",
-            );
+        if self.client.speaks_text() {
+            return self.command_in_text(&command);
+        }
+        if self.client.is_mute() && self.call_in_text(&command) {
+            return self.send();
         }
         if let Command::SetParam { id, .. } = command
             && !(self.client.table_matches() && self.observer.parameter_pending(id))
@@ -191,6 +184,58 @@ impl Session {
         }
         // At once: STOP does not wait for the next wake.
         self.send()
+    }
+
+    /// Nothing was heard yet, and should it be the original program, only its own words wake it. One of ours that cannot be heard
+    /// stops at OFF as well. True if that is all that is to be sent.
+    fn call_in_text(&mut self, command: &Command) -> bool {
+        let stop = matches!(command, Command::Stop | Command::Disarm);
+        if !(stop || matches!(command, Command::Arm | Command::Goal { .. })) {
+            return false;
+        }
+        self.client.submit_text(command);
+        let said = words::command(command, self.client.mode());
+        let text = format!(
+            "{said}: sent as text, in case the robot runs the original program; nothing was heard from it yet"
+        );
+        self.note(board::Level::Info, text);
+        !stop
+    }
+
+    /// Sends a command in the original's words.
+    fn command_in_text(&mut self, command: &Command) -> Result<(), String> {
+        if self.port_gone {
+            return self.refuse(command, "the port is gone");
+        }
+        if !self.client.submit_text(command) {
+            return self.refuse(
+                command,
+                "this robot speaks the original's text, which has no words for it",
+            );
+        }
+        let said = words::command(command, self.client.mode());
+        self.note(
+            board::Level::Info,
+            format!("{said}: sent, text is not acknowledged"),
+        );
+        self.send()
+    }
+
+    /// Sends a line that a person typed: to a USART of an emulated chip, or to a robot that speaks text.
+    fn type_in(&mut self, usart: u8, line: &str) -> Result<(), String> {
+        let typed = match self.target.simulation() {
+            Some(chip) => chip.type_in(usart, line),
+            None if self.port_gone => Err("the port is gone".into()),
+            None if self.client.speaks_text() || self.client.is_mute() => {
+                self.client.type_in(line);
+                return self.send();
+            }
+            None => Err("this robot takes no lines of text from here".to_owned()),
+        };
+        if let Err(why) = typed {
+            self.note(board::Level::Warning, format!("{line}: not sent, {why}"));
+        }
+        Ok(())
     }
 
     /// Begins a movement, or goes on with the same one.
@@ -306,6 +351,9 @@ impl Session {
             self.bytes.clear();
             self.target.receive(&mut self.bytes);
             self.note_bytes(false);
+            if !self.simulated && self.client.speaks_text() {
+                self.observer.said_in_text(&self.bytes);
+            }
             self.client.hear(&self.bytes, now_us, &mut self.heard);
             self.send()?;
             self.observer
@@ -342,6 +390,10 @@ impl Session {
                 LinkNews::Lost(text) => (board::Level::Fault, text),
                 LinkNews::Back(text) => (board::Level::Good, text),
             };
+            self.port_gone = level == board::Level::Fault;
+            if !self.port_gone {
+                self.client.port_is_back();
+            }
             self.note(level, text);
         }
         if let Some(trouble) = self.board.recording_trouble() {

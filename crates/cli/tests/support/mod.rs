@@ -1,0 +1,138 @@
+//! Programs under test: started, listened to, and a page on their dashboard.
+
+use serde_json::Value;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+use tungstenite::{Message, WebSocket};
+
+/// Long enough for any machine; nothing is judged by it.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A `rumbo` that goes on until it is dropped, and the first line that it printed.
+pub(crate) struct Running {
+    child: Child,
+    pub(crate) said: String,
+}
+
+impl Running {
+    pub(crate) fn start(arguments: &[&str]) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_rumbo"))
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().unwrap())
+            .read_line(&mut line)
+            .unwrap();
+        Self {
+            child,
+            said: line.trim().to_owned(),
+        }
+    }
+
+    /// Asks it to end, as Ctrl-C does, and waits.
+    pub(crate) fn end(mut self) {
+        let asked = Command::new("kill")
+            .args(["-TERM", &self.child.id().to_string()])
+            .status()
+            .unwrap();
+        assert!(asked.success());
+        assert_eq!(self.child.wait().unwrap().code(), Some(0));
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A page on the dashboard whose address was printed.
+pub(crate) struct Page(WebSocket<TcpStream>);
+
+impl Page {
+    pub(crate) fn open(address: &str) -> Self {
+        let host = address.split('/').nth(2).unwrap();
+        let path = address.splitn(4, '/').nth(3).unwrap();
+        let mut stream = TcpStream::connect(host).unwrap();
+        write!(
+            stream,
+            "GET /{path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"
+        )
+        .unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        let cookie = answer
+            .lines()
+            .find_map(|line| line.strip_prefix("set-cookie: "))
+            .unwrap();
+        let uri = format!("ws://{host}/ws").parse().unwrap();
+        let request = tungstenite::ClientRequestBuilder::new(uri)
+            .with_header("Origin", format!("http://{host}"))
+            .with_header("Cookie", cookie.split(';').next().unwrap());
+        let stream = TcpStream::connect(host).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        Self(tungstenite::client(request, stream).unwrap().0)
+    }
+
+    pub(crate) fn say(&mut self, order: &Value) {
+        self.0.send(Message::text(order.to_string())).unwrap();
+    }
+
+    /// Reads on until `wanted` finds what it looks for.
+    pub(crate) fn wait_for<T>(
+        &mut self,
+        what: &str,
+        mut wanted: impl FnMut(&Value) -> Option<T>,
+    ) -> T {
+        let until = Instant::now() + PATIENCE;
+        let mut events = Vec::new();
+        while Instant::now() < until {
+            let Message::Text(text) = self.0.read().unwrap() else {
+                continue;
+            };
+            let message: Value = serde_json::from_str(&text).unwrap();
+            if let Some(found) = wanted(&message) {
+                return found;
+            }
+            let told = message["events"].as_array().into_iter().flatten();
+            events.extend(told.map(|event| event["text"].to_string()));
+        }
+        panic!("no {what}; events: {events:#?}");
+    }
+
+    /// Reads on until an event says this.
+    pub(crate) fn wait_for_event(&mut self, part: &str) {
+        self.wait_for(part, |message| {
+            let mut events = message["events"].as_array()?.iter();
+            events.find(|event| {
+                event["text"]
+                    .as_str()
+                    .is_some_and(|text| text.contains(part))
+            })?;
+            Some(())
+        });
+    }
+}
+
+/// An image of `cargo xtask sketches`; `None` where they have not been built.
+pub(crate) fn sketch(name: &str) -> Option<PathBuf> {
+    let target = PathBuf::from(env!("CARGO_BIN_EXE_rumbo"));
+    let path = target
+        .parent()?
+        .parent()?
+        .join(format!("sketches/{name}.elf"));
+    if path.is_file() {
+        return Some(path);
+    }
+    let remedy = format!("{} is missing: run `cargo xtask sketches`", path.display());
+    assert!(std::env::var_os("CI").is_none(), "{remedy}");
+    eprintln!("not checked: {remedy}");
+    None
+}

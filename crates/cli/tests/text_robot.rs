@@ -1,0 +1,160 @@
+//! A robot that still runs the report's program, behind a serial port: the sketch on the emulated Mega, behind a pseudo terminal.
+#![cfg(all(test, unix))]
+
+mod support;
+
+use rumbo_station::log::Log;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use support::{Page, Running, sketch};
+
+/// The value of a signal in the last row of a message.
+fn signal(message: &Value, columns: &[String], name: &str) -> Option<f64> {
+    let column = columns.iter().position(|column| column == name)?;
+    message["rows"].as_array()?.last()?[column].as_f64()
+}
+
+fn columns(page: &mut Page) -> Vec<String> {
+    page.wait_for("hello", |message| {
+        serde_json::from_value(message["columns"].clone()).ok()
+    })
+}
+
+struct Bench {
+    folder: tempfile::TempDir,
+    _robot: Running,
+    station: Running,
+    page: Page,
+    columns: Vec<String>,
+}
+
+impl Bench {
+    fn with(scenario: &str, image: &Path) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let image = image.to_str().unwrap();
+        let robot = Running::start(&["lab", "--pty", "--scenario", scenario, "--firmware", image]);
+        let out = folder.path().to_str().unwrap().to_owned();
+        let station = Running::start(&[
+            "connect",
+            &robot.said,
+            "--no-browser",
+            "--port",
+            "0",
+            "--out",
+            &out,
+        ]);
+        let mut page = Page::open(&station.said);
+        let columns = columns(&mut page);
+        Self {
+            folder,
+            _robot: robot,
+            station,
+            page,
+            columns,
+        }
+    }
+
+    /// Waits for a value of a signal.
+    fn wait_for(&mut self, name: &str, wanted: impl Fn(f64) -> bool) -> f64 {
+        let Self { page, columns, .. } = self;
+        page.wait_for(name, |message| {
+            signal(message, columns, name).filter(|value| wanted(*value))
+        })
+    }
+
+    /// Ends the station; gives its log.
+    fn log(self) -> (tempfile::TempDir, PathBuf) {
+        self.station.end();
+        let mut files = std::fs::read_dir(self.folder.path()).unwrap();
+        let path = files.next().unwrap().unwrap().path();
+        (self.folder, path)
+    }
+}
+
+#[test]
+fn the_original_program_is_recognised_commanded_watched_and_recorded() {
+    let Some(image) = sketch("memoria-mode5") else {
+        return;
+    };
+    let mut bench = Bench::with("mode5", &image);
+    // It says nothing before its first ON.
+    bench.page.say(&json!({"type": "speed", "factor": 1}));
+    bench.page.wait_for_event("real robot");
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    bench.page.say(&json!({"type": "arm"}));
+    bench
+        .page
+        .wait_for_event("speaks the original program's text");
+    assert_eq!(bench.wait_for("mode", |_| true), 5.0);
+    bench
+        .page
+        .say(&json!({"type": "reference", "value": 60.0 * std::f64::consts::TAU / 60.0}));
+    bench.page.wait_for_event("reference 60 rpm: sent");
+    bench.wait_for("right_ref_rad_s", |rad_s| {
+        (rad_s - std::f64::consts::TAU).abs() < 0.01
+    });
+    bench.wait_for("right_rad_s", |rad_s| rad_s > 4.0);
+    // Its gains, as a person types them: without any, no controller's output is left.
+    bench
+        .page
+        .say(&json!({"type": "type", "usart": 255, "text": "PID A 0 0 0"}));
+    bench.wait_for("right_pwm", |pwm| pwm <= 60.0);
+    bench.page.say(&json!({"type": "stop"}));
+    bench.page.wait_for_event("STOP: sent");
+    std::thread::sleep(std::time::Duration::from_millis(700));
+    let (folder, path) = bench.log();
+    let log = Log::read(&path).unwrap();
+    assert_eq!(log.cut, None);
+    assert!(log.rows.len() > 10, "{}", log.rows.len());
+    assert!(log.rows.is_sorted_by_key(|row| row.t_ms));
+    // What rows of mode 5 do not tell is not made up.
+    assert!(log.rows.iter().all(|row| row.signal("x_m").is_none()));
+    assert!(log.rows.iter().all(|row| row.signal("mode") == Some(5.0)));
+    let sent: Vec<u8> = log
+        .link
+        .iter()
+        .filter(|burst| burst.to_robot)
+        .flat_map(|burst| burst.bytes.clone())
+        .collect();
+    let sent = String::from_utf8_lossy(&sent);
+    // The last OFF is the station's own, at its end.
+    assert!(
+        sent.ends_with("\nON\nREF 60\nPID A 0 0 0\nOFF\nOFF\n"),
+        "{sent:?}"
+    );
+    for arguments in [&["export"][..], &["compare"]] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rumbo"));
+        command
+            .current_dir(folder.path())
+            .args(arguments)
+            .arg(&path);
+        if arguments == ["compare"] {
+            command.arg(&path);
+        }
+        let done = command.output().unwrap();
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(0), "{said}");
+    }
+}
+
+#[test]
+fn goals_reach_the_original_program_and_its_pose_and_states_are_seen() {
+    let Some(image) = sketch("memoria-mode8") else {
+        return;
+    };
+    let mut bench = Bench::with("mode8-goals", &image);
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    bench.page.say(&json!({"type": "arm"}));
+    // It speaks once it has a goal.
+    bench
+        .page
+        .say(&json!({"type": "goal", "x_m": 1.0, "y_m": 0.0}));
+    bench
+        .page
+        .wait_for_event("speaks the original program's text");
+    assert_eq!(bench.wait_for("mode", |_| true), 8.0);
+    assert_eq!(bench.wait_for("reference_left", |_| true), 1.0);
+    bench.wait_for("state", |state| state == 3.0);
+    bench.wait_for("x_m", |x_m| x_m > 0.05);
+}
