@@ -2,6 +2,7 @@
 /** The events, newest first, each with its cause. */
 import { create, element } from './dom.js';
 import { format } from './units.js';
+import { said, t } from './text.js';
 
 /** @typedef {import('./types.js').LoggedEvent} LoggedEvent */
 
@@ -28,7 +29,7 @@ export class EventList {
   /** @param {LoggedEvent[]} events oldest first */
   add(events) {
     const lines = events.slice(-KEPT).map(({ t_s, level, text }) => create('li', { className: level },
-      create('time', { textContent: `${format(t_s, 2)} s` }), create('span', { className: 'sign', textContent: SIGNS[level], title: level }), text));
+      create('time', { textContent: `${format(t_s, 2)} s` }), create('span', { className: 'sign', textContent: SIGNS[level], title: t(level) }), said(text)));
     lines.forEach((line, index) => { line.dataset['t'] = String(events.slice(-KEPT)[index]?.t_s); });
     this.#list.prepend(...lines.reverse());
     while (this.#list.children.length > KEPT) this.#list.lastElementChild?.remove();

@@ -2,6 +2,7 @@
 /** The top line: what runs, how fast, and how good the link is. */
 import { create, element, setText } from './dom.js';
 import { format } from './units.js';
+import { named, said, t } from './text.js';
 
 /** @typedef {import('./types.js').State} State */
 /** @typedef {import('./types.js').Scene} Scene */
@@ -35,7 +36,7 @@ export class Header {
 
   /** @param {Send} send */
   constructor(send) {
-    this.#speed.replaceChildren(...SPEEDS.map((factor) => option(String(factor), factor === 0 ? 'paused' : `× ${factor}`)));
+    this.#speed.replaceChildren(...SPEEDS.map((factor) => option(String(factor), factor === 0 ? t('paused') : `× ${factor}`)));
     this.#speed.addEventListener('change', () => send({ type: 'speed', factor: Number(this.#speed.value) }));
     this.#form.addEventListener('submit', (event) => {
       event.preventDefault();
@@ -49,8 +50,8 @@ export class Header {
     this.#form.hidden = scene === null;
     if (!scene) return;
     this.#scenario.replaceChildren(...scene.scenarios.map((name) => option(name, name)));
-    this.#world.replaceChildren(option(OWN, 'its own'), ...scene.worlds.map((name) => option(name, name)));
-    this.#rig.replaceChildren(option(OWN, scene.choice.rig === null ? `${scene.rig.replaceAll('_', ' ')} (own)` : 'its own'), ...scene.rigs.map((name) => option(name, name.replaceAll('_', ' '))));
+    this.#world.replaceChildren(option(OWN, t('its own')), ...scene.worlds.map((name) => option(name, name)));
+    this.#rig.replaceChildren(option(OWN, scene.choice.rig === null ? t('{} (own)', named(scene.rig)) : t('its own')), ...scene.rigs.map((name) => option(name, named(name))));
     this.#scenario.value = scene.choice.scenario;
     this.#world.value = scene.choice.world ?? OWN;
     this.#rig.value = scene.choice.rig ?? OWN;
@@ -86,7 +87,7 @@ export class Header {
     this.#crc.classList.toggle('bad', link.crc_errors_down + link.crc_errors_up > 0);
     setText(this.#battery, `${format(robot.battery_v ?? robot.true_battery_v)} V`);
     this.#batteryChip.title = robot.battery_v === null && robot.true_battery_v !== null
-      ? 'Battery of the simulation; the robot has nothing wired to measure it' : 'Battery, as the robot measures it';
+      ? t('Battery of the simulation; the robot has nothing wired to measure it') : t('Battery, as the robot measures it');
     this.#showConnection();
   }
 
@@ -100,15 +101,15 @@ export class Header {
   /** @returns {[string, string]} */
   #connectionWords() {
     const state = this.#state;
-    if (!this.#open) return [`no connection${this.#why ? `: ${this.#why}` : ''}, trying again…`, 'bad'];
-    if (!state) return ['connecting…', 'bad'];
-    if (state.replay) return state.speed === 0 ? ['replay, paused', 'warning'] : [`replay × ${state.speed}`, 'good'];
-    if (state.speed === 0) return ['simulation paused', 'warning'];
-    if (performance.now() - this.#heard_ms > STALE_MS) return ['the station is silent', 'bad'];
-    if (!state.link.connected) return ['no answer from the robot', 'bad'];
+    if (!this.#open) return [this.#why ? t('no connection: {}, trying again…', said(this.#why)) : t('no connection, trying again…'), 'bad'];
+    if (!state) return [t('connecting…'), 'bad'];
+    if (state.replay) return state.speed === 0 ? [t('replay, paused'), 'warning'] : [t('replay × {}', state.speed), 'good'];
+    if (state.speed === 0) return [t('simulation paused'), 'warning'];
+    if (performance.now() - this.#heard_ms > STALE_MS) return [t('the station is silent'), 'bad'];
+    if (!state.link.connected) return [t('no answer from the robot'), 'bad'];
     const slow = state.simulated && state.achieved_speed > 0 && state.achieved_speed < 0.9 * state.speed;
-    const rate = `live ${format(state.link.telemetry_hz, 0)} Hz`;
-    return slow ? [`${rate}, only × ${format(state.achieved_speed)}`, 'warning'] : [rate, 'good'];
+    const rate = t('live {} Hz', format(state.link.telemetry_hz, 0));
+    return slow ? [t('{}, only × {}', rate, format(state.achieved_speed)), 'warning'] : [rate, 'good'];
   }
 }
 

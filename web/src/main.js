@@ -5,7 +5,7 @@
  * For tests and for the browser's console, `window.rumbo` gives the signals as plotted.
  */
 import { Consoles } from './consoles.js';
-import { element, onFrame, setText } from './dom.js';
+import { create, element, onFrame, setText } from './dom.js';
 import { EventList } from './events.js';
 import { Header } from './header.js';
 import { Link } from './link.js';
@@ -16,6 +16,13 @@ import { Plots } from './plots.js';
 import { ReplayBar } from './replay.js';
 import { StateLine, pointerWords } from './stateline.js';
 import { Store } from './store.js';
+import { LANGUAGES, language, speak, t, translatePage, untranslated } from './text.js';
+
+translatePage();
+const languages = element('language', HTMLSelectElement);
+languages.replaceChildren(...Object.entries(LANGUAGES).map(([code, name]) => create('option', { value: code, textContent: name, lang: code })));
+languages.value = language;
+languages.addEventListener('change', () => speak(languages.value));
 
 /** @typedef {import('./types.js').FromServer} FromServer */
 /** @typedef {import('./types.js').State} State */
@@ -26,7 +33,7 @@ let state = null;
 
 /** @param {import('./types.js').Order} order */
 function send(order) {
-  if (!link.send(order)) events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text: `${order.type}: not sent, there is no connection` }]);
+  if (!link.send(order)) events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text: t('{}: not sent, there is no connection', order.type) }]);
 }
 
 const redraw = onFrame(() => {
@@ -140,5 +147,7 @@ Object.assign(window, {
     state: () => state,
     /** Where a place from the robot's origin is on the map [px]. @param {[number, number]} at */
     onMap: (at) => map.toCanvas(at),
+    /** Texts shown that have no translation. */
+    untranslated: () => [...untranslated],
   },
 });

@@ -7,6 +7,7 @@
  */
 import { create, element, number } from './dom.js';
 import { RPM_PER_RAD_S } from './units.js';
+import { t } from './text.js';
 
 /** @typedef {import('./panel.js').Send} Send */
 
@@ -30,7 +31,7 @@ export class Movements {
   #send;
   #root = element('movements', HTMLDivElement);
   #level = number('level', 35, 0, 100);
-  #unit = create('select', { id: 'level-unit', title: 'Open loop by PWM, or closed loop by speed' },
+  #unit = create('select', { id: 'level-unit', title: t('Open loop by PWM, or closed loop by speed') },
     create('option', { value: 'duty', textContent: '% PWM' }), create('option', { value: 'speed', textContent: 'rpm' }));
   /** @type {Set<string>} */
   #keys = new Set();
@@ -106,15 +107,15 @@ export class Movements {
       this.#level.value = duty ? '35' : '60';
     });
     const pad = create('div', { className: 'pad' }, ...MOVEMENTS.map(({ id, sign, name }) => {
-      const button = create('button', { type: 'button', title: name, textContent: sign, value: String(id) });
-      button.setAttribute('aria-label', name);
+      const button = create('button', { type: 'button', title: t(name), textContent: sign, value: String(id) });
+      button.setAttribute('aria-label', t(name));
       button.addEventListener('click', () => {
         if (this.#level.reportValidity()) this.#order(id, false);
       });
       return button;
-    }), create('span', { className: 'hint', textContent: 'pivot on' }));
-    const level = create('div', { className: 'row' }, create('label', {}, 'level ', this.#level), this.#unit);
-    const hint = create('span', { className: 'hint', textContent: 'Armed, the arrow keys drive while they are held.' });
+    }), create('span', { className: 'hint', textContent: t('pivot on') }));
+    const level = create('div', { className: 'row' }, create('label', {}, `${t('level')} `, this.#level), this.#unit);
+    const hint = create('span', { className: 'hint', textContent: t('Armed, the arrow keys drive while they are held.') });
     this.#root.replaceChildren(pad, create('div', { className: 'stack' }, level, hint));
   }
 }

@@ -4,6 +4,7 @@ import { create, element, number, setText } from './dom.js';
 import { Movements } from './movements.js';
 import { Places } from './places.js';
 import { CM_PER_M, RPM_PER_RAD_S, format } from './units.js';
+import { named, said, t } from './text.js';
 
 /** @typedef {import('./types.js').ModeEntry} ModeEntry */
 /** @typedef {import('./types.js').Scene} Scene */
@@ -50,7 +51,7 @@ export class CommandPanel {
     this.#entries = modes;
     this.#shown = null;
     this.#modes.replaceChildren(...modes.map((mode) => {
-      const button = create('button', { type: 'button', value: String(mode.id) }, create('b', { textContent: String(mode.id) }), mode.name.replaceAll('_', ' '));
+      const button = create('button', { type: 'button', value: String(mode.id) }, create('b', { textContent: String(mode.id) }), named(mode.name));
       button.addEventListener('click', () => this.#send({ type: 'mode', mode: mode.id }));
       return button;
     }));
@@ -69,9 +70,9 @@ export class CommandPanel {
       const own = this.#entries.find((each) => String(each.id) === button.value);
       button.setAttribute('aria-pressed', String(button.value === String(mode)));
       button.disabled = armed && button.value !== String(mode);
-      button.title = button.disabled ? 'Switch OFF first' : (own?.about ?? '');
+      button.title = button.disabled ? t('Switch OFF first') : said(own?.about ?? '');
     }
-    setText(this.#armed, fault ? 'fault' : armed ? 'armed' : 'off');
+    setText(this.#armed, fault ? t('fault') : armed ? t('armed') : t('off'));
     this.#armed.className = `chip ${fault ? 'bad' : armed ? 'good' : ''}`;
     this.#movements.show(entry?.movements ?? false, armed);
     if (this.#shown !== mode && entry) {
@@ -87,14 +88,14 @@ export class CommandPanel {
     if (!this.#inForce) return;
     const [left, right] = state.robot.reference;
     const kind = mode?.reference?.kind;
-    if (kind === 'distance') setText(this.#inForce, `now ${format(left * CM_PER_M)} cm`);
-    if (kind === 'speed') setText(this.#inForce, `now ${format(left * RPM_PER_RAD_S, 0)} rpm`);
-    if (kind === 'wheel_speed') setText(this.#inForce, `now ${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)} rpm`);
+    if (kind === 'distance') setText(this.#inForce, t('now {} cm', format(left * CM_PER_M)));
+    if (kind === 'speed') setText(this.#inForce, t('now {} rpm', format(left * RPM_PER_RAD_S, 0)));
+    if (kind === 'wheel_speed') setText(this.#inForce, t('now {} rpm', `${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)}`));
   }
 
   /** @param {ModeEntry} mode */
   #layOut(mode) {
-    setText(this.#about, mode.about);
+    setText(this.#about, said(mode.about));
     this.#inForce = create('output', { className: 'hint' });
     const reference = mode.reference;
     this.#reference.hidden = reference === null || reference.kind === 'goal';
@@ -120,8 +121,8 @@ export class CommandPanel {
    */
   #layOutOne(id, value, unit, factor, { min, max }) {
     const input = number(id, value, min * factor, max * factor);
-    const range = create('span', { className: 'hint', textContent: `${format(min * factor, 0)} to ${format(max * factor, 0)} ${unit}` });
-    this.#reference.replaceChildren(create('label', {}, 'reference ', input, ` ${unit}`), submit('Set'), this.#inForce ?? '', range);
+    const range = create('span', { className: 'hint', textContent: t('{} to {} {}', format(min * factor, 0), format(max * factor, 0), unit) });
+    this.#reference.replaceChildren(create('label', {}, `${t('reference')} `, input, ` ${unit}`), submit(t('Set')), this.#inForce ?? '', range);
     this.#reference.onsubmit = (event) => {
       event.preventDefault();
       this.#send({ type: 'reference', value: input.valueAsNumber / factor });
@@ -144,8 +145,8 @@ export class CommandPanel {
     left.addEventListener('input', tie);
     tie();
     this.#reference.replaceChildren(
-      create('label', {}, 'left ', left), create('label', {}, 'right ', right), ' rpm',
-      create('label', {}, both, ' both'), submit('Set'), this.#inForce ?? '',
+      create('label', {}, `${t('left')} `, left), create('label', {}, `${t('right')} `, right), ' rpm',
+      create('label', {}, both, ` ${t('both')}`), submit(t('Set')), this.#inForce ?? '',
     );
     this.#reference.onsubmit = (event) => {
       event.preventDefault();

@@ -2,6 +2,7 @@
 /** The parameter table: what each is, what the robot holds, and what may be written. */
 import { create, element, setText } from './dom.js';
 import { formatFloat } from './units.js';
+import { said, t } from './text.js';
 
 /** @typedef {import('./types.js').Parameter} Parameter */
 /** @typedef {import('./panel.js').Send} Send */
@@ -18,13 +19,13 @@ class Line {
       type: 'number', step: 'any', min: formatFloat(parameter.min), max: formatFloat(parameter.max), required: true,
       id: `parameter-${parameter.name}`,
     });
-    this.input.setAttribute('aria-label', `${parameter.name} in ${parameter.unit || 'no unit'}`);
-    this.apply = create('button', { type: 'button', textContent: 'Apply', title: 'Write to the robot (Enter)' });
-    this.revert = create('button', { type: 'button', textContent: '↺', title: 'Back to what the robot holds (Escape)' });
-    this.revert.setAttribute('aria-label', 'Revert');
+    this.input.setAttribute('aria-label', t('{} in {}', parameter.name, parameter.unit || t('no unit')));
+    this.apply = create('button', { type: 'button', textContent: t('Apply'), title: t('Write to the robot (Enter)') });
+    this.revert = create('button', { type: 'button', textContent: '↺', title: t('Back to what the robot holds (Escape)') });
+    this.revert.setAttribute('aria-label', t('Revert'));
     this.note = create('span', { className: 'refused' });
     this.row = create('tr', {},
-      create('td', { textContent: parameter.name, title: parameter.description }),
+      create('td', { textContent: parameter.name, title: said(parameter.description) }),
       create('td', {}, this.input),
       create('td', { textContent: parameter.unit }),
       create('td', { className: 'number', textContent: `${formatFloat(parameter.min)} … ${formatFloat(parameter.max)}` }),
@@ -67,7 +68,7 @@ class Line {
     if (!this.edited && !refused && !parameter.pending && this.input.value !== held) this.input.value = held;
     this.apply.hidden = this.revert.hidden = this.input.value === held && !refused;
     this.row.className = parameter.pending ? 'pending' : refused ? 'bad' : this.edited ? 'edited' : '';
-    setText(this.note, parameter.pending ? 'waiting…' : refused ? `refused: ${refused}` : parameter.value === null ? 'not read yet' : '');
+    setText(this.note, parameter.pending ? t('waiting…') : refused ? t('refused: {}', said(refused)) : parameter.value === null ? t('not read yet') : '');
   }
 }
 
@@ -103,7 +104,7 @@ export class ParameterTable {
    * @param {boolean} foreign the robot has another table
    */
   setMode(mode, foreign) {
-    setText(this.#note, foreign ? 'the robot has another table: not shown' : '');
+    setText(this.#note, foreign ? t('the robot has another table: not shown') : '');
     if (mode === this.#mode) return;
     this.#mode = mode;
     this.#filter();

@@ -2,6 +2,7 @@
 /** The controls of modes 7 and 8: a route made by clicks on the map, a goal by click, by numbers or as the report has them, and the lane. */
 import { create, element, number, setText } from './dom.js';
 import { format } from './units.js';
+import { t } from './text.js';
 
 /** @typedef {import('./types.js').ModeEntry} ModeEntry */
 /** @typedef {import('./types.js').Route} Route */
@@ -28,7 +29,7 @@ export class Places {
   #repeat = create('input', { type: 'checkbox', id: 'route-repeat' });
   #relative = create('input', { type: 'checkbox', id: 'route-relative' });
   #list = create('div', { id: 'route-places', className: 'row' });
-  #set = create('button', { type: 'button', id: 'route-set', textContent: 'Set route', className: 'go' });
+  #set = create('button', { type: 'button', id: 'route-set', textContent: t('Set route'), className: 'go' });
   #x = number('goal-x', 1, -1, 1);
   #y = number('goal-y', 1, -1, 1);
 
@@ -69,26 +70,26 @@ export class Places {
     for (const input of [this.#x, this.#y]) {
       input.min = String(mode.reference?.min);
       input.max = String(mode.reference?.max);
-      input.setAttribute('aria-label', `goal, ${input === this.#x ? 'x: forward' : 'y: left'} of the robot's origin, in m`);
+      input.setAttribute('aria-label', t(input === this.#x ? 'goal, x: forward of the robot\'s origin, in m' : 'goal, y: left of the robot\'s origin, in m'));
     }
-    const form = create('form', { className: 'row', id: 'goal' }, create('label', {}, 'goal x ', this.#x), create('label', {}, 'y ', this.#y), ' m',
-      create('button', { type: 'submit', textContent: 'Set goal', className: 'go' }));
+    const form = create('form', { className: 'row', id: 'goal' }, create('label', {}, `${t('goal x')} `, this.#x), create('label', {}, 'y ', this.#y), ' m',
+      create('button', { type: 'submit', textContent: t('Set goal'), className: 'go' }));
     form.addEventListener('submit', (event) => {
       event.preventDefault();
       this.#sendGoal([this.#x.valueAsNumber, this.#y.valueAsNumber]);
     });
     const own = this.#scene?.goals.filter((goal) => !GOALS.some((each) => same(each, goal))) ?? [];
     const presets = create('div', { className: 'row' }, ...[...GOALS, ...own].map((goal) => {
-      const button = create('button', { type: 'button', textContent: inWords(goal), title: 'Set this goal' });
+      const button = create('button', { type: 'button', textContent: inWords(goal), title: t('Set this goal') });
       button.addEventListener('click', () => this.#sendGoal(goal));
       return button;
     }));
     if (mode.lane) {
-      const lane = create('button', { type: 'button', id: 'lane', textContent: 'LANE', title: 'Follow a lane of boxes' });
+      const lane = create('button', { type: 'button', id: 'lane', textContent: t('LANE'), title: t('Follow a lane of boxes') });
       lane.addEventListener('click', () => this.#send({ type: 'lane' }));
       presets.append(lane);
     }
-    this.#root.replaceChildren(form, presets, create('span', { className: 'hint', textContent: 'A click on the map sets the goal: x forward, y left of the robot\'s origin.' }));
+    this.#root.replaceChildren(form, presets, create('span', { className: 'hint', textContent: t('A click on the map sets the goal: x forward, y left of the robot\'s origin.') }));
   }
 
   #layOutRoute() {
@@ -97,13 +98,13 @@ export class Places {
       made.addEventListener('click', act);
       return made;
     };
-    const own = this.#scene?.routes.map((route, index) => button(this.#scene?.routes.length === 1 ? 'Scenario\'s' : `Scenario's ${index + 1}`, 'Take the scenario\'s route', () => this.#take(route))) ?? [];
+    const own = this.#scene?.routes.map((route, index) => button(this.#scene?.routes.length === 1 ? t('Scenario\'s') : t('Scenario\'s {}', index + 1), t('Take the scenario\'s route'), () => this.#take(route))) ?? [];
     this.#root.replaceChildren(
       create('div', { className: 'row' },
-        button('Square 1 m', 'Take the square of the report', () => this.#take({ repeat: this.#repeat.checked, relative: this.#relative.checked, waypoints: SQUARE.map(([x_m, y_m]) => ({ x_m, y_m, heading_rad: null })) })),
-        ...own, button('Clear', 'Begin anew', () => this.#change([])),
-        create('label', { title: 'Starts over at the end' }, this.#repeat, ' repeat'),
-        create('label', { title: 'As seen from where the robot starts, not from its origin' }, this.#relative, ' relative'), this.#set),
+        button(t('Square 1 m'), t('Take the square of the report'), () => this.#take({ repeat: this.#repeat.checked, relative: this.#relative.checked, waypoints: SQUARE.map(([x_m, y_m]) => ({ x_m, y_m, heading_rad: null })) })),
+        ...own, button(t('Clear'), t('Begin anew'), () => this.#change([])),
+        create('label', { title: t('Starts over at the end') }, this.#repeat, ` ${t('repeat')}`),
+        create('label', { title: t('As seen from where the robot starts, not from its origin') }, this.#relative, ` ${t('relative')}`), this.#set),
       this.#list,
     );
   }
@@ -145,11 +146,11 @@ export class Places {
     this.#set.disabled = draft.length === 0;
     this.#map.setDraft(draft.length === 0 ? null : { repeat, relative, waypoints: draft.map(([x_m, y_m]) => ({ x_m, y_m, heading_rad: null })) });
     if (draft.length === 0) {
-      setText(this.#list, `Clicks on the map add places, ${this.#mode?.route ?? 0} at most.`);
+      setText(this.#list, t('Clicks on the map add places, {} at most.', this.#mode?.route ?? 0));
       return;
     }
     this.#list.replaceChildren(...draft.map((at, index) => {
-      const chip = create('button', { type: 'button', className: 'place', title: 'Take this place out' }, create('b', { textContent: String(index + 1) }), inWords(at), ' ×');
+      const chip = create('button', { type: 'button', className: 'place', title: t('Take this place out') }, create('b', { textContent: String(index + 1) }), inWords(at), ' ×');
       chip.addEventListener('click', () => this.#change(draft.filter((_place, each) => each !== index)));
       return chip;
     }));

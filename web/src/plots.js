@@ -5,6 +5,7 @@
 import uPlot from '../vendor/uplot/uPlot.js';
 import { create, element, setText } from './dom.js';
 import { OF_MODE, PLOTS } from './plot_specs.js';
+import { said, t } from './text.js';
 import { STATE_COLOURS, colours, onThemeChange, stateColour } from './theme.js';
 import { format } from './units.js';
 
@@ -141,7 +142,7 @@ export class Plots {
   /** One button for each plot: shown or not. */
   #offerChoices() {
     this.#choices.replaceChildren(...PLOTS.map(({ title }, index) => {
-      const button = create('button', { type: 'button', value: title, textContent: title, title: `Plot ${title}, or not` });
+      const button = create('button', { type: 'button', value: title, textContent: t(title), title: t('Plot {}, or not', t(title)) });
       button.addEventListener('click', () => {
         const titles = PLOTS.filter((_spec, each) => (each === index) !== this.#panels[each]?.shown).map((spec) => spec.title);
         this.#chosen.set(this.#mode, titles);
@@ -168,7 +169,7 @@ export class Plots {
   #plotPanel(spec) {
     const table = this.#store[spec.table];
     const data = /** @type {uPlot.AlignedData} */ ([table.t, ...spec.curves.map((curve) => table.columns.get(curve.name) ?? [])]);
-    const head = create('div', { className: 'plot-head' }, create('b', { textContent: spec.title }), create('i', { textContent: spec.unit }));
+    const head = create('div', { className: 'plot-head' }, create('b', { textContent: t(spec.title) }), create('i', { textContent: t(spec.unit) }));
     const body = create('div', { className: 'plot-body' });
     this.#root.append(head, body);
 
@@ -187,7 +188,7 @@ export class Plots {
 
     const chips = spec.curves.map((curve, index) => {
       const value = create('output', { textContent: '–' });
-      const chip = create('button', { type: 'button', className: `curve ${curve.kind}`, title: `${curve.label}: show or hide` }, create('span', { className: `swatch ${curve.colour}` }), curve.label, value);
+      const chip = create('button', { type: 'button', className: `curve ${curve.kind}`, title: t('{}: show or hide', t(curve.label)) }, create('span', { className: `swatch ${curve.colour}` }), t(curve.label), value);
       chip.setAttribute('aria-pressed', 'true');
       chip.addEventListener('click', () => {
         const show = chip.getAttribute('aria-pressed') !== 'true';
@@ -218,7 +219,7 @@ export class Plots {
     const plot = new uPlot({
       ...options,
       scales: { x: { time: false, auto: false }, y: { range: [0, 1] } },
-      axes: [timeAxis(true), { ...valueAxis(), values: () => [], grid: { show: false }, label: 'state', labelSize: 14, labelFont: FONT, size: GUTTER_PX - 14 }],
+      axes: [timeAxis(true), { ...valueAxis(), values: () => [], grid: { show: false }, label: t('state'), labelSize: 14, labelFont: FONT, size: GUTTER_PX - 14 }],
       series: [{}, { show: false }],
       hooks: { ...options.hooks, drawAxes: [(/** @type {uPlot} */ each) => this.#drawBand(each)] },
     }, data, body);
@@ -260,7 +261,7 @@ export class Plots {
   /** @param {Stretch} stretch */
   #stretchName(stretch) {
     const mode = this.modes.find((each) => each.id === stretch.mode);
-    const state = stretch.faulted ? 'fault' : stretch.armed ? (mode?.states[stretch.state] ?? `state ${stretch.state}`) : 'off';
+    const state = stretch.faulted ? t('fault') : stretch.armed ? said(mode?.states[stretch.state] ?? `state ${stretch.state}`) : t('off');
     return `${stretch.mode}: ${state}`;
   }
 

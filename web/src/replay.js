@@ -2,6 +2,7 @@
 /** The bar of a replay: play, pause, step by telemetry frame, speed, and where in the log the page is. */
 import { create, element, setText } from './dom.js';
 import { format } from './units.js';
+import { t } from './text.js';
 
 /** @typedef {import('./types.js').State} State */
 /** @typedef {import('./panel.js').Send} Send */
@@ -77,11 +78,11 @@ export class ReplayBar {
     element('parameter-section', HTMLElement).inert = Boolean(replay);
     if (!replay) return;
     this.#playing = state.speed > 0;
-    setText(this.#play, this.#playing ? 'Pause' : 'Play');
+    setText(this.#play, this.#playing ? t('Pause') : t('Play'));
     if (this.#playing) this.#speed.value = String(state.speed);
     this.#scrub.max = String(replay.duration_s);
     if (!this.#dragging) this.#scrub.value = String(state.t_s);
-    setText(this.#time, `${format(state.t_s, 2)} of ${format(replay.duration_s, 1)} s`);
+    setText(this.#time, t('{} of {} s', format(state.t_s, 2), format(replay.duration_s, 1)));
     element('replay-name', HTMLSpanElement).textContent = replay.name;
   }
 }

@@ -4,6 +4,7 @@ import { element, setText } from './dom.js';
 import { near, wrapped } from './geometry.js';
 import { inWords } from './places.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S, format } from './units.js';
+import { named, said, t } from './text.js';
 
 /** @typedef {import('./types.js').ModeEntry} ModeEntry */
 /** @typedef {import('./types.js').Scene} Scene */
@@ -61,7 +62,7 @@ export class StateLine {
     const believed = this.#slow?.robot.rig ?? null;
     const wrong = this.#carried !== null && believed !== null && believed !== this.#carried;
     this.#rig.hidden = !wrong;
-    if (wrong) setText(this.#rigText, `The robot believes to carry the rig ${believed}, and carries ${this.#carried}: it misreads its sonars.`);
+    if (wrong) setText(this.#rigText, t('The robot believes to carry the rig {}, and carries {}: it misreads its sonars.', believed ?? '', this.#carried ?? ''));
   }
 
   draw() {
@@ -69,13 +70,13 @@ export class StateLine {
     if (!slow) return;
     const { fault, errand } = slow.robot;
     this.#fault.hidden = fault === null;
-    setText(this.#faultText, fault ?? '');
+    setText(this.#faultText, said(fault ?? ''));
     setText(this.#state, this.#stateWords(slow));
     const aim = this.#aimWords(slow);
     setText(this.#aim, aim);
     if (this.#aim.title !== aim) this.#aim.title = aim;
     const end = errand.end;
-    setText(this.#end, end ?? '');
+    setText(this.#end, said(end ?? ''));
     this.#end.className = end === null ? '' : `chip ${end === 'reached' ? 'good' : 'warning'}`;
     this.#showPose(slow);
   }
@@ -84,10 +85,10 @@ export class StateLine {
   #stateWords({ robot }) {
     const latest = this.#store.latest;
     const mode = this.modes.find((each) => each.id === robot.mode);
-    if (robot.fault !== null) return 'fault';
-    if (!robot.armed) return 'off';
+    if (robot.fault !== null) return t('fault');
+    if (!robot.armed) return t('off');
     const current = latest?.mode === robot.mode ? latest.state : 0;
-    return mode?.states[current] ?? `state ${current}`;
+    return said(mode?.states[current] ?? `state ${current}`);
   }
 
   /** @param {State} slow */
@@ -98,19 +99,19 @@ export class StateLine {
     const words = [];
     const at = latest?.estimated;
     const to = latest?.heading_ref_rad ?? null;
-    if (at && to !== null) words.push(`heading ${degrees(at.heading_rad)} → ${format(near(to * DEG_PER_RAD, at.heading_rad * DEG_PER_RAD), 0)}°`);
+    if (at && to !== null) words.push(`${t('heading')} ${degrees(at.heading_rad)} → ${format(near(to * DEG_PER_RAD, at.heading_rad * DEG_PER_RAD), 0)}°`);
     const kind = mode?.reference?.kind;
-    if (kind === 'distance' || (mode && !kind && left !== 0)) words.push(`reference ${format(left * CM_PER_M)} cm`);
-    if (kind === 'speed') words.push(`reference ${format(left * RPM_PER_RAD_S, 0)} rpm`);
-    if (kind === 'wheel_speed') words.push(`references ${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)} rpm`);
+    if (kind === 'distance' || (mode && !kind && left !== 0)) words.push(`${t('reference')} ${format(left * CM_PER_M)} cm`);
+    if (kind === 'speed') words.push(`${t('reference')} ${format(left * RPM_PER_RAD_S, 0)} rpm`);
+    if (kind === 'wheel_speed') words.push(`${t('references')} ${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)} rpm`);
     const { goal, lane, route } = robot.errand;
-    if (lane) words.push('follows the lane');
-    if (route) words.push(`route of ${route.waypoints.length}${route.repeat ? ', again and again' : ''}`);
+    if (lane) words.push(t('follows the lane'));
+    if (route) words.push(t(route.repeat ? 'route of {}, again and again' : 'route of {}', route.waypoints.length));
     /** @type {[number, number] | null} */
     const target = goal ?? (route && robot.armed && robot.errand.end === null ? [left, right] : null);
     if (target) {
       const away_m = at ? Math.hypot(target[0] - at.x_m, target[1] - at.y_m) : null;
-      words.push(`${goal ? 'goal' : 'to'} ${inWords(target)} m${away_m === null ? '' : `, ${format(away_m, 2)} m away`}`);
+      words.push(`${goal ? t('goal') : t('to')} ${inWords(target)} m${away_m === null ? '' : t(', {} m away', format(away_m, 2))}`);
     }
     return words.join(' · ');
   }
@@ -120,10 +121,10 @@ export class StateLine {
     const latest = this.#store.latest;
     const at = latest?.estimated;
     if (!latest || !at) return setText(this.#pose, '');
-    const lines = [`x ${format(at.x_m * CM_PER_M)} cm   y ${format(at.y_m * CM_PER_M)} cm   heading ${degrees(at.heading_rad)}`];
-    const ranges = this.#sonars.map((id) => `${SONARS[id]} ${inReach(latest.ranges_m[id] ?? null)}`);
-    lines.push(`${robot.rig === null ? '' : `${robot.rig.replaceAll('_', ' ')}:  `}${ranges.join('   ')}`);
-    if (latest.contact) lines.push('contact!');
+    const lines = [`x ${format(at.x_m * CM_PER_M)} cm   y ${format(at.y_m * CM_PER_M)} cm   ${t('heading')} ${degrees(at.heading_rad)}`];
+    const ranges = this.#sonars.map((id) => `${t(SONARS[id] ?? '')} ${inReach(latest.ranges_m[id] ?? null)}`);
+    lines.push(`${robot.rig === null ? '' : `${named(robot.rig)}:  `}${ranges.join('   ')}`);
+    if (latest.contact) lines.push(t('contact!'));
     return setText(this.#pose, lines.join('\n'));
   }
 }
@@ -135,7 +136,7 @@ function degrees(angle_rad) {
 
 /** @param {Cell} range_m */
 function inReach(range_m) {
-  return range_m === null ? 'no reading' : range_m === 'clear' ? 'clear' : `${format(range_m * CM_PER_M)} cm`;
+  return range_m === null ? t('no reading') : range_m === 'clear' ? t('clear|sonar') : `${format(range_m * CM_PER_M)} cm`;
 }
 
 /** For the map's corner: a place. @param {[number, number] | null} at */

@@ -1,16 +1,21 @@
 // @ts-check
-/** The dashboard of a `rumbo` in a real browser, for the tests: RUMBO_BIN is the program, CHROMIUM the browser (default /usr/bin/chromium). */
+/**
+ * The dashboard of a `rumbo` in a real browser, for the tests: RUMBO_BIN is the program, CHROMIUM the browser (default /usr/bin/chromium).
+ * With WEB=1 the page's files are those of this folder, not those built into the program.
+ */
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { mkdtempSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { extname, join } from 'node:path';
 import { createInterface } from 'node:readline';
 import { chromium } from 'playwright-core';
 
 const BROWSER_ARGS = [
   '--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync',
+  // A page whose files come from the folder has no address that the browser knows for local.
+  ...(process.env['WEB'] ? ['--disable-features=LocalNetworkAccessChecks'] : []),
 ];
 /** Long enough for any machine; nothing is judged by it [ms]. */
 const PATIENCE_MS = 30_000;
@@ -28,8 +33,9 @@ export const folder = () => mkdtempSync(join(tmpdir(), 'rumbo-'));
 /**
  * Starts `rumbo` with these arguments and opens its page. What a script of the page complains of is collected in `complaints`.
  * @param {string[]} options
+ * @param {import('playwright-core').BrowserContextOptions} [browserOptions]
  */
-export async function open(options) {
+export async function open(options, browserOptions = {}) {
   const server = spawn(program(), [...options, '--no-browser', '--port', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
   assert.ok(server.stdout);
   let url = '';
@@ -38,7 +44,7 @@ export async function open(options) {
     if (url) break;
   }
   const browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
-  const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, colorScheme: 'dark' });
+  const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, colorScheme: 'dark', locale: 'en-GB', ...browserOptions });
   page.setDefaultTimeout(PATIENCE_MS);
   /** @type {string[]} */
   const complaints = [];
@@ -46,10 +52,24 @@ export async function open(options) {
   page.on('console', (message) => {
     if (message.type() === 'error') complaints.push(message.text());
   });
+  if (process.env['WEB']) await serveFolder(page);
   await page.goto(url);
   const close = async () => {
     await browser.close();
     server.kill();
   };
   return { url, browser, page, complaints, close };
+}
+
+/** @type {Record<string, string>} */
+const TYPES = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript; charset=utf-8', '.css': 'text/css; charset=utf-8', '.svg': 'image/svg+xml' };
+
+/** The page gets its files from this folder. @param {import('playwright-core').Page} page */
+async function serveFolder(page) {
+  await page.route('**/*', (route) => {
+    const { pathname, search } = new URL(route.request().url());
+    const path = new URL(`..${pathname === '/' ? '/index.html' : pathname}`, import.meta.url);
+    if (search !== '' || !existsSync(path)) return route.continue();
+    return route.fulfill({ body: readFileSync(path), contentType: TYPES[extname(pathname)] ?? 'text/html; charset=utf-8' });
+  });
 }

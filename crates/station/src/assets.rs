@@ -41,8 +41,13 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/plots.js": SCRIPT,
     "src/replay.js": SCRIPT,
     "src/sketch.js": SCRIPT,
+    "src/spanish/guide.js": SCRIPT,
+    "src/spanish/page.js": SCRIPT,
+    "src/spanish/parameters.js": SCRIPT,
+    "src/spanish/robot.js": SCRIPT,
     "src/stateline.js": SCRIPT,
     "src/store.js": SCRIPT,
+    "src/text.js": SCRIPT,
     "src/theme.js": SCRIPT,
     "src/types.js": SCRIPT,
     "src/units.js": SCRIPT,
@@ -64,14 +69,14 @@ mod tests {
 
     #[test]
     fn every_module_of_the_dashboard_is_served() {
-        let modules =
-            std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src")).unwrap();
-        for module in modules {
-            let name = module.unwrap().file_name().into_string().unwrap();
-            if name.ends_with(".js") {
+        let web = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web");
+        for folder in ["src", "src/spanish"] {
+            for module in std::fs::read_dir(web.join(folder)).unwrap() {
+                let name = module.unwrap().file_name().into_string().unwrap();
+                let served = find(&format!("/{folder}/{name}")).is_some();
                 assert!(
-                    find(&format!("/src/{name}")).is_some(),
-                    "src/{name} is missing in ASSETS"
+                    served || !name.ends_with(".js"),
+                    "{folder}/{name} is missing in ASSETS"
                 );
             }
         }

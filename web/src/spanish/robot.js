@@ -1,0 +1,100 @@
+// @ts-check
+/** Spanish of what the robot and the station say: modes, states, faults, refusals, commands and their fate. */
+
+/** @type {Record<string, string>} */
+export const ROBOT = {
+  // Modes.
+  'manual': 'manual', 'front distance': 'distancia', 'front align': 'alinear', 'wall hold': 'mantener pared', 'wall follow': 'seguir pared',
+  'wheel speed': 'velocidad', 'straight line': 'línea recta', 'waypoints': 'ruta', 'mission': 'misión',
+  'basic movements, open loop or by speed': 'movimientos básicos, en lazo abierto o por velocidad',
+  'stop at a distance from the wall ahead': 'parar a una distancia de la pared de enfrente',
+  'stop square to the wall ahead, at a distance from it': 'parar perpendicular a la pared de enfrente, a una distancia de ella',
+  'follow a wall at the distance at which the robot starts': 'seguir una pared a la distancia a la que empieza el robot',
+  'follow a wall at a commanded distance': 'seguir una pared a la distancia ordenada',
+  'each wheel at a commanded speed': 'cada rueda a la velocidad ordenada',
+  'straight on at a commanded speed': 'en línea recta a la velocidad ordenada',
+  'visit the places of a route in turn, such as a square of 1 m': 'visitar por orden los lugares de una ruta, como un cuadrado de 1 m',
+  'reach a goal around obstacles, or follow a lane of boxes': 'llegar a un destino rodeando obstáculos, o seguir un carril de cajas',
+  // Rigs.
+  'front single': 'un frontal', 'front pair': 'dos frontales', 'side pair left': 'dos a la izquierda', 'side pair right': 'dos a la derecha', 'final': 'final',
+  // States.
+  'off': 'apagado', 'fault': 'fallo', 'armed': 'armado', 'state {}': 'estado {}', 'stop': 'parar', 'open loop': 'lazo abierto', 'by speed': 'por velocidad',
+  'approach': 'acercarse', 'settle': 'asentarse', 'hold': 'mantener', 'look': 'mirar', 'turn': 'girar', 'measure': 'medir', 'follow': 'seguir', 'slow': 'despacio',
+  'at rest': 'en reposo', 'turning': 'girando', 'drive': 'avanzar', 'wait': 'esperar', 'pursue': 'perseguir', 'final turn': 'giro final', 'done': 'acabado',
+  'wait for goal': 'esperar destino', 'initial turn': 'giro inicial', 'initialise': 'iniciar', 'go to goal': 'ir al destino', 'sweep right': 'barrer a la derecha',
+  'sweep left': 'barrer a la izquierda', 'decide': 'decidir', 'avoidance turn': 'giro de evasión', 'advance seeking the obstacle': 'avanzar buscando el obstáculo',
+  'advance along it': 'avanzar a su lado', 'advance a safe distance': 'avanzar distancia de seguridad', 'unreachable': 'inalcanzable', 'straight on': 'recto', 'reached': 'alcanzado',
+  // Faults, each with its cause.
+  'link lost: no heartbeat arrived in time; check the connection, then clear and arm again':
+    'enlace perdido: no llegó ningún latido a tiempo; comprueba la conexión, borra el fallo y arma otra vez',
+  'sonar faulty: its echo line is silent or gives impossible values; check its wiring':
+    'sonar averiado: su línea de eco calla o da valores imposibles; comprueba su cableado',
+  'sonar stale: no good reading for too long; is something absorbing the echo?':
+    'sonar sin lecturas: ninguna buena desde hace demasiado; ¿hay algo que absorbe el eco?',
+  'wall lost: nothing within the sonar\'s reach; face the robot to a wall': 'pared perdida: nada al alcance del sonar; pon el robot frente a una pared',
+  'left encoder silent: the wheel is driven but does not turn, or its sensor is cut': 'encoder izquierdo en silencio: la rueda recibe PWM y no gira, o su sensor está cortado',
+  'right encoder silent: the wheel is driven but does not turn, or its sensor is cut': 'encoder derecho en silencio: la rueda recibe PWM y no gira, o su sensor está cortado',
+  'battery low: charge it': 'batería baja: cárgala',
+  'a value was not a finite number; reset the parameters': 'un valor no era un número finito; vuelve a los parámetros de fábrica',
+  'a control tick took too long': 'un paso de control tardó demasiado',
+  'blocked: something stands in the way; clear the way or turn the robot, then clear the fault and arm again':
+    'bloqueado: hay algo en el camino; despéjalo o gira el robot, borra el fallo y arma otra vez',
+  // Refusals, each with its remedy.
+  'the value is not a finite number; send a number': 'el valor no es un número finito; envía un número',
+  'the value is outside the allowed range; see the limits with `rumbo list`': 'el valor está fuera del margen permitido; mira los límites con `rumbo list`',
+  'no such parameter; see `rumbo list`': 'no hay tal parámetro; mira `rumbo list`',
+  'the selected mode takes no such command; select the mode that does': 'el modo elegido no admite esa orden; elige el modo que sí',
+  'not while armed; disarm first': 'no mientras está armado; desarma primero',
+  'a fault is latched; remove its cause and clear it first': 'hay un fallo retenido; quita su causa y bórralo primero',
+  'the sonar this mode needs gives no good reading; check its wiring, and that something is within 2.5 m':
+    'el sonar que este modo necesita no da lecturas buenas; comprueba su cableado y que haya algo a menos de 2,5 m',
+  'no heartbeat arrives at the robot; connect, then arm again': 'al robot no le llega ningún latido; conecta y arma otra vez',
+  'the robot did not understand the command; use the same version at both ends': 'el robot no entendió la orden; usa la misma versión en los dos extremos',
+  'the robot\'s sonars do not sit where this mode needs them; mount them so and set the parameter `rig`':
+    'los sonares del robot no están donde este modo los necesita; móntalos así y fija el parámetro `rig`',
+  'allowed is {} to {}': 'se permite de {} a {}', 'allowed is {} to {} m for each coordinate': 'se permite de {} a {} m en cada coordenada',
+  'allowed is -{} to {} m for each coordinate, and {} waypoints': 'se permite de -{} a {} m en cada coordenada, y {} lugares', 'out of range': 'fuera de margen',
+  'not confirmed': 'sin confirmar', 'too many commands wait for the robot': 'demasiadas órdenes esperan al robot', 'the robot has another parameter table': 'el robot tiene otra tabla de parámetros',
+  'this robot speaks the original\'s text, which has no words for it': 'este robot habla el texto del original, que no tiene palabras para eso',
+  // Why the robot's program started.
+  'power on': 'encendido', 'reset button or serial adapter': 'botón de reinicio o adaptador serie',
+  'the supply dipped; charge the battery, check the cables': 'la alimentación bajó; carga la batería, comprueba los cables',
+  'the watchdog: the program hung; please report it': 'el perro guardián: el programa se colgó; avísanos, por favor',
+  // Events.
+  'disarmed': 'desarmado', 'fault: {}': 'fallo: {}', 'fault cleared': 'fallo borrado', 'fault cleared: {}': 'fallo borrado: {}', 'mode changed': 'modo cambiado', 'mode changed: {}': 'modo cambiado: {}',
+  'reference reached': 'consigna alcanzada', 'goal unreachable': 'destino inalcanzable', 'goal unreachable: {}': 'destino inalcanzable: {}',
+  'every way round was tried; give another goal, or clear the way': 'se probó a rodear por todos lados; da otro destino o despeja el camino',
+  'connected; the robot\'s program started after: {}': 'conectado; el programa del robot arrancó por: {}',
+  'the robot\'s program started again: {}': 'el programa del robot arrancó de nuevo: {}',
+  'link lost: nothing heard from the robot for a second; trying again': 'enlace perdido: el robot no dice nada desde hace un segundo; reintentando',
+  'the robot speaks protocol {}, this station {}: flash the robot or update the station': 'el robot habla el protocolo {}, esta estación el {}: graba el robot o actualiza la estación',
+  'the robot has another parameter table: parameters are neither shown nor written': 'el robot tiene otra tabla de parámetros: ni se muestran ni se escriben',
+  'the robot is gone: {}': 'el robot ya no está: {}', '{}: not sent, {}': '{}: no enviado, {}', 'a real robot has no such console': 'un robot real no tiene esa consola',
+  'there is no emulated chip; start the lab with --firmware': 'no hay chip emulado; arranca el laboratorio con --firmware',
+  'speed: refused, a real robot lives at its own': 'velocidad: rechazado, un robot real vive a la suya', 'refused, this is no replay of a log': 'rechazado, esto no es una grabación',
+  'reset: refused, this is a real robot': 'reinicio: rechazado, es un robot real', 'reset: refused, {}': 'reinicio: rechazado, {}',
+  'reset: {}, seed {}': 'reinicio: {}, semilla {}', 'reset: {} in world {}, seed {}': 'reinicio: {} en el mundo {}, semilla {}',
+  'reset: {} with rig {}, seed {}': 'reinicio: {} con el montaje {}, semilla {}', 'reset: {} in world {} with rig {}, seed {}': 'reinicio: {} en el mundo {} con el montaje {}, semilla {}',
+  'recording to {}': 'grabando en {}', 'not recording: {}': 'no se graba: {}', 'recording ended: the log cannot be written ({}); is the disk full?': 'fin de la grabación: no se puede escribir ({}); ¿disco lleno?',
+  'recording: the disk is slow, {} entries are missing in the log': 'grabación: el disco es lento, faltan {} entradas',
+  'the log ends early: {}': 'la grabación acaba antes de tiempo: {}', 'this is a replay: nothing is sent to a robot': 'esto es una grabación: no se envía nada a ningún robot',
+  'port {} is gone ({}); waiting for it': 'el puerto {} ya no está ({}); se espera a que vuelva', 'port {} is back': 'el puerto {} ha vuelto',
+  // Commands, and how they ended.
+  '{}: done': '{}: hecho', '{}: refused, {}': '{}: rechazado, {}', '{}: given up, STOP came after it': '{}: abandonado, después vino PARAR',
+  '{}: given up, the robot did not answer in time': '{}: abandonado, el robot no respondió a tiempo', '{}: given up, the robot started again': '{}: abandonado, el robot arrancó de nuevo',
+  'clear the fault': 'borrar el fallo', 'mode {} {}': 'modo {} {}', 'reference {} cm': 'consigna {} cm', 'reference {} rpm': 'consigna {} rpm',
+  'references left {} rpm, right {} rpm': 'consignas izq. {} rpm, der. {} rpm', 'movement {} with {} % PWM': 'movimiento {} con {} % PWM', 'movement {} at {} rpm': 'movimiento {} a {} rpm',
+  'read {}': 'leer {}', 'all parameters to their defaults': 'todos los parámetros a los de fábrica', 'the present place is the origin': 'el lugar actual es el origen',
+  'goal ({}, {}) m': 'destino ({}, {}) m', 'follow the lane': 'seguir el carril', 'a new route, again and again': 'una ruta nueva, una y otra vez', 'a new route, once': 'una ruta nueva, una vez',
+  'waypoint ({}, {}) m': 'lugar ({}, {}) m', '{} = {}': '{} = {}',
+  'Stop': 'parar', 'Forward': 'adelante', 'Backward': 'atrás', 'TurnLeft': 'giro a la izquierda', 'TurnRight': 'giro a la derecha', 'PivotLeftForward': 'pivote izquierdo adelante',
+  'PivotLeftBackward': 'pivote izquierdo atrás', 'PivotRightForward': 'pivote derecho adelante', 'PivotRightBackward': 'pivote derecho atrás', 'ArcLeft': 'arco a la izquierda',
+  'ArcRight': 'arco a la derecha', 'ArcLeftBackward': 'arco atrás a la izquierda', 'ArcRightBackward': 'arco atrás a la derecha',
+  // Why the station closed the connection.
+  'not understood: {}': 'no entendido: {}', 'too many orders at once': 'demasiadas órdenes a la vez',
+};
+
+// Names as in commands are read as the names of the buttons.
+for (const name of ['front_distance', 'front_align', 'wall_hold', 'wall_follow', 'wheel_speed', 'straight_line', 'front_single', 'front_pair', 'side_pair_left', 'side_pair_right']) {
+  ROBOT[name] = ROBOT[name.replaceAll('_', ' ')] ?? name;
+}

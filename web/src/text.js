@@ -1,0 +1,133 @@
+// @ts-check
+/**
+ * The page's words in the reader's language. The key of a text is its English; `spanish/` has the other language, for the page's own texts
+ * and for the sentences of the station and the robot, which come in English and are recorded so.
+ *
+ * `{}` in a text stands for a value. What follows a bar, as in `off|motor`, tells apart words that English has one of.
+ */
+import { GUIDE } from './spanish/guide.js';
+import { PAGE } from './spanish/page.js';
+import { PARAMETERS } from './spanish/parameters.js';
+import { ROBOT } from './spanish/robot.js';
+
+/** Every text with its Spanish. @type {Record<string, string>} */
+export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...GUIDE };
+
+/** The languages, by the code that browsers have for them. */
+export const LANGUAGES = /** @type {const} */ ({ en: 'English', es: 'Español' });
+const STORED = 'rumbo.language';
+
+/** @typedef {keyof typeof LANGUAGES} Language */
+
+/** The chosen language, or else the browser's first that there is. @returns {Language} */
+function choose() {
+  const known = Object.keys(LANGUAGES);
+  const wanted = [stored(), ...navigator.languages.map((each) => each.slice(0, 2))];
+  return /** @type {Language} */ (wanted.find((each) => each !== null && known.includes(each)) ?? 'en');
+}
+
+/** Storage may be forbidden to the page; then nothing is remembered. */
+function stored() {
+  try {
+    return localStorage.getItem(STORED);
+  } catch {
+    return null;
+  }
+}
+
+export const language = choose();
+
+/** The page begins anew in this language, which is remembered. @param {string} wanted */
+export function speak(wanted) {
+  try {
+    localStorage.setItem(STORED, wanted);
+  } catch {
+    return;
+  }
+  location.reload();
+}
+
+/** Texts that were shown without a translation; for tests. @type {Set<string>} */
+export const untranslated = new Set();
+
+/**
+ * A text in the page's language, its values in their places.
+ * @param {string} english
+ * @param {(string | number)[]} values
+ */
+export function t(english, ...values) {
+  return fill(inLanguage(english), values);
+}
+
+/** @param {string} english */
+function inLanguage(english) {
+  if (language === 'en') return english.replace(/\|.*/, '');
+  const spanish = SPANISH[english];
+  if (spanish === undefined) untranslated.add(english);
+  return spanish ?? english.replace(/\|.*/, '');
+}
+
+/**
+ * `{}` is the next value, `{0}` the first, `{1}` the second.
+ * @param {string} text
+ * @param {(string | number)[]} values
+ */
+function fill(text, values) {
+  let next = 0;
+  return text.replace(/\{(\d?)\}/g, (_whole, index) => String(values[index === '' ? next++ : Number(index)] ?? ''));
+}
+
+/** The sentences with places for values, the most particular first. */
+const PATTERNS = Object.keys(SPANISH).filter((english) => english.includes('{}')).map((english) => ({
+  english,
+  letters: english.replaceAll('{}', '').length,
+  form: new RegExp(`^${english.replace(/[.*+?^$()|[\]\\]/g, '\\$&').replaceAll('{}', '(.+?)')}$`, 's'),
+})).sort((a, b) => b.letters - a.letters);
+
+/**
+ * A sentence of the station or of the robot in the page's language; what stands in it is one too, where it is known.
+ * @param {string} english
+ * @returns {string}
+ */
+export function said(english) {
+  if (language === 'en' || english === '') return english;
+  const found = translate(english);
+  if (found === null) untranslated.add(english);
+  return found ?? english;
+}
+
+/** @param {string} english @returns {string | null} */
+function translate(english) {
+  const known = SPANISH[english];
+  if (known !== undefined) return known;
+  for (const { english: pattern, form } of PATTERNS) {
+    const values = form.exec(english)?.slice(1);
+    if (values) return fill(SPANISH[pattern] ?? pattern, values.map((value) => translate(value) ?? value));
+  }
+  return null;
+}
+
+/** A name of the robot's, such as a mode's, as people read it. @param {string} name */
+export function named(name) {
+  return t(name.replaceAll('_', ' '));
+}
+
+const ATTRIBUTES = ['title', 'aria-label', 'placeholder', 'alt'];
+
+/** Puts the texts that the page came with into its language. */
+export function translatePage() {
+  document.documentElement.lang = language;
+  if (language === 'en') return;
+  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (texts.nextNode()) {
+    const node = /** @type {Text} */ (texts.currentNode);
+    const words = node.data.trim();
+    if (/\p{Letter}/u.test(words)) node.data = node.data.replace(words, t(words));
+  }
+  for (const attribute of ATTRIBUTES) {
+    for (const each of document.body.querySelectorAll(`[${attribute}]`)) {
+      const words = each.getAttribute(attribute) ?? '';
+      if (/\p{Letter}/u.test(words)) each.setAttribute(attribute, t(words));
+    }
+  }
+}

@@ -1,0 +1,68 @@
+// @ts-check
+/** The dashboard in Spanish, as a Spanish browser gets it. */
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { folder, open } from './dashboard.mjs';
+
+/** @type {Awaited<ReturnType<typeof open>>} */
+let dashboard;
+/** @type {import('playwright-core').Page} */
+let page;
+
+before(async () => {
+  dashboard = await open(['lab', '--out', folder()], { locale: 'es-ES' });
+  page = dashboard.page;
+});
+
+after(() => dashboard?.close());
+
+/** @param {RegExp} text */
+const event = (text) => page.locator('#events li', { hasText: text }).first().waitFor();
+
+test('a Spanish browser gets the page, the modes and the events in Spanish', async () => {
+  await page.locator('#connection', { hasText: /^en vivo \d+ Hz$/ }).waitFor();
+  assert.equal(await page.evaluate(() => document.documentElement.lang), 'es');
+  assert.match(await page.locator('#stop').innerText(), /PARAR/);
+  assert.equal(await page.locator('#modes button').nth(1).innerText(), '1distancia');
+  await page.locator('#on').click();
+  await event(/^[\d.]+ s.armado$/);
+  await page.locator('#state', { hasText: 'acercarse' }).waitFor();
+  await event(/consigna alcanzada/);
+});
+
+test('what is refused and what fails is told in Spanish, with the remedy', async () => {
+  const input = page.locator('#parameter-front_kp');
+  await input.fill('99');
+  await input.press('Enter');
+  await event(/front_kp = 99: rechazado, se permite de 0\.1 a 20/);
+  await page.locator('#stop').click();
+  await event(/PARAR: hecho/);
+  await page.locator('#scenario').selectOption('free');
+  await page.locator('#simulation button[type=submit]').click();
+  await event(/reinicio: free, semilla 1/);
+  await page.locator('#modes button').nth(4).click();
+  await page.locator('#modes button[value="4"][aria-pressed="true"]').waitFor();
+  await page.locator('#on').click();
+  await event(/fallo: pared perdida: nada al alcance del sonar; pon el robot frente a una pared/);
+  await page.locator('#fault-text', { hasText: /^pared perdida/ }).waitFor();
+  await page.locator('#clear-fault').click();
+  await event(/fallo borrado/);
+});
+
+test('every mode, parameter and event has been said in Spanish', async () => {
+  await page.locator('#all-parameters').check();
+  for (const mode of await page.locator('#modes button').all()) {
+    await mode.click();
+    await page.waitForFunction((value) => String(/** @type {any} */ (window).rumbo.state().robot.mode) === value, await mode.getAttribute('value'));
+  }
+  assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
+});
+
+test('the language can be chosen, and is remembered', async () => {
+  await page.locator('#language').selectOption('en');
+  await page.locator('#stop', { hasText: 'STOP' }).waitFor();
+  await page.reload();
+  await page.locator('#connection', { hasText: /^live/ }).waitFor();
+  assert.equal(await page.locator('#language').inputValue(), 'en');
+  assert.deepEqual(dashboard.complaints, []);
+});

@@ -1,0 +1,80 @@
+// @ts-check
+/** Every text has both languages: the page's own, and what the station and the robot say. No browser is needed. */
+import assert from 'node:assert/strict';
+import { readFileSync, readdirSync } from 'node:fs';
+import { test } from 'node:test';
+import { GUIDE } from '../src/spanish/guide.js';
+import { PAGE } from '../src/spanish/page.js';
+import { PARAMETERS } from '../src/spanish/parameters.js';
+import { ROBOT } from '../src/spanish/robot.js';
+
+const TABLES = [PAGE, ROBOT, PARAMETERS, GUIDE];
+/** @type {Record<string, string>} */
+const SPANISH = Object.assign({}, ...TABLES);
+
+/** @param {string} path */
+const read = (path) => readFileSync(new URL(path, import.meta.url), 'utf8');
+/** @param {string} literal */
+const unescaped = (literal) => literal.replace(/\\(.)/g, '$1');
+/** @param {string} text */
+const hasWords = (text) => /\p{Letter}{2}/u.test(text);
+
+/** @param {Iterable<string>} texts */
+function allSpanish(texts) {
+  const missing = [...new Set(texts)].filter((text) => SPANISH[text] === undefined);
+  assert.deepEqual(missing, [], 'without Spanish');
+}
+
+test('the texts of the page that scripts put there', () => {
+  const files = readdirSync(new URL('../src', import.meta.url)).filter((name) => name.endsWith('.js'));
+  const sources = files.map((name) => read(`../src/${name}`)).join('\n');
+  // What stands in a call, and what is put into one later.
+  const calls = [...sources.matchAll(/\b(?:t|said|named)\((?:[^()'`]|'(?:[^'\\]|\\.)*')*/g)].map(([call]) => call);
+  const later = [...sources.matchAll(/\b(?:title|label|unit|name): '(?:[^'\\]|\\.)*'/g)].map(([property]) => property).filter((each) => !/'\w+_\w+'/.test(each));
+  const texts = [...calls, ...later].flatMap((part) => [...part.matchAll(/'((?:[^'\\]|\\.)*)'/g)].map((found) => unescaped(found[1] ?? ''))).filter(hasWords);
+  assert.ok(texts.length > 120, String(texts.length));
+  allSpanish(texts);
+});
+
+test('the texts of the page as it is served', () => {
+  const html = read('../index.html').replace(/^[^]*<body/, '<body').replaceAll('&amp;', '&');
+  const texts = [...html.matchAll(/>([^<]+)</g)].map((found) => (found[1] ?? '').trim());
+  const attributes = [...html.matchAll(/(?:title|aria-label|placeholder)="([^"]+)"/g)].map((found) => found[1] ?? '');
+  allSpanish([...texts, ...attributes].filter(hasWords));
+});
+
+test('what the robot says: faults, refusals, why it started, events, modes, states, parameters', () => {
+  /** The literals of a function, or from a line on. @param {string} path @param {RegExp} where */
+  const literals = (path, where) => [...read(path).matchAll(where)].flatMap(([part]) => [...part.matchAll(/"([^"]+)"/g)].map((found) => found[1] ?? ''));
+  const explained = /fn (?:explanation|title|detail)\([^]*?\n {4}}/g;
+  const states = ['front_distance', 'front_align', 'manual', 'mission/mod', 'straight_line', 'wall_follow', 'waypoints', 'wheel_speed']
+    .flatMap((mode) => literals(`../../crates/control/src/mode/${mode}.rs`, /STATE_NAMES: [^;]+; [^;]+;/g));
+  const names = literals('../../crates/control/src/mode/id.rs', /fn name\([^]*?\n {4}}/g);
+  const parameters = [...(read('../../crates/control/src/params.rs').split('\ntable! {')[1] ?? '').split('\n}')[0]?.matchAll(/\/\/\/ (.+)/g) ?? []].map((found) => found[1] ?? '');
+  assert.ok(states.length > 30 && names.length === 9 && parameters.length > 60, `${states.length} ${names.length} ${parameters.length}`);
+  allSpanish([
+    ...literals('../../crates/control/src/types.rs', explained), ...literals('../../crates/wire/src/names.rs', explained), ...states, ...names, ...parameters,
+    ...literals('../../crates/station/src/catalogue.rs', /fn about\([^]*?\n}/g),
+  ]);
+});
+
+/** Literals of the station's sources that no page shows as they are: parts of sentences, and what goes elsewhere. */
+const NO_SENTENCE = ['rig', ' in world {}', ' with rig {}', '{}: {}', '{}-{}-{}T{}:{}:{}Z', 'reset: {}{}{}, seed {}', 'a new route, {}', 'allowed is {}', 'parameter {}', 'once', 'again and again'];
+
+test('what the station says', () => {
+  const texts = ['words', 'observer', 'session', 'replay'].flatMap((name) => {
+    const source = (read(`../../crates/station/src/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '');
+    return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => (found[1] ?? '').replace(/\{[^}]*\}/g, '{}'));
+  }).map((text) => text.replace('allowed is {} to {} {}', 'allowed is {} to {}').replace(/^allowed is \{\} to \{\} (?:cm|rpm)$/, 'allowed is {} to {}'));
+  allSpanish(texts.filter((text) => /[ :]/.test(text) && hasWords(text) && !NO_SENTENCE.includes(text)));
+});
+
+test('a text keeps its values in the other language, and stands in one table only', () => {
+  for (const [english, spanish] of Object.entries(SPANISH)) {
+    assert.ok(spanish.trim() !== '' || english.trim() === '', english);
+    const places = (/** @type {string} */ text) => text.match(/\{\d?\}/g)?.length ?? 0;
+    assert.equal(places(spanish), places(english), english);
+  }
+  const keys = TABLES.flatMap((table) => Object.keys(table));
+  assert.deepEqual(keys.filter((key, index) => keys.indexOf(key) !== index), []);
+});
