@@ -15,7 +15,7 @@ mod hal;
 )]
 mod pins;
 
-use hal::{clock, encoder::Encoders, link, outputs, power, record, sonar::Listener};
+use hal::{clock, eeprom, encoder::Encoders, link, outputs, power, record, sonar::Listener};
 use rumbo_control::{Inputs, OUTPUT_DELAY_US, TICK_US};
 use rumbo_robot::{Config, Robot};
 
@@ -33,6 +33,7 @@ fn main() -> ! {
         image: hal::image_hash(),
         reset,
     });
+    robot.recall(eeprom::read);
     let mut encoders = Encoders::default();
     let mut listener = Listener::default();
     let mut inputs = Inputs::default();
@@ -61,6 +62,11 @@ fn main() -> ! {
         if let Some(sonar) = out.ping {
             let delay = (OUTPUT_DELAY_US * 2) as u16;
             listener.pinged(sonar, clock::Stamp(stamp.0.wrapping_add(delay)));
+        }
+        if eeprom::is_ready()
+            && let Some(cell) = robot.store()
+        {
+            eeprom::write(cell);
         }
         while link::has_room() {
             match robot.transmit() {

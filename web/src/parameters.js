@@ -85,6 +85,7 @@ export class ParameterTable {
   constructor(send) {
     this.#send = send;
     this.#all.addEventListener('change', () => this.#filter());
+    element('save-parameters', HTMLButtonElement).addEventListener('click', () => send({ type: 'save_params' }));
     element('reset-parameters', HTMLButtonElement).addEventListener('click', () => send({ type: 'reset_params' }));
   }
 

@@ -81,7 +81,7 @@
  *   | {type: 'consoles', run: number, said: ConsoleText[]}
  *   | {type: 'error', text: string}} FromServer
  *
- * @typedef {{type: 'stop' | 'arm' | 'disarm' | 'clear_fault' | 'reset_params' | 'reset_pose'}
+ * @typedef {{type: 'stop' | 'arm' | 'disarm' | 'clear_fault' | 'reset_params' | 'save_params' | 'reset_pose'}
  *   | {type: 'mode', mode: number}
  *   | {type: 'reference', value: number}
  *   | {type: 'wheel_reference', left: number, right: number}

@@ -241,6 +241,18 @@ test('mode 0: an arrow key drives while it is held, and losing the focus stops',
   await isArmed(false);
 });
 
+test('parameters saved on the robot are still there when it starts again', async () => {
+  await page.locator('#parameter-link_timeout_s').fill('0.35');
+  await page.locator('#parameter-link_timeout_s').press('Enter');
+  await page.locator('#save-parameters').click();
+  await page.waitForSelector('#events :text("parameters saved on the robot")');
+  await page.locator('#simulation button[type=submit]').click();
+  await page.waitForSelector('#events :text("from the second copy")');
+  await page.waitForFunction(() => /** @type {HTMLInputElement} */ (document.querySelector('#parameter-link_timeout_s')).value === '0.35');
+  await page.locator('#reset-parameters').click();
+  await page.waitForFunction(() => /** @type {HTMLInputElement} */ (document.querySelector('#parameter-link_timeout_s')).value === '0.4');
+});
+
 test('a rig that the robot does not carry is warned about, and the robot can be told', async () => {
   await page.locator('#rig').selectOption('front_single');
   await page.locator('#simulation button[type=submit]').click();

@@ -82,7 +82,7 @@ impl SimulatedRobot {
             mut scene,
             first_commands,
             manifest,
-        } = prepare(&library, &overrides, choice)?;
+        } = prepare(&library, &overrides, choice, &[])?;
         offer(&mut scene.scenarios, Some(&scene.choice.scenario));
         offer(&mut scene.worlds, scene.choice.world.as_ref());
         Ok(Self {
@@ -118,6 +118,7 @@ fn prepare(
     library: &Library,
     overrides: &Overrides,
     choice: Choice,
+    memory: &[u8],
 ) -> Result<Prepared, FileError> {
     let overrides = Overrides {
         world: choice.world.clone(),
@@ -125,11 +126,12 @@ fn prepare(
         ..overrides.clone()
     };
     let setup: Setup = library.setup(&choice.scenario, &overrides)?;
-    let manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
+    let mut manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
+    manifest.remember(memory);
     let setup = setup.of_seed(choice.seed)?;
     let ready = run::prepare(&setup, choice.seed)?;
     Ok(Prepared {
-        sim: Sim::new(&ready, choice.seed)?,
+        sim: Sim::with_memory(&ready, choice.seed, memory)?,
         mode: setup.scenario.mode,
         scene: scene(library, &setup, choice)?,
         first_commands: first_words(&ready)?,
@@ -256,7 +258,13 @@ impl Simulation for SimulatedRobot {
         if !offered {
             return Err("no such scenario or world here; choose one of the list".into());
         }
-        let fresh = prepare(&self.library, &self.overrides, choice.clone());
+        let fresh = prepare(
+            &self.library,
+            &self.overrides,
+            choice.clone(),
+            // Switched off and on again: what was saved is still there.
+            &self.sim.memory(),
+        );
         let fresh = fresh.map_err(|error| error.to_string())?;
         // What the command line added to the lists stays there.
         let Scene {

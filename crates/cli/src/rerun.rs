@@ -11,7 +11,7 @@ use crate::output;
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::run;
 use rumbo_scenario::sim::Sim;
-use rumbo_station::log::{Burst, Kind, Log};
+use rumbo_station::log::{Burst, Kind, Log, Manifest};
 use rumbo_wire::{Decoder, FromRobot, Message, Received};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -38,7 +38,7 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
     let (setup, seed) = manifest::setup(&args.log, recorded)?;
     let verdict = match recorded.kind {
         Kind::Run => again(&log, &setup, seed)?,
-        Kind::Lab => session(&log, &setup, seed, recorded.step_us)?,
+        Kind::Lab => session(&log, &setup, seed, recorded)?,
         Kind::Robot => {
             return Err(Failure::Input(format!(
                 "{shown}: is of a real robot; only simulated runs can be run again"
@@ -106,9 +106,9 @@ fn again(log: &Log, setup: &Setup, seed: u64) -> Result<Verdict, Failure> {
     })
 }
 
-fn session(log: &Log, setup: &Setup, seed: u64, step_us: u64) -> Result<Verdict, Failure> {
+fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<Verdict, Failure> {
     let setup = &*setup.of_seed(seed)?;
-    let mut sim = Sim::new(&*run::prepare(setup, seed)?, seed)?;
+    let mut sim = Sim::with_memory(&*run::prepare(setup, seed)?, seed, &recorded.memory())?;
     let Some(end_us) = log.link.last().map(|burst| burst.t_us) else {
         return Ok(Verdict::Equal);
     };
@@ -131,7 +131,7 @@ fn session(log: &Log, setup: &Setup, seed: u64, step_us: u64) -> Result<Verdict,
         if t_us >= end_us {
             break;
         }
-        sim.advance(t_us + step_us.max(1));
+        sim.advance(t_us + recorded.step_us.max(1));
     }
     let said: Vec<Burst> = log
         .link

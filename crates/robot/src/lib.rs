@@ -2,7 +2,8 @@
 //!
 //! bytes -> [`Robot::receive`]: decoder -> ledger (each command once) -> supervisor, mode, parameters;
 //! sensors -> [`Robot::tick`]: supervisor (link alive?) -> pilot (estimate, mode, drive layer) -> reporter -> outbox;
-//! [`Robot::transmit`] -> bytes.
+//! [`Robot::transmit`] -> bytes;
+//! [`Robot::recall`] and [`Robot::store`]: parameters from and to the EEPROM.
 //!
 //! No clock, no pins, no waiting, no allocation: the firmware, the emulated chip and the simulator run this same
 //! robot. The bytes are described in `docs/protocol.md`.
@@ -16,7 +17,9 @@ mod report;
 mod robot;
 mod sonars;
 mod stall;
+mod store;
 mod supervisor;
 mod text;
 
 pub use robot::{Config, Robot};
+pub use store::Cell;

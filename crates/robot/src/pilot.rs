@@ -277,6 +277,11 @@ impl Pilot {
         self.params.set(id, value).map_err(refusal_of_param)
     }
 
+    /// The parameters, for whoever keeps them.
+    pub(crate) fn params_mut(&mut self) -> &mut Params {
+        &mut self.params
+    }
+
     /// Sets several parameters, or none.
     pub(crate) fn set_params(&mut self, values: [(ParamId, f32); 3]) -> Result<f32, Refusal> {
         let mut params = self.params;

@@ -10,7 +10,9 @@ use rumbo_wire::text::{
     CM_PER_M, DistanceRow, MissionRow, RAD_PER_DEG, RAD_S_PER_RPM, Row, SpeedRow, WaypointsRow,
     cm_from_range,
 };
-use rumbo_wire::{Ack, Event, EventKind, FromRobot, Hello, Message, Refusal, Status, Telemetry};
+use rumbo_wire::{
+    Ack, Event, EventKind, FromRobot, Hello, Message, Recalled, Refusal, Status, Telemetry,
+};
 
 use crate::outbox::{Outbox, Priority};
 
@@ -52,6 +54,7 @@ pub(crate) struct Signals {
 #[derive(Clone, Debug)]
 pub(crate) struct Reporter {
     hello: Hello,
+    recalled: Option<Recalled>,
     language: Language,
     outbox: Outbox,
     seq: u8,
@@ -74,6 +77,7 @@ impl Reporter {
     pub(crate) fn new(hello: Hello) -> Self {
         Self {
             hello,
+            recalled: None,
             language: Language::Binary,
             outbox: Outbox::default(),
             seq: 0,
@@ -104,6 +108,11 @@ impl Reporter {
     /// The robot was addressed in `language`.
     pub(crate) fn addressed_in(&mut self, language: Language) {
         self.language = language;
+    }
+
+    /// The parameters came from this copy; told after each HELLO.
+    pub(crate) fn recalled(&mut self, recalled: Option<Recalled>) {
+        self.recalled = recalled;
     }
 
     /// HELLO was asked for.
@@ -148,6 +157,9 @@ impl Reporter {
     fn tick_binary(&mut self, t_ms: u16, status: &Status, signals: &Signals) {
         if self.hello_due && self.say(Priority::Answer, &FromRobot::Hello(self.hello)) {
             self.hello_due = false;
+            if let Some(recalled) = self.recalled {
+                self.event(t_ms, EventKind::Recalled(recalled));
+            }
         }
         self.status_in = self.status_in.saturating_sub(1);
         if self.status_in == 0 || is_news(status, &self.last_status) {

@@ -16,6 +16,7 @@ use crate::clock::Clock;
 use crate::ledger::{Ledger, Verdict};
 use crate::pilot::Pilot;
 use crate::report::{Language, Reporter};
+use crate::store::{Cell, Store};
 use crate::supervisor::Supervisor;
 use crate::text::{self, Translated};
 
@@ -42,6 +43,7 @@ pub struct Robot {
     supervisor: Supervisor,
     pilot: Pilot,
     reporter: Reporter,
+    store: Store,
 }
 
 impl Robot {
@@ -60,6 +62,7 @@ impl Robot {
             supervisor: Supervisor::default(),
             pilot: Pilot::default(),
             reporter: Reporter::new(hello),
+            store: Store::default(),
         }
     }
 
@@ -121,6 +124,23 @@ impl Robot {
     /// As for [`Command::SetParam`].
     pub fn set_param(&mut self, id: u8, value: f32) -> Result<f32, Refusal> {
         self.pilot.set_param(id, value)
+    }
+
+    /// Takes the parameters that were saved, before the robot starts; `read` gives a byte of the EEPROM, 0..4096. Without a
+    /// good copy the defaults stay; which copy it was is told after each HELLO.
+    pub fn recall(&mut self, read: impl FnMut(u16) -> u8) {
+        let recalled = self.store.recall(self.pilot.params_mut(), read);
+        self.reporter.recalled(recalled);
+    }
+
+    /// The next byte for the EEPROM, if a save is under way. To be called when the byte before has been written, at most
+    /// once a tick.
+    pub fn store(&mut self) -> Option<Cell> {
+        let (cell, done) = self.store.next(self.pilot.params_mut());
+        if done {
+            self.event(EventKind::Saved);
+        }
+        cell
     }
 
     fn take_frame(&mut self, body: &Body) {
@@ -185,12 +205,18 @@ impl Robot {
                 self.apply(&Command::ClearFault)
             }
             Translated::Command(command) => self.apply(&command),
-            Translated::Params(values) => self.pilot.set_params(values),
+            Translated::Params(values) => {
+                self.store.changed();
+                self.pilot.set_params(values)
+            }
         }
     }
 
     /// Applies a command; gives the value in force, 0 where there is none.
     fn apply(&mut self, command: &Command) -> Result<f32, Refusal> {
+        if matches!(command, Command::SetParam { .. } | Command::ResetParams) {
+            self.store.changed();
+        }
         match *command {
             Command::Stop | Command::Disarm => {
                 if let Some(event) = self.supervisor.disarm() {
@@ -235,6 +261,10 @@ impl Robot {
             Command::GetParam { id } => self.pilot.param(id),
             Command::ResetParams => {
                 self.pilot.reset_params();
+                Ok(0.0)
+            }
+            Command::SaveParams => {
+                self.store.save();
                 Ok(0.0)
             }
             Command::ResetPose => {

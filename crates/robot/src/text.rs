@@ -31,6 +31,8 @@ pub(crate) fn translate(
     let command = match command {
         TextCommand::On => Command::Arm,
         TextCommand::Off => Command::Disarm,
+        TextCommand::Save => Command::SaveParams,
+        TextCommand::Reset => Command::ResetParams,
         TextCommand::Reference(value) => match mode {
             ModeId::FrontDistance | ModeId::FrontAlign | ModeId::WallFollow => {
                 Command::Reference(value / CM_PER_M)

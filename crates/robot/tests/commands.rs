@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use rumbo_control::Wheels;
 use rumbo_control::mode::{Level, ModeId, Movement};
 use rumbo_control::params::ParamId;
-use rumbo_wire::{Command, EventKind, Frame, Kind, Refusal, ToRobot};
+use rumbo_wire::{Command, EventKind, Frame, Kind, Recalled, Refusal, ToRobot};
 use support::{Bench, SESSION};
 
 #[test]
@@ -197,4 +197,69 @@ proptest! {
         prop_assert_eq!(noisy.events(), quiet.events());
         prop_assert!(noisy.lines.is_empty());
     }
+}
+
+/// Lets a save go on until the robot says that it is whole.
+fn save(bench: &mut Bench, memory: &mut [u8]) {
+    for _ in 0..600 {
+        if let Some(cell) = bench.robot.store() {
+            memory[usize::from(cell.address)] = cell.value;
+        }
+        bench.ticks(1);
+    }
+    assert!(bench.events().contains(&EventKind::Saved));
+}
+
+#[test]
+fn saved_parameters_are_there_after_the_next_start_by_either_language() {
+    for in_text in [false, true] {
+        let mut memory = vec![0xFF; 4_096];
+        let mut bench = Bench::alive();
+        let id = ParamId::Base as u8;
+        bench
+            .command(Command::SetParam { id, value: 0.12 })
+            .unwrap();
+        if in_text {
+            b"SAVE\n".iter().for_each(|byte| bench.robot.receive(*byte));
+            // Back to frames, to hear that it is done.
+            bench.command(Command::GetParam { id }).unwrap();
+        } else {
+            bench.command(Command::SaveParams).unwrap();
+        }
+        save(&mut bench, &mut memory);
+        let mut bench = Bench::new();
+        bench.robot.recall(|at| memory[usize::from(at)]);
+        bench.ticks(50);
+        assert_eq!(bench.command(Command::GetParam { id }), Ok(0.12));
+        assert!(
+            bench
+                .events()
+                .contains(&EventKind::Recalled(Recalled::Second))
+        );
+        // Asked again, it tells again.
+        bench.heard.clear();
+        bench.send(&ToRobot::Hello);
+        bench.ticks(50);
+        assert!(
+            bench
+                .events()
+                .contains(&EventKind::Recalled(Recalled::Second))
+        );
+    }
+}
+
+#[test]
+fn a_save_while_driving_disturbs_nothing() {
+    let (mut saving, mut other) = (Bench::alive(), Bench::alive());
+    saving.drive();
+    other.drive();
+    saving.command(Command::SaveParams).unwrap();
+    other.command(Command::GetParam { id: 0 }).unwrap();
+    for _ in 0..600 {
+        saving.robot.store();
+        saving.ticks(1);
+        other.ticks(1);
+        assert_eq!(saving.outputs, other.outputs);
+    }
+    assert!(saving.events().contains(&EventKind::Saved) && saving.status().armed);
 }

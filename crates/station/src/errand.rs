@@ -88,7 +88,11 @@ impl Errand {
                 }
             }
             EventKind::Unreachable => self.end = Some(End::Unreachable),
-            EventKind::Disarmed | EventKind::Faulted(_) | EventKind::Cleared(_) => {}
+            EventKind::Disarmed
+            | EventKind::Faulted(_)
+            | EventKind::Cleared(_)
+            | EventKind::Recalled(_)
+            | EventKind::Saved => {}
         }
     }
 

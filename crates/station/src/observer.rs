@@ -14,7 +14,7 @@ use crate::terminal;
 use crate::words;
 use rumbo_control::Pose;
 use rumbo_control::rig::Rig;
-use rumbo_wire::{Command, EventKind, Hello, PROTOCOL_VERSION, Status, Telemetry};
+use rumbo_wire::{Command, EventKind, Hello, PROTOCOL_VERSION, Recalled, Status, Telemetry};
 use std::sync::Arc;
 
 /// What is known of the robot.
@@ -217,7 +217,9 @@ impl Observer {
 
     fn event(&mut self, t_ms: i64, kind: EventKind) {
         let level = match kind {
-            EventKind::Armed | EventKind::Reached => Level::Good,
+            EventKind::Armed | EventKind::Reached | EventKind::Saved => Level::Good,
+            EventKind::Recalled(Recalled::First | Recalled::Second) => Level::Info,
+            EventKind::Recalled(_) => Level::Warning,
             EventKind::Disarmed | EventKind::ModeChanged(_) => Level::Info,
             EventKind::Faulted(fault) => {
                 self.status.fault = Some(fault);

@@ -113,6 +113,7 @@ enum Message {
         value: f32,
     },
     ResetParams {},
+    SaveParams {},
     ResetPose {},
     Type {
         usart: u8,
@@ -210,6 +211,7 @@ pub(crate) fn parse(text: &str) -> Result<Order, BadOrder> {
             value: finite("value", value)?,
         }),
         Message::ResetParams {} => Order::Robot(Command::ResetParams),
+        Message::SaveParams {} => Order::Robot(Command::SaveParams),
         Message::ResetPose {} => Order::Robot(Command::ResetPose),
         Message::Type { usart, text } => Order::Type(usart, text_line(text)?),
         Message::Speed { factor } if (0.0..=MAX_SPEED).contains(&factor) => Order::Speed(factor),

@@ -46,6 +46,7 @@ pub(crate) fn command(command: &Command, mode: ModeId) -> String {
         Command::SetParam { id, value } => format!("{} = {value}", parameter(*id)),
         Command::GetParam { id } => format!("read {}", parameter(*id)),
         Command::ResetParams => "all parameters to their defaults".into(),
+        Command::SaveParams => "save the parameters on the robot".into(),
         Command::ResetPose => "the present place is the origin".into(),
         Command::Goal { x_m, y_m } => format!("goal ({x_m:.2}, {y_m:.2}) m"),
         Command::Lane => "follow the lane".into(),

@@ -319,6 +319,8 @@ fn put_event(to: &mut Writer, event: &Event) -> Kind {
         EventKind::ModeChanged(mode) => to.put([5, mode as u8]),
         EventKind::Reached => to.put([6]),
         EventKind::Unreachable => to.put([7]),
+        EventKind::Recalled(recalled) => to.put([8, recalled as u8]),
+        EventKind::Saved => to.put([9]),
     };
     Kind::Event
 }
@@ -333,6 +335,8 @@ fn event(from: &mut Reader) -> Result<Event, Malformed> {
         5 => EventKind::ModeChanged(mode(from)?),
         6 => EventKind::Reached,
         7 => EventKind::Unreachable,
+        8 => EventKind::Recalled(Recalled::from_number(from.u8()?).ok_or(Malformed::Number)?),
+        9 => EventKind::Saved,
         _ => return Err(Malformed::Number),
     };
     Ok(Event { t_ms, kind })
@@ -401,6 +405,7 @@ fn put_command(to: &mut Writer, command: &Command) {
                 .put([u8::from(heading_rad.is_some())]);
             to.put(heading_rad.unwrap_or(0.0).to_le_bytes())
         }
+        Command::SaveParams => to.put([17]),
     };
 }
 
@@ -453,6 +458,7 @@ fn command(from: &mut Reader) -> Result<Command, Malformed> {
                 heading_rad: has_heading.then_some(heading_rad),
             })
         }
+        17 => Command::SaveParams,
         _ => return Err(Malformed::Number),
     })
 }

@@ -141,9 +141,9 @@ impl Body {
 
 const CRC_START: u16 = 0xFFFF;
 
-/// CRC-16/MCRF4XX (reflected polynomial 0x1021, start 0xFFFF), one byte at a time without a table; the form of
+/// Takes a byte into a sum, which begins as 0xFFFF: CRC-16/MCRF4XX (reflected polynomial 0x1021, start 0xFFFF), one byte at a time without a table; the form of
 /// `_crc_ccitt_update` in avr-libc's `util/crc16.h`.
-const fn crc(sum: u16, byte: u8) -> u16 {
+pub const fn crc(sum: u16, byte: u8) -> u16 {
     let [low, high] = sum.to_le_bytes();
     let mixed = byte ^ low;
     let mixed = mixed ^ (mixed << 4);

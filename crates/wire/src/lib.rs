@@ -25,5 +25,5 @@ mod text_telemetry;
 
 pub use codec::{Malformed, Message};
 pub use decoder::{Decoder, Received};
-pub use frame::{Body, Frame, Kind};
+pub use frame::{Body, Frame, Kind, crc as crc16};
 pub use message::*;

@@ -162,6 +162,42 @@ pub enum EventKind {
     Reached,
     /// The mode found out that its goal cannot be reached; the robot waits.
     Unreachable,
+    /// After HELLO, if parameters have been saved: where those in force at the start came from.
+    Recalled(Recalled),
+    /// A save of the parameters is whole.
+    Saved,
+}
+
+/// Which of the two saved copies of the parameters the robot started with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Recalled {
+    /// The first.
+    First = 1,
+    /// The second.
+    Second = 2,
+    /// The first; the second is damaged or of another table.
+    FirstAlone = 3,
+    /// The second; the first is damaged or of another table.
+    SecondAlone = 4,
+    /// Neither is good: the defaults.
+    Neither = 5,
+}
+
+impl Recalled {
+    /// All of them, by number.
+    pub const ALL: [Recalled; 5] = [
+        Recalled::First,
+        Recalled::Second,
+        Recalled::FirstAlone,
+        Recalled::SecondAlone,
+        Recalled::Neither,
+    ];
+
+    /// The one with this number.
+    pub fn from_number(number: u8) -> Option<Recalled> {
+        Self::ALL.into_iter().find(|one| *one as u8 == number)
+    }
 }
 
 /// A command to the robot.
@@ -202,6 +238,9 @@ pub enum Command {
     },
     /// Set every parameter to its default.
     ResetParams,
+    /// Write the parameters in force to the EEPROM, so that the robot starts with them from now on. Acknowledged at once;
+    /// [`EventKind::Saved`] follows when it is done.
+    SaveParams,
     /// Call the present place the origin.
     ResetPose,
     /// Go to a point: around obstacles in mode 8, straight in mode 7. It may arrive at any time.

@@ -2,7 +2,7 @@
 
 use rumbo_control::Fault;
 
-use crate::message::{EventKind, Refusal, ResetCause};
+use crate::message::{EventKind, Recalled, Refusal, ResetCause};
 
 impl Refusal {
     /// Why the command was refused and what to do.
@@ -44,6 +44,25 @@ impl ResetCause {
     }
 }
 
+impl Recalled {
+    /// What the robot started with, and what to do.
+    pub const fn explanation(self) -> &'static str {
+        match self {
+            Recalled::First => "in force since the start, from the first copy",
+            Recalled::Second => "in force since the start, from the second copy",
+            Recalled::FirstAlone => {
+                "in force since the start, from the first copy; the second is damaged or of another version: save again"
+            }
+            Recalled::SecondAlone => {
+                "in force since the start, from the second copy; the first is damaged or of another version: save again"
+            }
+            Recalled::Neither => {
+                "not used: both copies are damaged or of another version; the defaults are in force: set the parameters and save"
+            }
+        }
+    }
+}
+
 impl EventKind {
     /// What happened, in a few words.
     pub const fn title(self) -> &'static str {
@@ -55,6 +74,8 @@ impl EventKind {
             EventKind::ModeChanged(_) => "mode changed",
             EventKind::Reached => "reference reached",
             EventKind::Unreachable => "goal unreachable",
+            EventKind::Recalled(_) => "saved parameters",
+            EventKind::Saved => "parameters saved on the robot",
         }
     }
 
@@ -68,7 +89,8 @@ impl EventKind {
             EventKind::Unreachable => {
                 Some("every way round was tried; give another goal, or clear the way")
             }
-            EventKind::Armed | EventKind::Disarmed | EventKind::Reached => None,
+            EventKind::Recalled(recalled) => Some(recalled.explanation()),
+            EventKind::Armed | EventKind::Disarmed | EventKind::Reached | EventKind::Saved => None,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The original program's text protocol, both directions, both ends.
 //!
 //! To the robot: a command a line (`ON`, `OFF`, `REF v`, `REF A v`, `REF B v`, `GOAL x y`, `PID A|B kp ki kd`, and our
-//! `MODE n`), in upper or lower case. From the robot: a row of comma-separated numbers, whose columns depend on the
+//! `MODE n`, `SAVE`, `RESET`), in upper or lower case. From the robot: a row of comma-separated numbers, whose columns depend on the
 //! mode (`csv` names them). Units are the original's here and nowhere else: cm, degrees, rpm, ms; A is the right wheel,
 //! B the left one. What `REF` means depends on the mode, so values stay as written.
 
@@ -82,7 +82,7 @@ impl fmt::Display for TextError {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         match self {
             TextError::UnknownCommand => out.write_str(
-                "unknown command; allowed: ON, OFF, REF, GOAL, PID, MODE, each with its values",
+                "unknown command; allowed: ON, OFF, REF, GOAL, PID, MODE, SAVE, RESET, each with its values",
             ),
             TextError::UnknownMotor => {
                 out.write_str("unknown motor; A is the right wheel, B the left one")
@@ -131,6 +131,10 @@ pub enum TextCommand {
     },
     /// Select a mode, by its number.
     Mode(u8),
+    /// Save the parameters on the robot.
+    Save,
+    /// Set all parameters to their defaults.
+    Reset,
 }
 
 impl TextCommand {
@@ -172,6 +176,10 @@ impl TextCommand {
                 [digit @ b'0'..=b'9'] => TextCommand::Mode(digit - b'0'),
                 _ => return Err(TextError::NotANumber(1)),
             }
+        } else if is("SAVE") {
+            TextCommand::Save
+        } else if is("RESET") {
+            TextCommand::Reset
         } else {
             return Err(TextError::UnknownCommand);
         };
@@ -200,6 +208,8 @@ impl fmt::Display for TextCommand {
                 write!(out, "PID {} {kp} {ki} {kd}", motor(side))
             }
             TextCommand::Mode(number) => write!(out, "MODE {number}"),
+            TextCommand::Save => out.write_str("SAVE"),
+            TextCommand::Reset => out.write_str("RESET"),
         }
     }
 }

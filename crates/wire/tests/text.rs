@@ -108,6 +108,8 @@ fn command() -> impl Strategy<Value = TextCommand> {
     prop_oneof![
         Just(TextCommand::On),
         Just(TextCommand::Off),
+        Just(TextCommand::Save),
+        Just(TextCommand::Reset),
         n.clone().prop_map(TextCommand::Reference),
         (side.clone(), n.clone())
             .prop_map(|(side, value)| TextCommand::WheelReference(side, value)),
@@ -125,7 +127,7 @@ fn command() -> impl Strategy<Value = TextCommand> {
 /// The numbers of a command, for comparison within the reading's rounding.
 fn values(command: &TextCommand) -> Vec<f32> {
     match *command {
-        TextCommand::On | TextCommand::Off => vec![],
+        TextCommand::On | TextCommand::Off | TextCommand::Save | TextCommand::Reset => vec![],
         TextCommand::Mode(number) => vec![number.into()],
         TextCommand::Reference(value) => vec![value],
         TextCommand::WheelReference(side, value) => vec![f32::from(side == Side::Left), value],

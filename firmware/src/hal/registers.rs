@@ -17,6 +17,7 @@ macro_rules! blocks {
 
 blocks! {
     cpu: cpu, CPU;
+    eeprom: eeprom, EEPROM;
     external: exint, EXINT;
     port_b: portb, PORTB;
     port_d: portd, PORTD;

@@ -18,7 +18,7 @@ use crate::mega::Mega;
 use crate::original::Original;
 use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
 use crate::trace::Burst;
-use native::Native;
+use native::{Memory, Native};
 use rumbo_control::{Duty, SIDES, SonarId, Wheels};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
@@ -68,11 +68,23 @@ impl Sim {
         Self::with_noise(setup, seed, 0)
     }
 
+    /// The same robot with an EEPROM that holds this already, as [`Sim::memory`] gave it; the rest is erased.
+    ///
+    /// # Errors
+    /// If the files' values do not fit together.
+    pub fn with_memory(setup: &Setup, seed: u64, memory: &[u8]) -> Result<Self, FileError> {
+        Self::build(setup, seed, 0, memory)
+    }
+
     /// The same robot on another day: what `seed` draws of it is the same, its noise, slip and floor are those of number `day`.
     ///
     /// # Errors
     /// If the files' values do not fit together.
     pub(crate) fn with_noise(setup: &Setup, seed: u64, day: u32) -> Result<Self, FileError> {
+        Self::build(setup, seed, day, &[])
+    }
+
+    fn build(setup: &Setup, seed: u64, day: u32, memory: &[u8]) -> Result<Self, FileError> {
         let setup = &*setup.of_seed(seed)?;
         let params = drawn_params(setup, seed)?;
         let scenario = &setup.scenario;
@@ -96,12 +108,19 @@ impl Sim {
         let state = plant.start(start);
         let controller = match (&setup.firmware, setup.program) {
             (None, Program::Rumbo) => {
-                Controller::Rumbo(Box::new(Native::new(&setup.control_parameters()?)?))
+                let memory = Memory(memory.to_vec());
+                Controller::Rumbo(Box::new(Native::new(memory, &setup.control_parameters()?)?))
             }
             (None, Program::Original) => Controller::Original(Box::new(Original::new(setup)?)),
             (Some(firmware), _) => {
                 let encoders = plant.encoder_levels(&state);
-                Controller::Mega(Box::new(Mega::new(firmware.clone(), encoders)))
+                let mut mega = Mega::new(firmware.clone(), encoders);
+                let eeprom = mega.chip_mut().devices_mut().eeprom_mut();
+                eeprom
+                    .iter_mut()
+                    .zip(memory)
+                    .for_each(|(to, from)| *to = *from);
+                Controller::Mega(Box::new(mega))
             }
         };
         let link = LinkParams::default();
@@ -235,6 +254,15 @@ impl Sim {
         match &mut self.controller {
             Some(Controller::Original(original)) => original.told(),
             _ => Vec::new(),
+        }
+    }
+
+    /// What is in the robot's EEPROM; what was never written may be missing at the end.
+    pub fn memory(&self) -> Vec<u8> {
+        match &self.controller {
+            Some(Controller::Rumbo(native)) => native.memory.0.clone(),
+            Some(Controller::Mega(mega)) => mega.chip().devices().eeprom().to_vec(),
+            Some(Controller::Original(_)) | None => Vec::new(),
         }
     }
 

@@ -5,34 +5,55 @@ use crate::board::{Board, micros};
 use crate::files::FileError;
 use rumbo_control::params::ParamId;
 use rumbo_control::{Inputs, OUTPUT_DELAY_US, Outputs, TICK_US};
-use rumbo_robot::{Config, Robot};
+use rumbo_robot::{Cell, Config, Robot};
 use rumbo_wire::ResetCause;
+
+/// The EEPROM's bytes; what has never been written is missing at the end.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Memory(pub(super) Vec<u8>);
+
+impl Memory {
+    fn write(&mut self, cell: Cell) {
+        let at = usize::from(cell.address);
+        if self.0.len() <= at {
+            self.0.resize(at + 1, 0xFF);
+        }
+        if let Some(byte) = self.0.get_mut(at) {
+            *byte = cell.value;
+        }
+    }
+}
 
 /// The robot, and what it has not done yet.
 #[derive(Clone, Debug)]
 pub(super) struct Native {
     robot: Robot,
     pub(super) board: Board,
+    /// Its EEPROM.
+    pub(super) memory: Memory,
     pub(super) next_tick_us: u64,
     /// Outputs and when they take effect.
     pub(super) pending: Option<(u64, Outputs)>,
 }
 
 impl Native {
-    /// A robot with these parameters, later ones in place of earlier ones.
+    /// A robot with what its EEPROM holds, then these parameters, later ones in place of earlier ones.
     pub(super) fn new<'a>(
+        memory: Memory,
         parameters: impl IntoIterator<Item = &'a (ParamId, f32)>,
     ) -> Result<Self, FileError> {
         let mut robot = Robot::new(Config {
             image: 0,
             reset: ResetCause::PowerOn,
         });
+        robot.recall(|address| memory.0.get(usize::from(address)).copied().unwrap_or(0xFF));
         for (id, value) in parameters {
             set_param(&mut robot, *id, *value)?;
         }
         Ok(Self {
             robot,
             board: Board::default(),
+            memory,
             next_tick_us: 0,
             pending: None,
         })
@@ -91,6 +112,10 @@ impl Sim {
             echo,
             battery_v: None,
         });
+        // A byte takes 3.4 ms: the one before is written.
+        if let Some(cell) = native.robot.store() {
+            native.memory.write(cell);
+        }
         native.pending = Some((now_us + u64::from(OUTPUT_DELAY_US), outputs));
         native.next_tick_us += u64::from(TICK_US);
         // The transmit interrupt hands a byte to the line whenever the line is free.

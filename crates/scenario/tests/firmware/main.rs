@@ -6,4 +6,6 @@ mod board;
 mod interrupts;
 mod pins;
 mod same_bits;
+mod saved;
+mod talk;
 mod world;

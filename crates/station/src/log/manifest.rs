@@ -46,6 +46,8 @@ pub struct Manifest {
     pub parameters: Vec<(String, f64)>,
     /// Lines of text sent besides the scenario's commands, with their times \[s\].
     pub texts: Vec<(f64, String)>,
+    /// What the robot's EEPROM held at the start, as hexadecimal digits; `None` where it was erased.
+    pub eeprom: Option<String>,
     /// The simulation advanced in steps of this length \[us\].
     pub step_us: u64,
     /// The port, where there was one.
@@ -75,9 +77,9 @@ impl Manifest {
 
     /// What the log's metadata says; `None` where that is no manifest.
     pub(crate) fn from_metadata(metadata: &BTreeMap<String, String>) -> Option<Self> {
-        const TEXTS: [&str; 11] = [
+        const TEXTS: [&str; 12] = [
             "kind", "version", "started", "scenario", "robot", "world", "rig", "wiring", "program",
-            "image", "port",
+            "image", "port", "eeprom",
         ];
         let fields = metadata.iter().map(|(key, text)| {
             let value = match TEXTS.contains(&key.as_str()) {
@@ -87,6 +89,26 @@ impl Manifest {
             (key.clone(), value)
         });
         serde_json::from_value(serde_json::Value::Object(fields.collect())).ok()
+    }
+
+    /// Notes what the robot's EEPROM holds at the start.
+    pub fn remember(&mut self, memory: &[u8]) {
+        let used = memory.iter().rposition(|byte| *byte != 0xFF);
+        self.eeprom = used.map(|last| {
+            let bytes = memory.iter().take(last + 1);
+            bytes.map(|byte| format!("{byte:02x}")).collect()
+        });
+    }
+
+    /// What it held.
+    pub fn memory(&self) -> Vec<u8> {
+        let digits = self.eeprom.as_deref().unwrap_or_default().as_bytes();
+        let digit = |digit: u8| (digit as char).to_digit(16).unwrap_or(0);
+        let byte = |two: &[u8]| two.iter().fold(0, |byte, one| byte << 4 | digit(*one));
+        digits
+            .chunks(2)
+            .map(|two| (byte(two) & 0xFF) as u8)
+            .collect()
     }
 
     /// The name of its log, without the ending: when, what, which seed.
@@ -161,6 +183,9 @@ mod tests {
             step_us: 10_000,
             ..Manifest::default()
         };
+        let mut manifest = manifest;
+        manifest.remember(&[0x01, 0xFF, 0xA9, 0xFF, 0xFF]);
+        assert_eq!(manifest.memory(), [0x01, 0xFF, 0xA9]);
         assert_eq!(
             Manifest::from_metadata(&manifest.to_metadata()),
             Some(manifest)

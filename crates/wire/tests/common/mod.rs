@@ -82,6 +82,8 @@ pub(crate) fn from_robot() -> impl Strategy<Value = FromRobot> {
         mode().prop_map(EventKind::ModeChanged),
         Just(EventKind::Reached),
         Just(EventKind::Unreachable),
+        prop::sample::select(Recalled::ALL.to_vec()).prop_map(EventKind::Recalled),
+        Just(EventKind::Saved),
     ];
     let event =
         (any::<u16>(), kind).prop_map(|(t_ms, kind)| FromRobot::Event(Event { t_ms, kind }));
@@ -126,6 +128,7 @@ pub(crate) fn command() -> impl Strategy<Value = Command> {
             Command::Disarm,
             Command::ClearFault,
             Command::ResetParams,
+            Command::SaveParams,
             Command::ResetPose,
             Command::Lane,
         ]),
