@@ -192,3 +192,126 @@ fn an_analog_pin_is_a_digital_one_too_unless_that_is_off() {
     assert_eq!(result(&mut chip), 1023);
     assert_eq!(read(&mut chip, 0x2F), 0x01);
 }
+
+const TCCR1B: u16 = 0x81;
+const ICR1L: u16 = 0x86;
+const TIFR1: u16 = 0x36;
+const ICF: u8 = 0x20;
+
+fn volts(chip: &mut Chip, cycle: u64, channel: u8, volts: f64) {
+    chip.input(cycle, Input::Volts { channel, volts });
+}
+
+#[test]
+fn the_comparator_captures_in_the_place_of_the_pin() {
+    // Timer 1 over 1, on rising edges; ACIC.
+    let (mut chip, _) = set_up(&[(ACSR, 0x04), (TCCR1B, 0x41)]);
+    volts(&mut chip, 0, 18, 2.0);
+    for (cycle, level) in [(100, 2.1), (200, 1.9), (300, 2.2)] {
+        volts(&mut chip, cycle, 17, level);
+    }
+    // The pin itself is cut off.
+    chip.input(250, Input::Pin(pin('D', 4), Some(true)));
+    let started = 5;
+    assert_eq!(read_at(&mut chip, TIFR1, 99) & ICF, 0);
+    assert_eq!(read_at(&mut chip, TIFR1, 100) & ICF, ICF);
+    assert_eq!(count_of(&mut chip, ICR1L), 100 - started);
+    write(&mut chip, TIFR1, ICF);
+    assert_eq!(read_at(&mut chip, TIFR1, 299) & ICF, 0, "not on the fall");
+    assert_eq!(read_at(&mut chip, TIFR1, 300) & ICF, ICF);
+    assert_eq!(count_of(&mut chip, ICR1L), 300 - started);
+}
+
+#[test]
+fn the_noise_canceller_and_the_falling_edge_are_the_comparator_s_too() {
+    let (mut chip, _) = set_up(&[(ACSR, 0x04), (TCCR1B, 0x81)]);
+    volts(&mut chip, 0, 18, 2.0);
+    volts(&mut chip, 50, 17, 3.0);
+    for (cycle, level) in [(100, 1.0), (103, 3.0), (200, 1.0)] {
+        volts(&mut chip, cycle, 17, level);
+    }
+    assert_eq!(
+        read_at(&mut chip, TIFR1, 203) & ICF,
+        0,
+        "a dip of three cycles"
+    );
+    assert_eq!(read_at(&mut chip, TIFR1, 204) & ICF, ICF);
+}
+
+#[test]
+fn the_bandgap_against_an_input_of_the_multiplexer_captures() {
+    // ADC9 through MUX5; the comparator is high as long as it is below 1.1 V.
+    let writes = [(ADCSRB, 0x48), (ADMUX, 0x01), (TCCR1B, 0x01), (ACSR, 0x44)];
+    let (mut chip, last) = set_up(&writes);
+    volts(&mut chip, 1_000, 9, 1.2);
+    chip.run_until(500);
+    // At the start the output was low: switching the source was a rise, which is not meant.
+    assert_eq!(read(&mut chip, TIFR1) & ICF, 0);
+    assert_eq!(read_at(&mut chip, TIFR1, 999) & ICF, 0);
+    assert_eq!(read_at(&mut chip, TIFR1, 1_000) & ICF, ICF);
+    assert_eq!(count_of(&mut chip, ICR1L), (1_000 - (last - 3)) as u16);
+    // With the converter on, the multiplexer is its own: AIN1, at ground, is below the bandgap.
+    write(&mut chip, ADCSRA, 0x80);
+    assert_eq!(read(&mut chip, ACSR) & 0x20, 0x20);
+}
+
+#[test]
+fn another_source_with_another_level_is_an_edge() {
+    // The pin is high, the comparator low: on falling edges ACIC itself captures, and its end does not.
+    let (mut chip, _) = set_up(&[(TCCR1B, 0x01)]);
+    chip.input(0, Input::Pin(pin('D', 4), Some(true)));
+    chip.run_until(50);
+    write(&mut chip, ACSR, 0x04);
+    assert_eq!(read(&mut chip, TIFR1) & ICF, ICF);
+    write(&mut chip, TIFR1, ICF);
+    write(&mut chip, ACSR, 0x00);
+    assert_eq!(read(&mut chip, TIFR1) & ICF, 0);
+}
+
+#[test]
+fn the_comparator_s_interrupt_has_its_senses() {
+    // Toggle, falling, rising: vector 28 counts in r20 what six edges request.
+    for (sense, expected) in [(0x08, 6), (0x0A, 3), (0x0B, 3)] {
+        let mut words = vec![NOP; 0x90];
+        words[..2].copy_from_slice(&[0x940C, 0x90]);
+        words[56..58].copy_from_slice(&[0x940C, 0x80]);
+        words[0x80..0x82].copy_from_slice(&[0x9543, RETI]);
+        words.extend([ldi(16, sense), out(0x30, 16), SEI, 0xCFFF]);
+        let mut chip = chip_of(&words);
+        volts(&mut chip, 0, 18, 2.5);
+        for edge in 0..6u64 {
+            let level = if edge % 2 == 0 { 3.0 } else { 2.0 };
+            volts(&mut chip, 100 + 50 * edge, 17, level);
+        }
+        chip.run_until(1_000);
+        assert_eq!(chip.cpu().registers()[20], expected, "{sense:#x}");
+    }
+}
+
+#[test]
+fn the_comparator_sees_its_pins_also_where_their_digital_input_is_off() {
+    let (mut chip, _) = set_up(&[(0x7F, 0x03)]);
+    chip.input(0, Input::Pin(pin('E', 2), Some(true)));
+    chip.run_until(100);
+    assert_eq!(read(&mut chip, ACSR) & 0x20, 0x20);
+    assert_eq!(read(&mut chip, 0x2C) & 0x04, 0, "PINE");
+}
+
+#[test]
+fn a_pull_up_and_an_output_are_voltages_too() {
+    let (mut chip, _) = switched_on(ON);
+    chip.run_until(100);
+    write(&mut chip, ADMUX, 0x43);
+    let convert = |chip: &mut Chip| {
+        write(chip, ADCSRA, ON | ADSC);
+        let end = chip.cycle() + 5_000;
+        chip.run_until(end);
+        result(chip)
+    };
+    assert_eq!(convert(&mut chip), 0, "nothing connected");
+    write(&mut chip, 0x31, 0x08);
+    assert_eq!(convert(&mut chip), 1023, "PORTF: the pull-up");
+    write(&mut chip, 0x30, 0x08);
+    write(&mut chip, 0x31, 0x00);
+    assert_eq!(convert(&mut chip), 0, "DDRF: a low output");
+}

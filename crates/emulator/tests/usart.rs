@@ -469,33 +469,3 @@ fn a_snapshot_in_the_middle_of_frames_goes_on_as_the_original() {
     assert_eq!(chip.take_outputs(), snapshot.take_outputs());
     assert_eq!(read(&mut chip, UDR0), read(&mut snapshot, UDR0));
 }
-
-#[test]
-fn as_a_master_of_spi_a_byte_comes_in_for_each_that_goes_out() {
-    // UBRR 3: eight cycles a bit.
-    let (mut chip, _) = set_up(&[(UCSR0C, 0xC0), (UCSR0B, RECEIVE | SEND), (UBRR0L, 3)]);
-    chip.input(0, Input::Pin(pin('E', 0), Some(true)));
-    chip.run_until(100);
-    write(&mut chip, UDR0, 0x35);
-    write(&mut chip, UDR0, 0x36);
-    chip.run_until(400);
-    let sent = sent(&mut chip);
-    assert_eq!([sent[0].1, sent[1].1], [0x35, 0x36]);
-    assert_eq!(sent[1].0 - sent[0].0, 8 * 8);
-    for _ in 0..2 {
-        assert_eq!(read(&mut chip, UCSR0A) & RXC, RXC);
-        assert_eq!(read(&mut chip, UDR0), 0xFF);
-    }
-    assert_eq!(read(&mut chip, UCSR0A) & RXC, 0);
-}
-
-#[test]
-fn a_synchronous_master_s_bit_is_two_ticks() {
-    let (mut chip, _) = set_up(&[(UCSR0C, 0x46), (UCSR0B, SEND), (UBRR0L, 15)]);
-    chip.run_until(100);
-    write(&mut chip, UDR0, 0x01);
-    write(&mut chip, UDR0, 0x02);
-    chip.run_until(1_500);
-    let sent = sent(&mut chip);
-    assert_eq!(sent[1].0 - sent[0].0, 10 * 32);
-}

@@ -30,6 +30,9 @@ impl Devices {
             for timer in &mut self.timers {
                 timer.tell_duty(&mut self.core, cycle);
             }
+            for usart in &mut self.usarts {
+                usart.direction_changed(&mut self.core, cycle);
+            }
         }
     }
 
@@ -54,9 +57,6 @@ impl Devices {
                 _ => 0,
             };
             timer.want(&mut self.core, flag, at.cycle);
-        }
-        if self.analog.captures() {
-            self.not_modelled(address, at, true);
         }
     }
 

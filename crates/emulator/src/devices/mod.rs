@@ -50,8 +50,6 @@ pub const CLOCK_HZ: u64 = 16_000_000;
 
 /// The supply [V].
 const SUPPLY_V: f64 = 5.0;
-/// AIN0 and AIN1, PE2 and PE3.
-const COMPARATOR_PINS: [Pin; 2] = [Pin::at(4, 2), Pin::at(4, 3)];
 /// From a reset to the first instruction: 14 cycles and 65 ms, as the fuses of the Mega have it (DS40002549, table 10-4).
 const RESET_CYCLES: u64 = 14 + 65 * CLOCK_HZ / 1000;
 
@@ -238,8 +236,8 @@ impl Devices {
             Input::Pin(pin, level) => {
                 let change = core.ports.set_outside(pin, level, cycle);
                 core.note(Some(change), cycle);
-                if let (Some(channel), Some(level)) = (analog::channel(pin), level) {
-                    let volts = if level { SUPPLY_V } else { 0.0 };
+                if let Some(channel) = analog::channel(pin) {
+                    let volts = level.map(|level| if level { SUPPLY_V } else { 0.0 });
                     self.analog.set_volts(core, channel, volts, cycle);
                 }
             }
@@ -259,7 +257,7 @@ impl Devices {
                 }
             }
             Input::Volts { channel, volts } => {
-                self.analog.set_volts(core, channel, volts, cycle);
+                self.analog.set_volts(core, channel, Some(volts), cycle);
                 if let Some(pin) = analog::pin(channel) {
                     let level = volts >= SUPPLY_V / 2.0;
                     let change = core.ports.set_outside(pin, Some(level), cycle);
@@ -375,6 +373,9 @@ impl Devices {
                     self.core.say(cycle, event);
                 }
             }
+            if change.driven != 0 {
+                self.analog.port_changed(&mut self.core, change.port, cycle);
+            }
             if change.levels != 0 {
                 let ports = &self.core.ports;
                 let raised = self.external.int0_flag();
@@ -391,6 +392,9 @@ impl Devices {
                 self.tell_pins(&change, cycle);
             }
         }
+        if let Some((output, cycle)) = self.core.captured.take() {
+            self.timers[1].set_comparator(&mut self.core, output, cycle);
+        }
         if let Some(cycle) = self.core.triggered.take() {
             self.analog.triggered(&mut self.core, cycle);
         }
@@ -399,13 +403,6 @@ impl Devices {
     fn tell_pins(&mut self, change: &Change, cycle: u64) {
         if change.port == spi::SELECT.port() && change.levels & spi::SELECT.mask() != 0 {
             self.spi.look_at_select(&mut self.core, cycle);
-        }
-        let [positive, negative] = COMPARATOR_PINS;
-        if change.port == positive.port()
-            && change.levels & (positive.mask() | negative.mask()) != 0
-        {
-            let pins = COMPARATOR_PINS.map(|pin| self.core.ports.level(pin));
-            self.analog.set_pins(&mut self.core, pins, cycle);
         }
         for bit in 0..8 {
             if change.levels >> bit & 1 != 0 {

@@ -33,6 +33,8 @@ pub(crate) struct Core {
     pub(super) demand: Option<Demand>,
     /// The flag that starts a conversion was raised in this cycle.
     pub(super) triggered: Option<u64>,
+    /// The comparator takes the place of timer 1's capture pin with this output, or gives it back (`None`), from this cycle on.
+    pub(super) captured: Option<(Option<bool>, u64)>,
     /// What OC0A and OC1C have for the pin they share.
     pub(super) shared: [Option<bool>; 2],
 }

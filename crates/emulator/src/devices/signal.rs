@@ -32,7 +32,7 @@ pub enum Input {
     /// The voltage on an analog input from now on; as a digital level, a half of the supply and above is high. A pin that is driven to a
     /// level has the supply's voltage or none.
     Volts {
-        /// ADC0 to ADC15; 16 is the pin AREF.
+        /// ADC0 to ADC15; 16 is the pin AREF, 17 and 18 are the comparator's AIN0 and AIN1.
         channel: u8,
         /// Against ground [V], 0 to 5.
         volts: f64,

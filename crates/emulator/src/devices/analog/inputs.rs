@@ -1,41 +1,73 @@
 //! Voltages at the analog inputs, and which of them a conversion is about (DS40002549, tables 26-3 and 26-4).
+//!
+//! What the chip does to a pin itself counts too: an output has its level, a pull-up reaches the supply where nothing else is connected.
 
 use crate::devices::SUPPLY_V;
+use crate::devices::ports::{Drive, Pin, Ports};
 
 /// The two references on the chip [V].
 const BANDGAP_V: f64 = 1.1;
 const INTERNAL_V: f64 = 2.56;
-/// Inputs: ADC0 to ADC15, and the pin AREF.
-const INPUTS: usize = 17;
+/// Inputs: ADC0 to ADC15, the pin AREF, AIN0 and AIN1.
+const INPUTS: usize = 19;
 const AREF: usize = 16;
+/// The comparator's inputs, AIN0 and AIN1.
+pub(super) const COMPARATOR: [u8; 2] = [17, 18];
 
-/// What is connected outside [V].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Inputs([f64; INPUTS]);
+const PORT_E: usize = 4;
+const PORT_F: usize = 5;
+const PORT_K: usize = 9;
 
-impl Default for Inputs {
-    /// Nothing: inputs at ground, AREF at the supply.
-    fn default() -> Inputs {
-        let mut volts = [0.0; INPUTS];
-        volts[AREF] = SUPPLY_V;
-        Inputs(volts)
+/// The pin that an analog input is on; AREF is none of a port.
+pub(crate) fn pin(channel: u8) -> Option<Pin> {
+    match channel {
+        0..8 => Some(Pin::at(PORT_F, channel)),
+        8..16 => Some(Pin::at(PORT_K, channel - 8)),
+        16 => None,
+        17 | 18 => Some(Pin::at(PORT_E, channel - 15)),
+        _ => None,
     }
 }
 
+/// The analog input that is on a pin, if one is.
+pub(crate) fn channel(pin: Pin) -> Option<u8> {
+    match (pin.port(), pin.bit()) {
+        (PORT_F, bit) => Some(bit),
+        (PORT_K, bit) => Some(8 + bit),
+        (PORT_E, bit @ (2 | 3)) => Some(15 + bit),
+        _ => None,
+    }
+}
+
+/// What is connected outside [V]; `None` where nothing is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Inputs([Option<f64>; INPUTS]);
+
 impl Inputs {
-    /// Another voltage; what the pins cannot bear is cut off at the supply and at ground.
-    pub(super) fn set(&mut self, channel: u8, volts: f64) {
+    /// Another voltage, or none; what the pins cannot bear is cut off at the supply and at ground.
+    pub(super) fn set(&mut self, channel: u8, volts: Option<f64>) {
         if let Some(input) = self.0.get_mut(usize::from(channel))
-            && volts.is_finite()
+            && volts.is_none_or(f64::is_finite)
         {
-            *input = volts.clamp(0.0, SUPPLY_V);
+            *input = volts.map(|volts| volts.clamp(0.0, SUPPLY_V));
+        }
+    }
+
+    /// The voltage at an input; a pin that nothing drives is at ground.
+    pub(super) fn volts(&self, channel: u8, ports: &Ports) -> f64 {
+        let outside = self.0.get(usize::from(channel)).copied().flatten();
+        match pin(channel).map(|pin| ports.drive(pin)) {
+            Some(Drive::Low) => 0.0,
+            Some(Drive::High) => SUPPLY_V,
+            Some(Drive::PullUp) => outside.unwrap_or(SUPPLY_V),
+            Some(Drive::Floating) | None => outside.unwrap_or_default(),
         }
     }
 
     /// The reference that REFS selects.
     fn reference(&self, select: u8) -> f64 {
         match select & 3 {
-            0 => self.0[AREF],
+            0 => self.0[AREF].unwrap_or(SUPPLY_V),
             1 => SUPPLY_V,
             2 => BANDGAP_V,
             _ => INTERNAL_V,
@@ -43,17 +75,17 @@ impl Inputs {
     }
 
     /// The voltage of a single input by its MUX number; `None` for the differential ones.
-    pub(super) fn single(&self, mux: u8) -> Option<f64> {
+    pub(super) fn single(&self, mux: u8, ports: &Ports) -> Option<f64> {
         match mux & 0x3F {
             0x1E => Some(BANDGAP_V),
             0x1F => Some(0.0),
-            mux if mux & 0x18 == 0 => Some(self.0[usize::from(mux & 7 | mux >> 2 & 8)]),
+            mux if mux & 0x18 == 0 => Some(self.volts(mux & 7 | mux >> 2 & 8, ports)),
             _ => None,
         }
     }
 
     /// What a conversion gives: 0 to 1023, or in two's complement for two inputs -512 to 511.
-    pub(super) fn convert(&self, references: u8, mux: u8) -> u16 {
+    pub(super) fn convert(&self, references: u8, mux: u8, ports: &Ports) -> u16 {
         let reference = self.reference(references);
         let ratio = |volts: f64| {
             if reference > 0.0 {
@@ -62,11 +94,11 @@ impl Inputs {
                 0.0
             }
         };
-        if let Some(volts) = self.single(mux) {
+        if let Some(volts) = self.single(mux, ports) {
             return (ratio(volts) * 1024.0).clamp(0.0, 1023.0) as u16;
         }
         let (positive, negative, gain) = pair(mux);
-        let volts = |input: u8| self.0[usize::from(input | mux >> 2 & 8)];
+        let volts = |input: u8| self.volts(input | mux >> 2 & 8, ports);
         let steps = ratio((volts(positive) - volts(negative)) * gain) * 512.0;
         (steps.floor().clamp(-512.0, 511.0) as i16).cast_unsigned() & 0x3FF
     }
@@ -93,9 +125,10 @@ mod tests {
     #[test]
     fn a_conversion_is_a_share_of_its_reference() {
         let mut inputs = Inputs::default();
-        inputs.set(3, 2.5);
-        inputs.set(11, 1.0);
-        inputs.set(8, 0.99);
+        let ports = Ports::default();
+        for (channel, volts) in [(3, 2.5), (11, 1.0), (8, 0.99)] {
+            inputs.set(channel, Some(volts));
+        }
         for (references, mux, expected) in [
             (1, 0x03, 512),
             (1, 0x00, 0),
@@ -113,7 +146,7 @@ mod tests {
             (3, 0x29, 0x200),
         ] {
             assert_eq!(
-                inputs.convert(references, mux),
+                inputs.convert(references, mux, &ports),
                 expected,
                 "{references} {mux:#x}"
             );

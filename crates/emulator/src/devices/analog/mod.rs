@@ -5,11 +5,11 @@
 
 mod inputs;
 
+use super::Core;
 use super::interrupts::vector;
-use super::ports::Pin;
 use super::schedule::Source;
-use super::{Core, SUPPLY_V};
-use inputs::Inputs;
+use inputs::{COMPARATOR, Inputs};
+pub(crate) use inputs::{channel, pin};
 
 const ACSR: u16 = 0x50;
 const ADCL: u16 = 0x78;
@@ -58,24 +58,6 @@ pub(crate) enum Trigger {
     Timer(usize, u8),
 }
 
-/// The analog input that is on a pin, if one is.
-pub(crate) fn channel(pin: Pin) -> Option<u8> {
-    match pin.port() {
-        PORT_F => Some(pin.bit()),
-        PORT_K => Some(8 + pin.bit()),
-        _ => None,
-    }
-}
-
-/// The pin that an analog input is on.
-pub(crate) fn pin(channel: u8) -> Option<Pin> {
-    match channel {
-        0..8 => Some(Pin::at(PORT_F, channel)),
-        8..16 => Some(Pin::at(PORT_K, channel - 8)),
-        _ => None,
-    }
-}
-
 /// A conversion on its way.
 #[derive(Clone, Copy, Debug)]
 struct Conversion {
@@ -107,8 +89,8 @@ pub(crate) struct Analog {
     comparator: u8,
     /// The comparator's output.
     higher: bool,
-    /// AIN0 and AIN1 as digital levels.
-    pins: [bool; 2],
+    /// What timer 1 was last told: the comparator's output in the place of its capture pin, or nothing.
+    captured: Option<bool>,
     /// The cycle in which the converter lost its clock.
     stopped: Option<u64>,
 }
@@ -116,25 +98,28 @@ pub(crate) struct Analog {
 impl Analog {
     /// Starts over; what is connected stays.
     pub(crate) fn reset(&mut self, core: &mut Core) {
-        let (inputs, pins) = (self.inputs, self.pins);
         *self = Analog {
-            inputs,
-            pins,
+            inputs: self.inputs,
             ..Analog::default()
         };
         self.reschedule(core);
     }
 
-    /// A voltage changes.
-    pub(crate) fn set_volts(&mut self, core: &mut Core, channel: u8, volts: f64, cycle: u64) {
+    /// A voltage changes; `None` when nothing is connected any more.
+    pub(crate) fn set_volts(
+        &mut self,
+        core: &mut Core,
+        channel: u8,
+        volts: Option<f64>,
+        cycle: u64,
+    ) {
         self.inputs.set(channel, volts);
         self.compare(core, cycle);
     }
 
-    /// The comparator's pins AIN0 and AIN1 have these levels.
-    pub(crate) fn set_pins(&mut self, core: &mut Core, pins: [bool; 2], cycle: u64) {
-        if self.pins != pins {
-            self.pins = pins;
+    /// The chip does something else to pins of this port: the comparator looks at them.
+    pub(crate) fn port_changed(&mut self, core: &mut Core, port: usize, cycle: u64) {
+        if matches!(port, PORT_E | PORT_F | PORT_K) {
             self.compare(core, cycle);
         }
     }
@@ -307,7 +292,7 @@ impl Analog {
                 .is_some()
             {
                 let (references, mux) = (conversion.references, conversion.mux);
-                conversion.result = self.inputs.convert(references, mux);
+                conversion.result = self.inputs.convert(references, mux, &core.ports);
             } else if conversion.end <= cycle {
                 let result = conversion.result;
                 self.finish(result, cycle);
@@ -339,22 +324,37 @@ impl Analog {
 
     /// The comparator looks at its inputs.
     fn compare(&mut self, core: &mut Core, cycle: u64) {
-        let volts = |level: bool| if level { SUPPLY_V } else { 0.0 };
+        let higher = self.comparator & ACD == 0 && self.is_higher(core);
+        if higher != self.higher {
+            self.changed(core, higher, cycle);
+        }
+        let captured = (self.comparator & ACIC != 0).then_some(higher);
+        if captured != self.captured {
+            self.captured = captured;
+            core.captured = Some((captured, cycle));
+        }
+    }
+
+    /// The positive input is above the negative one (section 25.1, table 25-1).
+    fn is_higher(&self, core: &Core) -> bool {
+        let ports = &core.ports;
+        let [positive, negative] = COMPARATOR;
         let positive = match self.comparator & ACBG {
-            0 => volts(self.pins[0]),
-            _ => self.inputs.single(0x1E).unwrap_or_default(),
+            0 => self.inputs.volts(positive, ports),
+            _ => self.inputs.single(0x1E, ports).unwrap_or_default(),
         };
         let multiplexed = self.control_b & ACME != 0 && self.control_a & ADEN == 0;
         let negative = if multiplexed {
             let channel = self.mux() & 0x27;
-            self.inputs.single(channel).unwrap_or_default()
+            self.inputs.single(channel, ports).unwrap_or_default()
         } else {
-            volts(self.pins[1])
+            self.inputs.volts(negative, ports)
         };
-        let higher = self.comparator & ACD == 0 && positive > negative;
-        if higher == self.higher {
-            return;
-        }
+        positive > negative
+    }
+
+    /// The comparator's output changes.
+    fn changed(&mut self, core: &mut Core, higher: bool, cycle: u64) {
         self.higher = higher;
         // ACIS: toggle, reserved, falling, rising.
         let meant = match self.comparator & 3 {
@@ -370,11 +370,6 @@ impl Analog {
             }
         }
         self.reschedule(core);
-    }
-
-    /// The comparator is to take the place of timer 1's capture pin.
-    pub(crate) fn captures(&self) -> bool {
-        self.comparator & ACIC != 0
     }
 
     /// Pins whose digital input is off: those of ports E, F and K.

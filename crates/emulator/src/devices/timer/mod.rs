@@ -69,6 +69,8 @@ pub(crate) struct Timer {
     reckoned: u64,
     /// A level on the capture pin that must last until this cycle.
     capture_due: Option<u64>,
+    /// The comparator's output, where it takes the place of the capture pin.
+    comparator: Option<bool>,
     /// The pins were last given these outputs.
     driven: [Option<bool>; CHANNELS],
     /// The PWM that was last told of each, and whether something of it may have changed.
@@ -97,6 +99,7 @@ fn new(index: usize) -> Timer {
         asynchronous: 0,
         reckoned: 0,
         capture_due: None,
+        comparator: None,
         driven: [None; CHANNELS],
         told: [None; CHANNELS],
         duty_due: false,
@@ -283,18 +286,41 @@ impl Timer {
                 self.show(core, cycle);
             }
         }
-        if place.capture == Some(pin) && self.wave.mode.top != Top::Capture {
-            let [_, control, _] = self.control;
-            let meant = (control & ICES != 0) == level;
-            self.capture_due = None;
-            if meant && control & ICNC != 0 {
-                self.capture_due = Some(cycle + NOISE_CYCLES);
-            } else if meant {
-                self.catch_up(core, cycle);
-                self.capture(core, cycle);
-            }
-            self.reschedule(core);
+        if place.capture == Some(pin) && self.comparator.is_none() {
+            self.capture_edge(core, level, cycle);
         }
+    }
+
+    /// The comparator takes the place of the capture pin with this output, or gives it back (`None`). Where the two differ, the
+    /// change is an edge (section 17.6.1).
+    pub(crate) fn set_comparator(&mut self, core: &mut Core, output: Option<bool>, cycle: u64) {
+        let pin = self
+            .place()
+            .capture
+            .is_some_and(|pin| core.ports.level(pin));
+        let before = self.comparator.unwrap_or(pin);
+        self.comparator = output;
+        let level = output.unwrap_or(pin);
+        if level != before && !self.stopped {
+            self.capture_edge(core, level, cycle);
+        }
+    }
+
+    /// The input of the capture unit has changed.
+    fn capture_edge(&mut self, core: &mut Core, level: bool, cycle: u64) {
+        if self.wave.mode.top == Top::Capture {
+            return;
+        }
+        let [_, control, _] = self.control;
+        let meant = (control & ICES != 0) == level;
+        self.capture_due = None;
+        if meant && control & ICNC != 0 {
+            self.capture_due = Some(cycle + NOISE_CYCLES);
+        } else if meant {
+            self.catch_up(core, cycle);
+            self.capture(core, cycle);
+        }
+        self.reschedule(core);
     }
 
     fn capture(&mut self, core: &mut Core, cycle: u64) {

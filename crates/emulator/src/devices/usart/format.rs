@@ -8,9 +8,17 @@ pub(super) struct Format {
     pub(super) parity: Option<Parity>,
     /// Stop bits sent; the receiver looks at the first one only.
     pub(super) stop: u32,
-    /// As a master of SPI: eight bits without a frame, the highest first unless `lowest_first`.
-    pub(super) bare: bool,
+    pub(super) mode: Mode,
     lowest_first: bool,
+}
+
+/// How bits and clock go together, UMSEL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Mode {
+    Asynchronous,
+    Synchronous,
+    /// Eight bits without a frame, the highest first unless UDORD is set.
+    SpiMaster,
 }
 
 /// What the parity bit makes the number of ones.
@@ -28,7 +36,7 @@ impl Format {
                 data: 8,
                 parity: None,
                 stop: 0,
-                bare: true,
+                mode: Mode::SpiMaster,
                 lowest_first: control & 4 != 0,
             };
         }
@@ -44,7 +52,11 @@ impl Format {
                 _ => None,
             },
             stop: if control & 8 != 0 { 2 } else { 1 },
-            bare: false,
+            mode: match control >> 6 {
+                0 => Mode::Asynchronous,
+                // 2 is reserved.
+                _ => Mode::Synchronous,
+            },
             lowest_first: true,
         }
     }
@@ -65,14 +77,9 @@ impl Format {
 
     /// The levels of a whole frame, start bit first, and how many there are.
     pub(super) fn frame(self, data: u16) -> (u32, u32) {
-        if self.bare {
+        if self.mode == Mode::SpiMaster {
             let [byte, _] = data.to_le_bytes();
-            let bits = if self.lowest_first {
-                byte
-            } else {
-                byte.reverse_bits()
-            };
-            return (u32::from(bits), 8);
+            return (u32::from(self.in_order(byte)), 8);
         }
         let mut bits = u32::from(data) << 1;
         let mut count = 1 + self.data;
@@ -85,6 +92,15 @@ impl Format {
             count += 1;
         }
         (bits, count)
+    }
+
+    /// The bits of a byte without a frame in the order in which they cross the line, the first one lowest; and back.
+    pub(super) fn in_order(self, byte: u8) -> u8 {
+        if self.lowest_first {
+            byte
+        } else {
+            byte.reverse_bits()
+        }
     }
 
     /// How many bits the receiver takes after the start bit.

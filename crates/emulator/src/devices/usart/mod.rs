@@ -3,9 +3,9 @@
 //! Bytes come in through [`line`] as levels of the RXD pin, which the [`receiver`] samples; the [`transmitter`] moves the TXD pin.
 //! Each has a next event, and the USART is woken at the earliest.
 //!
-//! Synchronous modes run at their rate as a master's, without the clock on XCK; as master of SPI a byte comes in for each that goes
-//! out, with the level of the pin. Where XCK is an input, nothing clocks them on the chip; here they run as a master's.
+//! In synchronous modes and as master of SPI both run by the clock on XCK ([`clocked`]).
 
+mod clocked;
 mod format;
 mod line;
 mod place;
@@ -17,6 +17,7 @@ use super::ports::{Force, Pin};
 use super::schedule::Source;
 use super::{CLOCK_HZ, Core, Event};
 use crate::io::Access;
+use clocked::Clocked;
 use format::Format;
 use line::Line;
 use place::{PLACES, Place, Register};
@@ -54,6 +55,9 @@ pub(crate) struct Usart {
     transmitter: Transmitter,
     receiver: Receiver,
     line: Line,
+    clocked: Clocked,
+    /// It gives XCK its level.
+    drives_clock: bool,
     /// The cycle in which it lost its clock.
     stopped: Option<u64>,
 }
@@ -80,6 +84,8 @@ fn new(index: usize) -> Usart {
         transmitter: Transmitter::default(),
         receiver: Receiver::default(),
         line: Line::default(),
+        clocked: Clocked::default(),
+        drives_clock: false,
         stopped: None,
     }
 }
@@ -134,6 +140,12 @@ impl Usart {
         if self.stopped.is_some() {
             return;
         }
+        if self.is_clocked() {
+            self.run_clock(core, cycle);
+            self.clocked.set_time(cycle);
+            self.request(core);
+            return;
+        }
         while let Some(at) = self.transmitter.next(self.rate)
             && at <= cycle
         {
@@ -145,17 +157,13 @@ impl Usart {
                         baud: CLOCK_HZ as f64 / (self.rate.bit() * core.clock.divisor()) as f64,
                     };
                     core.say(at, event);
-                    if self.format.bare && self.listens() {
-                        self.receiver
-                            .shift_in(core.ports.level(self.place().receive));
-                    }
                     self.drive_pins(core, at);
                 }
                 Some(Step::Level(_)) => self.drive_pins(core, at),
                 None => {}
             }
         }
-        if self.listens() && !self.format.bare {
+        if self.listens() {
             let accept = self.acceptor();
             self.receiver
                 .sample_before(cycle + 1, self.format, self.rate, accept);
@@ -169,14 +177,28 @@ impl Usart {
         move |data, stop| !selective || if nine { data & 0x100 != 0 } else { stop }
     }
 
-    /// The RXD pin, if it is that, has changed.
+    /// A pin has changed: RXD or XCK, if it is one of them.
     pub(crate) fn pin_changed(&mut self, core: &mut Core, pin: Pin, cycle: u64) {
-        let framed = self.listens() && !self.format.bare;
-        if pin == self.place().receive && framed && self.stopped.is_none() {
+        if self.stopped.is_some() {
+            return;
+        }
+        if pin == self.place().clock && self.is_clocked() {
+            let high = core.ports.level(pin);
+            self.clock_edge(core, high, cycle);
+        }
+        if pin == self.place().receive && self.listens() && !self.is_clocked() {
             let (level, accept) = (self.line_level(core), self.acceptor());
             self.receiver
                 .change(level, cycle, self.format, self.rate, accept);
             self.request(core);
+            self.reschedule(core);
+        }
+    }
+
+    /// The direction of a pin may have changed: an XCK that is an output has the clock of this USART.
+    pub(crate) fn direction_changed(&mut self, core: &mut Core, cycle: u64) {
+        if self.is_clocked() {
+            self.catch_up(core, cycle);
             self.reschedule(core);
         }
     }
@@ -193,6 +215,7 @@ impl Usart {
                 let cycles = cycle - stopped;
                 self.rate.origin += cycles;
                 self.transmitter.delay(cycles);
+                self.clocked.delay(cycles);
                 self.receiver.delay(cycles, self.line_level(core));
             }
             _ => return,
@@ -214,6 +237,7 @@ impl Usart {
     pub(crate) fn reschedule(&self, core: &mut Core) {
         let (transmitter, receiver) = match self.stopped {
             Some(_) => (None, None),
+            None if self.is_clocked() => (self.next_clock(core), None),
             None => (
                 self.transmitter.next(self.rate),
                 self.receiver.next(self.format, self.rate),
@@ -246,7 +270,7 @@ impl Usart {
     }
 
     /// Transmitter and receiver take their pins over whatever the direction is.
-    fn drive_pins(&self, core: &mut Core, cycle: u64) {
+    fn drive_pins(&mut self, core: &mut Core, cycle: u64) {
         let sends = self.control_b & TXEN != 0 || self.transmitter.is_busy();
         let force = |on: bool, force: Force| if on { force } else { Force::None };
         let transmit = force(sends, Force::Output(self.transmitter.level));
@@ -256,6 +280,12 @@ impl Usart {
             (self.place().receive, receive),
         ] {
             let change = core.ports.force(pin, force, cycle);
+            core.note(change, cycle);
+        }
+        if self.drives_clock || self.is_clocked() {
+            let level = self.clock_level();
+            self.drives_clock = level.is_some();
+            let change = core.ports.override_output(self.place().clock, level, cycle);
             core.note(change, cycle);
         }
     }
@@ -295,6 +325,7 @@ impl Usart {
                 self.control_c = value;
                 self.set_format();
                 self.set_rate(self.rate.origin, at.cycle);
+                self.drive_pins(core, at.cycle);
             }
             Some(Register::RateLow) => {
                 self.divisor = u16::from_le_bytes([value, high]);
@@ -350,12 +381,15 @@ impl Usart {
             },
             _ => Rate {
                 origin,
-                tick: 2 * ticks,
-                per_bit: 1,
+                tick: ticks,
+                per_bit: 2,
             },
         };
         if rate != self.rate {
-            self.transmitter.change_rate(self.rate, rate, cycle);
+            if !self.is_clocked() {
+                self.transmitter.change_rate(self.rate, rate, cycle);
+            }
+            self.clocked.set_time(cycle);
             self.receiver.give_up(cycle);
             self.rate = rate;
         }

@@ -21,6 +21,8 @@ pub(super) struct Place {
     pub(super) vector: u8,
     pub(super) receive: Pin,
     pub(super) transmit: Pin,
+    /// XCK.
+    pub(super) clock: Pin,
 }
 
 impl Place {
@@ -37,19 +39,20 @@ impl Place {
     }
 }
 
-const fn place(base: u16, vector: u8, port: usize, bit: u8) -> Place {
+const fn place(base: u16, vector: u8, port: usize, bit: u8, clock: u8) -> Place {
     Place {
         base,
         vector,
         receive: Pin::at(port, bit),
         transmit: Pin::at(port, bit + 1),
+        clock: Pin::at(port, clock),
     }
 }
 
-/// USART 0 on PE0 and PE1, 1 on PD2 and PD3, 2 on PH0 and PH1, 3 on PJ0 and PJ1.
+/// USART 0 on PE0 and PE1, 1 on PD2 and PD3, 2 on PH0 and PH1, 3 on PJ0 and PJ1; XCK on PE2, PD5, PH2 and PJ2.
 pub(super) static PLACES: [Place; 4] = [
-    place(0xC0, 25, 4, 0),
-    place(0xC8, 36, 3, 2),
-    place(0xD0, 51, 7, 0),
-    place(0x130, 54, 8, 0),
+    place(0xC0, 25, 4, 0, 2),
+    place(0xC8, 36, 3, 2, 5),
+    place(0xD0, 51, 7, 0, 2),
+    place(0x130, 54, 8, 0, 2),
 ];

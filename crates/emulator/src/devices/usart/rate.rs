@@ -10,7 +10,7 @@ pub(super) struct Rate {
     pub(super) origin: u64,
     /// Cycles from tick to tick.
     pub(super) tick: u64,
-    /// Ticks of a bit.
+    /// Ticks of a bit; two in a synchronous mode.
     pub(super) per_bit: u64,
 }
 
@@ -30,17 +30,21 @@ impl Rate {
         self.next(cycle, self.bit())
     }
 
+    /// A bit begins with the tick in this cycle.
+    pub(super) fn begins_bit(self, cycle: u64) -> bool {
+        cycle.saturating_sub(self.origin).is_multiple_of(self.bit())
+    }
+
     fn next(self, cycle: u64, step: u64) -> u64 {
         self.origin + cycle.saturating_sub(self.origin).div_ceil(step) * step
     }
 
     /// Ticks from the first low sample of a start bit to the three that decide about it: samples 8, 9 and 10, or 4, 5 and 6 at
-    /// double speed (section 22.7.2). A synchronous receiver samples each bit once.
+    /// double speed (section 22.7.2).
     pub(super) const fn votes(self) -> &'static [u64] {
         match self.per_bit {
             16 => &[7, 8, 9],
-            8 => &[3, 4, 5],
-            _ => &[0],
+            _ => &[3, 4, 5],
         }
     }
 }

@@ -76,6 +76,7 @@ impl Receiver {
     /// Gives up the frame at hand: the clock has changed under it.
     pub(super) fn give_up(&mut self, cycle: u64) {
         self.phase = Phase::Idle { high: self.level };
+        self.decided = 0;
         self.sampled = self.sampled.max(cycle);
     }
 
@@ -106,13 +107,38 @@ impl Receiver {
         taken
     }
 
-    /// A byte has been clocked in, all of one level.
-    pub(super) fn shift_in(&mut self, level: bool) {
-        self.lost |= self.waiting.take().is_some();
-        self.put(Received {
-            data: if level { 0xFF } else { 0 },
-            ..Received::default()
-        });
+    /// The clock of a synchronous mode takes a bit: a low one begins a frame.
+    pub(super) fn take_bit(
+        &mut self,
+        level: bool,
+        format: Format,
+        accept: impl Fn(u16, bool) -> bool,
+    ) {
+        self.level = level;
+        if matches!(self.phase, Phase::Idle { .. }) {
+            if level {
+                return;
+            }
+            self.begin(0);
+        }
+        self.vote(format, 1, accept);
+    }
+
+    /// A bit of a byte without a frame.
+    pub(super) fn take_bare_bit(&mut self, level: bool, format: Format) {
+        if self.decided == 0 {
+            self.bits = 0;
+        }
+        self.bits |= u32::from(level) << self.decided;
+        self.decided += 1;
+        if self.decided == 8 {
+            self.decided = 0;
+            self.lost |= self.waiting.take().is_some();
+            self.put(Received {
+                data: u16::from(format.in_order(self.bits as u8)),
+                ..Received::default()
+            });
+        }
     }
 
     fn put(&mut self, mut received: Received) {

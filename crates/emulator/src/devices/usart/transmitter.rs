@@ -122,6 +122,29 @@ impl Transmitter {
         Some(Step::Sent(data))
     }
 
+    /// The cycle before which the frame does not begin, as long as it has not.
+    pub(super) fn waits_until(&self) -> Option<u64> {
+        self.frame
+            .filter(|frame| frame.begun == 0)
+            .map(|frame| frame.start)
+    }
+
+    /// A bit of the clock begins: the frame goes on by one bit, or is over and the next one begins.
+    pub(super) fn shift(&mut self, format: Format, cycle: u64) -> Option<Step> {
+        let mut sent = None;
+        if let Some(frame) = self.frame.filter(|frame| frame.begun == frame.count) {
+            sent = Some(Step::Sent(frame.data));
+            self.frame = None;
+            self.complete |= self.buffer.is_none();
+            self.load(format, cycle);
+        }
+        if let Some(frame) = &mut self.frame {
+            self.level = frame.level(frame.begun);
+            frame.begun += 1;
+        }
+        sent
+    }
+
     /// Its clock stood for some cycles.
     pub(super) fn delay(&mut self, cycles: u64) {
         if let Some(frame) = &mut self.frame {
