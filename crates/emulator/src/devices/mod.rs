@@ -217,7 +217,7 @@ impl Devices {
             Source::Usart(index) => self.usarts[index].happen(&mut self.core, cycle),
             Source::Eeprom => self.eeprom.happen(&mut self.core),
             Source::Programming => self.programming.happen(&mut self.core),
-            Source::Spi => self.spi.happen(&mut self.core),
+            Source::Spi => self.spi.happen(&mut self.core, cycle),
             Source::Twi => self.twi.happen(&mut self.core, cycle),
             Source::Analog => self.analog.happen(&mut self.core, cycle),
             Source::Watchdog => {
@@ -236,6 +236,8 @@ impl Devices {
             Input::Pin(pin, level) => {
                 let change = core.ports.set_outside(pin, level, cycle);
                 core.note(Some(change), cycle);
+                // A line that is let go may be low as a pin, and is high as one of the bus.
+                self.twi.pin_changed(core, pin, cycle);
                 if let Some(channel) = analog::channel(pin) {
                     let volts = level.map(|level| if level { SUPPLY_V } else { 0.0 });
                     self.analog.set_volts(core, channel, volts, cycle);
@@ -401,9 +403,6 @@ impl Devices {
     }
 
     fn tell_pins(&mut self, change: &Change, cycle: u64) {
-        if change.port == spi::SELECT.port() && change.levels & spi::SELECT.mask() != 0 {
-            self.spi.look_at_select(&mut self.core, cycle);
-        }
         for bit in 0..8 {
             if change.levels >> bit & 1 != 0 {
                 let pin = Pin::at(change.port, bit);
@@ -419,6 +418,8 @@ impl Devices {
                 for usart in &mut self.usarts {
                     usart.pin_changed(&mut self.core, pin, cycle);
                 }
+                self.spi.pin_changed(&mut self.core, pin, cycle);
+                self.twi.pin_changed(&mut self.core, pin, cycle);
             }
         }
     }

@@ -1,7 +1,8 @@
-//! The serial peripheral interface with nothing connected (DS40002549, section 21).
+//! The serial peripheral interface (DS40002549, section 21): master and slave, with the edges on its pins.
 //!
-//! As master a transfer takes eight periods of its clock and reads the level of MISO; as slave nothing clocks it. Its edges on SCK and
-//! MOSI are not made: the pins rest at the clock's idle level and at the last bit.
+//! A transfer is sixteen steps of half a clock period, at each of which SCK has an edge. CPHA says which of the two in a bit takes
+//! the level of the data line, and which puts out the next bit; without CPHA the first bit is out before the first edge. As a
+//! master the steps are the interface's own, as a slave those of the pin.
 
 use super::Core;
 use super::interrupts::vector;
@@ -17,15 +18,34 @@ const SPE: u8 = 0x40;
 const DORD: u8 = 0x20;
 const MSTR: u8 = 0x10;
 const CPOL: u8 = 0x08;
+const CPHA: u8 = 0x04;
 const SPIF: u8 = 0x80;
 const WCOL: u8 = 0x40;
 const SPI2X: u8 = 0x01;
 
 const PORT_B: usize = 1;
-pub(super) const SELECT: Pin = Pin::at(PORT_B, 0);
+const SELECT: Pin = Pin::at(PORT_B, 0);
 const CLOCK: Pin = Pin::at(PORT_B, 1);
-const OUT: Pin = Pin::at(PORT_B, 2);
-const IN: Pin = Pin::at(PORT_B, 3);
+const MOSI: Pin = Pin::at(PORT_B, 2);
+const MISO: Pin = Pin::at(PORT_B, 3);
+/// Edges of SCK in a transfer.
+const STEPS: u32 = 16;
+
+/// What the interface is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Role {
+    Off,
+    Master,
+    Slave,
+}
+
+/// When a master's edges are.
+#[derive(Clone, Copy, Debug)]
+struct Transfer {
+    start: u64,
+    /// Cycles of half a period.
+    half: u64,
+}
 
 /// The interface.
 #[derive(Clone, Debug, Default)]
@@ -37,9 +57,15 @@ pub(super) struct Spi {
     /// Flags that were up when SPSR was read: an access to SPDR clears them.
     seen: u8,
     received: u8,
+    /// The byte that goes out, what has come in of the other one, and the edges of this transfer.
     sent: u8,
-    /// When the byte that goes out is through.
-    transfer: Option<u64>,
+    taken: u8,
+    steps: u32,
+    /// The level of the line that goes out.
+    level: bool,
+    transfer: Option<Transfer>,
+    /// The bus is the other master's: SS of a slave is low.
+    selected: bool,
     /// The cycle in which it lost its clock.
     stopped: Option<u64>,
 }
@@ -63,21 +89,17 @@ impl Spi {
     pub(super) fn write(&mut self, core: &mut Core, address: u16, value: u8, cycle: u64) {
         match address {
             SPCR => {
+                let before = self.role();
                 self.control = value;
-                if value & SPE == 0 {
-                    self.transfer = None;
+                if self.role() != before {
+                    self.start_over();
                 }
                 self.look_at_select(core, cycle);
             }
             SPSR => self.double = value & SPI2X,
             SPDR => {
                 self.clear_seen(core);
-                if self.transfer.is_some() {
-                    self.flags |= WCOL;
-                } else if self.control & (SPE | MSTR) == SPE | MSTR {
-                    self.sent = value;
-                    self.transfer = Some(cycle + 8 * self.period());
-                }
+                self.write_data(value, cycle);
             }
             _ => {}
         }
@@ -85,63 +107,169 @@ impl Spi {
         self.reschedule(core);
     }
 
+    fn write_data(&mut self, value: u8, cycle: u64) {
+        if self.transfer.is_some() || self.steps > 0 {
+            self.flags |= WCOL;
+        } else if self.role() != Role::Off {
+            self.sent = value;
+            if self.role() == Role::Master {
+                let half = self.half_period();
+                self.transfer = Some(Transfer { start: cycle, half });
+            }
+            self.show_first();
+        }
+    }
+
+    fn role(&self) -> Role {
+        match (self.control & SPE != 0, self.control & MSTR != 0) {
+            (false, _) => Role::Off,
+            (true, true) => Role::Master,
+            (true, false) => Role::Slave,
+        }
+    }
+
+    /// What was on its way is lost.
+    fn start_over(&mut self) {
+        self.transfer = None;
+        self.steps = 0;
+        self.taken = 0;
+    }
+
     fn clear_seen(&mut self, core: &mut Core) {
         self.flags &= !std::mem::take(&mut self.seen);
         self.reschedule(core);
     }
 
-    /// Cycles of a bit.
-    fn period(&self) -> u64 {
-        let divisor = [4, 16, 64, 128][usize::from(self.control & 3)];
-        if self.double != 0 {
-            divisor / 2
-        } else {
-            divisor
+    /// Cycles of half a bit.
+    fn half_period(&self) -> u64 {
+        let half = [2, 8, 32, 64][usize::from(self.control & 3)];
+        if self.double != 0 { half / 2 } else { half }
+    }
+
+    fn is_set(&self, bit: u8) -> bool {
+        self.control & bit != 0
+    }
+
+    /// Puts a bit of the byte out.
+    fn show(&mut self, bit: u32) {
+        let place = if self.is_set(DORD) { bit } else { 7 - bit };
+        self.level = self.sent >> (place & 7) & 1 != 0;
+    }
+
+    /// Without CPHA the first bit is out before the first edge.
+    fn show_first(&mut self) {
+        if !self.is_set(CPHA) {
+            self.show(0);
         }
     }
 
+    /// The level of SCK.
+    fn clock(&self) -> bool {
+        self.steps.is_multiple_of(2) == self.is_set(CPOL)
+    }
+
+    /// Takes its pins over as table 21-1 has it: the directions of inputs always, those of outputs are the program's.
     fn drive_pins(&self, core: &mut Core, cycle: u64) {
-        let master = self.control & (SPE | MSTR) == SPE | MSTR;
-        let last = if self.control & DORD != 0 { 0x80 } else { 1 };
-        let last = self.sent & last != 0;
-        let clock = self.control & CPOL != 0;
-        let force = if master { Force::Input } else { Force::None };
+        let input = |is_input: bool| if is_input { Force::Input } else { Force::None };
+        let (master, slave) = (self.role() == Role::Master, self.role() == Role::Slave);
+        let out = slave && self.selected;
         for change in [
-            core.ports.force(IN, force, cycle),
             core.ports
-                .override_output(CLOCK, master.then_some(clock), cycle),
+                .force(MISO, input(master || slave && !out), cycle),
+            core.ports.force(MOSI, input(slave), cycle),
+            core.ports.force(CLOCK, input(slave), cycle),
+            core.ports.force(SELECT, input(slave), cycle),
             core.ports
-                .override_output(OUT, master.then_some(last), cycle),
+                .override_output(CLOCK, master.then(|| self.clock()), cycle),
+            core.ports
+                .override_output(MOSI, master.then_some(self.level), cycle),
+            core.ports
+                .override_output(MISO, out.then_some(self.level), cycle),
         ] {
             core.note(change, cycle);
         }
     }
 
-    /// A master that is selected by somebody else becomes a slave (section 21.3.2).
-    pub(super) fn look_at_select(&mut self, core: &mut Core, cycle: u64) {
-        let ports = &core.ports;
-        let selected =
-            ports.is_driven_outside(SELECT) && !ports.level(SELECT) && !ports.is_output(SELECT);
-        if selected && self.control & (SPE | MSTR) == SPE | MSTR {
-            self.control &= !MSTR;
-            self.flags |= SPIF;
-            self.transfer = None;
-            self.drive_pins(core, cycle);
-            self.reschedule(core);
+    /// A pin has changed: SS or SCK, if it is one of them.
+    pub(super) fn pin_changed(&mut self, core: &mut Core, pin: Pin, cycle: u64) {
+        if pin == SELECT {
+            self.look_at_select(core, cycle);
+        } else if pin == CLOCK && self.selected && self.stopped.is_none() {
+            // One that was active when the slave was selected has a trailing edge first, which is none of a byte.
+            let leading = core.ports.level(CLOCK) != self.is_set(CPOL);
+            if leading == self.steps.is_multiple_of(2) {
+                self.step(core, MOSI);
+                self.drive_pins(core, cycle);
+                self.reschedule(core);
+            }
         }
     }
 
-    /// The transfer is through.
-    pub(super) fn happen(&mut self, core: &mut Core) {
-        self.transfer = None;
-        self.received = if core.ports.level(IN) { 0xFF } else { 0 };
+    /// A master that is selected by somebody else becomes a slave (section 21.3.2); a slave that is no more drops what it has of a byte.
+    fn look_at_select(&mut self, core: &mut Core, cycle: u64) {
+        let ports = &core.ports;
+        let low = ports.is_driven_outside(SELECT) && !ports.level(SELECT);
+        if self.role() == Role::Master && low && !ports.is_output(SELECT) {
+            self.control &= !MSTR;
+            self.flags |= SPIF;
+            self.start_over();
+        }
+        let selected = self.role() == Role::Slave && low;
+        if selected != self.selected {
+            self.selected = selected;
+            self.start_over();
+            self.show_first();
+        }
+        self.drive_pins(core, cycle);
+        self.reschedule(core);
+    }
+
+    /// An edge of the clock: takes a bit from `input`, or puts out the next one.
+    fn step(&mut self, core: &Core, input: Pin) {
+        self.steps += 1;
+        let leading = !self.steps.is_multiple_of(2);
+        if leading != self.is_set(CPHA) {
+            let level = u8::from(core.ports.level(input));
+            self.taken = if self.is_set(DORD) {
+                self.taken >> 1 | level << 7
+            } else {
+                self.taken << 1 | level
+            };
+        } else if self.steps < STEPS {
+            self.show(self.steps / 2);
+        }
+        if self.steps == STEPS {
+            self.finish();
+        }
+    }
+
+    /// A byte has been exchanged: what came in is in the shift register, and a slave that is not given another sends it back.
+    fn finish(&mut self) {
+        self.received = self.taken;
+        self.sent = self.taken;
         self.flags |= SPIF;
+        self.start_over();
+        if self.selected {
+            self.show_first();
+        }
+    }
+
+    /// An edge of its own clock is due.
+    pub(super) fn happen(&mut self, core: &mut Core, cycle: u64) {
+        if self.transfer.is_some() {
+            self.step(core, MISO);
+            self.drive_pins(core, cycle);
+        }
         self.reschedule(core);
     }
 
     fn reschedule(&self, core: &mut Core) {
         let running = self.transfer.filter(|_| self.stopped.is_none());
-        core.schedule.set(Source::Spi, running);
+        let next = running.map(|transfer| {
+            let Transfer { start, half } = transfer;
+            start + u64::from(self.steps + 1) * half
+        });
+        core.schedule.set(Source::Spi, next);
         let requested = self.flags & SPIF != 0 && self.control & SPIE != 0;
         core.interrupts.set(vector::SPI, requested);
     }
@@ -152,8 +280,8 @@ impl Spi {
             None if !runs => self.stopped = Some(cycle),
             Some(stopped) if runs => {
                 self.stopped = None;
-                if let Some(end) = &mut self.transfer {
-                    *end += cycle - stopped;
+                if let Some(transfer) = &mut self.transfer {
+                    transfer.start += cycle - stopped;
                 }
             }
             _ => return,

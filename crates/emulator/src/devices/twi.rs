@@ -1,7 +1,22 @@
-//! The two-wire interface on a bus with pull-ups and nobody else (DS40002549, section 24).
+//! The two-wire interface as the master of a bus with pull-ups (DS40002549, section 24), with the edges on its pins.
 //!
-//! A start condition succeeds, addresses and data are not acknowledged, what is read is ones. The lines rest high: their edges
-//! are not made.
+//! Both lines are pulled down or let go; a line that nothing drives is high, as the pull-ups of the board have it. What another
+//! drives counts: an acknowledgement, bits read, a clock held low, arbitration lost. With nothing connected an address is
+//! not acknowledged.
+//!
+//! # Theory of operation
+//!
+//! An action is a row of half periods of SCL ([`Action::moves`]); the interface makes one move at the beginning of each. A move that
+//! lets SCL go waits until it is high. Between actions, while TWINT is up, SCL stays low.
+//!
+//! | action | moves at 0, 1, 2, ... half periods |
+//! |---|---|
+//! | start | SDA down at 1, SCL down at 2 |
+//! | repeated start | SDA up at 0, SCL up at 1, SDA down at 2, SCL down at 3 |
+//! | byte | bit n out at 2n, SCL up at 2n + 1, SCL down at 2n + 2; nine bits |
+//! | stop | SDA down at 0, SCL up at 1, SDA up at 2 |
+//!
+//! It never answers as a slave: TWEA and TWAR alone do nothing.
 
 use super::Core;
 use super::interrupts::vector;
@@ -23,24 +38,40 @@ const TWWC: u8 = 0x08;
 const TWEN: u8 = 0x04;
 const TWIE: u8 = 0x01;
 
-/// Status codes (tables 24-2 and 24-3).
+/// Status codes (tables 24-2 and 24-3). Where there are two, the first is the one with an acknowledgement.
 const START: u8 = 0x08;
 const REPEATED_START: u8 = 0x10;
-const WRITE_ADDRESS_REFUSED: u8 = 0x20;
-const DATA_REFUSED: u8 = 0x30;
-const READ_ADDRESS_REFUSED: u8 = 0x48;
-const READ_ACKNOWLEDGED: u8 = 0x50;
-const READ_REFUSED: u8 = 0x58;
+const WRITE_ADDRESS: [u8; 2] = [0x18, 0x20];
+const WRITTEN: [u8; 2] = [0x28, 0x30];
+const ARBITRATION_LOST: u8 = 0x38;
+const READ_ADDRESS: [u8; 2] = [0x40, 0x48];
+const READ: [u8; 2] = [0x50, 0x58];
 const NOTHING: u8 = 0xF8;
 
-const LINES: [Pin; 2] = [Pin::at(3, 0), Pin::at(3, 1)];
+const SCL: Pin = Pin::at(3, 0);
+const SDA: Pin = Pin::at(3, 1);
+/// Bits of a byte with its acknowledgement.
+const BITS: u32 = 9;
 
 /// What is on its way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Action {
     Start,
-    Stop { then_start: bool },
-    Byte { then: u8 },
+    RepeatedStart,
+    Stop,
+    /// A byte goes out; these are the statuses with and without an acknowledgement.
+    Write([u8; 2]),
+    /// A byte comes in.
+    Read,
+}
+
+/// A move on the lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Move {
+    Data(bool),
+    ClockUp,
+    /// SCL goes down; what SDA was is a bit, if there is one.
+    ClockDown,
 }
 
 /// The interface.
@@ -56,7 +87,15 @@ pub(super) struct Twi {
     control: u8,
     flag: bool,
     collision: bool,
-    action: Option<(Action, u64)>,
+    action: Option<Action>,
+    /// Half periods of the action that have begun, and when the next one does; `None` while the bus is not free, or SCL held low.
+    moves: u32,
+    next: Option<u64>,
+    /// The nine bits that came in, the first one highest.
+    taken: u16,
+    /// The lines are let go, not pulled down.
+    clock: bool,
+    line: bool,
     /// The cycle in which it lost its clock.
     stopped: Option<u64>,
 }
@@ -74,9 +113,19 @@ impl Default for Twi {
             flag: false,
             collision: false,
             action: None,
+            moves: 0,
+            next: None,
+            taken: 0,
+            clock: true,
+            line: true,
             stopped: None,
         }
     }
+}
+
+/// The level of a line, which has a pull-up.
+fn level(core: &Core, pin: Pin) -> bool {
+    core.ports.level(pin) || !core.ports.is_driven_outside(pin) && !core.ports.is_output(pin)
 }
 
 impl Twi {
@@ -113,95 +162,211 @@ impl Twi {
         self.reschedule(core);
     }
 
-    /// Cycles of a bit.
-    fn period(&self) -> u64 {
-        16 + 2 * u64::from(self.rate) * (1 << (2 * self.prescaler))
+    /// Cycles of half a bit (section 24.5.2: 16 + 2 TWBR 4^TWPS for a whole one).
+    fn half_period(&self) -> u64 {
+        8 + u64::from(self.rate) * (1 << (2 * self.prescaler))
     }
 
     fn command(&mut self, core: &mut Core, value: u8, cycle: u64) {
-        let was_on = self.control & TWEN != 0;
         self.control = value & (TWEA | TWSTA | TWSTO | TWEN | TWIE);
-        let on = value & TWEN != 0;
-        if on != was_on {
-            let force = if on { Force::Input } else { Force::None };
-            for pin in LINES {
-                let change = core.ports.force(pin, force, cycle);
-                core.note(change, cycle);
-            }
-        }
-        if !on {
+        if value & TWEN == 0 {
             self.action = None;
             self.flag = false;
             self.status = NOTHING;
-            return;
+            (self.clock, self.line) = (true, true);
+        } else if value & TWINT != 0 && self.action.is_none() {
+            // The flag, cleared by a one, sets the next action going.
+            self.flag = false;
+            self.action = self.next_action();
+            self.begin(core, cycle);
+        } else if value & TWSTA != 0 && self.action.is_none() && !self.flag {
+            self.action = Some(Action::Start);
+            self.begin(core, cycle);
         }
-        // The flag, cleared by a one, sets the next action going.
-        if value & TWINT == 0 {
-            return;
-        }
-        self.flag = false;
-        let bit = self.period();
-        self.action = if value & TWSTO != 0 {
-            let then_start = value & TWSTA != 0;
-            Some((Action::Stop { then_start }, cycle + bit))
-        } else if value & TWSTA != 0 {
-            Some((Action::Start, cycle + bit))
-        } else {
-            self.next_byte()
-                .map(|then| (Action::Byte { then }, cycle + 9 * bit))
-        };
+        self.drive_pins(core, cycle);
     }
 
-    /// The status after a byte that follows the present one; `None` if the bus is not ours.
-    fn next_byte(&self) -> Option<u8> {
+    /// What TWCR asks for; `None` where the bus is not ours.
+    fn next_action(&self) -> Option<Action> {
+        let ours = self.status != NOTHING && self.status != ARBITRATION_LOST;
+        if self.control & TWSTO != 0 && ours {
+            return Some(Action::Stop);
+        }
+        if self.control & TWSTA != 0 {
+            return Some(if ours {
+                Action::RepeatedStart
+            } else {
+                Action::Start
+            });
+        }
         Some(match self.status {
-            START | REPEATED_START if self.data & 1 != 0 => READ_ADDRESS_REFUSED,
-            START | REPEATED_START => WRITE_ADDRESS_REFUSED,
-            WRITE_ADDRESS_REFUSED | DATA_REFUSED => DATA_REFUSED,
-            READ_ADDRESS_REFUSED | READ_ACKNOWLEDGED | READ_REFUSED => {
-                if self.control & TWEA != 0 {
-                    READ_ACKNOWLEDGED
-                } else {
-                    READ_REFUSED
-                }
+            START | REPEATED_START if self.data & 1 != 0 => Action::Write(READ_ADDRESS),
+            START | REPEATED_START => Action::Write(WRITE_ADDRESS),
+            status if WRITE_ADDRESS.contains(&status) || WRITTEN.contains(&status) => {
+                Action::Write(WRITTEN)
             }
+            status if READ_ADDRESS.contains(&status) || READ.contains(&status) => Action::Read,
             _ => return None,
         })
     }
 
-    /// What was on its way is done.
-    pub(super) fn happen(&mut self, core: &mut Core, cycle: u64) {
-        match self.action.take().map(|(action, _)| action) {
-            Some(Action::Stop { then_start }) => {
-                self.status = NOTHING;
-                self.control &= !TWSTO;
-                if then_start {
-                    self.action = Some((Action::Start, cycle + self.period()));
-                }
-            }
-            Some(Action::Start) => {
-                self.status = if self.status == NOTHING {
-                    START
-                } else {
-                    REPEATED_START
-                };
-                self.flag = true;
-            }
-            Some(Action::Byte { then }) => {
-                if matches!(then, READ_ACKNOWLEDGED | READ_REFUSED) {
-                    self.data = 0xFF;
-                }
-                self.status = then;
-                self.flag = true;
+    /// The action begins, unless the bus must be free first and is not.
+    fn begin(&mut self, core: &mut Core, cycle: u64) {
+        self.moves = 0;
+        self.taken = 0;
+        self.next = None;
+        if self.action != Some(Action::Stop) {
+            self.control &= !TWSTO;
+        }
+        match self.action {
+            Some(Action::Start) if !(level(core, SCL) && level(core, SDA)) => {}
+            Some(Action::Start) => self.next = Some(cycle + self.half_period()),
+            Some(_) => {
+                self.next = Some(cycle);
+                self.happen(core, cycle);
             }
             None => {}
+        }
+    }
+
+    /// The moves of an action in its half period number `at`.
+    fn at(&self, action: Action, at: u32) -> [Option<Move>; 2] {
+        let one = |step| [Some(step), None];
+        match (action, at) {
+            (Action::Start, 0) => one(Move::Data(false)),
+            (Action::Start, _) => one(Move::ClockDown),
+            (Action::RepeatedStart, 0) => one(Move::Data(true)),
+            (Action::RepeatedStart, 1) | (Action::Stop, 1) => one(Move::ClockUp),
+            (Action::RepeatedStart, 2) | (Action::Stop, 0) => one(Move::Data(false)),
+            (Action::RepeatedStart, _) => one(Move::ClockDown),
+            (Action::Stop, _) => one(Move::Data(true)),
+            (Action::Write(_) | Action::Read, at) if at % 2 != 0 => one(Move::ClockUp),
+            (Action::Write(_) | Action::Read, at) => {
+                let down = (at > 0).then_some(Move::ClockDown);
+                let bit = (at / 2 < BITS).then(|| Move::Data(self.bit_out(action, at / 2)));
+                [down, bit]
+            }
+        }
+    }
+
+    /// What goes out as bit `bit` of a byte: ones where somebody else speaks.
+    fn bit_out(&self, action: Action, bit: u32) -> bool {
+        match action {
+            Action::Write(_) if bit < 8 => self.data >> (7 - bit) & 1 != 0,
+            Action::Read if bit == 8 => self.control & TWEA == 0,
+            _ => true,
+        }
+    }
+
+    /// A half period begins.
+    pub(super) fn happen(&mut self, core: &mut Core, cycle: u64) {
+        let Some(action) = self.action else {
+            return;
+        };
+        let mut last = false;
+        for step in self.at(action, self.moves).into_iter().flatten() {
+            match step {
+                Move::Data(high) => {
+                    self.line = high;
+                    last |= action == Action::Stop && high;
+                }
+                Move::ClockUp => self.clock = true,
+                Move::ClockDown => {
+                    self.clock = false;
+                    self.taken = self.taken << 1 | u16::from(level(core, SDA));
+                    last |= match action {
+                        Action::Write(_) | Action::Read => self.moves == 2 * BITS,
+                        _ => true,
+                    };
+                }
+            }
+            self.drive_pins(core, cycle);
+        }
+        self.moves += 1;
+        let lost = self.has_lost(core, action);
+        if last || lost {
+            self.end(core, action, lost, cycle);
+        } else {
+            self.next = (!self.clock || level(core, SCL)).then(|| cycle + self.half_period());
         }
         self.reschedule(core);
     }
 
+    /// Somebody else pulls SDA down while SCL is up and this master has let it go: it is another master's bus.
+    fn has_lost(&self, core: &Core, action: Action) -> bool {
+        let ours = match action {
+            Action::Write(_) => self.moves <= 16,
+            Action::Read => self.moves > 16,
+            Action::Start | Action::RepeatedStart | Action::Stop => false,
+        };
+        ours && self.moves.is_multiple_of(2) && self.line && !level(core, SDA)
+    }
+
+    /// The action is through.
+    fn end(&mut self, core: &mut Core, action: Action, lost: bool, cycle: u64) {
+        self.action = None;
+        self.next = None;
+        if lost {
+            self.status = ARBITRATION_LOST;
+            (self.clock, self.line) = (true, true);
+            self.flag = true;
+            self.drive_pins(core, cycle);
+            return;
+        }
+        let refused = usize::from(self.taken & 1 != 0);
+        self.status = match action {
+            Action::Start => START,
+            Action::RepeatedStart => REPEATED_START,
+            Action::Stop => {
+                self.control &= !TWSTO;
+                self.status = NOTHING;
+                if self.control & TWSTA != 0 {
+                    self.action = Some(Action::Start);
+                    self.begin(core, cycle);
+                }
+                return;
+            }
+            Action::Write(statuses) => statuses[refused],
+            Action::Read => {
+                [self.data, _] = (self.taken >> 1).to_le_bytes();
+                READ[refused]
+            }
+        };
+        self.flag = true;
+    }
+
+    /// A line has changed: SCL is no longer held low, or the bus is free.
+    pub(super) fn pin_changed(&mut self, core: &mut Core, pin: Pin, cycle: u64) {
+        if !matches!(pin, SCL | SDA) || self.next.is_some() || self.stopped.is_some() {
+            return;
+        }
+        match self.action {
+            Some(Action::Start) if self.moves == 0 => self.begin(core, cycle),
+            Some(_) if self.clock && level(core, SCL) => {
+                self.next = Some(cycle + self.half_period());
+            }
+            _ => return,
+        }
+        self.reschedule(core);
+    }
+
+    /// Lines that are let go are inputs, with the pull-up as the port has it; the others are low outputs.
+    fn drive_pins(&self, core: &mut Core, cycle: u64) {
+        let on = self.control & TWEN != 0;
+        for (pin, high) in [(SCL, self.clock), (SDA, self.line)] {
+            let force = match (on, high) {
+                (false, _) => Force::None,
+                (true, true) => Force::Input,
+                (true, false) => Force::Output(false),
+            };
+            let change = core.ports.force(pin, force, cycle);
+            core.note(change, cycle);
+        }
+    }
+
     fn reschedule(&self, core: &mut Core) {
-        let running = self.action.filter(|_| self.stopped.is_none());
-        core.schedule.set(Source::Twi, running.map(|(_, end)| end));
+        let running = self.next.filter(|_| self.stopped.is_none());
+        core.schedule.set(Source::Twi, running);
         let requested = self.flag && self.control & TWIE != 0;
         core.interrupts.set(vector::TWI, requested);
     }
@@ -212,8 +377,8 @@ impl Twi {
             None if !runs => self.stopped = Some(cycle),
             Some(stopped) if runs => {
                 self.stopped = None;
-                if let Some((_, end)) = &mut self.action {
-                    *end += cycle - stopped;
+                if let Some(next) = &mut self.next {
+                    *next += cycle - stopped;
                 }
             }
             _ => return,
