@@ -126,7 +126,7 @@ fn with_xck_as_an_input_nothing_moves_without_edges_on_it() {
         assert_eq!(read(&mut chip, UCSR0A) & UDRE, 0, "the buffer is full");
         chip.take_outputs();
         // Eleven periods of 100 cycles, and 0xA5 on RXD, set up before each second edge.
-        let bits = 0b10_1010_0101_0u32 << 1 >> 1;
+        let bits = 0b101_0100_1010_u32;
         for bit in 0..11u64 {
             let start = 100_000 + 100 * bit;
             let level = bits >> bit & 1 != 0;
