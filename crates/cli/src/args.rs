@@ -52,6 +52,29 @@ pub(crate) enum Command {
     List(ListArgs),
 }
 
+/// Where the dashboard is served.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct ServeArgs {
+    /// Port of the dashboard; 0 takes any free one
+    #[arg(long, value_name = "N", default_value_t = rumbo_station::DEFAULT_PORT)]
+    pub(crate) port: u16,
+    /// Serve the dashboard to the network too, at this address of this computer; prints an address that opens once and one for viewers.
+    /// Not encrypted (docs/security.md)
+    #[arg(long, value_name = "ADDRESS")]
+    pub(crate) listen: Option<std::net::IpAddr>,
+}
+
+impl ServeArgs {
+    /// The address and port.
+    pub(crate) fn at(self) -> rumbo_station::ServeAt {
+        let here = rumbo_station::ServeAt::here(self.port);
+        rumbo_station::ServeAt {
+            address: self.listen.unwrap_or(here.address),
+            ..here
+        }
+    }
+}
+
 /// Options of `rumbo lab`.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "\
@@ -61,6 +84,7 @@ Examples:
   rumbo lab --scenario mode1 --rig final --world room
   rumbo lab --scenario mode1 --firmware my_sketch.elf --wiring final
   rumbo lab --port 9000 --no-browser
+  rumbo lab --listen 192.168.1.7
   rumbo lab --pty")]
 pub(crate) struct LabArgs {
     /// Scenario that the robot starts in: name or path
@@ -81,9 +105,8 @@ pub(crate) struct LabArgs {
     /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own image]
     #[arg(long, value_name = "NAME", requires = "firmware")]
     pub(crate) wiring: Option<String>,
-    /// Port on 127.0.0.1; 0 takes any free one
-    #[arg(long, value_name = "N", default_value_t = rumbo_station::DEFAULT_PORT)]
-    pub(crate) port: u16,
+    #[command(flatten)]
+    pub(crate) serve: ServeArgs,
     /// Do not open the browser
     #[arg(long)]
     pub(crate) no_browser: bool,
@@ -98,7 +121,7 @@ pub(crate) struct LabArgs {
     pub(crate) out: Option<PathBuf>,
     /// Offer the robot as a serial port to other programs, without a dashboard; prints the port's name
     #[cfg(unix)]
-    #[arg(long, conflicts_with_all = ["port", "no_browser", "out"])]
+    #[arg(long, conflicts_with_all = ["port", "listen", "no_browser", "out"])]
     pub(crate) pty: bool,
 }
 
@@ -120,9 +143,8 @@ pub(crate) struct ConnectArgs {
     /// Speed of the serial port; the robot's is 9600
     #[arg(long, value_name = "N", default_value_t = rumbo_station::port::DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(300..=2_000_000))]
     pub(crate) baud: u32,
-    /// Port of the dashboard on 127.0.0.1; 0 takes any free one
-    #[arg(long, value_name = "N", default_value_t = rumbo_station::DEFAULT_PORT)]
-    pub(crate) port: u16,
+    #[command(flatten)]
+    pub(crate) serve: ServeArgs,
     /// Do not open the browser
     #[arg(long)]
     pub(crate) no_browser: bool,
@@ -304,9 +326,8 @@ pub(crate) struct ReplayArgs {
     /// The log
     #[arg(value_name = "LOG")]
     pub(crate) log: PathBuf,
-    /// Port on 127.0.0.1; 0 takes any free one
-    #[arg(long, value_name = "N", default_value_t = rumbo_station::DEFAULT_PORT)]
-    pub(crate) port: u16,
+    #[command(flatten)]
+    pub(crate) serve: ServeArgs,
     /// Do not open the browser
     #[arg(long)]
     pub(crate) no_browser: bool,

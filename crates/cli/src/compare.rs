@@ -34,8 +34,14 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let complaints = complaints(&names, &metrics, &passes, args.tolerance);
     if let Some(path) = &args.out {
         let pairs: Vec<_> = names.iter().map(String::as_str).zip(&logs).collect();
-        let text =
-            chart::svg(&figures::of_many(&pairs), 1, figures::SIZE).map_err(Failure::Input)?;
+        let charts = figures::of_many(&pairs);
+        if charts.is_empty() {
+            return Err(Failure::Input(format!(
+                "{}: not drawn, the logs hold no signals; leave --out away",
+                path.display()
+            )));
+        }
+        let text = chart::svg(&charts, 1, figures::SIZE).map_err(Failure::Input)?;
         std::fs::write(path, text).map_err(|error| unwritable(path, &error))?;
     }
     if args.json {

@@ -12,10 +12,10 @@ use rumbo_station::port::Port;
 pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
     let robot = Port::open(&args.address, args.baud).map_err(Failure::input)?;
     let config = LabConfig {
-        port: args.port,
+        at: args.serve.at(),
         speed: 1.0,
         recording: logs::folder(args.out.as_deref()).map(|folder| Recording { folder }),
     };
     let served = rumbo_station::serve(config, Box::new(robot)).map_err(Failure::input)?;
-    lab::show(served, args.no_browser)
+    lab::show(served, args.serve, args.no_browser)
 }

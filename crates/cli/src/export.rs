@@ -25,20 +25,26 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     } else {
         &args.formats
     };
+    let charts = figures::of_one(&log);
     for format in formats {
         match format {
+            Format::Svg | Format::Png if charts.is_empty() => {
+                return Err(Failure::Input(format!(
+                    "{}: holds no signals to draw; --format csv writes what there is",
+                    args.log.display()
+                )));
+            }
             Format::Csv => {
                 write(&path("csv"), &signals(&log))?;
                 write(&path("events.csv"), &events(&log))?;
             }
             Format::Svg => {
-                let text =
-                    chart::svg(&figures::of_one(&log), 1, figures::SIZE).map_err(Failure::Input)?;
+                let text = chart::svg(&charts, 1, figures::SIZE).map_err(Failure::Input)?;
                 write(&path("svg"), &text)?;
             }
             Format::Png => {
                 let path = path("png");
-                chart::png(&figures::of_one(&log), 1, figures::SIZE, &path).map_err(|error| {
+                chart::png(&charts, 1, figures::SIZE, &path).map_err(|error| {
                     Failure::Input(format!(
                         "{}: cannot be written ({error}); choose another folder with --out",
                         path.display()

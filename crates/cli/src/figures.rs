@@ -89,7 +89,7 @@ pub(crate) fn of_one(log: &Log) -> Vec<Chart<'static>> {
             points: truth,
         });
     }
-    charts.push(map_chart(ways));
+    charts.extend(map_chart(ways));
     charts
 }
 
@@ -122,13 +122,15 @@ pub(crate) fn of_many<'a>(logs: &[(&'a str, &Log)]) -> Vec<Chart<'a>> {
         } else {
             told_way(log)
         };
-        ways.push(Curve::Line {
-            name,
-            colour,
-            points,
-        });
+        if points.len() > 1 {
+            ways.push(Curve::Line {
+                name,
+                colour,
+                points,
+            });
+        }
     }
-    charts.push(map_chart(ways));
+    charts.extend(map_chart(ways));
     charts
 }
 
@@ -146,11 +148,16 @@ fn title_of(column: &str) -> &'static str {
     }
 }
 
-fn map_chart(curves: Vec<Curve<'_>>) -> Chart<'_> {
-    Chart {
+/// Nothing where no way is known, such as that of a robot that tells distances only.
+fn map_chart(curves: Vec<Curve<'_>>) -> Option<Chart<'_>> {
+    let is_way = |curve: &Curve<'_>| match curve {
+        Curve::Line { points, .. } => points.len() > 1,
+        _ => false,
+    };
+    curves.iter().any(is_way).then(|| Chart {
         legend: Legend::UpperLeft,
         ..map("Way", curves)
-    }
+    })
 }
 
 fn has_values(points: &Points) -> bool {

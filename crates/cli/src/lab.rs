@@ -1,6 +1,6 @@
 //! `rumbo lab`: a simulated robot behind the station's dashboard.
 
-use crate::args::LabArgs;
+use crate::args::{LabArgs, ServeArgs};
 use crate::failure::Failure;
 use crate::logs;
 use crate::manifest;
@@ -38,17 +38,20 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
         return crate::pty::offer(robot, args.speed);
     }
     let config = LabConfig {
-        port: args.port,
+        at: args.serve.at(),
         speed: args.speed,
         recording: logs::folder(args.out.as_deref()).map(|folder| Recording { folder }),
     };
     let lab = rumbo_station::serve(config, Box::new(robot)).map_err(Failure::input)?;
-    show(lab, args.no_browser)
+    show(lab, args.serve, args.no_browser)
 }
 
 /// Prints the address, opens the browser, and returns when the lab has ended.
-pub(crate) fn show(lab: Lab, no_browser: bool) -> Result<(), Failure> {
+pub(crate) fn show(lab: Lab, serve: ServeArgs, no_browser: bool) -> Result<(), Failure> {
     output::line(lab.url())?;
+    if serve.listen.is_some() {
+        output::line(&format!("viewers: {}", lab.viewers_url()))?;
+    }
     if !no_browser && open::that_detached(lab.url()).is_err() {
         // The address is on stdout; nobody may be reading stderr.
         let _ = writeln!(

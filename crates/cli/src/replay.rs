@@ -17,6 +17,6 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         .to_string_lossy()
         .into_owned();
     let served =
-        rumbo_station::serve_log(args.port, args.speed, name, log).map_err(Failure::input)?;
-    lab::show(served, args.no_browser)
+        rumbo_station::serve_log(args.serve.at(), args.speed, name, log).map_err(Failure::input)?;
+    lab::show(served, args.serve, args.no_browser)
 }

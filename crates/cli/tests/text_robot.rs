@@ -1,5 +1,6 @@
 //! A robot that still runs the report's program, behind a serial port: the sketch on the emulated Mega, behind a pseudo terminal.
-#![cfg(all(test, unix))]
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod support;
 

@@ -5,7 +5,7 @@ mod support;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let config = rumbo_station::LabConfig {
-        port: 0,
+        at: rumbo_station::ServeAt::here(0),
         ..rumbo_station::LabConfig::default()
     };
     let lab = rumbo_station::serve(config, Box::new(support::Toy::default()))?;

@@ -1,10 +1,13 @@
-//! Who may use the dashboard: the person at this machine, and no page of the internet.
+//! Who may use the dashboard: who has the address that was printed, and no page of the internet.
 //!
 //! A web page anywhere can make the browser send requests to 127.0.0.1, and with a name of its own that resolves there it can
 //! read the answers (DNS rebinding). So every request must name exactly this host, must come from this origin if it
-//! comes from a page, and must carry a cookie that was given for the one-time token in the address that the lab printed.
+//! comes from a page, and must carry a cookie that was given for a token in an address that was printed. There are two: the
+//! controller's opens once, so that an address seen over a shoulder is worth nothing; the viewers' opens for whoever has it, and lets
+//! them watch and stop the robot.
 
 use axum::http::{HeaderMap, header};
+use std::net::{IpAddr, SocketAddr};
 use std::sync::atomic::{AtomicBool, Ordering};
 use subtle::ConstantTimeEq;
 
@@ -27,15 +30,59 @@ impl Secret {
     }
 }
 
+/// What who has a cookie may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Role {
+    /// Watch, and stop the robot.
+    Viewer,
+    /// Everything, while nobody else has control.
+    Controller,
+}
+
+/// What opens the dashboard for a role.
+#[derive(Debug)]
+struct Key {
+    role: Role,
+    token: Secret,
+    cookie: Secret,
+}
+
+impl Key {
+    fn new(role: Role) -> Result<Self, getrandom::Error> {
+        Ok(Self {
+            role,
+            token: Secret::new()?,
+            cookie: Secret::new()?,
+        })
+    }
+
+    /// The name of the token in the address.
+    fn parameter(&self) -> &'static str {
+        match self.role {
+            Role::Controller => "token",
+            Role::Viewer => "watch",
+        }
+    }
+
+    /// Cookies are shared between the ports of a host: the name tells two labs apart.
+    fn cookie_name(&self, port: u16) -> String {
+        match self.role {
+            Role::Controller => format!("rumbo_{port}"),
+            Role::Viewer => format!("rumbo_watch_{port}"),
+        }
+    }
+}
+
 /// Decides on requests.
 #[derive(Debug)]
 pub(crate) struct Guard {
-    port: u16,
-    hosts: [String; 2],
-    origins: [String; 2],
-    token: Secret,
+    at: SocketAddr,
+    hosts: Vec<String>,
+    origins: Vec<String>,
+    controller: Key,
+    viewer: Key,
+    /// The controller's token has been used.
     token_used: AtomicBool,
-    cookie: Secret,
 }
 
 /// Why a request is turned away.
@@ -70,25 +117,37 @@ impl Denied {
 }
 
 impl Guard {
-    /// A guard for the dashboard on `port`.
+    /// A guard for the dashboard at this address.
     ///
     /// # Errors
     /// When the system gives no randomness.
-    pub(crate) fn new(port: u16) -> Result<Self, getrandom::Error> {
-        let hosts = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];
+    pub(crate) fn new(at: SocketAddr) -> Result<Self, getrandom::Error> {
+        let mut hosts = vec![at.to_string()];
+        if at.ip().is_loopback() {
+            hosts.push(format!("localhost:{}", at.port()));
+        }
         Ok(Self {
-            port,
-            origins: hosts.each_ref().map(|host| format!("http://{host}")),
+            at,
+            origins: hosts.iter().map(|host| format!("http://{host}")).collect(),
             hosts,
-            token: Secret::new()?,
+            controller: Key::new(Role::Controller)?,
+            viewer: Key::new(Role::Viewer)?,
             token_used: AtomicBool::new(false),
-            cookie: Secret::new()?,
         })
     }
 
     /// The address to open, once.
     pub(crate) fn url(&self) -> String {
-        format!("http://127.0.0.1:{}/?token={}", self.port, self.token.0)
+        self.address_of(&self.controller)
+    }
+
+    /// The address for those who watch.
+    pub(crate) fn viewers_url(&self) -> String {
+        self.address_of(&self.viewer)
+    }
+
+    fn address_of(&self, key: &Key) -> String {
+        format!("http://{}/?{}={}", self.at, key.parameter(), key.token.0)
     }
 
     /// Host and origin are ours. A request without an origin comes from the address bar, not from a page.
@@ -114,35 +173,75 @@ impl Guard {
         }
     }
 
-    /// The request carries the cookie.
-    pub(crate) fn check_cookie(&self, headers: &HeaderMap) -> Result<(), Denied> {
-        let name = self.cookie_name();
-        let valid = headers
+    /// What the cookie that the request carries allows.
+    pub(crate) fn check_cookie(&self, headers: &HeaderMap) -> Result<Role, Denied> {
+        [&self.controller, &self.viewer]
+            .into_iter()
+            .find(|key| self.carries(headers, key))
+            .map(|key| key.role)
+            .ok_or(Denied::Cookie)
+    }
+
+    fn carries(&self, headers: &HeaderMap, key: &Key) -> bool {
+        let name = key.cookie_name(self.at.port());
+        headers
             .get_all(header::COOKIE)
             .iter()
             .filter_map(|value| value.to_str().ok())
             .flat_map(|value| value.split(';'))
             .filter_map(|pair| pair.trim().split_once('='))
-            .any(|(key, value)| key == name && self.cookie.matches(value));
-        if valid { Ok(()) } else { Err(Denied::Cookie) }
+            .any(|(known, value)| known == name && key.cookie.matches(value))
     }
 
-    /// Takes the token of the query, once, and gives the cookie to set.
-    pub(crate) fn redeem(&self, token: &str) -> Result<String, Denied> {
-        if !self.token.matches(token) || self.token_used.swap(true, Ordering::SeqCst) {
+    /// The token in a query, if there is one for a role.
+    pub(crate) fn token_in<'a>(&self, query: &'a str) -> Option<(Role, &'a str)> {
+        [&self.controller, &self.viewer]
+            .into_iter()
+            .find_map(|key| {
+                let token = query.strip_prefix(key.parameter())?.strip_prefix('=')?;
+                Some((key.role, token))
+            })
+    }
+
+    /// Takes the token of the query, the controller's once, and gives the cookie to set.
+    pub(crate) fn redeem(&self, role: Role, token: &str) -> Result<String, Denied> {
+        let key = match role {
+            Role::Controller => &self.controller,
+            Role::Viewer => &self.viewer,
+        };
+        if !key.token.matches(token)
+            || (role == Role::Controller && self.token_used.swap(true, Ordering::SeqCst))
+        {
             return Err(Denied::Token);
         }
         Ok(format!(
             "{}={}; HttpOnly; SameSite=Strict; Path=/",
-            self.cookie_name(),
-            self.cookie.0
+            key.cookie_name(self.at.port()),
+            key.cookie.0
         ))
     }
+}
 
-    /// Cookies are shared between the ports of a host: the name tells two labs apart.
-    fn cookie_name(&self) -> String {
-        format!("rumbo_{}", self.port)
+/// Whether an address can be served: requests must name it, so it must be one of this machine's own.
+///
+/// # Errors
+/// What to give instead.
+pub(crate) fn check_listen(at: IpAddr) -> Result<(), String> {
+    if !at.is_unspecified() {
+        return Ok(());
     }
+    let own = own_address().map_or_else(String::new, |own| format!(", such as {own}"));
+    Err(format!(
+        "{at} is no address that a browser can ask for: give this computer's own{own}"
+    ))
+}
+
+/// The address with which this machine goes out; nothing is sent to find it.
+fn own_address() -> Option<IpAddr> {
+    let socket = std::net::UdpSocket::bind(("0.0.0.0", 0)).ok()?;
+    // Of the block kept for documentation.
+    socket.connect(("192.0.2.1", 9)).ok()?;
+    Some(socket.local_addr().ok()?.ip()).filter(|own| !own.is_unspecified())
 }
 
 /// The value of a header that must be there exactly once.
@@ -157,6 +256,10 @@ mod tests {
     use super::*;
     use axum::http::HeaderValue;
 
+    fn guard() -> Guard {
+        Guard::new("127.0.0.1:8360".parse().unwrap()).unwrap()
+    }
+
     fn headers(pairs: &[(header::HeaderName, &str)]) -> HeaderMap {
         let mut headers = HeaderMap::new();
         for (name, value) in pairs {
@@ -167,7 +270,7 @@ mod tests {
 
     #[test]
     fn only_this_host_by_its_exact_name_is_served() {
-        let guard = Guard::new(8360).unwrap();
+        let guard = guard();
         for host in ["127.0.0.1:8360", "localhost:8360"] {
             assert_eq!(
                 guard.check_source(&headers(&[(header::HOST, host)])),
@@ -192,7 +295,7 @@ mod tests {
 
     #[test]
     fn a_page_of_another_origin_is_refused() {
-        let guard = Guard::new(8360).unwrap();
+        let guard = guard();
         let from =
             |origin: &str| headers(&[(header::HOST, "127.0.0.1:8360"), (header::ORIGIN, origin)]);
         assert_eq!(guard.check_source(&from("http://127.0.0.1:8360")), Ok(()));
@@ -216,21 +319,53 @@ mod tests {
 
     #[test]
     fn the_token_opens_once_and_the_cookie_from_then_on() {
-        let guard = Guard::new(8360).unwrap();
+        let guard = guard();
         let token = guard.url().rsplit_once('=').unwrap().1.to_owned();
-        assert_eq!(guard.redeem("0000"), Err(Denied::Token));
-        let cookie = guard.redeem(&token).unwrap();
+        assert_eq!(guard.redeem(Role::Controller, "0000"), Err(Denied::Token));
+        let cookie = guard.redeem(Role::Controller, &token).unwrap();
         assert!(cookie.contains("HttpOnly") && cookie.contains("SameSite=Strict"));
-        assert_eq!(guard.redeem(&token), Err(Denied::Token));
+        assert_eq!(guard.redeem(Role::Controller, &token), Err(Denied::Token));
         let pair = cookie.split(';').next().unwrap();
         assert_eq!(
             guard.check_cookie(&headers(&[(header::COOKIE, &format!("other=1; {pair}"))])),
-            Ok(())
+            Ok(Role::Controller)
         );
         assert_eq!(
             guard.check_cookie(&headers(&[(header::COOKIE, "rumbo_8360=0")])),
             Err(Denied::Cookie)
         );
         assert_eq!(guard.check_cookie(&HeaderMap::new()), Err(Denied::Cookie));
+    }
+
+    #[test]
+    fn the_viewers_address_opens_for_many_and_makes_nobody_a_controller() {
+        let guard = guard();
+        let url = guard.viewers_url();
+        let (role, token) = guard.token_in(url.split_once('?').unwrap().1).unwrap();
+        assert_eq!(role, Role::Viewer);
+        assert_eq!(guard.redeem(Role::Controller, token), Err(Denied::Token));
+        for _ in 0..3 {
+            let cookie = guard.redeem(role, token).unwrap();
+            let pair = cookie.split(';').next().unwrap();
+            let cookies = headers(&[(header::COOKIE, pair)]);
+            assert_eq!(guard.check_cookie(&cookies), Ok(Role::Viewer));
+            // Under the controller's name it is worth nothing.
+            let (_, value) = pair.split_once('=').unwrap();
+            let renamed = format!("rumbo_8360={value}");
+            let renamed = headers(&[(header::COOKIE, &renamed)]);
+            assert_eq!(guard.check_cookie(&renamed), Err(Denied::Cookie));
+        }
+    }
+
+    #[test]
+    fn an_address_of_the_network_is_served_under_its_own_name_only() {
+        let guard = Guard::new("192.168.1.7:8360".parse().unwrap()).unwrap();
+        let host = |host: &str| guard.check_source(&headers(&[(header::HOST, host)]));
+        assert_eq!(host("192.168.1.7:8360"), Ok(()));
+        assert_eq!(host("localhost:8360"), Err(Denied::Host));
+        let wildcard = check_listen("0.0.0.0".parse().unwrap()).unwrap_err();
+        assert!(wildcard.contains("this computer's own"), "{wildcard}");
+        assert!(check_listen("::".parse().unwrap()).is_err());
+        assert!(check_listen("192.168.1.7".parse().unwrap()).is_ok());
     }
 }

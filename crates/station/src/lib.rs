@@ -11,6 +11,7 @@ pub mod client;
 pub mod commands;
 mod errand;
 mod guard;
+mod lease;
 pub mod log;
 mod meter;
 mod observer;
@@ -34,7 +35,7 @@ mod words;
 
 pub use catalogue::{ModeEntry, Reference, ReferenceKind, modes};
 pub use row::Row;
-pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeError, serve, serve_log};
+pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, ServeError, serve, serve_log};
 pub use target::{
     Choice, LinkNews, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation, SonarMount, Target,
     Truth,

@@ -36,6 +36,8 @@ pub(crate) enum Order {
     Seek(f64),
     /// Show a log so many telemetry frames further on, or back.
     Step(i32),
+    /// Control for the page, whoever has it; the session need not know.
+    TakeControl,
 }
 
 /// The orders as they are to be obeyed when STOP was pressed (`stop`): no older command to the robot comes after it.
@@ -69,6 +71,7 @@ impl fmt::Display for BadOrder {
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 enum Message {
     Stop {},
+    TakeControl {},
     Arm {},
     Disarm {},
     ClearFault {},
@@ -168,6 +171,7 @@ pub(crate) fn parse(text: &str) -> Result<Order, BadOrder> {
         serde_json::from_str(text).map_err(|error| BadOrder(error.to_string()))?;
     let order = match message {
         Message::Stop {} => Order::Robot(Command::Stop),
+        Message::TakeControl {} => Order::TakeControl,
         Message::Arm {} => Order::Robot(Command::Arm),
         Message::Disarm {} => Order::Robot(Command::Disarm),
         Message::ClearFault {} => Order::Robot(Command::ClearFault),

@@ -105,7 +105,11 @@ impl Replay {
                 self.warned = true;
                 self.note("this is a replay: nothing is sent to a robot".into());
             }
-            Order::Robot(_) | Order::Hold(_) | Order::Route(_) | Order::Type(..) => {}
+            Order::Robot(_)
+            | Order::Hold(_)
+            | Order::Route(_)
+            | Order::Type(..)
+            | Order::TakeControl => {}
         }
     }
 

@@ -1,7 +1,8 @@
 //! Starts the lab: binds the port, then runs the session and the web server in threads of their own.
 
 use crate::board::Board;
-use crate::guard::Guard;
+use crate::guard::{self, Guard};
+use crate::lease::Lease;
 use crate::log::{Log, Recording};
 use crate::orders::Order;
 use crate::replay::Replay;
@@ -10,7 +11,7 @@ use crate::socket::Hub;
 use crate::target::Target;
 use crate::web;
 use axum::serve::ListenerExt;
-use std::net::{Ipv4Addr, TcpListener};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{self, SyncSender};
@@ -21,11 +22,37 @@ use tokio::sync::oneshot;
 /// The port of the dashboard unless another is asked for.
 pub const DEFAULT_PORT: u16 = 8360;
 
+/// The address of a dashboard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ServeAt {
+    /// An address of this machine: 127.0.0.1, which no other reaches, or one of the network.
+    pub address: IpAddr,
+    /// Its port; 0 takes any free one.
+    pub port: u16,
+}
+
+impl ServeAt {
+    /// For this machine only, on this port.
+    #[must_use]
+    pub fn here(port: u16) -> Self {
+        Self {
+            address: Ipv4Addr::LOCALHOST.into(),
+            port,
+        }
+    }
+}
+
+impl Default for ServeAt {
+    fn default() -> Self {
+        Self::here(DEFAULT_PORT)
+    }
+}
+
 /// How the lab is to be served.
 #[derive(Clone, Debug)]
 pub struct LabConfig {
-    /// Port on 127.0.0.1; 0 takes any free one.
-    pub port: u16,
+    /// Where the dashboard is served.
+    pub at: ServeAt,
     /// Seconds of the target per second of the wall clock; 0 starts paused. A real robot's is 1.
     pub speed: f64,
     /// Where runs are recorded; `None` for nowhere.
@@ -35,7 +62,7 @@ pub struct LabConfig {
 impl Default for LabConfig {
     fn default() -> Self {
         Self {
-            port: DEFAULT_PORT,
+            at: ServeAt::default(),
             speed: 1.0,
             recording: None,
         }
@@ -45,36 +72,43 @@ impl Default for LabConfig {
 /// Why the lab could not be served.
 #[derive(Debug)]
 pub enum ServeError {
-    /// Another program listens on the port.
-    PortInUse(u16),
+    /// Another program listens there.
+    PortInUse(SocketAddr),
+    /// It is no address to be served at; what to give instead.
+    Address(String),
     /// The port could not be opened, or a thread not be started, for another reason.
-    Io(io::Error),
+    Io(SocketAddr, io::Error),
 }
 
 impl fmt::Display for ServeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::PortInUse(port) => write!(
+            Self::PortInUse(at) => write!(
                 f,
-                "port {port} on 127.0.0.1 is in use: is the lab already running? Close it, or choose another port with --port N (0 takes any free one)"
+                "port {} on {} is in use: is the lab already running? Close it, or choose another port with --port N (0 takes any free one)",
+                at.port(),
+                at.ip()
             ),
-            Self::Io(error) => write!(f, "the dashboard could not be served on 127.0.0.1: {error}"),
+            Self::Address(what) => write!(f, "--listen: {what}"),
+            Self::Io(at, error) if error.kind() == io::ErrorKind::AddrNotAvailable => write!(
+                f,
+                "--listen {0}: this computer has no such address; `ip address` (Windows: `ipconfig`) shows which it has",
+                at.ip()
+            ),
+            Self::Io(at, error) => {
+                write!(f, "the dashboard could not be served on {at}: {error}")
+            }
         }
     }
 }
 
 impl std::error::Error for ServeError {}
 
-impl From<io::Error> for ServeError {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
-    }
-}
-
 /// A lab being served; dropping it ends it, and stops the robot.
 #[derive(Debug)]
 pub struct Lab {
     url: String,
+    viewers_url: String,
     /// `None` once ended. The session lives while there are senders.
     orders: Option<SyncSender<Order>>,
     web_ends: Option<oneshot::Sender<()>>,
@@ -86,6 +120,11 @@ impl Lab {
     /// The address to open in a browser, with its one-time token.
     pub fn url(&self) -> &str {
         &self.url
+    }
+
+    /// The address for those who are to watch only; it opens as often as it is asked for.
+    pub fn viewers_url(&self) -> &str {
+        &self.viewers_url
     }
 
     /// Returns when the session has ended: the target is gone, or the process was asked to end.
@@ -142,17 +181,17 @@ async fn asked_to_end() {
 /// Orders that may wait for the session, which takes them every few milliseconds.
 const ORDERS_WAITING: usize = 256;
 
-/// Serves the dashboard of `target` on 127.0.0.1 until the returned [`Lab`] is dropped. Prints nothing.
+/// Serves the dashboard of `target` until the returned [`Lab`] is dropped. Prints nothing.
 ///
 /// # Errors
 /// [`ServeError`], when the port cannot be opened.
 pub fn serve(config: LabConfig, target: Box<dyn Target>) -> Result<Lab, ServeError> {
     let LabConfig {
-        port,
+        at,
         speed,
         recording,
     } = config;
-    start(port, move |board, orders| {
+    start(at, move |board, orders| {
         Session::new(target, board, orders, speed, recording).run()
     })
 }
@@ -161,8 +200,8 @@ pub fn serve(config: LabConfig, target: Box<dyn Target>) -> Result<Lab, ServeErr
 ///
 /// # Errors
 /// [`ServeError`], when the port cannot be opened.
-pub fn serve_log(port: u16, speed: f64, name: String, log: Log) -> Result<Lab, ServeError> {
-    start(port, move |board, orders| {
+pub fn serve_log(at: ServeAt, speed: f64, name: String, log: Log) -> Result<Lab, ServeError> {
+    start(at, move |board, orders| {
         Replay::new(name, log, board, orders, speed).run();
         Ok(())
     })
@@ -170,17 +209,25 @@ pub fn serve_log(port: u16, speed: f64, name: String, log: Log) -> Result<Lab, S
 
 /// Serves a board that `session` writes, in a thread of its own, until there are no more orders.
 fn start(
-    port: u16,
+    at: ServeAt,
     session: impl FnOnce(Arc<Board>, Orders) -> Result<(), String> + Send + 'static,
 ) -> Result<Lab, ServeError> {
-    let listener =
-        TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| match error.kind() {
-            io::ErrorKind::AddrInUse => ServeError::PortInUse(port),
-            _ => ServeError::Io(error),
-        })?;
+    guard::check_listen(at.address).map_err(ServeError::Address)?;
+    let at = SocketAddr::new(at.address, at.port);
+    let listener = TcpListener::bind(at).map_err(|error| match error.kind() {
+        io::ErrorKind::AddrInUse => ServeError::PortInUse(at),
+        _ => ServeError::Io(at, error),
+    })?;
+    start_on(listener, session).map_err(|error| ServeError::Io(at, error))
+}
+
+fn start_on(
+    listener: TcpListener,
+    session: impl FnOnce(Arc<Board>, Orders) -> Result<(), String> + Send + 'static,
+) -> io::Result<Lab> {
     listener.set_nonblocking(true)?;
-    let guard = Guard::new(listener.local_addr()?.port()).map_err(io::Error::other)?;
-    let url = guard.url();
+    let guard = Guard::new(listener.local_addr()?).map_err(io::Error::other)?;
+    let (url, viewers_url) = (guard.url(), guard.viewers_url());
 
     let board = Arc::new(Board::new());
     let stop = Arc::new(AtomicBool::new(false));
@@ -202,6 +249,7 @@ fn start(
             board,
             orders: orders.clone(),
             stop,
+            lease: Lease::new(),
         },
     );
     let runtime = tokio::runtime::Builder::new_current_thread()
@@ -227,6 +275,7 @@ fn start(
         })?;
     Ok(Lab {
         url,
+        viewers_url,
         orders: Some(orders),
         web_ends: Some(web_ends),
         session: Some(session),

@@ -159,6 +159,7 @@ impl Session {
                 "speed: refused, a real robot lives at its own".into(),
             ),
             Order::Reset(choice) => self.reset(&choice),
+            Order::TakeControl => {}
             Order::Seek(_) | Order::Step(_) => self.note(
                 board::Level::Warning,
                 "refused, this is no replay of a log".into(),

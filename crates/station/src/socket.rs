@@ -1,28 +1,37 @@
 //! One page's WebSocket: news from the board out, orders in.
 //!
 //! The two directions do not wait for each other: a page that is slow to read can still stop the robot. A page that
-//! sends what is no order is told why and closed; the robot goes on.
+//! sends what is no order is told why and closed; the robot goes on. A page that is slow loses samples of plots and gets every event.
+//!
+//! STOP is taken from every page, anything else from the page that has control ([`Lease`]).
 
-use crate::board::{Board, ConsoleText, Cursor, LoggedEvent, News, State};
+use crate::board::{Board, ConsoleText, Cursor, Level, LoggedEvent, News, State};
 use crate::catalogue::{self, ModeEntry, ParameterState};
+use crate::guard::Role;
+use crate::lease::{Lease, Place, Seat};
 use crate::orders::{self, Order};
 use crate::row::{Cell, Row};
 use crate::target::Scene;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use futures_util::stream::{SplitSink, SplitStream};
-use futures_util::{SinkExt, StreamExt};
+use futures_util::{Sink, SinkExt, StreamExt};
 use rumbo_wire::Command;
 use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::SyncSender;
 use std::time::Duration;
+use tokio::sync::mpsc;
 use tokio::time::{sleep, timeout};
 
 /// Longest message of a page [bytes].
 pub(crate) const MAX_MESSAGE: usize = 4_096;
 /// Rows of samples in one message.
-const ROWS_PER_MESSAGE: usize = 500;
+const ROWS_PER_MESSAGE: usize = 250;
+/// Rows that a page gets at once while it keeps up; of more it gets the newest.
+const ROWS_AT_ONCE: usize = 500;
+/// Refusals that wait for a page.
+const REFUSALS_WAITING: usize = 8;
 /// News within this time go out together: a page draws 60 times a second at most.
 const GATHER: Duration = Duration::from_millis(15);
 /// A page that takes nothing for this long is closed; it comes back by itself and gets the recent past.
@@ -34,6 +43,7 @@ pub(crate) struct Hub {
     pub(crate) board: Arc<Board>,
     pub(crate) orders: SyncSender<Order>,
     pub(crate) stop: Arc<AtomicBool>,
+    pub(crate) lease: Lease,
 }
 
 /// To a page.
@@ -58,6 +68,8 @@ enum ToPage<'a> {
     Events { events: &'a [LoggedEvent] },
     /// What the USARTs of an emulated chip said.
     Consoles { run: u32, said: &'a [ConsoleText] },
+    /// Who has control, as far as the page is concerned.
+    Control { seat: Seat },
     /// Why the connection is closed now.
     Error { text: &'a str },
 }
@@ -69,15 +81,33 @@ struct Goodbye {
 }
 
 /// Serves one page until either side ends it.
-pub(crate) async fn talk(socket: WebSocket, hub: Hub) {
+pub(crate) async fn talk(socket: WebSocket, hub: Hub, role: Role) {
     let (mut out, from_page) = socket.split();
+    let place = hub.lease.sit_down(role == Role::Controller);
+    let (refuse, refusals) = mpsc::channel(REFUSALS_WAITING);
     let goodbye = tokio::select! {
-        goodbye = tell_news(&mut out, &hub.board) => goodbye,
-        goodbye = take_orders(from_page, &hub) => goodbye,
+        goodbye = tell_news(&mut out, &hub, &place, refusals) => goodbye,
+        goodbye = take_orders(from_page, &hub, &place, &refuse) => goodbye,
     };
+    // Control goes with the page, however long it takes to say goodbye.
+    drop(place);
     if let Some(goodbye) = goodbye {
         // The page may be gone; then there is nobody to tell.
         let _ = timeout(SEND_TIMEOUT, say_goodbye(&mut out, goodbye)).await;
+    }
+}
+
+/// Whether the page may have this order done; why not otherwise.
+fn admit(order: &Order, place: &Place) -> Result<(), &'static str> {
+    let may = match order {
+        Order::Robot(Command::Stop) => true,
+        Order::TakeControl => place.take(),
+        _ => place.ask(),
+    };
+    match (may, place.seat()) {
+        (true, _) => Ok(()),
+        (false, Seat::Viewer) => Err("refused: this page may watch, and stop the robot"),
+        (false, _) => Err("refused: another page has control; take it first"),
     }
 }
 
@@ -104,7 +134,12 @@ async fn say_goodbye(
     .await
 }
 
-async fn take_orders(mut from_page: SplitStream<WebSocket>, hub: &Hub) -> Option<Goodbye> {
+async fn take_orders(
+    mut from_page: SplitStream<WebSocket>,
+    hub: &Hub,
+    place: &Place,
+    refuse: &mpsc::Sender<&'static str>,
+) -> Option<Goodbye> {
     while let Some(Ok(message)) = from_page.next().await {
         let text = match message {
             Message::Text(text) => text,
@@ -126,6 +161,11 @@ async fn take_orders(mut from_page: SplitStream<WebSocket>, hub: &Hub) -> Option
                 });
             }
         };
+        if let Err(why) = admit(&order, place) {
+            // Of many refusals a page need not read each.
+            let _ = refuse.try_send(why);
+            continue;
+        }
         if order == Order::Robot(Command::Stop) {
             hub.stop.store(true, Ordering::SeqCst);
         }
@@ -141,8 +181,13 @@ async fn take_orders(mut from_page: SplitStream<WebSocket>, hub: &Hub) -> Option
 }
 
 /// Ends when the page cannot be told any more.
-async fn tell_news(out: &mut SplitSink<WebSocket, Message>, board: &Board) -> Option<Goodbye> {
-    let mut changed = board.subscribe();
+async fn tell_news(
+    out: &mut (impl Sink<Message> + Unpin),
+    hub: &Hub,
+    place: &Place,
+    mut refusals: mpsc::Receiver<&'static str>,
+) -> Option<Goodbye> {
+    let (mut changed, mut moved) = (hub.board.subscribe(), hub.lease.subscribe());
     let mut cursor = Cursor::default();
     let columns: Vec<_> = Row::names().collect();
     let hello = ToPage::Hello {
@@ -151,21 +196,46 @@ async fn tell_news(out: &mut SplitSink<WebSocket, Message>, board: &Board) -> Op
         modes: catalogue::modes(),
     };
     send(out, &hello).await?;
+    let (mut told, mut run, mut t_s) = (None, 0, 0.0);
     loop {
-        let news = board.news(&mut cursor);
+        let seat = place.seat();
+        if told.replace(seat) != Some(seat) {
+            send(out, &ToPage::Control { seat }).await?;
+        }
+        let mut news = hub.board.news(&mut cursor);
         if news.events_gone > 0 {
             return Some(Goodbye {
                 code: close_code::AGAIN,
                 text: "too slow: events were missed".into(),
             });
         }
+        // Behind within a run, it goes on with the newest.
+        let behind = news.samples.len().saturating_sub(ROWS_AT_ONCE);
+        if std::mem::replace(&mut run, news.run) == news.run {
+            news.samples.drain(..behind);
+        }
+        t_s = news.state.as_ref().map_or(t_s, |state| state.t_s);
+        while let Ok(text) = refusals.try_recv() {
+            news.events.push(LoggedEvent {
+                t_s,
+                level: Level::Warning,
+                text: text.into(),
+            });
+        }
         send_news(out, news).await?;
         sleep(GATHER).await;
-        changed.changed().await.ok()?;
+        tokio::select! {
+            changed = changed.changed() => changed.ok()?,
+            moved = moved.changed() => moved.ok()?,
+            Some(text) = refusals.recv() => {
+                let events = [LoggedEvent { t_s, level: Level::Warning, text: text.into() }];
+                send(out, &ToPage::Events { events: &events }).await?;
+            }
+        }
     }
 }
 
-async fn send_news(out: &mut SplitSink<WebSocket, Message>, news: News) -> Option<()> {
+async fn send_news(out: &mut (impl Sink<Message> + Unpin), news: News) -> Option<()> {
     let run = news.run;
     if let Some(scene) = &news.scene {
         send(out, &ToPage::Scene { run, scene }).await?;
@@ -202,10 +272,105 @@ async fn send_news(out: &mut SplitSink<WebSocket, Message>, news: News) -> Optio
     Some(())
 }
 
-async fn send(out: &mut SplitSink<WebSocket, Message>, message: &ToPage<'_>) -> Option<()> {
+async fn send(out: &mut (impl Sink<Message> + Unpin), message: &ToPage<'_>) -> Option<()> {
     let text = serde_json::to_string(message).ok()?;
     timeout(SEND_TIMEOUT, out.send(Message::Text(text.into())))
         .await
         .ok()?
         .ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hub() -> Hub {
+        Hub {
+            board: Arc::new(Board::new()),
+            orders: std::sync::mpsc::sync_channel(1).0,
+            stop: Arc::default(),
+            lease: Lease::new(),
+        }
+    }
+
+    #[test]
+    fn a_viewer_may_stop_and_nothing_else_and_so_may_a_page_without_control() {
+        let hub = hub();
+        let (driver, other, viewer) = (
+            hub.lease.sit_down(true),
+            hub.lease.sit_down(true),
+            hub.lease.sit_down(false),
+        );
+        let (stop, arm) = (Order::Robot(Command::Stop), Order::Robot(Command::Arm));
+        // STOP takes no control.
+        assert!(admit(&stop, &other).is_ok() && other.seat() == Seat::Free);
+        assert!(admit(&arm, &viewer).unwrap_err().contains("watch"));
+        assert!(admit(&arm, &driver).is_ok());
+        assert!(admit(&arm, &other).unwrap_err().contains("another page"));
+        for order in [Order::Speed(2.0), Order::Seek(1.0), Order::TakeControl] {
+            assert!(admit(&order, &viewer).is_err(), "{order:?}");
+        }
+        assert!(
+            [&driver, &other, &viewer]
+                .iter()
+                .all(|page| admit(&stop, page).is_ok())
+        );
+        assert!(admit(&Order::TakeControl, &other).is_ok());
+        assert!(admit(&arm, &driver).is_err());
+    }
+
+    #[tokio::test]
+    async fn a_page_that_takes_nothing_for_a_while_loses_samples_and_no_event() {
+        const ROUNDS: usize = 300;
+        let hub = hub();
+        let board = Arc::clone(&hub.board);
+        let place = hub.lease.sit_down(true);
+        // Room for one message on the way, as in full buffers of a connection.
+        let (to_page, mut page) = mpsc::channel::<Message>(1);
+        let mut out = Box::pin(futures_util::sink::unfold(
+            to_page,
+            |to_page, message| async move { to_page.send(message).await.map(|()| to_page) },
+        ));
+        let (_refuse, refusals) = mpsc::channel(1);
+        let reader = async {
+            for round in 0..ROUNDS {
+                let rows: Vec<Row> = (0..100)
+                    .map(|row| Row::unknown((100 * round + row) as i64))
+                    .collect();
+                board.push_samples(&rows);
+                board.push_event(LoggedEvent {
+                    t_s: 0.0,
+                    level: Level::Info,
+                    text: round.to_string(),
+                });
+                tokio::task::yield_now().await;
+            }
+            let (mut events, mut rows, mut last_s) = (Vec::new(), 0, 0.0);
+            while events.len() < ROUNDS || last_s < (100 * ROUNDS - 1) as f64 / 1e3 {
+                let Some(Message::Text(text)) = page.recv().await else {
+                    panic!("the page was given up");
+                };
+                let message: serde_json::Value = serde_json::from_str(&text).unwrap();
+                for event in message["events"].as_array().into_iter().flatten() {
+                    events.push(event["text"].as_str().unwrap().to_owned());
+                }
+                for row in message["rows"].as_array().into_iter().flatten() {
+                    rows += 1;
+                    last_s = row[0].as_f64().unwrap();
+                }
+            }
+            (events, rows)
+        };
+        let (events, rows) = tokio::select! {
+            _ = tell_news(&mut out, &hub, &place, refusals) => panic!("the page was given up"),
+            read = reader => read,
+        };
+        assert!(
+            events
+                .iter()
+                .map(|text| text.parse::<usize>().unwrap())
+                .eq(0..ROUNDS)
+        );
+        assert!(rows < 100 * ROUNDS, "{rows}");
+    }
 }

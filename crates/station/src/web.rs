@@ -1,11 +1,11 @@
 //! The web server: the dashboard's files and its WebSocket, behind the [`Guard`].
 
 use crate::assets;
-use crate::guard::{Denied, Guard};
+use crate::guard::{Denied, Guard, Role};
 use crate::socket::{self, Hub};
 use axum::Router;
 use axum::body::Body;
-use axum::extract::{Request, State, WebSocketUpgrade};
+use axum::extract::{Extension, Request, State, WebSocketUpgrade};
 use axum::http::{HeaderName, HeaderValue, Method, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
@@ -50,10 +50,13 @@ pub(crate) fn router(guard: Arc<Guard>, hub: Hub) -> Router {
 }
 
 /// Lets a request in, or says why not.
-async fn admit(State(guard): State<Arc<Guard>>, request: Request, next: Next) -> Response {
+async fn admit(State(guard): State<Arc<Guard>>, mut request: Request, next: Next) -> Response {
     let mut response = match check(&guard, &request) {
-        Ok(None) => next.run(request).await,
-        Ok(Some(cookie)) => {
+        Ok(Pass::As(role)) => {
+            request.extensions_mut().insert(role);
+            next.run(request).await
+        }
+        Ok(Pass::With(cookie)) => {
             // The token does not stay in the address.
             (
                 StatusCode::SEE_OTHER,
@@ -70,28 +73,41 @@ async fn admit(State(guard): State<Arc<Guard>>, request: Request, next: Next) ->
     response
 }
 
-/// Whether the request may pass; a cookie to set when it brought the token.
-fn check(guard: &Guard, request: &Request) -> Result<Option<String>, Denied> {
+/// How a request may pass.
+enum Pass {
+    /// It has a cookie of this role.
+    As(Role),
+    /// It has brought a token: it gets this cookie and is to ask again.
+    With(String),
+}
+
+/// Whether the request may pass. A token of a role that is not had yet counts before a cookie that is.
+fn check(guard: &Guard, request: &Request) -> Result<Pass, Denied> {
     guard.check_source(request.headers())?;
     if request.uri().path() == "/ws" {
         guard.check_origin(request.headers())?;
     }
-    let token = request
-        .uri()
-        .query()
-        .and_then(|query| query.strip_prefix("token="));
-    match (guard.check_cookie(request.headers()), token) {
-        (Ok(()), _) => Ok(None),
-        (Err(_), Some(token)) if request.uri().path() == "/" => guard.redeem(token).map(Some),
-        (Err(denied), _) => Err(denied),
+    let had = guard.check_cookie(request.headers());
+    let query = request.uri().query().unwrap_or_default();
+    match guard.token_in(query) {
+        Some((role, token))
+            if request.uri().path() == "/" && had.map_or(true, |had| had < role) =>
+        {
+            guard.redeem(role, token).map(Pass::With)
+        }
+        _ => had.map(Pass::As),
     }
 }
 
-async fn upgrade(State(hub): State<Hub>, upgrade: WebSocketUpgrade) -> Response {
+async fn upgrade(
+    State(hub): State<Hub>,
+    Extension(role): Extension<Role>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
     upgrade
         .max_message_size(socket::MAX_MESSAGE)
         .max_frame_size(socket::MAX_MESSAGE)
-        .on_upgrade(|socket| socket::talk(socket, hub))
+        .on_upgrade(move |socket| socket::talk(socket, hub, role))
 }
 
 async fn file(request: Request) -> Response {

@@ -1,189 +1,16 @@
-//! The lab as a browser, and as somebody else's page, meets it.
+//! The lab as a browser meets it.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+#[path = "support/page.rs"]
+mod page;
 mod support;
 
 use futures_util::{SinkExt, StreamExt};
-use rumbo_station::{Lab, LabConfig, ServeError, serve};
+use page::*;
+use rumbo_station::{LabConfig, ServeAt, ServeError, serve};
 use serde_json::{Value, json};
-use std::io::{Read, Write};
-use std::net::TcpStream;
-use std::time::Duration;
 use support::Toy;
-use tokio_tungstenite::tungstenite::client::IntoClientRequest;
-use tokio_tungstenite::tungstenite::http::HeaderValue;
-use tokio_tungstenite::tungstenite::{Error, Message};
-
-/// Long enough for any machine; nothing is judged by it.
-const PATIENCE: Duration = Duration::from_secs(20);
-
-fn start(speed: f64) -> Lab {
-    serve(
-        LabConfig {
-            port: 0,
-            speed,
-            recording: None,
-        },
-        Box::new(Toy::default()),
-    )
-    .unwrap()
-}
-
-fn host(lab: &Lab) -> String {
-    lab.url()
-        .trim_start_matches("http://")
-        .split('/')
-        .next()
-        .unwrap()
-        .to_owned()
-}
-
-/// One request with these header lines; the whole answer.
-fn request(lab: &Lab, target: &str, headers: &[(&str, &str)]) -> String {
-    let mut stream = TcpStream::connect(host(lab)).unwrap();
-    let mut text = format!("GET {target} HTTP/1.1\r\nConnection: close\r\n");
-    for (name, value) in headers {
-        text += &format!("{name}: {value}\r\n");
-    }
-    stream.write_all((text + "\r\n").as_bytes()).unwrap();
-    let mut answer = String::new();
-    stream.read_to_string(&mut answer).unwrap();
-    answer
-}
-
-fn status(answer: &str) -> &str {
-    answer.split(' ').nth(1).unwrap()
-}
-
-/// The cookie for the token in the lab's address.
-fn open(lab: &Lab) -> String {
-    let host = host(lab);
-    let target = lab.url().split_once(&host).unwrap().1.to_owned();
-    let answer = request(lab, &target, &[("Host", &host)]);
-    assert_eq!(status(&answer), "303", "{answer}");
-    let cookie = answer
-        .lines()
-        .find_map(|line| line.strip_prefix("set-cookie: "))
-        .unwrap();
-    cookie.split(';').next().unwrap().to_owned()
-}
-
-type Page =
-    tokio_tungstenite::WebSocketStream<tokio_tungstenite::MaybeTlsStream<tokio::net::TcpStream>>;
-
-async fn connect(lab: &Lab, cookie: &str, origin: Option<&str>) -> Result<Page, Error> {
-    let mut request = format!("ws://{}/ws", host(lab))
-        .into_client_request()
-        .unwrap();
-    request
-        .headers_mut()
-        .insert("Cookie", HeaderValue::from_str(cookie).unwrap());
-    if let Some(origin) = origin {
-        request
-            .headers_mut()
-            .insert("Origin", HeaderValue::from_str(origin).unwrap());
-    }
-    tokio_tungstenite::connect_async(request)
-        .await
-        .map(|(page, _)| page)
-}
-
-async fn connect_own(lab: &Lab, cookie: &str) -> Page {
-    let origin = format!("http://{}", host(lab));
-    connect(lab, cookie, Some(&origin)).await.unwrap()
-}
-
-async fn say(page: &mut Page, order: Value) {
-    page.send(Message::text(order.to_string())).await.unwrap();
-}
-
-/// Reads on until `wanted` finds what it looks for.
-async fn wait_for<T>(page: &mut Page, mut wanted: impl FnMut(&Value) -> Option<T>) -> T {
-    let search = async {
-        loop {
-            let message = page.next().await.unwrap().unwrap();
-            if let Message::Text(text) = message
-                && let Some(found) = wanted(&serde_json::from_str(&text).unwrap())
-            {
-                return found;
-            }
-        }
-    };
-    tokio::time::timeout(PATIENCE, search).await.unwrap()
-}
-
-fn event(message: &Value, part: &str) -> Option<()> {
-    let texts = message["events"].as_array()?;
-    texts
-        .iter()
-        .any(|event| event["text"].as_str().unwrap().contains(part))
-        .then_some(())
-}
-
-fn armed(message: &Value, wanted: bool) -> Option<()> {
-    (message["state"]["robot"]["armed"] == wanted).then_some(())
-}
-
-#[test]
-fn only_who_has_the_address_that_was_printed_sees_the_page() {
-    let lab = start(0.0);
-    let host = host(&lab);
-    assert_eq!(status(&request(&lab, "/", &[("Host", &host)])), "403");
-    assert_eq!(
-        status(&request(&lab, "/src/main.js", &[("Host", &host)])),
-        "403"
-    );
-    assert_eq!(
-        status(&request(&lab, "/?token=00", &[("Host", &host)])),
-        "403"
-    );
-    let cookie = open(&lab);
-    let page = request(&lab, "/", &[("Host", &host), ("Cookie", &cookie)]);
-    assert_eq!(status(&page), "200");
-    for header in [
-        "content-security-policy: default-src 'self'",
-        "x-content-type-options: nosniff",
-        "referrer-policy: no-referrer",
-        "cache-control: no-store",
-    ] {
-        assert!(page.contains(header), "{header} is missing: {page}");
-    }
-    let again = lab.url().split_once(&host).unwrap().1;
-    assert_eq!(
-        status(&request(&lab, again, &[("Host", &host)])),
-        "403",
-        "the token opens once"
-    );
-    assert_eq!(
-        status(&request(
-            &lab,
-            "/../Cargo.toml",
-            &[("Host", &host), ("Cookie", &cookie)]
-        )),
-        "404"
-    );
-}
-
-#[test]
-fn another_host_or_origin_is_refused_even_with_the_cookie() {
-    let lab = start(0.0);
-    let host = host(&lab);
-    let cookie = open(&lab);
-    for target in ["/", "/ws", "/src/main.js"] {
-        let rebound = request(
-            &lab,
-            target,
-            &[("Host", "evil.example"), ("Cookie", &cookie)],
-        );
-        assert_eq!(status(&rebound), "403", "{target}");
-        let foreign = [
-            ("Host", host.as_str()),
-            ("Cookie", &cookie),
-            ("Origin", "http://evil.example"),
-        ];
-        assert_eq!(status(&request(&lab, target, &foreign)), "403", "{target}");
-    }
-}
+use tokio_tungstenite::tungstenite::Message;
 
 #[test]
 fn a_port_in_use_is_named_with_the_remedy() {
@@ -191,14 +18,14 @@ fn a_port_in_use_is_named_with_the_remedy() {
     let port = host(&lab).rsplit_once(':').unwrap().1.parse().unwrap();
     let error = serve(
         LabConfig {
-            port,
+            at: ServeAt::here(port),
             speed: 0.0,
             recording: None,
         },
         Box::new(Toy::default()),
     )
     .unwrap_err();
-    assert!(matches!(error, ServeError::PortInUse(used) if used == port));
+    assert!(matches!(error, ServeError::PortInUse(used) if used.port() == port));
     let text = error.to_string();
     assert!(
         text.contains(&port.to_string()) && text.contains("--port"),
@@ -213,30 +40,13 @@ fn ending_the_lab_frees_its_port() {
     drop(lab);
     serve(
         LabConfig {
-            port,
+            at: ServeAt::here(port),
             speed: 0.0,
             recording: None,
         },
         Box::new(Toy::default()),
     )
     .unwrap();
-}
-
-#[tokio::test]
-async fn the_websocket_of_another_page_is_refused() {
-    let lab = start(1.0);
-    let cookie = open(&lab);
-    for (cookie, origin) in [
-        (cookie.as_str(), Some("http://evil.example")),
-        (cookie.as_str(), Some("null")),
-        (cookie.as_str(), None),
-        ("", Some(format!("http://{}", host(&lab)).as_str())),
-    ] {
-        match connect(&lab, cookie, origin).await {
-            Err(Error::Http(answer)) => assert_eq!(answer.status(), 403),
-            other => panic!("{origin:?}: {other:?}"),
-        }
-    }
 }
 
 #[tokio::test]

@@ -1,0 +1,146 @@
+//! Who has control: one page at a time, of those that may have it.
+//!
+//! A controller's page gets control with its first order while nobody has it, and keeps it until it is closed or another controller
+//! takes it on purpose. STOP needs no control. What a page is told of it is [`Seat`].
+
+use serde::Serialize;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use tokio::sync::watch;
+
+/// The number of a page, in the order in which they came.
+pub(crate) type PageId = u64;
+
+/// Where a page sits, as it is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Seat {
+    /// It may watch and stop.
+    Viewer,
+    /// Nobody has control: its first order takes it.
+    Free,
+    /// It has control.
+    Driver,
+    /// Another page has control.
+    Passenger,
+}
+
+#[derive(Debug, Default)]
+struct Holder {
+    next: PageId,
+    held_by: Option<PageId>,
+}
+
+/// The one lease of control.
+#[derive(Clone, Debug)]
+pub(crate) struct Lease {
+    holder: Arc<Mutex<Holder>>,
+    changed: watch::Sender<()>,
+}
+
+impl Lease {
+    /// A lease that nobody has.
+    pub(crate) fn new() -> Self {
+        Self {
+            holder: Arc::default(),
+            changed: watch::Sender::new(()),
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Holder> {
+        self.holder.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Wakes its holder when control has changed hands.
+    pub(crate) fn subscribe(&self) -> watch::Receiver<()> {
+        self.changed.subscribe()
+    }
+
+    /// A page has come.
+    pub(crate) fn sit_down(&self, may_control: bool) -> Place {
+        let mut holder = self.lock();
+        holder.next += 1;
+        Place {
+            page: holder.next,
+            may_control,
+            lease: self.clone(),
+        }
+    }
+}
+
+/// A page's place; with it goes control, if it had it.
+#[derive(Debug)]
+pub(crate) struct Place {
+    page: PageId,
+    may_control: bool,
+    lease: Lease,
+}
+
+impl Place {
+    /// Control, if nobody else has it; whether the page has it now.
+    pub(crate) fn ask(&self) -> bool {
+        let mut holder = self.lease.lock();
+        if self.may_control && holder.held_by.is_none() {
+            holder.held_by = Some(self.page);
+            self.lease.changed.send_replace(());
+        }
+        holder.held_by == Some(self.page)
+    }
+
+    /// Control, whoever has it; whether the page may have it.
+    pub(crate) fn take(&self) -> bool {
+        if self.may_control {
+            self.lease.lock().held_by = Some(self.page);
+            self.lease.changed.send_replace(());
+        }
+        self.may_control
+    }
+
+    /// Where the page sits.
+    pub(crate) fn seat(&self) -> Seat {
+        match self.lease.lock().held_by {
+            _ if !self.may_control => Seat::Viewer,
+            None => Seat::Free,
+            Some(page) if page == self.page => Seat::Driver,
+            Some(_) => Seat::Passenger,
+        }
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let mut holder = self.lease.lock();
+        if holder.held_by == Some(self.page) {
+            holder.held_by = None;
+            self.lease.changed.send_replace(());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_page_has_control_until_it_goes_or_another_takes_it() {
+        let lease = Lease::new();
+        let (first, second, viewer) = (
+            lease.sit_down(true),
+            lease.sit_down(true),
+            lease.sit_down(false),
+        );
+        assert_eq!(second.seat(), Seat::Free);
+        assert!(first.ask() && !second.ask() && !viewer.ask());
+        assert_eq!(
+            [first.seat(), second.seat(), viewer.seat()],
+            [Seat::Driver, Seat::Passenger, Seat::Viewer]
+        );
+        assert!(!viewer.take() && second.take());
+        assert_eq!(first.seat(), Seat::Passenger);
+        assert!(!first.ask());
+        // Who has no control takes none away by going.
+        drop(first);
+        assert!(second.ask());
+        drop(second);
+        assert_eq!(lease.sit_down(true).seat(), Seat::Free);
+    }
+}
