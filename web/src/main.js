@@ -14,6 +14,7 @@ import { CommandPanel } from './panel.js';
 import { ParameterTable } from './parameters.js';
 import { Plots } from './plots.js';
 import { ReplayBar } from './replay.js';
+import { Seat } from './seat.js';
 import { StateLine, pointerWords } from './stateline.js';
 import { Store } from './store.js';
 import { LANGUAGES, language, speak, t, translatePage, untranslated } from './text.js';
@@ -43,6 +44,7 @@ const redraw = onFrame(() => {
   setText(pointer, pointerWords(map.pointed()));
 });
 const header = new Header(send);
+const seat = new Seat(send);
 const parameters = new ParameterTable(send);
 const replay = new ReplayBar(send);
 const events = new EventList((t_s) => {
@@ -131,6 +133,9 @@ function receive(message) {
       store.setRun(message.run);
       for (const row of message.rows) store.push(row);
       redraw();
+      break;
+    case 'control':
+      seat.show(message.seat);
       break;
     case 'error':
       break;

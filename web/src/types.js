@@ -79,9 +79,12 @@
  *   | {type: 'samples', run: number, rows: Cell[][]}
  *   | {type: 'events', events: LoggedEvent[]}
  *   | {type: 'consoles', run: number, said: ConsoleText[]}
+ *   | {type: 'control', seat: Seat}
  *   | {type: 'error', text: string}} FromServer
  *
- * @typedef {{type: 'stop' | 'arm' | 'disarm' | 'clear_fault' | 'reset_params' | 'save_params' | 'reset_pose'}
+ * @typedef {'viewer' | 'free' | 'driver' | 'passenger'} Seat Who has control, as far as this page is concerned.
+ *
+ * @typedef {{type: 'stop' | 'take_control' | 'arm' | 'disarm' | 'clear_fault' | 'reset_params' | 'save_params' | 'reset_pose'}
  *   | {type: 'mode', mode: number}
  *   | {type: 'reference', value: number}
  *   | {type: 'wheel_reference', left: number, right: number}

@@ -40,6 +40,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/plot_specs.js": SCRIPT,
     "src/plots.js": SCRIPT,
     "src/replay.js": SCRIPT,
+    "src/seat.js": SCRIPT,
     "src/sketch.js": SCRIPT,
     "src/spanish/guide.js": SCRIPT,
     "src/spanish/page.js": SCRIPT,

@@ -15,6 +15,8 @@ export const PAGE = {
   'Battery of the simulation; the robot has nothing wired to measure it': 'Batería de la simulación; el robot no tiene con qué medirla',
   'STOP': 'PARAR', 'Space': 'Espacio',
   'Release the wheels at once (Space, from anywhere but a line of text)': 'Suelta las ruedas al instante (Espacio, desde cualquier sitio salvo una línea de texto)',
+  'you watch; STOP works': 'miras; PARAR funciona', 'another page has control; STOP works': 'otra página tiene el control; PARAR funciona',
+  'Take control': 'Tomar el control', 'Drive from this page; the other one then watches': 'Conduce desde esta página; la otra pasa a mirar',
   'connecting…': 'conectando…', 'no connection, trying again…': 'sin conexión, reintentando…', 'no connection: {}, trying again…': 'sin conexión: {}, reintentando…',
   'replay, paused': 'grabación, en pausa', 'replay × {}': 'grabación × {}', 'simulation paused': 'simulación en pausa',
   'the station is silent': 'la estación no dice nada', 'no answer from the robot': 'el robot no responde', 'live {} Hz': 'en vivo {} Hz', '{}, only × {}': '{}, solo × {}',

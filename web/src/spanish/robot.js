@@ -55,7 +55,7 @@ export const ROBOT = {
   'allowed is {} to {}': 'se permite de {} a {}', 'allowed is {} to {} m for each coordinate': 'se permite de {} a {} m en cada coordenada',
   'allowed is -{} to {} m for each coordinate, and {} waypoints': 'se permite de -{} a {} m en cada coordenada, y {} lugares', 'out of range': 'fuera de margen',
   'not confirmed': 'sin confirmar', 'too many commands wait for the robot': 'demasiadas órdenes esperan al robot', 'the robot has another parameter table': 'el robot tiene otra tabla de parámetros',
-  'this robot speaks the original\'s text, which has no words for it': 'este robot habla el texto del original, que no tiene palabras para eso',
+ 
   // Why the robot's program started.
   'power on': 'encendido', 'reset button or serial adapter': 'botón de reinicio o adaptador serie',
   'the supply dipped; charge the battery, check the cables': 'la alimentación bajó; carga la batería, comprueba los cables',
@@ -66,10 +66,19 @@ export const ROBOT = {
   'every way round was tried; give another goal, or clear the way': 'se probó a rodear por todos lados; da otro destino o despeja el camino',
   'connected; the robot\'s program started after: {}': 'conectado; el programa del robot arrancó por: {}',
   'the robot\'s program started again: {}': 'el programa del robot arrancó de nuevo: {}',
+  'refused: this page may watch, and stop the robot': 'rechazado: esta página puede mirar, y parar el robot',
+  'refused: another page has control; take it first': 'rechazado: otra página tiene el control; tómalo antes',
+  'connected; the robot speaks the original program\'s text: nothing is acknowledged, and it goes on by itself when the link is lost':
+    'conectado; el robot habla el texto del programa original: nada se confirma, y sigue por su cuenta si se pierde el enlace',
+  'nothing heard from the robot for some seconds, though it is on': 'el robot no dice nada desde hace unos segundos, aunque está en marcha',
+  '{}: sent, text is not acknowledged': '{}: enviado, el texto no se confirma',
+  '{}: sent as text, in case the robot runs the original program; nothing was heard from it yet':
+    '{}: enviado como texto, por si el robot ejecuta el programa original; aún no se le ha oído',
   'link lost: nothing heard from the robot for a second; trying again': 'enlace perdido: el robot no dice nada desde hace un segundo; reintentando',
   'the robot speaks protocol {}, this station {}: flash the robot or update the station': 'el robot habla el protocolo {}, esta estación el {}: graba el robot o actualiza la estación',
   'the robot has another parameter table: parameters are neither shown nor written': 'el robot tiene otra tabla de parámetros: ni se muestran ni se escriben',
-  'the robot is gone: {}': 'el robot ya no está: {}', '{}: not sent, {}': '{}: no enviado, {}', 'a real robot has no such console': 'un robot real no tiene esa consola',
+  'the robot is gone: {}': 'el robot ya no está: {}', '{}: not sent, {}': '{}: no enviado, {}', 'this robot takes no lines of text from here': 'a este robot no se le escriben líneas desde aquí',
+  'the port is gone': 'el puerto ya no está', 'this robot speaks the original\'s text, which has no words for it': 'este robot habla el texto del original, que no tiene palabras para eso',
   'there is no emulated chip; start the lab with --firmware': 'no hay chip emulado; arranca el laboratorio con --firmware',
   'speed: refused, a real robot lives at its own': 'velocidad: rechazado, un robot real vive a la suya', 'refused, this is no replay of a log': 'rechazado, esto no es una grabación',
   'reset: refused, this is a real robot': 'reinicio: rechazado, es un robot real', 'reset: refused, {}': 'reinicio: rechazado, {}',
