@@ -34,6 +34,8 @@ pub(crate) enum Command {
     Connect(ConnectArgs),
     /// Run scenarios as fast as the machine can and judge their metrics
     Run(RunArgs),
+    /// Run every experiment of the report and write it: one page with all figures
+    Experiments(ExperimentsArgs),
     /// Find the plant's parameters from recorded runs
     Identify(IdentifyArgs),
     /// Let the robot calibrate itself: dead zones, feedforward, wheels, base
@@ -228,6 +230,57 @@ pub(crate) enum ProgramName {
     Rumbo,
     /// The report's, as a baseline
     Original,
+}
+
+/// Options of `rumbo experiments`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo experiments
+  rumbo experiments --language es --out informe
+  rumbo experiments --only mode1 mode5 --seed 7
+  rumbo experiments --real runs
+  rumbo experiments --firmware my_sketch.elf
+
+Writes DIR/report.html: no part of it comes from elsewhere, and it prints well. The same version, seed and files give the same bytes. Exit
+status 1 if an experiment misses a limit.")]
+pub(crate) struct ExperimentsArgs {
+    /// Folder for the report; made if need be
+    #[arg(long, value_name = "DIR", default_value = "rumbo-report")]
+    pub(crate) out: PathBuf,
+    /// Language of the report [default: that of the locale]
+    #[arg(long, value_enum, value_name = "LANGUAGE")]
+    pub(crate) language: Option<LanguageName>,
+    /// These experiments only: names as in the report's links, e.g. mode1, or of scenarios
+    #[arg(long, value_name = "NAME", num_args = 1..)]
+    pub(crate) only: Vec<String>,
+    /// Seed of all runs
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Folder with CSVs of recorded runs (the original program's), shown beside ours
+    #[arg(long, value_name = "DIR")]
+    pub(crate) real: Option<PathBuf>,
+    /// Robot instead of the scenarios' own: name or path
+    #[arg(long, value_name = "NAME")]
+    pub(crate) robot: Option<String>,
+    /// Program image for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
+    #[arg(long, value_name = "IMAGE")]
+    pub(crate) firmware: Option<PathBuf>,
+    /// Wiring of that Mega, of the robot file [default: the report's for each experiment; `final` for our own image]
+    #[arg(long, value_name = "NAME", requires = "firmware")]
+    pub(crate) wiring: Option<String>,
+    /// Also the true signals of each run as CSV, and its metrics as JSON
+    #[arg(long)]
+    pub(crate) data: bool,
+}
+
+/// The languages of the report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LanguageName {
+    /// English
+    En,
+    /// Spanish
+    Es,
 }
 
 /// Options of `rumbo identify`.

@@ -7,6 +7,7 @@ mod args;
 mod calibrate;
 mod compare;
 mod connect;
+mod experiments;
 mod export;
 mod failure;
 mod figures;
@@ -48,6 +49,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Lab(args)) => lab::lab(&args),
         Some(Command::Connect(args)) => connect::connect(&args),
         Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Experiments(args)) => experiments::experiments(&args),
         Some(Command::Replay(args)) => replay::replay(&args),
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Compare(args)) => compare::compare(&args),

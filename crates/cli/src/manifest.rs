@@ -42,7 +42,7 @@ pub(crate) fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) ->
 }
 
 /// CRC-32 of a file, as hexadecimal digits.
-fn hash(path: &Path) -> Option<String> {
+pub(crate) fn hash(path: &Path) -> Option<String> {
     let bytes = std::fs::read(path).ok()?;
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
     Some(format!("{:08x}", crc.checksum(&bytes)))

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 10] = [
+const ARROWS: [(&str, &[&str]); 11] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
@@ -20,7 +20,8 @@ const ARROWS: [(&str, &[&str]); 10] = [
         &["rumbo-robot", "rumbo-plant", "rumbo-emulator"],
     ),
     ("rumbo-station", &["rumbo-wire"]),
-    ("rumbo-cli", &["rumbo-station", "rumbo-scenario"]),
+    ("rumbo-report", &["rumbo-scenario"]),
+    ("rumbo-cli", &["rumbo-station", "rumbo-report"]),
     ("rumbo-firmware", &["rumbo-robot"]),
     ("xtask", &[]),
 ];

@@ -1,0 +1,171 @@
+//! `rumbo experiments`: every experiment of the report, and the report itself as one page.
+
+use crate::args::{ExperimentsArgs, LanguageName};
+use crate::failure::Failure;
+use crate::manifest;
+use crate::output;
+use indicatif::{ProgressBar, ProgressStyle};
+use rumbo_report::text::Language;
+use rumbo_report::{Data, Plan, Request, html, real};
+use rumbo_scenario::files::{Library, Overrides};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// File name of the report.
+const REPORT: &str = "report.html";
+/// Simulated seconds that a thread gets through in a second: natively, and with an image on the emulated chip. For the first estimate of
+/// the time left; what is shown later is measured.
+const NATIVE_SPEED: f64 = 1_500.0;
+const EMULATED_SPEED: f64 = 20.0;
+
+/// Runs, writes, and prints what came of each experiment.
+pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
+    let begun = Instant::now();
+    let real = args
+        .real
+        .as_deref()
+        .map(real::read)
+        .transpose()
+        .map_err(Failure::input)?;
+    let request = Request {
+        only: args.only.clone(),
+        seed: args.seed,
+        overrides: Overrides {
+            robot: args.robot.clone(),
+            firmware: args.firmware.clone(),
+            wiring: args.wiring.clone(),
+            ..Overrides::default()
+        },
+        real: real.unwrap_or_default(),
+    };
+    let plan = Plan::new(&Library::new(), request)?;
+    let place = place(&args.out)?;
+    let progress = progress(args, &plan);
+    let mut data = plan.run(|simulated_s| progress.inc((10.0 * simulated_s) as u64))?;
+    progress.finish_and_clear();
+    data.firmware = args.firmware.as_deref().map(named);
+    let (page, _) = html(&data, language(args));
+    std::fs::write(&place, page).map_err(|error| unwritable(&place, &error))?;
+    if args.data {
+        write_data(&args.out, &data)?;
+    }
+    report(&data, &place, begun)
+}
+
+/// The file to be written, so that a folder where nothing can be written is found before the work, not after it.
+fn place(folder: &Path) -> Result<PathBuf, Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))?;
+    let place = folder.join(REPORT);
+    let opened = std::fs::OpenOptions::new()
+        .create(true)
+        .append(true)
+        .open(&place);
+    opened.map_err(|error| unwritable(&place, &error))?;
+    Ok(place)
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::Input(format!(
+        "{}: cannot be written ({error}); choose another folder with --out",
+        path.display()
+    ))
+}
+
+/// The bar, which says from the start about how long it will take.
+fn progress(args: &ExperimentsArgs, plan: &Plan) -> ProgressBar {
+    let threads = std::thread::available_parallelism().map_or(1.0, |count| count.get() as f64);
+    let speed = if args.firmware.is_some() {
+        EMULATED_SPEED
+    } else {
+        NATIVE_SPEED
+    };
+    let expected_s = (plan.simulated_s() / speed / threads).ceil().max(1.0);
+    let message = format!(
+        "{} runs, {:.0} s of driving, about {expected_s:.0} s",
+        plan.runs(),
+        plan.simulated_s()
+    );
+    let style = ProgressStyle::with_template("{msg} {bar:30} {percent} %, {eta} left");
+    let bar = ProgressBar::new((10.0 * plan.simulated_s()) as u64).with_message(message);
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.tick();
+    bar
+}
+
+/// The language that was asked for, else the locale's.
+fn language(args: &ExperimentsArgs) -> Language {
+    match args.language {
+        Some(LanguageName::En) => Language::English,
+        Some(LanguageName::Es) => Language::Spanish,
+        None => {
+            let set = |name| std::env::var(name).ok().filter(|value| !value.is_empty());
+            let locale = ["LC_ALL", "LC_MESSAGES", "LANG"].into_iter().find_map(set);
+            Language::of_locale(&locale.unwrap_or_default())
+        }
+    }
+}
+
+/// An image by its name without folder, and what tells it from another of that name.
+fn named(path: &Path) -> [String; 2] {
+    let file = path.file_name().unwrap_or(path.as_os_str());
+    [
+        file.to_string_lossy().into_owned(),
+        manifest::hash(path).unwrap_or_default(),
+    ]
+}
+
+/// The true signals of each run as CSV, and its metrics as JSON.
+fn write_data(folder: &Path, data: &Data) -> Result<(), Failure> {
+    for outcome in data.outcomes.values() {
+        let stem = format!("{}-{}", outcome.result.scenario, outcome.result.seed);
+        outcome
+            .result
+            .trace
+            .write_csv(&folder.join(format!("{stem}.csv")))?;
+        let path = folder.join(format!("{stem}.json"));
+        let text = serde_json::to_string(&outcome.result).map_err(Failure::input)?;
+        std::fs::write(&path, text + "\n").map_err(|error| unwritable(&path, &error))?;
+    }
+    Ok(())
+}
+
+fn report(data: &Data, place: &Path, begun: Instant) -> Result<(), Failure> {
+    let rows: Vec<Vec<String>> = data
+        .experiments
+        .iter()
+        .map(|experiment| {
+            let verdict = if data.passes(experiment) {
+                "ok"
+            } else {
+                "MISSED"
+            };
+            vec![
+                experiment.name.to_owned(),
+                verdict.to_owned(),
+                experiment.title.en.to_owned(),
+            ]
+        })
+        .collect();
+    output::table(&rows)?;
+    for outcome in data.outcomes.values() {
+        for failure in &outcome.result.failures {
+            output::line(&format!("  FAILED, {}: {failure}", outcome.result.scenario))?;
+        }
+    }
+    for skipped in &data.real.skipped {
+        output::line(&format!(
+            "  note: {} is not shown: {}",
+            skipped.file, skipped.why.en
+        ))?;
+    }
+    output::line(&format!(
+        "{} ({:.1} s)",
+        place.display(),
+        begun.elapsed().as_secs_f64()
+    ))?;
+    if data.pass() {
+        Ok(())
+    } else {
+        Err(Failure::LimitMissed)
+    }
+}

@@ -1,0 +1,49 @@
+//! The experiments, a file for each: what its chapter says and shows, and which of its metrics stand in the summary.
+
+mod mode1;
+mod mode5;
+mod parts;
+
+use crate::data::Data;
+use crate::page::Page;
+use crate::text::Text;
+
+/// An experiment of the report.
+#[derive(Debug)]
+pub struct Experiment {
+    /// Its name for `--only`, and its place in the page.
+    pub name: &'static str,
+    /// Number of its chapter.
+    pub number: &'static str,
+    /// Its title.
+    pub title: Text,
+    /// The scenarios that it is made of.
+    pub scenarios: &'static [&'static str],
+    /// Metrics of the summary.
+    pub(crate) highlights: &'static [Highlight],
+    /// Writes its chapter.
+    pub(crate) write: fn(&mut Page, &Data),
+}
+
+/// A metric of the summary, and what the robot of the original report did.
+#[derive(Debug)]
+pub(crate) struct Highlight {
+    pub(crate) scenario: &'static str,
+    pub(crate) metric: &'static str,
+    /// What of the experiment it belongs to, where the metric's name does not say.
+    pub(crate) of: Option<Text>,
+    /// In the metric's own unit.
+    pub(crate) real: Option<f64>,
+}
+
+const fn highlight(scenario: &'static str, metric: &'static str, real: Option<f64>) -> Highlight {
+    Highlight {
+        scenario,
+        metric,
+        of: None,
+        real,
+    }
+}
+
+/// All experiments, in the order of the report.
+pub const EXPERIMENTS: &[Experiment] = &[mode1::EXPERIMENT, mode5::EXPERIMENT];

@@ -1,0 +1,297 @@
+//! Recorded runs of a real robot: CSVs of the original program, each matched to the experiment that it is a run of.
+
+use crate::text::{Text, t};
+use rumbo_wire::csv;
+use rumbo_wire::text::{Row, RowKind};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A recorded run.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// File name without folder.
+    pub file: String,
+    /// Time since the first row [s], and the row.
+    pub rows: Vec<(f64, Row)>,
+}
+
+/// A file that is shown nowhere, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Skipped {
+    /// File name without folder.
+    pub file: String,
+    /// Why.
+    pub why: Text,
+}
+
+/// The recordings of a folder.
+#[derive(Clone, Debug, Default)]
+pub struct Real {
+    /// By the scenario that each is a run of.
+    pub runs: BTreeMap<&'static str, Recording>,
+    /// CSVs that are none, or of which there is another one.
+    pub skipped: Vec<Skipped>,
+}
+
+/// Why the recordings of a folder cannot be read: what, where, what to do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RealError(String);
+
+impl fmt::Display for RealError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for RealError {}
+
+const UNKNOWN: Text = t(
+    "its header is none that the original program writes",
+    "su cabecera no es ninguna de las que escribe el programa original",
+);
+const NO_EXPERIMENT: Text = t(
+    "no experiment of this report has such a run",
+    "ningún experimento de este informe corresponde a este registro",
+);
+const ANOTHER: Text = t(
+    "another file before it in the alphabet is a run of the same experiment",
+    "otro fichero anterior por orden alfabético es ya un registro del mismo experimento",
+);
+const EMPTY: Text = t("it has fewer than two rows", "tiene menos de dos filas");
+
+/// Reads all CSVs of a folder.
+///
+/// # Errors
+/// A folder or a file that cannot be read, or a row that is damaged.
+pub fn read(folder: &Path) -> Result<Real, RealError> {
+    let unreadable = |error: std::io::Error| {
+        RealError(format!(
+            "{}: cannot be read ({error}); give --real a folder with CSVs of recorded runs",
+            folder.display()
+        ))
+    };
+    let mut files: Vec<PathBuf> = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        if path
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
+        {
+            files.push(path);
+        }
+    }
+    files.sort();
+    if files.is_empty() {
+        return Err(RealError(format!(
+            "{}: holds no CSV; give --real a folder with recorded runs",
+            folder.display()
+        )));
+    }
+    let mut real = Real::default();
+    for path in files {
+        let file = path
+            .file_name()
+            .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let bytes = std::fs::read(&path).map_err(|error| {
+            RealError(format!(
+                "{}: cannot be read ({error}); take it out of the folder",
+                path.display()
+            ))
+        })?;
+        let text = String::from_utf8_lossy(&bytes);
+        let skip = |why| Skipped {
+            file: file.clone(),
+            why,
+        };
+        let Some(kind) = csv::recognise(text.lines().next().unwrap_or_default()) else {
+            real.skipped.push(skip(UNKNOWN));
+            continue;
+        };
+        let rows = rows(&path, kind, &text)?;
+        if rows.len() < 2 {
+            real.skipped.push(skip(EMPTY));
+            continue;
+        }
+        match scenario(&rows) {
+            None => real.skipped.push(skip(NO_EXPERIMENT)),
+            Some(scenario) if real.runs.contains_key(scenario) => real.skipped.push(skip(ANOTHER)),
+            Some(scenario) => {
+                real.runs.insert(scenario, Recording { file, rows });
+            }
+        }
+    }
+    Ok(real)
+}
+
+/// The rows with their times; the first row's period is the wait before the run and does not count.
+fn rows(path: &Path, kind: RowKind, text: &str) -> Result<Vec<(f64, Row)>, RealError> {
+    let mut rows: Vec<(f64, Row)> = Vec::new();
+    let mut t_s = 0.0;
+    for (index, line) in text.lines().enumerate().skip(1) {
+        let line = line.trim();
+        if line.is_empty() {
+            continue;
+        }
+        let row = Row::parse_as(kind, line).map_err(|_| {
+            let due = kind.columns().len();
+            RealError(format!(
+                "{}:{}: `{line}` is no row of {due} numbers; correct the line or take it out",
+                path.display(),
+                index + 1
+            ))
+        })?;
+        if !rows.is_empty() {
+            t_s += f64::from(period_ms(&row)) * 1e-3;
+        }
+        rows.push((t_s, row));
+    }
+    Ok(rows)
+}
+
+fn period_ms(row: &Row) -> u32 {
+    match row {
+        Row::Distance(row) => row.dt_ms,
+        Row::Speed(row) => row.dt_ms,
+        Row::Waypoints(row) => row.dt_ms,
+        Row::Mission(row) => row.dt_ms,
+    }
+}
+
+/// The experiment that these are a run of.
+fn scenario(rows: &[(f64, Row)]) -> Option<&'static str> {
+    let (_, first) = rows.first()?;
+    match first {
+        Row::Distance(row) => ["mode1", "mode2", "mode3", "mode4"]
+            .get(usize::from(row.mode).wrapping_sub(1))
+            .copied(),
+        Row::Speed(row) => match row.mode {
+            5 => Some("mode5"),
+            6 => Some("mode6"),
+            _ => None,
+        },
+        Row::Waypoints(_) => Some("mode7"),
+        Row::Mission(_) => {
+            let missions = || {
+                rows.iter().filter_map(|(_, row)| {
+                    if let Row::Mission(row) = row {
+                        Some(row)
+                    } else {
+                        None
+                    }
+                })
+            };
+            if missions().all(|row| row.goal_x_m == 0.0 && row.goal_y_m == 0.0) {
+                return Some("mode8-lane");
+            }
+            // States 4 and 5 sweep the servo: there was something in the way.
+            let swept = missions().any(|row| row.state == 4 || row.state == 5);
+            Some(if swept {
+                "mode8-obstacles"
+            } else {
+                "mode8-goals"
+            })
+        }
+    }
+}
+
+impl Recording {
+    /// A signal over time; a row that has none is left out.
+    pub(crate) fn signal(&self, of: impl Fn(&Row) -> Option<f64>) -> Vec<(f64, f64)> {
+        self.rows
+            .iter()
+            .filter_map(|(t_s, row)| Some((*t_s, of(row)?)))
+            .collect()
+    }
+
+    /// How long it lasted [s].
+    pub fn duration_s(&self) -> f64 {
+        self.rows.last().map_or(0.0, |(t_s, _)| *t_s)
+    }
+
+    /// When the reference changed, and to what (SI): that of the first row, and each one that differs from the one before.
+    pub(crate) fn references(&self) -> Vec<(f64, f64)> {
+        let value = |row: &Row| match row {
+            Row::Distance(row) => Some(f64::from(row.reference_cm) / 100.0),
+            Row::Speed(row) => Some(f64::from(row.reference_rpm) * std::f64::consts::PI / 30.0),
+            _ => None,
+        };
+        let mut references = self.signal(value);
+        references.dedup_by(|after, before| after.1 == before.1);
+        references
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in files {
+            std::fs::write(folder.path().join(name), text).unwrap();
+        }
+        folder
+    }
+
+    const DISTANCE: &str = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n";
+
+    #[test]
+    fn files_find_their_experiment_and_what_matches_none_is_named() {
+        let folder = folder(&[
+            (
+                "a.csv",
+                &format!(
+                    "{DISTANCE}9000,100,100,30,1,115,115\n60,99,99,30,1,115,115\n70,98,98,50,1,115,115\n"
+                ),
+            ),
+            (
+                "b.csv",
+                &format!("{DISTANCE}60,100,100,30,1,115,115\n60,99,99,30,1,115,115\n"),
+            ),
+            ("c.csv", "time,value\n1,2\n"),
+            ("notes.txt", "no CSV"),
+        ]);
+        let real = read(folder.path()).unwrap();
+        let run = &real.runs["mode1"];
+        assert_eq!(run.file, "a.csv");
+        assert!(
+            (run.duration_s() - 0.13).abs() < 1e-9,
+            "the wait before the run does not count"
+        );
+        let references: Vec<i64> = run
+            .references()
+            .iter()
+            .map(|(_, m)| (m * 100.0).round() as i64)
+            .collect();
+        assert_eq!(references, [30, 50]);
+        let skipped: Vec<_> = real
+            .skipped
+            .iter()
+            .map(|skipped| (skipped.file.as_str(), skipped.why))
+            .collect();
+        assert_eq!(skipped, [("b.csv", ANOTHER), ("c.csv", UNKNOWN)]);
+    }
+
+    #[test]
+    fn a_damaged_row_is_named_by_its_line() {
+        let folder = folder(&[(
+            "a.csv",
+            &format!("{DISTANCE}60,100,100,30,1,115,115\n60,99,x,30,1,115,115\n"),
+        )]);
+        let error = read(folder.path()).unwrap_err().to_string();
+        assert!(
+            error.contains("a.csv:3:") && error.contains("`60,99,x"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn a_folder_that_is_none_or_empty_says_what_is_needed() {
+        let empty = folder(&[]);
+        for place in [empty.path(), Path::new("/no/such/folder")] {
+            let error = read(place).unwrap_err().to_string();
+            assert!(error.contains("--real"), "{error}");
+        }
+    }
+}

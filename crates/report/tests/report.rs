@@ -1,0 +1,216 @@
+//! The report as a whole: complete, self-contained, translated, and the same each time.
+
+use rumbo_report::text::Language;
+use rumbo_report::{Data, Plan, Request, html};
+use rumbo_scenario::files::Library;
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::path::Path;
+use std::sync::OnceLock;
+
+/// Figures of the original report, each by the chapter in which ours must have it.
+const FIGURES: &[&str] = &[
+    "mode1-rig",
+    "mode1-wiring",
+    "sonar-timing",
+    "mode1-scheme",
+    "mode1-law",
+    "mode1-distances",
+    "mode1-error",
+    "mode5-encoder",
+    "mode5-wiring",
+    "mode5-scheme",
+    "mode5-speeds",
+    "mode5-error",
+];
+
+/// All experiments, run once for all tests.
+fn data() -> &'static Data {
+    static DATA: OnceLock<Data> = OnceLock::new();
+    DATA.get_or_init(run)
+}
+
+fn run() -> Data {
+    let request = Request {
+        seed: 1,
+        ..Request::default()
+    };
+    Plan::new(&Library::new(), request)
+        .unwrap()
+        .run(|_| {})
+        .unwrap()
+}
+
+/// The texts between tags, style sheet, formulas and names of the program left out.
+fn texts(page: &str) -> Vec<String> {
+    let mut texts = Vec::new();
+    let (mut rest, mut hidden) = (page, None::<&str>);
+    while let Some(open) = rest.find('<') {
+        let text = rest[..open].trim();
+        if hidden.is_none() && !text.is_empty() {
+            texts.push(text.to_owned());
+        }
+        let close = rest[open..].find('>').unwrap() + open;
+        let tag = &rest[open + 1..close];
+        for name in ["style", "code", "math", "title"] {
+            if tag.split(' ').next() == Some(name) {
+                hidden = hidden.or(Some(name));
+            } else if tag.strip_prefix('/') == Some(name) && hidden == Some(name) {
+                hidden = None;
+            }
+        }
+        if let Some(label) = tag.split("aria-label=\"").nth(1) {
+            texts.push(label.split('"').next().unwrap().to_owned());
+        }
+        rest = &rest[close + 1..];
+    }
+    texts
+}
+
+#[test]
+fn both_languages_have_every_figure_of_the_original_report() {
+    for language in [Language::English, Language::Spanish] {
+        let (page, figures) = html(data(), language);
+        for figure in FIGURES {
+            assert!(
+                figures.iter().any(|id| id == figure),
+                "{language:?}: {figure}"
+            );
+            assert_eq!(
+                page.matches(&format!("id=\"fig-{figure}\"")).count(),
+                1,
+                "{figure}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_experiment_meets_its_limits() {
+    for outcome in data().outcomes.values() {
+        assert!(
+            outcome.result.pass,
+            "{}: {:?}",
+            outcome.result.scenario, outcome.result.failures
+        );
+    }
+}
+
+#[test]
+fn nothing_in_the_page_comes_from_elsewhere() {
+    for language in [Language::English, Language::Spanish] {
+        let (page, _) = html(data(), language);
+        for outside in [
+            "http:", "https:", "//", "src=", "@import", "url(", "<script",
+        ] {
+            assert!(!page.contains(outside), "{outside}");
+        }
+    }
+}
+
+#[test]
+fn the_same_runs_give_the_same_bytes() {
+    let again = run();
+    for language in [Language::English, Language::Spanish] {
+        assert!(html(data(), language) == html(&again, language));
+    }
+}
+
+/// Words that are the same in both languages.
+const SAME: &[&str] = &[
+    "Arduino Mega 2560",
+    "Bluetooth HC-05",
+    "Robot",
+    "memoria",
+    "robot",
+    "Rumbo",
+    "PWM",
+    "TRIG",
+    "ECHO",
+    "L298N,",
+    "error (cm)",
+    "error (rpm)",
+    "anti-windup",
+    "motor",
+];
+
+#[test]
+fn no_text_is_left_in_the_other_language() {
+    let [english, spanish] =
+        [Language::English, Language::Spanish].map(|language| texts(&html(data(), language).0));
+    let english: BTreeSet<_> = english.into_iter().collect();
+    let words = |text: &str| {
+        text.split(|letter: char| !letter.is_alphabetic())
+            .any(|word| word.chars().count() > 3)
+    };
+    let mut left: Vec<_> = spanish
+        .iter()
+        .filter(|text| {
+            words(text)
+                && english.contains(*text)
+                && !SAME.iter().any(|same| text.starts_with(same))
+        })
+        .collect();
+    left.dedup();
+    assert!(left.is_empty(), "in both languages: {left:#?}");
+}
+
+#[test]
+fn spanish_numbers_have_decimal_commas() {
+    let digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
+    for text in texts(&html(data(), Language::Spanish).0) {
+        let letters: Vec<char> = text.chars().collect();
+        let point = (1..letters.len()).find(|at| {
+            letters[*at] == '.'
+                && digit(letters.get(at - 1).copied())
+                && digit(letters.get(at + 1).copied())
+        });
+        // Numbers of figures and of the version have points.
+        let allowed = text.starts_with("Figura ") || text.starts_with("Rumbo ");
+        assert!(point.is_none() || allowed, "{text}");
+    }
+}
+
+#[test]
+fn every_formula_is_set() {
+    for language in [Language::English, Language::Spanish] {
+        let (page, _) = html(data(), language);
+        // What could not be converted would stand there as TeX.
+        assert!(
+            !page.contains('\\') && page.contains("<math"),
+            "{language:?}"
+        );
+    }
+}
+
+/// What the page says, numbers left out: a change shows as a small readable difference. `RUMBO_BLESS=1` writes it anew.
+#[test]
+fn the_outline_is_as_before() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/golden");
+    for language in [Language::English, Language::Spanish] {
+        let path = folder.join(format!("report-{}.txt", language.tag()));
+        let mut outline = String::new();
+        for text in texts(&html(data(), language).0) {
+            let text = text.replace(
+                |letter: char| letter.is_ascii_digit() || ".,\u{2212}".contains(letter),
+                "",
+            );
+            if text.chars().filter(|letter| letter.is_alphabetic()).count() > 3 {
+                writeln!(outline, "{}", text.trim()).unwrap();
+            }
+        }
+        if std::env::var_os("RUMBO_BLESS").is_some() {
+            std::fs::write(&path, &outline).unwrap();
+        }
+        let golden = std::fs::read_to_string(&path).unwrap_or_default();
+        let differs = outline
+            .lines()
+            .zip(golden.lines())
+            .find(|(now, before)| now != before);
+        assert!(
+            outline == golden,
+            "{}: first difference {differs:?}; if it is meant, run with RUMBO_BLESS=1",
+            path.display()
+        );
+    }
+}
