@@ -1,8 +1,8 @@
 //! The report as a whole: complete, self-contained, translated, and the same each time.
 
-use rumbo_report::text::Language;
 #![allow(clippy::unwrap_used)]
 
+use rumbo_report::text::Language;
 use rumbo_report::{Data, Plan, Request, html};
 use rumbo_scenario::files::Library;
 use std::collections::BTreeSet;
