@@ -8,10 +8,12 @@ import { Consoles } from './consoles.js';
 import { create, element, onFrame, setText } from './dom.js';
 import { EventList } from './events.js';
 import { Header } from './header.js';
+import { LayoutDialog } from './layout_dialog.js';
 import { Link } from './link.js';
 import { WorldMap } from './map.js';
 import { CommandPanel } from './panel.js';
 import { ParameterTable } from './parameters.js';
+import { PlotDialog } from './plot_dialog.js';
 import { Plots } from './plots.js';
 import { ReplayBar } from './replay.js';
 import { Seat } from './seat.js';
@@ -72,8 +74,11 @@ element('clear', HTMLButtonElement).addEventListener('click', () => {
   store.clear();
   redraw();
 });
-const windowSelect = element('window', HTMLSelectElement);
-windowSelect.addEventListener('change', () => plots.setWindow(Number(windowSelect.value)));
+const plotDialog = new PlotDialog(plots);
+plots.edit = plotDialog.open.bind(plotDialog);
+element('add-plot', HTMLButtonElement).addEventListener('click', () => plotDialog.open(null));
+const layoutDialog = new LayoutDialog(plots);
+element('layouts', HTMLButtonElement).addEventListener('click', () => layoutDialog.open());
 addEventListener('keydown', (event) => {
   const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
   if (typing || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -152,6 +157,8 @@ Object.assign(window, {
     state: () => state,
     /** Where a place from the robot's origin is on the map [px]. @param {[number, number]} at */
     onMap: (at) => map.toCanvas(at),
+    /** The plots and what is seen of them. */
+    plots: () => ({ layout: plots.layout, range_s: plots.range_s, mark_s: plots.mark_s, following: plots.following }),
     /** Texts shown that have no translation. */
     untranslated: () => [...untranslated],
   },

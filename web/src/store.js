@@ -4,17 +4,16 @@
  * speeds, of which a frame brings two.
  *
  * Places are in metres from the robot's origin, the true ones too, and headings go on through 180 degrees up to 315.
- *
- * In a column null is a gap, and undefined means that this line has no such value and the curve goes on.
  */
-import { IDENTITY, compose, inverse, near } from './geometry.js';
+import { IDENTITY, compose, inverse, near, wrapped } from './geometry.js';
+import { Table } from './table.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S } from './units.js';
 
 /** @typedef {import('./types.js').Cell} Cell */
-/** @typedef {(number | null | undefined)[]} Column */
+/** @typedef {import('./table.js').Column} Column */
 
 /** Time kept [s], as long as the server's. */
-const KEPT_S = 300;
+const KEPT_S = 600;
 /** A frame's first wheel speeds are this much older [s]. */
 const EARLIER_S = 0.02;
 
@@ -29,50 +28,17 @@ function scaled(cell, factor) {
   return typeof cell === 'number' ? cell * factor : null;
 }
 
-/** Lines of increasing time. */
-export class Table {
-  /** @type {number[]} */
-  t = [];
-  /** @type {Map<string, Column>} */
-  columns;
-
-  /** @param {string[]} names */
-  constructor(names) {
-    this.columns = new Map(names.map((name) => [name, []]));
-  }
-
-  /**
-   * Appends a line; one that is not later than the last is dropped.
-   * @param {number} t_s
-   * @param {Record<string, number | null | undefined>} values
-   */
-  push(t_s, values) {
-    const last = this.t.at(-1);
-    if (last !== undefined && t_s <= last) return;
-    this.t.push(t_s);
-    for (const [name, column] of this.columns) column.push(values[name]);
-    // In large pieces, so that moving the rest is rare.
-    const first = this.t[0] ?? t_s;
-    if (t_s - first > 1.2 * KEPT_S) this.#drop(this.t.findIndex((each) => each >= t_s - KEPT_S));
-  }
-
-  /** @param {number} count */
-  #drop(count) {
-    this.t.splice(0, count);
-    for (const column of this.columns.values()) column.splice(0, count);
-  }
-
-  clear() {
-    this.#drop(this.t.length);
-  }
+/** @param {number | null} a @param {number | null} b */
+function less(a, b) {
+  return a === null || b === null ? null : a - b;
 }
 
 const SLOW = [
   'reference_cm', 'range_left_cm', 'range_right_cm', 'range_front_cm',
   'true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'left_pwm', 'right_pwm',
-  'heading_deg', 'heading_ref_deg', 'true_heading_deg', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m', 'true_x_m', 'true_y_m',
+  'range_difference_cm', 'servo_deg', 'heading_deg', 'heading_ref_deg', 'heading_error_deg', 'true_heading_deg', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m', 'true_x_m', 'true_y_m',
 ];
-const FAST = ['left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm', 'true_left_rpm', 'true_right_rpm'];
+const FAST = ['left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm', 'left_error_rpm', 'right_error_rpm', 'true_left_rpm', 'true_right_rpm'];
 
 /** The modes whose reference is a distance, those whose it is a place, and those that want a heading. */
 const DISTANCE_MODES = [1, 2, 3, 4];
@@ -109,8 +75,8 @@ const TRAIL_POINTS = 2_000;
 const TRAIL_STEP_M = 0.02;
 
 export class Store {
-  slow = new Table(SLOW);
-  fast = new Table(FAST);
+  slow = new Table(SLOW, KEPT_S);
+  fast = new Table(FAST, KEPT_S);
   /** @type {Stretch[]} */
   stretches = [];
   /** @type {Latest | null} */
@@ -176,6 +142,8 @@ export class Store {
       true_range_left_cm: cm('true_range_left_m'),
       true_range_right_cm: cm('true_range_right_m'),
       true_range_front_cm: cm('true_range_front_m'),
+      range_difference_cm: less(cm('range_left_m'), cm('range_right_m')),
+      servo_deg: scaled(cell('servo_rad'), DEG_PER_RAD),
       left_pwm: number(cell('left_pwm')),
       right_pwm: number(cell('right_pwm')),
       ...this.#placeAndHeading(estimated, truth && compose(inverse(origin), truth), heading_ref_rad),
@@ -193,6 +161,8 @@ export class Store {
       right_rpm: rpm('right_rad_s'),
       left_ref_rpm: rpm('left_ref_rad_s'),
       right_ref_rpm: rpm('right_ref_rad_s'),
+      left_error_rpm: less(rpm('left_ref_rad_s'), rpm('left_rad_s')),
+      right_error_rpm: less(rpm('right_ref_rad_s'), rpm('right_rad_s')),
       true_left_rpm: rpm('true_left_rad_s'),
       true_right_rpm: rpm('true_right_rad_s'),
     });
@@ -236,6 +206,7 @@ export class Store {
       true_y_m: truth?.y_m ?? null,
       heading_deg: curve(heading_deg),
       heading_ref_deg: curve(heading_ref_rad === null ? null : heading_ref_rad * DEG_PER_RAD),
+      heading_error_deg: heading_ref_rad === null ? null : wrapped(heading_ref_rad - estimated.heading_rad) * DEG_PER_RAD,
       true_heading_deg: curve(truth ? truth.heading_rad * DEG_PER_RAD : null),
     };
   }
@@ -255,6 +226,11 @@ export class Store {
     }
     const first = this.stretches[0];
     if (first && first.to_s < t_s - 1.2 * KEPT_S) this.stretches.shift();
+  }
+
+  /** The table that a signal is in. @param {string} name */
+  tableOf(name) {
+    return this.fast.columns.has(name) ? this.fast : this.slow;
   }
 
   /**

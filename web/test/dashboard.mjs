@@ -52,8 +52,13 @@ export async function open(options, browserOptions = {}) {
   page.on('console', (message) => {
     if (message.type() === 'error') complaints.push(message.text());
   });
-  if (process.env['WEB']) await serveFolder(page);
-  await page.goto(url);
+  if (process.env['WEB']) {
+    await page.request.get(url);
+    await serveFolder(page);
+    await page.goto(new URL('/', url).href);
+  } else {
+    await page.goto(url);
+  }
   const close = async () => {
     await browser.close();
     server.kill();

@@ -16,8 +16,8 @@ use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 
-/// Samples kept: five minutes of telemetry at 25 Hz.
-pub(crate) const SAMPLES_KEPT: usize = 7_500;
+/// Samples kept: ten minutes of telemetry at 25 Hz.
+pub(crate) const SAMPLES_KEPT: usize = 15_000;
 /// Events kept.
 pub(crate) const EVENTS_KEPT: usize = 1_000;
 

@@ -58,14 +58,41 @@ export const PAGE = {
   'As seen from where the robot starts, not from its origin': 'Vista desde donde arranca el robot, no desde su origen',
   'Clicks on the map add places, {} at most.': 'Los clics en el mapa añaden lugares, {} como máximo.', 'Take this place out': 'Quita este lugar',
   // Plots.
-  'Plots': 'Gráficas', 'Pause view': 'Pausar vista', 'Live': 'En vivo', 'Clear': 'Borrar', 'window': 'ventana',
+  'Plots': 'Gráficas', 'Live': 'En vivo', 'Clear': 'Borrar', 'Window of time': 'Ventana de tiempo',
   'Hold the view; data goes on arriving (P)': 'Detiene la vista; los datos siguen llegando (P)',
   'Follow the newest data (L, or double click in a plot)': 'Sigue los datos más nuevos (L, o doble clic en una gráfica)', 'Forget what is plotted so far': 'Olvida lo dibujado hasta ahora',
-  'Plots shown': 'Gráficas mostradas', 'Drag to zoom, wheel to zoom in time, double click to follow': 'Arrastrar amplía, la rueda amplía en el tiempo, doble clic sigue en vivo',
+  'Plots shown': 'Gráficas mostradas',
+  'Drag to zoom, also a box; wheel to zoom in time; click to mark; double click to follow': 'Arrastrar amplía, también un recuadro; la rueda amplía en el tiempo; clic marca; doble clic sigue en vivo',
+  'Plots: arrow keys move in time, + and - zoom, M sets the mark, L follows the newest data':
+    'Gráficas: las flechas mueven en el tiempo, + y - amplían, M pone la marca, L sigue los datos más nuevos',
+  'Time at the pointer; Δ from the mark, which a click in a plot sets': 'Tiempo en el puntero; Δ desde la marca, que un clic en una gráfica pone',
   'Plot {}, or not': 'Dibuja {}, o no', '{}: show or hide': '{}: mostrar u ocultar', 'state': 'estado',
-  'distance': 'distancia', 'wheels': 'ruedas', 'place': 'posición', 'of 255': 'de 255',
+  'distance': 'distancia', 'wheels': 'ruedas', 'place': 'posición', 'of 255': 'de 255', 'lock': 'fijar',
+  'Keep the limits of the axis as they are': 'Mantiene los límites del eje como están', 'Signals, axis and picture of this plot': 'Señales, eje e imagen de esta gráfica',
+  'Change the plot {}': 'Cambiar la gráfica {}', 'New plot': 'Gráfica nueva', 'Plot': 'Gráfica', 'Remove plot': 'Quitar gráfica', 'title': 'título', 'axis from': 'eje desde', 'axis to': 'hasta',
+  'empty: by the values': 'vacío: según los valores', 'Save what is seen of this plot as {}': 'Guarda lo que se ve de esta gráfica como {}', 'choose a signal at least': 'elige al menos una señal',
+  'an axis has two limits, the lower one first, or none': 'un eje tiene dos límites, primero el menor, o ninguno', 'time [s]': 'tiempo [s]', 'Close': 'Cerrar',
   'true l.': 'real izq.', 'true r.': 'real der.', 'true front': 'real frontal', 'ref. l.': 'ref. izq.', 'ref. r.': 'ref. der.', 'true': 'real',
-  'true x': 'x real', 'true y': 'y real', 'goal y': 'destino y',
+  'true x': 'x real', 'true y': 'y real', 'goal y': 'destino y', 'left − right': 'izq. − der.', 'error l.': 'error izq.', 'error r.': 'error der.', 'error': 'error', 'servo': 'servo',
+  'true range, left sonar': 'distancia real, sonar izq.', 'true range, right sonar': 'distancia real, sonar der.', 'true range, front sonar': 'distancia real, sonar frontal',
+  'range, left sonar': 'distancia, sonar izq.', 'range, right sonar': 'distancia, sonar der.', 'range, front sonar': 'distancia, sonar frontal',
+  'reference of the distance': 'consigna de distancia', 'range, left minus right sonar': 'distancia, sonar izq. menos der.',
+  'true speed, left wheel': 'velocidad real, rueda izq.', 'true speed, right wheel': 'velocidad real, rueda der.', 'speed, left wheel': 'velocidad, rueda izq.', 'speed, right wheel': 'velocidad, rueda der.',
+  'reference of the speed, left wheel': 'consigna de velocidad, rueda izq.', 'reference of the speed, right wheel': 'consigna de velocidad, rueda der.',
+  'error of the speed, left wheel': 'error de velocidad, rueda izq.', 'error of the speed, right wheel': 'error de velocidad, rueda der.', 'PWM, left wheel': 'PWM, rueda izq.', 'PWM, right wheel': 'PWM, rueda der.',
+  'true heading': 'rumbo real', 'heading as estimated': 'rumbo estimado', 'heading that the mode wants': 'rumbo que quiere el modo', 'error of the heading': 'error de rumbo', 'angle of the servo': 'ángulo del servo',
+  'true place, x': 'posición real, x', 'true place, y': 'posición real, y', 'place as estimated, x': 'posición estimada, x', 'place as estimated, y': 'posición estimada, y',
+  'place to go to, x': 'posición de destino, x', 'place to go to, y': 'posición de destino, y',
+  // Layouts.
+  'Layouts': 'Diseños', 'Layouts: keep, save and load which plots there are': 'Diseños: conservar, guardar y cargar qué gráficas hay',
+  'A layout is which plots there are, their signals and axes, and the window of time. Each mode keeps its own.':
+    'Un diseño es qué gráficas hay, sus señales y ejes, y la ventana de tiempo. Cada modo conserva el suyo.',
+  'Keep': 'Conservar', 'Keep the plots as they are in this browser, by this name': 'Conserva las gráficas como están en este navegador, con este nombre',
+  'Save file': 'Guardar archivo', 'Load file': 'Cargar archivo', 'As the mode begins': 'Como empieza el modo', 'Show this layout': 'Muestra este diseño', 'Forget': 'Olvidar', 'Forget the layout {}': 'Olvida el diseño {}',
+  '{} is not taken: {}. The plots are as they were.': '{} no se toma: {}. Las gráficas siguen como estaban.', 'it is no layout of Rumbo': 'no es un diseño de Rumbo', 'it is no JSON': 'no es JSON',
+  'its version is {}, this page knows {}': 'su versión es {}, esta página conoce la {}', 'window_s must be {} to {} s': 'window_s debe ser de {} a {} s', 'there are {} plots, {} at most': 'hay {} gráficas, {} como máximo',
+  'plot {}': 'la gráfica {}', '{} has no title': '{} no tiene título', '{} has no signals': '{} no tiene señales', '{} has a signal that is none: {}': '{} tiene una señal que no existe: {}',
+  'the signals of {} have several units: {}': 'las señales de {} tienen varias unidades: {}', 'the limits of {} are none': 'los límites de {} no lo son', 'the weight of {} must be {} to {}': 'el peso de {} debe ser de {} a {}',
   // Consoles, parameters, events.
   'Consoles': 'Consolas', 'what the emulated chip sends': 'lo que envía el chip emulado', 'Text of the USART': 'Texto de la USART', 'Line to send': 'Línea que enviar', 'Send': 'Enviar',
   'Send the line, ended by LF, to this USART': 'Envía la línea, acabada en LF, a esta USART',
@@ -78,4 +105,4 @@ export const PAGE = {
 };
 
 /** Texts that are the same in both languages. */
-for (const same of ['Rumbo', 'Rumbo ', '10 s', '20 s', '1 min', '5 min', 'ON', 'OFF', 'REF 40', 'USART', 'PWM', '% PWM', 'rpm', 'cm', 'm', '°', 'x', 'y']) PAGE[same] = same;
+for (const same of ['Rumbo', 'Rumbo ', '10 s', '20 s', '1 min', '5 min', '10 min', 'SVG', 'PNG', 'ON', 'OFF', 'REF 40', 'USART', 'PWM', '% PWM', 'rpm', 'cm', 'm', '°', 'x', 'y']) PAGE[same] = same;

@@ -88,6 +88,11 @@ export const ROBOT = {
   'recording: the disk is slow, {} entries are missing in the log': 'grabación: el disco es lento, faltan {} entradas',
   'the log ends early: {}': 'la grabación acaba antes de tiempo: {}', 'this is a replay: nothing is sent to a robot': 'esto es una grabación: no se envía nada a ningún robot',
   'port {} is gone ({}); waiting for it': 'el puerto {} ya no está ({}); se espera a que vuelva', 'port {} is back': 'el puerto {} ha vuelto',
+  'connected; the robot speaks the original program\'s text: nothing is acknowledged, and it goes on by itself when the link is lost':
+    'conectado; el robot habla el texto del programa original: no confirma nada y sigue por su cuenta si se pierde el enlace',
+  'nothing heard from the robot for some seconds, though it is on': 'el robot no dice nada desde hace unos segundos, aunque está encendido', 'the port is gone': 'el puerto ya no está',
+  '{}: sent as text, in case the robot runs the original program; nothing was heard from it yet': '{}: enviado como texto, por si el robot lleva el programa original; aún no ha dicho nada',
+  '{}: sent, text is not acknowledged': '{}: enviado, el texto no se confirma', 'this robot takes no lines of text from here': 'este robot no acepta líneas de texto desde aquí',
   // Commands, and how they ended.
   '{}: done': '{}: hecho', '{}: refused, {}': '{}: rechazado, {}', '{}: given up, STOP came after it': '{}: abandonado, después vino PARAR',
   '{}: given up, the robot did not answer in time': '{}: abandonado, el robot no respondió a tiempo', '{}: given up, the robot started again': '{}: abandonado, el robot arrancó de nuevo',

@@ -1,0 +1,88 @@
+// @ts-check
+/** The band below the plots: the states of the mode's machine along the time axis. */
+import uPlot from '../vendor/uplot/uPlot.js';
+import { create } from './dom.js';
+import { FONT, GUTTER_PX, commonOptions, drawMark, makeNavigable, timeAxis, valueAxis } from './plot.js';
+import { said, t } from './text.js';
+import { STATE_COLOURS, colours, stateColour } from './theme.js';
+
+/** @typedef {import('./store.js').Stretch} Stretch */
+
+export const BAND_PX = 46;
+
+export class StateBand {
+  #store;
+  #view;
+  plot;
+  body = create('div', { className: 'plot-body' });
+
+  /** @param {import('./store.js').Store} store @param {import('./plots.js').Plots} view */
+  constructor(store, view) {
+    this.#store = store;
+    this.#view = view;
+    this.plot = new uPlot({
+      ...commonOptions(view),
+      scales: { x: { time: false, auto: false }, y: { range: [0, 1] } },
+      axes: [timeAxis(true), { ...valueAxis(), values: () => [], grid: { show: false }, label: t('state'), labelSize: 14, labelFont: FONT, size: GUTTER_PX - 14 }],
+      series: [{}, { show: false }],
+      hooks: {
+        setSelect: [(/** @type {uPlot} */ plot) => {
+          const { left, width } = plot.select;
+          plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+          if (width >= 4) view.zoom(plot.posToVal(left, 'x'), plot.posToVal(left + width, 'x'));
+        }],
+        setCursor: [() => view.label()],
+        drawAxes: [(/** @type {uPlot} */ plot) => this.#draw(plot)],
+        draw: [(/** @type {uPlot} */ plot) => drawMark(plot, view.mark_s)],
+      },
+    }, [[], []], this.body);
+    makeNavigable(this.plot, view);
+  }
+
+  draw() {
+    const [min, max] = this.#view.range_s;
+    const table = this.#store.slow;
+    this.plot.batch(() => {
+      this.plot.setData([table.t, table.columns.get('left_pwm') ?? []], false);
+      this.plot.setScale('x', { min, max });
+    });
+  }
+
+  /** @param {uPlot} plot */
+  #draw(plot) {
+    const { ctx, bbox } = plot;
+    const [from_s, to_s] = this.#view.range_s;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+    ctx.textBaseline = 'middle';
+    ctx.textAlign = 'left';
+    for (const stretch of this.#store.stretches) {
+      if (stretch.to_s < from_s || stretch.from_s > to_s) continue;
+      const left = plot.valToPos(Math.max(stretch.from_s, from_s), 'x', true);
+      const right = plot.valToPos(Math.min(stretch.to_s, to_s), 'x', true);
+      // More states than colours: the later ones are paler, and each begins with a line.
+      ctx.globalAlpha = stretch.faulted ? 0.55 : stretch.armed ? (stretch.state < STATE_COLOURS ? 0.55 : 0.3) : 0.25;
+      ctx.fillStyle = stretch.faulted ? colours.bad : stretch.armed ? stateColour(stretch.state) : colours.dim;
+      ctx.fillRect(left, bbox.top, right - left, bbox.height);
+      ctx.globalAlpha = 1;
+      ctx.fillStyle = colours.panel;
+      ctx.fillRect(left, bbox.top, devicePixelRatio, bbox.height);
+      const name = this.#name(stretch);
+      if (ctx.measureText(name).width + 8 < right - left) {
+        ctx.fillStyle = colours.text;
+        ctx.fillText(name, left + 4, bbox.top + bbox.height / 2);
+      }
+    }
+    ctx.restore();
+  }
+
+  /** @param {Stretch} stretch */
+  #name(stretch) {
+    const mode = this.#view.modes.find((each) => each.id === stretch.mode);
+    const state = stretch.faulted ? t('fault') : stretch.armed ? said(mode?.states[stretch.state] ?? `state ${stretch.state}`) : t('off');
+    return `${stretch.mode}: ${state}`;
+  }
+}

@@ -1,0 +1,58 @@
+// @ts-check
+/** Dialogs over the page, and files to and from the reader's computer. */
+import { create } from './dom.js';
+import { t } from './text.js';
+
+/**
+ * A dialog with a title and a button that closes it. Escape closes it too; STOP goes on working in it.
+ * @param {string} id
+ * @param {string} title
+ */
+export function dialog(id, title) {
+  const close = create('button', { type: 'button', className: 'small', textContent: t('Close') });
+  const heading = create('h2', { textContent: title, id: `${id}-title` });
+  const body = create('div', { className: 'dialog-body' });
+  const made = create('dialog', { id }, create('div', { className: 'row toolbar' }, heading, create('span', { className: 'spacer' }), close), body);
+  made.setAttribute('aria-labelledby', heading.id);
+  close.addEventListener('click', () => made.close());
+  document.body.append(made);
+  return { dialog: made, body, heading };
+}
+
+/** A dialog's line for what went wrong. */
+export function complaint() {
+  const line = create('output', { className: 'complaint' });
+  line.setAttribute('role', 'alert');
+  return line;
+}
+
+/**
+ * Gives the reader a file.
+ * @param {string} name
+ * @param {Blob} content
+ */
+export function saveFile(name, content) {
+  const url = URL.createObjectURL(content);
+  create('a', { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
+}
+
+/**
+ * A button that takes a file from the reader.
+ * @param {string} text
+ * @param {string} accept
+ * @param {(name: string, text: string) => void} taken
+ */
+export function fileButton(text, accept, taken) {
+  const input = create('input', { type: 'file', accept, hidden: true });
+  const button = create('button', { type: 'button', textContent: text });
+  button.addEventListener('click', () => input.click());
+  input.addEventListener('change', async () => {
+    const file = input.files?.[0];
+    if (!file) return;
+    // The same file can be taken again.
+    input.value = '';
+    taken(file.name, await file.text());
+  });
+  return create('span', {}, button, input);
+}

@@ -1,0 +1,181 @@
+// @ts-check
+/**
+ * Layouts: which plots there are, what is in each, the limits of its axis, and the window of time. One for each mode, which begins as here
+ * and is kept by the browser as it was left; and others by name. A layout is also a file.
+ */
+import { UNITS, signal } from './signals.js';
+import { t } from './text.js';
+
+/**
+ * One plot. All its signals have the same unit. `min` and `max` are the limits of a locked axis; null: as the values are.
+ * @typedef {{title: string, signals: string[], min: number | null, max: number | null, weight: number}} PlotSpec
+ *
+ * @typedef {{window_s: number, plots: PlotSpec[]}} Layout
+ */
+
+/** Longest and shortest window of time [s]. */
+export const LONGEST_S = 600;
+export const SHORTEST_S = 0.2;
+const WINDOW_S = 20;
+const MOST_PLOTS = 12;
+const STORED = 'rumbo.layouts';
+const VERSION = 1;
+
+/** @param {string} title @param {number} weight @param {string[]} signals @returns {PlotSpec} */
+const plot = (title, weight, signals) => ({ title, signals, min: null, max: null, weight });
+
+/** The plots that a mode can begin with. */
+export const PLOTS = [
+  plot('distance', 5, ['true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'range_left_cm', 'range_right_cm', 'range_front_cm', 'reference_cm']),
+  plot('wheels', 5, ['true_left_rpm', 'true_right_rpm', 'left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm']),
+  plot('PWM', 3, ['left_pwm', 'right_pwm']),
+  plot('heading', 4, ['true_heading_deg', 'heading_deg', 'heading_ref_deg']),
+  plot('place', 4, ['true_x_m', 'true_y_m', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m']),
+];
+
+/** Those of each mode, by its number. @type {string[][]} */
+const OF_MODE = [
+  ['wheels', 'PWM', 'heading'],
+  ['distance', 'wheels', 'PWM'],
+  ['distance', 'heading', 'wheels'],
+  ['distance', 'heading', 'wheels'],
+  ['distance', 'heading', 'wheels'],
+  ['wheels', 'PWM'],
+  ['wheels', 'heading', 'place'],
+  ['place', 'heading', 'wheels'],
+  ['place', 'heading', 'distance', 'wheels'],
+];
+
+/** What a mode begins with. @param {number} mode @returns {Layout} */
+export function initial(mode) {
+  const titles = OF_MODE[mode] ?? OF_MODE[0] ?? [];
+  return { window_s: WINDOW_S, plots: titles.flatMap((title) => PLOTS.filter((each) => each.title === title)).map((each) => ({ ...each })) };
+}
+
+/** The unit of a plot's signals. @param {PlotSpec} spec */
+export function unitOf(spec) {
+  return signal(spec.signals[0] ?? '')?.unit ?? 'cm';
+}
+
+/** Why something is no layout. */
+export class BadLayout extends Error {}
+
+/** @param {boolean} right @param {string} why */
+function check(right, why) {
+  if (!right) throw new BadLayout(why);
+}
+
+/** @param {unknown} value @returns {value is number} */
+const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
+
+/**
+ * A layout from what a file or the browser kept.
+ * @param {any} from
+ * @returns {Layout}
+ */
+export function checked(from) {
+  check(from !== null && typeof from === 'object' && Array.isArray(from.plots), t('it is no layout of Rumbo'));
+  check(from.version === undefined || from.version === VERSION, t('its version is {}, this page knows {}', String(from.version), VERSION));
+  check(isNumber(from.window_s) && from.window_s >= SHORTEST_S && from.window_s <= LONGEST_S, t('window_s must be {} to {} s', SHORTEST_S, LONGEST_S));
+  check(from.plots.length <= MOST_PLOTS, t('there are {} plots, {} at most', from.plots.length, MOST_PLOTS));
+  return { window_s: from.window_s, plots: from.plots.map(checkedPlot) };
+}
+
+/** @param {any} from @param {number} index @returns {PlotSpec} */
+function checkedPlot(from, index) {
+  const here = t('plot {}', index + 1);
+  check(from !== null && typeof from === 'object' && typeof from.title === 'string' && from.title.length <= 60, t('{} has no title', here));
+  check(Array.isArray(from.signals) && from.signals.length > 0, t('{} has no signals', here));
+  for (const name of from.signals) check(typeof name === 'string' && signal(name) !== null, t('{} has a signal that is none: {}', here, String(name)));
+  const units = new Set(from.signals.map((/** @type {string} */ name) => signal(name)?.unit));
+  check(units.size === 1, t('the signals of {} have several units: {}', here, [...units].join(', ')));
+  const { min = null, max = null, weight = 4 } = from;
+  check((min === null && max === null) || (isNumber(min) && isNumber(max) && min < max), t('the limits of {} are none', here));
+  check(isNumber(weight) && weight >= 1 && weight <= 20, t('the weight of {} must be {} to {}', here, 1, 20));
+  return { title: from.title, signals: [...new Set(/** @type {string[]} */ (from.signals))], min, max, weight };
+}
+
+/** A file's text. @param {Layout} layout */
+export function toText(layout) {
+  return `${JSON.stringify({ rumbo: 'layout', version: VERSION, ...layout }, null, 2)}\n`;
+}
+
+/** @param {string} text @returns {Layout} */
+export function fromText(text) {
+  let from;
+  try {
+    from = JSON.parse(text);
+  } catch {
+    throw new BadLayout(t('it is no JSON'));
+  }
+  check(from?.rumbo === 'layout', t('it is no layout of Rumbo'));
+  return checked(from);
+}
+
+/** The first scale of a plot of this unit. @param {import('./signals.js').Unit} unit @returns {[number, number]} */
+export const firstScale = (unit) => [0, 10 * UNITS[unit].step];
+
+/** What the browser keeps: a layout for each mode as it was left, and those that were given names. */
+export class Shelf {
+  /** @type {Record<string, Layout>} */
+  #modes = {};
+  /** @type {Record<string, Layout>} */
+  #named = {};
+
+  constructor() {
+    try {
+      const kept = JSON.parse(localStorage.getItem(STORED) ?? '{}');
+      this.#modes = sound(kept.modes);
+      this.#named = sound(kept.named);
+    } catch {
+      // Nothing is kept, or nothing readable: the layouts are as they begin.
+    }
+  }
+
+  get names() {
+    return Object.keys(this.#named).sort((a, b) => a.localeCompare(b));
+  }
+
+  /** @param {number} mode */
+  ofMode(mode) {
+    return this.#modes[mode] ?? initial(mode);
+  }
+
+  /** @param {string} name */
+  named(name) {
+    return this.#named[name] ?? null;
+  }
+
+  /** @param {number} mode @param {Layout | null} layout Null: as the mode begins. */
+  keep(mode, layout) {
+    if (layout) this.#modes[mode] = layout;
+    else delete this.#modes[mode];
+    this.#store();
+  }
+
+  /** @param {string} name @param {Layout | null} layout Null: no longer. */
+  name(name, layout) {
+    if (layout) this.#named[name] = layout;
+    else delete this.#named[name];
+    this.#store();
+  }
+
+  #store() {
+    try {
+      localStorage.setItem(STORED, JSON.stringify({ version: VERSION, modes: this.#modes, named: this.#named }));
+    } catch {
+      // Storage is forbidden or full: the layouts live as long as the page.
+    }
+  }
+}
+
+/** Those that are layouts. @param {any} kept @returns {Record<string, Layout>} */
+function sound(kept) {
+  return Object.fromEntries(Object.entries(kept ?? {}).flatMap(([name, layout]) => {
+    try {
+      return [[name, checked(layout)]];
+    } catch {
+      return [];
+    }
+  }));
+}

@@ -1,0 +1,108 @@
+// @ts-check
+/** The dialog of one plot: its title, its signals, the limits of its axis, and its picture as a file. */
+import { complaint, dialog, saveFile } from './dialog.js';
+import { create } from './dom.js';
+import { unitOf } from './layout.js';
+import { toPng, toSvg } from './picture.js';
+import { SIGNALS, UNITS } from './signals.js';
+import { t } from './text.js';
+
+/** @typedef {import('./plot.js').PlotPanel} PlotPanel */
+/** @typedef {import('./plots.js').Plots} Plots */
+
+export class PlotDialog {
+  #plots;
+  #dialog;
+  /** The plot that is changed; null: a new one. @type {PlotPanel | null} */
+  #panel = null;
+  #title = create('input', { type: 'text', id: 'plot-title', maxLength: 60, required: true });
+  #min = create('input', { type: 'number', id: 'plot-min', step: 'any' });
+  #max = create('input', { type: 'number', id: 'plot-max', step: 'any' });
+  #boxes = SIGNALS.map(({ name, about }) => {
+    const box = create('input', { type: 'checkbox', value: name });
+    return { box, label: create('label', {}, box, ` ${t(about)}`) };
+  });
+  #complaint = complaint();
+  #remove = create('button', { type: 'button', textContent: t('Remove plot') });
+  #pictures = create('span', { className: 'row' });
+
+  /** @param {Plots} plots */
+  constructor(plots) {
+    this.#plots = plots;
+    this.#dialog = dialog('plot-dialog', t('Plot'));
+    const units = /** @type {(keyof typeof UNITS)[]} */ (Object.keys(UNITS));
+    const groups = units.map((unit) => create('fieldset', {}, create('legend', { textContent: t(unit) }),
+      ...this.#boxes.filter(({ box }) => SIGNALS.find(({ name }) => name === box.value)?.unit === unit).map(({ label }) => label)));
+    const form = create('form', { className: 'stack' },
+      create('div', { className: 'row' }, create('label', {}, `${t('title')} `, this.#title),
+        create('label', {}, `${t('axis from')} `, this.#min), create('label', {}, `${t('axis to')} `, this.#max), create('span', { className: 'hint', textContent: t('empty: by the values') })),
+      create('div', { className: 'signal-choice' }, ...groups), this.#complaint,
+      create('div', { className: 'row' }, create('button', { type: 'submit', className: 'go', textContent: t('Apply') }), this.#remove, create('span', { className: 'spacer' }), this.#pictures));
+    form.addEventListener('submit', (event) => {
+      event.preventDefault();
+      this.#apply();
+    });
+    form.addEventListener('change', () => this.#limitUnits());
+    this.#remove.addEventListener('click', () => {
+      if (this.#panel) plots.change(this.#panel.spec, null);
+      this.#dialog.dialog.close();
+    });
+    this.#pictures.replaceChildren(this.#pictureButton('SVG', 'svg', (panel) => toSvg(panel, plots)), this.#pictureButton('PNG', 'png', (panel) => toPng(panel)));
+    this.#dialog.body.append(form);
+  }
+
+  /** @param {string} text @param {string} ending @param {(panel: PlotPanel) => Blob | Promise<Blob>} make */
+  #pictureButton(text, ending, make) {
+    const button = create('button', { type: 'button', textContent: text, title: t('Save what is seen of this plot as {}', text) });
+    button.addEventListener('click', async () => {
+      const panel = this.#panel;
+      if (panel) saveFile(`${panel.spec.title.replace(/[^\p{Letter}\d]+/gu, '_')}.${ending}`, await make(panel));
+    });
+    return button;
+  }
+
+  /** @param {PlotPanel | null} panel Null: a new plot. */
+  open(panel) {
+    this.#panel = panel;
+    const spec = panel?.spec ?? null;
+    this.#dialog.heading.textContent = spec ? t('Change the plot {}', t(spec.title)) : t('New plot');
+    this.#title.value = spec ? t(spec.title) : '';
+    this.#min.value = spec?.min === null || !spec ? '' : String(Number(spec.min?.toPrecision(4)));
+    this.#max.value = spec?.max === null || !spec ? '' : String(Number(spec.max?.toPrecision(4)));
+    for (const { box } of this.#boxes) box.checked = spec?.signals.includes(box.value) ?? false;
+    this.#remove.hidden = this.#pictures.hidden = panel === null;
+    this.#complaint.textContent = '';
+    this.#limitUnits();
+    this.#dialog.dialog.showModal();
+  }
+
+  /** One plot has one unit: signals of others can be taken when those of this one are not. */
+  #limitUnits() {
+    const chosen = this.#chosen();
+    const unit = chosen.length > 0 ? unitOf({ title: '', signals: chosen, min: null, max: null, weight: 1 }) : null;
+    for (const { box } of this.#boxes) box.disabled = unit !== null && SIGNALS.find(({ name }) => name === box.value)?.unit !== unit;
+  }
+
+  #chosen() {
+    return this.#boxes.filter(({ box }) => box.checked).map(({ box }) => box.value);
+  }
+
+  #apply() {
+    const signals = this.#chosen();
+    const limits = [this.#min.valueAsNumber, this.#max.valueAsNumber];
+    const [min = NaN, max = NaN] = limits;
+    const none = limits.every(Number.isNaN);
+    if (signals.length === 0) return this.#complain(t('choose a signal at least'));
+    if (!none && !(min < max)) return this.#complain(t('an axis has two limits, the lower one first, or none'));
+    const old = this.#panel?.spec ?? null;
+    // A title that stands in two languages is kept as it is.
+    const title = old && this.#title.value === t(old.title) ? old.title : this.#title.value;
+    this.#plots.change(old, { title, signals, min: none ? null : min, max: none ? null : max, weight: old?.weight ?? 4 });
+    return this.#dialog.dialog.close();
+  }
+
+  /** @param {string} text */
+  #complain(text) {
+    this.#complaint.textContent = text;
+  }
+}

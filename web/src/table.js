@@ -1,0 +1,142 @@
+// @ts-check
+/**
+ * Signals in columns, lines of increasing time, as uPlot takes them. Beside the lines a table keeps a coarse copy for long windows: of each
+ * sixteen lines the smallest and the largest of each signal, which is all that a narrow plot can show of them.
+ *
+ * In a column null is a gap, and undefined means that this line has no such value and the curve goes on.
+ */
+
+/** @typedef {(number | null | undefined)[]} Column */
+
+/** Lines that become two in the coarse copy. */
+const BUCKET = 16;
+
+/** What a bucket has of a signal so far: smallest and largest, and which came first. */
+class Extent {
+  /** @type {number | null | undefined} */
+  low = undefined;
+  /** @type {number | null | undefined} */
+  high = undefined;
+  rising = true;
+
+  /** @param {number | null | undefined} value */
+  add(value) {
+    if (typeof value !== 'number') {
+      if (value === null && this.low === undefined) this.low = this.high = null;
+      return;
+    }
+    if (typeof this.low !== 'number' || typeof this.high !== 'number') {
+      this.low = this.high = value;
+    } else if (value < this.low) {
+      this.low = value;
+      this.rising = false;
+    } else if (value > this.high) {
+      this.high = value;
+      this.rising = true;
+    }
+  }
+
+  clear() {
+    this.low = this.high = undefined;
+    this.rising = true;
+  }
+}
+
+/** Time and columns. */
+class Lines {
+  /** @type {number[]} */
+  t = [];
+  /** @type {Map<string, Column>} */
+  columns;
+
+  /** @param {string[]} names */
+  constructor(names) {
+    this.columns = new Map(names.map((name) => [name, []]));
+  }
+
+  /** Forgets the first lines. @param {number} count */
+  drop(count) {
+    this.t.splice(0, count);
+    for (const column of this.columns.values()) column.splice(0, count);
+  }
+
+  /** Forgets what is older. @param {number} t_s */
+  dropBefore(t_s) {
+    this.drop(this.t.findIndex((each) => each >= t_s));
+  }
+}
+
+export class Table extends Lines {
+  coarse;
+  #kept_s;
+  /** @type {Map<string, Extent>} */
+  #bucket;
+  #inBucket = 0;
+  #bucketFrom_s = 0;
+
+  /** @param {string[]} names @param {number} kept_s how long lines are kept [s] */
+  constructor(names, kept_s) {
+    super(names);
+    this.coarse = new Lines(names);
+    this.#kept_s = kept_s;
+    this.#bucket = new Map(names.map((name) => [name, new Extent()]));
+  }
+
+  /**
+   * Appends a line; one that is not later than the last is dropped.
+   * @param {number} t_s
+   * @param {Record<string, number | null | undefined>} values
+   */
+  push(t_s, values) {
+    const last = this.t.at(-1);
+    if (last !== undefined && t_s <= last) return;
+    this.t.push(t_s);
+    if (this.#inBucket === 0) this.#bucketFrom_s = t_s;
+    for (const [name, column] of this.columns) {
+      column.push(values[name]);
+      this.#bucket.get(name)?.add(values[name]);
+    }
+    this.#inBucket += 1;
+    if (this.#inBucket === BUCKET) this.#close(t_s);
+    // In large pieces, so that moving the rest is rare.
+    if (t_s - (this.t[0] ?? t_s) <= 1.2 * this.#kept_s) return;
+    this.dropBefore(t_s - this.#kept_s);
+    this.coarse.dropBefore(t_s - this.#kept_s);
+  }
+
+  /** The bucket is full. @param {number} t_s */
+  #close(t_s) {
+    this.coarse.t.push(this.#bucketFrom_s, (this.#bucketFrom_s + t_s) / 2);
+    for (const [name, column] of this.coarse.columns) {
+      const extent = this.#bucket.get(name);
+      if (extent) column.push(...(extent.rising ? [extent.low, extent.high] : [extent.high, extent.low]));
+      extent?.clear();
+    }
+    this.#inBucket = 0;
+  }
+
+  clear() {
+    this.drop(this.t.length);
+    this.coarse.drop(this.coarse.t.length);
+    for (const extent of this.#bucket.values()) extent.clear();
+    this.#inBucket = 0;
+  }
+
+  /** Number of the first line at or after a time. @param {number} t_s */
+  indexAt(t_s) {
+    let [low, high] = [0, this.t.length];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (/** @type {number} */ (this.t[middle]) < t_s) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  /** A signal's value at a time, or the last before it. @param {string} name @param {number} t_s */
+  at(name, t_s) {
+    const column = this.columns.get(name) ?? [];
+    const index = Math.min(this.indexAt(t_s), column.length - 1);
+    return column[index] ?? column[index - 1];
+  }
+}

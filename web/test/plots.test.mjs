@@ -1,0 +1,151 @@
+// @ts-check
+/** The plots: signals, axes, zoom, mark, layouts and pictures. */
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { folder, open } from './dashboard.mjs';
+
+/** @type {Awaited<ReturnType<typeof open>>} */
+let dashboard;
+/** @type {import('playwright-core').Page} */
+let page;
+
+before(async () => {
+  dashboard = await open(['lab', '--out', folder()]);
+  page = dashboard.page;
+  await page.waitForSelector('#connection.good');
+  await page.locator('#on').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.length > 50);
+});
+
+after(() => dashboard?.close());
+
+/** @returns {Promise<{layout: import('../src/layout.js').Layout, range_s: [number, number], mark_s: number | null, following: boolean}>} */
+const plots = () => page.evaluate(() => /** @type {any} */ (window).rumbo.plots());
+/** The titles of the plots that are seen. */
+const titles = () => page.locator('.plot-head b').allTextContents();
+
+/** Opens the dialog of the plot with this title. @param {string} title */
+const change = (title) => page.getByRole('button', { name: `Change the plot ${title}` }).click();
+
+/** What is saved by a click. @param {string} button */
+async function saved(button) {
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: button, exact: true }).click()]);
+  return { name: download.suggestedFilename(), path: await download.path() };
+}
+
+/** Loads a layout file. @param {string} name @param {string} text */
+async function load(name, text) {
+  await page.locator('#layout-dialog input[type=file]').setInputFiles({ name, mimeType: 'application/json', buffer: Buffer.from(text) });
+}
+
+test('a plot with chosen signals is added, of one unit, and a reload keeps it', async () => {
+  await page.locator('#add-plot').click();
+  await page.locator('#plot-title').fill('errors');
+  await page.getByLabel('error of the speed, left wheel').check();
+  assert.equal(await page.getByLabel('true heading').isDisabled(), true, 'another unit');
+  await page.getByLabel('error of the speed, right wheel').check();
+  await page.locator('#plot-dialog button[type=submit]').click();
+  assert.deepEqual(await titles(), ['distance', 'wheels', 'PWM', 'errors']);
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.series('left_error_rpm').y.some((/** @type {unknown} */ y) => typeof y === 'number'));
+  await page.reload();
+  await page.locator('.plot-head b', { hasText: 'errors' }).waitFor();
+});
+
+test('a locked axis keeps its limits, also through a reload', async () => {
+  await change('errors');
+  await page.locator('#plot-min').fill('-50');
+  await page.locator('#plot-max').fill('50');
+  await page.locator('#plot-dialog button[type=submit]').click();
+  await page.reload();
+  await page.locator('.plot-head', { hasText: 'errors' }).locator('button', { hasText: 'lock' }).and(page.locator('[aria-pressed="true"]')).waitFor();
+  const spec = (await plots()).layout.plots.at(-1);
+  assert.deepEqual([spec?.min, spec?.max], [-50, 50]);
+  await change('errors');
+  await page.getByRole('button', { name: 'Remove plot' }).click();
+  assert.deepEqual(await titles(), ['distance', 'wheels', 'PWM']);
+});
+
+test('a box zooms into time and value, the data goes on, and L follows it again', async () => {
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1) > 6);
+  const box = await page.locator('.u-over').first().boundingBox();
+  assert.ok(box);
+  await page.mouse.move(box.x + 100, box.y + 10);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 160, box.y + 60, { steps: 4 });
+  await page.mouse.up();
+  const zoomed = await plots();
+  assert.equal(zoomed.following, false);
+  assert.ok(zoomed.range_s[1] - zoomed.range_s[0] < 4, String(zoomed.range_s));
+  await page.waitForFunction((t) => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1) > t, zoomed.range_s[1] + 1);
+  assert.deepEqual((await plots()).range_s, zoomed.range_s, 'the view holds still');
+  await page.keyboard.press('l');
+  assert.equal((await plots()).following, true);
+});
+
+test('a click sets a mark, from which the numbers in all plots are counted', async () => {
+  const band = page.locator('.u-over').first();
+  await band.click({ position: { x: 90, y: 30 } });
+  await band.hover({ position: { x: 200, y: 30 } });
+  await page.locator('#cursor-time', { hasText: /^[\d.]+ s {2}Δ [\d.]+ s$/ }).waitFor();
+  await page.locator('.plot-head', { hasText: 'PWM' }).locator('output', { hasText: /Δ/ }).first().waitFor();
+  await page.locator('#plots').focus();
+  await page.keyboard.press('Escape');
+  assert.equal((await plots()).mark_s, null);
+});
+
+test('what is seen of a plot is saved as SVG and PNG', async () => {
+  await change('distance');
+  const svg = await saved('SVG');
+  assert.equal(svg.name, 'distance.svg');
+  const text = readFileSync(svg.path, 'utf8');
+  assert.ok(text.startsWith('<svg ') && text.includes('distance [cm]') && /<path d="M[\d.]+ [\d.]+L/.test(text), 'a title and a curve');
+  const png = await saved('PNG');
+  assert.deepEqual([...readFileSync(png.path).subarray(1, 4)], [...Buffer.from('PNG')]);
+  await page.keyboard.press('Escape');
+});
+
+test('a layout is kept by name and as a file, and loaded again', async () => {
+  await page.locator('#plot-choice button', { hasText: 'place' }).click();
+  await page.locator('#window').selectOption('60');
+  await page.locator('#layouts').click();
+  await page.locator('#layout-name').fill('mine');
+  await page.getByRole('button', { name: 'Keep' }).click();
+  const file = await saved('Save file');
+  assert.equal(file.name, 'mine.layout.json');
+  await page.locator('#layout-initial').click();
+  assert.deepEqual(await titles(), ['distance', 'wheels', 'PWM']);
+  await page.locator('#layouts').click();
+  await page.getByRole('button', { name: 'mine', exact: true }).click();
+  assert.deepEqual(await titles(), ['distance', 'wheels', 'PWM', 'place']);
+  assert.equal((await plots()).layout.window_s, 60);
+  await page.locator('#layouts').click();
+  await page.locator('#layout-initial').click();
+  await page.locator('#layouts').click();
+  await load('mine.layout.json', readFileSync(file.path, 'utf8'));
+  assert.equal((await plots()).layout.window_s, 60);
+});
+
+test('a file that is no layout is refused with the reason, and nothing changes', async () => {
+  const before = (await plots()).layout;
+  await page.locator('#layouts').click();
+  const spec = { title: 'a', signals: ['no_such_signal'] };
+  for (const [text, why] of /** @type {[string, RegExp][]} */ ([
+    ['{', /x\.json is not taken: it is no JSON\. The plots are as they were\./],
+    ['{"plots": []}', /it is no layout of Rumbo/],
+    [JSON.stringify({ rumbo: 'layout', version: 7, window_s: 20, plots: [] }), /its version is 7, this page knows 1/],
+    [JSON.stringify({ rumbo: 'layout', version: 1, window_s: 20, plots: [spec] }), /plot 1 has a signal that is none: no_such_signal/],
+  ])) {
+    await load('x.json', text);
+    await page.locator('#layout-dialog .complaint', { hasText: why }).waitFor();
+  }
+  assert.deepEqual((await plots()).layout, before);
+  await page.keyboard.press('Escape');
+});
+
+test('what is plotted is cleared while data arrives', async () => {
+  const last = await page.evaluate(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1));
+  await page.locator('#clear').click();
+  await page.waitForFunction((t) => /** @type {any} */ (window).rumbo.series('left_pwm').t[0] >= t, last);
+  assert.deepEqual(dashboard.complaints, []);
+});
