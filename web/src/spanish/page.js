@@ -96,7 +96,8 @@ export const PAGE = {
   // Consoles, parameters, events.
   'Consoles': 'Consolas', 'what the emulated chip sends': 'lo que envía el chip emulado', 'Text of the USART': 'Texto de la USART', 'Line to send': 'Línea que enviar', 'Send': 'Enviar',
   'Send the line, ended by LF, to this USART': 'Envía la línea, acabada en LF, a esta USART',
-  'Parameters': 'Parámetros', 'all modes': 'todos los modos', 'Defaults': 'De fábrica', 'Set every parameter to its default': 'Pone cada parámetro en su valor de fábrica',
+  'Parameters': 'Parámetros', 'all modes': 'todos los modos', 'Defaults': 'De fábrica', 'Save on the robot': 'Guardar en el robot', 'The robot starts with these values from now on': 'El robot arranca con estos valores a partir de ahora',
+  'Set every parameter to its default; save to make that last': 'Pone cada parámetro en su valor de fábrica; guárdalos para que dure',
   'name': 'nombre', 'value': 'valor', 'unit': 'unidad', 'range': 'margen', 'default': 'de fábrica', '{} in {}': '{} en {}', 'no unit': 'sin unidad',
   'Apply': 'Aplicar', 'Write to the robot (Enter)': 'Escribe en el robot (Intro)', 'Back to what the robot holds (Escape)': 'Vuelve a lo que tiene el robot (Escape)', 'Revert': 'Deshacer',
   'waiting…': 'esperando…', 'refused: {}': 'rechazado: {}', 'not read yet': 'aún sin leer', 'the robot has another table: not shown': 'el robot tiene otra tabla: no se muestra',

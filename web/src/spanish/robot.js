@@ -93,6 +93,16 @@ export const ROBOT = {
   'nothing heard from the robot for some seconds, though it is on': 'el robot no dice nada desde hace unos segundos, aunque está encendido', 'the port is gone': 'el puerto ya no está',
   '{}: sent as text, in case the robot runs the original program; nothing was heard from it yet': '{}: enviado como texto, por si el robot lleva el programa original; aún no ha dicho nada',
   '{}: sent, text is not acknowledged': '{}: enviado, el texto no se confirma', 'this robot takes no lines of text from here': 'este robot no acepta líneas de texto desde aquí',
+  'saved parameters': 'parámetros guardados', 'saved parameters: {}': 'parámetros guardados: {}', 'parameters saved on the robot': 'parámetros guardados en el robot',
+  'in force since the start, from the first copy': 'en vigor desde el arranque, de la primera copia',
+  'in force since the start, from the second copy': 'en vigor desde el arranque, de la segunda copia',
+  'in force since the start, from the first copy; the second is damaged or of another version: save again':
+    'en vigor desde el arranque, de la primera copia; la segunda está dañada o es de otra versión: guarda otra vez',
+  'in force since the start, from the second copy; the first is damaged or of another version: save again':
+    'en vigor desde el arranque, de la segunda copia; la primera está dañada o es de otra versión: guarda otra vez',
+  'not used: both copies are damaged or of another version; the defaults are in force: set the parameters and save':
+    'sin usar: las dos copias están dañadas o son de otra versión; rigen los de fábrica: fija los parámetros y guarda',
+  'save the parameters on the robot': 'guardar los parámetros en el robot',
   // Commands, and how they ended.
   '{}: done': '{}: hecho', '{}: refused, {}': '{}: rechazado, {}', '{}: given up, STOP came after it': '{}: abandonado, después vino PARAR',
   '{}: given up, the robot did not answer in time': '{}: abandonado, el robot no respondió a tiempo', '{}: given up, the robot started again': '{}: abandonado, el robot arrancó de nuevo',
