@@ -9,7 +9,6 @@ use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::Input;
 use rumbo_emulator::image::{Image, ImageError};
 use rumbo_emulator::observe::profile::Profile;
-use rumbo_emulator::verdict::Verdict;
 
 const AVR: u16 = 83;
 const AVR6: u32 = 6;
@@ -118,81 +117,6 @@ fn a_file_that_is_cut_off_is_refused_wherever_it_is_cut() {
         let error = Image::parse(&whole[..end]).unwrap_err();
         let line = error.to_string();
         assert!(!line.is_empty() && !line.contains('\n'), "{line}");
-    }
-}
-
-#[test]
-fn every_way_to_end_is_told_with_place_and_cycle() {
-    // RJMP into what was never written.
-    let mut chip = chip_of(&[0xC0FF]);
-    let Stopped::Ended(verdict) = chip.run_until(100) else {
-        panic!()
-    };
-    assert_eq!(
-        verdict,
-        Verdict::ErasedFlash {
-            program_counter: 0x100,
-            cycle: 2
-        }
-    );
-    assert!(
-        verdict.to_string().contains("0x00200 in cycle 2"),
-        "{verdict}"
-    );
-    // It stays ended.
-    assert_eq!(chip.run_until(200), Stopped::Ended(verdict));
-    let mut chip = chip_of(&[NOP, 0x0001]);
-    let Stopped::Ended(verdict) = chip.run_until(100) else {
-        panic!()
-    };
-    assert_eq!(
-        verdict,
-        Verdict::IllegalInstruction {
-            program_counter: 1,
-            word: 1,
-            cycle: 1
-        }
-    );
-    // RCALL itself: 8191 bytes of SRAM and one below hold 2730 addresses and two thirds.
-    let mut chip = chip_of(&[0xDFFF]);
-    let Stopped::Ended(verdict) = chip.run_until(100_000) else {
-        panic!()
-    };
-    let Verdict::StackOverflow {
-        program_counter: 0,
-        floor: 0x200,
-        cycle,
-        ..
-    } = verdict
-    else {
-        panic!("{verdict}")
-    };
-    assert_eq!(cycle / 4, 8192 / 3);
-}
-
-#[test]
-fn a_stack_among_the_data_is_no_overflow_but_one_that_grows_into_them_is() {
-    let program = |to: [u8; 2]| {
-        let [low, high] = to;
-        chip_of(&[
-            ldi(28, low),
-            ldi(29, high),
-            out(0x3E, 29),
-            out(0x3D, 28),
-            0x93CF,
-            0x93CF,
-            0xCFFF,
-        ])
-    };
-    for (to, ends) in [([0x00, 0x05], false), ([0x01, 0x1F], true)] {
-        let mut chip = program(to);
-        chip.cpu_mut().set_stack_floor(0x1F02);
-        let stopped = chip.run_until(1000);
-        assert_eq!(
-            matches!(stopped, Stopped::Ended(Verdict::StackOverflow { .. })),
-            ends,
-            "{stopped:?}"
-        );
     }
 }
 

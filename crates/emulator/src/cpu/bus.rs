@@ -127,19 +127,6 @@ impl Cpu {
     }
 
     #[cold]
-    pub(super) fn stack_overflow(&mut self, program_counter: u32, cycle: u64) {
-        if !self.stack_known && self.stack_pointer() >= SRAM_START {
-            return;
-        }
-        self.end(Verdict::StackOverflow {
-            program_counter,
-            stack_pointer: self.stack_pointer(),
-            floor: self.stack_floor,
-            cycle,
-        });
-    }
-
-    #[cold]
     pub(super) fn end(&mut self, verdict: Verdict) {
         self.verdict.get_or_insert(verdict);
     }

@@ -4,7 +4,7 @@ use super::{Cpu, SRAM_BYTES, SRAM_START};
 use crate::decode::{Code, FLASH_WORDS};
 use crate::io::{Access, Io};
 use crate::status::Status;
-use crate::verdict::Verdict;
+use crate::verdict::{Arrival, Verdict};
 
 const X: usize = 26;
 const Y: usize = 28;
@@ -373,12 +373,11 @@ impl Cpu {
                     jump!(op.address());
                     cycles = 3;
                 }
-                Code::Ijmp => {
-                    jump!(u32::from(self.pair(Z)));
-                    cycles = 2;
-                }
-                Code::Eijmp => {
-                    jump!((u32::from(self.eind) << 16 | u32::from(self.pair(Z))));
+                Code::Ijmp | Code::Eijmp => {
+                    let target = self.pointed(op.code == Code::Eijmp);
+                    let mnemonic = op.code.mnemonic();
+                    self.look_ahead(target, |_| Arrival::Pointer { at: pc, mnemonic });
+                    jump!(target);
                     cycles = 2;
                 }
                 Code::Rcall | Code::Call | Code::Icall | Code::Eicall => {
@@ -389,8 +388,12 @@ impl Cpu {
                             back += 1;
                             (op.address(), 5)
                         }
-                        Code::Icall => (u32::from(self.pair(Z)), 4),
-                        _ => (u32::from(self.eind) << 16 | u32::from(self.pair(Z)), 4),
+                        _ => {
+                            let target = self.pointed(op.code == Code::Eicall);
+                            let mnemonic = op.code.mnemonic();
+                            self.look_ahead(target, |_| Arrival::Pointer { at: pc, mnemonic });
+                            (target, 4)
+                        }
                     };
                     back %= FLASH_WORDS as u32;
                     let [low, middle, high] = [back as u8, (back >> 8) as u8, (back >> 16) as u8];
@@ -420,6 +423,12 @@ impl Cpu {
                         None => [pop!(5), pop!(5), pop!(5)],
                     };
                     let target = u32::from(high) << 16 | u32::from(middle) << 8 | u32::from(low);
+                    // The program counter has 17 bits.
+                    let target = target % FLASH_WORDS as u32;
+                    self.look_ahead(target, |cpu| Arrival::Return {
+                        at: pc,
+                        stack_pointer: cpu.stack_pointer(),
+                    });
                     jump!(target);
                     cycles = 5;
                     if op.code == Code::Reti {
@@ -452,20 +461,22 @@ impl Cpu {
                     return true;
                 }
                 Code::Erased => {
+                    self.rest(pc, cycle, status);
                     self.end(Verdict::ErasedFlash {
-                        program_counter: pc,
+                        program_counter: self.program_counter,
+                        arrival: self.arrival(self.program_counter),
                         cycle,
                     });
-                    self.rest(pc, cycle, status);
                     return false;
                 }
                 Code::Illegal => {
+                    self.rest(pc, cycle, status);
                     self.end(Verdict::IllegalInstruction {
-                        program_counter: pc,
+                        program_counter: self.program_counter,
                         word: op.b,
+                        arrival: self.arrival(self.program_counter),
                         cycle,
                     });
-                    self.rest(pc, cycle, status);
                     return false;
                 }
             }
@@ -483,6 +494,17 @@ impl Cpu {
         self.program_counter = program_counter % FLASH_WORDS as u32;
         self.cycle = cycle;
         self.status = status;
+    }
+
+    /// Where Z leads as a pointer to an instruction [words].
+    #[inline(always)]
+    fn pointed(&self, extended: bool) -> u32 {
+        let high = if extended {
+            u32::from(self.eind) << 16
+        } else {
+            0
+        };
+        high | u32::from(self.pair(Z))
     }
 
     #[inline(always)]

@@ -10,6 +10,7 @@
 //! Instruction timing: DS40002549 (ATmega640/1280/1281/2560/2561), section 33; interrupts take 5 cycles to enter, 5 more
 //! out of sleep, and the instruction after SEI or RETI always runs first (sections 7.7 and 7.8).
 
+mod astray;
 mod bus;
 mod execute;
 
@@ -17,7 +18,7 @@ use crate::decode::{Code, FLASH_WORDS, Op, decode};
 use crate::io::{Demand, Io};
 use crate::observe::Watchpoint;
 use crate::status::Status;
-use crate::verdict::Verdict;
+use crate::verdict::{Arrival, Verdict};
 
 /// First address of SRAM in the data space.
 pub const SRAM_START: u16 = 0x200;
@@ -105,6 +106,8 @@ pub struct Cpu {
     /// The next instruction runs before any interrupt.
     shadow: bool,
     verdict: Option<Verdict>,
+    /// Where the last jump led behind which nothing can run, and what kind of jump it was.
+    astray: Option<(u32, Arrival)>,
 }
 
 impl Cpu {
@@ -142,6 +145,7 @@ impl Cpu {
             programming: false,
             shadow: false,
             verdict: None,
+            astray: None,
         };
         cpu.status = Status::from_bits(0);
         for word in 0..fits.div_ceil(2) as u32 {
@@ -414,7 +418,8 @@ impl Cpu {
         io.acknowledge(vector, self.cycle);
         self.push_address(io, self.program_counter, self.cycle);
         self.status.interrupts = false;
-        self.program_counter = u32::from(vector) * 2 + io.vector_base();
+        self.program_counter = (u32::from(vector) * 2 + io.vector_base()) % FLASH_WORDS as u32;
+        self.look_ahead(self.program_counter, |_| Arrival::Interrupt { vector });
         self.cycle += ENTRY_CYCLES;
         Some(vector)
     }

@@ -191,13 +191,9 @@ impl Mega {
     /// How the program ended, if it could not go on: what, where, when.
     pub fn verdict(&self) -> Option<String> {
         let verdict = self.verdict.as_ref()?;
-        let image = self.firmware.image();
-        let place = match image.function(verdict.program_counter()) {
-            Some(name) => format!(" (in {name})"),
-            None => String::new(),
-        };
         let name = self.firmware.name();
-        Some(format!("firmware {name}: {verdict}{place}"))
+        let verdict = verdict.told(self.firmware.image());
+        Some(format!("firmware {name}: {verdict}"))
     }
 
     /// What the program did that the emulator does not model, a line for each register.

@@ -1,0 +1,125 @@
+//! How a program came to where it cannot go on: found out afterwards where that is possible, and noted by the jumps whose target only
+//! the running program knows.
+
+use super::{Cpu, RAMEND, SRAM_START};
+use crate::decode::{Code, FLASH_WORDS, is_long};
+use crate::verdict::{Arrival, Verdict};
+
+impl Cpu {
+    /// An indirect jump leads to `target`: if nothing can run there, what kind of jump it was is kept.
+    #[inline(always)]
+    pub(super) fn look_ahead(&mut self, target: u32, arrival: impl FnOnce(&Cpu) -> Arrival) {
+        let code = self.operations[target as usize % FLASH_WORDS].code;
+        if matches!(code, Code::Erased | Code::Illegal) {
+            self.note_astray(target, arrival(self));
+        }
+    }
+
+    #[cold]
+    fn note_astray(&mut self, target: u32, arrival: Arrival) {
+        self.astray = Some((target, arrival));
+    }
+
+    /// How the program counter got to `program_counter`.
+    pub(super) fn arrival(&self, program_counter: u32) -> Arrival {
+        if let Some((target, arrival)) = self.astray
+            && target == program_counter
+        {
+            return arrival;
+        }
+        if program_counter == 0 {
+            return Arrival::Start;
+        }
+        let before = self.instruction_before(program_counter);
+        if goes_on(self.original(before).code) {
+            return Arrival::Sequence { at: before };
+        }
+        let leads_there = |word: &u32| {
+            let op = self.original(*word);
+            is_direct(op.code) && op.address() == program_counter
+        };
+        (0..FLASH_WORDS as u32)
+            .find(leads_there)
+            .map_or(Arrival::Unknown, |at| Arrival::Jump { at })
+    }
+
+    /// The instruction that ends where `word` begins.
+    fn instruction_before(&self, word: u32) -> u32 {
+        let two = word.wrapping_sub(2) % FLASH_WORDS as u32;
+        if is_long(self.flash_word(two)) {
+            two
+        } else {
+            word.wrapping_sub(1) % FLASH_WORDS as u32
+        }
+    }
+
+    #[cold]
+    pub(super) fn stack_overflow(&mut self, program_counter: u32, cycle: u64) {
+        if !self.stack_known && self.stack_pointer() >= SRAM_START {
+            return;
+        }
+        self.end(Verdict::StackOverflow {
+            program_counter: program_counter % FLASH_WORDS as u32,
+            stack_pointer: self.stack_pointer(),
+            depth: RAMEND.wrapping_sub(self.stack_pointer()),
+            returns: self.returns(),
+            floor: self.stack_floor,
+            cycle,
+        });
+    }
+
+    /// Values on the stack that are addresses behind a call.
+    fn returns(&self) -> Vec<u32> {
+        let start = usize::from((self.stack_pointer() + 1).saturating_sub(SRAM_START));
+        let mut stack = self.sram.get(start..).unwrap_or_default();
+        let mut returns = Vec::new();
+        while let Some(([high, middle, low], rest)) = stack.split_first_chunk() {
+            let word = u32::from_be_bytes([0, *high, *middle, *low]);
+            if self.is_behind_a_call(word) {
+                returns.push(word);
+                stack = rest;
+            } else {
+                stack = &stack[1..];
+            }
+        }
+        returns
+    }
+
+    fn is_behind_a_call(&self, word: u32) -> bool {
+        (1..FLASH_WORDS as u32).contains(&word)
+            && matches!(
+                self.original(self.instruction_before(word)).code,
+                Code::Call | Code::Rcall | Code::Icall | Code::Eicall
+            )
+    }
+}
+
+/// What follows the instruction may come next.
+const fn goes_on(code: Code) -> bool {
+    !matches!(
+        code,
+        Code::Erased
+            | Code::Illegal
+            | Code::Jmp
+            | Code::Rjmp
+            | Code::Ijmp
+            | Code::Eijmp
+            | Code::Ret
+            | Code::Reti
+    )
+}
+
+/// Jumps, calls and branches with their target in the instruction.
+const fn is_direct(code: Code) -> bool {
+    matches!(
+        code,
+        Code::Jmp
+            | Code::Rjmp
+            | Code::Call
+            | Code::Rcall
+            | Code::Breq
+            | Code::Brne
+            | Code::Brcs
+            | Code::Brcc
+    )
+}
