@@ -3,6 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use rumbo_emulator::chip::Chip;
+use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::image::Image;
 use rumbo_emulator::observe::profile::Profile;
 
@@ -18,7 +19,11 @@ fuzz_target!(|bytes: &[u8]| {
     let mut seen = chip.clone();
     seen.observers_mut()
         .profile(Profile::new(&Image::default()));
-    assert_eq!(chip.run_until(CYCLES), seen.run_until(CYCLES));
+    let stopped = chip.run_until(CYCLES);
+    assert_eq!(stopped, seen.run_until(CYCLES));
+    if let Stopped::Ended(verdict) = stopped {
+        assert!(!verdict.to_string().contains('\n'));
+    }
     assert_eq!(chip.cpu().registers(), seen.cpu().registers());
     assert_eq!(chip.take_outputs(), seen.take_outputs());
 });

@@ -2,7 +2,7 @@
 //!
 //! [`test`] is everything that must hold before a change is merged, [`tidy`] the rules no compiler checks,
 //! [`bench`] the figures of the README, [`campaign`] what must hold over thousands of seeds, [`sketches`] the images that
-//! tests and examples run, [`figures`] the figures and tables of docs/theory. Each prints what it does; none needs
+//! tests and examples run, [`figures`] the figures and tables of docs/theory, [`fuzz`] the fuzz targets. Each prints what it does; none needs
 //! anything but cargo to start.
 
 use std::process::ExitCode;
@@ -11,6 +11,7 @@ mod bench;
 mod campaign;
 mod figures;
 mod firmware;
+mod fuzz;
 mod lab;
 mod markdown;
 mod memoria;
@@ -27,8 +28,8 @@ The project's chores.
 Usage: cargo xtask <command> [options]
 
 Commands:
-  test [--only STEP]...    every check, in order: format, tidy, clippy, docs, sketches, tests, figures, dashboard,
-                           browser, README
+  test [--only STEP]...    every check, in order: format, tidy, clippy, docs, sketches, tests, fuzz targets, figures,
+                           dashboard, browser, README
   tidy                     the rules of ARCHITECTURE.md: dependencies, no_std, files, links
   bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
   firmware                 the image for the Mega, target/firmware/rumbo.elf and .hex, with its sizes
@@ -39,7 +40,8 @@ Commands:
   campaign [--seeds N] [--only SCENARIO]...
                            every scenario with 1,000 seeds or N, and mode 8 in as many random worlds:
                            what is required beside what was measured
-
+  fuzz [--seconds N] [--only TARGET]...
+                           the fuzz targets of fuzz/, a minute each or N seconds
   figures [--only NAME]... the figures and tables of docs/theory, from runs of both programs
 
 Options:
@@ -55,6 +57,7 @@ Examples:
   cargo xtask bench --only headless
   cargo xtask campaign --seeds 100 --only mode8-random
   cargo xtask figures --only mode1
+  cargo xtask fuzz --seconds 600 --only chip
 
 With CI=true in the environment a check that cannot run is a failure, otherwise it is skipped with the remedy.
 Exit status: 0 all well, 1 something failed, 2 wrong usage.";
@@ -67,6 +70,7 @@ enum Request {
         command: String,
         only: Vec<String>,
         seeds: Option<u32>,
+        seconds: Option<u32>,
     },
 }
 
@@ -75,7 +79,7 @@ fn main() -> ExitCode {
         Ok(request) => request,
         Err(error) => return usage(&error.to_string()),
     };
-    let (command, only, seeds) = match request {
+    let (command, only, seeds, seconds) = match request {
         Request::Help(command) => {
             println!("{}", help(command.as_deref()));
             return ExitCode::SUCCESS;
@@ -84,7 +88,8 @@ fn main() -> ExitCode {
             command,
             only,
             seeds,
-        } => (command, only, seeds),
+            seconds,
+        } => (command, only, seeds, seconds),
     };
     let project = match Project::find() {
         Ok(project) => project,
@@ -93,11 +98,15 @@ fn main() -> ExitCode {
     if seeds.is_some() && !matches!(command.as_str(), "campaign" | "memoria") {
         return usage("--seeds is for campaign and memoria");
     }
+    if seconds.is_some() && command != "fuzz" {
+        return usage("--seconds is for fuzz");
+    }
     let outcome = match command.as_str() {
         "test" => test::run(&project, &only),
         "tidy" if only.is_empty() => tidy::run(&project),
         "bench" => bench::run(&project, &only),
         "campaign" => campaign::run(&project, seeds, &only),
+        "fuzz" => fuzz::campaign(&project, seconds, &only),
         "figures" => figures::run(&project, &only),
         "memoria" => memoria::run(&project, seeds, &only),
         "firmware" if only.is_empty() => firmware::run(&project),
@@ -116,11 +125,13 @@ fn main() -> ExitCode {
 
 fn parse(mut args: lexopt::Parser) -> Result<Request, lexopt::Error> {
     use lexopt::prelude::{Long, Short, Value, ValueExt};
-    let (mut command, mut only, mut seeds, mut help) = (None, Vec::new(), None, false);
+    let (mut command, mut only, mut help) = (None, Vec::new(), false);
+    let (mut seeds, mut seconds) = (None, None);
     while let Some(arg) = args.next()? {
         match arg {
             Long("help") | Short('h') => help = true,
             Long("seeds") => seeds = Some(args.value()?.parse()?),
+            Long("seconds") => seconds = Some(args.value()?.parse()?),
             Long("only") => only.push(args.value()?.string()?),
             Value(value) if command.is_none() => command = Some(value.string()?),
             _ => return Err(arg.unexpected()),
@@ -131,6 +142,7 @@ fn parse(mut args: lexopt::Parser) -> Result<Request, lexopt::Error> {
             command,
             only,
             seeds,
+            seconds,
         },
         command => Request::Help(command),
     })
@@ -171,7 +183,8 @@ mod tests {
             Ok(Request::Run {
                 command: "test".to_owned(),
                 only,
-                seeds: None
+                seeds: None,
+                seconds: None
             })
         );
     }
@@ -184,7 +197,8 @@ mod tests {
             Ok(Request::Run {
                 command: "campaign".to_owned(),
                 only: Vec::new(),
-                seeds: Some(50)
+                seeds: Some(50),
+                seconds: None
             })
         );
         assert!(request(&["campaign", "--seeds", "many"]).is_err());

@@ -119,6 +119,22 @@ fn start_address_and_stop_are_on_the_lines() {
 }
 
 #[test]
+fn switched_off_in_the_middle_of_a_byte_it_lets_the_lines_go() {
+    let mut chip = at_100_khz();
+    on_bus(&mut chip, TWSTA);
+    write(&mut chip, TWDR, 0x42);
+    write(&mut chip, TWCR, TWINT | TWEN);
+    let end = chip.cycle() + 500;
+    chip.run_until(end);
+    write(&mut chip, TWCR, 0);
+    chip.run_until(end + 5_000);
+    assert_eq!([read(&mut chip, TWCR), read(&mut chip, TWSR)], [0, 0xF8]);
+    for line in [scl(), sda()] {
+        assert_eq!(chip.devices().drive(line), Drive::Floating);
+    }
+}
+
+#[test]
 fn a_repeated_start_lets_both_lines_go_first() {
     let mut chip = at_100_khz();
     on_bus(&mut chip, TWSTA);

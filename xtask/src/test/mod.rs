@@ -45,7 +45,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 12] = [
+const STEPS: [Step; 13] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
@@ -80,6 +80,11 @@ const STEPS: [Step; 12] = [
         name: "test",
         what: "the tests of all crates",
         check: tests,
+    },
+    Step {
+        name: "fuzz",
+        what: "the fuzz targets find nothing in five seconds each",
+        check: fuzz,
     },
     Step {
         name: "figures",
@@ -226,6 +231,14 @@ fn tests(project: &Project) -> Result<(), Stop> {
     let tools = [tools::simavr(project), tools::avr_gdb(project)];
     run_command(&mut project.cargo(&["test", "--workspace", "--no-fail-fast", "--locked"]))?;
     tools.into_iter().try_for_each(|tool| tool.map(|_| ()))
+}
+
+fn fuzz(project: &Project) -> Result<(), Stop> {
+    if crate::fuzz::campaign(project, Some(5), &[])? {
+        Ok(())
+    } else {
+        Err(Stop::Failed("see the findings above".to_owned()))
+    }
 }
 
 fn build(project: &Project) -> Result<(), Stop> {

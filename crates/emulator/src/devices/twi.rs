@@ -171,6 +171,7 @@ impl Twi {
         self.control = value & (TWEA | TWSTA | TWSTO | TWEN | TWIE);
         if value & TWEN == 0 {
             self.action = None;
+            self.next = None;
             self.flag = false;
             self.status = NOTHING;
             (self.clock, self.line) = (true, true);

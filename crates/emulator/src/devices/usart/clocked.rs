@@ -112,7 +112,8 @@ impl Usart {
 
     /// The first step of a bit: the frame before it may be over, and what follows begins.
     fn begin_bit(&mut self, core: &mut Core, cycle: u64) {
-        self.clocked.bit = cycle - self.clocked.began;
+        // Before a clock that is coming up runs, an edge from outside may be there already.
+        self.clocked.bit = cycle.saturating_sub(self.clocked.began);
         self.clocked.began = cycle;
         if let Some(Step::Sent(byte)) = self.transmitter.shift(self.format, cycle) {
             let bit = if self.is_master(core) {

@@ -1,0 +1,120 @@
+//! `cargo xtask fuzz`: builds the targets of `fuzz/` for libFuzzer and runs them.
+//!
+//! What cargo-fuzz does with a nightly compiler, the stable one does too as long as no sanitizer is wanted: LLVM's pass that counts
+//! which code was reached is switched on by codegen options. Without `unsafe` in the workspace there is nothing for a sanitizer to find.
+//! With `--target` the options stay away from build scripts.
+
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+
+use crate::project::{Project, metadata, output, run};
+
+/// Seconds for each target unless told otherwise.
+const SECONDS: u32 = 60;
+const FLAGS: [&str; 9] = [
+    "-Cpasses=sancov-module",
+    "-Cllvm-args=-sanitizer-coverage-level=4",
+    "-Cllvm-args=-sanitizer-coverage-inline-8bit-counters",
+    "-Cllvm-args=-sanitizer-coverage-pc-table",
+    "-Cllvm-args=-sanitizer-coverage-trace-compares",
+    "-Ccodegen-units=1",
+    "-Cdebug-assertions",
+    "-Coverflow-checks",
+    "--cfg=fuzzing",
+];
+
+/// Runs the targets named in `only` (all if empty), each for some seconds; true if none found anything.
+pub(crate) fn campaign(
+    project: &Project,
+    seconds: Option<u32>,
+    only: &[String],
+) -> Result<bool, String> {
+    let targets = targets(project)?;
+    if let Some(unknown) = only.iter().find(|name| !targets.contains(name)) {
+        return Err(format!(
+            "no fuzz target `{unknown}`; targets: {}",
+            targets.join(", ")
+        ));
+    }
+    let programs = build(project)?;
+    let mut clean = true;
+    for target in targets {
+        if only.is_empty() || only.contains(&target) {
+            let seconds = seconds.unwrap_or(SECONDS);
+            clean &= fuzz(project, &programs, &target, seconds)?;
+        }
+    }
+    Ok(clean)
+}
+
+/// Names of the targets.
+fn targets(project: &Project) -> Result<Vec<String>, String> {
+    let metadata = metadata(&project.root.join("fuzz/Cargo.toml"))?;
+    let targets = metadata["packages"][0]["targets"].as_array();
+    let names = targets
+        .into_iter()
+        .flatten()
+        .filter_map(|target| target["name"].as_str());
+    Ok(names.map(str::to_owned).collect())
+}
+
+/// Builds all targets; gives the folder that has them.
+fn build(project: &Project) -> Result<PathBuf, String> {
+    let version = output(project.command("rustc").arg("-vV"))?;
+    let host = version
+        .lines()
+        .find_map(|line| line.strip_prefix("host: "))
+        .ok_or("rustc -vV names no host")?;
+    let folder = project.target.join("fuzz");
+    let arguments = ["build", "--release", "--locked", "--target", host];
+    run(project
+        .cargo(&arguments)
+        .args(["--manifest-path", "fuzz/Cargo.toml"])
+        .env("CARGO_TARGET_DIR", &folder)
+        .env("CARGO_ENCODED_RUSTFLAGS", FLAGS.join("\u{1f}")))?;
+    Ok(folder.join(host).join("release"))
+}
+
+/// Runs one target; true if it found nothing.
+fn fuzz(project: &Project, programs: &Path, target: &str, seconds: u32) -> Result<bool, String> {
+    let folder = project.target.join("fuzz");
+    let (corpus, findings) = (folder.join("corpus").join(target), folder.join("findings"));
+    for folder in [&corpus, &findings] {
+        std::fs::create_dir_all(folder)
+            .map_err(|error| format!("{}: {error}", folder.display()))?;
+    }
+    let program = programs.join(format!("{target}{}", std::env::consts::EXE_SUFFIX));
+    let prefix = format!("{}/{target}-", findings.display());
+    let mut command = project.command(&program);
+    command
+        .arg(&corpus)
+        .arg(format!("-max_total_time={seconds}"))
+        .arg(format!("-artifact_prefix={prefix}"))
+        .args(["-max_len=4096", "-timeout=20", "-print_final_stats=1"])
+        .stdin(Stdio::null());
+    let output = command
+        .output()
+        .map_err(|error| format!("{}: {error}", program.display()))?;
+    let told = String::from_utf8_lossy(&output.stderr);
+    if output.status.success() {
+        let stat = |name: &str| {
+            let line = told.lines().find_map(|line| line.strip_prefix(name));
+            line.unwrap_or("?").trim().to_owned()
+        };
+        println!(
+            "{target}: {} inputs in {seconds} s, {} of them reached new code, nothing found",
+            stat("stat::number_of_executed_units:"),
+            stat("stat::new_units_added:"),
+        );
+    } else {
+        let lines: Vec<&str> = told.lines().collect();
+        let last = lines.len().saturating_sub(40);
+        println!("{}", lines[last..].join("\n"));
+        println!(
+            "{target}: the input is in {}, and `{} FILE` runs it again",
+            findings.display(),
+            program.display()
+        );
+    }
+    Ok(output.status.success())
+}
