@@ -1,4 +1,4 @@
-//! `cargo xtask campaign`: every scenario with a thousand seeds, and mode 8 in a thousand random worlds.
+//! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds, and a million frames over a link with faults.
 //!
 //! The runs and what is required of them are the scenario crate's (`rumbo_scenario::campaign`); its example is built as users get the
 //! program, optimised, and printed as it comes.
@@ -6,23 +6,40 @@
 use crate::project::{Project, shown};
 use std::process::Stdio;
 
+/// The part that is no scenario.
+const LINK: &str = "link";
+
 /// Seeds of each scenario.
 const SEEDS: u32 = 1000;
 
 /// Runs the scenarios named in `only` (all if empty); true if everything required was met.
 pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Result<bool, String> {
+    let mut met = true;
+    if only.is_empty() || only.iter().any(|name| name == LINK) {
+        met &= example(project, ["rumbo-station", "link_campaign"], &[])?;
+    }
+    let mut scenarios = vec![seeds.unwrap_or(SEEDS).to_string()];
+    scenarios.extend(only.iter().filter(|name| *name != LINK).cloned());
+    if only.is_empty() || scenarios.len() > 1 {
+        met &= example(project, ["rumbo-scenario", "campaign"], &scenarios)?;
+    }
+    Ok(met)
+}
+
+/// Runs an example of a crate; true if it found everything met.
+fn example(project: &Project, [package, name]: [&str; 2], args: &[String]) -> Result<bool, String> {
     let mut command = project.cargo(&[
         "run",
         "--quiet",
         "--release",
         "--locked",
         "--package",
-        "rumbo-scenario",
+        package,
         "--example",
-        "campaign",
+        name,
         "--",
     ]);
-    command.arg(seeds.unwrap_or(SEEDS).to_string()).args(only);
+    command.args(args);
     let status = command
         .stdin(Stdio::null())
         .status()

@@ -6,10 +6,19 @@ use crate::lab;
 use crate::logs;
 use rumbo_station::LabConfig;
 use rumbo_station::log::Recording;
-use rumbo_station::port::Port;
+use rumbo_station::port::{self, Port};
+use std::io::Write;
 
 /// Opens the port and serves the dashboard.
 pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
+    if !args.address.starts_with(port::TCP) {
+        let warning = rumbo_station::check_baud(args.baud)
+            .map_err(|error| Failure::Input(format!("--baud: {error}")))?;
+        if let Some(warning) = warning {
+            // A closed stderr leaves nobody to tell.
+            let _ = writeln!(std::io::stderr(), "note: {warning}");
+        }
+    }
     let robot = Port::open(&args.address, args.baud).map_err(Failure::input)?;
     let config = LabConfig {
         at: args.serve.at(),

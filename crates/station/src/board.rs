@@ -114,6 +114,12 @@ pub(crate) struct LinkState {
     pub(crate) dropped: u8,
     /// The operator's commands not acknowledged yet.
     pub(crate) unacknowledged: usize,
+    /// Session time at the robot's time 0, where the clocks did not start together.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) clock_offset_ms: Option<i64>,
+    /// By how much the robot's clock is fast, in millionths.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) clock_fast_ppm: Option<i64>,
 }
 
 /// The robot's slow signals, for the page.

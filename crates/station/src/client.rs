@@ -87,8 +87,8 @@ pub struct RobotClient {
     undecided: bool,
     /// HELLOs since the robot last answered one, or was last lost.
     hellos: u32,
-    /// Anything was heard at this port.
-    heard_any: bool,
+    /// Bytes heard at this port.
+    heard_bytes: u64,
     /// Words of the other language heard in a row.
     words: u32,
     /// Columns of the row heard last.
@@ -125,7 +125,7 @@ impl RobotClient {
             text: false,
             undecided: true,
             hellos: 0,
-            heard_any: false,
+            heard_bytes: 0,
             words: 0,
             row_kind: None,
             manager: CommandManager::new(session),
@@ -168,7 +168,10 @@ impl RobotClient {
 
     /// Nothing at all was heard, though the robot was asked again and again: the original program before its first ON is like that.
     pub fn is_mute(&self) -> bool {
-        !self.text && self.hello.is_none() && self.hellos >= HELLOS_UNANSWERED && !self.heard_any
+        !self.text
+            && self.hello.is_none()
+            && self.hellos >= HELLOS_UNANSWERED
+            && self.heard_bytes == 0
     }
 
     /// Takes a command from the operator for a robot that speaks text; false if text has no words for it.
@@ -191,7 +194,7 @@ impl RobotClient {
             self.text = false;
             self.connected = false;
         }
-        self.heard_any = false;
+        self.heard_bytes = 0;
         if !self.connected {
             self.hello_sent_us = None;
             (self.hellos, self.words) = (0, 0);
@@ -266,7 +269,7 @@ impl RobotClient {
     /// Takes bytes that arrived from the robot and appends what they say.
     pub fn hear(&mut self, bytes: &[u8], now_us: u64, heard: &mut Vec<Heard>) {
         self.down.add(bytes.len(), now_us);
-        self.heard_any |= !bytes.is_empty();
+        self.heard_bytes += bytes.len() as u64;
         for byte in bytes {
             if let Some(told) = self.terminal.hear(*byte, (now_us / 1_000) as i64) {
                 self.hear_row(told, now_us, heard);
@@ -328,10 +331,11 @@ impl RobotClient {
             now_us,
         );
         let now_ms = (now_us / 1_000) as i64;
+        let way_ms = (self.manager.way_us() / 1_000) as i64;
         match message {
             FromRobot::Hello(hello) => self.greet(hello, now_us, heard),
             FromRobot::Telemetry(telemetry) => {
-                let t_ms = self.clock.session_ms(telemetry.t_ms, now_ms);
+                let t_ms = self.clock.session_ms(telemetry.t_ms, now_ms, way_ms);
                 heard.push(Heard::Telemetry(t_ms, telemetry));
             }
             FromRobot::Status(status) => {
@@ -344,7 +348,7 @@ impl RobotClient {
                     self.mode = mode;
                 }
                 heard.push(Heard::Event(
-                    self.clock.session_ms(event.t_ms, now_ms),
+                    self.clock.session_ms(event.t_ms, now_ms, way_ms),
                     event.kind,
                 ));
             }
@@ -443,11 +447,14 @@ impl RobotClient {
             up_bytes_s: self.up.per_second(now_us),
             down_bytes_s: self.down.per_second(now_us),
             telemetry_hz: self.frames.per_second(now_us),
+            heard_bytes: self.heard_bytes,
             crc_errors: self.decoder.crc_errors(),
             frames_lost: self.decoder.frames_lost(),
             malformed: self.malformed,
             round_trip_us: self.manager.round_trip_us(),
             unacknowledged: self.manager.unacknowledged(),
+            clock_offset_ms: self.clock.offset_ms(),
+            clock_fast_ppm: self.clock.fast_ppm((now_us / 1_000) as i64),
         }
     }
 }
@@ -461,6 +468,8 @@ pub struct LinkFigures {
     pub down_bytes_s: f64,
     /// Telemetry frames from the robot [1/s].
     pub telemetry_hz: f64,
+    /// Bytes from the robot since the port was opened.
+    pub heard_bytes: u64,
     /// Frames from the robot that failed the CRC, wrapping.
     pub crc_errors: u16,
     /// Frames from the robot missing by their sequence numbers, wrapping.
@@ -471,4 +480,8 @@ pub struct LinkFigures {
     pub round_trip_us: Option<u64>,
     /// The operator's commands that wait for their acknowledgement.
     pub unacknowledged: usize,
+    /// Session time at the robot's time 0, where the clocks did not start together \[ms\].
+    pub clock_offset_ms: Option<i64>,
+    /// By how much the robot's clock is fast, in millionths.
+    pub clock_fast_ppm: Option<i64>,
 }

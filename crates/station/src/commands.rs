@@ -248,6 +248,11 @@ impl CommandManager {
         self.round_trip.smoothed_us
     }
 
+    /// About the time that a frame needs at least in one direction \[us\].
+    pub(crate) fn way_us(&self) -> u64 {
+        self.round_trip.way_us()
+    }
+
     /// The operator's commands that are not acknowledged yet.
     pub fn unacknowledged(&self) -> usize {
         self.waiting.len() + usize::from(self.in_flight.is_some_and(|flying| !flying.background))

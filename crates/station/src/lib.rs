@@ -10,6 +10,7 @@ mod catalogue;
 pub mod client;
 pub mod commands;
 mod errand;
+pub mod fault;
 mod guard;
 mod lease;
 pub mod log;
@@ -30,6 +31,7 @@ mod socket;
 mod state;
 mod target;
 mod terminal;
+mod watch;
 mod web;
 mod words;
 
@@ -40,3 +42,4 @@ pub use target::{
     Choice, LinkNews, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation, SonarMount, Target,
     Truth,
 };
+pub use watch::check_baud;

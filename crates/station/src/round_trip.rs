@@ -13,11 +13,15 @@ pub(crate) struct RoundTrip {
     /// Smoothed round trip \[us\], `None` before the first.
     pub(crate) smoothed_us: Option<u64>,
     deviation_us: u64,
+    /// The shortest so far \[us\].
+    shortest_us: Option<u64>,
 }
 
 impl RoundTrip {
     /// A command was acknowledged after `sample_us`, and had been sent once.
     pub(crate) fn measured(&mut self, sample_us: u64) {
+        let shortest_us = self.shortest_us.unwrap_or(u64::MAX);
+        self.shortest_us = Some(shortest_us.min(sample_us));
         match self.smoothed_us {
             None => {
                 self.smoothed_us = Some(sample_us);
@@ -28,6 +32,11 @@ impl RoundTrip {
                 self.smoothed_us = Some((7 * smoothed_us + sample_us) / 8);
             }
         }
+    }
+
+    /// About the time that a frame needs at least in one direction \[us\]; 0 before it is known.
+    pub(crate) fn way_us(&self) -> u64 {
+        self.shortest_us.unwrap_or_default() / 2
     }
 
     /// Time after which a command without an answer is repeated \[us\].

@@ -13,6 +13,7 @@ use crate::orders::{self, MAX_SPEED, Order};
 use crate::pace::{Pace, SLICE_US};
 use crate::state::{self, Around};
 use crate::target::{Choice, LinkNews, Target};
+use crate::watch::LinkWatch;
 use crate::words;
 use rumbo_control::mode::Movement;
 use rumbo_wire::{Command, Level};
@@ -58,6 +59,7 @@ pub(crate) struct Session {
     briefed: bool,
     /// The port is waited for.
     port_gone: bool,
+    link_watch: LinkWatch,
     /// Kept to spare allocations.
     heard: Vec<Heard>,
     bytes: Vec<u8>,
@@ -90,6 +92,7 @@ impl Session {
             held: None,
             briefed: false,
             port_gone: false,
+            link_watch: LinkWatch::default(),
             heard: Vec::new(),
             bytes: Vec::new(),
         }
@@ -400,6 +403,7 @@ impl Session {
         if let Some(trouble) = self.board.recording_trouble() {
             self.note(board::Level::Warning, trouble);
         }
+        self.watch_link();
         let urgent = self.observer.publish();
         let now = Instant::now();
         if urgent
@@ -410,6 +414,22 @@ impl Session {
             self.state_noted = Some(now);
             let state = self.state();
             self.observer.show_state(state);
+        }
+    }
+
+    /// Says what is wrong with a real link.
+    fn watch_link(&mut self) {
+        if self.simulated {
+            return;
+        }
+        let (now_us, connected) = (self.target.now_us(), self.client.connected());
+        let (figures, dropped) = (self.client.link(now_us), self.observer.status().dropped);
+        let baud = self.target.baud();
+        let trouble = self
+            .link_watch
+            .look(now_us, &figures, connected, dropped, baud);
+        if let Some(trouble) = trouble {
+            self.note(board::Level::Warning, trouble);
         }
     }
 

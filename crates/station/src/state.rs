@@ -45,6 +45,8 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
             frames_lost: link.frames_lost,
             dropped: status.dropped,
             unacknowledged: link.unacknowledged,
+            clock_offset_ms: link.clock_offset_ms,
+            clock_fast_ppm: link.clock_fast_ppm,
         },
         robot: RobotState {
             mode: client.mode() as u8,

@@ -71,6 +71,11 @@ export const ROBOT = {
   'connected; the robot speaks the original program\'s text: nothing is acknowledged, and it goes on by itself when the link is lost':
     'conectado; el robot habla el texto del programa original: nada se confirma, y sigue por su cuenta si se pierde el enlace',
   'nothing heard from the robot for some seconds, though it is on': 'el robot no dice nada desde hace unos segundos, aunque está en marcha',
+  'bytes arrive that are neither frames nor rows of text: is {} baud the robot\'s speed? --baud sets it':
+    'llegan bytes que no son ni tramas ni líneas de texto: ¿es {} baudios la velocidad del robot? Se fija con --baud',
+  'the link is full: the robot left out {} telemetry frames': 'el enlace está lleno: el robot omitió {} tramas de telemetría',
+  'the link is disturbed: {} damaged frames within 10 s; come nearer, or check the cable':
+    'hay perturbaciones en el enlace: {} tramas dañadas en 10 s; acércate o revisa el cable',
   '{}: sent, text is not acknowledged': '{}: enviado, el texto no se confirma',
   '{}: sent as text, in case the robot runs the original program; nothing was heard from it yet':
     '{}: enviado como texto, por si el robot ejecuta el programa original; aún no se le ha oído',

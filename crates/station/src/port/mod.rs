@@ -36,7 +36,7 @@ const WAITING: usize = 1_024;
 const EMPTY_READS: u32 = 3;
 
 /// What is written before the address of a TCP port.
-const TCP: &str = "tcp:";
+pub const TCP: &str = "tcp:";
 
 type Reader = Box<dyn Read + Send>;
 type Writer = Box<dyn Write + Send>;
