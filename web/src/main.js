@@ -10,6 +10,8 @@ import { EventList } from './events.js';
 import { Header } from './header.js';
 import { LayoutDialog } from './layout_dialog.js';
 import { Link } from './link.js';
+import { LinkMeter } from './linkmeter.js';
+import { Machine } from './machine.js';
 import { WorldMap } from './map.js';
 import { CommandPanel } from './panel.js';
 import { ParameterTable } from './parameters.js';
@@ -19,6 +21,7 @@ import { ReplayBar } from './replay.js';
 import { Seat } from './seat.js';
 import { StateLine, pointerWords } from './stateline.js';
 import { Store } from './store.js';
+import { Tabs } from './tabs.js';
 import { LANGUAGES, language, speak, t, translatePage, untranslated } from './text.js';
 
 translatePage();
@@ -43,6 +46,7 @@ const redraw = onFrame(() => {
   plots.draw();
   map.draw();
   stateLine.draw();
+  machine.draw();
   setText(pointer, pointerWords(map.pointed()));
 });
 const header = new Header(send);
@@ -57,6 +61,10 @@ const consoles = new Consoles(send);
 let consoleRun = null;
 const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);
 const panel = new CommandPanel(send, map);
+const machine = new Machine(store);
+const meter = new LinkMeter();
+const tabs = new Tabs('tabs', (panel) => meter.show(panel === 'link'));
+tabs.show('events');
 const stateLine = new StateLine(store, send);
 const pointer = element('pointer', HTMLOutputElement);
 element('fit', HTMLButtonElement).addEventListener('click', () => map.fit());
@@ -101,6 +109,8 @@ function receive(message) {
       panel.setModes(message.modes);
       plots.modes = message.modes;
       stateLine.modes = message.modes;
+      machine.modes = message.modes;
+      meter.clear();
       break;
     case 'scene':
       store.setRun(message.run);
@@ -118,6 +128,8 @@ function receive(message) {
       panel.show(state);
       stateLine.show(state);
       plots.setMode(state.robot.mode);
+      machine.setMode(state.robot.mode);
+      meter.update(state);
       map.target = state.robot.armed && state.robot.errand.route && state.robot.errand.end === null ? state.robot.reference : null;
       map.setErrand(state.robot.errand);
       parameters.setMode(state.robot.mode, state.robot.foreign);
@@ -133,6 +145,9 @@ function receive(message) {
       if (message.run !== consoleRun) consoles.clear();
       consoleRun = message.run;
       consoles.add(message.said);
+      break;
+    case 'bytes':
+      meter.add(message.bytes);
       break;
     case 'samples':
       store.setRun(message.run);

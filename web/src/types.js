@@ -13,6 +13,7 @@
  * @property {number | null} route Takes a route of at most so many places.
  * @property {boolean} lane Follows a lane on command.
  * @property {string[]} states
+ * @property {[number, number, string][]} ways Between the states: from, to, when.
  *
  * @typedef {{x_m: number, y_m: number, heading_rad: number}} Pose World frame, counter-clockwise heading.
  * @typedef {{id: number, at: Pose, half_angle_rad: number, reach_m: number, on_servo: boolean}} SonarMount
@@ -70,6 +71,8 @@
  *
  * @typedef {{t_s: number, level: 'info' | 'good' | 'warning' | 'fault', text: string}} LoggedEvent
  *
+ * @typedef {{t_s: number, to_robot: boolean, hex: string}} LinkBytes Raw bytes that crossed the link together.
+ *
  * @typedef {{usart: number, text: string}} ConsoleText What a USART of an emulated chip said.
  *
  * @typedef {{type: 'hello', version: string, columns: string[], modes: ModeEntry[]}
@@ -78,6 +81,7 @@
  *   | {type: 'state', state: State}
  *   | {type: 'samples', run: number, rows: Cell[][]}
  *   | {type: 'events', events: LoggedEvent[]}
+ *   | {type: 'bytes', bytes: LinkBytes[]}
  *   | {type: 'consoles', run: number, said: ConsoleText[]}
  *   | {type: 'control', seat: Seat}
  *   | {type: 'error', text: string}} FromServer

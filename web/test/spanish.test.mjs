@@ -55,6 +55,8 @@ test('every mode, parameter and event has been said in Spanish', async () => {
     await mode.click();
     await page.waitForFunction((value) => String(/** @type {any} */ (window).rumbo.state().robot.mode) === value, await mode.getAttribute('value'));
   }
+  for (const tab of await page.getByRole('tab').all()) await tab.click();
+  await page.locator('#link-bytes', { hasText: 'telemetría' }).waitFor();
   assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
 });
 

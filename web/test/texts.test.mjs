@@ -49,11 +49,12 @@ test('what the robot says: faults, refusals, why it started, events, modes, stat
   const explained = /fn (?:explanation|title|detail)\([^]*?\n {4}}/g;
   const states = ['front_distance', 'front_align', 'manual', 'mission/mod', 'straight_line', 'wall_follow', 'waypoints', 'wheel_speed']
     .flatMap((mode) => literals(`../../crates/control/src/mode/${mode}.rs`, /STATE_NAMES: [^;]+; [^;]+;/g));
+  const ways = literals('../../crates/control/src/mode/transitions.rs', /way\(\d+, \d+, "[^"]+"\)/g);
   const names = literals('../../crates/control/src/mode/id.rs', /fn name\([^]*?\n {4}}/g);
   const parameters = [...(read('../../crates/control/src/params.rs').split('\ntable! {')[1] ?? '').split('\n}')[0]?.matchAll(/\/\/\/ (.+)/g) ?? []].map((found) => found[1] ?? '');
-  assert.ok(states.length > 30 && names.length === 9 && parameters.length > 60, `${states.length} ${names.length} ${parameters.length}`);
+  assert.ok(states.length > 30 && ways.length > 60 && names.length === 9 && parameters.length > 60, `${states.length} ${names.length} ${parameters.length}`);
   allSpanish([
-    ...literals('../../crates/control/src/types.rs', explained), ...literals('../../crates/wire/src/names.rs', explained), ...states, ...names, ...parameters,
+    ...literals('../../crates/control/src/types.rs', explained), ...literals('../../crates/wire/src/names.rs', explained), ...states, ...ways, ...names, ...parameters,
     ...literals('../../crates/station/src/catalogue.rs', /fn about\([^]*?\n}/g),
   ]);
 });

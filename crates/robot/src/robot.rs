@@ -4,6 +4,7 @@
 //! ([`Robot::tick`]), and empties the transmit ring at its own pace ([`Robot::transmit`]). Nothing here waits, reads a
 //! clock or knows a pin, so the firmware, the emulated chip and the simulator run the same robot.
 
+use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamId, SCHEMA};
 use rumbo_control::{Fault, Inputs, Outputs};
 use rumbo_wire::text::TextCommand;
@@ -111,6 +112,12 @@ impl Robot {
             &self.pilot.signals(),
         );
         step.outputs
+    }
+
+    /// The active mode and the state of its machine at the last tick; `None` while the wheels are released.
+    pub fn mode_state(&self) -> Option<(ModeId, u8)> {
+        let armed = self.supervisor.is_armed();
+        armed.then(|| (self.pilot.mode(), self.pilot.signals().state))
     }
 
     /// The next byte for the link, if any waits.

@@ -23,6 +23,8 @@ pub(crate) const EVENTS_KEPT: usize = 1_000;
 
 /// Pieces of console text kept: of each slice of time in which a USART spoke, one.
 pub(crate) const CONSOLES_KEPT: usize = 2_000;
+/// Pieces of the link's raw bytes kept: some seconds of both directions.
+pub(crate) const BURSTS_KEPT: usize = 600;
 
 /// In place of a USART's number: the link to a real robot that speaks text.
 pub(crate) const LINK_CONSOLE: u8 = 255;
@@ -206,6 +208,7 @@ struct Contents {
     samples: Ring<Row>,
     events: Ring<LoggedEvent>,
     consoles: Ring<ConsoleText>,
+    bytes: Ring<Burst>,
     scene: Versioned<Option<Scene>>,
     parameters: Versioned<Vec<ParameterState>>,
     state: Versioned<State>,
@@ -227,6 +230,7 @@ pub(crate) struct Cursor {
     samples: u64,
     events: u64,
     consoles: u64,
+    bytes: u64,
     scene: u64,
     parameters: u64,
     state: u64,
@@ -243,6 +247,7 @@ pub(crate) struct News {
     pub(crate) samples: Vec<Row>,
     pub(crate) events: Vec<LoggedEvent>,
     pub(crate) consoles: Vec<ConsoleText>,
+    pub(crate) bytes: Vec<Burst>,
     /// Events that left the ring before the page took them.
     pub(crate) events_gone: u64,
 }
@@ -255,6 +260,7 @@ impl Board {
                 samples: Ring::new(SAMPLES_KEPT),
                 events: Ring::new(EVENTS_KEPT),
                 consoles: Ring::new(CONSOLES_KEPT),
+                bytes: Ring::new(BURSTS_KEPT),
                 scene: Versioned::default(),
                 parameters: Versioned::default(),
                 state: Versioned::default(),
@@ -295,8 +301,9 @@ impl Board {
         }
     }
 
-    /// Records raw bytes of the link.
+    /// Records raw bytes of the link. Pages get them with the next news: nobody is woken for them.
     pub(crate) fn link(&self, burst: Burst) {
+        self.lock().bytes.push(burst.clone());
         self.take(Entry::Burst(burst));
     }
 
@@ -355,6 +362,7 @@ impl Board {
         contents.run += 1;
         contents.samples.clear();
         contents.consoles.clear();
+        contents.bytes.clear();
     }
 
     /// What is new since `cursor`, which moves on.
@@ -363,6 +371,7 @@ impl Board {
         let (samples, _) = contents.samples.read(&mut cursor.samples);
         let (events, gone) = contents.events.read(&mut cursor.events);
         let (consoles, _) = contents.consoles.read(&mut cursor.consoles);
+        let (bytes, _) = contents.bytes.read(&mut cursor.bytes);
         let first_time = cursor.run == 0;
         cursor.run = contents.run;
         News {
@@ -373,6 +382,7 @@ impl Board {
             samples,
             events,
             consoles,
+            bytes,
             // What left the ring before the page came was not its to take.
             events_gone: if first_time { 0 } else { gone },
         }

@@ -60,7 +60,7 @@ fn describe(id: ParamId) -> Entry {
 }
 
 /// A mode to choose.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct ModeEntry {
     /// Its number.
     pub id: u8,
@@ -78,6 +78,8 @@ pub struct ModeEntry {
     pub lane: bool,
     /// The names of its states, by the number in the telemetry.
     pub states: &'static [&'static str],
+    /// The ways between them: from, to, when.
+    pub ways: Vec<(u8, u8, &'static str)>,
 }
 
 /// A mode's reference.
@@ -165,5 +167,10 @@ fn mode_entry(mode: ModeId) -> ModeEntry {
         route: (mode == ModeId::Waypoints).then_some(MAX_WAYPOINTS),
         lane: mode == ModeId::Mission,
         states: mode.state_names(),
+        ways: mode
+            .transitions()
+            .iter()
+            .map(|way| (way.from, way.to, way.when))
+            .collect(),
     }
 }

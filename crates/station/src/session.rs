@@ -372,7 +372,7 @@ impl Session {
 
     /// Records the bytes at hand.
     fn note_bytes(&self, to_robot: bool) {
-        if !self.bytes.is_empty() && self.recording.is_some() {
+        if !self.bytes.is_empty() {
             self.observer.link(Burst {
                 t_us: self.target.now_us(),
                 to_robot,

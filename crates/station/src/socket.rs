@@ -9,6 +9,7 @@ use crate::board::{Board, ConsoleText, Cursor, Level, LoggedEvent, News, State};
 use crate::catalogue::{self, ModeEntry, ParameterState};
 use crate::guard::Role;
 use crate::lease::{Lease, Place, Seat};
+use crate::log::Burst;
 use crate::orders::{self, Order};
 use crate::row::{Cell, Row};
 use crate::target::Scene;
@@ -68,10 +69,34 @@ enum ToPage<'a> {
     Events { events: &'a [LoggedEvent] },
     /// What the USARTs of an emulated chip said.
     Consoles { run: u32, said: &'a [ConsoleText] },
+    /// Raw bytes of the link.
+    Bytes { bytes: Vec<LinkBytes> },
     /// Who has control, as far as the page is concerned.
     Control { seat: Seat },
     /// Why the connection is closed now.
     Error { text: &'a str },
+}
+
+/// Bytes that crossed the link together, as the page gets them.
+#[derive(Debug, Serialize)]
+struct LinkBytes {
+    t_s: f64,
+    to_robot: bool,
+    hex: String,
+}
+
+impl LinkBytes {
+    fn of(burst: &Burst) -> Self {
+        Self {
+            t_s: burst.t_us as f64 / 1e6,
+            to_robot: burst.to_robot,
+            hex: burst
+                .bytes
+                .iter()
+                .map(|byte| format!("{byte:02x}"))
+                .collect(),
+        }
+    }
 }
 
 /// Why a connection ends.
@@ -258,6 +283,10 @@ async fn send_news(out: &mut (impl Sink<Message> + Unpin), news: News) -> Option
     if !news.consoles.is_empty() {
         let said = &news.consoles;
         send(out, &ToPage::Consoles { run, said }).await?;
+    }
+    if !news.bytes.is_empty() {
+        let bytes = news.bytes.iter().map(LinkBytes::of).collect();
+        send(out, &ToPage::Bytes { bytes }).await?;
     }
     for chunk in news.samples.chunks(ROWS_PER_MESSAGE) {
         send(

@@ -101,7 +101,13 @@ export const PAGE = {
   'name': 'nombre', 'value': 'valor', 'unit': 'unidad', 'range': 'margen', 'default': 'de fábrica', '{} in {}': '{} en {}', 'no unit': 'sin unidad',
   'Apply': 'Aplicar', 'Write to the robot (Enter)': 'Escribe en el robot (Intro)', 'Back to what the robot holds (Escape)': 'Vuelve a lo que tiene el robot (Escape)', 'Revert': 'Deshacer',
   'waiting…': 'esperando…', 'refused: {}': 'rechazado: {}', 'not read yet': 'aún sin leer', 'the robot has another table: not shown': 'el robot tiene otra tabla: no se muestra',
-  'Events': 'Sucesos', 'newest first': 'los últimos primero', 'Events, newest first': 'Sucesos, los últimos primero',
+  'Events': 'Sucesos', 'States': 'Estados', 'Link': 'Enlace', 'Events, states and link': 'Sucesos, estados y enlace', 'Events, newest first': 'Sucesos, los últimos primero',
+  'State machine of the mode; now: {}': 'Máquina de estados del modo; ahora: {}',
+  'Figures of the link': 'Cifras del enlace', 'Bytes of the link, frame by frame': 'Bytes del enlace, trama a trama',
+  'telemetry': 'telemetría', 'load from the robot': 'carga desde el robot', 'load to the robot': 'carga hacia el robot', 'speed of the line': 'velocidad de la línea',
+  'CRC errors from | to the robot': 'errores de CRC desde | hacia el robot', 'frames missing': 'tramas perdidas', 'dropped: link full': 'descartadas: enlace lleno',
+  'commands unconfirmed': 'órdenes sin confirmar', 'control ticks late': 'pasos de control tarde', 'HELLO': 'HELLO', 'status': 'estado', 'event': 'suceso',
+  'acknowledgement': 'confirmación', 'heartbeat': 'latido', 'command': 'orden', 'unknown': 'desconocida',
   'info': 'información', 'good': 'bien', 'warning': 'aviso',
 };
 

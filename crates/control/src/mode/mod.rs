@@ -16,9 +16,13 @@ pub mod wheel_speed;
 mod active;
 mod commands;
 mod id;
+#[cfg(feature = "names")]
+mod transitions;
 
 pub use active::ActiveMode;
 pub use id::{Level, ModeId, Movement};
+#[cfg(feature = "names")]
+pub use transitions::Transition;
 
 use crate::estimate::Estimate;
 use crate::range::{MIN_RANGE_M, REACH_M};

@@ -19,6 +19,7 @@ use crate::original::Original;
 use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
 use crate::trace::Burst;
 use native::{Memory, Native};
+use rumbo_control::mode::ModeId;
 use rumbo_control::{Duty, SIDES, SonarId, Wheels};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
@@ -254,6 +255,14 @@ impl Sim {
         match &mut self.controller {
             Some(Controller::Original(original)) => original.told(),
             _ => Vec::new(),
+        }
+    }
+
+    /// The native robot's mode and the state of its machine; `None` while it is not armed, and of any other robot.
+    pub fn mode_state(&self) -> Option<(ModeId, u8)> {
+        match &self.controller {
+            Some(Controller::Rumbo(native)) => native.mode_state(),
+            _ => None,
         }
     }
 

@@ -3,6 +3,7 @@
 use super::Sim;
 use crate::board::{Board, micros};
 use crate::files::FileError;
+use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_control::{Inputs, OUTPUT_DELAY_US, Outputs, TICK_US};
 use rumbo_robot::{Cell, Config, Robot};
@@ -57,6 +58,10 @@ impl Native {
             next_tick_us: 0,
             pending: None,
         })
+    }
+
+    pub(super) fn mode_state(&self) -> Option<(ModeId, u8)> {
+        self.robot.mode_state()
     }
 }
 

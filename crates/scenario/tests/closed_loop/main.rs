@@ -11,6 +11,7 @@ mod mode_7;
 mod mode_8;
 mod odometry;
 mod original;
+mod states;
 
 use rumbo_scenario::files::FileError;
 use rumbo_scenario::files::{Library, Overrides, Setup};

@@ -1,0 +1,54 @@
+// @ts-check
+/** What stands beside the events: the state machine of the mode and the link. */
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { folder, open } from './dashboard.mjs';
+
+/** @type {Awaited<ReturnType<typeof open>>} */
+let dashboard;
+/** @type {import('playwright-core').Page} */
+let page;
+
+before(async () => {
+  dashboard = await open(['lab', '--out', folder()]);
+  page = dashboard.page;
+  await page.waitForSelector('#connection.good');
+});
+
+after(() => dashboard?.close());
+
+test('the states of the mode are drawn, with the live one lit and the way that led there', async () => {
+  await page.getByRole('tab', { name: 'States' }).click();
+  assert.deepEqual(await page.locator('.state-box text').allTextContents(), ['approach', 'settle', 'hold']);
+  assert.equal(await page.locator('.state-box.live').count(), 0, 'not armed');
+  await page.locator('#on').click();
+  for (const [state, way] of [['approach', ''], ['settle', 'approach → settle'], ['hold', 'settle → hold']]) {
+    await page.locator('.state-box.live', { hasText: state }).waitFor();
+    if (way) assert.match(await page.locator('.way.taken title').textContent() ?? '', new RegExp(`^${way}: `));
+  }
+  await page.locator('#stop').click();
+  await page.waitForFunction(() => document.querySelectorAll('.state-box.live').length === 0);
+});
+
+test('each mode has its own machine, with every state in a box', async () => {
+  for (const mode of [0, 8]) {
+    await page.locator(`#modes button[value="${mode}"]`).click();
+    await page.waitForFunction((mode) => /** @type {any} */ (window).rumbo.state().robot.mode === mode, mode);
+    await page.waitForFunction((count) => document.querySelectorAll('.state-box').length === count, mode === 0 ? 3 : 13);
+  }
+});
+
+test('the link shows its rate, its load, what was lost, and its bytes frame by frame', async () => {
+  await page.getByRole('tab', { name: 'States' }).focus();
+  await page.keyboard.press('ArrowRight');
+  const figures = page.locator('#link-figures');
+  await figures.locator('dd', { hasText: /^2\d(\.\d)? Hz$/ }).waitFor();
+  assert.match(await figures.innerText(), /9600 baud/);
+  const bytes = page.locator('#link-bytes');
+  await bytes.filter({ hasText: /← telemetry +[0-9a-f]{2} 2/ }).filter({ hasText: /→ heartbeat/ }).waitFor();
+  await page.locator('#link-hold').check();
+  const held = await bytes.textContent();
+  await page.waitForFunction((t) => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1) > t + 0.5, await page.evaluate(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1)));
+  assert.equal(await bytes.textContent(), held);
+  assert.deepEqual(dashboard.complaints, []);
+});
