@@ -4,7 +4,7 @@ import { create } from './dom.js';
 import { t } from './text.js';
 
 /**
- * A dialog with a title and a button that closes it. Escape closes it too; STOP goes on working in it.
+ * A dialog with a title and a button that closes it; Escape closes it too. The page around it stays alive: STOP is never covered or asleep.
  * @param {string} id
  * @param {string} title
  */
@@ -15,8 +15,24 @@ export function dialog(id, title) {
   const made = create('dialog', { id }, create('div', { className: 'row toolbar' }, heading, create('span', { className: 'spacer' }), close), body);
   made.setAttribute('aria-labelledby', heading.id);
   close.addEventListener('click', () => made.close());
+  addEventListener('keydown', (event) => {
+    if (event.key !== 'Escape' || !made.open || event.defaultPrevented) return;
+    event.preventDefault();
+    made.close();
+  });
+  /** What had the focus before. @type {Element | null} */
+  let opener = null;
+  made.addEventListener('close', () => {
+    if (opener instanceof HTMLElement) opener.focus();
+  });
   document.body.append(made);
-  return { dialog: made, body, heading };
+  /** Opens it in front of all others. */
+  const open = () => {
+    opener = document.activeElement;
+    document.body.append(made);
+    if (!made.open) made.show();
+  };
+  return { dialog: made, body, heading, open };
 }
 
 /** A dialog's line for what went wrong. */

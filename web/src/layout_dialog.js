@@ -39,7 +39,7 @@ export class LayoutDialog {
   open() {
     this.#complaint.textContent = '';
     this.#show();
-    this.#dialog.dialog.showModal();
+    this.#dialog.open();
   }
 
   #show() {

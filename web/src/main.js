@@ -8,6 +8,7 @@ import { Consoles } from './consoles.js';
 import { create, element, onFrame, setText } from './dom.js';
 import { EventList } from './events.js';
 import { Header } from './header.js';
+import { makeHelp } from './help.js';
 import { LayoutDialog } from './layout_dialog.js';
 import { Link } from './link.js';
 import { LinkMeter } from './linkmeter.js';
@@ -87,11 +88,23 @@ plots.edit = plotDialog.open.bind(plotDialog);
 element('add-plot', HTMLButtonElement).addEventListener('click', () => plotDialog.open(null));
 const layoutDialog = new LayoutDialog(plots);
 element('layouts', HTMLButtonElement).addEventListener('click', () => layoutDialog.open());
+const help = makeHelp();
+element('help', HTMLButtonElement).addEventListener('click', help);
 addEventListener('keydown', (event) => {
+  // Space is STOP: Enter ticks.
+  if (event.key === 'Enter' && event.target instanceof HTMLInputElement && event.target.type === 'checkbox') {
+    event.preventDefault();
+    event.target.click();
+  }
+  if (event.key === 'F1') {
+    event.preventDefault();
+    help();
+  }
   const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
   if (typing || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === 'p') plots.follow(!plots.following);
   if (event.key === 'l') plots.follow(true);
+  if (event.key === '?') help();
   if (!replay.shown) return;
   if (event.key === 'k') replay.toggle();
   if (event.key === ',') replay.step(-1);

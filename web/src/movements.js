@@ -1,15 +1,17 @@
 // @ts-check
 /**
- * The basic movements of mode 0: buttons that go on until the next one, and the arrow keys, which drive while they are held.
+ * The basic movements of mode 0: buttons that go on until the next one, and arrow keys or a gamepad, which drive while they are held.
  *
  * A held key is told to the station again and again, and the station lets go when it hears nothing: a page that hangs or is gone stops
  * the robot too. Letting go, another window, another field: the wheels are released.
  */
 import { create, element, number } from './dom.js';
 import { RPM_PER_RAD_S } from './units.js';
+import { watchGamepads } from './gamepad.js';
 import { t } from './text.js';
 
 /** @typedef {import('./panel.js').Send} Send */
+/** @typedef {import('./gamepad.js').Stick} Stick */
 
 /** The movements, by their numbers, as they lie around the robot. */
 const MOVEMENTS = [
@@ -35,7 +37,9 @@ export class Movements {
     create('option', { value: 'duty', textContent: '% PWM' }), create('option', { value: 'speed', textContent: 'rpm' }));
   /** @type {Set<string>} */
   #keys = new Set();
-  /** The movement that keys hold; null: none. @type {number | null} */
+  /** What a gamepad holds. @type {Stick | null} */
+  #stick = null;
+  /** The movement that is held, and the part of the level; null: none. @type {{movement: number, depth: number} | null} */
   #held = null;
   /** Keys drive: mode 0 is armed. */
   #live = false;
@@ -54,8 +58,9 @@ export class Movements {
       if (isField(event.target)) this.#letGo();
     });
     setInterval(() => {
-      if (this.#held !== null) this.#order(this.#held, true);
+      if (this.#held !== null) this.#order(this.#held.movement, true, this.#held.depth);
     }, REPEAT_MS);
+    watchGamepads((stick) => this.#steer(stick), () => send({ type: 'stop' }));
   }
 
   /** @param {boolean} shown @param {boolean} armed */
@@ -64,8 +69,15 @@ export class Movements {
     this.#live = shown && armed;
     if (!this.#live) {
       this.#keys.clear();
-      this.#held = null;
+      this.#stick = this.#held = null;
     }
+  }
+
+  /** @param {Stick | null} stick */
+  #steer(stick) {
+    if (!this.#live || (stick === null && this.#stick === null)) return;
+    this.#stick = stick;
+    this.#follow();
   }
 
   /** @param {KeyboardEvent} event */
@@ -80,24 +92,29 @@ export class Movements {
 
   #letGo() {
     this.#keys.clear();
+    this.#stick = null;
     this.#follow();
   }
 
-  /** Does what the keys that are down say. */
+  /** Does what the keys that are down say, or the gamepad. */
   #follow() {
     const down = (/** @type {string} */ key) => Number(this.#keys.has(key));
-    const wanted = BY_KEYS[`${down('ArrowUp') - down('ArrowDown')},${down('ArrowLeft') - down('ArrowRight')}`] ?? null;
-    if (wanted === this.#held) return;
+    const { forward, left, depth } = this.#keys.size > 0 || !this.#stick
+      ? { forward: down('ArrowUp') - down('ArrowDown'), left: down('ArrowLeft') - down('ArrowRight'), depth: 1 } : this.#stick;
+    const movement = BY_KEYS[`${forward},${left}`];
+    const wanted = movement === undefined ? null : { movement, depth };
+    if (wanted?.movement === this.#held?.movement && wanted?.depth === this.#held?.depth) return;
     if (wanted !== null && !this.#level.reportValidity()) return;
     this.#held = wanted;
-    this.#order(wanted ?? RELEASE, wanted !== null);
+    this.#order(wanted?.movement ?? RELEASE, wanted !== null, depth);
   }
 
-  /** @param {number} movement @param {boolean} held */
-  #order(movement, held) {
+  /** @param {number} movement @param {boolean} held @param {number} [depth] the part of the level */
+  #order(movement, held, depth = 1) {
+    const level = this.#level.valueAsNumber * depth;
     if (movement === RELEASE) this.#send({ type: 'move_duty', movement, duty: 0 });
-    else if (this.#unit.value === 'duty') this.#send({ type: 'move_duty', movement, duty: this.#level.valueAsNumber / 100, held });
-    else this.#send({ type: 'move_speed', movement, speed_rad_s: this.#level.valueAsNumber / RPM_PER_RAD_S, held });
+    else if (this.#unit.value === 'duty') this.#send({ type: 'move_duty', movement, duty: level / 100, held });
+    else this.#send({ type: 'move_speed', movement, speed_rad_s: level / RPM_PER_RAD_S, held });
   }
 
   #layOut() {
@@ -115,7 +132,7 @@ export class Movements {
       return button;
     }), create('span', { className: 'hint', textContent: t('pivot on') }));
     const level = create('div', { className: 'row' }, create('label', {}, `${t('level')} `, this.#level), this.#unit);
-    const hint = create('span', { className: 'hint', textContent: t('Armed, the arrow keys drive while they are held.') });
+    const hint = create('span', { className: 'hint', textContent: t('Armed, the arrow keys drive while they are held, or a gamepad with a shoulder button.') });
     this.#root.replaceChildren(pad, create('div', { className: 'stack' }, level, hint));
   }
 }

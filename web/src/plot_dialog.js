@@ -73,7 +73,7 @@ export class PlotDialog {
     this.#remove.hidden = this.#pictures.hidden = panel === null;
     this.#complaint.textContent = '';
     this.#limitUnits();
-    this.#dialog.dialog.showModal();
+    this.#dialog.open();
   }
 
   /** One plot has one unit: signals of others can be taken when those of this one are not. */

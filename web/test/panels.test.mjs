@@ -52,3 +52,61 @@ test('the link shows its rate, its load, what was lost, and its bytes frame by f
   assert.equal(await bytes.textContent(), held);
   assert.deepEqual(dashboard.complaints, []);
 });
+
+/** A gamepad with these buttons down and its left stick there, in the page. @param {number[]} buttons @param {[number, number]} stick */
+function gamepad(buttons, stick) {
+  return page.evaluate(({ buttons, stick }) => {
+    const pad = { connected: true, axes: [...stick, 0, 0], buttons: Array.from({ length: 17 }, (_none, index) => ({ pressed: buttons.includes(index) })) };
+    Object.defineProperty(navigator, 'getGamepads', { configurable: true, value: () => [pad] });
+  }, { buttons, stick });
+}
+
+/** Waits until the newest value of a signal lies there. @param {string} name @param {number} low @param {number} [high] */
+const latest = (name, low, high = low) => page.waitForFunction(({ name, low, high }) => {
+  const { y } = /** @type {any} */ (window).rumbo.series(name);
+  const last = y.filter((/** @type {unknown} */ each) => typeof each === 'number').at(-1);
+  return last >= low && last <= high;
+}, { name, low, high });
+
+test('a gamepad drives while its shoulder button is held, less with the stick half way, and lets go', async () => {
+  await page.locator('#modes button[value="0"]').click();
+  await page.locator('#modes button[value="0"][aria-pressed="true"]').waitFor();
+  await page.locator('#on').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.armed);
+  await gamepad([], [0, -1]);
+  await page.waitForTimeout(300);
+  await latest('left_pwm', 0);
+  await gamepad([5], [0, -1]);
+  await latest('left_pwm', 89);
+  await gamepad([5], [0, -0.7]);
+  await latest('left_pwm', 67);
+  await gamepad([5], [1, 0]);
+  await latest('right_pwm', -255, -1);
+  await gamepad([], [1, 0]);
+  await latest('right_pwm', 0);
+  assert.equal(await page.evaluate(() => /** @type {any} */ (window).rumbo.state().robot.armed), true);
+});
+
+test('a gamepad that drives is released when another window gets the focus, and its B is STOP', async () => {
+  await gamepad([5], [0, -1]);
+  await latest('left_pwm', 89);
+  await page.evaluate(() => {
+    document.hasFocus = () => false;
+    dispatchEvent(new Event('blur'));
+  });
+  await latest('left_pwm', 0);
+  await gamepad([1], [0, 0]);
+  await page.waitForFunction(() => !(/** @type {any} */ (window).rumbo.state().robot.armed));
+});
+
+test('help opens by key and by button, and closes by Escape', async () => {
+  await page.locator('#map').focus();
+  await page.keyboard.press('?');
+  await page.locator('#help-dialog').getByText('STOP, from anywhere but a line of text', { exact: false }).waitFor();
+  await page.keyboard.press('Escape');
+  await page.locator('#help-dialog').waitFor({ state: 'hidden' });
+  await page.locator('#help').click();
+  await page.locator('#help-dialog').waitFor();
+  await page.keyboard.press('Escape');
+  assert.deepEqual(dashboard.complaints, []);
+});

@@ -22,6 +22,27 @@ export const PAGE = {
   'the station is silent': 'la estación no dice nada', 'no answer from the robot': 'el robot no responde', 'live {} Hz': 'en vivo {} Hz', '{}, only × {}': '{}, solo × {}',
   '{}: not sent, there is no connection': '{}: no enviado, no hay conexión',
   'Language': 'Idioma',
+  // Help.
+  'Help': 'Ayuda', 'Help: keys, colours and lines (?)': 'Ayuda: teclas, colores y líneas (?)', 'Keys': 'Teclas', 'Colours and lines': 'Colores y líneas',
+  'Choose a mode, set its reference, press ON. OFF stops the mode; STOP releases the wheels at once. The robot never starts because a page was opened.':
+    'Elige un modo, fija su consigna, pulsa ON. OFF detiene el modo; PARAR suelta las ruedas al instante. El robot nunca arranca porque se abra una página.',
+  'Every event says its cause and what to do. Each run is recorded; `rumbo list logs` finds it, `rumbo replay` shows it here.':
+    'Cada suceso dice su causa y qué hacer. Cada ejecución se graba; `rumbo list logs` la encuentra, `rumbo replay` la muestra aquí.',
+  'STOP, from anywhere but a line of text. In forms Enter ticks a box and presses a button.': 'PARAR, desde cualquier sitio salvo una línea de texto. En los formularios Intro marca casillas y pulsa botones.',
+  'arrow keys': 'flechas', 'mode 0, armed: drive while held; letting go, another window or another field releases the wheels':
+    'modo 0, armado: mueven mientras se pulsan; al soltar, con otra ventana u otro campo se sueltan las ruedas',
+  'gamepad': 'mando', 'mode 0, armed: left stick or cross drives while a shoulder button is held; B or circle is STOP':
+    'modo 0, armado: la palanca izquierda o la cruz mueven con un botón superior pulsado; B o círculo es PARAR',
+  'hold the plots, or go on': 'detiene las gráficas, o sigue', 'follow the newest data': 'sigue los datos más nuevos',
+  'in the plots: set the mark, from which times and values are counted; Escape takes it away': 'en las gráficas: pone la marca desde la que se cuentan tiempos y valores; Escape la quita',
+  '+ − 0, arrow keys': '+ − 0, flechas', 'in the map: zoom, fit, move; in the plots: zoom and move in time': 'en el mapa: ampliar, ajustar, mover; en las gráficas: ampliar y mover en el tiempo',
+  'K , .': 'K , .', 'replay: play or pause, one frame back, one frame on': 'grabación: reproducir o pausar, una trama atrás, una adelante', 'this page': 'esta página',
+  'blue': 'azul', 'left wheel, left sonar': 'rueda y sonar izquierdos', 'orange': 'naranja', 'right wheel, right sonar': 'rueda y sonar derechos',
+  'green': 'verde', 'front sonar, heading; something good': 'sonar frontal, rumbo; algo bueno', 'thick line': 'línea gruesa', 'as the robot measures or estimates it': 'como lo mide o estima el robot',
+  'dotted line': 'línea de puntos', 'as it really is, in the simulation': 'como es en realidad, en la simulación', 'dashed line': 'línea de trazos', 'a reference': 'una consigna',
+  'dotted upright lines': 'verticales de puntos', 'the state of the mode changed': 'el estado del modo cambió', 'filled robot': 'robot lleno', 'dashed robot': 'robot a trazos',
+  'pink': 'rosa', 'goal, route, mark': 'destino, ruta, marca', 'red cone': 'cono rojo', 'a sonar without a reading': 'un sonar sin lectura',
+  'grey page': 'página gris', 'what is shown is old: the link or the station is silent': 'lo que se ve es viejo: el enlace o la estación callan',
   // Replay.
   'Replay': 'Grabación', 'The log that is shown': 'La grabación que se muestra', 'Play': 'Reproducir', 'Pause': 'Pausa',
   'Play or pause (K)': 'Reproducir o pausar (K)', 'One telemetry frame back (comma)': 'Una trama de telemetría atrás (coma)', 'One frame back': 'Una trama atrás',
@@ -42,7 +63,8 @@ export const PAGE = {
   'Switch OFF first': 'Primero OFF', 'reference': 'consigna', 'Set': 'Fijar', 'now {} cm': 'ahora {} cm', 'now {} rpm': 'ahora {} rpm', '{} to {} {}': 'de {} a {} {}',
   'left': 'izq.', 'right': 'der.', 'front': 'frontal', 'both': 'ambas',
   'Open loop by PWM, or closed loop by speed': 'Lazo abierto por PWM, o lazo cerrado por velocidad', 'pivot on': 'pivote', 'level': 'nivel',
-  'Armed, the arrow keys drive while they are held.': 'Armado, las flechas lo mueven mientras se pulsan.',
+  'Armed, the arrow keys drive while they are held, or a gamepad with a shoulder button.':
+    'Armado, las flechas lo mueven mientras se pulsan, o un mando con un botón superior.',
   'arc left': 'arco a la izquierda', 'forward': 'adelante', 'arc right': 'arco a la derecha', 'turn left about the centre': 'giro a la izquierda sobre el centro',
   'release both wheels': 'suelta las dos ruedas', 'turn right about the centre': 'giro a la derecha sobre el centro',
   'arc backward, centre on the left': 'arco atrás, centro a la izquierda', 'backward': 'atrás', 'arc backward, centre on the right': 'arco atrás, centro a la derecha',

@@ -1,0 +1,42 @@
+// @ts-check
+/** The help page: keys, what colours and lines mean, where to go on. */
+import { dialog } from './dialog.js';
+import { create } from './dom.js';
+import { t } from './text.js';
+
+/** Keys and what they do. */
+const KEYS = () => [
+  [t('Space'), t('STOP, from anywhere but a line of text. In forms Enter ticks a box and presses a button.')],
+  [t('arrow keys'), t('mode 0, armed: drive while held; letting go, another window or another field releases the wheels')],
+  [t('gamepad'), t('mode 0, armed: left stick or cross drives while a shoulder button is held; B or circle is STOP')],
+  ['P', t('hold the plots, or go on')],
+  ['L', t('follow the newest data')],
+  ['M', t('in the plots: set the mark, from which times and values are counted; Escape takes it away')],
+  [t('+ − 0, arrow keys'), t('in the map: zoom, fit, move; in the plots: zoom and move in time')],
+  [t('K , .'), t('replay: play or pause, one frame back, one frame on')],
+  ['? , F1', t('this page')],
+];
+
+/** Lines and colours. */
+const LEGEND = () => [
+  [t('blue'), t('left wheel, left sonar')], [t('orange'), t('right wheel, right sonar')], [t('green'), t('front sonar, heading; something good')],
+  [t('thick line'), t('as the robot measures or estimates it')], [t('dotted line'), t('as it really is, in the simulation')], [t('dashed line'), t('a reference')],
+  [t('dotted upright lines'), t('the state of the mode changed')], [t('filled robot'), t('as it is')], [t('dashed robot'), t('as it estimates')],
+  [t('pink'), t('goal, route, mark')], [t('red cone'), t('a sonar without a reading')], [t('grey page'), t('what is shown is old: the link or the station is silent')],
+];
+
+/** @param {string} title @param {string[][]} lines */
+function list(title, lines) {
+  return create('section', {}, create('h2', { textContent: title }),
+    create('dl', {}, ...lines.flatMap(([term = '', words = '']) => [create('dt', { textContent: term }), create('dd', { textContent: words })])));
+}
+
+/** Makes the help page; gives what opens it. */
+export function makeHelp() {
+  const made = dialog('help-dialog', t('Help'));
+  made.body.append(
+    create('p', { textContent: t('Choose a mode, set its reference, press ON. OFF stops the mode; STOP releases the wheels at once. The robot never starts because a page was opened.') }),
+    create('div', { className: 'help-lists' }, list(t('Keys'), KEYS()), list(t('Colours and lines'), LEGEND())),
+    create('p', { className: 'hint', textContent: t('Every event says its cause and what to do. Each run is recorded; `rumbo list logs` finds it, `rumbo replay` shows it here.') }));
+  return made.open;
+}
