@@ -361,6 +361,8 @@ const DOWN: Text = t("Falling, {} % of full PWM", "Bajada, {} % de la PWM máxim
 /// A metric as it is shown.
 pub(crate) struct Shown {
     pub(crate) name: String,
+    /// Without what it is a metric of.
+    pub(crate) bare: &'static str,
     pub(crate) factor: f64,
     pub(crate) unit: &'static str,
 }
@@ -406,12 +408,13 @@ pub(crate) fn shown(language: Language, outcome: &Outcome, key: &str) -> Option<
         } else {
             format!("{of}: {name}")
         },
+        bare: name,
         factor: known.factor,
         unit: known.unit.of(language),
     })
 }
 
-fn capital(text: &str) -> String {
+pub(crate) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| {
         first.to_uppercase().collect::<String>() + letters.as_str()
@@ -441,6 +444,16 @@ fn step_references(language: Language, outcome: &Outcome) -> Vec<String> {
     steps
 }
 
+/// A value that is no metric, already in its unit.
+pub(crate) const fn plain(unit: &'static str) -> Shown {
+    Shown {
+        name: String::new(),
+        bare: "",
+        factor: 1.0,
+        unit,
+    }
+}
+
 /// A value with its unit.
 pub(crate) fn with_unit(value: String, unit: &str) -> String {
     match unit {
@@ -458,7 +471,21 @@ pub(crate) fn value(language: Language, shown: &Shown, value: f64) -> String {
         // Such as the settling of what does not settle.
         return NEVER.of(language).to_owned();
     }
-    with_unit(language.figure(value * shown.factor), shown.unit)
+    let value = value * shown.factor;
+    let text = match shown.unit {
+        "m/s" | "m" => language.short(value, 3),
+        // Times are known to a tenth at least.
+        "s" if value < 100.0 => {
+            let short = language.short(value, 2);
+            if short.contains(['.', ',']) {
+                short
+            } else {
+                language.number(value, 1)
+            }
+        }
+        _ => language.figure(value),
+    };
+    with_unit(text, shown.unit)
 }
 
 fn bounds(language: Language, shown: &Shown, bounds: Bounds) -> String {
@@ -494,39 +521,72 @@ const MESSAGE: Text = t(
     "Mensaje del programa en {} (en inglés): {}",
 );
 
-/// The metrics of runs against their limits.
+/// The metrics of runs against their limits, a table for each run.
 pub(crate) fn limits(page: &mut Page, outcomes: &[&Outcome]) {
-    let language = page.language;
+    let header = [METRIC, VALUE, LIMIT, RESULT].map(|text| page.say(text));
     for outcome in outcomes {
-        let mut rows = Vec::new();
-        for (key, limit) in &outcome.setup.scenario.limits {
-            let Some(shown) = shown(language, outcome, key) else {
-                continue;
-            };
-            let found = outcome.metric(key).unwrap_or(f64::NAN);
-            let kept = limit.admit(found);
-            let (verdict, tone) = if kept {
-                (KEPT, Tone::Good)
-            } else {
-                (MISSED, Tone::Bad)
-            };
-            rows.push(vec![
-                Cell::text(&shown.name),
-                Cell::text(&value(language, &shown, found)),
-                Cell::text(&bounds(language, &shown, *limit)),
-                Cell::text(verdict.of(language)).tone(tone),
-            ]);
-        }
+        let rows = rows(page.language, outcome);
         if !rows.is_empty() {
             page.html(&format!(
                 "<h4><code translate=\"no\">{}</code></h4>\n",
                 escape(&outcome.result.scenario)
             ));
-            let header = [METRIC, VALUE, LIMIT, RESULT].map(|text| text.of(language));
             page.table(&header, &rows);
         }
         complaints(page, outcome);
     }
+}
+
+const SCENARIO: Text = t("Scenario", "Escenario");
+
+/// The same of many runs in one table.
+pub(crate) fn limits_together(page: &mut Page, outcomes: &[&Outcome]) {
+    let mut all = Vec::new();
+    for outcome in outcomes {
+        for (index, mut row) in rows(page.language, outcome).into_iter().enumerate() {
+            // Said once, where the table's rows are many.
+            let name = match index {
+                0 => format!(
+                    "<code translate=\"no\">{}</code>",
+                    escape(&outcome.result.scenario)
+                ),
+                _ => String::new(),
+            };
+            row.insert(0, Cell::html(name));
+            all.push(row);
+        }
+    }
+    let header = [SCENARIO, METRIC, VALUE, LIMIT, RESULT].map(|text| page.say(text));
+    page.table(&header, &all);
+    outcomes
+        .iter()
+        .for_each(|outcome| complaints(page, outcome));
+}
+
+/// A run's metrics that have a limit.
+fn rows(language: Language, outcome: &Outcome) -> Vec<Vec<Cell>> {
+    let row = |(key, limit): (&String, &Bounds)| {
+        let shown = shown(language, outcome, key)?;
+        let found = outcome.metric(key).unwrap_or(f64::NAN);
+        let (verdict, tone) = if limit.admit(found) {
+            (KEPT, Tone::Good)
+        } else {
+            (MISSED, Tone::Bad)
+        };
+        Some(vec![
+            Cell::text(&shown.name),
+            Cell::text(&value(language, &shown, found)),
+            Cell::text(&bounds(language, &shown, *limit)),
+            Cell::text(verdict.of(language)).tone(tone),
+        ])
+    };
+    outcome
+        .setup
+        .scenario
+        .limits
+        .iter()
+        .filter_map(row)
+        .collect()
 }
 
 /// What the robot or the program said besides missed limits.
@@ -590,9 +650,8 @@ mod tests {
     #[test]
     fn values_and_bounds_are_shown_in_the_unit_of_a_reader() {
         let shown = Shown {
-            name: String::new(),
             factor: DEG,
-            unit: "°",
+            ..plain("°")
         };
         assert_eq!(value(Language::Spanish, &shown, 0.0349), "2°");
         let both = Bounds {

@@ -8,8 +8,6 @@
 //! against their limits. Figures are drawn by `plot` (values) and `drawing` (everything else) as SVG inside the page. Whatever a reader
 //! sees is a [`text::Text`], English and Spanish side by side. The same version, seed and files give the same bytes.
 
-#![expect(dead_code, reason = "the chapters that use the rest follow")]
-
 mod chapters;
 mod data;
 mod drawing;

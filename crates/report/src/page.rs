@@ -64,7 +64,7 @@ impl Page {
             chapter: String::new(),
             figures: 0,
             ids: Vec::new(),
-            math: LatexToMathML::new(MathCoreConfig::default()).ok(),
+            math: LatexToMathML::new(spanish_functions()).ok(),
         }
     }
 
@@ -106,14 +106,6 @@ impl Page {
     pub(crate) fn said(&mut self, text: &str) {
         let html = self.rich(text);
         put(&mut self.body, format_args!("<p>{html}</p>\n"));
-    }
-
-    pub(crate) fn note(&mut self, text: &str) {
-        let html = self.rich(text);
-        put(
-            &mut self.body,
-            format_args!("<p class=\"note\">{html}</p>\n"),
-        );
     }
 
     pub(crate) fn list(&mut self, items: &[Text]) {
@@ -235,6 +227,10 @@ impl Page {
 /// Text with what stands between asterisks stressed.
 fn emphasised(text: &str) -> String {
     let mut html = String::new();
+    // One alone is a sign of its own, as in φ*.
+    if text.matches('*').count() % 2 == 1 {
+        return escape(text);
+    }
     for (index, part) in text.split('*').enumerate() {
         match index % 2 {
             0 => html += &escape(part),
@@ -242,4 +238,13 @@ fn emphasised(text: &str) -> String {
         }
     }
     html
+}
+
+/// Names of functions that TeX has in English only.
+fn spanish_functions() -> MathCoreConfig {
+    let named = |name: &str| (name.to_owned(), format!(r"\operatorname{{{name}}}"));
+    MathCoreConfig {
+        macros: vec![named("sen"), named("arcsen")],
+        ..MathCoreConfig::default()
+    }
 }

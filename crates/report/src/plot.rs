@@ -413,7 +413,7 @@ impl Map {
             }
         }
         range.map(|[low, high]| {
-            let margin = 0.05 * (high - low).max(0.2);
+            let margin = 0.08 * (high - low).max(0.2);
             if low <= high {
                 [low - margin, high + margin]
             } else {

@@ -2,10 +2,11 @@
 
 use crate::plot::Points;
 use rumbo_control::Range;
+use rumbo_control::mode::ModeId;
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::run::RunResult;
-use rumbo_scenario::trace::{Sample, Trace};
-use rumbo_wire::{Command, FromRobot, Telemetry};
+use rumbo_scenario::trace::{Heard, Sample, Trace};
+use rumbo_wire::{Command, EventKind, FromRobot, Telemetry};
 use std::f64::consts::{PI, TAU};
 
 pub(crate) const RPM: f64 = 30.0 / PI;
@@ -199,13 +200,41 @@ impl Outcome {
             .collect()
     }
 
-    /// The estimated way in the world [m], for a run whose origin stays at its start.
+    /// When the robot said that it reached its goal, since the arming [s].
+    pub(crate) fn reached_s(&self) -> Vec<f64> {
+        let armed_s = self.armed_s();
+        let reached = |heard: &Heard| matches!(&heard.what, FromRobot::Event(event) if event.kind == EventKind::Reached);
+        self.trace()
+            .heard
+            .iter()
+            .filter(|heard| reached(heard))
+            .map(|heard| heard.t_s - armed_s)
+            .collect()
+    }
+
+    /// Where it truly was at a time since the arming [m].
+    pub(crate) fn place_at(&self, t_s: f64) -> (f64, f64) {
+        let samples = &self.trace().samples;
+        let at = samples.partition_point(|sample| sample.t_s - self.armed_s() < t_s);
+        samples
+            .get(at.min(samples.len().saturating_sub(1)))
+            .map_or((0.0, 0.0), |sample| (sample.x_m, sample.y_m))
+    }
+
+    /// The estimated way in the world [m], from the start. A mission that has reached a goal calls it its origin: there the way ends.
     pub(crate) fn told_way(&self) -> Points {
+        let mission = self.setup.scenario.mode == ModeId::Mission;
+        let end_s = self
+            .reached_s()
+            .first()
+            .copied()
+            .filter(|_| mission)
+            .unwrap_or(f64::INFINITY);
         let start = self.setup.scenario.start;
         let (sin, cos) = start.heading_rad.sin_cos();
         let pose = self
             .telemetry()
-            .filter(|(t_s, _)| *t_s >= 0.0)
+            .filter(|(t_s, _)| (0.0..end_s).contains(t_s))
             .map(|(_, told)| told.pose);
         pose.map(|pose| (f64::from(pose.x_m), f64::from(pose.y_m)))
             .map(|(x, y)| (start.x_m + cos * x - sin * y, start.y_m + sin * x + cos * y))

@@ -239,7 +239,7 @@ fn highlights(language: Language, data: &Data, experiment: &Experiment) -> Vec<[
             .unwrap_or_default();
         let name = highlight.of.map_or_else(
             || shown.name.clone(),
-            |of| format!("{}: {}", of.of(language), shown.name),
+            |of| format!("{}: {}", judge::capital(of.of(language)), shown.bare),
         );
         Some([Cell::text(&name), Cell::text(&ours), Cell::text(&real)])
     };

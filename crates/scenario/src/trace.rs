@@ -57,7 +57,7 @@ pub struct Heard {
 /// A whole run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trace {
-    /// Telemetry and events as they arrived at the station.
+    /// Telemetry, status, events and heading references as they arrived at the station.
     pub heard: Vec<Heard>,
     /// The samples, in order of time.
     pub samples: Vec<Sample>,

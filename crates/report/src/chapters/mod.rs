@@ -1,8 +1,16 @@
 //! The experiments, a file for each: what its chapter says and shows, and which of its metrics stand in the summary.
 
+mod manual;
 mod mode1;
+mod mode2;
 mod mode5;
+mod mode6;
+mod mode7;
+mod mode8;
+mod mode8_machines;
 mod parts;
+mod pursuit;
+mod wall;
 
 use crate::data::Data;
 use crate::page::Page;
@@ -46,4 +54,15 @@ const fn highlight(scenario: &'static str, metric: &'static str, real: Option<f6
 }
 
 /// All experiments, in the order of the report.
-pub const EXPERIMENTS: &[Experiment] = &[mode1::EXPERIMENT, mode5::EXPERIMENT];
+pub const EXPERIMENTS: &[Experiment] = &[
+    manual::EXPERIMENT,
+    mode1::EXPERIMENT,
+    mode2::EXPERIMENT,
+    wall::MODE3,
+    wall::MODE4,
+    mode5::EXPERIMENT,
+    mode6::EXPERIMENT,
+    mode7::EXPERIMENT,
+    mode8::EXPERIMENT,
+    pursuit::EXPERIMENT,
+];

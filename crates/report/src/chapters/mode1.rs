@@ -11,10 +11,8 @@ use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::judge;
 use crate::page::Page;
 use crate::plot::{Curve, Ink, Panel, Plot};
-use crate::respond::{self, Kind};
 use crate::signals::{CM, Outcome, Place, difference};
 use crate::text::{Language, Text, same, t};
-use rumbo_wire::text::Row;
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
     name: "mode1",
@@ -133,11 +131,6 @@ const ERROR: Text = t(
     "Error of the distance over time: measured distance less reference.",
     "Evolución del error de distancia: distancia medida menos referencia.",
 );
-const REAL_CAPTION: Text = t(
-    "Distance to the wall: ours and the recorded run, with the same references at the same times.",
-    "Distancia a la pared: nuestro robot y el registro real, con las mismas referencias en los mismos instantes.",
-);
-
 const CONTROL: Scheme = Scheme {
     input: t("reference", "referencia"),
     row: &[
@@ -232,7 +225,7 @@ fn write(page: &mut Page, data: &Data) {
     );
     page.section(LIMITS);
     judge::limits(page, &[outcome]);
-    beside(page, data);
+    parts::distance_beside(page, data, "mode1", DISTANCE);
 }
 
 /// Speed over error, with the parameters' defaults.
@@ -286,40 +279,4 @@ fn distance_panel(language: Language, outcome: &Outcome) -> Panel {
         ),
     ];
     Panel::new(DISTANCE.of(language), curves).at_least(0.0, 100.0)
-}
-
-fn beside(page: &mut Page, data: &Data) {
-    let Some((ours, recording)) = data.beside("mode1") else {
-        return;
-    };
-    parts::beside_heading(page, &recording.file);
-    let language = page.language;
-    let real = recording.signal(|row| match row {
-        Row::Distance(row) => Some(0.5 * f64::from(row.left_cm + row.right_cm)),
-        _ => None,
-    });
-    let mine = ours.range_cm(Place::Front);
-    let mut curves = vec![Curve::steps(
-        REFERENCE.of(language),
-        Ink::Reference,
-        ours.reference(CM),
-    )];
-    curves.extend(parts::both(language, mine.clone(), real.clone()));
-    let panel = Panel::new(DISTANCE.of(language), curves).at_least(0.0, 100.0);
-    parts::show(
-        page,
-        parts::over_time(page, "mode1-real", REAL_CAPTION, vec![panel]),
-    );
-    let references: Vec<(f64, f64)> = recording
-        .references()
-        .iter()
-        .map(|(t_s, m)| (*t_s, CM * m))
-        .collect();
-    let rows = parts::step_rows(
-        language,
-        Kind::Distance,
-        &respond::responses(Kind::Distance, &references, &mine),
-        &respond::responses(Kind::Distance, &references, &real),
-    );
-    parts::beside_table(page, &rows);
 }

@@ -241,7 +241,7 @@ fn beside(page: &mut Page, data: &Data) {
     let Some((ours, recording)) = data.beside("mode5") else {
         return;
     };
-    parts::beside_heading(page, &recording.file);
+    parts::beside_heading(page, &recording.file, true);
     let language = page.language;
     let real = |wheel| {
         recording.signal(|row| match row {

@@ -127,3 +127,253 @@ pub(crate) fn encoder(language: Language, description: &str) -> String {
     sketch.text((320.0, 186.0), GEAR.of(language), Anchor::Start);
     sketch.finish(700.0, 216.0, description)
 }
+
+/// Where the wall of a pair of sonars is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wall {
+    /// Ahead of the robot: to the right of the drawing.
+    Ahead,
+    /// Beside it: above.
+    Beside,
+}
+
+const WALL: Text = t("wall", "pared");
+const AHEAD: Text = t("direction of travel", "sentido de avance");
+
+/// Two sonars askew to a wall: what they read, the angle and the distance.
+pub(crate) fn pair(language: Language, wall: Wall, description: &str) -> String {
+    let mut sketch = Sketch::new();
+    let (tilt, half, reach) = (0.32_f64, 62.0, 270.0);
+    let (width, height) = if wall == Wall::Ahead {
+        (620.0, 330.0)
+    } else {
+        (620.0, 430.0)
+    };
+    // u towards the wall, v towards the first sonar.
+    let place = |u: f64, v: f64| match wall {
+        Wall::Ahead => (150.0 + u, 195.0 - v),
+        Wall::Beside => (290.0 + v, 310.0 - u),
+    };
+    let at = |u: f64, v: f64| {
+        place(
+            u * tilt.cos() - v * tilt.sin(),
+            u * tilt.sin() + v * tilt.cos(),
+        )
+    };
+    sketch.line(&[place(reach, -110.0), place(reach, 180.0)], "w");
+    sketch.polygon(
+        &[
+            at(-90.0, half),
+            at(0.0, half),
+            at(0.0, -half),
+            at(-90.0, -half),
+        ],
+        "b",
+    );
+    sketch.line(&[place(0.0, 0.0), place(reach, 0.0)], "d");
+    for (v, name, beside) in [(half, "d₁", (-6.0, -8.0)), (-half, "d₂", (4.0, 17.0))] {
+        // Where the ray from this sonar meets the wall.
+        let length = (reach + v * tilt.sin()) / tilt.cos();
+        sketch.circle(at(0.0, v), 5.0, "o");
+        sketch.measure(at(0.0, v), at(length, v), name, beside);
+    }
+    sketch.measure(at(-34.0, half), at(-34.0, -half), "δ", (-13.0, 4.0));
+    // Parallel to the wall through the first sonar: the side of the triangle.
+    sketch.line(&[at(reach / tilt.cos(), 0.0), at(0.0, 0.0)], "d");
+    let angles = match wall {
+        Wall::Ahead => (0.0, tilt),
+        Wall::Beside => (TAU / 4.0 - tilt, TAU / 4.0),
+    };
+    sketch.arc(place(0.0, 0.0), 110.0, angles.0, angles.1, "l");
+    let mark = place(132.0 * (0.5 * tilt).cos(), 132.0 * (0.5 * tilt).sin());
+    sketch.text((mark.0, mark.1 + 4.0), "θ", Anchor::Middle);
+    let (x, y) = place(reach - 26.0, -6.0);
+    sketch.text((x, y + 10.0), "d", Anchor::Start);
+    match wall {
+        Wall::Ahead => sketch.text(
+            (place(reach, 0.0).0 + 10.0, 40.0),
+            WALL.of(language),
+            Anchor::Start,
+        ),
+        Wall::Beside => {
+            sketch.text(
+                (place(reach, 188.0).0, place(reach, 0.0).1 + 4.0),
+                WALL.of(language),
+                Anchor::Start,
+            );
+            let (from, to) = (at(-45.0, half + 8.0), at(-45.0, half + 62.0));
+            sketch.arrow(&[from, to]);
+            sketch.text((to.0 + 5.0, to.1 + 4.0), AHEAD.of(language), Anchor::Start);
+        }
+    }
+    sketch.finish(width, height, description)
+}
+
+const GOAL: Text = t("goal", "objetivo");
+
+/// The robot in the global frame, its own frame, and the goal's bearing.
+pub(crate) fn frames(language: Language, description: &str) -> String {
+    let mut sketch = Sketch::new();
+    let origin = (60.0, 260.0);
+    sketch.arrow(&[origin, (590.0, 260.0)]);
+    sketch.arrow(&[origin, (60.0, 24.0)]);
+    sketch.text((596.0, 264.0), "X", Anchor::Start);
+    sketch.text((60.0, 16.0), "Y", Anchor::Middle);
+    let (robot, goal, heading) = ((230.0, 180.0), (500.0, 60.0), 0.2_f64);
+    for (from, to) in [
+        (robot, (robot.0, 260.0)),
+        (robot, (60.0, robot.1)),
+        (goal, (goal.0, 260.0)),
+        (goal, (60.0, goal.1)),
+    ] {
+        sketch.line(&[from, to], "d");
+    }
+    for ((x, y), name, anchor) in [
+        ((robot.0, 276.0), "x", Anchor::Middle),
+        ((52.0, robot.1 + 4.0), "y", Anchor::End),
+        ((goal.0, 276.0), "x*", Anchor::Middle),
+        ((52.0, goal.1 + 4.0), "y*", Anchor::End),
+    ] {
+        sketch.text((x, y), name, anchor);
+    }
+    let body = |u: f64, v: f64| {
+        (
+            robot.0 + u * heading.cos() - v * heading.sin(),
+            robot.1 - u * heading.sin() - v * heading.cos(),
+        )
+    };
+    sketch.polygon(
+        &[
+            body(-20.0, 24.0),
+            body(42.0, 24.0),
+            body(42.0, -24.0),
+            body(-20.0, -24.0),
+        ],
+        "b",
+    );
+    for side in [24.0, -24.0] {
+        sketch.polygon(
+            &[
+                body(-11.0, side + 4.0),
+                body(11.0, side + 4.0),
+                body(11.0, side - 4.0),
+                body(-11.0, side - 4.0),
+            ],
+            "o",
+        );
+    }
+    sketch.arrow(&[body(0.0, 0.0), body(115.0, 0.0)]);
+    sketch.arrow(&[body(0.0, 0.0), body(0.0, 66.0)]);
+    sketch.text(
+        (body(120.0, 0.0).0, body(120.0, 0.0).1 + 12.0),
+        "x'",
+        Anchor::Start,
+    );
+    sketch.text(
+        (body(0.0, 72.0).0 - 6.0, body(0.0, 72.0).1),
+        "y'",
+        Anchor::End,
+    );
+    sketch.line(&[robot, goal], "ir");
+    sketch.circle(goal, 5.0, "k");
+    sketch.text(
+        (goal.0 + 9.0, goal.1 - 6.0),
+        GOAL.of(language),
+        Anchor::Start,
+    );
+    let bearing = (robot.1 - goal.1).atan2(goal.0 - robot.0);
+    sketch.line(&[robot, (robot.0 + 190.0, robot.1)], "d");
+    sketch.arc(robot, 92.0, 0.0, heading, "l");
+    sketch.text((robot.0 + 98.0, robot.1 - 5.0), "φ", Anchor::Start);
+    sketch.arc(robot, 160.0, 0.0, bearing, "l");
+    sketch.text((robot.0 + 164.0, robot.1 - 30.0), "φ*", Anchor::Start);
+    sketch.finish(640.0, 286.0, description)
+}
+
+const NEAREST: Text = t("place on the path", "posición sobre el camino");
+const LOOKAHEAD: Text = t("lookahead", "punto de mira");
+
+/// Pure pursuit: the point ahead on the path, and the circle to it.
+pub(crate) fn lookahead(language: Language, description: &str) -> String {
+    let mut sketch = Sketch::new();
+    let y = 70.0;
+    sketch.line(&[(40.0, y), (620.0, y)], "ir");
+    for index in 0..9 {
+        sketch.circle((60.0 + 68.0 * f64::from(index), y), 2.5, "k");
+    }
+    let (robot, point) = ((170.0, 190.0), (400.0, y));
+    let body = |u: f64, v: f64| (robot.0 + u, robot.1 - v);
+    sketch.polygon(
+        &[
+            body(-18.0, 20.0),
+            body(34.0, 20.0),
+            body(34.0, -20.0),
+            body(-18.0, -20.0),
+        ],
+        "b",
+    );
+    sketch.arrow(&[robot, body(96.0, 0.0)]);
+    sketch.line(&[robot, (robot.0, y)], "d");
+    sketch.circle((robot.0, y), 4.0, "k");
+    sketch.text((robot.0, y - 12.0), NEAREST.of(language), Anchor::Middle);
+    sketch.circle(point, 5.0, "k");
+    sketch.text((point.0, y - 12.0), LOOKAHEAD.of(language), Anchor::Middle);
+    sketch.measure((robot.0, y + 16.0), (point.0, y + 16.0), "L", (0.0, 15.0));
+    // The circle that is tangent to the heading and goes through the point.
+    let (dx, dy) = (point.0 - robot.0, robot.1 - point.1);
+    let radius = (dx * dx + dy * dy) / (2.0 * dy);
+    let centre = (robot.0, robot.1 - radius);
+    let end = (dx / radius).asin();
+    sketch.arc(centre, radius, -TAU / 4.0, -TAU / 4.0 + end, "i1");
+    sketch.line(&[(robot.0 + dx, robot.1), point], "d");
+    sketch.line(&[robot, (robot.0 + dx, robot.1)], "d");
+    sketch.text((robot.0 + dx + 6.0, robot.1 - 50.0), "y", Anchor::Start);
+    sketch.text((robot.0 + 0.72 * dx, robot.1 + 16.0), "x", Anchor::Middle);
+    sketch.finish(660.0, 230.0, description)
+}
+
+const BOX: Text = t("box", "caja");
+const SWEEP: Text = t("1. sweep to both edges", "1. barrido hasta ambas esquinas");
+const AROUND: Text = t("2. around the nearer one", "2. rodeo por la más próxima");
+const REJOIN: Text = t("3. on to the goal", "3. hacia el objetivo");
+
+/// How the robot goes around a box: look to both sides, pass the edge, go on to the goal.
+pub(crate) fn around_box(language: Language, description: &str) -> String {
+    let mut sketch = Sketch::new();
+    for (column, title) in [SWEEP, AROUND, REJOIN].into_iter().enumerate() {
+        let x = 8.0 + 232.0 * column as f64;
+        sketch.text((x + 104.0, 18.0), title.of(language), Anchor::Middle);
+        sketch.rectangle((x + 96.0, 66.0), (40.0, 104.0), "o");
+        sketch.text((x + 116.0, 124.0), BOX.of(language), Anchor::Middle);
+        sketch.line(&[(x + 12.0, 104.0), (x + 204.0, 104.0)], "ir");
+        sketch.circle((x + 204.0, 104.0), 4.0, "k");
+        let robot = |sketch: &mut Sketch, (cx, cy): (f64, f64)| {
+            sketch.rectangle((cx - 14.0, cy - 9.0), (28.0, 18.0), "b");
+            sketch.line(&[(cx + 14.0, cy - 5.0), (cx + 14.0, cy + 5.0)], "l");
+        };
+        match column {
+            0 => {
+                for edge in [66.0, 170.0] {
+                    sketch.line(&[(x + 54.0, 104.0), (x + 96.0, edge)], "i2");
+                }
+                sketch.arc((x + 54.0, 104.0), 30.0, 0.0, 0.74, "l");
+                sketch.arc((x + 54.0, 104.0), 24.0, 0.0, -1.0, "l");
+                robot(&mut sketch, (x + 40.0, 104.0));
+            }
+            1 => {
+                sketch.arrow(&[(x + 40.0, 104.0), (x + 58.0, 46.0), (x + 124.0, 40.0)]);
+                robot(&mut sketch, (x + 124.0, 40.0));
+            }
+            _ => {
+                sketch.arrow(&[
+                    (x + 40.0, 104.0),
+                    (x + 58.0, 46.0),
+                    (x + 152.0, 40.0),
+                    (x + 200.0, 98.0),
+                ]);
+                robot(&mut sketch, (x + 156.0, 46.0));
+            }
+        }
+    }
+    sketch.finish(700.0, 190.0, description)
+}

@@ -7,14 +7,14 @@ use rumbo_scenario::files::Setup;
 
 /// Pixels per metre.
 const SCALE: f64 = 900.0;
-const WIDTH: f64 = 560.0;
+const WIDTH: f64 = 620.0;
 /// How far the beams are drawn [m].
 const BEAM_M: f64 = 0.11;
 
 const LEFT: Text = t("left", "izquierdo");
 const RIGHT: Text = t("right", "derecho");
-const FIRST: Text = t("first of the pair", "primero de la pareja");
-const SECOND: Text = t("second of the pair", "segundo de la pareja");
+const FIRST: Text = t("first", "primero");
+const SECOND: Text = t("second", "segundo");
 const FRONT: Text = t("front", "frontal");
 const ON_SERVO: Text = t("front, on the servo", "frontal, sobre el servo");
 
@@ -26,8 +26,15 @@ pub(crate) fn svg(language: Language, setup: &Setup, description: &str) -> Strin
     let rig = &setup.rig;
     let mounts = [rig.left, rig.right, rig.front].into_iter().flatten();
     let beside = mounts.filter(|mount| mount.angle_rad != 0.0).count() > 0;
-    let height = if beside { 340.0 } else { 210.0 };
-    let place = |x_m: f64, y_m: f64| (230.0 + SCALE * x_m, 0.5 * height - SCALE * y_m);
+    // Room for a beam, where there is one to that side.
+    let mounts = || [rig.left, rig.right].into_iter().flatten();
+    let room = |side: f64| {
+        let some = mounts().any(|mount| side * mount.angle_rad > 0.1);
+        if some { 205.0 } else { 100.0 }
+    };
+    let (above, below) = (room(1.0), room(-1.0));
+    let height = above + below;
+    let place = |x_m: f64, y_m: f64| (230.0 + SCALE * x_m, above - SCALE * y_m);
     let rear = place(
         body.centre_ahead_m - 0.5 * body.length_m,
         0.5 * body.width_m,
@@ -107,13 +114,15 @@ fn sonar(sketch: &mut Sketch, at: (f64, f64), mount: &Mount, half_rad: f64, name
         ],
         "o",
     );
-    let ahead = cos.abs() > 0.5;
-    let (x, y) = if ahead {
-        (at.0 + reach + 6.0, at.1 + 4.0)
+    if cos.abs() > 0.5 {
+        sketch.text((at.0 + reach + 6.0, at.1 + 4.0), name, Anchor::Start);
     } else {
-        (at.0 + 26.0, at.1 - 34.0 * sin + 4.0)
-    };
-    sketch.text((x, y), name, Anchor::Start);
+        sketch.text(
+            (at.0, at.1 - (reach + 14.0) * sin + 4.0),
+            name,
+            Anchor::Middle,
+        );
+    }
 }
 
 /// What the geometry's numbers are.
@@ -145,7 +154,7 @@ fn dimensions(
             (-24.0, -20.0),
         );
     } else if setup.rig.front.is_none() {
-        let y = place(0.0, left.y_m).1 + 26.0 * left.angle_rad.sin().signum();
+        let y = place(0.0, -0.4 * left.y_m).1;
         sketch.measure(
             (place(right.x_m, 0.0).0, y),
             (place(left.x_m, 0.0).0, y),

@@ -125,7 +125,7 @@ impl Scheme {
 
     /// Where each part lies, from its texts.
     fn places(&self, language: Language) -> Vec<Place> {
-        let room = |text: Text| GAP.max(18.0 + LETTER * text.of(language).chars().count() as f64);
+        let room = |text: Text| GAP.max(24.0 + LETTER * text.of(language).chars().count() as f64);
         let mut left = 4.0 + room(self.input);
         let mut places = Vec::new();
         for (part, output) in self.row {

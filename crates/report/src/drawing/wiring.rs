@@ -90,7 +90,7 @@ pub(crate) fn svg(language: Language, wiring: &Wiring, description: &str) -> Str
         language,
         wiring,
         &RIGHT,
-        (470.0, 672.0),
+        (462.0, 676.0),
         MEGA.1,
     );
     let height = left.max(right);

@@ -58,7 +58,7 @@ pub(crate) struct Operator<'a> {
     pub(crate) complaints: Vec<String>,
     /// What else a reader of the result should know.
     pub(crate) notes: Vec<String>,
-    /// Telemetry and events received.
+    /// Telemetry, status, events and heading references received.
     pub(crate) heard: Vec<Heard>,
 }
 
@@ -238,7 +238,13 @@ impl<'a> Operator<'a> {
                 continue;
             };
             let message = FromRobot::from_body(&body);
-            if let Ok(what @ (FromRobot::Telemetry(_) | FromRobot::Event(_))) = message {
+            if let Ok(
+                what @ (FromRobot::Telemetry(_)
+                | FromRobot::Event(_)
+                | FromRobot::Status(_)
+                | FromRobot::HeadingRef(_)),
+            ) = message
+            {
                 let t_s = sim.now_us() as f64 * 1e-6;
                 self.reached |= has_reached(&what);
                 self.heard.push(Heard { t_s, what });
