@@ -15,7 +15,7 @@ mod hal;
 )]
 mod pins;
 
-use hal::{clock, eeprom, encoder::Encoders, link, outputs, power, record, sonar::Listener};
+use hal::{adc, clock, eeprom, encoder::Encoders, link, outputs, power, record, sonar::Listener};
 use rumbo_control::{Inputs, OUTPUT_DELAY_US, TICK_US};
 use rumbo_robot::{Config, Robot};
 
@@ -51,7 +51,10 @@ fn main() -> ! {
             now,
             encoders: encoders.read(stamp, now),
             echo: listener.read(stamp),
-            battery_v: None,
+            battery_v: robot
+                .battery_input()
+                .and_then(adc::sample)
+                .map(|counts| robot.battery_v(counts)),
         };
         while let Some(byte) = link::receive() {
             robot.receive(byte);

@@ -172,6 +172,10 @@ table! {
     NominalBattery = "nominal_battery_v", "V", 7.4, 3.0 => 30.0, None;
     /// Voltage below which the robot does not drive; used where the battery's voltage is measured.
     LowBattery = "low_battery_v", "V", 6.2, 0.0 => 30.0, None;
+    /// Battery's voltage over that at the analogue input; 0: no divider is wired, the voltage is not measured.
+    BatteryRatio = "battery_ratio", "1", 0.0, 0.0 => 20.0, None;
+    /// Analogue input that the divider is wired to: 0 is A0.
+    BatteryInput = "battery_input", "1", 0.0, 0.0 => 15.0, None;
     /// Time without a sign of life after which the wheels are released.
     LinkTimeout = "link_timeout_s", "s", 0.4, 0.05 => 0.45, None;
     /// The same when the robot is addressed in text.

@@ -1,7 +1,7 @@
 //! Rumbo's robot: one tick from bytes and edges to duty and telemetry.
 //!
 //! bytes -> [`Robot::receive`]: decoder -> ledger (each command once) -> supervisor, mode, parameters;
-//! sensors -> [`Robot::tick`]: supervisor (link alive?) -> pilot (estimate, mode, drive layer) -> reporter -> outbox;
+//! sensors -> [`Robot::tick`]: supervisor (link alive?) -> pilot (estimate, mode, drive layer) -> governor -> reporter -> outbox;
 //! [`Robot::transmit`] -> bytes;
 //! [`Robot::recall`] and [`Robot::store`]: parameters from and to the EEPROM.
 //!
@@ -10,6 +10,7 @@
 #![no_std]
 
 mod clock;
+mod governor;
 mod ledger;
 mod outbox;
 mod pilot;

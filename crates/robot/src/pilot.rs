@@ -17,6 +17,10 @@ use crate::stall::StallWatch;
 /// Ticks of low battery that stop the robot: 0.5 s, since the voltage dips when the wheels start.
 const LOW_BATTERY_TICKS: u8 = 50;
 
+/// Reference of the chip's converter, its supply, and the steps that it is cut into.
+const CONVERTER_V: f32 = 5.0;
+const CONVERTER_COUNTS: f32 = 1_024.0;
+
 /// What drives, and what it remembers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pilot {
@@ -55,6 +59,7 @@ impl Pilot {
         self.estimate = self
             .estimator
             .step(&self.params, inputs, self.drive.directions());
+        self.watch_battery(inputs.battery_v);
         let (action, fault) = match self.act(inputs, armed) {
             Ok(action) => (action, None),
             Err(fault) => {
@@ -98,7 +103,7 @@ impl Pilot {
             self.release();
             return Ok(self.at_rest());
         }
-        self.watch(inputs)?;
+        self.watch()?;
         let action = self.mode.step(
             &self.params,
             &Situation {
@@ -117,24 +122,29 @@ impl Pilot {
     }
 
     /// What no mode should have to look after.
-    fn watch(&mut self, inputs: &Inputs) -> Result<(), Fault> {
+    fn watch(&mut self) -> Result<(), Fault> {
         let edges = self.estimate.motion.map(|motion| motion.edges);
         if let Some(fault) = self.stall.step(edges, self.duty) {
             return Err(fault);
         }
-        let low = inputs
-            .battery_v
-            .is_some_and(|volts| volts < self.params.get(ParamId::LowBattery));
+        if self.is_battery_low() {
+            Err(Fault::BatteryLow)
+        } else {
+            Ok(())
+        }
+    }
+
+    fn watch_battery(&mut self, battery_v: Option<f32>) {
+        let low = battery_v.is_some_and(|volts| volts < self.params.get(ParamId::LowBattery));
         self.low_battery_ticks = if low {
             self.low_battery_ticks.saturating_add(1)
         } else {
             0
         };
-        if self.low_battery_ticks >= LOW_BATTERY_TICKS {
-            Err(Fault::BatteryLow)
-        } else {
-            Ok(())
-        }
+    }
+
+    fn is_battery_low(&self) -> bool {
+        self.low_battery_ticks >= LOW_BATTERY_TICKS
     }
 
     fn apply(&mut self, drive: &Drive, battery_v: Option<f32>) -> Result<(), Fault> {
@@ -149,11 +159,28 @@ impl Pilot {
 
     fn release(&mut self) {
         self.stall = StallWatch::default();
-        self.low_battery_ticks = 0;
         // Releasing cannot fail: it asks for no number. Even so the wheels are released.
         if self.apply(&Drive::Release, None).is_err() {
             self.duty = Wheels::both(Duty::RELEASED);
         }
+    }
+
+    /// What of the duty was let through.
+    pub(crate) fn drove(&mut self, duty: Wheels<Duty>) {
+        self.duty = duty;
+    }
+
+    /// The analogue input with the battery's voltage.
+    pub(crate) fn battery_input(&self) -> Option<u8> {
+        let input = round(self.params.get(ParamId::BatteryInput));
+        (self.params.get(ParamId::BatteryRatio) > 0.0).then_some((input & 0xF) as u8)
+    }
+
+    /// What a conversion by it means [V].
+    pub(crate) fn battery_v(&self, counts: u16) -> f32 {
+        f32::from(counts)
+            * (CONVERTER_V / CONVERTER_COUNTS)
+            * self.params.get(ParamId::BatteryRatio)
     }
 
     /// What telemetry shows of the last tick.
@@ -185,9 +212,11 @@ impl Pilot {
         self.mode = ActiveMode::new(mode);
     }
 
-    /// Whether the mode's sensors are good enough to arm.
+    /// Whether battery and the mode's sensors are good enough to arm.
     pub(crate) fn ready(&self) -> Result<(), Refusal> {
-        if !self.mode.fits(self.params.rig()) {
+        if self.is_battery_low() {
+            Err(Refusal::BatteryLow)
+        } else if !self.mode.fits(self.params.rig()) {
             Err(Refusal::WrongRig)
         } else if self.mode.is_ready(&self.params, &self.estimate) {
             Ok(())

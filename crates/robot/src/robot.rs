@@ -14,6 +14,7 @@ use rumbo_wire::{
 };
 
 use crate::clock::Clock;
+use crate::governor::Governor;
 use crate::ledger::{Ledger, Verdict};
 use crate::pilot::Pilot;
 use crate::report::{Language, Reporter};
@@ -43,6 +44,7 @@ pub struct Robot {
     ledger: Ledger,
     supervisor: Supervisor,
     pilot: Pilot,
+    governor: Governor,
     reporter: Reporter,
     store: Store,
 }
@@ -62,6 +64,7 @@ impl Robot {
             ledger: Ledger::default(),
             supervisor: Supervisor::default(),
             pilot: Pilot::default(),
+            governor: Governor::default(),
             reporter: Reporter::new(hello),
             store: Store::default(),
         }
@@ -104,6 +107,10 @@ impl Robot {
         if step.unreachable {
             self.event(EventKind::Unreachable);
         }
+        let drive = self
+            .governor
+            .pass(step.outputs.drive, self.supervisor.is_armed());
+        self.pilot.drove(drive);
         let status = self.status(inputs.battery_v);
         self.reporter.tick(
             inputs.now,
@@ -111,7 +118,21 @@ impl Robot {
             &status,
             &self.pilot.signals(),
         );
-        step.outputs
+        Outputs {
+            drive,
+            ..step.outputs
+        }
+    }
+
+    /// The analogue input, 0..=15, that a divider brings the battery's voltage to; `None` where none is wired (parameter
+    /// `battery_ratio` 0).
+    pub fn battery_input(&self) -> Option<u8> {
+        self.pilot.battery_input()
+    }
+
+    /// The battery's voltage [V] of a conversion by that input, 0..=1023 of 5 V.
+    pub fn battery_v(&self, counts: u16) -> f32 {
+        self.pilot.battery_v(counts)
     }
 
     /// The active mode and the state of its machine at the last tick; `None` while the wheels are released.

@@ -5,8 +5,8 @@ use rumbo_control::{Duty, Fault, SIDES, Side, Wheels};
 
 /// Duty that moves a free wheel for sure: the original needed 65 of 255 on the floor, 35 in the air.
 const HARD: i16 = Duty::MAX * 3 / 5;
-/// Ticks of such duty without an edge that are too many: 1 s. Breaking away takes less than a tenth of it.
-const PATIENCE_TICKS: u8 = 100;
+/// Ticks of such duty without an edge that are too many: 0.4 s. Breaking away takes less than a quarter of it.
+const PATIENCE_TICKS: u8 = 40;
 
 /// Watches both wheels.
 #[derive(Clone, Copy, Debug, Default)]

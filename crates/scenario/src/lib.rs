@@ -18,3 +18,4 @@ pub mod sim;
 pub mod sonar_fault;
 pub mod sonar_stats;
 pub mod trace;
+pub mod wire_fault;

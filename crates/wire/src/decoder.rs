@@ -13,8 +13,8 @@ use crate::frame::Body;
 pub enum Received<'a> {
     /// A frame that passed the CRC.
     Frame(Body),
-    /// A line of printable ASCII, without its end.
-    Line(&'a str),
+    /// A line of printable ASCII, without its end. As bytes: to make text of them takes 700 bytes of the chip's flash.
+    Line(&'a [u8]),
 }
 
 /// The receiver of one direction, with room for lines of `N` bytes; `N` must be at least
@@ -59,9 +59,7 @@ impl<const N: usize> Decoder<N> {
             0 => self.end_frame().map(Received::Frame),
             b'\n' => {
                 let range = self.end_line()?;
-                core::str::from_utf8(self.buffer.get(range)?)
-                    .ok()
-                    .map(Received::Line)
+                self.buffer.get(range).map(Received::Line)
             }
             _ => {
                 self.store(byte);

@@ -298,11 +298,13 @@ pub enum Refusal {
     Malformed = 9,
     /// The rig lacks the sonars that the mode needs.
     WrongRig = 10,
+    /// The battery is below its lower limit.
+    BatteryLow = 11,
 }
 
 impl Refusal {
     /// All refusals, by number.
-    pub const ALL: [Refusal; 10] = [
+    pub const ALL: [Refusal; 11] = [
         Refusal::NotFinite,
         Refusal::OutOfRange,
         Refusal::UnknownParam,
@@ -313,6 +315,7 @@ impl Refusal {
         Refusal::NoLink,
         Refusal::Malformed,
         Refusal::WrongRig,
+        Refusal::BatteryLow,
     ];
 
     /// The refusal with this number.

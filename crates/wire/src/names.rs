@@ -25,6 +25,7 @@ impl Refusal {
             Refusal::Malformed => {
                 "the robot did not understand the command; use the same version at both ends"
             }
+            Refusal::BatteryLow => "the battery is low; charge it",
             Refusal::WrongRig => {
                 "the robot's sonars do not sit where this mode needs them; mount them so and set the parameter `rig`"
             }

@@ -142,9 +142,9 @@ impl TextCommand {
     ///
     /// # Errors
     /// If the line is not exactly a command and its values.
-    pub fn parse(line: &str) -> Result<TextCommand, TextError> {
+    pub fn parse(line: impl AsRef<[u8]>) -> Result<TextCommand, TextError> {
         let mut words = Words {
-            rest: line.as_bytes(),
+            rest: line.as_ref(),
             values: 0,
         };
         let name = words.next().ok_or(TextError::UnknownCommand)?;

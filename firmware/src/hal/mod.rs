@@ -11,11 +11,13 @@
 //! | timer 2, 250 kHz | the servo's edges on OC2B ([`servo`]) |
 //! | timers 3 and 4 | PWM of the right and the left motor ([`motors`]) |
 //! | USART 2 | the link, two rings ([`link`]) |
+//! | converter | the battery's voltage, where a divider is wired ([`adc`]) |
 //! | EEPROM | saved parameters ([`eeprom`]) |
 //! | watchdog, sleep | [`power`] |
 //!
 //! [`record`] shows tests what the loop takes and gives.
 
+pub mod adc;
 pub mod clock;
 pub mod eeprom;
 pub mod encoder;

@@ -16,6 +16,7 @@ macro_rules! blocks {
 }
 
 blocks! {
+    converter: adc, ADC;
     cpu: cpu, CPU;
     eeprom: eeprom, EEPROM;
     external: exint, EXINT;

@@ -178,7 +178,9 @@ impl Bench {
         self.bytes += 1;
         match self.decoder.push(byte) {
             Some(Received::Frame(body)) => self.heard.push(FromRobot::from_body(&body).unwrap()),
-            Some(Received::Line(line)) => self.lines.push(line.to_owned()),
+            Some(Received::Line(line)) => {
+                self.lines.push(String::from_utf8_lossy(line).into_owned())
+            }
             None => {}
         }
     }

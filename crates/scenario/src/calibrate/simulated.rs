@@ -32,6 +32,7 @@ pub fn calibrate_simulated(
     let mut own = setup.clone();
     own.scenario.wheels_in_air = false;
     own.scenario.sonar_faults.clear();
+    own.scenario.wire_faults.clear();
     let plan = ScenarioFile::parse("calibration", "calibration", SCENARIO)?;
     own.scenario.start = plan.start;
     if !here {

@@ -22,7 +22,7 @@ mod world;
 pub use error::{FileError, Problem};
 pub use library::{Kind, Library};
 pub use names::{MOVEMENTS, find_mode, find_movement};
-pub use robot::{FirmwareCaps, RobotFile, SIGNALS, Wiring};
+pub use robot::{Divider, FirmwareCaps, RobotFile, SIGNALS, Wiring};
 pub use scenario::{Bounds, ScenarioFile, Spread, Start, TimedCommand};
 pub use setup::{Overrides, Program, Setup, TimedText};
 pub use world::{Arena, WorldFile};

@@ -7,6 +7,7 @@
 //! on_servo = true
 //! [wiring.final]         # signal = pin of the Mega
 //! front_echo = 3
+//! battery = { pin = 54, ratio = 2.0 }   # a divider to A0, where one is wired
 //! [parameters]           # control parameters that differ from their defaults
 //! [plant.battery]        # physics; what is left out is nominal
 //! open_circuit_v = 7.4
@@ -25,6 +26,10 @@ use std::collections::{BTreeMap, BTreeSet};
 const MOUNT: Allowed = Allowed::new(-1.0, 1.0, "m");
 /// Digital pins of an Arduino Mega, the analogue ones counted on from 54.
 const PIN: Allowed = Allowed::new(0.0, 69.0, "count");
+/// Those of them with an analogue input, A0 to A15.
+const ANALOGUE_PIN: Allowed = Allowed::new(54.0, 69.0, "count");
+/// Ratio of a divider.
+const RATIO: Allowed = Allowed::new(1.0, 20.0, "1");
 /// Flash and SRAM of an ATmega2560.
 const FLASH: Allowed = Allowed::new(1.0, 256.0 * 1024.0, "count");
 const SRAM: Allowed = Allowed::new(1.0, 8.0 * 1024.0, "count");
@@ -74,10 +79,21 @@ pub struct RobotFile {
 }
 
 /// Signals, of [`SIGNALS`], and the Mega's pin numbers.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wiring {
     /// Pin of each signal.
     pub pins: BTreeMap<String, u8>,
+    /// The divider that brings the battery's voltage to an analogue input, where there is one.
+    pub battery: Option<Divider>,
+}
+
+/// `battery = { pin = 54, ratio = 2.0 }`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Divider {
+    /// Analogue input, 0..=15: A0 to A15.
+    pub input: u8,
+    /// Battery's voltage over that at the input.
+    pub ratio: f64,
 }
 
 /// Most that an image may take, from `[firmware]`.
@@ -194,7 +210,10 @@ fn read_rig(table: &Table<'_, '_>) -> Rig {
 }
 
 fn read_wiring(table: &Table<'_, '_>) -> Wiring {
-    let mut wiring = Wiring::default();
+    let mut wiring = Wiring {
+        battery: read_divider(&table.table("battery"), table.has("battery")),
+        ..Wiring::default()
+    };
     for signal in SIGNALS {
         let Some(pin) = table.placed_number(signal, PIN) else {
             continue;
@@ -208,6 +227,15 @@ fn read_wiring(table: &Table<'_, '_>) -> Wiring {
     }
     table.finish();
     wiring
+}
+
+fn read_divider(table: &Table<'_, '_>, wired: bool) -> Option<Divider> {
+    let divider = wired.then(|| Divider {
+        input: (table.required_number("pin", ANALOGUE_PIN) - ANALOGUE_PIN.min) as u8,
+        ratio: table.required_number("ratio", RATIO),
+    });
+    table.finish();
+    divider
 }
 
 fn read_caps(table: &Table<'_, '_>) -> FirmwareCaps {

@@ -12,6 +12,7 @@
 //! [[command]]            # one action each; see `commands.rs` for all of them
 //! at_s = 0.5
 //! reference_m = 0.3
+//! [[wire_fault]]         # none in most scenarios
 //! [[sonar_fault]]        # none in most scenarios
 //! at_s = 2.0
 //! sonar = "front"        # or "left", "right"
@@ -28,6 +29,7 @@ use super::read::{Allowed, Source, Table};
 use super::robot::read_plant;
 use super::world::{ANGLE, PLACE};
 use crate::sonar_fault::{SonarFault, TimedSonarFault};
+use crate::wire_fault::{TimedWireFault, Wire, WireFault};
 use rumbo_control::SonarId;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
@@ -63,6 +65,8 @@ pub struct ScenarioFile {
     pub commands: Vec<TimedCommand>,
     /// Sonars that fail on the way.
     pub sonar_faults: Vec<TimedSonarFault>,
+    /// Wires that fail on the way.
+    pub wire_faults: Vec<TimedWireFault>,
     /// What each metric must keep to for the run to pass.
     pub limits: BTreeMap<String, Bounds>,
     /// Control parameters sent before the first command, from `[parameters]`; they win over the robot file's, and later
@@ -176,6 +180,7 @@ impl ScenarioFile {
             calibrated: root.flag("calibrated").is_some_and(|flag| flag.value),
             commands: read_commands(root.tables("command"), mode, duration_s),
             sonar_faults: read_sonar_faults(root.tables("sonar_fault"), duration_s),
+            wire_faults: read_wire_faults(root.tables("wire_fault"), duration_s),
             limits: read_limits(&root.table("limits"), ""),
             parameters: read_parameters(&root.table("parameters")),
             spread: read_spread(&root.table("spread")),
@@ -249,6 +254,40 @@ fn read_sonar_faults(tables: Vec<Table<'_, '_>>, duration_s: f64) -> Vec<TimedSo
         table.finish();
         if let (Some(sonar), Some(fault)) = (sonar_id, fault) {
             faults.push(TimedSonarFault { at_s, sonar, fault });
+        }
+    }
+    faults
+}
+
+fn read_wire_faults(tables: Vec<Table<'_, '_>>, duration_s: f64) -> Vec<TimedWireFault> {
+    let mut faults = Vec::new();
+    for table in tables {
+        let at_s = table.required_number("at_s", Allowed::new(0.0, duration_s, "s"));
+        let share = table.number("share", Allowed::new(0.0, 1.0, ""));
+        let rate_hz = table.number("rate_hz", Allowed::new(0.0, 20_000.0, "Hz"));
+        let named = table.required_text("wire", "\"left_encoder\" or \"front_echo\", for instance");
+        let wire = Wire::ALL.into_iter().find(|(name, _)| *name == named.value);
+        if wire.is_none() && !named.value.is_empty() {
+            let names = Wire::ALL.map(|(name, _)| name).join(", ");
+            let remedy = format!("write one of {names}");
+            table.complain("wire", named.line, &named.value, &remedy);
+        }
+        let kind = table.required_text("kind", "\"low\", \"high\", \"losing\" or \"noisy\"");
+        let fault = match (kind.value.as_str(), share, rate_hz) {
+            ("low", None, None) => Some(WireFault::Low),
+            ("high", None, None) => Some(WireFault::High),
+            ("losing", share, None) => Some(WireFault::Losing(share.unwrap_or(0.3))),
+            ("noisy", None, rate_hz) => Some(WireFault::Noisy(rate_hz.unwrap_or(1_000.0))),
+            ("", ..) => None,
+            (other, ..) => {
+                let remedy = "write \"low\", \"high\", \"losing\" with share = 0.3, or \"noisy\" with rate_hz = 1000";
+                table.complain("kind", kind.line, other, remedy);
+                None
+            }
+        };
+        table.finish();
+        if let (Some((_, wire)), Some(fault)) = (wire, fault) {
+            faults.push(TimedWireFault { at_s, wire, fault });
         }
     }
     faults

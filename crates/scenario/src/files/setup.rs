@@ -3,7 +3,7 @@
 use super::error::FileError;
 use super::near::{near, near_or_all};
 use super::read::Allowed;
-use super::{Library, RobotFile, ScenarioFile, Start, WorldFile, parameters};
+use super::{Divider, Library, RobotFile, ScenarioFile, Start, WorldFile, parameters};
 use crate::mega::firmware::{Firmware, Language};
 use crate::random_world::{Site, Size};
 use rumbo_control::params::ParamId;
@@ -173,15 +173,24 @@ impl Setup {
         }
     }
 
-    /// The control parameters of a run before its first command: the rig's, the robot file's, the scenario's; later ones win.
+    /// The control parameters of a run before its first command: the rig's, the wiring's, the robot file's, the scenario's; later ones win.
     ///
     /// # Errors
     /// As for [`Setup::rig_parameters`].
     pub fn control_parameters(&self) -> Result<Vec<(ParamId, f32)>, FileError> {
         let mut parameters = self.rig_parameters()?;
+        if let Some(Divider { input, ratio }) = self.divider() {
+            parameters.push((ParamId::BatteryInput, f32::from(input)));
+            parameters.push((ParamId::BatteryRatio, ratio as f32));
+        }
         parameters.extend(&self.robot.parameters);
         parameters.extend(&self.scenario.parameters);
         Ok(parameters)
+    }
+
+    /// The battery's divider in the wiring that our own program knows.
+    pub fn divider(&self) -> Option<Divider> {
+        self.robot.wirings.get("final")?.battery
     }
 
     /// What the robot must be told about the rig it carries, as control parameters.

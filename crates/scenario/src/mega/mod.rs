@@ -26,7 +26,9 @@ mod echo;
 mod module;
 mod servo;
 
+use crate::files::Divider;
 use crate::sonar_fault::SonarFaults;
+use crate::wire_fault::{Wire, WireFaults};
 use bridge::HalfBridge;
 use console::Console;
 use echo::Echoes;
@@ -249,6 +251,15 @@ impl Mega {
         std::mem::take(&mut self.actions)
     }
 
+    /// The battery's voltage from now on, where a divider brings it to an analogue input.
+    pub(crate) fn supply(&mut self, battery_v: f64) {
+        if let Some(Divider { input, ratio }) = self.wires().battery {
+            let (channel, volts) = (input, battery_v / ratio);
+            let cycle = self.chip.cycle();
+            self.chip.input(cycle, Input::Volts { channel, volts });
+        }
+    }
+
     fn cycle_of(&self, us: u64) -> u64 {
         self.zero_cycle + us * CYCLES_PER_US
     }
@@ -341,19 +352,47 @@ impl Mega {
     }
 
     fn deliver(&mut self, at_us: u64, edge: Edge, faults: &mut Faults<'_>) {
-        let (pin, level) = match edge {
+        let (wire, level) = match edge {
             Edge::Encoder(index, level) => {
                 self.encoders[index] = level;
-                (self.wires().encoders[index], level)
+                (Wire::Encoder([Side::Left, Side::Right][index]), level)
             }
             Edge::Echo(sonar, level) => {
                 if !self.echoes.edge(sonar, level, at_us, faults) {
                     return;
                 }
-                (self.wires().echoes[sonar.index()], level)
+                (
+                    Wire::Echo(rumbo_control::SonarId::ALL[sonar.index()]),
+                    level,
+                )
             }
         };
-        self.put(self.cycle_of(at_us), pin, level);
+        if faults.wires.passes(faults.noise, wire, at_us) {
+            self.put(self.cycle_of(at_us), self.pin_of(wire), level);
+        }
+    }
+
+    fn pin_of(&self, wire: Wire) -> Option<Pin> {
+        match wire {
+            Wire::Encoder(side) => self.wires().encoders[side.index()],
+            Wire::Echo(sonar) => self.wires().echoes[sonar as usize],
+        }
+    }
+
+    /// What befalls the wires until then, from now on: they get stuck, or pick up noise.
+    pub(crate) fn disturb(&mut self, from_us: u64, to_us: u64, faults: &mut Faults<'_>) {
+        for (at_us, wire, level) in faults.wires.stuck(from_us, to_us) {
+            self.put(self.cycle_of(at_us), self.pin_of(wire), level);
+        }
+        for (begin_us, end_us, wire) in faults.wires.pulses(faults.noise, from_us) {
+            let level = match wire {
+                Wire::Encoder(side) => self.encoders[side.index()],
+                Wire::Echo(sonar) => self.echoes.level(SonarId::ALL[sonar as usize]),
+            };
+            for (at_us, level) in [(begin_us, !level), (end_us, level)] {
+                self.put(self.cycle_of(at_us), self.pin_of(wire), level);
+            }
+        }
     }
 
     fn put(&mut self, cycle: u64, pin: Option<Pin>, level: bool) {
@@ -461,9 +500,10 @@ impl Mega {
     }
 }
 
-/// The faults of the sonars, and the noise they draw from.
+/// The faults of sonars and wires, and the noise they draw from.
 pub(crate) struct Faults<'a> {
     pub(crate) sonars: &'a mut SonarFaults,
+    pub(crate) wires: &'a mut WireFaults,
     pub(crate) noise: &'a Noise,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Source of the table: the schematic of the Arduino Mega 2560 R3; numbers 54 to 69 are the analogue inputs A0 to A15.
 
-use crate::files::{FileError, Wiring};
+use crate::files::{Divider, FileError, Wiring};
 use rumbo_emulator::devices::ports::Pin;
 
 /// Port letter and bit of each digital pin, by its number on the board.
@@ -102,7 +102,7 @@ pub(super) struct BridgePins {
 }
 
 /// A wiring in terms of the chip. Pairs are left and right, triples are left, right and front, as the plant counts.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Wires {
     pub(super) bridges: [BridgePins; 2],
     pub(super) encoders: [Option<Pin>; 2],
@@ -111,6 +111,8 @@ pub(super) struct Wires {
     pub(super) echoes: [Option<Pin>; 3],
     /// The USART that the Bluetooth module is on.
     pub(super) link: Option<u8>,
+    /// The battery's divider.
+    pub(super) battery: Option<Divider>,
     /// Lines that idle high because something sends on them.
     pub(super) receivers: [Option<Pin>; 2],
 }
@@ -158,6 +160,7 @@ impl Wires {
             triggers: sonars.map(|sonar| pin(&format!("{sonar}_trigger"))),
             echoes: sonars.map(|sonar| pin(&format!("{sonar}_echo"))),
             link: link(name, wiring)?,
+            battery: wiring.battery,
             receivers: [pin("link_rx"), pin("debug_rx")],
         })
     }

@@ -21,6 +21,19 @@ impl Sim {
         while self.now_us() < until_us {
             let end_us = ((self.now_us() / AHEAD_US + 1) * AHEAD_US).min(until_us);
             self.bytes_to(mega, end_us);
+            mega.supply(self.truth().battery_v);
+            if !self.wire_faults.is_empty() {
+                let now_us = self.now_us();
+                mega.disturb(
+                    now_us,
+                    end_us,
+                    &mut Faults {
+                        sonars: &mut self.sonar_faults,
+                        wires: &mut self.wire_faults,
+                        noise: &self.noise,
+                    },
+                );
+            }
             let halted = self.lockstep(mega, end_us);
             for (at_us, byte) in mega.take_sent() {
                 // The link counts the byte's own time, which has passed on the chip's line.
@@ -54,6 +67,7 @@ impl Sim {
                 end_us,
                 &mut Faults {
                     sonars: &mut self.sonar_faults,
+                    wires: &mut self.wire_faults,
                     noise: &self.noise,
                 },
             );
@@ -82,6 +96,7 @@ impl Sim {
     fn follow(&mut self, mega: &mut Mega, at_us: u64) {
         let mut faults = Faults {
             sonars: &mut self.sonar_faults,
+            wires: &mut self.wire_faults,
             noise: &self.noise,
         };
         let worst_contact_m_s = &mut self.worst_contact_m_s;

@@ -18,6 +18,7 @@ use crate::mega::Mega;
 use crate::original::Original;
 use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
 use crate::trace::Burst;
+use crate::wire_fault::{TimedWireFault, WireFaults};
 use native::{Memory, Native};
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Duty, SIDES, SonarId, Wheels};
@@ -53,6 +54,7 @@ pub struct Sim {
     worst_reverse_rad_s: f64,
     worst_contact_m_s: f64,
     sonar_faults: SonarFaults,
+    wire_faults: WireFaults,
     noise: Noise,
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
@@ -110,7 +112,9 @@ impl Sim {
         let controller = match (&setup.firmware, setup.program) {
             (None, Program::Rumbo) => {
                 let memory = Memory(memory.to_vec());
-                Controller::Rumbo(Box::new(Native::new(memory, &setup.control_parameters()?)?))
+                let mut native = Native::new(memory, &setup.control_parameters()?)?;
+                native.divider = setup.divider();
+                Controller::Rumbo(Box::new(native))
             }
             (None, Program::Original) => Controller::Original(Box::new(Original::new(setup)?)),
             (Some(firmware), _) => {
@@ -130,6 +134,10 @@ impl Sim {
         for fault in &scenario.sonar_faults {
             sonar_faults.add(*fault);
         }
+        let mut wire_faults = WireFaults::default();
+        for fault in &scenario.wire_faults {
+            wire_faults.add(*fault);
+        }
         Ok(Self {
             plant,
             params,
@@ -143,6 +151,7 @@ impl Sim {
             worst_reverse_rad_s: 0.0,
             worst_contact_m_s: 0.0,
             sonar_faults,
+            wire_faults,
             noise,
             outputs_us: (0, 0, 0),
             tapped: None,
@@ -229,6 +238,11 @@ impl Sim {
     /// Makes a sonar fail at a time. The report's program, which times its own edges, notices a cut one only.
     pub fn fail_sonar(&mut self, fault: TimedSonarFault) {
         self.sonar_faults.add(fault);
+    }
+
+    /// Makes a wire fail at a time.
+    pub fn fail_wire(&mut self, fault: TimedWireFault) {
+        self.wire_faults.add(fault);
     }
 
     /// Cuts a sonar's wires: from now on it answers no ping.

@@ -2,12 +2,17 @@
 
 use super::Sim;
 use crate::board::{Board, micros};
-use crate::files::FileError;
+use crate::files::{Divider, FileError};
+use crate::wire_fault::Wire;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_control::{Inputs, OUTPUT_DELAY_US, Outputs, TICK_US};
+use rumbo_plant::plant::Event;
 use rumbo_robot::{Cell, Config, Robot};
 use rumbo_wire::ResetCause;
+
+/// The converter's reference, the chip's supply [V].
+const CONVERTER_V: f64 = 5.0;
 
 /// The EEPROM's bytes; what has never been written is missing at the end.
 #[derive(Clone, Debug, Default)]
@@ -30,6 +35,10 @@ impl Memory {
 pub(super) struct Native {
     robot: Robot,
     pub(super) board: Board,
+    /// Its battery's divider.
+    pub(super) divider: Option<Divider>,
+    /// The conversion that was begun at the last tick: of which input, and what it gives.
+    converted: Option<(u8, u16)>,
     /// Its EEPROM.
     pub(super) memory: Memory,
     pub(super) next_tick_us: u64,
@@ -54,6 +63,8 @@ impl Native {
         Ok(Self {
             robot,
             board: Board::default(),
+            divider: None,
+            converted: None,
             memory,
             next_tick_us: 0,
             pending: None,
@@ -62,6 +73,20 @@ impl Native {
 
     pub(super) fn mode_state(&self) -> Option<(ModeId, u8)> {
         self.robot.mode_state()
+    }
+}
+
+impl Native {
+    /// The battery's voltage as the chip's converter finds it: begun at a tick, read at the next one.
+    fn convert(&mut self, battery_v: impl Fn() -> f64) -> Option<f32> {
+        let input = self.robot.battery_input()?;
+        let volts = match self.divider {
+            Some(divider) if divider.input == input => battery_v() / divider.ratio,
+            _ => 0.0,
+        };
+        let counts = (volts / CONVERTER_V * 1_024.0).clamp(0.0, 1_023.0) as u16;
+        let last = self.converted.replace((input, counts))?;
+        (last.0 == input).then(|| self.robot.battery_v(last.1))
     }
 }
 
@@ -86,7 +111,7 @@ impl Sim {
             if let Some((at_us, _)) = native.pending {
                 next_us = next_us.min(at_us);
             }
-            self.advance_plant(next_us, &mut |event| native.board.take(event));
+            self.sense(native, next_us);
             if let Some((at_us, outputs)) = native.pending
                 && at_us == next_us
             {
@@ -102,6 +127,33 @@ impl Sim {
         }
     }
 
+    /// The plant lives until this time, and what its wires bring to the board is latched.
+    fn sense(&mut self, native: &mut Native, until_us: u64) {
+        if self.wire_faults.is_empty() {
+            self.advance_plant(until_us, &mut |event| native.board.take(event));
+            return;
+        }
+        let from_us = self.now_us();
+        let mut events = Vec::new();
+        self.advance_plant(until_us, &mut |event| events.push(event));
+        let (faults, noise) = (&mut self.wire_faults, &self.noise);
+        events.retain(|event| {
+            let edge = Wire::of(event);
+            edge.is_none_or(|(wire, _)| faults.passes(noise, wire, event.at_us()))
+        });
+        let milliseconds = from_us.div_ceil(1_000)..until_us.div_ceil(1_000);
+        for (begin_us, end_us, wire) in milliseconds.flat_map(|ms| faults.pulses(noise, ms * 1_000))
+        {
+            // An echo line that is disturbed while it rests is a short pulse; the board takes the first one.
+            events.push(wire.edge(begin_us, true));
+            events.push(wire.edge(end_us, false));
+        }
+        events.sort_by_key(Event::at_us);
+        for event in events {
+            native.board.take(event);
+        }
+    }
+
     fn tick(&mut self, native: &mut Native) {
         let now_us = self.now_us();
         while let Some((_, byte)) = self.uplink.pop(now_us) {
@@ -111,11 +163,12 @@ impl Sim {
             .board
             .echo(now_us)
             .map(|answer| self.sonar_faults.answer(&self.noise, answer, now_us));
+        let battery_v = native.convert(|| self.truth().battery_v);
         let outputs = native.robot.tick(&Inputs {
             now: micros(now_us),
             encoders: native.board.encoders(),
             echo,
-            battery_v: None,
+            battery_v,
         });
         // A byte takes 3.4 ms: the one before is written.
         if let Some(cell) = native.robot.store() {

@@ -5,21 +5,27 @@ use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::{SRAM_START, Stopped};
 use rumbo_emulator::devices::Event;
 use rumbo_emulator::image::Image;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Where in one of the image's rings the count of bytes put in lies: behind its 64 bytes.
 const RING: usize = 64;
 
-/// The image; `None` where it has not been built.
-pub(crate) fn image() -> Option<Image> {
+/// Where the image is; `None` where it has not been built.
+pub(crate) fn image_path() -> Option<PathBuf> {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
     let path = target.join("firmware/rumbo.elf");
-    let Ok(bytes) = std::fs::read(&path) else {
+    if !path.exists() {
         let remedy = format!("{} is missing: run `cargo xtask firmware`", path.display());
         assert!(std::env::var_os("CI").is_none(), "{remedy}");
         println!("skipped: {remedy}");
         return None;
-    };
+    }
+    Some(path)
+}
+
+/// The image; `None` where it has not been built.
+pub(crate) fn image() -> Option<Image> {
+    let bytes = std::fs::read(image_path()?).unwrap();
     Some(Image::parse(&bytes).unwrap())
 }
 

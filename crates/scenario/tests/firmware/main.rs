@@ -3,6 +3,7 @@
 #![cfg(test)]
 
 mod board;
+mod faults;
 mod interrupts;
 mod pins;
 mod same_bits;
