@@ -148,7 +148,7 @@ proptest! {
 
     #[test]
     fn a_command_comes_back_from_its_line(command in command()) {
-        let back = TextCommand::parse(&command.to_string()).unwrap();
+        let back = TextCommand::parse(command.to_string()).unwrap();
         prop_assert_eq!(core::mem::discriminant(&back), core::mem::discriminant(&command));
         for (back, sent) in values(&back).into_iter().zip(values(&command)) {
             prop_assert!((back - sent).abs() <= sent.abs() * 3e-7, "{} came back as {}", sent, back);
