@@ -32,6 +32,8 @@ pub(crate) enum Command {
     Lab(LabArgs),
     /// Drive a real robot from the same dashboard, over a serial port or TCP
     Connect(ConnectArgs),
+    /// Write the image to an Arduino Mega
+    Flash(FlashArgs),
     /// Run scenarios as fast as the machine can and judge their metrics
     Run(RunArgs),
     /// Run every experiment of the report and write it: one page with all figures
@@ -153,6 +155,28 @@ pub(crate) struct ConnectArgs {
     /// Folder for the log; made if need be [default: rumbo/logs in the user's data folder]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+}
+
+/// Options of `rumbo flash`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo flash /dev/ttyACM0
+  rumbo flash COM5 --image my_sketch.hex
+  rumbo flash /dev/ttyACM0 --print
+
+The board is asked for its signature before anything is written. Parameters saved on the robot stay. Needs avrdude; `rumbo list ports` shows the
+serial ports of this computer. Before the first run: docs/wiring.md.")]
+pub(crate) struct FlashArgs {
+    /// Serial port of the Mega's USB cable
+    #[arg(value_name = "PORT")]
+    pub(crate) port: String,
+    /// Image to write, Intel HEX or ELF [default: the one that `cargo xtask firmware` built, target/firmware/rumbo.hex]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) image: Option<PathBuf>,
+    /// Print the commands instead of running them
+    #[arg(long)]
+    pub(crate) print: bool,
 }
 
 /// Options of `rumbo run`.

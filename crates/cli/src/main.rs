@@ -11,6 +11,7 @@ mod experiments;
 mod export;
 mod failure;
 mod figures;
+mod flash;
 mod identify;
 mod import;
 mod lab;
@@ -48,6 +49,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::List(args)) => list::list(&args),
         Some(Command::Lab(args)) => lab::lab(&args),
         Some(Command::Connect(args)) => connect::connect(&args),
+        Some(Command::Flash(args)) => flash::flash(&args),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Experiments(args)) => experiments::experiments(&args),
         Some(Command::Replay(args)) => replay::replay(&args),

@@ -154,7 +154,7 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
 fn every_subcommand_shows_an_example_in_its_help() {
     for subcommand in [
         "lab", "run", "identify", "import", "list", "connect", "replay", "export", "compare",
-        "rerun",
+        "rerun", "flash",
     ] {
         let help = stdout(&rumbo(&[subcommand, "--help"]));
         let (_, examples) = help.split_once("Examples:").unwrap();

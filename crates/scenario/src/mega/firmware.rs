@@ -54,14 +54,9 @@ impl Firmware {
         robot: &RobotFile,
         scenario: &ScenarioFile,
     ) -> Result<Self, FileError> {
-        let shown = path.display();
-        let bytes = std::fs::read(path).map_err(|error| {
-            FileError::Setting(format!("firmware {shown}: cannot be read ({error}); give the .elf or .hex that the compiler made"))
-        })?;
-        let image = Image::parse(&bytes)
-            .map_err(|error| FileError::Setting(format!("firmware {shown}: {error}")))?;
+        let image = read(path)?;
         let name = path.file_name().map_or_else(
-            || shown.to_string(),
+            || path.display().to_string(),
             |name| name.to_string_lossy().into_owned(),
         );
         let (language, transmits) = begin(&image);
@@ -114,6 +109,18 @@ impl Firmware {
     pub(super) fn wires(&self) -> &Wires {
         &self.wires
     }
+}
+
+/// Reads an image.
+///
+/// # Errors
+/// The file is no program for this chip.
+pub fn read(path: &Path) -> Result<Image, FileError> {
+    let shown = path.display();
+    let bytes = std::fs::read(path).map_err(|error| {
+        FileError::Setting(format!("firmware {shown}: cannot be read ({error}); give the .elf or .hex that the compiler made"))
+    })?;
+    Image::parse(&bytes).map_err(|error| FileError::Setting(format!("firmware {shown}: {error}")))
 }
 
 fn find<'a>(robot: &'a RobotFile, wiring: &str) -> Result<&'a Wiring, FileError> {

@@ -1,0 +1,203 @@
+//! `rumbo flash`: writes the image to an Arduino Mega with avrdude, after a look at what is on the port.
+
+use crate::args::FlashArgs;
+use crate::failure::Failure;
+use crate::output;
+use rumbo_scenario::mega::firmware;
+use rumbo_station::port::Port;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Where `cargo xtask firmware` puts the image, in the folder of what is built.
+const BUILT: &str = "firmware/rumbo.hex";
+/// The Mega's boot loader speaks STK500v2 at this rate.
+const BOOT_BAUD: u32 = 115_200;
+/// What an ATmega2560 says it is (DS40002549, section 29.3).
+const SIGNATURE: [u8; 3] = [0x1E, 0x98, 0x01];
+/// How an ELF file begins.
+const ELF: &[u8] = b"\x7fELF";
+
+/// Checks image and board, then writes; or prints the commands that do.
+pub(crate) fn flash(args: &FlashArgs) -> Result<(), Failure> {
+    let image = image(args)?;
+    let look = avrdude(&args.port, &["-U", "signature:r:-:h"]);
+    let write = format!("flash:w:{}:{}", image.display(), format_of(&image)?);
+    // The boot loader erases page by page; the saved parameters stay.
+    let write = avrdude(&args.port, &["-D", "-U", &write]);
+    if args.print {
+        output::line(&shown(&look))?;
+        return output::line(&shown(&write));
+    }
+    check_port(&args.port)?;
+    check_signature(args, look)?;
+    output::line(&format!("writing {} to {}", image.display(), args.port))?;
+    let mut write = write;
+    let done = write.status().map_err(missing)?;
+    if !done.success() {
+        return Err(Failure::Input(format!(
+            "avrdude could not write {} to {} ({done}); its own words are above",
+            image.display(),
+            args.port
+        )));
+    }
+    output::line("done: the robot starts again, disarmed")
+}
+
+/// The image asked for, or the one built here; a program for this chip in any case.
+fn image(args: &FlashArgs) -> Result<PathBuf, Failure> {
+    let path = match &args.image {
+        Some(path) => path.clone(),
+        None => {
+            let target = std::env::var_os("CARGO_TARGET_DIR");
+            let built = target
+                .map_or_else(|| PathBuf::from("target"), PathBuf::from)
+                .join(BUILT);
+            if !built.exists() {
+                return Err(Failure::Input(format!(
+                    "there is no image {}: build it with `cargo xtask firmware` in the folder of Rumbo's sources, or give one with --image",
+                    built.display()
+                )));
+            }
+            built
+        }
+    };
+    firmware::read(&path)?;
+    Ok(path)
+}
+
+/// avrdude's letter for the file's format.
+fn format_of(image: &Path) -> Result<char, Failure> {
+    let bytes = std::fs::read(image).map_err(Failure::input)?;
+    Ok(if bytes.starts_with(ELF) { 'e' } else { 'i' })
+}
+
+fn avrdude(port: &str, arguments: &[&str]) -> Command {
+    let mut command = Command::new("avrdude");
+    command
+        .args(["-p", "atmega2560", "-c", "wiring", "-P", port])
+        .args(["-b", &BOOT_BAUD.to_string()])
+        .args(arguments);
+    command
+}
+
+/// The command as one would type it.
+fn shown(command: &Command) -> String {
+    let words = std::iter::once(command.get_program()).chain(command.get_args());
+    let words = words.map(|word| {
+        let word = word.to_string_lossy();
+        let plain = word
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || "-_./:=".contains(c));
+        if plain {
+            word.into_owned()
+        } else {
+            format!("'{word}'")
+        }
+    });
+    words.collect::<Vec<_>>().join(" ")
+}
+
+fn missing(error: std::io::Error) -> Failure {
+    Failure::Input(format!(
+        "avrdude cannot be started ({error}): install it (Debian, Ubuntu: `sudo apt install avrdude`; macOS: `brew install avrdude`; Windows: \
+         from github.com/avrdudes/avrdude/releases, into a folder of the PATH)"
+    ))
+}
+
+/// Opens the port for a moment: who may not, or has none there, is told what to do.
+fn check_port(port: &str) -> Result<(), Failure> {
+    if port.starts_with("tcp:") {
+        return Err(Failure::Input(format!(
+            "{port} is no serial port: the Mega is written over its USB cable; `rumbo list ports` shows the ports"
+        )));
+    }
+    Port::open(port, BOOT_BAUD)
+        .map(drop)
+        .map_err(Failure::input)
+}
+
+/// Asks the chip what it is.
+fn check_signature(args: &FlashArgs, mut look: Command) -> Result<(), Failure> {
+    let port = &args.port;
+    let answer = look.stdin(Stdio::null()).output().map_err(missing)?;
+    let said = String::from_utf8_lossy(&answer.stdout);
+    let complaint = String::from_utf8_lossy(&answer.stderr);
+    let signature = bytes_of(&said).or_else(|| told(&complaint));
+    let hex = |bytes: [u8; 3]| bytes.map(|byte| format!("{byte:02x}")).concat();
+    match signature {
+        Some(SIGNATURE) if answer.status.success() => Ok(()),
+        Some(other) if other != SIGNATURE => Err(Failure::Input(format!(
+            "the chip on {port} has the signature {}, an ATmega2560 has {}: is that board an Arduino Mega 2560?",
+            hex(other),
+            hex(SIGNATURE)
+        ))),
+        _ => {
+            let last = complaint
+                .lines()
+                .rfind(|line| line.contains("avrdude"))
+                .unwrap_or("avrdude says nothing");
+            Err(Failure::Input(format!(
+                "no Arduino Mega answers on {port} ({}): is it on the USB cable, is the port the right one (`rumbo list ports`), \
+                 does another program use it?",
+                last.trim()
+            )))
+        }
+    }
+}
+
+/// A signature as `-U signature:r:-:h` prints it: `0x1e,0x98,0x1`.
+fn bytes_of(text: &str) -> Option<[u8; 3]> {
+    let line = text
+        .lines()
+        .find(|line| line.trim_start().starts_with("0x"))?;
+    let mut bytes = line.trim().split(',').map(|byte| {
+        let digits = byte.trim().strip_prefix("0x")?;
+        u8::from_str_radix(digits, 16).ok()
+    });
+    Some([bytes.next()??, bytes.next()??, bytes.next()??])
+}
+
+/// The one that avrdude complains of: `device signature = 0x1e950f`, also with blanks between the bytes.
+fn told(complaint: &str) -> Option<[u8; 3]> {
+    let (_, rest) = complaint.split_once("signature = ")?;
+    let digits: String = rest
+        .replace("0x", "")
+        .chars()
+        .filter(|c| *c != ' ')
+        .take_while(char::is_ascii_hexdigit)
+        .take(6)
+        .collect();
+    let [_, high, middle, low] = u32::from_str_radix(&digits, 16).ok()?.to_be_bytes();
+    (digits.len() == 6).then_some([high, middle, low])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signatures_are_read_as_the_versions_of_avrdude_print_them() {
+        assert_eq!(bytes_of("0x1e,0x98,0x1\n"), Some(SIGNATURE));
+        assert_eq!(
+            bytes_of("reading\n0x1e,0x95,0xf\n"),
+            Some([0x1E, 0x95, 0x0F])
+        );
+        assert_eq!(bytes_of(""), None);
+        let old = "avrdude: Device signature = 0x1e950f (probably m328p)";
+        assert_eq!(told(old), Some([0x1E, 0x95, 0x0F]));
+        assert_eq!(
+            told("avrdude: device signature = 1E 98 01 (ATmega2560)"),
+            Some(SIGNATURE)
+        );
+        assert_eq!(told("avrdude: stk500v2_getsync(): timeout"), None);
+    }
+
+    #[test]
+    fn a_command_is_shown_as_one_would_type_it() {
+        let command = avrdude("COM5", &["-D", "-U", "flash:w:my image.hex:i"]);
+        assert_eq!(
+            shown(&command),
+            "avrdude -p atmega2560 -c wiring -P COM5 -b 115200 -D -U 'flash:w:my image.hex:i'"
+        );
+    }
+}
