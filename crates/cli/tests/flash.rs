@@ -1,6 +1,7 @@
 //! `rumbo flash`, with a stand-in for avrdude and the simulated robot's port for a board's.
 
 #![cfg(all(test, unix))]
+#![allow(clippy::unwrap_used, reason = "helpers of tests too")]
 
 use std::io::{BufRead, BufReader};
 use std::os::unix::fs::PermissionsExt;
