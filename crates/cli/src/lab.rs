@@ -9,7 +9,6 @@ use crate::scene::{first_commands, scene};
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_scenario::files::{FileError, Library, Overrides, Setup};
-use rumbo_scenario::mega::console::readable;
 use rumbo_scenario::mega::firmware::Language;
 use rumbo_scenario::run;
 use rumbo_scenario::sim::Sim;
@@ -99,6 +98,20 @@ impl SimulatedRobot {
             first_commands,
         })
     }
+}
+
+/// Sends a line to a USART of the emulated chip, over the link if it is the link's; whether there is a chip.
+pub(crate) fn type_to(sim: &mut Sim, usart: u8, line: &str) -> bool {
+    let bytes = format!("{line}\n");
+    let Some(mega) = sim.mega_mut() else {
+        return false;
+    };
+    if mega.firmware().link_usart() == Some(usart) {
+        sim.send(bytes.as_bytes());
+    } else {
+        mega.type_in(usart, bytes.as_bytes());
+    }
+    true
 }
 
 /// Adds a path from the command line to the names to choose from.
@@ -219,12 +232,12 @@ impl Simulation for SimulatedRobot {
         (firmware.language() == Language::Text).then_some(self.mode)
     }
 
-    fn consoles(&mut self) -> Vec<(u8, String)> {
+    fn consoles(&mut self) -> Vec<(u8, Vec<u8>)> {
         let Some(mega) = self.sim.mega_mut() else {
             return Vec::new();
         };
-        let said = (0..4).map(|usart| (usart, readable(&mega.take_console(usart))));
-        said.filter(|(_, text)| !text.is_empty()).collect()
+        let said = (0..4).map(|usart| (usart, mega.take_console(usart)));
+        said.filter(|(_, bytes)| !bytes.is_empty()).collect()
     }
 
     fn ended(&mut self) -> Option<String> {
@@ -234,17 +247,10 @@ impl Simulation for SimulatedRobot {
     }
 
     fn type_in(&mut self, usart: u8, line: &str) -> Result<(), String> {
-        let link = match self.sim.mega() {
-            Some(mega) => mega.firmware().link_usart() == Some(usart),
-            None => return Err("there is no emulated chip; start the lab with --firmware".into()),
-        };
-        let bytes = format!("{line}\n");
-        if link {
-            self.sim.send(bytes.as_bytes());
-        } else if let Some(mega) = self.sim.mega_mut() {
-            mega.type_in(usart, bytes.as_bytes());
+        match type_to(&mut self.sim, usart, line) {
+            true => Ok(()),
+            false => Err("there is no emulated chip; start the lab with --firmware".into()),
         }
-        Ok(())
     }
 
     fn first_commands(&self) -> Vec<Command> {

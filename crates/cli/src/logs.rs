@@ -8,7 +8,7 @@ use rumbo_control::Wheels;
 use rumbo_scenario::files::{Library, Overrides, Setup};
 use rumbo_scenario::run::RunResult;
 use rumbo_scenario::trace::{SAMPLE_US, Sample};
-use rumbo_station::log::{Burst, Kind, Log, Manifest, Outcome, Run, record_run};
+use rumbo_station::log::{Burst, Kind, Manifest, Outcome, Run, Said, Summary, record_run};
 use rumbo_station::{Choice, MapPose, Truth};
 use rumbo_wire::FromRobot;
 use serde_json::{Value, json};
@@ -50,11 +50,11 @@ pub(crate) fn entries() -> Result<Vec<Value>, Failure> {
 
 fn entry(path: &Path) -> Value {
     let bytes = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    match Log::read(path) {
+    match Summary::read(path) {
         Ok(log) => {
-            let manifest = log.manifest.clone().unwrap_or_default();
-            json!({ "name": path, "bytes": bytes, "duration_s": log.duration_s(), "started": manifest.started,
-                "scenario": manifest.scenario, "seed": manifest.seed, "complete": log.cut.is_none() })
+            let manifest = log.manifest.unwrap_or_default();
+            json!({ "name": path, "bytes": bytes, "duration_s": log.duration_s, "started": manifest.started,
+                "scenario": manifest.scenario, "seed": manifest.seed, "complete": log.complete })
         }
         Err(error) => json!({ "name": path, "bytes": bytes, "error": error.to_string() }),
     }
@@ -118,7 +118,9 @@ pub(crate) fn write_run(
             .collect(),
         false => Vec::new(),
     };
+    let said: Vec<Said> = trace.consoles.iter().map(said).collect();
     let run = Run {
+        said: &said,
         scene: Some(scene),
         truths: &truths,
         link: &link,
@@ -142,6 +144,15 @@ pub(crate) fn burst(burst: &rumbo_scenario::trace::Burst) -> Burst {
         t_us: burst.t_us,
         to_robot: burst.to_robot,
         bytes: burst.bytes.clone(),
+    }
+}
+
+pub(crate) fn said(said: &rumbo_scenario::trace::Said) -> Said {
+    Said {
+        t_us: said.t_us,
+        usart: said.usart,
+        to_chip: false,
+        bytes: said.bytes.clone(),
     }
 }
 

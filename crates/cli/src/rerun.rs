@@ -1,17 +1,18 @@
 //! `rumbo rerun`: the run of a log once more, compared byte by byte with what the robot said then.
 //!
 //! A run without a window is run again as it was. A session of the lab is driven again by the recorded bytes to the robot, each at
-//! the simulated instant at which it was sent.
+//! the simulated instant at which it was sent. What the USARTs of an emulated Mega sent is compared as well.
 
 use crate::args::RerunArgs;
 use crate::failure::Failure;
+use crate::lab;
 use crate::logs;
 use crate::manifest;
 use crate::output;
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::run;
 use rumbo_scenario::sim::Sim;
-use rumbo_station::log::{Burst, Kind, Log, Manifest};
+use rumbo_station::log::{Burst, Kind, Log, Manifest, Said};
 use rumbo_wire::{Decoder, FromRobot, Message, Received};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -87,7 +88,11 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
 fn again(log: &Log, setup: &Setup, seed: u64) -> Result<Verdict, Failure> {
     let result = run::run(setup, seed)?;
     let link: Vec<Burst> = result.trace.link.iter().map(logs::burst).collect();
-    if let Some(difference) = first_difference(&log.link, &link, log.cut.is_some()) {
+    let said: Vec<Said> = result.trace.consoles.iter().map(logs::said).collect();
+    let cut = log.cut.is_some();
+    let parted =
+        first_difference(&log.link, &link, cut).or_else(|| first_difference(&log.said, &said, cut));
+    if let Some(difference) = parted {
         return Ok(difference);
     }
     let Some(outcome) = &log.outcome else {
@@ -109,9 +114,15 @@ fn again(log: &Log, setup: &Setup, seed: u64) -> Result<Verdict, Failure> {
 fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<Verdict, Failure> {
     let setup = &*setup.of_seed(seed)?;
     let mut sim = Sim::with_memory(&*run::prepare(setup, seed)?, seed, &recorded.memory())?;
-    let Some(end_us) = log.link.last().map(|burst| burst.t_us) else {
+    let last = [
+        log.link.last().map(|burst| burst.t_us),
+        log.said.last().map(|said| said.t_us),
+    ];
+    let Some(end_us) = last.into_iter().flatten().max() else {
         return Ok(Verdict::Equal);
     };
+    let mut typed = log.said.iter().filter(|said| said.to_chip).peekable();
+    let mut said = Vec::new();
     let mut commands = log.link.iter().filter(|burst| burst.to_robot).peekable();
     let mut link = Vec::new();
     loop {
@@ -125,6 +136,10 @@ fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<V
                 bytes,
             });
         }
+        said.extend(consoles(&mut sim, t_us));
+        while let Some(line) = typed.next_if(|line| line.t_us <= t_us) {
+            lab::type_to(&mut sim, line.usart, &String::from_utf8_lossy(&line.bytes));
+        }
         while let Some(burst) = commands.next_if(|burst| burst.t_us <= t_us) {
             sim.send(&burst.bytes);
         }
@@ -133,23 +148,66 @@ fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<V
         }
         sim.advance(t_us + recorded.step_us.max(1));
     }
-    let said: Vec<Burst> = log
-        .link
-        .iter()
-        .filter(|burst| !burst.to_robot)
-        .cloned()
-        .collect();
-    Ok(first_difference(&said, &link, true).unwrap_or(Verdict::Equal))
+    let from_robot = log.link.iter().filter(|burst| !burst.to_robot);
+    let was: Vec<Burst> = from_robot.cloned().collect();
+    let from_chip = log.said.iter().filter(|said| !said.to_chip);
+    let had_said: Vec<Said> = from_chip.cloned().collect();
+    Ok(first_difference(&was, &link, true)
+        .or_else(|| first_difference(&had_said, &said, true))
+        .unwrap_or(Verdict::Equal))
+}
+
+/// What the USARTs of an emulated Mega have sent since they were last asked.
+fn consoles(sim: &mut Sim, t_us: u64) -> Vec<Said> {
+    let Some(mega) = sim.mega_mut() else {
+        return Vec::new();
+    };
+    let said = (0..4).map(|usart| Said {
+        t_us,
+        usart,
+        to_chip: false,
+        bytes: mega.take_console(usart),
+    });
+    said.filter(|said| !said.bytes.is_empty()).collect()
+}
+
+/// Something recorded that can be told from something else.
+trait Recorded: PartialEq {
+    /// When \[us\].
+    fn t_us(&self) -> u64;
+    /// What, for people.
+    fn words(&self) -> String;
+}
+
+impl Recorded for Burst {
+    fn t_us(&self) -> u64 {
+        self.t_us
+    }
+
+    fn words(&self) -> String {
+        words(self)
+    }
+}
+
+impl Recorded for Said {
+    fn t_us(&self) -> u64 {
+        self.t_us
+    }
+
+    fn words(&self) -> String {
+        let text = rumbo_station::readable(&self.bytes);
+        format!("USART{} `{}`", self.usart, text.replace('\n', "\\n"))
+    }
 }
 
 /// Where two records of a link part; a record that was cut off may end first.
-fn first_difference(was: &[Burst], is: &[Burst], cut: bool) -> Option<Verdict> {
+fn first_difference<T: Recorded>(was: &[T], is: &[T], cut: bool) -> Option<Verdict> {
     let parted = was.iter().zip(is).find(|(was, is)| was != is);
     if let Some((was, is)) = parted {
-        let t_s = was.t_us.min(is.t_us) as f64 / 1e6;
+        let t_s = was.t_us().min(is.t_us()) as f64 / 1e6;
         return Some(Verdict::Differs(
             t_s,
-            format!("was {}, is {}", words(was), words(is)),
+            format!("was {}, is {}", was.words(), is.words()),
         ));
     }
     if was.len() > is.len() || (was.len() < is.len() && !cut) {
@@ -161,8 +219,8 @@ fn first_difference(was: &[Burst], is: &[Burst], cut: bool) -> Option<Verdict> {
             "the run goes on now with"
         };
         return Some(Verdict::Differs(
-            next.t_us as f64 / 1e6,
-            format!("{which} {}", words(next)),
+            next.t_us() as f64 / 1e6,
+            format!("{which} {}", next.words()),
         ));
     }
     None

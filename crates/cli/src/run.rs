@@ -7,9 +7,9 @@ use crate::observe;
 use crate::output::{self, figure};
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_scenario::files::{Library, Overrides, Program, ScenarioFile, Setup};
-use rumbo_scenario::mega::console::readable;
 use rumbo_scenario::run::{self, RunResult};
 use rumbo_scenario::trace::Trace;
+use rumbo_station::readable;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -107,10 +107,11 @@ fn record(folder: &Path, result: &RunResult) -> Result<(), Failure> {
     let path = folder.join(format!("{stem}.json"));
     let text = serde_json::to_string(result).map_err(Failure::input)?;
     std::fs::write(&path, text + "\n").map_err(|error| unwritable(&path, &error))?;
-    for (usart, said) in result.trace.consoles.iter().enumerate() {
+    for usart in 0..4 {
+        let said = result.trace.console(usart);
         if !said.is_empty() {
             let path = folder.join(format!("{stem}-usart{usart}.txt"));
-            std::fs::write(&path, readable(said)).map_err(|error| unwritable(&path, &error))?;
+            std::fs::write(&path, readable(&said)).map_err(|error| unwritable(&path, &error))?;
         }
     }
     result

@@ -159,3 +159,71 @@ fn goals_reach_the_original_program_and_its_pose_and_states_are_seen() {
     bench.wait_for("state", |state| state == 3.0);
     bench.wait_for("x_m", |x_m| x_m > 0.05);
 }
+
+#[test]
+fn a_run_with_an_image_is_run_again_whole_with_what_its_usarts_said() {
+    let Some(image) = sketch("memoria-mode5") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let rumbo = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rumbo"));
+        command
+            .current_dir(folder.path())
+            .args(arguments)
+            .output()
+            .unwrap()
+    };
+    let image = image.to_str().unwrap();
+    let done = rumbo(&["run", "mode5", "--firmware", image, "--out", "."]);
+    assert!(
+        done.status.code().is_some_and(|status| status < 2),
+        "{done:?}"
+    );
+    let path = folder.path().join("mode5-1.mcap");
+    let log = Log::read(&path).unwrap();
+    let said: usize = log.said.iter().map(|said| said.bytes.len()).sum();
+    assert!(said > 1_000, "{said}");
+    let again = rumbo(&["rerun", "mode5-1.mcap"]);
+    assert_eq!(again.status.code(), Some(0), "{again:?}");
+
+    // A session, with a line typed to the program.
+    let out = folder.path().join("lab");
+    let lab = Running::start(&[
+        "lab",
+        "--scenario",
+        "mode5",
+        "--firmware",
+        image,
+        "--no-browser",
+        "--port",
+        "0",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    let mut page = Page::open(&lab.said);
+    page.say(&json!({"type": "type", "usart": 1, "text": "ON"}));
+    page.say(&json!({"type": "type", "usart": 1, "text": "REF 50"}));
+    page.wait_for("a row", |message| {
+        let said = message["said"].as_array()?.iter();
+        said.filter_map(|said| said["text"].as_str())
+            .any(|text| text.contains(", 50"))
+            .then_some(())
+    });
+    drop(page);
+    lab.end();
+    let path = std::fs::read_dir(&out)
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap()
+        .path();
+    let log = Log::read(&path).unwrap();
+    assert!(
+        log.said
+            .iter()
+            .any(|said| said.to_chip && said.bytes == b"REF 50")
+    );
+    let again = rumbo(&["rerun", path.to_str().unwrap()]);
+    assert_eq!(again.status.code(), Some(0), "{again:?}");
+}

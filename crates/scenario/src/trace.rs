@@ -63,8 +63,19 @@ pub struct Trace {
     pub samples: Vec<Sample>,
     /// What crossed the link, in order.
     pub link: Vec<Burst>,
-    /// What each USART of an emulated Mega has sent.
-    pub consoles: [Vec<u8>; 4],
+    /// What the USARTs of an emulated Mega have sent, in order.
+    pub consoles: Vec<Said>,
+}
+
+/// What a USART of an emulated Mega has sent since the sample before.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// When it was taken [us].
+    pub t_us: u64,
+    /// Which USART.
+    pub usart: u8,
+    /// What.
+    pub bytes: Vec<u8>,
 }
 
 impl Trace {
@@ -96,11 +107,23 @@ impl Trace {
 
     /// Adds what the USARTs of an emulated Mega have sent since.
     pub(crate) fn listen(&mut self, sim: &mut Sim) {
+        let t_us = sim.now_us();
         if let Some(mega) = sim.mega_mut() {
-            for (usart, console) in (0..).zip(&mut self.consoles) {
-                console.append(&mut mega.take_console(usart));
-            }
+            let said = (0..4).map(|usart| Said {
+                t_us,
+                usart,
+                bytes: mega.take_console(usart),
+            });
+            self.consoles
+                .extend(said.filter(|said| !said.bytes.is_empty()));
         }
+    }
+
+    /// All that a USART has sent.
+    #[must_use]
+    pub fn console(&self, usart: u8) -> Vec<u8> {
+        let of_it = self.consoles.iter().filter(|said| said.usart == usart);
+        of_it.flat_map(|said| said.bytes.iter().copied()).collect()
     }
 
     /// The samples from `from_s` to just before `until_s`.

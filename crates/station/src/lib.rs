@@ -9,6 +9,7 @@ mod board;
 mod catalogue;
 pub mod client;
 pub mod commands;
+mod console;
 mod errand;
 pub mod fault;
 mod guard;
@@ -36,6 +37,7 @@ mod web;
 mod words;
 
 pub use catalogue::{ModeEntry, Reference, ReferenceKind, modes};
+pub use console::readable;
 pub use row::Row;
 pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, ServeError, serve, serve_log};
 pub use target::{

@@ -4,8 +4,10 @@ use crate::board::{Board, ConsoleText, LINK_CONSOLE, Level, LoggedEvent, State};
 use crate::catalogue::{self, ParameterState};
 use crate::client::{Heard, RobotClient};
 use crate::commands::{Fate, Outcome};
+use crate::console::readable;
 use crate::errand::Errand;
-use crate::log::Burst;
+use crate::log::recorder::Entry;
+use crate::log::{Burst, Said};
 use crate::origin::Origin;
 use crate::row::Row;
 use crate::signals::{EARLIER_MS, Sample, TruthLog};
@@ -110,21 +112,33 @@ impl Observer {
         self.board.link(burst);
     }
 
-    /// Puts what the USARTs of an emulated chip said on the board.
-    pub(crate) fn consoles(&self, said: Vec<(u8, String)>) {
-        for (usart, text) in said {
+    /// Puts what the USARTs of an emulated chip said on the board, and records it.
+    pub(crate) fn consoles(&self, t_us: u64, said: Vec<(u8, Vec<u8>)>) {
+        for (usart, bytes) in said {
+            let text = readable(&bytes);
             self.board.push_console(ConsoleText { usart, text });
+            self.board.take(Entry::Said(Said {
+                t_us,
+                usart,
+                to_chip: false,
+                bytes,
+            }));
         }
+    }
+
+    /// Records a line that a person typed to a USART.
+    pub(crate) fn typed(&self, t_us: u64, usart: u8, line: &str) {
+        self.board.take(Entry::Said(Said {
+            t_us,
+            usart,
+            to_chip: true,
+            bytes: line.into(),
+        }));
     }
 
     /// Puts the text of a robot on the board, as it came.
     pub(crate) fn said_in_text(&self, bytes: &[u8]) {
-        let visible = |byte: &u8| match byte {
-            b'\n' | b' '..=b'~' => Some(char::from(*byte)),
-            b'\r' => None,
-            _ => Some('\u{b7}'),
-        };
-        let text: String = bytes.iter().filter_map(visible).collect();
+        let text = readable(bytes);
         if !text.is_empty() {
             let usart = LINK_CONSOLE;
             self.board.push_console(ConsoleText { usart, text });

@@ -228,7 +228,10 @@ impl Session {
     /// Sends a line that a person typed: to a USART of an emulated chip, or to a robot that speaks text.
     fn type_in(&mut self, usart: u8, line: &str) -> Result<(), String> {
         let typed = match self.target.simulation() {
-            Some(chip) => chip.type_in(usart, line),
+            Some(chip) => chip.type_in(usart, line).map(|()| {
+                let now_us = self.target.now_us();
+                self.observer.typed(now_us, usart, line);
+            }),
             None if self.port_gone => Err("the port is gone".into()),
             None if self.client.speaks_text() || self.client.is_mute() => {
                 self.client.type_in(line);
@@ -347,7 +350,7 @@ impl Session {
             let now_us = self.target.now_us();
             if let Some(simulation) = self.target.simulation() {
                 self.observer.truth(to_ms(now_us), simulation.truth());
-                self.observer.consoles(simulation.consoles());
+                self.observer.consoles(now_us, simulation.consoles());
                 if let Some(why) = simulation.ended() {
                     self.observer.note(to_ms(now_us), board::Level::Fault, why);
                 }

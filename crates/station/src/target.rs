@@ -77,8 +77,8 @@ pub trait Simulation {
         None
     }
 
-    /// What the USARTs of an emulated chip have sent since the last call: their numbers and text in which everything is visible.
-    fn consoles(&mut self) -> Vec<(u8, String)> {
+    /// What the USARTs of an emulated chip have sent since the last call, with their numbers.
+    fn consoles(&mut self) -> Vec<(u8, Vec<u8>)> {
         Vec::new()
     }
 

@@ -32,28 +32,9 @@ impl Console {
     }
 }
 
-/// Bytes as text: what cannot be printed is shown as a terminal's caret notation or in hexadecimal.
-pub fn readable(bytes: &[u8]) -> String {
-    let mut text = String::new();
-    for byte in bytes {
-        match *byte {
-            b'\n' => text.push('\n'),
-            b'\r' => {}
-            b' '..=b'~' | b'\t' => text.push(char::from(*byte)),
-            other => text.push_str(&format!("\\x{other:02x}")),
-        }
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn text_stays_and_the_rest_becomes_visible() {
-        assert_eq!(readable(b"on\r\n12\t\x00\xffz"), "on\n12\t\\x00\\xffz");
-    }
 
     #[test]
     fn a_console_nobody_reads_keeps_the_latest_bytes() {

@@ -17,7 +17,7 @@
 //! `Mega::run` runs the chip until something happens that the plant must know of, so that the plant can follow to the same
 //! microsecond before anything else happens: see `sim::emulated`.
 
-pub mod console;
+mod console;
 pub mod firmware;
 pub mod pins;
 

@@ -1,7 +1,7 @@
 //! The log of a run without a window, made when the run is over: what crossed the link goes the way that it takes in a live session.
 
 use super::recorder::{Entry, Recorder};
-use super::{Burst, LogError, Manifest, Outcome};
+use super::{Burst, LogError, Manifest, Outcome, Said};
 use crate::board::{Board, Level};
 use crate::client::{Heard, KnownTable, RobotClient};
 use crate::observer::Observer;
@@ -27,6 +27,8 @@ pub struct Run<'a> {
     pub truths: &'a [(u64, Truth)],
     /// What crossed the link, in order.
     pub link: &'a [Burst],
+    /// What crossed the USARTs of an emulated chip, in order.
+    pub said: &'a [Said],
     /// What a program without a link of ours has told, with its time \[us\], in order.
     pub told: &'a [(u64, FromRobot)],
     /// How it ended.
@@ -51,10 +53,14 @@ pub fn record_run(path: &Path, manifest: &Manifest, run: Run<'_>) -> Result<(), 
     };
     teller.observer.show_scene(run.scene.clone());
     let (mut link, mut told) = (run.link.iter().peekable(), run.told.iter().peekable());
+    let mut said = run.said.iter().peekable();
     let mut state_due_us = 0;
     for (t_us, truth) in run.truths {
         while let Some(burst) = link.next_if(|burst| burst.t_us <= *t_us) {
             teller.burst(burst);
+        }
+        while let Some(said) = said.next_if(|said| said.t_us <= *t_us) {
+            board.take(Entry::Said(said.clone()));
         }
         while let Some((at_us, message)) = told.next_if(|(at_us, _)| at_us <= t_us) {
             teller
@@ -70,6 +76,7 @@ pub fn record_run(path: &Path, manifest: &Manifest, run: Run<'_>) -> Result<(), 
             state_due_us = *t_us + STATE_PERIOD_US;
         }
     }
+    said.for_each(|said| board.take(Entry::Said(said.clone())));
     board.take(Entry::Outcome(run.outcome));
     match board.end_recording() {
         Some(recorder) => recorder.finish(),

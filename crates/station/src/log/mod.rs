@@ -10,6 +10,7 @@
 //! | `/world` | `foxglove.SceneUpdate` | walls and boxes |
 //! | `/scene` | `rumbo.Scene` | what the dashboard draws around the robot |
 //! | `/link/from_robot`, `/link/to_robot` | `rumbo.Bytes` | the raw bytes of the link, base64 |
+//! | `/console` | `rumbo.Console` | what the USARTs of an emulated chip sent, and what a person typed to them, base64 |
 //!
 //! Messages are JSON with JSON schemas, times are the run's own, from 0. A metadata record `manifest` says what ran
 //! ([`Manifest`]); the files it was made of are attached. Chunks are compressed and closed every
@@ -20,12 +21,14 @@ mod manifest;
 mod reader;
 pub(crate) mod recorder;
 mod schema;
+mod summary;
 mod writer;
 
 pub use headless::{Run, record_run};
 pub use manifest::{Kind, Manifest, Outcome};
 pub use reader::Log;
 pub use recorder::Recording;
+pub use summary::Summary;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -37,6 +40,19 @@ pub struct Burst {
     pub t_us: u64,
     /// To the robot, or from it.
     pub to_robot: bool,
+    /// What.
+    pub bytes: Vec<u8>,
+}
+
+/// Bytes of a USART of an emulated chip.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// When, in the target's time \[us\].
+    pub t_us: u64,
+    /// Which USART.
+    pub usart: u8,
+    /// Typed by a person, or sent by the chip.
+    pub to_chip: bool,
     /// What.
     pub bytes: Vec<u8>,
 }

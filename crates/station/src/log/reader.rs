@@ -4,7 +4,7 @@
 //! made of the original program's CSV are read too, as far as their signals have a place in a [`Row`].
 
 use super::schema::Topic;
-use super::{Burst, LogError, Manifest, Outcome};
+use super::{Burst, LogError, Manifest, Outcome, Said};
 use crate::board::{Level, LoggedEvent, State};
 use crate::row::Row;
 use crate::target::Scene;
@@ -42,6 +42,8 @@ pub struct Log {
     pub(crate) parameters: Vec<(i64, BTreeMap<String, f32>)>,
     /// What crossed the link, in order.
     pub link: Vec<Burst>,
+    /// What crossed the USARTs of an emulated chip, in order.
+    pub said: Vec<Said>,
     /// Why the log ends early, where it does.
     pub cut: Option<String>,
 }
@@ -135,7 +137,9 @@ impl Log {
             match record.map_err(|error| error.to_string())? {
                 Record::Channel(channel) => {
                     let known = match Topic::find(&channel.topic) {
-                        Some(Topic::FromRobot | Topic::ToRobot) if !with_link => None,
+                        Some(Topic::FromRobot | Topic::ToRobot | Topic::Console) if !with_link => {
+                            None
+                        }
                         Some(topic) => Some(Channel::Ours(topic)),
                         None => (channel.topic == IMPORTED).then_some(Channel::Imported),
                     };
@@ -195,13 +199,23 @@ impl Log {
             }
             Topic::FromRobot | Topic::ToRobot => {
                 let Bytes { data } = serde_json::from_slice(data)?;
-                let bytes = STANDARD
-                    .decode(data.as_bytes())
-                    .map_err(serde::de::Error::custom)?;
                 self.link.push(Burst {
                     t_us,
                     to_robot: topic == Topic::ToRobot,
-                    bytes,
+                    bytes: decoded(&data)?,
+                });
+            }
+            Topic::Console => {
+                let Console {
+                    usart,
+                    to_chip,
+                    data,
+                } = serde_json::from_slice(data)?;
+                self.said.push(Said {
+                    t_us,
+                    usart,
+                    to_chip,
+                    bytes: decoded(&data)?,
                 });
             }
             // Made of what the others hold.
@@ -223,13 +237,27 @@ struct Bytes<'a> {
 }
 
 #[derive(Deserialize)]
-struct Said {
+struct Console<'a> {
+    usart: u8,
+    to_chip: bool,
+    #[serde(borrow)]
+    data: Cow<'a, str>,
+}
+
+fn decoded(data: &str) -> serde_json::Result<Vec<u8>> {
+    STANDARD
+        .decode(data.as_bytes())
+        .map_err(serde::de::Error::custom)
+}
+
+#[derive(Deserialize)]
+struct Happened {
     level: u8,
     message: String,
     name: String,
 }
 
-fn event(t_ms: i64, said: Said) -> LoggedEvent {
+fn event(t_ms: i64, said: Happened) -> LoggedEvent {
     let level = match (said.level, said.name.as_str()) {
         (_, "good") => Level::Good,
         (3, _) => Level::Warning,

@@ -4,7 +4,7 @@
 //! ([`Recorder::trouble`]), and the robot goes on.
 
 use super::writer::LogWriter;
-use super::{Burst, LogError, Manifest, Outcome};
+use super::{Burst, LogError, Manifest, Outcome, Said};
 use crate::board::{LoggedEvent, State};
 use crate::catalogue::ParameterState;
 use crate::row::Row;
@@ -34,6 +34,7 @@ pub struct Recording {
 #[derive(Debug)]
 pub(crate) enum Entry {
     Burst(Burst),
+    Said(Said),
     Rows(Vec<Row>),
     Event(LoggedEvent),
     Scene(Option<Box<Scene>>),
@@ -228,6 +229,7 @@ fn put(log: &mut LogWriter<BufWriter<File>>, entry: Entry, now_us: &mut u64) -> 
             *now_us = burst.t_us;
             log.burst(&burst)
         }
+        Entry::Said(said) => log.said(&said),
         Entry::Rows(rows) => rows.iter().try_for_each(|row| log.row(row)),
         Entry::Event(event) => log.event(&event),
         Entry::State(state) => log.state(&state),

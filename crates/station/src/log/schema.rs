@@ -16,10 +16,11 @@ pub(super) enum Topic {
     Scene,
     FromRobot,
     ToRobot,
+    Console,
 }
 
 impl Topic {
-    pub(super) const ALL: [Self; 10] = [
+    pub(super) const ALL: [Self; 11] = [
         Self::Telemetry,
         Self::State,
         Self::Parameters,
@@ -30,6 +31,7 @@ impl Topic {
         Self::Scene,
         Self::FromRobot,
         Self::ToRobot,
+        Self::Console,
     ];
 
     /// Its name in the log.
@@ -45,6 +47,7 @@ impl Topic {
             Self::Scene => "/scene",
             Self::FromRobot => "/link/from_robot",
             Self::ToRobot => "/link/to_robot",
+            Self::Console => "/console",
         }
     }
 
@@ -65,6 +68,7 @@ impl Topic {
             // What it holds is for the dashboard.
             Self::Scene => ("rumbo.Scene", object("rumbo.Scene", json!({}))),
             Self::FromRobot | Self::ToRobot => ("rumbo.Bytes", bytes()),
+            Self::Console => ("rumbo.Console", console()),
         }
     }
 }
@@ -101,6 +105,8 @@ fn state() -> Value {
         "frames_lost",
         "dropped",
         "unacknowledged",
+        "clock_offset_ms",
+        "clock_fast_ppm",
     ];
     let mut link: Map<String, Value> = link
         .map(|name| (name.to_owned(), number()))
@@ -183,5 +189,13 @@ fn bytes() -> Value {
     object(
         "rumbo.Bytes",
         json!({ "data": { "type": "string", "contentEncoding": "base64" } }),
+    )
+}
+
+fn console() -> Value {
+    object(
+        "rumbo.Console",
+        json!({ "usart": { "type": "integer" }, "to_chip": { "type": "boolean" },
+            "data": { "type": "string", "contentEncoding": "base64" } }),
     )
 }

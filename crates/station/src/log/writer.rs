@@ -1,7 +1,7 @@
 //! Writes a log: manifest and files first, then messages as they come.
 
 use super::schema::Topic;
-use super::{Burst, Manifest, Outcome};
+use super::{Burst, Manifest, Outcome, Said};
 use crate::board::{Level, LoggedEvent, State};
 use crate::catalogue::ParameterState;
 use crate::row::Row;
@@ -90,6 +90,13 @@ impl<W: Write + Seek> LogWriter<W> {
         )
     }
 
+    /// What a USART sent, or was sent.
+    pub(super) fn said(&mut self, said: &Said) -> McapResult<()> {
+        let data = STANDARD.encode(&said.bytes);
+        let message = json!({ "usart": said.usart, "to_chip": said.to_chip, "data": data });
+        self.put_json(Topic::Console, said.t_us, &message)
+    }
+
     /// The signals of one instant, and the poses in them.
     pub(super) fn row(&mut self, row: &Row) -> McapResult<()> {
         let t_us = to_us(row.t_ms);
@@ -135,12 +142,12 @@ impl<W: Write + Seek> LogWriter<W> {
 
     /// The slow state.
     pub(super) fn state(&mut self, state: &State) -> McapResult<()> {
-        match serde_json::to_vec(state) {
-            Ok(message) => self.put(
-                Topic::State,
-                to_us((state.t_s * 1e3).round() as i64),
-                &message,
-            ),
+        match serde_json::to_value(state) {
+            Ok(mut message) => {
+                leave_out_unknown(&mut message);
+                let t_us = to_us((state.t_s * 1e3).round() as i64);
+                self.put_json(Topic::State, t_us, &message)
+            }
             Err(_) => Ok(()),
         }
     }
@@ -189,6 +196,14 @@ impl<W: Write + Seek> LogWriter<W> {
     pub(super) fn finish(mut self) -> McapResult<()> {
         self.log.finish()?;
         self.log.into_inner().flush().map_err(Into::into)
+    }
+}
+
+/// What is not known is left out, as in all messages: viewers take a field for what its schema says.
+fn leave_out_unknown(message: &mut Value) {
+    if let Value::Object(fields) = message {
+        fields.retain(|_, value| !value.is_null());
+        fields.values_mut().for_each(leave_out_unknown);
     }
 }
 
