@@ -4,6 +4,7 @@
  *
  * For tests and for the browser's console, `window.rumbo` gives the signals as plotted.
  */
+import { CheckupDialog } from './checkup_dialog.js';
 import { Consoles } from './consoles.js';
 import { create, element, onFrame, setText } from './dom.js';
 import { EventList } from './events.js';
@@ -37,6 +38,8 @@ languages.addEventListener('change', () => speak(languages.value));
 const store = new Store();
 /** @type {State | null} */
 let state = null;
+/** The sonars that the robot carries, by number. */
+let sonars = [0, 1, 2];
 
 /** @param {import('./types.js').Order} order */
 function send(order) {
@@ -88,6 +91,8 @@ plots.edit = plotDialog.open.bind(plotDialog);
 element('add-plot', HTMLButtonElement).addEventListener('click', () => plotDialog.open(null));
 const layoutDialog = new LayoutDialog(plots);
 element('layouts', HTMLButtonElement).addEventListener('click', () => layoutDialog.open());
+const checkup = new CheckupDialog(send, store, () => state);
+element('checkup', HTMLButtonElement).addEventListener('click', () => checkup.open(sonars));
 const help = makeHelp();
 element('help', HTMLButtonElement).addEventListener('click', help);
 addEventListener('keydown', (event) => {
@@ -130,6 +135,7 @@ function receive(message) {
       if (message.run !== consoleRun) consoles.clear();
       header.setScene(message.scene);
       map.setScene(message.scene);
+      sonars = message.scene?.sonars.map(({ id }) => id) ?? [0, 1, 2];
       panel.setScene(message.scene);
       stateLine.setScene(message.scene);
       document.body.classList.toggle('simulated', message.scene !== null);
@@ -142,6 +148,7 @@ function receive(message) {
       stateLine.show(state);
       plots.setMode(state.robot.mode);
       machine.setMode(state.robot.mode);
+      checkup.meet(sonars);
       meter.update(state);
       map.target = state.robot.armed && state.robot.errand.route && state.robot.errand.end === null ? state.robot.reference : null;
       map.setErrand(state.robot.errand);

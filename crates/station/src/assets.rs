@@ -26,6 +26,8 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "style.css": CSS,
     "icon.svg": SVG,
     "src/band.js": SCRIPT,
+    "src/checkup.js": SCRIPT,
+    "src/checkup_dialog.js": SCRIPT,
     "src/consoles.js": SCRIPT,
     "src/dialog.js": SCRIPT,
     "src/dom.js": SCRIPT,

@@ -3,4 +3,41 @@
 
 /** @type {Record<string, string>} */
 export const GUIDE = {
+  'Check the robot': 'Comprobar el robot', 'Check a new robot step by step: motors, encoders, sonars, servo': 'Comprueba paso a paso un robot nuevo: motores, encoders, sonares, servo',
+  'left|wheel': 'izquierda', 'right|wheel': 'derecha', 'left|sonar': 'izquierdo', 'right|sonar': 'derecho', 'front|sonar': 'frontal',
+  'Wheels in the air': 'Ruedas en el aire', 'Left motor and encoder': 'Motor y encoder izquierdos', 'Right motor and encoder': 'Motor y encoder derechos', 'Sonar: {}': 'Sonar {}', 'Servo': 'Servo',
+  'Put the robot on a block so that both wheels hang free. The page arms the robot and turns one wheel at a time; STOP works at any moment.':
+    'Pon el robot sobre un taco, con las dos ruedas libres. La página arma el robot y gira una rueda cada vez; PARAR vale en todo momento.',
+  'The wheels hang free': 'Las ruedas están libres', 'The {} wheel will turn forward for a moment. Watch it.': 'La rueda {} va a girar hacia delante un momento. Mírala.', 'Turn it': 'Girarla', 'turning…': 'girando…',
+  'The encoders counted: left up to {} rpm, right up to {} rpm. What did you see?': 'Los encoders contaron: izquierdo hasta {} rpm, derecho hasta {} rpm. ¿Qué has visto?',
+  'the {} wheel turned forward': 'la rueda {} giró hacia delante', 'the {} wheel turned backward': 'la rueda {} giró hacia atrás', 'the other wheel turned': 'giró la otra rueda', 'no wheel turned': 'no giró ninguna',
+  'Next': 'Siguiente', 'Again': 'Otra vez', 'Skip': 'Saltar', 'Begin again': 'Empezar de nuevo', 'Hold a hand 10 to 30 cm before the {} sonar.': 'Pon una mano de 10 a 30 cm delante del sonar {}.',
+  'The servo is told to look straight ahead, {}°. Where does the front sonar look?': 'Al servo se le manda mirar al frente, {}°. ¿Adónde mira el sonar frontal?',
+  'straight ahead': 'al frente', 'to the left': 'a la izquierda', 'to the right': 'a la derecha',
+  'There is something to put right:': 'Hay algo que arreglar:', 'All that was checked works. Put the robot on the floor, and calibrate it.': 'Todo lo comprobado funciona. Pon el robot en el suelo y calíbralo.',
+  'The {} wheel turns forward, and its encoder counts.': 'La rueda {} gira hacia delante y su encoder cuenta.',
+  'The {} wheel turns backward. Swap the two wires of its motor at the driver.': 'La rueda {} gira hacia atrás. Intercambia los dos cables de su motor en el driver.',
+  'The {} wheel does not turn. See that the battery is on, that the driver has its supply and its enable wire, and that the motor\'s two wires are tight.':
+    'La rueda {} no gira. Mira que la batería esté conectada, que el driver tenga alimentación y su cable de habilitación, y que los dos cables del motor estén firmes.',
+  'An encoder counts, although no wheel turns: its signal picks up noise. See its ground wire and keep it away from the motors\' wires.':
+    'Un encoder cuenta aunque no gira ninguna rueda: su señal capta ruido. Mira su cable de masa y sepáralo de los cables de los motores.',
+  'Motors and encoders are both exchanged. Swap the two motors at the driver, and the two encoders\' signal wires.':
+    'Motores y encoders están cambiados. Intercambia los dos motores en el driver y los cables de señal de los dos encoders.',
+  'The two motors are exchanged. Swap them at the driver\'s outputs.': 'Los dos motores están cambiados. Intercámbialos en las salidas del driver.',
+  'The two encoders are exchanged. Swap their signal wires at the Mega.': 'Los dos encoders están cambiados. Intercambia sus cables de señal en el Mega.',
+  'The {} encoder is silent. See its supply, its signal wire, and the gap between its sensor and its disc.':
+    'El encoder de la rueda {} calla. Mira su alimentación, su cable de señal y la separación entre el sensor y el disco.',
+  'Both encoders count, although one wheel is driven. See that the other wheel hangs free, and the encoders\' ground wires.':
+    'Cuentan los dos encoders aunque solo se mueve una rueda. Mira que la otra esté libre, y los cables de masa de los encoders.',
+  'The {} sonar sees the hand.': 'El sonar {} ve la mano.',
+  'The {} sonar sees the hand instead of the {} one. Swap their trigger and echo wires.': 'El sonar {} ve la mano en lugar del {}. Intercambia sus cables de disparo y eco.',
+  'The {} sonar gives no reading. See its 5 V supply, its trigger wire and its echo wire.': 'El sonar {} no da lecturas. Mira su alimentación de 5 V y sus cables de disparo y eco.',
+  'The {} sonar does not see the hand. See that it looks where it should, and that nothing stands in its beam.': 'El sonar {} no ve la mano. Mira que apunte adonde debe y que no haya nada en su haz.',
+  'The servo looks straight ahead.': 'El servo mira al frente.',
+  'The servo looks to the left. Take its horn off and put it back a tooth further to the right.': 'El servo mira a la izquierda. Quita su brazo y ponlo un diente más a la derecha.',
+  'The servo looks to the right. Take its horn off and put it back a tooth further to the left.': 'El servo mira a la derecha. Quita su brazo y ponlo un diente más a la izquierda.',
+  'The robot does not answer. See its power, the cable, and that the speed of the line is the same at both ends.': 'El robot no responde. Mira su alimentación, el cable y que la velocidad de la línea sea la misma en los dos extremos.',
+  'Telemetry comes {} times a second, 25 are expected. The line is too slow, or bytes are lost.': 'La telemetría llega {} veces por segundo, se esperan 25. La línea es demasiado lenta o se pierden bytes.',
+  '{} frames were damaged. See the ground wire between robot and adapter, and the distance of a Bluetooth module.': 'Hubo {} tramas dañadas. Mira la masa entre el robot y el adaptador, y la distancia del módulo Bluetooth.',
+  'The link works: telemetry {} times a second.': 'El enlace funciona: telemetría {} veces por segundo.',
 };

@@ -1,0 +1,84 @@
+// @ts-check
+/** The first check of a robot: what each finding means, and the guided page on the simulated robot. */
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { folder, open } from './dashboard.mjs';
+
+/** @type {Awaited<ReturnType<typeof open>>} */
+let dashboard;
+/** @type {import('playwright-core').Page} */
+let page;
+
+before(async () => {
+  dashboard = await open(['lab', '--scenario', 'manual-curve-air-forward', '--out', folder()]);
+  page = dashboard.page;
+  await page.waitForSelector('#connection.good');
+});
+
+after(() => dashboard?.close());
+
+/** A judgement of the page's. @param {string} name @param {unknown[]} values @returns {Promise<any>} */
+const judged = (name, ...values) => page.evaluate(async ({ name, values, module }) => (await import(module))[name](...values), { name, values, module: '/src/checkup.js' });
+
+test('each pair of what was counted and what was seen has its remedy', async () => {
+  for (const [count, seen, remedy] of [
+    ['own', 'backward', /left wheel turns backward\. Swap the two wires of its motor/], ['other', 'forward', /two encoders are exchanged/], ['other', 'other', /two motors are exchanged/],
+    ['own', 'other', /Motors and encoders are both exchanged/], ['none', 'forward', /left encoder is silent/], ['none', 'none', /left wheel does not turn/], ['own', 'none', /picks up noise/],
+    ['both', 'forward', /Both encoders count/],
+  ]) {
+    const verdict = await judged('judgeMotor', 'left', count, seen);
+    assert.equal(verdict.good, false);
+    assert.match(verdict.text, /** @type {RegExp} */ (remedy));
+  }
+  assert.equal((await judged('judgeMotor', 'right', 'own', 'forward')).good, true);
+  assert.deepEqual([await judged('counted', 'left', 80, 0), await judged('counted', 'right', 80, 0), await judged('counted', 'left', 1, 2), await judged('counted', 'left', 50, 50)], ['own', 'other', 'none', 'both']);
+});
+
+test('a hand before a sonar is found, also by the wrong one', async () => {
+  assert.equal((await judged('judgeSonar', 0, [20, 'clear', 150], ['clear', 'clear', 150])).good, true);
+  assert.match((await judged('judgeSonar', 0, ['clear', 150, 20], ['clear', 150, 180])).text, /front sonar sees the hand instead of the left one\. Swap/);
+  assert.equal(await judged('judgeSonar', 0, ['clear', 15, 150], ['clear', 15, 150]), null, 'what stood there before is no hand');
+  assert.match((await judged('sonarInVain', 1, null)).text, /right sonar gives no reading/);
+});
+
+test('the guide turns one wheel at a time, measures it, and leaves the robot disarmed', async () => {
+  const step = page.locator('#checkup-step');
+  await page.locator('#checkup').click();
+  await step.getByRole('button', { name: 'The wheels hang free' }).click();
+  await step.getByText('The link works').waitFor();
+  await step.getByRole('button', { name: 'Next' }).click();
+  for (const side of ['left', 'right']) {
+    await step.getByRole('button', { name: 'Turn it' }).click();
+    const other = side === 'left' ? 'right' : 'left';
+    await step.getByText(new RegExp(`${side} up to [1-9]\\d+ rpm`)).waitFor();
+    assert.match(await step.innerText(), new RegExp(`${other} up to 0 rpm`));
+    await step.getByRole('button', { name: `the ${side} wheel turned forward` }).click();
+    await step.getByText(`The ${side} wheel turns forward, and its encoder counts.`).waitFor();
+    await step.getByRole('button', { name: 'Next' }).click();
+  }
+  for (;;) {
+    const skip = step.getByRole('button', { name: 'Skip' });
+    if (!await skip.isVisible()) break;
+    await skip.click();
+  }
+  await step.getByRole('button', { name: 'to the left', exact: true }).click();
+  await step.getByText('put it back a tooth further to the right').waitFor();
+  await step.getByRole('button', { name: 'Next' }).click();
+  await step.getByText('There is something to put right:').waitFor();
+  assert.equal(await step.locator('li.failed').count(), 1);
+  await page.waitForFunction(() => !(/** @type {any} */ (window).rumbo.state().robot.armed));
+});
+
+test('STOP can be pressed in the middle of it, and closing lets go', async () => {
+  const step = page.locator('#checkup-step');
+  await step.getByRole('button', { name: 'Begin again' }).click();
+  await step.getByRole('button', { name: 'The wheels hang free' }).click();
+  await step.getByRole('button', { name: 'Next' }).click();
+  await step.getByRole('button', { name: 'Turn it' }).click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.armed);
+  await page.locator('#stop').click();
+  await page.waitForFunction(() => !(/** @type {any} */ (window).rumbo.state().robot.armed));
+  await page.keyboard.press('Escape');
+  await page.locator('#checkup-dialog').waitFor({ state: 'hidden' });
+  assert.deepEqual(dashboard.complaints, []);
+});
