@@ -128,6 +128,11 @@ fn a_debugger_reads_and_writes_registers_and_memories() {
     assert_eq!(client.ask("m840000,3"), "1e9801");
     assert_eq!(client.ask("m80005d,2"), "ff21");
     assert!(client.ask("m900000,1").starts_with('E'));
+    // The EEPROM, erased up to its last byte.
+    assert_eq!(client.ask("M810ffe,2:1234"), "OK");
+    assert_eq!(client.ask("m810ffd,3"), "ff1234");
+    assert_eq!(client.ask("m810fff,2"), "34");
+    assert!(client.ask("m811000,1").starts_with('E'));
     assert_eq!(client.ask("M800400,2:abcd"), "OK");
     assert_eq!(client.ask("m800400,2"), "abcd");
     // r0 to r31 as the packet has them, r1 changed.
@@ -139,6 +144,7 @@ fn a_debugger_reads_and_writes_registers_and_memories() {
     let (farewell, chip) = thread.join().unwrap();
     assert_eq!(farewell, Farewell::Ended);
     assert_eq!(chip.cpu().registers()[1], 0x7F);
+    assert_eq!(chip.devices().eeprom()[0xFFE..], [0x12, 0x34]);
 }
 
 #[test]
@@ -206,6 +212,8 @@ fn avr_gdb_itself_breaks_steps_and_reads() {
         "print $r16".to_owned(),
         "print/x $sp".to_owned(),
         "x/1xb 0x800300".to_owned(),
+        "set {char}0x810010 = 0x5a".to_owned(),
+        "x/2xb 0x810010".to_owned(),
         "stepi".to_owned(),
         "print $pc".to_owned(),
         "monitor cycle".to_owned(),
@@ -232,6 +240,7 @@ fn avr_gdb_itself_breaks_steps_and_reads() {
         "$1 = 2",
         "$2 = 0x21ff",
         "0x800300:\t0x02",
+        "0x810010:\t0x5a\t0xff",
         "$3 = (void (*)()) 0x2",
         "\n11\n",
     ] {

@@ -10,6 +10,7 @@
 use super::Machine;
 use super::arch::{Avr, AvrRegisters};
 use crate::cpu::{FLASH_BYTES, Stopped};
+use crate::image::EEPROM_BYTES;
 use crate::observe::Watchpoint;
 use crate::status::Status;
 use crate::verdict::Verdict;
@@ -35,6 +36,7 @@ use std::ops::Range;
 
 const FLASH: Range<u32> = 0..FLASH_BYTES as u32;
 const DATA: Range<u32> = 0x80_0000..0x80_2200;
+const EEPROM: Range<u32> = 0x81_0000..0x81_0000 + EEPROM_BYTES as u32;
 const SIGNATURE: Range<u32> = 0x84_0000..0x84_0003;
 /// Of the ATmega2560 (DS40002549, section 29.3).
 const SIGNATURE_BYTES: [u8; 3] = [0x1E, 0x98, 0x01];
@@ -146,6 +148,9 @@ impl<'a, M: Machine> Debugger<'a, M> {
             chip.cpu().flash().get(address as usize).copied()
         } else if DATA.contains(&address) {
             Some(chip.read_data((address - DATA.start) as u16))
+        } else if EEPROM.contains(&address) {
+            let index = (address - EEPROM.start) as usize;
+            chip.devices().eeprom().get(index).copied()
         } else if SIGNATURE.contains(&address) {
             let index = (address - SIGNATURE.start) as usize;
             SIGNATURE_BYTES.get(index).copied()
@@ -159,6 +164,9 @@ impl<'a, M: Machine> Debugger<'a, M> {
         let chip = self.machine.chip_mut();
         if DATA.contains(&address) {
             chip.write_data((address - DATA.start) as u16, value);
+        } else if EEPROM.contains(&address) {
+            let index = (address - EEPROM.start) as usize;
+            chip.devices_mut().eeprom_mut()[index] = value;
         } else if FLASH.contains(&address) {
             let word = address / 2;
             let at = 2 * word as usize;
