@@ -243,3 +243,22 @@ fn a_divided_clock_slows_the_chip_and_not_what_is_around_it() {
     chip.run_until(1_400_000);
     assert_eq!(read(&mut chip, 0x61), 0x03, "set anew by the program");
 }
+
+#[test]
+fn a_line_that_falls_while_the_crystal_starts_does_not_stop_the_chip() {
+    let mut chip = sleeper(2);
+    write(&mut chip, 0xC1, 0x10);
+    // Awake for longer than a frame of the fastest rate, in all.
+    for round in 0..20 {
+        for (after, level) in [(0, true), (50_000, false)] {
+            let at = 1_000 + 100_000 * round + after;
+            chip.input(at, Input::Pin(pin('D', 0), Some(level)));
+        }
+    }
+    let last = 1_000 + 100_000 * 19;
+    let (usart, byte, baud) = (0, 0x55, 1_000_000);
+    chip.input(last + 5_000, Input::Serial { usart, byte, baud });
+    chip.run_until(last + 90_000);
+    assert!(chip.cpu().is_sleeping());
+    assert!(chip.cycle() < last + 110_000);
+}

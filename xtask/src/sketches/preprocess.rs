@@ -93,8 +93,10 @@ fn blanked(text: &str) -> String {
     let mut rest = text;
     let mut line_start = true;
     while let Some(character) = rest.chars().next() {
-        let length = if rest.starts_with("//") || (line_start && character == '#') {
+        let length = if rest.starts_with("//") {
             rest.find('\n').unwrap_or(rest.len())
+        } else if line_start && character == '#' {
+            directive(rest)
         } else if rest.starts_with("/*") {
             rest.find("*/").map_or(rest.len(), |end| end + 2)
         } else if character == '"' || character == '\'' {
@@ -110,6 +112,13 @@ fn blanked(text: &str) -> String {
         rest = after;
     }
     out
+}
+
+/// Length of a preprocessor line, with those that a backslash joins to it.
+fn directive(text: &str) -> usize {
+    let mut ends = text.match_indices('\n').map(|(at, _)| at);
+    let end = ends.find(|at| !text[..*at].trim_end_matches('\r').ends_with('\\'));
+    end.unwrap_or(text.len())
 }
 
 /// Length of a literal with its quotes.
@@ -129,6 +138,14 @@ fn literal(text: &str, quote: char) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_macro_of_several_lines_is_no_function() {
+        let text =
+            "#line 1 \"a.ino\"\n#define BOTH(a) \\\n  void a() { \\\n    b(); }\nint f() { }\n";
+        let made = with_declarations(text);
+        assert!(made.contains("b(); }\nint f();\n#line 4"), "{made}");
+    }
 
     #[test]
     fn every_function_is_declared_before_the_first() {

@@ -13,6 +13,16 @@ const SPH: u16 = 0x5E;
 const SREG: u16 = 0x5F;
 /// Bytes by which a function moves the stack pointer at most.
 const LARGEST_FRAME: u16 = 1024;
+/// Within these cycles a program writes both halves of the stack pointer: the compiler puts a write of SREG in between.
+const HALVES_CYCLES: u64 = 4;
+
+/// Where the program began to set the stack pointer.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StackMove {
+    cycle: u64,
+    from: u16,
+    known: bool,
+}
 
 impl Cpu {
     #[inline(always)]
@@ -87,8 +97,8 @@ impl Cpu {
             0..32 => self.registers[usize::from(address) & 31] = value,
             RAMPZ => self.rampz = value & 3,
             EIND => self.eind = value & 1,
-            SPL => self.move_stack(u16::from_le_bytes([value, high])),
-            SPH => self.move_stack(u16::from_le_bytes([low, value])),
+            SPL => self.move_stack(u16::from_le_bytes([value, high]), at.cycle),
+            SPH => self.move_stack(u16::from_le_bytes([low, value]), at.cycle),
             SREG => {
                 let enabled_before = self.status.interrupts;
                 self.status = Status::from_bits(value);
@@ -102,15 +112,21 @@ impl Cpu {
     }
 
     /// The program sets the stack pointer. A frame is not larger than [`LARGEST_FRAME`]: beyond that it is another stack, such
-    /// as a scheduler's tasks have among the data, and nobody knows where it must end.
-    fn move_stack(&mut self, to: u16) {
-        let from = self.stack_pointer();
+    /// as a scheduler's tasks have among the data, and nobody knows where it must end. The two halves of a pointer are one move: what
+    /// it is in between does not count.
+    fn move_stack(&mut self, to: u16, cycle: u64) {
+        let start = match self.stack_move {
+            Some(start) if cycle <= start.cycle + HALVES_CYCLES => start,
+            _ => StackMove {
+                cycle,
+                from: self.stack_pointer(),
+                known: self.stack_known,
+            },
+        };
+        self.stack_move = Some(start);
         self.set_stack_pointer(to);
-        if to >= self.stack_floor {
-            self.stack_known = true;
-        } else if from.wrapping_sub(to) > LARGEST_FRAME {
-            self.stack_known = false;
-        }
+        let other = start.from.wrapping_sub(to) > LARGEST_FRAME;
+        self.stack_known = to >= self.stack_floor || start.known && !other;
     }
 
     #[inline(always)]

@@ -100,6 +100,7 @@ pub struct Cpu {
     stack_floor: u16,
     /// The stack is the one that ends there.
     stack_known: bool,
+    stack_move: Option<bus::StackMove>,
     sleeping: bool,
     /// SPMCSR was written: LPM may read something else than the program.
     programming: bool,
@@ -141,6 +142,7 @@ impl Cpu {
             breakpoints: Vec::new(),
             stack_floor: SRAM_START,
             stack_known: true,
+            stack_move: None,
             sleeping: false,
             programming: false,
             shadow: false,

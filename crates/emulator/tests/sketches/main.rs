@@ -5,3 +5,4 @@ mod board;
 mod memory;
 mod pins;
 mod serial;
+mod students;

@@ -156,12 +156,11 @@ impl Receiver {
     pub(super) fn next(&self, format: Format, rate: Rate) -> Option<u64> {
         match self.phase {
             Phase::Idle { .. } => None,
-            Phase::Frame { first } => Some(sample(
-                first,
-                format.received(),
-                rate.votes().len() - 1,
-                rate,
-            )),
+            Phase::Frame { first } => {
+                let end = sample(first, format.received(), rate.votes().len() - 1, rate);
+                // A frame that begins while the clock is still coming up waits for it.
+                Some(end.max(self.sampled))
+            }
         }
     }
 
