@@ -26,6 +26,8 @@ use std::process::ExitCode;
 /// Where the figures go, seen from the root and from a page.
 const FOLDER: &str = "docs/img/theory";
 const FROM_PAGE: &str = "../img/theory";
+/// The same from a page of docs/ itself, whose name begins with `../`.
+const FROM_ABOVE: &str = "img/theory";
 
 /// What a file should hold.
 struct File {
@@ -64,16 +66,23 @@ fn files(root: &Path, only: &[&str]) -> Result<Vec<File>, String> {
             println!("{}: its scenarios do not exist yet", page.name);
             continue;
         };
+        let folder = match page.file.strip_prefix("../") {
+            Some(_) => FROM_ABOVE,
+            None => FROM_PAGE,
+        };
         let mut section = String::new();
         for (name, alt, svg) in made.figures {
-            section += &format!("![{alt}]({FROM_PAGE}/{name}.svg)\n\n");
+            section += &format!("![{alt}]({folder}/{name}.svg)\n\n");
             files.push(File {
                 path: format!("{FOLDER}/{name}.svg"),
                 text: svg,
             });
         }
         section += &made.words;
-        let path = format!("docs/theory/{}", page.file);
+        let path = match page.file.strip_prefix("../") {
+            Some(file) => format!("docs/{file}"),
+            None => format!("docs/theory/{}", page.file),
+        };
         let page_text = match files.iter().position(|file| file.path == path) {
             Some(index) => files.remove(index).text,
             None => read(root, &path)?,

@@ -1,10 +1,11 @@
-//! What each page of docs/theory shows.
+//! What each page of docs/theory shows, and docs/wiring.md.
 
 mod baseline;
 mod manual;
 mod walls;
 mod ways;
 mod wheels;
+mod wiring;
 
 use crate::chart::{Chart, Curve, Legend, ORIGINAL, OURS, THIRD, map, over_time, svg};
 use crate::runs::{self, Change, Runs, runs};
@@ -44,6 +45,7 @@ pub(crate) const PAGES: &[Page] = &[
     page("mode8-goals", "original.md", ways::mode8_goals),
     page("mode8-obstacles", "original.md", ways::mode8_obstacles),
     page("original", "original.md", baseline::original),
+    page("wiring", "../wiring.md", wiring::wiring),
 ];
 
 const fn page(
