@@ -4,6 +4,7 @@
  *
  * For tests and for the browser's console, `window.rumbo` gives the signals as plotted.
  */
+import { CalibrationDialog } from './calibration_dialog.js';
 import { CheckupDialog } from './checkup_dialog.js';
 import { Consoles } from './consoles.js';
 import { create, element, onFrame, setText } from './dom.js';
@@ -93,6 +94,8 @@ const layoutDialog = new LayoutDialog(plots);
 element('layouts', HTMLButtonElement).addEventListener('click', () => layoutDialog.open());
 const checkup = new CheckupDialog(send, store, () => state);
 element('checkup', HTMLButtonElement).addEventListener('click', () => checkup.open(sonars));
+const calibration = new CalibrationDialog(send);
+element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
 const help = makeHelp();
 element('help', HTMLButtonElement).addEventListener('click', help);
 addEventListener('keydown', (event) => {
@@ -149,6 +152,7 @@ function receive(message) {
       plots.setMode(state.robot.mode);
       machine.setMode(state.robot.mode);
       checkup.meet(sonars);
+      calibration.show(state);
       meter.update(state);
       map.target = state.robot.armed && state.robot.errand.route && state.robot.errand.end === null ? state.robot.reference : null;
       map.setErrand(state.robot.errand);
@@ -157,6 +161,7 @@ function receive(message) {
       break;
     case 'parameters':
       parameters.show(message.parameters);
+      calibration.setParameters(message.parameters);
       break;
     case 'events':
       events.add(message.events);

@@ -58,11 +58,14 @@
  * @property {[number, number, number] | null} from Where it stood when it was armed: x, y [m] and heading [rad].
  * @property {'reached' | 'unreachable' | null} end
  *
+ * @typedef {{rows: {name: string, found: number, standard_error: number | null}[], parameters: [number, number][]}} Findings Of a calibration.
+ *
  * @typedef {object} State
  * @property {number} t_s
  * @property {boolean} simulated
  * @property {number} speed
  * @property {number} achieved_speed
+ * @property {{phase: 'running', since_s: number} | {phase: 'done', findings: Findings} | {phase: 'failed', why: string}} [calibration]
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
  *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number}} link
@@ -88,7 +91,7 @@
  *
  * @typedef {'viewer' | 'free' | 'driver' | 'passenger'} Seat Who has control, as far as this page is concerned.
  *
- * @typedef {{type: 'stop' | 'take_control' | 'arm' | 'disarm' | 'clear_fault' | 'reset_params' | 'save_params' | 'reset_pose'}
+ * @typedef {{type: 'stop' | 'take_control' | 'arm' | 'disarm' | 'clear_fault' | 'reset_params' | 'save_params' | 'reset_pose' | 'calibrate'}
  *   | {type: 'mode', mode: number}
  *   | {type: 'reference', value: number}
  *   | {type: 'wheel_reference', left: number, right: number}

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::output::{self, figure};
 use rumbo_scenario::calibrate::{self, Calibration, Row};
 use rumbo_scenario::files::{Library, Overrides, RobotFile, Setup};
+use rumbo_station::{Extras, Finding, Findings, GuestLink};
 use serde::Serialize;
 use std::path::Path;
 
@@ -22,6 +23,52 @@ struct Report<'a> {
     quantities: &'a [Row],
     parameters: Vec<(&'static str, f64)>,
     written: Option<&'a Path>,
+}
+
+/// The robot at the other end of the dashboard's link.
+struct Guest<'a>(&'a mut GuestLink);
+
+impl calibrate::Linked for Guest<'_> {
+    fn now_us(&self) -> u64 {
+        self.0.now_us()
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        self.0.send(bytes);
+    }
+
+    fn receive(&mut self, into: &mut Vec<u8>) {
+        self.0.receive(into);
+    }
+
+    fn wait_until(&mut self, us: u64) {
+        self.0.wait_until(us);
+    }
+}
+
+/// The calibration of the robot that the dashboard shows, for whoever presses the button there.
+pub(crate) fn in_dashboard() -> Extras {
+    Extras {
+        calibration: Some(|link| {
+            let found =
+                calibrate::calibrate(&mut Guest(link)).map_err(|error| error.to_string())?;
+            let rows = calibrate::rows(&found, None).into_iter();
+            Ok(Findings {
+                rows: rows
+                    .map(|row| Finding {
+                        name: row.name,
+                        found: row.found,
+                        standard_error: row.standard_error,
+                    })
+                    .collect(),
+                parameters: found
+                    .parameters()
+                    .into_iter()
+                    .map(|(id, value)| (id as u8, value))
+                    .collect(),
+            })
+        }),
+    }
 }
 
 /// Calibrates and prints what came of it.

@@ -1,6 +1,7 @@
 //! `rumbo connect`: a real robot behind the station's dashboard.
 
 use crate::args::ConnectArgs;
+use crate::calibrate;
 use crate::failure::Failure;
 use crate::lab;
 use crate::logs;
@@ -25,6 +26,7 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
         speed: 1.0,
         recording: logs::folder(args.out.as_deref()).map(|folder| Recording { folder }),
     };
-    let served = rumbo_station::serve(config, Box::new(robot)).map_err(Failure::input)?;
+    let served = rumbo_station::serve_with(config, Box::new(robot), calibrate::in_dashboard())
+        .map_err(Failure::input)?;
     lab::show(served, args.serve, args.no_browser)
 }

@@ -1,6 +1,7 @@
 //! `rumbo lab`: a simulated robot behind the station's dashboard.
 
 use crate::args::{LabArgs, ServeArgs};
+use crate::calibrate;
 use crate::failure::Failure;
 use crate::logs;
 use crate::manifest;
@@ -41,7 +42,8 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
         speed: args.speed,
         recording: logs::folder(args.out.as_deref()).map(|folder| Recording { folder }),
     };
-    let lab = rumbo_station::serve(config, Box::new(robot)).map_err(Failure::input)?;
+    let lab = rumbo_station::serve_with(config, Box::new(robot), calibrate::in_dashboard())
+        .map_err(Failure::input)?;
     show(lab, args.serve, args.no_browser)
 }
 

@@ -26,6 +26,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "style.css": CSS,
     "icon.svg": SVG,
     "src/band.js": SCRIPT,
+    "src/calibration_dialog.js": SCRIPT,
     "src/checkup.js": SCRIPT,
     "src/checkup_dialog.js": SCRIPT,
     "src/consoles.js": SCRIPT,

@@ -6,6 +6,7 @@
 
 use crate::catalogue::ParameterState;
 use crate::errand::Errand;
+use crate::guest::CalibrationState;
 use crate::log::Burst;
 use crate::log::recorder::{Entry, Recorder};
 use crate::row::Row;
@@ -84,6 +85,9 @@ pub(crate) struct State {
     pub(crate) achieved_speed: f64,
     pub(crate) link: LinkState,
     pub(crate) robot: RobotState,
+    /// The calibration that runs, or ran last in this run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) calibration: Option<CalibrationState>,
     /// A log is being shown, of this length; `t_s` is where.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) replay: Option<ReplayState>,

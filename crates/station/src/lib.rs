@@ -13,6 +13,7 @@ mod console;
 mod errand;
 pub mod fault;
 mod guard;
+mod guest;
 mod lease;
 pub mod log;
 mod meter;
@@ -38,8 +39,10 @@ mod words;
 
 pub use catalogue::{ModeEntry, Reference, ReferenceKind, modes};
 pub use console::readable;
+pub use guest::{Calibration, Finding, Findings, GuestLink};
 pub use row::Row;
-pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, ServeError, serve, serve_log};
+pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, ServeError, serve, serve_log, serve_with};
+pub use session::Extras;
 pub use target::{
     Choice, LinkNews, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation, SonarMount, Target,
     Truth,

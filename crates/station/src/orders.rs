@@ -32,6 +32,8 @@ pub(crate) enum Order {
     Speed(f64),
     /// Start the simulation again.
     Reset(Choice),
+    /// Let the robot calibrate itself.
+    Calibrate,
     /// Show a log from this time on \[s\].
     Seek(f64),
     /// Show a log so many telemetry frames further on, or back.
@@ -118,6 +120,7 @@ enum Message {
     ResetParams {},
     SaveParams {},
     ResetPose {},
+    Calibrate {},
     Type {
         usart: u8,
         text: String,
@@ -217,6 +220,7 @@ pub(crate) fn parse(text: &str) -> Result<Order, BadOrder> {
         Message::ResetParams {} => Order::Robot(Command::ResetParams),
         Message::SaveParams {} => Order::Robot(Command::SaveParams),
         Message::ResetPose {} => Order::Robot(Command::ResetPose),
+        Message::Calibrate {} => Order::Calibrate,
         Message::Type { usart, text } => Order::Type(usart, text_line(text)?),
         Message::Speed { factor } if (0.0..=MAX_SPEED).contains(&factor) => Order::Speed(factor),
         Message::Speed { factor } => {

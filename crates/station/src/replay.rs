@@ -99,6 +99,7 @@ impl Replay {
             Order::Seek(t_s) => self.seek(t_s * 1e3),
             Order::Step(frames) => self.step(*frames),
             Order::Reset(_) => self.seek(0.0),
+            Order::Calibrate => {}
             Order::Robot(_) | Order::Hold(_) | Order::Route(_) | Order::Type(..)
                 if !self.warned =>
             {

@@ -6,7 +6,7 @@ use crate::lease::Lease;
 use crate::log::{Log, Recording};
 use crate::orders::Order;
 use crate::replay::Replay;
-use crate::session::{Orders, Session};
+use crate::session::{Extras, Orders, Session};
 use crate::socket::Hub;
 use crate::target::Target;
 use crate::web;
@@ -186,13 +186,25 @@ const ORDERS_WAITING: usize = 256;
 /// # Errors
 /// [`ServeError`], when the port cannot be opened.
 pub fn serve(config: LabConfig, target: Box<dyn Target>) -> Result<Lab, ServeError> {
+    serve_with(config, target, Extras::default())
+}
+
+/// The same, with what the session can do besides.
+///
+/// # Errors
+/// As [`serve`].
+pub fn serve_with(
+    config: LabConfig,
+    target: Box<dyn Target>,
+    extras: Extras,
+) -> Result<Lab, ServeError> {
     let LabConfig {
         at,
         speed,
         recording,
     } = config;
     start(at, move |board, orders| {
-        Session::new(target, board, orders, speed, recording).run()
+        Session::new(target, board, orders, speed, recording, extras).run()
     })
 }
 

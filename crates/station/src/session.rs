@@ -4,8 +4,11 @@
 //! speed factor ([`Pace`]); feeds what arrived to the [`RobotClient`] and what that heard to the [`Observer`], who
 //! keeps the board up to date. Nothing waits for a page.
 
+mod calibrating;
+
 use crate::board::{self, Board, State};
 use crate::client::{Heard, KnownTable, RobotClient};
+use crate::guest::{Calibration, CalibrationState, Guest};
 use crate::log::recorder::Recorder;
 use crate::log::{Burst, Manifest, Recording};
 use crate::observer::Observer;
@@ -33,6 +36,13 @@ const STATE_PERIOD: Duration = Duration::from_millis(200);
 /// A movement that a key holds ends this long after the page last said that it is held: a page that is gone lets go.
 const HOLD: Duration = Duration::from_millis(600);
 
+/// What a session can do besides, if whoever starts it gives it the means.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extras {
+    /// How the robot calibrates itself.
+    pub calibration: Option<Calibration>,
+}
+
 /// Where orders come from.
 pub(crate) struct Orders {
     /// The orders, in order. The session ends when the sending side is gone.
@@ -49,6 +59,10 @@ pub(crate) struct Session {
     board: Arc<Board>,
     /// Where to record; nowhere in tests.
     recording: Option<Recording>,
+    extras: Extras,
+    /// The calibration that drives the robot now, and how the last one stands.
+    guest: Option<Guest>,
+    calibration: Option<CalibrationState>,
     orders: Orders,
     pace: Pace,
     simulated: bool,
@@ -73,6 +87,7 @@ impl Session {
         orders: Orders,
         speed: f64,
         recording: Option<Recording>,
+        extras: Extras,
     ) -> Self {
         let simulated = target.simulation().is_some();
         Self {
@@ -81,6 +96,9 @@ impl Session {
             observer: Observer::new(Arc::clone(&board)),
             board,
             recording,
+            extras,
+            guest: None,
+            calibration: None,
             orders,
             pace: Pace::new(if simulated {
                 speed.clamp(0.0, MAX_SPEED)
@@ -131,7 +149,9 @@ impl Session {
                 .collect();
             let stop = self.orders.stop.swap(false, Ordering::SeqCst);
             for order in orders::stop_first(waiting, stop) {
-                self.obey(order)?;
+                if !self.is_taken(&order) {
+                    self.obey(order)?;
+                }
             }
             self.let_go()?;
             self.live()?;
@@ -162,6 +182,7 @@ impl Session {
                 "speed: refused, a real robot lives at its own".into(),
             ),
             Order::Reset(choice) => self.reset(&choice),
+            Order::Calibrate => self.calibrate(),
             Order::TakeControl => {}
             Order::Seek(_) | Order::Step(_) => self.note(
                 board::Level::Warning,
@@ -308,6 +329,7 @@ impl Session {
         self.client = new_client(self.target.as_mut());
         self.heard.clear();
         self.held = None;
+        self.calibration = None;
         self.briefed = false;
         self.record();
         self.observer.start_run();
@@ -362,6 +384,7 @@ impl Session {
                 self.observer.said_in_text(&self.bytes);
             }
             self.client.hear(&self.bytes, now_us, &mut self.heard);
+            self.take_turns(now_us)?;
             self.send()?;
             self.observer
                 .digest(&mut self.heard, &mut self.client, to_ms(now_us));
@@ -446,7 +469,10 @@ impl Session {
             achieved_speed: self.pace.achieved(),
             baud: self.target.baud(),
         };
-        state::describe(&around, &mut self.client, &self.observer)
+        State {
+            calibration: self.calibration.clone(),
+            ..state::describe(&around, &mut self.client, &self.observer)
+        }
     }
 
     /// Begins the log of a run; what was recorded before is complete.

@@ -61,6 +61,7 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
             errand: observer.errand().clone(),
             foreign: client.hello().is_some() && !client.table_matches(),
         },
+        calibration: None,
         replay: None,
     }
 }

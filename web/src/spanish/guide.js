@@ -40,4 +40,32 @@ export const GUIDE = {
   'Telemetry comes {} times a second, 25 are expected. The line is too slow, or bytes are lost.': 'La telemetría llega {} veces por segundo, se esperan 25. La línea es demasiado lenta o se pierden bytes.',
   '{} frames were damaged. See the ground wire between robot and adapter, and the distance of a Bluetooth module.': 'Hubo {} tramas dañadas. Mira la masa entre el robot y el adaptador, y la distancia del módulo Bluetooth.',
   'The link works: telemetry {} times a second.': 'El enlace funciona: telemetría {} veces por segundo.',
+  // Calibration.
+  'Calibrate': 'Calibrar', 'Let the robot measure itself: dead zones, feedforward, wheels, base': 'El robot se mide a sí mismo: zonas muertas, prealimentación, ruedas, base',
+  '{} s of about {} s': '{} s de unos {} s', 'Begin the calibration': 'Empezar la calibración', 'Put the simulated robot there': 'Poner ahí el robot simulado',
+  'The robot finds out by itself: the duty at which each wheel starts, the duty for each speed, the ratio of the wheels\' radii, and the distance between the wheels.':
+    'El robot averigua por sí mismo: el PWM con que arranca cada rueda, el PWM de cada velocidad, el cociente de los radios de las ruedas y la distancia entre ellas.',
+  'A sonar ahead on the servo and one on each side: rig final. Battery charged.': 'Un sonar al frente sobre el servo y uno a cada lado: montaje final. Batería cargada.',
+  'Put it on the floor beside a straight wall, 0.3 to 0.5 m from it and along it, with 2.5 m free ahead.': 'Ponlo en el suelo junto a una pared recta, a 0,3-0,5 m y paralelo a ella, con 2,5 m libres delante.',
+  'It drives to and fro along the wall and turns on the spot, for about two and a half minutes. STOP ends it at any moment.':
+    'Va y vuelve a lo largo de la pared y gira en el sitio, durante unos dos minutos y medio. PARAR lo acaba en todo momento.',
+  'The robot calibrates itself. Stay out of its way; STOP ends it.': 'El robot se está calibrando. No te pongas en su camino; PARAR lo acaba.',
+  'The calibration came to no end: {}': 'La calibración no llegó a su fin: {}', 'Done. The parameters are set; save them to make that last.': 'Hecho. Los parámetros están puestos; guárdalos para que dure.',
+  'found': 'hallado', 'standard error': 'error típico', 'parameter': 'parámetro', 'before': 'antes', 'now': 'ahora', 'Put the old values back': 'Volver a los valores de antes',
+  'radius, right over left': 'radio, derecho entre izquierdo', 'base_m (with the mean radius in force)': 'base_m (con el radio medio en vigor)', 'mean radius in force, m': 'radio medio en vigor, m',
+  'mean radius by the front sonar, m': 'radio medio según el sonar frontal, m', 'dead zone, left forward, duty': 'zona muerta, izquierda adelante', 'dead zone, right forward, duty': 'zona muerta, derecha adelante',
+  'dead zone, left backward, duty': 'zona muerta, izquierda atrás', 'dead zone, right backward, duty': 'zona muerta, derecha atrás',
+  'ks_left_forward': 'ks_left_forward', 'ks_left_backward': 'ks_left_backward', 'ks_right_forward': 'ks_right_forward', 'ks_right_backward': 'ks_right_backward', 'kv': 'kv',
+  'calibration: the robot drives by itself': 'calibración: el robot se mueve por sí mismo', 'calibration: refused, {}': 'calibración: rechazada, {}', 'calibration: given up, {}': 'calibración: abandonada, {}',
+  'calibration: done in {} s, the parameters are set': 'calibración: hecha en {} s, los parámetros están puestos', 'it was stopped': 'se detuvo', 'no thread for it ({})': 'sin hilo para ella ({})',
+  'calibration: refused, this program has none': 'calibración: rechazada, este programa no la tiene',
+  'one is running already': 'ya hay una en marcha', 'no robot answers': 'ningún robot responde', 'this robot has other parameters': 'este robot tiene otros parámetros', 'the robot is armed: switch OFF first': 'el robot está armado: primero OFF',
+  'refused, the robot calibrates itself; STOP ends that': 'rechazado, el robot se está calibrando; PARAR lo acaba',
+  'the robot does not answer; check the link': 'el robot no responde; comprueba el enlace', '{} was refused: {}': '{} fue rechazado: {}', 'the robot stopped: {}': 'el robot se detuvo: {}',
+  'a calibration needs a sonar ahead and one on each side; mount the rig `final` and set the parameter rig': 'una calibración necesita un sonar al frente y uno a cada lado; monta el montaje `final` y fija el parámetro rig',
+  'no wall beside the robot (left {}, right {}); put it 0.3 to 0.5 m beside a wall, along it, with 2.5 m free ahead':
+    'no hay pared junto al robot (izq. {}, der. {}); ponlo a 0,3-0,5 m de una pared, paralelo a ella, con 2,5 m libres delante', 'nothing': 'nada',
+  '{} took too long; is the robot held, or its battery empty?': '{} tardó demasiado; ¿está sujeto el robot, o su batería vacía?',
+  'only {} m free along the wall; give it at least 1 m, better 2.5 m': 'solo {} m libres junto a la pared; dale al menos 1 m, mejor 2,5 m',
+  'what was measured does not tell {}; is the wall straight and the robot free to move?': 'lo medido no determina {}; ¿es recta la pared y se mueve libre el robot?',
 };

@@ -3,6 +3,9 @@
 
 /** @type {Record<string, string>} */
 export const PARAMETERS = {
+  'Battery\'s voltage over that at the analogue input; 0: no divider is wired, the voltage is not measured.':
+    'Tensión de la batería entre la de la entrada analógica; 0: no hay divisor y la tensión no se mide.',
+  'Analogue input that the divider is wired to: 0 is A0.': 'Entrada analógica a la que va el divisor: 0 es A0.',
   'Radius of the left wheel.': 'Radio de la rueda izquierda.',
   'Radius of the right wheel.': 'Radio de la rueda derecha.',
   'Distance between the wheels\' contact points.': 'Distancia entre los puntos de apoyo de las ruedas.',

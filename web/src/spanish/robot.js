@@ -85,6 +85,7 @@ export const ROBOT = {
   'allowed is -{} to {} m for each coordinate, and {} waypoints': 'se permite de -{} a {} m en cada coordenada, y {} lugares', 'out of range': 'fuera de margen',
   'not confirmed': 'sin confirmar', 'too many commands wait for the robot': 'demasiadas órdenes esperan al robot', 'the robot has another parameter table': 'el robot tiene otra tabla de parámetros',
  
+  'the battery is low; charge it': 'la batería está baja; cárgala',
   // Why the robot's program started.
   'power on': 'encendido', 'reset button or serial adapter': 'botón de reinicio o adaptador serie',
   'the supply dipped; charge the battery, check the cables': 'la alimentación bajó; carga la batería, comprueba los cables',
