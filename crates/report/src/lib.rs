@@ -12,6 +12,7 @@ mod chapters;
 mod data;
 mod drawing;
 mod judge;
+mod metric_names;
 mod page;
 mod plan;
 mod plot;

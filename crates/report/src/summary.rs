@@ -3,6 +3,7 @@
 use crate::chapters::{Experiment, Highlight};
 use crate::data::Data;
 use crate::judge::{self, KEPT, MISSED};
+use crate::metric_names::shown;
 use crate::page::{Cell, Page, Tone};
 use crate::text::{Language, Text, escape, t};
 
@@ -231,7 +232,7 @@ fn summary(page: &mut Page, data: &Data) {
 fn highlights(language: Language, data: &Data, experiment: &Experiment) -> Vec<[Cell; 3]> {
     let row = |highlight: &Highlight| {
         let outcome = data.outcome(highlight.scenario)?;
-        let shown = judge::shown(language, outcome, highlight.metric)?;
+        let shown = shown(language, outcome, highlight.metric)?;
         let ours = judge::value(language, &shown, outcome.metric(highlight.metric)?);
         let real = highlight
             .real

@@ -1,18 +1,21 @@
 //! Basic movements, open loop: dead zones, static curves, asymmetry, and what becomes of straight lines and turns.
 
+use super::manual_tables;
+use super::maps;
+use super::panels;
 use super::parts::{
     self, ANALYSIS, COMPONENTS, DESCRIPTION, LEFT, LIMITS, PWM, RESULTS, RIGHT, SCHEME, SPEED,
 };
 use super::{Experiment, Highlight};
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Scheme};
-use crate::judge::{self, Shown};
-use crate::page::{Cell, Page};
+use crate::judge;
+use crate::page::Page;
 use crate::plot::{Curve, Ink, Map, Panel, Plot, Points};
-use crate::signals::{CM, DEG, Outcome, Place, RPM};
+use crate::signals::{Outcome, Place, RPM};
 use crate::text::{Language, Text, same, t};
 
-const FLOOR: Text = t("on the floor, forward", "en el suelo, hacia delante");
+pub(super) const FLOOR: Text = t("on the floor, forward", "en el suelo, hacia delante");
 
 const fn of(
     what: Text,
@@ -172,48 +175,6 @@ const STRAIGHT: Text = t("straight", "recta");
 const ARCS: Text = t("arcs", "arcos");
 const PIVOTS: Text = t("pivots", "pivotes");
 const TURNS: Text = t("turns about the centre", "giros sobre el centro");
-const STARTS: Text = t(
-    "PWM at which each wheel starts",
-    "PWM a la que arranca cada rueda",
-);
-const MOVEMENTS: Text = t(
-    "What became of each movement",
-    "Resultado de cada movimiento",
-);
-const HEADER: [Text; 5] = [
-    t("Scenario", "Escenario"),
-    t("Way", "Camino"),
-    t("To the side", "Desvío lateral"),
-    t("Turned by", "Giro"),
-    t("Radius", "Radio"),
-];
-const START_HEADER: [Text; 3] = [
-    t("Test", "Ensayo"),
-    t("Left wheel", "Rueda izquierda"),
-    t("Right wheel", "Rueda derecha"),
-];
-const TESTS: [(Text, &str, &str); 4] = [
-    (
-        FLOOR,
-        "manual-deadzone-floor-forward",
-        "manual-deadzone-floor-forward",
-    ),
-    (
-        t("on the floor, backward", "en el suelo, hacia atrás"),
-        "manual-deadzone-floor-backward",
-        "manual-deadzone-floor-backward",
-    ),
-    (
-        t("in the air, forward", "en el aire, hacia delante"),
-        "manual-deadzone-left-forward",
-        "manual-deadzone-right-forward",
-    ),
-    (
-        t("in the air, backward", "en el aire, hacia atrás"),
-        "manual-deadzone-left-backward",
-        "manual-deadzone-right-backward",
-    ),
-];
 
 const CONTROL: Scheme = Scheme {
     input: same("PWM"),
@@ -256,14 +217,14 @@ fn write(page: &mut Page, data: &Data) {
     page.section(RESULTS);
     let curves = curves(page.language, data);
     page.figure("manual-curves", &curves, CURVES);
-    starts(page, data);
+    manual_tables::starts(page, data);
     dead_zone(page, data);
     asymmetry(page, data);
     let open = ways(page.language, data, "", page.say(OPEN_WAYS));
     page.figure("manual-ways", &open, OPEN_WAYS);
     let regulated = ways(page.language, data, "-speed", page.say(SPEED_WAYS));
     page.figure("manual-ways-speed", &regulated, SPEED_WAYS);
-    movements(page, data);
+    manual_tables::movements(page, data);
     page.section(LIMITS);
     let outcomes: Vec<&Outcome> = EXPERIMENT
         .scenarios
@@ -316,40 +277,13 @@ fn curves(language: Language, data: &Data) -> String {
     .svg(language, CURVES.of(language))
 }
 
-fn starts(page: &mut Page, data: &Data) {
-    page.subsection(page.say(STARTS));
-    let language = page.language;
-    let cell = |scenario: &str, metric: &str| {
-        let found = data
-            .outcome(scenario)
-            .and_then(|outcome| outcome.metric(metric));
-        Cell::text(
-            &found
-                .map(|duty| language.number(255.0 * duty, 0))
-                .unwrap_or_default(),
-        )
-    };
-    let rows: Vec<Vec<Cell>> = TESTS
-        .iter()
-        .map(|(name, left, right)| {
-            vec![
-                Cell::text(&judge::capital(page.say(*name))),
-                cell(left, "left_dead_zone_duty"),
-                cell(right, "right_dead_zone_duty"),
-            ]
-        })
-        .collect();
-    let header = START_HEADER.map(|text| page.say(text));
-    page.table(&header, &rows);
-}
-
 fn dead_zone(page: &mut Page, data: &Data) {
     let Some(outcome) = data.outcome("manual-deadzone-floor-forward") else {
         return;
     };
     let panels = vec![
         speeds(page.language, outcome, SPEED),
-        parts::pwm_panel(page.language, outcome),
+        panels::pwm_panel(page.language, outcome),
     ];
     parts::show(
         page,
@@ -422,47 +356,7 @@ fn ways(language: Language, data: &Data, suffix: &str, description: &str) -> Str
     };
     Map {
         curves: WAYS.iter().filter_map(curve).collect(),
-        ..parts::map(language)
+        ..maps::map(language)
     }
     .svg(language, description)
-}
-
-/// Way, sideways drift, turn and radius of every movement.
-fn movements(page: &mut Page, data: &Data) {
-    page.subsection(page.say(MOVEMENTS));
-    let language = page.language;
-    let rows: Vec<Vec<Cell>> = EXPERIMENT
-        .scenarios
-        .iter()
-        .filter_map(|name| data.outcome(name))
-        .filter(|outcome| {
-            outcome.setup.scenario.duration_s < 10.0 && outcome.metric("path_m").is_some()
-        })
-        .map(|outcome| {
-            let cell = |metric: &str, factor, unit| {
-                let shown = Shown {
-                    factor,
-                    ..judge::plain(unit)
-                };
-                Cell::text(
-                    &outcome
-                        .metric(metric)
-                        .map(|value| judge::value(language, &shown, value))
-                        .unwrap_or_default(),
-                )
-            };
-            vec![
-                Cell::html(format!(
-                    "<code translate=\"no\">{}</code>",
-                    outcome.result.scenario
-                )),
-                cell("path_m", CM, "cm"),
-                cell("sideways_m", CM, "cm"),
-                cell("turn_rad", DEG, "°"),
-                cell("radius_m", CM, "cm"),
-            ]
-        })
-        .collect();
-    let header = HEADER.map(|text| page.say(text));
-    page.table(&header, &rows);
 }

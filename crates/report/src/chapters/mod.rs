@@ -1,13 +1,18 @@
 //! The experiments, a file for each: what its chapter says and shows, and which of its metrics stand in the summary.
 
+mod beside;
 mod manual;
+mod manual_tables;
+mod maps;
 mod mode1;
 mod mode2;
 mod mode5;
 mod mode6;
 mod mode7;
 mod mode8;
+mod mode8_beside;
 mod mode8_machines;
+mod panels;
 mod parts;
 mod pursuit;
 mod wall;

@@ -1,5 +1,7 @@
 //! Mode 1: stop at a distance from a wall.
 
+use super::beside;
+use super::panels;
 use super::parts::{
     self, ANALYSIS, COMPONENTS, DESCRIPTION, DISTANCE, ERROR_CM, LIMITS, MEASURED, REFERENCE,
     RESULTS, SCHEME,
@@ -210,7 +212,7 @@ fn write(page: &mut Page, data: &Data) {
     page.section(RESULTS);
     let panels = vec![
         distance_panel(page.language, outcome),
-        parts::pwm_panel(page.language, outcome),
+        panels::pwm_panel(page.language, outcome),
     ];
     parts::show(
         page,
@@ -225,7 +227,7 @@ fn write(page: &mut Page, data: &Data) {
     );
     page.section(LIMITS);
     judge::limits(page, &[outcome]);
-    parts::distance_beside(page, data, "mode1", DISTANCE);
+    beside::distance(page, data, "mode1", DISTANCE);
 }
 
 /// Speed over error, with the parameters' defaults.

@@ -1,5 +1,7 @@
 //! Mode 2: stop square to a wall.
 
+use super::beside;
+use super::panels;
 use super::parts::{
     self, ANALYSIS, COMPONENTS, DESCRIPTION, DISTANCE, ERROR_CM, LIMITS, RESULTS, SCHEME,
 };
@@ -171,8 +173,8 @@ fn write(page: &mut Page, data: &Data) {
     };
     page.section(RESULTS);
     let panels = vec![
-        parts::pair_panel(page.language, outcome),
-        parts::pwm_panel(page.language, outcome),
+        panels::pair_panel(page.language, outcome),
+        panels::pwm_panel(page.language, outcome),
     ];
     parts::show(
         page,
@@ -181,7 +183,7 @@ fn write(page: &mut Page, data: &Data) {
     let reference = outcome.reference(CM);
     let panel = Panel::new(
         page.say(ERROR_CM),
-        parts::pair_errors(page.language, outcome, &reference),
+        panels::pair_errors(page.language, outcome, &reference),
     )
     .at_least(-5.0, 5.0);
     parts::show(
@@ -195,7 +197,7 @@ fn write(page: &mut Page, data: &Data) {
     );
     page.section(LIMITS);
     judge::limits(page, &[outcome]);
-    parts::distance_beside(page, data, "mode2", DISTANCE);
+    beside::distance(page, data, "mode2", DISTANCE);
 }
 
 fn angle_panel(page: &Page, outcome: &Outcome) -> Panel {

@@ -1,5 +1,7 @@
 //! Mode 5: each wheel at a commanded speed.
 
+use super::beside;
+use super::panels;
 use super::parts::{
     self, ANALYSIS, COMPONENTS, DESCRIPTION, ERROR_RPM, LEFT, LIMITS, REFERENCE, RESULTS, RIGHT,
     SCHEME, SPEED,
@@ -173,7 +175,7 @@ fn write(page: &mut Page, data: &Data) {
     if let Some(outcome) = data.outcome("mode5") {
         let panels = vec![
             speed_panel(page.language, outcome),
-            parts::pwm_panel(page.language, outcome),
+            panels::pwm_panel(page.language, outcome),
         ];
         parts::show(page, parts::over_time(page, "mode5-speeds", SPEEDS, panels));
         let panel = Panel::new(page.say(ERROR_RPM), errors(page.language, outcome));
@@ -185,7 +187,7 @@ fn write(page: &mut Page, data: &Data) {
     if let Some(outcome) = data.outcome("mode5-reversal") {
         let panels = vec![
             speed_panel(page.language, outcome),
-            parts::pwm_panel(page.language, outcome),
+            panels::pwm_panel(page.language, outcome),
         ];
         parts::show(
             page,
@@ -241,7 +243,7 @@ fn beside(page: &mut Page, data: &Data) {
     let Some((ours, recording)) = data.beside("mode5") else {
         return;
     };
-    parts::beside_heading(page, &recording.file, true);
+    beside::heading(page, &recording.file, true);
     let language = page.language;
     let real = |wheel| {
         recording.signal(|row| match row {
@@ -256,7 +258,7 @@ fn beside(page: &mut Page, data: &Data) {
             Ink::Reference,
             ours.reference(RPM),
         )];
-        curves.extend(parts::both(language, ours.speed_rpm(wheel), real(wheel)));
+        curves.extend(beside::both(language, ours.speed_rpm(wheel), real(wheel)));
         Panel::new(name.of(language), curves)
     };
     let panels = vec![
@@ -272,12 +274,12 @@ fn beside(page: &mut Page, data: &Data) {
         .iter()
         .map(|(t_s, rad_s)| (*t_s, RPM * rad_s))
         .collect();
-    let rows = parts::step_rows(
+    let rows = beside::step_rows(
         language,
         Kind::Speed,
         &respond::responses(Kind::Speed, &references, &ours.speed_rpm(Place::Right)),
         &respond::responses(Kind::Speed, &references, &real(Place::Right)),
     );
     page.p(RIGHT_WHEEL);
-    parts::beside_table(page, &rows);
+    beside::table(page, &rows);
 }

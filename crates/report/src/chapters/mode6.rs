@@ -1,6 +1,9 @@
 //! Mode 6: straight on by the difference of distance travelled.
 
+use super::beside;
+use super::maps;
 use super::mode5;
+use super::panels;
 use super::parts::{
     self, ANALYSIS, COMPONENTS, DESCRIPTION, LIMITS, MEASURED, REFERENCE, RESULTS, SCHEME, SPEED,
 };
@@ -171,7 +174,7 @@ fn write(page: &mut Page, data: &Data) {
 fn results(page: &mut Page, outcome: &Outcome) {
     let language = page.language;
     let speeds = || mode5::speed_panel(language, outcome);
-    let panels = vec![speeds(), parts::pwm_panel(language, outcome)];
+    let panels = vec![speeds(), panels::pwm_panel(language, outcome)];
     parts::show(page, parts::over_time(page, "mode6-speeds", SPEEDS, panels));
     parts::show(
         page,
@@ -225,9 +228,9 @@ fn results(page: &mut Page, outcome: &Outcome) {
     let start = outcome.setup.scenario.start;
     let line = vec![(start.x_m, start.y_m), (start.x_m + 3.2, start.y_m)];
     let map = Map {
-        curves: parts::ways(language, outcome, line),
+        curves: maps::ways(language, outcome, line),
         range: Some([[start.x_m - 0.1, start.x_m + 3.4], [-0.3, 0.3]]),
-        ..parts::map(language)
+        ..maps::map(language)
     };
     let svg = map.svg(language, page.say(DRIFT));
     page.figure("mode6-way", &svg, DRIFT);
@@ -254,7 +257,7 @@ fn beside(page: &mut Page, data: &Data) {
     let Some((ours, recording)) = data.beside("mode6") else {
         return;
     };
-    parts::beside_heading(page, &recording.file, true);
+    beside::heading(page, &recording.file, true);
     let real = recording.signal(|row| match row {
         Row::Speed(row) => Some(f64::from(row.wheel_rpm.left)),
         _ => None,
@@ -264,7 +267,7 @@ fn beside(page: &mut Page, data: &Data) {
         Ink::Reference,
         ours.reference(RPM),
     )];
-    curves.extend(parts::both(
+    curves.extend(beside::both(
         page.language,
         ours.speed_rpm(Place::Left),
         real,

@@ -1,5 +1,8 @@
 //! Mode 7: a square by odometry.
 
+use super::beside;
+use super::maps;
+use super::panels;
 use super::parts::{self, ANALYSIS, COMPONENTS, DESCRIPTION, LIMITS, RESULTS, SCHEME};
 use super::{Experiment, highlight};
 use crate::data::Data;
@@ -175,11 +178,11 @@ fn write(page: &mut Page, data: &Data) {
     let language = page.language;
     let panels = pose_panels(language, outcome);
     parts::show(page, parts::over_time(page, "mode7-pose", POSE, panels));
-    let panels = parts::wheel_panels(language, outcome);
+    let panels = panels::wheel_panels(language, outcome);
     parts::show(page, parts::over_time(page, "mode7-wheels", WHEELS, panels));
     let map = Map {
-        curves: parts::ways(language, outcome, parts::route(outcome)),
-        ..parts::map(language)
+        curves: maps::ways(language, outcome, maps::route(outcome)),
+        ..maps::map(language)
     };
     let svg = map.svg(language, page.say(WAY));
     page.figure("mode7-way", &svg, WAY);
@@ -214,7 +217,7 @@ fn beside(page: &mut Page, data: &Data) {
     let Some((ours, recording)) = data.beside("mode7") else {
         return;
     };
-    parts::beside_heading(page, &recording.file, false);
+    beside::heading(page, &recording.file, false);
     let language = page.language;
     let real = |of: fn(&rumbo_wire::text::WaypointsRow) -> f32| {
         recording.signal(|row| match row {
@@ -236,27 +239,27 @@ fn beside(page: &mut Page, data: &Data) {
     );
     let way =
         |[x, y]: &[Points; 2]| -> Points { x.iter().zip(y).map(|(x, y)| (x.1, y.1)).collect() };
-    let mut curves = parts::ways(language, ours, SQUARE.to_vec());
+    let mut curves = maps::ways(language, ours, SQUARE.to_vec());
     curves.truncate(1);
-    curves.extend(parts::both(language, way(&mine), way(&theirs)));
+    curves.extend(beside::both(language, way(&mine), way(&theirs)));
     let svg = Map {
         curves,
-        ..parts::map(language)
+        ..maps::map(language)
     }
     .svg(language, page.say(REAL_WAY));
     page.figure("mode7-real-way", &svg, REAL_WAY);
     let panels = vec![
         Panel::new(
             "x (m)",
-            parts::both(language, mine[0].clone(), theirs[0].clone()),
+            beside::both(language, mine[0].clone(), theirs[0].clone()),
         ),
         Panel::new(
             "y (m)",
-            parts::both(language, mine[1].clone(), theirs[1].clone()),
+            beside::both(language, mine[1].clone(), theirs[1].clone()),
         ),
         Panel::new(
             page.say(HEADING_AXIS),
-            parts::both(
+            beside::both(
                 language,
                 started(&heading),
                 unwrapped(real(|row| row.heading_deg)),
@@ -274,7 +277,7 @@ fn beside(page: &mut Page, data: &Data) {
         let [ours, real] = [0, 1].map(|which| judge::value(language, &shown, rows[which][index]));
         (judge::capital(name.of(language)), ours, real)
     };
-    parts::beside_table(
+    beside::table(
         page,
         &[row(LAP, 0, "s"), row(WORST, 1, "cm"), row(RMS, 2, "cm")],
     );
@@ -285,7 +288,7 @@ fn figures([x, y]: &[Points; 2]) -> [f64; 3] {
     let (mut corner, mut lap_s, mut off) = (1, f64::NAN, Points::new());
     let square = SQUARE.to_vec();
     for ((t_s, x), (_, y)) in x.iter().zip(y) {
-        off.push((*t_s, CM * parts::off_route(&square, (*x, *y))));
+        off.push((*t_s, CM * maps::off_route(&square, (*x, *y))));
         // A corner counts as the original counts it: within 10 cm.
         if (x - SQUARE[corner].0).hypot(y - SQUARE[corner].1) < 0.1 {
             if corner + 1 == SQUARE.len() {

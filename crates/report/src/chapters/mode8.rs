@@ -1,6 +1,9 @@
 //! Mode 8: goals, around obstacles, and a lane of boxes.
 
+use super::maps;
+use super::mode8_beside;
 use super::mode8_machines as machines;
+use super::panels;
 use super::parts::{self, COMPONENTS, DESCRIPTION, LIMITS, RESULTS, SCHEME};
 use super::{Experiment, Highlight};
 use crate::data::Data;
@@ -8,10 +11,8 @@ use crate::drawing::geometry;
 use crate::judge;
 use crate::page::Page;
 use crate::plot::{Curve, Ink, Map, Panel, Points};
-use crate::real::Recording;
 use crate::signals::{Outcome, unwrapped};
 use crate::text::{Language, Text, t};
-use rumbo_wire::text::{MissionRow, Row};
 
 const GOALS: Text = t("Goals", "Objetivos");
 const LANE: Text = t("Lane", "Carril");
@@ -150,22 +151,12 @@ const OBSTACLES_STATES: Text = t(
 const GOAL_X: Text = t("goal x", "x objetivo");
 const GOAL_Y: Text = t("goal y", "y objetivo");
 const POSITION: Text = t("position (m)", "posición (m)");
-const HEADING: Text = t("heading (°)", "orientación (°)");
+pub(super) const HEADING: Text = t("heading (°)", "orientación (°)");
 const HEADING_NAME: Text = t("heading", "orientación");
 const HEADING_REFERENCE: Text = t("heading reference", "referencia de orientación");
 const STRAIGHT: Text = t("straight line", "línea recta");
 const TRUE: Text = t("true", "real");
 const START: Text = t("start", "salida");
-const TIME: Text = t("Duration", "Duración");
-const PATH: Text = t("Way by odometry", "Camino según la odometría");
-const REAL_WAY: Text = t(
-    "The ways of both robots by their own odometry.",
-    "Trayectorias de ambos robots según su propia odometría.",
-);
-const REAL_POSE: Text = t(
-    "Pose of both robots by their own odometry, from the arming of ours and the first motion of the recorded one.",
-    "Pose de ambos robots según su propia odometría, desde el armado del nuestro y el primer movimiento del real.",
-);
 
 fn write(page: &mut Page, data: &Data) {
     page.section(DESCRIPTION);
@@ -201,7 +192,7 @@ fn write(page: &mut Page, data: &Data) {
         .collect();
     judge::limits(page, &outcomes);
     for scenario in EXPERIMENT.scenarios {
-        beside(page, data, scenario);
+        mode8_beside::write(page, data, scenario);
     }
 }
 
@@ -224,7 +215,7 @@ fn until(
 }
 
 /// When the run was done, since the arming [s]; `None` if it never was.
-fn end_s(outcome: &Outcome) -> Option<f64> {
+pub(super) fn end_s(outcome: &Outcome) -> Option<f64> {
     let lane = outcome
         .metric("finish_s")
         .filter(|finish_s| finish_s.is_finite());
@@ -243,7 +234,7 @@ fn goals(page: &mut Page, data: &Data) {
         page,
         until(page, outcome, "mode8-goals-pose", GOALS_POSE, panels),
     );
-    let panel = parts::references_panel(language, outcome);
+    let panel = panels::references_panel(language, outcome);
     parts::show(
         page,
         until(
@@ -272,11 +263,11 @@ fn goals(page: &mut Page, data: &Data) {
     let svg = Map {
         curves,
         marks,
-        ..parts::map(language)
+        ..maps::map(language)
     }
     .svg(language, page.say(GOALS_WAY));
     page.figure("mode8-goals-way", &svg, GOALS_WAY);
-    let panel = parts::state_panel(language, outcome, &machines::STATES);
+    let panel = panels::state_panel(language, outcome, &machines::STATES);
     parts::show(
         page,
         until(
@@ -296,14 +287,14 @@ fn lane_results(page: &mut Page, data: &Data) {
     page.subsection(page.say(LANE));
     page.p(LANE_EXPERIMENT);
     let language = page.language;
-    let panel = parts::references_panel(language, outcome);
+    let panel = panels::references_panel(language, outcome);
     parts::show(
         page,
         until(page, outcome, "mode8-lane-speeds", LANE_SPEEDS, vec![panel]),
     );
     let svg = way_map(page, outcome, Points::new()).svg(language, page.say(LANE_WAY));
     page.figure("mode8-lane-way", &svg, LANE_WAY);
-    let panels = parts::range_panels(language, outcome);
+    let panels = panels::range_panels(language, outcome);
     parts::show(
         page,
         until(page, outcome, "mode8-lane-ranges", LANE_RANGES, panels),
@@ -313,7 +304,7 @@ fn lane_results(page: &mut Page, data: &Data) {
         page,
         until(page, outcome, "mode8-lane-pose", LANE_POSE, panels),
     );
-    let panel = parts::state_panel(language, outcome, &machines::STATES);
+    let panel = panels::state_panel(language, outcome, &machines::STATES);
     parts::show(
         page,
         until(page, outcome, "mode8-lane-states", LANE_STATES, vec![panel]),
@@ -342,7 +333,7 @@ fn obstacles(page: &mut Page, data: &Data) {
             panels,
         ),
     );
-    let panel = parts::references_panel(language, outcome);
+    let panel = panels::references_panel(language, outcome);
     parts::show(
         page,
         parts::over_time(
@@ -352,7 +343,7 @@ fn obstacles(page: &mut Page, data: &Data) {
             vec![panel],
         ),
     );
-    let panels = parts::range_panels(language, outcome);
+    let panels = panels::range_panels(language, outcome);
     parts::show(
         page,
         until(
@@ -363,7 +354,7 @@ fn obstacles(page: &mut Page, data: &Data) {
             panels,
         ),
     );
-    let panel = parts::state_panel(language, outcome, &machines::STATES);
+    let panel = panels::state_panel(language, outcome, &machines::STATES);
     parts::show(
         page,
         parts::over_time(
@@ -376,9 +367,9 @@ fn obstacles(page: &mut Page, data: &Data) {
 }
 
 /// Ways between boxes, and where the robot began.
-fn way_map(page: &Page, outcome: &Outcome, ideal: Points) -> Map {
+pub(super) fn way_map(page: &Page, outcome: &Outcome, ideal: Points) -> Map {
     let language = page.language;
-    let mut curves = parts::ways(language, outcome, ideal);
+    let mut curves = maps::ways(language, outcome, ideal);
     if curves[0].points.is_empty() {
         curves.remove(0);
     } else {
@@ -392,10 +383,10 @@ fn way_map(page: &Page, outcome: &Outcome, ideal: Points) -> Map {
             [arena.from_m[0], arena.to_m[0]],
             [arena.from_m[1], arena.to_m[1]],
         ]),
-        shapes: parts::shapes(outcome),
+        shapes: maps::shapes(outcome),
         curves,
         marks: vec![(start.x_m, start.y_m, page.say(START).to_owned())],
-        ..parts::map(language)
+        ..maps::map(language)
     }
 }
 
@@ -422,84 +413,4 @@ fn pose_panels(language: Language, outcome: &Outcome, goal: bool) -> Vec<Panel> 
         Panel::new(POSITION.of(language), position),
         Panel::new(HEADING.of(language), headings).exactly(-190.0, 190.0),
     ]
-}
-
-fn beside(page: &mut Page, data: &Data, scenario: &str) {
-    let Some((ours, recording)) = data.beside(scenario) else {
-        return;
-    };
-    parts::beside_heading(page, &recording.file, false);
-    let language = page.language;
-    let real = |of: fn(&MissionRow) -> f32| recorded(recording, of);
-    let [x, y, heading] = ours
-        .pose()
-        .map(|points| -> Points { points.into_iter().filter(|(t_s, _)| *t_s >= 0.0).collect() });
-    let theirs = [real(|row| row.x_m), real(|row| row.y_m)];
-    if scenario != "mode8-goals" {
-        let way = |x: &Points, y: &Points| -> Points {
-            x.iter().zip(y).map(|(x, y)| (x.1, y.1)).collect()
-        };
-        let curves = parts::both(language, ours.told_way(), way(&theirs[0], &theirs[1]));
-        let map = Map {
-            curves,
-            ..way_map(page, ours, Points::new())
-        };
-        let svg = map.svg(language, page.say(REAL_WAY));
-        page.figure(&format!("{scenario}-real-way"), &svg, REAL_WAY);
-    }
-    let end_s = end_s(ours).unwrap_or_else(|| ours.duration_s());
-    let walked = [
-        length(&x, &y, end_s),
-        length(&theirs[0], &theirs[1], f64::INFINITY),
-    ];
-    let lasted = [
-        ours.metric(if scenario == "mode8-lane" {
-            "finish_s"
-        } else {
-            "total_time_s"
-        })
-        .unwrap_or(end_s),
-        recording.duration_s(),
-    ];
-    let panels = vec![
-        Panel::new("x (m)", parts::both(language, x, theirs[0].clone())),
-        Panel::new("y (m)", parts::both(language, y, theirs[1].clone())),
-        Panel::new(
-            page.say(HEADING),
-            parts::both(language, heading, unwrapped(real(|row| row.heading_deg))),
-        )
-        .exactly(-190.0, 190.0),
-    ];
-    parts::show(
-        page,
-        parts::over_time(page, &format!("{scenario}-real"), REAL_POSE, panels),
-    );
-    let row = |name: Text, values: [f64; 2], unit| {
-        let shown = judge::plain(unit);
-        let [ours, real] = values.map(|value| judge::value(language, &shown, value));
-        (page.say(name).to_owned(), ours, real)
-    };
-    let rows = [row(TIME, lasted, "s"), row(PATH, walked, "m")];
-    parts::beside_table(page, &rows);
-}
-
-fn recorded(recording: &Recording, of: fn(&MissionRow) -> f32) -> Points {
-    recording.signal(|row| match row {
-        Row::Mission(row) => Some(f64::from(of(row))),
-        _ => None,
-    })
-}
-
-/// Length of a way until a time [m]. A new origin is no way.
-fn length(x: &Points, y: &Points, until_s: f64) -> f64 {
-    let places: Points = x
-        .iter()
-        .zip(y)
-        .filter(|(x, _)| x.0 <= until_s)
-        .map(|(x, y)| (x.1, y.1))
-        .collect();
-    let pieces = places
-        .windows(2)
-        .map(|two| (two[1].0 - two[0].0).hypot(two[1].1 - two[0].1));
-    pieces.filter(|piece| *piece < 0.2).sum()
 }

@@ -1,5 +1,6 @@
 //! Pure pursuit: the extension of the report.
 
+use super::maps;
 use super::parts::{self, ANALYSIS, DESCRIPTION, LIMITS, RESULTS};
 use super::{Experiment, Highlight};
 use crate::data::Data;
@@ -92,10 +93,10 @@ fn write(page: &mut Page, data: &Data) {
         let Some(outcome) = data.outcome(scenario) else {
             continue;
         };
-        let route = parts::route(outcome);
+        let route = maps::route(outcome);
         let map = Map {
-            curves: parts::ways(page.language, outcome, route.clone()),
-            ..parts::map(page.language)
+            curves: maps::ways(page.language, outcome, route.clone()),
+            ..maps::map(page.language)
         };
         let svg = map.svg(page.language, page.say(caption));
         page.figure(&format!("{scenario}-way"), &svg, caption);
@@ -126,6 +127,6 @@ fn off_path_cm(outcome: &Outcome, route: &Points) -> Points {
         .filter(|t_s| *t_s >= 0.0);
     times
         .zip(outcome.told_way())
-        .map(|(t_s, place)| (t_s, CM * parts::off_route(route, place)))
+        .map(|(t_s, place)| (t_s, CM * maps::off_route(route, place)))
         .collect()
 }

@@ -1,5 +1,7 @@
 //! Modes 3 and 4: along a wall, at the distance of the start or at a commanded one.
 
+use super::beside;
+use super::panels;
 use super::parts::{
     self, ANALYSIS, COMPONENTS, DESCRIPTION, DISTANCE, ERROR_CM, LIMITS, REFERENCE, RESULTS, SCHEME,
 };
@@ -196,16 +198,16 @@ fn write_mode3(page: &mut Page, data: &Data) {
     };
     page.section(RESULTS);
     let reference = held(outcome);
-    let mut distances = parts::pair_panel(page.language, outcome).at_least(50.0, 65.0);
+    let mut distances = panels::pair_panel(page.language, outcome).at_least(50.0, 65.0);
     distances.curves[0] = Curve::new(page.say(REFERENCE), Ink::Reference, reference.clone());
-    let panels = vec![distances, parts::pwm_panel(page.language, outcome)];
+    let panels = vec![distances, panels::pwm_panel(page.language, outcome)];
     parts::show(
         page,
         parts::over_time(page, "mode3-distances", DISTANCES3, panels),
     );
     let panel = Panel::new(
         page.say(ERROR_CM),
-        parts::pair_errors(page.language, outcome, &reference),
+        panels::pair_errors(page.language, outcome, &reference),
     )
     .at_least(-1.0, 1.0);
     parts::show(
@@ -236,8 +238,8 @@ fn write_mode4(page: &mut Page, data: &Data) {
     };
     page.section(RESULTS);
     let panels = vec![
-        parts::pair_panel(page.language, outcome),
-        parts::pwm_panel(page.language, outcome),
+        panels::pair_panel(page.language, outcome),
+        panels::pwm_panel(page.language, outcome),
     ];
     parts::show(
         page,
@@ -246,7 +248,7 @@ fn write_mode4(page: &mut Page, data: &Data) {
     let reference = outcome.reference(CM);
     let panel = Panel::new(
         page.say(ERROR_CM),
-        parts::pair_errors(page.language, outcome, &reference),
+        panels::pair_errors(page.language, outcome, &reference),
     )
     .at_least(-5.0, 5.0);
     parts::show(
@@ -268,12 +270,12 @@ fn write_mode4(page: &mut Page, data: &Data) {
     );
     page.section(LIMITS);
     judge::limits(page, &[outcome]);
-    parts::distance_beside(page, data, "mode4", DISTANCE);
+    beside::distance(page, data, "mode4", DISTANCE);
 }
 
 /// The distance that mode 3 holds: what both sonars read while the robot still stood.
 fn held(outcome: &Outcome) -> Points {
-    let mean = parts::mean_cm(outcome);
+    let mean = panels::mean_cm(outcome);
     let standing = between(&mean, -0.5, 0.3);
     let values: Vec<f64> = standing
         .iter()
@@ -298,19 +300,19 @@ fn beside(page: &mut Page, data: &Data) {
     let Some((ours, recording)) = data.beside("mode3") else {
         return;
     };
-    parts::beside_heading(page, &recording.file, false);
+    beside::heading(page, &recording.file, false);
     let language = page.language;
-    let mine = difference(&parts::mean_cm(ours), &held(ours));
+    let mine = difference(&panels::mean_cm(ours), &held(ours));
     let mine = between(&mine, 0.0, f64::INFINITY);
     let references: Points = recording
         .references()
         .iter()
         .map(|(t_s, m)| (*t_s, CM * m))
         .collect();
-    let real = difference(&parts::recorded_mean_cm(recording), &references);
+    let real = difference(&beside::recorded_mean_cm(recording), &references);
     let panel = Panel::new(
         page.say(ERROR_CM),
-        parts::both(language, mine.clone(), real.clone()),
+        beside::both(language, mine.clone(), real.clone()),
     )
     .at_least(-5.0, 5.0);
     parts::show(
@@ -329,5 +331,5 @@ fn beside(page: &mut Page, data: &Data) {
             )
         })
         .collect();
-    parts::beside_table(page, &rows);
+    beside::table(page, &rows);
 }

@@ -3,7 +3,12 @@
 //! A library draws colours into its picture. Here they are classes that the page's style sheet colours, so that one picture serves a
 //! light page, a dark one and paper; decimal marks follow the language, and legends stand above the curves, never on them.
 
+mod map;
+#[cfg(test)]
+mod tests;
+
 use crate::text::{Language, escape, put};
+pub(crate) use map::{Map, Shape};
 
 /// Points of a curve; what is not finite is a gap.
 pub(crate) type Points = Vec<(f64, f64)>;
@@ -152,27 +157,6 @@ pub(crate) struct Plot {
     /// What the axis shows; else all there is.
     pub(crate) x_range: Option<[f64; 2]>,
     pub(crate) panels: Vec<Panel>,
-}
-
-/// Something that stands on the floor of a map.
-#[derive(Clone, Debug)]
-pub(crate) struct Shape {
-    pub(crate) corners: Points,
-    /// A body, not a line.
-    pub(crate) filled: bool,
-}
-
-/// A map in metres: a metre is as long in x as in y.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Map {
-    pub(crate) x: String,
-    pub(crate) y: String,
-    pub(crate) shapes: Vec<Shape>,
-    pub(crate) curves: Vec<Curve>,
-    /// Places with a name.
-    pub(crate) marks: Vec<(f64, f64, String)>,
-    /// What must be seen: else all that there is.
-    pub(crate) range: Option<[[f64; 2]; 2]>,
 }
 
 /// Where a panel's values lie in the picture.
@@ -343,86 +327,6 @@ impl Plot {
     }
 }
 
-impl Map {
-    /// The picture; `description` is for those who cannot see it.
-    pub(crate) fn svg(&self, language: Language, description: &str) -> String {
-        let [x_all, y_all] = self.range.unwrap_or_else(|| self.all());
-        let width = WIDTH - LEFT - RIGHT;
-        // As large as the page is wide, unless that is higher than a screen.
-        let height = (width * (y_all[1] - y_all[0]) / (x_all[1] - x_all[0])).clamp(150.0, 430.0);
-        let metre = (width / (x_all[1] - x_all[0])).min(height / (y_all[1] - y_all[0]));
-        let widen = |[from, to]: [f64; 2], pixels: f64| {
-            let more = 0.5 * (pixels / metre - (to - from));
-            [from - more, to + more]
-        };
-        let mut body = String::new();
-        let top = 4.0 + legend(&mut body, &self.curves, LEFT, 4.0);
-        let frame = Frame {
-            x: LEFT,
-            y: top,
-            width,
-            height,
-            x_range: widen(x_all, width),
-            y_range: widen(y_all, height),
-        };
-        frame.axes(&mut body, language, &[], true);
-        frame.inside(&mut body, |svg| {
-            for shape in &self.shapes {
-                let corners = shape.corners.iter().map(|corner| frame.place(*corner));
-                let points: Vec<String> = corners.map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
-                let kind = if shape.filled { ("polygon", "o") } else { ("polyline", "w") };
-                put(svg, format_args!("<{} class=\"{}\" points=\"{}\"/>", kind.0, kind.1, points.join(" ")));
-            }
-            frame.curves(svg, &self.curves);
-            for (x, y, name) in &self.marks {
-                let (x, y) = frame.place((*x, *y));
-                put(svg, format_args!("<circle class=\"k\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\"/><text class=\"s\" x=\"{:.1}\" y=\"{:.1}\">{}</text>", x + 7.0, y - 6.0, escape(name)));
-            }
-        });
-        let bottom = top + height;
-        put(
-            &mut body,
-            format_args!(
-                "<text class=\"m\" transform=\"translate(13 {:.1}) rotate(-90)\">{}</text>",
-                top + 0.5 * height,
-                escape(&self.y)
-            ),
-        );
-        put(
-            &mut body,
-            format_args!(
-                "<text class=\"m\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
-                LEFT + 0.5 * width,
-                bottom + 35.0,
-                escape(&self.x)
-            ),
-        );
-        wrap(&body, bottom + 42.0, description)
-    }
-
-    fn all(&self) -> [[f64; 2]; 2] {
-        let curves = self.curves.iter().flat_map(|curve| &curve.points);
-        let shapes = self.shapes.iter().flat_map(|shape| &shape.corners);
-        let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-        for (x, y) in curves
-            .chain(shapes)
-            .filter(|(x, y)| x.is_finite() && y.is_finite())
-        {
-            for (axis, value) in range.iter_mut().zip([*x, *y]) {
-                *axis = [axis[0].min(value), axis[1].max(value)];
-            }
-        }
-        range.map(|[low, high]| {
-            let margin = 0.08 * (high - low).max(0.2);
-            if low <= high {
-                [low - margin, high + margin]
-            } else {
-                [0.0, 1.0]
-            }
-        })
-    }
-}
-
 fn wrap(body: &str, height: f64, description: &str) -> String {
     format!(
         "<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {height:.0}\" role=\"img\" aria-label=\"{}\">{body}</svg>",
@@ -541,76 +445,4 @@ fn ticks([from, to]: [f64; 2], every: f64) -> impl Iterator<Item = f64> {
 
 fn tick(language: Language, value: f64, every: f64) -> String {
     language.number(value, (-every.log10().floor()).max(0.0) as usize)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ticks_are_round_numbers_within_the_axis() {
-        let range = [-3.0, 47.0];
-        let every = step(range, 7.0);
-        assert_eq!(every, 10.0);
-        assert_eq!(
-            ticks(range, every).collect::<Vec<_>>(),
-            [0.0, 10.0, 20.0, 30.0, 40.0]
-        );
-        assert_eq!(tick(Language::Spanish, 0.25, 0.05), "0,25");
-    }
-
-    #[test]
-    fn a_single_spike_among_thousands_of_points_is_drawn() {
-        let mut points: Points = (0..10_000).map(|n| (f64::from(n), 0.0)).collect();
-        points[5_003].1 = 7.0;
-        let frame = Frame {
-            x: 0.0,
-            y: 0.0,
-            width: 600.0,
-            height: 100.0,
-            x_range: [0.0, 10_000.0],
-            y_range: [0.0, 10.0],
-        };
-        let drawn = path(&frame, &Curve::new("", Ink::First, points));
-        assert!(drawn.contains(" 30.0"), "{drawn}");
-        assert!(drawn.len() < 25_000, "{}", drawn.len());
-    }
-
-    #[test]
-    fn what_is_not_a_number_is_a_gap() {
-        let frame = Frame {
-            x: 0.0,
-            y: 0.0,
-            width: 10.0,
-            height: 10.0,
-            x_range: [0.0, 4.0],
-            y_range: [0.0, 1.0],
-        };
-        let points = vec![
-            (0.0, 0.0),
-            (1.0, 1.0),
-            (2.0, f64::NAN),
-            (3.0, 1.0),
-            (4.0, 0.0),
-        ];
-        let drawn = path(&frame, &Curve::new("", Ink::First, points));
-        assert_eq!(drawn.matches('M').count(), 2, "{drawn}");
-    }
-
-    #[test]
-    fn a_legend_with_many_names_takes_a_second_row_rather_than_leave_the_picture() {
-        let names = [
-            "a name of some length",
-            "another name of some length",
-            "a third one that is even longer",
-            "the last",
-        ];
-        let curves: Vec<Curve> = names
-            .iter()
-            .map(|name| Curve::new(name, Ink::First, vec![(0.0, 0.0)]))
-            .collect();
-        let mut svg = String::new();
-        assert_eq!(legend(&mut svg, &curves[..1], LEFT, 0.0), LEGEND_ROW + 4.0);
-        assert_eq!(legend(&mut svg, &curves, LEFT, 0.0), 2.0 * LEGEND_ROW + 4.0);
-    }
 }

@@ -1,0 +1,79 @@
+//! Maps that several chapters show: ways, walls and boxes, routes.
+
+use crate::plot::{Curve, Ink, Map, Points, Shape};
+use crate::signals::Outcome;
+use crate::text::{Language, Text, t};
+use rumbo_wire::Command;
+
+const X_AXIS: Text = t("x (m)", "x (m)");
+const Y_AXIS: Text = t("y (m)", "y (m)");
+const IDEAL: Text = t("ideal", "ideal");
+const BY_ODOMETRY: Text = t("by odometry", "según la odometría");
+const TRUE_WAY: Text = t("true", "real");
+
+/// A map with nothing on it.
+pub(super) fn map(language: Language) -> Map {
+    Map {
+        x: X_AXIS.of(language).to_owned(),
+        y: Y_AXIS.of(language).to_owned(),
+        ..Map::default()
+    }
+}
+
+/// The ideal way, the way by odometry, and the true one.
+pub(super) fn ways(language: Language, outcome: &Outcome, ideal: Points) -> Vec<Curve> {
+    let mut curves = vec![Curve::new(IDEAL.of(language), Ink::Reference, ideal)];
+    if outcome.tells() {
+        curves.push(Curve::new(
+            BY_ODOMETRY.of(language),
+            Ink::First,
+            outcome.told_way(),
+        ));
+    }
+    curves.push(Curve::new(TRUE_WAY.of(language), Ink::Third, outcome.way()));
+    curves
+}
+
+/// The walls and boxes of a run's world.
+pub(super) fn shapes(outcome: &Outcome) -> Vec<Shape> {
+    let Ok(world) = outcome.setup.world.world() else {
+        return Vec::new();
+    };
+    let shape = |obstacle: &rumbo_plant::world::Obstacle| {
+        let corners: Points = obstacle.corners().map(|[x, y]| (x, y)).collect();
+        Shape {
+            filled: corners.len() > 2,
+            corners,
+        }
+    };
+    world.obstacles().iter().map(shape).collect()
+}
+
+/// The route of a run's commands in the world, from its start.
+pub(super) fn route(outcome: &Outcome) -> Points {
+    let start = outcome.setup.scenario.start;
+    let (sin, cos) = start.heading_rad.sin_cos();
+    let mut route = vec![(start.x_m, start.y_m)];
+    for timed in &outcome.setup.scenario.commands {
+        if let Command::Waypoint(waypoint) = timed.command {
+            let (x, y) = (f64::from(waypoint.x_m), f64::from(waypoint.y_m));
+            route.push((start.x_m + cos * x - sin * y, start.y_m + sin * x + cos * y));
+        }
+    }
+    route
+}
+
+/// Distance of a point from a polyline.
+pub(super) fn off_route(route: &Points, (x, y): (f64, f64)) -> f64 {
+    let from_piece = |piece: &[(f64, f64)]| {
+        let (a, b) = (piece[0], piece[1]);
+        let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+        let along = ((x - a.0) * dx + (y - a.1) * dy) / (dx * dx + dy * dy).max(1e-12);
+        let along = along.clamp(0.0, 1.0);
+        (x - a.0 - along * dx).hypot(y - a.1 - along * dy)
+    };
+    route
+        .windows(2)
+        .map(from_piece)
+        .fold(f64::INFINITY, f64::min)
+}

@@ -1,0 +1,104 @@
+//! Mode 8 beside a recorded run: ways and poses by the odometry of both.
+
+use super::beside;
+use super::mode8;
+use super::parts;
+use crate::data::Data;
+use crate::judge;
+use crate::page::Page;
+use crate::plot::{Map, Panel, Points};
+use crate::real::Recording;
+use crate::signals::unwrapped;
+use crate::text::{Text, t};
+use rumbo_wire::text::{MissionRow, Row};
+
+const TIME: Text = t("Duration", "Duración");
+const PATH: Text = t("Way by odometry", "Camino según la odometría");
+const REAL_WAY: Text = t(
+    "The ways of both robots by their own odometry.",
+    "Trayectorias de ambos robots según su propia odometría.",
+);
+const REAL_POSE: Text = t(
+    "Pose of both robots by their own odometry, from the arming of ours and the first motion of the recorded one.",
+    "Pose de ambos robots según su propia odometría, desde el armado del nuestro y el primer movimiento del real.",
+);
+
+pub(super) fn write(page: &mut Page, data: &Data, scenario: &str) {
+    let Some((ours, recording)) = data.beside(scenario) else {
+        return;
+    };
+    beside::heading(page, &recording.file, false);
+    let language = page.language;
+    let real = |of: fn(&MissionRow) -> f32| recorded(recording, of);
+    let [x, y, heading] = ours
+        .pose()
+        .map(|points| -> Points { points.into_iter().filter(|(t_s, _)| *t_s >= 0.0).collect() });
+    let theirs = [real(|row| row.x_m), real(|row| row.y_m)];
+    if scenario != "mode8-goals" {
+        let way = |x: &Points, y: &Points| -> Points {
+            x.iter().zip(y).map(|(x, y)| (x.1, y.1)).collect()
+        };
+        let curves = beside::both(language, ours.told_way(), way(&theirs[0], &theirs[1]));
+        let map = Map {
+            curves,
+            ..mode8::way_map(page, ours, Points::new())
+        };
+        let svg = map.svg(language, page.say(REAL_WAY));
+        page.figure(&format!("{scenario}-real-way"), &svg, REAL_WAY);
+    }
+    let end_s = mode8::end_s(ours).unwrap_or_else(|| ours.duration_s());
+    let walked = [
+        length(&x, &y, end_s),
+        length(&theirs[0], &theirs[1], f64::INFINITY),
+    ];
+    let lasted = [
+        ours.metric(if scenario == "mode8-lane" {
+            "finish_s"
+        } else {
+            "total_time_s"
+        })
+        .unwrap_or(end_s),
+        recording.duration_s(),
+    ];
+    let panels = vec![
+        Panel::new("x (m)", beside::both(language, x, theirs[0].clone())),
+        Panel::new("y (m)", beside::both(language, y, theirs[1].clone())),
+        Panel::new(
+            page.say(mode8::HEADING),
+            beside::both(language, heading, unwrapped(real(|row| row.heading_deg))),
+        )
+        .exactly(-190.0, 190.0),
+    ];
+    parts::show(
+        page,
+        parts::over_time(page, &format!("{scenario}-real"), REAL_POSE, panels),
+    );
+    let row = |name: Text, values: [f64; 2], unit| {
+        let shown = judge::plain(unit);
+        let [ours, real] = values.map(|value| judge::value(language, &shown, value));
+        (page.say(name).to_owned(), ours, real)
+    };
+    let rows = [row(TIME, lasted, "s"), row(PATH, walked, "m")];
+    beside::table(page, &rows);
+}
+
+fn recorded(recording: &Recording, of: fn(&MissionRow) -> f32) -> Points {
+    recording.signal(|row| match row {
+        Row::Mission(row) => Some(f64::from(of(row))),
+        _ => None,
+    })
+}
+
+/// Length of a way until a time [m]. A new origin is no way.
+fn length(x: &Points, y: &Points, until_s: f64) -> f64 {
+    let places: Points = x
+        .iter()
+        .zip(y)
+        .filter(|(x, _)| x.0 <= until_s)
+        .map(|(x, y)| (x.1, y.1))
+        .collect();
+    let pieces = places
+        .windows(2)
+        .map(|two| (two[1].0 - two[0].0).hypot(two[1].1 - two[0].1));
+    pieces.filter(|piece| *piece < 0.2).sum()
+}
