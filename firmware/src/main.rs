@@ -61,7 +61,7 @@ fn main() -> ! {
         }
         let out = robot.tick(&record::inputs(&inputs));
         outputs::leave(&out, tick);
-        record::outputs(&out);
+        record::outputs(&out, robot.beliefs());
         if let Some(sonar) = out.ping {
             let delay = (OUTPUT_DELAY_US * 2) as u16;
             listener.pinged(sonar, clock::Stamp(stamp.0.wrapping_add(delay)));

@@ -1,4 +1,5 @@
-//! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds, and a million frames over a link with faults.
+//! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds, a million frames over a link with faults, and the
+//! image for 75 minutes under a flood of bytes.
 //!
 //! The runs and what is required of them are the scenario crate's (`rumbo_scenario::campaign`); its example is built as users get the
 //! program, optimised, and printed as it comes.
@@ -9,6 +10,11 @@ use std::process::Stdio;
 /// The part that is no scenario.
 const LINK: &str = "link";
 
+/// The part that drives the image: a test, made longer.
+const IMAGE: &str = "image";
+/// Its minutes: past the wrap of the microseconds at 71.6.
+const IMAGE_MINUTES: &str = "75";
+
 /// Seeds of each scenario.
 const SEEDS: u32 = 1000;
 
@@ -18,12 +24,43 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if only.is_empty() || only.iter().any(|name| name == LINK) {
         met &= example(project, ["rumbo-station", "link_campaign"], &[])?;
     }
+    if only.is_empty() || only.iter().any(|name| name == IMAGE) {
+        met &= soak(project)?;
+    }
     let mut scenarios = vec![seeds.unwrap_or(SEEDS).to_string()];
-    scenarios.extend(only.iter().filter(|name| *name != LINK).cloned());
+    scenarios.extend(
+        only.iter()
+            .filter(|name| ![LINK, IMAGE].contains(&name.as_str()))
+            .cloned(),
+    );
     if only.is_empty() || scenarios.len() > 1 {
         met &= example(project, ["rumbo-scenario", "campaign"], &scenarios)?;
     }
     Ok(met)
+}
+
+/// Drives the image for long; true if it kept to all that its test asks.
+fn soak(project: &Project) -> Result<bool, String> {
+    crate::firmware::run(project)?;
+    let mut command = project.cargo(&[
+        "test",
+        "--quiet",
+        "--release",
+        "--locked",
+        "--package",
+        "rumbo-scenario",
+        "--test",
+        "firmware",
+        "soak",
+        "--",
+        "--nocapture",
+    ]);
+    command.env("RUMBO_SOAK_MINUTES", IMAGE_MINUTES);
+    let status = command
+        .stdin(Stdio::null())
+        .status()
+        .map_err(|error| format!("{}: {error}", shown(&command)))?;
+    Ok(status.success())
 }
 
 /// Runs an example of a crate; true if it found everything met.

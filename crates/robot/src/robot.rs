@@ -141,6 +141,12 @@ impl Robot {
         armed.then(|| (self.pilot.mode(), self.pilot.signals().state))
     }
 
+    /// What the robot believes of itself, to the last bit: pose (x, y [m], heading [rad]), speeds and their references of both
+    /// wheels [rad/s], heading that the mode wants [rad]. For tests that compare two robots.
+    pub fn beliefs(&self) -> [f32; 8] {
+        self.pilot.beliefs()
+    }
+
     /// The next byte for the link, if any waits.
     pub fn transmit(&mut self) -> Option<u8> {
         self.reporter.transmit()

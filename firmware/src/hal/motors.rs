@@ -2,9 +2,44 @@
 
 use super::registers::{change, port_e, port_g, port_h, put, timer_3, timer_4};
 use crate::pins;
+use core::convert::Infallible;
+use embedded_hal::pwm::{ErrorType, SetDutyCycle};
 use rumbo_control::{Duty, Wheels};
 
 const LEFT_DIRECTIONS: u8 = pins::LEFT_FORWARD.mask() | pins::LEFT_BACKWARD.mask();
+
+/// A motor's enable input: `embedded-hal`'s view of the PWM.
+macro_rules! enable {
+    ($(#[$doc:meta])* $Name:ident, $timer:ident, $compare:ident) => {
+        $(#[$doc])*
+        struct $Name;
+
+        impl ErrorType for $Name {
+            type Error = Infallible;
+        }
+
+        impl SetDutyCycle for $Name {
+            fn max_duty_cycle(&self) -> u16 {
+                255
+            }
+
+            #[inline(always)]
+            fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
+                put!($timer().$compare(), duty);
+                Ok(())
+            }
+        }
+    };
+}
+
+enable!(
+    /// The left motor's, OC4A.
+    LeftEnable, timer_4, ocr4a
+);
+enable!(
+    /// The right motor's, OC3A.
+    RightEnable, timer_3, ocr3a
+);
 
 /// What the pins are to be, ready to be written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,8 +74,8 @@ impl Bridge {
         change!(port_h().porth(), set self.left, clear LEFT_DIRECTIONS);
         change!(port_e().porte(), set self.right_e, clear pins::RIGHT_BACKWARD.mask());
         change!(port_g().portg(), set self.right_g, clear pins::RIGHT_FORWARD.mask());
-        put!(timer_4().ocr4a(), u16::from(self.left_pwm));
-        put!(timer_3().ocr3a(), u16::from(self.right_pwm));
+        let Ok(()) = LeftEnable.set_duty_cycle(u16::from(self.left_pwm));
+        let Ok(()) = RightEnable.set_duty_cycle(u16::from(self.right_pwm));
     }
 }
 

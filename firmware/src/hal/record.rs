@@ -41,6 +41,9 @@ struct OutputsRecord {
     ping: u8,
 }
 
+/// What the robot believes, likewise; in the order of [`rumbo_robot::Robot::beliefs`].
+type Beliefs = [f32; 8];
+
 struct Shown<T>(UnsafeCell<T>);
 
 // SAFETY: only the loop touches it.
@@ -69,6 +72,9 @@ static RUMBO_OUTPUTS: Shown<OutputsRecord> = Shown(UnsafeCell::new(OutputsRecord
     servo_rad: 0.0,
     ping: 255,
 }));
+
+#[unsafe(no_mangle)]
+static RUMBO_BELIEFS: Shown<Beliefs> = Shown(UnsafeCell::new([0.0; 8]));
 
 /// Does nothing; where a test stops to see the inputs of a tick.
 #[unsafe(no_mangle)]
@@ -134,10 +140,11 @@ pub fn inputs(inputs: &Inputs) -> Inputs {
     }
 }
 
-/// Shows the outputs of a tick.
-pub fn outputs(outputs: &Outputs) {
+/// Shows the outputs of a tick, and what the robot believes.
+pub fn outputs(outputs: &Outputs, beliefs: Beliefs) {
     // SAFETY: as above.
     unsafe {
+        RUMBO_BELIEFS.0.get().write_volatile(beliefs);
         RUMBO_OUTPUTS.0.get().write_volatile(OutputsRecord {
             left: outputs.drive.left.counts(),
             right: outputs.drive.right.counts(),

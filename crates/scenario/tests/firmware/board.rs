@@ -36,6 +36,7 @@ pub(crate) struct Board {
     outputs_left: u32,
     inputs: usize,
     outputs: usize,
+    beliefs: usize,
     received: usize,
     sending: usize,
     moved: u8,
@@ -61,6 +62,7 @@ impl Board {
             outputs_left,
             inputs: variable("RUMBO_INPUTS"),
             outputs: variable("RUMBO_OUTPUTS"),
+            beliefs: variable("RUMBO_BELIEFS"),
             received: variable("RUMBO_RECEIVED"),
             sending: variable("RUMBO_SENDING"),
             moved: 0,
@@ -96,6 +98,14 @@ impl Board {
                 Event::Pin(..) | Event::Duty { .. } => {}
             }
         }
+    }
+
+    /// What the image believed at the last tick, in bits.
+    pub(crate) fn beliefs(&self) -> Vec<u32> {
+        let bytes = &self.chip.cpu().sram()[self.beliefs..self.beliefs + 32];
+        let words = bytes.chunks_exact(4);
+        let word = |four: &[u8]| u32::from_le_bytes(four.try_into().unwrap());
+        words.map(word).collect()
     }
 
     /// The image's hash, as it tells it.

@@ -2,7 +2,7 @@
 
 use crate::board::image;
 use rumbo_emulator::chip::Chip;
-use rumbo_emulator::devices::ports::Pin;
+use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::observe::profile::Profile;
 use rumbo_wire::{Decoder, FromRobot, Message, Received};
@@ -60,6 +60,56 @@ fn handlers_are_short_and_wait_little_while_both_wheels_turn_echoes_come_and_byt
             "{used:?}"
         );
     }
+}
+
+#[test]
+fn the_servo_s_pulses_keep_their_length_while_everything_happens_at_once() {
+    let Some(image) = image() else {
+        return;
+    };
+    let mut chip = Chip::new(&image);
+    chip.run_until(50 * CYCLES_PER_MS);
+    chip.take_outputs();
+    let mut edges = Vec::new();
+    for ms in 50..2_050 {
+        let at = ms * CYCLES_PER_MS;
+        // Encoders and echoes out of step with each other, and the line full.
+        for (n, (port, bit)) in [('D', 0), ('D', 1), ('D', 2), ('D', 3), ('E', 5)]
+            .into_iter()
+            .enumerate()
+        {
+            let (n, level) = (n as u64, Some(ms % 2 == 0));
+            let jitter = (ms * (97 - 8 * n)) % 15_000;
+            chip.input(at + jitter, Input::Pin(pin(port, bit), level));
+        }
+        let (usart, byte, baud) = (2, (ms * 31) as u8, 9_600);
+        chip.input(at, Input::Serial { usart, byte, baud });
+        chip.run_until(at + CYCLES_PER_MS);
+        for output in chip.take_outputs() {
+            if let Event::Pin(moved, drive) = output.event
+                && moved == pin('H', 6)
+            {
+                edges.push((output.cycle, drive == Drive::High));
+            }
+        }
+    }
+    let first = edges.iter().position(|(_, high)| *high).unwrap();
+    let rises = edges[first..].iter().step_by(2).map(|(cycle, _)| *cycle);
+    let rises: Vec<u64> = rises.collect();
+    let falls: Vec<u64> = edges[first + 1..]
+        .iter()
+        .step_by(2)
+        .map(|(cycle, _)| *cycle)
+        .collect();
+    assert!(rises.len() > 90, "{}", rises.len());
+    let width = |(rise, fall): (&u64, &u64)| fall - rise;
+    let widths: Vec<u64> = rises.iter().zip(&falls).map(width).collect();
+    let periods: Vec<u64> = rises.windows(2).map(|two| two[1] - two[0]).collect();
+    let spread = |of: &[u64]| of.iter().max().unwrap() - of.iter().min().unwrap();
+    println!("pulses of {} cycles, spread {}", widths[0], spread(&widths));
+    // 1472 us, and not a cycle more or less: the timer makes the edges.
+    assert_eq!((widths[0], spread(&widths)), (1_472 * 16, 0));
+    assert_eq!((periods[0], spread(&periods)), (20_480 * 16, 0));
 }
 
 #[test]

@@ -8,5 +8,6 @@ mod interrupts;
 mod pins;
 mod same_bits;
 mod saved;
+mod soak;
 mod talk;
 mod world;

@@ -32,6 +32,12 @@ fn compare(seed: u64) {
             outputs_record(&outputs),
             "seed {seed}, tick {tick}: {inputs:?} {outputs:?}"
         );
+        let believed: Vec<u32> = robot
+            .beliefs()
+            .iter()
+            .map(|value| value.to_bits())
+            .collect();
+        assert_eq!(board.beliefs(), believed, "seed {seed}, tick {tick}");
         for byte in bytes {
             robot.receive(byte);
         }

@@ -23,6 +23,8 @@ pub(crate) struct Drive {
     pub(crate) heard: Vec<(f64, FromRobot)>,
     /// Whether the station is alive.
     pub(crate) heartbeats: bool,
+    /// For whoever takes `heard` away.
+    pub(crate) last_status: Option<Status>,
     decoder: Decoder<128>,
     number: u16,
     seq: u8,
@@ -62,6 +64,7 @@ impl Drive {
             sim: Sim::with_memory(setup, 1, eeprom).unwrap(),
             heard: Vec::new(),
             heartbeats: true,
+            last_status: None,
             decoder: Decoder::default(),
             number: 0,
             seq: 0,
@@ -196,6 +199,11 @@ impl Drive {
             FromRobot::Event(event) if event.kind == kind => Some(*t_s),
             _ => None,
         })
+    }
+
+    /// Frames that the station missed, modulo 65536.
+    pub(crate) fn frames_lost(&self) -> u16 {
+        self.decoder.frames_lost()
     }
 
     /// The faster wheel [rad/s].

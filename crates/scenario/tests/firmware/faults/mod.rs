@@ -1,7 +1,7 @@
 //! What fails, fails while the shipped image drives: each ends stopped or in the degraded mode that docs/faults.md names, with its
 //! cause told, and without touching anything.
 
-mod drive;
+pub(crate) mod drive;
 mod link;
 mod restart;
 mod sensors;
