@@ -260,7 +260,8 @@ fn bare_registers_do_as_the_datasheet_has_it() {
     for step in 0..50 {
         phase = if step < 40 { phase + 1 } else { phase - 1 };
         at += 100 * CYCLES_PER_US;
-        let gray = phase % 4 ^ phase % 4 >> 1;
+        let quarter = phase % 4;
+        let gray = quarter ^ (quarter >> 1);
         for (bit, pin) in [a8, a9].into_iter().enumerate() {
             board
                 .chip
