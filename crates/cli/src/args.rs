@@ -87,6 +87,7 @@ Examples:
   rumbo lab --scenario mode5 --speed 4
   rumbo lab --scenario mode1 --rig final --world room
   rumbo lab --scenario mode1 --firmware my_sketch.elf --wiring final
+  rumbo lab --scenario mode5 --firmware my_sketch.elf --gdb 1234
   rumbo lab --port 9000 --no-browser
   rumbo lab --listen 192.168.1.7
   rumbo lab --pty")]
@@ -109,6 +110,9 @@ pub(crate) struct LabArgs {
     /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own image]
     #[arg(long, value_name = "NAME", requires = "firmware")]
     pub(crate) wiring: Option<String>,
+    /// Port on 127.0.0.1 where avr-gdb may come and go; 0 takes any free one. Robot and world stand while it holds the program
+    #[arg(long, value_name = "PORT", requires = "firmware")]
+    pub(crate) gdb: Option<u16>,
     #[command(flatten)]
     pub(crate) serve: ServeArgs,
     /// Do not open the browser

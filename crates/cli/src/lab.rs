@@ -9,6 +9,7 @@ use crate::output;
 use crate::scene::{first_commands, scene};
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
+use rumbo_scenario::debugging::Debugging;
 use rumbo_scenario::files::{FileError, Library, Overrides, Setup};
 use rumbo_scenario::mega::firmware::Language;
 use rumbo_scenario::run;
@@ -32,7 +33,10 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
         wiring: args.wiring.clone(),
         ..Overrides::default()
     };
-    let robot = SimulatedRobot::new(overrides, choice).map_err(Failure::input)?;
+    let mut robot = SimulatedRobot::new(overrides, choice).map_err(Failure::input)?;
+    if let Some(port) = args.gdb {
+        robot.debugging = Some(debugging(port, args)?);
+    }
     #[cfg(unix)]
     if args.pty {
         return crate::pty::offer(robot, args.speed);
@@ -45,6 +49,24 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
     let lab = rumbo_station::serve_with(config, Box::new(robot), calibrate::in_dashboard())
         .map_err(Failure::input)?;
     show(lab, args.serve, args.no_browser)
+}
+
+/// The port at which a debugger may call, told on stderr.
+fn debugging(port: u16, args: &LabArgs) -> Result<Debugging, Failure> {
+    let refused = |error: std::io::Error| {
+        Failure::Input(format!(
+            "--gdb {port}: cannot listen there ({error}); choose another port, or 0 for any"
+        ))
+    };
+    let debugging = Debugging::at(port).map_err(refused)?;
+    let port = debugging.port().map_err(refused)?;
+    let image = args.firmware.as_ref();
+    let image = image.map_or_else(String::new, |path| path.display().to_string());
+    let _ = writeln!(
+        std::io::stderr(),
+        "a debugger may come at any time: avr-gdb {image} -ex 'target remote :{port}'"
+    );
+    Ok(debugging)
 }
 
 /// Prints the address, opens the browser, and returns when the lab has ended.
@@ -69,6 +91,7 @@ struct SimulatedRobot {
     /// What the command line says; the page chooses scenario, world and rig.
     overrides: Overrides,
     sim: Sim,
+    debugging: Option<Debugging>,
     manifest: Manifest,
     mode: ModeId,
     /// The emulated program's end has been told.
@@ -93,6 +116,7 @@ impl SimulatedRobot {
             library,
             overrides,
             sim,
+            debugging: None,
             manifest,
             mode,
             ended: false,
@@ -181,7 +205,12 @@ impl Target for SimulatedRobot {
     }
 
     fn advance(&mut self, dt_us: u64) -> Result<(), String> {
-        self.sim.advance(self.sim.now_us() + dt_us);
+        // After a breakpoint, back to the multiples of the step.
+        let until_us = (self.sim.now_us() / dt_us.max(1) + 1) * dt_us;
+        match &mut self.debugging {
+            Some(debugging) => debugging.advance(&mut self.sim, until_us),
+            None => self.sim.advance(until_us),
+        }
         Ok(())
     }
 
@@ -248,6 +277,13 @@ impl Simulation for SimulatedRobot {
         Some(verdict)
     }
 
+    fn news(&mut self) -> Vec<String> {
+        self.debugging
+            .as_mut()
+            .map(Debugging::take_news)
+            .unwrap_or_default()
+    }
+
     fn type_in(&mut self, usart: u8, line: &str) -> Result<(), String> {
         match type_to(&mut self.sim, usart, line) {
             true => Ok(()),
@@ -282,6 +318,9 @@ impl Simulation for SimulatedRobot {
             scenarios, worlds, ..
         } = std::mem::take(&mut self.scene);
         self.sim = fresh.sim;
+        if let Some(debugging) = &mut self.debugging {
+            debugging.forget();
+        }
         self.mode = fresh.mode;
         self.ended = false;
         self.first_commands = fresh.first_commands;

@@ -4,6 +4,7 @@ mod board;
 pub mod calibrate;
 pub mod campaign;
 pub mod chart;
+pub mod debugging;
 pub mod files;
 pub mod identify;
 pub mod mega;

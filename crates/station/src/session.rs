@@ -373,6 +373,10 @@ impl Session {
             if let Some(simulation) = self.target.simulation() {
                 self.observer.truth(to_ms(now_us), simulation.truth());
                 self.observer.consoles(now_us, simulation.consoles());
+                for news in simulation.news() {
+                    self.observer
+                        .note(to_ms(now_us), board::Level::Warning, news);
+                }
                 if let Some(why) = simulation.ended() {
                     self.observer.note(to_ms(now_us), board::Level::Fault, why);
                 }

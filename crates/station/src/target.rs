@@ -87,6 +87,11 @@ pub trait Simulation {
         None
     }
 
+    /// What has happened to an emulated program from outside since the last call: a debugger that holds it, or lets it go.
+    fn news(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Sends a line that a person typed to a USART of an emulated chip.
     ///
     /// # Errors

@@ -7,11 +7,13 @@
 //! Source: GDB's manual, appendix "Remote Serial Protocol"; the places of the memories are the toolchain's (see `image`).
 
 pub mod arch;
+mod session;
 mod target;
 
 use crate::chip::Chip;
 use crate::cpu::Stopped;
 use gdbstub::stub::{DisconnectReason, GdbStub};
+pub use session::{Progress, Session};
 use std::io;
 use std::net::TcpStream;
 use target::{Debugger, Events};
@@ -59,6 +61,29 @@ impl Machine for Chip {
     }
 }
 
+/// Whoever has a machine for a while.
+impl<M: Machine> Machine for &mut M {
+    fn chip(&self) -> &Chip {
+        (**self).chip()
+    }
+
+    fn chip_mut(&mut self) -> &mut Chip {
+        (**self).chip_mut()
+    }
+
+    fn go(&mut self) -> Stopped {
+        (**self).go()
+    }
+
+    fn step(&mut self) -> Stopped {
+        (**self).step()
+    }
+
+    fn is_over(&self) -> bool {
+        (**self).is_over()
+    }
+}
+
 /// In cycles of a crystal of 16 MHz.
 const MILLISECOND: u64 = 16_000;
 
@@ -79,7 +104,7 @@ pub fn serve<M: Machine>(machine: &mut M, connection: TcpStream) -> io::Result<F
     let mut debugger = Debugger::new(machine);
     let stub = GdbStub::new(connection);
     let reason = stub
-        .run_blocking::<Events<M>>(&mut debugger)
+        .run_blocking::<Events<&mut M>>(&mut debugger)
         .map_err(|error| io::Error::other(format!("debugger: {error}")))?;
     debugger.clear();
     Ok(match reason {

@@ -55,18 +55,21 @@ enum Motion {
 }
 
 /// A machine in the hands of a debugger.
-pub(super) struct Debugger<'a, M> {
-    machine: &'a mut M,
+pub(super) struct Debugger<M> {
+    pub(super) machine: M,
     motion: Motion,
+    /// It stands, perhaps at a breakpoint.
+    stands: bool,
     breakpoints: Vec<u32>,
     watchpoints: Vec<Watchpoint>,
 }
 
-impl<'a, M: Machine> Debugger<'a, M> {
-    pub(super) fn new(machine: &'a mut M) -> Self {
+impl<M: Machine> Debugger<M> {
+    pub(super) fn new(machine: M) -> Self {
         Debugger {
             machine,
             motion: Motion::Continue,
+            stands: true,
             breakpoints: Vec::new(),
             watchpoints: Vec::new(),
         }
@@ -82,20 +85,36 @@ impl<'a, M: Machine> Debugger<'a, M> {
         }
     }
 
+    fn set_off(&mut self, motion: Motion) {
+        self.motion = motion;
+        self.stands = true;
+    }
+
     fn program_counter(&self) -> u32 {
         2 * self.machine.chip().cpu().program_counter()
     }
 
     /// Lets the program go on until it stops, or `interrupted` says that the debugger has something to say.
     fn go(&mut self, mut interrupted: impl FnMut() -> bool) -> Option<SingleThreadStopReason<u32>> {
-        // Off a breakpoint at which it may stand.
-        let stopped = self.machine.step();
-        if let Some(reason) = self.stop_reason(stopped) {
-            return Some(reason);
-        }
         let mut steps = 0;
         loop {
-            let stopped = match &self.motion {
+            if let Some(reason) = self.go_on() {
+                return Some(reason);
+            }
+            steps += 1;
+            if (self.motion == Motion::Continue || steps % STEPS == 0) && interrupted() {
+                return None;
+            }
+        }
+    }
+
+    /// Lets the program go on for a while; says why it stopped, if it did.
+    pub(super) fn go_on(&mut self) -> Option<SingleThreadStopReason<u32>> {
+        let stopped = if std::mem::take(&mut self.stands) {
+            // Off a breakpoint at which it may stand.
+            self.machine.step()
+        } else {
+            match &self.motion {
                 Motion::Step if !self.machine.chip().cpu().is_sleeping() => {
                     return Some(SingleThreadStopReason::DoneStep);
                 }
@@ -104,18 +123,13 @@ impl<'a, M: Machine> Debugger<'a, M> {
                 }
                 Motion::Continue => self.machine.go(),
                 Motion::Step | Motion::Within(_) => self.machine.step(),
-            };
-            if let Some(reason) = self.stop_reason(stopped) {
-                return Some(reason);
             }
-            if self.machine.is_over() {
-                return Some(SingleThreadStopReason::Exited(0));
-            }
-            steps += 1;
-            if (self.motion == Motion::Continue || steps % STEPS == 0) && interrupted() {
-                return None;
-            }
-        }
+        };
+        self.stop_reason(stopped).or_else(|| {
+            self.machine
+                .is_over()
+                .then_some(SingleThreadStopReason::Exited(0))
+        })
     }
 
     /// What to tell the debugger about a stop, if it was one.
@@ -185,7 +199,7 @@ impl<'a, M: Machine> Debugger<'a, M> {
     }
 }
 
-impl<M: Machine> Target for Debugger<'_, M> {
+impl<M: Machine> Target for Debugger<M> {
     type Arch = Avr;
     type Error = Infallible;
 
@@ -202,7 +216,7 @@ impl<M: Machine> Target for Debugger<'_, M> {
     }
 }
 
-impl<M: Machine> SingleThreadBase for Debugger<'_, M> {
+impl<M: Machine> SingleThreadBase for Debugger<M> {
     fn read_registers(&mut self, registers: &mut AvrRegisters) -> TargetResult<(), Self> {
         let cpu = self.machine.chip().cpu();
         *registers = AvrRegisters {
@@ -252,9 +266,9 @@ impl<M: Machine> SingleThreadBase for Debugger<'_, M> {
     }
 }
 
-impl<M: Machine> SingleThreadResume for Debugger<'_, M> {
+impl<M: Machine> SingleThreadResume for Debugger<M> {
     fn resume(&mut self, _: Option<Signal>) -> Result<(), Infallible> {
-        self.motion = Motion::Continue;
+        self.set_off(Motion::Continue);
         Ok(())
     }
 
@@ -267,21 +281,21 @@ impl<M: Machine> SingleThreadResume for Debugger<'_, M> {
     }
 }
 
-impl<M: Machine> SingleThreadSingleStep for Debugger<'_, M> {
+impl<M: Machine> SingleThreadSingleStep for Debugger<M> {
     fn step(&mut self, _: Option<Signal>) -> Result<(), Infallible> {
-        self.motion = Motion::Step;
+        self.set_off(Motion::Step);
         Ok(())
     }
 }
 
-impl<M: Machine> SingleThreadRangeStepping for Debugger<'_, M> {
+impl<M: Machine> SingleThreadRangeStepping for Debugger<M> {
     fn resume_range_step(&mut self, start: u32, end: u32) -> Result<(), Infallible> {
-        self.motion = Motion::Within(start..end);
+        self.set_off(Motion::Within(start..end));
         Ok(())
     }
 }
 
-impl<M: Machine> Breakpoints for Debugger<'_, M> {
+impl<M: Machine> Breakpoints for Debugger<M> {
     fn support_sw_breakpoint(&mut self) -> Option<SwBreakpointOps<'_, Self>> {
         Some(self)
     }
@@ -295,7 +309,7 @@ impl<M: Machine> Breakpoints for Debugger<'_, M> {
     }
 }
 
-impl<M: Machine> SwBreakpoint for Debugger<'_, M> {
+impl<M: Machine> SwBreakpoint for Debugger<M> {
     fn add_sw_breakpoint(&mut self, address: u32, _: usize) -> TargetResult<bool, Self> {
         if !FLASH.contains(&address) {
             return Ok(false);
@@ -317,7 +331,7 @@ impl<M: Machine> SwBreakpoint for Debugger<'_, M> {
     }
 }
 
-impl<M: Machine> HwBreakpoint for Debugger<'_, M> {
+impl<M: Machine> HwBreakpoint for Debugger<M> {
     fn add_hw_breakpoint(&mut self, address: u32, kind: usize) -> TargetResult<bool, Self> {
         self.add_sw_breakpoint(address, kind)
     }
@@ -338,7 +352,7 @@ fn watchpoint(address: u32, length: u32, kind: WatchKind) -> Option<Watchpoint> 
     })
 }
 
-impl<M: Machine> HwWatchpoint for Debugger<'_, M> {
+impl<M: Machine> HwWatchpoint for Debugger<M> {
     fn add_hw_watchpoint(
         &mut self,
         address: u32,
@@ -367,7 +381,7 @@ impl<M: Machine> HwWatchpoint for Debugger<'_, M> {
     }
 }
 
-impl<M: Machine> MonitorCmd for Debugger<'_, M> {
+impl<M: Machine> MonitorCmd for Debugger<M> {
     fn handle_monitor_cmd(
         &mut self,
         command: &[u8],
@@ -390,15 +404,15 @@ impl<M: Machine> MonitorCmd for Debugger<'_, M> {
 }
 
 /// How the protocol's loop gets at the program and the connection.
-pub(super) struct Events<'a, M>(PhantomData<&'a mut M>);
+pub(super) struct Events<M>(PhantomData<M>);
 
-impl<'a, M: Machine> BlockingEventLoop for Events<'a, M> {
-    type Target = Debugger<'a, M>;
+impl<M: Machine> BlockingEventLoop for Events<M> {
+    type Target = Debugger<M>;
     type Connection = TcpStream;
     type StopReason = SingleThreadStopReason<u32>;
 
     fn wait_for_stop_reason(
-        debugger: &mut Debugger<'a, M>,
+        debugger: &mut Debugger<M>,
         connection: &mut TcpStream,
     ) -> Result<
         Event<Self::StopReason>,
@@ -413,7 +427,7 @@ impl<'a, M: Machine> BlockingEventLoop for Events<'a, M> {
         }
     }
 
-    fn on_interrupt(_: &mut Debugger<'a, M>) -> Result<Option<Self::StopReason>, Infallible> {
+    fn on_interrupt(_: &mut Debugger<M>) -> Result<Option<Self::StopReason>, Infallible> {
         Ok(Some(SingleThreadStopReason::Signal(Signal::SIGINT)))
     }
 }

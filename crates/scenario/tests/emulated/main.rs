@@ -1,6 +1,7 @@
 //! A sketch on the emulated Mega and the plant: each line between them does what the real one does.
 #![cfg(test)]
 
+mod debugger;
 mod memoria;
 mod rig;
 mod runs;

@@ -1,0 +1,184 @@
+//! A debugger that comes to a simulation in progress, and may leave it again: robot and world stand still in time while it holds the
+//! program. For the lab, which asks for a stretch of time at a time.
+
+use crate::sim::Sim;
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::cpu::Stopped;
+use rumbo_emulator::gdb::{Machine, Progress, Session};
+use std::io;
+use std::net::{Ipv4Addr, TcpListener};
+
+/// The longest that the program goes on before the debugger is listened to [us].
+const TURN_US: u64 = 1_000;
+
+/// A port at which a debugger may call, and the one that has.
+pub struct Debugging {
+    listener: TcpListener,
+    session: Option<Session<Held>>,
+    /// The program stands, and when that was last told [us].
+    stands: Option<u64>,
+    news: Vec<String>,
+}
+
+impl Debugging {
+    /// Listens on this port of 127.0.0.1; 0 takes any free one.
+    ///
+    /// # Errors
+    /// The port is taken, or not for everybody.
+    pub fn at(port: u16) -> io::Result<Debugging> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+        listener.set_nonblocking(true)?;
+        Ok(Debugging {
+            listener,
+            session: None,
+            stands: None,
+            news: Vec::new(),
+        })
+    }
+
+    /// The port.
+    ///
+    /// # Errors
+    /// The system does not say.
+    pub fn port(&self) -> io::Result<u16> {
+        Ok(self.listener.local_addr()?.port())
+    }
+
+    /// What has happened between debugger and program since the last call, in words.
+    pub fn take_news(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.news)
+    }
+
+    /// Another simulation takes the place of the one that was looked at: the debugger's connection ends.
+    pub fn forget(&mut self) {
+        if self.session.take().is_some() {
+            self.stands = None;
+            self.news.push("the debugger is gone with the run".into());
+        }
+    }
+
+    /// Lets a simulation live until this time [us], or as far as the debugger lets it.
+    pub fn advance(&mut self, sim: &mut Sim, until_us: u64) {
+        self.welcome(sim);
+        let Some(session) = &mut self.session else {
+            sim.advance(until_us);
+            return;
+        };
+        session.machine_mut().until_us = until_us;
+        std::mem::swap(sim, &mut session.machine_mut().sim);
+        let mut progress = Progress::Ran;
+        while progress == Progress::Ran && session.machine_mut().sim.now_us() < until_us {
+            progress = session.turn();
+        }
+        std::mem::swap(sim, &mut session.machine_mut().sim);
+        self.tell(progress, sim);
+    }
+
+    fn tell(&mut self, progress: Progress, sim: &Sim) {
+        let now_us = sim.now_us();
+        match progress {
+            // Not each of the steps by hand: those that are a while apart.
+            Progress::Stands if self.stands.is_none_or(|told| now_us >= told + TURN_US) => {
+                self.stands = Some(now_us);
+                let place = place(sim);
+                self.news
+                    .push(format!("the program stands at {place}, and time with it"));
+            }
+            Progress::Ran if self.stands.take().is_some() => {
+                self.news.push("the program goes on".into());
+            }
+            Progress::Gone => {
+                self.session = None;
+                self.stands = None;
+                self.news
+                    .push("the debugger has left; the program goes on".into());
+            }
+            Progress::Stands | Progress::Ran => {}
+        }
+    }
+
+    /// A debugger that calls gets the simulation, if that has an emulated Mega in it.
+    fn welcome(&mut self, sim: &Sim) {
+        if self.session.is_some() || sim.mega().is_none() {
+            return;
+        }
+        let Ok((connection, _)) = self.listener.accept() else {
+            return;
+        };
+        let held = Held {
+            sim: sim.clone(),
+            until_us: 0,
+        };
+        let session = connection
+            .set_nonblocking(false)
+            .and_then(|()| Session::new(held, connection));
+        match session {
+            Ok(session) => {
+                self.session = Some(session);
+                self.news.push("a debugger has come".into());
+            }
+            Err(error) => self.news.push(error.to_string()),
+        }
+    }
+}
+
+/// Where the program stands, for people.
+fn place(sim: &Sim) -> String {
+    sim.mega().map_or_else(String::new, |mega| {
+        let word = mega.chip().cpu().program_counter();
+        mega.firmware().image().place(word)
+    })
+}
+
+/// A simulation in the hands of a debugger. Between its turns it is a stand-in: the real one is with its owner.
+struct Held {
+    sim: Sim,
+    /// The owner's time goes up to here [us].
+    until_us: u64,
+}
+
+impl Held {
+    fn go_on(&mut self) -> Stopped {
+        let next_us = self.sim.now_us() + TURN_US;
+        // An instruction may lie across the end.
+        let until_us = next_us.min(self.until_us.max(self.sim.now_us() + 1));
+        self.sim.advance(until_us);
+        let Some(mega) = self.sim.mega_mut() else {
+            return Stopped::Reached;
+        };
+        if let Some(stopped) = mega.take_halt() {
+            return stopped;
+        }
+        match mega.chip().cpu().verdict() {
+            Some(verdict) => Stopped::Ended(verdict.clone()),
+            None => Stopped::Reached,
+        }
+    }
+}
+
+impl Machine for Held {
+    fn chip(&self) -> &Chip {
+        match self.sim.mega() {
+            Some(mega) => mega.chip(),
+            None => unreachable!("a debugger is let in only where there is one"),
+        }
+    }
+
+    fn chip_mut(&mut self) -> &mut Chip {
+        match self.sim.mega_mut() {
+            Some(mega) => mega.chip_mut(),
+            None => unreachable!("a debugger is let in only where there is one"),
+        }
+    }
+
+    fn go(&mut self) -> Stopped {
+        self.go_on()
+    }
+
+    fn step(&mut self) -> Stopped {
+        if let Some(mega) = self.sim.mega_mut() {
+            mega.step();
+        }
+        self.go_on()
+    }
+}
