@@ -21,7 +21,7 @@ const KEYS = () => [
 const LEGEND = () => [
   [t('blue'), t('left wheel, left sonar')], [t('orange'), t('right wheel, right sonar')], [t('green'), t('front sonar, heading; something good')],
   [t('thick line'), t('as the robot measures or estimates it')], [t('dotted line'), t('as it really is, in the simulation')], [t('dashed line'), t('a reference')],
-  [t('dotted upright lines'), t('the state of the mode changed')], [t('filled robot'), t('as it is')], [t('dashed robot'), t('as it estimates')],
+  [t('dotted upright lines'), t('the state of the mode changed')], [t('filled robot'), t('as it is')], [t('dashed robot'), t('as it estimates')], [t('dotted robot'), t('the ghost: a simulated robot that gets the same commands')],
   [t('pink'), t('goal, route, mark')], [t('red cone'), t('a sonar without a reading')], [t('grey page'), t('what is shown is old: the link or the station is silent')],
 ];
 

@@ -29,8 +29,8 @@ export const PLOTS = [
   plot('distance', 5, ['true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'range_left_cm', 'range_right_cm', 'range_front_cm', 'reference_cm']),
   plot('wheels', 5, ['true_left_rpm', 'true_right_rpm', 'left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm']),
   plot('PWM', 3, ['left_pwm', 'right_pwm']),
-  plot('heading', 4, ['true_heading_deg', 'heading_deg', 'heading_ref_deg']),
-  plot('place', 4, ['true_x_m', 'true_y_m', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m']),
+  plot('heading', 4, ['ghost_heading_deg', 'true_heading_deg', 'heading_deg', 'heading_ref_deg']),
+  plot('place', 4, ['ghost_x_m', 'ghost_y_m', 'true_x_m', 'true_y_m', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m']),
 ];
 
 /** Those of each mode, by its number. @type {string[][]} */

@@ -136,12 +136,14 @@ function receive(message) {
     case 'scene':
       store.setRun(message.run);
       if (message.run !== consoleRun) consoles.clear();
-      header.setScene(message.scene);
+      const simulated = message.scene?.of_ghost ? null : message.scene;
+      header.setScene(simulated);
       map.setScene(message.scene);
-      sonars = message.scene?.sonars.map(({ id }) => id) ?? [0, 1, 2];
+      sonars = simulated?.sonars.map(({ id }) => id) ?? [0, 1, 2];
       panel.setScene(message.scene);
-      stateLine.setScene(message.scene);
-      document.body.classList.toggle('simulated', message.scene !== null);
+      stateLine.setScene(simulated);
+      document.body.classList.toggle('simulated', simulated !== null);
+      document.body.classList.toggle('haunted', false);
       break;
     case 'state':
       state = message.state;
@@ -177,6 +179,7 @@ function receive(message) {
     case 'samples':
       store.setRun(message.run);
       for (const row of message.rows) store.push(row);
+      if (store.latest?.ghost) document.body.classList.add('haunted');
       redraw();
       break;
     case 'control':

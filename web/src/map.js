@@ -141,14 +141,16 @@ export class WorldMap {
     sketch.drawWorld(px);
     sketch.drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px);
     sketch.drawTrail(this.#store.trails.estimated, colours.dim, px);
+    sketch.drawTrail(this.#store.trails.ghost, colours.goal, px);
     this.#drawErrand(px);
     const latest = this.#store.latest;
     if (!latest) return;
     const estimated = latest.estimated && compose(latest.origin, latest.estimated);
     const seen = latest.truth ?? estimated;
     if (seen) sketch.drawSonars(seen, latest.ranges_m, latest.servo_rad ?? this.servo_rad, px);
-    if (estimated) sketch.drawRobot(estimated, px, false, false);
-    if (latest.truth) sketch.drawRobot(latest.truth, px, true, latest.contact);
+    if (latest.ghost) sketch.drawRobot(latest.ghost, px, 'ghost', false);
+    if (estimated) sketch.drawRobot(estimated, px, latest.truth ? 'estimated' : 'real', false);
+    if (latest.truth) sketch.drawRobot(latest.truth, px, 'real', latest.contact);
   }
 
   /** @param {number} px */

@@ -116,10 +116,11 @@ export class Sketch {
   /**
    * @param {Pose} at
    * @param {number} px
-   * @param {boolean} real
+   * @param {'real' | 'estimated' | 'ghost'} kind
    * @param {boolean} contact
    */
-  drawRobot(at, px, real, contact) {
+  drawRobot(at, px, kind, contact) {
+    const real = kind === 'real';
     const context = this.context;
     const scene = this.scene;
     context.save();
@@ -127,14 +128,14 @@ export class Sketch {
     context.rotate(at.heading_rad);
     tracePath(context, scene?.footprint_m.length ? scene.footprint_m : DEFAULT_FOOTPRINT, true);
     context.lineWidth = 1.5 * px;
-    context.strokeStyle = contact ? colours.bad : real ? colours.robot : colours.text;
+    context.strokeStyle = contact ? colours.bad : real ? colours.robot : kind === 'ghost' ? colours.goal : colours.text;
     if (real) {
       context.globalAlpha = 0.35;
       context.fillStyle = contact ? colours.bad : colours.robot;
       context.fill();
       context.globalAlpha = 1;
     } else {
-      context.setLineDash([4 * px, 3 * px]);
+      context.setLineDash(kind === 'ghost' ? [1.5 * px, 2.5 * px] : [4 * px, 3 * px]);
     }
     context.stroke();
     context.setLineDash([]);

@@ -37,6 +37,7 @@ const SLOW = [
   'reference_cm', 'range_left_cm', 'range_right_cm', 'range_front_cm',
   'true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'left_pwm', 'right_pwm',
   'range_difference_cm', 'servo_deg', 'heading_deg', 'heading_ref_deg', 'heading_error_deg', 'true_heading_deg', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m', 'true_x_m', 'true_y_m',
+  'ghost_x_m', 'ghost_y_m', 'ghost_heading_deg',
 ];
 const FAST = ['left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm', 'left_error_rpm', 'right_error_rpm', 'true_left_rpm', 'true_right_rpm'];
 
@@ -64,6 +65,7 @@ const FARTHEST_DEG = 315;
  * @property {Pose} origin The robot's origin in the world, as it was when it was last moved.
  * @property {Pose | null} estimated From the origin.
  * @property {Pose | null} truth In the world.
+ * @property {Pose | null} ghost In the world: a simulated robot that gets the same commands.
  * @property {number | null} heading_ref_rad What the mode wants; null where it wants none.
  * @property {[Cell, Cell, Cell]} ranges_m Left, right, front.
  * @property {number | null} servo_rad
@@ -81,8 +83,8 @@ export class Store {
   stretches = [];
   /** @type {Latest | null} */
   latest = null;
-  /** @type {{estimated: [number, number][], truth: [number, number][]}} */
-  trails = { estimated: [], truth: [] };
+  /** @type {{estimated: [number, number][], truth: [number, number][], ghost: [number, number][]}} */
+  trails = { estimated: [], truth: [], ghost: [] };
   #run = 0;
   /** The heading plotted last [deg]. */
   #heading_deg = 0;
@@ -103,7 +105,7 @@ export class Store {
     this.fast.clear();
     this.stretches = [];
     this.latest = null;
-    this.trails = { estimated: [], truth: [] };
+    this.trails = { estimated: [], truth: [], ghost: [] };
   }
 
   /**
@@ -128,6 +130,7 @@ export class Store {
     const mode = number(cell('mode')) ?? 0;
     const armed = cell('armed') === 1;
     const estimated = pose(cell('x_m'), cell('y_m'), cell('heading_rad'));
+    const ghost = pose(cell('ghost_x_m'), cell('ghost_y_m'), cell('ghost_heading_rad'));
     const truth = pose(cell('true_x_m'), cell('true_y_m'), cell('true_heading_rad'));
     const origin = pose(cell('origin_x_m'), cell('origin_y_m'), cell('origin_heading_rad')) ?? IDENTITY;
     const heading_ref_rad = armed && HEADING_MODES.includes(mode) ? number(cell('heading_ref_rad')) : null;
@@ -146,7 +149,7 @@ export class Store {
       servo_deg: scaled(cell('servo_rad'), DEG_PER_RAD),
       left_pwm: number(cell('left_pwm')),
       right_pwm: number(cell('right_pwm')),
-      ...this.#placeAndHeading(estimated, truth && compose(inverse(origin), truth), heading_ref_rad),
+      ...this.#placeAndHeading(estimated, truth && compose(inverse(origin), truth), ghost && compose(inverse(origin), ghost), heading_ref_rad),
       goal_x_m: toPlace ? number(cell('reference_left')) : null,
       goal_y_m: toPlace ? number(cell('reference_right')) : null,
     });
@@ -170,6 +173,7 @@ export class Store {
 
     lengthen(this.trails.estimated, estimated && compose(origin, estimated));
     lengthen(this.trails.truth, truth);
+    lengthen(this.trails.ghost, ghost);
     this.latest = {
       t_s,
       mode,
@@ -178,6 +182,7 @@ export class Store {
       origin,
       estimated,
       truth,
+      ghost,
       heading_ref_rad,
       ranges_m: [cell('range_left_m') ?? null, cell('range_right_m') ?? null, cell('range_front_m') ?? null],
       servo_rad: number(cell('true_servo_rad')) ?? number(cell('servo_rad')),
@@ -188,9 +193,10 @@ export class Store {
   /**
    * @param {Pose | null} estimated
    * @param {Pose | null} truth From the robot's origin.
+   * @param {Pose | null} ghost From the robot's origin.
    * @param {number | null} heading_ref_rad
    */
-  #placeAndHeading(estimated, truth, heading_ref_rad) {
+  #placeAndHeading(estimated, truth, ghost, heading_ref_rad) {
     if (!estimated) return {};
     const wrapped_deg = estimated.heading_rad * DEG_PER_RAD;
     const before_deg = this.#heading_deg;
@@ -204,6 +210,9 @@ export class Store {
       y_m: estimated.y_m,
       true_x_m: truth?.x_m ?? null,
       true_y_m: truth?.y_m ?? null,
+      ghost_x_m: ghost?.x_m ?? null,
+      ghost_y_m: ghost?.y_m ?? null,
+      ghost_heading_deg: curve(ghost ? ghost.heading_rad * DEG_PER_RAD : null),
       heading_deg: curve(heading_deg),
       heading_ref_deg: curve(heading_ref_rad === null ? null : heading_ref_rad * DEG_PER_RAD),
       heading_error_deg: heading_ref_rad === null ? null : wrapped(heading_ref_rad - estimated.heading_rad) * DEG_PER_RAD,

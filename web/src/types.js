@@ -37,6 +37,7 @@
  * @property {number} base_m
  * @property {number} wheel_radius_m
  * @property {SonarMount[]} sonars
+ * @property {boolean} [of_ghost] The robot itself is not simulated.
  *
  * @typedef {object} Parameter
  * @property {number} id

@@ -148,6 +148,9 @@ pub(crate) struct ConnectArgs {
     /// Serial port by its name, or tcp:host:port
     #[arg(value_name = "PORT")]
     pub(crate) address: String,
+    /// Show a simulated robot in this scenario that gets the same commands: put the robot where it begins
+    #[arg(long, value_name = "SCENARIO")]
+    pub(crate) ghost: Option<String>,
     /// Speed of the serial port; the robot's is 9600
     #[arg(long, value_name = "N", default_value_t = rumbo_station::port::DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(300..=2_000_000))]
     pub(crate) baud: u32,
@@ -402,11 +405,15 @@ pub(crate) struct ImportArgs {
 Examples:
   rumbo replay out/mode1-7.mcap
   rumbo replay out/mode1-7.mcap --speed 4
+  rumbo replay robot.mcap --ghost mode1
   rumbo replay out/mode1-7.mcap --port 0 --no-browser")]
 pub(crate) struct ReplayArgs {
     /// The log
     #[arg(value_name = "LOG")]
     pub(crate) log: PathBuf,
+    /// Show a simulated robot that gets the same commands, in this scenario [default: the log's]
+    #[arg(long, value_name = "SCENARIO", num_args = 0..=1)]
+    pub(crate) ghost: Option<Option<String>>,
     #[command(flatten)]
     pub(crate) serve: ServeArgs,
     /// Do not open the browser

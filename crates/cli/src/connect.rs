@@ -3,11 +3,12 @@
 use crate::args::ConnectArgs;
 use crate::calibrate;
 use crate::failure::Failure;
+use crate::ghost::Haunted;
 use crate::lab;
 use crate::logs;
-use rumbo_station::LabConfig;
 use rumbo_station::log::Recording;
 use rumbo_station::port::{self, Port};
+use rumbo_station::{LabConfig, Target};
 use std::io::Write;
 
 /// Opens the port and serves the dashboard.
@@ -26,7 +27,11 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
         speed: 1.0,
         recording: logs::folder(args.out.as_deref()).map(|folder| Recording { folder }),
     };
-    let served = rumbo_station::serve_with(config, Box::new(robot), calibrate::in_dashboard())
+    let robot: Box<dyn Target> = match &args.ghost {
+        Some(scenario) => Box::new(Haunted::new(robot, scenario)?),
+        None => Box::new(robot),
+    };
+    let served = rumbo_station::serve_with(config, robot, calibrate::in_dashboard())
         .map_err(Failure::input)?;
     lab::show(served, args.serve, args.no_browser)
 }

@@ -86,7 +86,7 @@ pub(crate) fn show(lab: Lab, serve: ServeArgs, no_browser: bool) -> Result<(), F
 }
 
 /// The simulation as the station drives it.
-struct SimulatedRobot {
+pub(crate) struct SimulatedRobot {
     library: Library,
     /// What the command line says; the page chooses scenario, world and rig.
     overrides: Overrides,
@@ -101,7 +101,7 @@ struct SimulatedRobot {
 }
 
 impl SimulatedRobot {
-    fn new(overrides: Overrides, choice: Choice) -> Result<Self, FileError> {
+    pub(crate) fn new(overrides: Overrides, choice: Choice) -> Result<Self, FileError> {
         let library = Library::new();
         let Prepared {
             sim,

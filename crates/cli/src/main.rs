@@ -12,6 +12,7 @@ mod export;
 mod failure;
 mod figures;
 mod flash;
+mod ghost;
 mod identify;
 mod import;
 mod lab;

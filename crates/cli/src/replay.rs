@@ -3,13 +3,21 @@
 use crate::args::ReplayArgs;
 use crate::export::warn_if_cut;
 use crate::failure::Failure;
+use crate::ghost;
 use crate::lab;
 use rumbo_station::log::Log;
 
 /// Serves the dashboard with the log.
 pub(crate) fn replay(args: &ReplayArgs) -> Result<(), Failure> {
-    let log = Log::read_signals(&args.log).map_err(Failure::input)?;
+    let read = match args.ghost {
+        Some(_) => Log::read,
+        None => Log::read_signals,
+    };
+    let mut log = read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log);
+    if let Some(scenario) = &args.ghost {
+        ghost::add_to(&mut log, &args.log, scenario.as_deref())?;
+    }
     let name = args
         .log
         .file_stem()

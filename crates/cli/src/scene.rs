@@ -67,6 +67,7 @@ pub(crate) fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<
             .into_iter()
             .filter_map(|(id, mount)| Some(sonar(id, mount?)))
             .collect(),
+        of_ghost: false,
     })
 }
 

@@ -11,7 +11,7 @@ use crate::log::{Burst, Said};
 use crate::origin::Origin;
 use crate::row::Row;
 use crate::signals::{EARLIER_MS, Sample, TruthLog};
-use crate::target::{Scene, Truth};
+use crate::target::{MapPose, Scene, Truth};
 use crate::terminal;
 use crate::words;
 use rumbo_control::Pose;
@@ -31,6 +31,7 @@ pub(crate) struct Observer {
     rig: Option<Rig>,
     parameters: Vec<ParameterState>,
     truths: TruthLog,
+    ghosts: TruthLog,
     samples: Vec<Row>,
     /// The state changed in a way that the operator waits for.
     urgent: bool,
@@ -49,6 +50,7 @@ impl Observer {
             rig: None,
             parameters: unread_parameters(),
             truths: TruthLog::default(),
+            ghosts: TruthLog::default(),
             samples: Vec::new(),
             urgent: true,
         };
@@ -65,6 +67,15 @@ impl Observer {
     /// Notes what is the case at `now_ms`.
     pub(crate) fn truth(&mut self, now_ms: i64, truth: Truth) {
         self.truths.push(now_ms, truth);
+    }
+
+    /// Notes where the ghost is at `now_ms`.
+    pub(crate) fn ghost(&mut self, now_ms: i64, pose: MapPose) {
+        let truth = Truth {
+            pose,
+            ..Truth::default()
+        };
+        self.ghosts.push(now_ms, truth);
     }
 
     /// The slow signals, as far as they are known; what telemetry and events tell sooner is in it.
@@ -222,6 +233,7 @@ impl Observer {
             telemetry,
             origin: self.origin.follow(t_ms, telemetry.pose, true_pose),
             truth: truth.map(|(before, at)| [before, at]),
+            ghost: self.ghosts.at(t_ms).map(|truth| truth.pose),
         };
         let mut row = sample.row();
         let untold = client.row_kind().into_iter().flat_map(terminal::untold);

@@ -183,7 +183,7 @@ impl Replay {
             .cloned()
             .unwrap_or_else(|| self.state_of_row());
         state.t_s = t_s;
-        state.simulated = self.log.scene.is_some();
+        state.simulated = self.log.scene.as_ref().is_some_and(|scene| !scene.of_ghost);
         state.speed = self.speed;
         state.achieved_speed = self.speed;
         state.replay = Some(ReplayState {

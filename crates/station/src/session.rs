@@ -359,6 +359,7 @@ impl Session {
             .target
             .simulation()
             .map(|simulation| simulation.scene());
+        let scene = scene.or_else(|| self.target.surroundings());
         self.observer.show_scene(scene);
     }
 
@@ -370,6 +371,9 @@ impl Session {
             self.target.advance(SLICE_US)?;
             self.pace.slice_lived();
             let now_us = self.target.now_us();
+            if let Some(pose) = self.target.ghost() {
+                self.observer.ghost(to_ms(now_us), pose);
+            }
             if let Some(simulation) = self.target.simulation() {
                 self.observer.truth(to_ms(now_us), simulation.truth());
                 self.observer.consoles(now_us, simulation.consoles());

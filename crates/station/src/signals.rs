@@ -24,6 +24,8 @@ pub(crate) struct Sample {
     pub origin: MapPose,
     /// What was the case [`EARLIER_MS`] before and at `t_ms`; `None` with a real robot.
     pub truth: Option<[Truth; 2]>,
+    /// Where the ghost was; `None` without one.
+    pub ghost: Option<MapPose>,
 }
 
 /// The first of the two wheel speeds in a telemetry frame is this much older \[ms\].
@@ -46,7 +48,7 @@ fn measured(range: Range) -> f32 {
 }
 
 /// Values in a row.
-pub(crate) const COLUMNS: usize = 38;
+pub(crate) const COLUMNS: usize = 41;
 
 impl Sample {
     /// The row of this sample, each value with its name. The page finds the values by the names.
@@ -105,6 +107,12 @@ impl Sample {
             ("true_range_front_m", was_range(2)),
             ("true_servo_rad", was(|truth| truth.servo_rad)),
             ("contact", was(|truth| f64::from(u8::from(truth.contact)))),
+            ("ghost_x_m", optional(self.ghost.map(|pose| pose.x_m))),
+            ("ghost_y_m", optional(self.ghost.map(|pose| pose.y_m))),
+            (
+                "ghost_heading_rad",
+                optional(self.ghost.map(|pose| pose.heading_rad)),
+            ),
         ]
     }
 
@@ -123,6 +131,7 @@ impl Sample {
             telemetry: Telemetry::default(),
             origin: MapPose::default(),
             truth: None,
+            ghost: None,
         }
     }
 }
@@ -184,6 +193,7 @@ mod tests {
             telemetry,
             origin: MapPose::default(),
             truth: None,
+            ghost: None,
         };
         let json = serde_json::to_value(sample.row().cells()).unwrap();
         let column = |name: &str| Row::column(name).unwrap();

@@ -44,6 +44,16 @@ pub trait Target: Send {
         None
     }
 
+    /// Where a simulated robot is that got the same bytes, in the world of [`Target::surroundings`].
+    fn ghost(&self) -> Option<MapPose> {
+        None
+    }
+
+    /// What surrounds the ghost, and so should surround the robot.
+    fn surroundings(&mut self) -> Option<Scene> {
+        None
+    }
+
     /// What only a simulation can do and tell; `None` for a real robot.
     fn simulation(&mut self) -> Option<&mut dyn Simulation> {
         None
@@ -167,6 +177,9 @@ pub struct Scene {
     pub wheel_radius_m: f64,
     /// The rig's sonars.
     pub sonars: Vec<SonarMount>,
+    /// It is the ghost's: the robot itself is not simulated.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub of_ghost: bool,
 }
 
 /// The places of a route.

@@ -40,7 +40,8 @@ export const PAGE = {
   'blue': 'azul', 'left wheel, left sonar': 'rueda y sonar izquierdos', 'orange': 'naranja', 'right wheel, right sonar': 'rueda y sonar derechos',
   'green': 'verde', 'front sonar, heading; something good': 'sonar frontal, rumbo; algo bueno', 'thick line': 'línea gruesa', 'as the robot measures or estimates it': 'como lo mide o estima el robot',
   'dotted line': 'línea de puntos', 'as it really is, in the simulation': 'como es en realidad, en la simulación', 'dashed line': 'línea de trazos', 'a reference': 'una consigna',
-  'dotted upright lines': 'verticales de puntos', 'the state of the mode changed': 'el estado del modo cambió', 'filled robot': 'robot lleno', 'dashed robot': 'robot a trazos',
+  'dotted upright lines': 'verticales de puntos', 'the state of the mode changed': 'el estado del modo cambió', 'filled robot': 'robot lleno', 'dashed robot': 'robot a trazos', 'dotted robot': 'robot a puntos',
+  'the ghost: a simulated robot that gets the same commands': 'el fantasma: un robot simulado que recibe las mismas órdenes',
   'pink': 'rosa', 'goal, route, mark': 'destino, ruta, marca', 'red cone': 'cono rojo', 'a sonar without a reading': 'un sonar sin lectura',
   'grey page': 'página gris', 'what is shown is old: the link or the station is silent': 'lo que se ve es viejo: el enlace o la estación callan',
   // Replay.
@@ -103,6 +104,7 @@ export const PAGE = {
   'reference of the speed, left wheel': 'consigna de velocidad, rueda izq.', 'reference of the speed, right wheel': 'consigna de velocidad, rueda der.',
   'error of the speed, left wheel': 'error de velocidad, rueda izq.', 'error of the speed, right wheel': 'error de velocidad, rueda der.', 'PWM, left wheel': 'PWM, rueda izq.', 'PWM, right wheel': 'PWM, rueda der.',
   'true heading': 'rumbo real', 'heading as estimated': 'rumbo estimado', 'heading that the mode wants': 'rumbo que quiere el modo', 'error of the heading': 'error de rumbo', 'angle of the servo': 'ángulo del servo',
+  'ghost': 'fantasma', 'ghost x': 'x fantasma', 'ghost y': 'y fantasma', 'heading of the ghost': 'rumbo del fantasma', 'place of the ghost, x': 'posición del fantasma, x', 'place of the ghost, y': 'posición del fantasma, y',
   'true place, x': 'posición real, x', 'true place, y': 'posición real, y', 'place as estimated, x': 'posición estimada, x', 'place as estimated, y': 'posición estimada, y',
   'place to go to, x': 'posición de destino, x', 'place to go to, y': 'posición de destino, y',
   // Layouts.

@@ -6,8 +6,9 @@
 use super::schema::Topic;
 use super::{Burst, LogError, Manifest, Outcome, Said};
 use crate::board::{Level, LoggedEvent, State};
+use crate::origin::compose;
 use crate::row::Row;
-use crate::target::Scene;
+use crate::target::{MapPose, Scene};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use mcap::MAGIC;
@@ -56,6 +57,39 @@ enum Channel {
 }
 
 impl Log {
+    /// Puts a ghost beside the robot: where it is at each row, by its time \[us\], in the world of `scene`. A robot of which no world is known
+    /// is put there too, its origin where the ghost begins.
+    ///
+    /// # Errors
+    /// What the ghost has to say.
+    pub fn haunt(
+        &mut self,
+        scene: Scene,
+        mut ghost: impl FnMut(u64) -> Result<MapPose, String>,
+    ) -> Result<(), String> {
+        let start = self.scene.is_none().then_some(scene.start);
+        for row in &mut self.rows {
+            let pose = ghost(u64::try_from(row.t_ms).unwrap_or(0) * 1_000)?;
+            row.set("ghost_x_m", pose.x_m);
+            row.set("ghost_y_m", pose.y_m);
+            row.set("ghost_heading_rad", pose.heading_rad);
+            if let Some(start) = start {
+                let own = |name| row.signal(name).unwrap_or(0.0);
+                let at = MapPose {
+                    x_m: own("origin_x_m"),
+                    y_m: own("origin_y_m"),
+                    heading_rad: own("origin_heading_rad"),
+                };
+                let origin = compose(start, at);
+                row.set("origin_x_m", origin.x_m);
+                row.set("origin_y_m", origin.y_m);
+                row.set("origin_heading_rad", origin.heading_rad);
+            }
+        }
+        self.scene.get_or_insert(scene);
+        Ok(())
+    }
+
     /// Reads a log.
     ///
     /// # Errors

@@ -308,6 +308,7 @@ impl Simulation for Toy {
                 reach_m: 2.5,
                 on_servo: true,
             }],
+            of_ghost: false,
         }
     }
 

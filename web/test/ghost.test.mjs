@@ -1,0 +1,62 @@
+// @ts-check
+/** The ghost: a simulated robot that gets the same commands, beside a replayed robot and beside one on a port. */
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { join } from 'node:path';
+import { createInterface } from 'node:readline';
+import { test } from 'node:test';
+import { folder, open, program } from './dashboard.mjs';
+
+/** The last value plotted of a signal. @param {import('playwright-core').Page} page @param {string} name @returns {Promise<number>} */
+const last = (page, name) => page.evaluate((name) => /** @type {any} */ (window).rumbo.series(name).y.filter((/** @type {unknown} */ each) => typeof each === 'number').at(-1), name);
+
+test('the ghost of a simulated log goes where its robot went', async () => {
+  const out = folder();
+  spawnSync(program(), ['run', 'mode1', '--seed', '3', '--out', out]);
+  const dashboard = await open(['replay', join(out, 'mode1-3.mcap'), '--ghost', '--speed', '16']);
+  try {
+    const { page } = dashboard;
+    await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state()?.t_s > 5);
+    await page.locator('#map-legend', { hasText: 'ghost' }).waitFor();
+    const [ghost, truth] = [await last(page, 'ghost_x_m'), await last(page, 'true_x_m')];
+    assert.ok(Math.abs(ghost - truth) < 0.05 && truth > 0.3, `${ghost}, ${truth}`);
+    assert.deepEqual(dashboard.complaints, []);
+  } finally {
+    await dashboard.close();
+  }
+});
+
+test('the ghost of a robot on a port does what the robot is told', { skip: process.platform === 'win32' }, async () => {
+  const robot = spawn(program(), ['lab', '--scenario', 'mode1', '--pty'], { stdio: ['ignore', 'pipe', 'inherit'] });
+  let port = '';
+  for await (const line of createInterface({ input: robot.stdout })) {
+    port = line.match(/\/dev\/\S+/)?.[0] ?? '';
+    if (port) break;
+  }
+  const dashboard = await open(['connect', port, '--ghost', 'mode1', '--out', folder()]);
+  try {
+    const { page } = dashboard;
+    await page.locator('#connection.good').waitFor();
+    await page.keyboard.press('Escape');
+    assert.equal(await page.locator('#simulation').isVisible(), false, 'a robot on a port is no simulation');
+    await page.locator('#modes button[value="1"]').click();
+    await page.locator('#reference-cm').fill('30');
+    await page.locator('#reference-cm').press('Enter');
+    await page.locator('#on').click();
+    await page.waitForFunction(() => {
+      const { series } = /** @type {any} */ (window).rumbo;
+      const far = (/** @type {string} */ name) => series(name).y.filter((/** @type {unknown} */ each) => typeof each === 'number').at(-1) > 0.5;
+      return far('x_m') && far('ghost_x_m');
+    });
+    await page.locator('#end', { hasText: 'reached' }).waitFor();
+    const [ghost, robot] = [await last(page, 'ghost_x_m'), await last(page, 'x_m')];
+    assert.ok(Math.abs(ghost - robot) < 0.1, `${ghost}, ${robot}`);
+    if (process.env['SCREENSHOT_GHOST']) await page.screenshot({ path: process.env['SCREENSHOT_GHOST'] });
+    await page.locator('#stop').click();
+    await page.waitForFunction(() => !(/** @type {any} */ (window).rumbo.state().robot.armed));
+    assert.deepEqual(dashboard.complaints, []);
+  } finally {
+    await dashboard.close();
+    robot.kill();
+  }
+});
