@@ -16,7 +16,7 @@ mod hal;
 mod pins;
 
 use hal::{adc, clock, eeprom, encoder::Encoders, link, outputs, power, record, sonar::Listener};
-use rumbo_control::{Inputs, OUTPUT_DELAY_US, TICK_US};
+use rumbo_control::{Inputs, TICK_US};
 use rumbo_robot::{Config, Robot};
 
 #[panic_handler]
@@ -43,9 +43,9 @@ fn main() -> ! {
         power::sleep_after(tick);
         power::feed_watchdog();
         // A tick that was missed still counts.
-        let passed = clock::ticks().wrapping_sub(tick);
-        tick = tick.wrapping_add(passed);
-        let stamp = clock::tick_stamp();
+        let (last, stamp) = clock::last_tick();
+        let passed = last.wrapping_sub(tick);
+        tick = last;
         let now = inputs.now.after(u32::from(passed) * TICK_US);
         inputs = Inputs {
             now,
@@ -63,8 +63,7 @@ fn main() -> ! {
         outputs::leave(&out, tick);
         record::outputs(&out, robot.beliefs());
         if let Some(sonar) = out.ping {
-            let delay = (OUTPUT_DELAY_US * 2) as u16;
-            listener.pinged(sonar, clock::Stamp(stamp.0.wrapping_add(delay)));
+            listener.asked(sonar);
         }
         if eeprom::is_ready()
             && let Some(cell) = robot.store()

@@ -14,7 +14,7 @@ const COUNTS_PER_US: u32 = 2;
 /// Counts from tick to tick.
 const TICK_COUNTS: u16 = (TICK_US * COUNTS_PER_US) as u16;
 /// Counts from the tick to its outputs.
-const OUTPUT_COUNTS: u16 = (OUTPUT_DELAY_US * COUNTS_PER_US) as u16;
+pub(super) const OUTPUT_COUNTS: u16 = (OUTPUT_DELAY_US * COUNTS_PER_US) as u16;
 
 /// A reading of timer 1 [0.5 us]; differences are right below 32.768 ms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,9 +50,9 @@ pub fn ticks() -> u8 {
     TICKS.get()
 }
 
-/// The instant of the last tick.
-pub fn tick_stamp() -> Stamp {
-    Stamp(avr_device::interrupt::free(|section| TICK.get(section)))
+/// The last tick: its number and its instant, of one moment.
+pub fn last_tick() -> (u8, Stamp) {
+    avr_device::interrupt::free(|section| (TICKS.get(), Stamp(TICK.get(section))))
 }
 
 /// Free running, clock / 8; compare A, B and C interrupt.

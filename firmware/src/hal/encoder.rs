@@ -98,6 +98,10 @@ impl Counter {
             let slot = ring.slot(self.taken);
             let at = avr_device::interrupt::free(|section| slot.get(section));
             let age = tick.since(Stamp(at));
+            if age > u16::MAX / 2 {
+                // Between the tick and its handler, which edges precede: it belongs to the next tick.
+                return;
+            }
             self.taken = self.taken.wrapping_add(1);
             self.edge(Micros(now.0.wrapping_sub(u32::from(age / 2))));
         }

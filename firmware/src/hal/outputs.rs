@@ -30,6 +30,7 @@ pub fn leave(outputs: &Outputs, tick: u8) -> bool {
         let in_time = APPLIED.get() != tick && clock::ticks() == tick;
         if !in_time {
             apply(tick, section);
+            sonar::trigger(section);
         }
         in_time
     })

@@ -3,7 +3,7 @@
 //! The handler of an echo pin notes the instants of the first rise and the fall after it; what that means is decided
 //! at the tick. The level is read, never toggled: a lost edge costs one reading.
 
-use super::clock::{self, Stamp};
+use super::clock::{self, OUTPUT_COUNTS, Stamp};
 use super::registers::{change, get, handler, port_b, port_d, port_e, port_j};
 use super::shared::{Byte, CriticalSection, Word};
 use crate::pins;
@@ -28,6 +28,8 @@ const FALLEN: u8 = 3;
 
 struct Line {
     state: Byte,
+    /// When it was triggered.
+    ping: Word,
     rise: Word,
     fall: Word,
 }
@@ -36,20 +38,28 @@ impl Line {
     const fn new() -> Self {
         Self {
             state: Byte::new(IDLE),
+            ping: Word::new(0),
             rise: Word::new(0),
             fall: Word::new(0),
         }
     }
 
-    /// State, rise and fall, of one moment.
-    fn read(&self) -> (u8, Stamp, Stamp) {
+    /// State, ping, rise and fall, of one moment.
+    fn read(&self) -> (u8, Stamp, Stamp, Stamp) {
         avr_device::interrupt::free(|section| {
             (
                 self.state.get(),
+                Stamp(self.ping.get(section)),
                 Stamp(self.rise.get(section)),
                 Stamp(self.fall.get(section)),
             )
         })
+    }
+
+    #[inline(always)]
+    fn ping(&self, section: CriticalSection<'_>) {
+        self.ping.set(clock::now(section), section);
+        self.state.set(PINGED);
     }
 
     #[inline(always)]
@@ -92,9 +102,12 @@ pub(super) fn start() {
     change!(port_b().ddrb(), set TRIGGERS_B, clear 0);
 }
 
-/// Asks for a ping when compare C comes.
+/// Asks for a ping when compare C comes; what that sonar said before is forgotten.
 #[inline(always)]
 pub(super) fn ask(ping: Option<SonarId>) {
+    if let Some(sonar) = ping {
+        line(sonar).state.set(IDLE);
+    }
     PING.set(ping.map_or(NONE, |sonar| sonar as u8));
 }
 
@@ -105,15 +118,15 @@ pub(super) fn trigger(section: CriticalSection<'_>) {
     PING.set(NONE);
     match ping {
         0 => {
-            LEFT.state.set(PINGED);
+            LEFT.ping(section);
             change!(port_j().portj(), set pins::LEFT_TRIGGER.mask(), clear 0);
         }
         1 => {
-            RIGHT.state.set(PINGED);
+            RIGHT.ping(section);
             change!(port_b().portb(), set pins::RIGHT_TRIGGER.mask(), clear 0);
         }
         2 => {
-            FRONT.state.set(PINGED);
+            FRONT.ping(section);
             change!(port_j().portj(), set pins::FRONT_TRIGGER.mask(), clear 0);
         }
         _ => {
@@ -139,29 +152,35 @@ handler! { __vector_6, "INT5", |section| {
 
 const _: () = assert!(ECHOES_D == 0b1100 && pins::FRONT_ECHO.bit == 5);
 
-/// The ping that is waited for.
+/// The sonar that is waited for.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Listener {
-    waiting: Option<(SonarId, Stamp)>,
+    waiting: Option<SonarId>,
 }
 
 impl Listener {
-    /// A sonar will be triggered at `at`.
-    pub fn pinged(&mut self, sonar: SonarId, at: Stamp) {
-        self.waiting = Some((sonar, at));
+    /// A sonar has been asked for a ping.
+    pub fn asked(&mut self, sonar: SonarId) {
+        self.waiting = Some(sonar);
     }
 
-    /// What became of the last ping, once, at the tick `tick`.
+    /// What became of the last ping, once, at the tick `tick`. It may have left late, or not yet.
     pub fn read(&mut self, tick: Stamp) -> Option<(SonarId, Echo)> {
-        let (sonar, at) = self.waiting?;
-        let (state, rise, fall) = line(sonar).read();
+        let sonar = self.waiting?;
+        let (state, ping, rise, fall) = line(sonar).read();
         let echo = match state {
             FALLEN => Echo::Pulse(u32::from(fall.since(rise) / 2)),
-            RISEN if tick.since(rise) >= REACH_COUNTS => Echo::Clear,
-            PINGED if tick.since(at) >= RISE_COUNTS => Echo::Silent,
+            RISEN if passed(rise, tick, REACH_COUNTS) => Echo::Clear,
+            PINGED if passed(ping, tick, RISE_COUNTS) => Echo::Silent,
             _ => return None,
         };
         self.waiting = None;
         Some((sonar, echo))
     }
+}
+
+/// Whether `counts` lie between `from` and `tick`; `from` may come after the tick, by less than 3 ms.
+fn passed(from: Stamp, tick: Stamp, counts: u16) -> bool {
+    let since = tick.since(from);
+    since >= counts && since < u16::MAX - OUTPUT_COUNTS
 }
