@@ -108,7 +108,7 @@ impl Ahead {
         for sonar in self.sonars() {
             let mut range = estimate.range(*sonar);
             if !self.paired && !fresh {
-                range.age_s = 0.0;
+                range.age_ticks = 0;
             }
             nearest_m = min(nearest_m, drivable_m(range, self.stale_s)?);
         }
@@ -246,7 +246,7 @@ impl Ahead {
 /// It is too old, there is nothing, or the sonar is faulty.
 pub fn drivable_m(range: AgedRange, stale_s: f32) -> Result<f32, Fault> {
     match range.range {
-        Range::Valid(_) if range.age_s > stale_s => Err(Fault::SonarStale),
+        Range::Valid(_) if range.is_older(stale_s) => Err(Fault::SonarStale),
         Range::Valid(range_m) => Ok(range_m),
         Range::Clear => Err(Fault::WallLost),
         Range::Faulty => Err(Fault::SonarFaulty),

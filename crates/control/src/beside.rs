@@ -84,7 +84,7 @@ impl Beside {
         for (sonar, _) in self.sonars(side) {
             let range = estimate.range(sonar);
             match range.range {
-                Range::Valid(_) if range.age_s > stale_s => return Err(Fault::SonarStale),
+                Range::Valid(_) if range.is_older(stale_s) => return Err(Fault::SonarStale),
                 Range::Valid(range_m) => nearest_m = min(nearest_m, range_m),
                 Range::Clear => return Err(Fault::WallLost),
                 Range::Faulty => return Err(Fault::SonarFaulty),
@@ -102,7 +102,7 @@ impl Beside {
     pub fn is_ready(&self, estimate: &Estimate, stale_s: f32, reach: (f32, f32)) -> bool {
         let ahead = estimate.range(SonarId::Front);
         let sees_ahead =
-            !self.looks_ahead() || (ahead.range != Range::Faulty && ahead.age_s <= stale_s);
+            !self.looks_ahead() || (ahead.range != Range::Faulty && !ahead.is_older(stale_s));
         let beside = self
             .side(estimate, stale_s)
             .and_then(|side| self.nearest_m(side, estimate, stale_s).ok());
@@ -131,7 +131,7 @@ mod tests {
             } else {
                 Range::Clear
             };
-            *slot = AgedRange { range, age_s: 0.0 };
+            *slot = AgedRange::fresh(range);
         }
         estimate
     }

@@ -258,7 +258,7 @@ impl WheelState {
         // A wheel that still rolls is taken over at the speed it has.
         let before_rad_s = self.ramp_rad_s.unwrap_or(measured_rad_s);
         let ramp_rad_s = wheel_loop.ramp(before_rad_s, target_rad_s, measured_rad_s, partner_stops);
-        let slope_rad_s2 = (ramp_rad_s - before_rad_s) / TICK_S;
+        let slope_rad_s2 = (ramp_rad_s - before_rad_s) * (1.0 / TICK_S);
         self.ramp_rad_s = Some(ramp_rad_s);
 
         let Feedforward {
@@ -271,8 +271,10 @@ impl WheelState {
             Direction::Forward => static_forward,
             Direction::Backward => static_backward,
         };
-        let feedforward =
-            (friction + velocity * ramp_rad_s + acceleration * slope_rad_s2) * compensation;
+        let mut feedforward = friction + velocity * ramp_rad_s + acceleration * slope_rad_s2;
+        if compensation != 1.0 {
+            feedforward *= compensation;
+        }
         let mut duty = wheel_loop.pid.step(
             &mut self.pid,
             ramp_rad_s,

@@ -5,12 +5,14 @@
 
 use crate::drive::Direction;
 use crate::math::{abs, clamp, wrap_angle};
-use crate::odometry::{Geometry, Piece, PoseDeviation, Uncertainty};
+use crate::odometry::{Piece, PoseDeviation, Uncertainty, advance};
 use crate::params::{ParamId, Params};
 use crate::range::{RangeFilter, range_from_echo};
 use crate::rig::View;
 use crate::speed::{EDGE_RAD, SpeedEstimator, WheelMotion};
-use crate::types::{AgedRange, Inputs, Pose, Reading, SIDES, ServoAngle, SonarId, TICK_S, Wheels};
+use crate::types::{
+    AgedRange, Inputs, Place, Pose, Reading, SIDES, ServoAngle, SonarId, TICK_S, Wheels,
+};
 
 /// The front sonar looks ahead when the servo is within this of it [rad].
 const AHEAD_RAD: f32 = 0.06;
@@ -21,11 +23,12 @@ const PIECE_TICKS: u8 = 5;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimator {
     speed: Wheels<SpeedEstimator>,
-    pose: Pose,
+    place: Place,
+    /// One over the base, and the base it is of.
+    per_base: (f32, f32),
     uncertainty: Uncertainty,
     piece: Piece,
     piece_ticks: u8,
-    deviation: PoseDeviation,
     ranges: [RangeFilter; 3],
     servo_rad: f32,
     servo_target_rad: f32,
@@ -38,7 +41,7 @@ pub struct Estimator {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ping {
     sonar: SonarId,
-    pose: Pose,
+    place: Place,
     servo_rad: f32,
 }
 
@@ -59,8 +62,8 @@ pub struct Estimate {
     pub turned_rad: f32,
     /// Pose by odometry.
     pub pose: Pose,
-    /// Standard deviations of that pose since its origin, 20 times a second.
-    pub deviation: PoseDeviation,
+    /// Sine and cosine of its heading.
+    pub facing: (f32, f32),
     /// Filtered ranges by `SonarId` number; of a sonar on the servo only those ahead.
     pub ranges: [AgedRange; 3],
     /// What a sonar said at this tick, unfiltered.
@@ -84,62 +87,82 @@ impl Estimate {
 }
 
 impl Estimator {
-    /// One tick; `directions` are those in which the wheels turn if they turn.
+    /// One tick, into `estimate`; `directions` are those in which the wheels turn if they turn.
     pub fn step(
         &mut self,
         params: &Params,
         inputs: &Inputs,
         directions: Wheels<Direction>,
-    ) -> Estimate {
-        let mut estimate = Estimate::default();
-        let mut wheel_rad = Wheels::both(0.0);
-        for side in SIDES {
+        estimate: &mut Estimate,
+    ) {
+        let mut wheel_m = Wheels::both(0.0);
+        let mut wheel_m_s = Wheels::both(0.0);
+        for (side, radius) in SIDES
+            .iter()
+            .zip([ParamId::RadiusLeft, ParamId::RadiusRight])
+        {
+            let side = *side;
             let motion = self.speed[side].step(&inputs.encoders[side], inputs.now);
             let direction = directions[side];
+            let radius_m = params.get(radius);
             estimate.motion[side] = motion;
             estimate.wheel_rad_s[side] = direction.sign(motion.speed_rad_s);
-            wheel_rad[side] = direction.sign(f32::from(motion.edges) * EDGE_RAD);
+            wheel_m_s[side] = estimate.wheel_rad_s[side] * radius_m;
+            wheel_m[side] = direction.sign(f32::from(motion.edges) * (EDGE_RAD * radius_m));
         }
-        let geometry: Geometry = params.geometry();
-        self.doubt(params, &geometry, wheel_rad);
-        geometry.advance(&mut self.pose, wheel_rad);
-        estimate.deviation = self.deviation;
-        estimate.pose = self.pose;
-        (estimate.forward_m_s, estimate.yaw_rad_s) =
-            geometry.body_from_wheels(estimate.wheel_rad_s);
-        (estimate.rolled_m, estimate.turned_rad) = geometry.body_from_wheels(wheel_rad);
+        let per_base = self.per_base(params.get(ParamId::Base));
+        estimate.forward_m_s = 0.5 * (wheel_m_s.left + wheel_m_s.right);
+        estimate.yaw_rad_s = (wheel_m_s.right - wheel_m_s.left) * per_base;
+        estimate.rolled_m = 0.5 * (wheel_m.left + wheel_m.right);
+        estimate.turned_rad = (wheel_m.right - wheel_m.left) * per_base;
+        self.doubt(params, estimate, wheel_m);
+        advance(&mut self.place, estimate.rolled_m, estimate.turned_rad);
+        estimate.pose = self.place.pose;
+        estimate.facing = (self.place.sin, self.place.cos);
 
         self.step_servo(params.get(ParamId::ServoSpeed));
         estimate.servo_rad = self.servo_rad;
         estimate.servo_arrived = self.servo_rad == self.servo_target_rad;
         estimate.reading = self.reading(params, inputs);
-        self.step_ranges(params, inputs, &estimate);
+        self.step_ranges(params, estimate);
         for (range, filter) in estimate.ranges.iter_mut().zip(&self.ranges) {
-            *range = filter.range(inputs.now);
+            *range = filter.range();
         }
-        estimate
+    }
+
+    /// One over the base; divided anew only when that has changed.
+    fn per_base(&mut self, base_m: f32) -> f32 {
+        if self.per_base.1 != base_m {
+            self.per_base = (1.0 / base_m, base_m);
+        }
+        self.per_base.0
     }
 
     /// Collects the way since the last tick for the uncertainty, and lets it grow when there is enough of it.
-    fn doubt(&mut self, params: &Params, geometry: &Geometry, wheel_rad: Wheels<f32>) {
-        let (forward_m, turned_rad) = geometry.body_from_wheels(wheel_rad);
-        self.piece.forward_m += forward_m;
-        self.piece.turned_rad += turned_rad;
-        for side in SIDES {
-            self.piece.rolled_m[side] += abs(wheel_rad[side] * geometry.radius_m[side]);
-        }
+    fn doubt(&mut self, params: &Params, estimate: &Estimate, wheel_m: Wheels<f32>) {
+        self.piece.forward_m += estimate.rolled_m;
+        self.piece.turned_rad += estimate.turned_rad;
+        self.piece.rolled_m.left += abs(wheel_m.left);
+        self.piece.rolled_m.right += abs(wheel_m.right);
         self.piece_ticks += 1;
         if self.piece_ticks < PIECE_TICKS {
             return;
         }
-        // The pose is still that of the last tick; the piece began before it.
-        let last_rad = turned_rad - self.piece.turned_rad;
-        let errors = params.odometry_errors();
-        self.uncertainty
-            .advance(&errors, self.pose.heading_rad + last_rad, &self.piece);
-        self.deviation = self.uncertainty.deviation(&errors);
-        self.piece = Piece::default();
         self.piece_ticks = 0;
+        if self.piece == Piece::default() {
+            return;
+        }
+        // The pose is still that of the last tick; the piece began before it.
+        let last_rad = estimate.turned_rad - self.piece.turned_rad;
+        let began_rad = self.place.pose.heading_rad + last_rad;
+        self.uncertainty
+            .advance(&params.odometry_errors(), began_rad, &self.piece);
+        self.piece = Piece::default();
+    }
+
+    /// Standard deviations of the pose since its origin, 20 times a second.
+    pub fn deviation(&self, params: &Params) -> PoseDeviation {
+        self.uncertainty.deviation(&params.odometry_errors())
     }
 
     /// What the pilot decided at this tick: where the servo goes, which sonar pings.
@@ -148,13 +171,16 @@ impl Estimator {
         if let Some(sonar) = ping {
             self.ping = Some(Ping {
                 sonar,
-                pose: self.pose,
+                place: self.place,
                 servo_rad: self.servo_rad,
             });
         }
     }
 
     fn step_servo(&mut self, speed_rad_s: f32) {
+        if self.servo_rad == self.servo_target_rad {
+            return;
+        }
         let most = speed_rad_s * TICK_S;
         let left = self.servo_target_rad - self.servo_rad;
         self.servo_rad = if abs(left) <= most {
@@ -169,12 +195,12 @@ impl Estimator {
         let (sonar, echo) = inputs.echo?;
         let ping = self.ping.take().filter(|ping| ping.sonar == sonar)?;
         let mount = params.view(sonar, ping.servo_rad)?;
-        let (x_m, y_m) = ping.pose.to_world(mount.x_m, mount.y_m);
-        let (x_m, y_m) = self.pose.to_local(x_m, y_m);
-        let turned_rad = wrap_angle(self.pose.heading_rad - ping.pose.heading_rad);
+        let (x_m, y_m) = ping.place.to_world(mount.x_m, mount.y_m);
+        let (x_m, y_m) = self.place.to_local(x_m, y_m);
+        let turned_rad = self.place.pose.heading_rad - ping.place.pose.heading_rad;
         let range = range_from_echo(echo, params.get(ParamId::SoundSpeed));
         if sonar == SonarId::Front {
-            self.aside = AgedRange { range, age_s: 0.0 };
+            self.aside = AgedRange::fresh(range);
         }
         Some(Reading {
             sonar,
@@ -188,20 +214,27 @@ impl Estimator {
         })
     }
 
-    fn step_ranges(&mut self, params: &Params, inputs: &Inputs, estimate: &Estimate) {
-        for (sonar, filter) in SonarId::ALL.into_iter().zip(&mut self.ranges) {
+    fn step_ranges(&mut self, params: &Params, estimate: &Estimate) {
+        let edges = estimate
+            .motion
+            .left
+            .edges
+            .wrapping_add(estimate.motion.right.edges);
+        for (sonar, filter) in SonarId::ALL.iter().zip(&mut self.ranges) {
+            let sonar = *sonar;
             // Rolling forward brings a sonar that looks ahead nearer to what it sees; what others see slides by.
-            if let Some(share) = params.ahead_share(sonar) {
-                filter.predict(estimate.rolled_m * share);
-            }
-            filter.moved(abs(estimate.rolled_m));
-            if let Some(reading) = estimate.reading
+            let closer_m = if params.looks_ahead(sonar) {
+                estimate.rolled_m
+            } else {
+                0.0
+            };
+            filter.predict(closer_m, edges);
+            if let Some(reading) = &estimate.reading
                 && reading.sonar == sonar
                 && (sonar != SonarId::Front || abs(reading.servo_rad) < AHEAD_RAD)
             {
-                filter.take(reading.range, inputs.now);
+                filter.take(reading.range);
             }
-            filter.hold_age(inputs.now);
         }
     }
 
@@ -215,18 +248,18 @@ impl Estimator {
     /// Calls the present place the origin.
     pub fn reset_pose(&mut self) {
         if let Some(ping) = &mut self.ping {
-            let (x_m, y_m) = self.pose.to_local(ping.pose.x_m, ping.pose.y_m);
-            let heading_rad = wrap_angle(ping.pose.heading_rad - self.pose.heading_rad);
-            ping.pose = Pose {
+            let then = ping.place.pose;
+            let (x_m, y_m) = self.place.to_local(then.x_m, then.y_m);
+            let heading_rad = wrap_angle(then.heading_rad - self.place.pose.heading_rad);
+            ping.place = Place::of(Pose {
                 x_m,
                 y_m,
                 heading_rad,
-            };
+            });
         }
-        self.pose = Pose::default();
+        self.place = Place::default();
         self.uncertainty = Uncertainty::default();
         self.piece = Piece::default();
-        self.deviation = PoseDeviation::default();
     }
 }
 
@@ -235,12 +268,24 @@ mod tests {
     use super::*;
     use crate::types::{Echo, Edges, Micros, Range};
 
+    /// One tick: what is estimated.
+    fn step(
+        estimator: &mut Estimator,
+        params: &Params,
+        inputs: &Inputs,
+        directions: Wheels<Direction>,
+    ) -> Estimate {
+        let mut estimate = Estimate::default();
+        estimator.step(params, inputs, directions, &mut estimate);
+        estimate
+    }
+
     #[test]
     fn backward_edges_count_backward() {
         let (mut estimator, params) = (Estimator::default(), Params::default());
         let mut inputs = Inputs::default();
         let backward = Wheels::both(Direction::Backward);
-        estimator.step(&params, &inputs, backward);
+        step(&mut estimator, &params, &inputs, backward);
         for tick in 1..=96u16 {
             let now = Micros(u32::from(tick) * 10_000);
             inputs.now = now;
@@ -249,9 +294,9 @@ mod tests {
                 last: now,
                 turn_us: 20_000,
             });
-            estimator.step(&params, &inputs, backward);
+            step(&mut estimator, &params, &inputs, backward);
         }
-        let estimate = estimator.step(&params, &inputs, backward);
+        let estimate = step(&mut estimator, &params, &inputs, backward);
         let turn_m = core::f32::consts::TAU * 0.0325;
         assert!(
             (estimate.pose.x_m + turn_m).abs() < 1e-4,
@@ -272,7 +317,7 @@ mod tests {
                 echo: answered.then_some((SonarId::Front, Echo::Pulse(3_000))),
                 ..Inputs::default()
             };
-            last = estimator.step(&Params::default(), &inputs, Wheels::default());
+            last = step(estimator, &Params::default(), &inputs, Wheels::default());
             let ping = (tick % 6 == 0).then_some(SonarId::Front);
             estimator.commanded(ServoAngle(servo_rad), ping);
         }
@@ -297,20 +342,23 @@ mod tests {
     fn a_reading_comes_with_the_place_from_which_it_was_taken() {
         let (mut estimator, params) = (Estimator::default(), Params::default());
         estimator.commanded(ServoAngle(0.0), Some(SonarId::Left));
-        estimator.pose = Pose {
+        estimator.place = Place::of(Pose {
             x_m: 0.1,
             y_m: 0.0,
             heading_rad: 0.2,
-        };
+        });
         let inputs = Inputs {
             echo: Some((SonarId::Left, Echo::Pulse(3_000))),
             ..Inputs::default()
         };
-        let estimate = estimator.step(&params, &inputs, Wheels::default());
+        let estimate = step(&mut estimator, &params, &inputs, Wheels::default());
         let reading = estimate.reading.unwrap();
         let half_pi = core::f32::consts::FRAC_PI_2;
         assert!((reading.view.axis_rad - (half_pi - 0.2)).abs() < 1e-5);
-        let (x_m, y_m) = estimator.pose.to_world(reading.view.x_m, reading.view.y_m);
+        let (x_m, y_m) = estimator
+            .place
+            .pose
+            .to_world(reading.view.x_m, reading.view.y_m);
         assert!((x_m - 0.03).abs() < 1e-5 && (y_m - 0.075).abs() < 1e-5);
     }
 
@@ -324,9 +372,10 @@ mod tests {
         for tick in 1..=4u32 {
             inputs.now = Micros(tick * 60_000);
             estimator.commanded(ServoAngle::default(), Some(SonarId::Right));
-            estimator.step(&params, &inputs, Wheels::default());
+            step(&mut estimator, &params, &inputs, Wheels::default());
         }
-        let estimate = estimator.step(
+        let estimate = step(
+            &mut estimator,
             &params,
             &Inputs {
                 echo: None,

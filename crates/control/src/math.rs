@@ -113,11 +113,14 @@ const fn from_rounder(sum: f32) -> i32 {
 pub fn from_u32(x: u32) -> f32 {
     let [a, b, c, d] = x.to_le_bytes();
     let (low, high) = (u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]));
+    if high == 0 {
+        return f32::from(low);
+    }
     f32::from(high) * 65_536.0 + f32::from(low)
 }
 
 /// `x` less its nearest multiple of the period; exact to rounding for up to some thousand periods.
-const fn reduce(x: f32, inverse: f32, parts: [f32; 3]) -> (f32, i32) {
+const fn reduce(x: f32, inverse: f32, parts: [f32; 2]) -> (f32, i32) {
     let scaled = x * inverse;
     let sum = limited(scaled) + ROUNDER;
     let turns = if scaled.is_nan() {
@@ -126,16 +129,13 @@ const fn reduce(x: f32, inverse: f32, parts: [f32; 3]) -> (f32, i32) {
         from_rounder(sum)
     };
     let count = sum - ROUNDER;
-    (
-        ((x - count * parts[0]) - count * parts[1]) - count * parts[2],
-        turns,
-    )
+    ((x - count * parts[0]) - count * parts[1], turns)
 }
 
-/// pi / 2 in three parts, the first two short enough that their products with small integers are exact.
-const HALF_PI: [f32; 3] = [1.570_312_5, 4.837_513e-4, 7.549_79e-8];
-/// 2 pi in three parts.
-const TWO_PI: [f32; 3] = [4.0 * HALF_PI[0], 4.0 * HALF_PI[1], 4.0 * HALF_PI[2]];
+/// pi / 2 in two parts, the first one short enough that its products with integers below 8,192 are exact.
+const HALF_PI: [f32; 2] = [1.570_312_5, 4.838_268e-4];
+/// 2 pi in two parts.
+const TWO_PI: [f32; 2] = [4.0 * HALF_PI[0], 4.0 * HALF_PI[1]];
 
 /// An angle as its equal in (-pi, pi] [rad]; 0 for what is not finite.
 pub fn wrap_angle(angle_rad: f32) -> f32 {
@@ -155,7 +155,11 @@ pub fn wrap_angle(angle_rad: f32) -> f32 {
 
 /// Sine and cosine of an angle [rad].
 pub const fn sin_cos(angle_rad: f32) -> (f32, f32) {
-    let (x, quadrant) = reduce(angle_rad, 1.0 / FRAC_PI_2, HALF_PI);
+    let (x, quadrant) = if abs(angle_rad) <= FRAC_PI_4 {
+        (angle_rad, 0)
+    } else {
+        reduce(angle_rad, 1.0 / FRAC_PI_2, HALF_PI)
+    };
     let z = x * x;
     let sin = ((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * x + x;
     let cos = ((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * z * z - 0.5 * z + 1.0;
@@ -170,7 +174,7 @@ pub const fn sin_cos(angle_rad: f32) -> (f32, f32) {
 /// sin(x) / x, for the chord of an arc.
 pub fn sinc(x_rad: f32) -> f32 {
     if abs(x_rad) < 0.01 {
-        1.0 - x_rad * x_rad / 6.0
+        1.0 - x_rad * x_rad * (1.0 / 6.0)
     } else {
         sin_cos(x_rad).0 / x_rad
     }

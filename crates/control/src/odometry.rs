@@ -4,7 +4,10 @@
 //! the same all the time: the pose's derivatives by each of them, which also shrink again where a way back undoes the error.
 
 use crate::math::{abs, max, sin_cos, sinc, sqrt, wrap_angle};
-use crate::types::{Pose, Wheels};
+use crate::types::{Place, Wheels};
+
+/// Half of a turn [rad] up to which tan(x) / x is 1 + x^2 / 3 + 2 x^4 / 15 to the last bit but one.
+const SMALL_RAD: f32 = 0.12;
 
 /// The two lengths that odometry needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,18 +34,34 @@ impl Geometry {
             right: (forward_m_s + turn_m_s) / self.radius_m.right,
         }
     }
+}
 
-    /// Moves a pose by what both wheels turned [rad], along the arc on which they did.
-    pub fn advance(&self, pose: &mut Pose, wheel_rad: Wheels<f32>) {
-        let left_m = wheel_rad.left * self.radius_m.left;
-        let right_m = wheel_rad.right * self.radius_m.right;
-        let turn_rad = (right_m - left_m) / self.base_m;
-        let chord_m = 0.5 * (left_m + right_m) * sinc(0.5 * turn_rad);
-        let (sin, cos) = sin_cos(pose.heading_rad + 0.5 * turn_rad);
-        pose.x_m += chord_m * cos;
-        pose.y_m += chord_m * sin;
-        pose.heading_rad = wrap_angle(pose.heading_rad + turn_rad);
+/// Moves a place by a way [m] and a turn [rad] that were one arc.
+pub fn advance(place: &mut Place, forward_m: f32, turned_rad: f32) {
+    let Place { pose, sin, cos } = *place;
+    if turned_rad == 0.0 {
+        place.pose.x_m += forward_m * cos;
+        place.pose.y_m += forward_m * sin;
+        return;
     }
+    let half_rad = 0.5 * turned_rad;
+    place.pose.heading_rad = wrap_angle(pose.heading_rad + turned_rad);
+    (place.sin, place.cos) = sin_cos(place.pose.heading_rad);
+    let (x, y, way_m) = if abs(half_rad) < SMALL_RAD {
+        // The chord points along the middle heading: along the sum of the directions before and after.
+        let square = half_rad * half_rad;
+        let lengthened = 1.0 + square * (1.0 / 3.0 + 2.0 / 15.0 * square);
+        (
+            cos + place.cos,
+            sin + place.sin,
+            0.5 * forward_m * lengthened,
+        )
+    } else {
+        let (sin, cos) = sin_cos(pose.heading_rad + half_rad);
+        (cos, sin, forward_m * sinc(half_rad))
+    };
+    place.pose.x_m += way_m * x;
+    place.pose.y_m += way_m * y;
 }
 
 /// How well the robot knows itself: standard deviations.
@@ -110,7 +129,7 @@ impl Uncertainty {
             (piece.turned_rad, 0.0),
             (0.0, piece.forward_m),
         ];
-        for ([x, y, h], (turn, way)) in self.by.iter_mut().zip(adds) {
+        for ([x, y, h], (turn, way)) in self.by.iter_mut().zip(&adds) {
             let middle = *h + 0.5 * turn;
             *x += way * cos - dy * middle;
             *y += way * sin + dx * middle;
@@ -126,31 +145,24 @@ impl Uncertainty {
         (dx, dy): (f32, f32),
         rolled_m: &Wheels<f32>,
     ) {
-        let variance = |way_m: f32| errors.slip_m * errors.slip_m * abs(way_m);
-        let (left, right) = (variance(rolled_m.left), variance(rolled_m.right));
+        let per_m = errors.slip_m * errors.slip_m;
+        let (left, right) = (per_m * abs(rolled_m.left), per_m * abs(rolled_m.right));
         let way = 0.25 * (left + right);
-        let turn = (left + right) / (errors.base_m * errors.base_m);
+        let turn = 4.0 * way / (errors.base_m * errors.base_m);
         let both = 0.5 * (right - left) / errors.base_m;
         let [xx, xy, yy, xh, yh, hh] = self.slip;
         // The heading's error so far swings the piece: x - dy h, y + dx h; the piece's own error swings half of it.
         let (ax, ay) = (-0.5 * dy, 0.5 * dx);
+        // How the piece's own way (along) and turn (aside) move x and y, and the headings they come with.
+        let (along_x, along_y) = (way * cos + both * ax, way * sin + both * ay);
+        let (aside_x, aside_y) = (both * cos + turn * ax, both * sin + turn * ay);
+        let (swung_x, swung_y) = (xh - dy * hh, yh + dx * hh);
         self.slip = [
-            xx - 2.0 * dy * xh
-                + dy * dy * hh
-                + way * cos * cos
-                + turn * ax * ax
-                + 2.0 * both * cos * ax,
-            xy + dx * xh - dy * yh - dx * dy * hh
-                + way * sin * cos
-                + turn * ax * ay
-                + both * (cos * ay + sin * ax),
-            yy + 2.0 * dx * yh
-                + dx * dx * hh
-                + way * sin * sin
-                + turn * ay * ay
-                + 2.0 * both * sin * ay,
-            xh - dy * hh + turn * ax + both * cos,
-            yh + dx * hh + turn * ay + both * sin,
+            xx - dy * (xh + swung_x) + along_x * cos + aside_x * ax,
+            xy + dx * swung_x - dy * yh + along_x * sin + aside_x * ay,
+            yy + dx * (yh + swung_y) + along_y * sin + aside_y * ay,
+            swung_x + aside_x,
+            swung_y + aside_y,
             hh + turn,
         ];
     }
@@ -191,6 +203,7 @@ impl Uncertainty {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::types::Pose;
     use core::f32::consts::{FRAC_PI_2, PI};
     use proptest::prelude::*;
 
@@ -199,12 +212,21 @@ mod tests {
         base_m: 0.1,
     };
 
+    /// Moves a pose by what both wheels turned [rad].
+    fn roll(robot: &Geometry, pose: &mut Pose, wheel_rad: Wheels<f32>) {
+        let mut place = Place::of(*pose);
+        let (forward_m, turned_rad) = robot.body_from_wheels(wheel_rad);
+        advance(&mut place, forward_m, turned_rad);
+        *pose = place.pose;
+    }
+
     #[test]
     fn a_quarter_circle_in_one_step_is_exact() {
         // Centre 0.3 m to the left: the robot ends at (0.3, 0.3), facing y.
         let mut pose = Pose::default();
         let wheel = |radius_m: f32| FRAC_PI_2 * radius_m / 0.0325;
-        ROBOT.advance(
+        roll(
+            &ROBOT,
             &mut pose,
             Wheels {
                 left: wheel(0.25),
@@ -225,7 +247,8 @@ mod tests {
             y_m: 2.0,
             heading_rad: 3.0,
         };
-        ROBOT.advance(
+        roll(
+            &ROBOT,
             &mut pose,
             Wheels {
                 left: -1.0,
@@ -249,9 +272,9 @@ mod tests {
         #[test]
         fn many_small_arcs_make_the_large_one(left in -3.0f32..3.0, right in -3.0f32..3.0) {
             let (mut once, mut often) = (Pose::default(), Pose::default());
-            ROBOT.advance(&mut once, Wheels { left, right });
+            roll(&ROBOT, &mut once, Wheels { left, right });
             for _ in 0..64 {
-                ROBOT.advance(&mut often, Wheels { left: left / 64.0, right: right / 64.0 });
+                roll(&ROBOT, &mut often, Wheels { left: left / 64.0, right: right / 64.0 });
             }
             prop_assert!((once.x_m - often.x_m).abs() < 1e-5 && (once.y_m - often.y_m).abs() < 1e-5);
         }
@@ -279,7 +302,7 @@ mod tests {
                 rolled_m,
             };
             uncertainty.advance(&ERRORS, pose.heading_rad, &piece);
-            ROBOT.advance(pose, wheel_rad);
+            roll(&ROBOT, pose, wheel_rad);
         }
     }
 
@@ -309,7 +332,7 @@ mod tests {
             let mut pose = Pose::default();
             for step in 0..400u16 {
                 let left = if step % 100 < 50 { 0.1 } else { 0.16 };
-                robot.advance(&mut pose, Wheels { left, right: 0.13 });
+                roll(robot, &mut pose, Wheels { left, right: 0.13 });
             }
             pose
         };

@@ -64,12 +64,18 @@ impl Pid {
             return Err(NotFinite);
         }
         let Gains { kp, ki, kd } = self.gains;
-        let slope = state
-            .measurement
-            .map_or(0.0, |last| (measurement - last) / dt_s);
-        let free = feedforward + kp * error + state.integral - kd * slope;
+        let mut free = feedforward + kp * error + state.integral;
+        if kd != 0.0
+            && let Some(last) = state.measurement
+        {
+            free -= kd * ((measurement - last) / dt_s);
+        }
         let output = clamp(free, self.min, self.max);
-        let integral = state.integral + (ki * error + (output - free) / self.tracking_s) * dt_s;
+        let mut grows = ki * error;
+        if output != free {
+            grows += (output - free) / self.tracking_s;
+        }
+        let integral = state.integral + grows * dt_s;
         if !output.is_finite() || !integral.is_finite() {
             return Err(NotFinite);
         }

@@ -8,7 +8,6 @@
 //! | 3 | `side_pair_right` | to the right, in front | to the right, behind | |
 //! | 4 | `final` (mode 8) | to the left | to the right | ahead, on the servo |
 
-use crate::math::sin_cos;
 use crate::params::{ParamId, Params};
 use crate::types::{Side, SonarId};
 use core::f32::consts::FRAC_PI_2;
@@ -105,14 +104,13 @@ impl Params {
         }
     }
 
-    /// Cosine of the direction in which a sonar looks, with the servo ahead; `None` where the rig has no such sonar.
-    pub fn ahead_share(&self, sonar: SonarId) -> Option<f32> {
-        const ASIDE: f32 = sin_cos(FRAC_PI_2).1;
-        if !self.carries(sonar) {
-            return None;
+    /// Whether a sonar looks ahead, with the servo ahead; the others look to a side, or the rig has no such sonar.
+    pub fn looks_ahead(&self, sonar: SonarId) -> bool {
+        match self.rig() {
+            Rig::FrontSingle | Rig::Final => sonar == SonarId::Front,
+            Rig::FrontPair => sonar != SonarId::Front,
+            Rig::SidePairLeft | Rig::SidePairRight => false,
         }
-        let ahead = sonar == SonarId::Front || self.rig() == Rig::FrontPair;
-        Some(if ahead { 1.0 } else { ASIDE })
     }
 
     /// From where a sonar looks, with the servo at `servo_rad`; `None` where the rig has no such sonar.
@@ -170,8 +168,10 @@ mod tests {
             assert_eq!(carried, expected, "{rig:?}");
             assert_eq!(SonarId::ALL.map(|sonar| params.carries(sonar)), expected);
             for sonar in SonarId::ALL {
-                let cosine = params.view(sonar, 0.0).map(|view| sin_cos(view.axis_rad).1);
-                assert_eq!(params.ahead_share(sonar), cosine);
+                let ahead = params
+                    .view(sonar, 0.0)
+                    .is_some_and(|view| view.axis_rad == 0.0);
+                assert_eq!(params.looks_ahead(sonar), ahead);
             }
         }
         assert_eq!(Rig::from_number(5), None);

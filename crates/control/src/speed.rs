@@ -10,6 +10,8 @@ use crate::types::{Edges, Micros, TICK_S};
 
 /// Wheel angle of one edge [rad]: 8 edges per motor turn, 48 motor turns per wheel turn.
 pub const EDGE_RAD: f32 = core::f32::consts::TAU / (8.0 * 48.0);
+/// The same, to be divided by a time in microseconds [rad us/s].
+const EDGE: f32 = EDGE_RAD * 1e6;
 /// Edges of one motor turn.
 const EDGES_PER_TURN: u16 = 8;
 /// A gap between edges is at most this much wider than the mean: poles +-5 % each, doubled for both ends and for safety.
@@ -64,10 +66,10 @@ impl SpeedEstimator {
                 self.run = 0;
                 self.speed_rad_s = 0.0;
             } else {
-                let widest_gap_rad = EDGE_RAD * (1.0 + UNEVENNESS);
+                const WIDEST_GAP: f32 = EDGE * (1.0 + UNEVENNESS);
                 self.speed_rad_s = min(
                     self.speed_rad_s,
-                    widest_gap_rad / max(from_u32(silent_us) * 1e-6, TICK_S / 10.0),
+                    WIDEST_GAP / max(from_u32(silent_us), 1_000.0),
                 );
             }
         }
@@ -82,15 +84,16 @@ impl SpeedEstimator {
         let span_us = edges.last.since(self.last);
         let fresh = if self.standing || span_us == 0 {
             // From rest the time of the first gap is unknown; the tick bounds it.
-            f32::from(new) * EDGE_RAD / TICK_S
+            f32::from(new) * (EDGE_RAD / TICK_S)
         } else {
-            f32::from(new) * EDGE_RAD / (from_u32(span_us) * 1e-6)
+            f32::from(new) * EDGE / from_u32(span_us)
         };
         self.run = core::cmp::min(self.run.saturating_add(new), EDGES_PER_TURN + 1);
         let whole_turn = self.run > EDGES_PER_TURN && edges.turn_us > 0;
         self.speed_rad_s = if whole_turn {
-            let turn = f32::from(EDGES_PER_TURN) * EDGE_RAD / (from_u32(edges.turn_us) * 1e-6);
-            let explained = turn * (UNEVENNESS / f32::from(new) + LAG);
+            const TURN: f32 = EDGES_PER_TURN as f32 * EDGE;
+            let turn = TURN / from_u32(edges.turn_us);
+            let explained = turn * explained(new);
             if fresh > turn + explained {
                 fresh - explained
             } else if fresh < turn - explained {
@@ -104,6 +107,25 @@ impl SpeedEstimator {
         self.count = edges.count;
         self.last = edges.last;
         self.standing = false;
+    }
+}
+
+/// What uneven poles and the lag of a turn's mean explain of the difference of both measurements, relative, with so
+/// many new edges.
+fn explained(new: u16) -> f32 {
+    /// For few edges without a division.
+    const OF_FEW: [f32; 9] = {
+        let mut table = [0.0; 9];
+        let mut new = 1;
+        while new < table.len() {
+            table[new] = UNEVENNESS / new as f32 + LAG;
+            new += 1;
+        }
+        table
+    };
+    match OF_FEW.get(usize::from(new)) {
+        Some(explained) => *explained,
+        None => UNEVENNESS / f32::from(new) + LAG,
     }
 }
 

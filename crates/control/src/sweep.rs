@@ -116,7 +116,13 @@ mod tests {
                 echo: answered.then_some((SonarId::Front, Echo::Pulse(3_000))),
                 ..Inputs::default()
             };
-            let estimate = estimator.step(&Params::default(), &inputs, Wheels::default());
+            let mut estimate = Estimate::default();
+            estimator.step(
+                &Params::default(),
+                &inputs,
+                Wheels::default(),
+                &mut estimate,
+            );
             let look = sweep.step(&mut state, &estimate, bearing_rad);
             let [_, _, front] = look.sonars;
             let ping = front && last.is_none_or(|last| tick >= last + 6);

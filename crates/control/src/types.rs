@@ -198,15 +198,30 @@ pub struct Reading {
 pub struct AgedRange {
     /// The range.
     pub range: Range,
-    /// Time since the ping it comes from [s].
-    pub age_s: f32,
+    /// Ticks since the one at which it was answered; stays at the largest number.
+    pub age_ticks: u16,
+}
+
+impl AgedRange {
+    /// A range that was answered at this tick.
+    pub const fn fresh(range: Range) -> Self {
+        Self {
+            range,
+            age_ticks: 0,
+        }
+    }
+
+    /// Older than `limit_s` [s].
+    pub fn is_older(&self, limit_s: f32) -> bool {
+        f32::from(self.age_ticks) * TICK_S > limit_s
+    }
 }
 
 impl Default for AgedRange {
     fn default() -> Self {
         Self {
             range: Range::Faulty,
-            age_s: f32::MAX,
+            age_ticks: u16::MAX,
         }
     }
 }
@@ -229,17 +244,54 @@ pub struct Pose {
 impl Pose {
     /// A point of the world [m] as seen from here: ahead, left.
     pub fn to_local(&self, x_m: f32, y_m: f32) -> (f32, f32) {
-        let (sin, cos) = sin_cos(self.heading_rad);
-        let (dx, dy) = (x_m - self.x_m, y_m - self.y_m);
-        (cos * dx + sin * dy, cos * dy - sin * dx)
+        Place::of(*self).to_local(x_m, y_m)
     }
 
     /// A point seen from here [m] (ahead, left) in the world.
     pub fn to_world(&self, ahead_m: f32, left_m: f32) -> (f32, f32) {
-        let (sin, cos) = sin_cos(self.heading_rad);
+        Place::of(*self).to_world(ahead_m, left_m)
+    }
+}
+
+/// A pose with the sine and cosine of its heading, which take the AVR as long as all the rest of a transformation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// The pose.
+    pub pose: Pose,
+    /// Sine of its heading.
+    pub sin: f32,
+    /// Cosine of its heading.
+    pub cos: f32,
+}
+
+impl Default for Place {
+    fn default() -> Self {
+        Self {
+            pose: Pose::default(),
+            sin: 0.0,
+            cos: 1.0,
+        }
+    }
+}
+
+impl Place {
+    /// A pose.
+    pub fn of(pose: Pose) -> Place {
+        let (sin, cos) = sin_cos(pose.heading_rad);
+        Place { pose, sin, cos }
+    }
+
+    /// A point of the world [m] as seen from here: ahead, left.
+    pub fn to_local(&self, x_m: f32, y_m: f32) -> (f32, f32) {
+        let (dx, dy) = (x_m - self.pose.x_m, y_m - self.pose.y_m);
+        (self.cos * dx + self.sin * dy, self.cos * dy - self.sin * dx)
+    }
+
+    /// A point seen from here [m] (ahead, left) in the world.
+    pub fn to_world(&self, ahead_m: f32, left_m: f32) -> (f32, f32) {
         (
-            self.x_m + cos * ahead_m - sin * left_m,
-            self.y_m + sin * ahead_m + cos * left_m,
+            self.pose.x_m + self.cos * ahead_m - self.sin * left_m,
+            self.pose.y_m + self.sin * ahead_m + self.cos * left_m,
         )
     }
 }

@@ -56,9 +56,12 @@ pub(crate) struct Step {
 impl Pilot {
     /// One tick. Unless `armed`, and on a fault, the wheels are released.
     pub(crate) fn step(&mut self, inputs: &Inputs, armed: bool) -> Step {
-        self.estimate = self
-            .estimator
-            .step(&self.params, inputs, self.drive.directions());
+        self.estimator.step(
+            &self.params,
+            inputs,
+            self.drive.directions(),
+            &mut self.estimate,
+        );
         self.watch_battery(inputs.battery_v);
         let (action, fault) = match self.act(inputs, armed) {
             Ok(action) => (action, None),
@@ -92,8 +95,8 @@ impl Pilot {
 
     /// Of the sonars that are wanted, those that the rig has.
     fn carried(&self, mut wanted: [bool; 3]) -> [bool; 3] {
-        for (sonar, wanted) in SonarId::ALL.into_iter().zip(&mut wanted) {
-            *wanted &= self.params.carries(sonar);
+        for (sonar, wanted) in SonarId::ALL.iter().zip(&mut wanted) {
+            *wanted &= self.params.carries(*sonar);
         }
         wanted
     }

@@ -28,19 +28,20 @@ impl Default for PingSchedule {
 impl PingSchedule {
     /// The sonar to ping at this tick, of those that are `wanted` (by `SonarId` number).
     pub(crate) fn next(&mut self, wanted: [bool; 3]) -> Option<SonarId> {
-        self.since = self.since.map(|ticks| ticks.saturating_add(1));
-        if self.since.iter().any(|ticks| *ticks < APART_TICKS) {
+        let mut near = false;
+        for ticks in &mut self.since {
+            *ticks = ticks.saturating_add(1);
+            near |= *ticks < APART_TICKS;
+        }
+        if near {
             return None;
         }
         let mut longest = OWN_TICKS - 1;
         let mut chosen = None;
-        for (sonar, (ticks, wanted)) in SonarId::ALL
-            .into_iter()
-            .zip(self.since.into_iter().zip(wanted))
-        {
-            if wanted && ticks > longest {
-                longest = ticks;
-                chosen = Some(sonar);
+        for (sonar, (ticks, wanted)) in SonarId::ALL.iter().zip(self.since.iter().zip(&wanted)) {
+            if *wanted && *ticks > longest {
+                longest = *ticks;
+                chosen = Some(*sonar);
             }
         }
         if let Some(slot) = chosen.and_then(|sonar| self.since.get_mut(sonar as usize)) {

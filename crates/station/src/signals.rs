@@ -179,11 +179,11 @@ mod tests {
         let mut telemetry = Telemetry::default();
         telemetry.ranges[0] = AgedRange {
             range: Range::Clear,
-            age_s: 0.0,
+            age_ticks: 0,
         };
         telemetry.ranges[2] = AgedRange {
             range: Range::Valid(0.31234),
-            age_s: 0.0,
+            age_ticks: 0,
         };
         let sample = Sample {
             t_ms: 1_040,

@@ -227,7 +227,7 @@ fn telemetry(from: &mut Reader) -> Result<Telemetry, Malformed> {
         servo_rad,
         ranges: [ranges, ranges >> 10, ranges >> 20].map(|code| AgedRange {
             range: range(code & 0x3FF),
-            age_s: 0.0,
+            age_ticks: 0,
         }),
     })
 }

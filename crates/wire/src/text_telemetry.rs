@@ -69,7 +69,7 @@ impl Row {
             if let Some(cm) = cm {
                 *told = AgedRange {
                     range: range_from_cm(cm),
-                    age_s: 0.0,
+                    age_ticks: 0,
                 };
             }
         }

@@ -92,7 +92,7 @@ proptest! {
 fn a_value_that_is_not_finite_or_too_large_is_marked_or_saturated_and_never_wraps() {
     let valid = |range_m| AgedRange {
         range: Range::Valid(range_m),
-        age_s: 0.0,
+        age_ticks: 0,
     };
     let sent = Telemetry {
         pose: Pose {

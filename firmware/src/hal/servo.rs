@@ -10,6 +10,7 @@
 use super::registers::{change, handler, port_h, put, timer_2};
 use super::shared::{Byte, CriticalSection, Word};
 use crate::pins;
+use core::f32::consts::FRAC_PI_2;
 use rumbo_control::ServoAngle;
 use rumbo_control::math::{clamp, round};
 
@@ -36,8 +37,8 @@ static FALL_COUNT: Byte = Byte::new(0);
 
 /// Pulse of an angle; positive is to the left, a longer pulse.
 pub(super) fn counts(angle: ServoAngle) -> u16 {
-    let quarter = clamp(angle.0 / core::f32::consts::FRAC_PI_2, -1.0, 1.0);
-    let offset = round(quarter * QUARTER_COUNTS);
+    let quarter = clamp(angle.0, -FRAC_PI_2, FRAC_PI_2);
+    let offset = round(quarter * (QUARTER_COUNTS / FRAC_PI_2));
     AHEAD_COUNTS.wrapping_add(offset.cast_unsigned() as u16)
 }
 

@@ -210,7 +210,7 @@ mod tests {
         let front = &mut estimate.ranges[SonarId::Front as usize];
         front.range = Range::Valid(0.8);
         assert!(!mode.is_ready(&params, &estimate), "an old reading");
-        estimate.ranges[SonarId::Front as usize].age_s = 0.1;
+        estimate.ranges[SonarId::Front as usize].age_ticks = 10;
         assert!(mode.is_ready(&params, &estimate));
         assert!(ActiveMode::new(ModeId::Manual).is_ready(&params, &Estimate::default()));
     }

@@ -221,7 +221,7 @@ mod tests {
             } else {
                 Range::Clear
             };
-            *slot = AgedRange { range, age_s: 0.0 };
+            *slot = AgedRange::fresh(range);
         }
         estimate
     }
@@ -301,7 +301,7 @@ mod tests {
     #[test]
     fn it_never_drives_on_a_stale_lost_or_silent_sonar() {
         let mut old = seeing([1.0, 1.0, 0.0]);
-        old.ranges[1].age_s = 0.6;
+        old.ranges[1].age_ticks = 60;
         let mut silent = seeing([1.0, 1.0, 0.0]);
         silent.ranges[0].range = Range::Faulty;
         for (estimate, fault) in [

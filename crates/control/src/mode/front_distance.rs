@@ -180,24 +180,24 @@ mod tests {
     use super::*;
     use crate::types::{AgedRange, Range};
 
-    fn estimate(range: Range, age_s: f32) -> Estimate {
+    fn estimate(range: Range, age_ticks: u16) -> Estimate {
         let mut estimate = Estimate::default();
-        estimate.ranges[SonarId::Front as usize] = AgedRange { range, age_s };
+        estimate.ranges[SonarId::Front as usize] = AgedRange { range, age_ticks };
         estimate
     }
 
-    fn step(state: &mut State, range: Range, age_s: f32) -> Result<Action, Fault> {
+    fn step(state: &mut State, range: Range, age_ticks: u16) -> Result<Action, Fault> {
         let mode = FrontDistance::new(&Params::default(), 0.3);
         mode.step(
             state,
             &Situation {
-                estimate: &estimate(range, age_s),
+                estimate: &estimate(range, age_ticks),
             },
         )
     }
 
     fn forward(state: &mut State, range_m: f32) -> f32 {
-        match step(state, Range::Valid(range_m), 0.0).unwrap().drive {
+        match step(state, Range::Valid(range_m), 0).unwrap().drive {
             Drive::Twist { forward_m_s, .. } => forward_m_s,
             _ => 0.0,
         }
@@ -226,8 +226,8 @@ mod tests {
     #[test]
     fn at_the_reference_the_wheels_are_released_and_only_a_lasting_error_starts_them() {
         let mut state = State::default();
-        step(&mut state, Range::Valid(0.34), 0.0).unwrap();
-        let held = step(&mut state, Range::Valid(0.3005), 0.0).unwrap();
+        step(&mut state, Range::Valid(0.34), 0).unwrap();
+        let held = step(&mut state, Range::Valid(0.3005), 0).unwrap();
         assert_eq!(
             (held.drive, held.reached, held.state),
             (Drive::Release, true, 2)
@@ -244,21 +244,18 @@ mod tests {
     fn it_never_drives_on_a_stale_lost_or_absurd_range() {
         let mut state = State::default();
         assert_eq!(
-            step(&mut state, Range::Valid(1.0), 0.6),
+            step(&mut state, Range::Valid(1.0), 60),
             Err(Fault::SonarStale)
         );
-        assert_eq!(step(&mut state, Range::Clear, 0.0), Err(Fault::WallLost));
-        assert_eq!(
-            step(&mut state, Range::Faulty, 0.0),
-            Err(Fault::SonarFaulty)
-        );
+        assert_eq!(step(&mut state, Range::Clear, 0), Err(Fault::WallLost));
+        assert_eq!(step(&mut state, Range::Faulty, 0), Err(Fault::SonarFaulty));
     }
 
     #[test]
     fn it_steers_back_to_the_heading_it_started_with() {
         let mode = FrontDistance::new(&Params::default(), 0.3);
         let mut state = State::default();
-        let mut estimate = estimate(Range::Valid(1.0), 0.0);
+        let mut estimate = estimate(Range::Valid(1.0), 0);
         mode.step(
             &mut state,
             &Situation {

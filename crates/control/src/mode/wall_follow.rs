@@ -192,7 +192,7 @@ impl WallFollow {
         }
         let ahead = at.range(SonarId::Front);
         match ahead.range {
-            _ if ahead.age_s > self.stale_s => Err(Fault::SonarStale),
+            _ if ahead.is_older(self.stale_s) => Err(Fault::SonarStale),
             Range::Faulty => Err(Fault::SonarFaulty),
             Range::Clear => Ok(cruise_m_s),
             Range::Valid(ahead_m) if ahead_m <= self.stop_m => Err(Fault::Blocked),
@@ -292,7 +292,7 @@ mod tests {
         let mut estimate = Estimate::default();
         let ranges = [Range::Valid(left_m), Range::Valid(right_m), ahead];
         for (slot, range) in estimate.ranges.iter_mut().zip(ranges) {
-            *slot = AgedRange { range, age_s: 0.0 };
+            *slot = AgedRange::fresh(range);
         }
         estimate
     }
@@ -379,12 +379,12 @@ mod tests {
         let mut seen = seeing(0.5, 0.5, Range::Clear);
         mode.step(&mut state, &Situation { estimate: &seen })
             .unwrap();
-        for (range, age_s, fault) in [
-            (Range::Clear, 0.0, Fault::WallLost),
-            (Range::Faulty, 0.0, Fault::SonarFaulty),
-            (Range::Valid(0.5), 0.6, Fault::SonarStale),
+        for (range, age_ticks, fault) in [
+            (Range::Clear, 0, Fault::WallLost),
+            (Range::Faulty, 0, Fault::SonarFaulty),
+            (Range::Valid(0.5), 60, Fault::SonarStale),
         ] {
-            seen.ranges[1] = AgedRange { range, age_s };
+            seen.ranges[1] = AgedRange { range, age_ticks };
             let stopped = mode.step(&mut state.clone(), &Situation { estimate: &seen });
             assert_eq!(stopped, Err(fault));
         }

@@ -143,7 +143,7 @@ mod tests {
         for slot in &mut estimate.ranges[..2] {
             *slot = AgedRange {
                 range: Range::Valid(0.5),
-                age_s: 0.0,
+                age_ticks: 0,
             };
         }
         estimate.reading = Some(Reading {

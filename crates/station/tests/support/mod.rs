@@ -171,7 +171,7 @@ impl Toy {
         if self.now_us.is_multiple_of(4 * TICK_US) {
             let range = AgedRange {
                 range: Range::Valid(self.range_m()),
-                age_s: 0.0,
+                age_ticks: 0,
             };
             let telemetry = Telemetry {
                 t_ms: self.t_ms(),

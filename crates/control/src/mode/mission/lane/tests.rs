@@ -21,7 +21,7 @@ fn hears(range: Range, servo_rad: f32) -> Estimate {
 fn between(left: Range, right: Range) -> Estimate {
     let mut estimate = Estimate::default();
     for (sonar, range) in [(SonarId::Left, left), (SonarId::Right, right)] {
-        estimate.ranges[sonar as usize] = AgedRange { range, age_s: 0.0 };
+        estimate.ranges[sonar as usize] = AgedRange::fresh(range);
     }
     estimate
 }
