@@ -62,6 +62,7 @@ fn main() -> ! {
         let out = robot.tick(&record::inputs(&inputs));
         outputs::leave(&out, tick);
         record::outputs(&out, robot.beliefs());
+        robot.report();
         if let Some(sonar) = out.ping {
             listener.asked(sonar);
         }

@@ -16,16 +16,14 @@ use crate::types::{
 
 /// The front sonar looks ahead when the servo is within this of it [rad].
 const AHEAD_RAD: f32 = 0.06;
-/// Ticks of way that the uncertainty takes in at once: 20 times a second.
-const PIECE_TICKS: u8 = 5;
+/// Ticks of way that the uncertainty takes in at once, at least: up to 25 times a second.
+const PIECE_TICKS: u8 = 4;
 
 /// Memory of the estimators.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimator {
     speed: Wheels<SpeedEstimator>,
     place: Place,
-    /// One over the base, and the base it is of.
-    per_base: (f32, f32),
     uncertainty: Uncertainty,
     piece: Piece,
     piece_ticks: u8,
@@ -95,27 +93,20 @@ impl Estimator {
         directions: Wheels<Direction>,
         estimate: &mut Estimate,
     ) {
-        let mut wheel_m = Wheels::both(0.0);
-        let mut wheel_m_s = Wheels::both(0.0);
-        for (side, radius) in SIDES
-            .iter()
-            .zip([ParamId::RadiusLeft, ParamId::RadiusRight])
-        {
-            let side = *side;
+        let geometry = params.geometry();
+        let mut wheel_rad = Wheels::both(0.0);
+        for side in SIDES {
             let motion = self.speed[side].step(&inputs.encoders[side], inputs.now);
             let direction = directions[side];
-            let radius_m = params.get(radius);
             estimate.motion[side] = motion;
             estimate.wheel_rad_s[side] = direction.sign(motion.speed_rad_s);
-            wheel_m_s[side] = estimate.wheel_rad_s[side] * radius_m;
-            wheel_m[side] = direction.sign(f32::from(motion.edges) * (EDGE_RAD * radius_m));
+            wheel_rad[side] = direction.sign(f32::from(motion.edges) * EDGE_RAD);
         }
-        let per_base = self.per_base(params.get(ParamId::Base));
-        estimate.forward_m_s = 0.5 * (wheel_m_s.left + wheel_m_s.right);
-        estimate.yaw_rad_s = (wheel_m_s.right - wheel_m_s.left) * per_base;
-        estimate.rolled_m = 0.5 * (wheel_m.left + wheel_m.right);
-        estimate.turned_rad = (wheel_m.right - wheel_m.left) * per_base;
-        self.doubt(params, estimate, wheel_m);
+        let wheel_m = geometry.ways_of_wheels(wheel_rad);
+        (estimate.forward_m_s, estimate.yaw_rad_s) =
+            geometry.body_from_wheels(estimate.wheel_rad_s);
+        (estimate.rolled_m, estimate.turned_rad) = geometry.body_from_ways(wheel_m);
+        self.collect(estimate, wheel_m);
         advance(&mut self.place, estimate.rolled_m, estimate.turned_rad);
         estimate.pose = self.place.pose;
         estimate.facing = (self.place.sin, self.place.cos);
@@ -130,37 +121,30 @@ impl Estimator {
         }
     }
 
-    /// One over the base; divided anew only when that has changed.
-    fn per_base(&mut self, base_m: f32) -> f32 {
-        if self.per_base.1 != base_m {
-            self.per_base = (1.0 / base_m, base_m);
-        }
-        self.per_base.0
-    }
-
-    /// Collects the way since the last tick for the uncertainty, and lets it grow when there is enough of it.
-    fn doubt(&mut self, params: &Params, estimate: &Estimate, wheel_m: Wheels<f32>) {
+    /// Collects the way since the last tick for the uncertainty.
+    fn collect(&mut self, estimate: &Estimate, wheel_m: Wheels<f32>) {
         self.piece.forward_m += estimate.rolled_m;
         self.piece.turned_rad += estimate.turned_rad;
         self.piece.rolled_m.left += abs(wheel_m.left);
         self.piece.rolled_m.right += abs(wheel_m.right);
-        self.piece_ticks += 1;
+        self.piece_ticks = self.piece_ticks.saturating_add(1);
+        if self.piece_ticks == PIECE_TICKS / 2 {
+            self.piece.facing = (self.place.sin, self.place.cos);
+        }
+    }
+
+    /// Lets the uncertainty grow by the way collected, when there is enough of it. For a tick that has little else to do.
+    pub fn doubt(&mut self, params: &Params) {
         if self.piece_ticks < PIECE_TICKS {
             return;
         }
-        self.piece_ticks = 0;
-        if self.piece == Piece::default() {
-            return;
-        }
-        // The pose is still that of the last tick; the piece began before it.
-        let last_rad = estimate.turned_rad - self.piece.turned_rad;
-        let began_rad = self.place.pose.heading_rad + last_rad;
         self.uncertainty
-            .advance(&params.odometry_errors(), began_rad, &self.piece);
+            .advance(&params.odometry_errors(), &self.piece);
         self.piece = Piece::default();
+        self.piece_ticks = 0;
     }
 
-    /// Standard deviations of the pose since its origin, 20 times a second.
+    /// Standard deviations of the pose since its origin, as of the last [`Estimator::doubt`].
     pub fn deviation(&self, params: &Params) -> PoseDeviation {
         self.uncertainty.deviation(&params.odometry_errors())
     }
@@ -260,6 +244,7 @@ impl Estimator {
         self.place = Place::default();
         self.uncertainty = Uncertainty::default();
         self.piece = Piece::default();
+        self.piece_ticks = 0;
     }
 }
 

@@ -9,29 +9,68 @@ use crate::types::{Place, Wheels};
 /// Half of a turn [rad] up to which tan(x) / x is 1 + x^2 / 3 + 2 x^4 / 15 to the last bit but one.
 const SMALL_RAD: f32 = 0.12;
 
-/// The two lengths that odometry needs.
+/// The lengths that odometry needs; their inverses too, since a division takes the AVR as long as four products.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geometry {
-    /// Radius of each wheel [m].
-    pub radius_m: Wheels<f32>,
-    /// Distance between the wheels' contact points [m].
-    pub base_m: f32,
+    radius_m: Wheels<f32>,
+    base_m: f32,
+    per_radius: Wheels<f32>,
+    per_base: f32,
 }
 
 impl Geometry {
+    /// Of the wheels' radii and the distance between their contact points [m], none of them 0.
+    pub fn new(radius_m: Wheels<f32>, base_m: f32) -> Geometry {
+        Geometry {
+            radius_m,
+            base_m,
+            per_radius: radius_m.map(|radius_m| 1.0 / radius_m),
+            per_base: 1.0 / base_m,
+        }
+    }
+
+    /// Radius of each wheel [m].
+    pub fn radius_m(&self) -> Wheels<f32> {
+        self.radius_m
+    }
+
+    /// Mean of the radii [m].
+    pub fn mean_radius_m(&self) -> f32 {
+        0.5 * (self.radius_m.left + self.radius_m.right)
+    }
+
+    /// Distance between the wheels' contact points [m].
+    pub fn base_m(&self) -> f32 {
+        self.base_m
+    }
+
+    /// Ways of the wheels [m] from the angles that they turned [rad]; speeds likewise.
+    pub fn ways_of_wheels(&self, wheel_rad: Wheels<f32>) -> Wheels<f32> {
+        Wheels {
+            left: wheel_rad.left * self.radius_m.left,
+            right: wheel_rad.right * self.radius_m.right,
+        }
+    }
+
+    /// Way forward [m] and turn [rad] of the body from the ways of the wheels [m]; speeds likewise.
+    pub fn body_from_ways(&self, way_m: Wheels<f32>) -> (f32, f32) {
+        (
+            0.5 * (way_m.left + way_m.right),
+            (way_m.right - way_m.left) * self.per_base,
+        )
+    }
+
     /// Forward speed [m/s] and yaw rate [rad/s] of the body from wheel speeds [rad/s].
     pub fn body_from_wheels(&self, wheel_rad_s: Wheels<f32>) -> (f32, f32) {
-        let left = wheel_rad_s.left * self.radius_m.left;
-        let right = wheel_rad_s.right * self.radius_m.right;
-        (0.5 * (left + right), (right - left) / self.base_m)
+        self.body_from_ways(self.ways_of_wheels(wheel_rad_s))
     }
 
     /// Wheel speeds [rad/s] for a forward speed [m/s] and a yaw rate [rad/s].
     pub fn wheels_from_body(&self, forward_m_s: f32, yaw_rad_s: f32) -> Wheels<f32> {
         let turn_m_s = 0.5 * self.base_m * yaw_rad_s;
         Wheels {
-            left: (forward_m_s - turn_m_s) / self.radius_m.left,
-            right: (forward_m_s + turn_m_s) / self.radius_m.right,
+            left: (forward_m_s - turn_m_s) * self.per_radius.left,
+            right: (forward_m_s + turn_m_s) * self.per_radius.right,
         }
     }
 }
@@ -84,6 +123,8 @@ pub struct OdometryErrors {
 /// A piece of way, short enough to be straight within a few degrees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Piece {
+    /// Sine and cosine of the heading in its middle.
+    pub facing: (f32, f32),
     /// Way forward, signed [m].
     pub forward_m: f32,
     /// Angle turned [rad].
@@ -116,9 +157,9 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Takes in a piece of way that began at `heading_rad`.
-    pub fn advance(&mut self, errors: &OdometryErrors, heading_rad: f32, piece: &Piece) {
-        let (sin, cos) = sin_cos(heading_rad + 0.5 * piece.turned_rad);
+    /// Takes in a piece of way.
+    pub fn advance(&mut self, errors: &OdometryErrors, piece: &Piece) {
+        let (sin, cos) = piece.facing;
         let (dx, dy) = (piece.forward_m * cos, piece.forward_m * sin);
         // What a relative error of each kind adds to the piece: to its turn, to its way.
         let adds = [
@@ -207,10 +248,9 @@ mod tests {
     use core::f32::consts::{FRAC_PI_2, PI};
     use proptest::prelude::*;
 
-    const ROBOT: Geometry = Geometry {
-        radius_m: Wheels::both(0.0325),
-        base_m: 0.1,
-    };
+    fn robot() -> Geometry {
+        Geometry::new(Wheels::both(0.0325), 0.1)
+    }
 
     /// Moves a pose by what both wheels turned [rad].
     fn roll(robot: &Geometry, pose: &mut Pose, wheel_rad: Wheels<f32>) {
@@ -226,7 +266,7 @@ mod tests {
         let mut pose = Pose::default();
         let wheel = |radius_m: f32| FRAC_PI_2 * radius_m / 0.0325;
         roll(
-            &ROBOT,
+            &robot(),
             &mut pose,
             Wheels {
                 left: wheel(0.25),
@@ -248,7 +288,7 @@ mod tests {
             heading_rad: 3.0,
         };
         roll(
-            &ROBOT,
+            &robot(),
             &mut pose,
             Wheels {
                 left: -1.0,
@@ -265,16 +305,16 @@ mod tests {
     proptest! {
         #[test]
         fn body_and_wheel_speeds_are_two_views_of_one_motion(forward in -1.0f32..1.0, yaw in -5.0f32..5.0) {
-            let (back_forward, back_yaw) = ROBOT.body_from_wheels(ROBOT.wheels_from_body(forward, yaw));
+            let (back_forward, back_yaw) = robot().body_from_wheels(robot().wheels_from_body(forward, yaw));
             prop_assert!((back_forward - forward).abs() < 1e-5 && (back_yaw - yaw).abs() < 1e-4);
         }
 
         #[test]
         fn many_small_arcs_make_the_large_one(left in -3.0f32..3.0, right in -3.0f32..3.0) {
             let (mut once, mut often) = (Pose::default(), Pose::default());
-            roll(&ROBOT, &mut once, Wheels { left, right });
+            roll(&robot(), &mut once, Wheels { left, right });
             for _ in 0..64 {
-                roll(&ROBOT, &mut often, Wheels { left: left / 64.0, right: right / 64.0 });
+                roll(&robot(), &mut often, Wheels { left: left / 64.0, right: right / 64.0 });
             }
             prop_assert!((once.x_m - often.x_m).abs() < 1e-5 && (once.y_m - often.y_m).abs() < 1e-5);
         }
@@ -295,14 +335,15 @@ mod tests {
                 left: 0.0325 * wheel_rad.left,
                 right: 0.0325 * wheel_rad.right,
             };
-            let (forward_m, turned_rad) = ROBOT.body_from_wheels(wheel_rad);
+            let (forward_m, turned_rad) = robot().body_from_wheels(wheel_rad);
             let piece = Piece {
+                facing: sin_cos(pose.heading_rad + 0.5 * turned_rad),
                 forward_m,
                 turned_rad,
                 rolled_m,
             };
-            uncertainty.advance(&ERRORS, pose.heading_rad, &piece);
-            roll(&ROBOT, pose, wheel_rad);
+            uncertainty.advance(&ERRORS, &piece);
+            roll(&robot(), pose, wheel_rad);
         }
     }
 
@@ -342,14 +383,14 @@ mod tests {
             let left = if step % 100 < 50 { 0.1 } else { 0.16 };
             drive(&mut uncertainty, &mut pose, Wheels { left, right: 0.13 }, 1);
         }
-        let nominal = path(&ROBOT);
+        let nominal = path(&robot());
         let share = 0.0005;
-        let other = |left: f32, right: f32, base: f32| Geometry {
-            radius_m: Wheels {
+        let other = |left: f32, right: f32, base: f32| {
+            let radius_m = Wheels {
                 left: 0.0325 * (1.0 + left * share),
                 right: 0.0325 * (1.0 + right * share),
-            },
-            base_m: 0.1 / (1.0 + base * share),
+            };
+            Geometry::new(radius_m, 0.1 / (1.0 + base * share))
         };
         // The way's scale alone leaves the angles: base and radii grow alike.
         let robots = [

@@ -7,6 +7,7 @@ use crate::drive::{Feedforward, SpeedLoop};
 use crate::mode::ModeId;
 use crate::odometry::{Geometry, OdometryErrors};
 use crate::pid::{Gains, Pid};
+use crate::rig::Rig;
 use crate::speed::EDGE_RAD;
 use crate::types::{Side, Wheels};
 
@@ -287,13 +288,20 @@ impl ParamId {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
     values: [f32; COUNT],
+    /// What every tick would have to make of them again.
+    geometry: Geometry,
+    rig: Rig,
 }
 
 impl Default for Params {
     fn default() -> Self {
-        Self {
+        let mut params = Self {
             values: ParamId::ALL.map(|id| id.limits().default),
-        }
+            geometry: Geometry::new(Wheels::both(1.0), 1.0),
+            rig: Rig::Final,
+        };
+        params.derive();
+        params
     }
 }
 
@@ -321,18 +329,30 @@ impl Params {
         if let Some(slot) = self.values.get_mut(id as usize) {
             *slot = value;
         }
+        use ParamId as Id;
+        if let Id::RadiusLeft | Id::RadiusRight | Id::Base | Id::Rig = id {
+            self.derive();
+        }
         Ok(value)
     }
 
+    fn derive(&mut self) {
+        let radius_m = Wheels {
+            left: self.get(ParamId::RadiusLeft),
+            right: self.get(ParamId::RadiusRight),
+        };
+        self.geometry = Geometry::new(radius_m, self.get(ParamId::Base));
+        self.rig = Rig::nearest(self.get(ParamId::Rig));
+    }
+
     /// The lengths for odometry.
-    pub fn geometry(&self) -> Geometry {
-        Geometry {
-            radius_m: Wheels {
-                left: self.get(ParamId::RadiusLeft),
-                right: self.get(ParamId::RadiusRight),
-            },
-            base_m: self.get(ParamId::Base),
-        }
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// The rig in force.
+    pub fn rig(&self) -> Rig {
+        self.rig
     }
 
     /// How well the lengths for odometry are known.
@@ -343,8 +363,8 @@ impl Params {
             ratio: self.get(ParamId::RatioError),
             turn: self.get(ParamId::TurnError),
             scale: self.get(ParamId::ScaleError),
-            base_m: geometry.base_m,
-            edge_m: 0.5 * EDGE_RAD * (geometry.radius_m.left + geometry.radius_m.right),
+            base_m: geometry.base_m(),
+            edge_m: EDGE_RAD * geometry.mean_radius_m(),
         }
     }
 
@@ -411,7 +431,7 @@ mod tests {
         }
         assert_eq!(params, Params::default());
         assert_eq!(params.set(ParamId::Base, 0.2), Ok(0.2));
-        assert_eq!(params.geometry().base_m, 0.2);
+        assert_eq!(params.geometry().base_m(), 0.2);
     }
 
     #[cfg(feature = "names")]

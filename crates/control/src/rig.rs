@@ -56,6 +56,21 @@ impl Rig {
         }
     }
 
+    /// The rig whose number is nearest, ties to even.
+    pub(crate) fn nearest(number: f32) -> Rig {
+        if number >= 3.5 {
+            Rig::Final
+        } else if number <= 0.5 {
+            Rig::FrontSingle
+        } else if number < 1.5 {
+            Rig::FrontPair
+        } else if number <= 2.5 {
+            Rig::SidePairLeft
+        } else {
+            Rig::SidePairRight
+        }
+    }
+
     /// The side on which a pair of sonars looks, if this rig has one.
     pub const fn paired_side(self) -> Option<Side> {
         match self {
@@ -78,23 +93,6 @@ pub struct View {
 }
 
 impl Params {
-    /// The rig in force.
-    pub fn rig(&self) -> Rig {
-        // The nearest number, ties to even; each tick asks some times, and comparisons are cheaper than rounding.
-        let number = self.get(ParamId::Rig);
-        if number >= 3.5 {
-            Rig::Final
-        } else if number <= 0.5 {
-            Rig::FrontSingle
-        } else if number < 1.5 {
-            Rig::FrontPair
-        } else if number <= 2.5 {
-            Rig::SidePairLeft
-        } else {
-            Rig::SidePairRight
-        }
-    }
-
     /// Whether the rig has this sonar.
     pub fn carries(&self, sonar: SonarId) -> bool {
         match self.rig() {

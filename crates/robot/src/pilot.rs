@@ -93,6 +93,11 @@ impl Pilot {
         }
     }
 
+    /// Works on the pose's uncertainty.
+    pub(crate) fn doubt(&mut self) {
+        self.estimator.doubt(&self.params);
+    }
+
     /// Of the sonars that are wanted, those that the rig has.
     fn carried(&self, mut wanted: [bool; 3]) -> [bool; 3] {
         for (sonar, wanted) in SonarId::ALL.iter().zip(&mut wanted) {

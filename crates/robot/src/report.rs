@@ -146,24 +146,53 @@ impl Reporter {
         }
     }
 
-    /// At the end of every tick.
-    pub(crate) fn tick(&mut self, now: Micros, t_ms: u16, status: &Status, signals: &Signals) {
+    /// At the end of every tick: says at most one of what is due, and whether it did. `signals` gives what telemetry tells.
+    pub(crate) fn tick(
+        &mut self,
+        now: Micros,
+        t_ms: u16,
+        status: &Status,
+        signals: impl FnOnce() -> Signals,
+    ) -> bool {
         match self.language {
             Language::Binary => self.tick_binary(t_ms, status, signals),
             Language::Text => self.tick_text(now, status, signals),
         }
     }
 
-    fn tick_binary(&mut self, t_ms: u16, status: &Status, signals: &Signals) {
+    fn tick_binary(
+        &mut self,
+        t_ms: u16,
+        status: &Status,
+        signals: impl FnOnce() -> Signals,
+    ) -> bool {
+        self.status_in = self.status_in.saturating_sub(1);
+        if self.status_in == 0 || is_news(status, &self.last_status) {
+            self.status_due = true;
+        }
+        self.telemetry_in = self.telemetry_in.saturating_sub(1);
+        match self.telemetry_in {
+            0 => {
+                self.telemetry_in = TELEMETRY_TICKS;
+                self.say_telemetry(t_ms, status, &signals());
+                true
+            }
+            SAMPLE_TICKS => {
+                self.earlier_rad_s = signals().wheel_rad_s;
+                false
+            }
+            _ => self.say_what_is_due(t_ms, status),
+        }
+    }
+
+    /// HELLO or the status: on ticks that have no telemetry.
+    fn say_what_is_due(&mut self, t_ms: u16, status: &Status) -> bool {
         if self.hello_due && self.say(Priority::Answer, &FromRobot::Hello(self.hello)) {
             self.hello_due = false;
             if let Some(recalled) = self.recalled {
                 self.event(t_ms, EventKind::Recalled(recalled));
             }
-        }
-        self.status_in = self.status_in.saturating_sub(1);
-        if self.status_in == 0 || is_news(status, &self.last_status) {
-            self.status_due = true;
+            return true;
         }
         if self.status_due && self.say(Priority::Status, &FromRobot::Status(*status)) {
             self.status_due = false;
@@ -173,30 +202,27 @@ impl Reporter {
             if self.last_heading_ref_rad != 0.0 {
                 self.last_heading_ref_rad = f32::NAN;
             }
+            return true;
         }
-        self.telemetry_in = self.telemetry_in.saturating_sub(1);
-        match self.telemetry_in {
-            SAMPLE_TICKS => self.earlier_rad_s = signals.wheel_rad_s,
-            0 => {
-                self.telemetry_in = TELEMETRY_TICKS;
-                self.say_heading_ref(signals.heading_ref_rad);
-                let telemetry = Telemetry {
-                    t_ms,
-                    pose: signals.pose,
-                    wheel_rad_s: [self.earlier_rad_s, signals.wheel_rad_s],
-                    wheel_ref_rad_s: signals.wheel_ref_rad_s,
-                    duty: signals.duty,
-                    state: signals.state,
-                    armed: status.armed,
-                    faulted: status.fault.is_some(),
-                    servo_rad: signals.servo_rad,
-                    ranges: signals.ranges,
-                };
-                if !self.say(Priority::Telemetry, &FromRobot::Telemetry(telemetry)) {
-                    self.dropped = self.dropped.wrapping_add(1);
-                }
-            }
-            _ => {}
+        false
+    }
+
+    fn say_telemetry(&mut self, t_ms: u16, status: &Status, signals: &Signals) {
+        self.say_heading_ref(signals.heading_ref_rad);
+        let telemetry = Telemetry {
+            t_ms,
+            pose: signals.pose,
+            wheel_rad_s: [self.earlier_rad_s, signals.wheel_rad_s],
+            wheel_ref_rad_s: signals.wheel_ref_rad_s,
+            duty: signals.duty,
+            state: signals.state,
+            armed: status.armed,
+            faulted: status.fault.is_some(),
+            servo_rad: signals.servo_rad,
+            ranges: signals.ranges,
+        };
+        if !self.say(Priority::Telemetry, &FromRobot::Telemetry(telemetry)) {
+            self.dropped = self.dropped.wrapping_add(1);
         }
     }
 
@@ -213,16 +239,24 @@ impl Reporter {
         }
     }
 
-    fn tick_text(&mut self, now: Micros, status: &Status, signals: &Signals) {
+    fn tick_text(
+        &mut self,
+        now: Micros,
+        status: &Status,
+        signals: impl FnOnce() -> Signals,
+    ) -> bool {
         self.row_in = self.row_in.saturating_sub(1);
         if self.row_in > 0 || !self.outbox.is_empty() {
-            return;
+            return false;
         }
         self.row_in = ROW_TICKS;
         let dt_ms = now.since(self.last_row_at) / 1_000;
         self.last_row_at = now;
-        self.outbox
-            .push(Priority::Answer, row(dt_ms, status, signals).line().bytes());
+        self.outbox.push(
+            Priority::Answer,
+            row(dt_ms, status, &signals()).line().bytes(),
+        );
+        true
     }
 
     /// Sends a message, or says that it did not fit. Only what is sent takes a number: a gap is the link's loss.
@@ -353,7 +387,7 @@ mod tests {
                 wheel_rad_s: Wheels::both(f32::from(tick) / 10.0),
                 ..Signals::default()
             };
-            reporter.tick(Micros(0), tick * 10, &Status::default(), &signals);
+            reporter.tick(Micros(0), tick * 10, &Status::default(), || signals);
             while let Some(byte) = reporter.transmit() {
                 let Some(Received::Frame(body)) = decoder.push(byte) else {
                     continue;
@@ -387,7 +421,7 @@ mod tests {
                 heading_ref_rad,
                 ..Signals::default()
             };
-            reporter.tick(Micros(0), 0, &Status::default(), &signals);
+            reporter.tick(Micros(0), 0, &Status::default(), || signals);
             while let Some(byte) = reporter.transmit() {
                 if let Some(Received::Frame(body)) = decoder.push(byte) {
                     heard.extend(FromRobot::from_body(&body));

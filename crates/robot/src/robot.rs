@@ -1,8 +1,9 @@
 //! The robot: bytes and sensor readings in, duty and bytes out.
 //!
 //! At a tick the caller hands over the bytes that arrived ([`Robot::receive`]), then what the sensors latched
-//! ([`Robot::tick`]), and empties the transmit ring at its own pace ([`Robot::transmit`]). Nothing here waits, reads a
-//! clock or knows a pin, so the firmware, the emulated chip and the simulator run the same robot.
+//! ([`Robot::tick`]); once it has the outputs there is time for the rest ([`Robot::report`]). It empties the transmit ring at its
+//! own pace ([`Robot::transmit`]). Nothing here waits, reads a clock or knows a pin, so the firmware, the emulated chip
+//! and the simulator run the same robot.
 
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamId, SCHEMA};
@@ -46,6 +47,7 @@ pub struct Robot {
     pilot: Pilot,
     governor: Governor,
     reporter: Reporter,
+    battery_v: Option<f32>,
     store: Store,
 }
 
@@ -66,6 +68,7 @@ impl Robot {
             pilot: Pilot::default(),
             governor: Governor::default(),
             reporter: Reporter::new(hello),
+            battery_v: None,
             store: Store::default(),
         }
     }
@@ -82,8 +85,8 @@ impl Robot {
         }
     }
 
-    /// One tick: judges, estimates, drives, reports. The outputs take effect
-    /// [`OUTPUT_DELAY_US`](rumbo_control::OUTPUT_DELAY_US) after the tick.
+    /// One tick: judges, estimates, drives. The outputs take effect
+    /// [`OUTPUT_DELAY_US`](rumbo_control::OUTPUT_DELAY_US) after the tick. [`Robot::report`] follows.
     pub fn tick(&mut self, inputs: &Inputs) -> Outputs {
         let elapsed_us = self.clock.advance(inputs.now);
         if elapsed_us > TICK_LOST_US {
@@ -111,13 +114,7 @@ impl Robot {
             .governor
             .pass(step.outputs.drive, self.supervisor.is_armed());
         self.pilot.drove(drive);
-        let status = self.status(inputs.battery_v);
-        self.reporter.tick(
-            inputs.now,
-            self.clock.t_ms(),
-            &status,
-            &self.pilot.signals(),
-        );
+        self.battery_v = inputs.battery_v;
         Outputs {
             drive,
             ..step.outputs
@@ -145,6 +142,18 @@ impl Robot {
     /// wheels [rad/s], heading that the mode wants [rad]. For tests that compare two robots.
     pub fn beliefs(&self) -> [f32; 8] {
         self.pilot.beliefs()
+    }
+
+    /// The rest of a tick, which its outputs do not wait for: says what there is to say, or else works on the pose's uncertainty.
+    pub fn report(&mut self) {
+        let status = self.status();
+        let (now, t_ms) = (self.clock.now(), self.clock.t_ms());
+        if !self
+            .reporter
+            .tick(now, t_ms, &status, || self.pilot.signals())
+        {
+            self.pilot.doubt();
+        }
     }
 
     /// The next byte for the link, if any waits.
@@ -327,13 +336,13 @@ impl Robot {
         self.reporter.event(self.clock.t_ms(), kind);
     }
 
-    fn status(&self, battery_v: Option<f32>) -> Status {
+    fn status(&self) -> Status {
         let low = |counter: u16| (counter & 0xFF) as u8;
         Status {
             mode: self.pilot.mode(),
             armed: self.supervisor.is_armed(),
             fault: self.supervisor.fault(),
-            battery_v,
+            battery_v: self.battery_v,
             reference: self.pilot.reference(),
             crc_errors: low(self.decoder.crc_errors()),
             dropped: self.reporter.dropped(),

@@ -13,11 +13,13 @@ pub(crate) struct Writer {
 impl Writer {
     /// Appends bytes.
     pub(crate) fn put<const N: usize>(&mut self, bytes: [u8; N]) -> &mut Self {
-        for byte in bytes {
-            if let Some(slot) = self.bytes.get_mut(self.len) {
-                *slot = byte;
-                self.len += 1;
-            }
+        if let Some(slots) = self
+            .bytes
+            .get_mut(self.len..)
+            .and_then(|rest| rest.first_chunk_mut::<N>())
+        {
+            *slots = bytes;
+            self.len += N;
         }
         self
     }

@@ -84,17 +84,17 @@ impl Frame {
     pub fn new(kind: Kind, seq: u8, payload: &[u8]) -> Frame {
         let header = (kind as u8) << 4 | (seq & 0xF);
         let payload = payload.get(..MAX_PAYLOAD).unwrap_or(payload);
-        let check = payload
-            .iter()
-            .fold(crc(crc(CRC_START, kind.schema()), header), |sum, byte| {
-                crc(sum, *byte)
-            });
-        let body = core::iter::once(header)
-            .chain(payload.iter().copied())
-            .chain(check.to_le_bytes());
-        let mut bytes = [0; MAX_FRAME];
-        let len = stuff(body, &mut bytes);
-        Frame { bytes, len }
+        let mut check = crc(crc(CRC_START, kind.schema()), header);
+        let mut stuffing = Stuffing::new();
+        stuffing.put(header);
+        for byte in payload {
+            check = crc(check, *byte);
+            stuffing.put(*byte);
+        }
+        let [low, high] = check.to_le_bytes();
+        stuffing.put(low);
+        stuffing.put(high);
+        stuffing.finish()
     }
 
     /// The bytes for the wire.
@@ -150,30 +150,57 @@ pub const fn crc(sum: u16, byte: u8) -> u16 {
     (u16::from_le_bytes([high, mixed]) ^ (mixed >> 4) as u16) ^ ((mixed as u16) << 3)
 }
 
-/// COBS of `body` and the closing 0x00 into `out`; gives the length. Runs are below 254 bytes here.
-fn stuff(body: impl Iterator<Item = u8>, out: &mut [u8; MAX_FRAME]) -> usize {
-    let mut code_at = 0;
-    let mut len = 1;
-    let mut put = |at: usize, byte: u8| {
-        if let Some(slot) = out.get_mut(at) {
-            *slot = byte;
-        }
-    };
-    for byte in body {
-        if byte == 0 {
-            put(code_at, (len - code_at) as u8);
-            code_at = len;
-        } else {
-            put(len, byte);
-        }
-        len += 1;
-    }
-    put(code_at, (len - code_at) as u8);
-    put(len, 0);
-    len + 1
+/// COBS of the bytes put in, and the closing 0x00. Runs are below 254 bytes here.
+struct Stuffing {
+    frame: Frame,
+    /// Where the length of the present run will be.
+    code_at: u8,
+    /// The length of the present run, its code included.
+    run: u8,
 }
 
-/// Inverse of [`stuff`], of a frame without its 0x00; gives the length.
+impl Stuffing {
+    fn new() -> Self {
+        Self {
+            frame: Frame {
+                bytes: [0; MAX_FRAME],
+                len: 1,
+            },
+            code_at: 0,
+            run: 1,
+        }
+    }
+
+    fn put(&mut self, byte: u8) {
+        if byte == 0 {
+            self.close();
+        } else {
+            if let Some(slot) = self.frame.bytes.get_mut(self.frame.len) {
+                *slot = byte;
+            }
+            self.run += 1;
+        }
+        self.frame.len += 1;
+    }
+
+    /// Ends a run: its code goes to its front, the next one begins.
+    fn close(&mut self) {
+        if let Some(slot) = self.frame.bytes.get_mut(usize::from(self.code_at)) {
+            *slot = self.run;
+        }
+        self.code_at = self.frame.len as u8;
+        self.run = 1;
+    }
+
+    /// The frame; the byte after the last run is 0x00 already.
+    fn finish(mut self) -> Frame {
+        self.close();
+        self.frame.len += 1;
+        self.frame
+    }
+}
+
+/// Inverse of [`Stuffing`], of a frame without its 0x00; gives the length.
 fn unstuff(stuffed: &[u8], out: &mut [u8; MAX_BODY]) -> Option<usize> {
     let mut rest = stuffed;
     let mut len = 0;

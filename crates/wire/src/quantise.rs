@@ -12,8 +12,7 @@ pub(crate) fn to_i16(value: f32, per_unit: f32) -> i16 {
     if !value.is_finite() {
         return NOT_FINITE_16;
     }
-    // Narrow enough for i16 after the clamp.
-    round(value * per_unit).clamp(-32_767, 32_767) as i16
+    limited(value * per_unit, 32_767)
 }
 
 /// Inverse of [`to_i16`]; NaN for the code of what is not finite.
@@ -25,13 +24,24 @@ pub(crate) fn from_i16(code: i16, per_unit: f32) -> f32 {
     }
 }
 
+/// `value` as the nearest integer within +-`most`.
+fn limited(value: f32, most: i16) -> i16 {
+    match i16::try_from(round(value)) {
+        Ok(code) if code > most => most,
+        Ok(code) if code < -most => -most,
+        Ok(code) => code,
+        Err(_) if value < 0.0 => -most,
+        Err(_) => most,
+    }
+}
+
 /// Code of a value that is not finite, in a field of 12 bits.
 const NOT_FINITE_12: i16 = -2_048;
 
 /// `value` in units of `1 / per_unit`, as 12 bits: saturates to +-2,047.
 pub(crate) fn to_i12(value: f32, per_unit: f32) -> u16 {
     let code = if value.is_finite() {
-        round(value * per_unit).clamp(-2_047, 2_047) as i16
+        limited(value * per_unit, 2_047)
     } else {
         NOT_FINITE_12
     };

@@ -87,8 +87,8 @@ impl StraightLine {
             ky_rad_m: params.get(ParamId::StraightOffset),
             accel_rad_s2: params.get(ParamId::StraightAccel),
             decel_rad_s2: params.get(ParamId::StraightDecel),
-            radius_m: 0.5 * (geometry.radius_m.left + geometry.radius_m.right),
-            base_m: geometry.base_m,
+            radius_m: geometry.mean_radius_m(),
+            base_m: geometry.base_m(),
         }
     }
 

@@ -151,6 +151,7 @@ impl Bench {
             battery_v: self.battery_v,
         };
         self.outputs = self.robot.tick(&inputs);
+        self.robot.report();
         if let Some(sonar) = self.outputs.ping {
             self.pending.push_back((self.tick + 2, sonar));
         }

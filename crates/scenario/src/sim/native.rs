@@ -170,6 +170,7 @@ impl Sim {
             echo,
             battery_v,
         });
+        native.robot.report();
         // A byte takes 3.4 ms: the one before is written.
         if let Some(cell) = native.robot.store() {
             native.memory.write(cell);

@@ -1,6 +1,7 @@
 //! The odometry's own idea of how far it is off, against how far it truly is.
 
 use super::setup;
+use rumbo_control::math::sin_cos;
 use rumbo_control::odometry::{Piece, Uncertainty};
 use rumbo_control::params::{ParamId, Params};
 use rumbo_control::{Pose, Wheels};
@@ -26,6 +27,7 @@ fn end_of(setup: &Setup, seed: u64) -> (Pose, [[f64; 3]; 3], [f64; 3]) {
             rumbo_control::math::wrap_angle(telemetry.pose.heading_rad - pose.heading_rad);
         let turn_m = 0.5 * turned_rad * params.get(ParamId::Base);
         let piece = Piece {
+            facing: sin_cos(pose.heading_rad + 0.5 * turned_rad),
             forward_m: ahead_m,
             turned_rad,
             rolled_m: Wheels {
@@ -33,7 +35,7 @@ fn end_of(setup: &Setup, seed: u64) -> (Pose, [[f64; 3]; 3], [f64; 3]) {
                 right: (ahead_m + turn_m).abs(),
             },
         };
-        uncertainty.advance(&errors, pose.heading_rad, &piece);
+        uncertainty.advance(&errors, &piece);
         pose = telemetry.pose;
     }
     let last = result.trace.samples.last().unwrap();

@@ -21,12 +21,23 @@ fn compare(seed: u64) {
     });
     let (mut world, mut outputs, mut told) = (World::new(seed), Outputs::default(), Vec::new());
     let (mut worst, mut driven) = ([0; 9], 0);
+    let mut at = [0; 9];
+    let mut late = [0; 9];
     for tick in 1..=TICKS {
         let inputs = world.inputs(tick, &outputs);
         outputs = robot.tick(&inputs);
+        robot.report();
         let bytes = world.bytes(tick);
         board.arrive(&bytes);
-        let (left, cycles) = board.tick(&inputs);
+        let look = std::env::var("LOOK")
+            .is_ok_and(|at| at.split(',').any(|at| at == format!("{seed}:{tick}")));
+        let (left, cycles) = board.tick(&inputs, look.then_some(&image));
+        if cycles > worst[world.mode() as usize] {
+            at[world.mode() as usize] = tick;
+        }
+        if cycles > 48_000 {
+            late[world.mode() as usize] += 1;
+        }
         assert_eq!(
             left,
             outputs_record(&outputs),
@@ -53,7 +64,7 @@ fn compare(seed: u64) {
         driven += u32::from(outputs.drive != Outputs::default().drive);
     }
     println!(
-        "seed {seed}: {TICKS} ticks, {driven} of them driven, most cycles of a tick by mode {worst:?}"
+        "seed {seed}: {TICKS} ticks, {driven} of them driven, most cycles of a tick by mode {worst:?} at {at:?} late {late:?}"
     );
     assert!(
         driven > TICKS / 5 && told.len() > 50_000,
