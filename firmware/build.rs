@@ -35,6 +35,7 @@ const LIBRARIES: [(&str, &[&str]); 3] = [
             "mulsf3",
             "mulsf3x",
             "negsf2",
+            "sqrt",
             "unordsf2",
         ],
     ),

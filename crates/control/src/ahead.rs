@@ -131,7 +131,7 @@ impl Ahead {
             state.deaf_s = 0.0;
         }
         let anew = (state.known || self.paired) && state.deaf_s > self.stale_s;
-        if state.wall.wall().is_none() || anew {
+        if !state.wall.is_known() || anew {
             self.start(state, estimate).ok_or(Fault::WallLost)?;
         }
         if state.deaf_s > 2.0 * self.stale_s {
@@ -209,7 +209,7 @@ impl Ahead {
             }
             state.echo = [false; 2];
         }
-        let sure = |wall: Wall| wall.bearing_sd_rad < KNOWN_RAD;
+        let sure = |wall: Wall| wall.bearing_variance < KNOWN_RAD * KNOWN_RAD;
         state.known = looks >= most || (looks >= well && state.wall.wall().is_some_and(sure));
     }
 

@@ -7,6 +7,7 @@
 //! The same inputs give the same bits on every machine: only `+ - * /`, a correctly rounded square root and
 //! the polynomials of [`math`] are used. Nothing here panics, allocates, loops without bound or formats text.
 #![no_std]
+#![cfg_attr(target_arch = "avr", feature(core_float_math))]
 
 pub mod ahead;
 pub mod beside;

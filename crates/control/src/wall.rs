@@ -44,10 +44,15 @@ pub struct Wall {
     pub distance_m: f32,
     /// Direction to the nearest point of the wall, counter-clockwise from ahead [rad].
     pub bearing_rad: f32,
-    /// Standard deviation of the distance [m].
-    pub distance_sd_m: f32,
+    /// Variance of the bearing [rad^2].
+    pub bearing_variance: f32,
+}
+
+impl Wall {
     /// Standard deviation of the bearing [rad].
-    pub bearing_sd_rad: f32,
+    pub fn bearing_sd_rad(&self) -> f32 {
+        sqrt(max(self.bearing_variance, 0.0))
+    }
 }
 
 /// Memory of the wall filter.
@@ -64,13 +69,17 @@ pub struct WallFilter {
 impl WallFilter {
     /// The wall, once a reading has been taken.
     pub fn wall(&self) -> Option<Wall> {
-        let [pdd, _, pbb] = self.p;
-        self.known.then(|| Wall {
+        let [_, _, bearing_variance] = self.p;
+        self.known.then_some(Wall {
             distance_m: self.distance_m,
             bearing_rad: self.bearing_rad,
-            distance_sd_m: sqrt(max(pdd, 0.0)),
-            bearing_sd_rad: sqrt(max(pbb, 0.0)),
+            bearing_variance,
         })
+    }
+
+    /// Whether a reading has been taken.
+    pub fn is_known(&self) -> bool {
+        self.known
     }
 
     /// Starts from a first reading of a wall expected at `bearing_rad`, give or take `bearing_sd_rad`.
@@ -159,13 +168,12 @@ impl WallFilter {
         };
         // At the beam's edge the range bends with the bearing: what the slope misses is noise.
         let off_rad = wrap_angle(view.axis_rad - self.bearing_rad);
-        let [_, _, pbb] = self.p;
+        let [pdd, pdb, pbb] = self.p;
         let bend = if abs(off_rad) > beam_rad - EDGE_RAD {
             square(0.5 * range_m * pbb)
         } else {
             0.0
         };
-        let [pdd, pdb, pbb] = self.p;
         let (gd, gb) = (pdd * hd + pdb * hb, pdb * hd + pbb * hb);
         let variance = hd * gd + hb * gb + square(noise_m(range_m)) + bend;
         let innovation_m = range_m - expected_m;
@@ -179,8 +187,8 @@ impl WallFilter {
         self.refused = 0;
         let most_m = BELIEF_SD * sqrt(variance);
         // A reading further off than that is believed in part only, and makes the estimate in part only surer.
-        let share = most_m / max(abs(innovation_m), most_m);
-        let (kd, kb) = (share * gd / variance, share * gb / variance);
+        let share = most_m / max(abs(innovation_m), most_m) / variance;
+        let (kd, kb) = (share * gd, share * gb);
         self.distance_m = max(self.distance_m + kd * innovation_m, 0.0);
         self.bearing_rad = wrap_angle(self.bearing_rad + kb * innovation_m);
         self.p = [
@@ -341,7 +349,7 @@ mod tests {
         }
         let wall = filter.wall().unwrap();
         assert!((wall.distance_m - 0.5).abs() < 1e-5 && (wall.bearing_rad + 0.5).abs() < 1e-4);
-        assert!(wall.bearing_sd_rad > 0.1);
+        assert!(wall.bearing_sd_rad() > 0.1);
     }
 
     #[test]

@@ -140,7 +140,7 @@ impl WallFollow {
 
     /// Moves the estimate of the wall along and corrects it by the reading of this tick.
     fn estimate(&self, state: &mut State, side: Side, at: &Estimate) -> Result<Wall, Fault> {
-        if state.wall.wall().is_none() {
+        if !state.wall.is_known() {
             self.begin(state, side, at)?;
         } else {
             state.wall.predict(at.rolled_m, at.turned_rad);
@@ -222,7 +222,7 @@ impl WallFollow {
         let free_m_s = self.free_m_s(state, at)?;
         let (distance_m, angle_rad) = self.distance_and_angle(side, &wall);
         let error_m = distance_m - self.distance_m;
-        let (angle_ref_rad, far) = self.angle_ref_rad(state, error_m, wall.bearing_sd_rad);
+        let (angle_ref_rad, far) = self.angle_ref_rad(state, error_m, wall.bearing_sd_rad());
 
         let turn_rad_s = self.heading_kp * (angle_ref_rad - angle_rad);
         let wanted_rad_s = sign(side) * turn_rad_s - self.damping * at.yaw_rad_s;
