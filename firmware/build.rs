@@ -1,7 +1,8 @@
 //! Gives the linker the arithmetic of avr-libc and libgcc.
 //!
 //! The functions that come with Rust's library for the AVR are written for any processor and take four to seven times as
-//! long. Both are there under the same names; those here are strong symbols, which win over the weak ones of Rust's.
+//! long. Both are there under the same names; those here are strong symbols, which win over the weak ones of Rust's. Sums and
+//! comparisons, of which a tick has the most, are our own (`src/float.S`), with avr-libc's for what is rare.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -13,13 +14,11 @@ const LIBRARIES: [(&str, &[&str]); 3] = [
         &[
             "addsf3",
             "addsf3x",
-            "cmpsf2",
             "divsf3",
             "divsf3x",
             "fixsfsi",
             "fixunssfsi",
             "floatsisf",
-            "fp_cmp",
             "fp_inf",
             "fp_mintl",
             "fp_mpack",
@@ -31,12 +30,10 @@ const LIBRARIES: [(&str, &[&str]); 3] = [
             "fp_split3",
             "fp_trunc",
             "fp_zero",
-            "gesf2",
             "mulsf3",
             "mulsf3x",
             "negsf2",
             "sqrt",
-            "unordsf2",
         ],
     ),
     ("libc.a", &["memcmp", "memcpy", "memmove", "memset"]),
@@ -56,17 +53,41 @@ const LIBRARIES: [(&str, &[&str]); 3] = [
     ),
 ];
 
+/// What avr-libc's sum is called, for our own to call it.
+const RENAMED: [&str; 2] = [
+    "--redefine-sym=__addsf3=__addsf3_any",
+    "--redefine-sym=__subsf3=__subsf3_any",
+];
+
 fn main() -> Result<(), String> {
     println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed=src/float.S");
     let out = PathBuf::from(std::env::var_os("OUT_DIR").ok_or("cargo gives no OUT_DIR")?);
     for (library, members) in LIBRARIES {
         let archive = find(library)?;
         for member in members {
             let object = extract(&archive, member, &out)?;
+            if member == &"addsf3" {
+                run(Command::new("avr-objcopy").args(RENAMED).arg(&object))?;
+            }
             println!("cargo::rustc-link-arg={}", object.display());
         }
     }
+    let float = out.join("float.o");
+    run(Command::new("avr-gcc")
+        .args(["-mmcu=atmega2560", "-c", "src/float.S", "-o"])
+        .arg(&float))?;
+    println!("cargo::rustc-link-arg={}", float.display());
     Ok(())
+}
+
+fn run(command: &mut Command) -> Result<(), String> {
+    let name = command.get_program().to_string_lossy().into_owned();
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(_) => Err(format!("{name} failed")),
+        Err(error) => Err(format!("{name}: {error}; install gcc-avr and binutils-avr")),
+    }
 }
 
 /// Where avr-gcc has a library for this chip.

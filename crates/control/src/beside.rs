@@ -3,7 +3,7 @@
 //! A pair looks to its own side. On the final rig each side has one, and the front one looks ahead meanwhile.
 
 use crate::estimate::Estimate;
-use crate::math::{max, min};
+use crate::math::min;
 use crate::params::Params;
 use crate::rig::{Rig, View};
 use crate::types::{Fault, Range, SIDES, Side, SonarId};
@@ -26,32 +26,35 @@ impl Beside {
         }
     }
 
-    /// The sonars that look to this side.
-    pub fn sonars(&self, side: Side) -> impl Iterator<Item = (SonarId, View)> + use<> {
-        let (own, pair) = match side {
-            Side::Left => (SonarId::Left, self.rig.paired_side() == Some(side)),
-            Side::Right => (SonarId::Right, self.rig.paired_side() == Some(side)),
-        };
+    /// The sonars that look to this side, and from where.
+    pub fn sonars(&self, side: Side) -> impl Iterator<Item = (SonarId, &View)> {
         [SonarId::Left, SonarId::Right]
-            .into_iter()
-            .zip(self.views)
-            .filter(move |(sonar, _)| pair || *sonar == own)
+            .iter()
+            .zip(&self.views)
+            .filter(move |(sonar, _)| self.watches(side, **sonar))
+            .map(|(sonar, view)| (*sonar, view))
     }
 
     /// The point from which distances to a wall on this side are measured, ahead and left [m].
     pub fn point_m(&self, side: Side) -> (f32, f32) {
-        let (mut x_m, mut y_m, mut count) = (0.0, 0.0, 0.0);
-        for (_, view) in self.sonars(side) {
-            x_m += view.x_m;
-            y_m += view.y_m;
-            count += 1.0;
+        let [left, right] = &self.views;
+        if self.rig.paired_side() == Some(side) {
+            return (0.5 * (left.x_m + right.x_m), 0.5 * (left.y_m + right.y_m));
         }
-        (x_m / max(count, 1.0), y_m / max(count, 1.0))
+        let own = match side {
+            Side::Left => left,
+            Side::Right => right,
+        };
+        (own.x_m, own.y_m)
     }
 
     /// Whether a sonar is one of those that look to this side.
     pub fn watches(&self, side: Side, sonar: SonarId) -> bool {
-        self.sonars(side).any(|(own, _)| own == sonar)
+        let own = match side {
+            Side::Left => SonarId::Left,
+            Side::Right => SonarId::Right,
+        };
+        sonar == own || (sonar != SonarId::Front && self.rig.paired_side() == Some(side))
     }
 
     /// The side with a wall, the nearer one where there are two; `None` without one in sight of all sonars of that side.

@@ -29,7 +29,7 @@ const KICK_GROWTH: f32 = 1.5;
 const RAMP_LEAD_RAD_S: f32 = 4.0;
 
 /// Duty that a speed takes at the nominal battery voltage.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Feedforward {
     /// Duty that balances friction, forward.
     pub static_forward: f32,
@@ -42,7 +42,7 @@ pub struct Feedforward {
 }
 
 /// Configuration of one wheel's speed loop.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpeedLoop {
     /// Duty from the reference alone.
     pub feedforward: Feedforward,
@@ -50,10 +50,10 @@ pub struct SpeedLoop {
     pub kick: f32,
     /// What the feedforward misses; output is duty, limits 0..1.
     pub pid: Pid,
-    /// Slope of the ramp when speeding up [rad/s^2].
-    pub accel_rad_s2: f32,
-    /// Slope of the ramp when slowing down [rad/s^2].
-    pub decel_rad_s2: f32,
+    /// Slope of the ramp when speeding up [rad/s per tick].
+    pub accel_rad_s: f32,
+    /// Slope of the ramp when slowing down [rad/s per tick].
+    pub decel_rad_s: f32,
 }
 
 impl SpeedLoop {
@@ -64,8 +64,7 @@ impl SpeedLoop {
         } else {
             target_rad_s
         };
-        let up = self.accel_rad_s2 * TICK_S;
-        let down = self.decel_rad_s2 * TICK_S;
+        let (up, down) = (self.accel_rad_s, self.decel_rad_s);
         let next = before_rad_s + clamp(target_rad_s - before_rad_s, -down, up);
         let lead = measured_rad_s + max(RAMP_LEAD_RAD_S, up);
         if next > lead {
@@ -177,7 +176,7 @@ impl DriveLayer {
         for side in SIDES {
             let wheel_loop = params.speed_loop(side);
             driven.duty[side] = self.wheels[side].speed(
-                &wheel_loop,
+                wheel_loop,
                 references[side],
                 &motion[side],
                 compensation,

@@ -133,11 +133,13 @@ impl Estimator {
         }
     }
 
-    /// Lets the uncertainty grow by the way collected, when there is enough of it. For a tick that has little else to do.
+    /// Lets the uncertainty grow by the way collected, when there is enough of it, and reckons the heading's sine and cosine anew.
+    /// For a tick that has little else to do.
     pub fn doubt(&mut self, params: &Params) {
         if self.piece_ticks < PIECE_TICKS {
             return;
         }
+        self.place = Place::of(self.place.pose);
         self.uncertainty
             .advance(&params.odometry_errors(), &self.piece);
         self.piece = Piece::default();

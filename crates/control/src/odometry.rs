@@ -3,7 +3,7 @@
 //! Two kinds of error are kept apart. Slip is new at every millimetre: a covariance that grows with the way. Radii and base are off by
 //! the same all the time: the pose's derivatives by each of them, which also shrink again where a way back undoes the error.
 
-use crate::math::{abs, max, sin_cos, sinc, sqrt, wrap_angle};
+use crate::math::{abs, max, rotate, sin_cos, sinc, sqrt, wrap_angle};
 use crate::types::{Place, Wheels};
 
 /// Half of a turn [rad] up to which tan(x) / x is 1 + x^2 / 3 + 2 x^4 / 15 to the last bit but one.
@@ -85,7 +85,7 @@ pub fn advance(place: &mut Place, forward_m: f32, turned_rad: f32) {
     }
     let half_rad = 0.5 * turned_rad;
     place.pose.heading_rad = wrap_angle(pose.heading_rad + turned_rad);
-    (place.sin, place.cos) = sin_cos(place.pose.heading_rad);
+    (place.sin, place.cos) = rotate((sin, cos), turned_rad, place.pose.heading_rad);
     let (x, y, way_m) = if abs(half_rad) < SMALL_RAD {
         // The chord points along the middle heading: along the sum of the directions before and after.
         let square = half_rad * half_rad;

@@ -9,7 +9,7 @@ use crate::odometry::{Geometry, OdometryErrors};
 use crate::pid::{Gains, Pid};
 use crate::rig::Rig;
 use crate::speed::EDGE_RAD;
-use crate::types::{Side, Wheels};
+use crate::types::{Side, TICK_S, Wheels};
 
 /// Smallest and largest allowed value, and the one without any override.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -291,6 +291,7 @@ pub struct Params {
     /// What every tick would have to make of them again.
     geometry: Geometry,
     rig: Rig,
+    loops: Wheels<SpeedLoop>,
 }
 
 impl Default for Params {
@@ -299,6 +300,7 @@ impl Default for Params {
             values: ParamId::ALL.map(|id| id.limits().default),
             geometry: Geometry::new(Wheels::both(1.0), 1.0),
             rig: Rig::Final,
+            loops: Wheels::default(),
         };
         params.derive();
         params
@@ -329,10 +331,7 @@ impl Params {
         if let Some(slot) = self.values.get_mut(id as usize) {
             *slot = value;
         }
-        use ParamId as Id;
-        if let Id::RadiusLeft | Id::RadiusRight | Id::Base | Id::Rig = id {
-            self.derive();
-        }
+        self.derive();
         Ok(value)
     }
 
@@ -343,6 +342,10 @@ impl Params {
         };
         self.geometry = Geometry::new(radius_m, self.get(ParamId::Base));
         self.rig = Rig::nearest(self.get(ParamId::Rig));
+        self.loops = Wheels {
+            left: self.loop_of(Side::Left),
+            right: self.loop_of(Side::Right),
+        };
     }
 
     /// The lengths for odometry.
@@ -369,7 +372,11 @@ impl Params {
     }
 
     /// The speed loop of one wheel.
-    pub fn speed_loop(&self, side: Side) -> SpeedLoop {
+    pub fn speed_loop(&self, side: Side) -> &SpeedLoop {
+        &self.loops[side]
+    }
+
+    fn loop_of(&self, side: Side) -> SpeedLoop {
         use ParamId as Id;
         let ([forward, backward], [kp, ki, kd]) = match side {
             Side::Left => (
@@ -399,8 +406,8 @@ impl Params {
                 max: 1.0,
                 tracking_s: 0.1,
             },
-            accel_rad_s2: self.get(Id::WheelAccel),
-            decel_rad_s2: self.get(Id::WheelDecel),
+            accel_rad_s: self.get(Id::WheelAccel) * TICK_S,
+            decel_rad_s: self.get(Id::WheelDecel) * TICK_S,
         }
     }
 }

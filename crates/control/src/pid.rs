@@ -22,7 +22,7 @@ pub struct Gains {
 }
 
 /// Configuration of a PID controller; its memory is in [`PidState`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pid {
     /// Gains; may change between steps.
     pub gains: Gains,

@@ -13,7 +13,7 @@
 //! Two sonars side by side thus give the bearing, as the report's trigonometry does, exact also for equal readings;
 //! one sonar and odometry do so over some way, and a sonar on the servo by looking to both sides. Derivation: docs/theory/wall.md.
 
-use crate::math::{abs, atan2, clamp, max, min, sin_cos, sqrt, wrap_angle};
+use crate::math::{abs, atan2, clamp, max, min, rotate, sin_cos, sqrt, wrap_angle};
 use crate::rig::View;
 
 /// Most that a beam's edge may meet the wall off its normal, seen from the beam's edge [rad]; beyond, there is no echo.
@@ -44,6 +44,8 @@ pub struct Wall {
     pub distance_m: f32,
     /// Direction to the nearest point of the wall, counter-clockwise from ahead [rad].
     pub bearing_rad: f32,
+    /// Its sine and cosine.
+    pub facing: (f32, f32),
     /// Variance of the bearing [rad^2].
     pub bearing_variance: f32,
 }
@@ -60,6 +62,8 @@ impl Wall {
 pub struct WallFilter {
     distance_m: f32,
     bearing_rad: f32,
+    /// Sine and cosine of the bearing.
+    facing: (f32, f32),
     /// Covariance: distance, both, bearing.
     p: [f32; 3],
     known: bool,
@@ -73,6 +77,7 @@ impl WallFilter {
         self.known.then_some(Wall {
             distance_m: self.distance_m,
             bearing_rad: self.bearing_rad,
+            facing: self.facing,
             bearing_variance,
         })
     }
@@ -91,6 +96,7 @@ impl WallFilter {
         *self = Self {
             distance_m: range_m + view.x_m * cos + view.y_m * sin,
             bearing_rad,
+            facing: (sin, cos),
             p: [
                 square(noise_m(range_m)) + square(slope_m) * pbb + square(0.5 * pbb * range_m),
                 slope_m * pbb,
@@ -105,11 +111,12 @@ impl WallFilter {
     pub fn start_pair(&mut self, ahead_m: f32, gap_m: f32, beam_rad: f32, ranges_m: [f32; 2]) {
         let [left_m, right_m] = ranges_m;
         let (normal_m, bearing_rad) = wall_of_pair(left_m, right_m, gap_m, beam_rad);
-        let (_, cos) = sin_cos(bearing_rad);
+        let (sin, cos) = sin_cos(bearing_rad);
         let noise = square(noise_m(normal_m));
         *self = Self {
             distance_m: normal_m + ahead_m * cos,
             bearing_rad,
+            facing: (sin, cos),
             p: [noise, 0.0, 2.0 * noise / square(gap_m * cos) + 1e-4],
             known: true,
             refused: 0,
@@ -121,11 +128,16 @@ impl WallFilter {
         if !self.known {
             return;
         }
-        let (sin, cos) = sin_cos(self.bearing_rad - 0.5 * turn_rad);
-        self.distance_m -= forward_m * cos;
-        self.bearing_rad = wrap_angle(self.bearing_rad - turn_rad);
+        let before = self.facing;
+        if turn_rad != 0.0 {
+            self.bearing_rad = wrap_angle(self.bearing_rad - turn_rad);
+            self.facing = rotate(before, -turn_rad, self.bearing_rad);
+        }
+        // In between it moved as in the mean of before and after.
+        let half_m = 0.5 * forward_m;
+        self.distance_m -= half_m * (before.1 + self.facing.1);
         // d(distance)/d(bearing)
-        let slope = forward_m * sin;
+        let slope = half_m * (before.0 + self.facing.0);
         let [pdd, pdb, pbb] = self.p;
         let (way, turn) = (abs(forward_m), abs(turn_rad));
         self.p = [
@@ -138,7 +150,7 @@ impl WallFilter {
     /// The range that a sonar with this view and a beam of half angle `beam_rad` should read, and its slopes over
     /// distance and bearing; `None` where the wall gives no echo.
     fn expect(&self, view: &View, beam_rad: f32) -> Option<(f32, f32, f32)> {
-        let (sin, cos) = sin_cos(self.bearing_rad);
+        let (sin, cos) = self.facing;
         let normal_m = self.distance_m - (view.x_m * cos + view.y_m * sin);
         let slope_m = view.x_m * sin - view.y_m * cos;
         let off_rad = wrap_angle(view.axis_rad - self.bearing_rad);
@@ -191,6 +203,7 @@ impl WallFilter {
         let (kd, kb) = (share * gd, share * gb);
         self.distance_m = max(self.distance_m + kd * innovation_m, 0.0);
         self.bearing_rad = wrap_angle(self.bearing_rad + kb * innovation_m);
+        self.facing = sin_cos(self.bearing_rad);
         self.p = [
             max(pdd - kd * gd, 1e-9),
             pdb - kd * gb,
@@ -237,6 +250,7 @@ mod tests {
         let filter = WallFilter {
             distance_m,
             bearing_rad,
+            facing: sin_cos(bearing_rad),
             known: true,
             ..WallFilter::default()
         };

@@ -18,9 +18,15 @@ impl Clock {
         let elapsed_us = if self.started { now.since(self.now) } else { 0 };
         self.started = true;
         self.now = now;
-        let total_us = self.rest_us.saturating_add(elapsed_us);
-        self.t_ms = self.t_ms.wrapping_add(((total_us / 1_000) & 0xFFFF) as u16);
-        self.rest_us = total_us % 1_000;
+        // What is usual without a division, which takes the AVR 40 us.
+        let (whole_ms, rest_us) = if elapsed_us == TICK_US {
+            ((TICK_US / 1_000) as u16, self.rest_us + TICK_US % 1_000)
+        } else {
+            let total_us = self.rest_us.saturating_add(elapsed_us);
+            (((total_us / 1_000) & 0xFFFF) as u16, total_us % 1_000)
+        };
+        self.t_ms = self.t_ms.wrapping_add(whole_ms);
+        self.rest_us = rest_us;
         // A tick started late by half a period or more: the one before overran.
         if elapsed_us >= TICK_US + TICK_US / 2 {
             self.overruns = self.overruns.wrapping_add(1);

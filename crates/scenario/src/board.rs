@@ -9,7 +9,7 @@ const POLES: usize = 8;
 /// The echo line must have risen by this time after the trigger, or the sonar is silent [us].
 const RISE_US: u64 = 5_000;
 /// An echo line that is still high after this time has nothing within reach to say [us]: 2.65 m.
-const REACH_US: u64 = 15_500;
+const REACH_US: u64 = 14_600;
 
 /// One encoder's interrupt.
 #[derive(Clone, Copy, Debug, Default)]

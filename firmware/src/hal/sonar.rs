@@ -13,8 +13,8 @@ use rumbo_control::{Echo, SonarId};
 const TRIGGER_COUNTS: u16 = 24;
 /// The echo line must have risen by this time after the trigger, or the sonar is silent [0.5 us].
 const RISE_COUNTS: u16 = 5_000 * 2;
-/// A line still high after this time has nothing within reach to say: 2.65 m [0.5 us].
-const REACH_COUNTS: u16 = 15_500 * 2;
+/// A line still high after this time has nothing within reach to say: 2.5 m; two ticks after its ping it has told [0.5 us].
+const REACH_COUNTS: u16 = 14_600 * 2;
 
 const TRIGGERS_J: u8 = pins::LEFT_TRIGGER.mask() | pins::FRONT_TRIGGER.mask();
 const TRIGGERS_B: u8 = pins::RIGHT_TRIGGER.mask();

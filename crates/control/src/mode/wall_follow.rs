@@ -31,7 +31,7 @@
 use super::{Action, Mode, Situation};
 use crate::beside::Beside;
 use crate::estimate::Estimate;
-use crate::math::{abs, clamp, max, min, sin_cos, sqrt, wrap_angle};
+use crate::math::{abs, clamp, max, min, sqrt, wrap_angle};
 use crate::params::{ParamId, Params};
 use crate::types::{Drive, Fault, Range, Side, SonarId, TICK_S};
 use crate::unrest::Unrest;
@@ -162,10 +162,10 @@ impl WallFollow {
                 return Err(Fault::WallLost);
             };
             if started {
-                state.wall.take(&view, self.beam_rad, range_m);
+                state.wall.take(view, self.beam_rad, range_m);
             } else {
                 let parallel_rad = sign(side) * FRAC_PI_2;
-                state.wall.start(&view, range_m, parallel_rad, ASKEW_RAD);
+                state.wall.start(view, range_m, parallel_rad, ASKEW_RAD);
                 started = true;
             }
         }
@@ -175,7 +175,7 @@ impl WallFollow {
     /// Distance of the measuring point from the wall [m] and the angle towards the wall [rad].
     fn distance_and_angle(&self, side: Side, wall: &Wall) -> (f32, f32) {
         let (x_m, y_m) = self.sonars.point_m(side);
-        let (sin, cos) = sin_cos(wall.bearing_rad);
+        let (sin, cos) = wall.facing;
         let angle_rad = wrap_angle(FRAC_PI_2 - sign(side) * wall.bearing_rad);
         (wall.distance_m - x_m * cos - y_m * sin, angle_rad)
     }
