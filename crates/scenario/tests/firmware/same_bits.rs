@@ -67,7 +67,7 @@ fn compare(seed: u64) {
         "seed {seed}: {TICKS} ticks, {driven} of them driven, most cycles of a tick by mode {worst:?} at {at:?} late {late:?}"
     );
     assert!(
-        driven > TICKS / 5 && told.len() > 50_000,
+        driven > TICKS / 6 && told.len() > 50_000,
         "{driven} {}",
         told.len()
     );
