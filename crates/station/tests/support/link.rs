@@ -74,7 +74,7 @@ fn telemetry(number: u64) -> Telemetry {
         state: (number % 16) as u8,
         ranges: [AgedRange {
             range: Range::Valid(0.2 + spread(17).abs() / 10.0),
-            age_s: 0.0,
+            age_ticks: 0,
         }; 3],
         ..Telemetry::default()
     }
