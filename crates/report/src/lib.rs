@@ -21,6 +21,7 @@ mod respond;
 mod signals;
 mod summary;
 pub mod text;
+mod told;
 
 pub use chapters::{EXPERIMENTS, Experiment};
 pub use data::Data;

@@ -1,11 +1,14 @@
 //! What figures show of a run: what the station heard of the robot, else what was truly the case, over the time since the arming.
 
 use crate::plot::Points;
+use crate::told;
 use rumbo_control::Range;
+use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::run::RunResult;
 use rumbo_scenario::trace::{Heard, Sample, Trace};
+use rumbo_wire::text::Row;
 use rumbo_wire::{Command, EventKind, FromRobot, Telemetry};
 use std::f64::consts::{PI, TAU};
 
@@ -79,39 +82,75 @@ impl Outcome {
             .collect()
     }
 
-    /// A sonar's range as the robot filtered it [cm]; a gap where there is none.
-    pub(crate) fn range_cm(&self, sonar: Place) -> Points {
-        if !self.tells() {
-            return self.truth(|sample| CM * sample.range_m[sonar as usize]);
+    /// What the robot told in frames, else in rows of text, else what is true, if that is asked for.
+    fn best(
+        &self,
+        frames: impl Fn(&Telemetry) -> f64,
+        text: impl Fn(&Row) -> Option<f64>,
+        truth: Option<&dyn Fn(&Sample) -> f64>,
+    ) -> Points {
+        if self.tells() {
+            return self.told(frames);
         }
-        self.told(|told| match told.ranges[sonar as usize].range {
-            Range::Valid(range_m) => CM * f64::from(range_m),
-            Range::Clear | Range::Faulty => f64::NAN,
-        })
+        let points = self.text(text);
+        match truth {
+            Some(truth) if points.is_empty() => self.truth(truth),
+            _ => points,
+        }
+    }
+
+    /// What the robot told in rows of the original's text.
+    fn text(&self, of: impl Fn(&Row) -> Option<f64>) -> Points {
+        let armed_s = self.armed_s();
+        let rows = told::rows(&self.trace().link);
+        rows.iter()
+            .filter_map(|(t_s, row)| Some((t_s - armed_s, of(row)?)))
+            .collect()
+    }
+
+    /// Whether it told anything that this report reads.
+    pub(crate) fn is_silent(&self) -> bool {
+        !self.tells() && told::rows(&self.trace().link).is_empty()
+    }
+
+    /// A sonar's range as the robot has it [cm]; a gap where there is none.
+    pub(crate) fn range_cm(&self, sonar: Place) -> Points {
+        self.best(
+            |told| match told.ranges[sonar as usize].range {
+                Range::Valid(range_m) => CM * f64::from(range_m),
+                Range::Clear | Range::Faulty => f64::NAN,
+            },
+            |row| told::range_cm(row, sonar),
+            Some(&|sample| CM * sample.range_m[sonar as usize]),
+        )
     }
 
     /// A wheel's measured speed [rpm].
     pub(crate) fn speed_rpm(&self, wheel: Place) -> Points {
-        if !self.tells() {
-            return self.truth(|sample| RPM * sample.wheel_rad_s[wheel as usize]);
+        if self.tells() {
+            // Two samples in a frame, the first 20 ms older.
+            let both = self.telemetry().flat_map(|(t_s, told)| {
+                let [before, now] = told.wheel_rad_s;
+                [(t_s - 0.02, before), (t_s, now)]
+            });
+            return both
+                .map(|(t_s, wheels)| (t_s, RPM * f64::from(wheel.of(wheels))))
+                .collect();
         }
-        // Two samples in a frame, the first 20 ms older.
-        let both = self.telemetry().flat_map(|(t_s, told)| {
-            [
-                (t_s - 0.02, told.wheel_rad_s[0]),
-                (t_s, told.wheel_rad_s[1]),
-            ]
-        });
-        both.map(|(t_s, wheels)| (t_s, RPM * f64::from(side(wheel, wheels.left, wheels.right))))
-            .collect()
+        self.best(
+            |_| f64::NAN,
+            |row| told::speed_rpm(row, wheel),
+            Some(&|sample| RPM * sample.wheel_rad_s[wheel as usize]),
+        )
     }
 
     /// What a wheel's speed loop was asked for [rpm].
     pub(crate) fn speed_reference_rpm(&self, wheel: Place) -> Points {
-        self.told(|told| {
-            let wheels = told.wheel_ref_rad_s;
-            RPM * f64::from(side(wheel, wheels.left, wheels.right))
-        })
+        self.best(
+            |told| RPM * f64::from(wheel.of(told.wheel_ref_rad_s)),
+            |row| told::reference_rpm(row, wheel),
+            None,
+        )
     }
 
     /// PWM at a wheel's bridge, of 255.
@@ -122,24 +161,31 @@ impl Outcome {
     /// The pose as the robot estimates it: x [m], y [m], heading within +-180 [deg]; the true one, seen from the start, where it tells
     /// none.
     pub(crate) fn pose(&self) -> [Points; 3] {
-        if !self.tells() {
-            let start = self.setup.scenario.start;
-            let (sin, cos) = start.heading_rad.sin_cos();
-            return [
-                self.truth(|sample| {
-                    cos * (sample.x_m - start.x_m) + sin * (sample.y_m - start.y_m)
-                }),
-                self.truth(|sample| {
-                    cos * (sample.y_m - start.y_m) - sin * (sample.x_m - start.x_m)
-                }),
-                unwrapped(self.truth(|sample| DEG * wrap(sample.heading_rad - start.heading_rad))),
-            ];
-        }
-        [
-            self.told(|told| f64::from(told.pose.x_m)),
-            self.told(|told| f64::from(told.pose.y_m)),
-            unwrapped(self.told(|told| DEG * f64::from(told.pose.heading_rad))),
-        ]
+        let start = self.setup.scenario.start;
+        let (sin, cos) = start.heading_rad.sin_cos();
+        let seen = |sample: &Sample| {
+            let (x, y) = (sample.x_m - start.x_m, sample.y_m - start.y_m);
+            [
+                cos * x + sin * y,
+                cos * y - sin * x,
+                DEG * wrap(sample.heading_rad - start.heading_rad),
+            ]
+        };
+        let [x, y, heading] = [0, 1, 2].map(|index| {
+            self.best(
+                |told| {
+                    let pose = told.pose;
+                    [
+                        f64::from(pose.x_m),
+                        f64::from(pose.y_m),
+                        DEG * f64::from(pose.heading_rad),
+                    ][index]
+                },
+                |row| Some(told::pose(row)?[index]),
+                Some(&|sample| seen(sample)[index]),
+            )
+        });
+        [x, y, unwrapped(heading)]
     }
 
     /// The heading that the mode wants [deg].
@@ -156,6 +202,9 @@ impl Outcome {
                 _ => None,
             });
         let mut points: Points = heard.collect();
+        if !self.tells() {
+            points = self.text(|row| Some(f64::from(told::mission(row)?.heading_reference_deg)));
+        }
         self.hold_last(&mut points);
         points
     }
@@ -180,13 +229,20 @@ impl Outcome {
                 .map(|(t_s, goal)| (t_s, f64::from(goal.right)))
                 .collect(),
         ];
+        if !self.tells() {
+            goals = [
+                self.text(|row| Some(f64::from(told::mission(row)?.goal_x_m))),
+                self.text(|row| Some(f64::from(told::mission(row)?.goal_y_m))),
+            ];
+        }
         goals.iter_mut().for_each(|points| self.hold_last(points));
         goals
     }
 
     /// The number of the mode's state.
     pub(crate) fn states(&self) -> Points {
-        let mut points = self.told(|told| f64::from(told.state));
+        let text = |row: &Row| Some(f64::from(told::mission(row)?.state));
+        let mut points = self.best(|told| f64::from(told.state), text, None);
         self.hold_last(&mut points);
         points
     }
@@ -232,12 +288,14 @@ impl Outcome {
             .unwrap_or(f64::INFINITY);
         let start = self.setup.scenario.start;
         let (sin, cos) = start.heading_rad.sin_cos();
-        let pose = self
-            .telemetry()
-            .filter(|(t_s, _)| (0.0..end_s).contains(t_s))
-            .map(|(_, told)| told.pose);
-        pose.map(|pose| (f64::from(pose.x_m), f64::from(pose.y_m)))
-            .map(|(x, y)| (start.x_m + cos * x - sin * y, start.y_m + sin * x + cos * y))
+        if self.is_silent() {
+            return Points::new();
+        }
+        let [x, y, _] = self.pose();
+        x.iter()
+            .zip(&y)
+            .filter(|((t_s, _), _)| (0.0..end_s).contains(t_s))
+            .map(|((_, x), (_, y))| (start.x_m + cos * x - sin * y, start.y_m + sin * x + cos * y))
             .collect()
     }
 
@@ -272,8 +330,15 @@ impl Outcome {
     }
 }
 
-fn side(wheel: Place, left: f32, right: f32) -> f32 {
-    if wheel == Place::Left { left } else { right }
+impl Place {
+    /// A wheel's value of two.
+    pub(crate) fn of(self, wheels: Wheels<f32>) -> f32 {
+        if self == Self::Left {
+            wheels.left
+        } else {
+            wheels.right
+        }
+    }
 }
 
 fn wrap(angle_rad: f64) -> f64 {

@@ -5,6 +5,7 @@ use crate::data::Data;
 use crate::judge::{self, KEPT, MISSED};
 use crate::metric_names::shown;
 use crate::page::{Cell, Page, Tone};
+use crate::signals::Outcome;
 use crate::text::{Language, Text, escape, t};
 
 const STYLE: &str = include_str!("style.css");
@@ -76,8 +77,8 @@ const HOW_SIGNALS: Text = t(
      que se arma el robot.",
 );
 const HOW_SILENT: Text = t(
-    "The program under test sends no telemetry that this report reads: all curves are true ones.",
-    "El programa ensayado no envía telemetría que este informe pueda leer: todas las curvas son las reales.",
+    "In some experiments the program under test sends no telemetry that this report reads; there all curves are true ones.",
+    "En algunos experimentos el programa ensayado no envía telemetría que este informe pueda leer; en ellos todas las curvas son las reales.",
 );
 const HOW_COLOURS: Text = t(
     "Left is blue, right is orange, what is ahead or true is green; what was asked for is dashed. x points ahead, y to the left, headings \
@@ -142,7 +143,7 @@ fn front(data: &Data, language: Language, contents: &str) -> String {
         "<h2 class=\"on\">{}</h2>\n",
         escape(HOW.of(language))
     ));
-    if data.outcomes.values().any(|outcome| !outcome.tells()) {
+    if data.outcomes.values().any(Outcome::is_silent) {
         page.p(HOW_SILENT);
     }
     page.p(HOW_SIGNALS);

@@ -23,12 +23,9 @@ pub(super) fn map(language: Language) -> Map {
 /// The ideal way, the way by odometry, and the true one.
 pub(super) fn ways(language: Language, outcome: &Outcome, ideal: Points) -> Vec<Curve> {
     let mut curves = vec![Curve::new(IDEAL.of(language), Ink::Reference, ideal)];
-    if outcome.tells() {
-        curves.push(Curve::new(
-            BY_ODOMETRY.of(language),
-            Ink::First,
-            outcome.told_way(),
-        ));
+    let told = outcome.told_way();
+    if !told.is_empty() {
+        curves.push(Curve::new(BY_ODOMETRY.of(language), Ink::First, told));
     }
     curves.push(Curve::new(TRUE_WAY.of(language), Ink::Third, outcome.way()));
     curves

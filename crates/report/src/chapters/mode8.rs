@@ -304,7 +304,12 @@ fn lane_results(page: &mut Page, data: &Data) {
         page,
         until(page, outcome, "mode8-lane-pose", LANE_POSE, panels),
     );
-    let panel = panels::state_panel(language, outcome, &machines::STATES);
+    let names: &[Text] = if outcome.tells() {
+        &machines::STATES
+    } else {
+        &machines::ORIGINAL_LANE
+    };
+    let panel = panels::state_panel(language, outcome, names);
     parts::show(
         page,
         until(page, outcome, "mode8-lane-states", LANE_STATES, vec![panel]),

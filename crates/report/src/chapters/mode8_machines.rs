@@ -20,6 +20,10 @@ pub(super) const STATES: [Text; 13] = [
     t("straight on", "avance recto"),
 ];
 
+/// The states of the original program in a lane, which it counts anew.
+pub(super) const ORIGINAL_LANE: [Text; 5] =
+    [STATES[12], STATES[4], STATES[5], STATES[6], STATES[7]];
+
 /// A goal around obstacles.
 pub(super) const GOAL: Machine = Machine {
     size: (720.0, 410.0),

@@ -121,10 +121,8 @@ fn write(page: &mut Page, data: &Data) {
 }
 
 fn off_path_cm(outcome: &Outcome, route: &Points) -> Points {
-    let times = outcome
-        .telemetry()
-        .map(|(t_s, _)| t_s)
-        .filter(|t_s| *t_s >= 0.0);
+    let [x, ..] = outcome.pose();
+    let times = x.iter().map(|(t_s, _)| *t_s).filter(|t_s| *t_s >= 0.0);
     times
         .zip(outcome.told_way())
         .map(|(t_s, place)| (t_s, CM * maps::off_route(route, place)))

@@ -7,7 +7,7 @@ mod map;
 #[cfg(test)]
 mod tests;
 
-use crate::text::{Language, escape, put};
+use crate::text::{Language, Text, escape, put, t};
 pub(crate) use map::{Map, Shape};
 
 /// Points of a curve; what is not finite is a gap.
@@ -18,6 +18,8 @@ pub(crate) const WIDTH: f64 = 680.0;
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 14.0;
 const LEGEND_ROW: f64 = 19.0;
+/// What a panel without a value says: nothing was in reach, or the program does not tell it.
+const NO_VALUE: Text = t("no value in this run", "sin valores en esta ejecución");
 /// Width of a letter of a legend, about [px].
 const LETTER: f64 = 6.7;
 
@@ -291,6 +293,17 @@ impl Plot {
             let last = index + 1 == self.panels.len();
             frame.axes(&mut body, language, &panel.names, last);
             frame.inside(&mut body, |svg| frame.curves(svg, &panel.curves));
+            let finite = |curve: &Curve| curve.points.iter().any(|point| point.1.is_finite());
+            if !panel.curves.iter().any(finite) {
+                let (x, y) = (left + 0.5 * frame.width, y + 0.5 * frame.height);
+                put(
+                    &mut body,
+                    format_args!(
+                        "<text class=\"m\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>",
+                        NO_VALUE.of(language)
+                    ),
+                );
+            }
             put(
                 &mut body,
                 format_args!(

@@ -1,0 +1,100 @@
+//! What a program tells in the original's text protocol: rows of telemetry, found in the raw bytes of the link.
+
+use crate::signals::Place;
+use rumbo_scenario::trace::Burst;
+use rumbo_wire::text::{MissionRow, Row};
+
+/// The rows in what came from the robot, with the time at which each had arrived [s].
+pub(crate) fn rows(link: &[Burst]) -> Vec<(f64, Row)> {
+    let (mut rows, mut line) = (Vec::new(), Vec::new());
+    for burst in link.iter().filter(|burst| !burst.to_robot) {
+        for byte in &burst.bytes {
+            if *byte != b'\n' {
+                line.push(*byte);
+                continue;
+            }
+            let text = std::mem::take(&mut line);
+            if let Ok(Ok(row)) = std::str::from_utf8(&text).map(|text| Row::parse(text.trim())) {
+                rows.push((burst.t_us as f64 * 1e-6, row));
+            }
+        }
+    }
+    rows
+}
+
+/// A sonar's range [cm]. A robot with one sonar tells it twice.
+pub(crate) fn range_cm(row: &Row, sonar: Place) -> Option<f64> {
+    let range_cm = match (row, sonar) {
+        (Row::Distance(row), Place::Left | Place::Front) => row.left_cm,
+        (Row::Distance(row), Place::Right) => row.right_cm,
+        (Row::Mission(row), Place::Left) => row.left_cm,
+        (Row::Mission(row), Place::Right) => row.right_cm,
+        (Row::Mission(row), Place::Front) => row.front_cm,
+        _ => return None,
+    };
+    Some(f64::from(range_cm))
+}
+
+/// A wheel's speed [rpm].
+pub(crate) fn speed_rpm(row: &Row, wheel: Place) -> Option<f64> {
+    let wheels = match row {
+        Row::Speed(row) => row.wheel_rpm,
+        Row::Waypoints(row) => row.wheel_rpm,
+        Row::Distance(_) | Row::Mission(_) => return None,
+    };
+    Some(f64::from(wheel.of(wheels)))
+}
+
+/// What a wheel was asked for [rpm].
+pub(crate) fn reference_rpm(row: &Row, wheel: Place) -> Option<f64> {
+    let wheels = match row {
+        Row::Speed(row) => return Some(f64::from(row.reference_rpm)),
+        Row::Waypoints(row) => row.reference_rpm,
+        Row::Mission(row) => row.reference_rpm,
+        Row::Distance(_) => return None,
+    };
+    Some(f64::from(wheel.of(wheels)))
+}
+
+/// x [m], y [m] and heading [deg].
+pub(crate) fn pose(row: &Row) -> Option<[f64; 3]> {
+    let pose = match row {
+        Row::Waypoints(row) => [row.x_m, row.y_m, row.heading_deg],
+        Row::Mission(row) => [row.x_m, row.y_m, row.heading_deg],
+        Row::Distance(_) | Row::Speed(_) => return None,
+    };
+    Some(pose.map(f64::from))
+}
+
+/// A row of mode 8.
+pub(crate) fn mission(row: &Row) -> Option<&MissionRow> {
+    match row {
+        Row::Mission(row) => Some(row),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_found_in_bytes_that_come_in_pieces() {
+        let burst = |t_us, to_robot, text: &str| Burst {
+            t_us,
+            to_robot,
+            bytes: text.as_bytes().to_vec(),
+        };
+        let link = [
+            burst(1_000_000, false, "hello\r\n60,10"),
+            burst(1_100_000, true, "ON\n"),
+            burst(1_200_000, false, "7.5,107.5,30,1,115,115\r\n"),
+        ];
+        let rows = rows(&link);
+        assert_eq!(rows.len(), 1);
+        assert_eq!(
+            (rows[0].0, range_cm(&rows[0].1, Place::Front)),
+            (1.2, Some(107.5))
+        );
+    }
+}
