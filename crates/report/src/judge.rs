@@ -161,12 +161,11 @@ fn rows(language: Language, outcome: &Outcome) -> Vec<Vec<Cell>> {
 /// What the robot or the program said besides missed limits.
 fn complaints(page: &mut Page, outcome: &Outcome) {
     let is_limit = |line: &str| {
-        outcome
-            .setup
-            .scenario
-            .limits
-            .keys()
-            .any(|key| line.starts_with(&format!("{key} = ")))
+        let of = |key: &String| {
+            line.strip_prefix(key.as_str())
+                .is_some_and(|rest| rest.starts_with([' ', ':']))
+        };
+        outcome.setup.scenario.limits.keys().any(of)
     };
     for line in outcome
         .result
