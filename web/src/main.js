@@ -47,7 +47,15 @@ function send(order) {
   if (!link.send(order)) events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text: t('{}: not sent, there is no connection', order.type) }]);
 }
 
+/** When what is drawn next was heard; and how long things took from there to the frame after, while somebody measures. */
+const ages = { heard_ms: 0, session_ms: 0, drawn: false, measured: /** @type {number[] | null} */ (null) };
+
 const redraw = onFrame(() => {
+  if (ages.measured && !ages.drawn) {
+    const { heard_ms } = ages;
+    ages.drawn = true;
+    requestAnimationFrame(() => ages.measured?.push(performance.timeOrigin + performance.now() - heard_ms));
+  }
   plots.draw();
   map.draw();
   stateLine.draw();
@@ -178,6 +186,7 @@ function receive(message) {
       break;
     case 'samples':
       store.setRun(message.run);
+      Object.assign(ages, { heard_ms: message.heard[0], session_ms: message.heard[1], drawn: false });
       for (const row of message.rows) store.push(row);
       if (store.latest?.ghost) document.body.classList.add('haunted');
       redraw();
@@ -202,6 +211,9 @@ Object.assign(window, {
     onMap: (at) => map.toCanvas(at),
     /** The plots and what is seen of them. */
     plots: () => ({ layout: plots.layout, range_s: plots.range_s, mark_s: plots.mark_s, following: plots.following }),
+    /** For measurements: times from hearing to the frame after drawing [ms], the clocks of page and session, a frame at once. */
+    ages,
+    draw: () => plots.draw(),
     /** Texts shown that have no translation. */
     untranslated: () => [...untranslated],
   },

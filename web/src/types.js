@@ -83,7 +83,7 @@
  *   | {type: 'scene', run: number, scene: Scene | null}
  *   | {type: 'parameters', parameters: Parameter[]}
  *   | {type: 'state', state: State}
- *   | {type: 'samples', run: number, rows: Cell[][]}
+ *   | {type: 'samples', run: number, heard: [number, number], rows: Cell[][]}
  *   | {type: 'events', events: LoggedEvent[]}
  *   | {type: 'bytes', bytes: LinkBytes[]}
  *   | {type: 'consoles', run: number, said: ConsoleText[]}

@@ -209,6 +209,7 @@ impl<T: PartialEq> Versioned<T> {
 #[derive(Debug)]
 struct Contents {
     run: u32,
+    heard: Heard,
     samples: Ring<Row>,
     events: Ring<LoggedEvent>,
     consoles: Ring<ConsoleText>,
@@ -217,6 +218,9 @@ struct Contents {
     parameters: Versioned<Vec<ParameterState>>,
     state: Versioned<State>,
 }
+
+/// When the newest samples were put here: the time of day \[ms since 1970\], and the target's \[ms\]. Says how old a picture is.
+pub(crate) type Heard = (f64, i64);
 
 /// What is to be shown.
 #[derive(Debug)]
@@ -249,6 +253,7 @@ pub(crate) struct News {
     pub(crate) parameters: Option<Vec<ParameterState>>,
     pub(crate) state: Option<State>,
     pub(crate) samples: Vec<Row>,
+    pub(crate) heard: Heard,
     pub(crate) events: Vec<LoggedEvent>,
     pub(crate) consoles: Vec<ConsoleText>,
     pub(crate) bytes: Vec<Burst>,
@@ -261,6 +266,7 @@ impl Board {
         Self {
             contents: Mutex::new(Contents {
                 run: 1,
+                heard: (0.0, 0),
                 samples: Ring::new(SAMPLES_KEPT),
                 events: Ring::new(EVENTS_KEPT),
                 consoles: Ring::new(CONSOLES_KEPT),
@@ -328,6 +334,13 @@ impl Board {
         self.changed.send_replace(());
     }
 
+    /// The samples that are put on the board next were heard now.
+    pub(crate) fn heard(&self, now_ms: i64) {
+        let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+        let wall_ms = since.map_or(0.0, |since| since.as_secs_f64() * 1e3);
+        self.lock().heard = (wall_ms, now_ms);
+    }
+
     pub(crate) fn push_event(&self, event: LoggedEvent) {
         self.take(Entry::Event(event.clone()));
         self.lock().events.push(event);
@@ -384,6 +397,7 @@ impl Board {
             parameters: take_new(&contents.parameters, &mut cursor.parameters),
             state: take_new(&contents.state, &mut cursor.state),
             samples,
+            heard: contents.heard,
             events,
             consoles,
             bytes,

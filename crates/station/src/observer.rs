@@ -157,7 +157,10 @@ impl Observer {
     }
 
     /// Puts the samples on the board; whether the state is to follow at once.
-    pub(crate) fn publish(&mut self) -> bool {
+    pub(crate) fn publish(&mut self, now_ms: i64) -> bool {
+        if !self.samples.is_empty() {
+            self.board.heard(now_ms);
+        }
         self.board.push_samples(&self.samples);
         self.samples.clear();
         std::mem::take(&mut self.urgent)

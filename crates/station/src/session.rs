@@ -438,7 +438,7 @@ impl Session {
             self.note(board::Level::Warning, trouble);
         }
         self.watch_link();
-        let urgent = self.observer.publish();
+        let urgent = self.observer.publish(now_ms);
         let now = Instant::now();
         if urgent
             || self

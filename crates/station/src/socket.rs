@@ -5,7 +5,7 @@
 //!
 //! STOP is taken from every page, anything else from the page that has control ([`Lease`]).
 
-use crate::board::{Board, ConsoleText, Cursor, Level, LoggedEvent, News, State};
+use crate::board::{Board, ConsoleText, Cursor, Heard, Level, LoggedEvent, News, State};
 use crate::catalogue::{self, ModeEntry, ParameterState};
 use crate::guard::Role;
 use crate::lease::{Lease, Place, Seat};
@@ -64,7 +64,11 @@ enum ToPage<'a> {
     /// What changes slowly.
     State { state: &'a State },
     /// Rows of signals; what the page has of another run is over.
-    Samples { run: u32, rows: Vec<Vec<Cell>> },
+    Samples {
+        run: u32,
+        heard: Heard,
+        rows: Vec<Vec<Cell>>,
+    },
     /// What happened.
     Events { events: &'a [LoggedEvent] },
     /// What the USARTs of an emulated chip said.
@@ -293,6 +297,7 @@ async fn send_news(out: &mut (impl Sink<Message> + Unpin), news: News) -> Option
             out,
             &ToPage::Samples {
                 run,
+                heard: news.heard,
                 rows: chunk.iter().map(Row::cells).collect(),
             },
         )

@@ -51,7 +51,7 @@ const PARTS: [Part; 4] = [
     },
     Part {
         name: "page",
-        what: "the dashboard in Chromium: from start to live plots",
+        what: "the dashboard in Chromium: from start to live plots, age of what is drawn, STOP, frames per second",
         measure: page::measure,
     },
 ];

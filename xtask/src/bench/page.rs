@@ -1,4 +1,4 @@
-//! The dashboard in Chromium: the time from starting `rumbo` to plotted telemetry, and the lab's CPU meanwhile.
+//! The dashboard in Chromium: from starting `rumbo` to plotted telemetry, the lab's CPU meanwhile, the age of what is drawn, STOP, frames.
 
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,12 @@ use crate::test::installed_chromium;
 /// How long CPU time is watched.
 const WATCH: Duration = Duration::from_secs(10);
 
-/// Drives the browser: waits for a line with an address, opens it, and answers `live` when signals are plotted.
+/// The link's own time for STOP: 9 bytes at 9600 baud, and 8 ms latency of the module.
+const LINK_MS: u32 = 17;
+/// The browser is gone.
+const ENDED: &str = "the browser ended; are the packages of web/ installed (`npm ci`)?";
+
+/// Drives the browser: for each line that is asked of it, a word and an address, it answers one.
 const SCRIPT: &str = include_str!("page.mjs");
 
 /// Time to live plots, and CPU with the page open.
@@ -29,9 +34,16 @@ pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
     start.arg("lab");
     let begin = Instant::now();
     let lab = Lab::start(start)?;
-    browser.open(lab.url())?;
+    browser.expect_of(&format!("open {}", lab.url()), "live")?;
     let live = begin.elapsed();
     let watched = process::cpu_percent(lab.pid(), WATCH)?;
+    let age_ms = browser.ask("age")?;
+    let stop_ms = browser.ask("stop")?;
+    drop(lab);
+    let mut start = project.command(project.release_binary_path());
+    start.args(["lab", "--scenario", "mode8-lane", "--speed", "100"]);
+    let fast = Lab::start(start)?;
+    let frames = browser.ask(&format!("frames {}", fast.url()))?;
     Ok(vec![
         Figure::new(
             "page: start of rumbo to live plots in Chromium",
@@ -43,6 +55,17 @@ pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
             format!("{watched:.1} % of a core"),
             "10 %",
         ),
+        Figure::new(
+            "page: last byte of a frame to the frame after it was drawn, p95",
+            format!("{age_ms} ms"),
+            "50 ms",
+        ),
+        Figure::new(
+            format!("page: STOP to PWM zero, p95, the link's {LINK_MS} ms included"),
+            format!("{stop_ms} ms"),
+            "30 ms + the link's",
+        ),
+        Figure::new("page: frames/s, 8 plots x 4 signals x 10 min", frames, "30"),
     ])
 }
 
@@ -67,20 +90,30 @@ impl Browser {
         Ok(browser)
     }
 
-    fn open(&mut self, url: &str) -> Result<(), String> {
+    /// What the script answers.
+    fn ask(&mut self, what: &str) -> Result<String, String> {
         use std::io::Write;
         let stdin = self.child.stdin.as_mut().ok_or("node has no input")?;
-        writeln!(stdin, "{url}").map_err(|error| format!("node: {error}"))?;
-        self.expect("live")
+        writeln!(stdin, "{what}").map_err(|error| format!("node: {error}"))?;
+        match self.answers.next() {
+            Some(Ok(line)) if !line.starts_with("failed") => Ok(line),
+            Some(Ok(line)) => Err(format!("the browser says `{line}`")),
+            _ => Err(ENDED.to_owned()),
+        }
+    }
+
+    fn expect_of(&mut self, what: &str, word: &str) -> Result<(), String> {
+        match self.ask(what)? {
+            line if line == word => Ok(()),
+            line => Err(format!("the browser says `{line}`")),
+        }
     }
 
     fn expect(&mut self, word: &str) -> Result<(), String> {
         match self.answers.next() {
             Some(Ok(line)) if line == word => Ok(()),
             Some(Ok(line)) => Err(format!("the browser says `{line}`")),
-            _ => {
-                Err("the browser ended; are the packages of web/ installed (`npm ci`)?".to_owned())
-            }
+            _ => Err(ENDED.to_owned()),
         }
     }
 }

@@ -70,7 +70,7 @@ pub fn record_run(path: &Path, manifest: &Manifest, run: Run<'_>) -> Result<(), 
         }
         teller.observer.truth(to_ms(*t_us), *truth);
         teller.battery_v = Some(truth.battery_v);
-        teller.observer.publish();
+        teller.observer.publish(0);
         if *t_us >= state_due_us {
             teller.state(*t_us);
             state_due_us = *t_us + STATE_PERIOD_US;
