@@ -14,6 +14,9 @@ pub struct Chip {
     observers: Observers,
 }
 
+/// How closely the end of a boot loader is looked for [cycles].
+const BOOT_SLICE: u64 = 1_000;
+
 impl Chip {
     /// A chip after power-on, with the fuses of a Mega. Without anything in the boot section it starts at 0, where a
     /// boot loader would go on.
@@ -56,6 +59,19 @@ impl Chip {
             let rescaled = self.devices.take_rescaled();
             if !rescaled || !matches!(stopped, Stopped::Reached | Stopped::Output) {
                 return stopped;
+            }
+        }
+    }
+
+    /// Runs a boot loader, if the program starts with one, until it has jumped to the application or `cycles` of the crystal have
+    /// passed. A Mega's waits for somebody who programs it, for most of a second.
+    pub fn pass_boot_loader(&mut self, cycles: u64) {
+        let end = self.cycle().saturating_add(cycles);
+        let boot = Fuses::default().boot_start();
+        while self.cpu.program_counter() >= boot && self.cycle() < end {
+            let stopped = self.run_until(self.cycle() + BOOT_SLICE);
+            if matches!(stopped, Stopped::Ended(_) | Stopped::Breakpoint) {
+                return;
             }
         }
     }

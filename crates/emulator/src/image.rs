@@ -2,6 +2,7 @@
 
 mod elf;
 mod error;
+mod foreign;
 mod hex;
 
 pub use error::ImageError;

@@ -175,7 +175,7 @@ impl Arrival {
                 "after the instruction at {}: the program goes on past its end, or into its constants",
                 image.place(*at)
             ),
-            Arrival::Start => "at the start: the image has nothing there".into(),
+            Arrival::Start => "where a program begins: the image has nothing there".into(),
             Arrival::Unknown => {
                 "by a jump through a wrong pointer, or a return address overwritten".into()
             }

@@ -191,3 +191,35 @@ proptest! {
         prop_assert_eq!(chip.take_outputs(), again.take_outputs());
     }
 }
+
+#[test]
+fn a_hex_file_for_an_uno_is_known_by_where_its_stack_begins() {
+    // RJMP over a vector, EOR r1, OUT SREG, LDI r28 and r29, OUT SPH and SPL, a loop.
+    let hex = |end: u16| {
+        let [low, high] = end.to_le_bytes();
+        let words = [
+            0xC001,
+            0,
+            0x2411,
+            0xBE1F,
+            ldi(28, low),
+            ldi(29, high),
+            out(0x3E, 29),
+            out(0x3D, 28),
+            0xCFFF,
+        ];
+        let value: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let records = [
+            ihex::Record::Data { offset: 0, value },
+            ihex::Record::EndOfFile,
+        ];
+        ihex::create_object_file_representation(&records).unwrap()
+    };
+    assert!(Image::parse(hex(0x21FF).as_bytes()).is_ok());
+    let error = Image::parse(hex(0x08FF).as_bytes()).unwrap_err();
+    let line = error.to_string();
+    assert!(
+        line.contains("0x08ff") && line.contains("Arduino Uno"),
+        "{line}"
+    );
+}

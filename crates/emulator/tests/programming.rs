@@ -159,3 +159,24 @@ fn fuses_say_where_a_reset_leads() {
     assert_eq!(with_boot(&[NOP], application).cpu().program_counter(), 0);
     assert_eq!(chip_of(&[NOP]).cpu().program_counter(), 0, "nothing there");
 }
+
+#[test]
+fn a_boot_loader_is_passed_when_it_has_jumped_to_the_application() {
+    // 65,536 rounds of SBIW and BRNE, 4 cycles each, then JMP 0; the application is an endless loop of 0x1234.
+    let words = [ldi(24, 0), ldi(25, 0), 0x9701, 0xF7F1, 0x940C, 0];
+    let mut chip = with_boot(&words, Fuses::default());
+    let early = {
+        let mut chip = chip.clone();
+        chip.pass_boot_loader(100_000);
+        chip
+    };
+    assert!(early.cpu().program_counter() >= Fuses::default().boot_start());
+    chip.pass_boot_loader(u64::MAX);
+    assert!(chip.cpu().program_counter() < 0x1000);
+    let cycle = chip.cycle();
+    assert!((262_144..262_144 + 1_100).contains(&cycle), "{cycle}");
+    // Without one there is nothing to wait for.
+    let mut bare = chip_of(&[0xCFFF]);
+    bare.pass_boot_loader(u64::MAX);
+    assert_eq!(bare.cycle(), 0);
+}

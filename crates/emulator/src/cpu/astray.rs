@@ -22,13 +22,13 @@ impl Cpu {
 
     /// How the program counter got to `program_counter`.
     pub(super) fn arrival(&self, program_counter: u32) -> Arrival {
+        if program_counter == 0 {
+            return Arrival::Start;
+        }
         if let Some((target, arrival)) = self.astray
             && target == program_counter
         {
             return arrival;
-        }
-        if program_counter == 0 {
-            return Arrival::Start;
         }
         let before = self.instruction_before(program_counter);
         if goes_on(self.original(before).code) {

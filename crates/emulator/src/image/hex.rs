@@ -1,6 +1,6 @@
 //! Intel HEX: lines of bytes with their addresses and checksums.
 
-use super::{Image, ImageError};
+use super::{Image, ImageError, foreign};
 use ihex::Record;
 
 /// The text, if the first mark in it is that of a HEX record.
@@ -35,9 +35,9 @@ pub(super) fn read(text: &str) -> Result<Image, ImageError> {
             Record::StartSegmentAddress { .. } | Record::StartLinearAddress(_) => {}
         }
     }
-    if ended {
-        Ok(image)
-    } else {
-        Err(ImageError::Truncated)
+    if !ended {
+        return Err(ImageError::Truncated);
     }
+    foreign::refuse(&image)?;
+    Ok(image)
 }

@@ -20,6 +20,8 @@ const RECEIVERS: [u8; 4] = [0, 19, 17, 15];
 const TRANSMITTERS: [u8; 4] = [1, 18, 16, 14];
 /// Our program says HELLO as soon as it runs; this long is waited for it [us].
 const BOOT_US: u64 = 600_000;
+/// A boot loader has handed over after this [cycles], or never will.
+pub(super) const LONGEST_BOOT: u64 = 5_000_000 * CYCLES_PER_US;
 /// Room for what a robot says at once.
 const LINE: usize = 128;
 
@@ -169,10 +171,12 @@ fn begin(image: &Image) -> (Language, [bool; 4]) {
     for pin in RECEIVERS.into_iter().filter_map(chip_pin) {
         chip.input(0, Input::Pin(pin, Some(true)));
     }
+    chip.pass_boot_loader(LONGEST_BOOT);
+    let start = chip.cycle();
     let mut decoders: [Decoder<LINE>; 4] = Default::default();
     // In slices, so that what is said is seen soon.
     for slice in 1..=10 {
-        let stopped = chip.run_until(slice * BOOT_US / 10 * CYCLES_PER_US);
+        let stopped = chip.run_until(start + slice * BOOT_US / 10 * CYCLES_PER_US);
         for output in chip.take_outputs() {
             let Event::Byte { usart, byte, .. } = output.event else {
                 continue;

@@ -133,7 +133,10 @@ impl Mega {
         for pin in mega.wires().receivers.into_iter().flatten() {
             mega.chip.input(0, Input::Pin(pin, Some(true)));
         }
-        mega.begin(0, encoders);
+        // A boot loader's wait is over before the run begins, as for somebody who switches the robot on and then goes to the laptop.
+        mega.chip.pass_boot_loader(firmware::LONGEST_BOOT);
+        mega.chip.take_outputs();
+        mega.begin(mega.chip.cycle(), encoders);
         mega
     }
 
