@@ -12,7 +12,7 @@ use std::process::{Command, Stdio};
 const BUILT: &str = "firmware/rumbo.hex";
 /// The Mega's boot loader speaks STK500v2 at this rate.
 const BOOT_BAUD: u32 = 115_200;
-/// What an ATmega2560 says it is (DS40002549, section 29.3).
+/// What an ATmega2560 says it is (2549Q, section 29.3).
 const SIGNATURE: [u8; 3] = [0x1E, 0x98, 0x01];
 /// How an ELF file begins.
 const ELF: &[u8] = b"\x7fELF";

@@ -1,4 +1,4 @@
-//! The analog-to-digital converter and the comparator of the whole chip, with exact cycles (DS40002549, sections 25 and 26).
+//! The analog-to-digital converter and the comparator of the whole chip, with exact cycles (2549Q, sections 25 and 26; ADCSRA on page 285, triggers on page 287).
 #![cfg(test)]
 
 mod common;

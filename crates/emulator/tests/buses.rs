@@ -1,4 +1,4 @@
-//! What else has registers only, and addresses without any (DS40002549, sections 9 and 33).
+//! What else has registers only, and addresses without any (2549Q, sections 9 and 33).
 #![cfg(test)]
 
 mod common;
@@ -7,7 +7,7 @@ use common::*;
 
 #[test]
 fn every_register_of_the_chip_is_one_and_nothing_else_is() {
-    // Reserved addresses of the data space (section 34).
+    // Reserved addresses of the data space (section 33, from page 399).
     let reserved = [
         0x49, 0x4F, 0x52, 0x56, 0x58, 0x59, 0x5A, 0x62, 0x63, 0x67, 0x76, 0x77, 0x83, 0x8E, 0x8F,
         0x93, 0x9E, 0x9F, 0xA3, 0xAE, 0xAF, 0xB5, 0xB7, 0xBE, 0xBF, 0xC3, 0xC7, 0xCB, 0xCF, 0xD3,

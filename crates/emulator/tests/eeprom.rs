@@ -1,4 +1,4 @@
-//! The EEPROM of the whole chip, with exact cycles (DS40002549, section 8).
+//! The EEPROM of the whole chip, with exact cycles (2549Q, section 8).
 #![cfg(test)]
 
 mod common;

@@ -1,4 +1,4 @@
-//! Boot section, SPM, fuses and signature (DS40002549, section 29).
+//! Boot section, SPM, fuses and signature (2549Q, section 29).
 #![cfg(test)]
 
 mod common;

@@ -1,4 +1,4 @@
-//! Sleep modes, power reduction and the clock's registers of the whole chip, with exact cycles (DS40002549, sections 10 and 11).
+//! Sleep modes, power reduction and the clock's registers of the whole chip, with exact cycles (2549Q, sections 10 and 11).
 #![cfg(test)]
 
 mod common;

@@ -1,4 +1,4 @@
-//! SPI with the edges on its pins, with exact cycles (DS40002549, section 21).
+//! SPI with the edges on its pins, with exact cycles (2549Q, section 21; SPCR on page 197).
 #![cfg(test)]
 
 mod common;

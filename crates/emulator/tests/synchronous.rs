@@ -1,4 +1,4 @@
-//! USARTs clocked by XCK, and as masters of SPI, with exact cycles of their edges (DS40002549, sections 22.3.4 and 23).
+//! USARTs clocked by XCK, and as masters of SPI, with exact cycles of their edges (2549Q, sections 22.3.4 and 23).
 #![cfg(test)]
 
 mod common;

@@ -1,4 +1,4 @@
-//! Timers of the whole chip, with exact cycles (DS40002549, sections 16, 17, 18 and 20).
+//! Timers of the whole chip, with exact cycles (2549Q, sections 16, 17, 18 and 20; registers of the 16-bit timers on pages 154 to 157).
 #![cfg(test)]
 
 mod common;

@@ -1,4 +1,4 @@
-//! The two-wire interface with the edges on its pins, with exact cycles (DS40002549, section 24).
+//! The two-wire interface with the edges on its pins, with exact cycles (2549Q, section 24).
 #![cfg(test)]
 
 mod common;

@@ -1,4 +1,4 @@
-//! USARTs of the whole chip, with exact cycles (DS40002549, section 22).
+//! USARTs of the whole chip, with exact cycles (2549Q, section 22; the start of page 206, formats of page 221).
 #![cfg(test)]
 
 mod common;

@@ -1,4 +1,4 @@
-//! The watchdog and resets of the whole chip, with exact cycles (DS40002549, section 12).
+//! The watchdog and resets of the whole chip, with exact cycles (2549Q, section 12).
 #![cfg(test)]
 
 mod common;

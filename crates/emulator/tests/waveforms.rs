@@ -1,4 +1,4 @@
-//! Every waveform mode of every timer on each of its pins, edge by edge (DS40002549, tables 16-2 to 16-8, 17-2 to 17-5 and 20-2 to 20-8).
+//! Every waveform mode of every timer on each of its pins, edge by edge (2549Q, tables 16-2 to 16-8, 17-2 to 17-5 and 20-2 to 20-8; the modes of the 16-bit timers on page 145).
 #![cfg(test)]
 
 mod common;

@@ -7,7 +7,7 @@
 //! catch up, enters an interrupt, or sleeps. An access to a peripheral may change when the next event is, so it sets
 //! the limit anew. Cost thus grows with what happens, not with what exists.
 //!
-//! Instruction timing: DS40002549 (ATmega640/1280/1281/2560/2561), section 33; interrupts take 5 cycles to enter, 5 more
+//! Instruction timing: 2549Q (ATmega640/1280/1281/2560/2561), section 34; interrupts take 5 cycles to enter, 5 more
 //! out of sleep, and the instruction after SEI or RETI always runs first (sections 7.7 and 7.8).
 
 mod astray;

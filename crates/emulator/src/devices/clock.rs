@@ -1,4 +1,4 @@
-//! The system clock: the crystal's over a divisor that CLKPR sets (DS40002549, section 10.11).
+//! The system clock: the crystal's over a divisor that CLKPR sets (2549Q, section 10.12).
 //!
 //! CPU and peripherals count cycles of the system clock. What has a clock of its own, and everything outside, counts the crystal's, here
 //! called time. Without a divisor, as on every Mega that is not told otherwise, both are the same.

@@ -1,4 +1,4 @@
-//! The EEPROM and its registers (DS40002549, sections 8.3 and 8.6).
+//! The EEPROM and its registers (2549Q, sections 8.3 and 9.2.1).
 //!
 //! A write is armed by EEMPE and begun by EEPE within four cycles. It takes its time while the program goes on; a byte read takes
 //! none, but the CPU stands for four cycles.

@@ -1,4 +1,4 @@
-//! The external interrupts INT0 to INT7 and the pin change interrupts PCINT0 to PCINT23 (DS40002549, section 15).
+//! The external interrupts INT0 to INT7 and the pin change interrupts PCINT0 to PCINT23 (2549Q, section 15).
 //!
 //! A flag is raised by its edge whether it is enabled or not, and stays until its routine is entered or a one is written to
 //! it. Low level is no flag: it requests as long as it lasts.

@@ -1,6 +1,6 @@
 //! Which interrupts are requested: a bit for each vector, kept by the peripherals whenever a flag or an enable changes.
 
-/// Numbers of the interrupt vectors (DS40002549, section 14.1). A lower number has priority.
+/// Numbers of the interrupt vectors (2549Q, section 14.1). A lower number has priority.
 pub(crate) mod vector {
     pub(crate) const INT0: u8 = 1;
     pub(crate) const PCINT0: u8 = 9;

@@ -1,4 +1,4 @@
-//! Which peripheral a register belongs to, by its address in the data space (DS40002549, section 34).
+//! Which peripheral a register belongs to, by its address in the data space (2549Q, section 33).
 
 /// The peripheral behind an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -50,7 +50,7 @@ pub const CLOCK_HZ: u64 = 16_000_000;
 
 /// The supply [V].
 const SUPPLY_V: f64 = 5.0;
-/// From a reset to the first instruction: 14 cycles and 65 ms, as the fuses of the Mega have it (DS40002549, table 10-4).
+/// From a reset to the first instruction: 14 cycles and 65 ms, as the fuses of the Mega have it (2549Q, table 10-4).
 const RESET_CYCLES: u64 = 14 + 65 * CLOCK_HZ / 1000;
 
 /// An access to a register that is not modelled; each address is told once.

@@ -1,7 +1,7 @@
 //! The ports A to L: direction, output, pull-up, toggling by writing PIN, overrides by timers.
 //!
 //! A level that changes in cycle c is read from cycle c + 2 on: the synchroniser holds it for one clock and a half at most
-//! (DS40002549, section 13.2.4: an OUT and the IN that reads it back need a NOP in between).
+//! (2549Q, section 13.2.4: an OUT and the IN that reads it back need a NOP in between).
 
 /// How many ports there are: A to H and J to L.
 pub const PORTS: usize = 11;

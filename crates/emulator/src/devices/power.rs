@@ -1,4 +1,4 @@
-//! Which peripherals have a clock: sleep modes and power reduction; the oscillator's registers (DS40002549, sections 10 and 11).
+//! Which peripherals have a clock: sleep modes and power reduction; the oscillator's registers (2549Q, sections 10 and 11).
 //!
 //! Where a clock stops, its peripheral stands as it is and goes on when the clock is back.
 

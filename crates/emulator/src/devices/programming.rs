@@ -1,4 +1,4 @@
-//! Self-programming: SPM, the page buffer, fuses and signature as a program reads them (DS40002549, section 29).
+//! Self-programming: SPM, the page buffer, fuses and signature as a program reads them (2549Q, section 29).
 //!
 //! SPM works from the boot section only, within four cycles after SPMCSR said what for. While a page outside of the last 8 KB is
 //! erased or written the program goes on, but cannot use that part of flash; for the others the CPU stands.

@@ -1,4 +1,4 @@
-//! The serial peripheral interface (DS40002549, section 21): master and slave, with the edges on its pins.
+//! The serial peripheral interface (2549Q, section 21): master and slave, with the edges on its pins.
 //!
 //! A transfer is sixteen steps of half a clock period, at each of which SCK has an edge. CPHA says which of the two in a bit takes
 //! the level of the data line, and which puts out the next bit; without CPHA the first bit is out before the first edge. As a

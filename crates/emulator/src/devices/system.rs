@@ -1,5 +1,5 @@
 //! Registers of the chip as a whole: sleep, reset causes, MCU control, the three that are a program's own, and those
-//! of what a Mega does not have, memory and debugger outside (DS40002549, sections 9, 11, 12, 13.4, 14.2 and 27).
+//! of what a Mega does not have, memory and debugger outside (2549Q, sections 9, 11, 12, 13.4, 14.2 and 27).
 
 use super::Cause;
 

@@ -1,4 +1,4 @@
-//! The two-wire interface as the master of a bus with pull-ups (DS40002549, section 24), with the edges on its pins.
+//! The two-wire interface as the master of a bus with pull-ups (2549Q, section 24), with the edges on its pins.
 //!
 //! Both lines are pulled down or let go; a line that nothing drives is high, as the pull-ups of the board have it. What another
 //! drives counts: an acknowledgement, bits read, a clock held low, arbitration lost. With nothing connected an address is

@@ -1,4 +1,4 @@
-//! The watchdog: a timer on its own 128 kHz oscillator that interrupts, resets, or does one after the other (DS40002549, section 12.4).
+//! The watchdog: a timer on its own 128 kHz oscillator that interrupts, resets, or does one after the other (2549Q, section 12.4).
 //!
 //! What it does and how long it waits changes only within four cycles after WDCE was written together with WDE; WDE and WDIE
 //! may be set at any time. After a reset by the watchdog WDRF keeps WDE set, with the shortest time, until a program clears WDRF.

@@ -38,7 +38,7 @@ const FLASH: Range<u32> = 0..FLASH_BYTES as u32;
 const DATA: Range<u32> = 0x80_0000..0x80_2200;
 const EEPROM: Range<u32> = 0x81_0000..0x81_0000 + EEPROM_BYTES as u32;
 const SIGNATURE: Range<u32> = 0x84_0000..0x84_0003;
-/// Of the ATmega2560 (DS40002549, section 29.3).
+/// Of the ATmega2560 (2549Q, section 29.3).
 const SIGNATURE_BYTES: [u8; 3] = [0x1E, 0x98, 0x01];
 /// "Bad address", as GDB's protocol numbers it.
 const EFAULT: u8 = 14;

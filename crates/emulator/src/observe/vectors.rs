@@ -1,4 +1,4 @@
-//! The names of the interrupts (DS40002549, table 14-1).
+//! The names of the interrupts (2549Q, table 14-1).
 
 /// How many there are, with the reset.
 pub const COUNT: usize = 57;

@@ -1,4 +1,4 @@
-//! Voltages at the analog inputs, and which of them a conversion is about (DS40002549, tables 26-3 and 26-4).
+//! Voltages at the analog inputs, and which of them a conversion is about (2549Q, tables 26-3 and 26-4).
 //!
 //! What the chip does to a pin itself counts too: an output has its level, a pull-up reaches the supply where nothing else is connected.
 

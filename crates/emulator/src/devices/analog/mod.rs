@@ -1,4 +1,4 @@
-//! The analog-to-digital converter and the analog comparator (DS40002549, sections 25 and 26).
+//! The analog-to-digital converter and the analog comparator (2549Q, sections 25 and 26).
 //!
 //! A conversion begins at an edge of the converter's clock, samples its input 1.5 of its cycles later and ends after 13; the
 //! first one after switching on takes 12 more. A trigger resets the prescaler, and its conversion takes 13.5.

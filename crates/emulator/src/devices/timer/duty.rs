@@ -1,4 +1,4 @@
-//! What a PWM output amounts to: the share of time for which it is high, and its period (DS40002549, sections 16.7, 17.9 and 20.7).
+//! What a PWM output amounts to: the share of time for which it is high, and its period (2549Q, sections 16.7, 17.9 and 20.7).
 
 use super::Clock;
 use super::wave::{Kind, Wave};

@@ -1,4 +1,4 @@
-//! Timers 0 to 5: clock, registers, pins. What the counter does is in [`wave`] (DS40002549, sections 16 to 20).
+//! Timers 0 to 5: clock, registers, pins. What the counter does is in [`wave`] (2549Q, sections 16 to 20).
 //!
 //! A timer is not stepped: it knows the cycle up to which it is reckoned, and catches up when it is looked at or when something is due
 //! that others notice, an enabled interrupt or an edge on a connected pin.

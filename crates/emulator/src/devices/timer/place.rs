@@ -1,4 +1,4 @@
-//! Where each timer's registers, vectors and pins are (DS40002549, sections 1, 14.1 and 33).
+//! Where each timer's registers, vectors and pins are (2549Q, sections 1, 14.1 and 33).
 
 use super::wave::{CAPTURE, CHANNELS, MATCH, OVERFLOW};
 use crate::devices::ports::Pin;

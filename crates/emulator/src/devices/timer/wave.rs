@@ -1,4 +1,4 @@
-//! The counter and its waveform modes: what happens at which tick (DS40002549, sections 16.7, 17.9 and 20.7).
+//! The counter and its waveform modes: what happens at which tick (2549Q, sections 16.7, 17.9 and 20.7).
 //!
 //! Everything happens at the tick that *leaves* a value: a compare match sets its flag and acts on its pin when the
 //! counter goes on from the compare value, an overflow when it goes on from its end. So a segment of counting is

@@ -1,4 +1,4 @@
-//! Synchronous modes and master of SPI: a bit goes with each period of the clock on XCK (DS40002549, sections 22.3.4 and 23).
+//! Synchronous modes and master of SPI: a bit goes with each period of the clock on XCK (2549Q, sections 22.3.4 and 23).
 //!
 //! The clock has two steps to a bit. At the first the transmitter puts out its bit, at the second the receiver takes one:
 //!

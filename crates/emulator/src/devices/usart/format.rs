@@ -1,4 +1,4 @@
-//! What a frame of a USART looks like: data bits, parity, stop bits (DS40002549, section 22.4).
+//! What a frame of a USART looks like: data bits, parity, stop bits (2549Q, section 22.4).
 
 /// The format as UCSRB and UCSRC set it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! USART 0 to 3: registers, flags, interrupts and pins (DS40002549, section 22).
+//! USART 0 to 3: registers, flags, interrupts and pins (2549Q, section 22).
 //!
 //! Bytes come in through [`line`] as levels of the RXD pin, which the [`receiver`] samples; the [`transmitter`] moves the TXD pin.
 //! Each has a next event, and the USART is woken at the earliest.

@@ -1,4 +1,4 @@
-//! Where each USART's registers, vectors and pins are (DS40002549, sections 1, 14.1 and 34).
+//! Where each USART's registers, vectors and pins are (2549Q, sections 1, 14.1 and 33).
 
 use crate::devices::ports::Pin;
 

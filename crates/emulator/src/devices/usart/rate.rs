@@ -1,4 +1,4 @@
-//! The clock of a USART: the baud rate generator and what it is divided by (DS40002549, section 22.3).
+//! The clock of a USART: the baud rate generator and what it is divided by (2549Q, section 22.3).
 //!
 //! The generator runs freely from the cycle in which UBRR was last written. The transmitter begins bits where 16 (8, 2) of
 //! its ticks have passed, the receiver samples at each of them.

@@ -1,5 +1,5 @@
 //! The receiver: samples of the line, the majority of three for each bit, and a buffer of two characters behind the shift
-//! register (DS40002549, section 22.7).
+//! register (2549Q, section 22.7).
 //!
 //! Samples are not events: between two edges of the line they are all alike, so they are taken together when an edge, the
 //! end of a frame or an access comes.

@@ -1,4 +1,4 @@
-//! The transmitter: a buffer of one character, and the shift register (DS40002549, section 22.6).
+//! The transmitter: a buffer of one character, and the shift register (2549Q, section 22.6).
 //!
 //! A character goes on to an empty shift register at once, and its start bit begins with the next bit of the clock. What
 //! follows it in the buffer joins on without a gap.
