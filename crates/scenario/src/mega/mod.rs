@@ -37,7 +37,7 @@ use pins::Wires;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::ports::{Drive, Pin};
-use rumbo_emulator::devices::{Event, Input, Output, Pwm, Unmodelled};
+use rumbo_emulator::devices::{Cause, Event, Input, Output, Pwm, Unmodelled};
 use rumbo_emulator::verdict::Verdict;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::noise::Noise;
@@ -48,6 +48,8 @@ use std::sync::Arc;
 
 /// The Mega's clock is 16 MHz.
 pub const CYCLES_PER_US: u64 = 16;
+/// Battery at which the chip's brown-out detector, set to 2.7 V by the Mega's fuses, resets it: the regulator drops 1.1 V.
+const BROWN_OUT_V: f64 = 3.8;
 /// A sonar needs its trigger high for 10 us (HC-SR04 user's manual); what is shorter it may ignore.
 const TRIGGER_CYCLES: u64 = 10 * CYCLES_PER_US;
 /// An input goes into the chip's queue this long before its cycle: until then nothing the chip does can change it.
@@ -254,8 +256,12 @@ impl Mega {
         std::mem::take(&mut self.actions)
     }
 
-    /// The battery's voltage from now on, where a divider brings it to an analogue input.
+    /// The battery's voltage from now on: where a divider brings it to an analogue input, and as what the chip lives on.
     pub(crate) fn supply(&mut self, battery_v: f64) {
+        if battery_v < BROWN_OUT_V {
+            let cycle = self.chip.cycle();
+            self.chip.input(cycle, Input::Reset(Cause::BrownOut));
+        }
         if let Some(Divider { input, ratio }) = self.wires().battery {
             let (channel, volts) = (input, battery_v / ratio);
             let cycle = self.chip.cycle();

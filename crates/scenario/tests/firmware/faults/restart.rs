@@ -3,7 +3,7 @@
 use super::drive::{Drive, setup};
 use crate::board::image;
 use rumbo_emulator::devices::{Cause, Input};
-use rumbo_wire::{Command, Refusal, ResetCause, ToRobot};
+use rumbo_wire::{Command, FromRobot, Refusal, ResetCause, ToRobot};
 
 /// A jump to itself.
 const FOR_EVER: u16 = 0xCFFF;
@@ -33,6 +33,43 @@ fn a_brown_out_leaves_the_wheels_released_and_is_told() {
     chip.input(chip.cycle(), Input::Reset(Cause::BrownOut));
     drive.released_after_s(from_s, 0.1);
     has_started_again(&mut drive, ResetCause::BrownOut);
+}
+
+#[test]
+fn a_supply_that_falls_while_it_drives_resets_it_and_it_stays_released() {
+    let setup = setup("mode5", |setup| {
+        let battery = [
+            ("battery.open_circuit_v", 6.4),
+            ("battery.resistance_ohm", 2.9),
+        ];
+        for (key, value) in battery {
+            setup.scenario.plant.insert(key.into(), value);
+        }
+    });
+    let Some(setup) = setup else {
+        return;
+    };
+    let mut drive = Drive::under_way(&setup, 1.0);
+    // Wheels that start again, and faster, pull the old battery down.
+    drive.heard.clear();
+    drive.command(Command::Reference(-15.0)).unwrap();
+    while !drive
+        .heard
+        .iter()
+        .any(|(_, heard)| matches!(heard, FromRobot::Hello(_)))
+    {
+        drive.wait_s(0.05);
+        assert!(drive.now_s() < 20.0, "{:?}", drive.status());
+    }
+    println!(
+        "{:.1} s: {:.2} V",
+        drive.now_s(),
+        drive.sim.truth().battery_v
+    );
+    assert_eq!(drive.hello().reset, ResetCause::BrownOut);
+    let from_s = drive.now_s();
+    drive.released_after_s(from_s, 0.0);
+    assert!(!drive.status().armed);
 }
 
 #[test]
