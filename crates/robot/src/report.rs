@@ -75,11 +75,14 @@ pub(crate) struct Reporter {
 impl Reporter {
     /// A reporter that introduces itself with `hello` first.
     pub(crate) fn new(hello: Hello) -> Self {
+        let mut outbox = Outbox::default();
+        // Ends the frame that a reset may have cut off: HELLO must not go down with it.
+        outbox.push(Priority::Answer, &[0]);
         Self {
             hello,
             recalled: None,
             language: Language::Binary,
-            outbox: Outbox::default(),
+            outbox,
             seq: 0,
             hello_due: true,
             status_due: true,
@@ -367,7 +370,7 @@ mod tests {
             reporter.event(0, EventKind::Faulted(fault));
         }
         let said: std::vec::Vec<u8> = core::iter::from_fn(|| reporter.transmit()).collect();
-        assert_eq!(said, b"FLT 1\r\nFLT 10\r\n");
+        assert_eq!(said, b"\0FLT 1\r\nFLT 10\r\n");
     }
 
     #[test]
