@@ -13,7 +13,7 @@ const TOP = 34;
 const RIGHT = 12;
 const BOTTOM = 40;
 /** Colours on white paper. @type {Partial<Record<import('./theme.js').ColourName, string>>} */
-const INK = { left: '#0072b2', right: '#b35900', front: '#00795a', reference: '#222222', goal: '#a8327d' };
+const INK = { left: '#0072b2', right: '#a65200', front: '#00795a', reference: '#222222', goal: '#a8327d' };
 /** Dashes of each kind of curve. */
 const DASH = { measured: '', reference: '7 4', true: '2 2' };
 

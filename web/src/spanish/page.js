@@ -4,10 +4,10 @@
 /** @type {Record<string, string>} */
 export const PAGE = {
   // The top line.
-  'scenario': 'escenario', 'world': 'mundo', 'rig': 'montaje', 'seed': 'semilla', 'speed': 'velocidad', 'Reset': 'Reiniciar',
+  'scenario': 'escenario', 'world': 'mundo', 'rig': 'montaje', 'seed': 'semilla', 'speed': 'ritmo', 'Reset': 'Reiniciar',
   'Start the simulation again with this scenario, world, rig and seed': 'Empieza la simulación de nuevo con este escenario, mundo, montaje y semilla',
   'its own': 'el suyo', '{} (own)': '{} (el suyo)', 'paused': 'en pausa',
-  'round trip': 'ida y vuelta', 'errors': 'errores', 'link': 'enlace', 'battery': 'batería',
+  'round trip': 'retardo', 'errors': 'errores', 'link': 'enlace', 'battery': 'batería',
   'From a command to its acknowledgement': 'Desde una orden hasta su confirmación',
   'Frames that failed the check (CRC), from and to the robot': 'Tramas que no pasaron la comprobación (CRC), desde y hacia el robot',
   'Share of the link\'s capacity in use, from and to the robot': 'Parte en uso de la capacidad del enlace, desde y hacia el robot',
