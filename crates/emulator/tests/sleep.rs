@@ -262,3 +262,16 @@ fn a_line_that_falls_while_the_crystal_starts_does_not_stop_the_chip() {
     assert!(chip.cpu().is_sleeping());
     assert!(chip.cycle() < last + 110_000);
 }
+
+#[test]
+fn a_conversion_that_is_triggered_while_the_crystal_starts_waits_for_it() {
+    let mut chip = sleeper(2);
+    // The watchdog's interrupt after 2,048 of its cycles; the converter on INT0.
+    for (address, value) in [(0x60, 0x40), (0x7B, 0x02), (0x7A, 0xA7)] {
+        write(&mut chip, address, value);
+    }
+    let wake = 2_048 * 125;
+    chip.input(wake + 5_000, Input::Pin(pin('D', 0), Some(true)));
+    chip.run_until(wake + CRYSTAL + 10);
+    assert_eq!(read(&mut chip, 0x7A) & 0x50, 0x40, "on its way");
+}

@@ -247,7 +247,8 @@ impl Analog {
 
     fn start(&mut self, cycle: u64) {
         let divisor = self.divisor();
-        let waited = (cycle + 1 - self.origin).div_ceil(divisor);
+        // A trigger may come while the clock is still coming up.
+        let waited = (cycle + 1).saturating_sub(self.origin).div_ceil(divisor);
         let extra = if self.first { 12 } else { 0 };
         self.begin(self.origin + waited * divisor, 2 * extra + 3, 13 + extra);
     }
