@@ -59,7 +59,7 @@ impl Outcome {
             .collect()
     }
 
-    /// Whether the program at the pins told telemetry; an image with another protocol does not.
+    /// Whether the program at the pins told telemetry, in frames or in text.
     pub(crate) fn tells(&self) -> bool {
         self.telemetry().next().is_some()
     }
@@ -82,20 +82,20 @@ impl Outcome {
             .collect()
     }
 
-    /// What the robot told in frames, else in rows of text, else what is true, if that is asked for.
+    /// What the robot told in rows of text, which say more than what was made of them, else in frames, else what is true, if that is
+    /// asked for.
     fn best(
         &self,
         frames: impl Fn(&Telemetry) -> f64,
         text: impl Fn(&Row) -> Option<f64>,
         truth: Option<&dyn Fn(&Sample) -> f64>,
     ) -> Points {
-        if self.tells() {
-            return self.told(frames);
-        }
         let points = self.text(text);
         match truth {
-            Some(truth) if points.is_empty() => self.truth(truth),
-            _ => points,
+            _ if !points.is_empty() => points,
+            _ if self.tells() => self.told(frames),
+            Some(truth) => self.truth(truth),
+            None => points,
         }
     }
 
@@ -108,9 +108,9 @@ impl Outcome {
             .collect()
     }
 
-    /// Whether it told anything that this report reads.
-    pub(crate) fn is_silent(&self) -> bool {
-        !self.tells() && told::rows(&self.trace().link).is_empty()
+    /// Whether it tells rows of the original's text.
+    pub(crate) fn tells_in_text(&self) -> bool {
+        !told::rows(&self.trace().link).is_empty()
     }
 
     /// A sonar's range as the robot has it [cm]; a gap where there is none.
@@ -127,7 +127,7 @@ impl Outcome {
 
     /// A wheel's measured speed [rpm].
     pub(crate) fn speed_rpm(&self, wheel: Place) -> Points {
-        if self.tells() {
+        if self.tells() && !self.tells_in_text() {
             // Two samples in a frame, the first 20 ms older.
             let both = self.telemetry().flat_map(|(t_s, told)| {
                 let [before, now] = told.wheel_rad_s;
@@ -202,7 +202,7 @@ impl Outcome {
                 _ => None,
             });
         let mut points: Points = heard.collect();
-        if !self.tells() {
+        if points.is_empty() {
             points = self.text(|row| Some(f64::from(told::mission(row)?.heading_reference_deg)));
         }
         self.hold_last(&mut points);
@@ -229,7 +229,7 @@ impl Outcome {
                 .map(|(t_s, goal)| (t_s, f64::from(goal.right)))
                 .collect(),
         ];
-        if !self.tells() {
+        if self.tells_in_text() {
             goals = [
                 self.text(|row| Some(f64::from(told::mission(row)?.goal_x_m))),
                 self.text(|row| Some(f64::from(told::mission(row)?.goal_y_m))),
@@ -288,7 +288,7 @@ impl Outcome {
             .unwrap_or(f64::INFINITY);
         let start = self.setup.scenario.start;
         let (sin, cos) = start.heading_rad.sin_cos();
-        if self.is_silent() {
+        if !self.tells() {
             return Points::new();
         }
         let [x, y, _] = self.pose();

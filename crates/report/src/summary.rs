@@ -5,7 +5,6 @@ use crate::data::Data;
 use crate::judge::{self, KEPT, MISSED};
 use crate::metric_names::shown;
 use crate::page::{Cell, Page, Tone};
-use crate::signals::Outcome;
 use crate::text::{Language, Text, escape, t};
 
 const STYLE: &str = include_str!("style.css");
@@ -143,7 +142,7 @@ fn front(data: &Data, language: Language, contents: &str) -> String {
         "<h2 class=\"on\">{}</h2>\n",
         escape(HOW.of(language))
     ));
-    if data.outcomes.values().any(Outcome::is_silent) {
+    if data.outcomes.values().any(|outcome| !outcome.tells()) {
         page.p(HOW_SILENT);
     }
     page.p(HOW_SIGNALS);

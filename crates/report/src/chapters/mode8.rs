@@ -304,10 +304,10 @@ fn lane_results(page: &mut Page, data: &Data) {
         page,
         until(page, outcome, "mode8-lane-pose", LANE_POSE, panels),
     );
-    let names: &[Text] = if outcome.tells() {
-        &machines::STATES
-    } else {
+    let names: &[Text] = if outcome.tells_in_text() {
         &machines::ORIGINAL_LANE
+    } else {
+        &machines::STATES
     };
     let panel = panels::state_panel(language, outcome, names);
     parts::show(

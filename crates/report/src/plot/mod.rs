@@ -146,7 +146,8 @@ impl Panel {
         if low > high {
             return [0.0, 1.0];
         }
-        let margin = 0.06 * (high - low).max(1e-3);
+        // A signal that does not move lies in the middle of a range that says so.
+        let margin = (0.06 * (high - low)).max(0.01 * high.abs().max(1.0));
         [low - margin, high + margin]
     }
 }
