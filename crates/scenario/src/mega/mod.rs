@@ -11,7 +11,7 @@
 //! | [`pins`] | the board's pin numbers, a wiring as pins of the chip |
 //! | `bridge`, `servo`, `module` | what driver, servo and Bluetooth module make of their lines |
 //! | `echo` | echo lines, and sonars that fail |
-//! | [`console`] | what the USARTs said, for people |
+//! | `console` | what the USARTs said, for people |
 //! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
 //!
 //! `Mega::run` runs the chip until something happens that the plant must know of, so that the plant can follow to the same
