@@ -27,7 +27,7 @@ pub(crate) fn browser(project: &Project) -> Result<(), Stop> {
         .env("CHROMIUM", chromium)
         .env("SKETCHES", project.target.join("sketches"));
     Ok(run(test
-        .args(["--test", "--test-reporter=spec"])
+        .args(["--test", "--test-concurrency=2", "--test-reporter=spec"])
         .args(tests))?)
 }
 
