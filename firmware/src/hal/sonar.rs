@@ -7,6 +7,8 @@ use super::clock::{self, OUTPUT_COUNTS, Stamp};
 use super::registers::{change, get, handler, port_b, port_d, port_e, port_j};
 use super::shared::{Byte, CriticalSection, Word};
 use crate::pins;
+use core::convert::Infallible;
+use embedded_hal::digital::{ErrorType, OutputPin};
 use rumbo_control::{Echo, SonarId};
 
 /// The trigger pulse: 12 us, of which the sonar needs 10 [0.5 us].
@@ -111,31 +113,57 @@ pub(super) fn ask(ping: Option<SonarId>) {
     PING.set(ping.map_or(NONE, |sonar| sonar as u8));
 }
 
+/// A sonar's trigger pin as `embedded-hal` has it; only for handlers, since a port is changed in three steps.
+struct Trigger<'a>(SonarId, CriticalSection<'a>);
+
+impl ErrorType for Trigger<'_> {
+    type Error = Infallible;
+}
+
+impl OutputPin for Trigger<'_> {
+    #[inline(always)]
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        match self.0 {
+            SonarId::Left => change!(port_j().portj(), set pins::LEFT_TRIGGER.mask(), clear 0),
+            SonarId::Right => change!(port_b().portb(), set pins::RIGHT_TRIGGER.mask(), clear 0),
+            SonarId::Front => change!(port_j().portj(), set pins::FRONT_TRIGGER.mask(), clear 0),
+        };
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        match self.0 {
+            SonarId::Left => change!(port_j().portj(), set 0, clear pins::LEFT_TRIGGER.mask()),
+            SonarId::Right => change!(port_b().portb(), set 0, clear pins::RIGHT_TRIGGER.mask()),
+            SonarId::Front => change!(port_j().portj(), set 0, clear pins::FRONT_TRIGGER.mask()),
+        };
+        Ok(())
+    }
+}
+
 /// Compare C: raises the trigger that was asked for, and lowers it the next time.
 #[inline(always)]
 pub(super) fn trigger(section: CriticalSection<'_>) {
     let ping = PING.get();
     PING.set(NONE);
     match ping {
-        0 => {
-            LEFT.ping(section);
-            change!(port_j().portj(), set pins::LEFT_TRIGGER.mask(), clear 0);
-        }
-        1 => {
-            RIGHT.ping(section);
-            change!(port_b().portb(), set pins::RIGHT_TRIGGER.mask(), clear 0);
-        }
-        2 => {
-            FRONT.ping(section);
-            change!(port_j().portj(), set pins::FRONT_TRIGGER.mask(), clear 0);
-        }
+        0 => raise(&LEFT, Trigger(SonarId::Left, section)),
+        1 => raise(&RIGHT, Trigger(SonarId::Right, section)),
+        2 => raise(&FRONT, Trigger(SonarId::Front, section)),
         _ => {
-            change!(port_j().portj(), set 0, clear TRIGGERS_J);
-            change!(port_b().portb(), set 0, clear TRIGGERS_B);
-            return;
+            let Ok(()) = Trigger(SonarId::Left, section).set_low();
+            let Ok(()) = Trigger(SonarId::Right, section).set_low();
+            let Ok(()) = Trigger(SonarId::Front, section).set_low();
         }
     }
-    clock::trigger_again_in(TRIGGER_COUNTS, section);
+}
+
+#[inline(always)]
+fn raise(line: &Line, mut trigger: Trigger<'_>) {
+    line.ping(trigger.1);
+    let Ok(()) = trigger.set_high();
+    clock::trigger_again_in(TRIGGER_COUNTS, trigger.1);
 }
 
 handler! { __vector_3, "INT2", |section| {

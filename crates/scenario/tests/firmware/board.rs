@@ -137,28 +137,13 @@ impl Board {
     }
 
     /// One tick with these inputs: what the image leaves, and the cycles it took.
-    pub(crate) fn tick(&mut self, inputs: &Inputs, look: Option<&Image>) -> ([u8; 9], u64) {
+    pub(crate) fn tick(&mut self, inputs: &Inputs) -> ([u8; 9], u64) {
         let record = inputs_record(inputs);
         self.chip.cpu_mut().sram_mut()[self.inputs..self.inputs + record.len()]
             .copy_from_slice(&record);
         let start = self.chip.cpu().cycle();
-        if let Some(image) = look {
-            self.chip
-                .observers_mut()
-                .profile(rumbo_emulator::observe::profile::Profile::new(image));
-        }
         self.chip.step();
         self.run_to(self.outputs_left);
-        if look.is_some() {
-            let profile = self.chip.observers().profiled().unwrap();
-            std::fs::write(format!("/tmp/tk/tick-{}.folded", start), profile.folded()).unwrap();
-            eprintln!("/tmp/tk/tick-{start}.folded");
-            self.chip
-                .observers_mut()
-                .profile(rumbo_emulator::observe::profile::Profile::new(
-                    look.unwrap(),
-                ));
-        }
         let cycles = self.chip.cpu().cycle() - start;
         let left = self.chip.cpu().sram()[self.outputs..self.outputs + 9]
             .try_into()
