@@ -70,6 +70,66 @@ fn a_scenario_may_let_sonars_fail() {
 }
 
 #[test]
+fn a_scenario_may_let_wires_fail() {
+    use rumbo_scenario::wire_fault::{TimedWireFault, Wire, WireFault};
+    let text = format!(
+        "{SCENARIO}[[wire_fault]]\nat_s = 2\nwire = \"right_encoder\"\nkind = \"noisy\"\nrate_hz = 200\n"
+    );
+    let scenario = ScenarioFile::parse("x", "x.toml", &text).unwrap();
+    let expected = TimedWireFault {
+        at_s: 2.0,
+        wire: Wire::Encoder(rumbo_plant::drivetrain::Side::Right),
+        fault: WireFault::Noisy(200.0),
+    };
+    assert_eq!(scenario.wire_faults, [expected]);
+}
+
+#[test]
+fn a_wire_that_fails_stops_the_native_robot_too() {
+    let library = Library::new();
+    let faults = |wire: &str, kind: &str| {
+        let mut setup = library.setup("mode1-final", &Overrides::default()).unwrap();
+        let text =
+            format!("{SCENARIO}[[wire_fault]]\nat_s = 1.4\nwire = \"{wire}\"\nkind = \"{kind}\"\n");
+        let parsed = ScenarioFile::parse("x", "x.toml", &text).unwrap();
+        setup.scenario.wire_faults = parsed.wire_faults;
+        let result = rumbo_scenario::run::run(&setup, 1).unwrap();
+        assert_eq!(result.metrics["contacts"], 0.0);
+        result.failures.join("; ")
+    };
+    for level in ["high", "low"] {
+        let said = faults("front_echo", level);
+        assert!(said.contains("fault: sonar"), "{said}");
+    }
+    let said = faults("left_encoder", "low");
+    assert!(said.contains("fault: left encoder silent"), "{said}");
+}
+
+#[test]
+fn a_wiring_may_have_a_divider_for_the_battery() {
+    use rumbo_scenario::files::Divider;
+    let text = |pin: u32| {
+        format!(
+            "title = \"t\"\n[rig.a.front]\nx_m = 0.1\n[wiring.final]\nbattery = {{ pin = {pin}, ratio = 2.5 }}\n"
+        )
+    };
+    let robot = RobotFile::parse("x", "x.toml", &text(57)).unwrap();
+    let divider = Divider {
+        input: 3,
+        ratio: 2.5,
+    };
+    assert_eq!(robot.wirings["final"].battery, Some(divider));
+    // Only pins with an analogue input will do.
+    let error = RobotFile::parse("x", "x.toml", &text(3))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("wiring.final.battery.pin = 3: must be a whole number within 54..69"),
+        "{error}"
+    );
+}
+
+#[test]
 fn a_route_is_its_beginning_and_a_command_per_waypoint() {
     use rumbo_wire::message::Waypoint;
     let text = SCENARIO.replace("\"manual\"", "\"waypoints\"")
@@ -130,6 +190,10 @@ const WRONG_SCENARIOS: &[(&str, &str)] = &[
     (
         "[[sonar_fault]]\nat_s = 1\nsonar = \"front\"\nkind = \"broken\"",
         "scenarios/x.toml:10: sonar_fault[1].kind = broken: write \"cut\", \"stuck\", or \"spiking\" with share = 0.3",
+    ),
+    (
+        "[[wire_fault]]\nat_s = 1\nwire = \"echo\"\nkind = \"low\"",
+        "scenarios/x.toml:9: wire_fault[1].wire = echo: write one of left_encoder, right_encoder, left_echo, right_echo, front_echo",
     ),
     (
         "[start]\nx_m = -400",
