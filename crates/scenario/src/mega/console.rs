@@ -27,6 +27,11 @@ impl Console {
         self.bytes.drain(..).collect()
     }
 
+    /// Something has been sent.
+    pub(super) fn has_spoken(&self) -> bool {
+        self.baud.is_some()
+    }
+
     pub(super) fn baud(&self) -> u32 {
         self.baud.unwrap_or(SILENT_BAUD)
     }

@@ -12,6 +12,7 @@
 //! | `bridge`, `servo`, `module` | what driver, servo and Bluetooth module make of their lines |
 //! | `echo` | echo lines, and sonars that fail |
 //! | `console` | what the USARTs said, for people |
+//! | `notes` | what is odd about a program, for people |
 //! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
 //!
 //! `Mega::run` runs the chip until something happens that the plant must know of, so that the plant can follow to the same
@@ -24,6 +25,7 @@ pub mod pins;
 mod bridge;
 mod echo;
 mod module;
+mod notes;
 mod servo;
 
 use crate::files::Divider;
@@ -37,7 +39,7 @@ use pins::Wires;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::ports::{Drive, Pin};
-use rumbo_emulator::devices::{Cause, Event, Input, Output, Pwm, Unmodelled};
+use rumbo_emulator::devices::{Cause, Event, Input, Output, Pwm};
 use rumbo_emulator::verdict::Verdict;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::noise::Noise;
@@ -103,6 +105,8 @@ pub struct Mega {
     sent: Vec<(u64, u8)>,
     consoles: [Console; 4],
     verdict: Option<Verdict>,
+    /// A motor was driven.
+    has_driven: bool,
     /// The program does one instruction and halts.
     stepping: bool,
     /// Why the program stands, until a debugger lets it go on.
@@ -128,6 +132,7 @@ impl Mega {
             sent: Vec::new(),
             consoles: Default::default(),
             verdict: None,
+            has_driven: false,
             stepping: false,
             halt: None,
             firmware,
@@ -201,21 +206,6 @@ impl Mega {
         let name = self.firmware.name();
         let verdict = verdict.told(self.firmware.image());
         Some(format!("firmware {name}: {verdict}"))
-    }
-
-    /// What the program did that the emulator does not model, a line for each register.
-    pub fn notes(&self) -> Vec<String> {
-        let image = self.firmware.image();
-        let line = |access: &Unmodelled| {
-            let done = if access.written { "written" } else { "read" };
-            format!(
-                "firmware {}: register 0x{:03x}, {done} at {}, is not modelled",
-                self.firmware.name(),
-                access.address,
-                image.place(access.program_counter)
-            )
-        };
-        self.chip.unmodelled().iter().map(line).collect()
     }
 
     /// What USART `usart` has sent since it was last asked, whatever it is connected to.
@@ -489,6 +479,7 @@ impl Mega {
             let state = self.bridges[index].state();
             if state != self.driven[index] {
                 self.driven[index] = state;
+                self.has_driven |= matches!(state.0, Bridge::Forward(_) | Bridge::Backward(_));
                 self.actions.push(Action::Bridge(side, state.0, state.1));
             }
         }

@@ -123,3 +123,17 @@ fn without_a_wiring_the_report_s_build_is_taken_unless_the_program_uses_another_
     // It uses no link at all.
     assert_eq!(wiring("mode5", "blink").unwrap(), "modes_5_to_7");
 }
+
+#[test]
+fn a_program_that_is_not_for_this_robot_is_told_what_it_never_did() {
+    let Some(mut setup) = setup("mode1", "blink", None) else {
+        return;
+    };
+    setup.scenario.duration_s = 1.0;
+    let notes = run(&setup, 1).unwrap().notes;
+    let [motors, link] = &notes[..] else {
+        panic!("{notes:?}");
+    };
+    assert!(motors.contains("never drove a motor") && motors.contains("wiring final"));
+    assert!(link.contains("Serial2 in wiring final, on no other either"));
+}
