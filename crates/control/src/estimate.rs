@@ -11,7 +11,7 @@ use crate::range::{RangeFilter, range_from_echo};
 use crate::rig::View;
 use crate::speed::{EDGE_RAD, SpeedEstimator, WheelMotion};
 use crate::types::{
-    AgedRange, Inputs, Place, Pose, Reading, SIDES, ServoAngle, SonarId, TICK_S, Wheels,
+    AgedRange, Inputs, Pose, Reading, SIDES, ServoAngle, SonarId, TICK_S, Transform, Wheels,
 };
 
 /// The front sonar looks ahead when the servo is within this of it [rad].
@@ -23,23 +23,23 @@ const PIECE_TICKS: u8 = 4;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimator {
     speed: Wheels<SpeedEstimator>,
-    place: Place,
+    place: Transform,
     uncertainty: Uncertainty,
     piece: Piece,
     piece_ticks: u8,
     ranges: [RangeFilter; 3],
     servo_rad: f32,
     servo_target_rad: f32,
-    ping: Option<Ping>,
+    /// The pings whose echoes are waited for, by `SonarId` number: one that left late may end after the next one has left.
+    pings: [Option<Ping>; 3],
     /// What the front sonar last said off the middle.
     aside: AgedRange,
 }
 
-/// The ping whose echo is waited for.
+/// A ping whose echo is waited for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ping {
-    sonar: SonarId,
-    place: Place,
+    place: Transform,
     servo_rad: f32,
 }
 
@@ -76,6 +76,16 @@ impl Estimate {
     /// The range of one sonar.
     pub fn range(&self, sonar: SonarId) -> AgedRange {
         self.ranges.get(sonar as usize).copied().unwrap_or_default()
+    }
+
+    /// The robot in the world: its pose with sine and cosine of the heading.
+    pub fn transform(&self) -> Transform {
+        let (sin, cos) = self.facing;
+        Transform {
+            pose: self.pose,
+            sin,
+            cos,
+        }
     }
 
     /// Both wheels stand.
@@ -139,7 +149,7 @@ impl Estimator {
         if self.piece_ticks < PIECE_TICKS {
             return;
         }
-        self.place = Place::of(self.place.pose);
+        self.place = Transform::of(self.place.pose);
         self.uncertainty
             .advance(&params.odometry_errors(), &self.piece);
         self.piece = Piece::default();
@@ -154,9 +164,8 @@ impl Estimator {
     /// What the pilot decided at this tick: where the servo goes, which sonar pings.
     pub fn commanded(&mut self, servo: ServoAngle, ping: Option<SonarId>) {
         self.servo_target_rad = servo.0;
-        if let Some(sonar) = ping {
-            self.ping = Some(Ping {
-                sonar,
+        if let Some(slot) = ping.and_then(|sonar| self.pings.get_mut(sonar as usize)) {
+            *slot = Some(Ping {
                 place: self.place,
                 servo_rad: self.servo_rad,
             });
@@ -179,7 +188,7 @@ impl Estimator {
     /// The echo of this tick, with the place from which it came.
     fn reading(&mut self, params: &Params, inputs: &Inputs) -> Option<Reading> {
         let (sonar, echo) = inputs.echo?;
-        let ping = self.ping.take().filter(|ping| ping.sonar == sonar)?;
+        let ping = self.pings.get_mut(sonar as usize)?.take()?;
         let mount = params.view(sonar, ping.servo_rad)?;
         let (x_m, y_m) = ping.place.to_world(mount.x_m, mount.y_m);
         let (x_m, y_m) = self.place.to_local(x_m, y_m);
@@ -233,17 +242,17 @@ impl Estimator {
 
     /// Calls the present place the origin.
     pub fn reset_pose(&mut self) {
-        if let Some(ping) = &mut self.ping {
+        for ping in self.pings.iter_mut().flatten() {
             let then = ping.place.pose;
             let (x_m, y_m) = self.place.to_local(then.x_m, then.y_m);
             let heading_rad = wrap_angle(then.heading_rad - self.place.pose.heading_rad);
-            ping.place = Place::of(Pose {
+            ping.place = Transform::of(Pose {
                 x_m,
                 y_m,
                 heading_rad,
             });
         }
-        self.place = Place::default();
+        self.place = Transform::default();
         self.uncertainty = Uncertainty::default();
         self.piece = Piece::default();
         self.piece_ticks = 0;
@@ -329,7 +338,7 @@ mod tests {
     fn a_reading_comes_with_the_place_from_which_it_was_taken() {
         let (mut estimator, params) = (Estimator::default(), Params::default());
         estimator.commanded(ServoAngle(0.0), Some(SonarId::Left));
-        estimator.place = Place::of(Pose {
+        estimator.place = Transform::of(Pose {
             x_m: 0.1,
             y_m: 0.0,
             heading_rad: 0.2,

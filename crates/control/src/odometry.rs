@@ -4,7 +4,7 @@
 //! the same all the time: the pose's derivatives by each of them, which also shrink again where a way back undoes the error.
 
 use crate::math::{abs, max, rotate, sin_cos, sinc, sqrt, wrap_angle};
-use crate::types::{Place, Wheels};
+use crate::types::{Transform, Wheels};
 
 /// Half of a turn [rad] up to which tan(x) / x is 1 + x^2 / 3 + 2 x^4 / 15 to the last bit but one.
 const SMALL_RAD: f32 = 0.12;
@@ -44,6 +44,11 @@ impl Geometry {
         self.base_m
     }
 
+    /// One over the distance between the wheels' contact points [1/m].
+    pub fn per_base(&self) -> f32 {
+        self.per_base
+    }
+
     /// Ways of the wheels [m] from the angles that they turned [rad]; speeds likewise.
     pub fn ways_of_wheels(&self, wheel_rad: Wheels<f32>) -> Wheels<f32> {
         Wheels {
@@ -76,8 +81,8 @@ impl Geometry {
 }
 
 /// Moves a place by a way [m] and a turn [rad] that were one arc.
-pub fn advance(place: &mut Place, forward_m: f32, turned_rad: f32) {
-    let Place { pose, sin, cos } = *place;
+pub fn advance(place: &mut Transform, forward_m: f32, turned_rad: f32) {
+    let Transform { pose, sin, cos } = *place;
     if turned_rad == 0.0 {
         place.pose.x_m += forward_m * cos;
         place.pose.y_m += forward_m * sin;
@@ -254,7 +259,7 @@ mod tests {
 
     /// Moves a pose by what both wheels turned [rad].
     fn roll(robot: &Geometry, pose: &mut Pose, wheel_rad: Wheels<f32>) {
-        let mut place = Place::of(*pose);
+        let mut place = Transform::of(*pose);
         let (forward_m, turned_rad) = robot.body_from_wheels(wheel_rad);
         advance(&mut place, forward_m, turned_rad);
         *pose = place.pose;

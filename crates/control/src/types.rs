@@ -244,18 +244,18 @@ pub struct Pose {
 impl Pose {
     /// A point of the world [m] as seen from here: ahead, left.
     pub fn to_local(&self, x_m: f32, y_m: f32) -> (f32, f32) {
-        Place::of(*self).to_local(x_m, y_m)
+        Transform::of(*self).to_local(x_m, y_m)
     }
 
     /// A point seen from here [m] (ahead, left) in the world.
     pub fn to_world(&self, ahead_m: f32, left_m: f32) -> (f32, f32) {
-        Place::of(*self).to_world(ahead_m, left_m)
+        Transform::of(*self).to_world(ahead_m, left_m)
     }
 }
 
 /// A pose with the sine and cosine of its heading, which take the AVR as long as all the rest of a transformation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct Transform {
     /// The pose.
     pub pose: Pose,
     /// Sine of its heading.
@@ -264,7 +264,7 @@ pub struct Place {
     pub cos: f32,
 }
 
-impl Default for Place {
+impl Default for Transform {
     fn default() -> Self {
         Self {
             pose: Pose::default(),
@@ -274,11 +274,11 @@ impl Default for Place {
     }
 }
 
-impl Place {
+impl Transform {
     /// A pose.
-    pub fn of(pose: Pose) -> Place {
+    pub fn of(pose: Pose) -> Transform {
         let (sin, cos) = sin_cos(pose.heading_rad);
-        Place { pose, sin, cos }
+        Transform { pose, sin, cos }
     }
 
     /// A point of the world [m] as seen from here: ahead, left.

@@ -180,30 +180,40 @@ handler! { __vector_6, "INT5", |section| {
 
 const _: () = assert!(ECHOES_D == 0b1100 && pins::FRONT_ECHO.bit == 5);
 
-/// The sonar that is waited for.
+/// The sonars that are waited for, by their numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Listener {
-    waiting: Option<SonarId>,
+    waiting: [bool; 3],
 }
 
 impl Listener {
     /// A sonar has been asked for a ping.
     pub fn asked(&mut self, sonar: SonarId) {
-        self.waiting = Some(sonar);
+        if let Some(waiting) = self.waiting.get_mut(sonar as usize) {
+            *waiting = true;
+        }
     }
 
-    /// What became of the last ping, once, at the tick `tick`. It may have left late, or not yet.
+    /// What became of a ping, once, at the tick `tick`. It may have left late, or not yet.
     pub fn read(&mut self, tick: Stamp) -> Option<(SonarId, Echo)> {
-        let sonar = self.waiting?;
-        let (state, ping, rise, fall) = line(sonar).read();
-        let echo = match state {
-            FALLEN => Echo::Pulse(u32::from(fall.since(rise) / 2)),
-            RISEN if passed(rise, tick, REACH_COUNTS) => Echo::Clear,
-            PINGED if passed(ping, tick, RISE_COUNTS) => Echo::Silent,
-            _ => return None,
-        };
-        self.waiting = None;
-        Some((sonar, echo))
+        for (sonar, waiting) in SonarId::ALL.iter().zip(&mut self.waiting) {
+            if *waiting && let Some(echo) = echo(*sonar, tick) {
+                *waiting = false;
+                return Some((*sonar, echo));
+            }
+        }
+        None
+    }
+}
+
+/// What a sonar has answered by the tick `tick`, if that is decided.
+fn echo(sonar: SonarId, tick: Stamp) -> Option<Echo> {
+    let (state, ping, rise, fall) = line(sonar).read();
+    match state {
+        FALLEN => Some(Echo::Pulse(u32::from(fall.since(rise) / 2))),
+        RISEN if passed(rise, tick, REACH_COUNTS) => Some(Echo::Clear),
+        PINGED if passed(ping, tick, RISE_COUNTS) => Some(Echo::Silent),
+        _ => None,
     }
 }
 

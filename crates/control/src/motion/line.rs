@@ -31,6 +31,8 @@ pub struct Segment {
     pub y_m: f32,
     /// Its direction [rad].
     pub heading_rad: f32,
+    /// Sine and cosine of its direction.
+    facing: (f32, f32),
     /// Its length [m].
     pub length_m: f32,
 }
@@ -39,10 +41,12 @@ impl Segment {
     /// From one point to another. Its direction is 0 when they are one.
     pub fn between(from: (f32, f32), to: (f32, f32)) -> Self {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        let heading_rad = atan2(dy, dx);
         Self {
             x_m: from.0,
             y_m: from.1,
-            heading_rad: atan2(dy, dx),
+            heading_rad,
+            facing: sin_cos(heading_rad),
             length_m: sqrt(dx * dx + dy * dy),
         }
     }
@@ -53,20 +57,21 @@ impl Segment {
             x_m: pose.x_m,
             y_m: pose.y_m,
             heading_rad: pose.heading_rad,
+            facing: sin_cos(pose.heading_rad),
             length_m,
         }
     }
 
     /// How far along it a point is, and how far to the left of it [m].
     pub fn place(&self, x_m: f32, y_m: f32) -> (f32, f32) {
-        let (sin, cos) = sin_cos(self.heading_rad);
+        let (sin, cos) = self.facing;
         let (dx, dy) = (x_m - self.x_m, y_m - self.y_m);
         (cos * dx + sin * dy, cos * dy - sin * dx)
     }
 
     /// The point this far along it [m].
     pub fn point(&self, along_m: f32) -> (f32, f32) {
-        let (sin, cos) = sin_cos(self.heading_rad);
+        let (sin, cos) = self.facing;
         (self.x_m + along_m * cos, self.y_m + along_m * sin)
     }
 }
@@ -84,8 +89,8 @@ pub struct Line {
     pub cross_kp: f32,
     /// Yaw rate per heading error [1/s].
     pub heading_kp: f32,
-    /// Half the distance between the wheels [m].
-    pub half_base_m: f32,
+    /// One over half the distance between the wheels [1/m].
+    pub per_half_base: f32,
 }
 
 /// Memory of a line; the default is its start.
@@ -118,7 +123,7 @@ impl Line {
             stop: Stop::on_the_way(params),
             cross_kp: params.get(ParamId::LineCross),
             heading_kp: params.get(ParamId::LineHeading),
-            half_base_m: 0.5 * params.get(ParamId::Base),
+            per_half_base: 2.0 * params.geometry().per_base(),
         }
     }
 
@@ -162,7 +167,7 @@ impl Line {
 
     /// Steers to a heading at a speed [m/s], as a line does.
     pub fn steer(&self, forward_m_s: f32, error_rad: f32) -> Drive {
-        let most = STEERING_SHARE * abs(forward_m_s) / self.half_base_m;
+        let most = STEERING_SHARE * abs(forward_m_s) * self.per_half_base;
         Drive::Twist {
             forward_m_s,
             yaw_rad_s: clamp(self.heading_kp * error_rad, -most, most),
@@ -178,7 +183,7 @@ impl Line {
         limit_m_s: f32,
     ) -> f32 {
         let braking = self.stop.speed(left_m, estimate.forward_m_s);
-        let slow = 1.0 / (1.0 + abs(error_rad) / SLOW_RAD);
+        let slow = 1.0 / (1.0 + abs(error_rad) * (1.0 / SLOW_RAD));
         let wanted = min(min(self.cruise_m_s * slow, limit_m_s), braking);
         state.speed_m_s = max(
             min(wanted, state.speed_m_s + self.accel_m_s2 * TICK_S),
@@ -244,7 +249,7 @@ mod tests {
         for _ in 0..100 {
             let (forward, yaw) = twist(step(&mut state, &at(0.8, 0.1, 0.5, last_m_s)));
             assert!(forward - last_m_s <= CREEP_M_S + 1e-6);
-            assert!(abs(yaw) * line.half_base_m < forward);
+            assert!(abs(yaw) < forward * line.per_half_base);
             last_m_s = forward;
         }
         assert!(last_m_s > 0.1, "{last_m_s}");

@@ -1,6 +1,6 @@
 //! Around an obstacle: which side, how near, when to leave it, and when there is no way.
 
-use super::goal::{PROGRESS_M, SPOT_RAD, near_m};
+use super::goal::{PROGRESS_M, SPOT_RAD};
 use super::obstacle::Obstacle;
 use super::{Detour, Drive, Mission, Phase, Place, Pose, Side, State, abs, min, sqrt};
 use crate::estimate::Estimate;
@@ -122,7 +122,7 @@ impl Mission {
             return Drive::Release;
         }
         state.phase = self.beside(state, estimate, detour.side);
-        let near_m = near_m(state, estimate);
+        let near_m = state.near_m;
         let careful_m_s = self.careful_m_s(near_m, error_rad);
         let speed_m_s = min(self.free_m_s(state), min(self.around_m_s, careful_m_s));
         if speed_m_s < 0.03 {

@@ -35,8 +35,11 @@ const ALIKE_MM: i32 = 25;
 const ALIKE_SHARE: i32 = 8;
 /// Directions alike, in 256ths of a turn: 0.47 rad.
 const ALIKE: i8 = 19;
-/// Offsets from the axis at which an arc gets points [rad].
-const ACROSS_RAD: [f32; 3] = [0.0, 0.2, -0.2];
+/// Offsets from the axis at which an arc gets points, by their sines and cosines: 0, 0.2 and -0.2 rad.
+const ACROSS: [(f32, f32); 3] = {
+    let (sin, cos) = sin_cos(0.2);
+    [(0.0, 1.0), (sin, cos), (-sin, cos)]
+};
 /// Echoes nearer than this always leave a point: what is near must not be missed [mm].
 const NEAR_MM: i32 = 300;
 /// What a sonar at the side sees within this goes on ahead of it, for so much [mm, m].
@@ -112,6 +115,21 @@ struct Echo {
     belief: u8,
 }
 
+/// A beam of a sonar.
+struct Beam {
+    /// Where it begins.
+    apex: Place,
+    /// Sine and cosine of its axis, as [`fractions`].
+    facing: (i32, i32),
+    /// Its axis, in 256ths of a turn.
+    axis: i8,
+}
+
+/// Sine and cosine in 16,384ths, for products of integers.
+pub(super) fn fractions((sin, cos): (f32, f32)) -> (i32, i32) {
+    (round(sin * 16_384.0), round(cos * 16_384.0))
+}
+
 /// The memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Echoes {
@@ -161,18 +179,24 @@ impl Echoes {
     }
 
     /// Takes a reading, made with the robot at `pose`; says whether it denies a near point that has been heard more than once.
-    pub(super) fn take(&mut self, pose: &Pose, reading: &Reading) -> bool {
-        let view = &reading.view;
-        let (x_m, y_m) = pose.to_world(view.x_m, view.y_m);
+    pub(super) fn take(&mut self, robot: &crate::types::Transform, reading: &Reading) -> bool {
+        let (pose, view) = (&robot.pose, &reading.view);
+        let (x_m, y_m) = robot.to_world(view.x_m, view.y_m);
         let apex = Place::new(x_m, y_m);
         let axis_rad = pose.heading_rad + view.axis_rad;
+        let (sin, cos) = sin_cos(axis_rad);
+        let beam = Beam {
+            apex,
+            facing: fractions((sin, cos)),
+            axis: direction(axis_rad),
+        };
         let [front_mm, side_mm] = HORIZON_MM;
         let (range_mm, heard) = match reading.range {
             Range::Valid(range_m) => (round(1_000.0 * range_m), true),
             Range::Clear => (2_500, false),
             Range::Faulty => return false,
         };
-        let denies = self.clear(apex, axis_rad, range_mm);
+        let denies = self.clear(&beam, range_mm);
         let horizon_mm = if reading.sonar == SonarId::Front {
             front_mm
         } else {
@@ -182,43 +206,40 @@ impl Echoes {
             return denies;
         }
         let range_m = 1e-3 * crate::math::from_u32(range_mm.unsigned_abs());
-        let explained = self.explain(apex, axis_rad, range_mm);
+        let explained = self.explain(&beam, range_mm);
         if explained && range_mm > NEAR_MM {
             return denies;
         }
-        let robot = Place::new(pose.x_m, pose.y_m);
+        let here = Place::new(pose.x_m, pose.y_m);
         let count = if explained || range_m < SHORT_M {
             1
         } else {
-            ACROSS_RAD.len()
+            ACROSS.len()
         };
-        for offset_rad in ACROSS_RAD.iter().take(count) {
-            let (sin, cos) = sin_cos(axis_rad + offset_rad);
-            let at = Place::new(x_m + range_m * cos, y_m + range_m * sin);
-            self.put(at, direction(axis_rad), robot);
+        for (by_sin, by_cos) in ACROSS.iter().take(count) {
+            let (aside_sin, aside_cos) = (sin * by_cos + cos * by_sin, cos * by_cos - sin * by_sin);
+            let at = Place::new(x_m + range_m * aside_cos, y_m + range_m * aside_sin);
+            self.put(at, beam.axis, here);
         }
         if reading.sonar != SonarId::Front && range_mm < BESIDE_MM {
             // A wall beside the robot is taken to go on as far as the robot's front, until the sonar has been there.
-            let (sin, cos) = sin_cos(axis_rad);
-            let (ahead_sin, ahead_cos) = sin_cos(pose.heading_rad);
             let at = Place::new(
-                x_m + range_m * cos + GOES_ON_M * ahead_cos,
-                y_m + range_m * sin + GOES_ON_M * ahead_sin,
+                x_m + range_m * cos + GOES_ON_M * robot.cos,
+                y_m + range_m * sin + GOES_ON_M * robot.sin,
             );
-            self.put(at, direction(axis_rad), robot);
+            self.put(at, beam.axis, here);
         }
         denies
     }
 
     /// Takes belief from the points that a beam as far as `range_mm` would have heard; says whether a near one was firm.
-    fn clear(&mut self, apex: Place, axis_rad: f32, range_mm: i32) -> bool {
+    fn clear(&mut self, beam: &Beam, range_mm: i32) -> bool {
         let mut denies = false;
-        let (sin, cos) = sin_cos(axis_rad);
-        let (sin, cos) = (round(sin * 16_384.0), round(cos * 16_384.0));
-        let axis = direction(axis_rad);
+        let (sin, cos) = beam.facing;
+        let axis = beam.axis;
         let until_mm = range_mm - BEYOND_MM - range_mm * BEYOND_SHARE / 256;
         for point in self.points.iter_mut().filter(|point| point.belief > 0) {
-            let (x, y) = point.at.from(apex);
+            let (x, y) = point.at.from(beam.apex);
             if x.abs() > until_mm || y.abs() > until_mm {
                 continue;
             }
@@ -241,15 +262,14 @@ impl Echoes {
     }
 
     /// Whether a point that is known already can have given this echo: it is believed more then, and the echo says nothing new.
-    fn explain(&mut self, apex: Place, axis_rad: f32, range_mm: i32) -> bool {
-        let (sin, cos) = sin_cos(axis_rad);
-        let (sin, cos) = (round(sin * 16_384.0), round(cos * 16_384.0));
+    fn explain(&mut self, beam: &Beam, range_mm: i32) -> bool {
+        let (sin, cos) = beam.facing;
         let within_mm = ALIKE_MM + range_mm * ALIKE_SHARE / 256;
         let (near_mm, far_mm) = (range_mm - within_mm, range_mm + within_mm);
         let (near_mm2, far_mm2) = (near_mm * near_mm, far_mm * far_mm);
         let mut best: Option<&mut Echo> = None;
         for point in self.points.iter_mut().filter(|point| point.belief > 0) {
-            let (x, y) = point.at.from(apex);
+            let (x, y) = point.at.from(beam.apex);
             if x.abs() > far_mm || y.abs() > far_mm {
                 continue;
             }
@@ -267,7 +287,7 @@ impl Echoes {
         let Some(point) = best else {
             return false;
         };
-        point.axis = direction(axis_rad);
+        point.axis = beam.axis;
         point.belief = (point.belief + 1).clamp(FIRM, MOST_BELIEF);
         true
     }

@@ -58,6 +58,12 @@ impl Mission {
             x_m: pose.x_m,
             y_m: pose.y_m,
             heading_rad: atan2(dy, dx),
+            facing: if left_m > 0.0 {
+                let per_m = 1.0 / left_m;
+                (dy * per_m, dx * per_m)
+            } else {
+                (0.0, 1.0)
+            },
             length_m: min(left_m, super::plan::HORIZON_M),
         };
         let mut action = Action {
@@ -90,13 +96,24 @@ impl Mission {
             .step(&state.echoes, pose, &way, around.filter(|_| following));
         let ahead = Way {
             heading_rad: pose.heading_rad,
+            facing: estimate.facing,
             length_m: 1.0,
             ..way
         };
-        state.gap_m = state
-            .echoes
-            .blocking(&ahead, AHEAD_M)
-            .map_or(1.0, |(_, along_m)| along_m - FRONT_M);
+        // Both read the whole memory: each every other tick.
+        state.looks_ahead = !state.looks_ahead;
+        if state.looks_ahead {
+            state.gap_m = state
+                .echoes
+                .blocking(&ahead, AHEAD_M)
+                .map_or(1.0, |(_, along_m)| along_m - FRONT_M);
+        } else {
+            state.gap_m -= estimate.rolled_m;
+            state.near_m = state
+                .echoes
+                .nearest(pose.x_m, pose.y_m)
+                .map_or(f32::MAX, |(_, distance_m)| distance_m);
+        }
         if state.age_s > self.give_up_s {
             state.phase = Phase::Unreachable;
         }
@@ -151,11 +168,8 @@ impl Mission {
         let pose = &estimate.pose;
         state.heading_ref_rad = heading_rad;
         let mut turn = self.turn;
-        let nearest = state.echoes.nearest(pose.x_m, pose.y_m);
-        if let Some((_, distance_m)) = nearest {
-            let rate_rad_s = (distance_m - TIGHT_M) * TIGHT_SLOPE;
-            turn.rate_rad_s = min(turn.rate_rad_s, max(rate_rad_s, TIGHT_RAD_S));
-        }
+        let rate_rad_s = (min(state.near_m, 1.0) - TIGHT_M) * TIGHT_SLOPE;
+        turn.rate_rad_s = min(turn.rate_rad_s, max(rate_rad_s, TIGHT_RAD_S));
         if state.watch.doubts() {
             turn.rate_rad_s = min(turn.rate_rad_s, TIGHT_RAD_S);
         }
@@ -196,7 +210,7 @@ impl Mission {
             return Drive::Release;
         }
         let error_rad = wrap_angle(state.heading_ref_rad - estimate.pose.heading_rad);
-        let near_m = near_m(state, estimate);
+        let near_m = state.near_m;
         let limit_m_s = min(self.free_m_s(state), self.careful_m_s(near_m, error_rad));
         let step = self
             .line
@@ -227,7 +241,7 @@ impl Mission {
     /// Fastest speed with something this near.
     pub(super) fn careful_m_s(&self, near_m: f32, error_rad: f32) -> f32 {
         if near_m < CAREFUL_M {
-            self.around_m_s / (1.0 + abs(error_rad) / CAREFUL_RAD)
+            self.around_m_s / (1.0 + abs(error_rad) * (1.0 / CAREFUL_RAD))
         } else {
             self.cruise_m_s
         }
@@ -254,11 +268,4 @@ impl Mission {
         }
         self.line.steer(speed_m_s, error_rad)
     }
-}
-
-/// Distance from the middle of the axis to what is nearest [m].
-pub(super) fn near_m(state: &State, estimate: &Estimate) -> f32 {
-    let pose = &estimate.pose;
-    let nearest = state.echoes.nearest(pose.x_m, pose.y_m);
-    nearest.map_or(f32::MAX, |(_, distance_m)| distance_m)
 }

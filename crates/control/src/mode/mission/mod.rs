@@ -159,6 +159,10 @@ pub struct State {
     /// Way since the obstacle beside was lost [m].
     lost_m: f32,
     gap_m: f32,
+    /// Distance from the middle of the axis to what is nearest [m].
+    near_m: f32,
+    /// The gap ahead was measured at this tick, not the distance to what is nearest.
+    looks_ahead: bool,
     age_s: f32,
     fade_s: f32,
     servo_left: bool,
@@ -199,7 +203,10 @@ impl Mode for Mission {
 
     fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
         let denies = match &at.estimate.reading {
-            Some(reading) => state.echoes.take(&at.estimate.pose, reading),
+            Some(reading) => {
+                let robot = at.estimate.transform();
+                state.echoes.take(&robot, reading)
+            }
             None => false,
         };
         state.watch.step(at.estimate, denies, self.stale_s)?;

@@ -10,8 +10,8 @@
 //!
 //! Their union is one interval, since neighbours are nearer than 2 R: its two ends are the ways around.
 
-use super::echoes::{CAPACITY, Echoes, Place};
-use crate::math::{atan2, from_u32, min, round, sin_cos, sqrt, wrap_angle};
+use super::echoes::{CAPACITY, Echoes, Place, fractions};
+use crate::math::{atan2, from_u32, min, round, sqrt, wrap_angle};
 use core::f32::consts::{FRAC_PI_2, PI, TAU};
 
 /// Two points nearer than this hang together [mm].
@@ -112,6 +112,8 @@ pub(super) struct Way {
     pub y_m: f32,
     /// Which way [rad].
     pub heading_rad: f32,
+    /// Sine and cosine of that.
+    pub facing: (f32, f32),
     /// How far [m].
     pub length_m: f32,
 }
@@ -200,7 +202,7 @@ impl Search {
         }
         let bearing_rad = about_rad + wrap_angle(atan2(dy, dx) - about_rad);
         if let Some(slot) = self.bearing.get_mut(number) {
-            let coarse = round(bearing_rad / COARSE_RAD);
+            let coarse = round(bearing_rad * (1.0 / COARSE_RAD));
             *slot = i8::try_from(coarse.clamp(-127, 127)).unwrap_or(0);
         }
         let half_rad = half_angle(distance_m);
@@ -265,8 +267,7 @@ pub(super) fn blocking(
     way: &Way,
     half_width_m: f32,
 ) -> Option<(usize, f32)> {
-    let (sin, cos) = sin_cos(way.heading_rad);
-    let (sin, cos) = (round(sin * 16_384.0), round(cos * 16_384.0));
+    let (sin, cos) = fractions(way.facing);
     let from = Place::new(way.x_m, way.y_m);
     let most_mm = round(way.length_m * 1_000.0);
     let half_mm = round(half_width_m * 1_000.0);

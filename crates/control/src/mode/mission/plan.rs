@@ -5,7 +5,7 @@
 
 use super::echoes::{Echoes, Place};
 use super::obstacle::{Obstacle, Search, WAY_M, Way, blocking, half_angle};
-use crate::math::{atan2, wrap_angle};
+use crate::math::{atan2, sin_cos, wrap_angle};
 use crate::types::{Pose, Side};
 use core::f32::consts::FRAC_PI_2;
 
@@ -91,6 +91,7 @@ impl Plan {
             x_m: pose.x_m,
             y_m: pose.y_m,
             heading_rad: wrap_angle(pass_rad),
+            facing: sin_cos(pass_rad),
             length_m: PAST_M,
         };
         let here = Place::new(pose.x_m, pose.y_m);
@@ -139,7 +140,7 @@ fn seen_from(pose: &Pose, place: Place) -> (f32, f32) {
 mod tests {
     use super::*;
     use crate::rig::View;
-    use crate::types::{Range, Reading, SonarId};
+    use crate::types::{Range, Reading, SonarId, Transform};
 
     /// A memory of points, each heard twice by a sonar close to it.
     fn remembered(points_m: &[(f32, f32)]) -> Echoes {
@@ -156,7 +157,7 @@ mod tests {
                 view: View::default(),
                 servo_rad: 0.0,
             };
-            echoes.take(&from, &reading);
+            echoes.take(&Transform::of(from), &reading);
         }
         echoes
     }
@@ -178,6 +179,7 @@ mod tests {
             x_m: 0.0,
             y_m: 0.0,
             heading_rad: 0.0,
+            facing: (0.0, 1.0),
             length_m: HORIZON_M,
         };
         let mut rounds = 0;

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::rig::View;
+use crate::types::Transform;
 
 /// An answer of the front sonar, which looks in a direction from the origin.
 fn answer(range: Range, axis_rad: f32) -> Reading {
@@ -19,7 +20,7 @@ fn answer(range: Range, axis_rad: f32) -> Reading {
 fn heard(answers: &[(Range, f32)]) -> Echoes {
     let mut echoes = Echoes::default();
     for (range, axis_rad) in answers {
-        echoes.take(&Pose::default(), &answer(*range, *axis_rad));
+        echoes.take(&Transform::default(), &answer(*range, *axis_rad));
     }
     echoes
 }
@@ -42,9 +43,9 @@ fn a_beam_that_goes_on_farther_takes_what_was_heard_once() {
     let mut echoes = heard(&[(Range::Valid(0.8), 0.0), (Range::Clear, -0.2)]);
     // Of -0.2, 0 and 0.2 rad the beam about -0.2 covers the first two.
     assert_eq!(echoes.iter().count(), 1);
-    echoes.take(&Pose::default(), &answer(Range::Faulty, 0.2));
+    echoes.take(&Transform::default(), &answer(Range::Faulty, 0.2));
     assert_eq!(echoes.iter().count(), 1, "a faulty sonar says nothing");
-    echoes.take(&Pose::default(), &answer(Range::Valid(0.82), 1.4));
+    echoes.take(&Transform::default(), &answer(Range::Valid(0.82), 1.4));
     assert_eq!(
         echoes.iter().count(),
         4,
@@ -62,7 +63,7 @@ fn silence_from_another_direction_says_nothing() {
     };
     let before = echoes.iter().count();
     for _ in 0..10 {
-        echoes.take(&beside, &answer(Range::Clear, 0.0));
+        echoes.take(&Transform::of(beside), &answer(Range::Clear, 0.0));
     }
     assert_eq!(echoes.iter().count(), before);
 }
@@ -84,7 +85,7 @@ fn a_full_memory_gives_up_the_farthest_point_and_keeps_its_size() {
             x_m: 0.1 * f32::from(step),
             ..Pose::default()
         };
-        echoes.take(&pose, &answer(Range::Valid(0.15), 1.57));
+        echoes.take(&Transform::of(pose), &answer(Range::Valid(0.15), 1.57));
     }
     assert_eq!(echoes.iter().count(), CAPACITY);
     let nearest = echoes.iter().map(|(_, at)| at.x_mm).min().unwrap();
