@@ -154,15 +154,11 @@ impl Echoes {
             .map(|(number, point)| (number, point.at))
     }
 
-    /// The points that have been heard more than once, or are near the robot, which is `here`.
-    pub(super) fn firm(&self, here: Place) -> impl Iterator<Item = (usize, Place)> + '_ {
-        self.points
-            .iter()
-            .enumerate()
-            .filter(move |(_, point)| {
-                point.belief >= FIRM || (point.belief > 0 && point.at.is_within(CLOSE_MM, here))
-            })
-            .map(|(number, point)| (number, point.at))
+    /// Whether a point has been heard more than once, or is near the robot, which is `here`.
+    pub(super) fn is_firm(&self, number: usize, here: Place) -> bool {
+        self.points.get(number).is_some_and(|point| {
+            point.belief >= FIRM || (point.belief > 0 && point.at.is_within(CLOSE_MM, here))
+        })
     }
 
     /// Forgets what was heard once, some time ago. To be called now and then.

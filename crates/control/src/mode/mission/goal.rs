@@ -2,6 +2,7 @@
 
 use super::detour::following;
 use super::gaze::{SWEEP_RAD, look};
+use super::obstacle::Among;
 use super::{Action, Drive, Mission, Phase, Place, Pose, Segment, State, Way, abs, min, sqrt};
 use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
@@ -105,13 +106,13 @@ impl Mission {
         if state.looks_ahead {
             state.gap_m = state
                 .echoes
-                .blocking(&ahead, AHEAD_M)
+                .blocking(&ahead, AHEAD_M, Among::All)
                 .map_or(1.0, |(_, along_m)| along_m - FRONT_M);
         } else {
             state.gap_m -= estimate.rolled_m;
             state.near_m = state
                 .echoes
-                .nearest(pose.x_m, pose.y_m)
+                .nearest(pose.x_m, pose.y_m, None)
                 .map_or(f32::MAX, |(_, distance_m)| distance_m);
         }
         if state.age_s > self.give_up_s {

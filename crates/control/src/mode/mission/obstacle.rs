@@ -20,8 +20,9 @@ pub(super) const LINK_MM: i32 = 290;
 pub(super) const PASS_M: f32 = 0.17;
 /// Half of the width of the way to the goal that must be clear [m].
 pub(super) const WAY_M: f32 = 0.125;
-/// Points searched per tick.
+/// Points searched per tick, and points found.
 const PER_TICK: usize = 4;
+const JOINED_PER_TICK: u8 = 3;
 /// Points farther than this from the robot do not carry the search on [m].
 const SPREAD_M: f32 = 1.6;
 /// Steps of the bearings that are carried along [rad].
@@ -119,36 +120,75 @@ pub(super) struct Way {
 }
 
 impl Echoes {
-    /// The point that blocks a way soonest, and how far along [m].
-    pub(super) fn blocking(&self, way: &Way, half_width_m: f32) -> Option<(usize, f32)> {
-        blocking(self.iter(), way, half_width_m)
-    }
-
-    /// The same among the points that have been heard more than once.
-    pub(super) fn surely_blocking(&self, way: &Way, half_width_m: f32) -> Option<(usize, f32)> {
-        blocking(self.firm(Place::new(way.x_m, way.y_m)), way, half_width_m)
-    }
-
-    /// The point nearest to a place, and its distance [m].
-    pub(super) fn nearest(&self, x_m: f32, y_m: f32) -> Option<(usize, f32)> {
-        self.nearest_of(x_m, y_m, |_| true)
-    }
-
-    /// The same among some of the points.
-    pub(super) fn nearest_of(
+    /// The point that blocks a way soonest, and how far along [m]. Where it lies is asked first: most lie elsewhere.
+    pub(super) fn blocking(
         &self,
-        x_m: f32,
-        y_m: f32,
-        among: impl Fn(usize) -> bool,
+        way: &Way,
+        half_width_m: f32,
+        among: Among,
     ) -> Option<(usize, f32)> {
+        let (sin, cos) = fractions(way.facing);
+        let from = Place::new(way.x_m, way.y_m);
+        let most_mm = round(way.length_m * 1_000.0);
+        let half_mm = round(half_width_m * 1_000.0);
+        let mut nearest_mm = most_mm;
+        let mut found = None;
+        for (number, point) in self.iter() {
+            let (x, y) = point.from(from);
+            if x.abs() > most_mm || y.abs() > most_mm {
+                continue;
+            }
+            let along = (x * cos + y * sin) >> 14;
+            let across = (y * cos - x * sin) >> 14;
+            if along > 0
+                && along < nearest_mm
+                && across.abs() < half_mm
+                && among.has(self, number, from)
+            {
+                nearest_mm = along;
+                found = Some(number);
+            }
+        }
+        let along_m = from_u32(nearest_mm.unsigned_abs()) * 1e-3;
+        found.map(|number| (number, along_m))
+    }
+
+    /// The point nearest to a place, of those of an obstacle or of all, and its distance [m].
+    pub(super) fn nearest(&self, x_m: f32, y_m: f32, of: Option<&Search>) -> Option<(usize, f32)> {
         let from = Place::new(x_m, y_m);
-        let (number, square) = self
-            .iter()
-            .filter(|(number, _)| among(*number))
-            .map(|(number, point)| (number, point.square_mm2(from)))
-            .min_by_key(|(_, square)| *square)?;
+        let mut best: Option<(usize, i32)> = None;
+        for (number, point) in self.iter() {
+            if of.is_none_or(|search| search.has(number)) {
+                let square = point.square_mm2(from);
+                if best.is_none_or(|(_, least)| square < least) {
+                    best = Some((number, square));
+                }
+            }
+        }
+        let (number, square) = best?;
         let square = from_u32(square.unsigned_abs());
         Some((number, sqrt(square) * 1e-3))
+    }
+}
+
+/// Which points count.
+#[derive(Clone, Copy)]
+pub(super) enum Among<'a> {
+    /// All.
+    All,
+    /// Those that are firm.
+    Firm,
+    /// Those that are firm and do not belong to an obstacle.
+    FirmOthers(&'a Search),
+}
+
+impl Among<'_> {
+    fn has(self, echoes: &Echoes, number: usize, here: Place) -> bool {
+        match self {
+            Among::All => true,
+            Among::Firm => echoes.is_firm(number, here),
+            Among::FirmOthers(search) => !search.has(number) && echoes.is_firm(number, here),
+        }
     }
 }
 
@@ -225,6 +265,7 @@ impl Search {
     /// Goes on; gives the obstacle when it is whole.
     pub(super) fn step(&mut self, echoes: &Echoes, x_m: f32, y_m: f32) -> Option<Obstacle> {
         let here = Place::new(x_m, y_m);
+        let mut joined = 0;
         for _ in 0..PER_TICK {
             let Some(number) = self.open.take_first() else {
                 break;
@@ -233,10 +274,20 @@ impl Search {
                 continue;
             };
             let about_rad = f32::from(self.bearing.get(number).copied().unwrap_or(0)) * COARSE_RAD;
-            for (other, point) in echoes.firm(here) {
-                if !self.member.has(other) && point.is_within(LINK_MM, centre) {
-                    self.join(echoes, other, x_m, y_m, about_rad);
+            for (other, point) in echoes.iter() {
+                if self.member.has(other)
+                    || !point.is_within(LINK_MM, centre)
+                    || !echoes.is_firm(other, here)
+                {
+                    continue;
                 }
+                if joined == JOINED_PER_TICK {
+                    // Enough for now: this one is searched again.
+                    self.open.insert(number);
+                    return None;
+                }
+                self.join(echoes, other, x_m, y_m, about_rad);
+                joined += 1;
             }
         }
         (self.open.is_empty() && !self.member.is_empty()).then_some(self.so_far)
@@ -250,7 +301,12 @@ impl Search {
 
 /// Half of the angle that a point at this distance blocks; beyond a right angle where the robot is too near already.
 pub(super) fn half_angle(distance_m: f32) -> f32 {
-    if distance_m > PASS_M {
+    if distance_m > 2.0 * PASS_M {
+        // The arc sine by its series: 6e-5 rad off at most.
+        let sine = PASS_M / distance_m;
+        let z = sine * sine;
+        sine + sine * z * (1.0 / 6.0 + z * (3.0 / 40.0 + z * (15.0 / 336.0)))
+    } else if distance_m > PASS_M {
         let along_m = sqrt(distance_m * distance_m - PASS_M * PASS_M);
         atan2(PASS_M, along_m)
     } else {
@@ -259,32 +315,4 @@ pub(super) fn half_angle(distance_m: f32) -> f32 {
             PI,
         )
     }
-}
-
-/// The point among some that blocks a way soonest, and how far along [m].
-pub(super) fn blocking(
-    points: impl Iterator<Item = (usize, Place)>,
-    way: &Way,
-    half_width_m: f32,
-) -> Option<(usize, f32)> {
-    let (sin, cos) = fractions(way.facing);
-    let from = Place::new(way.x_m, way.y_m);
-    let most_mm = round(way.length_m * 1_000.0);
-    let half_mm = round(half_width_m * 1_000.0);
-    let mut nearest_mm = most_mm;
-    let mut found = None;
-    for (number, point) in points {
-        let (x, y) = point.from(from);
-        if x.abs() > most_mm || y.abs() > most_mm {
-            continue;
-        }
-        let along = (x * cos + y * sin) >> 14;
-        let across = (y * cos - x * sin) >> 14;
-        if along > 0 && along < nearest_mm && across.abs() < half_mm {
-            nearest_mm = along;
-            found = Some(number);
-        }
-    }
-    let along_m = from_u32(nearest_mm.unsigned_abs()) * 1e-3;
-    found.map(|number| (number, along_m))
 }

@@ -4,7 +4,7 @@
 //! the round starts from the point nearest to the side that it keeps to it, so that it follows that one and not the next.
 
 use super::echoes::{Echoes, Place};
-use super::obstacle::{Obstacle, Search, WAY_M, Way, blocking, half_angle};
+use super::obstacle::{Among, Obstacle, Search, WAY_M, Way, half_angle};
 use crate::math::{atan2, sin_cos, wrap_angle};
 use crate::types::{Pose, Side};
 use core::f32::consts::FRAC_PI_2;
@@ -45,7 +45,7 @@ impl Plan {
         around: Option<Side>,
     ) -> bool {
         if !self.busy {
-            let in_way = echoes.surely_blocking(way, WAY_M);
+            let in_way = echoes.blocking(way, WAY_M, Among::Firm);
             self.clear_m = in_way.map_or(f32::MAX, |(_, along_m)| along_m);
             self.same = in_way.is_some_and(|(number, _)| self.search.has(number));
             let beside = around.and_then(|side| self.beside(echoes, pose, side));
@@ -94,11 +94,7 @@ impl Plan {
             facing: sin_cos(pass_rad),
             length_m: PAST_M,
         };
-        let here = Place::new(pose.x_m, pose.y_m);
-        let others = echoes
-            .firm(here)
-            .filter(|(number, _)| !self.search.has(*number));
-        let other = blocking(others, &way, WAY_M);
+        let other = echoes.blocking(&way, WAY_M, Among::FirmOthers(&self.search));
         let Some((number, point)) =
             other.and_then(|(number, _)| Some((number, echoes.get(number)?)))
         else {
@@ -124,7 +120,7 @@ impl Plan {
             Side::Right => 1.0,
         };
         let (x_m, y_m) = pose.to_world(0.0, sign * BESIDE_CENTRE_M);
-        let (number, distance_m) = echoes.nearest_of(x_m, y_m, |number| self.search.has(number))?;
+        let (number, distance_m) = echoes.nearest(x_m, y_m, Some(&self.search))?;
         (distance_m < BESIDE_M).then_some((number, pose.heading_rad + sign * FRAC_PI_2))
     }
 }
