@@ -92,9 +92,11 @@ impl Mission {
         }
         let around = state.detour.as_ref().map(|detour| detour.side);
         let following = following(state.phase);
-        let planned = state
-            .plan
-            .step(&state.echoes, pose, &way, around.filter(|_| following));
+        // Every other tick takes a reading into the memory: the plan is for those between.
+        let planned = estimate.reading.is_none()
+            && state
+                .plan
+                .step(&state.echoes, pose, &way, around.filter(|_| following));
         let ahead = Way {
             heading_rad: pose.heading_rad,
             facing: estimate.facing,

@@ -21,8 +21,8 @@ pub(super) const PASS_M: f32 = 0.17;
 /// Half of the width of the way to the goal that must be clear [m].
 pub(super) const WAY_M: f32 = 0.125;
 /// Points searched per tick, and points found.
-const PER_TICK: usize = 4;
-const JOINED_PER_TICK: u8 = 3;
+const PER_TICK: usize = 3;
+const JOINED_PER_TICK: u8 = 2;
 /// Points farther than this from the robot do not carry the search on [m].
 const SPREAD_M: f32 = 1.6;
 /// Steps of the bearings that are carried along [rad].
