@@ -16,7 +16,7 @@ const REPORT: &str = "report.html";
 /// Simulated seconds that a thread gets through in a second: natively, and with an image on the emulated chip. For the first estimate of
 /// the time left; what is shown later is measured.
 const NATIVE_SPEED: f64 = 1_500.0;
-const EMULATED_SPEED: f64 = 20.0;
+const EMULATED_SPEED: f64 = 50.0;
 
 /// Runs, writes, and prints what came of each experiment.
 pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {

@@ -71,9 +71,9 @@ fn bounds(language: Language, shown: &Shown, bounds: Bounds) -> String {
         language.short(value, decimals)
     };
     let text = match (bounds.min, bounds.max) {
-        (Some(min), Some(max)) => format!("{} … {}", number(min), number(max)),
-        (Some(min), None) => format!("≥ {}", number(min)),
-        (None, Some(max)) => format!("≤ {}", number(max)),
+        (Some(min), Some(max)) => format!("{}\u{a0}…\u{a0}{}", number(min), number(max)),
+        (Some(min), None) => format!("≥\u{a0}{}", number(min)),
+        (None, Some(max)) => format!("≤\u{a0}{}", number(max)),
         (None, None) => return String::new(),
     };
     with_unit(text, shown.unit)
@@ -229,7 +229,7 @@ mod tests {
         };
         assert_eq!(
             bounds(Language::English, &shown, both),
-            "\u{2212}100 … \u{2212}80.2°"
+            "\u{2212}100\u{a0}…\u{a0}\u{2212}80.2°"
         );
         assert_eq!(value(Language::English, &shown, f64::NAN), "never");
     }

@@ -126,8 +126,8 @@ const SOUND_NUMBERS: Text = t(
      equivalen a un 1,8 % de cualquier distancia, algo que ningún sensor del robot puede detectar.",
 );
 const DISTANCES: Text = t(
-    "Distance to the wall with its reference, and PWM of both wheels. The bridge never brakes: the PWM falls to let friction slow the robot.",
-    "Distancia a la pared con su referencia y PWM de ambas ruedas. El puente nunca frena: la PWM disminuye para que el rozamiento detenga el robot.",
+    "Distance to the wall with its reference, and PWM of both wheels.",
+    "Distancia a la pared con su referencia y PWM de ambas ruedas.",
 );
 const ERROR: Text = t(
     "Error of the distance over time: measured distance less reference.",
