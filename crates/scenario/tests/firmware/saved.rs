@@ -102,8 +102,8 @@ fn damaged_copies_are_not_used_and_that_is_told() {
     // The second save went to the first copy.
     older[2_048 + 300] ^= 0x01;
     newer[200] ^= 0x40;
-    both[7] ^= 0x80;
-    both[2_048 + 7] ^= 0x80;
+    both[30] ^= 0x80;
+    both[2_048 + 30] ^= 0x80;
     let default = ParamId::Base.limits().default;
     let neither = (default, Some(Recalled::Neither));
     assert_eq!(started(&image, &older), (0.12, Some(Recalled::FirstAlone)));
