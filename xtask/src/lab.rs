@@ -2,9 +2,12 @@
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc;
 use std::time::Duration;
+
+use serde_json::Value;
 
 /// Longest wait for the lab to say where it listens, and for any answer of it.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -20,12 +23,20 @@ pub(crate) struct Lab {
 
 impl Lab {
     /// Starts `command` with `--no-browser --port 0` and a folder for logs added and waits for the address it prints.
-    pub(crate) fn start(mut command: Command) -> Result<Self, String> {
+    pub(crate) fn start(command: Command) -> Result<Self, String> {
         // Not among the logs of whoever tests.
-        let logs = std::env::temp_dir().join("rumbo-xtask-logs");
+        Self::start_in(command, &std::env::temp_dir().join("rumbo-xtask-logs"))
+    }
+
+    /// The same with this folder for logs.
+    pub(crate) fn start_in(mut command: Command, logs: &Path) -> Result<Self, String> {
+        command.arg("--out").arg(logs);
+        Self::listen(command)
+    }
+
+    fn listen(mut command: Command) -> Result<Self, String> {
         command
-            .args(["--no-browser", "--port", "0", "--out"])
-            .arg(logs)
+            .args(["--no-browser", "--port", "0"])
             .stdin(Stdio::null())
             .stdout(Stdio::piped());
         let mut child = command
@@ -55,6 +66,26 @@ impl Lab {
             .recv_timeout(PATIENCE)
             .map_err(|_| format!("the lab printed no address within {} s", PATIENCE.as_secs()))?;
         Ok(lab)
+    }
+
+    /// Starts `command`, which records nothing, with `--no-browser --port 0` added and waits for the address it prints.
+    pub(crate) fn start_plain(command: Command) -> Result<Self, String> {
+        Self::listen(command)
+    }
+
+    /// Opens the dashboard as a page does.
+    pub(crate) fn open(&mut self) -> Result<Page, String> {
+        Ok(Page(self.socket()?))
+    }
+
+    /// Asks it to end, as Ctrl-C does, and waits until it has.
+    pub(crate) fn end(mut self) -> Result<(), String> {
+        let pid = self.pid().to_string();
+        crate::project::run(Command::new("kill").args(["-TERM", &pid]))?;
+        self.child
+            .wait()
+            .map(drop)
+            .map_err(|error| error.to_string())
     }
 
     /// Its process number.
@@ -150,6 +181,32 @@ impl Drop for Lab {
     fn drop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
+    }
+}
+
+/// A page's WebSocket.
+pub(crate) struct Page(tungstenite::WebSocket<TcpStream>);
+
+impl Page {
+    /// Sends an order.
+    pub(crate) fn say(&mut self, order: &Value) -> Result<(), String> {
+        let message = tungstenite::Message::text(order.to_string());
+        self.0
+            .send(message)
+            .map_err(|error| format!("WebSocket: {error}"))
+    }
+
+    /// The next message.
+    pub(crate) fn read(&mut self) -> Result<Value, String> {
+        let message = self
+            .0
+            .read()
+            .map_err(|error| format!("WebSocket: {error}"))?;
+        let text = message
+            .to_text()
+            .map_err(|error| format!("WebSocket: {error}"))?;
+        // A ping has no text.
+        Ok(serde_json::from_str(text).unwrap_or_default())
     }
 }
 

@@ -7,6 +7,8 @@ mod headless;
 mod lab;
 mod page;
 mod process;
+mod record;
+mod viewers;
 
 use crate::project::Project;
 
@@ -33,7 +35,7 @@ struct Part {
     measure: fn(&Project) -> Result<Vec<Figure>, String>,
 }
 
-const PARTS: [Part; 4] = [
+const PARTS: [Part; 6] = [
     Part {
         name: "emulator",
         what: "simulated time over the processor's of firmware on the emulated Mega, beside simavr",
@@ -53,6 +55,16 @@ const PARTS: [Part; 4] = [
         name: "page",
         what: "the dashboard in Chromium: from start to live plots, age of what is drawn, STOP, frames per second",
         measure: page::measure,
+    },
+    Part {
+        name: "record",
+        what: "logs of killed sessions, an hour of log, the port out and back: some minutes",
+        measure: record::measure,
+    },
+    Part {
+        name: "viewers",
+        what: "twenty pages at once",
+        measure: viewers::measure,
     },
 ];
 

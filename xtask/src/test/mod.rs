@@ -4,6 +4,7 @@
 //! is skipped with the remedy; with `CI=true` that is a failure. Debug builds serve the tests, one release build the
 //! browser and the README, so nothing is built twice in the same way.
 
+mod logs;
 mod readme;
 pub(crate) mod tools;
 mod web;
@@ -45,7 +46,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 13] = [
+const STEPS: [Step; 14] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
@@ -105,6 +106,11 @@ const STEPS: [Step; 13] = [
         name: "browser",
         what: "the dashboard in a real browser",
         check: web::browser,
+    },
+    Step {
+        name: "logs",
+        what: "logs as other programs read them",
+        check: logs::check,
     },
     Step {
         name: "readme",

@@ -76,6 +76,16 @@ pub(crate) fn avr_gdb(project: &Project) -> Result<PathBuf, Stop> {
     program(project, "avr-gdb", &["gdb-avr"], "GDB for the AVR")
 }
 
+/// Python 3 with its environments.
+pub(crate) fn python(project: &Project) -> Result<PathBuf, Stop> {
+    program(
+        project,
+        "python3",
+        &["python3", "python3-venv"],
+        "Python 3.10 or newer",
+    )
+}
+
 /// Node and npm, with the packages of `web/package-lock.json` installed.
 pub(crate) fn node(project: &Project) -> Result<PathBuf, Stop> {
     let node = program(project, "node", &["nodejs", "npm"], "Node 20 or newer")?;

@@ -18,12 +18,13 @@ pub(crate) struct Running {
 }
 
 impl Running {
+    #[allow(dead_code, reason = "not every test needs it")]
     pub(crate) fn start(arguments: &[&str]) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_rumbo"))
-            .args(arguments)
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
+        Self::of(Command::new(env!("CARGO_BIN_EXE_rumbo")).args(arguments))
+    }
+
+    pub(crate) fn of(command: &mut Command) -> Self {
+        let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
         let mut line = String::new();
         BufReader::new(child.stdout.take().unwrap())
             .read_line(&mut line)
@@ -121,6 +122,7 @@ impl Page {
     }
 }
 
+#[allow(dead_code, reason = "not every test needs it")]
 /// An image of `cargo xtask sketches`; `None` where they have not been built.
 pub(crate) fn sketch(name: &str) -> Option<PathBuf> {
     let target = PathBuf::from(env!("CARGO_BIN_EXE_rumbo"));

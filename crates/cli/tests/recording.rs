@@ -1,0 +1,59 @@
+//! Recording under a session that drives: a disk that fills up.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod support;
+
+use rumbo_station::log::Log;
+use serde_json::json;
+use std::process::Command;
+use support::{Page, Running};
+
+#[test]
+fn a_full_disk_is_reported_once_driving_goes_on_and_the_log_is_readable_up_to_there() {
+    let folder = tempfile::tempdir().unwrap();
+    // Files may grow to 40 blocks of 512 bytes, which the system reports as it does a full disk: by a write that fails.
+    let mut command = Command::new("sh");
+    command.args([
+        "-c",
+        "trap '' XFSZ; ulimit -f 40; exec \"$0\" \"$@\"",
+        env!("CARGO_BIN_EXE_rumbo"),
+    ]);
+    command.args(["lab", "--scenario", "mode5", "--speed", "8", "--no-browser"]);
+    command.args(["--port", "0", "--out"]).arg(folder.path());
+    let lab = Running::of(&mut command);
+    let mut page = Page::open(&lab.said);
+    page.wait_for_event("connected");
+    page.say(&json!({"type": "arm"}));
+    page.wait_for_event("is the disk full?");
+    // The robot is still driven: it takes orders, and telemetry comes.
+    page.say(&json!({"type": "reference", "value": 4.0}));
+    page.wait_for_event("done");
+    let (mut first_s, mut told) = (None, 0);
+    page.wait_for("samples", |message| {
+        let events = message["events"].as_array().into_iter().flatten();
+        told += events
+            .filter(|event| {
+                event["text"]
+                    .as_str()
+                    .is_some_and(|text| text.contains("disk full"))
+            })
+            .count();
+        let last_s = message["rows"].as_array()?.last()?[0].as_f64()?;
+        (last_s > *first_s.get_or_insert(last_s) + 5.0).then_some(())
+    });
+    assert_eq!(told, 0, "told again");
+    page.say(&json!({"type": "stop"}));
+    page.wait_for_event("STOP: done");
+    drop(page);
+    lab.end();
+    let path = std::fs::read_dir(folder.path())
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap()
+        .path();
+    assert!(path.metadata().unwrap().len() <= 40 * 512);
+    let log = Log::read(&path).unwrap();
+    assert!(log.cut.is_some() && log.manifest.is_some());
+}
