@@ -68,6 +68,15 @@ pub(crate) struct ServeArgs {
     pub(crate) listen: Option<std::net::IpAddr>,
 }
 
+/// The live bridge.
+#[cfg(feature = "foxglove")]
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct BridgeArgs {
+    /// Show the session to Foxglove or Lichtblick too, on this port of 127.0.0.1; read-only
+    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8765")]
+    pub(crate) foxglove: Option<u16>,
+}
+
 impl ServeArgs {
     /// The address and port.
     pub(crate) fn at(self) -> rumbo_station::ServeAt {
@@ -115,6 +124,9 @@ pub(crate) struct LabArgs {
     pub(crate) gdb: Option<u16>,
     #[command(flatten)]
     pub(crate) serve: ServeArgs,
+    #[cfg(feature = "foxglove")]
+    #[command(flatten)]
+    pub(crate) bridge: BridgeArgs,
     /// Do not open the browser
     #[arg(long)]
     pub(crate) no_browser: bool,
@@ -156,6 +168,9 @@ pub(crate) struct ConnectArgs {
     pub(crate) baud: u32,
     #[command(flatten)]
     pub(crate) serve: ServeArgs,
+    #[cfg(feature = "foxglove")]
+    #[command(flatten)]
+    pub(crate) bridge: BridgeArgs,
     /// Do not open the browser
     #[arg(long)]
     pub(crate) no_browser: bool,
@@ -386,7 +401,10 @@ pub(crate) struct CalibrateArgs {
 #[command(after_help = "\
 Examples:
   rumbo import runs/mode5.csv
-  rumbo import runs/mode5.csv --out logs/mode5.mcap --json")]
+  rumbo import runs/mode5.csv --out logs/mode5.mcap --json
+  rumbo import terminal.txt
+
+A CSV begins with the names of its columns. A capture of a terminal has rows of telemetry and the commands typed, a line each.")]
 pub(crate) struct ImportArgs {
     /// CSV of the original program
     #[arg(value_name = "FILE.csv")]

@@ -26,6 +26,8 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
         at: args.serve.at(),
         speed: 1.0,
         recording: logs::folder(args.out.as_deref()).map(|folder| Recording { folder }),
+        #[cfg(feature = "foxglove")]
+        bridge: lab::bridge(args.bridge)?,
     };
     let robot: Box<dyn Target> = match &args.ghost {
         Some(scenario) => Box::new(Haunted::new(robot, scenario)?),

@@ -4,6 +4,7 @@
 //! as an attachment, so that nothing is lost. `rumbo identify` reads both.
 
 use crate::args::ImportArgs;
+use crate::capture;
 use crate::failure::Failure;
 use crate::output::{self, figure};
 use mcap::records::{MessageHeader, Metadata};
@@ -46,12 +47,15 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
             args.file.display()
         ))
     })?;
-    let recording = parse(&args.file, &text)?;
     let out = match &args.out {
         Some(out) => out.clone(),
         None => PathBuf::from(args.file.file_stem().unwrap_or(args.file.as_os_str()))
             .with_extension("mcap"),
     };
+    if capture::is_one(&text) {
+        return capture::import(args, &text, &out);
+    }
+    let recording = parse(&args.file, &text)?;
     let log = encode(&recording, &args.file, &text).map_err(Failure::input)?;
     std::fs::File::create(&out)
         .and_then(|mut file| file.write_all(&log))
@@ -137,7 +141,7 @@ fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
         wrong(
             1,
             format!(
-                "unknown header `{header}`; the first line must be one of: {}",
+                "unknown header `{header}`; a capture has rows and commands, a CSV begins with one of: {}",
                 known.join(" | ")
             ),
         )

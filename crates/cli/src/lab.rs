@@ -45,6 +45,8 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
         at: args.serve.at(),
         speed: args.speed,
         recording: logs::folder(args.out.as_deref()).map(|folder| Recording { folder }),
+        #[cfg(feature = "foxglove")]
+        bridge: bridge(args.bridge)?,
     };
     let lab = rumbo_station::serve_with(config, Box::new(robot), calibrate::in_dashboard())
         .map_err(Failure::input)?;
@@ -67,6 +69,24 @@ fn debugging(port: u16, args: &LabArgs) -> Result<Debugging, Failure> {
         "a debugger may come at any time: avr-gdb {image} -ex 'target remote :{port}'"
     );
     Ok(debugging)
+}
+
+/// Starts the bridge, if it is wanted, and says where it is.
+#[cfg(feature = "foxglove")]
+pub(crate) fn bridge(
+    args: crate::args::BridgeArgs,
+) -> Result<Option<rumbo_station::Bridge>, Failure> {
+    let Some(port) = args.foxglove else {
+        return Ok(None);
+    };
+    let bridge = rumbo_station::Bridge::start(port).map_err(Failure::Input)?;
+    // A closed stderr leaves nobody to tell.
+    let _ = writeln!(
+        std::io::stderr(),
+        "for Foxglove or Lichtblick: {}",
+        bridge.address()
+    );
+    Ok(Some(bridge))
 }
 
 /// Prints the address, opens the browser, and returns when the lab has ended.

@@ -5,6 +5,7 @@
 
 mod args;
 mod calibrate;
+mod capture;
 mod compare;
 mod connect;
 mod experiments;

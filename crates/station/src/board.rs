@@ -14,7 +14,7 @@ use crate::target::Scene;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::VecDeque;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 
 /// Samples kept: ten minutes of telemetry at 25 Hz.
@@ -228,6 +228,9 @@ pub(crate) struct Board {
     contents: Mutex<Contents>,
     /// Records what is put on the board.
     recorder: Mutex<Option<Recorder>>,
+    /// Shows the same to viewers of another protocol.
+    #[cfg(feature = "foxglove")]
+    bridge: Option<crate::bridge::Bridge>,
     changed: watch::Sender<()>,
 }
 
@@ -276,6 +279,8 @@ impl Board {
                 state: Versioned::default(),
             }),
             recorder: Mutex::new(None),
+            #[cfg(feature = "foxglove")]
+            bridge: None,
             changed: watch::Sender::new(()),
         }
     }
@@ -306,9 +311,20 @@ impl Board {
 
     /// Records something that is not shown.
     pub(crate) fn take(&self, entry: Entry) {
+        let entry = Arc::new(entry);
+        #[cfg(feature = "foxglove")]
+        if let Some(bridge) = &self.bridge {
+            bridge.take(&entry);
+        }
         if let Some(recorder) = &mut *self.recorder() {
             recorder.take(entry);
         }
+    }
+
+    /// What is recorded is also shown to viewers of another protocol.
+    #[cfg(feature = "foxglove")]
+    pub(crate) fn bridged(self, bridge: Option<crate::bridge::Bridge>) -> Self {
+        Self { bridge, ..self }
     }
 
     /// Records raw bytes of the link. Pages get them with the next news: nobody is woken for them.

@@ -4,17 +4,21 @@
 //! HELLO until the robot answers, then reads the parameters, sends heartbeats, and notices silence and restarts. It
 //! never arms. A robot that leaves HELLO unanswered and sends rows of the original's text is talked to in text.
 
-use crate::commands::{CommandManager, Fate, Outcome, QueueFull};
+mod heard;
+mod text;
+
+pub use heard::{Heard, KnownTable, LinkFigures};
+
+use crate::commands::{CommandManager, Fate, QueueFull};
 use crate::meter::Meter;
 use crate::robot_clock::RobotClock;
-use crate::terminal::{Terminal, Told};
+use crate::terminal::Terminal;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
-use rumbo_control::params;
 use rumbo_wire::text::RowKind;
 use rumbo_wire::{
     Ack, Command, Decoder, EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received,
-    Status, Telemetry, ToRobot,
+    ToRobot,
 };
 
 /// Room for a line of the original's text, the longest thing a robot says.
@@ -25,53 +29,10 @@ const HELLO_PERIOD_US: u64 = 300_000;
 const HELLO_ANSWER_US: u64 = 1_000_000;
 /// A sign of life goes out this often, a third of the 500 ms after which the robot stops \[us\].
 const HEARTBEAT_PERIOD_US: u64 = 150_000;
-/// So many HELLOs without an answer, and the robot does not speak frames.
-const HELLOS_UNANSWERED: u32 = 4;
-/// So many rows of text, and it speaks text. As many frames, and it speaks frames after all.
-const WORDS_KNOWN: u32 = 2;
 /// The original program is silent for up to 4 s while it drives \[us\].
 const TEXT_SILENCE_US: u64 = 6_000_000;
 /// The link counts as lost after this long without a frame: 25 telemetry frames \[us\].
 const SILENCE_US: u64 = 1_000_000;
-
-/// What was heard from the robot, in the session's time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Heard {
-    /// The robot answered for the first time, or after silence.
-    Connected(Hello),
-    /// The robot sends rows of the original's text, for the first time or after silence.
-    Text,
-    /// The robot's program started again by itself.
-    Restarted(Hello),
-    /// Nothing came for a second.
-    Lost,
-    /// The fast signals, as of this time \[ms\].
-    Telemetry(i64, Telemetry),
-    /// The slow signals.
-    Status(Status),
-    /// Something happened at this time \[ms\].
-    Event(i64, EventKind),
-    /// A command ended.
-    Ended(Outcome),
-}
-
-/// The parameter table the station knows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct KnownTable {
-    /// Its hash, compared with [`Hello::schema`].
-    pub schema: u32,
-    /// How many parameters it has, numbered from 0.
-    pub len: u8,
-}
-
-impl KnownTable {
-    /// The table this station is built with.
-    pub const OURS: Self = Self {
-        schema: params::SCHEMA,
-        // Numbers of parameters are bytes on the link.
-        len: params::COUNT as u8,
-    };
-}
 
 /// Speaks with one robot.
 #[derive(Debug)]
@@ -153,51 +114,6 @@ impl RobotClient {
             connected: true,
             mode,
             ..Self::new(0, clock_known, KnownTable::OURS)
-        }
-    }
-
-    /// The robot speaks the original's text.
-    pub fn speaks_text(&self) -> bool {
-        self.text
-    }
-
-    /// Which columns the row heard last had, where the robot speaks text.
-    pub(crate) fn row_kind(&self) -> Option<RowKind> {
-        self.row_kind.filter(|_| self.text)
-    }
-
-    /// Nothing at all was heard, though the robot was asked again and again: the original program before its first ON is like that.
-    pub fn is_mute(&self) -> bool {
-        !self.text
-            && self.hello.is_none()
-            && self.hellos >= HELLOS_UNANSWERED
-            && self.heard_bytes == 0
-    }
-
-    /// Takes a command from the operator for a robot that speaks text; false if text has no words for it.
-    pub fn submit_text(&mut self, command: &Command) -> bool {
-        let mode = match *command {
-            Command::Mode(mode) => mode,
-            _ => self.mode,
-        };
-        self.terminal.submit(command, mode)
-    }
-
-    /// Takes a line that a person typed for a robot that speaks text.
-    pub fn type_in(&mut self, line: &str) {
-        self.terminal.type_in(line);
-    }
-
-    /// Another robot may be at the port now: which language it speaks is to be found out, unless that is known from elsewhere.
-    pub fn port_is_back(&mut self) {
-        if self.undecided && self.text {
-            self.text = false;
-            self.connected = false;
-        }
-        self.heard_bytes = 0;
-        if !self.connected {
-            self.hello_sent_us = None;
-            (self.hellos, self.words) = (0, 0);
         }
     }
 
@@ -286,41 +202,6 @@ impl RobotClient {
             }
         }
         self.report_outcomes(heard);
-    }
-
-    /// Takes a row of text, which may tell that the robot speaks no frames.
-    fn hear_row(&mut self, told: Told, now_us: u64, heard: &mut Vec<Heard>) {
-        if !self.text {
-            self.words = self.words.saturating_add(1);
-            let no_frames = !self.connected && self.hellos >= HELLOS_UNANSWERED;
-            if !(no_frames && self.words >= WORDS_KNOWN) {
-                return;
-            }
-            self.text = true;
-            self.manager.forget();
-        }
-        self.words = 0;
-        self.last_heard_us = now_us;
-        if !std::mem::replace(&mut self.connected, true) {
-            heard.push(Heard::Text);
-        }
-        self.mode = told.mode.unwrap_or(self.mode);
-        self.reference = told.reference.unwrap_or(self.reference);
-        self.heading_ref_rad = told.heading_ref_rad.unwrap_or_default();
-        self.row_kind = Some(told.kind);
-        self.frames.add(1, now_us);
-        heard.push(Heard::Telemetry(told.t_ms, told.telemetry));
-    }
-
-    /// A robot that was taken for one of text, and speaks frames.
-    fn hear_frame_in_text(&mut self) {
-        self.words += 1;
-        if self.undecided && self.words >= WORDS_KNOWN {
-            self.text = false;
-            self.connected = false;
-            self.hello_sent_us = None;
-            (self.hellos, self.words) = (0, 0);
-        }
     }
 
     /// Takes a message from the robot and appends what it says.
@@ -457,31 +338,4 @@ impl RobotClient {
             clock_fast_ppm: self.clock.fast_ppm((now_us / 1_000) as i64),
         }
     }
-}
-
-/// Load and quality of the link.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LinkFigures {
-    /// Bytes to the robot [1/s].
-    pub up_bytes_s: f64,
-    /// Bytes from the robot [1/s].
-    pub down_bytes_s: f64,
-    /// Telemetry frames from the robot [1/s].
-    pub telemetry_hz: f64,
-    /// Bytes from the robot since the port was opened.
-    pub heard_bytes: u64,
-    /// Frames from the robot that failed the CRC, wrapping.
-    pub crc_errors: u16,
-    /// Frames from the robot missing by their sequence numbers, wrapping.
-    pub frames_lost: u16,
-    /// Frames that passed the CRC and mean nothing here, wrapping.
-    pub malformed: u32,
-    /// Smoothed time from a command to its acknowledgement \[us\].
-    pub round_trip_us: Option<u64>,
-    /// The operator's commands that wait for their acknowledgement.
-    pub unacknowledged: usize,
-    /// Session time at the robot's time 0, where the clocks did not start together \[ms\].
-    pub clock_offset_ms: Option<i64>,
-    /// By how much the robot's clock is fast, in millionths.
-    pub clock_fast_ppm: Option<i64>,
 }

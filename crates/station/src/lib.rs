@@ -6,6 +6,8 @@
 
 mod assets;
 mod board;
+#[cfg(feature = "foxglove")]
+mod bridge;
 mod catalogue;
 pub mod client;
 pub mod commands;
@@ -37,6 +39,8 @@ mod watch;
 mod web;
 mod words;
 
+#[cfg(feature = "foxglove")]
+pub use bridge::{BRIDGE_PORT, Bridge};
 pub use catalogue::{ModeEntry, Reference, ReferenceKind, modes};
 pub use console::readable;
 pub use guest::{Calibration, Finding, Findings, GuestLink};

@@ -49,7 +49,7 @@ impl Default for ServeAt {
 }
 
 /// How the lab is to be served.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct LabConfig {
     /// Where the dashboard is served.
     pub at: ServeAt,
@@ -57,6 +57,9 @@ pub struct LabConfig {
     pub speed: f64,
     /// Where runs are recorded; `None` for nowhere.
     pub recording: Option<Recording>,
+    /// A bridge to viewers of Foxglove's protocol.
+    #[cfg(feature = "foxglove")]
+    pub bridge: Option<crate::bridge::Bridge>,
 }
 
 impl Default for LabConfig {
@@ -65,6 +68,8 @@ impl Default for LabConfig {
             at: ServeAt::default(),
             speed: 1.0,
             recording: None,
+            #[cfg(feature = "foxglove")]
+            bridge: None,
         }
     }
 }
@@ -202,8 +207,12 @@ pub fn serve_with(
         at,
         speed,
         recording,
+        ..
     } = config;
-    start(at, move |board, orders| {
+    let board = Board::new();
+    #[cfg(feature = "foxglove")]
+    let board = board.bridged(config.bridge);
+    start(at, board, move |board, orders| {
         Session::new(target, board, orders, speed, recording, extras).run()
     })
 }
@@ -213,7 +222,7 @@ pub fn serve_with(
 /// # Errors
 /// [`ServeError`], when the port cannot be opened.
 pub fn serve_log(at: ServeAt, speed: f64, name: String, log: Log) -> Result<Lab, ServeError> {
-    start(at, move |board, orders| {
+    start(at, Board::new(), move |board, orders| {
         Replay::new(name, log, board, orders, speed).run();
         Ok(())
     })
@@ -222,6 +231,7 @@ pub fn serve_log(at: ServeAt, speed: f64, name: String, log: Log) -> Result<Lab,
 /// Serves a board that `session` writes, in a thread of its own, until there are no more orders.
 fn start(
     at: ServeAt,
+    board: Board,
     session: impl FnOnce(Arc<Board>, Orders) -> Result<(), String> + Send + 'static,
 ) -> Result<Lab, ServeError> {
     guard::check_listen(at.address).map_err(ServeError::Address)?;
@@ -230,18 +240,19 @@ fn start(
         io::ErrorKind::AddrInUse => ServeError::PortInUse(at),
         _ => ServeError::Io(at, error),
     })?;
-    start_on(listener, session).map_err(|error| ServeError::Io(at, error))
+    start_on(listener, board, session).map_err(|error| ServeError::Io(at, error))
 }
 
 fn start_on(
     listener: TcpListener,
+    board: Board,
     session: impl FnOnce(Arc<Board>, Orders) -> Result<(), String> + Send + 'static,
 ) -> io::Result<Lab> {
     listener.set_nonblocking(true)?;
     let guard = Guard::new(listener.local_addr()?).map_err(io::Error::other)?;
     let (url, viewers_url) = (guard.url(), guard.viewers_url());
 
-    let board = Arc::new(Board::new());
+    let board = Arc::new(board);
     let stop = Arc::new(AtomicBool::new(false));
     let (orders, queue) = mpsc::sync_channel(ORDERS_WAITING);
     let (shown, waiting) = (

@@ -6,12 +6,12 @@
 
 mod calibrating;
 mod commanding;
+mod recording;
 
 use crate::board::{self, Board, State};
 use crate::client::{Heard, KnownTable, RobotClient};
 use crate::guest::{Calibration, CalibrationState, Guest};
-use crate::log::recorder::Recorder;
-use crate::log::{Burst, Manifest, Recording};
+use crate::log::Recording;
 use crate::observer::Observer;
 use crate::orders::{self, MAX_SPEED, Order};
 use crate::pace::{Pace, SLICE_US};
@@ -288,17 +288,6 @@ impl Session {
         Ok(())
     }
 
-    /// Records the bytes at hand.
-    fn note_bytes(&self, to_robot: bool) {
-        if !self.bytes.is_empty() {
-            self.observer.link(Burst {
-                t_us: self.target.now_us(),
-                to_robot,
-                bytes: self.bytes.clone(),
-            });
-        }
-    }
-
     fn note(&mut self, level: board::Level, text: String) {
         self.observer.note(to_ms(self.target.now_us()), level, text);
     }
@@ -366,43 +355,6 @@ impl Session {
             ..state::describe(&around, &mut self.client, &self.observer)
         }
     }
-
-    /// Begins the log of a run; what was recorded before is complete.
-    fn record(&mut self) {
-        let Some(recording) = &self.recording else {
-            return;
-        };
-        let manifest = Manifest {
-            started: Some(now()),
-            version: env!("CARGO_PKG_VERSION").into(),
-            baud: self.target.baud(),
-            step_us: SLICE_US,
-            ..self.target.manifest()
-        };
-        match Recorder::in_folder(&recording.folder, &manifest) {
-            Ok(recorder) => {
-                let text = format!("recording to {}", recorder.path().display());
-                self.board.record(recorder);
-                self.note(board::Level::Info, text);
-            }
-            Err(error) => self.note(board::Level::Warning, format!("not recording: {error}")),
-        }
-    }
-}
-
-/// The time of day, UTC.
-fn now() -> String {
-    let now = time::OffsetDateTime::now_utc();
-    let (date, clock) = (now.date(), now.time());
-    format!(
-        "{}-{:02}-{:02}T{:02}:{:02}:{:02}Z",
-        date.year(),
-        u8::from(date.month()),
-        date.day(),
-        clock.hour(),
-        clock.minute(),
-        clock.second()
-    )
 }
 
 fn to_ms(us: u64) -> i64 {

@@ -46,7 +46,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 14] = [
+const STEPS: [Step; 15] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
@@ -86,6 +86,11 @@ const STEPS: [Step; 14] = [
         name: "fuzz",
         what: "the fuzz targets find nothing in five seconds each",
         check: fuzz,
+    },
+    Step {
+        name: "bridge",
+        what: "the bridge to Foxglove, which the usual build leaves out",
+        check: bridge,
     },
     Step {
         name: "figures",
@@ -245,6 +250,30 @@ fn fuzz(project: &Project) -> Result<(), Stop> {
     } else {
         Err(Stop::Failed("see the findings above".to_owned()))
     }
+}
+
+fn bridge(project: &Project) -> Result<(), Stop> {
+    let test = [
+        "test",
+        "--locked",
+        "-p",
+        "rumbo-station",
+        "--features",
+        "foxglove",
+        "--test",
+        "bridge",
+    ];
+    run_command(&mut project.cargo(&test))?;
+    // The options of the command line that come with it.
+    let check = [
+        "check",
+        "--locked",
+        "-p",
+        "rumbo-cli",
+        "--features",
+        "foxglove",
+    ];
+    Ok(run_command(&mut project.cargo(&check))?)
 }
 
 fn build(project: &Project) -> Result<(), Stop> {

@@ -84,6 +84,47 @@ pub fn record_run(path: &Path, manifest: &Manifest, run: Run<'_>) -> Result<(), 
     }
 }
 
+/// Writes the log of what a robot of the original program and its terminal have said to each other.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn record_text(path: &Path, manifest: &Manifest, link: &[Burst]) -> Result<(), LogError> {
+    let board = Arc::new(Board::new());
+    board.record(Recorder::at(path, manifest)?);
+    let mut observer = Observer::new(Arc::clone(&board));
+    let mut client = RobotClient::of_text(ModeId::default(), true);
+    let (mut heard, mut state_due_us) = (Vec::new(), 0);
+    for burst in link {
+        observer.link(burst.clone());
+        let t_ms = to_ms(burst.t_us);
+        if burst.to_robot {
+            let line = String::from_utf8_lossy(&burst.bytes);
+            client.type_in(line.trim_end());
+            observer.note(t_ms, Level::Info, format!("sent: {}", line.trim_end()));
+        } else {
+            client.hear(&burst.bytes, burst.t_us, &mut heard);
+            observer.digest(&mut heard, &mut client, t_ms);
+        }
+        observer.publish(t_ms);
+        if burst.t_us >= state_due_us {
+            let around = state::Around {
+                t_us: burst.t_us,
+                simulated: false,
+                speed: 1.0,
+                achieved_speed: 1.0,
+                baud: manifest.baud,
+                true_battery_v: None,
+            };
+            observer.show_state(state::describe(&around, &mut client, &observer));
+            state_due_us = burst.t_us + STATE_PERIOD_US;
+        }
+    }
+    match board.end_recording() {
+        Some(recorder) => recorder.finish(),
+        None => Ok(()),
+    }
+}
+
 fn to_ms(us: u64) -> i64 {
     (us / 1_000) as i64
 }

@@ -18,13 +18,14 @@
 
 mod headless;
 mod manifest;
+pub(crate) mod messages;
 mod reader;
 pub(crate) mod recorder;
-mod schema;
+pub(crate) mod schema;
 mod summary;
 mod writer;
 
-pub use headless::{Run, record_run};
+pub use headless::{Run, record_run, record_text};
 pub use manifest::{Kind, Manifest, Outcome};
 pub use reader::Log;
 pub use recorder::Recording;

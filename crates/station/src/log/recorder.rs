@@ -3,6 +3,7 @@
 //! What a slow disk cannot take is dropped and counted; a disk that fails ends the recording. Both are reported
 //! ([`Recorder::trouble`]), and the robot goes on.
 
+use super::messages::Sink;
 use super::writer::LogWriter;
 use super::{Burst, LogError, Manifest, Outcome, Said};
 use crate::board::{LoggedEvent, State};
@@ -51,7 +52,7 @@ type Trouble = Arc<Mutex<Option<String>>>;
 pub(crate) struct Recorder {
     path: PathBuf,
     /// `None` only while it is dropped.
-    entries: Option<SyncSender<Entry>>,
+    entries: Option<SyncSender<Arc<Entry>>>,
     trouble: Trouble,
     thread: Option<JoinHandle<()>>,
     /// Waits for the disk rather than drop anything.
@@ -130,7 +131,8 @@ impl Recorder {
     }
 
     /// Takes something to record.
-    pub(crate) fn take(&mut self, entry: Entry) {
+    pub(crate) fn take(&mut self, entry: impl Into<Arc<Entry>>) {
+        let entry = entry.into();
         let Some(entries) = &self.entries else {
             return;
         };
@@ -195,7 +197,7 @@ fn tell(trouble: &Trouble, what: String) {
 }
 
 /// Writes what comes until the sender is gone.
-fn write(file: File, manifest: &Manifest, entries: &Receiver<Entry>) -> McapResult<()> {
+fn write(file: File, manifest: &Manifest, entries: &Receiver<Arc<Entry>>) -> McapResult<()> {
     let mut log = LogWriter::new(BufWriter::new(file), manifest)?;
     log.flush()?;
     let mut now_us = 0;
@@ -210,7 +212,10 @@ fn write(file: File, manifest: &Manifest, entries: &Receiver<Entry>) -> McapResu
                 if !dirty {
                     (dirty, due) = (true, Instant::now() + FLUSH);
                 }
-                put(&mut log, entry, &mut now_us)?;
+                match &*entry {
+                    Entry::Outcome(outcome) => log.outcome(outcome)?,
+                    entry => log.entry(entry, &mut now_us)?,
+                }
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return log.finish(),
@@ -219,23 +224,6 @@ fn write(file: File, manifest: &Manifest, entries: &Receiver<Entry>) -> McapResu
             log.flush()?;
             dirty = false;
         }
-    }
-}
-
-/// Scene and parameters have no time of their own: they are of the time that was recorded last.
-fn put(log: &mut LogWriter<BufWriter<File>>, entry: Entry, now_us: &mut u64) -> McapResult<()> {
-    match entry {
-        Entry::Burst(burst) => {
-            *now_us = burst.t_us;
-            log.burst(&burst)
-        }
-        Entry::Said(said) => log.said(&said),
-        Entry::Rows(rows) => rows.iter().try_for_each(|row| log.row(row)),
-        Entry::Event(event) => log.event(&event),
-        Entry::State(state) => log.state(&state),
-        Entry::Scene(scene) => log.scene(*now_us, scene.as_deref()),
-        Entry::Parameters(parameters) => log.parameters(*now_us, &parameters),
-        Entry::Outcome(outcome) => log.outcome(&outcome),
     }
 }
 

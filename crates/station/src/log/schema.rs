@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 
 /// Where messages of one kind go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Topic {
+pub(crate) enum Topic {
     Telemetry,
     State,
     Parameters,
@@ -20,7 +20,7 @@ pub(super) enum Topic {
 }
 
 impl Topic {
-    pub(super) const ALL: [Self; 11] = [
+    pub(crate) const ALL: [Self; 11] = [
         Self::Telemetry,
         Self::State,
         Self::Parameters,
@@ -35,7 +35,7 @@ impl Topic {
     ];
 
     /// Its name in the log.
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Telemetry => "/telemetry",
             Self::State => "/state",
@@ -52,12 +52,12 @@ impl Topic {
     }
 
     /// The topic of this name.
-    pub(super) fn find(name: &str) -> Option<Self> {
+    pub(crate) fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|topic| topic.name() == name)
     }
 
     /// Name and text of its schema.
-    pub(super) fn schema(self) -> (&'static str, Value) {
+    pub(crate) fn schema(self) -> (&'static str, Value) {
         match self {
             Self::Telemetry => ("rumbo.Telemetry", telemetry()),
             Self::State => ("rumbo.State", state()),

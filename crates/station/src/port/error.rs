@@ -13,8 +13,10 @@ impl PortError {
                 "write it as tcp:host:port, and see that something listens there".into()
             }
             io::ErrorKind::PermissionDenied => permission(address),
+            _ if is_file(address) => format!("it is no serial port; {}", present()),
             io::ErrorKind::NotFound | io::ErrorKind::InvalidInput => present(),
-            io::ErrorKind::ResourceBusy => "another program has it open: close that one".into(),
+            io::ErrorKind::ResourceBusy => IN_USE.into(),
+            _ if error.to_string().contains("exclusive lock") => IN_USE.into(),
             _ => format!("is another program using it? {}", present()),
         };
         Self(format!(
@@ -31,11 +33,25 @@ impl fmt::Display for PortError {
 
 impl std::error::Error for PortError {}
 
+const IN_USE: &str =
+    "another program has it open, such as another rumbo or a serial monitor: close that one";
+
+/// A file or a folder, which no port is.
+fn is_file(path: &str) -> bool {
+    std::fs::metadata(path).is_ok_and(|data| data.is_file() || data.is_dir())
+}
+
 /// Who may open it.
 fn permission(address: &str) -> String {
     if cfg!(target_os = "linux") {
-        let group = group(address).unwrap_or_else(|| "dialout".into());
-        return format!("join its group with `sudo usermod -aG {group} $USER`, then log in again");
+        return match group(address) {
+            Some(group) => {
+                format!("join its group with `sudo usermod -aG {group} $USER`, then log in again")
+            }
+            None => format!(
+                "only its owner may open it; allow everybody with `sudo chmod a+rw {address}`"
+            ),
+        };
     }
     if cfg!(windows) {
         return "another program has it open; close that one, such as the serial monitor of the Arduino IDE".into();
@@ -43,11 +59,17 @@ fn permission(address: &str) -> String {
     "check its permissions with `ls -l`; on macOS use the /dev/cu.* name, and close the Arduino IDE's serial monitor".into()
 }
 
-/// The group that a file belongs to.
+/// The group that may read and write a file, if it is one to be joined.
 #[cfg(unix)]
 fn group(path: &str) -> Option<String> {
     use std::os::unix::fs::MetadataExt;
-    let id = std::fs::metadata(path).ok()?.gid().to_string();
+    /// Read and write, for the group.
+    const MAY: u32 = 0o060;
+    let data = std::fs::metadata(path).ok()?;
+    if data.mode() & MAY != MAY || data.gid() == 0 {
+        return None;
+    }
+    let id = data.gid().to_string();
     let groups = std::fs::read_to_string("/etc/group").ok()?;
     groups.lines().find_map(|line| {
         let mut fields = line.split(':');

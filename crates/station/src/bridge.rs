@@ -1,0 +1,149 @@
+//! A live session for viewers of Foxglove's protocol (Foxglove, Lichtblick): the messages of the log, as they are made.
+//!
+//! Read-only: nothing that a viewer sends is taken. Only this machine can connect. What is recorded passes by here on its way; a thread makes
+//! messages of it for the topics that somebody looks at. A viewer that is slow loses messages, nobody waits for it.
+
+use crate::log::messages::Sink;
+use crate::log::recorder::Entry;
+use crate::log::schema::Topic;
+use foxglove::{ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChannel, Schema};
+use foxglove::{WebSocketServer, WebSocketServerHandle};
+use std::convert::Infallible;
+use std::net::Ipv4Addr;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// Where viewers look first.
+pub const BRIDGE_PORT: u16 = 8_765;
+/// Entries that wait.
+const WAITING: usize = 1_024;
+/// Messages that wait for one viewer.
+const BACKLOG: usize = 1_024;
+/// What seldom changes is said again this often, for viewers that came later.
+const AGAIN: Duration = Duration::from_secs(1);
+
+/// The bridge; dropping it ends it.
+#[derive(Debug)]
+pub struct Bridge {
+    server: Option<WebSocketServerHandle>,
+    entries: Option<SyncSender<Arc<Entry>>>,
+    thread: Option<JoinHandle<()>>,
+    port: u16,
+}
+
+impl Bridge {
+    /// Serves on this port of 127.0.0.1; 0 takes any free one.
+    ///
+    /// # Errors
+    /// If the port cannot be had.
+    pub fn start(port: u16) -> Result<Self, String> {
+        let failed = |error: FoxgloveError| {
+            format!(
+                "the bridge cannot be served on 127.0.0.1:{port} ({error}); choose another port with --foxglove"
+            )
+        };
+        let context = Context::new();
+        let channels = Topic::ALL.map(|topic| channel(&context, topic));
+        let channels = channels
+            .into_iter()
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(failed)?;
+        let server = WebSocketServer::new()
+            .name("rumbo")
+            .context(&context)
+            .message_backlog_size(BACKLOG)
+            .bind(Ipv4Addr::LOCALHOST.to_string(), port)
+            .start_blocking()
+            .map_err(failed)?;
+        let (entries, taken) = sync_channel(WAITING);
+        let thread = std::thread::Builder::new()
+            .name("bridge".into())
+            .spawn(move || tell(&Channels(channels), &taken))
+            .map_err(|error| error.to_string())?;
+        Ok(Self {
+            port: server.port(),
+            server: Some(server),
+            entries: Some(entries),
+            thread: Some(thread),
+        })
+    }
+
+    /// What to give a viewer.
+    #[must_use]
+    pub fn address(&self) -> String {
+        format!("ws://127.0.0.1:{}", self.port)
+    }
+
+    /// Takes what is recorded; what does not fit is lost.
+    pub(crate) fn take(&self, entry: &Arc<Entry>) {
+        if let Some(entries) = &self.entries {
+            // Full: viewers are slow.
+            let _ = entries.try_send(Arc::clone(entry));
+        }
+    }
+}
+
+impl Drop for Bridge {
+    fn drop(&mut self) {
+        drop(self.entries.take());
+        if let Some(server) = self.server.take() {
+            drop(server.stop());
+        }
+        let ended = self.thread.take().map(JoinHandle::join);
+        drop(ended);
+    }
+}
+
+fn channel(context: &Arc<Context>, topic: Topic) -> Result<Arc<RawChannel>, FoxgloveError> {
+    let (name, schema) = topic.schema();
+    ChannelBuilder::new(topic.name())
+        .context(context)
+        .message_encoding("json")
+        .schema(Schema::new(
+            name,
+            "jsonschema",
+            schema.to_string().into_bytes(),
+        ))
+        .build_raw()
+}
+
+/// The topics, in the order of their numbers.
+struct Channels(Vec<Arc<RawChannel>>);
+
+impl Sink for &Channels {
+    type Error = Infallible;
+
+    fn put(&mut self, topic: Topic, t_us: u64, data: &[u8]) -> Result<(), Infallible> {
+        if let Some(channel) = self.0.get(topic as usize) {
+            let log_time = Some(t_us.saturating_mul(1_000));
+            channel.log_with_meta(data, PartialMetadata { log_time });
+        }
+        Ok(())
+    }
+}
+
+/// Tells viewers until there is nothing more to tell.
+fn tell(channels: &Channels, entries: &Receiver<Arc<Entry>>) {
+    let (mut scene, mut parameters) = (None, None);
+    let (mut now_us, mut again) = (0, Instant::now() + AGAIN);
+    let mut sink = channels;
+    while let Ok(entry) = entries.recv() {
+        match &*entry {
+            Entry::Scene(_) => scene = Some(Arc::clone(&entry)),
+            Entry::Parameters(_) => parameters = Some(Arc::clone(&entry)),
+            _ => {}
+        }
+        if !channels.0.iter().any(|channel| channel.has_sinks()) {
+            continue;
+        }
+        let Ok(()) = sink.entry(&entry, &mut now_us);
+        if Instant::now() >= again {
+            again = Instant::now() + AGAIN;
+            for entry in [&scene, &parameters].into_iter().flatten() {
+                let Ok(()) = sink.entry(entry, &mut now_us);
+            }
+        }
+    }
+}

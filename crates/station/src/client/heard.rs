@@ -1,0 +1,71 @@
+//! What the station's end of a link tells: what was heard, and how the link does.
+
+use crate::commands::Outcome;
+use rumbo_control::params;
+use rumbo_wire::{EventKind, Hello, Status, Telemetry};
+
+/// What was heard from the robot, in the session's time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Heard {
+    /// The robot answered for the first time, or after silence.
+    Connected(Hello),
+    /// The robot sends rows of the original's text, for the first time or after silence.
+    Text,
+    /// The robot's program started again by itself.
+    Restarted(Hello),
+    /// Nothing came for a second.
+    Lost,
+    /// The fast signals, as of this time \[ms\].
+    Telemetry(i64, Telemetry),
+    /// The slow signals.
+    Status(Status),
+    /// Something happened at this time \[ms\].
+    Event(i64, EventKind),
+    /// A command ended.
+    Ended(Outcome),
+}
+
+/// The parameter table the station knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KnownTable {
+    /// Its hash, compared with [`Hello::schema`].
+    pub schema: u32,
+    /// How many parameters it has, numbered from 0.
+    pub len: u8,
+}
+
+impl KnownTable {
+    /// The table this station is built with.
+    pub const OURS: Self = Self {
+        schema: params::SCHEMA,
+        // Numbers of parameters are bytes on the link.
+        len: params::COUNT as u8,
+    };
+}
+
+/// Load and quality of the link.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LinkFigures {
+    /// Bytes to the robot [1/s].
+    pub up_bytes_s: f64,
+    /// Bytes from the robot [1/s].
+    pub down_bytes_s: f64,
+    /// Telemetry frames from the robot [1/s].
+    pub telemetry_hz: f64,
+    /// Bytes from the robot since the port was opened.
+    pub heard_bytes: u64,
+    /// Frames from the robot that failed the CRC, wrapping.
+    pub crc_errors: u16,
+    /// Frames from the robot missing by their sequence numbers, wrapping.
+    pub frames_lost: u16,
+    /// Frames that passed the CRC and mean nothing here, wrapping.
+    pub malformed: u32,
+    /// Smoothed time from a command to its acknowledgement \[us\].
+    pub round_trip_us: Option<u64>,
+    /// The operator's commands that wait for their acknowledgement.
+    pub unacknowledged: usize,
+    /// Session time at the robot's time 0, where the clocks did not start together \[ms\].
+    pub clock_offset_ms: Option<i64>,
+    /// By how much the robot's clock is fast, in millionths.
+    pub clock_fast_ppm: Option<i64>,
+}

@@ -1,0 +1,57 @@
+//! What of a session goes into its log.
+
+use super::Session;
+use crate::board;
+use crate::log::recorder::Recorder;
+use crate::log::{Burst, Manifest};
+use crate::pace::SLICE_US;
+
+impl Session {
+    /// Begins the log of a run; what was recorded before is complete.
+    pub(super) fn record(&mut self) {
+        let Some(recording) = &self.recording else {
+            return;
+        };
+        let manifest = Manifest {
+            started: Some(now()),
+            version: env!("CARGO_PKG_VERSION").into(),
+            baud: self.target.baud(),
+            step_us: SLICE_US,
+            ..self.target.manifest()
+        };
+        match Recorder::in_folder(&recording.folder, &manifest) {
+            Ok(recorder) => {
+                let text = format!("recording to {}", recorder.path().display());
+                self.board.record(recorder);
+                self.note(board::Level::Info, text);
+            }
+            Err(error) => self.note(board::Level::Warning, format!("not recording: {error}")),
+        }
+    }
+
+    /// Records the bytes at hand.
+    pub(super) fn note_bytes(&self, to_robot: bool) {
+        if !self.bytes.is_empty() {
+            self.observer.link(Burst {
+                t_us: self.target.now_us(),
+                to_robot,
+                bytes: self.bytes.clone(),
+            });
+        }
+    }
+}
+
+/// The time of day, UTC.
+fn now() -> String {
+    let now = time::OffsetDateTime::now_utc();
+    let (date, clock) = (now.date(), now.time());
+    format!(
+        "{}-{:02}-{:02}T{:02}:{:02}:{:02}Z",
+        date.year(),
+        u8::from(date.month()),
+        date.day(),
+        clock.hour(),
+        clock.minute(),
+        clock.second()
+    )
+}
