@@ -34,7 +34,7 @@ pub struct Bridge {
 }
 
 impl Bridge {
-    /// Serves on this port of 127.0.0.1; 0 takes any free one.
+    /// Serves on this port of 127.0.0.1; 0 takes any free one. Not to be called where asynchronous tasks run: it waits.
     ///
     /// # Errors
     /// If the port cannot be had.

@@ -19,13 +19,16 @@ const PATIENCE: Duration = Duration::from_secs(20);
 
 #[tokio::test]
 async fn a_viewer_sees_the_signals_and_poses_and_can_do_nothing() {
-    let bridge = Bridge::start(0).unwrap();
+    let bridge = std::thread::spawn(|| Bridge::start(0))
+        .join()
+        .unwrap()
+        .unwrap();
     let address = bridge.address();
     let config = LabConfig {
         at: ServeAt::here(0),
         speed: 4.0,
-        recording: None,
         bridge: Some(bridge),
+        ..LabConfig::default()
     };
     let _lab = serve(config, Box::new(Toy::default())).unwrap();
     let mut request = address.as_str().into_client_request().unwrap();

@@ -20,7 +20,7 @@ fn a_port_in_use_is_named_with_the_remedy() {
         LabConfig {
             at: ServeAt::here(port),
             speed: 0.0,
-            recording: None,
+            ..LabConfig::default()
         },
         Box::new(Toy::default()),
     )
@@ -42,7 +42,7 @@ fn ending_the_lab_frees_its_port() {
         LabConfig {
             at: ServeAt::here(port),
             speed: 0.0,
-            recording: None,
+            ..LabConfig::default()
         },
         Box::new(Toy::default()),
     )

@@ -19,7 +19,7 @@ pub(crate) fn start(speed: f64) -> Lab {
         LabConfig {
             at: ServeAt::here(0),
             speed,
-            recording: None,
+            ..LabConfig::default()
         },
         Box::new(Toy::default()),
     )
