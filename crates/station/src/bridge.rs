@@ -9,6 +9,7 @@ use crate::log::schema::Topic;
 use foxglove::{ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChannel, Schema};
 use foxglove::{WebSocketServer, WebSocketServerHandle};
 use std::convert::Infallible;
+use std::fmt;
 use std::net::Ipv4Addr;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -25,8 +26,9 @@ const BACKLOG: usize = 1_024;
 const AGAIN: Duration = Duration::from_secs(1);
 
 /// The bridge; dropping it ends it.
-#[derive(Debug)]
 pub struct Bridge {
+    /// What joins channels and server; they do not keep it.
+    _context: Arc<Context>,
     server: Option<WebSocketServerHandle>,
     entries: Option<SyncSender<Arc<Entry>>>,
     thread: Option<JoinHandle<()>>,
@@ -63,6 +65,7 @@ impl Bridge {
             .spawn(move || tell(&Channels(channels), &taken))
             .map_err(|error| error.to_string())?;
         Ok(Self {
+            _context: context,
             port: server.port(),
             server: Some(server),
             entries: Some(entries),
@@ -82,6 +85,12 @@ impl Bridge {
             // Full: viewers are slow.
             let _ = entries.try_send(Arc::clone(entry));
         }
+    }
+}
+
+impl fmt::Debug for Bridge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Bridge at {}", self.address())
     }
 }
 
