@@ -34,13 +34,15 @@ async function stop() {
     took.push(await page.evaluate(async () => {
       const { heard_ms, session_ms } = rumbo.ages;
       const pressed_ms = performance.timeOrigin + performance.now() - (heard_ms - session_ms);
+      const told = () => [...document.querySelectorAll("#events li")].filter((each) => each.textContent.endsWith("disarmed"));
+      const before = told().length;
       document.querySelector("#stop").click();
-      for (;;) {
+      for (let waited_ms = 0; waited_ms < 10_000; waited_ms += 20) {
         await new Promise((done) => setTimeout(done, 20));
-        const line = [...document.querySelectorAll("#events li")].find((each) => each.textContent.endsWith("disarmed"));
-        const t_ms = Number(line?.dataset.t ?? 0) * 1e3;
-        if (t_ms > pressed_ms) return t_ms + 3 - pressed_ms;
+        const lines = told();
+        if (lines.length > before) return Number(lines[0].dataset.t) * 1e3 + 3 - pressed_ms;
       }
+      throw new Error("STOP was not answered");
     }));
   }
   return percentile(took, 0.95).toFixed(0);
