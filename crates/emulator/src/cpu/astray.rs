@@ -6,17 +6,27 @@ use crate::decode::{Code, FLASH_WORDS, is_long};
 use crate::verdict::{Arrival, Verdict};
 
 impl Cpu {
-    /// An indirect jump leads to `target`: if nothing can run there, what kind of jump it was is kept.
+    /// Nothing can run there.
     #[inline(always)]
-    pub(super) fn look_ahead(&mut self, target: u32, arrival: impl FnOnce(&Cpu) -> Arrival) {
+    pub(super) fn is_astray(&self, target: u32) -> bool {
         let code = self.operations[target as usize % FLASH_WORDS].code;
-        if matches!(code, Code::Erased | Code::Illegal) {
-            self.note_astray(target, arrival(self));
-        }
+        matches!(code, Code::Erased | Code::Illegal)
     }
 
+    /// A return, or a jump or call through Z, of this kind and at `at`, leads where nothing can run: that is kept.
     #[cold]
-    fn note_astray(&mut self, target: u32, arrival: Arrival) {
+    #[inline(never)]
+    pub(super) fn note_astray(&mut self, target: u32, code: Code, at: u32) {
+        let arrival = match code {
+            Code::Ret | Code::Reti => Arrival::Return {
+                at,
+                stack_pointer: self.stack_pointer(),
+            },
+            _ => Arrival::Pointer {
+                at,
+                mnemonic: code.mnemonic(),
+            },
+        };
         self.astray = Some((target, arrival));
     }
 

@@ -4,7 +4,7 @@ use super::{Cpu, SRAM_BYTES, SRAM_START};
 use crate::decode::{Code, FLASH_WORDS};
 use crate::io::{Access, Io};
 use crate::status::Status;
-use crate::verdict::{Arrival, Verdict};
+use crate::verdict::Verdict;
 
 const X: usize = 26;
 const Y: usize = 28;
@@ -134,6 +134,14 @@ impl Cpu {
             macro_rules! jump {
                 ($target:expr) => {
                     pc = $target.wrapping_sub(1)
+                };
+            }
+            /// A target that only the running program knows.
+            macro_rules! look_ahead {
+                ($target:expr) => {
+                    if self.is_astray($target) {
+                        self.note_astray($target, op.code, pc);
+                    }
                 };
             }
             macro_rules! branch_if {
@@ -375,8 +383,7 @@ impl Cpu {
                 }
                 Code::Ijmp | Code::Eijmp => {
                     let target = self.pointed(op.code == Code::Eijmp);
-                    let mnemonic = op.code.mnemonic();
-                    self.look_ahead(target, |_| Arrival::Pointer { at: pc, mnemonic });
+                    look_ahead!(target);
                     jump!(target);
                     cycles = 2;
                 }
@@ -390,8 +397,7 @@ impl Cpu {
                         }
                         _ => {
                             let target = self.pointed(op.code == Code::Eicall);
-                            let mnemonic = op.code.mnemonic();
-                            self.look_ahead(target, |_| Arrival::Pointer { at: pc, mnemonic });
+                            look_ahead!(target);
                             (target, 4)
                         }
                     };
@@ -425,10 +431,7 @@ impl Cpu {
                     let target = u32::from(high) << 16 | u32::from(middle) << 8 | u32::from(low);
                     // The program counter has 17 bits.
                     let target = target % FLASH_WORDS as u32;
-                    self.look_ahead(target, |cpu| Arrival::Return {
-                        at: pc,
-                        stack_pointer: cpu.stack_pointer(),
-                    });
+                    look_ahead!(target);
                     jump!(target);
                     cycles = 5;
                     if op.code == Code::Reti {

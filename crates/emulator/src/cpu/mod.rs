@@ -421,7 +421,9 @@ impl Cpu {
         self.push_address(io, self.program_counter, self.cycle);
         self.status.interrupts = false;
         self.program_counter = (u32::from(vector) * 2 + io.vector_base()) % FLASH_WORDS as u32;
-        self.look_ahead(self.program_counter, |_| Arrival::Interrupt { vector });
+        if self.is_astray(self.program_counter) {
+            self.astray = Some((self.program_counter, Arrival::Interrupt { vector }));
+        }
         self.cycle += ENTRY_CYCLES;
         Some(vector)
     }
