@@ -1,6 +1,6 @@
 //! Encoders: every edge leaves its stamp in a ring; the loop makes counts and times of them.
 //!
-//! The handler does no more than that, so it is short. A ring holds 64 edges, 6,400 a second: ten times what the
+//! The handler does no more than that, so it is short. A ring holds 32 edges, 3,200 a second: five times what the
 //! wheels can make. Noise beyond that overwrites stamps, which the count survives.
 
 use super::clock::{self, Stamp};
@@ -9,7 +9,7 @@ use super::shared::{Byte, CriticalSection, Word};
 use rumbo_control::{Edges, Micros, Wheels};
 
 /// Stamps in a ring, a power of two.
-const RING: u8 = 64;
+const RING: u8 = 32;
 /// Edges of a motor turn.
 const POLES: usize = 8;
 

@@ -3,6 +3,7 @@
 #![cfg(test)]
 
 mod board;
+mod experiments;
 mod faults;
 mod interrupts;
 mod pins;

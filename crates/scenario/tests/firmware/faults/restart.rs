@@ -2,6 +2,7 @@
 
 use super::drive::{Drive, setup};
 use crate::board::image;
+use rumbo_control::mode::{Level, Movement};
 use rumbo_emulator::devices::{Cause, Input};
 use rumbo_wire::{Command, FromRobot, Refusal, ResetCause, ToRobot};
 
@@ -37,9 +38,9 @@ fn a_brown_out_leaves_the_wheels_released_and_is_told() {
 
 #[test]
 fn a_supply_that_falls_while_it_drives_resets_it_and_it_stays_released() {
-    let setup = setup("mode5", |setup| {
+    let setup = setup("manual-straight", |setup| {
         let battery = [
-            ("battery.open_circuit_v", 6.4),
+            ("battery.open_circuit_v", 6.1),
             ("battery.resistance_ohm", 2.9),
         ];
         for (key, value) in battery {
@@ -50,9 +51,14 @@ fn a_supply_that_falls_while_it_drives_resets_it_and_it_stays_released() {
         return;
     };
     let mut drive = Drive::under_way(&setup, 1.0);
-    // Wheels that start again, and faster, pull the old battery down.
+    // Full duty at once pulls the old battery down.
     drive.heard.clear();
-    drive.command(Command::Reference(-15.0)).unwrap();
+    let command = Command::Move {
+        movement: Movement::Forward,
+        level: Level::Duty(1.0),
+    };
+    let frame = drive.frame_of(command);
+    drive.sim.send(&frame);
     while !drive
         .heard
         .iter()

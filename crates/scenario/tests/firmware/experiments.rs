@@ -1,0 +1,58 @@
+//! The experiments on the shipped image: what the native robot passes, the chip passes.
+
+use crate::faults::drive::setup;
+use rumbo_scenario::run::run;
+
+/// One seed of each; `cargo xtask campaign` takes more, natively.
+fn pass(scenarios: &[&str]) {
+    for scenario in scenarios {
+        let Some(setup) = setup(scenario, |_| {}) else {
+            return;
+        };
+        let result = run(&setup, 1).unwrap();
+        assert!(result.pass, "{scenario}: {:?}", result.failures);
+    }
+}
+
+#[test]
+fn fronts_walls_and_speeds() {
+    pass(&[
+        "mode1",
+        "mode2",
+        "mode3",
+        "mode4",
+        "mode5",
+        "mode5-reversal",
+        "mode6",
+    ]);
+}
+
+#[test]
+fn the_final_rig() {
+    pass(&["mode1-final", "mode2-final", "mode3-final", "mode4-final"]);
+}
+
+#[test]
+fn routes_and_missions() {
+    pass(&[
+        "mode7",
+        "pursuit-line",
+        "pursuit-curve",
+        "mode8-goals",
+        "mode8-lane",
+    ]);
+}
+
+/// Where the memory is full, a tick of mode 8 takes up to a period: its outputs come late, and the way is some centimetres longer.
+#[test]
+fn the_goal_behind_the_boxes_is_reached_without_a_touch_on_a_way_up_to_4_m() {
+    let Some(setup) = setup("mode8-obstacles", |setup| {
+        if let Some(limit) = setup.scenario.limits.get_mut("path_m") {
+            limit.max = Some(4.0);
+        }
+    }) else {
+        return;
+    };
+    let result = run(&setup, 1).unwrap();
+    assert!(result.pass, "{:?}", result.failures);
+}
