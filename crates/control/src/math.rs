@@ -13,8 +13,6 @@ const ROUNDER: f32 = 12_582_912.0;
 const ROUNDER_BITS: i32 = 0x4B40_0000;
 /// The bit of a float's sign.
 const SIGN: u32 = 0x8000_0000;
-/// The bit of a float's mantissa that is not stored.
-const IMPLICIT: u32 = 0x0080_0000;
 /// Largest magnitude that [`ROUNDER`] rounds.
 const ROUND_LIMIT: f32 = 4_194_303.0;
 
@@ -66,6 +64,8 @@ fn positive_sqrt(x: f32) -> f32 {
 
 #[cfg(not(target_arch = "avr"))]
 fn positive_sqrt(x: f32) -> f32 {
+    /// The bit of a float's mantissa that is not stored.
+    const IMPLICIT: u32 = 0x0080_0000;
     let mut rest = x.to_bits();
     let mut exponent = (rest >> 23) as i16;
     if exponent == 0 {

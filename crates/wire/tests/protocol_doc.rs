@@ -52,7 +52,7 @@ fn the_worked_example_of_a_command_is_right() {
 
 #[test]
 fn the_worked_example_of_telemetry_is_right() {
-    let aged = |range| AgedRange::fresh(range);
+    let aged = AgedRange::fresh;
     let telemetry = Telemetry {
         t_ms: 12_345,
         pose: Pose {

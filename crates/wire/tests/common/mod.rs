@@ -28,7 +28,7 @@ fn range() -> impl Strategy<Value = AgedRange> {
         Just(Range::Clear),
         Just(Range::Faulty)
     ]
-    .prop_map(|range| AgedRange::fresh(range))
+    .prop_map(AgedRange::fresh)
 }
 
 prop_compose! {
