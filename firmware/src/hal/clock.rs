@@ -27,6 +27,9 @@ impl Stamp {
     }
 }
 
+/// The flag of compare C; written as 1 it is cleared.
+const COMPARE_C: u8 = 1 << 3;
+
 /// Ticks since the start, wrapping.
 static TICKS: Byte = Byte::new(0);
 /// The last tick's instant.
@@ -38,10 +41,11 @@ pub(super) fn now(_: CriticalSection<'_>) -> u16 {
     get!(timer_1().tcnt1())
 }
 
-/// Compare C interrupts again after `counts`; for its handler.
+/// Compare C interrupts again after `counts`, and not before: what it may have had to say until now is taken back.
 #[inline(always)]
 pub(super) fn trigger_again_in(counts: u16, section: CriticalSection<'_>) {
     put!(timer_1().ocr1c(), now(section).wrapping_add(counts));
+    put!(timer_1().tifr1(), COMPARE_C);
 }
 
 /// Ticks so far, wrapping.

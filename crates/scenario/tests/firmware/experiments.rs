@@ -42,17 +42,3 @@ fn routes_and_missions() {
         "mode8-lane",
     ]);
 }
-
-/// Where the memory is full, a tick of mode 8 takes up to a period: its outputs come late, and the way is some centimetres longer.
-#[test]
-fn the_goal_behind_the_boxes_is_reached_without_a_touch_on_a_way_up_to_4_m() {
-    let Some(setup) = setup("mode8-obstacles", |setup| {
-        if let Some(limit) = setup.scenario.limits.get_mut("path_m") {
-            limit.max = Some(4.0);
-        }
-    }) else {
-        return;
-    };
-    let result = run(&setup, 1).unwrap();
-    assert!(result.pass, "{:?}", result.failures);
-}
