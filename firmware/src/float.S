@@ -10,7 +10,9 @@
 ; ---------------------------------------------------------------------------------------------------- A - B, A + B
 
     .global __subsf3
+    .type __subsf3, @function
     .global __addsf3
+    .type __addsf3, @function
 any:                            ; a zero changes nothing, unless both are
     movw r24, r30
     movw r20, r26
@@ -211,13 +213,21 @@ zero:
 ; r24: -1, 0 or 1 where A is less, equal or greater. Where one is not a number: what makes the comparison false.
 
     .global __ltsf2
+    .type __ltsf2, @function
     .global __lesf2
+    .type __lesf2, @function
     .global __eqsf2
+    .type __eqsf2, @function
     .global __nesf2
+    .type __nesf2, @function
     .global __cmpsf2
+    .type __cmpsf2, @function
     .global __gtsf2
+    .type __gtsf2, @function
     .global __gesf2
+    .type __gesf2, @function
     .global __unordsf2
+    .type __unordsf2, @function
 __gtsf2:
 __gesf2:
     set

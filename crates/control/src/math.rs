@@ -182,7 +182,7 @@ pub const fn sin_cos(angle_rad: f32) -> (f32, f32) {
     }
 }
 
-/// Largest angle of [`rotate`] [rad]: what its series leaves out is below a tenth of the last bit.
+/// Largest angle of [`rotate`] [rad]: what its series leaves out is below 4e-8, half of the last bit of a cosine.
 const ROTATE_RAD: f32 = 0.03;
 
 /// Sine and cosine of an angle that differs from a known one by `by_rad`. `known` are sine and cosine of the known angle, `angle_rad` is

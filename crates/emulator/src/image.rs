@@ -75,7 +75,7 @@ impl Image {
         self.data_end
     }
 
-    /// Functions by address, ascending.
+    /// Functions by address, ascending; of several names for one address the last is the one shown.
     pub fn functions(&self) -> &[Symbol] {
         &self.functions
     }

@@ -58,6 +58,30 @@ fn the_arc_tangent_errs_by_less_than_a_millionth_all_around() {
 }
 
 #[test]
+fn sine_and_cosine_turned_on_by_small_angles_keep_to_the_angle_for_a_second() {
+    for start in [-3.0f32, -0.7, 0.0, 1.57, 2.5] {
+        for by in [-ROTATE_RAD, -0.011, 1e-4, 0.02, ROTATE_RAD, 0.04] {
+            let (mut angle, mut known) = (start, sin_cos(start));
+            for tick in 1..=100u32 {
+                angle = wrap_angle(angle + by);
+                known = rotate(known, by, angle);
+                let (true_sin, true_cos) = f64::from(angle).sin_cos();
+                // Rounding of the angle itself and of the two products, tick by tick.
+                let most = 1e-6 + 3e-7 * f64::from(tick);
+                assert!(
+                    (f64::from(known.0) - true_sin).abs() < most,
+                    "{start} {by} {tick}"
+                );
+                assert!(
+                    (f64::from(known.1) - true_cos).abs() < most,
+                    "{start} {by} {tick}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn wrapped_angles_are_the_same_angle_within_one_turn() {
     for x in samples(-4.0 * PI, 4.0 * PI) {
         let wrapped = wrap_angle(x);

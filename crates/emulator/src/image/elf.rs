@@ -7,6 +7,7 @@ use super::{EEPROM_BYTES, Image, ImageError, Symbol};
 use crate::cpu::{FLASH_BYTES, RAMEND, SRAM_START};
 use object::read::elf::{FileHeader, ProgramHeader};
 use object::{Endianness, Object, ObjectSection, ObjectSymbol, SymbolKind, elf};
+use std::cmp::Reverse;
 
 /// Where the toolchain puts data.
 const DATA_SPACE: u64 = 0x80_0000;
@@ -132,10 +133,15 @@ fn read_symbols(image: &mut Image, file: &object::File) -> Result<(), ImageError
             size: usize::from(RAMEND) + 1,
         });
     }
-    // Of several names for one place the one with a size, which is a function's own.
-    let by_place = |symbol: &Symbol| (symbol.address, symbol.size == 0, symbol.name.clone());
+    // Of several names for one place the last one counts: one with a size, which is a function's own.
+    let by_place = |symbol: &Symbol| {
+        (
+            symbol.address,
+            symbol.size != 0,
+            Reverse(symbol.name.clone()),
+        )
+    };
     image.functions.sort_by_key(by_place);
-    image.functions.dedup_by_key(|function| function.address);
     image.variables.sort();
     Ok(())
 }

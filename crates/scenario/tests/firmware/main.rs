@@ -5,6 +5,7 @@
 mod board;
 mod experiments;
 mod faults;
+mod float;
 mod interrupts;
 mod pins;
 mod same_bits;

@@ -28,7 +28,7 @@ fn compare(seed: u64) {
     });
     let (mut world, mut outputs, mut told) = (World::new(seed), Outputs::default(), Vec::new());
     let (mut worst, mut driven) = ([0; 9], 0);
-    let mut late = [0; 9];
+    let (mut ticks, mut late) = ([0; 9], [0; 9]);
     for tick in 1..=TICKS {
         let inputs = world.inputs(tick, &outputs);
         outputs = robot.tick(&inputs);
@@ -36,6 +36,7 @@ fn compare(seed: u64) {
         let bytes = world.bytes(tick);
         board.arrive(&bytes);
         let (left, cycles) = board.tick(&inputs);
+        ticks[world.mode() as usize] += 1;
         late[world.mode() as usize] += u32::from(cycles > IN_TIME);
         assert_eq!(
             left,
@@ -63,7 +64,7 @@ fn compare(seed: u64) {
         driven += u32::from(outputs.drive != Outputs::default().drive);
     }
     println!(
-        "seed {seed}: {TICKS} ticks, {driven} of them driven, by mode: most cycles to the outputs {worst:?}, late {late:?}"
+        "seed {seed}: {TICKS} ticks, {driven} of them driven, by mode: most cycles to the outputs {worst:?}, late {late:?} of {ticks:?}"
     );
     for (mode, (worst, most)) in worst.into_iter().zip(MOST).enumerate() {
         assert!(worst <= most, "mode {mode}: {worst} cycles");
