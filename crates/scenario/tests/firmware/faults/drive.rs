@@ -16,6 +16,14 @@ const HEARTBEAT_US: u64 = 100_000;
 /// A wheel slower than this stands [rad/s].
 const STANDSTILL_RAD_S: f64 = 0.05;
 
+/// Towards a wall, along one, straight on, and around boxes; and when each is well under way [s].
+const DRIVES: [(&str, f64); 4] = [
+    ("mode1-final", 1.4),
+    ("mode4-final", 2.0),
+    ("mode6", 3.0),
+    ("mode8-obstacles", 2.0),
+];
+
 /// The robot under way.
 pub(crate) struct Drive {
     pub(crate) sim: Sim,
@@ -50,6 +58,14 @@ pub(crate) fn setup_of(
     let mut setup = Library::new().setup(scenario, &overrides).unwrap();
     changes(&mut setup);
     Some(setup)
+}
+
+/// The robot under way in modes 1, 4, 6 and 8, one after the other; none where the image has not been built.
+pub(crate) fn under_way_in_each() -> impl Iterator<Item = Drive> {
+    DRIVES.into_iter().filter_map(|(scenario, at_s)| {
+        println!("{scenario}");
+        Some(Drive::under_way(&setup(scenario, |_| {})?, at_s))
+    })
 }
 
 impl Drive {

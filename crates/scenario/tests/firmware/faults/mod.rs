@@ -3,6 +3,7 @@
 
 pub(crate) mod drive;
 mod link;
+mod modes;
 mod restart;
 mod sensors;
 mod values;

@@ -1,6 +1,6 @@
 //! The program starts again in the middle of a drive.
 
-use super::drive::{Drive, setup};
+use super::drive::{Drive, setup, under_way_in_each};
 use crate::board::image;
 use rumbo_control::mode::{Level, Movement};
 use rumbo_emulator::devices::{Cause, Input};
@@ -23,17 +23,20 @@ fn has_started_again(drive: &mut Drive, cause: ResetCause) {
     );
 }
 
+/// The chip is reset in the middle of each drive.
+fn starts_again_when_reset(how: Cause, told: ResetCause) {
+    for mut drive in under_way_in_each() {
+        let from_s = drive.now_s();
+        let chip = drive.sim.mega_mut().unwrap().chip_mut();
+        chip.input(chip.cycle(), Input::Reset(how));
+        drive.released_after_s(from_s, 0.1);
+        has_started_again(&mut drive, told);
+    }
+}
+
 #[test]
 fn a_brown_out_leaves_the_wheels_released_and_is_told() {
-    let Some(setup) = setup("mode1-final", |_| {}) else {
-        return;
-    };
-    let mut drive = Drive::under_way(&setup, 1.4);
-    let from_s = drive.now_s();
-    let chip = drive.sim.mega_mut().unwrap().chip_mut();
-    chip.input(chip.cycle(), Input::Reset(Cause::BrownOut));
-    drive.released_after_s(from_s, 0.1);
-    has_started_again(&mut drive, ResetCause::BrownOut);
+    starts_again_when_reset(Cause::BrownOut, ResetCause::BrownOut);
 }
 
 #[test]
@@ -80,36 +83,29 @@ fn a_supply_that_falls_while_it_drives_resets_it_and_it_stays_released() {
 
 #[test]
 fn a_tick_that_hangs_is_reset_by_the_watchdog_within_140_ms() {
-    let (Some(image), Some(setup)) = (image(), setup("mode1-final", |_| {})) else {
+    let Some(image) = image() else {
         return;
     };
-    let mut drive = Drive::under_way(&setup, 1.4);
-    let from_s = drive.now_s();
     let place = image
         .function_named("rumbo_inputs_latched")
         .unwrap()
         .address;
     let was = image.flash()[2 * place as usize..][..2].try_into().unwrap();
-    let chip = drive.sim.mega_mut().unwrap().chip_mut();
-    chip.cpu_mut().write_flash(place, FOR_EVER);
-    // Whatever it does after the reset hangs too, until the program is put right.
-    let took_s = drive.released_after_s(from_s, 0.145);
-    println!("released {took_s:.3} s after the tick began to hang");
-    let chip = drive.sim.mega_mut().unwrap().chip_mut();
-    chip.cpu_mut().write_flash(place, u16::from_le_bytes(was));
-    drive.wait_s(0.3);
-    has_started_again(&mut drive, ResetCause::Watchdog);
+    for mut drive in under_way_in_each() {
+        let from_s = drive.now_s();
+        let chip = drive.sim.mega_mut().unwrap().chip_mut();
+        chip.cpu_mut().write_flash(place, FOR_EVER);
+        // Whatever it does after the reset hangs too, until the program is put right.
+        let took_s = drive.released_after_s(from_s, 0.145);
+        println!("released {took_s:.3} s after the tick began to hang");
+        let chip = drive.sim.mega_mut().unwrap().chip_mut();
+        chip.cpu_mut().write_flash(place, u16::from_le_bytes(was));
+        drive.wait_s(0.3);
+        has_started_again(&mut drive, ResetCause::Watchdog);
+    }
 }
 
 #[test]
 fn the_reset_button_leaves_the_wheels_released_and_is_told() {
-    let Some(setup) = setup("mode5", |_| {}) else {
-        return;
-    };
-    let mut drive = Drive::under_way(&setup, 1.0);
-    let from_s = drive.now_s();
-    let chip = drive.sim.mega_mut().unwrap().chip_mut();
-    chip.input(chip.cycle(), Input::Reset(Cause::External));
-    drive.released_after_s(from_s, 0.1);
-    has_started_again(&mut drive, ResetCause::External);
+    starts_again_when_reset(Cause::External, ResetCause::External);
 }

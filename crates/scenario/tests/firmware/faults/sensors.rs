@@ -93,6 +93,13 @@ fn a_noisy_encoder_ends_without_a_contact() {
     }
 }
 
+/// An old battery, and something besides the motors that draws on it.
+const WEAK: [(&str, f64); 3] = [
+    ("battery.open_circuit_v", 7.0),
+    ("battery.capacity_ah", 0.1),
+    ("battery.electronics_a", 2.0),
+];
+
 #[test]
 fn a_battery_below_its_limit_stops_the_robot_and_it_does_not_start_again() {
     let robot = include_str!("../../../../../robots/memoria.toml").replace(
@@ -102,31 +109,28 @@ fn a_battery_below_its_limit_stops_the_robot_and_it_does_not_start_again() {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("with_divider.toml");
     std::fs::write(&path, robot).unwrap();
     let changes = |setup: &mut Setup| {
-        setup
-            .scenario
-            .plant
-            .insert("battery.open_circuit_v".into(), 7.0);
-        setup
-            .scenario
-            .plant
-            .insert("battery.capacity_ah".into(), 0.1);
-        setup
-            .scenario
-            .plant
-            .insert("battery.electronics_a".into(), 2.0);
+        let weak = WEAK.map(|(name, value)| (name.to_owned(), value));
+        setup.scenario.plant.extend(weak);
     };
-    let Some(setup) = setup_of(path.to_str().unwrap(), "mode5", changes) else {
-        return;
-    };
-    let mut drive = Drive::new(&setup);
+    for scenario in ["mode5", "mode4-final", "mode6", "mode8-obstacles"] {
+        let Some(setup) = setup_of(path.to_str().unwrap(), scenario, changes) else {
+            return;
+        };
+        println!("{scenario}");
+        runs_down(&setup);
+    }
+}
+
+/// Drives until the battery is too low.
+fn runs_down(setup: &Setup) {
+    let mut drive = Drive::new(setup);
     drive.wait_s(0.3);
     for (id, value) in setup.control_parameters().unwrap() {
         let id = id as u8;
         drive.command(Command::SetParam { id, value }).unwrap();
     }
     drive.command(Command::Mode(setup.scenario.mode)).unwrap();
-    drive.command(Command::Reference(6.0)).unwrap();
-    drive.command(Command::Arm).unwrap();
+    drive.follow(setup, 6.0);
     while drive.told(EventKind::Faulted(Fault::BatteryLow)).is_none() {
         drive.wait_s(0.1);
         assert!(drive.now_s() < 30.0, "{:?}", drive.status());

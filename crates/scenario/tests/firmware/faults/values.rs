@@ -1,33 +1,37 @@
 //! Values that are none, and memory that has decayed.
 
-use super::drive::{Drive, setup};
+use super::drive::{Drive, setup, under_way_in_each};
+use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_wire::{Command, EventKind, Recalled, Refusal};
 
 #[test]
 fn no_parameter_takes_a_value_that_is_not_a_number() {
-    let Some(setup) = setup("mode5", |_| {}) else {
-        return;
-    };
-    let mut drive = Drive::under_way(&setup, 1.0);
-    for id in ParamId::ALL {
-        let id = id as u8;
-        let answer = drive.command(Command::SetParam {
-            id,
-            value: f32::NAN,
-        });
-        let refused = [Err(Refusal::NotFinite), Err(Refusal::Armed)];
-        assert!(refused.contains(&answer), "{id} {answer:?}");
+    for mut drive in under_way_in_each() {
+        let ids = [ParamId::Base, ParamId::WallKp, ParamId::LinkTimeout];
+        let before = ids.map(|id| drive.param(id));
+        for id in ParamId::ALL {
+            let id = id as u8;
+            let answer = drive.command(Command::SetParam {
+                id,
+                value: f32::NAN,
+            });
+            let refused = [Err(Refusal::NotFinite), Err(Refusal::Armed)];
+            assert!(refused.contains(&answer), "{id} {answer:?}");
+        }
+        let told = match drive.status().mode {
+            ModeId::Mission => Command::Goal {
+                x_m: f32::NAN,
+                y_m: 0.0,
+            },
+            _ => Command::Reference(f32::NAN),
+        };
+        assert_eq!(drive.command(told), Err(Refusal::NotFinite));
+        let status = drive.status();
+        assert!(status.armed && status.fault.is_none(), "{status:?}");
+        assert_eq!(ids.map(|id| drive.param(id)), before);
+        drive.touched_nothing();
     }
-    assert_eq!(
-        drive.command(Command::Reference(f32::NAN)),
-        Err(Refusal::NotFinite)
-    );
-    assert!(drive.status().armed && drive.speed_rad_s() > 1.0);
-    for id in [ParamId::Base, ParamId::WallKp, ParamId::LinkTimeout] {
-        assert_eq!(drive.param(id), id.limits().default);
-    }
-    drive.touched_nothing();
 }
 
 #[test]
