@@ -2,8 +2,9 @@
 /** The band below the plots: the states of the mode's machine along the time axis. */
 import uPlot from '../vendor/uplot/uPlot.js';
 import { create } from './dom.js';
-import { FONT, GUTTER_PX, commonOptions, drawMark, makeNavigable, timeAxis, valueAxis } from './plot.js';
-import { said, t } from './text.js';
+import { commonOptions, drawMark, makeNavigable, timeAxis, valueAxis } from './plot.js';
+import { stateWords } from './stateline.js';
+import { t } from './text.js';
 import { STATE_COLOURS, colours, stateColour } from './theme.js';
 
 /** @typedef {import('./store.js').Stretch} Stretch */
@@ -21,9 +22,9 @@ export class StateBand {
     this.#store = store;
     this.#view = view;
     this.plot = new uPlot({
-      ...commonOptions(view),
+      ...commonOptions(view, false),
       scales: { x: { time: false, auto: false }, y: { range: [0, 1] } },
-      axes: [timeAxis(true), { ...valueAxis(), values: () => [], grid: { show: false }, label: t('state'), labelSize: 14, labelFont: FONT, size: GUTTER_PX - 14 }],
+      axes: [timeAxis(true), { ...valueAxis(), values: () => [], grid: { show: false } }],
       series: [{}, { show: false }],
       hooks: {
         setSelect: [(/** @type {uPlot} */ plot) => {
@@ -53,19 +54,22 @@ export class StateBand {
     const { ctx, bbox } = plot;
     const [from_s, to_s] = this.#view.range_s;
     ctx.save();
+    ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+    ctx.textBaseline = 'middle';
+    ctx.textAlign = 'right';
+    ctx.fillStyle = colours.dim;
+    ctx.fillText(t('state'), bbox.left - 4 * devicePixelRatio, bbox.top + bbox.height / 2);
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
-    ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
-    ctx.textBaseline = 'middle';
     ctx.textAlign = 'left';
     for (const stretch of this.#store.stretches) {
       if (stretch.to_s < from_s || stretch.from_s > to_s) continue;
       const left = plot.valToPos(Math.max(stretch.from_s, from_s), 'x', true);
       const right = plot.valToPos(Math.min(stretch.to_s, to_s), 'x', true);
       // More states than colours: the later ones are paler, and each begins with a line.
-      ctx.globalAlpha = stretch.faulted ? 0.55 : stretch.armed ? (stretch.state < STATE_COLOURS ? 0.55 : 0.3) : 0.25;
-      ctx.fillStyle = stretch.faulted ? colours.bad : stretch.armed ? stateColour(stretch.state) : colours.dim;
+      ctx.globalAlpha = stretch.faulted ? 0.55 : stretch.armed ? ((stretch.state ?? 0) < STATE_COLOURS ? 0.55 : 0.3) : 0.25;
+      ctx.fillStyle = stretch.faulted ? colours.bad : stretch.armed ? stateColour(stretch.state ?? 0) : colours.dim;
       ctx.fillRect(left, bbox.top, right - left, bbox.height);
       ctx.globalAlpha = 1;
       ctx.fillStyle = colours.panel;
@@ -82,7 +86,7 @@ export class StateBand {
   /** @param {Stretch} stretch */
   #name(stretch) {
     const mode = this.#view.modes.find((each) => each.id === stretch.mode);
-    const state = stretch.faulted ? t('fault') : stretch.armed ? said(mode?.states[stretch.state] ?? `state ${stretch.state}`) : t('off');
+    const state = stretch.faulted ? t('fault') : stretch.armed ? stateWords(mode, stretch.state) : t('off');
     return `${stretch.mode}: ${state}`;
   }
 }

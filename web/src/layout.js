@@ -7,8 +7,9 @@ import { UNITS, signal } from './signals.js';
 import { t } from './text.js';
 
 /**
- * One plot. All its signals have the same unit. `min` and `max` are the limits of a locked axis; null: as the values are.
- * @typedef {{title: string, signals: string[], min: number | null, max: number | null, weight: number}} PlotSpec
+ * One plot. Its signals have one unit, or two: those of the second have the axis on the right. `min` and `max` are the limits of the axis on
+ * the left if it is locked, `right` those of the other; null: as the values are.
+ * @typedef {{title: string, signals: string[], min: number | null, max: number | null, right?: [number, number] | null, weight: number}} PlotSpec
  *
  * @typedef {{window_s: number, plots: PlotSpec[]}} Layout
  */
@@ -52,10 +53,13 @@ export function initial(mode) {
   return { window_s: WINDOW_S, plots: titles.flatMap((title) => PLOTS.filter((each) => each.title === title)).map((each) => ({ ...each })) };
 }
 
-/** The unit of a plot's signals. @param {PlotSpec} spec */
-export function unitOf(spec) {
-  return signal(spec.signals[0] ?? '')?.unit ?? 'cm';
+/** The units of signals, in the order in which they come. @param {string[]} signals */
+export function unitsOf(signals) {
+  return [...new Set(signals.flatMap((name) => signal(name)?.unit ?? []))];
 }
+
+/** How many units a plot may have: one for each of its axes. */
+export const MOST_UNITS = 2;
 
 /** Why something is no layout. */
 export class BadLayout extends Error {}
@@ -67,6 +71,9 @@ function check(right, why) {
 
 /** @param {unknown} value @returns {value is number} */
 const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
+
+/** @param {unknown} low @param {unknown} high */
+const isSpan = (low, high) => isNumber(low) && isNumber(high) && low < high;
 
 /**
  * A layout from what a file or the browser kept.
@@ -87,12 +94,13 @@ function checkedPlot(from, index) {
   check(from !== null && typeof from === 'object' && typeof from.title === 'string' && from.title.length <= 60, t('{} has no title', here));
   check(Array.isArray(from.signals) && from.signals.length > 0, t('{} has no signals', here));
   for (const name of from.signals) check(typeof name === 'string' && signal(name) !== null, t('{} has a signal that is none: {}', here, String(name)));
-  const units = new Set(from.signals.map((/** @type {string} */ name) => signal(name)?.unit));
-  check(units.size === 1, t('the signals of {} have several units: {}', here, [...units].join(', ')));
-  const { min = null, max = null, weight = 4 } = from;
-  check((min === null && max === null) || (isNumber(min) && isNumber(max) && min < max), t('the limits of {} are none', here));
+  const units = unitsOf(from.signals);
+  check(units.length <= MOST_UNITS, t('the signals of {} have more than two units: {}', here, units.join(', ')));
+  const { min = null, max = null, right = null, weight = 4 } = from;
+  check((min === null && max === null) || isSpan(min, max), t('the limits of {} are none', here));
+  check(right === null || (Array.isArray(right) && right.length === 2 && isSpan(right[0], right[1])), t('the limits of {} are none', here));
   check(isNumber(weight) && weight >= 1 && weight <= 20, t('the weight of {} must be {} to {}', here, 1, 20));
-  return { title: from.title, signals: [...new Set(/** @type {string[]} */ (from.signals))], min, max, weight };
+  return { title: from.title, signals: [...new Set(/** @type {string[]} */ (from.signals))], min, max, ...(right ? { right } : {}), weight };
 }
 
 /** A file's text. @param {Layout} layout */

@@ -7,6 +7,8 @@ import { format } from './units.js';
 /** @typedef {import('./types.js').State} State */
 /** @typedef {import('./types.js').LinkBytes} LinkBytes */
 
+/** A clock that is more wrong than a ceramic resonator's [ppm]. */
+const WRONG_CLOCK_PPM = 10_000;
 /** Lines kept of the bytes. */
 const KEPT = 400;
 /** Bytes of a frame that are shown. */
@@ -46,6 +48,8 @@ export class LinkMeter {
       [t('dropped: link full'), String(link.dropped), link.dropped > 0],
       [t('commands unconfirmed'), String(link.unacknowledged), link.unacknowledged > 0],
       [t('control ticks late'), String(robot.overruns), robot.overruns > 0],
+      [t('robot started at'), link.clock_offset_ms === undefined ? t('as the station') : `${format(link.clock_offset_ms / 1e3, 2)} s`, false],
+      [t('robot\'s clock'), link.clock_fast_ppm === undefined ? '–' : t(link.clock_fast_ppm < 0 ? '{} ppm slow' : '{} ppm fast', Math.abs(link.clock_fast_ppm)), Math.abs(link.clock_fast_ppm ?? 0) > WRONG_CLOCK_PPM],
     ];
     for (const [name, text, wrong] of figures) {
       const value = this.#values.get(name) ?? this.#figure(name);

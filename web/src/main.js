@@ -127,6 +127,10 @@ addEventListener('keydown', (event) => {
   if (event.key === '.') replay.step(1);
 });
 
+const top = element('top', HTMLElement);
+// Dialogs open below it, however many lines it takes.
+new ResizeObserver(() => document.documentElement.style.setProperty('--header', `${top.offsetHeight}px`)).observe(top);
+
 /** @param {FromServer} message */
 function receive(message) {
   header.heard();
@@ -166,7 +170,9 @@ function receive(message) {
       meter.update(state);
       map.target = state.robot.armed && state.robot.errand.route && state.robot.errand.end === null ? state.robot.reference : null;
       map.setErrand(state.robot.errand);
-      parameters.setMode(state.robot.mode, state.robot.foreign);
+      parameters.setMode(state.robot.mode, state.robot.text ? t('the robot speaks text: it does not tell them') : state.robot.foreign ? t('the robot has another table: not shown') : '');
+      // Check and calibration are made of commands that such a robot does not know.
+      document.body.classList.toggle('foreign', state.robot.foreign || Boolean(state.robot.text));
       map.servo_rad = state.robot.servo_rad;
       break;
     case 'parameters':
@@ -211,6 +217,8 @@ Object.assign(window, {
     onMap: (at) => map.toCanvas(at),
     /** The plots and what is seen of them. */
     plots: () => ({ layout: plots.layout, range_s: plots.range_s, mark_s: plots.mark_s, following: plots.following }),
+    /** What is seen of a plot's axes. @param {string} title */
+    scales: (title) => plots.scales(title),
     /** For measurements: times from hearing to the frame after drawing [ms], the clocks of page and session, a frame at once. */
     ages,
     draw: () => plots.draw(),

@@ -18,8 +18,8 @@ const MOVEMENTS = [
   { id: 9, sign: '↖', name: 'arc left' }, { id: 1, sign: '↑', name: 'forward' }, { id: 10, sign: '↗', name: 'arc right' },
   { id: 3, sign: '↺', name: 'turn left about the centre' }, { id: 0, sign: '■', name: 'release both wheels' }, { id: 4, sign: '↻', name: 'turn right about the centre' },
   { id: 11, sign: '↙', name: 'arc backward, centre on the left' }, { id: 2, sign: '↓', name: 'backward' }, { id: 12, sign: '↘', name: 'arc backward, centre on the right' },
-  { id: 5, sign: 'L ↑', name: 'pivot on the left wheel, forward' }, { id: 6, sign: 'L ↓', name: 'pivot on the left wheel, backward' },
-  { id: 7, sign: 'R ↑', name: 'pivot on the right wheel, forward' }, { id: 8, sign: 'R ↓', name: 'pivot on the right wheel, backward' },
+  { id: 5, sign: `${t('L|wheel')} ↑`, name: 'pivot on the left wheel, forward' }, { id: 6, sign: `${t('L|wheel')} ↓`, name: 'pivot on the left wheel, backward' },
+  { id: 7, sign: `${t('R|wheel')} ↑`, name: 'pivot on the right wheel, forward' }, { id: 8, sign: `${t('R|wheel')} ↓`, name: 'pivot on the right wheel, backward' },
 ];
 const RELEASE = 0;
 /** Forward and backward, left and right, to a movement. @type {Record<string, number>} */

@@ -27,7 +27,7 @@ class Line {
     this.row = create('tr', {},
       create('td', { textContent: parameter.name, title: said(parameter.description) }),
       create('td', {}, this.input),
-      create('td', { textContent: parameter.unit }),
+      create('td', { textContent: unitWords(parameter.unit) }),
       create('td', { className: 'number', textContent: `${formatFloat(parameter.min)} … ${formatFloat(parameter.max)}` }),
       create('td', { className: 'number', textContent: formatFloat(parameter.default) }),
       create('td', { className: 'acts' }, this.apply, this.revert, this.note),
@@ -68,7 +68,7 @@ class Line {
     if (!this.edited && !refused && !parameter.pending && this.input.value !== held) this.input.value = held;
     this.apply.hidden = this.revert.hidden = this.input.value === held && !refused;
     this.row.className = parameter.pending ? 'pending' : refused ? 'bad' : this.edited ? 'edited' : '';
-    setText(this.note, parameter.pending ? t('waiting…') : refused ? t('refused: {}', said(refused)) : parameter.value === null ? t('not read yet') : '');
+    setText(this.note, parameter.pending ? t('waiting…') : refused ? t('refused: {}', said(refused)) : parameter.value === null ? (document.body.classList.contains('replay') ? t('not in the log') : t('not read yet')) : '');
   }
 }
 
@@ -76,6 +76,9 @@ export class ParameterTable {
   #body = element('parameters', HTMLTableSectionElement);
   #all = element('all-parameters', HTMLInputElement);
   #note = element('parameter-note', HTMLSpanElement);
+  #save = element('save-parameters', HTMLButtonElement);
+  #reset = element('reset-parameters', HTMLButtonElement);
+  #table = element('parameter-section', HTMLElement);
   #send;
   /** @type {Map<number, Line>} */
   #lines = new Map();
@@ -85,8 +88,8 @@ export class ParameterTable {
   constructor(send) {
     this.#send = send;
     this.#all.addEventListener('change', () => this.#filter());
-    element('save-parameters', HTMLButtonElement).addEventListener('click', () => send({ type: 'save_params' }));
-    element('reset-parameters', HTMLButtonElement).addEventListener('click', () => send({ type: 'reset_params' }));
+    this.#save.addEventListener('click', () => send({ type: 'save_params' }));
+    this.#reset.addEventListener('click', () => send({ type: 'reset_params' }));
   }
 
   /** @param {Parameter[]} parameters */
@@ -102,10 +105,12 @@ export class ParameterTable {
   /**
    * Shows the parameters of this mode and those of all modes.
    * @param {number} mode
-   * @param {boolean} foreign the robot has another table
+   * @param {string} why there are no values, if there are none
    */
-  setMode(mode, foreign) {
-    setText(this.#note, foreign ? t('the robot has another table: not shown') : '');
+  setMode(mode, why) {
+    setText(this.#note, why);
+    for (const button of [this.#save, this.#reset]) button.hidden = why !== '';
+    this.#table.classList.toggle('without', why !== '');
     if (mode === this.#mode) return;
     this.#mode = mode;
     this.#filter();
@@ -121,3 +126,6 @@ export class ParameterTable {
     this.#body.replaceChildren(...[...own, ...others].map(({ row }) => row));
   }
 }
+
+/** A unit as people write it. @param {string} unit */
+const unitWords = (unit) => unit.replace(/([a-z])2\b/g, '$1²');

@@ -36,7 +36,7 @@ export function toPng(panel) {
     x += context.measureText(text).width + 12 * ratio;
   };
   write(`${t(panel.spec.title)} [${t(panel.unit)}]`, colours.text);
-  for (const { label, colour } of shown(panel)) write(t(label), colours[colour]);
+  for (const { label, colour, right, unit } of shown(panel)) write(right ? `${t(label)} [${t(unit)}]` : t(label), colours[colour]);
   const [from_s, to_s] = limits(panel, 'x');
   context.fillStyle = colours.dim;
   context.textAlign = 'right';
@@ -46,7 +46,7 @@ export function toPng(panel) {
 
 /** The signals whose curves are seen. @param {PlotPanel} panel */
 function shown(panel) {
-  return panel.signals.filter((_signal, index) => panel.plot.series[index + 1]?.show && panel.plot.data[index + 1]?.some((value) => typeof value === 'number'));
+  return panel.curves.filter((_curve, index) => panel.plot.series[index + 1]?.show && panel.plot.data[index + 1]?.some((value) => typeof value === 'number'));
 }
 
 /** @param {PlotPanel} panel @param {string} scale @returns {[number, number]} */
@@ -59,29 +59,35 @@ function limits(panel, scale) {
 export function toSvg(panel, { store }) {
   const [from_s, to_s] = limits(panel, 'x');
   const [low, high] = limits(panel, 'y');
-  const x = (/** @type {number} */ t_s) => LEFT + ((t_s - from_s) / (to_s - from_s)) * (WIDTH - LEFT - RIGHT);
-  const y = (/** @type {number} */ value) => HEIGHT - BOTTOM - ((value - low) / (high - low)) * (HEIGHT - TOP - BOTTOM);
+  const other = panel.rightUnit === null ? null : limits(panel, 'right');
+  const right_px = other ? LEFT : RIGHT;
+  const x = (/** @type {number} */ t_s) => LEFT + ((t_s - from_s) / (to_s - from_s)) * (WIDTH - LEFT - right_px);
+  const height = ([from, to] = [low, high]) => (/** @type {number} */ value) => HEIGHT - BOTTOM - ((value - from) / (to - from)) * (HEIGHT - TOP - BOTTOM);
+  const y = height();
+  const yRight = height(other ?? undefined);
   const parts = [
-    ...ticks(low, high, 6).map((value) => `<path class="grid" d="M${LEFT} ${y(value).toFixed(1)}H${WIDTH - RIGHT}"/><text x="${LEFT - 6}" y="${(y(value) + 4).toFixed(1)}" text-anchor="end">${format(value, places(high - low))}</text>`),
+    ...ticks(low, high, 6).map((value) => `<path class="grid" d="M${LEFT} ${y(value).toFixed(1)}H${WIDTH - right_px}"/><text x="${LEFT - 6}" y="${(y(value) + 4).toFixed(1)}" text-anchor="end">${format(value, places(high - low))}</text>`),
+    ...(other ? ticks(...other, 6) : []).map((value) => `<text x="${WIDTH - right_px + 6}" y="${(yRight(value) + 4).toFixed(1)}">${format(value, places((other?.[1] ?? 0) - (other?.[0] ?? 0)))}</text>`),
     ...ticks(from_s, to_s, 8).map((t_s) => `<path class="grid" d="M${x(t_s).toFixed(1)} ${TOP}V${HEIGHT - BOTTOM}"/><text x="${x(t_s).toFixed(1)}" y="${HEIGHT - BOTTOM + 16}" text-anchor="middle">${format(t_s, places(to_s - from_s))}</text>`),
     ...store.stretches.slice(1).filter((stretch) => stretch.from_s > from_s && stretch.from_s < to_s)
       .map((stretch) => `<path class="state" d="M${x(stretch.from_s).toFixed(1)} ${TOP}V${HEIGHT - BOTTOM}"/>`),
   ];
-  let right = LEFT;
-  const curves = shown(panel).map(({ name, label, kind, colour }) => {
+  let next = LEFT;
+  const curves = shown(panel).map(({ name, label, kind, colour, right, unit }) => {
     const ink = INK[colour] ?? '#222222';
-    const place = right;
-    right += 34 + 7 * t(label).length;
-    return `<path d="${path(store.tableOf(name), name, [from_s, to_s], x, y, kind === 'reference')}" fill="none" stroke="${ink}" stroke-width="1.4" stroke-dasharray="${DASH[kind]}" clip-path="url(#in)"/>
-<path d="M${place} ${TOP - 10}h18" stroke="${ink}" stroke-width="2" stroke-dasharray="${DASH[kind]}"/><text x="${place + 22}" y="${TOP - 6}">${escaped(t(label))}</text>`;
+    const words = right ? `${t(label)} [${t(unit)}]` : t(label);
+    const place = next;
+    next += 34 + 7 * words.length;
+    return `<path d="${path(store.tableOf(name), name, [from_s, to_s], x, right ? yRight : y, kind === 'reference')}" fill="none" stroke="${ink}" stroke-width="1.4" stroke-dasharray="${DASH[kind]}" clip-path="url(#in)"/>
+<path d="M${place} ${TOP - 10}h18" stroke="${ink}" stroke-width="2" stroke-dasharray="${DASH[kind]}"/><text x="${place + 22}" y="${TOP - 6}">${escaped(words)}</text>`;
   });
   const text = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${WIDTH} ${HEIGHT}" width="${WIDTH}" height="${HEIGHT}" font-family="sans-serif" font-size="12">
 <style>.grid{stroke:#ddd}.state{stroke:#888;stroke-dasharray:2 4}</style>
-<rect width="100%" height="100%" fill="#fff"/><clipPath id="in"><rect x="${LEFT}" y="${TOP}" width="${WIDTH - LEFT - RIGHT}" height="${HEIGHT - TOP - BOTTOM}"/></clipPath>
+<rect width="100%" height="100%" fill="#fff"/><clipPath id="in"><rect x="${LEFT}" y="${TOP}" width="${WIDTH - LEFT - right_px}" height="${HEIGHT - TOP - BOTTOM}"/></clipPath>
 ${[...parts, ...curves].join('\n')}
-<rect x="${LEFT}" y="${TOP}" width="${WIDTH - LEFT - RIGHT}" height="${HEIGHT - TOP - BOTTOM}" fill="none" stroke="#555"/>
+<rect x="${LEFT}" y="${TOP}" width="${WIDTH - LEFT - right_px}" height="${HEIGHT - TOP - BOTTOM}" fill="none" stroke="#555"/>
 <text x="${WIDTH - RIGHT}" y="${TOP - 6}" text-anchor="end" font-weight="bold">${escaped(`${t(panel.spec.title)} [${t(panel.unit)}]`)}</text>
-<text x="${(LEFT + WIDTH - RIGHT) / 2}" y="${HEIGHT - 6}" text-anchor="middle">${escaped(t('time [s]'))}</text>
+<text x="${(LEFT + WIDTH - right_px) / 2}" y="${HEIGHT - 6}" text-anchor="middle">${escaped(t('time [s]'))}</text>
 </svg>
 `;
   return new Blob([text], { type: 'image/svg+xml' });

@@ -2,8 +2,8 @@
 /** One plot: its curves, the numbers beside their names, its axis, and what the pointer does in it. */
 import uPlot from '../vendor/uplot/uPlot.js';
 import { create, setText } from './dom.js';
-import { unitOf } from './layout.js';
-import { UNITS, signal } from './signals.js';
+import { curvesOf, linesOf } from './curves.js';
+import { UNITS } from './signals.js';
 import { t } from './text.js';
 import { colours } from './theme.js';
 import { format } from './units.js';
@@ -11,14 +11,12 @@ import { format } from './units.js';
 /** @typedef {import('./plots.js').Plots} Plots */
 /** @typedef {import('./store.js').Store} Store */
 /** @typedef {import('./layout.js').PlotSpec} PlotSpec */
-/** @typedef {import('./signals.js').Signal} Signal */
+/** @typedef {import('./curves.js').Curve} Curve */
 
 export const GUTTER_PX = 46;
 export const FONT = '11px system-ui, sans-serif';
-/** Height of a plot's title, as in the style sheet. */
-export const HEAD_PX = 20;
-/** From so many lines in sight on the coarse copy is drawn: more than a plot is wide. */
-const MANY_LINES = 4_000;
+/** Right of the plot, where the time axis ends in half a label. */
+const EDGE_PX = 16;
 /** A drag that goes further than this along both axes is a box [px]. */
 const BOX_PX = 25;
 
@@ -26,10 +24,8 @@ export class PlotPanel {
   #view;
   #spec;
   #store;
-  #table;
-  /** @type {Signal[]} */
-  #signals;
-  /** Limits of the axis while it is zoomed into. @type {[number, number] | null} */
+  curves;
+  /** Limits of the axes, left and right, while they are zoomed into. @type {[[number, number], [number, number] | null] | null} */
   #zoomed = null;
   #lock = create('button', { type: 'button', className: 'small', textContent: t('lock'), title: t('Keep the limits of the axis as they are') });
   #chips;
@@ -46,25 +42,26 @@ export class PlotPanel {
     this.#spec = spec;
     this.#store = store;
     this.#view = view;
-    this.#signals = spec.signals.flatMap((name) => signal(name) ?? []);
-    this.#table = store.tableOf(spec.signals[0] ?? '');
+    this.curves = curvesOf(spec);
     const body = create('div', { className: 'plot-body' });
     this.plot = this.#make(body);
-    this.#chips = this.#signals.map((each, index) => this.#chip(each, index + 1));
-    const head = this.#head();
-    this.parts = [head, body];
+    this.#chips = this.curves.map((each, index) => this.#chip(each, index + 1));
+    this.head = this.#head();
+    this.parts = [this.head, body];
   }
 
   get spec() {
     return this.#spec;
   }
 
-  get signals() {
-    return this.#signals;
+  /** Unit of the axis on the left. */
+  get unit() {
+    return this.curves[0]?.unit ?? 'cm';
   }
 
-  get unit() {
-    return unitOf(this.#spec);
+  /** Unit of the axis on the right, if there is one. */
+  get rightUnit() {
+    return this.curves.at(-1)?.right ? this.curves.at(-1)?.unit ?? null : null;
   }
 
   #head() {
@@ -73,43 +70,53 @@ export class PlotPanel {
     edit.addEventListener('click', () => this.#view.edit(this));
     this.#lock.setAttribute('aria-pressed', String(this.#spec.min !== null));
     this.#lock.addEventListener('click', () => this.#toggleLock());
+    const left = this.#chips.filter(({ right }) => !right);
+    const right = this.#chips.filter((chip) => chip.right);
+    const unit = this.rightUnit === null ? '' : create('i', { textContent: `${t(this.rightUnit)} ▸`, title: t('These have the axis on the right') });
     return create('div', { className: 'plot-head' }, create('b', { textContent: t(this.#spec.title) }), create('i', { textContent: t(this.unit) }),
-      create('div', { className: 'plot-curves' }, ...this.#chips.map(({ chip }) => chip)), this.#lock, edit);
+      create('div', { className: 'plot-curves' }, ...left.map(({ chip }) => chip), unit, ...right.map(({ chip }) => chip)), this.#lock, edit);
   }
 
   #toggleLock() {
-    const { min, max } = this.plot.scales['y'] ?? {};
-    const locked = this.#spec.min === null && min !== undefined && max !== undefined && min !== null && max !== null;
-    this.#view.change(this.#spec, { ...this.#spec, min: locked ? min : null, max: locked ? max : null });
+    const spans = ['y', 'right'].map((scale) => this.#span(scale));
+    const [left, right] = this.#spec.min === null ? spans : [];
+    this.#view.change(this.#spec, { ...this.#spec, min: left?.[0] ?? null, max: left?.[1] ?? null, right: right ?? null });
   }
 
-  /** The axis is as it was before it was zoomed into. */
+  /** What is seen of an axis. @param {string} scale @returns {[number, number] | null} */
+  #span(scale) {
+    const { min, max } = this.plot.scales[scale] ?? {};
+    return typeof min === 'number' && typeof max === 'number' ? [min, max] : null;
+  }
+
+  /** The axes are as they were before they were zoomed into. */
   resetAxis() {
     this.#zoomed = null;
   }
 
-  /** Limits of the axis, for what is in sight. @param {number | null} low @param {number | null} high @returns {[number, number]} */
-  #limits(low, high) {
-    if (this.#zoomed) return this.#zoomed;
-    if (this.#spec.min !== null && this.#spec.max !== null) return [this.#spec.min, this.#spec.max];
+  /**
+   * Limits of an axis, for what is in sight.
+   * @param {boolean} right
+   * @param {number | null} low
+   * @param {number | null} high
+   * @returns {[number, number]}
+   */
+  #limits(right, low, high) {
+    const { min, max, right: kept } = this.#spec;
+    const zoomed = this.#zoomed?.[right ? 1 : 0];
+    if (zoomed) return zoomed;
+    if (right && kept) return kept;
+    if (!right && min !== null && max !== null) return [min, max];
     // Whole steps, so that the axis does not tremble with the noise.
-    const { step } = UNITS[this.unit];
+    const { step } = UNITS[(right ? this.rightUnit : null) ?? this.unit];
     if (low === null || low === undefined || high === null) return [0, 10 * step];
     return [Math.floor(low / step - 0.05) * step, Math.ceil(high / step + 0.05) * step];
-  }
-
-  /** The lines that are drawn: all, or where there are more than can be seen the coarse ones. */
-  data() {
-    const [from_s, to_s] = this.#view.range_s;
-    const many = this.#table.indexAt(to_s) - this.#table.indexAt(from_s) > MANY_LINES;
-    const lines = many ? this.#table.coarse : this.#table;
-    return /** @type {uPlot.AlignedData} */ ([lines.t, ...this.#signals.map(({ name }) => lines.columns.get(name) ?? [])]);
   }
 
   draw() {
     const [min, max] = this.#view.range_s;
     this.plot.batch(() => {
-      this.plot.setData(this.data(), false);
+      this.plot.setData(/** @type {uPlot.AlignedData} */ (linesOf(this.#store, this.curves, [min, max])), false);
       this.plot.setScale('x', { min, max });
     });
     this.label();
@@ -121,20 +128,20 @@ export class PlotPanel {
     const data = this.plot.data;
     const at = cursor ?? (data[0]?.length ?? 0) - 1;
     const { mark_s } = this.#view;
-    const { decimals } = UNITS[this.unit];
-    this.#chips.forEach(({ chip, value, name }, index) => {
+    this.#chips.forEach(({ chip, value, name, unit }, index) => {
+      const { decimals } = UNITS[unit];
       const column = /** @type {(number | null | undefined)[]} */ (data[index + 1] ?? []);
       const unused = !plottedIn(column);
       if (chip.hidden !== unused) chip.hidden = unused;
-      const now = column[at] ?? column[at - 1];
-      const then = mark_s === null ? null : this.#table.at(name, mark_s);
+      const now = column[at] ?? column[at - 1] ?? column[at - 2];
+      const then = mark_s === null ? null : this.#store.tableOf(name).at(name, mark_s);
       const difference = typeof now === 'number' && typeof then === 'number' ? ` Δ ${format(now - then, decimals)}` : '';
       setText(value, `${format(now, decimals)}${difference}`);
     });
   }
 
-  /** @param {Signal} each @param {number} series */
-  #chip({ name, label, about, kind, colour }, series) {
+  /** @param {Curve} each @param {number} series */
+  #chip({ name, label, about, kind, colour, unit, right }, series) {
     const value = create('output', { textContent: '–' });
     const chip = create('button', { type: 'button', className: `curve ${kind}`, title: t('{}: show or hide', t(about)) }, create('span', { className: `swatch ${colour}` }), t(label), value);
     chip.setAttribute('aria-pressed', 'true');
@@ -143,23 +150,27 @@ export class PlotPanel {
       chip.setAttribute('aria-pressed', String(show));
       this.plot.setSeries(series, { show });
     });
-    return { chip, value, name };
+    return { chip, value, name, unit, right };
   }
 
   /** @param {HTMLElement} body */
   #make(body) {
+    const right = this.rightUnit !== null;
+    /** @type {uPlot.Scales} */
+    const scales = { x: { time: false, auto: false }, y: { range: (_plot, low, high) => this.#limits(false, low, high) } };
+    if (right) scales['right'] = { range: (_plot, low, high) => this.#limits(true, low, high) };
     const plot = new uPlot({
-      ...commonOptions(this.#view),
-      scales: { x: { time: false, auto: false }, y: { range: (_plot, low, high) => this.#limits(low, high) } },
-      axes: [timeAxis(false), valueAxis()],
-      series: [{}, ...this.#signals.map(curveOptions)],
+      ...commonOptions(this.#view, right),
+      scales,
+      axes: [timeAxis(false), valueAxis(), ...(right ? [{ ...valueAxis(), scale: 'right', side: /** @type {uPlot.Axis.Side} */ (1), grid: { show: false } }] : [])],
+      series: [{}, ...this.curves.map(curveOptions)],
       hooks: {
         setSelect: [(/** @type {uPlot} */ each) => this.#zoom(each)],
         setCursor: [() => this.#view.label()],
         drawAxes: [(/** @type {uPlot} */ each) => drawTransitions(each, this.#store, this.#view.range_s)],
         draw: [(/** @type {uPlot} */ each) => drawMark(each, this.#view.mark_s)],
       },
-    }, [[], ...this.#signals.map(() => [])], body);
+    }, [[], ...this.curves.map(() => [])], body);
     makeNavigable(plot, this.#view);
     return plot;
   }
@@ -169,17 +180,23 @@ export class PlotPanel {
     const { left, top, width, height } = plot.select;
     if (width < 4) return;
     plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
-    if (height < plot.over.clientHeight - 1) this.#zoomed = [plot.posToVal(top + height, 'y'), plot.posToVal(top, 'y')];
+    /** @param {string} scale @returns {[number, number]} */
+    const span = (scale) => [plot.posToVal(top + height, scale), plot.posToVal(top, scale)];
+    if (height < plot.over.clientHeight - 1) this.#zoomed = [span('y'), this.rightUnit === null ? null : span('right')];
     this.#view.zoom(plot.posToVal(left, 'x'), plot.posToVal(left + width, 'x'));
   }
 }
 
-/** Options that all plots share. @param {Plots} view */
-export function commonOptions(view) {
+/**
+ * Options that all plots share: one of them with an axis on the right, and all leave room there, so that times stand above each other.
+ * @param {Plots} view
+ * @param {boolean} right The plot has an axis on the right.
+ */
+export function commonOptions(view, right) {
   return {
     width: 600,
     height: 120,
-    padding: /** @type {uPlot.Padding} */ ([6, 8, 0, 0]),
+    padding: /** @type {uPlot.Padding} */ ([6, () => (right ? 4 : view.rightAxis ? GUTTER_PX + 4 : EDGE_PX), 0, 0]),
     legend: { show: false },
     cursor: {
       sync: { key: 'rumbo', setSeries: false },
@@ -252,11 +269,12 @@ function plottedIn(column) {
   return false;
 }
 
-/** @param {Signal} each @returns {uPlot.Series} */
-function curveOptions({ label, kind, colour }) {
+/** @param {Curve} each @returns {uPlot.Series} */
+function curveOptions({ label, kind, colour, right }) {
   const reference = kind === 'reference';
   return {
     label,
+    scale: right ? 'right' : 'y',
     stroke: () => colours[colour],
     width: reference ? 1.5 : kind === 'true' ? 1 : 1.75,
     dash: reference ? [7, 4] : kind === 'true' ? [2, 2] : undefined,

@@ -2,7 +2,7 @@
 /** The dialog of one plot: its title, its signals, the limits of its axis, and its picture as a file. */
 import { complaint, dialog, saveFile } from './dialog.js';
 import { create } from './dom.js';
-import { unitOf } from './layout.js';
+import { MOST_UNITS, unitsOf } from './layout.js';
 import { toPng, toSvg } from './picture.js';
 import { SIGNALS, UNITS } from './signals.js';
 import { t } from './text.js';
@@ -18,6 +18,9 @@ export class PlotDialog {
   #title = create('input', { type: 'text', id: 'plot-title', maxLength: 60, required: true });
   #min = create('input', { type: 'number', id: 'plot-min', step: 'any' });
   #max = create('input', { type: 'number', id: 'plot-max', step: 'any' });
+  #rightMin = create('input', { type: 'number', id: 'plot-right-min', step: 'any' });
+  #rightMax = create('input', { type: 'number', id: 'plot-right-max', step: 'any' });
+  #right = create('div', { className: 'row' }, create('label', {}, `${t('right axis from')} `, this.#rightMin), create('label', {}, `${t('axis to')} `, this.#rightMax));
   #boxes = SIGNALS.map(({ name, about }) => {
     const box = create('input', { type: 'checkbox', value: name });
     return { box, label: create('label', {}, box, ` ${t(about)}`) };
@@ -36,6 +39,7 @@ export class PlotDialog {
     const form = create('form', { className: 'stack' },
       create('div', { className: 'row' }, create('label', {}, `${t('title')} `, this.#title),
         create('label', {}, `${t('axis from')} `, this.#min), create('label', {}, `${t('axis to')} `, this.#max), create('span', { className: 'hint', textContent: t('empty: by the values') })),
+      this.#right,
       create('div', { className: 'signal-choice' }, ...groups), this.#complaint,
       create('div', { className: 'row' }, create('button', { type: 'submit', className: 'go', textContent: t('Apply') }), this.#remove, create('span', { className: 'spacer' }), this.#pictures));
     form.addEventListener('submit', (event) => {
@@ -67,8 +71,11 @@ export class PlotDialog {
     const spec = panel?.spec ?? null;
     this.#dialog.heading.textContent = spec ? t('Change the plot {}', t(spec.title)) : t('New plot');
     this.#title.value = spec ? t(spec.title) : '';
-    this.#min.value = spec?.min === null || !spec ? '' : String(Number(spec.min?.toPrecision(4)));
-    this.#max.value = spec?.max === null || !spec ? '' : String(Number(spec.max?.toPrecision(4)));
+    this.#min.value = limit(spec?.min);
+    this.#max.value = limit(spec?.max);
+    const [rightMin, rightMax] = spec?.right ?? [];
+    this.#rightMin.value = limit(rightMin);
+    this.#rightMax.value = limit(rightMax);
     for (const { box } of this.#boxes) box.checked = spec?.signals.includes(box.value) ?? false;
     this.#remove.hidden = this.#pictures.hidden = panel === null;
     this.#complaint.textContent = '';
@@ -76,28 +83,30 @@ export class PlotDialog {
     this.#dialog.open();
   }
 
-  /** One plot has one unit: signals of others can be taken when those of this one are not. */
+  /** One plot has two units at most: signals of others can be taken when those of one of them are not. */
   #limitUnits() {
-    const chosen = this.#chosen();
-    const unit = chosen.length > 0 ? unitOf({ title: '', signals: chosen, min: null, max: null, weight: 1 }) : null;
-    for (const { box } of this.#boxes) box.disabled = unit !== null && SIGNALS.find(({ name }) => name === box.value)?.unit !== unit;
+    const units = unitsOf(this.#chosen());
+    this.#right.hidden = units.length < MOST_UNITS;
+    for (const { box } of this.#boxes) box.disabled = units.length === MOST_UNITS && unitsOf([box.value]).every((unit) => !units.includes(unit));
   }
 
+  /** The signals chosen: as the plot had them, so that its axes stay where they are, then the others. */
   #chosen() {
-    return this.#boxes.filter(({ box }) => box.checked).map(({ box }) => box.value);
+    const checked = this.#boxes.filter(({ box }) => box.checked).map(({ box }) => box.value);
+    const before = this.#panel?.spec.signals.filter((name) => checked.includes(name)) ?? [];
+    return [...before, ...checked.filter((name) => !before.includes(name))];
   }
 
   #apply() {
     const signals = this.#chosen();
-    const limits = [this.#min.valueAsNumber, this.#max.valueAsNumber];
-    const [min = NaN, max = NaN] = limits;
-    const none = limits.every(Number.isNaN);
+    const left = limits(this.#min, this.#max);
+    const right = this.#right.hidden ? null : limits(this.#rightMin, this.#rightMax);
     if (signals.length === 0) return this.#complain(t('choose a signal at least'));
-    if (!none && !(min < max)) return this.#complain(t('an axis has two limits, the lower one first, or none'));
+    if (left === undefined || right === undefined) return this.#complain(t('an axis has two limits, the lower one first, or none'));
     const old = this.#panel?.spec ?? null;
     // A title that stands in two languages is kept as it is.
     const title = old && this.#title.value === t(old.title) ? old.title : this.#title.value;
-    this.#plots.change(old, { title, signals, min: none ? null : min, max: none ? null : max, weight: old?.weight ?? 4 });
+    this.#plots.change(old, { title, signals, min: left?.[0] ?? null, max: left?.[1] ?? null, ...(right ? { right } : {}), weight: old?.weight ?? 4 });
     return this.#dialog.dialog.close();
   }
 
@@ -105,4 +114,14 @@ export class PlotDialog {
   #complain(text) {
     this.#complaint.textContent = text;
   }
+}
+
+/** A limit as it is written. @param {number | null | undefined} value */
+const limit = (value) => (value === null || value === undefined ? '' : String(Number(value.toPrecision(4))));
+
+/** The limits written: null for none, undefined if they are no span. @param {HTMLInputElement} from @param {HTMLInputElement} to @returns {[number, number] | null | undefined} */
+function limits(from, to) {
+  const [min, max] = [from.valueAsNumber, to.valueAsNumber];
+  if (Number.isNaN(min) && Number.isNaN(max)) return null;
+  return min < max ? [min, max] : undefined;
 }

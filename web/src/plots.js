@@ -5,8 +5,8 @@
  */
 import { BAND_PX, StateBand } from './band.js';
 import { create, element, setText } from './dom.js';
-import { LONGEST_S, PLOTS, SHORTEST_S, Shelf } from './layout.js';
-import { HEAD_PX, PlotPanel } from './plot.js';
+import { LONGEST_S, PLOTS, SHORTEST_S, Shelf, unitsOf } from './layout.js';
+import { PlotPanel } from './plot.js';
 import { t } from './text.js';
 import { onThemeChange } from './theme.js';
 import { format } from './units.js';
@@ -41,6 +41,8 @@ export class Plots {
   modes = [];
   #onFollow;
   #redraw;
+  /** A plot's title takes another line where its curves' names need one. */
+  #heads = new ResizeObserver(() => this.#fit());
   /** Opens what changes a plot. @type {(panel: PlotPanel | null) => void} */
   edit = () => {};
 
@@ -57,7 +59,7 @@ export class Plots {
     this.#onFollow = onFollow;
     this.#band = new StateBand(store, this);
     this.setMode(0);
-    new ResizeObserver(() => this.#fit()).observe(root);
+    new ResizeObserver(() => this.#fitAnew()).observe(root);
     onThemeChange(() => this.draw());
     this.#window.addEventListener('change', () => this.setWindow(Number(this.#window.value)));
     root.addEventListener('keydown', (event) => this.#press(event));
@@ -65,6 +67,17 @@ export class Plots {
 
   get following() {
     return this.#following;
+  }
+
+  /** Some plot has an axis on the right. */
+  get rightAxis() {
+    return this.layout.plots.some(({ signals }) => unitsOf(signals).length > 1);
+  }
+
+  /** What is seen of a plot's axes. @param {string} title */
+  scales(title) {
+    const scales = this.#panels.find(({ spec }) => spec.title === title)?.plot.scales ?? {};
+    return Object.fromEntries(Object.entries(scales).map(([name, { min, max }]) => [name, [min, max]]));
   }
 
   /** @param {boolean} following */
@@ -159,9 +172,12 @@ export class Plots {
     }
     this.#panels = layout.plots.map((spec) => new PlotPanel(spec, this.store, this));
     this.#root.replaceChildren(...this.#panels.flatMap((panel) => panel.parts), this.#band.body);
+    this.#heads.disconnect();
+    for (const { head } of this.#panels) this.#heads.observe(head);
     this.#showWindow();
     this.#offerChoices();
-    this.#fit();
+    this.#fitAnew();
+    this.#band.plot.redraw(false, true);
     this.#redraw();
   }
 
@@ -189,10 +205,19 @@ export class Plots {
     for (const button of buttons) button.setAttribute('aria-pressed', String(this.layout.plots.some(({ title }) => title === button.value)));
   }
 
+  /** The titles may be lower again. */
+  #fitAnew() {
+    for (const { head } of this.#panels) head.style.minHeight = '';
+    this.#fit();
+  }
+
   #fit() {
     const width = this.#root.clientWidth;
     const weights = this.#panels.reduce((sum, { spec }) => sum + spec.weight, 0);
-    const free_px = this.#root.clientHeight - BAND_PX - this.#panels.length * HEAD_PX;
+    const heads_px = this.#panels.map(({ head }) => head.offsetHeight);
+    // A title that has taken another line keeps it: the plots do not jump with the length of a number.
+    this.#panels.forEach(({ head }, index) => { head.style.minHeight = `${heads_px[index]}px`; });
+    const free_px = this.#root.clientHeight - BAND_PX - heads_px.reduce((sum, px) => sum + px, 0);
     for (const { plot, spec } of this.#panels) plot.setSize({ width, height: Math.max(50, Math.floor((free_px * spec.weight) / weights)) });
     this.#band.plot.setSize({ width, height: BAND_PX });
   }

@@ -88,7 +88,7 @@ export class StateLine {
     if (robot.fault !== null) return t('fault');
     if (!robot.armed) return t('off');
     const current = latest?.mode === robot.mode ? latest.state : 0;
-    return said(mode?.states[current] ?? `state ${current}`);
+    return stateWords(mode, current);
   }
 
   /** @param {State} slow */
@@ -127,6 +127,11 @@ export class StateLine {
     if (latest.contact) lines.push(t('contact!'));
     return setText(this.#pose, lines.join('\n'));
   }
+}
+
+/** What a state is called. @param {ModeEntry | null | undefined} mode @param {number | null} state Null: the robot does not tell it. */
+export function stateWords(mode, state) {
+  return state === null ? t('running') : said(mode?.states[state] ?? `state ${state}`);
 }
 
 /** @param {number} angle_rad */

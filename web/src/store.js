@@ -49,8 +49,8 @@ export const HEADING_MODES = [2, 3, 4, 6, 7, 8];
 const FARTHEST_DEG = 315;
 
 /**
- * A stretch of time in one state.
- * @typedef {{from_s: number, to_s: number, mode: number, state: number, armed: boolean, faulted: boolean}} Stretch
+ * A stretch of time in one state; null: the robot does not tell it.
+ * @typedef {{from_s: number, to_s: number, mode: number, state: number | null, armed: boolean, faulted: boolean}} Stretch
  */
 
 /** @typedef {import('./types.js').Pose} Pose */
@@ -60,7 +60,7 @@ const FARTHEST_DEG = 315;
  * @typedef {object} Latest
  * @property {number} t_s
  * @property {number} mode
- * @property {number} state Of the mode's machine.
+ * @property {number | null} state Of the mode's machine; null: not told.
  * @property {boolean} armed
  * @property {Pose} origin The robot's origin in the world, as it was when it was last moved.
  * @property {Pose | null} estimated From the origin.
@@ -133,9 +133,10 @@ export class Store {
     const ghost = pose(cell('ghost_x_m'), cell('ghost_y_m'), cell('ghost_heading_rad'));
     const truth = pose(cell('true_x_m'), cell('true_y_m'), cell('true_heading_rad'));
     const origin = pose(cell('origin_x_m'), cell('origin_y_m'), cell('origin_heading_rad')) ?? IDENTITY;
-    const heading_ref_rad = armed && HEADING_MODES.includes(mode) ? number(cell('heading_ref_rad')) : null;
-    // Mode 8 waits in its first state, and its last goal is from an origin of before.
-    const toPlace = armed && PLACE_MODES.includes(mode) && (mode !== 8 || cell('state') !== 0);
+    // Mode 8 waits in its first state, and its last goal and heading are from an origin of before.
+    const waits = mode === 8 && cell('state') === 0;
+    const heading_ref_rad = armed && !waits && HEADING_MODES.includes(mode) ? number(cell('heading_ref_rad')) : null;
+    const toPlace = armed && !waits && PLACE_MODES.includes(mode);
 
     this.slow.push(t_s, {
       reference_cm: DISTANCE_MODES.includes(mode) && cell('reference_left') !== 0 ? cm('reference_left') : null,
@@ -169,7 +170,7 @@ export class Store {
       true_left_rpm: rpm('true_left_rad_s'),
       true_right_rpm: rpm('true_right_rad_s'),
     });
-    this.#pushStretch(t_s, mode, number(cell('state')) ?? 0, armed, cell('faulted') === 1);
+    this.#pushStretch(t_s, mode, number(cell('state')), armed, cell('faulted') === 1);
 
     lengthen(this.trails.estimated, estimated && compose(origin, estimated));
     lengthen(this.trails.truth, truth);
@@ -177,7 +178,7 @@ export class Store {
     this.latest = {
       t_s,
       mode,
-      state: number(cell('state')) ?? 0,
+      state: number(cell('state')),
       armed,
       origin,
       estimated,
@@ -223,7 +224,7 @@ export class Store {
   /**
    * @param {number} t_s
    * @param {number} mode
-   * @param {number} state
+   * @param {number | null} state
    * @param {boolean} armed
    * @param {boolean} faulted
    */

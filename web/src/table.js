@@ -43,7 +43,7 @@ class Extent {
 }
 
 /** Time and columns. */
-class Lines {
+export class Lines {
   /** @type {number[]} */
   t = [];
   /** @type {Map<string, Column>} */
@@ -58,6 +58,17 @@ class Lines {
   drop(count) {
     this.t.splice(0, count);
     for (const column of this.columns.values()) column.splice(0, count);
+  }
+
+  /** Number of the first line at or after a time. @param {number} t_s */
+  indexAt(t_s) {
+    let [low, high] = [0, this.t.length];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (/** @type {number} */ (this.t[middle]) < t_s) low = middle + 1;
+      else high = middle;
+    }
+    return low;
   }
 
   /** Forgets what is older. @param {number} t_s */
@@ -120,17 +131,6 @@ export class Table extends Lines {
     this.coarse.drop(this.coarse.t.length);
     for (const extent of this.#bucket.values()) extent.clear();
     this.#inBucket = 0;
-  }
-
-  /** Number of the first line at or after a time. @param {number} t_s */
-  indexAt(t_s) {
-    let [low, high] = [0, this.t.length];
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (/** @type {number} */ (this.t[middle]) < t_s) low = middle + 1;
-      else high = middle;
-    }
-    return low;
   }
 
   /** A signal's value at a time, or the last before it. @param {string} name @param {number} t_s */

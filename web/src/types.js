@@ -69,9 +69,10 @@
  * @property {{phase: 'running', since_s: number} | {phase: 'done', findings: Findings} | {phase: 'failed', why: string}} [calibration]
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
- *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number}} link
+ *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number,
+ *   clock_offset_ms?: number, clock_fast_ppm?: number}} link When the robot's clock began, in the session's time, and by how much it is fast.
  * @property {{mode: number, armed: boolean, fault: string | null, battery_v: number | null, true_battery_v: number | null,
- *   reference: [number, number], overruns: number, servo_rad: number, rig: string | null, errand: Errand, foreign: boolean}} robot
+ *   reference: [number, number], overruns: number, servo_rad: number, rig: string | null, errand: Errand, foreign: boolean, text?: boolean}} robot `text`: it speaks the original's.
  *
  * @typedef {{t_s: number, level: 'info' | 'good' | 'warning' | 'fault', text: string}} LoggedEvent
  *

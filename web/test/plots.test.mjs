@@ -39,11 +39,10 @@ async function load(name, text) {
   await page.locator('#layout-dialog input[type=file]').setInputFiles({ name, mimeType: 'application/json', buffer: Buffer.from(text) });
 }
 
-test('a plot with chosen signals is added, of one unit, and a reload keeps it', async () => {
+test('a plot with chosen signals is added, and a reload keeps it', async () => {
   await page.locator('#add-plot').click();
   await page.locator('#plot-title').fill('errors');
   await page.getByLabel('error of the speed, left wheel').check();
-  assert.equal(await page.getByLabel('true heading').isDisabled(), true, 'another unit');
   await page.getByLabel('error of the speed, right wheel').check();
   await page.locator('#plot-dialog button[type=submit]').click();
   assert.deepEqual(await titles(), ['distance', 'wheels', 'PWM', 'errors']);
@@ -64,6 +63,30 @@ test('a locked axis keeps its limits, also through a reload', async () => {
   await change('errors');
   await page.getByRole('button', { name: 'Remove plot' }).click();
   assert.deepEqual(await titles(), ['distance', 'wheels', 'PWM']);
+});
+
+test('signals of a second unit have the axis on the right, those of a third cannot be taken, and a layout keeps it', async () => {
+  await change('PWM');
+  await page.getByLabel('speed, left wheel', { exact: true }).check();
+  assert.equal(await page.getByLabel('true heading').isDisabled(), true, 'a third unit');
+  await page.locator('#plot-right-min').fill('-200');
+  await page.locator('#plot-right-max').fill('200');
+  await page.locator('#plot-dialog button[type=submit]').click();
+  const head = page.locator('.plot-head', { hasText: 'PWM' });
+  await head.locator('i', { hasText: 'rpm ▸' }).waitFor();
+  // Its number goes on, though its table has other lines than that of the PWM.
+  await head.locator('.curve', { hasText: 'left' }).nth(1).locator('output', { hasText: /\d/ }).waitFor();
+  const spec = (await plots()).layout.plots.find(({ title }) => title === 'PWM');
+  assert.deepEqual([spec?.signals, spec?.min, spec?.right], [['left_pwm', 'right_pwm', 'left_rpm'], null, [-200, 200]]);
+  const scale = await page.evaluate(() => /** @type {any} */ (window).rumbo.scales('PWM'));
+  assert.deepEqual(scale.right, [-200, 200]);
+  assert.ok(scale.y[1] < scale.right[1] + 120 && scale.y[0] > -200, `the left one goes by its values: ${scale.y}`);
+  await change('PWM');
+  const svg = await saved('SVG');
+  assert.match(readFileSync(svg.path, 'utf8'), /left \[rpm\]/);
+  await page.getByLabel('speed, left wheel', { exact: true }).uncheck();
+  await page.locator('#plot-dialog button[type=submit]').click();
+  assert.equal(await head.locator('i', { hasText: '▸' }).count(), 0);
 });
 
 test('a box zooms into time and value, the data goes on, and L follows it again', async () => {
@@ -135,6 +158,7 @@ test('a file that is no layout is refused with the reason, and nothing changes',
     ['{"plots": []}', /it is no layout of Rumbo/],
     [JSON.stringify({ rumbo: 'layout', version: 7, window_s: 20, plots: [] }), /its version is 7, this page knows 1/],
     [JSON.stringify({ rumbo: 'layout', version: 1, window_s: 20, plots: [spec] }), /plot 1 has a signal that is none: no_such_signal/],
+    [JSON.stringify({ rumbo: 'layout', version: 1, window_s: 20, plots: [{ title: 'a', signals: ['left_pwm', 'left_rpm', 'x_m'] }] }), /plot 1 have more than two units: of 255, rpm, m/],
   ])) {
     await load('x.json', text);
     await page.locator('#layout-dialog .complaint', { hasText: why }).waitFor();

@@ -30,6 +30,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/checkup.js": SCRIPT,
     "src/checkup_dialog.js": SCRIPT,
     "src/consoles.js": SCRIPT,
+    "src/curves.js": SCRIPT,
     "src/dialog.js": SCRIPT,
     "src/dom.js": SCRIPT,
     "src/events.js": SCRIPT,

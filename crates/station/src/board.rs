@@ -4,16 +4,19 @@
 //! gets the recent past and never holds the session up; the rest is one current value each, with a version.
 //! Nobody reads, nothing is made: rows become JSON in the connections.
 
+mod event;
+mod ring;
+mod slow;
+
+pub(crate) use event::{ConsoleText, LINK_CONSOLE, Level, LoggedEvent};
+pub(crate) use slow::{LinkState, ReplayState, RobotState, State};
+
 use crate::catalogue::ParameterState;
-use crate::errand::Errand;
-use crate::guest::CalibrationState;
 use crate::log::Burst;
 use crate::log::recorder::{Entry, Recorder};
 use crate::row::Row;
 use crate::target::Scene;
-use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
-use std::collections::VecDeque;
+use ring::{Ring, Versioned};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 
@@ -26,185 +29,6 @@ pub(crate) const EVENTS_KEPT: usize = 1_000;
 pub(crate) const CONSOLES_KEPT: usize = 2_000;
 /// Pieces of the link's raw bytes kept: some seconds of both directions.
 pub(crate) const BURSTS_KEPT: usize = 600;
-
-/// In place of a USART's number: the link to a real robot that speaks text.
-pub(crate) const LINK_CONSOLE: u8 = 255;
-
-/// What a USART of an emulated chip said, or a robot that speaks text.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct ConsoleText {
-    pub(crate) usart: u8,
-    pub(crate) text: String,
-}
-
-/// How an event is to be seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Level {
-    /// Something went on.
-    Info,
-    /// Something was achieved or applied.
-    Good,
-    /// Something was refused or lost.
-    Warning,
-    /// The robot had to stop.
-    Fault,
-}
-
-impl Level {
-    /// Its name, as in logs.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Info => "info",
-            Self::Good => "good",
-            Self::Warning => "warning",
-            Self::Fault => "fault",
-        }
-    }
-}
-
-/// Something that happened, as people read it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct LoggedEvent {
-    /// Session time \[s\].
-    pub(crate) t_s: f64,
-    pub(crate) level: Level,
-    /// What happened, with its cause.
-    pub(crate) text: String,
-}
-
-/// What changes slowly.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct State {
-    pub(crate) t_s: f64,
-    /// A simulation: its speed can be set and it can be reset.
-    pub(crate) simulated: bool,
-    /// Seconds of the target asked for per second of the wall clock.
-    pub(crate) speed: f64,
-    /// Seconds of the target per second of the wall clock, measured.
-    pub(crate) achieved_speed: f64,
-    pub(crate) link: LinkState,
-    pub(crate) robot: RobotState,
-    /// The calibration that runs, or ran last in this run.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) calibration: Option<CalibrationState>,
-    /// A log is being shown, of this length; `t_s` is where.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) replay: Option<ReplayState>,
-}
-
-/// A log being shown, for the page.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ReplayState {
-    pub(crate) name: String,
-    pub(crate) duration_s: f64,
-}
-
-/// The link, for the page.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct LinkState {
-    pub(crate) connected: bool,
-    pub(crate) telemetry_hz: f64,
-    /// Share of the link's capacity from the robot, 0..=1.
-    pub(crate) down_load: f64,
-    /// Share of the link's capacity to the robot, 0..=1.
-    pub(crate) up_load: f64,
-    pub(crate) baud: u32,
-    pub(crate) round_trip_ms: Option<u64>,
-    /// Frames from the robot that failed the CRC.
-    pub(crate) crc_errors_down: u16,
-    /// Frames to the robot that failed the CRC.
-    pub(crate) crc_errors_up: u8,
-    pub(crate) frames_lost: u16,
-    /// Telemetry the robot dropped because the link was full.
-    pub(crate) dropped: u8,
-    /// The operator's commands not acknowledged yet.
-    pub(crate) unacknowledged: usize,
-    /// Session time at the robot's time 0, where the clocks did not start together.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) clock_offset_ms: Option<i64>,
-    /// By how much the robot's clock is fast, in millionths.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) clock_fast_ppm: Option<i64>,
-}
-
-/// The robot's slow signals, for the page.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct RobotState {
-    pub(crate) mode: u8,
-    pub(crate) armed: bool,
-    /// The latched fault and what to do about it.
-    pub(crate) fault: Option<Cow<'static, str>>,
-    pub(crate) battery_v: Option<f64>,
-    pub(crate) true_battery_v: Option<f64>,
-    pub(crate) reference: [f32; 2],
-    pub(crate) overruns: u8,
-    pub(crate) servo_rad: f32,
-    /// Name of the rig that the robot believes to carry; `None` until it has said so.
-    pub(crate) rig: Option<Cow<'static, str>>,
-    pub(crate) errand: Errand,
-    /// The robot has another parameter table, or another protocol: its parameters are neither shown nor written.
-    pub(crate) foreign: bool,
-}
-
-/// A ring whose entries keep their running number.
-#[derive(Debug)]
-struct Ring<T> {
-    entries: VecDeque<T>,
-    /// Number of the next entry.
-    next: u64,
-    kept: usize,
-}
-
-impl<T: Clone> Ring<T> {
-    fn new(kept: usize) -> Self {
-        Self {
-            entries: VecDeque::new(),
-            next: 0,
-            kept,
-        }
-    }
-
-    fn push(&mut self, entry: T) {
-        if self.entries.len() == self.kept {
-            self.entries.pop_front();
-        }
-        self.entries.push_back(entry);
-        self.next += 1;
-    }
-
-    fn clear(&mut self) {
-        self.entries.clear();
-    }
-
-    /// The entries from `cursor` on and how many before them are gone; moves the cursor behind them.
-    fn read(&self, cursor: &mut u64) -> (Vec<T>, u64) {
-        let first = self.next - self.entries.len() as u64;
-        let gone = first.saturating_sub(*cursor);
-        let skip = cursor.saturating_sub(first) as usize;
-        *cursor = self.next;
-        (self.entries.iter().skip(skip).cloned().collect(), gone)
-    }
-}
-
-/// A value and how often it changed.
-#[derive(Debug, Default)]
-struct Versioned<T> {
-    value: T,
-    version: u64,
-}
-
-impl<T: PartialEq> Versioned<T> {
-    /// Whether the value is a new one.
-    fn set(&mut self, value: T) -> bool {
-        let new = self.version == 0 || self.value != value;
-        if new {
-            self.value = value;
-            self.version += 1;
-        }
-        new
-    }
-}
 
 #[derive(Debug)]
 struct Contents {
@@ -409,9 +233,9 @@ impl Board {
         cursor.run = contents.run;
         News {
             run: contents.run,
-            scene: take_new(&contents.scene, &mut cursor.scene),
-            parameters: take_new(&contents.parameters, &mut cursor.parameters),
-            state: take_new(&contents.state, &mut cursor.state),
+            scene: contents.scene.newer(&mut cursor.scene),
+            parameters: contents.parameters.newer(&mut cursor.parameters),
+            state: contents.state.newer(&mut cursor.state),
             samples,
             heard: contents.heard,
             events,
@@ -421,13 +245,6 @@ impl Board {
             events_gone: if first_time { 0 } else { gone },
         }
     }
-}
-
-fn take_new<T: Clone>(versioned: &Versioned<T>, seen: &mut u64) -> Option<T> {
-    (versioned.version != *seen).then(|| {
-        *seen = versioned.version;
-        versioned.value.clone()
-    })
 }
 
 #[cfg(test)]

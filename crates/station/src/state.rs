@@ -60,6 +60,7 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
             rig: observer.rig().map(|rig| Rig::name(rig).into()),
             errand: observer.errand().clone(),
             foreign: client.hello().is_some() && !client.table_matches(),
+            text: client.speaks_text(),
         },
         calibration: None,
         replay: None,

@@ -134,6 +134,7 @@ export const ROBOT = {
     'sin usar: las dos copias están dañadas o son de otra versión; rigen los de fábrica: fija los parámetros y guarda',
   'save the parameters on the robot': 'guardar los parámetros en el robot',
   // Commands, and how they ended.
+  'sent: {}': 'enviado: {}',
   '{}: done': '{}: hecho', '{}: refused, {}': '{}: rechazado, {}', '{}: given up, STOP came after it': '{}: abandonado, después vino PARAR',
   '{}: given up, the robot did not answer in time': '{}: abandonado, el robot no respondió a tiempo', '{}: given up, the robot started again': '{}: abandonado, el robot arrancó de nuevo',
   'clear the fault': 'borrar el fallo', 'mode {} {}': 'modo {} {}', 'reference {} cm': 'consigna {} cm', 'reference {} rpm': 'consigna {} rpm',

@@ -1,0 +1,72 @@
+// @ts-check
+/** What a plot draws: its signals, each with its axis and its colour, and their lines, which may come from two tables. */
+import { unitsOf } from './layout.js';
+import { signal } from './signals.js';
+
+/** @typedef {import('./layout.js').PlotSpec} PlotSpec */
+/** @typedef {import('./store.js').Store} Store */
+/** @typedef {import('./table.js').Column} Column */
+/** @typedef {import('./table.js').Lines} Lines */
+/** @typedef {import('./signals.js').Signal & {right: boolean}} Curve A signal in a plot; `right`: its axis is the one on the right. */
+
+/** From so many lines in sight on the coarse copy is drawn: more than a plot is wide. */
+const MANY_LINES = 4_000;
+/** For curves of the right axis whose colour the left one has: the first that is free. @type {import('./theme.js').ColourName[]} */
+const OTHERS = ['goal', 'front', 'reference', 'right', 'left'];
+
+/** The curves of a plot, those of the left axis first. @param {PlotSpec} spec @returns {Curve[]} */
+export function curvesOf({ signals }) {
+  const [unit] = unitsOf(signals);
+  const all = signals.flatMap((name) => signal(name) ?? []).map((each) => ({ ...each, right: each.unit !== unit }));
+  const left = all.filter(({ right }) => !right);
+  const taken = new Set(left.map(look));
+  return [...left, ...all.filter(({ right }) => right).map((each) => {
+    const colour = [each.colour, ...OTHERS].find((other) => !taken.has(look({ ...each, colour: other }))) ?? each.colour;
+    taken.add(look({ ...each, colour }));
+    return { ...each, colour };
+  })];
+}
+
+/** What a curve is told by. @param {{colour: string, kind: string}} curve */
+const look = ({ colour, kind }) => `${colour} ${kind}`;
+
+/**
+ * The lines of the curves in sight: times, then a column for each curve. Those of one table as they are; of two in order of time, and where
+ * only one has a line the curves of the other go on.
+ * @param {Store} store
+ * @param {Curve[]} curves
+ * @param {[number, number]} range_s
+ * @returns {[number[], ...Column[]]}
+ */
+export function linesOf(store, curves, [from_s, to_s]) {
+  const tables = [...new Set(curves.map(({ name }) => store.tableOf(name)))];
+  const many = tables.some((table) => table.indexAt(to_s) - table.indexAt(from_s) > MANY_LINES);
+  const sources = tables.map((table) => (many ? table.coarse : table));
+  const [only] = sources;
+  if (only && sources.length === 1) return [only.t, ...curves.map(({ name }) => only.columns.get(name) ?? [])];
+  const joined = join(sources, curves.map(({ name }) => name), [from_s, to_s]);
+  return [joined.t, ...curves.map(({ name }) => joined.columns.get(name) ?? [])];
+}
+
+/** @param {Lines[]} sources @param {string[]} names @param {[number, number]} range_s */
+function join(sources, names, [from_s, to_s]) {
+  /** @type {number[]} */
+  const t = [];
+  /** @type {Map<string, Column>} */
+  const columns = new Map(names.map((name) => [name, []]));
+  // From the line before to the line after, so that the curves go through to the edges.
+  const parts = sources.map((source) => ({ source, at: Math.max(0, source.indexAt(from_s) - 1), end: source.indexAt(to_s) + 1 }));
+  for (;;) {
+    const next_s = Math.min(...parts.map(({ source, at, end }) => (at < end ? source.t[at] : undefined) ?? Infinity));
+    if (next_s === Infinity) return { t, columns };
+    t.push(next_s);
+    for (const part of parts) {
+      const here = part.at < part.end && part.source.t[part.at] === next_s;
+      for (const [name, column] of columns) {
+        const own = part.source.columns.get(name);
+        if (own) column.push(here ? own[part.at] : undefined);
+      }
+      if (here) part.at += 1;
+    }
+  }
+}
