@@ -3,6 +3,9 @@
 
 /** @typedef {import('./types.js').Pose} Pose */
 
+/** Of two degrees of freedom. */
+const CHI_SQUARE_95 = 5.991;
+
 /** @type {Pose} */
 export const IDENTITY = { x_m: 0, y_m: 0, heading_rad: 0 };
 
@@ -59,4 +62,17 @@ export function wrapped(angle_rad) {
  */
 export function near(angle_deg, other_deg) {
   return angle_deg + 360 * Math.round((other_deg - angle_deg) / 360);
+}
+
+/**
+ * The ellipse that a place with these deviations is in, with a share of 95 %: its half axes [m], and the direction of the first.
+ * @param {import('./types.js').Spread} spread
+ */
+export function likelyArea({ x_m, y_m, correlation }) {
+  const [xx, yy, xy] = [x_m * x_m, y_m * y_m, correlation * x_m * y_m];
+  const middle = (xx + yy) / 2;
+  const apart = Math.hypot((xx - yy) / 2, xy);
+  /** @param {number} variance */
+  const half_m = (variance) => Math.sqrt(CHI_SQUARE_95 * Math.max(variance, 0));
+  return { half_m: [half_m(middle + apart), half_m(middle - apart)], direction_rad: Math.atan2(2 * xy, xx - yy) / 2 };
 }

@@ -151,6 +151,7 @@ export class WorldMap {
     if (latest.ghost) sketch.drawRobot(latest.ghost, px, 'ghost', false);
     if (estimated) sketch.drawRobot(estimated, px, latest.truth ? 'estimated' : 'real', false);
     if (latest.truth) sketch.drawRobot(latest.truth, px, 'real', latest.contact);
+    if (estimated && latest.spread) sketch.drawSpread(estimated, latest.origin, latest.spread, px);
   }
 
   /** @param {number} px */

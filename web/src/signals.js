@@ -55,6 +55,9 @@ export const SIGNALS = [
   { name: 'true_y_m', label: 'true y', about: 'true place, y', unit: 'm', colour: 'right', kind: 'true' },
   { name: 'x_m', label: 'x', about: 'place as estimated, x', unit: 'm', colour: 'left', kind: 'measured' },
   { name: 'y_m', label: 'y', about: 'place as estimated, y', unit: 'm', colour: 'right', kind: 'measured' },
+  { name: 'x_deviation_m', label: 'σ x', about: 'standard deviation of the place as estimated, x', unit: 'm', colour: 'left', kind: 'measured' },
+  { name: 'y_deviation_m', label: 'σ y', about: 'standard deviation of the place as estimated, y', unit: 'm', colour: 'right', kind: 'measured' },
+  { name: 'heading_deviation_deg', label: 'σ heading', about: 'standard deviation of the heading as estimated', unit: '°', colour: 'front', kind: 'measured' },
   { name: 'goal_x_m', label: 'goal x', about: 'place to go to, x', unit: 'm', colour: 'left', kind: 'reference' },
   { name: 'goal_y_m', label: 'goal y', about: 'place to go to, y', unit: 'm', colour: 'right', kind: 'reference' },
 ];

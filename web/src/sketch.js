@@ -1,17 +1,22 @@
 // @ts-check
 /** What the map shows, drawn on a canvas in metres: world, trails, robot, the sonars' cones with their readings, goal and route. */
-import { compose } from './geometry.js';
+import { compose, likelyArea } from './geometry.js';
 import { colours } from './theme.js';
 
 /** @typedef {import('./types.js').Scene} Scene */
 /** @typedef {import('./types.js').Cell} Cell */
 /** @typedef {import('./types.js').Pose} Pose */
+/** @typedef {import('./types.js').Spread} Spread */
 /** @typedef {import('./theme.js').ColourName} ColourName */
 /** @typedef {[number, number]} Point In the world [m]. */
 
 /** Outline of a robot of which nothing is known [m]. */
 const DEFAULT_FOOTPRINT = /** @type {[number, number][]} */ ([[0.1, 0.075], [-0.1, 0.075], [-0.1, -0.075], [0.1, -0.075]]);
 const SONAR_COLOURS = /** @type {ColourName[]} */ (['left', 'right', 'front']);
+/** How far the sector of the heading reaches [m]. */
+const POINTER_M = 0.25;
+/** So many standard deviations to both sides are 95 %. */
+const DEVIATIONS_95 = 1.96;
 /** Size of a goal's mark [px]. */
 const GOAL_PX = 9;
 
@@ -158,6 +163,35 @@ export class Sketch {
     context.lineTo(0.045, -0.018);
     context.stroke();
     context.restore();
+  }
+
+  /**
+   * Where a robot that estimates its place probably is, and where it probably points to: with a share of 95 % each.
+   * @param {Pose} at
+   * @param {Pose} origin
+   * @param {Spread} spread
+   * @param {number} px
+   */
+  drawSpread(at, origin, spread, px) {
+    const context = this.context;
+    const { half_m, direction_rad } = likelyArea(spread);
+    const [long_m = 0, short_m = 0] = half_m;
+    context.beginPath();
+    context.ellipse(at.x_m, at.y_m, long_m, short_m, origin.heading_rad + direction_rad, 0, 2 * Math.PI);
+    context.fillStyle = context.strokeStyle = colours.text;
+    context.globalAlpha = 0.08;
+    context.fill();
+    const off_rad = Math.min(DEVIATIONS_95 * spread.heading_rad, Math.PI);
+    context.beginPath();
+    context.moveTo(at.x_m, at.y_m);
+    context.arc(at.x_m, at.y_m, POINTER_M, at.heading_rad - off_rad, at.heading_rad + off_rad);
+    context.fill();
+    context.globalAlpha = 0.5;
+    context.lineWidth = px;
+    context.beginPath();
+    context.ellipse(at.x_m, at.y_m, long_m, short_m, origin.heading_rad + direction_rad, 0, 2 * Math.PI);
+    context.stroke();
+    context.globalAlpha = 1;
   }
 
   /**

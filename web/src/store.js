@@ -37,7 +37,7 @@ const SLOW = [
   'reference_cm', 'range_left_cm', 'range_right_cm', 'range_front_cm',
   'true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'left_pwm', 'right_pwm',
   'range_difference_cm', 'servo_deg', 'heading_deg', 'heading_ref_deg', 'heading_error_deg', 'true_heading_deg', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m', 'true_x_m', 'true_y_m',
-  'ghost_x_m', 'ghost_y_m', 'ghost_heading_deg',
+  'ghost_x_m', 'ghost_y_m', 'ghost_heading_deg', 'x_deviation_m', 'y_deviation_m', 'heading_deviation_deg',
 ];
 const FAST = ['left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm', 'left_error_rpm', 'right_error_rpm', 'true_left_rpm', 'true_right_rpm'];
 
@@ -54,6 +54,7 @@ const FARTHEST_DEG = 315;
  */
 
 /** @typedef {import('./types.js').Pose} Pose */
+/** @typedef {import('./types.js').Spread} Spread */
 
 /**
  * The newest sample, for the map and the numbers.
@@ -64,6 +65,7 @@ const FARTHEST_DEG = 315;
  * @property {boolean} armed
  * @property {Pose} origin The robot's origin in the world, as it was when it was last moved.
  * @property {Pose | null} estimated From the origin.
+ * @property {Spread | null} spread How far `estimated` may be off.
  * @property {Pose | null} truth In the world.
  * @property {Pose | null} ghost In the world: a simulated robot that gets the same commands.
  * @property {number | null} heading_ref_rad What the mode wants; null where it wants none.
@@ -153,6 +155,9 @@ export class Store {
       ...this.#placeAndHeading(estimated, truth && compose(inverse(origin), truth), ghost && compose(inverse(origin), ghost), heading_ref_rad),
       goal_x_m: toPlace ? number(cell('reference_left')) : null,
       goal_y_m: toPlace ? number(cell('reference_right')) : null,
+      x_deviation_m: number(cell('x_deviation_m')),
+      y_deviation_m: number(cell('y_deviation_m')),
+      heading_deviation_deg: scaled(cell('heading_deviation_rad'), DEG_PER_RAD),
     });
     this.fast.push(t_s - EARLIER_S, {
       left_rpm: rpm('left_before_rad_s'),
@@ -182,6 +187,7 @@ export class Store {
       armed,
       origin,
       estimated,
+      spread: spread(cell('x_deviation_m'), cell('y_deviation_m'), cell('xy_correlation'), cell('heading_deviation_rad')),
       truth,
       ghost,
       heading_ref_rad,
@@ -266,6 +272,18 @@ export class Store {
 function pose(x_m, y_m, heading_rad) {
   if (typeof x_m !== 'number' || typeof y_m !== 'number' || typeof heading_rad !== 'number') return null;
   return { x_m, y_m, heading_rad };
+}
+
+/**
+ * @param {Cell | undefined} x_m
+ * @param {Cell | undefined} y_m
+ * @param {Cell | undefined} correlation
+ * @param {Cell | undefined} heading_rad
+ * @returns {Spread | null}
+ */
+function spread(x_m, y_m, correlation, heading_rad) {
+  if (typeof x_m !== 'number' || typeof y_m !== 'number' || typeof correlation !== 'number' || typeof heading_rad !== 'number') return null;
+  return { x_m, y_m, correlation, heading_rad };
 }
 
 /**

@@ -16,6 +16,7 @@
  * @property {[number, number, string][]} ways Between the states: from, to, when.
  *
  * @typedef {{x_m: number, y_m: number, heading_rad: number}} Pose World frame, counter-clockwise heading.
+ * @typedef {{x_m: number, y_m: number, correlation: number, heading_rad: number}} Spread Standard deviations of a pose, from its origin.
  * @typedef {{id: number, at: Pose, half_angle_rad: number, reach_m: number, on_servo: boolean}} SonarMount
  * @typedef {{corners_m: [number, number][], closed: boolean}} Obstacle
  *

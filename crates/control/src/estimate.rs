@@ -5,7 +5,7 @@
 
 use crate::drive::Direction;
 use crate::math::{abs, clamp, wrap_angle};
-use crate::odometry::{Piece, PoseDeviation, Uncertainty, advance};
+use crate::odometry::advance;
 use crate::params::{ParamId, Params};
 use crate::range::{RangeFilter, range_from_echo};
 use crate::rig::View;
@@ -16,17 +16,12 @@ use crate::types::{
 
 /// The front sonar looks ahead when the servo is within this of it [rad].
 const AHEAD_RAD: f32 = 0.06;
-/// Ticks of way that the uncertainty takes in at once, at least: up to 25 times a second.
-const PIECE_TICKS: u8 = 4;
 
 /// Memory of the estimators.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimator {
     speed: Wheels<SpeedEstimator>,
     place: Transform,
-    uncertainty: Uncertainty,
-    piece: Piece,
-    piece_ticks: u8,
     ranges: [RangeFilter; 3],
     servo_rad: f32,
     servo_target_rad: f32,
@@ -116,7 +111,6 @@ impl Estimator {
         (estimate.forward_m_s, estimate.yaw_rad_s) =
             geometry.body_from_wheels(estimate.wheel_rad_s);
         (estimate.rolled_m, estimate.turned_rad) = geometry.body_from_ways(wheel_m);
-        self.collect(estimate, wheel_m);
         advance(&mut self.place, estimate.rolled_m, estimate.turned_rad);
         estimate.pose = self.place.pose;
         estimate.facing = (self.place.sin, self.place.cos);
@@ -131,34 +125,9 @@ impl Estimator {
         }
     }
 
-    /// Collects the way since the last tick for the uncertainty.
-    fn collect(&mut self, estimate: &Estimate, wheel_m: Wheels<f32>) {
-        self.piece.forward_m += estimate.rolled_m;
-        self.piece.turned_rad += estimate.turned_rad;
-        self.piece.rolled_m.left += abs(wheel_m.left);
-        self.piece.rolled_m.right += abs(wheel_m.right);
-        self.piece_ticks = self.piece_ticks.saturating_add(1);
-        if self.piece_ticks == PIECE_TICKS / 2 {
-            self.piece.facing = (self.place.sin, self.place.cos);
-        }
-    }
-
-    /// Lets the uncertainty grow by the way collected, when there is enough of it, and reckons the heading's sine and cosine anew.
-    /// For a tick that has little else to do.
-    pub fn doubt(&mut self, params: &Params) {
-        if self.piece_ticks < PIECE_TICKS {
-            return;
-        }
+    /// Reckons the heading's sine and cosine anew, which are turned on tick by tick. For a tick that has little else to do.
+    pub fn refresh(&mut self) {
         self.place = Transform::of(self.place.pose);
-        self.uncertainty
-            .advance(&params.odometry_errors(), &self.piece);
-        self.piece = Piece::default();
-        self.piece_ticks = 0;
-    }
-
-    /// Standard deviations of the pose since its origin, as of the last [`Estimator::doubt`].
-    pub fn deviation(&self, params: &Params) -> PoseDeviation {
-        self.uncertainty.deviation(&params.odometry_errors())
     }
 
     /// What the pilot decided at this tick: where the servo goes, which sonar pings.
@@ -253,9 +222,6 @@ impl Estimator {
             });
         }
         self.place = Transform::default();
-        self.uncertainty = Uncertainty::default();
-        self.piece = Piece::default();
-        self.piece_ticks = 0;
     }
 }
 

@@ -1,10 +1,11 @@
 //! Pose from the distances of both wheels, by exact arcs, and how far it may be off. Derivation: docs/theory/odometry.md.
 //!
 //! Two kinds of error are kept apart. Slip is new at every millimetre: a covariance that grows with the way. Radii and base are off by
-//! the same all the time: the pose's derivatives by each of them, which also shrink again where a way back undoes the error.
+//! the same all the time: the pose's derivatives by each of them, which also shrink again where a way back undoes the error. No mode needs it;
+//! who hears the robot's poses reckons it from them.
 
-use crate::math::{abs, max, rotate, sin_cos, sinc, sqrt, wrap_angle};
-use crate::types::{Transform, Wheels};
+use crate::math::{abs, rotate, sin_cos, sinc, wrap_angle};
+use crate::types::{Pose, Transform, Wheels};
 
 /// Half of a turn [rad] up to which tan(x) / x is 1 + x^2 / 3 + 2 x^4 / 15 to the last bit but one.
 const SMALL_RAD: f32 = 0.12;
@@ -138,15 +139,24 @@ pub struct Piece {
     pub rolled_m: Wheels<f32>,
 }
 
-/// Standard deviations of a pose since its origin.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PoseDeviation {
-    /// Along x of the origin [m].
-    pub x_m: f32,
-    /// Along y of the origin [m].
-    pub y_m: f32,
-    /// Heading [rad].
-    pub heading_rad: f32,
+impl Piece {
+    /// The way between two poses told one after the other, by a robot with wheels `base_m` [m] apart that did not turn back in between.
+    pub fn between(before: &Pose, now: &Pose, base_m: f32) -> Piece {
+        let turned_rad = wrap_angle(now.heading_rad - before.heading_rad);
+        let facing = sin_cos(before.heading_rad + 0.5 * turned_rad);
+        let (sin, cos) = facing;
+        let forward_m = (now.x_m - before.x_m) * cos + (now.y_m - before.y_m) * sin;
+        let turn_m = 0.5 * turned_rad * base_m;
+        Piece {
+            facing,
+            forward_m,
+            turned_rad,
+            rolled_m: Wheels {
+                left: abs(forward_m - turn_m),
+                right: abs(forward_m + turn_m),
+            },
+        }
+    }
 }
 
 /// x, y and heading of something: a derivative, or a row of a covariance.
@@ -233,23 +243,12 @@ impl Uncertainty {
         }
         covariance
     }
-
-    /// Standard deviations of x, y and heading.
-    pub fn deviation(&self, errors: &OdometryErrors) -> PoseDeviation {
-        let [[xx, _, _], [_, yy, _], [_, _, hh]] = self.covariance(errors);
-        let root = |variance: f32| sqrt(max(variance, 0.0));
-        PoseDeviation {
-            x_m: root(xx),
-            y_m: root(yy),
-            heading_rad: root(hh),
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::types::Pose;
+    use crate::math::sqrt;
     use core::f32::consts::{FRAC_PI_2, PI};
     use proptest::prelude::*;
 
@@ -336,39 +335,33 @@ mod tests {
 
     fn drive(uncertainty: &mut Uncertainty, pose: &mut Pose, wheel_rad: Wheels<f32>, times: u32) {
         for _ in 0..times {
-            let rolled_m = Wheels {
-                left: 0.0325 * wheel_rad.left,
-                right: 0.0325 * wheel_rad.right,
-            };
-            let (forward_m, turned_rad) = robot().body_from_wheels(wheel_rad);
-            let piece = Piece {
-                facing: sin_cos(pose.heading_rad + 0.5 * turned_rad),
-                forward_m,
-                turned_rad,
-                rolled_m,
-            };
-            uncertainty.advance(&ERRORS, &piece);
+            let before = *pose;
             roll(&robot(), pose, wheel_rad);
+            uncertainty.advance(&ERRORS, &Piece::between(&before, pose, ERRORS.base_m));
         }
+    }
+
+    /// Standard deviations of x, y [m] and heading [rad].
+    fn deviations(uncertainty: &Uncertainty) -> [f32; 3] {
+        let [[xx, _, _], [_, yy, _], [_, _, hh]] = uncertainty.covariance(&ERRORS);
+        [xx, yy, hh].map(sqrt)
     }
 
     #[test]
     fn the_uncertainty_grows_with_the_way_and_a_way_back_undoes_what_is_systematic() {
         let (mut uncertainty, mut pose) = (Uncertainty::default(), Pose::default());
-        assert_eq!(uncertainty.deviation(&ERRORS), PoseDeviation::default());
+        assert_eq!(deviations(&uncertainty), [0.0; 3]);
         let forward = Wheels::both(0.2);
         drive(&mut uncertainty, &mut pose, forward, 462);
-        let there = uncertainty.deviation(&ERRORS);
+        let [x_m, y_m, heading_rad] = deviations(&uncertainty);
         // 3 m: 0.4 % of ratio are 0.04 rad/m, and slip 0.31 degrees per root metre.
-        assert!((there.heading_rad - 0.12).abs() < 0.002, "{there:?}");
-        assert!(
-            (there.y_m - 0.181).abs() < 0.005 && (there.x_m - 0.006).abs() < 0.001,
-            "{there:?}"
-        );
+        assert!((heading_rad - 0.12).abs() < 0.002, "{heading_rad}");
+        assert!((y_m - 0.181).abs() < 0.005, "{y_m}");
+        assert!((x_m - 0.006).abs() < 0.001, "{x_m}");
         drive(&mut uncertainty, &mut pose, Wheels::both(-0.2), 462);
-        let back = uncertainty.deviation(&ERRORS);
+        let [_, _, heading_rad] = deviations(&uncertainty);
         let slip_rad = 0.0054 * sqrt(6.0);
-        assert!((back.heading_rad - slip_rad).abs() < 0.001, "{back:?}");
+        assert!((heading_rad - slip_rad).abs() < 0.001, "{heading_rad}");
     }
 
     #[test]

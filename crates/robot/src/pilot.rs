@@ -93,9 +93,9 @@ impl Pilot {
         }
     }
 
-    /// Works on the pose's uncertainty.
-    pub(crate) fn doubt(&mut self) {
-        self.estimator.doubt(&self.params);
+    /// Keeps the estimates exact.
+    pub(crate) fn refresh(&mut self) {
+        self.estimator.refresh();
     }
 
     /// Of the sonars that are wanted, those that the rig has.

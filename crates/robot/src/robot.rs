@@ -144,7 +144,7 @@ impl Robot {
         self.pilot.beliefs()
     }
 
-    /// The rest of a tick, which its outputs do not wait for: says what there is to say, or else works on the pose's uncertainty.
+    /// The rest of a tick, which its outputs do not wait for: says what there is to say, or else keeps the estimates exact.
     pub fn report(&mut self) {
         let status = self.status();
         let (now, t_ms) = (self.clock.now(), self.clock.t_ms());
@@ -152,7 +152,7 @@ impl Robot {
             .reporter
             .tick(now, t_ms, &status, || self.pilot.signals())
         {
-            self.pilot.doubt();
+            self.pilot.refresh();
         }
     }
 

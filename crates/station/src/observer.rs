@@ -15,6 +15,7 @@ use crate::target::{MapPose, Scene, Truth};
 use crate::terminal;
 use crate::words;
 use rumbo_control::Pose;
+use rumbo_control::params::{ParamId, Params};
 use rumbo_control::rig::Rig;
 use rumbo_wire::{Command, EventKind, Hello, PROTOCOL_VERSION, Recalled, Status, Telemetry};
 use std::sync::Arc;
@@ -30,6 +31,8 @@ pub(crate) struct Observer {
     /// The rig that the robot says to carry.
     rig: Option<Rig>,
     parameters: Vec<ParameterState>,
+    /// The robot's parameters as far as they are known, else the table's defaults.
+    believed: Params,
     truths: TruthLog,
     ghosts: TruthLog,
     samples: Vec<Row>,
@@ -49,6 +52,7 @@ impl Observer {
             errand: Errand::default(),
             rig: None,
             parameters: unread_parameters(),
+            believed: Params::default(),
             truths: TruthLog::default(),
             ghosts: TruthLog::default(),
             samples: Vec::new(),
@@ -200,6 +204,7 @@ impl Observer {
                 }
                 Heard::Restarted(hello) => {
                     self.parameters = unread_parameters();
+                    self.believed = Params::default();
                     self.board.set_parameters(&self.parameters);
                     let why = hello.reset.explanation();
                     self.note(
@@ -228,13 +233,16 @@ impl Observer {
         self.pose = telemetry.pose;
         let truth = self.truths.at(t_ms - EARLIER_MS).zip(self.truths.at(t_ms));
         let true_pose = truth.map(|(_, at)| at.pose);
+        let errors = self.believed.odometry_errors();
+        let origin = self.origin.follow(t_ms, telemetry.pose, true_pose, &errors);
         let sample = Sample {
             t_ms,
             mode: client.mode(),
             reference: client.reference(),
             heading_ref_rad: client.heading_ref_rad(),
             telemetry,
-            origin: self.origin.follow(t_ms, telemetry.pose, true_pose),
+            origin,
+            spread: self.origin.spread(&errors),
             truth: truth.map(|(before, at)| [before, at]),
             ghost: self.ghosts.at(t_ms).map(|truth| truth.pose),
         };
@@ -293,12 +301,17 @@ impl Observer {
             self.errand.applied(&ended.command, client.mode());
         }
         match (ended.command, ended.fate) {
+            (Command::ResetPose, Fate::Applied(_)) => self.origin.settle(),
             (Command::SetParam { id, .. } | Command::GetParam { id }, fate) => {
                 if let Some(parameter) = self.parameters.get_mut(usize::from(id)) {
                     parameter.pending = false;
                     parameter.refused = match fate {
                         Fate::Applied(value) => {
                             parameter.value = Some(value);
+                            if let Some(known) = ParamId::from_number(id) {
+                                // What the robot accepted is in the range of the same table.
+                                let _ = self.believed.set(known, value);
+                            }
                             None
                         }
                         Fate::Refused(why) => {

@@ -4,9 +4,13 @@
 //! zero faster than any robot drives does. With a simulated robot the truth then tells where the origin is; with a real one,
 //! it is where the robot believed to be just before. Between two moves, what the odometry gets wrong shows as the distance
 //! between the pose drawn from this origin and the robot.
+//!
+//! How far the pose may be off since is reckoned here too, from the poses told: the robot itself has no use for it. Derivation:
+//! docs/theory/odometry.md.
 
 use crate::target::MapPose;
 use rumbo_control::Pose;
+use rumbo_control::odometry::{OdometryErrors, Piece, Uncertainty};
 
 /// Faster than a robot drives [m/s].
 const TOO_FAST_M_S: f64 = 1.5;
@@ -20,35 +24,76 @@ const STEP: f64 = 0.003;
 pub(crate) struct Origin {
     at: MapPose,
     /// The pose last told and its time [ms].
-    last: Option<(i64, MapPose)>,
+    last: Option<(i64, Pose)>,
+    uncertainty: Uncertainty,
+}
+
+/// How far a pose may be off, as seen from its origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Spread {
+    /// Standard deviation of x [m].
+    pub(crate) x_m: f32,
+    /// Standard deviation of y [m].
+    pub(crate) y_m: f32,
+    /// How x and y hang together, -1..=1.
+    pub(crate) correlation: f32,
+    /// Standard deviation of the heading [rad].
+    pub(crate) heading_rad: f32,
 }
 
 impl Origin {
     /// An odometry that begins here.
     pub(crate) fn new(at: MapPose) -> Self {
-        Self { at, last: None }
+        Self {
+            at,
+            ..Self::default()
+        }
     }
 
-    /// Takes the pose told for `t_ms`, and the true one if there is one; gives the origin's place in the world.
-    pub(crate) fn follow(&mut self, t_ms: i64, told: Pose, truth: Option<MapPose>) -> MapPose {
-        let told = MapPose {
-            x_m: told.x_m.into(),
-            y_m: told.y_m.into(),
-            heading_rad: told.heading_rad.into(),
-        };
+    /// Takes the pose told for `t_ms` by a robot whose lengths are known so well, and the true one if there is one; gives the origin's place
+    /// in the world.
+    pub(crate) fn follow(
+        &mut self,
+        t_ms: i64,
+        told: Pose,
+        truth: Option<MapPose>,
+        errors: &OdometryErrors,
+    ) -> MapPose {
         if !(told.x_m + told.y_m + told.heading_rad).is_finite() {
             return self.at;
         }
-        if let Some((before_ms, before)) = self.last
-            && has_moved((t_ms - before_ms) as f64 / 1e3, before, told)
-        {
-            self.at = match truth {
-                Some(truth) => compose(truth, inverse(told)),
-                None => compose(self.at, before),
-            };
+        if let Some((before_ms, before)) = self.last {
+            if has_moved((t_ms - before_ms) as f64 / 1e3, before.into(), told.into()) {
+                self.at = match truth {
+                    Some(truth) => compose(truth, inverse(told.into())),
+                    None => compose(self.at, before.into()),
+                };
+                self.settle();
+            } else {
+                let piece = Piece::between(&before, &told, errors.base_m);
+                self.uncertainty.advance(errors, &piece);
+            }
         }
         self.last = Some((t_ms, told));
         self.at
+    }
+
+    /// The present place is the origin: for one that moves too little to be noticed.
+    pub(crate) fn settle(&mut self) {
+        self.uncertainty = Uncertainty::default();
+    }
+
+    /// How far the pose told last may be off.
+    pub(crate) fn spread(&self, errors: &OdometryErrors) -> Spread {
+        let [[xx, xy, _], [_, yy, _], [_, _, hh]] = self.uncertainty.covariance(errors);
+        let [x_m, y_m, heading_rad] = [xx, yy, hh].map(|variance| variance.max(0.0).sqrt());
+        let both = x_m * y_m;
+        Spread {
+            x_m,
+            y_m,
+            correlation: if both > 0.0 { xy / both } else { 0.0 },
+            heading_rad,
+        }
     }
 }
 
@@ -92,6 +137,7 @@ fn inverse(at: MapPose) -> MapPose {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rumbo_control::params::Params;
     use std::f32::consts::FRAC_PI_2;
 
     fn pose(x_m: f32, y_m: f32, heading_rad: f32) -> Pose {
@@ -110,6 +156,10 @@ mod tests {
         }
     }
 
+    fn errors() -> OdometryErrors {
+        Params::default().odometry_errors()
+    }
+
     fn near(a: MapPose, b: MapPose) -> bool {
         (a.x_m - b.x_m).hypot(a.y_m - b.y_m) < 1e-6 && turn_rad(a.heading_rad, b.heading_rad) < 1e-6
     }
@@ -123,12 +173,17 @@ mod tests {
             // Every tenth frame is missing, and the heading wraps.
             if frame % 10 != 0 {
                 let heading_rad = (frame as f32 * 0.3).sin() * 3.1;
-                origin.follow(frame * 40, pose(x_m, 0.0, heading_rad), None);
+                origin.follow(frame * 40, pose(x_m, 0.0, heading_rad), None, &errors());
             }
             x_m += 0.03;
         }
         assert_eq!(
-            origin.follow(8_040, pose(x_m, 0.0, 3.0), Some(place(9.0, 9.0, 0.0))),
+            origin.follow(
+                8_040,
+                pose(x_m, 0.0, 3.0),
+                Some(place(9.0, 9.0, 0.0)),
+                &errors()
+            ),
             start
         );
     }
@@ -136,29 +191,69 @@ mod tests {
     #[test]
     fn at_a_goal_the_origin_moves_to_where_a_simulated_robot_really_is() {
         let mut origin = Origin::new(MapPose::default());
-        origin.follow(0, pose(1.0, 1.0, FRAC_PI_2), Some(place(1.02, 0.97, 1.55)));
+        origin.follow(
+            0,
+            pose(1.0, 1.0, FRAC_PI_2),
+            Some(place(1.02, 0.97, 1.55)),
+            &errors(),
+        );
         // 20 ms later it is at rest there, and has called the place its origin.
         let truth = place(1.02, 0.97, 1.55);
-        let moved = origin.follow(40, pose(0.0, 0.0, 0.0), Some(truth));
+        let moved = origin.follow(40, pose(0.0, 0.0, 0.0), Some(truth), &errors());
         assert!(near(moved, truth), "{moved:?}");
         // On it drives, with an error of its own.
-        let on = origin.follow(80, pose(0.02, 0.0, 0.0), Some(place(1.02, 0.98, 1.5)));
+        let on = origin.follow(
+            80,
+            pose(0.02, 0.0, 0.0),
+            Some(place(1.02, 0.98, 1.5)),
+            &errors(),
+        );
         assert_eq!(on, moved);
     }
 
     #[test]
     fn a_real_robot_s_origin_moves_to_where_it_believed_to_be() {
         let mut origin = Origin::new(place(0.0, 1.0, 0.0));
-        origin.follow(0, pose(1.0, 0.0, FRAC_PI_2), None);
-        let moved = origin.follow(40, pose(0.0, 0.0, 0.0), None);
+        origin.follow(0, pose(1.0, 0.0, FRAC_PI_2), None, &errors());
+        let moved = origin.follow(40, pose(0.0, 0.0, 0.0), None, &errors());
         assert!(near(moved, place(1.0, 1.0, FRAC_PI_2.into())), "{moved:?}");
     }
 
     #[test]
     fn a_turn_on_the_spot_is_called_zero_too() {
         let mut origin = Origin::new(MapPose::default());
-        origin.follow(0, pose(0.0, 0.0, 2.0), None);
-        let moved = origin.follow(40, pose(0.0, 0.0, 0.0), None);
+        origin.follow(0, pose(0.0, 0.0, 2.0), None, &errors());
+        let moved = origin.follow(40, pose(0.0, 0.0, 0.0), None, &errors());
         assert!(near(moved, place(0.0, 0.0, 2.0)), "{moved:?}");
+    }
+
+    #[test]
+    fn the_spread_grows_on_the_way_and_ends_where_the_origin_moves() {
+        let mut origin = Origin::new(MapPose::default());
+        let at_rest = origin.spread(&errors());
+        for frame in 0..=100u16 {
+            let x_m = 0.01 * f32::from(frame);
+            origin.follow(i64::from(frame) * 40, pose(x_m, 0.0, 0.0), None, &errors());
+        }
+        let there = origin.spread(&errors());
+        assert!(there.x_m < 0.004 && there.y_m > 0.015, "{there:?}");
+        origin.follow(4_040, pose(0.0, 0.0, 0.0), None, &errors());
+        assert_eq!(origin.spread(&errors()), at_rest);
+    }
+
+    #[test]
+    fn on_the_way_to_the_left_x_and_y_change_their_roles() {
+        let mut origin = Origin::new(MapPose::default());
+        for frame in 0..=100u16 {
+            let way_m = 0.01 * f32::from(frame);
+            let slanted = pose(0.6 * way_m, 0.8 * way_m, 0.8f32.atan2(0.6));
+            origin.follow(i64::from(frame) * 40, slanted, None, &errors());
+        }
+        // Aside of its way it may be off far more than along: to the right and ahead of x, or to the left and behind.
+        let there = origin.spread(&errors());
+        assert!(
+            there.x_m > 1.2 * there.y_m && there.correlation < -0.9,
+            "{there:?}"
+        );
     }
 }

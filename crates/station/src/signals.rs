@@ -1,5 +1,6 @@
 //! Samples of the signals: what the robot said of one instant, beside what was really the case.
 
+use crate::origin::Spread;
 use crate::row::Row;
 use crate::target::{MapPose, Truth};
 use rumbo_control::mode::ModeId;
@@ -22,6 +23,8 @@ pub(crate) struct Sample {
     pub telemetry: Telemetry,
     /// Place in the world of the origin of its pose.
     pub origin: MapPose,
+    /// How far the pose may be off, as seen from there.
+    pub spread: Spread,
     /// What was the case [`EARLIER_MS`] before and at `t_ms`; `None` with a real robot.
     pub truth: Option<[Truth; 2]>,
     /// Where the ghost was; `None` without one.
@@ -48,7 +51,7 @@ fn measured(range: Range) -> f32 {
 }
 
 /// Values in a row.
-pub(crate) const COLUMNS: usize = 41;
+pub(crate) const COLUMNS: usize = 45;
 
 impl Sample {
     /// The row of this sample, each value with its name. The page finds the values by the names.
@@ -73,6 +76,10 @@ impl Sample {
             ("x_m", said.pose.x_m),
             ("y_m", said.pose.y_m),
             ("heading_rad", said.pose.heading_rad),
+            ("x_deviation_m", self.spread.x_m),
+            ("y_deviation_m", self.spread.y_m),
+            ("xy_correlation", self.spread.correlation),
+            ("heading_deviation_rad", self.spread.heading_rad),
             ("heading_ref_rad", self.heading_ref_rad),
             ("origin_x_m", self.origin.x_m as f32),
             ("origin_y_m", self.origin.y_m as f32),
@@ -130,6 +137,7 @@ impl Sample {
             heading_ref_rad: 0.0,
             telemetry: Telemetry::default(),
             origin: MapPose::default(),
+            spread: Spread::default(),
             truth: None,
             ghost: None,
         }
@@ -192,6 +200,7 @@ mod tests {
             heading_ref_rad: 0.0,
             telemetry,
             origin: MapPose::default(),
+            spread: Spread::default(),
             truth: None,
             ghost: None,
         };

@@ -5,6 +5,7 @@
 //! through [`Simulation`], and goes to the eyes only: commands and measurements take the link, as with a real robot.
 
 use crate::log::Manifest;
+use rumbo_control::Pose;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_control::mode::waypoints::Waypoint;
@@ -126,6 +127,16 @@ pub struct MapPose {
     pub y_m: f64,
     /// \[rad\].
     pub heading_rad: f64,
+}
+
+impl From<Pose> for MapPose {
+    fn from(pose: Pose) -> Self {
+        Self {
+            x_m: pose.x_m.into(),
+            y_m: pose.y_m.into(),
+            heading_rad: pose.heading_rad.into(),
+        }
+    }
 }
 
 /// What is really the case with a simulated robot at one instant.

@@ -166,7 +166,15 @@ impl Terminal {
 
 /// Signals of which a row of this kind says nothing.
 pub(crate) fn untold(kind: RowKind) -> impl Iterator<Item = &'static str> {
-    const POSE: &[&str] = &["x_m", "y_m", "heading_rad"];
+    const POSE: &[&str] = &[
+        "x_m",
+        "y_m",
+        "heading_rad",
+        "x_deviation_m",
+        "y_deviation_m",
+        "xy_correlation",
+        "heading_deviation_rad",
+    ];
     const ORIGIN: &[&str] = &["origin_x_m", "origin_y_m", "origin_heading_rad"];
     const SPEEDS: &[&str] = &[
         "left_before_rad_s",

@@ -53,7 +53,7 @@ export const PAGE = {
   'Map': 'Mapa',
   'Map of the world and the robot. Drag to move, wheel or + and - to zoom, 0 to fit; in modes 7 and 8 a click picks a place':
     'Mapa del mundo y del robot. Arrastrar lo mueve, la rueda o + y - lo amplían, 0 lo ajusta; en los modos 7 y 8 un clic elige un lugar',
-  'as it is': 'como es', 'as it estimates': 'como lo estima', 'Fit': 'Ajustar', 'Show everything (0 on the map)': 'Muestra todo (0 en el mapa)',
+  'as it is': 'como es', 'as it estimates': 'como lo estima', 'the ellipse holds its place, the sector its heading, with 95 % each, as far as the odometry knows its own errors': 'la elipse contiene su posición y el sector su rumbo, con un 95 % cada uno, hasta donde la odometría conoce sus propios errores', 'Fit': 'Ajustar', 'Show everything (0 on the map)': 'Muestra todo (0 en el mapa)',
   'Tell it': 'Decírselo', 'Write the rig that it carries to the robot': 'Escribe en el robot el montaje que lleva',
   'The robot believes to carry the rig {}, and carries {}: it misreads its sonars.': 'El robot cree llevar el montaje {} y lleva {}: interpreta mal sus sonares.',
   'heading': 'rumbo', 'goal': 'destino', 'to': 'hacia', ', {} m away': ', a {} m', 'references': 'consignas', 'contact!': '¡contacto!',
@@ -106,6 +106,8 @@ export const PAGE = {
   'true heading': 'rumbo real', 'heading as estimated': 'rumbo estimado', 'heading that the mode wants': 'rumbo que quiere el modo', 'error of the heading': 'error de rumbo', 'angle of the servo': 'ángulo del servo',
   'ghost': 'fantasma', 'ghost x': 'x fantasma', 'ghost y': 'y fantasma', 'heading of the ghost': 'rumbo del fantasma', 'place of the ghost, x': 'posición del fantasma, x', 'place of the ghost, y': 'posición del fantasma, y',
   'true place, x': 'posición real, x', 'true place, y': 'posición real, y', 'place as estimated, x': 'posición estimada, x', 'place as estimated, y': 'posición estimada, y',
+  'σ x': 'σ x', 'σ y': 'σ y', 'σ heading': 'σ rumbo', 'standard deviation of the place as estimated, x': 'desviación típica de la posición estimada, x',
+  'standard deviation of the place as estimated, y': 'desviación típica de la posición estimada, y', 'standard deviation of the heading as estimated': 'desviación típica del rumbo estimado',
   'place to go to, x': 'posición de destino, x', 'place to go to, y': 'posición de destino, y',
   // Layouts.
   'Layouts': 'Diseños', 'Layouts: keep, save and load which plots there are': 'Diseños: conservar, guardar y cargar qué gráficas hay',

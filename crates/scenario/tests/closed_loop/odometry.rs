@@ -1,15 +1,14 @@
 //! The odometry's own idea of how far it is off, against how far it truly is.
 
 use super::setup;
-use rumbo_control::math::sin_cos;
+use rumbo_control::Pose;
 use rumbo_control::odometry::{Piece, Uncertainty};
-use rumbo_control::params::{ParamId, Params};
-use rumbo_control::{Pose, Wheels};
+use rumbo_control::params::Params;
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::run::{prepare, run};
 use rumbo_wire::FromRobot;
 
-/// What the last telemetry frame of a run says, how uncertain that is by the same theory as on the robot, and what is true.
+/// What the last telemetry frame of a run says, how uncertain that is by the same theory as in the lab, and what is true.
 fn end_of(setup: &Setup, seed: u64) -> (Pose, [[f64; 3]; 3], [f64; 3]) {
     let mut params = Params::default();
     for (id, value) in &setup.scenario.parameters {
@@ -22,19 +21,7 @@ fn end_of(setup: &Setup, seed: u64) -> (Pose, [[f64; 3]; 3], [f64; 3]) {
         let FromRobot::Telemetry(telemetry) = heard.what else {
             continue;
         };
-        let (ahead_m, _) = pose.to_local(telemetry.pose.x_m, telemetry.pose.y_m);
-        let turned_rad =
-            rumbo_control::math::wrap_angle(telemetry.pose.heading_rad - pose.heading_rad);
-        let turn_m = 0.5 * turned_rad * params.get(ParamId::Base);
-        let piece = Piece {
-            facing: sin_cos(pose.heading_rad + 0.5 * turned_rad),
-            forward_m: ahead_m,
-            turned_rad,
-            rolled_m: Wheels {
-                left: (ahead_m - turn_m).abs(),
-                right: (ahead_m + turn_m).abs(),
-            },
-        };
+        let piece = Piece::between(&pose, &telemetry.pose, errors.base_m);
         uncertainty.advance(&errors, &piece);
         pose = telemetry.pose;
     }
