@@ -1,0 +1,150 @@
+//! Options of the commands that drive: `lab`, `connect`; and of `flash`.
+
+use super::values::speed;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Where the dashboard is served.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct ServeArgs {
+    /// Port of the dashboard; 0 takes any free one
+    #[arg(long, value_name = "N", default_value_t = rumbo_station::DEFAULT_PORT)]
+    pub(crate) port: u16,
+    /// Serve the dashboard to the network too, at this address of this computer; prints an address that opens once and one for viewers.
+    /// Not encrypted (docs/security.md)
+    #[arg(long, value_name = "ADDRESS")]
+    pub(crate) listen: Option<std::net::IpAddr>,
+}
+
+/// The live bridge.
+#[cfg(feature = "foxglove")]
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct BridgeArgs {
+    /// Show the session to Foxglove or Lichtblick too, on this port of 127.0.0.1; read-only
+    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8765")]
+    pub(crate) foxglove: Option<u16>,
+}
+
+impl ServeArgs {
+    /// The address and port.
+    pub(crate) fn at(self) -> rumbo_station::ServeAt {
+        let here = rumbo_station::ServeAt::here(self.port);
+        rumbo_station::ServeAt {
+            address: self.listen.unwrap_or(here.address),
+            ..here
+        }
+    }
+}
+
+/// Options of `rumbo lab`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo lab
+  rumbo lab --scenario mode5 --speed 4
+  rumbo lab --scenario mode1 --rig final --world room
+  rumbo lab --scenario mode1 --firmware my_sketch.elf --wiring final
+  rumbo lab --scenario mode5 --firmware my_sketch.elf --gdb 1234
+  rumbo lab --port 9000 --no-browser
+  rumbo lab --listen 192.168.1.7
+  rumbo lab --pty")]
+pub(crate) struct LabArgs {
+    /// Scenario that the robot starts in: name or path
+    #[arg(long, value_name = "NAME", default_value = "mode1")]
+    pub(crate) scenario: String,
+    /// Robot instead of the scenario's own: name or path
+    #[arg(long, value_name = "NAME")]
+    pub(crate) robot: Option<String>,
+    /// World instead of the scenario's own: name or path
+    #[arg(long, value_name = "NAME")]
+    pub(crate) world: Option<String>,
+    /// Rig instead of the scenario's own: where the sonars sit
+    #[arg(long, value_name = "NAME")]
+    pub(crate) rig: Option<String>,
+    /// Program image for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
+    #[arg(long, value_name = "IMAGE")]
+    pub(crate) firmware: Option<PathBuf>,
+    /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own image]
+    #[arg(long, value_name = "NAME", requires = "firmware")]
+    pub(crate) wiring: Option<String>,
+    /// Port on 127.0.0.1 where avr-gdb may come and go; 0 takes any free one. Robot and world stand while it holds the program
+    #[arg(long, value_name = "PORT", requires = "firmware")]
+    pub(crate) gdb: Option<u16>,
+    #[command(flatten)]
+    pub(crate) serve: ServeArgs,
+    #[cfg(feature = "foxglove")]
+    #[command(flatten)]
+    pub(crate) bridge: BridgeArgs,
+    /// Do not open the browser
+    #[arg(long)]
+    pub(crate) no_browser: bool,
+    /// Seconds of simulation per second; 0 starts paused
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
+    pub(crate) speed: f64,
+    /// Seed of everything random
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Folder for the log of each run; made if need be [default: rumbo/logs in the user's data folder]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Offer the robot as a serial port to other programs, without a dashboard; prints the port's name
+    #[cfg(unix)]
+    #[arg(long, conflicts_with_all = ["port", "listen", "no_browser", "out"])]
+    pub(crate) pty: bool,
+}
+
+/// Options of `rumbo connect`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo connect /dev/ttyACM0
+  rumbo connect /dev/rfcomm0 --baud 9600
+  rumbo connect COM5
+  rumbo connect tcp:192.168.1.7:2000 --no-browser
+
+`rumbo list ports` shows the serial ports of this computer. Connecting arms nothing. Should the port go, the robot stops by itself; it is
+found again when the port is back.")]
+pub(crate) struct ConnectArgs {
+    /// Serial port by its name, or tcp:host:port
+    #[arg(value_name = "PORT")]
+    pub(crate) address: String,
+    /// Show a simulated robot in this scenario that gets the same commands: put the robot where it begins
+    #[arg(long, value_name = "SCENARIO")]
+    pub(crate) ghost: Option<String>,
+    /// Speed of the serial port; the robot's is 9600
+    #[arg(long, value_name = "N", default_value_t = rumbo_station::port::DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(300..=2_000_000))]
+    pub(crate) baud: u32,
+    #[command(flatten)]
+    pub(crate) serve: ServeArgs,
+    #[cfg(feature = "foxglove")]
+    #[command(flatten)]
+    pub(crate) bridge: BridgeArgs,
+    /// Do not open the browser
+    #[arg(long)]
+    pub(crate) no_browser: bool,
+    /// Folder for the log; made if need be [default: rumbo/logs in the user's data folder]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// Options of `rumbo flash`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo flash /dev/ttyACM0
+  rumbo flash COM5 --image my_sketch.hex
+  rumbo flash /dev/ttyACM0 --print
+
+The board is asked for its signature before anything is written. Parameters saved on the robot stay. Needs avrdude; `rumbo list ports` shows the
+serial ports of this computer. Before the first run: docs/wiring.md.")]
+pub(crate) struct FlashArgs {
+    /// Serial port of the Mega's USB cable
+    #[arg(value_name = "PORT")]
+    pub(crate) port: String,
+    /// Image to write, Intel HEX or ELF [default: the one that `cargo xtask firmware` built, target/firmware/rumbo.hex]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) image: Option<PathBuf>,
+    /// Print the commands instead of running them
+    #[arg(long)]
+    pub(crate) print: bool,
+}

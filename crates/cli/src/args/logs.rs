@@ -1,0 +1,126 @@
+//! Options of the commands for logs: `import`, `replay`, `export`, `compare`, `rerun`.
+
+use super::live::ServeArgs;
+use super::values::{percent, speed};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Options of `rumbo import`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo import runs/mode5.csv
+  rumbo import runs/mode5.csv --out logs/mode5.mcap --json
+  rumbo import terminal.txt
+
+A CSV begins with the names of its columns. A capture of a terminal has rows of telemetry and the commands typed, a line each.")]
+pub(crate) struct ImportArgs {
+    /// CSV of the original program
+    #[arg(value_name = "FILE.csv")]
+    pub(crate) file: PathBuf,
+    /// The log to write [default: the same name with .mcap, in the current folder]
+    #[arg(long, value_name = "FILE.mcap")]
+    pub(crate) out: Option<PathBuf>,
+    /// The summary as JSON on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Options of `rumbo replay`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo replay out/mode1-7.mcap
+  rumbo replay out/mode1-7.mcap --speed 4
+  rumbo replay robot.mcap --ghost mode1
+  rumbo replay out/mode1-7.mcap --port 0 --no-browser")]
+pub(crate) struct ReplayArgs {
+    /// The log
+    #[arg(value_name = "LOG")]
+    pub(crate) log: PathBuf,
+    /// Show a simulated robot that gets the same commands, in this scenario [default: the log's]
+    #[arg(long, value_name = "SCENARIO", num_args = 0..=1)]
+    pub(crate) ghost: Option<Option<String>>,
+    #[command(flatten)]
+    pub(crate) serve: ServeArgs,
+    /// Do not open the browser
+    #[arg(long)]
+    pub(crate) no_browser: bool,
+    /// Seconds of the log per second; 0 starts paused
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
+    pub(crate) speed: f64,
+}
+
+/// Options of `rumbo export`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo export out/mode1-7.mcap
+  rumbo export out/mode1-7.mcap --format png --out figures
+
+CSV: one row per telemetry frame, time and units in the names of the columns; empty where a value is not known, inf where a sonar
+hears nothing within its reach; events in a second file.")]
+pub(crate) struct ExportArgs {
+    /// The log
+    #[arg(value_name = "LOG")]
+    pub(crate) log: PathBuf,
+    /// What to write; may be repeated [default: csv and svg]
+    #[arg(long = "format", value_enum, value_name = "FORMAT")]
+    pub(crate) formats: Vec<Format>,
+    /// Folder for the files; made if need be [default: the current one]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// What a log can be written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// Signals and events as tables
+    Csv,
+    /// Figures as vector graphics
+    Svg,
+    /// Figures as an image
+    Png,
+}
+
+/// Options of `rumbo compare`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo compare out/mode1-7.mcap out/mode1-8.mcap
+  rumbo compare before/mode1-7.mcap after/mode1-7.mcap --tolerance 5
+  rumbo compare a.mcap b.mcap c.mcap --out overlaid.svg --json
+
+With --tolerance, exit status 1 if a metric of a later log differs from the first one's by more, or a run fails where the first
+passed.")]
+pub(crate) struct CompareArgs {
+    /// The logs; differences are from the first
+    #[arg(required = true, num_args = 2.., value_name = "LOG")]
+    pub(crate) logs: Vec<PathBuf>,
+    /// Largest allowed difference of a metric, in percent of the first log's value
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    pub(crate) tolerance: Option<f64>,
+    /// Figure with all runs over each other
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) out: Option<PathBuf>,
+    /// The result as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Options of `rumbo rerun`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo rerun out/mode1-7.mcap
+  rumbo rerun out/mode1-7.mcap --json
+
+Exit status 0 if the run is the same, 1 if it differs.")]
+pub(crate) struct RerunArgs {
+    /// Log of a simulated run: of `rumbo run --out` or `rumbo lab`
+    #[arg(value_name = "LOG")]
+    pub(crate) log: PathBuf,
+    /// The result as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}

@@ -1,0 +1,164 @@
+//! The command line: subcommands, options, and the examples that each `--help` shows. Each file here is one group of subcommands.
+
+mod live;
+mod logs;
+mod runs;
+mod values;
+
+#[cfg(feature = "foxglove")]
+pub(crate) use live::BridgeArgs;
+pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs, ServeArgs};
+pub(crate) use logs::{CompareArgs, ExportArgs, Format, ImportArgs, ReplayArgs, RerunArgs};
+pub(crate) use runs::{
+    CalibrateArgs, ExperimentsArgs, IdentifyArgs, LanguageName, ProgramName, RunArgs,
+};
+
+use crate::failure::Failure;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Rumbo: the lab of a small robot. Without a subcommand, `lab`.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    args_conflicts_with_subcommands = true,
+    after_help = "\
+Examples:
+  rumbo                       a simulated robot and its dashboard in the browser
+  rumbo run mode1 mode5       experiments without a window, with their metrics
+  rumbo list                  what there is to choose from"
+)]
+pub(crate) struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+    /// Options of `lab`.
+    #[command(flatten)]
+    pub(crate) lab: LabArgs,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Drive a simulated robot from a dashboard in the browser
+    Lab(LabArgs),
+    /// Drive a real robot from the same dashboard, over a serial port or TCP
+    Connect(ConnectArgs),
+    /// Write the image to an Arduino Mega
+    Flash(FlashArgs),
+    /// Run scenarios as fast as the machine can and judge their metrics
+    Run(RunArgs),
+    /// Run every experiment of the report and write it: one page with all figures
+    Experiments(ExperimentsArgs),
+    /// Find the plant's parameters from recorded runs
+    Identify(IdentifyArgs),
+    /// Let the robot calibrate itself: dead zones, feedforward, wheels, base
+    Calibrate(CalibrateArgs),
+    /// Check a CSV of the original program and convert it to a log (MCAP)
+    Import(ImportArgs),
+    /// Show a log in the dashboard: play, pause, step, scrub
+    Replay(ReplayArgs),
+    /// Write a log as CSV, SVG or PNG
+    Export(ExportArgs),
+    /// Metrics of several logs side by side, with their differences
+    Compare(CompareArgs),
+    /// Run a recorded simulation again and compare it bit for bit
+    Rerun(RerunArgs),
+    /// List modes, scenarios, worlds, rigs, robots and parameters
+    List(ListArgs),
+}
+
+/// Options of `rumbo list`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo list
+  rumbo list modes
+  rumbo list parameters
+  rumbo list logs
+  rumbo list scenarios --json")]
+pub(crate) struct ListArgs {
+    /// One topic only
+    pub(crate) topic: Option<Topic>,
+    /// As one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What can be listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Topic {
+    /// Experiments
+    Scenarios,
+    /// Walls and boxes
+    Worlds,
+    /// Robots and their rigs
+    Robots,
+    /// Where the sonars of a robot can sit
+    Rigs,
+    /// What the robot can do: states, reference and its range
+    Modes,
+    /// Basic movements of mode `manual`
+    Movements,
+    /// Parameters of the control core
+    Parameters,
+    /// Numbers of the plant
+    Plant,
+    /// Serial ports of this computer
+    Ports,
+    /// Recorded runs of `rumbo lab`, newest last
+    Logs,
+}
+
+/// Shows help and version; turns a wrong argument into one line.
+pub(crate) fn explain(error: &clap::Error) -> Result<(), Failure> {
+    if !error.use_stderr() {
+        return Ok(error.print()?);
+    }
+    let text = error.to_string();
+    let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let told: Vec<&str> = lines
+        .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"))
+        .collect();
+    let told = told.join("; ").replace(":; ", ": ");
+    Err(Failure::Input(format!(
+        "{}; see `rumbo --help`",
+        told.trim_start_matches("error: ")
+    )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Cli;
+    use clap::{CommandFactory, Parser};
+
+    #[test]
+    fn every_example_of_the_help_is_a_valid_command() {
+        let mut command = Cli::command();
+        let helps: Vec<String> = command
+            .get_subcommands_mut()
+            .map(|subcommand| subcommand.render_help().to_string())
+            .chain([Cli::command().render_help().to_string()])
+            .collect();
+        let mut seen = 0;
+        for help in helps {
+            let (_, examples) = help.split_once("Examples:").unwrap();
+            for example in examples
+                .lines()
+                .map(str::trim)
+                .filter(|line| line.starts_with("rumbo"))
+            {
+                // A description may follow, set off by blanks.
+                let line = example.split_once("  ").map_or(example, |(line, _)| line);
+                // As a shell does: what is quoted is one word.
+                let words = line.split('\'').enumerate();
+                let words = words.flat_map(|(part, text)| match part % 2 {
+                    0 => text.split_whitespace().collect(),
+                    _ => vec![text],
+                });
+                Cli::try_parse_from(words).unwrap_or_else(|error| panic!("{line}: {error}"));
+                seen += 1;
+            }
+        }
+        assert!(seen > 10);
+    }
+}

@@ -1,0 +1,201 @@
+//! Options of the commands that run experiments and fit numbers: `run`, `experiments`, `identify`, `calibrate`.
+
+use super::values::{parameter, timed_text};
+use clap::{Args, ValueEnum};
+use rumbo_scenario::files::TimedText;
+use std::path::PathBuf;
+
+/// Options of `rumbo run`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo run mode1
+  rumbo run mode5 --runs 20 --json
+  rumbo run mode5 --runs 20 --program original
+  rumbo run mode1 --rig final --world room
+  rumbo run mode5 --firmware my_sketch.elf --command 'REF 40@20'
+  rumbo run mode5 --firmware my_sketch.elf --profile cycles.folded --vcd pins.vcd
+  rumbo run mode5 --firmware my_sketch.elf --gdb 1234   # then: avr-gdb my_sketch.elf -ex 'target remote :1234'
+  rumbo run mode1 --seed 7 --param battery.open_circuit_v=6.9 --out out/mode1")]
+pub(crate) struct RunArgs {
+    /// Scenarios: names, or paths of files
+    #[arg(required = true, value_name = "SCENARIO")]
+    pub(crate) scenarios: Vec<String>,
+    /// Seed of the first run; each further run takes the next
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Runs of each scenario, each with a seed of its own
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) runs: u32,
+    /// Robot instead of the scenario's own: name or path
+    #[arg(long, value_name = "NAME")]
+    pub(crate) robot: Option<String>,
+    /// World instead of the scenario's own: name or path
+    #[arg(long, value_name = "NAME")]
+    pub(crate) world: Option<String>,
+    /// Rig instead of the scenario's own
+    #[arg(long, value_name = "NAME")]
+    pub(crate) rig: Option<String>,
+    /// Program at the robot's pins: ours, or the report's with its schemes and gains (of parameters, only the plant's
+    /// count for that one)
+    #[arg(long, value_enum, value_name = "NAME", default_value_t)]
+    pub(crate) program: ProgramName,
+    /// Program image for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
+    #[arg(long, value_name = "IMAGE", conflicts_with = "program")]
+    pub(crate) firmware: Option<PathBuf>,
+    /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own image]
+    #[arg(long, value_name = "NAME", requires = "firmware")]
+    pub(crate) wiring: Option<String>,
+    /// Line of text sent over the link at a time, e.g. 'REF 40@6'; may be repeated
+    #[arg(long = "command", value_name = "TEXT@SECONDS", value_parser = timed_text, conflicts_with = "program")]
+    pub(crate) commands: Vec<TimedText>,
+    /// Parameter of the control core or the plant (`rumbo list`); may be repeated
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
+    pub(crate) params: Vec<(String, f64)>,
+    /// Folder for the log, the result and the true signals of each run; made if need be
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// One JSON object per run on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// File for the firmware's cycles by function, for flame graphs; what it comes to goes to stderr. One run
+    #[arg(long, value_name = "FILE", requires = "firmware")]
+    pub(crate) profile: Option<PathBuf>,
+    /// File for the Mega's pins over time, for a viewer of waveforms such as GTKWave. One run
+    #[arg(long, value_name = "FILE", requires = "firmware")]
+    pub(crate) vcd: Option<PathBuf>,
+    /// Port on 127.0.0.1 where the run waits for avr-gdb; 0 takes any free one. One run
+    #[arg(long, value_name = "PORT", requires = "firmware")]
+    pub(crate) gdb: Option<u16>,
+    /// Threads [default: one per core]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
+/// The programs that can drive the simulated robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ProgramName {
+    /// Ours
+    #[default]
+    Rumbo,
+    /// The report's, as a baseline
+    Original,
+}
+
+/// Options of `rumbo experiments`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo experiments
+  rumbo experiments --language es --out informe
+  rumbo experiments --only mode1 mode5 --seed 7
+  rumbo experiments --real runs
+  rumbo experiments --firmware my_sketch.elf
+
+Writes DIR/report.html: no part of it comes from elsewhere, and it prints well. The same version, seed and files give the same bytes. Exit
+status 1 if an experiment misses a limit.")]
+pub(crate) struct ExperimentsArgs {
+    /// Folder for the report; made if need be
+    #[arg(long, value_name = "DIR", default_value = "rumbo-report")]
+    pub(crate) out: PathBuf,
+    /// Language of the report [default: that of the locale]
+    #[arg(long, value_enum, value_name = "LANGUAGE")]
+    pub(crate) language: Option<LanguageName>,
+    /// These experiments only: names as in the report's links, e.g. mode1, or of scenarios
+    #[arg(long, value_name = "NAME", num_args = 1..)]
+    pub(crate) only: Vec<String>,
+    /// Seed of all runs
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Folder with CSVs of recorded runs (the original program's), shown beside ours
+    #[arg(long, value_name = "DIR")]
+    pub(crate) real: Option<PathBuf>,
+    /// Robot instead of the scenarios' own: name or path
+    #[arg(long, value_name = "NAME")]
+    pub(crate) robot: Option<String>,
+    /// Program image for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
+    #[arg(long, value_name = "IMAGE")]
+    pub(crate) firmware: Option<PathBuf>,
+    /// Wiring of that Mega, of the robot file [default: the report's for each experiment; `final` for our own image]
+    #[arg(long, value_name = "NAME", requires = "firmware")]
+    pub(crate) wiring: Option<String>,
+    /// Also the true signals of each run as CSV, and its metrics as JSON
+    #[arg(long)]
+    pub(crate) data: bool,
+}
+
+/// The languages of the report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LanguageName {
+    /// English
+    En,
+    /// Spanish
+    Es,
+}
+
+/// Options of `rumbo identify`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo identify runs/mode5.csv runs/mode7.csv --robot my_robot.toml
+  rumbo identify runs/mode5.csv --check memoria --json --plots out
+
+Whole run: the recorded duty replayed, from the first row to the last. 0.5 s ahead: from the state that the rows
+up to then tell (wheel speeds, the floor's resistance), no later speed used. Of each run only the battery's
+voltage and the floor's friction are fitted with --check. Without it a fit takes some two minutes.")]
+pub(crate) struct IdentifyArgs {
+    /// Recorded runs: CSV of the original program, or logs made of them by `rumbo import`
+    #[arg(required = true, value_name = "LOG")]
+    pub(crate) logs: Vec<PathBuf>,
+    /// Robot to start from; given by path, its table `plant` is rewritten and its comments are kept
+    #[arg(
+        long,
+        value_name = "ROBOT",
+        default_value = "memoria",
+        conflicts_with = "check"
+    )]
+    pub(crate) robot: String,
+    /// Evaluate this robot without fitting it
+    #[arg(long, value_name = "ROBOT")]
+    pub(crate) check: Option<String>,
+    /// The result as JSON on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Folder for plots of measured against simulated, SVG and PNG; made if need be
+    #[arg(long, value_name = "DIR")]
+    pub(crate) plots: Option<PathBuf>,
+}
+
+/// Options of `rumbo calibrate`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo calibrate
+  rumbo calibrate --seed 7 --json
+  rumbo calibrate --seed 7 --out my_robot.toml
+
+The robot stands 0.3 to 0.5 m beside a wall, along it, on its final rig, with 2.5 m free ahead. It drives along the wall to and fro,
+turns on the spot, and is done in less than three minutes.")]
+pub(crate) struct CalibrateArgs {
+    /// Robot: name or path
+    #[arg(long, value_name = "NAME", default_value = "memoria")]
+    pub(crate) robot: String,
+    /// Rig instead of `final`; it must have a sonar ahead and one on each side
+    #[arg(long, value_name = "NAME")]
+    pub(crate) rig: Option<String>,
+    /// World instead of the one made for it; the robot starts at x = -1.1, y = -0.45 m there, along x
+    #[arg(long, value_name = "NAME")]
+    pub(crate) world: Option<String>,
+    /// Seed that draws the robot and everything random
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Parameter of the control core or the plant (`rumbo list`); may be repeated
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
+    pub(crate) params: Vec<(String, f64)>,
+    /// Robot file whose [parameters] table is rewritten; a new file starts as a copy of the robot's
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) out: Option<PathBuf>,
+    /// The result as JSON on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
+}

@@ -1,0 +1,52 @@
+//! Values of options that need more than a look: numbers within bounds, pairs.
+
+use rumbo_scenario::files::TimedText;
+
+/// Seconds of simulation or of a log per second.
+pub(super) fn speed(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(speed) if (0.0..=100.0).contains(&speed) => Ok(speed),
+        _ => Err("must be a number within 0..100".into()),
+    }
+}
+
+/// A line of text and when it is sent: `REF 40@6`.
+pub(super) fn timed_text(text: &str) -> Result<TimedText, String> {
+    let wrong = || "write it as TEXT@SECONDS, e.g. 'REF 40@6'".to_owned();
+    let (line, at_s) = text.rsplit_once('@').ok_or_else(wrong)?;
+    let at_s: f64 = at_s.trim().parse().map_err(|_| wrong())?;
+    if !at_s.is_finite() || at_s < 0.0 {
+        return Err("the time must be 0 or more seconds".into());
+    }
+    if line.is_empty() || !line.bytes().all(|byte| (b' '..=b'~').contains(&byte)) {
+        return Err("the text must be one line of ASCII".into());
+    }
+    Ok(TimedText {
+        at_s,
+        text: line.to_owned(),
+    })
+}
+
+/// A tolerance.
+pub(super) fn percent(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(percent) if (0.0..=1000.0).contains(&percent) => Ok(percent),
+        _ => Err("must be a number within 0..1000".into()),
+    }
+}
+
+/// A parameter and its value: `kv=0.03`.
+pub(super) fn parameter(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("write it as name=value, e.g. battery.open_circuit_v=6.9")?;
+    let value: f64 = value
+        .trim()
+        .parse()
+        .map_err(|_| format!("`{value}` is not a number"))?;
+    if value.is_finite() {
+        Ok((name.trim().to_owned(), value))
+    } else {
+        Err("the value must be finite".into())
+    }
+}
