@@ -3,6 +3,7 @@
 use crate::args::CalibrateArgs;
 use crate::failure::Failure;
 use crate::output::{self, figure};
+use crate::place;
 use rumbo_scenario::calibrate::{self, Calibration, Row};
 use rumbo_scenario::files::{Library, Overrides, RobotFile, Setup};
 use rumbo_station::{Extras, Finding, Findings, GuestLink};
@@ -22,7 +23,7 @@ struct Report<'a> {
     contacts: u32,
     quantities: &'a [Row],
     parameters: Vec<(&'static str, f64)>,
-    written: Option<&'a Path>,
+    written: Option<String>,
 }
 
 /// The robot at the other end of the dashboard's link.
@@ -109,7 +110,7 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
             contacts,
             quantities: &rows,
             parameters,
-            written,
+            written: written.map(output::shown),
         });
     }
     report(&found, &rows, contacts, args.seed)?;
@@ -174,5 +175,5 @@ fn write(path: &Path, setup: &Setup, found: &Calibration) -> Result<(), Failure>
     let text = calibrate::rewrite(&text, found, &today)
         .map_err(|error| wrong(format!("is no robot file ({error})")))?;
     RobotFile::parse("", &file, &text).map_err(Failure::input)?;
-    std::fs::write(path, text).map_err(|error| wrong(format!("cannot be written ({error})")))
+    place::write(path, text)
 }

@@ -6,6 +6,7 @@
 use crate::args::ImportArgs;
 use crate::failure::Failure;
 use crate::output;
+use crate::place;
 use rumbo_station::log::{Burst, Kind, Manifest, record_text};
 use rumbo_wire::text::{Row, TextCommand, TextError};
 use serde_json::json;
@@ -57,7 +58,9 @@ pub(crate) fn import(args: &ImportArgs, text: &str, out: &Path) -> Result<(), Fa
         baud: BAUD,
         ..Manifest::default()
     };
-    record_text(out, &manifest, &link).map_err(Failure::input)?;
+    place::make(out, |place| {
+        record_text(place, &manifest, &link).map_err(|error| Failure::Input(error.of(out)))
+    })?;
     let rows = link.iter().filter(|burst| !burst.to_robot).count();
     let (commands, duration_s) = (
         link.len() - rows,
@@ -65,7 +68,7 @@ pub(crate) fn import(args: &ImportArgs, text: &str, out: &Path) -> Result<(), Fa
     );
     if args.json {
         return output::json(
-            &json!({ "log": out, "rows": rows, "commands": commands, "duration_s": duration_s }),
+            &json!({ "log": output::shown(out), "rows": rows, "commands": commands, "duration_s": duration_s }),
         );
     }
     output::line(&format!(

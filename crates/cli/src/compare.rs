@@ -1,10 +1,11 @@
 //! `rumbo compare`: several logs side by side, with their differences from the first; a gate for regressions.
 
 use crate::args::CompareArgs;
-use crate::export::{unwritable, warn_if_cut};
+use crate::export::warn_if_cut;
 use crate::failure::Failure;
 use crate::figures;
 use crate::output::{self, figure};
+use crate::place;
 use rumbo_scenario::chart;
 use rumbo_station::Row;
 use rumbo_station::log::Log;
@@ -42,7 +43,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
             )));
         }
         let text = chart::svg(&charts, 1, figures::SIZE).map_err(Failure::Input)?;
-        std::fs::write(path, text).map_err(|error| unwritable(path, &error))?;
+        place::write(path, text)?;
     }
     if args.json {
         let runs = names.iter().zip(&metrics).zip(&passes);

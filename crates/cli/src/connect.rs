@@ -6,7 +6,6 @@ use crate::failure::Failure;
 use crate::ghost::Haunted;
 use crate::lab;
 use crate::logs;
-use rumbo_station::log::Recording;
 use rumbo_station::port::{self, Port};
 use rumbo_station::{LabConfig, Target};
 use std::io::Write;
@@ -25,7 +24,7 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
     let config = LabConfig {
         at: args.serve.at(),
         speed: 1.0,
-        recording: logs::folder(args.out.as_deref()).map(|folder| Recording { folder }),
+        recording: logs::recording(args.out.as_deref()),
         #[cfg(feature = "foxglove")]
         bridge: lab::bridge(args.bridge)?,
     };

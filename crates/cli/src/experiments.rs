@@ -4,11 +4,12 @@ use crate::args::{ExperimentsArgs, LanguageName};
 use crate::failure::Failure;
 use crate::manifest;
 use crate::output;
+use crate::place;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_report::text::Language;
 use rumbo_report::{Data, Plan, Request, html, real};
 use rumbo_scenario::files::{Library, Overrides};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 /// File name of the report.
@@ -39,36 +40,18 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
         real: real.unwrap_or_default(),
     };
     let plan = Plan::new(&Library::new(), request)?;
-    let place = place(&args.out)?;
+    place::try_folder(&args.out)?;
     let progress = progress(args, &plan);
     let mut data = plan.run(|simulated_s| progress.inc((10.0 * simulated_s) as u64))?;
     progress.finish_and_clear();
     data.firmware = args.firmware.as_deref().map(named);
     let (page, _) = html(&data, language(args));
-    std::fs::write(&place, page).map_err(|error| unwritable(&place, &error))?;
+    let place = args.out.join(REPORT);
+    place::write(&place, page)?;
     if args.data {
         write_data(&args.out, &data)?;
     }
     report(&data, &place, begun)
-}
-
-/// The file to be written, so that a folder where nothing can be written is found before the work, not after it.
-fn place(folder: &Path) -> Result<PathBuf, Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))?;
-    let place = folder.join(REPORT);
-    let opened = std::fs::OpenOptions::new()
-        .create(true)
-        .append(true)
-        .open(&place);
-    opened.map_err(|error| unwritable(&place, &error))?;
-    Ok(place)
-}
-
-fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::Input(format!(
-        "{}: cannot be written ({error}); choose another folder with --out",
-        path.display()
-    ))
 }
 
 /// The bar, which says from the start about how long it will take.
@@ -118,13 +101,11 @@ fn named(path: &Path) -> [String; 2] {
 fn write_data(folder: &Path, data: &Data) -> Result<(), Failure> {
     for outcome in data.outcomes.values() {
         let stem = format!("{}-{}", outcome.result.scenario, outcome.result.seed);
-        outcome
-            .result
-            .trace
-            .write_csv(&folder.join(format!("{stem}.csv")))?;
+        let csv = outcome.result.trace.csv();
+        place::write(&folder.join(format!("{stem}.csv")), csv)?;
         let path = folder.join(format!("{stem}.json"));
         let text = serde_json::to_string(&outcome.result).map_err(Failure::input)?;
-        std::fs::write(&path, text + "\n").map_err(|error| unwritable(&path, &error))?;
+        place::write(&path, text + "\n")?;
     }
     Ok(())
 }

@@ -4,11 +4,12 @@ use crate::args::{ExportArgs, Format};
 use crate::failure::Failure;
 use crate::figures;
 use crate::output;
+use crate::place;
 use rumbo_scenario::chart;
 use rumbo_station::Row;
 use rumbo_station::log::Log;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Writes what was asked for and prints the paths.
 pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
@@ -16,7 +17,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     warn_if_cut(&args.log, &log);
     let folder = args.out.clone().unwrap_or_default();
     if !folder.as_os_str().is_empty() {
-        std::fs::create_dir_all(&folder).map_err(|error| unwritable(&folder, &error))?;
+        place::folder(&folder)?;
     }
     let stem = args.log.file_stem().unwrap_or(args.log.as_os_str());
     let path = |ending: &str| folder.join(stem).with_extension(ending);
@@ -35,22 +36,16 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
                 )));
             }
             Format::Csv => {
-                write(&path("csv"), &signals(&log))?;
-                write(&path("events.csv"), &events(&log))?;
+                write(&path("csv"), signals(&log))?;
+                write(&path("events.csv"), events(&log))?;
             }
             Format::Svg => {
                 let text = chart::svg(&charts, 1, figures::SIZE).map_err(Failure::Input)?;
-                write(&path("svg"), &text)?;
+                write(&path("svg"), text)?;
             }
             Format::Png => {
-                let path = path("png");
-                chart::png(&charts, 1, figures::SIZE, &path).map_err(|error| {
-                    Failure::Input(format!(
-                        "{}: cannot be written ({error}); choose another folder with --out",
-                        path.display()
-                    ))
-                })?;
-                output::line(&path.display().to_string())?;
+                let image = chart::png(&charts, 1, figures::SIZE).map_err(Failure::Input)?;
+                write(&path("png"), image)?;
             }
         }
     }
@@ -71,16 +66,9 @@ pub(crate) fn warn_if_cut(path: &Path, log: &Log) {
     }
 }
 
-fn write(path: &PathBuf, text: &str) -> Result<(), Failure> {
-    std::fs::write(path, text).map_err(|error| unwritable(path, &error))?;
+fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
+    place::write(path, bytes)?;
     output::line(&path.display().to_string())
-}
-
-pub(crate) fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::Input(format!(
-        "{}: cannot be written ({error}); choose another folder with --out",
-        path.display()
-    ))
 }
 
 /// The signals, one row per telemetry frame: a unit in each name, nothing where a value is unknown, `inf` where a range is clear.

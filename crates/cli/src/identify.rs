@@ -4,8 +4,10 @@ use crate::args::IdentifyArgs;
 use crate::failure::Failure;
 use crate::import::CSV;
 use crate::output;
+use crate::place;
 use indicatif::ProgressBar;
 use rumbo_plant::params::Params;
+use rumbo_scenario::dialect;
 use rumbo_scenario::files::{Library, RobotFile};
 use rumbo_scenario::identify::{
     self, DriveLog, GENERATIONS, Identification, IdentifyError, RunScore,
@@ -32,8 +34,8 @@ struct Report<'a> {
     drive: Drive,
     /// Measured and simulated figures of each sonar of the runs.
     sonars: &'a [Comparison],
-    plots: &'a [PathBuf],
-    written: Option<&'a Path>,
+    plots: Vec<String>,
+    written: Option<String>,
 }
 
 /// What became of the drive's runs.
@@ -85,8 +87,8 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
             robot: name,
             drive,
             sonars: &sonars,
-            plots: &plots,
-            written,
+            plots: plots.iter().map(|path| output::shown(path)).collect(),
+            written: written.map(output::shown),
         });
     }
     report(&drive, &sonars, &plots)?;
@@ -144,8 +146,7 @@ fn text_of(path: &Path) -> Result<String, Failure> {
     } else {
         bytes
     };
-    String::from_utf8(bytes)
-        .map_err(|_| wrong("is no text; give a CSV of the original program".into()))
+    Ok(dialect::plain(&bytes).map_err(wrong)?.into_owned())
 }
 
 fn attached(log: &[u8]) -> Result<Vec<u8>, String> {
@@ -201,7 +202,7 @@ fn write<'a>(path: &'a Path, found: &Identification) -> Result<&'a Path, Failure
     let today = time::OffsetDateTime::now_utc().date().to_string();
     let text = identify::rewrite(&text, found, &today).map_err(Failure::input)?;
     RobotFile::parse("", &file, &text).map_err(Failure::input)?;
-    std::fs::write(path, text).map_err(wrong)?;
+    place::write(path, text)?;
     Ok(path)
 }
 

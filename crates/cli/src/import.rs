@@ -7,15 +7,17 @@ use crate::args::ImportArgs;
 use crate::capture;
 use crate::failure::Failure;
 use crate::output::{self, figure};
+use crate::place;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, WriteOptions};
+use rumbo_scenario::dialect;
 use rumbo_wire::csv;
 use rumbo_wire::text::RowKind;
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use std::io::{Cursor, Write};
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 /// Media type of the attached original.
@@ -41,12 +43,24 @@ struct Recording {
 
 /// Checks, converts, writes and sums up.
 pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
-    let text = std::fs::read_to_string(&args.file).map_err(|error| {
+    let shown = args.file.display();
+    let bytes = std::fs::read(&args.file).map_err(|error| {
         Failure::Input(format!(
-            "{}: cannot be read ({error}); give the path of a CSV file",
-            args.file.display()
+            "{shown}: cannot be read ({error}); give the path of a CSV file"
         ))
     })?;
+    if bytes.starts_with(mcap::MAGIC) {
+        return Err(Failure::Input(format!(
+            "{shown}: is a log already; `rumbo replay` shows it"
+        )));
+    }
+    if bytes.is_empty() {
+        return Err(Failure::Input(format!(
+            "{shown}: is empty; give a CSV of the original program"
+        )));
+    }
+    let text =
+        dialect::plain(&bytes).map_err(|error| Failure::Input(format!("{shown}: {error}")))?;
     let out = match &args.out {
         Some(out) => out.clone(),
         None => PathBuf::from(args.file.file_stem().unwrap_or(args.file.as_os_str()))
@@ -56,16 +70,23 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
         return capture::import(args, &text, &out);
     }
     let recording = parse(&args.file, &text)?;
-    let log = encode(&recording, &args.file, &text).map_err(Failure::input)?;
-    std::fs::File::create(&out)
-        .and_then(|mut file| file.write_all(&log))
-        .map_err(|error| {
-            Failure::Input(format!(
-                "{}: cannot be written ({error}); choose another place with --out",
-                out.display()
-            ))
-        })?;
+    let log = encode(&recording, &args.file, &bytes).map_err(Failure::input)?;
+    if args.out.is_none() {
+        spare(&out, &log)?;
+    }
+    place::write(&out, &log)?;
     summary(&recording, &out, args.json)
+}
+
+/// A log of the same name that is another one stays, unless its place was asked for.
+pub(crate) fn spare(out: &Path, log: &[u8]) -> Result<(), Failure> {
+    match std::fs::read(out) {
+        Ok(before) if before != log => Err(Failure::Input(format!(
+            "{}: is another log already; choose a name with --out",
+            out.display()
+        ))),
+        _ => Ok(()),
+    }
 }
 
 impl Column {
@@ -128,6 +149,27 @@ fn header_of(kind: RowKind) -> String {
         .join(",")
 }
 
+/// What a header lacks that is none of the original program's.
+fn unknown(header: &str) -> String {
+    let found: Vec<&str> = header.split(',').map(str::trim).collect();
+    let matching = |kind: &RowKind| {
+        let due = kind.columns().iter().map(|column| column.name);
+        due.filter(|name| found.contains(name)).count()
+    };
+    let nearest = RowKind::ALL.into_iter().max_by_key(matching);
+    match nearest.filter(|kind| matching(kind) > 2) {
+        Some(kind) => format!(
+            "`{header}` is no header of the original program; the nearest is that of {}: {}",
+            modes(kind),
+            header_of(kind)
+        ),
+        None => format!(
+            "`{}` is neither a header of the original program nor a line of a capture; `rumbo import --help` shows the headers",
+            header.chars().take(60).collect::<String>()
+        ),
+    }
+}
+
 fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
     let wrong =
         |line: usize, what: String| Failure::Input(format!("{}:{line}: {what}", path.display()));
@@ -136,16 +178,7 @@ fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
         .enumerate()
         .map(|(index, line)| (index + 1, line.trim()));
     let header = lines.next().unwrap_or_default().1;
-    let kind = csv::recognise(header).ok_or_else(|| {
-        let known = RowKind::ALL.map(|kind| format!("{}: {}", modes(kind), header_of(kind)));
-        wrong(
-            1,
-            format!(
-                "unknown header `{header}`; a capture has rows and commands, a CSV begins with one of: {}",
-                known.join(" | ")
-            ),
-        )
-    })?;
+    let kind = csv::recognise(header).ok_or_else(|| wrong(1, unknown(header)))?;
     let columns: Vec<Column> = kind.columns().iter().map(Column::of).collect();
     let (mut rows, mut time_s, mut longest_gap_s) = (Vec::new(), 0.0, 0.0_f64);
     for (line, row) in lines.filter(|(_, row)| !row.is_empty()) {
@@ -203,7 +236,7 @@ fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
 }
 
 /// The log's bytes.
-fn encode(recording: &Recording, path: &Path, text: &str) -> mcap::McapResult<Vec<u8>> {
+fn encode(recording: &Recording, path: &Path, bytes: &[u8]) -> mcap::McapResult<Vec<u8>> {
     let name = path
         .file_name()
         .map(|name| name.to_string_lossy().into_owned())
@@ -240,7 +273,7 @@ fn encode(recording: &Recording, path: &Path, text: &str) -> mcap::McapResult<Ve
         };
         log.write_to_known_channel(&header, Value::Object(message).to_string().as_bytes())?;
     }
-    let data = Cow::Borrowed(text.as_bytes());
+    let data = Cow::Borrowed(bytes);
     log.attach(&Attachment {
         log_time: 0,
         create_time: 0,
@@ -300,7 +333,7 @@ fn summary(recording: &Recording, out: &Path, as_json: bool) -> Result<(), Failu
             })
             .collect();
         return output::json(&json!({
-            "log": out, "program": modes, "rows": rows, "duration_s": duration_s,
+            "log": output::shown(out), "program": modes, "rows": rows, "duration_s": duration_s,
             "longest_gap_s": gap_s, "columns": columns,
         }));
     }

@@ -14,7 +14,7 @@ use rumbo_scenario::files::{FileError, Library, Overrides, Setup};
 use rumbo_scenario::mega::firmware::Language;
 use rumbo_scenario::run;
 use rumbo_scenario::sim::Sim;
-use rumbo_station::log::{Kind, Manifest, Recording};
+use rumbo_station::log::{Kind, Manifest};
 use rumbo_station::{Choice, Lab, LabConfig, MapPose, Scene, Simulation, Target, Truth};
 use rumbo_wire::Command;
 use std::io::Write;
@@ -44,7 +44,7 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
     let config = LabConfig {
         at: args.serve.at(),
         speed: args.speed,
-        recording: logs::folder(args.out.as_deref()).map(|folder| Recording { folder }),
+        recording: logs::recording(args.out.as_deref()),
         #[cfg(feature = "foxglove")]
         bridge: bridge(args.bridge)?,
     };

@@ -2,17 +2,31 @@
 
 use crate::failure::Failure;
 use crate::manifest;
-use crate::output::figure;
+use crate::output::{figure, shown};
+use crate::place;
 use crate::scene::scene;
 use rumbo_control::Wheels;
 use rumbo_scenario::files::{Library, Overrides, Setup};
 use rumbo_scenario::run::RunResult;
 use rumbo_scenario::trace::{SAMPLE_US, Sample};
-use rumbo_station::log::{Burst, Kind, Manifest, Outcome, Run, Said, Summary, record_run};
+use rumbo_station::log::{
+    Burst, Kind, Manifest, Outcome, Recording, Run, Said, Summary, record_run,
+};
 use rumbo_station::{Choice, MapPose, Truth};
 use rumbo_wire::FromRobot;
 use serde_json::{Value, json};
+use std::io::Write;
 use std::path::{Path, PathBuf};
+
+/// Where a session is recorded. One that cannot be is driven all the same: the page says so, and so does the terminal.
+pub(crate) fn recording(given: Option<&Path>) -> Option<Recording> {
+    let folder = folder(given)?;
+    if let Err(Failure::Input(why)) = place::try_folder(&folder) {
+        // A closed stderr leaves nobody to tell.
+        let _ = writeln!(std::io::stderr(), "note: not recording: {why}");
+    }
+    Some(Recording { folder })
+}
 
 /// The folder for the logs of sessions: the one given, or `rumbo/logs` where this system keeps a user's data.
 pub(crate) fn folder(given: Option<&Path>) -> Option<PathBuf> {
@@ -53,10 +67,10 @@ fn entry(path: &Path) -> Value {
     match Summary::read(path) {
         Ok(log) => {
             let manifest = log.manifest.unwrap_or_default();
-            json!({ "name": path, "bytes": bytes, "duration_s": log.duration_s, "started": manifest.started,
+            json!({ "name": shown(path), "bytes": bytes, "duration_s": log.duration_s, "started": manifest.started,
                 "scenario": manifest.scenario, "seed": manifest.seed, "complete": log.complete })
         }
-        Err(error) => json!({ "name": path, "bytes": bytes, "error": error.to_string() }),
+        Err(error) => json!({ "name": shown(path), "bytes": bytes, "error": error.to_string() }),
     }
 }
 
@@ -132,7 +146,9 @@ pub(crate) fn write_run(
         },
     };
     let path = folder.join(format!("{}-{}.mcap", result.scenario, result.seed));
-    record_run(&path, &manifest, run).map_err(Failure::input)
+    place::make(&path, |place| {
+        record_run(place, &manifest, run).map_err(|error| Failure::Input(error.of(&path)))
+    })
 }
 
 fn micros(t_s: f64) -> u64 {

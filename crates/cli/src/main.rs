@@ -22,6 +22,7 @@ mod logs;
 mod manifest;
 mod observe;
 mod output;
+mod place;
 #[cfg(unix)]
 mod pty;
 mod replay;

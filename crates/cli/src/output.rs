@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use serde::Serialize;
 use std::io::Write;
+use std::path::Path;
 
 /// Prints one line and flushes it, so that a program that reads us sees it at once.
 pub(crate) fn line(text: &str) -> Result<(), Failure> {
@@ -15,6 +16,11 @@ pub(crate) fn line(text: &str) -> Result<(), Failure> {
 pub(crate) fn json(value: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string(value).map_err(Failure::input)?;
     line(&text)
+}
+
+/// A path as text, whatever bytes its name is made of.
+pub(crate) fn shown(path: &Path) -> String {
+    path.display().to_string()
 }
 
 /// Prints rows with their columns aligned, each row indented by two spaces.

@@ -4,21 +4,68 @@
 //! the simulated instant at which it was sent. What the USARTs of an emulated Mega sent is compared as well.
 
 use crate::args::RerunArgs;
+use crate::export::warn_if_cut;
 use crate::failure::Failure;
 use crate::lab;
 use crate::logs;
 use crate::manifest;
 use crate::output;
+use rumbo_control::params::SCHEMA;
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::run;
 use rumbo_scenario::sim::Sim;
 use rumbo_station::log::{Burst, Kind, Log, Manifest, Said};
+use rumbo_wire::message::Hello;
 use rumbo_wire::{Decoder, FromRobot, Message, Received};
 use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Longest line of text from a robot that is put together.
 const LINE: usize = 160;
+
+/// The program that recorded, where it was not this one.
+struct Recorder {
+    /// Which it was and which this is; empty where they are the same.
+    version: String,
+    /// What the robot's table of parameters was and is now, where they differ: then nothing else can be the same.
+    table: Option<String>,
+}
+
+impl Recorder {
+    fn of(log: &Log, recorded: &Manifest) -> Self {
+        let here = env!("CARGO_PKG_VERSION");
+        let version = match recorded.version == here {
+            true => String::new(),
+            false => format!("; recorded by version {}, this is {here}", recorded.version),
+        };
+        let hello = hello(log).filter(|_| recorded.program == "rumbo");
+        let table = hello
+            .map(|hello| hello.schema)
+            .filter(|table| *table != SCHEMA);
+        let table = table.map(|table| {
+            format!(
+                "the robot had another table of parameters ({table:08x}, this program's is {SCHEMA:08x}); run it again with the program that \
+                 recorded it"
+            )
+        });
+        Self { version, table }
+    }
+}
+
+/// How the robot first named itself in frames.
+fn hello(log: &Log) -> Option<Hello> {
+    let from_robot = log.link.iter().filter(|burst| !burst.to_robot);
+    let mut decoder = Decoder::<LINE>::default();
+    from_robot
+        .flat_map(|burst| &burst.bytes)
+        .find_map(|byte| match decoder.push(*byte) {
+            Some(Received::Frame(body)) => match FromRobot::from_body(&body) {
+                Ok(FromRobot::Hello(hello)) => Some(hello),
+                _ => None,
+            },
+            _ => None,
+        })
+}
 
 /// What came of the comparison.
 enum Verdict {
@@ -36,7 +83,17 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
             "{shown}: has no manifest; only logs of `rumbo lab` and `rumbo run --out` can be run again"
         )));
     };
-    let (setup, seed) = manifest::setup(&args.log, recorded)?;
+    warn_if_cut(&args.log, &log);
+    let recorder = Recorder::of(&log, recorded);
+    // What another program has written may not even be read: then that is the reason.
+    let (setup, seed) = manifest::setup(&args.log, recorded).map_err(|failure| match failure {
+        Failure::Input(text) => {
+            let table = recorder.table.as_ref();
+            let table = table.map_or_else(String::new, |table| format!("; {table}"));
+            Failure::Input(format!("{text}{table}{}", recorder.version))
+        }
+        failure => failure,
+    })?;
     let verdict = match recorded.kind {
         Kind::Run => again(&log, &setup, seed)?,
         Kind::Lab => session(&log, &setup, seed, recorded)?,
@@ -52,30 +109,29 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
         .filter(|burst| !burst.to_robot)
         .map(|burst| burst.bytes.len())
         .sum();
-    let version = env!("CARGO_PKG_VERSION");
-    let other = (recorded.version != version).then(|| {
-        format!(
-            "; recorded by version {}, this is {version}",
-            recorded.version
-        )
-    });
-    let other = other.unwrap_or_default();
     let (equal, first) = match &verdict {
         Verdict::Equal => (true, None),
-        Verdict::Differs(t_s, what) => (false, Some((t_s, what))),
+        Verdict::Differs(t_s, what) => {
+            (false, Some((t_s, recorder.table.as_ref().unwrap_or(what))))
+        }
     };
     if args.json {
         output::json(
-            &json!({ "log": args.log, "equal": equal, "duration_s": log.duration_s(), "bytes": from_robot,
+            &json!({ "log": output::shown(&args.log), "equal": equal, "duration_s": log.duration_s(), "bytes": from_robot,
+            "recorded_by": recorded.version, "run_by": env!("CARGO_PKG_VERSION"),
             "first_difference_s": first.map(|(t_s, _)| t_s), "difference": first.map(|(_, what)| what) }),
         )?;
     } else {
         output::line(&match first {
             None => format!(
-                "{shown}: equal, {from_robot} bytes from the robot in {:.2} s{other}",
-                log.duration_s()
+                "{shown}: equal, {from_robot} bytes from the robot in {:.2} s{}",
+                log.duration_s(),
+                recorder.version
             ),
-            Some((t_s, what)) => format!("{shown}: differs first at {t_s:.3} s: {what}{other}"),
+            Some((t_s, what)) => format!(
+                "{shown}: differs first at {t_s:.3} s: {what}{}",
+                recorder.version
+            ),
         })?;
     }
     if equal {

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::logs;
 use crate::observe;
 use crate::output::{self, figure};
+use crate::place;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_scenario::files::{Library, Overrides, Program, ScenarioFile, Setup};
 use rumbo_scenario::run::{self, RunResult};
@@ -32,7 +33,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let setup = |name: &String| library.setup(name, &overrides).map_err(Failure::input);
     let setups: Vec<Setup> = args.scenarios.iter().map(setup).collect::<Result<_, _>>()?;
     if let Some(folder) = &args.out {
-        std::fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))?;
+        place::try_folder(folder)?;
     }
 
     if let Some(threads) = args.threads {
@@ -106,25 +107,15 @@ fn record(folder: &Path, result: &RunResult) -> Result<(), Failure> {
     let stem = format!("{}-{}", result.scenario, result.seed);
     let path = folder.join(format!("{stem}.json"));
     let text = serde_json::to_string(result).map_err(Failure::input)?;
-    std::fs::write(&path, text + "\n").map_err(|error| unwritable(&path, &error))?;
+    place::write(&path, text + "\n")?;
     for usart in 0..4 {
         let said = result.trace.console(usart);
         if !said.is_empty() {
             let path = folder.join(format!("{stem}-usart{usart}.txt"));
-            std::fs::write(&path, readable(&said)).map_err(|error| unwritable(&path, &error))?;
+            place::write(&path, readable(&said))?;
         }
     }
-    result
-        .trace
-        .write_csv(&folder.join(format!("{stem}.csv")))
-        .map_err(Failure::input)
-}
-
-fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::Input(format!(
-        "{}: cannot be written ({error}); choose another folder with --out",
-        path.display()
-    ))
+    place::write(&folder.join(format!("{stem}.csv")), result.trace.csv())
 }
 
 /// All runs of one scenario: each metric's range over the seeds against its limits, and why runs did not pass.

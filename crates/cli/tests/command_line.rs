@@ -56,18 +56,42 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         "far.toml",
         "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = 0\nduration_s = 1\n[start]\nx_m = -400\n",
     );
-    let cases: [(&[&str], &str); 21] = [
+    file(
+        "typos.toml",
+        "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = \"font_distance\"\nduration_s = 9\n[[command]]\nat_s = 2\nreference_m = 0.3\n",
+    );
+    file(
+        "comma.toml",
+        "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = 0\nduration_s = 0,5\n",
+    );
+    let cases: [(&[&str], &str); 25] = [
+        (
+            &["run", "typos.toml"],
+            "error: typos.toml:5: mode = font_distance: unknown mode; did you mean `front_distance` (1)?",
+        ),
+        (
+            &["run", "comma.toml"],
+            "error: comma.toml:6: not valid TOML: unexpected key or value, expected newline, `#`; write decimals with a point",
+        ),
+        (
+            &["import", "far.toml"],
+            "error: far.toml:1: `title = \"t\"` is neither a header of the original program nor a line of a capture; `rumbo import --help` shows the headers",
+        ),
+        (
+            &["connect", ""],
+            "error: a value is required for '<PORT>' but none was supplied; see `rumbo connect --help`",
+        ),
         (
             &["fly"],
             "error: unrecognized subcommand 'fly'; see `rumbo --help`",
         ),
         (
             &["run"],
-            "error: the following required arguments were not provided: <SCENARIO>...; see `rumbo --help`",
+            "error: the following required arguments were not provided: <SCENARIO>...; see `rumbo run --help`",
         ),
         (
             &["run", "mode1", "--sed", "7"],
-            "error: unexpected argument '--sed' found; tip: a similar argument exists: '--seed'; see `rumbo --help`",
+            "error: unexpected argument '--sed' found; tip: a similar argument exists: '--seed'; see `rumbo run --help`",
         ),
         (
             &["run", "fre"],
@@ -107,11 +131,11 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         ),
         (
             &["run", "mode1", "--param", "battery"],
-            "error: invalid value 'battery' for '--param <NAME=VALUE>': write it as name=value, e.g. battery.open_circuit_v=6.9; see `rumbo --help`",
+            "error: invalid value 'battery' for '--param <NAME=VALUE>': write it as name=value, e.g. battery.open_circuit_v=6.9; see `rumbo run --help`",
         ),
         (
             &["lab", "--speed", "-1"],
-            "error: unexpected argument '-1' found; see `rumbo --help`",
+            "error: unexpected argument '-1' found; see `rumbo lab --help`",
         ),
         (
             &["identify", "no_number.csv", "--check", "memoria"],
@@ -229,6 +253,33 @@ fn an_imported_recording_is_in_si_units_with_the_original_attached() {
     let contents = mcap::Summary::read(&log).unwrap().unwrap();
     let attached = mcap::read::attachment(&log, &contents.attachment_indexes[0]).unwrap();
     assert_eq!(attached.data, RECORDING.as_bytes());
+}
+
+#[test]
+fn a_csv_that_a_spanish_spreadsheet_saved_is_imported_and_another_log_of_its_name_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let import = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        let mut import = Command::new(env!("CARGO_BIN_EXE_rumbo"));
+        let output = import.current_dir(&folder).args(["import", name, "--json"]);
+        output.output().unwrap()
+    };
+    let summary = |output: &Output| {
+        serde_json::from_str::<serde_json::Value>(&stdout(output)).unwrap()["columns"].clone()
+    };
+    let plain = import("plain.csv", RECORDING);
+    let semicolons = RECORDING
+        .replace(',', ";")
+        .replace('.', ",")
+        .replace('\n', "\r\n");
+    let spanish = import("spanish.csv", &format!("\u{feff}{semicolons}"));
+    assert_eq!(summary(&spanish), summary(&plain));
+    // The same again is no loss; another recording of that name would be one.
+    assert!(import("plain.csv", RECORDING).status.success());
+    let other = import("plain.csv", &RECORDING.replace(",5,", ",6,"));
+    assert_eq!(other.status.code(), Some(2));
+    assert!(stderr(&other).contains("--out"), "{}", stderr(&other));
 }
 
 #[test]

@@ -2,7 +2,10 @@
 
 #![cfg(test)]
 
-use rumbo_station::log::Log;
+use rumbo_station::Truth;
+use rumbo_station::log::{Burst, Log, Outcome, Run, record_run};
+use rumbo_wire::message::Hello;
+use rumbo_wire::{Decoder, FromRobot, Message, Received};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -209,6 +212,61 @@ fn what_is_no_log_gets_one_line_and_status_2() {
             "{said}"
         );
     }
+}
+
+#[test]
+fn a_log_made_with_another_table_of_parameters_says_so_and_a_log_cut_off_says_where() {
+    let folder = tempfile::tempdir().unwrap();
+    rumbo(&["run", "mode5", "--out", "."], folder.path());
+    let path = folder.path().join("mode5-1.mcap");
+    let log = Log::read(&path).unwrap();
+    let whole = std::fs::read(&path).unwrap();
+    std::fs::write(folder.path().join("cut.mcap"), &whole[..whole.len() / 2]).unwrap();
+    let cut = rumbo(&["rerun", "cut.mcap"], folder.path());
+    assert_eq!(cut.status.code(), Some(0));
+    assert!(text(&cut.stderr).contains("cut.mcap ends at"));
+
+    let mut manifest = log.manifest.unwrap();
+    manifest.version = "0.0.7".into();
+    let from_robot = log.link.iter().filter(|burst| !burst.to_robot);
+    let said: Vec<u8> = from_robot.flat_map(|burst| burst.bytes.clone()).collect();
+    let link = [Burst {
+        bytes: another_table(&said),
+        to_robot: false,
+        t_us: 20_000,
+    }];
+    let run = Run {
+        scene: None,
+        truths: &[(60_000_000, Truth::default())],
+        link: &link,
+        said: &[],
+        told: &[],
+        outcome: Outcome::default(),
+    };
+    record_run(&path, &manifest, run).unwrap();
+    let other = rumbo(&["rerun", "mode5-1.mcap"], folder.path());
+    let said = text(&other.stdout);
+    assert_eq!(other.status.code(), Some(1));
+    for part in ["another table of parameters", "by version 0.0.7"] {
+        assert!(said.contains(part), "{said}");
+    }
+}
+
+/// The first message of a robot with one parameter more.
+fn another_table(bytes: &[u8]) -> Vec<u8> {
+    let mut decoder = Decoder::<160>::default();
+    let body = bytes.iter().find_map(|byte| match decoder.push(*byte) {
+        Some(Received::Frame(body)) => Some(body),
+        _ => None,
+    });
+    let Ok(FromRobot::Hello(hello)) = FromRobot::from_body(&body.unwrap()) else {
+        panic!("no HELLO")
+    };
+    let hello = Hello {
+        schema: !hello.schema,
+        ..hello
+    };
+    FromRobot::Hello(hello).frame(0).bytes().to_vec()
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Recorded runs of a real robot: CSVs of the original program, each matched to the experiment that it is a run of.
 
 use crate::text::{Text, t};
+use rumbo_scenario::dialect;
 use rumbo_wire::csv;
 use rumbo_wire::text::{Row, RowKind};
 use std::collections::BTreeMap;
@@ -99,7 +100,7 @@ pub fn read(folder: &Path) -> Result<Real, RealError> {
                 path.display()
             ))
         })?;
-        let text = String::from_utf8_lossy(&bytes);
+        let text = dialect::plain(&bytes).unwrap_or_default();
         let skip = |why| Skipped {
             file: file.clone(),
             why,

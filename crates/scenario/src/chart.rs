@@ -5,7 +5,6 @@ use plotters::prelude::*;
 use plotters::style::FontStyle;
 
 pub use plotters::chart::SeriesLabelPosition as Legend;
-use std::path::Path;
 
 /// Points of a curve; what is not finite is a gap.
 pub type Points = Vec<(f64, f64)>;
@@ -140,18 +139,25 @@ pub fn svg(charts: &[Chart<'_>], columns: usize, size: (u32, u32)) -> Result<Str
     Ok(text)
 }
 
-/// The same into a PNG file.
+/// The same as the bytes of a PNG.
 ///
 /// # Errors
-/// A file that cannot be written.
-pub fn png(
-    charts: &[Chart<'_>],
-    columns: usize,
-    size: (u32, u32),
-    path: &Path,
-) -> Result<(), String> {
-    let area = BitMapBackend::new(path, whole(charts, columns, size)).into_drawing_area();
-    draw_all(&area, charts, columns, size).map_err(|error| error.to_string())
+/// What the drawing library says.
+pub fn png(charts: &[Chart<'_>], columns: usize, size: (u32, u32)) -> Result<Vec<u8>, String> {
+    let (width, height) = whole(charts, columns, size);
+    let mut pixels = vec![0; 3 * width as usize * height as usize];
+    {
+        let area = BitMapBackend::with_buffer(&mut pixels, (width, height)).into_drawing_area();
+        draw_all(&area, charts, columns, size).map_err(|error| error.to_string())?;
+    }
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder
+        .write_header()
+        .and_then(|mut writer| writer.write_image_data(&pixels))
+        .map_err(|error| error.to_string())?;
+    Ok(bytes)
 }
 
 fn whole(charts: &[Chart<'_>], columns: usize, size: (u32, u32)) -> (u32, u32) {

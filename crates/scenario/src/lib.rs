@@ -5,6 +5,7 @@ pub mod calibrate;
 pub mod campaign;
 pub mod chart;
 pub mod debugging;
+pub mod dialect;
 pub mod files;
 pub mod identify;
 pub mod mega;

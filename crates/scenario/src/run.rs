@@ -3,7 +3,7 @@
 //! A run depends on its setup and seed alone, so its result is the same on one thread and on many.
 
 use crate::calibrate::calibrate_simulated;
-use crate::files::{FileError, Setup};
+use crate::files::{FileError, Setup, near};
 use crate::mega::Mega;
 use crate::metrics::{self, Metrics};
 use crate::observe::Waves;
@@ -148,8 +148,8 @@ impl<'a> Run<'a> {
                 Some(value) if bounds.admit(*value) => {}
                 Some(value) => failures.push(format!("{name} = {value:.4}: limit {bounds}")),
                 None => failures.push(format!(
-                    "{name}: this scenario has no such metric; it has {}",
-                    known(&metrics)
+                    "{name}: this scenario has no such metric; {}",
+                    instead(name, &metrics)
                 )),
             }
         }
@@ -225,12 +225,12 @@ pub fn prepare(setup: &Setup, seed: u64) -> Result<Cow<'_, Setup>, FileError> {
     Ok(Cow::Owned(setup))
 }
 
-fn known(metrics: &Metrics) -> String {
-    metrics
-        .keys()
-        .map(String::as_str)
-        .collect::<Vec<_>>()
-        .join(", ")
+fn instead(name: &str, metrics: &Metrics) -> String {
+    let known = || metrics.keys().map(String::as_str);
+    match &near::near(name, known())[..] {
+        [] => format!("it has {}", known().collect::<Vec<_>>().join(", ")),
+        near => near::did_you_mean(&near.iter().map(ToString::to_string).collect::<Vec<_>>()),
+    }
 }
 
 /// Runs started together: enough for every thread to be busy, few enough that their traces fit in memory.

@@ -1,10 +1,8 @@
 //! What a run really did, sampled at every control tick from the plant and the pins.
 
-use crate::files::FileError;
 use crate::sim::Sim;
 use rumbo_wire::FromRobot;
-use std::io::Write;
-use std::path::Path;
+use std::fmt::Write;
 
 /// Period of the samples [us].
 pub const SAMPLE_US: u64 = 10_000;
@@ -135,47 +133,38 @@ impl Trace {
         &self.samples[index(from_s)..index(until_s).max(index(from_s))]
     }
 
-    /// Writes the samples as CSV, units in the names of the columns.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
-    pub fn write_csv(&self, path: &Path) -> Result<(), FileError> {
-        let write = || -> std::io::Result<()> {
-            let mut file = std::io::BufWriter::new(std::fs::File::create(path)?);
-            writeln!(
-                file,
-                "t_s,x_m,y_m,heading_rad,left_rad_s,right_rad_s,left_duty,right_duty,left_m,right_m,front_m,servo_rad,battery_v"
-            )?;
-            for sample in &self.samples {
-                let Sample {
-                    t_s,
-                    x_m,
-                    y_m,
-                    heading_rad,
-                    wheel_rad_s,
-                    duty,
-                    range_m,
-                    servo_rad,
-                    battery_v,
-                    touching: _,
-                } = sample;
-                let [left_m, right_m, front_m] = range_m.map(|range_m| {
-                    if range_m.is_finite() {
-                        format!("{range_m:.5}")
-                    } else {
-                        String::new()
-                    }
-                });
-                writeln!(
-                    file,
-                    "{t_s:.3},{x_m:.5},{y_m:.5},{heading_rad:.5},{:.4},{:.4},{},{},{left_m},{right_m},{front_m},{servo_rad:.4},{battery_v:.3}",
-                    wheel_rad_s[0], wheel_rad_s[1], duty[0], duty[1],
-                )?;
-            }
-            file.flush()
-        };
-        write().map_err(|error| {
-            FileError::Setting(format!("cannot write {}: {error}", path.display()))
-        })
+    /// The samples as CSV, units in the names of the columns.
+    pub fn csv(&self) -> String {
+        let mut text = String::from(
+            "t_s,x_m,y_m,heading_rad,left_rad_s,right_rad_s,left_duty,right_duty,left_m,right_m,front_m,servo_rad,battery_v\n",
+        );
+        for sample in &self.samples {
+            let Sample {
+                t_s,
+                x_m,
+                y_m,
+                heading_rad,
+                wheel_rad_s,
+                duty,
+                range_m,
+                servo_rad,
+                battery_v,
+                touching: _,
+            } = sample;
+            let [left_m, right_m, front_m] = range_m.map(|range_m| {
+                if range_m.is_finite() {
+                    format!("{range_m:.5}")
+                } else {
+                    String::new()
+                }
+            });
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "{t_s:.3},{x_m:.5},{y_m:.5},{heading_rad:.5},{:.4},{:.4},{},{},{left_m},{right_m},{front_m},{servo_rad:.4},{battery_v:.3}",
+                wheel_rad_s[0], wheel_rad_s[1], duty[0], duty[1],
+            );
+        }
+        text
     }
 }

@@ -82,7 +82,12 @@ pub(crate) struct LabArgs {
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
     pub(crate) speed: f64,
     /// Seed of everything random
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true
+    )]
     pub(crate) seed: u64,
     /// Folder for the log of each run; made if need be [default: rumbo/logs in the user's data folder]
     #[arg(long, value_name = "DIR")]
@@ -106,7 +111,7 @@ Examples:
 found again when the port is back.")]
 pub(crate) struct ConnectArgs {
     /// Serial port by its name, or tcp:host:port
-    #[arg(value_name = "PORT")]
+    #[arg(value_name = "PORT", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     pub(crate) address: String,
     /// Show a simulated robot in this scenario that gets the same commands: put the robot where it begins
     #[arg(long, value_name = "SCENARIO")]
@@ -139,7 +144,7 @@ The board is asked for its signature before anything is written. Parameters save
 serial ports of this computer. Before the first run: docs/wiring.md.")]
 pub(crate) struct FlashArgs {
     /// Serial port of the Mega's USB cable
-    #[arg(value_name = "PORT")]
+    #[arg(value_name = "PORT", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     pub(crate) port: String,
     /// Image to write, Intel HEX or ELF [default: the one that `cargo xtask firmware` built, target/firmware/rumbo.hex]
     #[arg(long, value_name = "FILE")]

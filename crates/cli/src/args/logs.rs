@@ -13,9 +13,15 @@ Examples:
   rumbo import runs/mode5.csv --out logs/mode5.mcap --json
   rumbo import terminal.txt
 
-A CSV begins with the names of its columns. A capture of a terminal has rows of telemetry and the commands typed, a line each.")]
+A CSV begins with the names of its columns; as a spreadsheet has saved it (semicolons, decimal commas, UTF-16) it is taken too:
+  modes 1 to 4  dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b
+  modes 5, 6    dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b
+  mode 7        dt_ms,speed_a_rpm,speed_b_rpm,reference_a_rpm,reference_b_rpm,x_m,y_m,heading_deg,pwm_a,pwm_b
+  mode 8        dt_ms,reference_a_rpm,reference_b_rpm,heading_reference_deg,goal_x_m,goal_y_m,x_m,y_m,heading_deg,state,right_cm,
+                left_cm,front_cm
+A capture of a terminal has rows of telemetry and the commands typed, a line each.")]
 pub(crate) struct ImportArgs {
-    /// CSV of the original program
+    /// CSV of the original program, or what a terminal showed of it
     #[arg(value_name = "FILE.csv")]
     pub(crate) file: PathBuf,
     /// The log to write [default: the same name with .mcap, in the current folder]

@@ -14,7 +14,7 @@ pub(crate) use runs::{
 };
 
 use crate::failure::Failure;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
 /// Rumbo: the lab of a small robot. Without a subcommand, `lab`.
 #[derive(Debug, Parser)]
@@ -121,9 +121,21 @@ pub(crate) fn explain(error: &clap::Error) -> Result<(), Failure> {
         .collect();
     let told = told.join("; ").replace(":; ", ": ");
     Err(Failure::Input(format!(
-        "{}; see `rumbo --help`",
-        told.trim_start_matches("error: ")
+        "{}; see `{} --help`",
+        told.trim_start_matches("error: "),
+        command_asked()
     )))
+}
+
+/// The command whose help is wanted.
+fn command_asked() -> String {
+    let first = std::env::args_os().nth(1).unwrap_or_default();
+    let command = Cli::command();
+    let mut known = command.get_subcommands().map(clap::Command::get_name);
+    match known.find(|name| *name == first) {
+        Some(name) => format!("rumbo {name}"),
+        None => "rumbo".into(),
+    }
 }
 
 #[cfg(test)]

@@ -22,7 +22,12 @@ pub(crate) struct RunArgs {
     #[arg(required = true, value_name = "SCENARIO")]
     pub(crate) scenarios: Vec<String>,
     /// Seed of the first run; each further run takes the next
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true
+    )]
     pub(crate) seed: u64,
     /// Runs of each scenario, each with a seed of its own
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
@@ -105,7 +110,12 @@ pub(crate) struct ExperimentsArgs {
     #[arg(long, value_name = "NAME", num_args = 1..)]
     pub(crate) only: Vec<String>,
     /// Seed of all runs
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true
+    )]
     pub(crate) seed: u64,
     /// Folder with CSVs of recorded runs (the original program's), shown beside ours
     #[arg(long, value_name = "DIR")]
@@ -187,7 +197,12 @@ pub(crate) struct CalibrateArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) world: Option<String>,
     /// Seed that draws the robot and everything random
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true
+    )]
     pub(crate) seed: u64,
     /// Parameter of the control core or the plant (`rumbo list`); may be repeated
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]

@@ -67,10 +67,10 @@ const ACTIONS: [&str; 15] = [
 /// The keys that only go with an action.
 const COMPANIONS: [&str; 5] = ["right_rpm", "value", "duty", "ramp_to_duty", "ramp_s"];
 
-/// Reads all commands; `mode` is the mode selected at the start.
+/// Reads all commands; `mode` is the mode selected at the start, where that is known: what is wrong with it has been said.
 pub(crate) fn read_commands(
     tables: Vec<Table<'_, '_>>,
-    mut mode: ModeId,
+    mut mode: Option<ModeId>,
     duration_s: f64,
 ) -> Vec<TimedCommand> {
     let mut commands: Vec<TimedCommand> = Vec::new();
@@ -107,7 +107,7 @@ pub(crate) fn read_commands(
 fn read_command(
     table: &Table<'_, '_>,
     at_s: f64,
-    mode: &mut ModeId,
+    mode: &mut Option<ModeId>,
     duration_s: f64,
 ) -> Vec<TimedCommand> {
     let given: Vec<&str> = ACTIONS.into_iter().filter(|key| table.has(key)).collect();
@@ -164,7 +164,7 @@ fn read_command(
     }
 }
 
-fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut ModeId) -> Option<Command> {
+fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut Option<ModeId>) -> Option<Command> {
     if let Some((_, command)) = FLAGS.into_iter().find(|(flag, _)| *flag == key) {
         let flag = table.flag(key)?;
         if !flag.value {
@@ -185,8 +185,8 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut ModeId) -> Option<Co
             let word = table.word(key)?;
             *mode = find_mode(&word.value)
                 .map_err(|remedy| table.complain(key, word.line, &word.value, &remedy))
-                .ok()?;
-            Some(Command::Mode(*mode))
+                .ok();
+            mode.map(Command::Mode)
         }
         "reference_m" => {
             let modes = [
@@ -314,8 +314,10 @@ fn read_ramp(
         .collect()
 }
 
-fn needs_mode(table: &Table<'_, '_>, key: &str, needed: &[ModeId], mode: ModeId) {
-    if !needed.contains(&mode) {
+fn needs_mode(table: &Table<'_, '_>, key: &str, needed: &[ModeId], mode: Option<ModeId>) {
+    if let Some(mode) = mode
+        && !needed.contains(&mode)
+    {
         let names: Vec<String> = needed
             .iter()
             .map(|needed| format!("`{}`", needed.name()))

@@ -9,7 +9,7 @@ pub mod commands;
 mod error;
 mod library;
 mod names;
-mod near;
+pub(crate) mod near;
 pub mod parameters;
 mod read;
 mod robot;

@@ -37,8 +37,9 @@ impl<'t> Source<'t> {
         DeTable::parse(self.text).map_err(|error| {
             let line = error.span().map_or(0, |span| self.line_of(span.start));
             let text = format!(
-                "not valid TOML: {}",
-                error.message().trim().replace('\n', "; ")
+                "not valid TOML: {}{}",
+                error.message().trim().replace('\n', "; "),
+                self.decimal_comma(line)
             );
             FileError::Invalid(vec![Problem {
                 file: self.file.clone(),
@@ -79,6 +80,20 @@ impl<'t> Source<'t> {
             Ok(())
         } else {
             Err(FileError::Invalid(problems))
+        }
+    }
+
+    /// What to do about a line such as `at_s = 0,5`.
+    fn decimal_comma(&self, line: usize) -> &'static str {
+        let text = self
+            .text
+            .lines()
+            .nth(line.wrapping_sub(1))
+            .unwrap_or_default();
+        let value = text.split_once('=').map_or("", |(_, value)| value.trim());
+        match value.replacen(',', ".", 1).parse::<f64>() {
+            Ok(_) => "; write decimals with a point",
+            Err(_) => "",
         }
     }
 
@@ -356,7 +371,8 @@ impl<'a, 't> Table<'a, 't> {
         }
     }
 
-    fn require(&self, key: &str, what: &str) {
+    /// Complains if the key is missing.
+    pub(crate) fn require(&self, key: &str, what: &str) {
         if self.has(key) || self.entries.is_none() {
             return;
         }

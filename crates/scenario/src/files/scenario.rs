@@ -154,7 +154,9 @@ impl ScenarioFile {
         let parsed = source.parse()?;
         let root = source.root(&parsed);
         let mode = read_mode(&root);
-        let duration_s = root.required_number("duration_s", DURATION);
+        root.require("duration_s", &DURATION.remedy());
+        // One that is wrong shortens nothing else.
+        let duration_s = root.number("duration_s", DURATION).unwrap_or(DURATION.max);
         let scenario = Self {
             name: name.into(),
             title: root
@@ -173,7 +175,7 @@ impl ScenarioFile {
             world: root
                 .required_text("world", "name of a world, e.g. \"open\"")
                 .value,
-            mode,
+            mode: mode.unwrap_or_default(),
             duration_s,
             start: read_start(&root.table("start")),
             wheels_in_air: root.flag("wheels_in_air").is_some_and(|flag| flag.value),
@@ -192,7 +194,7 @@ impl ScenarioFile {
     }
 }
 
-fn read_mode(root: &Table<'_, '_>) -> ModeId {
+fn read_mode(root: &Table<'_, '_>) -> Option<ModeId> {
     if !root.has("mode") {
         root.complain_here(
             "mode is missing: name or number of a mode, e.g. \"front_distance\" or 1",
@@ -206,7 +208,6 @@ fn read_mode(root: &Table<'_, '_>) -> ModeId {
                 None
             }
         })
-        .unwrap_or_default()
 }
 
 fn read_start(table: &Table<'_, '_>) -> Start {

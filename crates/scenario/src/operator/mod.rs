@@ -16,6 +16,7 @@ use crate::files::{FileError, Setup, TimedCommand, TimedText};
 use crate::sim::Sim;
 use crate::trace::Heard;
 use rumbo_control::mode::ModeId;
+use rumbo_wire::text::TextCommand;
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, ToRobot};
 use text::Terminal;
 
@@ -169,6 +170,14 @@ impl<'a> Operator<'a> {
             && timed.at_s * 1e6 <= sim.now_us() as f64
         {
             self.texts = later;
+            // An image may know words of its own.
+            if let (true, Err(error)) = (
+                self.setup.firmware.is_none(),
+                TextCommand::parse(&timed.text),
+            ) {
+                let TimedText { at_s, text } = timed;
+                self.notes.push(format!("at {at_s} s `{text}`: {error}"));
+            }
             sim.send(timed.text.as_bytes());
             sim.send(b"\n");
         }

@@ -66,6 +66,12 @@ pub struct LogError {
 }
 
 impl LogError {
+    /// The same of another file: of the one that this was to become.
+    #[must_use]
+    pub fn of(&self, path: &Path) -> String {
+        format!("{}: {}", path.display(), self.what)
+    }
+
     pub(crate) fn new(path: &Path, what: impl fmt::Display) -> Self {
         Self {
             path: path.into(),

@@ -13,7 +13,10 @@ impl PortError {
                 "write it as tcp:host:port, and see that something listens there".into()
             }
             io::ErrorKind::PermissionDenied => permission(address),
-            _ if is_file(address) => format!("it is no serial port; {}", present()),
+            // As the system names what has no speed and no bits.
+            _ if is_file(address) || error.to_string().contains("typewriter") => {
+                format!("it is no serial port; {}", present())
+            }
             io::ErrorKind::NotFound | io::ErrorKind::InvalidInput => present(),
             io::ErrorKind::ResourceBusy => IN_USE.into(),
             _ if error.to_string().contains("exclusive lock") => IN_USE.into(),
