@@ -1,5 +1,5 @@
 //! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds, a million frames over a link with faults, and the
-//! image for 75 minutes under a flood of bytes.
+//! image for 75 minutes under a flood of bytes, and beside the native robot.
 //!
 //! The runs and what is required of them are the scenario crate's (`rumbo_scenario::campaign`); its example is built as users get the
 //! program, optimised, and printed as it comes.
@@ -12,7 +12,11 @@ const LINK: &str = "link";
 
 /// The part that drives the image: a test, made longer.
 const IMAGE: &str = "image";
-/// Its minutes: past the wrap of the microseconds at 71.6.
+/// The part that compares the image with the native robot.
+const MEDIANS: &str = "medians";
+/// Its seeds.
+const MEDIANS_SEEDS: u32 = 20;
+/// Minutes of [`IMAGE`]: past the wrap of the microseconds at 71.6.
 const IMAGE_MINUTES: &str = "75";
 
 /// Seeds of each scenario.
@@ -27,10 +31,15 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if only.is_empty() || only.iter().any(|name| name == IMAGE) {
         met &= soak(project)?;
     }
+    if only.is_empty() || only.iter().any(|name| name == MEDIANS) {
+        crate::firmware::run(project)?;
+        let seeds = seeds.unwrap_or(MEDIANS_SEEDS).min(MEDIANS_SEEDS);
+        met &= example(project, ["rumbo-scenario", MEDIANS], &[seeds.to_string()])?;
+    }
     let mut scenarios = vec![seeds.unwrap_or(SEEDS).to_string()];
     scenarios.extend(
         only.iter()
-            .filter(|name| ![LINK, IMAGE].contains(&name.as_str()))
+            .filter(|name| ![LINK, IMAGE, MEDIANS].contains(&name.as_str()))
             .cloned(),
     );
     if only.is_empty() || scenarios.len() > 1 {
