@@ -34,6 +34,7 @@ fn main() -> ! {
         reset,
     });
     robot.recall(eeprom::read);
+    record::robot(&robot);
     let mut encoders = Encoders::default();
     let mut listener = Listener::default();
     let mut inputs = Inputs::default();
@@ -61,7 +62,7 @@ fn main() -> ! {
         }
         let out = robot.tick(&record::inputs(&inputs));
         outputs::leave(&out, tick);
-        record::outputs(&out, robot.beliefs());
+        record::outputs(&out);
         robot.report();
         if let Some(sonar) = out.ping {
             listener.asked(sonar);

@@ -205,21 +205,6 @@ impl Pilot {
         }
     }
 
-    /// As [`crate::Robot::beliefs`].
-    pub(crate) fn beliefs(&self) -> [f32; 8] {
-        let (pose, speed) = (&self.estimate.pose, &self.estimate.wheel_rad_s);
-        [
-            pose.x_m,
-            pose.y_m,
-            pose.heading_rad,
-            speed.left,
-            speed.right,
-            self.wheel_ref_rad_s.left,
-            self.wheel_ref_rad_s.right,
-            self.heading_ref_rad,
-        ]
-    }
-
     /// The selected mode.
     pub(crate) fn mode(&self) -> ModeId {
         self.mode.id()

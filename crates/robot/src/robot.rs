@@ -138,12 +138,6 @@ impl Robot {
         armed.then(|| (self.pilot.mode(), self.pilot.signals().state))
     }
 
-    /// What the robot believes of itself, to the last bit: pose (x, y [m], heading [rad]), speeds and their references of both
-    /// wheels [rad/s], heading that the mode wants [rad]. For tests that compare two robots.
-    pub fn beliefs(&self) -> [f32; 8] {
-        self.pilot.beliefs()
-    }
-
     /// The rest of a tick, which its outputs do not wait for: says what there is to say, or else keeps the estimates exact.
     pub fn report(&mut self) {
         let status = self.status();

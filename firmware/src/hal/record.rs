@@ -1,11 +1,12 @@
 //! What the loop took at a tick and what it gave, at known places in SRAM.
 //!
 //! A test that runs this very image stops at [`rumbo_inputs_latched`], reads the inputs or puts others there, and reads
-//! the outputs at [`rumbo_outputs_left`]: native robot and chip can so be given the same and compared.
+//! the outputs and the whole robot at [`rumbo_outputs_left`]: native robot and chip can so be given the same and compared.
 
 use core::cell::UnsafeCell;
 
 use rumbo_control::{Echo, Edges, Inputs, Micros, Outputs, SonarId, Wheels};
+use rumbo_robot::Robot;
 
 /// One encoder.
 #[derive(Clone, Copy)]
@@ -41,9 +42,6 @@ struct OutputsRecord {
     ping: u8,
 }
 
-/// What the robot believes, likewise; in the order of [`rumbo_robot::Robot::beliefs`].
-type Beliefs = [f32; 8];
-
 struct Shown<T>(UnsafeCell<T>);
 
 // SAFETY: only the loop touches it.
@@ -73,8 +71,9 @@ static RUMBO_OUTPUTS: Shown<OutputsRecord> = Shown(UnsafeCell::new(OutputsRecord
     ping: 255,
 }));
 
+/// Where the robot is; what lies there is told by the image's debugging information.
 #[unsafe(no_mangle)]
-static RUMBO_BELIEFS: Shown<Beliefs> = Shown(UnsafeCell::new([0.0; 8]));
+static RUMBO_ROBOT: Shown<*const Robot> = Shown(UnsafeCell::new(core::ptr::null()));
 
 /// Does nothing; where a test stops to see the inputs of a tick.
 #[unsafe(no_mangle)]
@@ -140,11 +139,16 @@ pub fn inputs(inputs: &Inputs) -> Inputs {
     }
 }
 
-/// Shows the outputs of a tick, and what the robot believes.
-pub fn outputs(outputs: &Outputs, beliefs: Beliefs) {
+/// Shows where the robot is from now on.
+pub fn robot(robot: &Robot) {
+    // SAFETY: as above; nobody here follows the address.
+    unsafe { RUMBO_ROBOT.0.get().write_volatile(robot) }
+}
+
+/// Shows the outputs of a tick.
+pub fn outputs(outputs: &Outputs) {
     // SAFETY: as above.
     unsafe {
-        RUMBO_BELIEFS.0.get().write_volatile(beliefs);
         RUMBO_OUTPUTS.0.get().write_volatile(OutputsRecord {
             left: outputs.drive.left.counts(),
             right: outputs.drive.right.counts(),

@@ -1,5 +1,6 @@
 //! The chip with our image, stopped at each tick where the image shows its inputs and its outputs.
 
+use crate::state::State;
 use rumbo_control::{Echo, Inputs, Outputs};
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::{SRAM_START, Stopped};
@@ -29,6 +30,11 @@ pub(crate) fn image() -> Option<Image> {
     Some(Image::parse(&bytes).unwrap())
 }
 
+/// Its file, with all that does not go to the chip.
+pub(crate) fn elf() -> Option<Vec<u8>> {
+    image_path().map(|path| std::fs::read(path).unwrap())
+}
+
 /// The chip at its ticks.
 pub(crate) struct Board {
     chip: Chip,
@@ -36,7 +42,7 @@ pub(crate) struct Board {
     outputs_left: u32,
     inputs: usize,
     outputs: usize,
-    beliefs: usize,
+    state: State,
     received: usize,
     sending: usize,
     moved: u8,
@@ -45,7 +51,7 @@ pub(crate) struct Board {
 }
 
 impl Board {
-    pub(crate) fn new(image: &Image) -> Board {
+    pub(crate) fn new(elf: &[u8], image: &Image) -> Board {
         let function = |name| image.function_named(name).unwrap().address;
         let variable =
             |name| image.variable(name).unwrap().address as usize - usize::from(SRAM_START);
@@ -62,7 +68,7 @@ impl Board {
             outputs_left,
             inputs: variable("RUMBO_INPUTS"),
             outputs: variable("RUMBO_OUTPUTS"),
-            beliefs: variable("RUMBO_BELIEFS"),
+            state: State::of(elf, image),
             received: variable("RUMBO_RECEIVED"),
             sending: variable("RUMBO_SENDING"),
             moved: 0,
@@ -100,12 +106,29 @@ impl Board {
         }
     }
 
-    /// What the image believed at the last tick, in bits.
-    pub(crate) fn beliefs(&self) -> Vec<u32> {
-        let bytes = &self.chip.cpu().sram()[self.beliefs..self.beliefs + 32];
-        let words = bytes.chunks_exact(4);
-        let word = |four: &[u8]| u32::from_le_bytes(four.try_into().unwrap());
-        words.map(word).collect()
+    /// The whole robot as `{:?}` writes it.
+    pub(crate) fn write_state(&self, text: &mut String) {
+        let sram = self.chip.cpu().sram();
+        self.state.write(text, sram, usize::from(SRAM_START));
+    }
+
+    /// Of how many bytes of the robot each bit is in that text, and of how many bytes it is.
+    pub(crate) fn bytes_in_state(&self) -> (usize, usize) {
+        let mut sram = self.chip.cpu().sram().to_vec();
+        let (mut whole, mut other) = (String::new(), String::new());
+        self.write_state(&mut whole);
+        let robot = self.state.place(&sram, usize::from(SRAM_START));
+        let count = robot.len();
+        let counts = robot.filter(|at| {
+            (0..8).all(|bit| {
+                sram[*at] ^= 1 << bit;
+                other.clear();
+                self.state.write(&mut other, &sram, usize::from(SRAM_START));
+                sram[*at] ^= 1 << bit;
+                other != whole
+            })
+        });
+        (counts.count(), count)
     }
 
     /// The image's hash, as it tells it.

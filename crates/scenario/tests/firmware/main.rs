@@ -11,5 +11,6 @@ mod pins;
 mod same_bits;
 mod saved;
 mod soak;
+mod state;
 mod talk;
 mod world;
