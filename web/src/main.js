@@ -80,6 +80,7 @@ const tabs = new Tabs('tabs', (panel) => meter.show(panel === 'link'));
 tabs.show('events');
 const stateLine = new StateLine(store, send);
 const pointer = element('pointer', HTMLOutputElement);
+element('ghost-here', HTMLButtonElement).addEventListener('click', () => send({ type: 'restart_ghost' }));
 element('fit', HTMLButtonElement).addEventListener('click', () => map.fit());
 const pause = element('pause', HTMLButtonElement);
 const live = element('live', HTMLButtonElement);
@@ -198,7 +199,7 @@ function receive(message) {
       redraw();
       break;
     case 'control':
-      seat.show(message.seat);
+      seat.show(message);
       break;
     case 'error':
       break;

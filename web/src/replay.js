@@ -73,9 +73,10 @@ export class ReplayBar {
     const { replay } = state;
     this.#bar.hidden = !replay;
     document.body.classList.toggle('replay', Boolean(replay));
-    // Nothing is sent to a robot from here.
-    element('command-section', HTMLElement).inert = Boolean(replay);
-    element('parameter-section', HTMLElement).inert = Boolean(replay);
+    // Nothing is sent to a robot from here, nor from a page that may watch only.
+    const watching = document.body.classList.contains('viewer');
+    element('command-section', HTMLElement).inert = element('parameter-section', HTMLElement).inert = Boolean(replay) || watching;
+    this.#bar.inert = element('simulation', HTMLFormElement).inert = watching;
     if (!replay) return;
     this.#playing = state.speed > 0;
     setText(this.#play, this.#playing ? t('Pause') : t('Play'));

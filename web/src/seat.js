@@ -1,24 +1,37 @@
 // @ts-check
-/** Who has control: told where it is not this page, with what can be done about it. */
+/** Who has control, told where it is not plain: to who watches, and where several pages are open. */
 import { element, setText } from './dom.js';
 import { t } from './text.js';
 
-/** @typedef {import('./types.js').Seat} SeatName */
+/** @typedef {{seat: import('./types.js').Seat, page: number, holder: number | null, pages: number}} Control */
 
 export class Seat {
   #row = element('seat', HTMLSpanElement);
   #words = element('seat-words', HTMLSpanElement);
   #take = element('take-control', HTMLButtonElement);
+  #release = element('release-control', HTMLButtonElement);
 
   /** @param {(order: import('./types.js').Order) => void} send */
   constructor(send) {
     this.#take.addEventListener('click', () => send({ type: 'take_control' }));
+    this.#release.addEventListener('click', () => send({ type: 'release_control' }));
   }
 
-  /** @param {SeatName} seat */
-  show(seat) {
-    this.#row.hidden = seat === 'driver' || seat === 'free';
-    this.#take.hidden = seat !== 'passenger';
-    setText(this.#words, seat === 'viewer' ? t('you watch; STOP works') : t('another page has control; STOP works'));
+  /** @param {Control} control */
+  show(control) {
+    const { seat, pages } = control;
+    this.#row.hidden = seat !== 'viewer' && pages < 2;
+    this.#take.hidden = seat !== 'passenger' && seat !== 'free';
+    this.#release.hidden = seat !== 'driver';
+    setText(this.#words, words(control));
+    this.#words.className = `chip ${seat === 'driver' ? 'good' : seat === 'free' ? '' : 'warning'}`;
+    document.body.classList.toggle('viewer', seat === 'viewer');
   }
+}
+
+/** @param {Control} control */
+function words({ seat, page, holder }) {
+  if (seat === 'viewer') return holder === null ? t('you watch, nobody has control; STOP works') : t('you watch, page {} has control; STOP works', holder);
+  if (seat === 'driver') return t('this is page {}, it has control', page);
+  return holder === null ? t('this is page {}, nobody has control', page) : t('page {} has control, this is page {}; STOP works', holder, page);
 }

@@ -89,12 +89,12 @@
  *   | {type: 'events', events: LoggedEvent[]}
  *   | {type: 'bytes', bytes: LinkBytes[]}
  *   | {type: 'consoles', run: number, said: ConsoleText[]}
- *   | {type: 'control', seat: Seat}
+ *   | {type: 'control', seat: Seat, page: number, holder: number | null, pages: number}
  *   | {type: 'error', text: string}} FromServer
  *
- * @typedef {'viewer' | 'free' | 'driver' | 'passenger'} Seat Who has control, as far as this page is concerned.
+ * @typedef {'viewer' | 'free' | 'driver' | 'passenger'} Seat Who has control, as far as this page is concerned. Pages have numbers, in the order in which they came.
  *
- * @typedef {{type: 'stop' | 'take_control' | 'arm' | 'disarm' | 'clear_fault' | 'reset_params' | 'save_params' | 'reset_pose' | 'calibrate'}
+ * @typedef {{type: 'stop' | 'take_control' | 'release_control' | 'restart_ghost' | 'arm' | 'disarm' | 'clear_fault' | 'reset_params' | 'save_params' | 'reset_pose' | 'calibrate'}
  *   | {type: 'mode', mode: number}
  *   | {type: 'reference', value: number}
  *   | {type: 'wheel_reference', left: number, right: number}

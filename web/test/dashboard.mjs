@@ -38,32 +38,51 @@ export const folder = () => mkdtempSync(join(tmpdir(), 'rumbo-'));
 export async function open(options, browserOptions = {}) {
   const server = spawn(program(), [...options, '--no-browser', '--port', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
   assert.ok(server.stdout);
-  let url = '';
-  for await (const line of createInterface({ input: server.stdout })) {
-    url = line.match(/http:\/\/\S+/)?.[0] ?? '';
-    if (url) break;
-  }
+  const addresses = createInterface({ input: server.stdout })[Symbol.asyncIterator]();
+  /** The next address that the program prints. */
+  const address = async () => {
+    for (;;) {
+      const { value, done } = await addresses.next();
+      const found = value?.match(/http:\/\/\S+/)?.[0];
+      if (found || done) return found ?? '';
+    }
+  };
+  const url = await address();
+  assert.ok(url, `rumbo ${options.join(' ')}: no page`);
   const browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
-  const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, colorScheme: 'dark', locale: 'en-GB', ...browserOptions });
-  page.setDefaultTimeout(PATIENCE_MS);
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, colorScheme: 'dark', locale: 'en-GB', ...browserOptions });
+  const page = await context.newPage();
   /** @type {string[]} */
   const complaints = [];
+  await prepare(page, url);
   page.on('pageerror', (error) => complaints.push(String(error)));
   page.on('console', (message) => {
     if (message.type() === 'error') complaints.push(message.text());
   });
-  if (process.env['WEB']) {
-    await page.request.get(url);
-    await serveFolder(page);
-    await page.goto(new URL('/', url).href);
-  } else {
-    await page.goto(url);
-  }
+  await page.goto(process.env['WEB'] ? new URL('/', url).href : url);
   const close = async () => {
     await browser.close();
     server.kill();
   };
-  return { url, browser, page, complaints, close };
+  /** The address for viewers, which `--listen` prints after the other. */
+  return { url, viewersUrl: address, browser, page, complaints, close };
+}
+
+/** A page of this context at an address of the program. @param {import('playwright-core').BrowserContext} context @param {string} url */
+export async function showPage(context, url) {
+  const page = await context.newPage();
+  await prepare(page, url);
+  await page.goto(process.env['WEB'] ? new URL('/', url).href : url);
+  await page.waitForSelector('#connection.good');
+  return page;
+}
+
+/** @param {import('playwright-core').Page} page @param {string} url */
+async function prepare(page, url) {
+  page.setDefaultTimeout(PATIENCE_MS);
+  if (!process.env['WEB']) return;
+  await page.request.get(url);
+  await serveFolder(page);
 }
 
 /** @type {Record<string, string>} */

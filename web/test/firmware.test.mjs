@@ -4,10 +4,11 @@
  * folder of built sketches; without them there is nothing to test.
  */
 import assert from 'node:assert/strict';
-import { existsSync } from 'node:fs';
+import { spawnSync } from 'node:child_process';
+import { existsSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { folder, open } from './dashboard.mjs';
+import { folder, open, program } from './dashboard.mjs';
 
 const image = join(process.env['SKETCHES'] ?? '', 'memoria-mode5.elf');
 const skip = existsSync(image) ? false : `${image} is missing: run \`cargo xtask sketches\``;
@@ -55,4 +56,33 @@ test('STOP goes out as OFF', { skip }, async () => {
     return rumbo.state().robot.armed === false || Math.abs(speeds.at(-1) ?? 99) < 1;
   });
   assert.deepEqual(dashboard.complaints, []);
+});
+
+test('a log of it shows what the USART said, as far as the playhead is', { skip }, async () => {
+  const out = folder();
+  spawnSync(program(), ['run', 'mode5', '--firmware', image, '--seed', '2', '--out', out]);
+  const log = readdirSync(out).find((name) => name.endsWith('.mcap')) ?? '';
+  const replay = await open(['replay', join(out, log), '--speed', '0']);
+  try {
+    /** @param {number} t_s */
+    const scrub = (t_s) => replay.page.locator('#replay-scrub').evaluate((input, value) => {
+      /** @type {HTMLInputElement} */ (input).value = String(value);
+      input.dispatchEvent(new Event('change'));
+    }, t_s);
+    const rows = () => replay.page.locator('#console').textContent().then((text) => (text ?? '').split('\n').length);
+    await replay.page.locator('#replay').waitFor();
+    assert.equal(await replay.page.locator('#console-section').isVisible(), false, 'nothing was said yet');
+    await scrub(3);
+    await replay.page.locator('#console').filter({ hasText: /\d+, ?-?\d/ }).waitFor();
+    assert.equal(await replay.page.locator('#console-choice button[aria-pressed="true"]').textContent(), 'USART1');
+    assert.equal(await replay.page.locator('#console-line').isVisible(), false, 'nothing is sent to a chip of the past');
+    const early = await rows();
+    await scrub(5);
+    await replay.page.waitForFunction((early) => (document.querySelector('#console')?.textContent ?? '').split('\n').length > early + 10, early);
+    await scrub(3);
+    await replay.page.waitForFunction((early) => (document.querySelector('#console')?.textContent ?? '').split('\n').length === early, early);
+    assert.deepEqual(replay.complaints, []);
+  } finally {
+    await replay.close();
+  }
 });

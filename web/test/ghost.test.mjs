@@ -20,7 +20,47 @@ test('the ghost of a simulated log goes where its robot went', async () => {
     await page.locator('#map-legend', { hasText: 'ghost' }).waitFor();
     const [ghost, truth] = [await last(page, 'ghost_x_m'), await last(page, 'true_x_m')];
     assert.ok(Math.abs(ghost - truth) < 0.05 && truth > 0.3, `${ghost}, ${truth}`);
+    // Started again in the middle, it goes on from where the robot is, and so gets to the same place.
+    await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().speed === 0);
+    await page.locator('#replay-scrub').evaluate((input) => {
+      /** @type {HTMLInputElement} */ (input).value = '2';
+      input.dispatchEvent(new Event('change'));
+    });
+    await page.waitForFunction(() => Math.abs(/** @type {any} */ (window).rumbo.state().t_s - 2) < 0.01);
+    await page.locator('#ghost-here').click();
+    await page.locator('#events li', { hasText: 'the ghost starts again where the robot is' }).waitFor();
+    await page.locator('#replay-play').click();
+    await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().t_s > 5);
+    const [again, there] = [await last(page, 'ghost_x_m'), await last(page, 'true_x_m')];
+    assert.ok(Math.abs(again - there) < 0.05 && there > 0.3, `${again}, ${there}`);
     assert.deepEqual(dashboard.complaints, []);
+  } finally {
+    await dashboard.close();
+  }
+});
+
+test('a ghost that is in another place is put beside the robot, and goes on from there', async () => {
+  const out = folder();
+  spawnSync(program(), ['run', 'mode1', '--seed', '3', '--out', out]);
+  // In the world of mode 4 it has its wall elsewhere, and begins elsewhere.
+  const dashboard = await open(['replay', join(out, 'mode1-3.mcap'), '--ghost', 'mode4', '--speed', '0']);
+  try {
+    const { page } = dashboard;
+    await page.locator('#replay-on').click();
+    await page.locator('#map-legend', { hasText: 'ghost' }).waitFor();
+    await page.locator('#replay-scrub').evaluate((input) => {
+      /** @type {HTMLInputElement} */ (input).value = '4';
+      input.dispatchEvent(new Event('change'));
+    });
+    await page.waitForFunction(() => Math.abs(/** @type {any} */ (window).rumbo.state().t_s - 4) < 0.01);
+    const apart = async () => Math.hypot(await last(page, 'ghost_x_m') - await last(page, 'true_x_m'), await last(page, 'ghost_y_m') - await last(page, 'true_y_m'));
+    assert.ok(await apart() > 0.1, 'it is elsewhere');
+    await page.locator('#ghost-here').click();
+    await page.waitForFunction(() => {
+      const { series } = /** @type {any} */ (window).rumbo;
+      const last = (/** @type {string} */ name) => series(name).y.filter((/** @type {unknown} */ each) => typeof each === 'number').at(-1);
+      return Math.hypot(last('ghost_x_m') - last('true_x_m'), last('ghost_y_m') - last('true_y_m')) < 0.01;
+    });
   } finally {
     await dashboard.close();
   }
@@ -51,6 +91,17 @@ test('the ghost of a robot on a port does what the robot is told', { skip: proce
     await page.locator('#end', { hasText: 'reached' }).waitFor();
     const [ghost, robot] = [await last(page, 'ghost_x_m'), await last(page, 'x_m')];
     assert.ok(Math.abs(ghost - robot) < 0.1, `${ghost}, ${robot}`);
+    // A hand would have to carry a real robot; the ghost goes by itself to where it is.
+    await page.locator('#ghost-here').click();
+    await page.locator('#events li', { hasText: 'the ghost starts again where the robot is' }).waitFor();
+    await page.waitForFunction(() => {
+      const { series } = /** @type {any} */ (window).rumbo;
+      const last = (/** @type {string} */ name) => series(name).y.filter((/** @type {unknown} */ each) => typeof each === 'number').at(-1);
+      return Math.abs(last('ghost_x_m') - last('x_m')) < 0.01;
+    });
+    // The robot's clock began before the station listened.
+    await page.getByRole('tab', { name: 'Link' }).click();
+    await page.locator('#link-figures', { hasText: /robot started at-?[\d.]+ s/ }).waitFor();
     if (process.env['SCREENSHOT_GHOST']) await page.screenshot({ path: process.env['SCREENSHOT_GHOST'] });
     await page.locator('#stop').click();
     await page.waitForFunction(() => !(/** @type {any} */ (window).rumbo.state().robot.armed));

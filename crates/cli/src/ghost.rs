@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::lab::SimulatedRobot;
 use rumbo_scenario::files::Overrides;
 use rumbo_station::log::{Log, Manifest};
-use rumbo_station::{Choice, LinkNews, MapPose, Scene, Simulation, Target};
+use rumbo_station::{Choice, Ghost, LinkNews, MapPose, Scene, Simulation, Standing, Target};
 use std::path::Path;
 
 /// The ghost moves on in steps of this length \[us\].
@@ -82,6 +82,11 @@ impl<T: Target> Target for Haunted<T> {
         Some(self.ghost.truth().pose)
     }
 
+    fn restart_ghost(&mut self, at: Standing) -> Result<(), String> {
+        self.ghost.place(at);
+        Ok(())
+    }
+
     fn surroundings(&mut self) -> Option<Scene> {
         Some(surroundings(&self.ghost))
     }
@@ -97,8 +102,48 @@ fn follow(ghost: &mut SimulatedRobot, until_us: u64, heard: &mut Vec<u8>) -> Res
     Ok(())
 }
 
-/// Puts a ghost into a log that was read with its bytes; `scenario` is where it lives, by default that of the log.
-pub(crate) fn add_to(log: &mut Log, path: &Path, scenario: Option<&str>) -> Result<(), Failure> {
+/// The ghost of a log, which gets the recorded bytes at their times.
+struct Recorded {
+    scenario: String,
+    seed: u64,
+    to_robot: Vec<(u64, Vec<u8>)>,
+    /// The first that it has not got yet.
+    next: usize,
+    ghost: SimulatedRobot,
+    heard: Vec<u8>,
+}
+
+impl Ghost for Recorded {
+    fn begin(&mut self) -> Result<(), String> {
+        self.ghost = simulated(&self.scenario, self.seed)
+            .map_err(|_| format!("the scenario {} is gone", self.scenario))?;
+        self.next = 0;
+        Ok(())
+    }
+
+    fn live(&mut self, until_us: u64) -> Result<MapPose, String> {
+        while let Some((at_us, bytes)) = self.to_robot.get(self.next)
+            && *at_us <= until_us
+        {
+            follow(&mut self.ghost, *at_us, &mut self.heard)?;
+            self.ghost.send(bytes)?;
+            self.next += 1;
+        }
+        follow(&mut self.ghost, until_us, &mut self.heard)?;
+        Ok(self.ghost.truth().pose)
+    }
+
+    fn place(&mut self, standing: Standing) {
+        self.ghost.place(standing);
+    }
+}
+
+/// Puts a ghost into a log that was read with its bytes, and gives it; `scenario` is where it lives, by default that of the log.
+pub(crate) fn add_to(
+    log: &mut Log,
+    path: &Path,
+    scenario: Option<&str>,
+) -> Result<Box<dyn Ghost>, Failure> {
     let shown = path.display();
     let recorded = log.manifest.as_ref();
     let own = recorded.and_then(|manifest| manifest.scenario.clone());
@@ -113,23 +158,19 @@ pub(crate) fn add_to(log: &mut Log, path: &Path, scenario: Option<&str>) -> Resu
             "{shown}: holds no bytes of a link, so a ghost cannot get the same commands; record with rumbo lab or rumbo connect"
         )));
     }
-    let mut ghost = simulated(&scenario, seed)?;
-    let to_robot: Vec<_> = log
-        .link
-        .iter()
-        .filter(|burst| burst.to_robot)
-        .map(|burst| (burst.t_us, burst.bytes.clone()))
-        .collect();
-    let mut next = to_robot.into_iter().peekable();
-    let mut heard = Vec::new();
-    let scene = surroundings(&ghost);
-    log.haunt(scene, |t_us| {
-        while let Some((at_us, bytes)) = next.next_if(|(at_us, _)| *at_us <= t_us) {
-            follow(&mut ghost, at_us, &mut heard)?;
-            ghost.send(&bytes)?;
-        }
-        follow(&mut ghost, t_us, &mut heard)?;
-        Ok(ghost.truth().pose)
-    })
-    .map_err(Failure::Input)
+    let to_robot = log.link.iter().filter(|burst| burst.to_robot);
+    let mut ghost = Box::new(Recorded {
+        ghost: simulated(&scenario, seed)?,
+        to_robot: to_robot
+            .map(|burst| (burst.t_us, burst.bytes.clone()))
+            .collect(),
+        scenario,
+        seed,
+        next: 0,
+        heard: Vec::new(),
+    });
+    let scene = surroundings(&ghost.ghost);
+    log.haunt(scene, |t_us| ghost.live(t_us))
+        .map_err(Failure::Input)?;
+    Ok(ghost)
 }

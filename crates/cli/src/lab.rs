@@ -15,7 +15,7 @@ use rumbo_scenario::mega::firmware::Language;
 use rumbo_scenario::run;
 use rumbo_scenario::sim::Sim;
 use rumbo_station::log::{Kind, Manifest};
-use rumbo_station::{Choice, Lab, LabConfig, MapPose, Scene, Simulation, Target, Truth};
+use rumbo_station::{Choice, Lab, LabConfig, MapPose, Scene, Simulation, Standing, Target, Truth};
 use rumbo_wire::Command;
 use std::io::Write;
 
@@ -217,6 +217,23 @@ fn first_words(setup: &Setup) -> Result<Vec<Command>, FileError> {
         value,
     });
     Ok(parameters.chain(commands).collect())
+}
+
+impl SimulatedRobot {
+    /// Puts the robot elsewhere.
+    pub(crate) fn place(&mut self, Standing { at, told }: Standing) {
+        let at = rumbo_plant::contact::Pose {
+            x_m: at.x_m,
+            y_m: at.y_m,
+            heading_rad: at.heading_rad,
+        };
+        let told = rumbo_control::Pose {
+            x_m: told.x_m as f32,
+            y_m: told.y_m as f32,
+            heading_rad: told.heading_rad as f32,
+        };
+        self.sim.place(at, told);
+    }
 }
 
 impl Target for SimulatedRobot {

@@ -15,16 +15,20 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     };
     let mut log = read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log);
-    if let Some(scenario) = &args.ghost {
-        ghost::add_to(&mut log, &args.log, scenario.as_deref())?;
+    if log.speaks_text() {
+        log = Log::read(&args.log).map_err(Failure::input)?;
     }
+    let ghost = match &args.ghost {
+        Some(scenario) => Some(ghost::add_to(&mut log, &args.log, scenario.as_deref())?),
+        None => None,
+    };
     let name = args
         .log
         .file_stem()
         .unwrap_or(args.log.as_os_str())
         .to_string_lossy()
         .into_owned();
-    let served =
-        rumbo_station::serve_log(args.serve.at(), args.speed, name, log).map_err(Failure::input)?;
+    let served = rumbo_station::serve_log(args.serve.at(), args.speed, name, log, ghost)
+        .map_err(Failure::input)?;
     lab::show(served, args.serve, args.no_browser)
 }

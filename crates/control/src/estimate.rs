@@ -209,6 +209,13 @@ impl Estimator {
         [left, right, if aside { self.aside } else { front }]
     }
 
+    /// The robot stands here, as seen from its origin: for a simulated one that is put elsewhere.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn set_pose(&mut self, pose: Pose) {
+        self.pings = Default::default();
+        self.place = Transform::of(pose);
+    }
+
     /// Calls the present place the origin.
     pub fn reset_pose(&mut self) {
         for ping in self.pings.iter_mut().flatten() {

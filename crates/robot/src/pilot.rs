@@ -334,6 +334,12 @@ impl Pilot {
         self.params = Params::default();
     }
 
+    /// The robot stands here, as seen from its origin.
+    #[cfg(not(target_arch = "avr"))]
+    pub(crate) fn set_pose(&mut self, pose: rumbo_control::Pose) {
+        self.estimator.set_pose(pose);
+    }
+
     /// Calls the present place the origin.
     pub(crate) fn reset_pose(&mut self) {
         self.estimator.reset_pose();

@@ -155,6 +155,12 @@ impl Robot {
         self.reporter.transmit()
     }
 
+    /// The robot stands here, as seen from its origin: for a simulated one that is put elsewhere.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn set_pose(&mut self, pose: rumbo_control::Pose) {
+        self.pilot.set_pose(pose);
+    }
+
     /// Sets a parameter before the robot starts, as the overrides of a robot file do in a simulation.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! Who has control: one page at a time, of those that may have it.
 //!
-//! A controller's page gets control with its first order while nobody has it, and keeps it until it is closed or another controller
-//! takes it on purpose. STOP needs no control. What a page is told of it is [`Seat`].
+//! A controller's page gets control with its first order while nobody has it, and keeps it until it lets go, is closed, or another controller
+//! takes it on purpose. STOP needs no control. What a page is told of it is [`View`].
 
 use serde::Serialize;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -24,10 +24,23 @@ pub(crate) enum Seat {
     Passenger,
 }
 
+/// What a page is told of control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct View {
+    pub(crate) seat: Seat,
+    /// The page itself.
+    pub(crate) page: PageId,
+    /// The page that has control.
+    pub(crate) holder: Option<PageId>,
+    /// Pages that are open, viewers too.
+    pub(crate) pages: usize,
+}
+
 #[derive(Debug, Default)]
 struct Holder {
     next: PageId,
     held_by: Option<PageId>,
+    pages: usize,
 }
 
 /// The one lease of control.
@@ -59,6 +72,8 @@ impl Lease {
     pub(crate) fn sit_down(&self, may_control: bool) -> Place {
         let mut holder = self.lock();
         holder.next += 1;
+        holder.pages += 1;
+        self.changed.send_replace(());
         Place {
             page: holder.next,
             may_control,
@@ -95,24 +110,43 @@ impl Place {
         self.may_control
     }
 
+    /// Lets go of control, if the page has it.
+    pub(crate) fn release(&self) {
+        let mut holder = self.lease.lock();
+        if holder.held_by == Some(self.page) {
+            holder.held_by = None;
+            self.lease.changed.send_replace(());
+        }
+    }
+
     /// Where the page sits.
     pub(crate) fn seat(&self) -> Seat {
-        match self.lease.lock().held_by {
+        self.view().seat
+    }
+
+    /// What the page is told.
+    pub(crate) fn view(&self) -> View {
+        let holder = self.lease.lock();
+        let seat = match holder.held_by {
             _ if !self.may_control => Seat::Viewer,
             None => Seat::Free,
             Some(page) if page == self.page => Seat::Driver,
             Some(_) => Seat::Passenger,
+        };
+        View {
+            seat,
+            page: self.page,
+            holder: holder.held_by,
+            pages: holder.pages,
         }
     }
 }
 
 impl Drop for Place {
     fn drop(&mut self) {
-        let mut holder = self.lease.lock();
-        if holder.held_by == Some(self.page) {
-            holder.held_by = None;
-            self.lease.changed.send_replace(());
-        }
+        self.release();
+        self.lease.lock().pages -= 1;
+        self.lease.changed.send_replace(());
     }
 }
 
@@ -139,6 +173,17 @@ mod tests {
         assert!(!first.ask());
         // Who has no control takes none away by going.
         drop(first);
+        assert!(second.ask());
+        let watching = viewer.view();
+        assert_eq!(
+            (watching.holder, watching.pages),
+            (Some(second.view().page), 2)
+        );
+        // Who has it may let go, and stay.
+        viewer.release();
+        assert_eq!(second.seat(), Seat::Driver);
+        second.release();
+        assert_eq!((second.seat(), viewer.view().holder), (Seat::Free, None));
         assert!(second.ask());
         drop(second);
         assert_eq!(lease.sit_down(true).seat(), Seat::Free);

@@ -48,7 +48,7 @@ pub use row::Row;
 pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, ServeError, serve, serve_log, serve_with};
 pub use session::Extras;
 pub use target::{
-    Choice, LinkNews, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation, SonarMount, Target,
-    Truth,
+    Choice, Ghost, LinkNews, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation, SonarMount,
+    Standing, Target, Truth,
 };
 pub use watch::check_baud;

@@ -11,7 +11,7 @@ use crate::log::{Burst, Said};
 use crate::origin::Origin;
 use crate::row::Row;
 use crate::signals::{EARLIER_MS, Sample, TruthLog};
-use crate::target::{MapPose, Scene, Truth};
+use crate::target::{MapPose, Scene, Standing, Truth};
 use crate::terminal;
 use crate::words;
 use rumbo_control::Pose;
@@ -71,6 +71,15 @@ impl Observer {
     /// Notes what is the case at `now_ms`.
     pub(crate) fn truth(&mut self, now_ms: i64, truth: Truth) {
         self.truths.push(now_ms, truth);
+    }
+
+    /// Where the robot stands, as well as is known.
+    pub(crate) fn standing(&self) -> Standing {
+        let told = MapPose::from(self.pose);
+        Standing {
+            at: self.origin.place(told),
+            told,
+        }
     }
 
     /// Notes where the ghost is at `now_ms`.

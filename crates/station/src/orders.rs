@@ -40,6 +40,10 @@ pub(crate) enum Order {
     Step(i32),
     /// Control for the page, whoever has it; the session need not know.
     TakeControl,
+    /// The page lets go of control; the session need not know.
+    ReleaseControl,
+    /// Start the ghost again where the robot is.
+    RestartGhost,
 }
 
 /// The orders as they are to be obeyed when STOP was pressed (`stop`): no older command to the robot comes after it.
@@ -74,6 +78,8 @@ impl fmt::Display for BadOrder {
 enum Message {
     Stop {},
     TakeControl {},
+    ReleaseControl {},
+    RestartGhost {},
     Arm {},
     Disarm {},
     ClearFault {},
@@ -175,6 +181,8 @@ pub(crate) fn parse(text: &str) -> Result<Order, BadOrder> {
     let order = match message {
         Message::Stop {} => Order::Robot(Command::Stop),
         Message::TakeControl {} => Order::TakeControl,
+        Message::ReleaseControl {} => Order::ReleaseControl,
+        Message::RestartGhost {} => Order::RestartGhost,
         Message::Arm {} => Order::Robot(Command::Arm),
         Message::Disarm {} => Order::Robot(Command::Disarm),
         Message::ClearFault {} => Order::Robot(Command::ClearFault),

@@ -50,6 +50,11 @@ impl Origin {
         }
     }
 
+    /// A pose from the origin, in the world.
+    pub(crate) fn place(&self, told: MapPose) -> MapPose {
+        compose(self.at, told)
+    }
+
     /// Takes the pose told for `t_ms` by a robot whose lengths are known so well, and the true one if there is one; gives the origin's place
     /// in the world.
     pub(crate) fn follow(

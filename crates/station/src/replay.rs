@@ -3,11 +3,17 @@
 //! Nothing is sent to any robot: orders to one are answered with a note. Moving the playhead begins a new run on the board, so that pages
 //! forget what they had, and fills it with the [`BEFORE_MS`] before the new place.
 
+mod haunting;
+mod speech;
+
 use crate::board::{Board, Level, LoggedEvent, ReplayState, State};
 use crate::catalogue::{self, ParameterState};
 use crate::log::Log;
 use crate::orders::Order;
 use crate::session::Orders;
+use crate::target::Ghost;
+use haunting::Haunting;
+use speech::Speech;
 use std::sync::Arc;
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
@@ -23,6 +29,8 @@ const WAKE_PAUSED: Duration = Duration::from_millis(250);
 pub(crate) struct Replay {
     name: String,
     log: Log,
+    speech: Speech,
+    haunting: Option<Haunting>,
     board: Arc<Board>,
     orders: Orders,
     /// Where the playhead is \[ms\].
@@ -44,10 +52,13 @@ impl Replay {
         board: Arc<Board>,
         orders: Orders,
         speed: f64,
+        ghost: Option<Box<dyn Ghost>>,
     ) -> Self {
         let end_ms = log.duration_s() * 1e3;
         Self {
             name,
+            speech: Speech::of(&log),
+            haunting: ghost.map(Haunting::new),
             log,
             board,
             orders,
@@ -72,7 +83,11 @@ impl Replay {
         }
         self.seek(0.0);
         loop {
-            let wait = if self.speed > 0.0 { WAKE } else { WAKE_PAUSED };
+            let busy = self.haunting.as_ref().is_some_and(Haunting::at_work);
+            let wait = match self.speed > 0.0 || busy {
+                true => WAKE,
+                false => WAKE_PAUSED,
+            };
             match self.orders.queue.recv_timeout(wait) {
                 Ok(order) => self.obey(&order),
                 Err(RecvTimeoutError::Timeout) => {}
@@ -82,6 +97,7 @@ impl Replay {
                 self.obey(&order);
             }
             self.play(Instant::now());
+            self.haunt();
             self.show();
         }
     }
@@ -100,6 +116,7 @@ impl Replay {
             Order::Step(frames) => self.step(*frames),
             Order::Reset(_) => self.seek(0.0),
             Order::Calibrate => {}
+            Order::RestartGhost => self.restart_ghost(),
             Order::Robot(_) | Order::Hold(_) | Order::Route(_) | Order::Type(..)
                 if !self.warned =>
             {
@@ -110,7 +127,42 @@ impl Replay {
             | Order::Hold(_)
             | Order::Route(_)
             | Order::Type(..)
-            | Order::TakeControl => {}
+            | Order::TakeControl
+            | Order::ReleaseControl => {}
+        }
+    }
+
+    /// The ghost starts again beside the robot that is seen now.
+    fn restart_ghost(&mut self) {
+        let row = self.row_after(self.at_ms).saturating_sub(1);
+        let started = match &mut self.haunting {
+            Some(haunting) => haunting.restart(&mut self.log, row),
+            None => Err("there is none; start with --ghost".into()),
+        };
+        match started {
+            Ok(()) => {
+                self.board.push_event(LoggedEvent {
+                    t_s: self.at_ms / 1e3,
+                    level: Level::Info,
+                    text: "the ghost starts again where the robot is".into(),
+                });
+                self.seek(self.at_ms);
+            }
+            Err(why) => self.note(format!("the ghost: refused, {why}")),
+        }
+    }
+
+    /// The ghost goes on; pages that were shown rows without it get them anew.
+    fn haunt(&mut self) {
+        let Some(haunting) = &mut self.haunting else {
+            return;
+        };
+        let behind = haunting.is_behind(self.next_row);
+        if let Err(why) = haunting.work(&mut self.log) {
+            haunting.give_up();
+            self.note(format!("the ghost: refused, {why}"));
+        } else if behind && !haunting.is_behind(self.next_row) {
+            self.seek(self.at_ms);
         }
     }
 
@@ -135,6 +187,8 @@ impl Replay {
         self.next_row = self.row_after(self.at_ms);
         self.board
             .push_samples(self.log.rows.get(from..self.next_row).unwrap_or_default());
+        let from_ms = self.at_ms - BEFORE_MS as f64;
+        self.speech.seek(from_ms, self.at_ms, &self.board);
     }
 
     /// To the next telemetry frame, or to the one before; the playhead stands there.
@@ -170,6 +224,7 @@ impl Replay {
         self.board
             .push_samples(self.log.rows.get(self.next_row..until).unwrap_or_default());
         self.next_row = until.max(self.next_row);
+        self.speech.advance(self.at_ms, &self.board);
     }
 
     /// Puts the slow state and the parameters of the playhead on the board.

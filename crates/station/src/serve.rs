@@ -8,7 +8,7 @@ use crate::orders::Order;
 use crate::replay::Replay;
 use crate::session::{Extras, Orders, Session};
 use crate::socket::Hub;
-use crate::target::Target;
+use crate::target::{Ghost, Target};
 use crate::web;
 use axum::serve::ListenerExt;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
@@ -217,13 +217,19 @@ pub fn serve_with(
     })
 }
 
-/// Serves the same dashboard for a log, which it shows under this name.
+/// Serves the same dashboard for a log, which it shows under this name; with `ghost`, the log's ghost can be started again.
 ///
 /// # Errors
 /// [`ServeError`], when the port cannot be opened.
-pub fn serve_log(at: ServeAt, speed: f64, name: String, log: Log) -> Result<Lab, ServeError> {
+pub fn serve_log(
+    at: ServeAt,
+    speed: f64,
+    name: String,
+    log: Log,
+    ghost: Option<Box<dyn Ghost>>,
+) -> Result<Lab, ServeError> {
     start(at, Board::new(), move |board, orders| {
-        Replay::new(name, log, board, orders, speed).run();
+        Replay::new(name, log, board, orders, speed, ghost).run();
         Ok(())
     })
 }

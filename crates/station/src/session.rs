@@ -180,7 +180,8 @@ impl Session {
             ),
             Order::Reset(choice) => self.reset(&choice),
             Order::Calibrate => self.calibrate(),
-            Order::TakeControl => {}
+            Order::TakeControl | Order::ReleaseControl => {}
+            Order::RestartGhost => self.restart_ghost(),
             Order::Seek(_) | Order::Step(_) => self.note(
                 board::Level::Warning,
                 "refused, this is no replay of a log".into(),

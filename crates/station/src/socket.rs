@@ -8,7 +8,7 @@
 use crate::board::{Board, ConsoleText, Cursor, Heard, Level, LoggedEvent, News, State};
 use crate::catalogue::{self, ModeEntry, ParameterState};
 use crate::guard::Role;
-use crate::lease::{Lease, Place, Seat};
+use crate::lease::{Lease, Place, Seat, View};
 use crate::log::Burst;
 use crate::orders::{self, Order};
 use crate::row::{Cell, Row};
@@ -75,8 +75,8 @@ enum ToPage<'a> {
     Consoles { run: u32, said: &'a [ConsoleText] },
     /// Raw bytes of the link.
     Bytes { bytes: Vec<LinkBytes> },
-    /// Who has control, as far as the page is concerned.
-    Control { seat: Seat },
+    /// Who has control.
+    Control(View),
     /// Why the connection is closed now.
     Error { text: &'a str },
 }
@@ -131,6 +131,10 @@ fn admit(order: &Order, place: &Place) -> Result<(), &'static str> {
     let may = match order {
         Order::Robot(Command::Stop) => true,
         Order::TakeControl => place.take(),
+        Order::ReleaseControl => {
+            place.release();
+            true
+        }
         _ => place.ask(),
     };
     match (may, place.seat()) {
@@ -227,9 +231,9 @@ async fn tell_news(
     send(out, &hello).await?;
     let (mut told, mut run, mut t_s) = (None, 0, 0.0);
     loop {
-        let seat = place.seat();
-        if told.replace(seat) != Some(seat) {
-            send(out, &ToPage::Control { seat }).await?;
+        let view = place.view();
+        if told.replace(view) != Some(view) {
+            send(out, &ToPage::Control(view)).await?;
         }
         let mut news = hub.board.news(&mut cursor);
         if news.events_gone > 0 {

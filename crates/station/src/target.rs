@@ -50,6 +50,14 @@ pub trait Target: Send {
         None
     }
 
+    /// Puts the ghost where the robot is, from where it goes on by itself.
+    ///
+    /// # Errors
+    /// There is no ghost.
+    fn restart_ghost(&mut self, _at: Standing) -> Result<(), String> {
+        Err("there is none; start with --ghost".into())
+    }
+
     /// What surrounds the ghost, and so should surround the robot.
     fn surroundings(&mut self) -> Option<Scene> {
         None
@@ -137,6 +145,33 @@ impl From<Pose> for MapPose {
             heading_rad: pose.heading_rad.into(),
         }
     }
+}
+
+/// Where a robot stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Standing {
+    /// In the world, as well as it is known.
+    pub at: MapPose,
+    /// From its origin, as it believes.
+    pub told: MapPose,
+}
+
+/// The ghost of a log: a simulated robot that gets the bytes that went to the robot then.
+pub trait Ghost: Send {
+    /// A new one, at time 0.
+    ///
+    /// # Errors
+    /// What keeps it from beginning.
+    fn begin(&mut self) -> Result<(), String>;
+
+    /// Lives on to this instant \[us\]; where it is then.
+    ///
+    /// # Errors
+    /// What keeps it from living.
+    fn live(&mut self, until_us: u64) -> Result<MapPose, String>;
+
+    /// Stands here now.
+    fn place(&mut self, standing: Standing);
 }
 
 /// What is really the case with a simulated robot at one instant.

@@ -280,6 +280,15 @@ impl Sim {
         }
     }
 
+    /// Puts the robot elsewhere in the world, as a hand would; a native one of ours also believes from now on to stand at `told` from its
+    /// origin.
+    pub fn place(&mut self, at: Pose, told: rumbo_control::Pose) {
+        self.state.place(at);
+        if let Some(Controller::Rumbo(native)) = &mut self.controller {
+            native.set_pose(told);
+        }
+    }
+
     /// What is in the robot's EEPROM; what was never written may be missing at the end.
     pub fn memory(&self) -> Vec<u8> {
         match &self.controller {

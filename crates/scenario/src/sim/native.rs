@@ -71,6 +71,11 @@ impl Native {
         })
     }
 
+    /// The robot stands here, as it believes.
+    pub(super) fn set_pose(&mut self, pose: rumbo_control::Pose) {
+        self.robot.set_pose(pose);
+    }
+
     pub(super) fn mode_state(&self) -> Option<(ModeId, u8)> {
         self.robot.mode_state()
     }

@@ -137,6 +137,12 @@ impl Log {
         Ok(log)
     }
 
+    /// The robot spoke the original's text: what it said is for people, too.
+    #[must_use]
+    pub fn speaks_text(&self) -> bool {
+        self.states.iter().any(|state| state.robot.text)
+    }
+
     /// Events as lines: time \[s\], level, text.
     pub fn events(&self) -> impl Iterator<Item = (f64, &'static str, &str)> {
         self.events
@@ -171,9 +177,7 @@ impl Log {
             match record.map_err(|error| error.to_string())? {
                 Record::Channel(channel) => {
                     let known = match Topic::find(&channel.topic) {
-                        Some(Topic::FromRobot | Topic::ToRobot | Topic::Console) if !with_link => {
-                            None
-                        }
+                        Some(Topic::FromRobot | Topic::ToRobot) if !with_link => None,
                         Some(topic) => Some(Channel::Ours(topic)),
                         None => (channel.topic == IMPORTED).then_some(Channel::Imported),
                     };

@@ -118,6 +118,17 @@ impl Session {
             .try_for_each(|command| self.command(command))
     }
 
+    /// Puts the ghost where the robot is.
+    pub(super) fn restart_ghost(&mut self) {
+        match self.target.restart_ghost(self.observer.standing()) {
+            Ok(()) => self.note(
+                board::Level::Info,
+                "the ghost starts again where the robot is".into(),
+            ),
+            Err(why) => self.note(board::Level::Warning, format!("the ghost: refused, {why}")),
+        }
+    }
+
     fn refuse(&mut self, command: &Command, why: &str) -> Result<(), String> {
         let asked = words::command(command, self.client.mode());
         self.note(board::Level::Warning, format!("{asked}: refused, {why}"));

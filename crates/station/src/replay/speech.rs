@@ -1,0 +1,58 @@
+//! What the USARTs of an emulated chip said in a log, or a robot that speaks text, told as the playhead passes it.
+
+use crate::board::{Board, ConsoleText, LINK_CONSOLE};
+use crate::console::readable;
+use crate::log::Log;
+use std::collections::BTreeMap;
+
+/// What was said, and how much of it the pages have.
+#[derive(Debug)]
+pub(super) struct Speech {
+    /// When \[ms\], at which USART, and what, in order.
+    said: Vec<(f64, u8, Vec<u8>)>,
+    /// The first that the pages do not have.
+    next: usize,
+}
+
+impl Speech {
+    /// What stands in the log; of a chip's link, what its USART said.
+    pub(super) fn of(log: &Log) -> Self {
+        let from_chip = log.said.iter().filter(|said| !said.to_chip);
+        let mut said: Vec<_> = from_chip
+            .map(|said| (said.t_us as f64 / 1e3, said.usart, said.bytes.clone()))
+            .collect();
+        if log.said.is_empty() && log.speaks_text() {
+            let from_robot = log.link.iter().filter(|burst| !burst.to_robot);
+            said.extend(from_robot.map(|burst| {
+                let t_ms = burst.t_us as f64 / 1e3;
+                (t_ms, LINK_CONSOLE, burst.bytes.clone())
+            }));
+        }
+        said.sort_by(|one, other| one.0.total_cmp(&other.0));
+        Self { said, next: 0 }
+    }
+
+    fn after(&self, t_ms: f64) -> usize {
+        self.said.partition_point(|(at_ms, ..)| *at_ms <= t_ms)
+    }
+
+    /// The playhead is elsewhere: the pages, which have nothing, get what was said between these times.
+    pub(super) fn seek(&mut self, from_ms: f64, to_ms: f64, board: &Board) {
+        self.next = self.after(from_ms);
+        self.advance(to_ms, board);
+    }
+
+    /// The playhead has moved on to this time.
+    pub(super) fn advance(&mut self, to_ms: f64, board: &Board) {
+        let end = self.after(to_ms).max(self.next);
+        let mut by_usart: BTreeMap<u8, Vec<u8>> = BTreeMap::new();
+        for (_, usart, bytes) in self.said.get(self.next..end).unwrap_or_default() {
+            by_usart.entry(*usart).or_default().extend(bytes);
+        }
+        self.next = end;
+        for (usart, bytes) in by_usart {
+            let text = readable(&bytes);
+            board.push_console(ConsoleText { usart, text });
+        }
+    }
+}
