@@ -39,13 +39,16 @@ impl Data {
         Some((ours, recording))
     }
 
+    /// The runs of an experiment's scenarios.
+    pub(crate) fn of(&self, experiment: &Experiment) -> Vec<&Outcome> {
+        let names = experiment.scenarios.iter();
+        names.filter_map(|name| self.outcome(name)).collect()
+    }
+
     /// Whether every run of an experiment passed.
     pub fn passes(&self, experiment: &Experiment) -> bool {
-        let outcome = |name: &&str| self.outcomes.get(*name);
-        experiment
-            .scenarios
+        self.of(experiment)
             .iter()
-            .filter_map(outcome)
             .all(|outcome| outcome.result.pass)
     }
 

@@ -1,5 +1,6 @@
 //! Metrics against their limits, as people read them.
 
+use crate::complaints::{self, Complaint};
 use crate::metric_names::{Shown, shown};
 use crate::page::{Cell, Page, Tone};
 use crate::signals::Outcome;
@@ -87,7 +88,7 @@ pub(crate) const KEPT: Text = t("met", "cumple");
 pub(crate) const MISSED: Text = t("missed", "no cumple");
 const MESSAGE: Text = t(
     "Message of the program in {}: {}",
-    "Mensaje del programa en {} (en inglés): {}",
+    "Mensaje del programa en {}: {}",
 );
 
 /// The metrics of runs against their limits, a table for each run.
@@ -177,12 +178,24 @@ fn complaints(page: &mut Page, outcome: &Outcome) {
         let [before, rest] = page.say(MESSAGE).splitn(2, "{}").collect::<Vec<_>>()[..] else {
             continue;
         };
+        let Complaint { own, english } = complaints::told(page.language, line);
+        let english = match (own.is_empty(), english.is_empty()) {
+            (_, true) => String::new(),
+            (true, false) => format!(
+                "<span lang=\"en\" translate=\"no\">{}</span>",
+                escape(&english)
+            ),
+            (false, false) => format!(
+                " (<span lang=\"en\" translate=\"no\">{}</span>)",
+                escape(&english)
+            ),
+        };
         let html = format!(
-            "<p class=\"verdict bad\">{}<code translate=\"no\">{}</code>{}<span lang=\"en\" translate=\"no\">{}</span></p>\n",
+            "<p class=\"verdict bad\">{}<code translate=\"no\">{}</code>{}{}{english}</p>\n",
             escape(before),
             escape(name),
             escape(rest.trim_end_matches("{}")),
-            escape(line)
+            page.rich(&own)
         );
         page.html(&html);
     }

@@ -9,6 +9,7 @@
 //! sees is a [`text::Text`], English and Spanish side by side. The same version, seed and files give the same bytes.
 
 mod chapters;
+mod complaints;
 mod data;
 mod drawing;
 mod judge;

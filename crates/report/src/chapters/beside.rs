@@ -1,7 +1,7 @@
 //! A recorded run beside ours: both curves over each other, and a table of what each came to.
 
 use super::panels::mean_cm;
-use super::parts::{REFERENCE, over_time, show};
+use super::parts::{self, REFERENCE};
 use crate::data::Data;
 use crate::judge;
 use crate::page::{Cell, Page};
@@ -70,8 +70,29 @@ const RIPPLE: Text = t(
     "{}: rizado, desviación típica",
 );
 
-/// The rows of a table beside a recorded run: what each step came to.
-pub(super) fn step_rows(
+const DISTANCE_BAND: Text = t(
+    "Settled is what stays within 5 % of the step until the next one; *never*: it does not. The steady part is the last 40 % of a step's time.",
+    "Se considera establecido lo que se queda dentro del 5 % del escalón hasta el siguiente; *nunca* significa que no llega a hacerlo. El régimen \
+     permanente es el último 40 % del tiempo de cada escalón.",
+);
+const SPEED_BAND: Text = t(
+    "Settled is what stays within 3.2 rpm, the resolution of the original program, until the next step; *never*: it does not, such as where the next step \
+     comes before the wheel stands. Ripple is that of the last 40 % of a step's time.",
+    "Se considera establecido lo que se queda a menos de 3,2 rpm, la resolución del programa original, hasta el escalón siguiente; *nunca* significa que no \
+     llega a hacerlo, por ejemplo si el siguiente llega antes de que la rueda se pare. El rizado es el del último 40 % del tiempo de cada escalón.",
+);
+
+/// A table beside a recorded run of what each step came to, and how that is reckoned.
+pub(super) fn steps(page: &mut Page, kind: Kind, ours: &[Response], real: &[Response]) {
+    let rows = step_rows(page.language, kind, ours, real);
+    table(page, &rows);
+    page.p(match kind {
+        Kind::Distance => DISTANCE_BAND,
+        Kind::Speed => SPEED_BAND,
+    });
+}
+
+fn step_rows(
     language: Language,
     kind: Kind,
     ours: &[Response],
@@ -134,14 +155,11 @@ pub(super) fn distance(page: &mut Page, data: &Data, scenario: &str, axis: Text)
     )];
     curves.extend(both(language, mine.clone(), real.clone()));
     let panel = Panel::new(axis.of(language), curves);
-    show(
+    parts::timed(
         page,
-        over_time(
-            page,
-            &format!("{scenario}-real"),
-            BESIDE_CAPTION,
-            vec![panel],
-        ),
+        &format!("{scenario}-real"),
+        BESIDE_CAPTION,
+        vec![panel],
     );
     let references: Vec<(f64, f64)> = recording
         .references()
@@ -149,11 +167,10 @@ pub(super) fn distance(page: &mut Page, data: &Data, scenario: &str, axis: Text)
         .map(|(t_s, m)| (*t_s, CM * m))
         .collect();
     let kind = Kind::Distance;
-    let rows = step_rows(
-        language,
+    steps(
+        page,
         kind,
         &responses(kind, &references, &mine),
         &responses(kind, &references, &real),
     );
-    table(page, &rows);
 }

@@ -226,12 +226,7 @@ fn write(page: &mut Page, data: &Data) {
     page.figure("manual-ways-speed", &regulated, SPEED_WAYS);
     manual_tables::movements(page, data);
     page.section(LIMITS);
-    let outcomes: Vec<&Outcome> = EXPERIMENT
-        .scenarios
-        .iter()
-        .filter_map(|name| data.outcome(name))
-        .collect();
-    judge::limits_together(page, &outcomes);
+    judge::limits_together(page, &data.of(&EXPERIMENT));
 }
 
 /// Speed over PWM of both wheels.
@@ -285,10 +280,7 @@ fn dead_zone(page: &mut Page, data: &Data) {
         speeds(page.language, outcome, SPEED),
         panels::pwm_panel(page.language, outcome),
     ];
-    parts::show(
-        page,
-        parts::over_time(page, "manual-deadzone", DEAD_CAPTION, panels),
-    );
+    parts::timed(page, "manual-deadzone", DEAD_CAPTION, panels);
 }
 
 fn asymmetry(page: &mut Page, data: &Data) {
@@ -302,10 +294,7 @@ fn asymmetry(page: &mut Page, data: &Data) {
         speeds(page.language, forward, FORWARD_AXIS),
         speeds(page.language, backward, BACKWARD_AXIS),
     ];
-    parts::show(
-        page,
-        parts::over_time(page, "manual-asymmetry", ASYMMETRY, panels),
-    );
+    parts::timed(page, "manual-asymmetry", ASYMMETRY, panels);
 }
 
 /// True speeds of both wheels.

@@ -27,7 +27,7 @@ pub(super) fn ways(language: Language, outcome: &Outcome, ideal: Points) -> Vec<
     if !told.is_empty() {
         curves.push(Curve::new(BY_ODOMETRY.of(language), Ink::First, told));
     }
-    curves.push(Curve::new(TRUE_WAY.of(language), Ink::Third, outcome.way()));
+    curves.push(Curve::new(TRUE_WAY.of(language), Ink::True, outcome.way()));
     curves
 }
 

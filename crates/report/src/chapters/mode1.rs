@@ -3,14 +3,12 @@
 use super::beside;
 use super::panels;
 use super::parts::{
-    self, ANALYSIS, COMPONENTS, DESCRIPTION, DISTANCE, ERROR_CM, LIMITS, MEASURED, REFERENCE,
-    RESULTS, SCHEME,
+    self, ANALYSIS, COMPONENTS, DESCRIPTION, DISTANCE, ERROR_CM, MEASURED, REFERENCE, RESULTS,
 };
 use super::{Experiment, highlight};
 use crate::data::Data;
 use crate::drawing::geometry;
 use crate::drawing::scheme::{Part, Path, Scheme};
-use crate::judge;
 use crate::page::Page;
 use crate::plot::{Curve, Ink, Panel, Plot};
 use crate::signals::{CM, Outcome, Place, difference};
@@ -193,10 +191,7 @@ fn write(page: &mut Page, data: &Data) {
     parts::wiring_figure(page, data, "mode1", "mode1", "mode_1");
     let timing = geometry::sonar_timing(page.language, page.say(TIMING));
     page.figure("sonar-timing", &timing, TIMING);
-    page.section(SCHEME);
-    page.p(SCHEME_WORDS);
-    let scheme = CONTROL.svg(page.language, page.say(SCHEME_CAPTION));
-    page.figure("mode1-scheme", &scheme, SCHEME_CAPTION);
+    parts::scheme(page, "mode1", SCHEME_WORDS, &CONTROL, SCHEME_CAPTION);
     page.p(LAW_WORDS);
     page.formula(LAW);
     page.p(LAW_NUMBERS);
@@ -214,19 +209,12 @@ fn write(page: &mut Page, data: &Data) {
         distance_panel(page.language, outcome),
         panels::pwm_panel(page.language, outcome),
     ];
-    parts::show(
-        page,
-        parts::over_time(page, "mode1-distances", DISTANCES, panels),
-    );
+    parts::timed(page, "mode1-distances", DISTANCES, panels);
     let error = difference(&outcome.range_cm(Place::Front), &outcome.reference(CM));
     let panel =
         Panel::new(page.say(ERROR_CM), vec![Curve::new("", Ink::First, error)]).at_least(-5.0, 5.0);
-    parts::show(
-        page,
-        parts::over_time(page, "mode1-error", ERROR, vec![panel]),
-    );
-    page.section(LIMITS);
-    judge::limits(page, &[outcome]);
+    parts::timed(page, "mode1-error", ERROR, vec![panel]);
+    parts::limits(page, &[outcome]);
     beside::distance(page, data, "mode1", DISTANCE);
 }
 

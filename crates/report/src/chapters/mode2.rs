@@ -1,15 +1,12 @@
 //! Mode 2: stop square to a wall.
 
 use super::beside;
-use super::panels;
-use super::parts::{
-    self, ANALYSIS, COMPONENTS, DESCRIPTION, DISTANCE, ERROR_CM, LIMITS, RESULTS, SCHEME,
-};
+use super::panels::Pair;
+use super::parts::{self, ANALYSIS, DISTANCE, RESULTS};
 use super::{Experiment, highlight};
 use crate::data::Data;
 use crate::drawing::geometry::{self, Wall};
 use crate::drawing::scheme::{Part, Path, Scheme};
-use crate::judge;
 use crate::page::Page;
 use crate::plot::{Curve, Ink, Panel};
 use crate::signals::{CM, DEG, Outcome, Place, difference};
@@ -148,16 +145,8 @@ const CONTROL: Scheme = Scheme {
 };
 
 fn write(page: &mut Page, data: &Data) {
-    page.section(DESCRIPTION);
-    page.p(WHAT);
-    page.section(COMPONENTS);
-    page.p(PARTS);
-    parts::rig_figure(page, data, "mode2", "mode2");
-    parts::wiring_figure(page, data, "mode2", "mode2", "modes_2_to_4");
-    page.section(SCHEME);
-    page.p(SCHEME_WORDS);
-    let scheme = CONTROL.svg(page.language, page.say(SCHEME_CAPTION));
-    page.figure("mode2-scheme", &scheme, SCHEME_CAPTION);
+    parts::opening(page, data, "mode2", [WHAT, PARTS], "modes_2_to_4");
+    parts::scheme(page, "mode2", SCHEME_WORDS, &CONTROL, SCHEME_CAPTION);
     page.section(ANALYSIS);
     let pair = geometry::pair(page.language, Wall::Ahead, page.say(GEOMETRY));
     page.figure("mode2-geometry", &pair, GEOMETRY);
@@ -172,31 +161,16 @@ fn write(page: &mut Page, data: &Data) {
         return;
     };
     page.section(RESULTS);
-    let panels = vec![
-        panels::pair_panel(page.language, outcome),
-        panels::pwm_panel(page.language, outcome),
-    ];
-    parts::show(
-        page,
-        parts::over_time(page, "mode2-distances", DISTANCES, panels),
-    );
-    let reference = outcome.reference(CM);
-    let panel = Panel::new(
-        page.say(ERROR_CM),
-        panels::pair_errors(page.language, outcome, &reference),
-    )
-    .at_least(-5.0, 5.0);
-    parts::show(
-        page,
-        parts::over_time(page, "mode2-error", ERROR, vec![panel]),
-    );
+    let pair = Pair {
+        captions: [DISTANCES, ERROR],
+        reference: outcome.reference(CM),
+        distances_cm: [15.0, 50.0],
+        error_cm: 5.0,
+    };
+    pair.write(page, "mode2", outcome);
     let panel = angle_panel(page, outcome);
-    parts::show(
-        page,
-        parts::over_time(page, "mode2-angle", ANGLE, vec![panel]),
-    );
-    page.section(LIMITS);
-    judge::limits(page, &[outcome]);
+    parts::timed(page, "mode2-angle", ANGLE, vec![panel]);
+    parts::limits(page, &[outcome]);
     beside::distance(page, data, "mode2", DISTANCE);
 }
 
@@ -219,7 +193,7 @@ fn angle_panel(page: &Page, outcome: &Outcome) -> Panel {
         ),
         Curve::new(
             page.say(TRUE),
-            Ink::Third,
+            Ink::True,
             outcome.truth(|sample| DEG * sample.heading_rad),
         ),
     ];

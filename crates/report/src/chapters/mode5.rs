@@ -3,14 +3,12 @@
 use super::beside;
 use super::panels;
 use super::parts::{
-    self, ANALYSIS, COMPONENTS, DESCRIPTION, ERROR_RPM, LEFT, LIMITS, REFERENCE, RESULTS, RIGHT,
-    SCHEME, SPEED,
+    self, ANALYSIS, COMPONENTS, DESCRIPTION, ERROR_RPM, LEFT, REFERENCE, RESULTS, RIGHT, SPEED,
 };
 use super::{Experiment, highlight};
 use crate::data::Data;
 use crate::drawing::geometry;
 use crate::drawing::scheme::{Part, Path, Scheme};
-use crate::judge;
 use crate::page::Page;
 use crate::plot::{Curve, Ink, Panel};
 use crate::respond::{self, Kind};
@@ -160,10 +158,7 @@ fn write(page: &mut Page, data: &Data) {
     let encoder = geometry::encoder(page.language, page.say(ENCODER));
     page.figure("mode5-encoder", &encoder, ENCODER);
     parts::wiring_figure(page, data, "mode5", "mode5", "modes_5_to_7");
-    page.section(SCHEME);
-    page.p(SCHEME_WORDS);
-    let scheme = CONTROL.svg(page.language, page.say(SCHEME_CAPTION));
-    page.figure("mode5-scheme", &scheme, SCHEME_CAPTION);
+    parts::scheme(page, "mode5", SCHEME_WORDS, &CONTROL, SCHEME_CAPTION);
     page.section(ANALYSIS);
     page.p(COUNT);
     page.formula(COUNTED);
@@ -177,30 +172,18 @@ fn write(page: &mut Page, data: &Data) {
             speed_panel(page.language, outcome),
             panels::pwm_panel(page.language, outcome),
         ];
-        parts::show(page, parts::over_time(page, "mode5-speeds", SPEEDS, panels));
+        parts::timed(page, "mode5-speeds", SPEEDS, panels);
         let panel = Panel::new(page.say(ERROR_RPM), errors(page.language, outcome));
-        parts::show(
-            page,
-            parts::over_time(page, "mode5-error", ERROR, vec![panel]),
-        );
+        parts::timed(page, "mode5-error", ERROR, vec![panel]);
     }
     if let Some(outcome) = data.outcome("mode5-reversal") {
         let panels = vec![
             speed_panel(page.language, outcome),
             panels::pwm_panel(page.language, outcome),
         ];
-        parts::show(
-            page,
-            parts::over_time(page, "mode5-reversal", REVERSAL, panels),
-        );
+        parts::timed(page, "mode5-reversal", REVERSAL, panels);
     }
-    page.section(LIMITS);
-    let outcomes: Vec<&Outcome> = EXPERIMENT
-        .scenarios
-        .iter()
-        .filter_map(|name| data.outcome(name))
-        .collect();
-    judge::limits(page, &outcomes);
+    parts::limits(page, &data.of(&EXPERIMENT));
     beside(page, data);
 }
 
@@ -265,21 +248,17 @@ fn beside(page: &mut Page, data: &Data) {
         panel(RIGHT_SPEED, Place::Right),
         panel(LEFT_SPEED, Place::Left),
     ];
-    parts::show(
-        page,
-        parts::over_time(page, "mode5-real", REAL_CAPTION, panels),
-    );
+    parts::timed(page, "mode5-real", REAL_CAPTION, panels);
     let references: Vec<(f64, f64)> = recording
         .references()
         .iter()
         .map(|(t_s, rad_s)| (*t_s, RPM * rad_s))
         .collect();
-    let rows = beside::step_rows(
-        language,
+    page.p(RIGHT_WHEEL);
+    beside::steps(
+        page,
         Kind::Speed,
         &respond::responses(Kind::Speed, &references, &ours.speed_rpm(Place::Right)),
         &respond::responses(Kind::Speed, &references, &real(Place::Right)),
     );
-    page.p(RIGHT_WHEEL);
-    beside::table(page, &rows);
 }

@@ -4,13 +4,10 @@ use super::beside;
 use super::maps;
 use super::mode5;
 use super::panels;
-use super::parts::{
-    self, ANALYSIS, COMPONENTS, DESCRIPTION, LIMITS, MEASURED, REFERENCE, RESULTS, SCHEME, SPEED,
-};
+use super::parts::{self, ANALYSIS, MEASURED, REFERENCE, RESULTS, SPEED};
 use super::{Experiment, highlight};
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
-use crate::judge;
 use crate::page::Page;
 use crate::plot::{Curve, Ink, Map, Panel};
 use crate::signals::{CM, DEG, Outcome, Place, RPM};
@@ -143,16 +140,8 @@ const CONTROL: Scheme = Scheme {
 };
 
 fn write(page: &mut Page, data: &Data) {
-    page.section(DESCRIPTION);
-    page.p(WHAT);
-    page.section(COMPONENTS);
-    page.p(PARTS);
-    parts::rig_figure(page, data, "mode6", "mode6");
-    parts::wiring_figure(page, data, "mode6", "mode6", "modes_5_to_7");
-    page.section(SCHEME);
-    page.p(SCHEME_WORDS);
-    let scheme = CONTROL.svg(page.language, page.say(SCHEME_CAPTION));
-    page.figure("mode6-scheme", &scheme, SCHEME_CAPTION);
+    parts::opening(page, data, "mode6", [WHAT, PARTS], "modes_5_to_7");
+    parts::scheme(page, "mode6", SCHEME_WORDS, &CONTROL, SCHEME_CAPTION);
     page.section(ANALYSIS);
     page.p(WAYS);
     page.formula(WAYS_FORMULA);
@@ -166,8 +155,7 @@ fn write(page: &mut Page, data: &Data) {
     };
     page.section(RESULTS);
     results(page, outcome);
-    page.section(LIMITS);
-    judge::limits(page, &[outcome]);
+    parts::limits(page, &[outcome]);
     beside(page, data);
 }
 
@@ -175,30 +163,21 @@ fn results(page: &mut Page, outcome: &Outcome) {
     let language = page.language;
     let speeds = || mode5::speed_panel(language, outcome);
     let panels = vec![speeds(), panels::pwm_panel(language, outcome)];
-    parts::show(page, parts::over_time(page, "mode6-speeds", SPEEDS, panels));
-    parts::show(
+    parts::timed(page, "mode6-speeds", SPEEDS, panels);
+    parts::timed_within(
         page,
-        parts::over(
-            page,
-            "mode6-transient",
-            TRANSIENT,
-            vec![speeds()],
-            Some([0.0, 2.0]),
-        ),
+        "mode6-transient",
+        TRANSIENT,
+        vec![speeds()],
+        Some([0.0, 2.0]),
     );
     let panel = speeds().exactly(36.0, 44.0);
-    parts::show(
-        page,
-        parts::over(page, "mode6-steady", STEADY, vec![panel], Some([3.0, 23.0])),
-    );
+    parts::timed_within(page, "mode6-steady", STEADY, vec![panel], Some([3.0, 23.0]));
     let panels = vec![
         variable(language, outcome, LEFT_AXIS, Ink::First, Place::Left),
         variable(language, outcome, RIGHT_AXIS, Ink::Second, Place::Right),
     ];
-    parts::show(
-        page,
-        parts::over(page, "mode6-variable", VARIABLE, panels, Some([3.0, 23.0])),
-    );
+    parts::timed_within(page, "mode6-variable", VARIABLE, panels, Some([3.0, 23.0]));
     let base_cm = CM * outcome.setup.robot.plant.body.base_m;
     let [.., heading_deg] = outcome.pose();
     let ways = heading_deg
@@ -221,10 +200,7 @@ fn results(page: &mut Page, outcome: &Outcome) {
         )
         .at_least(-2.0, 2.0),
     ];
-    parts::show(
-        page,
-        parts::over_time(page, "mode6-difference", DIFFERENCE, panels),
-    );
+    parts::timed(page, "mode6-difference", DIFFERENCE, panels);
     let start = outcome.setup.scenario.start;
     let line = vec![(start.x_m, start.y_m), (start.x_m + 3.2, start.y_m)];
     let map = Map {
@@ -273,8 +249,5 @@ fn beside(page: &mut Page, data: &Data) {
         real,
     ));
     let panel = Panel::new(page.say(SPEED), curves);
-    parts::show(
-        page,
-        parts::over_time(page, "mode6-real", REAL_CAPTION, vec![panel]),
-    );
+    parts::timed(page, "mode6-real", REAL_CAPTION, vec![panel]);
 }

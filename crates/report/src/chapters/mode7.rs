@@ -3,7 +3,7 @@
 use super::beside;
 use super::maps;
 use super::panels;
-use super::parts::{self, ANALYSIS, COMPONENTS, DESCRIPTION, LIMITS, RESULTS, SCHEME};
+use super::parts::{self, ANALYSIS, RESULTS};
 use super::{Experiment, highlight};
 use crate::data::Data;
 use crate::drawing::geometry;
@@ -152,16 +152,8 @@ const CONTROL: Scheme = Scheme {
 };
 
 fn write(page: &mut Page, data: &Data) {
-    page.section(DESCRIPTION);
-    page.p(WHAT);
-    page.section(COMPONENTS);
-    page.p(PARTS);
-    parts::rig_figure(page, data, "mode7", "mode7");
-    parts::wiring_figure(page, data, "mode7", "mode7", "modes_5_to_7");
-    page.section(SCHEME);
-    page.p(SCHEME_WORDS);
-    let scheme = CONTROL.svg(page.language, page.say(SCHEME_CAPTION));
-    page.figure("mode7-scheme", &scheme, SCHEME_CAPTION);
+    parts::opening(page, data, "mode7", [WHAT, PARTS], "modes_5_to_7");
+    parts::scheme(page, "mode7", SCHEME_WORDS, &CONTROL, SCHEME_CAPTION);
     page.section(ANALYSIS);
     let frames = geometry::frames(page.language, page.say(FRAMES));
     page.figure("mode7-frames", &frames, FRAMES);
@@ -177,17 +169,16 @@ fn write(page: &mut Page, data: &Data) {
     page.section(RESULTS);
     let language = page.language;
     let panels = pose_panels(language, outcome);
-    parts::show(page, parts::over_time(page, "mode7-pose", POSE, panels));
+    parts::timed(page, "mode7-pose", POSE, panels);
     let panels = panels::wheel_panels(language, outcome);
-    parts::show(page, parts::over_time(page, "mode7-wheels", WHEELS, panels));
+    parts::timed(page, "mode7-wheels", WHEELS, panels);
     let map = Map {
         curves: maps::ways(language, outcome, maps::route(outcome)),
         ..maps::map(language)
     };
     let svg = map.svg(language, page.say(WAY));
     page.figure("mode7-way", &svg, WAY);
-    page.section(LIMITS);
-    judge::limits(page, &[outcome]);
+    parts::limits(page, &[outcome]);
     beside(page, data);
 }
 
@@ -267,10 +258,7 @@ fn beside(page: &mut Page, data: &Data) {
         )
         .exactly(-190.0, 190.0),
     ];
-    parts::show(
-        page,
-        parts::over_time(page, "mode7-real", REAL_POSE, panels),
-    );
+    parts::timed(page, "mode7-real", REAL_POSE, panels);
     let rows = [figures(&mine), figures(&theirs)];
     let row = |name: Text, index: usize, unit| {
         let shown = judge::plain(unit);

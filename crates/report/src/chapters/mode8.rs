@@ -4,11 +4,10 @@ use super::maps;
 use super::mode8_beside;
 use super::mode8_machines as machines;
 use super::panels;
-use super::parts::{self, COMPONENTS, DESCRIPTION, LIMITS, RESULTS, SCHEME};
+use super::parts::{self, COMPONENTS, DESCRIPTION, RESULTS, SCHEME};
 use super::{Experiment, Highlight};
 use crate::data::Data;
 use crate::drawing::geometry;
-use crate::judge;
 use crate::page::Page;
 use crate::plot::{Curve, Ink, Map, Panel, Points};
 use crate::signals::{Outcome, unwrapped};
@@ -184,34 +183,22 @@ fn write(page: &mut Page, data: &Data) {
     goals(page, data);
     lane_results(page, data);
     obstacles(page, data);
-    page.section(LIMITS);
-    let outcomes: Vec<&Outcome> = EXPERIMENT
-        .scenarios
-        .iter()
-        .filter_map(|name| data.outcome(name))
-        .collect();
-    judge::limits(page, &outcomes);
+    parts::limits(page, &data.of(&EXPERIMENT));
     for scenario in EXPERIMENT.scenarios {
         mode8_beside::write(page, data, scenario);
     }
 }
 
 /// Panels until a little after the end of what the run is about: the last goal reached, or the end of the lane.
-fn until(
-    page: &Page,
-    outcome: &Outcome,
-    id: &str,
-    caption: Text,
-    panels: Vec<Panel>,
-) -> (String, String, Text) {
+fn until(page: &mut Page, outcome: &Outcome, id: &str, caption: Text, panels: Vec<Panel>) {
     let end_s = end_s(outcome).map_or(outcome.duration_s(), |end_s| end_s + 2.0);
-    parts::over(
+    parts::timed_within(
         page,
         id,
         caption,
         panels,
         Some([0.0, end_s.min(outcome.duration_s())]),
-    )
+    );
 }
 
 /// When the run was done, since the arming [s]; `None` if it never was.
@@ -230,20 +217,14 @@ fn goals(page: &mut Page, data: &Data) {
     page.p(GOALS_WORDS);
     let language = page.language;
     let panels = pose_panels(language, outcome, true);
-    parts::show(
-        page,
-        until(page, outcome, "mode8-goals-pose", GOALS_POSE, panels),
-    );
+    until(page, outcome, "mode8-goals-pose", GOALS_POSE, panels);
     let panel = panels::references_panel(language, outcome);
-    parts::show(
+    until(
         page,
-        until(
-            page,
-            outcome,
-            "mode8-goals-speeds",
-            GOALS_SPEEDS,
-            vec![panel],
-        ),
+        outcome,
+        "mode8-goals-speeds",
+        GOALS_SPEEDS,
+        vec![panel],
     );
     let start = outcome.setup.scenario.start;
     let mut ideal = vec![(start.x_m, start.y_m)];
@@ -268,15 +249,12 @@ fn goals(page: &mut Page, data: &Data) {
     .svg(language, page.say(GOALS_WAY));
     page.figure("mode8-goals-way", &svg, GOALS_WAY);
     let panel = panels::state_panel(language, outcome, &machines::STATES);
-    parts::show(
+    until(
         page,
-        until(
-            page,
-            outcome,
-            "mode8-goals-states",
-            GOALS_STATES,
-            vec![panel],
-        ),
+        outcome,
+        "mode8-goals-states",
+        GOALS_STATES,
+        vec![panel],
     );
 }
 
@@ -288,32 +266,20 @@ fn lane_results(page: &mut Page, data: &Data) {
     page.p(LANE_EXPERIMENT);
     let language = page.language;
     let panel = panels::references_panel(language, outcome);
-    parts::show(
-        page,
-        until(page, outcome, "mode8-lane-speeds", LANE_SPEEDS, vec![panel]),
-    );
+    until(page, outcome, "mode8-lane-speeds", LANE_SPEEDS, vec![panel]);
     let svg = way_map(page, outcome, Points::new()).svg(language, page.say(LANE_WAY));
     page.figure("mode8-lane-way", &svg, LANE_WAY);
     let panels = panels::range_panels(language, outcome);
-    parts::show(
-        page,
-        until(page, outcome, "mode8-lane-ranges", LANE_RANGES, panels),
-    );
+    until(page, outcome, "mode8-lane-ranges", LANE_RANGES, panels);
     let panels = pose_panels(language, outcome, false);
-    parts::show(
-        page,
-        until(page, outcome, "mode8-lane-pose", LANE_POSE, panels),
-    );
+    until(page, outcome, "mode8-lane-pose", LANE_POSE, panels);
     let names: &[Text] = if outcome.tells_in_text() {
         &machines::ORIGINAL_LANE
     } else {
         &machines::STATES
     };
     let panel = panels::state_panel(language, outcome, names);
-    parts::show(
-        page,
-        until(page, outcome, "mode8-lane-states", LANE_STATES, vec![panel]),
-    );
+    until(page, outcome, "mode8-lane-states", LANE_STATES, vec![panel]);
 }
 
 fn obstacles(page: &mut Page, data: &Data) {
@@ -328,46 +294,34 @@ fn obstacles(page: &mut Page, data: &Data) {
     let svg = way_map(page, outcome, straight).svg(language, page.say(OBSTACLES_WAY));
     page.figure("mode8-obstacles-way", &svg, OBSTACLES_WAY);
     let panels = pose_panels(language, outcome, true);
-    parts::show(
+    until(
         page,
-        until(
-            page,
-            outcome,
-            "mode8-obstacles-pose",
-            OBSTACLES_POSE,
-            panels,
-        ),
+        outcome,
+        "mode8-obstacles-pose",
+        OBSTACLES_POSE,
+        panels,
     );
     let panel = panels::references_panel(language, outcome);
-    parts::show(
+    parts::timed(
         page,
-        parts::over_time(
-            page,
-            "mode8-obstacles-speeds",
-            OBSTACLES_SPEEDS,
-            vec![panel],
-        ),
+        "mode8-obstacles-speeds",
+        OBSTACLES_SPEEDS,
+        vec![panel],
     );
     let panels = panels::range_panels(language, outcome);
-    parts::show(
+    until(
         page,
-        until(
-            page,
-            outcome,
-            "mode8-obstacles-ranges",
-            OBSTACLES_RANGES,
-            panels,
-        ),
+        outcome,
+        "mode8-obstacles-ranges",
+        OBSTACLES_RANGES,
+        panels,
     );
     let panel = panels::state_panel(language, outcome, &machines::STATES);
-    parts::show(
+    parts::timed(
         page,
-        parts::over_time(
-            page,
-            "mode8-obstacles-states",
-            OBSTACLES_STATES,
-            vec![panel],
-        ),
+        "mode8-obstacles-states",
+        OBSTACLES_STATES,
+        vec![panel],
     );
 }
 

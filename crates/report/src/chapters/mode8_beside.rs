@@ -69,10 +69,7 @@ pub(super) fn write(page: &mut Page, data: &Data, scenario: &str) {
         )
         .exactly(-190.0, 190.0),
     ];
-    parts::show(
-        page,
-        parts::over_time(page, &format!("{scenario}-real"), REAL_POSE, panels),
-    );
+    parts::timed(page, &format!("{scenario}-real"), REAL_POSE, panels);
     let row = |name: Text, values: [f64; 2], unit| {
         let shown = judge::plain(unit);
         let [ours, real] = values.map(|value| judge::value(language, &shown, value));

@@ -1,8 +1,9 @@
 //! Panels that several chapters show: PWM, distances, speeds with their references, states.
 
-use super::parts::{DISTANCE, LEFT, MEASURED, PWM, REFERENCE, RIGHT};
+use super::parts::{self, DISTANCE, ERROR_CM, LEFT, MEASURED, PWM, REFERENCE, RIGHT};
+use crate::page::Page;
 use crate::plot::{Curve, Ink, Panel, Points};
-use crate::signals::{CM, Outcome, Place, difference};
+use crate::signals::{Outcome, Place, difference};
 use crate::text::{Language, Text, t};
 
 /// PWM of both wheels.
@@ -18,21 +19,57 @@ pub(super) fn pwm_panel(language: Language, outcome: &Outcome) -> Panel {
     .at_least(0.0, 100.0)
 }
 
-/// Both sonars of a pair with the reference.
-pub(super) fn pair_panel(language: Language, outcome: &Outcome) -> Panel {
-    let names = pair_names(outcome);
-    let curve =
-        |name: Text, ink, sonar| Curve::new(name.of(language), ink, outcome.range_cm(sonar));
-    let curves = vec![
-        Curve::steps(
-            REFERENCE.of(language),
+/// What is shown of a pair of sonars.
+pub(super) struct Pair {
+    /// Of the distances, and of the errors.
+    pub(super) captions: [Text; 2],
+    /// The distance that is wanted [cm].
+    pub(super) reference: Points,
+    /// What the distances' axis shows at least [cm].
+    pub(super) distances_cm: [f64; 2],
+    /// The same of the errors', either way [cm].
+    pub(super) error_cm: f64,
+}
+
+impl Pair {
+    /// Both distances with the reference over the PWM, and how far both are from it.
+    pub(super) fn write(&self, page: &mut Page, id: &str, outcome: &Outcome) {
+        let language = page.language;
+        let [from, to] = self.distances_cm;
+        let distances = self.distances(language, outcome).at_least(from, to);
+        let panels = vec![distances, pwm_panel(language, outcome)];
+        parts::timed(page, &format!("{id}-distances"), self.captions[0], panels);
+        let errors = self.errors(language, outcome);
+        let errors =
+            Panel::new(ERROR_CM.of(language), errors).at_least(-self.error_cm, self.error_cm);
+        parts::timed(page, &format!("{id}-error"), self.captions[1], vec![errors]);
+    }
+
+    fn distances(&self, language: Language, outcome: &Outcome) -> Panel {
+        let reference = REFERENCE.of(language);
+        let mut curves = vec![Curve::steps(
+            reference,
             Ink::Reference,
-            outcome.reference(CM),
-        ),
-        curve(names[0], Ink::First, Place::Left),
-        curve(names[1], Ink::Second, Place::Right),
-    ];
-    Panel::new(DISTANCE.of(language), curves)
+            self.reference.clone(),
+        )];
+        curves.extend(each(language, outcome, |sonar| outcome.range_cm(sonar)));
+        Panel::new(DISTANCE.of(language), curves)
+    }
+
+    fn errors(&self, language: Language, outcome: &Outcome) -> Vec<Curve> {
+        each(language, outcome, |sonar| {
+            difference(&outcome.range_cm(sonar), &self.reference)
+        })
+    }
+}
+
+/// A curve for each of a pair.
+fn each(language: Language, outcome: &Outcome, points: impl Fn(Place) -> Points) -> Vec<Curve> {
+    let places = [(Ink::First, Place::Left), (Ink::Second, Place::Right)];
+    let named = pair_names(outcome).into_iter().zip(places);
+    named
+        .map(|(name, (ink, sonar))| Curve::new(name.of(language), ink, points(sonar)))
+        .collect()
 }
 
 const FIRST: Text = t("first sonar (ahead)", "primer sensor (delantero)");
@@ -52,24 +89,6 @@ fn pair_names(outcome: &Outcome) -> [Text; 2] {
     } else {
         [LEFT_SONAR, RIGHT_SONAR]
     }
-}
-
-/// Differences of both distances from a reference.
-pub(super) fn pair_errors(language: Language, outcome: &Outcome, reference: &Points) -> Vec<Curve> {
-    let names = pair_names(outcome);
-    [
-        (names[0], Ink::First, Place::Left),
-        (names[1], Ink::Second, Place::Right),
-    ]
-    .into_iter()
-    .map(|(name, ink, sonar)| {
-        Curve::new(
-            name.of(language),
-            ink,
-            difference(&outcome.range_cm(sonar), reference),
-        )
-    })
-    .collect()
 }
 
 /// The mean of a pair's ranges \[cm\], or the front sonar's.

@@ -1,9 +1,12 @@
 //! What all chapters have in common: headings, names of axes, rig and wiring, figures over time.
 
 use crate::data::Data;
+use crate::drawing::scheme::Scheme;
 use crate::drawing::{rig, wiring};
+use crate::judge;
 use crate::page::Page;
 use crate::plot::{Panel, Plot};
+use crate::signals::Outcome;
 use crate::text::{Text, t};
 
 pub(super) const DESCRIPTION: Text = t("Description", "Descripción");
@@ -55,37 +58,54 @@ pub(super) fn wiring_figure(page: &mut Page, data: &Data, id: &str, scenario: &s
     }
 }
 
-/// Panels over the time of a run.
-pub(super) fn over_time(
-    page: &Page,
+/// How a chapter begins: what the experiment is, what it needs, the rig and the wiring of its scenario.
+pub(super) fn opening(
+    page: &mut Page,
+    data: &Data,
     id: &str,
-    caption: Text,
-    panels: Vec<Panel>,
-) -> (String, String, Text) {
-    over(page, id, caption, panels, None)
+    [what, parts]: [Text; 2],
+    wiring: &str,
+) {
+    page.section(DESCRIPTION);
+    page.p(what);
+    page.section(COMPONENTS);
+    page.p(parts);
+    rig_figure(page, data, id, id);
+    wiring_figure(page, data, id, id, wiring);
+}
+
+/// The control scheme, in words and drawn.
+pub(super) fn scheme(page: &mut Page, id: &str, words: Text, scheme: &Scheme, caption: Text) {
+    page.section(SCHEME);
+    page.p(words);
+    let svg = scheme.svg(page.language, page.say(caption));
+    page.figure(&format!("{id}-scheme"), &svg, caption);
+}
+
+/// The metrics of runs against their limits.
+pub(super) fn limits(page: &mut Page, outcomes: &[&Outcome]) {
+    page.section(LIMITS);
+    judge::limits(page, outcomes);
+}
+
+/// A figure of panels over the time of a run.
+pub(super) fn timed(page: &mut Page, id: &str, caption: Text, panels: Vec<Panel>) {
+    timed_within(page, id, caption, panels, None);
 }
 
 /// The same over a part of it.
-pub(super) fn over(
-    page: &Page,
+pub(super) fn timed_within(
+    page: &mut Page,
     id: &str,
     caption: Text,
     panels: Vec<Panel>,
     x_range: Option<[f64; 2]>,
-) -> (String, String, Text) {
+) {
     let plot = Plot {
         x: page.say(TIME).to_owned(),
         x_range,
         panels,
     };
-    (
-        id.to_owned(),
-        plot.svg(page.language, page.say(caption)),
-        caption,
-    )
-}
-
-/// Puts a figure that was made into the page.
-pub(super) fn show(page: &mut Page, (id, svg, caption): (String, String, Text)) {
-    page.figure(&id, &svg, caption);
+    let svg = plot.svg(page.language, page.say(caption));
+    page.figure(id, &svg, caption);
 }

@@ -1,11 +1,10 @@
 //! Pure pursuit: the extension of the report.
 
 use super::maps;
-use super::parts::{self, ANALYSIS, DESCRIPTION, LIMITS, RESULTS};
+use super::parts::{self, ANALYSIS, DESCRIPTION, RESULTS};
 use super::{Experiment, Highlight};
 use crate::data::Data;
 use crate::drawing::geometry;
-use crate::judge;
 use crate::page::Page;
 use crate::plot::{Curve, Ink, Map, Panel, Points};
 use crate::signals::{CM, Outcome};
@@ -107,17 +106,8 @@ fn write(page: &mut Page, data: &Data) {
         ));
     }
     let panel = Panel::new(page.say(OFF_AXIS), off);
-    parts::show(
-        page,
-        parts::over_time(page, "pursuit-off", OFF, vec![panel]),
-    );
-    page.section(LIMITS);
-    let outcomes: Vec<&Outcome> = EXPERIMENT
-        .scenarios
-        .iter()
-        .filter_map(|name| data.outcome(name))
-        .collect();
-    judge::limits(page, &outcomes);
+    parts::timed(page, "pursuit-off", OFF, vec![panel]);
+    parts::limits(page, &data.of(&EXPERIMENT));
 }
 
 fn off_path_cm(outcome: &Outcome, route: &Points) -> Points {

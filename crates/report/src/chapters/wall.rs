@@ -1,10 +1,8 @@
 //! Modes 3 and 4: along a wall, at the distance of the start or at a commanded one.
 
 use super::beside;
-use super::panels;
-use super::parts::{
-    self, ANALYSIS, COMPONENTS, DESCRIPTION, DISTANCE, ERROR_CM, LIMITS, REFERENCE, RESULTS, SCHEME,
-};
+use super::panels::{self, Pair};
+use super::parts::{self, ANALYSIS, DISTANCE, ERROR_CM, RESULTS};
 use super::{Experiment, highlight};
 use crate::data::Data;
 use crate::drawing::geometry::{self, Wall};
@@ -177,16 +175,8 @@ const CONTROL4: Scheme = Scheme {
 };
 
 fn write_mode3(page: &mut Page, data: &Data) {
-    page.section(DESCRIPTION);
-    page.p(WHAT3);
-    page.section(COMPONENTS);
-    page.p(PARTS3);
-    parts::rig_figure(page, data, "mode3", "mode3");
-    parts::wiring_figure(page, data, "mode3", "mode3", "modes_2_to_4");
-    page.section(SCHEME);
-    page.p(SCHEME3);
-    let scheme = CONTROL3.svg(page.language, page.say(SCHEME3_CAPTION));
-    page.figure("mode3-scheme", &scheme, SCHEME3_CAPTION);
+    parts::opening(page, data, "mode3", [WHAT3, PARTS3], "modes_2_to_4");
+    parts::scheme(page, "mode3", SCHEME3, &CONTROL3, SCHEME3_CAPTION);
     page.section(ANALYSIS);
     let pair = geometry::pair(page.language, Wall::Beside, page.say(GEOMETRY));
     page.figure("mode3-geometry", &pair, GEOMETRY);
@@ -197,39 +187,20 @@ fn write_mode3(page: &mut Page, data: &Data) {
         return;
     };
     page.section(RESULTS);
-    let reference = held(outcome);
-    let mut distances = panels::pair_panel(page.language, outcome).at_least(50.0, 65.0);
-    distances.curves[0] = Curve::new(page.say(REFERENCE), Ink::Reference, reference.clone());
-    let panels = vec![distances, panels::pwm_panel(page.language, outcome)];
-    parts::show(
-        page,
-        parts::over_time(page, "mode3-distances", DISTANCES3, panels),
-    );
-    let panel = Panel::new(
-        page.say(ERROR_CM),
-        panels::pair_errors(page.language, outcome, &reference),
-    )
-    .at_least(-1.0, 1.0);
-    parts::show(
-        page,
-        parts::over_time(page, "mode3-error", ERROR3, vec![panel]),
-    );
-    page.section(LIMITS);
-    judge::limits(page, &[outcome]);
+    let pair = Pair {
+        captions: [DISTANCES3, ERROR3],
+        reference: held(outcome),
+        distances_cm: [50.0, 65.0],
+        error_cm: 1.0,
+    };
+    pair.write(page, "mode3", outcome);
+    parts::limits(page, &[outcome]);
     beside(page, data);
 }
 
 fn write_mode4(page: &mut Page, data: &Data) {
-    page.section(DESCRIPTION);
-    page.p(WHAT4);
-    page.section(COMPONENTS);
-    page.p(PARTS4);
-    parts::rig_figure(page, data, "mode4", "mode4");
-    parts::wiring_figure(page, data, "mode4", "mode4", "modes_2_to_4");
-    page.section(SCHEME);
-    page.p(SCHEME4);
-    let scheme = CONTROL4.svg(page.language, page.say(SCHEME4_CAPTION));
-    page.figure("mode4-scheme", &scheme, SCHEME4_CAPTION);
+    parts::opening(page, data, "mode4", [WHAT4, PARTS4], "modes_2_to_4");
+    parts::scheme(page, "mode4", SCHEME4, &CONTROL4, SCHEME4_CAPTION);
     page.section(ANALYSIS);
     page.p(ANALYSIS4);
     page.formula(RATE);
@@ -237,24 +208,13 @@ fn write_mode4(page: &mut Page, data: &Data) {
         return;
     };
     page.section(RESULTS);
-    let panels = vec![
-        panels::pair_panel(page.language, outcome),
-        panels::pwm_panel(page.language, outcome),
-    ];
-    parts::show(
-        page,
-        parts::over_time(page, "mode4-distances", DISTANCES4, panels),
-    );
-    let reference = outcome.reference(CM);
-    let panel = Panel::new(
-        page.say(ERROR_CM),
-        panels::pair_errors(page.language, outcome, &reference),
-    )
-    .at_least(-5.0, 5.0);
-    parts::show(
-        page,
-        parts::over_time(page, "mode4-error", ERROR4, vec![panel]),
-    );
+    let pair = Pair {
+        captions: [DISTANCES4, ERROR4],
+        reference: outcome.reference(CM),
+        distances_cm: [30.0, 50.0],
+        error_cm: 5.0,
+    };
+    pair.write(page, "mode4", outcome);
     let between = difference(
         &outcome.range_cm(Place::Left),
         &outcome.range_cm(Place::Right),
@@ -264,12 +224,8 @@ fn write_mode4(page: &mut Page, data: &Data) {
         vec![Curve::new("", Ink::First, between)],
     )
     .at_least(-5.0, 5.0);
-    parts::show(
-        page,
-        parts::over_time(page, "mode4-difference", DIFFERENCE, vec![panel]),
-    );
-    page.section(LIMITS);
-    judge::limits(page, &[outcome]);
+    parts::timed(page, "mode4-difference", DIFFERENCE, vec![panel]);
+    parts::limits(page, &[outcome]);
     beside::distance(page, data, "mode4", DISTANCE);
 }
 
@@ -315,10 +271,7 @@ fn beside(page: &mut Page, data: &Data) {
         beside::both(language, mine.clone(), real.clone()),
     )
     .at_least(-5.0, 5.0);
-    parts::show(
-        page,
-        parts::over_time(page, "mode3-real", REAL, vec![panel]),
-    );
+    parts::timed(page, "mode3-real", REAL, vec![panel]);
     let cm = judge::plain("cm");
     let rows: Vec<_> = [RMS, WORST]
         .into_iter()

@@ -154,7 +154,8 @@ fn dimensions(
             (-24.0, -20.0),
         );
     } else if setup.rig.front.is_none() {
-        let y = place(0.0, -0.4 * left.y_m).1;
+        // On the side without sonars, outside the body.
+        let y = place(0.0, -left.y_m.signum() * (left.y_m.abs() + 0.02)).1;
         sketch.measure(
             (place(right.x_m, 0.0).0, y),
             (place(left.x_m, 0.0).0, y),

@@ -23,15 +23,18 @@ const NO_VALUE: Text = t("no value in this run", "sin valores en esta ejecución
 /// Width of a letter of a legend, about [px].
 const LETTER: f64 = 6.7;
 
-/// How a curve looks. Colours differ in lightness as well as in hue; what was asked for is dashed.
+/// How a curve looks. The first two differ in lightness as well as in hue, what is asked for is dashed, what is true dash-dotted and one more
+/// dotted: they are told apart in grey too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ink {
     /// The left wheel or sonar; our robot.
     First,
     /// The right wheel or sonar; the recorded robot.
     Second,
-    /// The front sonar; what is true.
+    /// The front sonar.
     Third,
+    /// What is true, over what the robot tells.
+    True,
     /// One more.
     Fourth,
     /// References and ideals.
@@ -44,6 +47,7 @@ impl Ink {
             Self::First => "i1",
             Self::Second => "i2",
             Self::Third => "i3",
+            Self::True => "it",
             Self::Fourth => "i4",
             Self::Reference => "ir",
         }
