@@ -5,9 +5,11 @@ use crate::failure::Failure;
 use crate::manifest;
 use crate::output;
 use crate::place;
+use crate::recorded;
 use indicatif::{ProgressBar, ProgressStyle};
+use rumbo_report::real::{self, Real};
 use rumbo_report::text::Language;
-use rumbo_report::{Data, Plan, Request, html, real};
+use rumbo_report::{Data, Plan, Request, html};
 use rumbo_scenario::files::{Library, Overrides};
 use std::path::Path;
 use std::time::Instant;
@@ -22,12 +24,10 @@ const EMULATED_SPEED: f64 = 50.0;
 /// Runs, writes, and prints what came of each experiment.
 pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
     let begun = Instant::now();
-    let real = args
-        .real
-        .as_deref()
-        .map(real::read)
-        .transpose()
-        .map_err(Failure::input)?;
+    let real = match &args.real {
+        Some(folder) => real::read(folder, recorded::from_log).map_err(Failure::input)?,
+        None => Real::default(),
+    };
     let request = Request {
         only: args.only.clone(),
         seed: args.seed,
@@ -37,7 +37,7 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
             wiring: args.wiring.clone(),
             ..Overrides::default()
         },
-        real: real.unwrap_or_default(),
+        real,
     };
     let plan = Plan::new(&Library::new(), request)?;
     place::try_folder(&args.out)?;

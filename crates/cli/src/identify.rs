@@ -2,9 +2,9 @@
 
 use crate::args::IdentifyArgs;
 use crate::failure::Failure;
-use crate::import::CSV;
 use crate::output;
 use crate::place;
+use crate::recorded::attached;
 use indicatif::ProgressBar;
 use rumbo_plant::params::Params;
 use rumbo_scenario::dialect;
@@ -147,24 +147,6 @@ fn text_of(path: &Path) -> Result<String, Failure> {
         bytes
     };
     Ok(dialect::plain(&bytes).map_err(wrong)?.into_owned())
-}
-
-fn attached(log: &[u8]) -> Result<Vec<u8>, String> {
-    let damaged =
-        |error: mcap::McapError| format!("is no intact MCAP log ({error}); import the CSV again");
-    let summary = mcap::Summary::read(log)
-        .map_err(damaged)?
-        .unwrap_or_default();
-    let index = summary
-        .attachment_indexes
-        .iter()
-        .find(|index| index.media_type == CSV);
-    let index = index
-        .ok_or("carries no recording of the original program; give one made by `rumbo import`")?;
-    Ok(mcap::read::attachment(log, index)
-        .map_err(damaged)?
-        .data
-        .into_owned())
 }
 
 fn plot(

@@ -8,6 +8,7 @@ use crate::capture;
 use crate::failure::Failure;
 use crate::output::{self, figure};
 use crate::place;
+use crate::recorded::CSV;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, WriteOptions};
 use rumbo_scenario::dialect;
@@ -19,9 +20,6 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
-
-/// Media type of the attached original.
-pub(crate) const CSV: &str = "text/csv";
 
 /// What becomes of a column: its unit's factor, and what its values must lie within.
 struct Column {

@@ -25,6 +25,7 @@ mod output;
 mod place;
 #[cfg(unix)]
 mod pty;
+mod recorded;
 mod replay;
 mod rerun;
 mod run;

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+use rumbo_station::Truth;
+use rumbo_station::log::{Kind, Log, Manifest, Outcome, Run, record_run};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -73,6 +75,50 @@ fn a_recorded_run_stands_beside_ours_and_a_file_of_no_experiment_is_named() {
             "{file}"
         );
     }
+}
+
+#[test]
+fn a_log_of_a_real_robot_stands_beside_ours_and_one_of_a_simulated_robot_does_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = Command::new(env!("CARGO_BIN_EXE_rumbo"))
+        .current_dir(folder.path())
+        .args(["run", "mode5", "--out", "real"])
+        .output()
+        .unwrap();
+    assert!(out.status.success());
+    let simulated = folder.path().join("real/mode5-1.mcap");
+    let log = Log::read(&simulated).unwrap();
+    // The same as a robot behind a port would have left it.
+    let manifest = Manifest {
+        kind: Kind::Robot,
+        ..log.manifest.clone().unwrap()
+    };
+    let end_us = log.link.last().unwrap().t_us;
+    let truths: Vec<_> = (0..=end_us / 10_000)
+        .map(|tick| (tick * 10_000, Truth::default()))
+        .collect();
+    let run = Run {
+        scene: None,
+        truths: &truths,
+        link: &log.link,
+        said: &[],
+        told: &[],
+        outcome: Outcome::default(),
+    };
+    record_run(&folder.path().join("real/robot.mcap"), &manifest, run).unwrap();
+    let output = experiments(folder.path(), "C", &["--only", "mode5", "--real", "real"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(
+        said.contains("mode5-1.mcap is not shown: it is of a simulated robot"),
+        "{said}"
+    );
+    let page = page(folder.path());
+    assert!(
+        page.contains("robot.mcap")
+            && page.contains("recorded robot, Rumbo")
+            && page.contains("fig-mode5-real")
+    );
 }
 
 #[test]

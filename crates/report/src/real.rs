@@ -1,4 +1,4 @@
-//! Recorded runs of a real robot: CSVs of the original program, each matched to the experiment that it is a run of.
+//! Recorded runs of a real robot: CSVs of the original program and logs, each matched to the experiment that it is a run of.
 
 use crate::text::{Text, t};
 use rumbo_scenario::dialect;
@@ -15,6 +15,17 @@ pub struct Recording {
     pub file: String,
     /// Time since the first row [s], and the row.
     pub rows: Vec<(f64, Row)>,
+    /// The robot ran our program, not the original one.
+    pub ours: bool,
+}
+
+/// What a log of a real robot comes to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FromLog {
+    /// The run as the original program's CSV that tells the same.
+    pub csv: String,
+    /// The robot ran our program.
+    pub ours: bool,
 }
 
 /// A file that is shown nowhere, and why.
@@ -61,31 +72,31 @@ const ANOTHER: Text = t(
 );
 const EMPTY: Text = t("it has fewer than two rows", "tiene menos de dos filas");
 
-/// Reads all CSVs of a folder.
+/// Reads all CSVs of a folder, and its logs as `log` has them: what a log comes to, or why it is not shown.
 ///
 /// # Errors
 /// A folder or a file that cannot be read, or a row that is damaged.
-pub fn read(folder: &Path) -> Result<Real, RealError> {
+pub fn read(
+    folder: &Path,
+    log: impl Fn(&Path) -> Result<FromLog, Text>,
+) -> Result<Real, RealError> {
     let unreadable = |error: std::io::Error| {
         RealError(format!(
-            "{}: cannot be read ({error}); give --real a folder with CSVs of recorded runs",
+            "{}: cannot be read ({error}); give --real a folder with recorded runs",
             folder.display()
         ))
     };
     let mut files: Vec<PathBuf> = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();
-        if path
-            .extension()
-            .is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
-        {
+        if is_a(&path, "csv") || is_a(&path, "mcap") {
             files.push(path);
         }
     }
     files.sort();
     if files.is_empty() {
         return Err(RealError(format!(
-            "{}: holds no CSV; give --real a folder with recorded runs",
+            "{}: holds no CSV and no log; give --real a folder with recorded runs",
             folder.display()
         )));
     }
@@ -94,16 +105,20 @@ pub fn read(folder: &Path) -> Result<Real, RealError> {
         let file = path
             .file_name()
             .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        let bytes = std::fs::read(&path).map_err(|error| {
-            RealError(format!(
-                "{}: cannot be read ({error}); take it out of the folder",
-                path.display()
-            ))
-        })?;
-        let text = dialect::plain(&bytes).unwrap_or_default();
         let skip = |why| Skipped {
             file: file.clone(),
             why,
+        };
+        let found = match is_a(&path, "mcap") {
+            true => log(&path),
+            false => Ok(csv_of(&path)?),
+        };
+        let FromLog { csv: text, ours } = match found {
+            Ok(found) => found,
+            Err(why) => {
+                real.skipped.push(skip(why));
+                continue;
+            }
         };
         let Some(kind) = csv::recognise(text.lines().next().unwrap_or_default()) else {
             real.skipped.push(skip(UNKNOWN));
@@ -118,11 +133,28 @@ pub fn read(folder: &Path) -> Result<Real, RealError> {
             None => real.skipped.push(skip(NO_EXPERIMENT)),
             Some(scenario) if real.runs.contains_key(scenario) => real.skipped.push(skip(ANOTHER)),
             Some(scenario) => {
-                real.runs.insert(scenario, Recording { file, rows });
+                real.runs.insert(scenario, Recording { file, rows, ours });
             }
         }
     }
     Ok(real)
+}
+
+fn is_a(path: &Path, ending: &str) -> bool {
+    path.extension()
+        .is_some_and(|found| found.eq_ignore_ascii_case(ending))
+}
+
+/// A CSV as it is; what is no text has no header of the original program.
+fn csv_of(path: &Path) -> Result<FromLog, RealError> {
+    let bytes = std::fs::read(path).map_err(|error| {
+        RealError(format!(
+            "{}: cannot be read ({error}); take it out of the folder",
+            path.display()
+        ))
+    })?;
+    let csv = dialect::plain(&bytes).unwrap_or_default().into_owned();
+    Ok(FromLog { csv, ours: false })
 }
 
 /// The rows with their times; the first row's period is the wait before the run and does not count.
@@ -235,6 +267,10 @@ mod tests {
         folder
     }
 
+    fn no_log(_: &Path) -> Result<FromLog, Text> {
+        Err(EMPTY)
+    }
+
     const DISTANCE: &str = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n";
 
     #[test]
@@ -253,7 +289,7 @@ mod tests {
             ("c.csv", "time,value\n1,2\n"),
             ("notes.txt", "no CSV"),
         ]);
-        let real = read(folder.path()).unwrap();
+        let real = read(folder.path(), no_log).unwrap();
         let run = &real.runs["mode1"];
         assert_eq!(run.file, "a.csv");
         assert!(
@@ -280,7 +316,7 @@ mod tests {
             "a.csv",
             &format!("{DISTANCE}60,100,100,30,1,115,115\n60,99,x,30,1,115,115\n"),
         )]);
-        let error = read(folder.path()).unwrap_err().to_string();
+        let error = read(folder.path(), no_log).unwrap_err().to_string();
         assert!(
             error.contains("a.csv:3:") && error.contains("`60,99,x"),
             "{error}"
@@ -291,7 +327,7 @@ mod tests {
     fn a_folder_that_is_none_or_empty_says_what_is_needed() {
         let empty = folder(&[]);
         for place in [empty.path(), Path::new("/no/such/folder")] {
-            let error = read(place).unwrap_err().to_string();
+            let error = read(place, no_log).unwrap_err().to_string();
             assert!(error.contains("--real"), "{error}");
         }
     }

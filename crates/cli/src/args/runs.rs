@@ -117,7 +117,7 @@ pub(crate) struct ExperimentsArgs {
         allow_negative_numbers = true
     )]
     pub(crate) seed: u64,
-    /// Folder with CSVs of recorded runs (the original program's), shown beside ours
+    /// Folder with recorded runs of a real robot, shown beside ours: CSVs of the original program, logs of `rumbo connect`
     #[arg(long, value_name = "DIR")]
     pub(crate) real: Option<PathBuf>,
     /// Robot instead of the scenarios' own: name or path

@@ -18,20 +18,30 @@ const REAL: Text = t(
     "recorded robot, original program",
     "robot real, programa original",
 );
+const REAL_OURS: Text = t("recorded robot, Rumbo", "robot real, Rumbo");
+
+const fn real(recording: &Recording) -> Text {
+    if recording.ours { REAL_OURS } else { REAL }
+}
 
 /// A curve of ours and one of the recorded robot, over each other.
-pub(super) fn both(language: Language, ours: Points, real: Points) -> Vec<Curve> {
+pub(super) fn both(
+    language: Language,
+    recording: &Recording,
+    ours: Points,
+    theirs: Points,
+) -> Vec<Curve> {
     vec![
         Curve::new(OURS.of(language), Ink::First, ours),
-        Curve::new(REAL.of(language), Ink::Second, real),
+        Curve::new(real(recording).of(language), Ink::Second, theirs),
     ]
 }
 
 const QUANTITY: Text = t("Quantity", "Magnitud");
 
 /// Values of ours beside those of the recorded robot; they come as they are shown.
-pub(super) fn table(page: &mut Page, rows: &[(String, String, String)]) {
-    let header = [QUANTITY, OURS, REAL].map(|text| page.say(text));
+pub(super) fn table(page: &mut Page, recording: &Recording, rows: &[(String, String, String)]) {
+    let header = [QUANTITY, OURS, real(recording)].map(|text| page.say(text));
     let rows: Vec<_> = rows
         .iter()
         .map(|(name, ours, real)| vec![Cell::text(name), Cell::text(ours), Cell::text(real)])
@@ -83,9 +93,15 @@ const SPEED_BAND: Text = t(
 );
 
 /// A table beside a recorded run of what each step came to, and how that is reckoned.
-pub(super) fn steps(page: &mut Page, kind: Kind, ours: &[Response], real: &[Response]) {
+pub(super) fn steps(
+    page: &mut Page,
+    recording: &Recording,
+    kind: Kind,
+    ours: &[Response],
+    real: &[Response],
+) {
     let rows = step_rows(page.language, kind, ours, real);
-    table(page, &rows);
+    table(page, recording, &rows);
     page.p(match kind {
         Kind::Distance => DISTANCE_BAND,
         Kind::Speed => SPEED_BAND,
@@ -153,7 +169,7 @@ pub(super) fn distance(page: &mut Page, data: &Data, scenario: &str, axis: Text)
         Ink::Reference,
         ours.reference(CM),
     )];
-    curves.extend(both(language, mine.clone(), real.clone()));
+    curves.extend(both(language, recording, mine.clone(), real.clone()));
     let panel = Panel::new(axis.of(language), curves);
     parts::timed(
         page,
@@ -169,6 +185,7 @@ pub(super) fn distance(page: &mut Page, data: &Data, scenario: &str, axis: Text)
     let kind = Kind::Distance;
     steps(
         page,
+        recording,
         kind,
         &responses(kind, &references, &mine),
         &responses(kind, &references, &real),

@@ -241,7 +241,12 @@ fn beside(page: &mut Page, data: &Data) {
             Ink::Reference,
             ours.reference(RPM),
         )];
-        curves.extend(beside::both(language, ours.speed_rpm(wheel), real(wheel)));
+        curves.extend(beside::both(
+            language,
+            recording,
+            ours.speed_rpm(wheel),
+            real(wheel),
+        ));
         Panel::new(name.of(language), curves)
     };
     let panels = vec![
@@ -257,6 +262,7 @@ fn beside(page: &mut Page, data: &Data) {
     page.p(RIGHT_WHEEL);
     beside::steps(
         page,
+        recording,
         Kind::Speed,
         &respond::responses(Kind::Speed, &references, &ours.speed_rpm(Place::Right)),
         &respond::responses(Kind::Speed, &references, &real(Place::Right)),

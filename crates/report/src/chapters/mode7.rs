@@ -232,7 +232,7 @@ fn beside(page: &mut Page, data: &Data) {
         |[x, y]: &[Points; 2]| -> Points { x.iter().zip(y).map(|(x, y)| (x.1, y.1)).collect() };
     let mut curves = maps::ways(language, ours, SQUARE.to_vec());
     curves.truncate(1);
-    curves.extend(beside::both(language, way(&mine), way(&theirs)));
+    curves.extend(beside::both(language, recording, way(&mine), way(&theirs)));
     let svg = Map {
         curves,
         ..maps::map(language)
@@ -242,16 +242,17 @@ fn beside(page: &mut Page, data: &Data) {
     let panels = vec![
         Panel::new(
             "x (m)",
-            beside::both(language, mine[0].clone(), theirs[0].clone()),
+            beside::both(language, recording, mine[0].clone(), theirs[0].clone()),
         ),
         Panel::new(
             "y (m)",
-            beside::both(language, mine[1].clone(), theirs[1].clone()),
+            beside::both(language, recording, mine[1].clone(), theirs[1].clone()),
         ),
         Panel::new(
             page.say(HEADING_AXIS),
             beside::both(
                 language,
+                recording,
                 started(&heading),
                 unwrapped(real(|row| row.heading_deg)),
             ),
@@ -267,6 +268,7 @@ fn beside(page: &mut Page, data: &Data) {
     };
     beside::table(
         page,
+        recording,
         &[row(LAP, 0, "s"), row(WORST, 1, "cm"), row(RMS, 2, "cm")],
     );
 }

@@ -38,7 +38,12 @@ pub(super) fn write(page: &mut Page, data: &Data, scenario: &str) {
         let way = |x: &Points, y: &Points| -> Points {
             x.iter().zip(y).map(|(x, y)| (x.1, y.1)).collect()
         };
-        let curves = beside::both(language, ours.told_way(), way(&theirs[0], &theirs[1]));
+        let curves = beside::both(
+            language,
+            recording,
+            ours.told_way(),
+            way(&theirs[0], &theirs[1]),
+        );
         let map = Map {
             curves,
             ..mode8::way_map(page, ours, Points::new())
@@ -61,11 +66,22 @@ pub(super) fn write(page: &mut Page, data: &Data, scenario: &str) {
         recording.duration_s(),
     ];
     let panels = vec![
-        Panel::new("x (m)", beside::both(language, x, theirs[0].clone())),
-        Panel::new("y (m)", beside::both(language, y, theirs[1].clone())),
+        Panel::new(
+            "x (m)",
+            beside::both(language, recording, x, theirs[0].clone()),
+        ),
+        Panel::new(
+            "y (m)",
+            beside::both(language, recording, y, theirs[1].clone()),
+        ),
         Panel::new(
             page.say(mode8::HEADING),
-            beside::both(language, heading, unwrapped(real(|row| row.heading_deg))),
+            beside::both(
+                language,
+                recording,
+                heading,
+                unwrapped(real(|row| row.heading_deg)),
+            ),
         )
         .exactly(-190.0, 190.0),
     ];
@@ -76,7 +92,7 @@ pub(super) fn write(page: &mut Page, data: &Data, scenario: &str) {
         (page.say(name).to_owned(), ours, real)
     };
     let rows = [row(TIME, lasted, "s"), row(PATH, walked, "m")];
-    beside::table(page, &rows);
+    beside::table(page, recording, &rows);
 }
 
 fn recorded(recording: &Recording, of: fn(&MissionRow) -> f32) -> Points {

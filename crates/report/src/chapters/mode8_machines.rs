@@ -35,7 +35,7 @@ pub(super) const GOAL: Machine = Machine {
             lines: &[STATES[0]],
         },
         State {
-            x: 255.0,
+            x: 271.0,
             y: 60.0,
             width: 110.0,
             lines: &[STATES[2]],
@@ -85,12 +85,12 @@ pub(super) const GOAL: Machine = Machine {
     ],
     transitions: &[
         Transition {
-            way: &[(150.0, 60.0), (200.0, 60.0)],
-            at: (152.0, 50.0),
+            way: &[(150.0, 60.0), (216.0, 60.0)],
+            at: (155.0, 52.0),
             condition: &[t("goal", "objetivo")],
         },
         Transition {
-            way: &[(310.0, 60.0), (370.0, 60.0)],
+            way: &[(326.0, 60.0), (370.0, 60.0)],
             at: (0.0, -20.0),
             condition: &[],
         },

@@ -268,7 +268,7 @@ fn beside(page: &mut Page, data: &Data) {
     let real = difference(&beside::recorded_mean_cm(recording), &references);
     let panel = Panel::new(
         page.say(ERROR_CM),
-        beside::both(language, mine.clone(), real.clone()),
+        beside::both(language, recording, mine.clone(), real.clone()),
     )
     .at_least(-5.0, 5.0);
     parts::timed(page, "mode3-real", REAL, vec![panel]);
@@ -284,5 +284,5 @@ fn beside(page: &mut Page, data: &Data) {
             )
         })
         .collect();
-    beside::table(page, &rows);
+    beside::table(page, recording, &rows);
 }

@@ -171,13 +171,18 @@ pub(crate) fn pair(language: Language, wall: Wall, description: &str) -> String 
         "b",
     );
     sketch.line(&[place(0.0, 0.0), place(reach, 0.0)], "d");
-    for (v, name, beside) in [(half, "d₁", (-6.0, -8.0)), (-half, "d₂", (4.0, 17.0))] {
+    // Names stand off their lines.
+    let [first, second, gap] = match wall {
+        Wall::Ahead => [(-6.0, -8.0), (4.0, 17.0), (-13.0, 4.0)],
+        Wall::Beside => [(-16.0, 4.0), (-16.0, 4.0), (-8.0, 18.0)],
+    };
+    for (v, name, beside) in [(half, "d₁", first), (-half, "d₂", second)] {
         // Where the ray from this sonar meets the wall.
         let length = (reach + v * tilt.sin()) / tilt.cos();
         sketch.circle(at(0.0, v), 5.0, "o");
         sketch.measure(at(0.0, v), at(length, v), name, beside);
     }
-    sketch.measure(at(-34.0, half), at(-34.0, -half), "δ", (-13.0, 4.0));
+    sketch.measure(at(-34.0, half), at(-34.0, -half), "δ", gap);
     // Parallel to the wall through the first sonar: the side of the triangle.
     sketch.line(&[at(reach / tilt.cos(), 0.0), at(0.0, 0.0)], "d");
     let angles = match wall {
@@ -188,7 +193,11 @@ pub(crate) fn pair(language: Language, wall: Wall, description: &str) -> String 
     let mark = place(132.0 * (0.5 * tilt).cos(), 132.0 * (0.5 * tilt).sin());
     sketch.text((mark.0, mark.1 + 4.0), "θ", Anchor::Middle);
     let (x, y) = place(reach - 26.0, -6.0);
-    sketch.text((x, y + 10.0), "d", Anchor::Start);
+    let anchor = match wall {
+        Wall::Ahead => Anchor::Start,
+        Wall::Beside => Anchor::End,
+    };
+    sketch.text((x, y + 10.0), "d", anchor);
     match wall {
         Wall::Ahead => sketch.text(
             (place(reach, 0.0).0 + 10.0, 40.0),

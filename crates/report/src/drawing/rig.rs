@@ -30,7 +30,7 @@ pub(crate) fn svg(language: Language, setup: &Setup, description: &str) -> Strin
     let mounts = || [rig.left, rig.right].into_iter().flatten();
     let room = |side: f64| {
         let some = mounts().any(|mount| side * mount.angle_rad > 0.1);
-        if some { 205.0 } else { 100.0 }
+        if some { 205.0 } else { 112.0 }
     };
     let (above, below) = (room(1.0), room(-1.0));
     let height = above + below;

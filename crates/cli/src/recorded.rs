@@ -1,0 +1,145 @@
+//! Logs of real robots as the original program's CSV, which reports and `rumbo identify` read.
+//!
+//! A log that `rumbo import` made of a CSV carries it. Any other one has the signals of its telemetry: what was recorded from the first
+//! armed instant to the last becomes rows of the kind that the original program writes in that mode.
+
+use rumbo_control::mode::ModeId;
+use rumbo_report::real::FromLog;
+use rumbo_report::text::Text;
+use rumbo_station::Row;
+use rumbo_station::log::{Kind, Log};
+use rumbo_wire::text::RowKind;
+use std::f64::consts::PI;
+use std::path::Path;
+
+/// Media type of the CSV that an imported log carries.
+pub(crate) const CSV: &str = "text/csv";
+/// What stands for nothing in reach \[cm\]: the sonars' reach.
+const CLEAR_CM: f64 = 250.0;
+
+const NO_LOG: Text = Text {
+    en: "it is no log of rumbo that can be read",
+    es: "no es un registro de rumbo que pueda leerse",
+};
+const SIMULATED: Text = Text {
+    en: "it is of a simulated robot",
+    es: "es de un robot simulado",
+};
+const NOTHING: Text = Text {
+    en: "it holds no run of modes 1 to 8 with the robot armed",
+    es: "no contiene ninguna prueba de los modos 1 a 8 con el robot armado",
+};
+
+/// What a log comes to, or why it is none of a real robot's run.
+pub(crate) fn from_log(path: &Path) -> Result<FromLog, Text> {
+    let bytes = std::fs::read(path).map_err(|_| NO_LOG)?;
+    if let Ok(csv) = attached(&bytes) {
+        let csv = String::from_utf8_lossy(&csv).into_owned();
+        return Ok(FromLog { csv, ours: false });
+    }
+    let log = Log::read_signals(path).map_err(|_| NO_LOG)?;
+    let manifest = log.manifest.as_ref().ok_or(NO_LOG)?;
+    if manifest.kind != Kind::Robot {
+        return Err(SIMULATED);
+    }
+    let csv = csv(&log.rows).ok_or(NOTHING)?;
+    let ours = manifest.program != "original";
+    Ok(FromLog { csv, ours })
+}
+
+/// The CSV that a log carries.
+pub(crate) fn attached(log: &[u8]) -> Result<Vec<u8>, String> {
+    let damaged =
+        |error: mcap::McapError| format!("is no intact MCAP log ({error}); import the CSV again");
+    let summary = mcap::Summary::read(log)
+        .map_err(damaged)?
+        .unwrap_or_default();
+    let index = summary
+        .attachment_indexes
+        .iter()
+        .find(|index| index.media_type == CSV);
+    let index = index
+        .ok_or("carries no recording of the original program; give one made by `rumbo import`")?;
+    Ok(mcap::read::attachment(log, index)
+        .map_err(damaged)?
+        .data
+        .into_owned())
+}
+
+/// The rows of a run: armed, in the mode in which it was armed first. A robot that does not tell whether it is counts as armed.
+fn csv(rows: &[Row]) -> Option<String> {
+    let armed = |row: &&Row| row.signal("armed") != Some(0.0);
+    let mode = |row: &Row| ModeId::from_number(row.signal("mode")? as u8);
+    let first = rows.iter().find(armed)?;
+    let mode_then = mode(first)?;
+    let kind = kind(mode_then)?;
+    let names: Vec<&str> = kind.columns().iter().map(|column| column.name).collect();
+    let mut text = names.join(",") + "\n";
+    let mut before = first.t_ms;
+    let run = rows
+        .iter()
+        .filter(|row| armed(row) && mode(row) == Some(mode_then));
+    for row in run {
+        let cells = names.iter().map(|name| match *name {
+            "dt_ms" => (row.t_ms - before).max(0).to_string(),
+            name => format!("{:.4}", value(row, name, mode_then).unwrap_or(0.0)),
+        });
+        text += &cells.collect::<Vec<_>>().join(",");
+        text.push('\n');
+        before = row.t_ms;
+    }
+    Some(text)
+}
+
+const fn kind(mode: ModeId) -> Option<RowKind> {
+    match mode {
+        ModeId::Manual => None,
+        ModeId::FrontDistance | ModeId::FrontAlign | ModeId::WallHold | ModeId::WallFollow => {
+            Some(RowKind::Distance)
+        }
+        ModeId::WheelSpeed | ModeId::StraightLine => Some(RowKind::Speed),
+        ModeId::Waypoints => Some(RowKind::Waypoints),
+        ModeId::Mission => Some(RowKind::Mission),
+    }
+}
+
+/// A column of the original program, in its unit. Motor A is the right one.
+fn value(row: &Row, name: &str, mode: ModeId) -> Option<f64> {
+    let rpm = |name| Some(row.signal(name)? * 30.0 / PI);
+    let deg = |name| Some(row.signal(name)? * 180.0 / PI);
+    let cm = |name| {
+        let range_m = row.signal(name)?;
+        Some(if range_m.is_finite() {
+            100.0 * range_m
+        } else {
+            CLEAR_CM
+        })
+    };
+    // A robot with one sonar tells it twice.
+    let of_pair = |name| {
+        cm(name)
+            .filter(|_| mode != ModeId::FrontDistance)
+            .or_else(|| cm("range_front_m"))
+    };
+    match name {
+        "left_cm" if mode != ModeId::Mission => of_pair("range_left_m"),
+        "right_cm" if mode != ModeId::Mission => of_pair("range_right_m"),
+        "left_cm" => cm("range_left_m"),
+        "right_cm" => cm("range_right_m"),
+        "front_cm" => cm("range_front_m"),
+        "reference_cm" => Some(100.0 * row.signal("reference_left")?),
+        "reference_rpm" => rpm("reference_left"),
+        "mode" => Some(f64::from(mode as u8)),
+        "pwm_a" => row.signal("right_pwm"),
+        "pwm_b" => row.signal("left_pwm"),
+        "speed_a_rpm" => rpm("right_rad_s"),
+        "speed_b_rpm" => rpm("left_rad_s"),
+        "reference_a_rpm" => rpm("right_ref_rad_s"),
+        "reference_b_rpm" => rpm("left_ref_rad_s"),
+        "heading_deg" => deg("heading_rad"),
+        "heading_reference_deg" => deg("heading_ref_rad"),
+        "goal_x_m" => row.signal("reference_left"),
+        "goal_y_m" => row.signal("reference_right"),
+        _ => row.signal(name),
+    }
+}
