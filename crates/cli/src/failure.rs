@@ -1,5 +1,6 @@
 //! Why a command did not do what was asked, and the exit status for it.
 
+use crate::interrupt;
 use rumbo_scenario::files::FileError;
 use std::fmt;
 use std::io::Write;
@@ -12,6 +13,8 @@ pub(crate) enum Failure {
     LimitMissed,
     /// Wrong input, or something outside the program is not as needed: what, where and the remedy, in one line each.
     Input(String),
+    /// Ctrl-C; what was done until then has been printed.
+    Interrupted,
     /// Whoever read our output has had enough.
     ReaderGone,
 }
@@ -26,6 +29,7 @@ impl Failure {
     pub(crate) fn report(self) -> ExitCode {
         match self {
             Self::LimitMissed => ExitCode::from(1),
+            Self::Interrupted => ExitCode::from(interrupt::STATUS),
             Self::Input(text) => {
                 // A closed stderr leaves nobody to tell.
                 let _ = writeln!(

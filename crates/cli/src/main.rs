@@ -1,7 +1,7 @@
 //! The `rumbo` command: reads the arguments, calls the crate that does the work, prints what came of it.
 //!
 //! Results go to stdout, progress and errors to stderr, one line per error. Exit status: 0 done, 1 a limit of a
-//! scenario was missed, 2 wrong input. Each file here is one subcommand.
+//! scenario was missed, 2 wrong input, 130 interrupted. Each file here is one subcommand.
 
 mod args;
 mod calibrate;
@@ -16,6 +16,7 @@ mod flash;
 mod ghost;
 mod identify;
 mod import;
+mod interrupt;
 mod lab;
 mod list;
 mod logs;

@@ -2,6 +2,7 @@
 
 use crate::args::{ProgramName, RunArgs};
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::logs;
 use crate::observe;
 use crate::output::{self, figure};
@@ -12,7 +13,9 @@ use rumbo_scenario::run::{self, RunResult};
 use rumbo_scenario::trace::Trace;
 use rumbo_station::readable;
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::path::Path;
+use std::sync::atomic::Ordering;
 
 /// Runs every scenario with every seed; one line or table per scenario, or one JSON object per run.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
@@ -50,6 +53,13 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         .collect();
     let progress = progress_bar(jobs.len());
     let (mut passed, mut results) = (true, Vec::new());
+    // One run is over soon, or looked at by a debugger: Ctrl-C ends it.
+    let asked = (jobs.len() > 1).then(interrupt::asked);
+    let interrupted = || {
+        asked
+            .as_ref()
+            .is_some_and(|asked| asked.load(Ordering::Relaxed))
+    };
     let handle = |setup: &Setup, mut result: RunResult| {
         progress.inc(1);
         passed &= result.pass;
@@ -58,19 +68,37 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
             logs::write_run(folder, &library, setup, &overrides, &result)?;
         }
         if args.json {
-            return progress.suspend(|| output::json(&result));
+            progress.suspend(|| output::json(&result))?;
+            return match interrupted() {
+                true => Err(Failure::Interrupted),
+                false => Ok(()),
+            };
         }
         // A thousand traces would fill the memory; what is printed needs none.
         result.trace = Trace::default();
         results.push(result);
-        if results.len() < runs {
-            return Ok(());
+        let end = interrupted();
+        if results.len() == runs || end {
+            let results = std::mem::take(&mut results);
+            progress.suspend(|| report(&setup.scenario, &results))?;
         }
-        let results = std::mem::take(&mut results);
-        progress.suspend(|| report(&setup.scenario, &results))
+        match end {
+            true => Err(Failure::Interrupted),
+            false => Ok(()),
+        }
     };
-    run_jobs(args, &jobs, handle)?;
+    let ended = run_jobs(args, &jobs, handle);
+    let done = progress.position();
     progress.finish_and_clear();
+    if matches!(ended, Err(Failure::Interrupted)) {
+        // A closed stderr leaves nobody to tell.
+        let _ = writeln!(
+            std::io::stderr(),
+            "note: interrupted after {done} of {} runs",
+            jobs.len()
+        );
+    }
+    ended?;
     if passed {
         Ok(())
     } else {

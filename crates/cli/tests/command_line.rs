@@ -468,6 +468,34 @@ fn a_reader_who_stops_reading_ends_the_command_quietly() {
 /// A program that stays where it is.
 const SPIN: &str = ":02000000FFCF30\n:00000001FF\n";
 
+#[cfg(unix)]
+#[test]
+fn a_campaign_that_is_interrupted_tells_what_it_had() {
+    let mut campaign = Command::new(env!("CARGO_BIN_EXE_rumbo"))
+        .args(["run", "mode5", "--runs", "1000000", "--json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(campaign.stdout.take().unwrap()).lines();
+    let first = lines.next().unwrap().unwrap();
+    let interrupt = Command::new("kill")
+        .args(["-INT", &campaign.id().to_string()])
+        .status();
+    assert!(interrupt.unwrap().success());
+    let rest: Vec<String> = lines.map(Result::unwrap).collect();
+    let output = campaign.wait_with_output().unwrap();
+    for line in [&first].into_iter().chain(&rest) {
+        serde_json::from_str::<serde_json::Value>(line).unwrap();
+    }
+    assert_eq!(output.status.code(), Some(130));
+    let said = format!(
+        "note: interrupted after {} of 1000000 runs\n",
+        rest.len() + 1
+    );
+    assert_eq!(stderr(&output), said);
+}
+
 #[test]
 fn a_program_is_shown_as_a_profile_and_as_a_waveform() {
     file("spin.hex", SPIN);

@@ -10,10 +10,12 @@ use crate::observe::Waves;
 use crate::operator::Operator;
 use crate::sim::Sim;
 use crate::trace::{SAMPLE_US, Trace};
-use rayon::prelude::*;
 use serde::Serialize;
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::io;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, sync_channel};
 
 /// What a run gave.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -233,25 +235,55 @@ fn instead(name: &str, metrics: &Metrics) -> String {
     }
 }
 
-/// Runs started together: enough for every thread to be busy, few enough that their traces fit in memory.
-const BATCH: usize = 64;
+/// Results that wait for their reader: a slow one holds the runs back, so that their traces do not fill the memory.
+const WAITING: usize = 16;
 
 /// Runs all `jobs`, each a setup and a seed, on all threads of the current pool, and hands the results to `handle`
-/// in the order of the jobs.
+/// in the order of the jobs, each as soon as it and all before it are there. Not to be called on a thread of the pool.
 ///
 /// # Errors
-/// The first error, of a setup or of `handle`; no further batch is begun.
+/// The first error, of a setup or of `handle`; no further run is begun.
 pub fn run_all<E: From<FileError>>(
     jobs: &[(&Setup, u64)],
+    handle: impl FnMut(&Setup, RunResult) -> Result<(), E>,
+) -> Result<(), E> {
+    let next = AtomicUsize::new(0);
+    let (done, results) = sync_channel(WAITING);
+    rayon::in_place_scope(|scope| {
+        for _ in 0..rayon::current_num_threads() {
+            let (done, next) = (done.clone(), &next);
+            scope.spawn(move |_| {
+                loop {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    let Some((setup, seed)) = jobs.get(index) else {
+                        return;
+                    };
+                    // Nobody listens any more: an error has ended it.
+                    if done.send((index, run(setup, *seed))).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(done);
+        in_order(jobs, results, handle)
+    })
+}
+
+fn in_order<E: From<FileError>>(
+    jobs: &[(&Setup, u64)],
+    results: Receiver<(usize, Result<RunResult, FileError>)>,
     mut handle: impl FnMut(&Setup, RunResult) -> Result<(), E>,
 ) -> Result<(), E> {
-    for batch in jobs.chunks(BATCH) {
-        let results: Vec<_> = batch
-            .par_iter()
-            .map(|(setup, seed)| run(setup, *seed))
-            .collect();
-        for ((setup, _), result) in batch.iter().zip(results) {
+    let mut early = BTreeMap::new();
+    let mut left = jobs.iter().enumerate().peekable();
+    for (index, result) in results {
+        early.insert(index, result);
+        while let Some((due, (setup, _))) = left.peek()
+            && let Some(result) = early.remove(due)
+        {
             handle(setup, result?)?;
+            left.next();
         }
     }
     Ok(())
