@@ -35,8 +35,8 @@ Commands:
   firmware                 the image for the Mega, target/firmware/rumbo.elf and .hex, with its sizes
   sketches                 the Arduino sketches of examples and tests, compiled into target/sketches/*.elf
   memoria [--seeds N] [--only SCENARIO]...
-                           the report's program as an Arduino sketch on the emulated Mega, beside its native form
-                           and our core: tables of 5 robots or N, and where the chip's time goes
+                           the report's program as an Arduino sketch on the emulated Mega, beside its native form,
+                           our core and our image: a table of 5 robots or N, and where the chip's time goes
   campaign [--seeds N] [--only SCENARIO]...
                            every scenario with 1,000 seeds or N, mode 8 in as many random worlds; `link`, a million
                            frames over a link with faults; `image`, 75 minutes of the image; `medians`, the image

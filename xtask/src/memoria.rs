@@ -1,6 +1,6 @@
-//! `cargo xtask memoria`: the report's program as an Arduino sketch, its native form and our core, scenario by scenario.
+//! `cargo xtask memoria`: the report's program as an Arduino sketch, its native form, our core and our image, scenario by scenario.
 //!
-//! The tables of docs/theory/original.md come from here; `crates/scenario/examples/memoria/` runs and prints them.
+//! The table of docs/theory/original.md and its short form in the README come from here; `crates/scenario/examples/memoria/` runs all of it.
 
 use crate::project::{Project, run as run_command};
 use crate::sketches;
@@ -8,6 +8,7 @@ use crate::sketches;
 /// Prints the tables: of `seeds` robots, of the scenarios in `only` (all if empty).
 pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Result<bool, String> {
     sketches::run(project)?;
+    crate::firmware::run(project)?;
     let mut program = project.cargo(&[
         "run",
         "--locked",

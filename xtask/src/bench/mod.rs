@@ -35,7 +35,7 @@ struct Part {
     measure: fn(&Project) -> Result<Vec<Figure>, String>,
 }
 
-const PARTS: [Part; 6] = [
+const PARTS: [Part; 7] = [
     Part {
         name: "emulator",
         what: "simulated time over the processor's of firmware on the emulated Mega, beside simavr",
@@ -50,6 +50,11 @@ const PARTS: [Part; 6] = [
         name: "lab",
         what: "start, CPU and memory of `rumbo lab` at real time",
         measure: lab::measure,
+    },
+    Part {
+        name: "memoria",
+        what: "the report's program beside ours on the emulated Mega, every scenario that it can do: some minutes",
+        measure: memoria,
     },
     Part {
         name: "page",
@@ -67,6 +72,11 @@ const PARTS: [Part; 6] = [
         measure: viewers::measure,
     },
 ];
+
+/// Prints a table of its own, which is also that of docs/theory/original.md and the README.
+fn memoria(project: &Project) -> Result<Vec<Figure>, String> {
+    crate::memoria::run(project, None, &[]).map(|_| Vec::new())
+}
 
 /// Text of `cargo xtask bench --help`.
 pub(crate) fn help() -> String {

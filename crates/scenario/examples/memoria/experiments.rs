@@ -34,7 +34,7 @@ const fn metric(what: &'static str, name: &'static str, factor: f64, unit: &'sta
 
 const CONTACTS: Metric = metric("contacts", "contacts", 1.0, "");
 
-pub(crate) const EXPERIMENTS: [Experiment; 10] = [
+pub(crate) const EXPERIMENTS: [Experiment; 12] = [
     Experiment {
         scenario: "mode1",
         sketch: "mode1",
@@ -92,6 +92,13 @@ pub(crate) const EXPERIMENTS: [Experiment; 10] = [
         ],
     },
     Experiment {
+        scenario: "mode5-reversal",
+        sketch: "mode5",
+        duration_s: 15.5,
+        line: "REF 70",
+        metrics: &[metric("70 to -100 rpm", "step2.settling_s", 1.0, "s")],
+    },
+    Experiment {
         scenario: "mode6",
         sketch: "mode6",
         duration_s: 26.0,
@@ -114,6 +121,16 @@ pub(crate) const EXPERIMENTS: [Experiment; 10] = [
                 100.0,
                 "cm",
             ),
+        ],
+    },
+    Experiment {
+        scenario: "mode7-repeat",
+        sketch: "mode7",
+        duration_s: 60.0,
+        line: "",
+        metrics: &[
+            metric("off the square in 60 s, true", "true_worst_m", 100.0, "cm"),
+            metric("way in 60 s", "path_m", 1.0, "m"),
         ],
     },
     Experiment {

@@ -199,6 +199,11 @@ impl Sim {
         (last_us - first_us) as f64 * 1e-6 / count.max(1) as f64
     }
 
+    /// When the bridges were last set to something else [us]; 0 before the first time.
+    pub fn driven_us(&self) -> u64 {
+        self.outputs_us.1
+    }
+
     /// Puts bytes for the robot on the line.
     pub fn send(&mut self, bytes: &[u8]) {
         self.note(true, bytes);
