@@ -19,6 +19,7 @@ use crate::original::Original;
 use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
 use crate::trace::Burst;
 use crate::wire_fault::{TimedWireFault, WireFaults};
+pub use native::Latched;
 use native::{Memory, Native};
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Duty, SIDES, SonarId, Wheels};
@@ -197,6 +198,25 @@ impl Sim {
     pub fn control_period_s(&self) -> f64 {
         let (first_us, last_us, count) = self.outputs_us;
         (last_us - first_us) as f64 * 1e-6 / count.max(1) as f64
+    }
+
+    /// From now on notes what our native robot is given at each tick.
+    pub fn record_inputs(&mut self) {
+        if let Some(Controller::Rumbo(native)) = &mut self.controller {
+            native.recorded = Some(Vec::new());
+        }
+    }
+
+    /// What it was given since then, or since the last call.
+    pub fn take_inputs(&mut self) -> Vec<Latched> {
+        match &mut self.controller {
+            Some(Controller::Rumbo(native)) => native
+                .recorded
+                .as_mut()
+                .map(std::mem::take)
+                .unwrap_or_default(),
+            _ => Vec::new(),
+        }
     }
 
     /// When the bridges were last set to something else [us]; 0 before the first time.

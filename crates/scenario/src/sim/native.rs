@@ -44,6 +44,17 @@ pub(super) struct Native {
     pub(super) next_tick_us: u64,
     /// Outputs and when they take effect.
     pub(super) pending: Option<(u64, Outputs)>,
+    /// What it was given, if somebody wants to know.
+    pub(super) recorded: Option<Vec<Latched>>,
+}
+
+/// What the robot is given at a tick.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Latched {
+    /// Bytes that it receives before the tick.
+    pub received: Vec<u8>,
+    /// What latched at the tick.
+    pub inputs: Inputs,
 }
 
 impl Native {
@@ -68,6 +79,7 @@ impl Native {
             memory,
             next_tick_us: 0,
             pending: None,
+            recorded: None,
         })
     }
 
@@ -161,20 +173,26 @@ impl Sim {
 
     fn tick(&mut self, native: &mut Native) {
         let now_us = self.now_us();
+        let mut received = Vec::new();
         while let Some((_, byte)) = self.uplink.pop(now_us) {
             native.robot.receive(byte);
+            received.push(byte);
         }
         let echo = native
             .board
             .echo(now_us)
             .map(|answer| self.sonar_faults.answer(&self.noise, answer, now_us));
         let battery_v = native.convert(|| self.truth().battery_v);
-        let outputs = native.robot.tick(&Inputs {
+        let inputs = Inputs {
             now: micros(now_us),
             encoders: native.board.encoders(),
             echo,
             battery_v,
-        });
+        };
+        let outputs = native.robot.tick(&inputs);
+        if let Some(recorded) = &mut native.recorded {
+            recorded.push(Latched { received, inputs });
+        }
         native.robot.report();
         // A byte takes 3.4 ms: the one before is written.
         if let Some(cell) = native.robot.store() {

@@ -13,4 +13,5 @@ mod saved;
 mod soak;
 mod state;
 mod talk;
+mod tape;
 mod world;

@@ -79,6 +79,8 @@ pub(crate) struct World {
     number: u16,
     seq: u8,
     talk: VecDeque<u8>,
+    /// It is talked to in lines of text.
+    in_text: bool,
 }
 
 impl World {
@@ -94,6 +96,15 @@ impl World {
             number: 0,
             seq: 0,
             talk: VecDeque::new(),
+            in_text: false,
+        }
+    }
+
+    /// The same, talked to in the original's lines of text.
+    pub(crate) fn in_text(seed: u64) -> Self {
+        Self {
+            in_text: true,
+            ..Self::new(seed)
         }
     }
 
@@ -147,7 +158,7 @@ impl World {
                 7 => self.begin(),
                 300 | 600 | 900 => self.set_going(),
                 later if later > 300 && later.is_multiple_of(97) => self.arm(),
-                other if other % 20 == 10 => self.say(&ToRobot::Heartbeat),
+                other if other % 20 == 10 && !self.in_text => self.say(&ToRobot::Heartbeat),
                 _ => {}
             }
         }
@@ -169,7 +180,14 @@ impl World {
         });
     }
 
+    fn line(&mut self, line: &str) {
+        self.talk.extend(line.bytes().chain(*b"\r\n"));
+    }
+
     fn arm(&mut self) {
+        if self.in_text {
+            return self.line("ON");
+        }
         self.command(Command::ClearFault);
         self.command(Command::Arm);
     }
@@ -177,6 +195,11 @@ impl World {
     /// Another mode, mostly with the sonars that it wants.
     fn begin(&mut self) {
         self.mode = ModeId::ALL[self.random.below(9) as usize];
+        if self.in_text {
+            self.line("OFF");
+            let number = self.mode as u8;
+            return self.line(&format!("MODE {number}"));
+        }
         let rig = match self.mode {
             ModeId::FrontDistance => 0.0,
             ModeId::FrontAlign => 1.0,
@@ -195,6 +218,10 @@ impl World {
 
     /// A reference for the mode, and off.
     fn set_going(&mut self) {
+        if self.in_text {
+            self.set_going_in_text();
+            return self.arm();
+        }
         match self.mode {
             ModeId::Manual => {
                 let movement =
@@ -245,5 +272,29 @@ impl World {
             ModeId::WallHold => {}
         }
         self.arm();
+    }
+
+    /// The same in a line, now and then one that is none.
+    fn set_going_in_text(&mut self) {
+        let (one, other) = (
+            self.random.between(-1.0, 2.0),
+            self.random.between(-1.0, 2.0),
+        );
+        let (cm, rpm) = (
+            self.random.between(20.0, 150.0),
+            self.random.between(-130.0, 130.0),
+        );
+        let line = match (self.mode, self.random.below(6)) {
+            (_, 0) => format!("REF {rpm} {cm}"),
+            (_, 1) => format!("PID {} {one:.2} 0.5 0", if other > 0.5 { "A" } else { "B" }),
+            (ModeId::Mission, _) => format!("GOAL {one:.2} {other:.2}"),
+            (ModeId::WheelSpeed, 2) => format!("REF A {rpm:.1}"),
+            (ModeId::WheelSpeed, 3) => format!("REF B {rpm:.1}"),
+            (ModeId::WheelSpeed | ModeId::StraightLine | ModeId::Manual, _) => {
+                format!("REF {rpm:.1}")
+            }
+            _ => format!("REF {cm:.0}"),
+        };
+        self.line(&line);
     }
 }
