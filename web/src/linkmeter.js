@@ -43,7 +43,7 @@ export class LinkMeter {
       [t('load from the robot'), `${format(link.down_load * 100, 0)} % · ${format(link.down_load * link.baud / 10, 0)} B/s`, link.down_load > 0.98],
       [t('load to the robot'), `${format(link.up_load * 100, 0)} % · ${format(link.up_load * link.baud / 10, 0)} B/s`, link.up_load > 0.9],
       [t('speed of the line'), `${link.baud} baud`, false],
-      [t('CRC errors from | to the robot'), `${link.crc_errors_down} | ${link.crc_errors_up}`, link.crc_errors_down + link.crc_errors_up > 0],
+      [t('CRC errors from, to the robot'), `${link.crc_errors_down} | ${link.crc_errors_up}`, link.crc_errors_down + link.crc_errors_up > 0],
       [t('frames missing'), String(link.frames_lost), link.frames_lost > 0],
       [t('dropped: link full'), String(link.dropped), link.dropped > 0],
       [t('commands unconfirmed'), String(link.unacknowledged), link.unacknowledged > 0],
@@ -108,7 +108,7 @@ function line(t_s, toRobot, bytes) {
   const where = `${format(t_s, 3).padStart(9)} ${toRobot ? '→' : '←'}`;
   if (bytes.every(isText)) return `${where} ${String.fromCharCode(...bytes).trimEnd()}`;
   const hex = bytes.slice(0, SHOWN).map((byte) => byte.toString(16).padStart(2, '0')).join(' ');
-  return `${where} ${kind(bytes).padEnd(16)} ${hex}${bytes.length > SHOWN ? ' …' : ''}`;
+  return `${where} ${kind(bytes).padEnd(10)} ${hex}${bytes.length > SHOWN ? ' …' : ''}`;
 }
 
 /** What kind of frame it is: the high half of the first byte after COBS's own. @param {number[]} bytes */

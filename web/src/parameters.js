@@ -68,7 +68,7 @@ class Line {
     if (!this.edited && !refused && !parameter.pending && this.input.value !== held) this.input.value = held;
     this.apply.hidden = this.revert.hidden = this.input.value === held && !refused;
     this.row.className = parameter.pending ? 'pending' : refused ? 'bad' : this.edited ? 'edited' : '';
-    setText(this.note, parameter.pending ? t('waiting…') : refused ? t('refused: {}', said(refused)) : parameter.value === null ? (document.body.classList.contains('replay') ? t('not in the log') : t('not read yet')) : '');
+    setText(this.note, parameter.pending ? t('waiting…') : refused ? t('refused: {}', said(refused)) : parameter.value === null ? t('not read yet') : '');
   }
 }
 
@@ -83,6 +83,10 @@ export class ParameterTable {
   /** @type {Map<number, Line>} */
   #lines = new Map();
   #mode = 0;
+  /** Some value is known. */
+  #known = false;
+  /** Why there are no values, if there are none. */
+  #why = '';
 
   /** @param {Send} send */
   constructor(send) {
@@ -100,6 +104,8 @@ export class ParameterTable {
       this.#filter();
     }
     for (const parameter of parameters) this.#lines.get(parameter.id)?.show(parameter);
+    this.#known = parameters.some(({ value }) => value !== null);
+    this.#tell();
   }
 
   /**
@@ -108,12 +114,19 @@ export class ParameterTable {
    * @param {string} why there are no values, if there are none
    */
   setMode(mode, why) {
-    setText(this.#note, why);
-    for (const button of [this.#save, this.#reset]) button.hidden = why !== '';
-    this.#table.classList.toggle('without', why !== '');
+    this.#why = why;
+    this.#tell();
     if (mode === this.#mode) return;
     this.#mode = mode;
     this.#filter();
+  }
+
+  #tell() {
+    const replay = document.body.classList.contains('replay');
+    const why = replay && !this.#known ? t('the log does not tell them') : this.#why;
+    setText(this.#note, why);
+    for (const button of [this.#save, this.#reset]) button.hidden = replay || why !== '';
+    this.#table.classList.toggle('without', why !== '');
   }
 
   /** The mode's own parameters first, then those of all modes. */

@@ -176,6 +176,8 @@ export class Plots {
     for (const { head } of this.#panels) this.#heads.observe(head);
     this.#showWindow();
     this.#offerChoices();
+    // What has nothing to show has no name in a title, and takes no place there.
+    for (const panel of this.#panels) panel.draw();
     this.#fitAnew();
     this.#band.plot.redraw(false, true);
     this.#redraw();

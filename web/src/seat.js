@@ -6,7 +6,7 @@ import { t } from './text.js';
 /** @typedef {{seat: import('./types.js').Seat, page: number, holder: number | null, pages: number}} Control */
 
 export class Seat {
-  #row = element('seat', HTMLSpanElement);
+  #row = element('seat', HTMLDivElement);
   #words = element('seat-words', HTMLSpanElement);
   #take = element('take-control', HTMLButtonElement);
   #release = element('release-control', HTMLButtonElement);
@@ -24,7 +24,7 @@ export class Seat {
     this.#take.hidden = seat !== 'passenger' && seat !== 'free';
     this.#release.hidden = seat !== 'driver';
     setText(this.#words, words(control));
-    this.#words.className = `chip ${seat === 'driver' ? 'good' : seat === 'free' ? '' : 'warning'}`;
+    this.#row.className = `row ${seat === 'driver' || seat === 'free' ? '' : 'warning'}`;
     document.body.classList.toggle('viewer', seat === 'viewer');
   }
 }

@@ -56,6 +56,11 @@ test('the first order takes control, and every page is told which one has it', a
   await told(first, 'this is page 1, it has control');
   await told(second, 'page 1 has control, this is page 2; STOP works');
   await told(viewer, 'you watch, page 1 has control; STOP works');
+  // Telling it takes no room from what the robot does.
+  for (const page of [second, viewer]) {
+    const [panel, line] = await Promise.all(['#command-section', '#state-line'].map((part) => page.locator(part).boundingBox()));
+    assert.ok(panel && line && line.y + line.height <= panel.y + panel.height, JSON.stringify([panel, line]));
+  }
 });
 
 test('a page without control is refused with the reason, and may stop the robot', async () => {
