@@ -30,15 +30,20 @@ function draw(tag, attributes, ...children) {
   return made;
 }
 
-/** A name in lines that fit a box. @param {string} name @param {number} width_px */
+/** A name in lines that fit a box; a word that does not is broken. @param {string} name @param {number} width_px */
 function lines(name, width_px) {
   const most = Math.max(4, Math.floor(width_px / LETTER_PX));
   /** @type {string[]} */
   const made = [];
-  for (const word of name.split(' ')) {
+  for (const whole of name.split(' ')) {
     const last = made.at(-1);
-    if (last !== undefined && last.length + 1 + word.length <= most) made[made.length - 1] = `${last} ${word}`;
-    else made.push(word.length > most ? `${word.slice(0, most - 1)}…` : word);
+    let word = whole;
+    if (last !== undefined && last.length + 1 + word.length <= most) {
+      made[made.length - 1] = `${last} ${word}`;
+      continue;
+    }
+    for (; word.length > most; word = word.slice(most - 1)) made.push(`${word.slice(0, most - 1)}-`);
+    made.push(word);
   }
   return made.slice(0, 4);
 }

@@ -17,6 +17,9 @@ export class CommandPanel {
   #about = element('about', HTMLSpanElement);
   #reference = element('reference', HTMLFormElement);
   #armed = element('armed', HTMLOutputElement);
+  #experiment = element('mode-scenario', HTMLButtonElement);
+  /** @type {Scene | null} */
+  #scene = null;
   #movements;
   #places;
   /** @type {ModeEntry[]} */
@@ -33,6 +36,9 @@ export class CommandPanel {
     this.#places = new Places(send, map);
     element('stop', HTMLButtonElement).addEventListener('click', () => send({ type: 'stop' }));
     element('on', HTMLButtonElement).addEventListener('click', () => send({ type: 'arm' }));
+    this.#experiment.addEventListener('click', () => {
+      if (this.#scene) send({ type: 'reset', scenario: this.#experiment.value, world: null, rig: null, seed: this.#scene.choice.seed });
+    });
     element('off', HTMLButtonElement).addEventListener('click', () => send({ type: 'disarm' }));
     // Space stops, wherever the focus is: ahead of whatever else it would do there. Only in a line of text it is a blank.
     for (const type of /** @type {const} */ (['keydown', 'keyup'])) {
@@ -59,6 +65,7 @@ export class CommandPanel {
 
   /** @param {Scene | null} scene */
   setScene(scene) {
+    this.#scene = scene?.of_ghost ? null : scene;
     this.#places.setScene(scene);
   }
 
@@ -81,6 +88,19 @@ export class CommandPanel {
       this.#places.layOut(entry);
     }
     this.#showReference(state, entry);
+    const scenario = armed ? null : this.#scenarioOf(mode);
+    this.#experiment.hidden = scenario === null;
+    if (scenario !== null) {
+      this.#experiment.value = scenario;
+      setText(this.#experiment, t('Scenario {}', scenario));
+    }
+  }
+
+  /** The simulation is in another mode's experiment, whose world and sonars may be wrong for this one: this mode's first. @param {number} mode */
+  #scenarioOf(mode) {
+    if (!this.#scene || mode === 0) return null;
+    const own = (/** @type {string} */ name) => new RegExp(`^mode${mode}\\b`).test(name) || (mode === 7 && name.startsWith('pursuit-'));
+    return own(this.#scene.choice.scenario) ? null : this.#scene.scenarios.find(own) ?? null;
   }
 
   /** @param {State} state @param {ModeEntry | null} mode */

@@ -23,6 +23,12 @@ const beyond = () => page.evaluate(() => {
   return [all.scrollWidth - innerWidth, all.scrollHeight - innerHeight];
 });
 
+/** The parts whose contents they do not hold, and which do not scroll. */
+const cutOff = () => page.evaluate(() => ['top', 'command-section', 'plot-section', 'event-section', 'parameter-section'].filter((id) => {
+  const part = document.getElementById(id);
+  return part && (part.scrollHeight > part.clientHeight + 1 || part.scrollWidth > part.clientWidth + 1);
+}));
+
 test('1280 x 720 holds everything without scrolling, and every mode, in both languages', async () => {
   for (const language of ['en', 'es']) {
     await page.locator('#language').selectOption(language);
@@ -31,6 +37,7 @@ test('1280 x 720 holds everything without scrolling, and every mode, in both lan
       await page.locator(`#modes button[value="${mode}"]`).click();
       await page.locator(`#modes button[value="${mode}"][aria-pressed="true"]`).waitFor();
       assert.deepEqual(await beyond(), [0, 0], `${language}, mode ${mode}`);
+      assert.deepEqual(await cutOff(), [], `${language}, mode ${mode}`);
     }
   }
   await page.locator('#language').selectOption('en');

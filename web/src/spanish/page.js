@@ -64,7 +64,8 @@ export const PAGE = {
   'no reading': 'sin lectura', 'clear|sonar': 'libre', 'Clear fault': 'Borrar fallo',
   // Commands.
   'Commands': 'Órdenes', 'Mode': 'Modo', 'Arm and start the mode': 'Arma el robot y empieza el modo', 'Stop the mode and disarm': 'Detiene el modo y desarma',
-  'Switch OFF first': 'Primero OFF', 'reference': 'consigna', 'Set': 'Fijar', 'now {} cm': 'ahora {} cm', 'now {} rpm': 'ahora {} rpm', '{} to {} {}': 'de {} a {} {}',
+  'Switch OFF first': 'Primero OFF', 'Scenario {}': 'Escenario {}',
+  'Start the simulation again with an experiment of this mode: its world, its sonars': 'Empieza la simulación de nuevo con un experimento de este modo: su mundo, sus sonares', 'reference': 'consigna', 'Set': 'Fijar', 'now {} cm': 'ahora {} cm', 'now {} rpm': 'ahora {} rpm', '{} to {} {}': 'de {} a {} {}',
   'left': 'izq.', 'right': 'der.', 'front': 'frontal', 'both': 'ambas',
   'Open loop by PWM, or closed loop by speed': 'Lazo abierto por PWM, o lazo cerrado por velocidad', 'pivot on': 'pivote', 'L|wheel': 'I', 'R|wheel': 'D', 'level': 'nivel',
   'Armed, the arrow keys drive while they are held, or a gamepad with a shoulder button.':
