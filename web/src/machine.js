@@ -30,6 +30,14 @@ function draw(tag, attributes, ...children) {
   return made;
 }
 
+/** Where a word is broken: before the last syllable that fits, as far as letters tell. @param {string} word @param {number} most */
+function breakOf(word, most) {
+  for (let at = Math.min(most - 1, word.length - 3); at > 2; at--) {
+    if (/^(?:ch|ll|rr|[bcdfgpt][lr]|[bcdfghjklmnpqrstvwxyzñ])[aeiouyáéíóú]/.test(word.slice(at)) && !/^(?:[csl]h|[bcdfgpt][lr]|ll|rr)/.test(word.slice(at - 1))) return at;
+  }
+  return most - 1;
+}
+
 /** A name in lines that fit a box; a word that does not is broken. @param {string} name @param {number} width_px */
 function lines(name, width_px) {
   const most = Math.max(4, Math.floor(width_px / LETTER_PX));
@@ -42,7 +50,7 @@ function lines(name, width_px) {
       made[made.length - 1] = `${last} ${word}`;
       continue;
     }
-    for (; word.length > most; word = word.slice(most - 1)) made.push(`${word.slice(0, most - 1)}-`);
+    for (let at; word.length > most; word = word.slice(at)) made.push(`${word.slice(0, at = breakOf(word, most))}-`);
     made.push(word);
   }
   return made.slice(0, 4);

@@ -146,7 +146,7 @@ test('a layout is kept by name and as a file, and loaded again', async () => {
   await page.locator('#layout-initial').click();
   await page.locator('#layouts').click();
   await load('mine.layout.json', readFileSync(file.path, 'utf8'));
-  assert.equal((await plots()).layout.window_s, 60);
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.plots().layout.window_s === 60);
 });
 
 test('a file that is no layout is refused with the reason, and nothing changes', async () => {

@@ -65,6 +65,8 @@ pub struct RobotClient {
     reference: Wheels<f32>,
     heading_ref_rad: f32,
     malformed: u32,
+    /// Errors before the first good frame, one at most: who begins to listen in the middle of a frame cannot read its rest.
+    cut_off: Option<u16>,
     up: Meter,
     down: Meter,
     frames: Meter,
@@ -100,6 +102,7 @@ impl RobotClient {
             reference: Wheels::both(0.0),
             heading_ref_rad: 0.0,
             malformed: 0,
+            cut_off: None,
             up: Meter::default(),
             down: Meter::default(),
             frames: Meter::default(),
@@ -195,6 +198,8 @@ impl RobotClient {
                 // A robot addressed in binary answers so; a line is left from before.
                 Some(Received::Line(_)) | None => continue,
             };
+            let errors = self.decoder.crc_errors();
+            self.cut_off.get_or_insert(errors.min(1));
             match FromRobot::from_body(&body) {
                 Ok(_) if self.text => self.hear_frame_in_text(),
                 Ok(message) => self.understand(message, now_us, heard),
@@ -329,7 +334,10 @@ impl RobotClient {
             down_bytes_s: self.down.per_second(now_us),
             telemetry_hz: self.frames.per_second(now_us),
             heard_bytes: self.heard_bytes,
-            crc_errors: self.decoder.crc_errors(),
+            crc_errors: self
+                .decoder
+                .crc_errors()
+                .wrapping_sub(self.cut_off.unwrap_or(0)),
             frames_lost: self.decoder.frames_lost(),
             malformed: self.malformed,
             round_trip_us: self.manager.round_trip_us(),
@@ -337,5 +345,27 @@ impl RobotClient {
             clock_offset_ms: self.clock.offset_ms(),
             clock_fast_ppm: self.clock.fast_ppm((now_us / 1_000) as i64),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_joins_in_the_middle_of_a_frame_sees_no_error_and_each_damaged_frame_after() {
+        let mut client = RobotClient::new(7, false, KnownTable::OURS);
+        let (mut heard, mut now_us) = (Vec::new(), 0);
+        let mut hear = |client: &mut RobotClient, bytes: &[u8]| {
+            now_us += 40_000;
+            client.hear(bytes, now_us, &mut heard);
+            client.link(now_us).crc_errors
+        };
+        let frame = |sequence| FromRobot::HeadingRef(0.5).frame(sequence).bytes().to_vec();
+        assert_eq!(hear(&mut client, &frame(0)[2..]), 1);
+        assert_eq!(hear(&mut client, &frame(1)), 0);
+        let mut damaged = frame(2);
+        damaged[2] ^= 0x10;
+        assert_eq!(hear(&mut client, &damaged), 1);
     }
 }
