@@ -27,6 +27,8 @@ export class LinkMeter {
   /** What has begun and not ended in each direction. @type {[number[], number[]]} */
   #open = [[], []];
   #seen = false;
+  /** What stands there while there are no bytes. */
+  #nothing = '';
 
   /** It is looked at. @param {boolean} seen */
   show(seen) {
@@ -35,7 +37,12 @@ export class LinkMeter {
   }
 
   /** @param {State} state */
-  update({ link, robot }) {
+  update({ link, robot, replay }) {
+    const nothing = replay ? t('The bytes stand in the log; a replay does not show them.') : '';
+    if (nothing !== this.#nothing) {
+      this.#nothing = nothing;
+      this.#write();
+    }
     /** @type {[string, string, boolean][]} */
     const figures = [
       [t('telemetry'), `${format(link.telemetry_hz)} Hz`, false],
@@ -93,7 +100,7 @@ export class LinkMeter {
   #write() {
     if (!this.#seen || this.#hold.checked) return;
     const atEnd = this.#bytes.scrollHeight - this.#bytes.scrollTop - this.#bytes.clientHeight < 30;
-    this.#bytes.textContent = this.#lines.join('\n');
+    this.#bytes.textContent = this.#lines.join('\n') || this.#nothing;
     if (atEnd) this.#bytes.scrollTop = this.#bytes.scrollHeight;
   }
 }

@@ -136,7 +136,7 @@ export const PAGE = {
   'Figures of the link': 'Cifras del enlace', 'Bytes of the link, frame by frame': 'Bytes del enlace, trama a trama',
   'telemetry': 'telemetría', 'load from the robot': 'carga desde el robot', 'load to the robot': 'carga hacia el robot', 'speed of the line': 'velocidad de la línea',
   'CRC errors from, to the robot': 'errores de CRC desde, hacia el robot', 'frames missing': 'tramas perdidas', 'dropped: link full': 'descartadas: enlace lleno',
-  'commands unconfirmed': 'órdenes sin confirmar', 'control ticks late': 'pasos de control tarde', 'robot started at': 'el robot arrancó a los', 'as the station': 'con la estación', 'robot\'s clock': 'reloj del robot',
+  'commands unconfirmed': 'órdenes sin confirmar', 'control ticks late': 'pasos de control tarde', 'The bytes stand in the log; a replay does not show them.': 'Los bytes están en la grabación; aquí no se muestran.', 'robot started at': 'el robot arrancó a los', 'as the station': 'con la estación', 'robot\'s clock': 'reloj del robot',
   '{} ppm slow': '{} ppm lento', '{} ppm fast': '{} ppm rápido', 'HELLO': 'HELLO', 'status': 'estado', 'event': 'suceso',
   'acknowledgement': 'confirmación', 'heartbeat': 'latido', 'command': 'orden', 'unknown': 'desconocida',
   'info': 'información', 'good': 'bien', 'warning': 'aviso',
