@@ -1,11 +1,12 @@
 //! How long the interrupt handlers take, and how long they let others wait, while everything happens at once.
 
 use crate::board::image;
+use crate::faults::drive::{self, setup};
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::observe::profile::Profile;
-use rumbo_wire::{Decoder, FromRobot, Message, Received};
+use rumbo_wire::{Command, Decoder, FromRobot, Message, Received};
 
 const CYCLES_PER_MS: u64 = 16_000;
 /// Vectors of the encoders, and of the echoes.
@@ -141,6 +142,25 @@ fn it_introduces_itself_at_once_and_tells_25_times_a_second() {
     assert!((48..=50).contains(&telemetry), "{telemetry}");
     assert_eq!(decoder.crc_errors(), 0);
     // What lies between the variables and the deepest that the stack has been.
+    let lowest = chip.observers().lowest_stack_pointer().unwrap();
+    let margin = lowest - image.data_end().unwrap();
+    println!("stack margin {margin} bytes");
+    assert!(margin >= 2_048, "{margin}");
+}
+
+#[test]
+fn the_stack_keeps_its_margin_around_the_boxes() {
+    let (Some(image), Some(setup)) = (image(), setup("mode8-obstacles", |_| {})) else {
+        return;
+    };
+    let mut drive = drive::Drive::new(&setup);
+    let chip = drive.sim.mega_mut().unwrap().chip_mut();
+    chip.observers_mut().measure_stack();
+    drive.wait_s(0.3);
+    drive.command(Command::Mode(setup.scenario.mode)).unwrap();
+    drive.follow(&setup, 12.0);
+    assert!(drive.speed_rad_s() > 1.0, "it drives");
+    let chip = drive.sim.mega().unwrap().chip();
     let lowest = chip.observers().lowest_stack_pointer().unwrap();
     let margin = lowest - image.data_end().unwrap();
     println!("stack margin {margin} bytes");
