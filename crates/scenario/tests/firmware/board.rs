@@ -112,7 +112,7 @@ impl Board {
         self.state.write(text, sram, usize::from(SRAM_START));
     }
 
-    /// Of how many bytes of the robot each bit is in that text, and of how many bytes it is.
+    /// How many bytes of the robot are in that text, and how many it has.
     pub(crate) fn bytes_in_state(&self) -> (usize, usize) {
         let mut sram = self.chip.cpu().sram().to_vec();
         let (mut whole, mut other) = (String::new(), String::new());
@@ -120,13 +120,11 @@ impl Board {
         let robot = self.state.place(&sram, usize::from(SRAM_START));
         let count = robot.len();
         let counts = robot.filter(|at| {
-            (0..8).all(|bit| {
-                sram[*at] ^= 1 << bit;
-                other.clear();
-                self.state.write(&mut other, &sram, usize::from(SRAM_START));
-                sram[*at] ^= 1 << bit;
-                other != whole
-            })
+            sram[*at] ^= 0xFF;
+            other.clear();
+            self.state.write(&mut other, &sram, usize::from(SRAM_START));
+            sram[*at] ^= 0xFF;
+            other != whole
         });
         (counts.count(), count)
     }
