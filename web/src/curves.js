@@ -55,17 +55,23 @@ function join(sources, names, [from_s, to_s]) {
   /** @type {Map<string, Column>} */
   const columns = new Map(names.map((name) => [name, []]));
   // From the line before to the line after, so that the curves go through to the edges.
-  const parts = sources.map((source) => ({ source, at: Math.max(0, source.indexAt(from_s) - 1), end: source.indexAt(to_s) + 1 }));
+  const parts = sources.map((source) => ({
+    t: source.t,
+    at: Math.max(0, source.indexAt(from_s) - 1),
+    end: Math.min(source.t.length, source.indexAt(to_s) + 1),
+    own: [...columns].flatMap(([name, into]) => {
+      const from = source.columns.get(name);
+      return from ? [{ from, into }] : [];
+    }),
+  }));
   for (;;) {
-    const next_s = Math.min(...parts.map(({ source, at, end }) => (at < end ? source.t[at] : undefined) ?? Infinity));
+    let next_s = Infinity;
+    for (const { at, end, t: times } of parts) if (at < end) next_s = Math.min(next_s, times[at] ?? Infinity);
     if (next_s === Infinity) return { t, columns };
     t.push(next_s);
     for (const part of parts) {
-      const here = part.at < part.end && part.source.t[part.at] === next_s;
-      for (const [name, column] of columns) {
-        const own = part.source.columns.get(name);
-        if (own) column.push(here ? own[part.at] : undefined);
-      }
+      const here = part.at < part.end && part.t[part.at] === next_s;
+      for (const { from, into } of part.own) into.push(here ? from[part.at] : undefined);
       if (here) part.at += 1;
     }
   }

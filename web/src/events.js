@@ -16,9 +16,13 @@ export class EventList {
 
   /** @param {(t_s: number) => void} chosen Called with the time of an event that is clicked. */
   constructor(chosen) {
-    this.#list.addEventListener('click', (event) => {
+    const choose = (/** @type {Event} */ event) => {
       const line = event.target instanceof Element ? event.target.closest('li') : null;
       if (line?.dataset['t']) chosen(Number(line.dataset['t']));
+    };
+    this.#list.addEventListener('click', choose);
+    this.#list.addEventListener('keydown', (event) => {
+      if (event.key === 'Enter') choose(event);
     });
   }
 
@@ -30,7 +34,12 @@ export class EventList {
   add(events) {
     const lines = events.slice(-KEPT).map(({ t_s, level, text }) => create('li', { className: level },
       create('time', { textContent: `${format(t_s, 2)} s` }), create('span', { className: 'sign', textContent: SIGNS[level], title: t(level) }), said(text)));
-    lines.forEach((line, index) => { line.dataset['t'] = String(events.slice(-KEPT)[index]?.t_s); });
+    const replay = document.body.classList.contains('replay');
+    lines.forEach((line, index) => {
+      line.dataset['t'] = String(events.slice(-KEPT)[index]?.t_s);
+      // There it leads to its time, by keyboard too.
+      if (replay) line.tabIndex = 0;
+    });
     this.#list.prepend(...lines.reverse());
     while (this.#list.children.length > KEPT) this.#list.lastElementChild?.remove();
   }

@@ -79,6 +79,13 @@ test('a click on an event goes to its time', async () => {
   assert.ok(Math.abs((await shown_s()) - 5.5) < 0.1);
 });
 
+test('Enter on an event goes to its time too', async () => {
+  await scrub(2);
+  await page.locator('#events li', { hasText: 'sent: reference 50.0 cm' }).focus();
+  await page.keyboard.press('Enter');
+  await page.waitForFunction(() => Math.abs(/** @type {any} */ (window).rumbo.state().t_s - 5.5) < 0.1);
+});
+
 test('no script failed on the way', () => {
   assert.deepEqual(dashboard.complaints, []);
 });
