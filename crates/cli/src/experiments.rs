@@ -11,6 +11,7 @@ use rumbo_report::real::{self, Real};
 use rumbo_report::text::Language;
 use rumbo_report::{Data, Plan, Request, html};
 use rumbo_scenario::files::{Library, Overrides};
+use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::time::Instant;
 
@@ -68,6 +69,11 @@ fn progress(args: &ExperimentsArgs, plan: &Plan) -> ProgressBar {
         plan.runs(),
         plan.simulated_s()
     );
+    // Who sees no bar is told once, where there is something to wait for.
+    if !std::io::stderr().is_terminal() && expected_s > 3.0 {
+        // A closed stderr leaves nobody to tell.
+        let _ = writeln!(std::io::stderr(), "{message}");
+    }
     let style = ProgressStyle::with_template("{msg} {bar:30} {percent} %, {eta} left");
     let bar = ProgressBar::new((10.0 * plan.simulated_s()) as u64).with_message(message);
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));

@@ -4,7 +4,7 @@ use crate::args::IdentifyArgs;
 use crate::failure::Failure;
 use crate::output;
 use crate::place;
-use crate::recorded::attached;
+use crate::recorded::{self, attached};
 use indicatif::ProgressBar;
 use rumbo_plant::params::Params;
 use rumbo_scenario::dialect;
@@ -133,7 +133,7 @@ fn read(paths: &[PathBuf]) -> Result<Logs, Failure> {
 /// The CSV that a path holds: itself, or attached to a log by `rumbo import`.
 fn text_of(path: &Path) -> Result<String, Failure> {
     let wrong = |what: String| Failure::Input(format!("{}: {what}", path.display()));
-    let bytes = std::fs::read(path).map_err(|error| {
+    let bytes = recorded::bytes(path).map_err(|error| {
         wrong(format!(
             "cannot be read ({error}); give the path of a CSV or a log"
         ))

@@ -8,7 +8,7 @@ use crate::capture;
 use crate::failure::Failure;
 use crate::output::{self, figure};
 use crate::place;
-use crate::recorded::CSV;
+use crate::recorded::{self, CSV};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, WriteOptions};
 use rumbo_scenario::dialect;
@@ -42,7 +42,7 @@ struct Recording {
 /// Checks, converts, writes and sums up.
 pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     let shown = args.file.display();
-    let bytes = std::fs::read(&args.file).map_err(|error| {
+    let bytes = recorded::bytes(&args.file).map_err(|error| {
         Failure::Input(format!(
             "{shown}: cannot be read ({error}); give the path of a CSV file"
         ))

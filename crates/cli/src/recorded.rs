@@ -10,10 +10,13 @@ use rumbo_station::Row;
 use rumbo_station::log::{Kind, Log};
 use rumbo_wire::text::RowKind;
 use std::f64::consts::PI;
+use std::io;
 use std::path::Path;
 
 /// Media type of the CSV that an imported log carries.
 pub(crate) const CSV: &str = "text/csv";
+/// Longest recording that is read: some days of one robot \[bytes\].
+const LARGEST: u64 = 1 << 30;
 /// What stands for nothing in reach \[cm\]: the sonars' reach.
 const CLEAR_CM: f64 = 250.0;
 
@@ -30,9 +33,17 @@ const NOTHING: Text = Text {
     es: "no contiene ninguna prueba de los modos 1 a 8 con el robot armado",
 };
 
+/// A recording's bytes; a file that no recording can be is not read into memory.
+pub(crate) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    if std::fs::metadata(path)?.len() > LARGEST {
+        return Err(io::Error::other("longer than any recording"));
+    }
+    std::fs::read(path)
+}
+
 /// What a log comes to, or why it is none of a real robot's run.
 pub(crate) fn from_log(path: &Path) -> Result<FromLog, Text> {
-    let bytes = std::fs::read(path).map_err(|_| NO_LOG)?;
+    let bytes = bytes(path).map_err(|_| NO_LOG)?;
     if let Ok(csv) = attached(&bytes) {
         let csv = String::from_utf8_lossy(&csv).into_owned();
         return Ok(FromLog { csv, ours: false });

@@ -80,11 +80,11 @@ const HOW_SILENT: Text = t(
     "En algunos experimentos el programa ensayado no envía telemetría que este informe pueda leer; en ellos todas las curvas son las reales.",
 );
 const HOW_COLOURS: Text = t(
-    "Left is dark blue, right a lighter orange, what is ahead or true is green; what was asked for is dashed, and what is true dash-dotted where it lies \
+    "Left is blue, right is orange (in grey: dark and light), what is ahead or true is green; what was asked for is dashed, and what is true dash-dotted where it lies \
      over what the robot believes. x points ahead, y to the left, headings \
      count counter-clockwise. Distances that limits judge are those of a robot that hears sound at 343.4 m/s, since none can know the \
      temperature of the air.",
-    "El azul oscuro es la izquierda, el naranja, más claro, la derecha y el verde lo que está delante o es real; lo que se pide va a trazos, y lo real, a \
+    "El azul es la izquierda, el naranja la derecha (en gris: oscuro y claro) y el verde lo que está delante o es real; lo que se pide va a trazos, y lo real, a \
      trazo y punto donde se superpone a lo que cree el robot. El eje x apunta hacia delante, el y hacia la izquierda y los ángulos crecen en sentido antihorario. Las distancias sometidas a límites son las de un \
      robot que oye el sonido a 343,4 m/s, ya que ninguno puede conocer la temperatura del aire.",
 );

@@ -100,6 +100,11 @@ impl fmt::Display for ServeError {
                 "--listen {0}: this computer has no such address; `ip address` (Windows: `ipconfig`) shows which it has",
                 at.ip()
             ),
+            Self::Io(at, error) if error.kind() == io::ErrorKind::PermissionDenied => write!(
+                f,
+                "port {} is for administrators ({error}): choose one above 1023 with --port N (0 takes any free one)",
+                at.port()
+            ),
             Self::Io(at, error) => {
                 write!(f, "the dashboard could not be served on {at}: {error}")
             }

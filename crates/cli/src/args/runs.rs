@@ -16,7 +16,9 @@ Examples:
   rumbo run mode5 --firmware my_sketch.elf --command 'REF 40@20'
   rumbo run mode5 --firmware my_sketch.elf --profile cycles.folded --vcd pins.vcd
   rumbo run mode5 --firmware my_sketch.elf --gdb 1234   # then: avr-gdb my_sketch.elf -ex 'target remote :1234'
-  rumbo run mode1 --seed 7 --param battery.open_circuit_v=6.9 --out out/mode1")]
+  rumbo run mode1 --seed 7 --param battery.open_circuit_v=6.9 --out out/mode1
+
+Exit status 0: all limits are met; 1: one is missed; 2: wrong input; 130: Ctrl-C, and what was done until then has been printed.")]
 pub(crate) struct RunArgs {
     /// Scenarios: names, or paths of files
     #[arg(required = true, value_name = "SCENARIO")]

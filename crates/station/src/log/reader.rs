@@ -12,15 +12,19 @@ use crate::target::{MapPose, Scene};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use mcap::MAGIC;
-use mcap::read::{ChunkFlattener, Options};
 use mcap::records::Record;
+use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
+/// Longest record of a log that is shorter itself: what its compressed chunks may hold \[bytes\].
+const LONGEST: usize = 64 << 20;
 /// The topic of a log made by `rumbo import`.
 const IMPORTED: &str = "telemetry";
 
@@ -108,13 +112,18 @@ impl Log {
 
     fn read_parts(path: &Path, with_link: bool) -> Result<Self, LogError> {
         let wrong = |what: String| LogError::new(path, what);
-        let bytes = std::fs::read(path).map_err(|error| {
+        let unreadable = |error: io::Error| {
             wrong(format!(
                 "cannot be read ({error}); `rumbo list logs` shows what there is"
             ))
-        })?;
-        if !bytes.starts_with(MAGIC) {
-            let what = if bytes.is_empty() {
+        };
+        let file = File::open(path).map_err(unreadable)?;
+        let length = file.metadata().map_err(unreadable)?.len();
+        let mut file = BufReader::new(file);
+        // A file of another kind may be too long for the memory.
+        let start = file.fill_buf().map_err(unreadable)?;
+        if !start.starts_with(MAGIC) {
+            let what = if start.is_empty() {
                 "is empty"
             } else {
                 "is no MCAP log"
@@ -124,7 +133,7 @@ impl Log {
             )));
         }
         let mut log = Self::default();
-        if let Err(error) = log.take_all(&bytes, with_link) {
+        if let Err(error) = log.take_all(file, length, with_link) {
             log.cut = Some(error);
         }
         if log.manifest.is_none() && log.rows.is_empty() {
@@ -168,51 +177,84 @@ impl Log {
         row_s.max(state_s).max(link_s)
     }
 
-    fn take_all(&mut self, bytes: &[u8], with_link: bool) -> Result<(), String> {
-        let options = Options::IgnoreEndMagic | Options::ValidateChunkCrcs;
-        let records =
-            ChunkFlattener::new_with_options(bytes, options).map_err(|error| error.to_string())?;
+    fn take_all(
+        &mut self,
+        mut file: impl Read,
+        length: u64,
+        with_link: bool,
+    ) -> Result<(), String> {
+        // What a damaged length asks for is not there to be read.
+        let longest = usize::try_from(length).map_or(LONGEST, |length| length.max(LONGEST));
+        let options = LinearReaderOptions::default()
+            .with_skip_end_magic(true)
+            .with_validate_chunk_crcs(true)
+            .with_record_length_limit(longest);
+        let mut reader = LinearReader::new_with_options(options);
         let mut channels = HashMap::new();
-        for record in records {
-            match record.map_err(|error| error.to_string())? {
-                Record::Channel(channel) => {
-                    let known = match Topic::find(&channel.topic) {
-                        Some(Topic::FromRobot | Topic::ToRobot) if !with_link => None,
-                        Some(topic) => Some(Channel::Ours(topic)),
-                        None => (channel.topic == IMPORTED).then_some(Channel::Imported),
-                    };
-                    channels.insert(channel.id, known);
+        while let Some(event) = reader.next_event() {
+            match event.map_err(|error| error.to_string())? {
+                LinearReadEvent::ReadRequest(count) => {
+                    let into = reader.insert(count);
+                    let read = file.read(into).map_err(|error| error.to_string())?;
+                    reader.notify_read(read);
                 }
-                Record::Message { header, data } => {
-                    if let Some(Some(channel)) = channels.get(&header.channel_id) {
-                        self.take(*channel, header.log_time, &data)
-                            .map_err(|error| {
-                                format!(
-                                    "a message at {:.3} s is damaged ({error})",
-                                    header.log_time as f64 / 1e9
-                                )
-                            })?;
+                LinearReadEvent::Record { opcode, data } => {
+                    let record = mcap::parse_record(opcode, data);
+                    let record = record.map_err(|error| error.to_string())?;
+                    if self.take_record(record, &mut channels, with_link)? {
+                        return Ok(());
                     }
                 }
-                Record::Metadata(metadata) => match metadata.name.as_str() {
-                    "manifest" => self.manifest = Manifest::from_metadata(&metadata.metadata),
-                    "outcome" => self.outcome = Some(Outcome::from_metadata(&metadata.metadata)),
-                    _ => {}
-                },
-                Record::Attachment { header, data, .. } => {
-                    if let (Some(manifest), Some(name)) =
-                        (&mut self.manifest, header.name.strip_suffix(".toml"))
-                    {
-                        manifest
-                            .files
-                            .insert(name.into(), String::from_utf8_lossy(&data).into_owned());
-                    }
-                }
-                Record::DataEnd(_) => return Ok(()),
-                _ => {}
             }
         }
         Err("the log has no end: its writer was stopped".into())
+    }
+
+    /// Whether it was the last one.
+    fn take_record(
+        &mut self,
+        record: Record<'_>,
+        channels: &mut HashMap<u16, Option<Channel>>,
+        with_link: bool,
+    ) -> Result<bool, String> {
+        match record {
+            Record::Channel(channel) => {
+                let known = match Topic::find(&channel.topic) {
+                    Some(Topic::FromRobot | Topic::ToRobot) if !with_link => None,
+                    Some(topic) => Some(Channel::Ours(topic)),
+                    None => (channel.topic == IMPORTED).then_some(Channel::Imported),
+                };
+                channels.insert(channel.id, known);
+            }
+            Record::Message { header, data } => {
+                if let Some(Some(channel)) = channels.get(&header.channel_id) {
+                    self.take(*channel, header.log_time, &data)
+                        .map_err(|error| {
+                            format!(
+                                "a message at {:.3} s is damaged ({error})",
+                                header.log_time as f64 / 1e9
+                            )
+                        })?;
+                }
+            }
+            Record::Metadata(metadata) => match metadata.name.as_str() {
+                "manifest" => self.manifest = Manifest::from_metadata(&metadata.metadata),
+                "outcome" => self.outcome = Some(Outcome::from_metadata(&metadata.metadata)),
+                _ => {}
+            },
+            Record::Attachment { header, data, .. } => {
+                if let (Some(manifest), Some(name)) =
+                    (&mut self.manifest, header.name.strip_suffix(".toml"))
+                {
+                    manifest
+                        .files
+                        .insert(name.into(), String::from_utf8_lossy(&data).into_owned());
+                }
+            }
+            Record::DataEnd(_) => return Ok(true),
+            _ => {}
+        }
+        Ok(false)
     }
 
     fn take(&mut self, channel: Channel, time_ns: u64, data: &[u8]) -> serde_json::Result<()> {

@@ -285,6 +285,28 @@ mod tests {
     }
 
     #[test]
+    fn a_log_with_damaged_bytes_is_read_as_far_as_it_goes_or_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("damaged.mcap");
+        let mut recorder = Recorder::at(&path, &Manifest::default()).unwrap();
+        (0..300).for_each(|number| recorder.take(burst(1_000 * number)));
+        recorder.finish().unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        let mut cut = 0;
+        for at in (mcap::MAGIC.len()..whole.len() - 8).step_by(61) {
+            let mut damaged = whole.clone();
+            // A length that no memory holds, if a length was there.
+            damaged[at..at + 8].fill(0x7f);
+            std::fs::write(&path, &damaged).unwrap();
+            match Log::read(&path) {
+                Ok(log) => cut += usize::from(log.cut.is_some()),
+                Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
+            }
+        }
+        assert!(cut > 0);
+    }
+
+    #[test]
     fn what_is_no_log_gets_one_line() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x.mcap");
