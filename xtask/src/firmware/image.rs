@@ -1,12 +1,10 @@
-//! The linked image: repaired, stamped with its hash, measured.
+//! The linked image: stamped with its hash, measured.
 
 use std::fmt;
 
 use object::LittleEndian;
 use object::elf::{FileHeader32, SHF_ALLOC, SHF_WRITE, SHT_NOBITS, STT_FUNC};
 use object::read::elf::{FileHeader, SectionHeader, Sym};
-
-use super::stack_arguments;
 
 /// Where the image keeps its hash.
 const HASH_SYMBOL: &str = "RUMBO_IMAGE_HASH";
@@ -18,7 +16,8 @@ const FORBIDDEN: [&str; 3] = ["panic", "core3fmt", "unwrap_failed"];
 pub(crate) struct Report {
     sections: Vec<(String, u64, bool, bool)>,
     hash: u32,
-    repaired: usize,
+    /// Accesses to arguments on the stack that the compiler got wrong.
+    pub(crate) repaired: usize,
 }
 
 impl Report {
@@ -57,8 +56,8 @@ impl fmt::Display for Report {
     }
 }
 
-/// Repairs the image if its compiler needs that, writes its hash, and measures it.
-pub(crate) fn finish(bytes: &mut [u8], repair: bool) -> Result<Report, String> {
+/// Writes the image's hash into it, and measures it.
+pub(crate) fn finish(bytes: &mut [u8]) -> Result<Report, String> {
     let wrong = |error: object::read::Error| format!("the linked image: {error}");
     let layout = Layout::read(bytes).map_err(wrong)?;
     if let Some(name) = layout.forbidden.first() {
@@ -70,11 +69,6 @@ pub(crate) fn finish(bytes: &mut [u8], repair: bool) -> Result<Report, String> {
         sections: layout.sections,
         ..Report::default()
     };
-    if repair {
-        for function in &layout.functions {
-            report.repaired += repair_function(bytes, function)?;
-        }
-    }
     let place = layout
         .hash
         .ok_or(format!("the image has no {HASH_SYMBOL}"))?;
@@ -96,33 +90,9 @@ pub(crate) fn finish(bytes: &mut [u8], repair: bool) -> Result<Report, String> {
     Ok(report)
 }
 
-fn repair_function(bytes: &mut [u8], function: &Function) -> Result<usize, String> {
-    let code = bytes
-        .get_mut(function.from..function.to)
-        .ok_or_else(|| format!("{} lies outside the file", function.name))?;
-    let mut words: Vec<u16> = code
-        .chunks_exact(2)
-        .map(|two| u16::from_le_bytes([two[0], two[1]]))
-        .collect();
-    let repaired = stack_arguments::repair(&mut words)
-        .map_err(|error| format!("{}: arguments on the stack: {error}", function.name))?;
-    for (two, word) in code.chunks_exact_mut(2).zip(words) {
-        two.copy_from_slice(&word.to_le_bytes());
-    }
-    Ok(repaired)
-}
-
-/// A function of ours, by its place in the file.
-struct Function {
-    name: String,
-    from: usize,
-    to: usize,
-}
-
 /// What the file holds.
 #[derive(Default)]
 struct Layout {
-    functions: Vec<Function>,
     forbidden: Vec<String>,
     /// Places in the file of what is loaded into flash.
     loaded: Vec<(usize, usize)>,
@@ -167,19 +137,8 @@ impl Layout {
             if name == HASH_SYMBOL {
                 layout.hash = Some(place);
             }
-            if symbol.st_type() == STT_FUNC {
-                // Only what rustc compiled: the C library's code is right.
-                if name.starts_with("_R") {
-                    let to = place + symbol.st_size(endian) as usize;
-                    layout.functions.push(Function {
-                        name: name.clone(),
-                        from: place,
-                        to,
-                    });
-                }
-                if FORBIDDEN.iter().any(|word| name.contains(word)) {
-                    layout.forbidden.push(name);
-                }
+            if symbol.st_type() == STT_FUNC && FORBIDDEN.iter().any(|word| name.contains(word)) {
+                layout.forbidden.push(name);
             }
         }
         Ok(layout)

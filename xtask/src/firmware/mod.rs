@@ -1,16 +1,17 @@
 //! `cargo xtask firmware`: the image for the Mega, whole, with its sizes.
 //!
-//! `firmware/` is built with a Rust for the AVR ([`toolchain`]); then the image is finished ([`image`]): arguments on
-//! the stack repaired ([`stack_arguments`]), its hash written into it, and what must not be in it looked for. The
+//! `firmware/` is built with a Rust for the AVR ([`toolchain`]), its assembly made smaller ([`squeeze`]), and linked
+//! ([`link`]); then the image is finished ([`image`]): its hash written into it, and what must not be in it looked for. The
 //! product is `target/firmware/rumbo.elf` and `rumbo.hex`. More flash or SRAM than the robot file allows is an error.
 
 mod image;
-pub(crate) mod stack_arguments;
+mod link;
+mod squeeze;
 mod toolchain;
 
 use std::path::PathBuf;
 
-use crate::project::{Project, output, run as run_command};
+use crate::project::{Project, run as run_command};
 use crate::test::Stop;
 use toolchain::Toolchain;
 
@@ -29,17 +30,10 @@ pub(crate) fn run(project: &Project) -> Result<bool, String> {
 pub(crate) fn build(project: &Project) -> Result<(), Stop> {
     let toolchain = Toolchain::find(project)?;
     let build = project.target.join("firmware/build");
-    run_command(
-        toolchain
-            .command("cargo")
-            .current_dir(project.root.join("firmware"))
-            .args(["build", "--release", "--locked", "--quiet"])
-            .env("CARGO_TARGET_DIR", &build),
-    )?;
-    let linked = build.join("avr-none/release/rumbo.elf");
-    let mut bytes = read(&linked)?;
-    let wrong = toolchain.misplaces_stack_arguments(&build)?;
-    let report = image::finish(&mut bytes, wrong)?;
+    let linked = link::build(project, &toolchain, &build)?;
+    let mut bytes = read(&linked.image)?;
+    let mut report = image::finish(&mut bytes)?;
+    report.repaired = linked.repaired;
     let elf = project.target.join("firmware/rumbo.elf");
     let hex = elf.with_extension("hex");
     std::fs::write(&elf, bytes).map_err(|error| format!("{}: {error}", elf.display()))?;
@@ -85,40 +79,6 @@ fn cap(robot: &str, key: &str) -> Option<u64> {
         .filter_map(|line| line.split_once('='))
         .find(|(name, _)| name.trim() == key)
         .and_then(|(_, value)| value.trim().parse().ok())
-}
-
-impl Toolchain {
-    /// Whether the compiler reads arguments on the stack one byte too low: asked by a function that does nothing else.
-    fn misplaces_stack_arguments(&self, build: &std::path::Path) -> Result<bool, String> {
-        let source = build.join("stack_argument.rs");
-        let assembly = build.join("stack_argument.s");
-        std::fs::write(&source, include_str!("stack_argument.txt"))
-            .map_err(|error| format!("{}: {error}", source.display()))?;
-        output(
-            self.command("rustc")
-                .args([
-                    "--target=avr-none",
-                    "-Ctarget-cpu=atmega2560",
-                    "-O",
-                    "--emit=asm",
-                    "-Awarnings",
-                    "-o",
-                ])
-                .args([&assembly, &source]),
-        )?;
-        let text = String::from_utf8_lossy(&read(&assembly)?).into_owned();
-        // Two bytes pushed, and the return address of three: the argument begins at 6.
-        if text.contains("ldd\tr22, Y+5") {
-            Ok(true)
-        } else if text.contains("ldd\tr22, Y+6") {
-            Ok(false)
-        } else {
-            Err(format!(
-                "{}: not the code that is known",
-                assembly.display()
-            ))
-        }
-    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,71 @@
+//! Makes the program smaller, in its assembly.
+//!
+//! The compiler writes each function as if it were alone. Here all are known, and what they have in common is
+//! written once ([`frames`]), what they do in vain is left out ([`branches`]), and everything is put where
+//! short jumps reach it ([`layout`]). Before that, arguments on the stack are repaired if the compiler needs it ([`stack_arguments`]).
+//! What is not understood is refused: a wrong image is worse than none.
+
+mod assembly;
+mod branches;
+mod debugging;
+mod frames;
+mod layout;
+mod stack_arguments;
+#[cfg(test)]
+mod tests;
+
+use std::collections::HashSet;
+
+use assembly::{Function, Program};
+
+/// What to do, and for whom.
+pub(crate) struct Options<'a> {
+    /// Whether the compiler reads arguments on the stack one byte too low.
+    pub(crate) repair: bool,
+    /// Parts of the names of functions in which cycles count.
+    pub(crate) hot: &'a [String],
+}
+
+impl Options<'_> {
+    fn is_hot(&self, function: &Function) -> bool {
+        function.is_handler()
+            || self
+                .hot
+                .iter()
+                .any(|part| function.name().contains(part.as_str()))
+    }
+}
+
+/// The program, smaller.
+#[derive(Debug)]
+pub(crate) struct Squeezed {
+    pub(crate) assembly: String,
+    /// Accesses to arguments on the stack that were wrong.
+    pub(crate) repaired: usize,
+}
+
+/// Makes the program smaller.
+pub(crate) fn squeeze(text: &str, options: &Options<'_>) -> Result<Squeezed, String> {
+    let mut program = Program::parse(text)?;
+    let mut repaired = 0;
+    let mut has_stack_arguments = HashSet::new();
+    for function in &mut program.functions {
+        let count = stack_arguments::repair(function, options.repair)
+            .map_err(|error| format!("{}: arguments on the stack: {error}", function.name()))?;
+        if count > 0 {
+            has_stack_arguments.insert(function.name().to_owned());
+            repaired += if options.repair { count } else { 0 };
+        }
+        branches::simplify(function);
+    }
+    frames::share(
+        &mut program,
+        |function| has_stack_arguments.contains(function.name()),
+        |function| options.is_hot(function),
+    );
+    layout::arrange(&mut program, |function| options.is_hot(function))?;
+    Ok(Squeezed {
+        assembly: program.print(),
+        repaired,
+    })
+}
