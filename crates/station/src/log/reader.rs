@@ -187,7 +187,8 @@ impl Log {
         let longest = usize::try_from(length).map_or(LONGEST, |length| length.max(LONGEST));
         let options = LinearReaderOptions::default()
             .with_skip_end_magic(true)
-            .with_validate_chunk_crcs(true)
+            // Nothing of a damaged chunk is taken, its lengths least of all.
+            .with_prevalidate_chunk_crcs(true)
             .with_record_length_limit(longest);
         let mut reader = LinearReader::new_with_options(options);
         let mut channels = HashMap::new();
