@@ -63,10 +63,10 @@ fn main() -> ! {
         let out = robot.tick(&record::inputs(&inputs));
         outputs::leave(&out, tick);
         record::outputs(&out);
-        robot.report();
         if let Some(sonar) = out.ping {
             listener.asked(sonar);
         }
+        robot.report();
         if eeprom::is_ready()
             && let Some(cell) = robot.store()
         {

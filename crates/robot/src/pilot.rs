@@ -1,4 +1,8 @@
 //! The control core put together: estimators -> mode -> drive layer, with the parameters and the setpoint.
+//!
+//! The outputs of a tick wait for the estimators and the drive layer only. The mode decides after they have left, on what the estimators
+//! said, and what it asks for is driven from the next tick on: it may take as long as is left of the period, and its loops are 10 ms
+//! later than those of the wheels' speeds.
 
 use rumbo_control::drive::DriveLayer;
 use rumbo_control::estimate::{Estimate, Estimator};
@@ -28,34 +32,31 @@ pub(crate) struct Pilot {
     estimator: Estimator,
     estimate: Estimate,
     mode: ActiveMode,
+    /// What the mode asked for after the last tick.
+    action: Action,
     drive: DriveLayer,
     pings: PingSchedule,
     stall: StallWatch,
     low_battery_ticks: u8,
     duty: Wheels<Duty>,
     wheel_ref_rad_s: Wheels<f32>,
-    state: u8,
-    heading_ref_rad: f32,
     reached: bool,
     unreachable: bool,
 }
 
-/// What a tick decided.
+/// What the mode has found out.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Step {
-    /// For the pins.
-    pub(crate) outputs: Outputs,
-    /// The mode has reached its reference at this tick.
+pub(crate) struct Found {
+    /// It has reached its reference at this tick.
     pub(crate) reached: bool,
-    /// The mode has found out at this tick that its goal cannot be reached.
+    /// It has found out at this tick that its goal cannot be reached.
     pub(crate) unreachable: bool,
-    /// Why the wheels were released at this tick, although the robot was armed.
-    pub(crate) fault: Option<Fault>,
 }
 
 impl Pilot {
-    /// One tick. Unless `armed`, and on a fault, the wheels are released.
-    pub(crate) fn step(&mut self, inputs: &Inputs, armed: bool) -> Step {
+    /// One tick, as far as the outputs wait for it: estimates, and drives as the mode asked after the tick before. Unless `armed`, and
+    /// on a fault, the wheels are released.
+    pub(crate) fn step(&mut self, inputs: &Inputs, armed: bool) -> (Outputs, Option<Fault>) {
         self.estimator.step(
             &self.params,
             inputs,
@@ -63,34 +64,46 @@ impl Pilot {
             &mut self.estimate,
         );
         self.watch_battery(inputs.battery_v);
-        let (action, fault) = match self.act(inputs, armed) {
-            Ok(action) => (action, None),
-            Err(fault) => {
-                self.release();
-                (self.at_rest(), Some(fault))
-            }
+        let fault = self.act(inputs.battery_v, armed).err();
+        if !armed || fault.is_some() {
+            self.release();
+            self.action = self.at_rest();
+        }
+        let look = self.action.look;
+        let ping = self.pings.next(self.carried(look.sonars));
+        self.estimator.commanded(look.servo, ping);
+        let outputs = Outputs {
+            drive: self.duty,
+            servo: look.servo,
+            ping,
         };
-        let reached = action.reached && !self.reached;
-        self.reached = action.reached;
-        let unreachable = action.unreachable && !self.unreachable;
-        self.unreachable = action.unreachable;
-        self.state = action.state;
-        self.heading_ref_rad = action.heading_ref_rad;
-        if action.new_origin {
+        (outputs, fault)
+    }
+
+    /// The rest of a tick: the mode decides what the next one is to do.
+    ///
+    /// # Errors
+    /// Why the mode cannot go on.
+    pub(crate) fn think(&mut self, armed: bool) -> Result<Found, Fault> {
+        self.action = self.at_rest();
+        if armed {
+            let estimate = &self.estimate;
+            self.action = self.mode.step(&self.params, &Situation { estimate })?;
+        }
+        if self.action.new_origin {
             self.estimator.reset_pose();
         }
-        let ping = self.pings.next(self.carried(action.look.sonars));
-        self.estimator.commanded(action.look.servo, ping);
-        Step {
-            outputs: Outputs {
-                drive: self.duty,
-                servo: action.look.servo,
-                ping,
-            },
+        let Action {
             reached,
             unreachable,
-            fault,
-        }
+            ..
+        } = self.action;
+        let before = (self.reached, self.unreachable);
+        (self.reached, self.unreachable) = (reached, unreachable);
+        Ok(Found {
+            reached: reached && !before.0,
+            unreachable: unreachable && !before.1,
+        })
     }
 
     /// Keeps the estimates exact.
@@ -106,20 +119,13 @@ impl Pilot {
         wanted
     }
 
-    fn act(&mut self, inputs: &Inputs, armed: bool) -> Result<Action, Fault> {
+    fn act(&mut self, battery_v: Option<f32>, armed: bool) -> Result<(), Fault> {
         if !armed {
-            self.release();
-            return Ok(self.at_rest());
+            return Ok(());
         }
         self.watch()?;
-        let action = self.mode.step(
-            &self.params,
-            &Situation {
-                estimate: &self.estimate,
-            },
-        )?;
-        self.apply(&action.drive, inputs.battery_v)?;
-        Ok(action)
+        let drive = self.action.drive;
+        self.apply(&drive, battery_v)
     }
 
     fn at_rest(&self) -> Action {
@@ -198,9 +204,9 @@ impl Pilot {
             wheel_rad_s: self.estimate.wheel_rad_s,
             wheel_ref_rad_s: self.wheel_ref_rad_s,
             duty: self.duty,
-            state: self.state,
+            state: self.action.state,
             servo_rad: self.estimate.servo_rad,
-            heading_ref_rad: self.heading_ref_rad,
+            heading_ref_rad: self.action.heading_ref_rad,
             ranges: self.estimator.shown(&self.estimate),
         }
     }
@@ -236,6 +242,7 @@ impl Pilot {
     /// The wheels have been armed.
     pub(crate) fn start(&mut self) {
         self.mode.start();
+        self.action = self.at_rest();
         self.reached = false;
         self.unreachable = false;
     }

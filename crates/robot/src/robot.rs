@@ -85,7 +85,7 @@ impl Robot {
         }
     }
 
-    /// One tick: judges, estimates, drives. The outputs take effect
+    /// One tick: judges, estimates, drives as the mode asked after the tick before. The outputs take effect
     /// [`OUTPUT_DELAY_US`](rumbo_control::OUTPUT_DELAY_US) after the tick. [`Robot::report`] follows.
     pub fn tick(&mut self, inputs: &Inputs) -> Outputs {
         let elapsed_us = self.clock.advance(inputs.now);
@@ -100,25 +100,16 @@ impl Robot {
         if let Some(event) = self.supervisor.watch_link(inputs.now, timeout_us) {
             self.released_by(event);
         }
-        let step = self.pilot.step(inputs, self.supervisor.is_armed());
-        if let Some(fault) = step.fault {
+        let armed = self.supervisor.is_armed();
+        let (outputs, fault) = self.pilot.step(inputs, armed);
+        if let Some(fault) = fault {
             self.fail(fault);
         }
-        if step.reached {
-            self.event(EventKind::Reached);
-        }
-        if step.unreachable {
-            self.event(EventKind::Unreachable);
-        }
-        let drive = self
-            .governor
-            .pass(step.outputs.drive, self.supervisor.is_armed());
+        let armed = self.supervisor.is_armed();
+        let drive = self.governor.pass(outputs.drive, armed);
         self.pilot.drove(drive);
         self.battery_v = inputs.battery_v;
-        Outputs {
-            drive,
-            ..step.outputs
-        }
+        Outputs { drive, ..outputs }
     }
 
     /// The analogue input, 0..=15, that a divider brings the battery's voltage to; `None` where none is wired (parameter
@@ -138,8 +129,20 @@ impl Robot {
         armed.then(|| (self.pilot.mode(), self.pilot.signals().state))
     }
 
-    /// The rest of a tick, which its outputs do not wait for: says what there is to say, or else keeps the estimates exact.
+    /// The rest of a tick, which its outputs do not wait for: the mode decides what the next tick is to do; then the robot says what
+    /// there is to say, or else keeps the estimates exact.
     pub fn report(&mut self) {
+        match self.pilot.think(self.supervisor.is_armed()) {
+            Err(fault) => self.fail(fault),
+            Ok(found) => {
+                if found.reached {
+                    self.event(EventKind::Reached);
+                }
+                if found.unreachable {
+                    self.event(EventKind::Unreachable);
+                }
+            }
+        }
         let status = self.status();
         let (now, t_ms) = (self.clock.now(), self.clock.t_ms());
         if !self

@@ -28,7 +28,7 @@ const CLEAR: u8 = 0b0010_0000;
 
 /// Length of the next pulse.
 static LENGTH: Word = Word::new(AHEAD_COUNTS);
-/// Half wraps since the period began; the first interrupt is a compare A, the one after it begins a period.
+/// Half wraps since the period began; overflows have even numbers, compares A odd ones.
 static HALF: Byte = Byte::new(HALVES - 1);
 /// The half wrap that sets the falling edge up.
 static FALL_HALF: Byte = Byte::new(0);
@@ -58,10 +58,11 @@ pub(super) fn start() {
     put!(timer_2().tccr2b(), 0b100);
 }
 
-/// Half a wrap of the timer has passed.
+/// Half a wrap of the timer has passed. `odd` is 1 for the second half: which one it is does not depend on what came before, since
+/// of the interrupts that wait when the program starts only the last of each kind is left.
 #[inline(always)]
-fn half(section: CriticalSection<'_>) {
-    let half = HALF.get();
+fn half(odd: u8, section: CriticalSection<'_>) {
+    let half = (HALF.get() & !1) | odd;
     if half == 0 {
         put!(timer_2().ocr2b(), (START % 256) as u8);
         put!(timer_2().tccr2a(), SET);
@@ -77,9 +78,9 @@ fn half(section: CriticalSection<'_>) {
 }
 
 handler! { __vector_15, "TIMER2_OVF", |section| {
-    half(section);
+    half(0, section);
 } }
 
 handler! { __vector_13, "TIMER2_COMPA", |section| {
-    half(section);
+    half(1, section);
 } }

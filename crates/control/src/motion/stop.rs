@@ -12,8 +12,8 @@ use crate::math::{max, sqrt};
 use crate::params::{ParamId, Params};
 
 /// Way that a wheel still rolls at its speed between the release that is asked for and the bridge letting go: the latch of the inputs,
-/// 3 ms to the outputs, and half a pole of the encoder at creeping speed [s].
-const RELEASE_DELAY_S: f32 = 0.015;
+/// a tick in which the mode decides, 3 ms to the outputs, and half a pole of the encoder at creeping speed [s].
+const RELEASE_DELAY_S: f32 = 0.025;
 
 /// Configuration of a stop; per second and second squared of the goal's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

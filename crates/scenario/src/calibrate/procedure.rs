@@ -226,9 +226,13 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
         let to = self.station.last()?;
         let (there, back) = self.leg_and_back()?;
         let seen_rad = to.heading_rad - from.heading_rad;
+        // A robot that has strayed from its place drives back, and turns the shorter way to its next heading: a whole turn may be missing.
+        let turns = ((seen_rad + before) / TAU).round();
         let true_rad = TAU * turns + there.start_rad - before;
-        let base_m = self.base_m * seen_rad / true_rad;
-        self.bases.push(Base { base_m, turns });
+        if turns != 0.0 {
+            let base_m = self.base_m * seen_rad / true_rad;
+            self.bases.push(Base { base_m, turns });
+        }
         self.base_m = self.base(self.base_m).value;
         self.station.set_parameter(ParamId::Base, self.base_m)?;
         self.heading_rad = back.end_rad;

@@ -12,6 +12,7 @@
 //! | `bridge`, `servo`, `module` | what driver, servo and Bluetooth module make of their lines |
 //! | `echo` | echo lines, and sonars that fail |
 //! | `console` | what the USARTs said, for people |
+//! | `marks` | when the program comes to some of its functions |
 //! | `notes` | what is odd about a program, for people |
 //! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
 //!
@@ -24,6 +25,7 @@ pub mod pins;
 
 mod bridge;
 mod echo;
+mod marks;
 mod module;
 mod notes;
 mod servo;
@@ -35,6 +37,7 @@ use bridge::HalfBridge;
 use console::Console;
 use echo::Echoes;
 use firmware::Firmware;
+use marks::Marks;
 use pins::Wires;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
@@ -105,6 +108,8 @@ pub struct Mega {
     sent: Vec<(u64, u8)>,
     consoles: [Console; 4],
     verdict: Option<Verdict>,
+    /// When the program came to the functions that were asked for.
+    marks: Marks,
     /// A motor was driven.
     has_driven: bool,
     /// The program does one instruction and halts.
@@ -132,6 +137,7 @@ impl Mega {
             sent: Vec::new(),
             consoles: Default::default(),
             verdict: None,
+            marks: Marks::default(),
             has_driven: false,
             stepping: false,
             halt: None,
@@ -310,10 +316,14 @@ impl Mega {
             } else {
                 self.chip.run_until(target.max(now + 1))
             };
+            let passed = stopped == Stopped::Breakpoint && self.pass_mark();
             let acted = self.listen();
             if let Stopped::Ended(verdict) = &stopped {
                 self.verdict = Some(verdict.clone());
-            } else if stepping || matches!(stopped, Stopped::Breakpoint | Stopped::Watched { .. }) {
+            } else if stepping
+                || matches!(stopped, Stopped::Watched { .. })
+                || (stopped == Stopped::Breakpoint && !passed)
+            {
                 self.halt = Some(stopped);
             }
             if let Some(cycle) = acted {

@@ -6,10 +6,8 @@ use crate::board::image_path;
 use rumbo_scenario::files::{FileError, Kind, Library, Overrides, Setup};
 use rumbo_scenario::run::{RunResult, run_all};
 
-/// The robot of each run, but for [`OTHERS`].
+/// The robot of each run.
 const SEED: u64 = 1;
-/// Not every seed of these passes on the image yet: `docs/firmware.md`.
-const OTHERS: [(&str, u64); 1] = [("mode8-obstacles", 2)];
 /// A scenario of each mode, to be run in every rig.
 const OF_EACH_MODE: [&str; 13] = [
     "manual-straight-speed",
@@ -26,11 +24,6 @@ const OF_EACH_MODE: [&str; 13] = [
     "mode8-goals",
     "mode8-lane",
 ];
-
-fn seed(scenario: &str) -> u64 {
-    let other = OTHERS.iter().find(|(name, _)| *name == scenario);
-    other.map_or(SEED, |(_, seed)| *seed)
-}
 
 /// Runs each once, natively, then those that passed on the image; gives the names of these, with their rigs.
 fn what_passes_natively_passes(setups: Vec<Setup>) -> Vec<(String, String)> {
@@ -63,7 +56,7 @@ fn what_passes_natively_passes(setups: Vec<Setup>) -> Vec<(String, String)> {
 }
 
 fn all(setups: &[Setup]) -> Vec<RunResult> {
-    let job = |setup| -> (&Setup, u64) { (setup, seed(&setup.scenario.name)) };
+    let job = |setup| -> (&Setup, u64) { (setup, SEED) };
     let jobs: Vec<_> = setups.iter().map(job).collect();
     let mut results = Vec::new();
     run_all(&jobs, |_, result| {

@@ -6,6 +6,7 @@ mod board;
 mod experiments;
 mod faults;
 mod float;
+mod in_time;
 mod interrupts;
 mod pins;
 mod same_bits;

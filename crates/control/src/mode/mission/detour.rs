@@ -10,7 +10,7 @@ use crate::types::{Range, SonarId};
 use core::f32::consts::FRAC_PI_2;
 
 /// Back where the obstacle was met: within this, having been farther away than twice as much [mm].
-const BACK_MM: i32 = 200;
+const BACK_MM: u32 = 200;
 /// After so little way the side of the last obstacle is the next one's too, unless the other way is this much shorter [m].
 const SOON_M: f32 = 0.8;
 const STAY_M: f32 = 0.5;

@@ -8,19 +8,20 @@
 //! Millimetres in 16 bits and a direction in 8 keep a point in 6 bytes and its arithmetic in integers: the memory is
 //! read some ten times as often as it is written.
 
-use crate::math::{clamp, round, sin_cos};
+use super::place::{Bounds, Place, fractions};
+use crate::math::{round, sin_cos};
 use crate::types::{Pose, Range, Reading, SonarId};
 
 /// How many points are remembered.
 pub(super) const CAPACITY: usize = 48;
 /// Points nearer to each other than this are one [mm].
-const MERGE_MM: i32 = 50;
+const MERGE_MM: u16 = 50;
 /// Belief in a point heard once, in one heard again, and the most.
 const FRESH: u8 = 2;
 const FIRM: u8 = 3;
 const MOST_BELIEF: u8 = 6;
 /// What is nearer to the robot than this counts even if it was heard once [mm].
-const CLOSE_MM: i32 = 350;
+const CLOSE_MM: u16 = 350;
 /// Farthest point put down, of the front sonar and of one at a side [mm].
 const HORIZON_MM: [i32; 2] = [1_300, 700];
 /// Half width of the part of a beam in which a point would surely be heard, as a tangent in 256ths: 0.21 rad.
@@ -50,69 +51,22 @@ const DENIED_MM: i32 = 800;
 /// Arcs shorter than this get one point [m].
 const SHORT_M: f32 = 0.18;
 
-/// A place on the floor [mm].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Place {
-    /// Along x.
-    pub x_mm: i16,
-    /// Along y.
-    pub y_mm: i16,
-}
-
-impl Place {
-    /// From metres; saturates at 32 m.
-    pub(super) fn new(x_m: f32, y_m: f32) -> Self {
-        Self {
-            x_mm: to_i16(1_000.0 * x_m),
-            y_mm: to_i16(1_000.0 * y_m),
-        }
-    }
-
-    /// In metres.
-    pub(super) fn metres(self) -> (f32, f32) {
-        (f32::from(self.x_mm) * 1e-3, f32::from(self.y_mm) * 1e-3)
-    }
-
-    /// From `from` to here [mm].
-    pub(super) fn from(self, from: Place) -> (i32, i32) {
-        (
-            i32::from(self.x_mm) - i32::from(from.x_mm),
-            i32::from(self.y_mm) - i32::from(from.y_mm),
-        )
-    }
-
-    /// Whether the distance is less than `limit_mm`. Most are not by one coordinate alone.
-    pub(super) fn is_within(self, limit_mm: i32, of: Place) -> bool {
-        let (x, y) = self.from(of);
-        x.abs() < limit_mm && y.abs() < limit_mm && x * x + y * y < limit_mm * limit_mm
-    }
-
-    /// Square of the distance [mm^2].
-    pub(super) fn square_mm2(self, to: Place) -> i32 {
-        let (x, y) = self.from(to);
-        // Beyond 32 m in both: saturates.
-        square(x).saturating_add(square(y))
-    }
-}
-
-/// `x * x`, saturating; without the product of twice the width by which the processor would find that out.
-fn square(x: i32) -> i32 {
-    const ROOT_OF_MOST: i32 = 46_340;
-    if x.abs() > ROOT_OF_MOST {
-        i32::MAX
-    } else {
-        x * x
-    }
-}
-
 /// A remembered point of an obstacle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Echo {
+pub(super) struct Echo {
     at: Place,
     /// The beam's axis when it was last heard, in 256ths of a turn.
     axis: i8,
     /// How often it was heard of late; 0: no point.
     belief: u8,
+}
+
+impl Echo {
+    /// Where it is, if there is a point.
+    #[inline]
+    pub(super) fn place(&self) -> Option<Place> {
+        (self.belief > 0).then_some(self.at)
+    }
 }
 
 /// A beam of a sonar.
@@ -125,9 +79,44 @@ struct Beam {
     axis: i8,
 }
 
-/// Sine and cosine in 16,384ths, for products of integers.
-pub(super) fn fractions((sin, cos): (f32, f32)) -> (i32, i32) {
-    (round(sin * 16_384.0), round(cos * 16_384.0))
+/// Most points that a reading puts down: those across the beam, and one that goes on ahead.
+const MOST_PUT: usize = ACROSS.len() + 1;
+
+/// Slots for a reading's points: free ones, then those of the farthest. Found in one look at all points for up to four of them.
+struct Room {
+    robot: Place,
+    /// How far away what is in a slot is [mm], and the slot's number; the farthest first.
+    slots: [(u16, u8); MOST_PUT],
+    /// The first that has not been taken.
+    next: usize,
+}
+
+impl Room {
+    fn offer(&mut self, away_mm: u16, number: u8) {
+        let mut offered = (away_mm, number);
+        if self
+            .slots
+            .last()
+            .is_some_and(|(least, _)| away_mm <= *least)
+        {
+            return;
+        }
+        for slot in &mut self.slots {
+            if offered.0 > slot.0 {
+                core::mem::swap(&mut offered, slot);
+            }
+        }
+    }
+
+    /// A slot for a point; none where all that is remembered is nearer.
+    fn take(&mut self, at: Place) -> Option<u8> {
+        let (away_mm, number) = *self.slots.get(self.next)?;
+        if away_mm <= at.about_mm(self.robot) {
+            return None;
+        }
+        self.next += 1;
+        Some(number)
+    }
 }
 
 /// The memory.
@@ -145,13 +134,10 @@ impl Default for Echoes {
 }
 
 impl Echoes {
-    /// All points, with their numbers.
-    pub(super) fn iter(&self) -> impl Iterator<Item = (usize, Place)> + '_ {
-        self.points
-            .iter()
-            .enumerate()
-            .filter(|(_, point)| point.belief > 0)
-            .map(|(number, point)| (number, point.at))
+    /// All points by their numbers, and free places.
+    #[inline]
+    pub(super) fn points(&self) -> &[Echo; CAPACITY] {
+        &self.points
     }
 
     /// Whether a point has been heard more than once, or is near the robot, which is `here`.
@@ -206,7 +192,7 @@ impl Echoes {
         if explained && range_mm > NEAR_MM {
             return denies;
         }
-        let here = Place::new(pose.x_m, pose.y_m);
+        let mut room = self.room(Place::new(pose.x_m, pose.y_m));
         let count = if explained || range_m < SHORT_M {
             1
         } else {
@@ -215,7 +201,7 @@ impl Echoes {
         for (by_sin, by_cos) in ACROSS.iter().take(count) {
             let (aside_sin, aside_cos) = (sin * by_cos + cos * by_sin, cos * by_cos - sin * by_sin);
             let at = Place::new(x_m + range_m * aside_cos, y_m + range_m * aside_sin);
-            self.put(at, beam.axis, here);
+            self.put(at, beam.axis, &mut room);
         }
         if reading.sonar != SonarId::Front && range_mm < BESIDE_MM {
             // A wall beside the robot is taken to go on as far as the robot's front, until the sonar has been there.
@@ -223,7 +209,7 @@ impl Echoes {
                 x_m + range_m * cos + GOES_ON_M * robot.cos,
                 y_m + range_m * sin + GOES_ON_M * robot.sin,
             );
-            self.put(at, beam.axis, here);
+            self.put(at, beam.axis, &mut room);
         }
         denies
     }
@@ -231,21 +217,17 @@ impl Echoes {
     /// Takes belief from the points that a beam as far as `range_mm` would have heard; says whether a near one was firm.
     fn clear(&mut self, beam: &Beam, range_mm: i32) -> bool {
         let mut denies = false;
-        let (sin, cos) = beam.facing;
         let axis = beam.axis;
         let until_mm = range_mm - BEYOND_MM - range_mm * BEYOND_SHARE / 256;
-        for point in self.points.iter_mut().filter(|point| point.belief > 0) {
-            let (x, y) = point.at.from(beam.apex);
-            if x.abs() > until_mm || y.abs() > until_mm {
+        let aside_mm = until_mm * SURE_TANGENT / 256;
+        let bounds = Bounds::of(beam.apex, beam.facing, until_mm, aside_mm);
+        for point in &mut self.points {
+            let alike = point.axis.wrapping_sub(axis).unsigned_abs() <= ALIKE.unsigned_abs();
+            if point.belief == 0 || !alike || !bounds.hold(point.at) {
                 continue;
             }
-            let along = (x * cos + y * sin) >> 14;
-            let across = (y * cos - x * sin) >> 14;
-            if along > 0
-                && along < until_mm
-                && across.abs() * 256 < along * SURE_TANGENT
-                && point.axis.wrapping_sub(axis).unsigned_abs() <= ALIKE.unsigned_abs()
-            {
+            let (along, across) = point.at.seen(beam.apex, beam.facing);
+            if along > 0 && along < until_mm && across.abs() * 256 < along * SURE_TANGENT {
                 denies |= point.belief >= FIRM && along < DENIED_MM;
                 point.belief = if point.belief < FIRM {
                     0
@@ -259,24 +241,29 @@ impl Echoes {
 
     /// Whether a point that is known already can have given this echo: it is believed more then, and the echo says nothing new.
     fn explain(&mut self, beam: &Beam, range_mm: i32) -> bool {
-        let (sin, cos) = beam.facing;
         let within_mm = ALIKE_MM + range_mm * ALIKE_SHARE / 256;
         let (near_mm, far_mm) = (range_mm - within_mm, range_mm + within_mm);
-        let (near_mm2, far_mm2) = (near_mm * near_mm, far_mm * far_mm);
+        let (near_mm2, far_mm2) = (
+            (near_mm * near_mm).unsigned_abs(),
+            (far_mm * far_mm).unsigned_abs(),
+        );
+        let bounds = Bounds::of(beam.apex, beam.facing, far_mm, far_mm * BEAM_TANGENT / 256);
         let mut best: Option<&mut Echo> = None;
-        for point in self.points.iter_mut().filter(|point| point.belief > 0) {
-            let (x, y) = point.at.from(beam.apex);
-            if x.abs() > far_mm || y.abs() > far_mm {
+        for point in &mut self.points {
+            if point.belief == 0 || !bounds.hold(point.at) {
                 continue;
             }
-            let square_mm2 = x * x + y * y;
-            let along = (x * cos + y * sin) >> 14;
-            let across = (y * cos - x * sin) >> 14;
-            if square_mm2 > near_mm2
-                && square_mm2 < far_mm2
-                && across.abs() * 256 < along * BEAM_TANGENT
-                && best.as_ref().is_none_or(|best| best.belief < point.belief)
+            let square_mm2 = point.at.square_mm2(beam.apex);
+            if square_mm2 <= near_mm2
+                || square_mm2 >= far_mm2
+                || best
+                    .as_ref()
+                    .is_some_and(|best| best.belief >= point.belief)
             {
+                continue;
+            }
+            let (along, across) = point.at.seen(beam.apex, beam.facing);
+            if across.abs() * 256 < along * BEAM_TANGENT {
                 best = Some(point);
             }
         }
@@ -288,28 +275,40 @@ impl Echoes {
         true
     }
 
-    /// Puts a point down: into one that is there already, into a free slot, or into that of the farthest.
-    fn put(&mut self, at: Place, axis: i8, robot: Place) {
-        let mut slot = None;
-        // Farther than anything: a free slot is the first choice.
-        let mut worst = at.square_mm2(robot);
-        for (number, point) in self.points.iter_mut().enumerate() {
-            let badness = if point.belief == 0 {
-                i32::MAX
-            } else if point.at.is_within(MERGE_MM, at) {
+    /// Where a reading's points may go.
+    fn room(&self, robot: Place) -> Room {
+        let mut room = Room {
+            robot,
+            slots: [(0, 0); MOST_PUT],
+            next: 0,
+        };
+        for (number, point) in (0..).zip(&self.points) {
+            // Farther than anything: a free slot is the first choice.
+            let away_mm = if point.belief == 0 {
+                u16::MAX
+            } else {
+                point.at.about_mm(robot)
+            };
+            room.offer(away_mm, number);
+        }
+        room
+    }
+
+    /// Puts a point down: into one that is there already, into a free slot, or into that of one far away.
+    fn put(&mut self, at: Place, axis: i8, room: &mut Room) {
+        let around = Bounds::around(at, MERGE_MM);
+        for point in &mut self.points {
+            if point.belief > 0 && around.hold(point.at) && point.at.is_within(MERGE_MM, at) {
                 point.at = at;
                 point.axis = axis;
                 point.belief = (point.belief + 1).clamp(FIRM, MOST_BELIEF);
                 return;
-            } else {
-                point.at.square_mm2(robot)
-            };
-            if badness > worst {
-                worst = badness;
-                slot = Some(number);
             }
         }
-        if let Some(point) = slot.and_then(|number| self.points.get_mut(number)) {
+        if let Some(point) = room
+            .take(at)
+            .and_then(|number| self.points.get_mut(usize::from(number)))
+        {
             *point = Echo {
                 at,
                 axis,
@@ -319,12 +318,12 @@ impl Echoes {
     }
 
     /// The place at `origin` becomes the origin.
-    pub(super) fn move_origin(&mut self, origin: &Pose) {
+    pub(super) fn move_origin(&mut self, origin: &Pose, facing: (f32, f32)) {
+        let (here, facing) = (Place::new(origin.x_m, origin.y_m), fractions(facing));
+        let turned = direction(origin.heading_rad);
         for point in self.points.iter_mut().filter(|point| point.belief > 0) {
-            let (x_m, y_m) = point.at.metres();
-            let (ahead_m, left_m) = origin.to_local(x_m, y_m);
-            point.at = Place::new(ahead_m, left_m);
-            point.axis = point.axis.wrapping_sub(direction(origin.heading_rad));
+            point.at = point.at.as_seen(here, facing);
+            point.axis = point.axis.wrapping_sub(turned);
         }
     }
 }
@@ -335,10 +334,6 @@ fn direction(angle_rad: f32) -> i8 {
     let turns = round(wrapped * (128.0 / core::f32::consts::PI));
     // 128 is half a turn, as -128 is.
     i8::try_from(turns).unwrap_or(i8::MIN)
-}
-
-fn to_i16(value: f32) -> i16 {
-    i16::try_from(round(clamp(value, -32_000.0, 32_000.0))).unwrap_or(0)
 }
 
 #[cfg(test)]

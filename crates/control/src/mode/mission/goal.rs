@@ -103,8 +103,8 @@ impl Mission {
             length_m: 1.0,
             ..way
         };
-        // Both read the whole memory: each every other tick.
-        state.looks_ahead = !state.looks_ahead;
+        // Both read the whole memory: each every other tick, and the longer one where there is no reading to take.
+        state.looks_ahead = !state.looks_ahead && estimate.reading.is_none();
         if state.looks_ahead {
             state.gap_m = state
                 .echoes
@@ -224,7 +224,7 @@ impl Mission {
             action.reached = true;
             action.new_origin = self.reset_origin;
             if self.reset_origin {
-                state.echoes.move_origin(&estimate.pose);
+                state.echoes.move_origin(&estimate.pose, estimate.facing);
             }
         }
         step.drive

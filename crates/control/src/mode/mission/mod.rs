@@ -34,6 +34,7 @@ mod gaze;
 mod goal;
 mod lane;
 mod obstacle;
+mod place;
 mod plan;
 mod watch;
 
@@ -42,8 +43,9 @@ use crate::math::{abs, min, sqrt};
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
 use crate::params::{ParamId, Params};
 use crate::types::{Drive, Fault, Pose, ServoAngle, Side, TICK_S};
-use echoes::{Echoes, Place};
+use echoes::Echoes;
 use obstacle::Way;
+use place::Place;
 use plan::Plan;
 use watch::Watch;
 

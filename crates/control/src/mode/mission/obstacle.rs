@@ -10,19 +10,20 @@
 //!
 //! Their union is one interval, since neighbours are nearer than 2 R: its two ends are the ways around.
 
-use super::echoes::{CAPACITY, Echoes, Place, fractions};
+use super::echoes::{CAPACITY, Echoes};
+use super::place::{Bounds, Place, fractions};
 use crate::math::{atan2, from_u32, min, round, sqrt, wrap_angle};
 use core::f32::consts::{FRAC_PI_2, PI, TAU};
 
 /// Two points nearer than this hang together [mm].
-pub(super) const LINK_MM: i32 = 290;
+pub(super) const LINK_MM: u16 = 290;
 /// Half of the width that the robot takes for itself when it passes a point [m].
 pub(super) const PASS_M: f32 = 0.17;
 /// Half of the width of the way to the goal that must be clear [m].
 pub(super) const WAY_M: f32 = 0.125;
 /// Points searched per tick, and points found.
 const PER_TICK: usize = 3;
-const JOINED_PER_TICK: u8 = 2;
+const JOINED_PER_TICK: u8 = 3;
 /// Points farther than this from the robot do not carry the search on [m].
 const SPREAD_M: f32 = 1.6;
 /// Steps of the bearings that are carried along [rad].
@@ -127,19 +128,17 @@ impl Echoes {
         half_width_m: f32,
         among: Among,
     ) -> Option<(usize, f32)> {
-        let (sin, cos) = fractions(way.facing);
+        let facing = fractions(way.facing);
         let from = Place::new(way.x_m, way.y_m);
-        let most_mm = round(way.length_m * 1_000.0);
         let half_mm = round(half_width_m * 1_000.0);
-        let mut nearest_mm = most_mm;
+        let mut nearest_mm = round(way.length_m * 1_000.0);
         let mut found = None;
-        for (number, point) in self.iter() {
-            let (x, y) = point.from(from);
-            if x.abs() > most_mm || y.abs() > most_mm {
+        let bounds = Bounds::of(from, facing, nearest_mm, half_mm);
+        for (number, point) in self.points().iter().enumerate() {
+            let Some(point) = point.place().filter(|place| bounds.hold(*place)) else {
                 continue;
-            }
-            let along = (x * cos + y * sin) >> 14;
-            let across = (y * cos - x * sin) >> 14;
+            };
+            let (along, across) = point.seen(from, facing);
             if along > 0
                 && along < nearest_mm
                 && across.abs() < half_mm
@@ -156,17 +155,23 @@ impl Echoes {
     /// The point nearest to a place, of those of an obstacle or of all, and its distance [m].
     pub(super) fn nearest(&self, x_m: f32, y_m: f32, of: Option<&Search>) -> Option<(usize, f32)> {
         let from = Place::new(x_m, y_m);
-        let mut best: Option<(usize, i32)> = None;
-        for (number, point) in self.iter() {
-            if of.is_none_or(|search| search.has(number)) {
-                let square = point.square_mm2(from);
-                if best.is_none_or(|(_, least)| square < least) {
-                    best = Some((number, square));
-                }
+        let mut best: Option<(usize, u32)> = None;
+        // No point that is nearer has a longer distance of the cheap kind than this.
+        let mut most_mm = u16::MAX;
+        for (number, point) in self.points().iter().enumerate() {
+            let Some(point) = point.place() else { continue };
+            let about_mm = point.about_mm(from);
+            if about_mm > most_mm || of.is_some_and(|search| !search.has(number)) {
+                continue;
+            }
+            let square = point.square_mm2(from);
+            if best.is_none_or(|(_, least)| square < least) {
+                best = Some((number, square));
+                most_mm = about_mm.saturating_add(about_mm >> 3).saturating_add(1);
             }
         }
         let (number, square) = best?;
-        let square = from_u32(square.unsigned_abs());
+        let square = from_u32(square);
         Some((number, sqrt(square) * 1e-3))
     }
 }
@@ -274,9 +279,13 @@ impl Search {
                 continue;
             };
             let about_rad = f32::from(self.bearing.get(number).copied().unwrap_or(0)) * COARSE_RAD;
-            for (other, point) in echoes.iter() {
+            let around = Bounds::around(centre, LINK_MM);
+            for (other, point) in echoes.points().iter().enumerate() {
+                let Some(place) = point.place().filter(|place| around.hold(*place)) else {
+                    continue;
+                };
                 if self.member.has(other)
-                    || !point.is_within(LINK_MM, centre)
+                    || !place.is_within(LINK_MM, centre)
                     || !echoes.is_firm(other, here)
                 {
                     continue;

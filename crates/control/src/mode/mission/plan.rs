@@ -3,8 +3,9 @@
 //! One round takes a few ticks: look along the way, find the obstacle that blocks it, publish. While the robot goes around an obstacle
 //! the round starts from the point nearest to the side that it keeps to it, so that it follows that one and not the next.
 
-use super::echoes::{Echoes, Place};
+use super::echoes::Echoes;
 use super::obstacle::{Among, Obstacle, Search, WAY_M, Way, half_angle};
+use super::place::Place;
 use crate::math::{atan2, sin_cos, wrap_angle};
 use crate::types::{Pose, Side};
 use core::f32::consts::FRAC_PI_2;
@@ -57,6 +58,8 @@ impl Plan {
             self.search
                 .begin(echoes, number, pose.x_m, pose.y_m, about_rad);
             self.busy = true;
+            // Looking along the way and beside the robot is enough for one tick.
+            return false;
         }
         let Some(obstacle) = self.search.step(echoes, pose.x_m, pose.y_m) else {
             return false;

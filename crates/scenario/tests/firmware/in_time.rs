@@ -1,0 +1,72 @@
+//! How long the ticks of real runs take: from the inputs to the outputs, which are due 3 ms after the tick, and to the end of the tick,
+//! which must come before the next one. The random inputs of `same_bits` do not reach what takes longest: a wall that is being
+//! followed, a memory full of echoes.
+
+use crate::faults::drive::setup;
+use rumbo_scenario::files::FileError;
+use rumbo_scenario::run::run_by;
+
+/// Where a tick begins, where its outputs are left, and where the loop waits for the next one.
+const MARKS: [&str; 3] = [
+    "rumbo_inputs_latched",
+    "rumbo_outputs_left",
+    "rumbo::hal::power::sleep_after",
+];
+/// Most cycles from the inputs to the outputs, interrupts included.
+const MOST_TO_OUTPUTS: u64 = 45_000;
+/// Most cycles from the inputs to the end, of a period's 160,000.
+const MOST_TO_END: u64 = 150_000;
+
+/// Runs a scenario on the image and gives the most cycles of a tick from its inputs to its outputs and to its end; `None` where the image
+/// has not been built.
+fn longest(scenario: &str, seed: u64) -> Option<(u64, u64)> {
+    let setup = setup(scenario, |_| {})?;
+    let mut marks = Vec::new();
+    run_by(&setup, seed, |run| {
+        assert!(run.sim().mega_mut().unwrap().mark(&MARKS));
+        while !run.is_over() {
+            run.advance();
+        }
+        marks = run.sim().mega_mut().unwrap().take_marks();
+        Ok::<(), FileError>(())
+    })
+    .unwrap();
+    let (mut to_outputs, mut to_end, mut ticks) = (0, 0, 0);
+    let mut began = None;
+    for (mark, cycle) in marks {
+        let took = cycle - began.unwrap_or(cycle);
+        match mark {
+            0 => {
+                began = Some(cycle);
+                ticks += 1;
+            }
+            1 => to_outputs = took.max(to_outputs),
+            _ => to_end = took.max(to_end),
+        }
+    }
+    println!(
+        "{scenario}, seed {seed}: {ticks} ticks; most cycles to the outputs {to_outputs}, to the end {to_end}"
+    );
+    assert!(ticks > 500, "{ticks}");
+    Some((to_outputs, to_end))
+}
+
+#[test]
+fn no_tick_of_a_run_is_late_or_longer_than_its_period() {
+    for (scenario, seed) in [
+        ("mode1", 1),
+        ("mode2", 1),
+        ("mode3", 1),
+        ("mode4-final", 1),
+        ("pursuit-curve", 1),
+        ("mode8-lane", 1),
+        ("mode8-obstacles", 1),
+        ("mode8-obstacles", 19),
+    ] {
+        let Some((to_outputs, to_end)) = longest(scenario, seed) else {
+            return;
+        };
+        assert!(to_outputs <= MOST_TO_OUTPUTS, "{scenario}: {to_outputs}");
+        assert!(to_end <= MOST_TO_END, "{scenario}: {to_end}");
+    }
+}
