@@ -20,7 +20,7 @@ const IN_TIME: u64 = 48_000;
 const MOST: u64 = 45_000;
 
 /// Experiments whose inputs are recorded, and of which robots.
-const RECORDED: [(&str, u64); 14] = [
+const RECORDED: [(&str, u64); 15] = [
     ("manual-arc-left-speed", 1),
     ("manual-straight", 1),
     ("mode1-final", 1),
@@ -28,6 +28,7 @@ const RECORDED: [(&str, u64); 14] = [
     ("mode2-final", 1),
     ("mode3-final", 1),
     ("mode4", 1),
+    ("mode5", 1),
     ("mode5-reversal", 1),
     ("mode6", 1),
     ("mode7", 1),
@@ -94,7 +95,10 @@ fn recorded() -> impl Iterator<Item = (String, Given)> {
     let tapes = RECORDED
         .into_iter()
         .map(|(scenario, seed)| (scenario, seed, None));
-    let tapes = tapes.chain([("mode3-final", 1, Some(NOISE))]);
+    let tapes = tapes.chain([
+        ("mode3-final", 1, Some(NOISE)),
+        ("mode4-final", 1, Some(NOISE)),
+    ]);
     tapes.map(|(scenario, seed, fault)| {
         let tape = Tape::of(scenario, seed, fault.as_slice());
         (format!("{scenario} {fault:?}"), Given::Recorded(tape))
@@ -235,8 +239,10 @@ fn what_both_are_given_leads_through_every_state_of_every_mode() {
     let visited: BTreeSet<(u8, u8)> = given.flat_map(visited).collect();
     for mode in ModeId::ALL {
         let names = mode.state_names().iter().enumerate();
+        // Mode 4 has the states of mode 3, which measures first.
+        let has = |state: usize| mode != ModeId::WallFollow || state > 0;
         let missed: Vec<_> = names
-            .filter(|(state, _)| !visited.contains(&(mode as u8, *state as u8)))
+            .filter(|(state, _)| has(*state) && !visited.contains(&(mode as u8, *state as u8)))
             .collect();
         assert!(missed.is_empty(), "{mode:?}: {missed:?}");
     }
