@@ -20,11 +20,17 @@ pub(crate) struct Tape {
 }
 
 impl Tape {
-    /// Runs a scenario natively, with these faults.
-    pub(crate) fn of(scenario: &str, seed: u64, faults: &[TimedWireFault]) -> Tape {
+    /// Runs a scenario natively, with these faults and parameters.
+    pub(crate) fn of(
+        scenario: &str,
+        seed: u64,
+        faults: &[TimedWireFault],
+        parameters: &[(ParamId, f32)],
+    ) -> Tape {
         let library = Library::new();
         let mut setup = library.setup(scenario, &Overrides::default()).unwrap();
         setup.scenario.wire_faults = faults.to_vec();
+        setup.scenario.parameters.extend(parameters);
         let mut run_of = Vec::new();
         run_by(&setup, seed, |run| {
             run.sim().record_inputs();
