@@ -163,7 +163,7 @@ fn with_profile(times: Times, sim: &Sim) -> Times {
         .iter()
         .filter(|one| WAITING.iter().any(|name| one.name.starts_with(name)));
     let serial = share(writing.map(|one| one.own).sum());
-    let others = share(waiting.map(|one| one.total).sum());
+    let others = share(waiting.map(|one| one.own).sum());
     let interrupts = profile.interrupts();
     let us = |cycles: u64| cycles as f64 / CYCLES_PER_US;
     let encoder = |it: &&InterruptUse| ENCODERS.contains(&it.vector);
