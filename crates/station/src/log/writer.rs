@@ -9,6 +9,9 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 
+/// A chunk is closed at this size before compression \[bytes\]: what a damaged or cut one takes with it.
+const CHUNK: u64 = 64 << 10;
+
 /// A log being written.
 pub(super) struct LogWriter<W: Write + Seek> {
     log: Writer<W>,
@@ -21,6 +24,7 @@ impl<W: Write + Seek> LogWriter<W> {
     pub(super) fn new(into: W, manifest: &Manifest) -> McapResult<Self> {
         let mut log = WriteOptions::new()
             .compression(Some(Compression::Lz4))
+            .chunk_size(Some(CHUNK))
             // The file only grows: killed at any moment, all chunks but the last are whole.
             .disable_seeking(true)
             .profile("")
