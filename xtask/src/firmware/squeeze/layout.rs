@@ -56,14 +56,13 @@ pub(super) fn arrange(
     program: &mut Program,
     direct: impl Fn(&Function) -> bool,
 ) -> Result<(), String> {
-    order(&mut program.functions);
     let regions = make_islands(&mut program.functions, &direct);
     let settled = Layout::new(&program.functions, &regions, &direct).settle();
     write(&mut program.functions, settled)
 }
 
 /// Callers beside what they call.
-fn order(functions: &mut Vec<Function>) {
+pub(super) fn order(functions: &mut Vec<Function>) {
     let places: HashMap<String, usize> = functions
         .iter()
         .enumerate()
@@ -109,23 +108,17 @@ fn order(functions: &mut Vec<Function>) {
     functions.extend(ranked.into_iter().map(|(_, function)| function));
 }
 
-/// The region of each function and, of each region, the labels of its islands by where they lead.
-struct Regions {
-    of: Vec<usize>,
-    islands: Vec<HashMap<String, String>>,
+/// Words that a function takes where calls are short.
+fn size(function: &Function) -> usize {
+    let words = |it: &Instruction| if it.name == "call" { 1 } else { it.words() };
+    function.instructions().map(words).sum()
 }
 
-/// Puts islands into the middle of each region.
-fn make_islands(functions: &mut Vec<Function>, direct: &impl Fn(&Function) -> bool) -> Regions {
-    let size = |function: &Function| -> usize {
-        let instructions = function.instructions();
-        instructions
-            .map(|it| if it.name == "call" { 1 } else { it.words() })
-            .sum()
-    };
+/// Functions in their order, in regions small enough for short calls from the middle to either end.
+pub(super) fn split(functions: Vec<Function>) -> Vec<Vec<Function>> {
     let mut regions: Vec<Vec<Function>> = vec![Vec::new()];
     let mut words = 0;
-    for function in std::mem::take(functions) {
+    for function in functions {
         if words + size(&function) > REGION && words > 0 {
             regions.push(Vec::new());
             words = 0;
@@ -135,6 +128,29 @@ fn make_islands(functions: &mut Vec<Function>, direct: &impl Fn(&Function) -> bo
             region.push(function);
         }
     }
+    regions
+}
+
+/// The place in a region that is nearest to both its ends.
+pub(super) fn middle(region: &[Function]) -> usize {
+    let whole: usize = region.iter().map(size).sum();
+    let mut before = 0;
+    let middle = region.iter().position(|function| {
+        before += size(function);
+        before * 2 >= whole
+    });
+    middle.map_or(0, |middle| middle + 1)
+}
+
+/// The region of each function and, of each region, the labels of its islands by where they lead.
+struct Regions {
+    of: Vec<usize>,
+    islands: Vec<HashMap<String, String>>,
+}
+
+/// Puts islands into the middle of each region.
+fn make_islands(functions: &mut Vec<Function>, direct: &impl Fn(&Function) -> bool) -> Regions {
+    let regions = split(std::mem::take(functions));
     let mut result = Regions {
         of: Vec::new(),
         islands: Vec::new(),
@@ -167,13 +183,8 @@ fn make_islands(functions: &mut Vec<Function>, direct: &impl Fn(&Function) -> bo
             labels.insert(target, label);
         }
         if !labels.is_empty() {
-            let whole: usize = region.iter().map(size).sum();
-            let mut before = 0;
-            let middle = region.iter().position(|function| {
-                before += size(function);
-                before * 2 >= whole
-            });
-            region.insert(middle.map_or(0, |middle| middle + 1), island);
+            let middle = middle(&region);
+            region.insert(middle, island);
         }
         result.of.extend(region.iter().map(|_| number));
         result.islands.push(labels);

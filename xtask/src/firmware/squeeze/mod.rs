@@ -1,7 +1,7 @@
 //! Makes the program smaller, in its assembly.
 //!
 //! The compiler writes each function as if it were alone. Here all are known, and what they have in common is
-//! written once ([`frames`]), what they do in vain is left out ([`branches`]), and everything is put where
+//! written once ([`frames`], [`repeats`]), what they do in vain is left out ([`branches`]), and everything is put where
 //! short jumps reach it ([`layout`]). Before that, arguments on the stack are repaired if the compiler needs it ([`stack_arguments`]).
 //! What is not understood is refused: a wrong image is worse than none.
 
@@ -10,6 +10,7 @@ mod branches;
 mod debugging;
 mod frames;
 mod layout;
+mod repeats;
 mod stack_arguments;
 #[cfg(test)]
 mod tests;
@@ -63,6 +64,19 @@ pub(crate) fn squeeze(text: &str, options: &Options<'_>) -> Result<Squeezed, Str
         |function| has_stack_arguments.contains(function.name()),
         |function| options.is_hot(function),
     );
+    layout::order(&mut program.functions);
+    let mut regions = layout::split(std::mem::take(&mut program.functions));
+    let may_change = |function: &Function| {
+        let is_ours = ["rumbo_enter", "rumbo_leave"]
+            .iter()
+            .any(|name| function.name().starts_with(name));
+        !is_ours && !options.is_hot(function) && !repeats::touches_hardware(function)
+    };
+    let mut made = 0;
+    for region in &mut regions {
+        repeats::share(region, may_change, &has_stack_arguments, &mut made);
+    }
+    program.functions = regions.into_iter().flatten().collect();
     layout::arrange(&mut program, |function| options.is_hot(function))?;
     Ok(Squeezed {
         assembly: program.print(),

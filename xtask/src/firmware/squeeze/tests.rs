@@ -135,13 +135,13 @@ fn a_branch_around_a_jump_goes_there_itself() {
 #[test]
 fn a_branch_that_does_not_reach_goes_around_a_jump() {
     let text = function(
-        "one",
+        "hot_one",
         &format!(
             "cpi r24, 1\nbreq .LBB0_2\n{}ret\n.LBB0_2:\nldi r24, 3\nret",
             "nop\n".repeat(64)
         ),
     );
-    let lines = body(&squeezed(&text).unwrap(), "one");
+    let lines = body(&squeezed(&text).unwrap(), "hot_one");
     assert_eq!(lines[1..4], ["brne .Lskip_0", "rjmp .LBB0_2", ".Lskip_0:"]);
 }
 
@@ -157,7 +157,15 @@ fn what_many_call_and_none_reaches_has_an_island() {
 
 #[test]
 fn what_is_not_understood_is_refused() {
-    for line in ["sbrc r24, 1", "icall", "breq .+4", "rjmp 12"] {
+    // A branch that becomes two instructions must not follow one that skips the next.
+    let skips = [
+        "cpse r24, r25",
+        "sbrc r24, 1",
+        "sbrs r24, 1",
+        "sbic 5, 1",
+        "sbis 5, 1",
+    ];
+    for line in skips.into_iter().chain(["icall", "breq .+4", "rjmp 12"]) {
         let error = squeezed(&function("one", &format!("{line}\nret"))).unwrap_err();
         assert!(error.contains(line), "{error}");
     }
@@ -197,4 +205,76 @@ fn debuggers_know_types_and_where_a_function_begins() {
         "{assembly}"
     );
     assert!(!assembly.contains(".Ltmp0"), "{assembly}");
+}
+
+#[test]
+fn what_two_functions_do_alike_is_written_once() {
+    let alike = "ldd r22, Z+2\nldd r23, Z+3\nstd Y+5, r22\nstd Y+6, r23\ncall far\n";
+    let text = [("one", 2), ("two", 3), ("three", 4)].map(|(name, register)| {
+        function(name, &format!("ldi r24, 7\n{alike}inc r{register}\nret"))
+    });
+    let assembly = squeezed(&text.concat()).unwrap();
+    assert_eq!(
+        body(&assembly, "two"),
+        ["rcall rumbo_shared_0", "inc r3", "ret"]
+    );
+    // It ends in what it would call.
+    let shared = body(&assembly, "rumbo_shared_0");
+    assert_eq!((shared.len(), shared[5].as_str()), (6, "jmp far"));
+    let hot = squeezed(
+        &text
+            .concat()
+            .replace("one", "hot_one")
+            .replace("two", "hot_two"),
+    )
+    .unwrap();
+    assert!(!hot.contains("rumbo_shared"), "{hot}");
+}
+
+#[test]
+fn what_two_functions_end_in_is_jumped_to() {
+    let text = [("one", 2), ("two", 3), ("three", 4)].map(|(name, register)| {
+        function(
+            name,
+            &format!(
+                "push r{register}\ninc r24\nout 62, r31\nout 61, r30\nmovw r24, r30\npop r16\nret"
+            ),
+        )
+    });
+    let assembly = squeezed(&text.concat()).unwrap();
+    // Not between the halves of the stack pointer.
+    assert_eq!(body(&assembly, "two"), ["push r3", "rjmp rumbo_shared_0"]);
+    assert_eq!(
+        body(&assembly, "rumbo_shared_0")[..2],
+        ["inc r24", "out 62, r31"]
+    );
+}
+
+#[test]
+fn nothing_that_counts_on_the_stack_is_called_from_somewhere_else() {
+    let alike = "in r30, 61\nin r31, 62\npush r24\npush r25\npop r20\npop r21\n";
+    let text = [("one", 2), ("two", 3), ("three", 4)]
+        .map(|(name, register)| function(name, &format!("{alike}inc r{register}\nret")));
+    assert!(!squeezed(&text.concat()).unwrap().contains("rumbo_shared"));
+    // Nor a call that leaves an argument there.
+    let reads = with_frame("reads", "ldd r24, Y+31");
+    let calls = [("one", 2), ("two", 3), ("three", 4)].map(|(name, register)| {
+        function(
+            name,
+            &format!("ldi r24, 7\ncall reads\nldi r20, 9\ninc r{register}\nret"),
+        )
+    });
+    assert!(
+        !squeezed(&(reads + &calls.concat()))
+            .unwrap()
+            .contains("rumbo_shared")
+    );
+}
+
+#[test]
+fn where_the_hardware_is_touched_no_time_changes() {
+    let alike = "sts 96, r24\nsts 96, r25\nnop\nnop\nnop\n";
+    let text = [("one", 2), ("two", 3), ("three", 4)]
+        .map(|(name, register)| function(name, &format!("{alike}inc r{register}\nret")));
+    assert!(!squeezed(&text.concat()).unwrap().contains("rumbo_shared"));
 }
