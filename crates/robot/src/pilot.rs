@@ -138,7 +138,8 @@ impl Pilot {
     /// What no mode should have to look after.
     fn watch(&mut self) -> Result<(), Fault> {
         let edges = self.estimate.motion.map(|motion| motion.edges);
-        if let Some(fault) = self.stall.step(edges, self.duty) {
+        let silent = self.stall.step(edges, self.duty, self.wheel_ref_rad_s);
+        if let Some(fault) = silent {
             return Err(fault);
         }
         if self.is_battery_low() {
