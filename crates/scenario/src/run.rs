@@ -238,8 +238,8 @@ fn instead(name: &str, metrics: &Metrics) -> String {
 /// Results that wait for their reader: a slow one holds the runs back, so that their traces do not fill the memory.
 const WAITING: usize = 16;
 
-/// Runs all `jobs`, each a setup and a seed, on all threads of the current pool, and hands the results to `handle`
-/// in the order of the jobs, each as soon as it and all before it are there. Not to be called on a thread of the pool.
+/// Runs all `jobs`, each a setup and a seed, on as many threads as the current pool has, and hands the results to `handle`
+/// in the order of the jobs, each as soon as it and all before it are there.
 ///
 /// # Errors
 /// The first error, of a setup or of `handle`; no further run is begun.
@@ -249,10 +249,11 @@ pub fn run_all<E: From<FileError>>(
 ) -> Result<(), E> {
     let next = AtomicUsize::new(0);
     let (done, results) = sync_channel(WAITING);
-    rayon::in_place_scope(|scope| {
+    // Threads of their own: the caller may be one of the pool's, perhaps its only one, and waits for the results.
+    std::thread::scope(|scope| {
         for _ in 0..rayon::current_num_threads() {
             let (done, next) = (done.clone(), &next);
-            scope.spawn(move |_| {
+            scope.spawn(move || {
                 loop {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let Some((setup, seed)) = jobs.get(index) else {
