@@ -2,7 +2,7 @@
 /** The calibration as a guided page: where to put the robot, what it does meanwhile, what it found, and the parameters before and after. */
 import { dialog } from './dialog.js';
 import { create, setText } from './dom.js';
-import { said, t } from './text.js';
+import { numberAs, said, t } from './text.js';
 import { format, formatFloat } from './units.js';
 
 /** @typedef {import('./panel.js').Send} Send */
@@ -108,7 +108,7 @@ export class CalibrationDialog {
     const { rows = [], parameters = [] } = calibration?.phase === 'done' ? calibration.findings : {};
     const named = (/** @type {number} */ id) => this.#parameters.find((each) => each.id === id)?.name ?? String(id);
     const was = (/** @type {number} */ id) => this.#before.get(id) ?? null;
-    const found = rows.map(({ name, found: value, standard_error }) => [said(name), value.toPrecision(5), standard_error === null ? '' : `± ${standard_error.toPrecision(2)}`]);
+    const found = rows.map(({ name, found: value, standard_error }) => [said(name), numberAs(value.toPrecision(5)), standard_error === null ? '' : `± ${numberAs(standard_error.toPrecision(2))}`]);
     const set = parameters.map(([id, value]) => [named(id), formatFloat(was(id)), formatFloat(value)]);
     const back = this.#button(t('Put the old values back'), () => {
       for (const [id] of parameters) {

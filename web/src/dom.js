@@ -30,17 +30,6 @@ export function create(tag, properties = {}, ...children) {
 }
 
 /**
- * A field for a number.
- * @param {string} id
- * @param {number} value
- * @param {number} min
- * @param {number} max
- */
-export function number(id, value, min, max) {
-  return create('input', { type: 'number', id, value: String(value), min: String(Math.ceil(min * 10) / 10), max: String(Math.floor(max * 10) / 10), step: 'any', required: true });
-}
-
-/**
  * Writes a text only when it differs, so that nothing is laid out again without need.
  * @param {Element} target
  * @param {string} text

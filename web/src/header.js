@@ -1,8 +1,8 @@
 // @ts-check
 /** The top line: what runs, how fast, and how good the link is. */
 import { create, element, setText } from './dom.js';
-import { format } from './units.js';
-import { named, said, t } from './text.js';
+import { format, formatShort } from './units.js';
+import { named, t } from './text.js';
 
 /** @typedef {import('./types.js').State} State */
 /** @typedef {import('./types.js').Scene} Scene */
@@ -30,13 +30,11 @@ export class Header {
   /** @type {State | null} */
   #state = null;
   #open = false;
-  /** @type {string | null} */
-  #why = null;
   #heard_ms = 0;
 
   /** @param {Send} send */
   constructor(send) {
-    this.#speed.replaceChildren(...SPEEDS.map((factor) => option(String(factor), factor === 0 ? t('paused') : `× ${factor}`)));
+    this.#speed.replaceChildren(...SPEEDS.map((factor) => option(String(factor), factor === 0 ? t('paused') : `× ${formatShort(factor)}`)));
     this.#speed.addEventListener('change', () => send({ type: 'speed', factor: Number(this.#speed.value) }));
     this.#form.addEventListener('submit', (event) => {
       event.preventDefault();
@@ -58,13 +56,9 @@ export class Header {
     this.#seed.value = String(scene.choice.seed);
   }
 
-  /**
-   * @param {boolean} open
-   * @param {string | null} why
-   */
-  setOpen(open, why) {
+  /** @param {boolean} open */
+  setOpen(open) {
     this.#open = open;
-    this.#why = why;
     this.heard();
   }
 
@@ -78,7 +72,7 @@ export class Header {
   show(state) {
     this.#state = state;
     const speed = String(state.speed);
-    if (![...this.#speed.options].some((each) => each.value === speed)) this.#speed.append(option(speed, `× ${speed}`));
+    if (![...this.#speed.options].some((each) => each.value === speed)) this.#speed.append(option(speed, `× ${formatShort(state.speed)}`));
     if (document.activeElement !== this.#speed) this.#speed.value = speed;
     const { link, robot } = state;
     setText(this.#roundTrip, link.round_trip_ms === null ? '–' : `${link.round_trip_ms} ms`);
@@ -101,7 +95,7 @@ export class Header {
   /** @returns {[string, string]} */
   #connectionWords() {
     const state = this.#state;
-    if (!this.#open) return [this.#why ? t('no connection: {}, trying again…', said(this.#why)) : t('no connection, trying again…'), 'bad'];
+    if (!this.#open) return [t('no connection'), 'bad'];
     if (!state) return [t('connecting…'), 'bad'];
     if (state.replay) return state.speed === 0 ? [t('replay, paused'), 'warning'] : [t('replay × {}', state.speed), 'good'];
     if (state.speed === 0) return [t('simulation paused'), 'warning'];

@@ -4,8 +4,21 @@
 /** @typedef {import('./types.js').FromServer} FromServer */
 /** @typedef {import('./types.js').Order} Order */
 
+/** `locked`: the station was started again, and this browser has no key to it yet. @typedef {'open' | 'closed' | 'locked'} Connection */
+
 const RETRY_MS = 500;
-const RETRY_MAX_MS = 5_000;
+const RETRY_MAX_MS = 2_000;
+/** An answer that takes longer is none [ms]. */
+const ANSWER_MS = 1_000;
+
+/** Whether a station is there, and this page has no key to it. */
+async function turnedAway() {
+  try {
+    return (await fetch('/icon.svg?key', { cache: 'no-store', signal: AbortSignal.timeout(ANSWER_MS) })).status === 403;
+  } catch {
+    return false;
+  }
+}
 
 export class Link {
   /** @type {WebSocket | null} */
@@ -13,12 +26,14 @@ export class Link {
   #retryMs = RETRY_MS;
   /** @type {string | null} */
   #lastError = null;
+  /** @type {Connection} */
+  #was = 'closed';
   #onMessage;
   #onChange;
 
   /**
    * @param {(message: FromServer) => void} onMessage
-   * @param {(open: boolean, why: string | null) => void} onChange told when the connection opens or closes
+   * @param {(now: Connection, why: string | null) => void} onChange told when the connection opens or closes, and why the station closed it
    */
   constructor(onMessage, onChange) {
     this.#onMessage = onMessage;
@@ -32,7 +47,7 @@ export class Link {
     socket.addEventListener('open', () => {
       this.#retryMs = RETRY_MS;
       this.#lastError = null;
-      this.#onChange(true, null);
+      this.#change('open');
     });
     socket.addEventListener('message', (event) => {
       /** @type {FromServer} */
@@ -40,12 +55,20 @@ export class Link {
       if (message.type === 'error') this.#lastError = message.text;
       else this.#onMessage(message);
     });
-    socket.addEventListener('close', () => {
+    socket.addEventListener('close', async () => {
       this.#socket = null;
-      this.#onChange(false, this.#lastError);
+      if (this.#was === 'open') this.#change('closed');
       setTimeout(() => this.#open(), this.#retryMs);
       this.#retryMs = Math.min(2 * this.#retryMs, RETRY_MAX_MS);
+      const now = await turnedAway() ? 'locked' : 'closed';
+      if (this.#was !== 'open') this.#change(now);
     });
+  }
+
+  /** @param {Connection} now */
+  #change(now) {
+    this.#was = now;
+    this.#onChange(now, this.#lastError);
   }
 
   /**

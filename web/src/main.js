@@ -16,7 +16,9 @@ import { Link } from './link.js';
 import { LinkMeter } from './linkmeter.js';
 import { Machine } from './machine.js';
 import { WorldMap } from './map.js';
+import { bodyOf } from './mounts.js';
 import { CommandPanel } from './panel.js';
+import { Notice } from './notice.js';
 import { ParameterTable } from './parameters.js';
 import { PlotDialog } from './plot_dialog.js';
 import { Plots } from './plots.js';
@@ -39,12 +41,33 @@ languages.addEventListener('change', () => speak(languages.value));
 const store = new Store();
 /** @type {State | null} */
 let state = null;
+/** The station's. @type {string | null} */
+let version = null;
+/** What is simulated around the robot. @type {import('./types.js').Scene | null} */
+let simulated = null;
+/** What the robot takes its body for. @type {import('./mounts.js').Body | null} */
+let body = null;
 /** The sonars that the robot carries, by number. */
 let sonars = [0, 1, 2];
 
+/** The simulation knows the robot's body, or else the robot itself, if it tells. */
+function setBody() {
+  const own = typeof state?.robot.rig === 'string' ? body : null;
+  map.body = own;
+  sonars = (simulated ?? own)?.sonars.map(({ id }) => id).sort() ?? [0, 1, 2];
+  stateLine.sonars = sonars;
+}
+
+/** That nothing is sent is told so often at most: a key that is held would tell it five times a second [ms]. */
+const UNSENT_MS = 1_000;
+let unsent_ms = -UNSENT_MS;
+
 /** @param {import('./types.js').Order} order */
 function send(order) {
-  if (!link.send(order)) events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text: t('{}: not sent, there is no connection', order.type) }]);
+  if (link.send(order)) return;
+  if (order.type !== 'stop' && performance.now() - unsent_ms < UNSENT_MS) return;
+  unsent_ms = performance.now();
+  events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text: order.type === 'stop' ? 'STOP was not sent: there is no connection to the station' : 'not sent: there is no connection to the station' }]);
 }
 
 /** When what is drawn next was heard; and how long things took from there to the frame after, while somebody measures. */
@@ -137,6 +160,9 @@ function receive(message) {
   header.heard();
   switch (message.type) {
     case 'hello':
+      // A station of another version has another page.
+      if (version !== null && message.version !== version) location.reload();
+      version = message.version;
       store.begin(message.columns);
       events.clear();
       consoles.clear();
@@ -149,17 +175,18 @@ function receive(message) {
     case 'scene':
       store.setRun(message.run);
       if (message.run !== consoleRun) consoles.clear();
-      const simulated = message.scene?.of_ghost ? null : message.scene;
+      simulated = message.scene?.of_ghost ? null : message.scene;
       header.setScene(simulated);
       map.setScene(message.scene);
-      sonars = simulated?.sonars.map(({ id }) => id) ?? [0, 1, 2];
       panel.setScene(message.scene);
       stateLine.setScene(simulated);
+      setBody();
       document.body.classList.toggle('simulated', simulated !== null);
       document.body.classList.toggle('haunted', false);
       break;
     case 'state':
       state = message.state;
+      setBody();
       header.show(state);
       replay.show(state);
       panel.show(state);
@@ -179,6 +206,8 @@ function receive(message) {
     case 'parameters':
       parameters.show(message.parameters);
       calibration.setParameters(message.parameters);
+      body = bodyOf(message.parameters);
+      setBody();
       break;
     case 'events':
       events.add(message.events);
@@ -206,7 +235,11 @@ function receive(message) {
   }
 }
 
-const link = new Link(receive, (open, why) => header.setOpen(open, why));
+const notice = new Notice();
+const link = new Link(receive, (now, why) => {
+  header.setOpen(now === 'open');
+  notice.show(now, why);
+});
 
 Object.assign(window, {
   rumbo: {

@@ -75,6 +75,11 @@ export class WorldMap {
     this.fit();
   }
 
+  /** What the robot takes its body for. @param {import('./mounts.js').Body | null} body */
+  set body(body) {
+    this.#sketch.body = body;
+  }
+
   /** @param {Errand} errand */
   setErrand(errand) {
     this.#errand = errand;

@@ -5,7 +5,8 @@
  * A held key is told to the station again and again, and the station lets go when it hears nothing: a page that hangs or is gone stops
  * the robot too. Letting go, another window, another field: the wheels are released.
  */
-import { create, element, number } from './dom.js';
+import { number, read, setLimits, write } from './decimal.js';
+import { create, element } from './dom.js';
 import { RPM_PER_RAD_S } from './units.js';
 import { watchGamepads } from './gamepad.js';
 import { t } from './text.js';
@@ -111,7 +112,7 @@ export class Movements {
 
   /** @param {number} movement @param {boolean} held @param {number} [depth] the part of the level */
   #order(movement, held, depth = 1) {
-    const level = this.#level.valueAsNumber * depth;
+    const level = read(this.#level) * depth;
     if (movement === RELEASE) this.#send({ type: 'move_duty', movement, duty: 0 });
     else if (this.#unit.value === 'duty') this.#send({ type: 'move_duty', movement, duty: level / 100, held });
     else this.#send({ type: 'move_speed', movement, speed_rad_s: level / RPM_PER_RAD_S, held });
@@ -120,8 +121,8 @@ export class Movements {
   #layOut() {
     this.#unit.addEventListener('change', () => {
       const duty = this.#unit.value === 'duty';
-      this.#level.max = duty ? '100' : '190';
-      this.#level.value = duty ? '35' : '60';
+      setLimits(this.#level, 0, duty ? 100 : 190);
+      write(this.#level, duty ? 35 : 60);
     });
     const pad = create('div', { className: 'pad' }, ...MOVEMENTS.map(({ id, sign, name }) => {
       const button = create('button', { type: 'button', title: t(name), textContent: sign, value: String(id) });

@@ -1,6 +1,7 @@
 // @ts-check
 /** The command panel: mode, ON and OFF, STOP, and the controls of the mode. */
-import { create, element, number, setText } from './dom.js';
+import { number, read } from './decimal.js';
+import { create, element, setText } from './dom.js';
 import { Movements } from './movements.js';
 import { Places } from './places.js';
 import { CM_PER_M, RPM_PER_RAD_S, format } from './units.js';
@@ -43,7 +44,7 @@ export class CommandPanel {
     // Space stops, wherever the focus is: ahead of whatever else it would do there. Only in a line of text it is a blank.
     for (const type of /** @type {const} */ (['keydown', 'keyup'])) {
       addEventListener(type, (event) => {
-        const typing = event.target instanceof HTMLInputElement && event.target.type === 'text';
+        const typing = event.target instanceof HTMLInputElement && event.target.type === 'text' && event.target.inputMode !== 'decimal';
         if (event.code !== 'Space' || typing) return;
         event.preventDefault();
         event.stopPropagation();
@@ -145,7 +146,7 @@ export class CommandPanel {
     this.#reference.replaceChildren(create('label', {}, `${t('reference')} `, input, ` ${unit}`), submit(t('Set')), this.#inForce ?? '', range);
     this.#reference.onsubmit = (event) => {
       event.preventDefault();
-      this.#send({ type: 'reference', value: input.valueAsNumber / factor });
+      this.#send({ type: 'reference', value: read(input) / factor });
     };
   }
 
@@ -170,7 +171,7 @@ export class CommandPanel {
     );
     this.#reference.onsubmit = (event) => {
       event.preventDefault();
-      this.#send({ type: 'wheel_reference', left: left.valueAsNumber / RPM_PER_RAD_S, right: right.valueAsNumber / RPM_PER_RAD_S });
+      this.#send({ type: 'wheel_reference', left: read(left) / RPM_PER_RAD_S, right: read(right) / RPM_PER_RAD_S });
     };
   }
 }

@@ -1,5 +1,6 @@
 // @ts-check
 /** The parameter table: what each is, what the robot holds, and what may be written. */
+import { check, decimal, read, setLimits } from './decimal.js';
 import { create, element, setText } from './dom.js';
 import { formatFloat } from './units.js';
 import { said, t } from './text.js';
@@ -15,10 +16,7 @@ class Line {
     this.edited = false;
     /** The refusal the operator has seen and left. @type {string | null} */
     this.dismissed = null;
-    this.input = create('input', {
-      type: 'number', step: 'any', min: formatFloat(parameter.min), max: formatFloat(parameter.max), required: true,
-      id: `parameter-${parameter.name}`,
-    });
+    this.input = decimal(`parameter-${parameter.name}`);
     this.input.setAttribute('aria-label', t('{} in {}', parameter.name, parameter.unit || t('no unit')));
     this.apply = create('button', { type: 'button', textContent: t('Apply'), title: t('Write to the robot (Enter)') });
     this.revert = create('button', { type: 'button', textContent: '↺', title: t('Back to what the robot holds (Escape)') });
@@ -33,11 +31,11 @@ class Line {
       create('td', { className: 'acts' }, this.apply, this.revert, this.note),
     );
     const write = () => {
-      if (Number.isNaN(this.input.valueAsNumber)) return;
+      if (Number.isNaN(read(this.input))) return;
       // A value out of range goes to the robot too: it refuses, and says why.
       this.edited = false;
       this.dismissed = null;
-      send({ type: 'set_param', id: this.parameter.id, value: this.input.valueAsNumber });
+      send({ type: 'set_param', id: this.parameter.id, value: read(this.input) });
     };
     const revert = () => {
       this.edited = false;
@@ -63,9 +61,12 @@ class Line {
     const held = formatFloat(parameter.value);
     const refused = parameter.refused === this.dismissed ? null : parameter.refused;
     // What has not been read yet is not wrong.
-    this.input.required = parameter.value !== null;
+    setLimits(this.input, parameter.min, parameter.max, parameter.value !== null);
     // What is being typed is not overwritten; a refused value stays to be corrected.
-    if (!this.edited && !refused && !parameter.pending && this.input.value !== held) this.input.value = held;
+    if (!this.edited && !refused && !parameter.pending && this.input.value !== held) {
+      this.input.value = held;
+      check(this.input);
+    }
     this.apply.hidden = this.revert.hidden = this.input.value === held && !refused;
     this.row.className = parameter.pending ? 'pending' : refused ? 'bad' : this.edited ? 'edited' : '';
     setText(this.note, parameter.pending ? t('waiting…') : refused ? t('refused: {}', said(refused)) : parameter.value === null ? t('not read yet') : '');

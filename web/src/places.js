@@ -1,7 +1,8 @@
 // @ts-check
 /** The controls of modes 7 and 8: a route made by clicks on the map, a goal by click, by numbers or as the report has them, and the lane. */
-import { create, element, number, setText } from './dom.js';
-import { format } from './units.js';
+import { number, read, setLimits, write } from './decimal.js';
+import { create, element, setText } from './dom.js';
+import { format, pair } from './units.js';
 import { t } from './text.js';
 
 /** @typedef {import('./types.js').ModeEntry} ModeEntry */
@@ -68,15 +69,14 @@ export class Places {
   /** @param {ModeEntry} mode */
   #layOutGoal(mode) {
     for (const input of [this.#x, this.#y]) {
-      input.min = String(mode.reference?.min);
-      input.max = String(mode.reference?.max);
+      setLimits(input, mode.reference?.min ?? -1, mode.reference?.max ?? 1);
       input.setAttribute('aria-label', t(input === this.#x ? 'goal, x: forward of the robot\'s origin, in m' : 'goal, y: left of the robot\'s origin, in m'));
     }
     const form = create('form', { className: 'row', id: 'goal' }, create('label', {}, `${t('goal x')} `, this.#x), create('label', {}, 'y ', this.#y), ' m',
       create('button', { type: 'submit', textContent: t('Set goal'), className: 'go' }));
     form.addEventListener('submit', (event) => {
       event.preventDefault();
-      this.#sendGoal([this.#x.valueAsNumber, this.#y.valueAsNumber]);
+      this.#sendGoal([read(this.#x), read(this.#y)]);
     });
     const own = this.#scene?.goals.filter((goal) => !GOALS.some((each) => same(each, goal))) ?? [];
     const presets = create('div', { className: 'row' }, ...[...GOALS, ...own].map((goal) => {
@@ -112,8 +112,8 @@ export class Places {
   /** @param {Point} goal */
   #sendGoal(goal) {
     const [x_m, y_m] = goal;
-    this.#x.value = String(x_m);
-    this.#y.value = String(y_m);
+    write(this.#x, x_m);
+    write(this.#y, y_m);
     this.#send({ type: 'goal', x_m, y_m });
   }
 
@@ -159,7 +159,7 @@ export class Places {
 
 /** @param {Point} point */
 export function inWords([x_m, y_m]) {
-  return `(${format(x_m, decimals(x_m))}, ${format(y_m, decimals(y_m))})`;
+  return pair(format(x_m, decimals(x_m)), format(y_m, decimals(y_m)));
 }
 
 /** As many decimals as a centimetre needs. @param {number} value */

@@ -6,7 +6,7 @@ import { curvesOf, linesOf } from './curves.js';
 import { UNITS } from './signals.js';
 import { t } from './text.js';
 import { colours } from './theme.js';
-import { format } from './units.js';
+import { format, formatShort } from './units.js';
 
 /** @typedef {import('./plots.js').Plots} Plots */
 /** @typedef {import('./store.js').Store} Store */
@@ -293,7 +293,7 @@ export function timeAxis(labelled) {
     font: FONT,
     gap: 2,
     size: labelled ? 20 : 3,
-    values: labelled ? (_plot, splits) => splits.map((t_s) => `${Number(t_s.toFixed(2))} s`) : () => [],
+    values: labelled ? (_plot, splits) => splits.map((t_s) => `${formatShort(Number(t_s.toFixed(2)))} s`) : () => [],
   };
 }
 
@@ -306,6 +306,7 @@ export function valueAxis() {
     font: FONT,
     gap: 4,
     size: GUTTER_PX,
+    values: (_plot, splits) => splits.map((value) => formatShort(Number(value.toFixed(6)))),
     space: 18,
   };
 }

@@ -1,11 +1,12 @@
 // @ts-check
 /** The dialog of one plot: its title, its signals, the limits of its axis, and its picture as a file. */
+import { check, decimal, read } from './decimal.js';
 import { complaint, dialog, saveFile } from './dialog.js';
 import { create } from './dom.js';
 import { MOST_UNITS, unitsOf } from './layout.js';
 import { toPng, toSvg } from './picture.js';
 import { SIGNALS, UNITS } from './signals.js';
-import { t } from './text.js';
+import { numberAs, t } from './text.js';
 
 /** @typedef {import('./plot.js').PlotPanel} PlotPanel */
 /** @typedef {import('./plots.js').Plots} Plots */
@@ -16,10 +17,10 @@ export class PlotDialog {
   /** The plot that is changed; null: a new one. @type {PlotPanel | null} */
   #panel = null;
   #title = create('input', { type: 'text', id: 'plot-title', maxLength: 60, required: true });
-  #min = create('input', { type: 'number', id: 'plot-min', step: 'any' });
-  #max = create('input', { type: 'number', id: 'plot-max', step: 'any' });
-  #rightMin = create('input', { type: 'number', id: 'plot-right-min', step: 'any' });
-  #rightMax = create('input', { type: 'number', id: 'plot-right-max', step: 'any' });
+  #min = decimal('plot-min');
+  #max = decimal('plot-max');
+  #rightMin = decimal('plot-right-min');
+  #rightMax = decimal('plot-right-max');
   #right = create('div', { className: 'row' }, create('label', {}, `${t('right axis from')} `, this.#rightMin), create('label', {}, `${t('axis to')} `, this.#rightMax));
   #boxes = SIGNALS.map(({ name, about }) => {
     const box = create('input', { type: 'checkbox', value: name });
@@ -76,6 +77,7 @@ export class PlotDialog {
     const [rightMin, rightMax] = spec?.right ?? [];
     this.#rightMin.value = limit(rightMin);
     this.#rightMax.value = limit(rightMax);
+    for (const input of [this.#min, this.#max, this.#rightMin, this.#rightMax]) check(input);
     for (const { box } of this.#boxes) box.checked = spec?.signals.includes(box.value) ?? false;
     this.#remove.hidden = this.#pictures.hidden = panel === null;
     this.#complaint.textContent = '';
@@ -117,11 +119,11 @@ export class PlotDialog {
 }
 
 /** A limit as it is written. @param {number | null | undefined} value */
-const limit = (value) => (value === null || value === undefined ? '' : String(Number(value.toPrecision(4))));
+const limit = (value) => (value === null || value === undefined ? '' : numberAs(String(Number(value.toPrecision(4)))));
 
 /** The limits written: null for none, undefined if they are no span. @param {HTMLInputElement} from @param {HTMLInputElement} to @returns {[number, number] | null | undefined} */
 function limits(from, to) {
-  const [min, max] = [from.valueAsNumber, to.valueAsNumber];
-  if (Number.isNaN(min) && Number.isNaN(max)) return null;
+  const [min, max] = [read(from), read(to)];
+  if (from.value.trim() === '' && to.value.trim() === '') return null;
   return min < max ? [min, max] : undefined;
 }

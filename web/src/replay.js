@@ -1,7 +1,7 @@
 // @ts-check
 /** The bar of a replay: play, pause, step by telemetry frame, speed, and where in the log the page is. */
 import { create, element, setText } from './dom.js';
-import { format } from './units.js';
+import { format, formatShort } from './units.js';
 import { t } from './text.js';
 
 /** @typedef {import('./types.js').State} State */
@@ -25,7 +25,7 @@ export class ReplayBar {
   /** @param {Send} send */
   constructor(send) {
     this.#send = send;
-    this.#speed.replaceChildren(...SPEEDS.map((factor) => create('option', { value: String(factor), textContent: `× ${factor}` })));
+    this.#speed.replaceChildren(...SPEEDS.map((factor) => create('option', { value: String(factor), textContent: `× ${formatShort(factor)}` })));
     this.#speed.value = '1';
     this.#play.addEventListener('click', () => this.toggle());
     this.#speed.addEventListener('change', () => {

@@ -2,6 +2,7 @@
 /** What the map shows, drawn on a canvas in metres: world, trails, robot, the sonars' cones with their readings, goal and route. */
 import { compose, likelyArea } from './geometry.js';
 import { colours } from './theme.js';
+import { formatShort } from './units.js';
 
 /** @typedef {import('./types.js').Scene} Scene */
 /** @typedef {import('./types.js').Cell} Cell */
@@ -24,6 +25,8 @@ const GOAL_PX = 9;
 export class Sketch {
   /** @type {Scene | null} */
   scene = null;
+  /** The robot's own idea of its body; what is simulated is known better. @type {import('./mounts.js').Body | null} */
+  body = null;
 
   /**
    * @param {HTMLCanvasElement} canvas
@@ -32,6 +35,11 @@ export class Sketch {
   constructor(canvas, context) {
     this.canvas = canvas;
     this.context = context;
+  }
+
+  /** The scene, unless it is of a ghost. */
+  get #simulated() {
+    return this.scene?.of_ghost ? null : this.scene;
   }
 
   /**
@@ -80,7 +88,7 @@ export class Sketch {
     context.stroke();
     context.font = '11px system-ui, sans-serif';
     context.textAlign = 'right';
-    context.fillText(`${length_m} m`, right, bottom - 7);
+    context.fillText(`${formatShort(length_m)} m`, right, bottom - 7);
     context.restore();
   }
 
@@ -127,11 +135,12 @@ export class Sketch {
   drawRobot(at, px, kind, contact) {
     const real = kind === 'real';
     const context = this.context;
-    const scene = this.scene;
+    const footprint = this.scene?.footprint_m ?? [];
+    const body = this.#simulated ?? this.body;
     context.save();
     context.translate(at.x_m, at.y_m);
     context.rotate(at.heading_rad);
-    tracePath(context, scene?.footprint_m.length ? scene.footprint_m : DEFAULT_FOOTPRINT, true);
+    tracePath(context, footprint.length > 0 ? footprint : DEFAULT_FOOTPRINT, true);
     context.lineWidth = 1.5 * px;
     context.strokeStyle = contact ? colours.bad : real ? colours.robot : kind === 'ghost' ? colours.goal : colours.text;
     if (real) {
@@ -144,13 +153,13 @@ export class Sketch {
     }
     context.stroke();
     context.setLineDash([]);
-    if (real && scene) {
+    if (real && body) {
       // Wheels, and an arrow for the heading.
       context.lineWidth = 0.026;
       context.beginPath();
-      for (const y of [scene.base_m / 2, -scene.base_m / 2]) {
-        context.moveTo(-scene.wheel_radius_m, y);
-        context.lineTo(scene.wheel_radius_m, y);
+      for (const y of [body.base_m / 2, -body.base_m / 2]) {
+        context.moveTo(-body.wheel_radius_m, y);
+        context.lineTo(body.wheel_radius_m, y);
       }
       context.stroke();
     }
@@ -202,7 +211,7 @@ export class Sketch {
    */
   drawSonars(robot, ranges_m, servo_rad, px) {
     const context = this.context;
-    for (const sonar of this.scene?.sonars ?? []) {
+    for (const sonar of (this.#simulated ?? this.body)?.sonars ?? []) {
       const reading = ranges_m[sonar.id];
       const mount = compose(robot, sonar.at);
       const heading = mount.heading_rad + (sonar.on_servo ? servo_rad : 0);

@@ -31,7 +31,7 @@ export class StateLine {
   /** Name of the simulated rig; null with a real robot. @type {string | null} */
   #carried = null;
   /** The sonars to speak of, by number. */
-  #sonars = [0, 1, 2];
+  sonars = [0, 1, 2];
   /** @type {State | null} */
   #slow = null;
 
@@ -47,7 +47,6 @@ export class StateLine {
   /** @param {Scene | null} scene */
   setScene(scene) {
     this.#carried = scene?.rig ?? null;
-    this.#sonars = scene?.sonars.map((sonar) => sonar.id) ?? [0, 1, 2];
     this.#showRig();
   }
 
@@ -122,7 +121,7 @@ export class StateLine {
     const at = latest?.estimated;
     if (!latest || !at) return setText(this.#pose, '');
     const lines = [`x ${format(at.x_m * CM_PER_M)} cm   y ${format(at.y_m * CM_PER_M)} cm   ${t('heading')} ${degrees(at.heading_rad)}`];
-    const ranges = this.#sonars.map((id) => `${t(SONARS[id] ?? '')} ${inReach(latest.ranges_m[id] ?? null)}`);
+    const ranges = this.sonars.map((id) => `${t(SONARS[id] ?? '')} ${inReach(latest.ranges_m[id] ?? null)}`);
     lines.push(`${robot.rig === null ? '' : `${named(robot.rig)}:  `}${ranges.join('   ')}`);
     if (latest.contact) lines.push(t('contact!'));
     return setText(this.#pose, lines.join('\n'));

@@ -74,7 +74,20 @@ function inLanguage(english) {
  */
 function fill(text, values) {
   let next = 0;
-  return text.replace(/\{(\d?)\}/g, (_whole, index) => String(values[index === '' ? next++ : Number(index)] ?? ''));
+  return text.replace(/\{(\d?)\}/g, (_whole, index) => {
+    const value = values[index === '' ? next++ : Number(index)] ?? '';
+    return typeof value === 'number' ? numberAs(String(value)) : value;
+  });
+}
+
+/** A number's text as the page's language writes it. @param {string} text */
+export function numberAs(text) {
+  return language === 'es' ? text.replace('.', ',') : text;
+}
+
+/** The numbers within a text as the page's language writes them; versions and addresses, which have more points, stay. @param {string} text */
+function numbersAs(text) {
+  return language === 'es' ? text.replace(/(?<![\w./:-])(-?\d+)\.(\d+)(?![\d.:\w/])/g, '$1,$2') : text;
 }
 
 /** The sentences with places for values, the most particular first. */
@@ -102,7 +115,7 @@ function translate(english) {
   if (known !== undefined) return known;
   for (const { english: pattern, form } of PATTERNS) {
     const values = form.exec(english)?.slice(1);
-    if (values) return fill(SPANISH[pattern] ?? pattern, values.map((value) => translate(value) ?? value));
+    if (values) return fill(SPANISH[pattern] ?? pattern, values.map((value) => translate(value) ?? numbersAs(value)));
   }
   return null;
 }

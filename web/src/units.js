@@ -1,5 +1,9 @@
 // @ts-check
-/** Units that people read: cm, rpm and degrees. Everything on the way from the robot is SI. */
+/**
+ * Units that people read: cm, rpm and degrees; everything on the way from the robot is SI. And numbers as the page's language writes them: a
+ * comma before the decimals in Spanish.
+ */
+import { language, numberAs } from './text.js';
 
 export const RPM_PER_RAD_S = 60 / (2 * Math.PI);
 export const CM_PER_M = 100;
@@ -12,13 +16,33 @@ export const DEG_PER_RAD = 180 / Math.PI;
  */
 export function format(value, decimals = 1) {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
-  return value.toFixed(decimals).replace(/^-(?=.*[1-9])/, '−').replace(/^-/, '');
+  return numberAs(value.toFixed(decimals)).replace(/^-(?=.*[1-9])/, '−').replace(/^-/, '');
 }
 
 /**
- * The shortest text for a value that crossed the link as a 32-bit float.
+ * A number with as many decimals as it needs, `digits` in all at most.
+ * @param {number} value
+ * @param {number} [digits]
+ */
+export function formatShort(value, digits = 12) {
+  return numberAs(String(Number(value.toPrecision(digits)))).replace(/^-/, '−');
+}
+
+/**
+ * The shortest text for a value that crossed the link as a 32-bit float, as it can be typed.
  * @param {number | null} value
  */
 export function formatFloat(value) {
-  return value === null ? '' : String(Number(value.toPrecision(6)));
+  return value === null ? '' : numberAs(String(Number(value.toPrecision(6))));
+}
+
+/** Two numbers as a place, which are told apart where a comma is in them. @param {string} x @param {string} y */
+export function pair(x, y) {
+  return `(${x}${language === 'es' ? ';' : ','} ${y})`;
+}
+
+/** A number as people type it, with a point or a comma; NaN if it is none. @param {string} text */
+export function parse(text) {
+  const plain = text.trim().replace(',', '.').replace('−', '-');
+  return /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(plain) ? Number(plain) : NaN;
 }

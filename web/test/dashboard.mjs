@@ -31,12 +31,12 @@ export function program() {
 export const folder = () => mkdtempSync(join(tmpdir(), 'rumbo-'));
 
 /**
- * Starts `rumbo` with these arguments and opens its page. What a script of the page complains of is collected in `complaints`.
+ * Starts `rumbo` with these arguments; gives its process, the address of its page, and what waits for the next address.
  * @param {string[]} options
- * @param {import('playwright-core').BrowserContextOptions} [browserOptions]
+ * @param {number} [port]
  */
-export async function open(options, browserOptions = {}) {
-  const server = spawn(program(), [...options, '--no-browser', '--port', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
+export async function start(options, port = 0) {
+  const server = spawn(program(), [...options, '--no-browser', '--port', String(port)], { stdio: ['ignore', 'pipe', 'inherit'] });
   assert.ok(server.stdout);
   const addresses = createInterface({ input: server.stdout })[Symbol.asyncIterator]();
   /** The next address that the program prints. */
@@ -49,6 +49,16 @@ export async function open(options, browserOptions = {}) {
   };
   const url = await address();
   assert.ok(url, `rumbo ${options.join(' ')}: no page`);
+  return { server, url, address };
+}
+
+/**
+ * Starts `rumbo` with these arguments and opens its page. What a script of the page complains of is collected in `complaints`.
+ * @param {string[]} options
+ * @param {import('playwright-core').BrowserContextOptions} [browserOptions]
+ */
+export async function open(options, browserOptions = {}) {
+  const { server, url, address } = await start(options);
   const browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, colorScheme: 'dark', locale: 'en-GB', ...browserOptions });
   const page = await context.newPage();
@@ -65,7 +75,7 @@ export async function open(options, browserOptions = {}) {
     server.kill();
   };
   /** The address for viewers, which `--listen` prints after the other. */
-  return { url, viewersUrl: address, browser, page, complaints, close };
+  return { server, url, viewersUrl: address, browser, page, complaints, close };
 }
 
 /** A page of this context at an address of the program. @param {import('playwright-core').BrowserContext} context @param {string} url */

@@ -1,8 +1,10 @@
 // @ts-check
-/** The page's geometry. */
+/** The page's geometry. No browser is needed. */
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { likelyArea } from '../src/geometry.js';
+import { bodyOf } from '../src/mounts.js';
 
 /** @param {number} a @param {number} b */
 const near = (a, b) => assert.ok(Math.abs(a - b) < 1e-9, `${a}, expected ${b}`);
@@ -23,4 +25,39 @@ test('the likely area of a place is as long as its deviations along its own axes
 test('a place that is known along a line only has a flat area', () => {
   const { half_m } = likelyArea({ x_m: 0.02, y_m: 0.02, correlation: 1, heading_rad: 0 });
   near(half_m[1] ?? 1, 0);
+});
+
+/** What the control core declares of its parameters: names and defaults. @returns {import('../src/types.js').Parameter[]} */
+function declared() {
+  const source = readFileSync(new URL('../../crates/control/src/params.rs', import.meta.url), 'utf8');
+  return [...source.matchAll(/^ {4}\w+ = "(\w+)", "[^"]*", ([-\d.]+),/gm)]
+    .map((found, id) => /** @type {any} */ ({ id, name: found[1], default: Number(found[2]), value: null }));
+}
+
+/** Where the robot's file says that the sonars of a rig sit. @param {string} rig */
+function inFile(rig) {
+  const file = readFileSync(new URL('../../robots/memoria.toml', import.meta.url), 'utf8');
+  const part = file.match(new RegExp(`\\[rig\\.${rig}(?:\\.(\\w+))?\\]\\n([^\\[#]*)`)) ?? assert.fail(rig);
+  const lines = part[1] ? [`${part[1]} = { ${part[2]?.trim()} }`] : (part[2] ?? '').trim().split('\n');
+  return lines.map((line) => {
+    const value = (/** @type {string} */ name) => Number(line.match(new RegExp(`${name} = ([-\\d.]+)`))?.[1] ?? 0);
+    return { id: ['left', 'right', 'front'].indexOf(line.split(' ')[0] ?? ''), x_m: value('x_m'), y_m: value('y_m'), angle_deg: value('angle_deg'), on_servo: line.includes('on_servo = true') };
+  }).sort((a, b) => a.id - b.id);
+}
+
+test('a robot that is not simulated has its sonars where its parameters say: as the robot\'s file has them', () => {
+  ['front_single', 'front_pair', 'side_pair_left', 'side_pair_right', 'final'].forEach((rig, number) => {
+    const parameters = declared().map((each) => (each.name === 'rig' ? { ...each, value: number } : each));
+    const { sonars, base_m } = bodyOf(parameters);
+    const told = inFile(rig);
+    assert.deepEqual(sonars.map(({ id, on_servo }) => [id, on_servo]), told.map(({ id, on_servo }) => [id, on_servo]), rig);
+    sonars.forEach(({ at, half_angle_rad }, index) => {
+      const { x_m = 0, y_m = 0, angle_deg = 0 } = told[index] ?? {};
+      near(at.x_m, x_m);
+      near(at.y_m, y_m);
+      near(at.heading_rad, angle_deg * Math.PI / 180);
+      near(half_angle_rad, 0.31);
+    });
+    near(base_m, 0.1);
+  });
 });

@@ -25,7 +25,7 @@ test('a Spanish browser gets the page, the modes and the events in Spanish', asy
   assert.match(await page.locator('#stop').innerText(), /PARAR/);
   assert.equal(await page.locator('#modes button').nth(1).innerText(), '1distancia');
   await page.locator('#on').click();
-  await event(/^[\d.]+ s.armado$/);
+  await event(/^\d+,\d\d s.armado$/);
   await page.locator('#state', { hasText: 'acercarse' }).waitFor();
   await event(/consigna alcanzada/);
 });
@@ -34,7 +34,7 @@ test('what is refused and what fails is told in Spanish, with the remedy', async
   const input = page.locator('#parameter-front_kp');
   await input.fill('99');
   await input.press('Enter');
-  await event(/front_kp = 99: rechazado, se permite de 0\.1 a 20/);
+  await event(/front_kp = 99: rechazado, se permite de 0,1 a 20/);
   await page.locator('#stop').click();
   await event(/PARAR: hecho/);
   await page.locator('#scenario').selectOption('free');
@@ -47,6 +47,31 @@ test('what is refused and what fails is told in Spanish, with the remedy', async
   await page.locator('#fault-text', { hasText: /^pared perdida/ }).waitFor();
   await page.locator('#clear-fault').click();
   await event(/fallo borrado/);
+});
+
+test('numbers have a decimal comma, and fields take a point too', async () => {
+  await page.locator('#battery', { hasText: /^\d,\d V$/ }).waitFor();
+  await page.locator('#pose', { hasText: /x −?\d+,\d cm/ }).waitFor();
+  const input = page.locator('#parameter-link_timeout_s');
+  for (const [typed, told] of [['0,3', '0,3'], ['0.35', '0,35']]) {
+    await input.fill(/** @type {string} */ (typed));
+    await input.press('Enter');
+    await event(new RegExp(`link_timeout_s = ${told}: hecho`));
+    await page.waitForFunction((told) => /** @type {HTMLInputElement} */ (document.querySelector('#parameter-link_timeout_s')).value === told, told);
+  }
+  await input.press('ArrowUp');
+  assert.equal(await input.inputValue(), '0,36');
+  await input.press('Escape');
+  const place = page.locator('#modes button[value="8"]');
+  await place.click();
+  await page.locator('#goal-x').fill('0,5');
+  await page.locator('#goal-y').fill('-0.25');
+  await page.locator('#goal button').click();
+  await event(/destino \(0,50; [-−]0,25\) m: hecho/);
+  await page.locator('#aim', { hasText: 'destino (0,5; −0,25) m' }).waitFor();
+  // Bytes and the file's name are none.
+  const points = await page.evaluate(() => document.body.innerText.split('\n').filter((line) => /\d\.\d/.test(line) && !line.includes('/')));
+  assert.deepEqual(points, []);
 });
 
 test('every mode, parameter and event has been said in Spanish', async () => {

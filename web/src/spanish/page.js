@@ -20,10 +20,15 @@ export const PAGE = {
   'this is page {}, it has control': 'esta es la página {}, tiene el control', 'this is page {}, nobody has control': 'esta es la página {}, nadie tiene el control',
   'Release control': 'Soltar el control', 'Leave driving to the other pages; the robot goes on': 'Deja conducir a las otras páginas; el robot sigue',
   'Take control': 'Tomar el control', 'Drive from this page; the other one then watches': 'Conduce desde esta página; la otra pasa a mirar',
-  'connecting…': 'conectando…', 'no connection, trying again…': 'sin conexión, reintentando…', 'no connection: {}, trying again…': 'sin conexión: {}, reintentando…',
+  'connecting…': 'conectando…', 'no connection': 'sin conexión',
+  'No connection to the station. Trying again…': 'Sin conexión con la estación. Reintentando…', 'No connection to the station: {}. Trying again…': 'Sin conexión con la estación: {}. Reintentando…',
+  'What is shown is of {}, and STOP does not reach the robot.': 'Lo que se ve es de las {}, y PARAR no llega al robot.',
+  'The station was started again, with a new key: open the address that it printed.': 'La estación arrancó de nuevo, con otra clave: abre la dirección que imprimió.',
+  'The station is there again; it was not since {}.': 'La estación ha vuelto; faltaba desde las {}.',
   'replay, paused': 'grabación, en pausa', 'replay × {}': 'grabación × {}', 'simulation paused': 'simulación en pausa',
   'the station is silent': 'la estación no dice nada', 'no answer from the robot': 'el robot no responde', 'live {} Hz': 'en vivo {} Hz', '{}, only × {}': '{}, solo × {}',
-  '{}: not sent, there is no connection': '{}: no enviado, no hay conexión',
+  'STOP was not sent: there is no connection to the station': 'PARAR no se envió: no hay conexión con la estación',
+  'not sent: there is no connection to the station': 'no se envió: no hay conexión con la estación',
   'Language': 'Idioma',
   // Help.
   'Help': 'Ayuda', 'Help: keys, colours and lines (?)': 'Ayuda: teclas, colores y líneas (?)', 'Keys': 'Teclas', 'Colours and lines': 'Colores y líneas',
@@ -65,7 +70,7 @@ export const PAGE = {
   // Commands.
   'Commands': 'Órdenes', 'Mode': 'Modo', 'Arm and start the mode': 'Arma el robot y empieza el modo', 'Stop the mode and disarm': 'Detiene el modo y desarma',
   'Switch OFF first': 'Primero OFF', 'Scenario {}': 'Escenario {}',
-  'Start the simulation again with an experiment of this mode: its world, its sonars': 'Empieza la simulación de nuevo con un experimento de este modo: su mundo, sus sonares', 'reference': 'consigna', 'Set': 'Fijar', 'now {} cm': 'ahora {} cm', 'now {} rpm': 'ahora {} rpm', '{} to {} {}': 'de {} a {} {}',
+  'Start the simulation again with an experiment of this mode: its world, its sonars': 'Empieza la simulación de nuevo con un experimento de este modo: su mundo, sus sonares', 'reference': 'consigna', 'Set': 'Fijar', 'now {} cm': 'ahora {} cm', 'now {} rpm': 'ahora {} rpm', '{} to {} {}': 'de {} a {} {}', 'a number': 'un número', 'a number from {} to {}': 'un número de {} a {}',
   'left': 'izq.', 'right': 'der.', 'front': 'frontal', 'both': 'ambas',
   'Open loop by PWM, or closed loop by speed': 'Lazo abierto por PWM, o lazo cerrado por velocidad', 'pivot on': 'pivote', 'L|wheel': 'I', 'R|wheel': 'D', 'level': 'nivel',
   'Armed, the arrow keys drive while they are held, or a gamepad with a shoulder button.':

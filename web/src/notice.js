@@ -1,0 +1,51 @@
+// @ts-check
+/** The bar over the page that says that the station is not there, what that means, and when it is there again. */
+import { element, setText } from './dom.js';
+import { said, t } from './text.js';
+
+/** @typedef {import('./link.js').Connection} Connection */
+
+/** So long the good news stands [ms]. */
+const GOOD_NEWS_MS = 5_000;
+
+export class Notice {
+  #bar = element('notice', HTMLDivElement);
+  /** When it was lost, as a clock shows it; null: it is not. @type {string | null} */
+  #since = null;
+  #known = false;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #timer;
+
+  /** @param {Connection} now @param {string | null} why the station closed the connection, if it said so */
+  show(now, why) {
+    clearTimeout(this.#timer);
+    if (now === 'open') return this.#back();
+    this.#since ??= new Date().toTimeString().slice(0, 8);
+    return this.#say('bad', this.#words(now, why));
+  }
+
+  /** @param {Connection} now @param {string | null} why */
+  #words(now, why) {
+    const old = this.#known ? ` ${t('What is shown is of {}, and STOP does not reach the robot.', this.#since ?? '')}` : '';
+    if (now === 'locked') return `${t('The station was started again, with a new key: open the address that it printed.')}${old}`;
+    return `${why ? t('No connection to the station: {}. Trying again…', said(why)) : t('No connection to the station. Trying again…')}${old}`;
+  }
+
+  #back() {
+    if (this.#since !== null && this.#known) {
+      this.#say('good', t('The station is there again; it was not since {}.', this.#since));
+      this.#timer = setTimeout(() => { this.#bar.hidden = true; }, GOOD_NEWS_MS);
+    } else {
+      this.#bar.hidden = true;
+    }
+    this.#since = null;
+    this.#known = true;
+  }
+
+  /** @param {string} level @param {string} text */
+  #say(level, text) {
+    this.#bar.className = level;
+    this.#bar.hidden = false;
+    setText(this.#bar, text);
+  }
+}
