@@ -37,10 +37,11 @@ impl Project {
         })
     }
 
-    /// A program started in the project's root.
+    /// A program started in the project's root; what a `rumbo` in it records is not among the logs of whoever tests.
     pub(crate) fn command(&self, program: impl AsRef<OsStr>) -> Command {
         let mut command = Command::new(program);
         command.current_dir(&self.root);
+        command.env("RUMBO_LOGS", self.target.join("logs"));
         command
     }
 

@@ -33,6 +33,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
         .map(|log| log.outcome.as_ref().map(|outcome| outcome.pass))
         .collect();
     let complaints = complaints(&names, &metrics, &passes, args.tolerance);
+    let parameters = differing(&logs);
     if let Some(path) = &args.out {
         let pairs: Vec<_> = names.iter().map(String::as_str).zip(&logs).collect();
         let charts = figures::of_many(&pairs);
@@ -48,9 +49,10 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     if args.json {
         let runs = names.iter().zip(&metrics).zip(&passes);
         let runs: Vec<Value> = runs.map(|((name, metrics), pass)| json!({ "log": name, "pass": pass, "metrics": numbers(metrics) })).collect();
-        output::json(&json!({ "runs": runs, "exceeded": complaints }))?;
+        output::json(&json!({ "runs": runs, "parameters": parameters, "exceeded": complaints }))?;
     } else {
         print(&names, &metrics, &passes)?;
+        print_parameters(&parameters)?;
         for complaint in &complaints {
             output::line(&format!("  EXCEEDED: {complaint}"))?;
         }
@@ -60,6 +62,36 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     } else {
         Err(Failure::LimitMissed)
     }
+}
+
+/// The parameters that are not the same in all logs that tell them, with their values in each.
+fn differing(logs: &[Log]) -> BTreeMap<String, Vec<Option<f32>>> {
+    let told: Vec<BTreeMap<String, f32>> = logs.iter().map(Log::parameters).collect();
+    let names: BTreeSet<&String> = told.iter().flat_map(BTreeMap::keys).collect();
+    let values = names.into_iter().map(|name| {
+        let values = told.iter().map(|values| values.get(name).copied());
+        (name.clone(), values.collect::<Vec<_>>())
+    });
+    values
+        .filter(|(_, values)| {
+            let mut known = values.iter().flatten();
+            let first = known.next();
+            known.any(|value| Some(value) != first)
+        })
+        .collect()
+}
+
+fn print_parameters(parameters: &BTreeMap<String, Vec<Option<f32>>>) -> Result<(), Failure> {
+    if parameters.is_empty() {
+        return Ok(());
+    }
+    output::line("parameters that differ:")?;
+    let shown = |value: &Option<f32>| value.map_or_else(|| "-".into(), |value| value.to_string());
+    let row = |(name, values): (&String, &Vec<Option<f32>>)| {
+        let values = values.iter().map(shown);
+        [name.clone()].into_iter().chain(values).collect()
+    };
+    output::table(&parameters.iter().map(row).collect::<Vec<_>>())
 }
 
 /// JSON has no numbers that are none.

@@ -44,6 +44,17 @@ impl Failure {
     }
 }
 
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::LimitMissed => "a limit is missed",
+            Self::Input(text) => text,
+            Self::Interrupted => "interrupted",
+            Self::ReaderGone => "nobody reads the output",
+        })
+    }
+}
+
 impl From<FileError> for Failure {
     fn from(error: FileError) -> Self {
         Self::input(error)

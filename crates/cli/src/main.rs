@@ -30,6 +30,7 @@ mod recorded;
 mod replay;
 mod rerun;
 mod run;
+mod run_log;
 mod scene;
 
 use args::{Cli, Command};

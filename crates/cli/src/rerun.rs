@@ -7,9 +7,9 @@ use crate::args::RerunArgs;
 use crate::export::warn_if_cut;
 use crate::failure::Failure;
 use crate::lab;
-use crate::logs;
 use crate::manifest;
 use crate::output;
+use crate::run_log;
 use rumbo_control::params::SCHEMA;
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::run;
@@ -80,7 +80,7 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
     let shown = args.log.display();
     let Some(recorded) = &log.manifest else {
         return Err(Failure::Input(format!(
-            "{shown}: has no manifest; only logs of `rumbo lab` and `rumbo run --out` can be run again"
+            "{shown}: has no manifest; only logs of `rumbo lab` and `rumbo run` can be run again"
         )));
     };
     warn_if_cut(&args.log, &log);
@@ -143,8 +143,8 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
 
 fn again(log: &Log, setup: &Setup, seed: u64) -> Result<Verdict, Failure> {
     let result = run::run(setup, seed)?;
-    let link: Vec<Burst> = result.trace.link.iter().map(logs::burst).collect();
-    let said: Vec<Said> = result.trace.consoles.iter().map(logs::said).collect();
+    let link: Vec<Burst> = result.trace.link.iter().map(run_log::burst).collect();
+    let said: Vec<Said> = result.trace.consoles.iter().map(run_log::said).collect();
     let cut = log.cut.is_some();
     let parted =
         first_difference(&log.link, &link, cut).or_else(|| first_difference(&log.said, &said, cut));

@@ -3,10 +3,10 @@
 use crate::args::{ProgramName, RunArgs};
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::logs;
 use crate::observe;
 use crate::output::{self, figure};
 use crate::place;
+use crate::run_log::{Kept, Source};
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_scenario::files::{Library, Overrides, Program, ScenarioFile, Setup};
 use rumbo_scenario::run::{self, RunResult};
@@ -60,12 +60,20 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
             .as_ref()
             .is_some_and(|asked| asked.load(Ordering::Relaxed))
     };
+    let source = Source {
+        library: &library,
+        overrides: &overrides,
+    };
+    let mut kept = Kept::of(jobs.len(), args.out.is_none() && !args.no_record);
     let handle = |setup: &Setup, mut result: RunResult| {
         progress.inc(1);
         passed &= result.pass;
-        if let Some(folder) = &args.out {
-            record(folder, &result)?;
-            logs::write_run(folder, &library, setup, &overrides, &result)?;
+        match &args.out {
+            Some(folder) => {
+                record(folder, &result)?;
+                source.write(folder, setup, &result)?;
+            }
+            None => progress.suspend(|| kept.take(&source, setup, &result)),
         }
         if args.json {
             progress.suspend(|| output::json(&result))?;
@@ -90,6 +98,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let ended = run_jobs(args, &jobs, handle);
     let done = progress.position();
     progress.finish_and_clear();
+    kept.tell();
     if matches!(ended, Err(Failure::Interrupted)) {
         // A closed stderr leaves nobody to tell.
         let _ = writeln!(

@@ -99,6 +99,7 @@ fn a_log_of_a_real_robot_stands_beside_ours_and_one_of_a_simulated_robot_does_no
         .collect();
     let run = Run {
         scene: None,
+        parameters: None,
         truths: &truths,
         link: &log.link,
         said: &[],

@@ -195,6 +195,22 @@ fn a_log_is_exported_with_units_and_compared_with_another() {
 }
 
 #[test]
+fn parameters_that_differ_are_shown_beside_the_metrics() {
+    let folder = tempfile::tempdir().unwrap();
+    for value in ["0.03", "0.04"] {
+        let parameter = format!("kv={value}");
+        let run = ["run", "mode5", "--param", &parameter, "--out", value];
+        assert!(rumbo(&run, folder.path()).status.code().unwrap() < 2);
+    }
+    let pair = ["compare", "0.03/mode5-1.mcap", "0.04/mode5-1.mcap"];
+    let said = text(&rumbo(&pair, folder.path()).stdout);
+    let (_, parameters) = said.split_once("parameters that differ:\n").unwrap();
+    assert_eq!(parameters, "  kv  0.03  0.04\n");
+    let same = ["compare", "0.03/mode5-1.mcap", "0.03/mode5-1.mcap"];
+    assert!(!text(&rumbo(&same, folder.path()).stdout).contains("differ:"));
+}
+
+#[test]
 fn what_is_no_log_gets_one_line_and_status_2() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("table.mcap"), "t_s,x_m\n0,0\n").unwrap();
@@ -237,6 +253,7 @@ fn a_log_made_with_another_table_of_parameters_says_so_and_a_log_cut_off_says_wh
     }];
     let run = Run {
         scene: None,
+        parameters: None,
         truths: &[(60_000_000, Truth::default())],
         link: &link,
         said: &[],

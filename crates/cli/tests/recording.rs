@@ -1,4 +1,4 @@
-//! Recording under a session that drives: a disk that fills up.
+//! Recording on a disk that fills up: under a session that drives, and after a run.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -7,18 +7,41 @@ mod support;
 use rumbo_station::log::Log;
 use serde_json::json;
 use std::process::Command;
-use support::{Page, Running};
+use support::{Page, Running, stderr, stdout};
+
+/// `rumbo` whose files may grow to so many blocks of 512 bytes, which the system reports as it does a full disk: by a write that fails.
+fn confined(blocks: u32) -> Command {
+    let mut command = Command::new("sh");
+    command.args([
+        "-c",
+        &format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\""),
+        env!("CARGO_BIN_EXE_rumbo"),
+    ]);
+    command
+}
+
+#[test]
+fn a_run_on_a_full_disk_is_judged_all_the_same_and_leaves_no_half_of_a_log() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = confined(40);
+    command.env("RUMBO_LOGS", folder.path());
+    command.args(["run", "mode5", "--runs", "2", "--json"]);
+    let output = command.output().unwrap();
+    assert!(output.status.code().is_some_and(|status| status < 2));
+    assert_eq!(stdout(&output).lines().count(), 2);
+    let said = stderr(&output);
+    assert!(said.starts_with("note: not recording: "), "{said}");
+    assert!(
+        said.contains("is the disk full?") && said.lines().count() == 1,
+        "{said}"
+    );
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
 
 #[test]
 fn a_full_disk_is_reported_once_driving_goes_on_and_the_log_is_readable_up_to_there() {
     let folder = tempfile::tempdir().unwrap();
-    // Files may grow to 40 blocks of 512 bytes, which the system reports as it does a full disk: by a write that fails.
-    let mut command = Command::new("sh");
-    command.args([
-        "-c",
-        "trap '' XFSZ; ulimit -f 40; exec \"$0\" \"$@\"",
-        env!("CARGO_BIN_EXE_rumbo"),
-    ]);
+    let mut command = confined(40);
     command.args(["lab", "--scenario", "mode5", "--speed", "8", "--no-browser"]);
     command.args(["--port", "0", "--out"]).arg(folder.path());
     let lab = Running::of(&mut command);

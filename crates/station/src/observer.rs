@@ -121,6 +121,28 @@ impl Observer {
         true
     }
 
+    /// The robot's parameters are these.
+    pub(crate) fn know_parameters(&mut self, parameters: &Params) {
+        self.believed = *parameters;
+        for (state, id) in self.parameters.iter_mut().zip(ParamId::ALL) {
+            state.value = Some(parameters.get(id));
+        }
+        self.board.set_parameters(&self.parameters);
+    }
+
+    /// The robot has acknowledged this value of a parameter.
+    pub(crate) fn know_parameter(&mut self, id: u8, value: f32) {
+        let Some(parameter) = self.parameters.get_mut(usize::from(id)) else {
+            return;
+        };
+        parameter.value = Some(value);
+        if let Some(known) = ParamId::from_number(id) {
+            // What the robot accepted is in the range of the same table.
+            let _ = self.believed.set(known, value);
+        }
+        self.board.set_parameters(&self.parameters);
+    }
+
     /// Notes an event.
     pub(crate) fn note(&mut self, t_ms: i64, level: Level, text: String) {
         self.urgent = true;
@@ -315,14 +337,7 @@ impl Observer {
                 if let Some(parameter) = self.parameters.get_mut(usize::from(id)) {
                     parameter.pending = false;
                     parameter.refused = match fate {
-                        Fate::Applied(value) => {
-                            parameter.value = Some(value);
-                            if let Some(known) = ParamId::from_number(id) {
-                                // What the robot accepted is in the range of the same table.
-                                let _ = self.believed.set(known, value);
-                            }
-                            None
-                        }
+                        Fate::Applied(_) => None,
                         Fate::Refused(why) => {
                             Some(words::refusal(why, &ended.command, client.mode()))
                         }
@@ -330,7 +345,10 @@ impl Observer {
                             Some("not confirmed".into())
                         }
                     };
-                    self.board.set_parameters(&self.parameters);
+                    match fate {
+                        Fate::Applied(value) => self.know_parameter(id, value),
+                        _ => self.board.set_parameters(&self.parameters),
+                    }
                 }
             }
             (Command::ResetParams, Fate::Applied(_)) => client.read_parameters(),

@@ -24,7 +24,16 @@ pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
     let ours = |image: &Path| {
         let path = image.display().to_string();
         let runs = RUNS.to_string();
-        let head = ["run", SCENARIO, "--threads", "1", "--json", "--runs", &runs];
+        let head = [
+            "run",
+            SCENARIO,
+            "--threads",
+            "1",
+            "--json",
+            "--no-record",
+            "--runs",
+            &runs,
+        ];
         let arguments = [&head[..], &["--firmware", &path]].concat();
         shortest(|| cpu_s(project, &project.release_binary_path(), &arguments))
             .map(|cpu_s| f64::from(RUNS) * SCENARIO_S / (cpu_s - start_s).max(0.001))

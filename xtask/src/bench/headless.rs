@@ -1,4 +1,4 @@
-//! How much faster than real time `rumbo run` is: one robot, one thread, all noise on.
+//! How much faster than real time `rumbo run --no-record` is: one robot, one thread, all noise on.
 
 use std::time::{Duration, Instant};
 
@@ -33,6 +33,7 @@ pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
                     "--threads",
                     "1",
                     "--json",
+                    "--no-record",
                 ],
             )?;
             let wall = wall.saturating_sub(start);

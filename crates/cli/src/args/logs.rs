@@ -123,7 +123,7 @@ Examples:
 
 Exit status 0 if the run is the same, 1 if it differs.")]
 pub(crate) struct RerunArgs {
-    /// Log of a simulated run: of `rumbo run --out` or `rumbo lab`
+    /// Log of a simulated run: of `rumbo run` or `rumbo lab`
     #[arg(value_name = "LOG")]
     pub(crate) log: PathBuf,
     /// The result as one JSON object

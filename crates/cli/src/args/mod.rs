@@ -105,7 +105,7 @@ pub(crate) enum Topic {
     Plant,
     /// Serial ports of this computer
     Ports,
-    /// Recorded runs of `rumbo lab`, newest last
+    /// Recorded sessions and runs, newest last
     Logs,
 }
 

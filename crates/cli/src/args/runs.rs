@@ -10,13 +10,16 @@ use std::path::PathBuf;
 #[command(after_help = "\
 Examples:
   rumbo run mode1
-  rumbo run mode5 --runs 20 --json
+  rumbo run mode5 --runs 20 --json --no-record
   rumbo run mode5 --runs 20 --program original
   rumbo run mode1 --rig final --world room
   rumbo run mode5 --firmware my_sketch.elf --command 'REF 40@20'
   rumbo run mode5 --firmware my_sketch.elf --profile cycles.folded --vcd pins.vcd
   rumbo run mode5 --firmware my_sketch.elf --gdb 1234   # then: avr-gdb my_sketch.elf -ex 'target remote :1234'
   rumbo run mode1 --seed 7 --param battery.open_circuit_v=6.9 --out out/mode1
+
+Every run is recorded, among the logs of sessions (`rumbo list logs`); of more than 20 runs those that miss a limit, the first 20 of them. With
+--out all are recorded, there; with --no-record none. A log that cannot be written is a note on stderr, and the run goes on.
 
 Exit status 0: all limits are met; 1: one is missed; 2: wrong input; 130: Ctrl-C, and what was done until then has been printed.")]
 pub(crate) struct RunArgs {
@@ -62,6 +65,9 @@ pub(crate) struct RunArgs {
     /// Folder for the log, the result and the true signals of each run; made if need be
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Leave no log behind
+    #[arg(long, conflicts_with = "out")]
+    pub(crate) no_record: bool,
     /// One JSON object per run on stdout
     #[arg(long)]
     pub(crate) json: bool,

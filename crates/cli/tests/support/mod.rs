@@ -1,15 +1,50 @@
 //! Programs under test: started, listened to, and a page on their dashboard.
+#![allow(dead_code, reason = "not every test needs all of it")]
 
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::PathBuf;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use tungstenite::{Message, WebSocket};
 
 /// Long enough for any machine; nothing is judged by it.
 const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The folder of this test run.
+pub(crate) fn folder() -> PathBuf {
+    env!("CARGO_TARGET_TMPDIR").into()
+}
+
+/// A file in it, by its name.
+pub(crate) fn file(name: &str, text: &str) -> PathBuf {
+    let path = folder().join(name);
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+/// `rumbo`, whose logs are not among those of whoever tests.
+pub(crate) fn program() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rumbo"));
+    command.env("RUMBO_LOGS", folder().join("logs"));
+    command
+}
+
+/// Runs it in the folder of this test run, to its end.
+pub(crate) fn rumbo(arguments: &[&str]) -> Output {
+    let mut command = program();
+    command.current_dir(folder()).args(arguments);
+    command.output().unwrap()
+}
+
+pub(crate) fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+pub(crate) fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
 
 /// A `rumbo` that goes on until it is dropped, and the first line that it printed.
 pub(crate) struct Running {
@@ -18,9 +53,8 @@ pub(crate) struct Running {
 }
 
 impl Running {
-    #[allow(dead_code, reason = "not every test needs it")]
     pub(crate) fn start(arguments: &[&str]) -> Self {
-        Self::of(Command::new(env!("CARGO_BIN_EXE_rumbo")).args(arguments))
+        Self::of(program().args(arguments))
     }
 
     pub(crate) fn of(command: &mut Command) -> Self {
@@ -122,7 +156,6 @@ impl Page {
     }
 }
 
-#[allow(dead_code, reason = "not every test needs it")]
 /// An image of `cargo xtask sketches`; `None` where they have not been built.
 pub(crate) fn sketch(name: &str) -> Option<PathBuf> {
     let target = PathBuf::from(env!("CARGO_BIN_EXE_rumbo"));

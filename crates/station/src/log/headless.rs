@@ -9,8 +9,9 @@ use crate::state;
 use crate::target::{Scene, Truth};
 use crate::words;
 use rumbo_control::mode::ModeId;
-use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, ToRobot};
-use std::path::Path;
+use rumbo_control::params::Params;
+use rumbo_wire::{Ack, Command, Decoder, FromRobot, Message, Received, ToRobot};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The state is noted this often \[us\].
@@ -23,6 +24,8 @@ const LINE: usize = 160;
 pub struct Run<'a> {
     /// What surrounds the robot.
     pub scene: Option<Scene>,
+    /// The robot's parameters at the start; `None` where it has no table of them.
+    pub parameters: Option<Params>,
     /// What was really the case, with its time \[us\], in order.
     pub truths: &'a [(u64, Truth)],
     /// What crossed the link, in order.
@@ -40,18 +43,47 @@ pub struct Run<'a> {
 /// # Errors
 /// If the file cannot be written.
 pub fn record_run(path: &Path, manifest: &Manifest, run: Run<'_>) -> Result<(), LogError> {
+    tell(Recorder::at(path, manifest)?, manifest.baud, run)
+}
+
+/// Writes the log of a run into the folder of sessions, under a name like theirs, and says which. What could not be completed is not left there.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn record_run_in(
+    folder: &Path,
+    manifest: &Manifest,
+    run: Run<'_>,
+) -> Result<PathBuf, LogError> {
+    let recorder = Recorder::in_folder(folder, manifest)?.patient();
+    let path = recorder.path().to_owned();
+    match tell(recorder, manifest.baud, run) {
+        Ok(()) => Ok(path),
+        Err(error) => {
+            // Its error is the one to tell.
+            let _ = std::fs::remove_file(&path);
+            Err(error)
+        }
+    }
+}
+
+fn tell(recorder: Recorder, baud: u32, run: Run<'_>) -> Result<(), LogError> {
     let board = Arc::new(Board::new());
-    board.record(Recorder::at(path, manifest)?);
+    board.record(recorder);
     let mut teller = Teller {
         observer: Observer::new(Arc::clone(&board)),
         client: RobotClient::new(0, true, KnownTable::OURS),
         heard: Vec::new(),
         decoder: Decoder::default(),
+        answers: Decoder::default(),
         sent: None,
-        baud: manifest.baud,
+        baud,
         battery_v: None,
     };
     teller.observer.show_scene(run.scene.clone());
+    if let Some(parameters) = run.parameters {
+        teller.observer.know_parameters(&parameters);
+    }
     let (mut link, mut told) = (run.link.iter().peekable(), run.told.iter().peekable());
     let mut said = run.said.iter().peekable();
     let mut state_due_us = 0;
@@ -129,13 +161,23 @@ fn to_ms(us: u64) -> i64 {
     (us / 1_000) as i64
 }
 
+/// A command on its way.
+#[derive(Clone, Copy)]
+struct Sent {
+    session: u8,
+    number: u16,
+    command: Command,
+}
+
 struct Teller {
     observer: Observer,
     client: RobotClient,
     heard: Vec<Heard>,
     decoder: Decoder<LINE>,
+    /// The same for the other direction.
+    answers: Decoder<LINE>,
     /// The command sent last: a repetition is no news.
-    sent: Option<(u8, u16)>,
+    sent: Option<Sent>,
     baud: u32,
     battery_v: Option<f64>,
 }
@@ -149,6 +191,7 @@ impl Teller {
         }
         self.client.hear(&burst.bytes, burst.t_us, &mut self.heard);
         self.digest(burst.t_us);
+        self.answered(burst);
     }
 
     fn digest(&mut self, t_us: u64) {
@@ -171,13 +214,42 @@ impl Teller {
             else {
                 continue;
             };
-            if self.sent.replace((session, number)) != Some((session, number)) {
+            let sent = Sent {
+                session,
+                number,
+                command,
+            };
+            let before = self.sent.replace(sent);
+            if before.map(|sent| (sent.session, sent.number)) != Some((session, number)) {
                 let mode = self.mode(&command);
                 self.observer.note(
                     to_ms(burst.t_us),
                     Level::Info,
                     format!("sent: {}", words::command(&command, mode)),
                 );
+            }
+        }
+    }
+
+    /// Notes the values of parameters that the robot acknowledges.
+    fn answered(&mut self, burst: &Burst) {
+        for byte in &burst.bytes {
+            let Some(Received::Frame(body)) = self.answers.push(*byte) else {
+                continue;
+            };
+            let Ok(FromRobot::Ack(Ack {
+                session,
+                number,
+                result: Ok(value),
+            })) = FromRobot::from_body(&body)
+            else {
+                continue;
+            };
+            let sent = self
+                .sent
+                .filter(|sent| (sent.session, sent.number) == (session, number));
+            if let Some(Command::SetParam { id, .. }) = sent.map(|sent| sent.command) {
+                self.observer.know_parameter(id, value);
             }
         }
     }

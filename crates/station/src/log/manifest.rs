@@ -24,7 +24,7 @@ pub struct Manifest {
     pub kind: Kind,
     /// Version of Rumbo that wrote it.
     pub version: String,
-    /// When it began, UTC; `None` for runs without a window, whose logs depend on nothing but their inputs.
+    /// When it began, UTC; `None` for runs without a window that go to a folder of one's own: those logs depend on nothing but their inputs.
     pub started: Option<String>,
     /// Name of the scenario.
     pub scenario: Option<String>,
@@ -91,6 +91,15 @@ impl Manifest {
         serde_json::from_value(serde_json::Value::Object(fields.collect())).ok()
     }
 
+    /// The same of a run that begins now.
+    #[must_use]
+    pub fn begun_now(self) -> Self {
+        Self {
+            started: Some(now()),
+            ..self
+        }
+    }
+
     /// Notes what the robot's EEPROM holds at the start.
     pub fn remember(&mut self, memory: &[u8]) {
         let used = memory.iter().rposition(|byte| *byte != 0xFF);
@@ -127,6 +136,21 @@ impl Manifest {
         let parts: Vec<String> = [when, Some(what), seed].into_iter().flatten().collect();
         parts.join("-")
     }
+}
+
+/// The time of day, UTC.
+fn now() -> String {
+    let now = time::OffsetDateTime::now_utc();
+    let (date, clock) = (now.date(), now.time());
+    format!(
+        "{}-{:02}-{:02}T{:02}:{:02}:{:02}Z",
+        date.year(),
+        u8::from(date.month()),
+        date.day(),
+        clock.hour(),
+        clock.minute(),
+        clock.second()
+    )
 }
 
 /// How a run ended: its metrics against the scenario's limits.

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | `/telemetry` | `rumbo.Telemetry` | the signals of the dashboard, one message per telemetry frame |
 //! | `/state` | `rumbo.State` | what changes slowly: mode, faults, battery, figures of the link |
-//! | `/parameters` | `rumbo.Parameters` | the values the robot acknowledged, by name |
+//! | `/parameters` | `rumbo.Parameters` | the values the robot acknowledged, or began the run with, by name |
 //! | `/events` | `foxglove.Log` | what happened, in words |
 //! | `/pose/estimated`, `/pose/true` | `foxglove.PoseInFrame` | the two poses in the world |
 //! | `/world` | `foxglove.SceneUpdate` | walls and boxes |
@@ -25,7 +25,7 @@ pub(crate) mod schema;
 mod summary;
 mod writer;
 
-pub use headless::{Run, record_run, record_text};
+pub use headless::{Run, record_run, record_run_in, record_text};
 pub use manifest::{Kind, Manifest, Outcome};
 pub use reader::Log;
 pub use recorder::Recording;

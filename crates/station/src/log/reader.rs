@@ -159,6 +159,13 @@ impl Log {
             .map(|event| (event.t_s, event.level.name(), event.text.as_str()))
     }
 
+    /// The parameters' values by name, as they were known at the end; empty where the robot told none.
+    #[must_use]
+    pub fn parameters(&self) -> BTreeMap<String, f32> {
+        let last = self.parameters.last();
+        last.map(|(_, values)| values.clone()).unwrap_or_default()
+    }
+
     /// What surrounded the robot, if it was simulated.
     #[must_use]
     pub fn scene(&self) -> Option<&Scene> {

@@ -125,6 +125,12 @@ impl Recorder {
         })
     }
 
+    /// The same, but nothing is dropped, however slow the disk: for what can wait for it.
+    pub(crate) fn patient(mut self) -> Self {
+        self.patient = true;
+        self
+    }
+
     /// The log's file.
     pub(crate) fn path(&self) -> &Path {
         &self.path

@@ -13,12 +13,12 @@ impl Session {
             return;
         };
         let manifest = Manifest {
-            started: Some(now()),
             version: env!("CARGO_PKG_VERSION").into(),
             baud: self.target.baud(),
             step_us: SLICE_US,
             ..self.target.manifest()
-        };
+        }
+        .begun_now();
         match Recorder::in_folder(&recording.folder, &manifest) {
             Ok(recorder) => {
                 let text = format!("recording to {}", recorder.path().display());
@@ -39,19 +39,4 @@ impl Session {
             });
         }
     }
-}
-
-/// The time of day, UTC.
-fn now() -> String {
-    let now = time::OffsetDateTime::now_utc();
-    let (date, clock) = (now.date(), now.time());
-    format!(
-        "{}-{:02}-{:02}T{:02}:{:02}:{:02}Z",
-        date.year(),
-        u8::from(date.month()),
-        date.day(),
-        clock.hour(),
-        clock.minute(),
-        clock.second()
-    )
 }

@@ -1,0 +1,217 @@
+//! The logs of runs without a window.
+//!
+//! With `--out` each run has one in that folder, and it depends on nothing but its inputs. Without, they are among the logs of sessions, with the
+//! time of day; there a command of many runs leaves only some, since each can be had again from its seed.
+
+use crate::failure::Failure;
+use crate::logs;
+use crate::manifest;
+use crate::place;
+use crate::scene::scene;
+use rumbo_control::Wheels;
+use rumbo_control::params::Params;
+use rumbo_scenario::files::{FileError, Library, Overrides, Setup};
+use rumbo_scenario::run::RunResult;
+use rumbo_scenario::trace::{SAMPLE_US, Sample, Trace};
+use rumbo_station::log::{Burst, Kind, Manifest, Outcome, Run, Said, record_run, record_run_in};
+use rumbo_station::{Choice, MapPose, Truth};
+use rumbo_wire::FromRobot;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// So many runs of a command are recorded without being asked for: all of them, or the first that miss a limit.
+const KEPT: usize = 20;
+
+/// How the runs were set up.
+pub(crate) struct Source<'a> {
+    pub(crate) library: &'a Library,
+    pub(crate) overrides: &'a Overrides,
+}
+
+impl Source<'_> {
+    fn manifest(&self, setup: &Setup, seed: u64) -> Manifest {
+        Manifest {
+            step_us: SAMPLE_US,
+            baud: 9_600,
+            ..manifest::of(Kind::Run, setup, self.overrides, seed)
+        }
+    }
+
+    /// Has `write` write the log of a run.
+    fn told<T>(
+        &self,
+        setup: &Setup,
+        result: &RunResult,
+        write: impl FnOnce(&Manifest, Run<'_>) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        let choice = Choice {
+            scenario: result.scenario.clone(),
+            world: self.overrides.world.clone(),
+            rig: self.overrides.rig.clone(),
+            seed: result.seed,
+        };
+        let of_seed = &*setup.of_seed(result.seed)?;
+        let trace = &result.trace;
+        let link: Vec<_> = trace.link.iter().map(burst).collect();
+        let run = Run {
+            scene: Some(scene(self.library, of_seed, choice)?),
+            parameters: parameters(of_seed)?,
+            truths: &trace.samples.iter().map(truth).collect::<Vec<_>>(),
+            told: &told(trace),
+            said: &trace.consoles.iter().map(said).collect::<Vec<_>>(),
+            link: &link,
+            outcome: Outcome {
+                pass: result.pass,
+                metrics: result.metrics.clone().into_iter().collect(),
+                failures: result.failures.clone(),
+            },
+        };
+        write(&self.manifest(setup, result.seed), run)
+    }
+
+    /// Writes the log of a run into a folder that was asked for.
+    pub(crate) fn write(
+        &self,
+        folder: &Path,
+        setup: &Setup,
+        result: &RunResult,
+    ) -> Result<(), Failure> {
+        let path = folder.join(format!("{}-{}.mcap", result.scenario, result.seed));
+        self.told(setup, result, |manifest, run| {
+            place::make(&path, |place| {
+                record_run(place, manifest, run).map_err(|error| Failure::Input(error.of(&path)))
+            })
+        })
+    }
+}
+
+/// What a command leaves among the logs of sessions.
+pub(crate) struct Kept {
+    /// `None` where nothing is recorded, or no longer.
+    folder: Option<PathBuf>,
+    begun: Option<String>,
+    /// So many runs that all are kept only if they miss a limit.
+    many: bool,
+    logs: Vec<PathBuf>,
+}
+
+impl Kept {
+    /// Of a command of so many runs; `wanted`: it records at all.
+    pub(crate) fn of(runs: usize, wanted: bool) -> Self {
+        Self {
+            folder: logs::folder(None).filter(|_| wanted),
+            begun: Manifest::default().begun_now().started,
+            many: runs > KEPT,
+            logs: Vec::new(),
+        }
+    }
+
+    /// Records a run, if it is one to keep. One that cannot be recorded is a run all the same: why is said once.
+    pub(crate) fn take(&mut self, source: &Source<'_>, setup: &Setup, result: &RunResult) {
+        let Some(folder) = &self.folder else {
+            return;
+        };
+        if self.logs.len() == KEPT || (self.many && result.pass) {
+            return;
+        }
+        let written = source.told(setup, result, |manifest, run| {
+            let manifest = Manifest {
+                started: self.begun.clone(),
+                ..manifest.clone()
+            };
+            record_run_in(folder, &manifest, run).map_err(Failure::input)
+        });
+        match written {
+            Ok(path) => self.logs.push(path),
+            Err(failure) => {
+                self.folder = None;
+                say(&format!("note: not recording: {failure}"));
+            }
+        }
+    }
+
+    /// Says where they are.
+    pub(crate) fn tell(&self) {
+        let which = if self.many {
+            " of runs that miss a limit"
+        } else {
+            ""
+        };
+        match &self.logs[..] {
+            [] => {}
+            [only] => say(&format!("recorded: {}", only.display())),
+            [first, ..] => say(&format!(
+                "recorded: {} logs{which} in {}",
+                self.logs.len(),
+                first.parent().unwrap_or(first).display()
+            )),
+        }
+    }
+}
+
+/// On stderr, where it is in no result's way; a closed one leaves nobody to tell.
+fn say(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// The parameters that the robot begins with, if it has our table of them.
+fn parameters(setup: &Setup) -> Result<Option<Params>, FileError> {
+    if !setup.takes_parameters() {
+        return Ok(None);
+    }
+    let mut parameters = Params::default();
+    for (id, value) in setup.control_parameters()? {
+        // Checked where it was read.
+        let _ = parameters.set(id, value);
+    }
+    Ok(Some(parameters))
+}
+
+/// What a program without a link of ours has told; what came over the link is in its bytes.
+fn told(trace: &Trace) -> Vec<(u64, FromRobot)> {
+    if !trace.link.is_empty() {
+        return Vec::new();
+    }
+    let heard = trace.heard.iter();
+    heard.map(|heard| (micros(heard.t_s), heard.what)).collect()
+}
+
+fn micros(t_s: f64) -> u64 {
+    (t_s * 1e6).round() as u64
+}
+
+pub(crate) fn burst(burst: &rumbo_scenario::trace::Burst) -> Burst {
+    Burst {
+        t_us: burst.t_us,
+        to_robot: burst.to_robot,
+        bytes: burst.bytes.clone(),
+    }
+}
+
+pub(crate) fn said(said: &rumbo_scenario::trace::Said) -> Said {
+    Said {
+        t_us: said.t_us,
+        usart: said.usart,
+        to_chip: false,
+        bytes: said.bytes.clone(),
+    }
+}
+
+fn truth(sample: &Sample) -> (u64, Truth) {
+    let [left, right] = sample.wheel_rad_s;
+    let truth = Truth {
+        pose: MapPose {
+            x_m: sample.x_m,
+            y_m: sample.y_m,
+            heading_rad: sample.heading_rad,
+        },
+        wheel_rad_s: Wheels { left, right },
+        range_m: sample
+            .range_m
+            .map(|range_m| range_m.is_finite().then_some(range_m)),
+        servo_rad: sample.servo_rad,
+        contact: sample.touching,
+        battery_v: sample.battery_v,
+    };
+    (micros(sample.t_s), truth)
+}

@@ -1,0 +1,94 @@
+//! `rumbo import`, and what is read of what it made.
+
+use crate::support::{file, folder, program, rumbo, stderr, stdout};
+use std::process::Output;
+
+/// A short recording in the format of the original program, made up here.
+const RECORDING: &str = "dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b\n\
+                         5000,0,0,60,5,114,110\n50,15.63,12.5,60,5,100,103\n40,30,-30,60,5,90,91\n";
+
+#[test]
+fn an_imported_recording_is_in_si_units_with_the_original_attached() {
+    file("recording.csv", RECORDING);
+    let output = rumbo(&[
+        "import",
+        "recording.csv",
+        "--out",
+        "recording.mcap",
+        "--json",
+    ]);
+    let summary: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(summary["rows"], 3);
+    // The first row's time is how long the original program waited for its start.
+    assert!((summary["duration_s"].as_f64().unwrap() - 0.09).abs() < 1e-9);
+
+    let log = std::fs::read(folder().join("recording.mcap")).unwrap();
+    let messages: Vec<_> = mcap::MessageStream::new(&log)
+        .unwrap()
+        .map(Result::unwrap)
+        .collect();
+    let last: serde_json::Value = serde_json::from_slice(&messages[2].data).unwrap();
+    // Motor A of the original is the right wheel; 30 rpm are pi rad/s.
+    assert!((last["right_speed_rad_s"].as_f64().unwrap() - std::f64::consts::PI).abs() < 1e-9);
+    assert!((last["left_speed_rad_s"].as_f64().unwrap() + std::f64::consts::PI).abs() < 1e-9);
+    assert_eq!(last["left_pwm"], 91.0);
+    assert_eq!(messages[2].log_time, 90_000_000);
+    let contents = mcap::Summary::read(&log).unwrap().unwrap();
+    let attached = mcap::read::attachment(&log, &contents.attachment_indexes[0]).unwrap();
+    assert_eq!(attached.data, RECORDING.as_bytes());
+}
+
+#[test]
+fn a_csv_that_a_spanish_spreadsheet_saved_is_imported_and_another_log_of_its_name_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let import = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        let mut import = program();
+        let output = import.current_dir(&folder).args(["import", name, "--json"]);
+        output.output().unwrap()
+    };
+    let summary = |output: &Output| {
+        serde_json::from_str::<serde_json::Value>(&stdout(output)).unwrap()["columns"].clone()
+    };
+    let plain = import("plain.csv", RECORDING);
+    let semicolons = RECORDING
+        .replace(',', ";")
+        .replace('.', ",")
+        .replace('\n', "\r\n");
+    let spanish = import("spanish.csv", &format!("\u{feff}{semicolons}"));
+    assert_eq!(summary(&spanish), summary(&plain));
+    // The same again is no loss; another recording of that name would be one.
+    assert!(import("plain.csv", RECORDING).status.success());
+    let other = import("plain.csv", &RECORDING.replace(",5,", ",6,"));
+    assert_eq!(other.status.code(), Some(2));
+    assert!(stderr(&other).contains("--out"), "{}", stderr(&other));
+}
+
+#[test]
+fn a_recording_and_the_log_made_of_it_are_checked_alike() {
+    // Two seconds at a steady 60 rpm, made up here.
+    let rows = (0..40).map(|row| {
+        format!(
+            "50,{speed},{speed},60,5,90,90\n",
+            speed = if row < 4 { 15 * row } else { 60 }
+        )
+    });
+    let header = "dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b\n";
+    file(
+        "steady.csv",
+        &format!("{header}{}", rows.collect::<String>()),
+    );
+    rumbo(&["import", "steady.csv", "--out", "steady.mcap"]);
+    let check = |log: &str| {
+        let output = rumbo(&["identify", log, "--check", "memoria", "--json"]);
+        let report: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+        (
+            report["runs"][0]["whole"].clone(),
+            report["runs"][0]["nuisance"].clone(),
+        )
+    };
+    let recording = check("steady.csv");
+    assert_eq!(recording.0[0]["rows"], 40);
+    assert_eq!(recording, check("steady.mcap"));
+}

@@ -1,0 +1,143 @@
+//! Wrong input: one line with the remedy, and status 2.
+
+use crate::support::{file, rumbo, stderr, stdout};
+
+#[test]
+fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
+    file(
+        "no_number.csv",
+        "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n69,107,1O7,30,1,115,115\n",
+    );
+    file(
+        "too_short.csv",
+        "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n\n69,107,107,30,1,115\n",
+    );
+    file(
+        "pwm.csv",
+        "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n69,107,107,30,1,115,300\n",
+    );
+    file(
+        "empty.csv",
+        "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n",
+    );
+    file(
+        "far.toml",
+        "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = 0\nduration_s = 1\n[start]\nx_m = -400\n",
+    );
+    file(
+        "typos.toml",
+        "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = \"font_distance\"\nduration_s = 9\n[[command]]\nat_s = 2\nreference_m = 0.3\n",
+    );
+    file(
+        "comma.toml",
+        "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = 0\nduration_s = 0,5\n",
+    );
+    let cases: [(&[&str], &str); 25] = [
+        (
+            &["run", "typos.toml"],
+            "error: typos.toml:5: mode = font_distance: unknown mode; did you mean `front_distance` (1)?",
+        ),
+        (
+            &["run", "comma.toml"],
+            "error: comma.toml:6: not valid TOML: unexpected key or value, expected newline, `#`; write decimals with a point",
+        ),
+        (
+            &["import", "far.toml"],
+            "error: far.toml:1: `title = \"t\"` is neither a header of the original program nor a line of a capture; `rumbo import --help` shows the headers",
+        ),
+        (
+            &["connect", ""],
+            "error: a value is required for '<PORT>' but none was supplied; see `rumbo connect --help`",
+        ),
+        (
+            &["fly"],
+            "error: unrecognized subcommand 'fly'; see `rumbo --help`",
+        ),
+        (
+            &["run"],
+            "error: the following required arguments were not provided: <SCENARIO>...; see `rumbo run --help`",
+        ),
+        (
+            &["run", "mode1", "--sed", "7"],
+            "error: unexpected argument '--sed' found; tip: a similar argument exists: '--seed'; see `rumbo run --help`",
+        ),
+        (
+            &["run", "fre"],
+            "error: unknown scenario `fre`; did you mean `free`?",
+        ),
+        (
+            &["run", "mode1", "--world", "opne"],
+            "error: unknown world `opne`; did you mean `open`?",
+        ),
+        (
+            &["run", "mode1", "--robot", "memory"],
+            "error: unknown robot `memory`; did you mean `memoria`?",
+        ),
+        (
+            &["run", "mode1", "--rig", "front"],
+            "error: unknown rig `front`; did you mean `front_pair` or `front_single`?",
+        ),
+        (
+            &["lab", "--rig", "fnal"],
+            "error: unknown rig `fnal`; did you mean `final`?",
+        ),
+        (
+            &["lab", "--world", "opne"],
+            "error: unknown world `opne`; did you mean `open`?",
+        ),
+        (
+            &["run", "far.toml"],
+            "error: far.toml:8: start.x_m = -400: must be within -50..50 m",
+        ),
+        (
+            &["run", "nowhere.toml"],
+            "error: nowhere.toml: cannot be read (No such file or directory (os error 2)); give the path of an existing file",
+        ),
+        (
+            &["run", "mode1", "--param", "battery.open_circuit_v=90"],
+            "error: parameter battery.open_circuit_v = 90: must be within 5..9 V",
+        ),
+        (
+            &["run", "mode1", "--param", "battery"],
+            "error: invalid value 'battery' for '--param <NAME=VALUE>': write it as name=value, e.g. battery.open_circuit_v=6.9; see `rumbo run --help`",
+        ),
+        (
+            &["lab", "--speed", "-1"],
+            "error: unexpected argument '-1' found; see `rumbo lab --help`",
+        ),
+        (
+            &["identify", "no_number.csv", "--check", "memoria"],
+            "error: no_number.csv, line 2, column right_cm: `1O7`, allowed is a number",
+        ),
+        (
+            &["identify", "pwm.csv", "--check", "memory"],
+            "error: unknown robot `memory`; did you mean `memoria`?",
+        ),
+        (
+            &["import", "no_number.csv"],
+            "error: no_number.csv:2: right_cm = `1O7`: must be a number within -1000000..1000000",
+        ),
+        (
+            &["import", "too_short.csv"],
+            "error: too_short.csv:3: 6 values in a row of 7 columns; expected dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b",
+        ),
+        (
+            &["import", "pwm.csv"],
+            "error: pwm.csv:2: pwm_b = `300`: must be a number within -255..255",
+        ),
+        (
+            &["import", "empty.csv"],
+            "error: empty.csv:1: no rows under the header; is the recording complete?",
+        ),
+        (
+            &["import", "nowhere.csv"],
+            "error: nowhere.csv: cannot be read (No such file or directory (os error 2)); give the path of a CSV file",
+        ),
+    ];
+    for (arguments, expected) in cases {
+        let output = rumbo(arguments);
+        assert_eq!(stderr(&output), format!("{expected}\n"), "{arguments:?}");
+        assert_eq!(stdout(&output), "", "{arguments:?}");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    }
+}
