@@ -49,7 +49,8 @@ export class Header {
     if (!scene) return;
     this.#scenario.replaceChildren(...scene.scenarios.map((name) => option(name, name)));
     this.#world.replaceChildren(option(OWN, t('its own')), ...scene.worlds.map((name) => option(name, name)));
-    this.#rig.replaceChildren(option(OWN, scene.choice.rig === null ? t('{} (own)', named(scene.rig)) : t('its own')), ...scene.rigs.map((name) => option(name, named(name))));
+    this.#rig.replaceChildren(option(OWN, t('its own')), ...scene.rigs.map((name) => option(name, named(name))));
+    this.#rig.title = named(scene.rig);
     this.#scenario.value = scene.choice.scenario;
     this.#world.value = scene.choice.world ?? OWN;
     this.#rig.value = scene.choice.rig ?? OWN;
@@ -79,9 +80,10 @@ export class Header {
     setText(this.#load, `↓ ${format(link.down_load * 100, 0)} ↑ ${format(link.up_load * 100, 0)} %`);
     setText(this.#crc, `${link.crc_errors_down} | ${link.crc_errors_up}`);
     this.#crc.classList.toggle('bad', link.crc_errors_down + link.crc_errors_up > 0);
-    setText(this.#battery, `${format(robot.battery_v ?? robot.true_battery_v)} V`);
-    this.#batteryChip.title = robot.battery_v === null && robot.true_battery_v !== null
-      ? t('Battery of the simulation; the robot has nothing wired to measure it') : t('Battery, as the robot measures it');
+    const volts = robot.battery_v ?? robot.true_battery_v;
+    setText(this.#battery, volts === null ? '–' : `${format(volts)} V`);
+    this.#batteryChip.title = robot.battery_v !== null ? t('Battery, as the robot measures it')
+      : robot.true_battery_v !== null ? t('Battery of the simulation; the robot has nothing wired to measure it') : t('The robot has nothing wired to measure its battery');
     this.#showConnection();
   }
 

@@ -68,7 +68,7 @@ export class LinkMeter {
   /** @param {string} name */
   #figure(name) {
     const value = create('dd');
-    this.#figures.append(create('dt', { textContent: name }), value);
+    this.#figures.append(create('div', {}, create('dt', { textContent: name }), value));
     this.#values.set(name, value);
     return value;
   }

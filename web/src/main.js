@@ -45,14 +45,14 @@ let state = null;
 let version = null;
 /** What is simulated around the robot. @type {import('./types.js').Scene | null} */
 let simulated = null;
-/** What the robot takes its body for. @type {import('./mounts.js').Body | null} */
-let body = null;
+/** The robot's, as far as they are known. @type {import('./types.js').Parameter[]} */
+let table = [];
 /** The sonars that the robot carries, by number. */
 let sonars = [0, 1, 2];
 
 /** The simulation knows the robot's body, or else the robot itself, if it tells. */
 function setBody() {
-  const own = typeof state?.robot.rig === 'string' ? body : null;
+  const own = typeof state?.robot.rig === 'string' && table.length > 0 ? bodyOf(state.robot.rig, table) : null;
   map.body = own;
   sonars = (simulated ?? own)?.sonars.map(({ id }) => id).sort() ?? [0, 1, 2];
   stateLine.sonars = sonars;
@@ -99,7 +99,7 @@ const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);
 const panel = new CommandPanel(send, map);
 const machine = new Machine(store);
 const meter = new LinkMeter();
-const tabs = new Tabs('tabs', (panel) => meter.show(panel === 'link'));
+const tabs = new Tabs('tabs', (panel) => meter.show(panel === 'bytes'));
 tabs.show('events');
 const stateLine = new StateLine(store, send);
 const pointer = element('pointer', HTMLOutputElement);
@@ -206,7 +206,7 @@ function receive(message) {
     case 'parameters':
       parameters.show(message.parameters);
       calibration.setParameters(message.parameters);
-      body = bodyOf(message.parameters);
+      table = message.parameters;
       setBody();
       break;
     case 'events':

@@ -7,9 +7,11 @@
  * What the robot itself takes for the place is drawn dashed, as its estimated pose is; so is a route, a plan that does not follow the
  * error. With a real robot the two frames are the same.
  */
+import { element } from './dom.js';
 import { IDENTITY, compose, inverse, place } from './geometry.js';
 import { Sketch } from './sketch.js';
 import { colours, onThemeChange } from './theme.js';
+import { watchFingers } from './touch.js';
 
 /** @typedef {import('./types.js').Scene} Scene */
 /** @typedef {import('./types.js').Errand} Errand */
@@ -20,7 +22,9 @@ import { colours, onThemeChange } from './theme.js';
 /** @typedef {{x_m: number, y_m: number, px_per_m: number}} View Middle [m] and scale. */
 
 /** Free space around what is to be seen [m]. */
-const MARGIN_M = 0.25;
+const MARGIN_M = 0.12;
+/** What is written over the map above and below leaves so much free [px]. */
+const [ABOVE_PX, BELOW_PX] = [34, 18];
 /** What is to be seen grows by so much at a time [m]: the view does not creep. */
 const GROWTH_M = 0.5;
 const ZOOM_STEP = 1.25;
@@ -110,9 +114,10 @@ export class WorldMap {
     this.#redraw();
   }
 
-  /** The place under the pointer, from the robot's origin. @returns {Point | null} */
+  /** The place under the pointer, or that Enter picks, from the robot's origin. @returns {Point | null} */
   pointed() {
-    return this.#pointer && this.#fromOrigin(this.#toWorld(this.#pointer));
+    const at = this.#pointer ?? (this.#pick && this.#canvas.matches(':focus-visible') ? this.#middle() : null);
+    return at && this.#fromOrigin(this.#toWorld(at));
   }
 
   /** A place from the robot's origin, on the canvas [px]; for tests. @param {Point} at @returns {Point} */
@@ -157,6 +162,7 @@ export class WorldMap {
     if (estimated) sketch.drawRobot(estimated, px, latest.truth ? 'estimated' : 'real', false);
     if (latest.truth) sketch.drawRobot(latest.truth, px, 'real', latest.contact);
     if (estimated && latest.spread) sketch.drawSpread(estimated, latest.origin, latest.spread, px);
+    if (this.#pick && canvas.matches(':focus-visible')) sketch.drawAim();
   }
 
   /** @param {number} px */
@@ -246,11 +252,9 @@ export class WorldMap {
     const xs = all.map(([x]) => x ?? 0);
     const ys = all.map(([, y]) => y ?? 0);
     const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    return {
-      x_m: (left + right) / 2,
-      y_m: (low + high) / 2,
-      px_per_m: Math.min(this.#canvas.clientWidth / (right - left + 2 * MARGIN_M), this.#canvas.clientHeight / (high - low + 2 * MARGIN_M)),
-    };
+    const height_px = Math.max(this.#canvas.clientHeight - ABOVE_PX - BELOW_PX, 50);
+    const px_per_m = Math.min(this.#canvas.clientWidth / (right - left + 2 * MARGIN_M), height_px / (high - low + 2 * MARGIN_M));
+    return { x_m: (left + right) / 2, y_m: (low + high) / 2 + (ABOVE_PX - BELOW_PX) / 2 / px_per_m, px_per_m };
   }
 
   /** @param {number} factor @param {Point | null} about Stays where it is [px]; null: the middle. */
@@ -288,6 +292,7 @@ export class WorldMap {
       ArrowRight: () => this.#pan(-KEY_PAN_PX, 0),
       ArrowUp: () => this.#pan(0, KEY_PAN_PX),
       ArrowDown: () => this.#pan(0, -KEY_PAN_PX),
+      Enter: () => this.#pick?.(this.#fromOrigin(this.#toWorld(this.#middle()))),
     };
     canvas.addEventListener('keydown', (event) => {
       const act = keys[event.key];
@@ -295,6 +300,16 @@ export class WorldMap {
       event.preventDefault();
       act();
     });
+    for (const type of ['focus', 'blur']) canvas.addEventListener(type, () => this.#redraw());
+    element('zoom-in', HTMLButtonElement).addEventListener('click', () => this.#zoom(ZOOM_STEP));
+    element('zoom-out', HTMLButtonElement).addEventListener('click', () => this.#zoom(1 / ZOOM_STEP));
+    // One finger drags as a mouse does.
+    watchFingers(canvas, () => {}, (factor, { x, y }) => this.#zoom(factor, [x, y]));
+  }
+
+  /** The canvas's middle, where Enter picks a place [px]. @returns {Point} */
+  #middle() {
+    return [this.#canvas.clientWidth / 2, this.#canvas.clientHeight / 2];
   }
 
   #makePickable() {
@@ -308,7 +323,7 @@ export class WorldMap {
     canvas.addEventListener('pointermove', (event) => {
       this.#pointer = [event.offsetX, event.offsetY];
       this.#redraw();
-      if (!canvas.hasPointerCapture(event.pointerId)) return;
+      if (!canvas.hasPointerCapture(event.pointerId) || !event.isPrimary) return;
       if (pressed && Math.hypot(event.offsetX - pressed[0], event.offsetY - pressed[1]) <= CLICK_PX) return;
       pressed = null;
       this.#pan(event.movementX, event.movementY);

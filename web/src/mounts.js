@@ -11,11 +11,13 @@
 const [LEFT, RIGHT, FRONT] = [0, 1, 2];
 /** How far a sonar sees that tells nothing in its way [m]. */
 const REACH_M = 2.5;
-/** The rigs by their numbers in the parameter table. */
-const RIGS = /** @type {const} */ (['front_single', 'front_pair', 'side_pair_left', 'side_pair_right', 'final']);
 
-/** @param {Parameter[]} parameters What a robot has not told yet is taken for its default. @returns {Body} */
-export function bodyOf(parameters) {
+/**
+ * @param {string} rig The rig's name.
+ * @param {Parameter[]} parameters What a robot has not told yet is taken for its default.
+ * @returns {Body | null} Null: there is no such rig.
+ */
+export function bodyOf(rig, parameters) {
   const known = new Map(parameters.map(({ name, value, default: usual }) => [name, value ?? usual]));
   const of = (/** @type {string} */ name) => known.get(name) ?? 0;
   /** @param {number} id @param {number} x_m @param {number} y_m @param {number} quarters of a turn, from ahead @param {boolean} [on_servo] @returns {SonarMount} */
@@ -25,12 +27,14 @@ export function bodyOf(parameters) {
   const [side_x_m, side_y_m] = [of('sonar_side_x_m'), of('sonar_side_y_m')];
   /** @param {number} side 1 left, -1 right */
   const pair = (side) => [LEFT, RIGHT].map((id) => mount(id, side_x_m + (id === LEFT ? 0.5 : -0.5) * of('side_gap_m'), side * side_y_m, side));
-  const sonars = {
+  /** @type {Record<string, () => SonarMount[]>} */
+  const rigs = {
     front_single: () => [mount(FRONT, ahead_m, 0, 0)],
     front_pair: () => [LEFT, RIGHT].map((id) => mount(id, ahead_m, (id === LEFT ? 0.5 : -0.5) * of('front_gap_m'), 0)),
     side_pair_left: () => pair(1),
     side_pair_right: () => pair(-1),
     final: () => [mount(LEFT, side_x_m, side_y_m, 1), mount(RIGHT, side_x_m, -side_y_m, -1), mount(FRONT, ahead_m, 0, 0, true)],
-  }[RIGS[Math.round(of('rig'))] ?? 'final']();
-  return { base_m: of('base_m'), wheel_radius_m: (of('radius_left_m') + of('radius_right_m')) / 2, sonars };
+  };
+  const sonars = rigs[rig]?.();
+  return sonars ? { base_m: of('base_m'), wheel_radius_m: (of('radius_left_m') + of('radius_right_m')) / 2, sonars } : null;
 }

@@ -1,5 +1,5 @@
 // @ts-check
-/** A plot as a picture: PNG as it is on the page, SVG drawn anew for paper. */
+/** A plot as a file: PNG as it is on the page, SVG drawn anew for paper, and its values as CSV. */
 import { t } from './text.js';
 import { colours } from './theme.js';
 import { format } from './units.js';
@@ -91,6 +91,25 @@ ${[...parts, ...curves].join('\n')}
 </svg>
 `;
   return new Blob([text], { type: 'image/svg+xml' });
+}
+
+/**
+ * The values in sight of the signals shown, a column each with its name and its unit; the names are those of the store, in any language.
+ * @param {PlotPanel} panel @param {{store: import('./store.js').Store}} view @returns {Blob}
+ */
+export function toCsv(panel, { store }) {
+  const [from_s, to_s] = limits(panel, 'x');
+  const curves = shown(panel);
+  const tables = [...new Set(curves.map(({ name }) => store.tableOf(name)))];
+  const times = [...new Set(tables.flatMap((table) => table.t.slice(table.indexAt(from_s), table.indexAt(to_s))))].sort((a, b) => a - b);
+  const head = ['t [s]', ...curves.map(({ name, unit }) => `${name} [${unit}]`)];
+  const lines = times.map((t_s) => [t_s.toFixed(3), ...curves.map(({ name }) => {
+    const table = store.tableOf(name);
+    const at = table.indexAt(t_s);
+    const value = table.t[at] === t_s ? table.columns.get(name)?.[at] : null;
+    return typeof value === 'number' ? String(Number(value.toFixed(4))) : '';
+  })].join(','));
+  return new Blob([`${head.join(',')}\n${lines.join('\n')}\n`], { type: 'text/csv' });
 }
 
 /**

@@ -6,6 +6,7 @@ import { curvesOf, linesOf } from './curves.js';
 import { UNITS } from './signals.js';
 import { t } from './text.js';
 import { colours } from './theme.js';
+import { watchFingers } from './touch.js';
 import { format, formatShort } from './units.js';
 
 /** @typedef {import('./plots.js').Plots} Plots */
@@ -16,7 +17,7 @@ import { format, formatShort } from './units.js';
 export const GUTTER_PX = 46;
 export const FONT = '11px system-ui, sans-serif';
 /** Right of the plot, where the time axis ends in half a label. */
-const EDGE_PX = 16;
+const EDGE_PX = 22;
 /** A drag that goes further than this along both axes is a box [px]. */
 const BOX_PX = 25;
 
@@ -131,7 +132,7 @@ export class PlotPanel {
     this.#chips.forEach(({ chip, value, name, unit }, index) => {
       const { decimals } = UNITS[unit];
       const column = /** @type {(number | null | undefined)[]} */ (data[index + 1] ?? []);
-      const unused = !plottedIn(column);
+      const unused = !plottedIn(column) && !plottedIn(column, data[0], this.#view.range_s);
       if (chip.hidden !== unused) chip.hidden = unused;
       const now = column[at] ?? column[at - 1] ?? column[at - 2];
       const then = mark_s === null ? null : this.#store.tableOf(name).at(name, mark_s);
@@ -168,7 +169,10 @@ export class PlotPanel {
         setSelect: [(/** @type {uPlot} */ each) => this.#zoom(each)],
         setCursor: [() => this.#view.label()],
         drawAxes: [(/** @type {uPlot} */ each) => drawTransitions(each, this.#store, this.#view.range_s)],
-        draw: [(/** @type {uPlot} */ each) => drawMark(each, this.#view.mark_s)],
+        draw: [(/** @type {uPlot} */ each) => {
+          drawMark(each, this.#view.mark_s);
+          if (!each.data.slice(1).some((column, index) => each.series[index + 1]?.show && plottedIn(column, each.data[0], this.#view.range_s))) drawNothing(each);
+        }],
       },
     }, [[], ...this.curves.map(() => [])], body);
     makeNavigable(plot, this.#view);
@@ -207,12 +211,16 @@ export function commonOptions(view, right) {
   };
 }
 
-/** The wheel zooms in time, a click sets the mark. @param {uPlot} plot @param {Plots} view */
+/** The wheel zooms in time, as two fingers do; one finger moves in time, a click sets the mark. @param {uPlot} plot @param {Plots} view */
 export function makeNavigable(plot, view) {
   plot.over.addEventListener('wheel', (event) => {
     event.preventDefault();
     view.scale(event.deltaY > 0 ? 1.25 : 0.8, plot.posToVal(event.offsetX, 'x'));
   }, { passive: false });
+  watchFingers(plot.over, (dx_px) => {
+    const by_s = plot.posToVal(0, 'x') - plot.posToVal(dx_px, 'x');
+    view.zoom(view.range_s[0] + by_s, view.range_s[1] + by_s);
+  }, (factor, { x }) => view.scale(1 / factor, plot.posToVal(x, 'x')));
   /** @type {[number, number] | null} */
   let pressed = null;
   plot.over.addEventListener('pointerdown', (event) => { pressed = event.button === 0 ? [event.clientX, event.clientY] : null; });
@@ -241,6 +249,17 @@ function drawTransitions(plot, store, [from_s, to_s]) {
   ctx.restore();
 }
 
+/** Says that nothing is plotted, so that an empty plot is not taken for a broken one. @param {uPlot} plot */
+function drawNothing({ ctx, bbox }) {
+  ctx.save();
+  ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
+  ctx.fillStyle = colours.dim;
+  ctx.textAlign = 'center';
+  ctx.textBaseline = 'middle';
+  ctx.fillText(t('nothing to plot here'), bbox.left + bbox.width / 2, bbox.top + bbox.height / 2);
+  ctx.restore();
+}
+
 /** The line that differences are counted from. @param {uPlot} plot @param {number | null} mark_s */
 export function drawMark(plot, mark_s) {
   const { min, max } = plot.scales['x'] ?? {};
@@ -259,12 +278,16 @@ export function drawMark(plot, mark_s) {
 }
 
 /**
- * Whether a curve has anything to show lately; the last lines may lack it.
- * @param {(number | null | undefined)[]} column
+ * Whether a curve has anything to show in this time; without one, lately: the last lines may lack it.
+ * @param {ArrayLike<number | null | undefined>} column
+ * @param {ArrayLike<number>} [times]
+ * @param {[number, number]} [range_s]
  */
-function plottedIn(column) {
-  for (let index = column.length - 1; index >= Math.max(0, column.length - 1_000); index--) {
-    if (column[index] !== null && column[index] !== undefined) return true;
+function plottedIn(column, times, range_s) {
+  for (let index = column.length - 1; index >= (times ? 0 : Math.max(0, column.length - 1_000)); index--) {
+    const t_s = times?.[index] ?? 0;
+    if (range_s && t_s < range_s[0]) return false;
+    if (typeof column[index] === 'number' && (!range_s || t_s <= range_s[1])) return true;
   }
   return false;
 }

@@ -4,7 +4,7 @@ import { check, decimal, read } from './decimal.js';
 import { complaint, dialog, saveFile } from './dialog.js';
 import { create } from './dom.js';
 import { MOST_UNITS, unitsOf } from './layout.js';
-import { toPng, toSvg } from './picture.js';
+import { toCsv, toPng, toSvg } from './picture.js';
 import { SIGNALS, UNITS } from './signals.js';
 import { numberAs, t } from './text.js';
 
@@ -52,7 +52,7 @@ export class PlotDialog {
       if (this.#panel) plots.change(this.#panel.spec, null);
       this.#dialog.dialog.close();
     });
-    this.#pictures.replaceChildren(this.#pictureButton('SVG', 'svg', (panel) => toSvg(panel, plots)), this.#pictureButton('PNG', 'png', (panel) => toPng(panel)));
+    this.#pictures.replaceChildren(this.#pictureButton('SVG', 'svg', (panel) => toSvg(panel, plots)), this.#pictureButton('PNG', 'png', (panel) => toPng(panel)), this.#pictureButton('CSV', 'csv', (panel) => toCsv(panel, plots)));
     this.#dialog.body.append(form);
   }
 

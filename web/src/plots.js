@@ -141,7 +141,7 @@ export class Plots {
     const { left } = this.#band.plot.cursor;
     const at_s = left !== undefined && left >= 0 ? this.#band.plot.posToVal(left, 'x') : null;
     const difference = this.mark_s === null ? '' : `Δ ${format((at_s ?? this.range_s[1]) - this.mark_s, 2)} s`;
-    setText(this.#time, [at_s === null ? '' : `${format(at_s, 2)} s`, difference].filter(Boolean).join('  '));
+    setText(this.#time, [at_s === null ? '' : `${format(at_s, 2)} s`, difference, at_s === null ? '' : this.#band.nameAt(at_s)].filter(Boolean).join('  '));
   }
 
   /** Shows the plots that the mode begins with, or those that were chosen in it. @param {number} mode */

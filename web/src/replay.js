@@ -83,7 +83,7 @@ export class ReplayBar {
     if (this.#playing) this.#speed.value = String(state.speed);
     this.#scrub.max = String(replay.duration_s);
     if (!this.#dragging) this.#scrub.value = String(state.t_s);
-    setText(this.#time, t('{} of {} s', format(state.t_s, 2), format(replay.duration_s, 1)));
+    setText(this.#time, t('{} of {} s', format(state.t_s, 2), format(replay.duration_s, 2)));
     element('replay-name', HTMLSpanElement).textContent = replay.name;
   }
 }

@@ -272,6 +272,23 @@ export class Sketch {
     context.stroke();
   }
 
+  /** The middle of the map, where Enter picks a place. */
+  drawAim() {
+    const context = this.context;
+    const ratio = devicePixelRatio;
+    context.save();
+    context.setTransform(ratio, 0, 0, ratio, this.canvas.clientWidth / 2 * ratio, this.canvas.clientHeight / 2 * ratio);
+    context.strokeStyle = colours.text;
+    context.lineWidth = 1;
+    context.beginPath();
+    for (const [x, y] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+      context.moveTo(4 * (x ?? 0), 4 * (y ?? 0));
+      context.lineTo(12 * (x ?? 0), 12 * (y ?? 0));
+    }
+    context.stroke();
+    context.restore();
+  }
+
   /**
    * Where the robot takes the goal to be.
    * @param {Point} at

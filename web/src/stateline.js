@@ -1,6 +1,6 @@
 // @ts-check
 /** The line that says what the robot is doing: state, heading, goal and how far, reached or not; or the fault, and the rig if it is a wrong one. */
-import { element, setText } from './dom.js';
+import { create, element, setText } from './dom.js';
 import { near, wrapped } from './geometry.js';
 import { inWords } from './places.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S, format } from './units.js';
@@ -69,7 +69,7 @@ export class StateLine {
     if (!slow) return;
     const { fault, errand } = slow.robot;
     this.#fault.hidden = fault === null;
-    setText(this.#faultText, said(fault ?? ''));
+    this.#showFault(fault);
     setText(this.#state, this.#stateWords(slow));
     const aim = this.#aimWords(slow);
     setText(this.#aim, aim);
@@ -78,6 +78,14 @@ export class StateLine {
     setText(this.#end, said(end ?? ''));
     this.#end.className = end === null ? '' : `chip ${end === 'reached' ? 'good' : 'warning'}`;
     this.#showPose(slow);
+  }
+
+  /** What happened, and below it the cause and what to do. @param {string | null} fault */
+  #showFault(fault) {
+    const words = said(fault ?? '');
+    if (words === this.#faultText.textContent) return;
+    const [title = ''] = words.split(/(?<=: )/);
+    this.#faultText.replaceChildren(create('b', { textContent: title }), words.slice(title.length));
   }
 
   /** @param {State} slow */
@@ -91,11 +99,12 @@ export class StateLine {
   }
 
   /** @param {State} slow */
-  #aimWords({ robot }) {
+  #aimWords(slow) {
+    const { robot } = slow;
     const latest = this.#store.latest;
     const mode = this.modes.find((each) => each.id === robot.mode);
     const [left, right] = robot.reference;
-    const words = [];
+    const words = robot.armed || robot.fault !== null || slow.replay ? [] : [t('ON starts it')];
     const at = latest?.estimated;
     const to = latest?.heading_ref_rad ?? null;
     if (at && to !== null) words.push(`${t('heading')} ${degrees(at.heading_rad)} → ${format(near(to * DEG_PER_RAD, at.heading_rad * DEG_PER_RAD), 0)}°`);

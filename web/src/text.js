@@ -8,7 +8,7 @@
 import { GUIDE } from './spanish/guide.js';
 import { PAGE } from './spanish/page.js';
 import { PARAMETERS } from './spanish/parameters.js';
-import { ROBOT } from './spanish/robot.js';
+import { ROBOT, UNDERSCORED } from './spanish/robot.js';
 
 /** Every text with its Spanish. @type {Record<string, string>} */
 export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...GUIDE };
@@ -87,8 +87,11 @@ export function numberAs(text) {
 
 /** The numbers within a text as the page's language writes them; versions and addresses, which have more points, stay. @param {string} text */
 function numbersAs(text) {
-  return language === 'es' ? text.replace(/(?<![\w./:-])(-?\d+)\.(\d+)(?![\d.:\w/])/g, '$1,$2') : text;
+  return language === 'es' ? withMinus(text).replace(/(?<![\w./:-])([-−]?\d+)\.(\d+)(?![\d.:\w/])/g, '$1,$2') : text;
 }
+
+/** A minus before a number is none of the hyphens. @param {string} text */
+const withMinus = (text) => text.replace(/(?<=^|[\s(])-(?=\d)/g, '−');
 
 /** The sentences with places for values, the most particular first. */
 const PATTERNS = Object.keys(SPANISH).filter((english) => english.includes('{}')).map((english) => ({
@@ -103,7 +106,7 @@ const PATTERNS = Object.keys(SPANISH).filter((english) => english.includes('{}')
  * @returns {string}
  */
 export function said(english) {
-  if (language === 'en' || english === '') return english;
+  if (language === 'en' || english === '') return withMinus(english).replace(/\b[a-z]+(?:_[a-z]+)+\b/g, (name) => (UNDERSCORED.includes(name) ? name.replaceAll('_', ' ') : name));
   const found = translate(english);
   if (found === null) untranslated.add(english);
   return found ?? english;

@@ -46,9 +46,8 @@ function inFile(rig) {
 }
 
 test('a robot that is not simulated has its sonars where its parameters say: as the robot\'s file has them', () => {
-  ['front_single', 'front_pair', 'side_pair_left', 'side_pair_right', 'final'].forEach((rig, number) => {
-    const parameters = declared().map((each) => (each.name === 'rig' ? { ...each, value: number } : each));
-    const { sonars, base_m } = bodyOf(parameters);
+  for (const rig of ['front_single', 'front_pair', 'side_pair_left', 'side_pair_right', 'final']) {
+    const { sonars, base_m } = bodyOf(rig, declared()) ?? assert.fail(rig);
     const told = inFile(rig);
     assert.deepEqual(sonars.map(({ id, on_servo }) => [id, on_servo]), told.map(({ id, on_servo }) => [id, on_servo]), rig);
     sonars.forEach(({ at, half_angle_rad }, index) => {
@@ -59,5 +58,5 @@ test('a robot that is not simulated has its sonars where its parameters say: as 
       near(half_angle_rad, 0.31);
     });
     near(base_m, 0.1);
-  });
+  }
 });

@@ -86,6 +86,7 @@ async function setReference(cm) {
 test('the page connects, and the robot is not armed by it', async () => {
   await page.waitForSelector('#connection.good');
   await isArmed(false);
+  await page.locator('#aim', { hasText: /^ON starts it/ }).waitFor();
   assert.deepEqual(await lastValues('left_pwm', 1), [0]);
   assert.equal(new URL(page.url()).search, '', 'the token does not stay in the address');
 });

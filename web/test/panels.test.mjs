@@ -44,6 +44,7 @@ test('the link shows its rate, its load, what was lost, and its bytes frame by f
   const figures = page.locator('#link-figures');
   await figures.locator('dd', { hasText: /^2\d(\.\d)? Hz$/ }).waitFor();
   assert.match(await figures.innerText(), /9600 baud/);
+  await page.keyboard.press('ArrowRight');
   const bytes = page.locator('#link-bytes');
   await bytes.filter({ hasText: /← telemetry +[0-9a-f]{2} 2/ }).filter({ hasText: /→ heartbeat/ }).waitFor();
   await page.locator('#link-hold').check();

@@ -110,14 +110,17 @@ test('a click sets a mark, from which the numbers in all plots are counted', asy
   const band = page.locator('.u-over').first();
   await band.click({ position: { x: 90, y: 30 } });
   await band.hover({ position: { x: 200, y: 30 } });
-  await page.locator('#cursor-time', { hasText: /^[\d.]+ s {2}Δ [\d.]+ s$/ }).waitFor();
+  await page.locator('#cursor-time', { hasText: /^[\d.]+ s {2}Δ [\d.]+ s( {2}1: \w+)?$/ }).waitFor();
   await page.locator('.plot-head', { hasText: 'PWM' }).locator('output', { hasText: /Δ/ }).first().waitFor();
+  // The state at the pointer is told too: the band has room for the names of long ones only.
+  await band.hover({ position: { x: 100, y: 30 } });
+  await page.locator('#cursor-time', { hasText: /1: (off|approach|settle|hold)$/ }).waitFor();
   await page.locator('#plots').focus();
   await page.keyboard.press('Escape');
   assert.equal((await plots()).mark_s, null);
 });
 
-test('what is seen of a plot is saved as SVG and PNG', async () => {
+test('what is seen of a plot is saved as SVG, PNG and CSV', async () => {
   await change('distance');
   const svg = await saved('SVG');
   assert.equal(svg.name, 'distance.svg');
@@ -125,6 +128,11 @@ test('what is seen of a plot is saved as SVG and PNG', async () => {
   assert.ok(text.startsWith('<svg ') && text.includes('distance [cm]') && /<path d="M[\d.]+ [\d.]+L/.test(text), 'a title and a curve');
   const png = await saved('PNG');
   assert.deepEqual([...readFileSync(png.path).subarray(1, 4)], [...Buffer.from('PNG')]);
+  const csv = await saved('CSV');
+  const [head = '', first = '', second = ''] = readFileSync(csv.path, 'utf8').split('\n');
+  assert.match(head, /^t \[s\],true_range_front_cm \[cm\],range_front_cm \[cm\],reference_cm \[cm\]$/);
+  assert.match(first, /^[\d.]+(,[\d.]*){3}$/);
+  assert.ok(Math.abs(Number(second.split(',')[0]) - Number(first.split(',')[0]) - 0.04) < 0.002, 'a line for each frame');
   await page.keyboard.press('Escape');
 });
 

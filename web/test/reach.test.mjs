@@ -24,7 +24,7 @@ const beyond = () => page.evaluate(() => {
 });
 
 /** The parts whose contents they do not hold, and which do not scroll. */
-const cutOff = () => page.evaluate(() => ['top', 'command-section', 'plot-section', 'event-section', 'parameter-section'].filter((id) => {
+const cutOff = () => page.evaluate(() => ['top', 'command-section', 'controls', 'plot-section', 'event-section', 'parameter-section'].filter((id) => {
   const part = document.getElementById(id);
   return part && (part.scrollHeight > part.clientHeight + 1 || part.scrollWidth > part.clientWidth + 1);
 }));
@@ -52,8 +52,67 @@ test('on a tablet nothing is cut off at the sides, and STOP stays in sight', asy
     const box = await page.locator('#stop').boundingBox();
     assert.ok(box && box.y >= 0 && box.y + box.height < 130 && box.x > width / 2, `${width}: ${JSON.stringify(box)}`);
     await page.evaluate(() => scrollTo(0, 0));
+    for (const mode of [0, 5, 7, 8]) {
+      await page.locator(`#modes button[value="${mode}"]`).click();
+      await page.locator(`#modes button[value="${mode}"][aria-pressed="true"]`).waitFor();
+      assert.deepEqual(await cutOff(), [], `${width} x ${height}, mode ${mode}`);
+    }
   }
   await page.setViewportSize({ width: 1280, height: 720 });
+});
+
+/** Where a place 1 m ahead is on the map [px]; how many pixels a metre has. */
+const metre_px = () => page.evaluate(() => {
+  const { onMap } = /** @type {any} */ (window).rumbo;
+  return Math.abs(onMap([1, 0])[0] - onMap([0, 0])[0]);
+});
+
+test('a place on the map is picked by keyboard: Enter takes the middle, arrow keys bring it there', async () => {
+  await page.locator('#modes button[value="8"]').click();
+  await page.locator('#goal').waitFor();
+  await page.locator('#language').focus();
+  while (await page.evaluate(() => document.activeElement?.id) !== 'map') await page.keyboard.press('Tab');
+  for (const key of ['+', 'ArrowRight', 'ArrowRight', 'ArrowUp', 'Enter']) await page.keyboard.press(key);
+  await page.waitForFunction(() => {
+    const { state, onMap } = /** @type {any} */ (window).rumbo;
+    const { goal } = state().robot.errand;
+    const map = document.querySelector('#map');
+    if (!goal || !map) return false;
+    const [x, y] = onMap(goal);
+    return Math.hypot(x - map.clientWidth / 2, y - map.clientHeight / 2) < 2;
+  });
+  await page.locator('#fit').click();
+});
+
+test('fingers move and zoom: map and plots', async () => {
+  const cdp = await page.context().newCDPSession(page);
+  await cdp.send('Emulation.setTouchEmulationEnabled', { enabled: true, maxTouchPoints: 2 });
+  /** @param {'touchStart' | 'touchMove' | 'touchEnd'} type @param {[number, number][]} points */
+  const touch = (type, ...points) => cdp.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  const map = await page.locator('#map').boundingBox();
+  const plot = await page.locator('.u-over').first().boundingBox();
+  assert.ok(map && plot);
+  const before_px = await metre_px();
+  const [x, y] = [map.x + map.width / 2, map.y + map.height / 2];
+  await touch('touchStart', [x - 30, y], [x + 30, y]);
+  await touch('touchMove', [x - 60, y], [x + 60, y]);
+  await touch('touchEnd');
+  await page.waitForFunction((before) => {
+    const { onMap } = /** @type {any} */ (window).rumbo;
+    return Math.abs(onMap([1, 0])[0] - onMap([0, 0])[0]) > 1.7 * before;
+  }, before_px);
+  await page.locator('#fit').click();
+
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().t_s > 3);
+  const seen = () => page.evaluate(() => /** @type {[number, number]} */ (/** @type {any} */ (window).rumbo.plots().range_s));
+  await touch('touchStart', [plot.x + 100, plot.y + 20]);
+  for (const dx of [20, 60, 100]) await touch('touchMove', [plot.x + 100 + dx, plot.y + 20]);
+  await touch('touchEnd');
+  await page.waitForFunction(() => !(/** @type {any} */ (window).rumbo.plots().following));
+  const [from_s, to_s] = await seen();
+  assert.ok(from_s < -1 && Math.abs(to_s - from_s - 20) < 0.1, `${from_s} to ${to_s}`);
+  await page.locator('#live').click();
+  await cdp.send('Emulation.setTouchEmulationEnabled', { enabled: false });
 });
 
 test('everything that can be used has a name', async () => {

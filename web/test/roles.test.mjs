@@ -95,7 +95,7 @@ test('a viewer can command nothing, neither by the page nor around it, and may s
   for (const order of ['{"type":"arm"}', '{"type":"take_control"}', '{"type":"reference","value":1}', '{"type":"speed","factor":0}']) {
     assert.equal(await answer(viewer, order), 'refused: this page may watch, and stop the robot', order);
   }
-  assert.equal(await viewer.locator('#take-control').isVisible(), false);
+  for (const id of ['take-control', 'on', 'controls', 'save-parameters']) assert.equal(await viewer.locator(`#${id}`).isVisible(), false, id);
   await viewer.locator('#stop').click();
   await isArmed(false);
 });

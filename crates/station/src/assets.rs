@@ -70,6 +70,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/tabs.js": SCRIPT,
     "src/text.js": SCRIPT,
     "src/theme.js": SCRIPT,
+    "src/touch.js": SCRIPT,
     "src/types.js": SCRIPT,
     "src/units.js": SCRIPT,
     "vendor/uplot/uPlot.js": SCRIPT,

@@ -15,6 +15,7 @@ use crate::robot_clock::RobotClock;
 use crate::terminal::Terminal;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
+use rumbo_control::params::ParamId;
 use rumbo_wire::text::RowKind;
 use rumbo_wire::{
     Ack, Command, Decoder, EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received,
@@ -225,13 +226,13 @@ impl RobotClient {
                 heard.push(Heard::Telemetry(t_ms, telemetry));
             }
             FromRobot::Status(status) => {
-                self.mode = status.mode;
+                self.enter(status.mode);
                 self.reference = status.reference;
                 heard.push(Heard::Status(status));
             }
             FromRobot::Event(event) => {
                 if let EventKind::ModeChanged(mode) = event.kind {
-                    self.mode = mode;
+                    self.enter(mode);
                 }
                 heard.push(Heard::Event(
                     self.clock.session_ms(event.t_ms, now_ms, way_ms),
@@ -267,6 +268,30 @@ impl RobotClient {
         if self.table_matches() {
             (0..self.table.len)
                 .for_each(|id| self.manager.submit_background(Command::GetParam { id }));
+            self.read_own_first();
+        }
+    }
+
+    /// The parameters of the robot's mode are read first, then those of all modes: they are what people look at.
+    fn read_own_first(&mut self) {
+        let mode = self.mode;
+        self.manager.read_first(|command| {
+            let Command::GetParam { id } = command else {
+                return 0;
+            };
+            match ParamId::from_number(*id).and_then(ParamId::mode) {
+                Some(own) if own == mode => 1,
+                None => 2,
+                Some(_) => 3,
+            }
+        });
+    }
+
+    /// The robot is in this mode.
+    fn enter(&mut self, mode: ModeId) {
+        if self.mode != mode {
+            self.mode = mode;
+            self.read_own_first();
         }
     }
 
@@ -287,7 +312,7 @@ impl RobotClient {
                             right: y_m,
                         };
                     }
-                    Command::Mode(mode) => self.mode = mode,
+                    Command::Mode(mode) => self.enter(mode),
                     _ => {}
                 }
             }

@@ -105,6 +105,11 @@ impl CommandManager {
         self.background.push_back(command);
     }
 
+    /// What is left to be read is read in the order of these ranks.
+    pub fn read_first(&mut self, rank: impl Fn(&Command) -> u8) {
+        self.background.make_contiguous().sort_by_key(rank);
+    }
+
     fn stop(&mut self, now_us: u64) {
         self.give_up_waiting(Fate::Superseded);
         match &mut self.in_flight {

@@ -2,7 +2,8 @@
 
 use crate::catalogue::{self, Reference, ReferenceKind};
 use crate::commands::{Fate, Outcome};
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::{ModeId, Movement};
+
 use rumbo_control::mode::waypoints::{FARTHEST_M, MAX_WAYPOINTS};
 use rumbo_wire::message::Waypoint;
 use rumbo_wire::{Command, Level, Refusal};
@@ -35,13 +36,15 @@ pub(crate) fn command(command: &Command, mode: ModeId) -> String {
             movement,
             level: Level::Duty(duty),
         } => {
-            format!("movement {movement:?} with {:.0} % PWM", duty * 100.0)
+            let movement = movement_words(*movement);
+            format!("movement {movement} with {:.0} % PWM", duty * 100.0)
         }
         Command::Move {
             movement,
             level: Level::Speed(speed_rad_s),
         } => {
-            format!("movement {movement:?} at {:.0} rpm", rpm(*speed_rad_s))
+            let movement = movement_words(*movement);
+            format!("movement {movement} at {:.0} rpm", rpm(*speed_rad_s))
         }
         Command::SetParam { id, value } => format!("{} = {value}", parameter(*id)),
         Command::GetParam { id } => format!("read {}", parameter(*id)),
@@ -57,6 +60,25 @@ pub(crate) fn command(command: &Command, mode: ModeId) -> String {
         Command::Waypoint(Waypoint { x_m, y_m, .. }) => {
             format!("waypoint ({x_m:.2}, {y_m:.2}) m")
         }
+    }
+}
+
+/// A movement by the name of its button.
+fn movement_words(movement: Movement) -> &'static str {
+    match movement {
+        Movement::Stop => "release both wheels",
+        Movement::Forward => "forward",
+        Movement::Backward => "backward",
+        Movement::TurnLeft => "turn left about the centre",
+        Movement::TurnRight => "turn right about the centre",
+        Movement::PivotLeftForward => "pivot on the left wheel, forward",
+        Movement::PivotLeftBackward => "pivot on the left wheel, backward",
+        Movement::PivotRightForward => "pivot on the right wheel, forward",
+        Movement::PivotRightBackward => "pivot on the right wheel, backward",
+        Movement::ArcLeft => "arc left",
+        Movement::ArcRight => "arc right",
+        Movement::ArcLeftBackward => "arc backward, centre on the left",
+        Movement::ArcRightBackward => "arc backward, centre on the right",
     }
 }
 

@@ -6,7 +6,7 @@ export const PAGE = {
   // The top line.
   'scenario': 'escenario', 'world': 'mundo', 'rig': 'montaje', 'seed': 'semilla', 'speed': 'ritmo', 'Reset': 'Reiniciar',
   'Start the simulation again with this scenario, world, rig and seed': 'Empieza la simulación de nuevo con este escenario, mundo, montaje y semilla',
-  'its own': 'el suyo', '{} (own)': '{} (el suyo)', 'paused': 'en pausa',
+  'its own': 'el suyo', 'paused': 'en pausa',
   'round trip': 'retardo', 'errors': 'errores', 'link': 'enlace', 'battery': 'batería',
   'From a command to its acknowledgement': 'Desde una orden hasta su confirmación',
   'Frames that failed the check (CRC), from and to the robot': 'Tramas que no pasaron la comprobación (CRC), desde y hacia el robot',
@@ -58,9 +58,9 @@ export const PAGE = {
   'One telemetry frame on (full stop)': 'Una trama de telemetría adelante (punto)', 'One frame on': 'Una trama adelante',
   'Time in the log': 'Tiempo en la grabación', 'Speed of the replay': 'Velocidad de la reproducción', '{} of {} s': '{} de {} s',
   // Map and state line.
-  'Map': 'Mapa',
-  'Map of the world and the robot. Drag to move, wheel or + and - to zoom, 0 to fit; in modes 7 and 8 a click picks a place':
-    'Mapa del mundo y del robot. Arrastrar lo mueve, la rueda o + y - lo amplían, 0 lo ajusta; en los modos 7 y 8 un clic elige un lugar',
+  'Map': 'Mapa', 'Zoom in': 'Acercar', 'Zoom out': 'Alejar', 'Zoom in (+ on the map)': 'Acerca (+ en el mapa)', 'Zoom out (- on the map)': 'Aleja (- en el mapa)', 'nothing to plot here': 'nada que dibujar aquí', 'The robot has nothing wired to measure its battery': 'El robot no tiene nada conectado para medir su batería', 'ON starts it': 'ON lo pone en marcha',
+  'Map of the world and the robot. Drag to move; two fingers, wheel or + and - zoom, 0 fits; in modes 7 and 8 a click picks a place, or Enter the one in the middle':
+    'Mapa del mundo y del robot. Arrastrar lo mueve; dos dedos, la rueda o + y - lo amplían, 0 lo ajusta; en los modos 7 y 8 un clic elige un lugar, o Intro el del centro',
   'as it is': 'como es', 'as it estimates': 'como lo estima', 'the ellipse holds its place, the sector its heading, with 95 % each, as far as the odometry knows its own errors': 'la elipse contiene su posición y el sector su rumbo, con un 95 % cada uno, hasta donde la odometría conoce sus propios errores', 'Fit': 'Ajustar', 'Ghost here': 'Fantasma aquí', 'Start the ghost again where the robot is now': 'Empieza el fantasma de nuevo donde está ahora el robot', 'Show everything (0 on the map)': 'Muestra todo (0 en el mapa)',
   'Tell it': 'Decírselo', 'Write the rig that it carries to the robot': 'Escribe en el robot el montaje que lleva',
   'The robot believes to carry the rig {}, and carries {}: it misreads its sonars.': 'El robot cree llevar el montaje {} y lleva {}: interpreta mal sus sonares.',
@@ -136,7 +136,7 @@ export const PAGE = {
   'name': 'nombre', 'value': 'valor', 'unit': 'unidad', 'range': 'margen', 'default': 'de fábrica', '{} in {}': '{} en {}', 'no unit': 'sin unidad',
   'Apply': 'Aplicar', 'Write to the robot (Enter)': 'Escribe en el robot (Intro)', 'Back to what the robot holds (Escape)': 'Vuelve a lo que tiene el robot (Escape)', 'Revert': 'Deshacer',
   'waiting…': 'esperando…', 'refused: {}': 'rechazado: {}', 'not read yet': 'aún sin leer', 'the log does not tell them': 'la grabación no los dice', 'the robot speaks text: it does not tell them': 'el robot habla texto: no los dice', 'running': 'en marcha', 'the robot has another table: not shown': 'el robot tiene otra tabla: no se muestra',
-  'Events': 'Sucesos', 'States': 'Estados', 'Link': 'Enlace', 'Events, states and link': 'Sucesos, estados y enlace', 'Events, newest first': 'Sucesos, los últimos primero',
+  'Events': 'Sucesos', 'States': 'Estados', 'Link': 'Enlace', 'Bytes': 'Bytes', 'Events, states and link': 'Sucesos, estados y enlace', 'Events, newest first': 'Sucesos, los últimos primero',
   'State machine of the mode; now: {}': 'Máquina de estados del modo; ahora: {}',
   'Figures of the link': 'Cifras del enlace', 'Bytes of the link, frame by frame': 'Bytes del enlace, trama a trama',
   'telemetry': 'telemetría', 'load from the robot': 'carga desde el robot', 'load to the robot': 'carga hacia el robot', 'speed of the line': 'velocidad de la línea',

@@ -144,14 +144,10 @@ export const ROBOT = {
   'read {}': 'leer {}', 'all parameters to their defaults': 'todos los parámetros a los de fábrica', 'the present place is the origin': 'el lugar actual es el origen',
   'goal ({}, {}) m': 'destino ({}; {}) m', 'follow the lane': 'seguir el carril', 'a new route, again and again': 'una ruta nueva, una y otra vez', 'a new route, once': 'una ruta nueva, una vez',
   'waypoint ({}, {}) m': 'lugar ({}; {}) m', '{} = {}': '{} = {}',
-  'Stop': 'parar', 'Forward': 'adelante', 'Backward': 'atrás', 'TurnLeft': 'giro a la izquierda', 'TurnRight': 'giro a la derecha', 'PivotLeftForward': 'pivote izquierdo adelante',
-  'PivotLeftBackward': 'pivote izquierdo atrás', 'PivotRightForward': 'pivote derecho adelante', 'PivotRightBackward': 'pivote derecho atrás', 'ArcLeft': 'arco a la izquierda',
-  'ArcRight': 'arco a la derecha', 'ArcLeftBackward': 'arco atrás a la izquierda', 'ArcRightBackward': 'arco atrás a la derecha',
   // Why the station closed the connection.
   'not understood: {}': 'no entendido: {}', 'too many orders at once': 'demasiadas órdenes a la vez',
 };
 
-// Names as in commands are read as the names of the buttons.
-for (const name of ['front_distance', 'front_align', 'wall_hold', 'wall_follow', 'wheel_speed', 'straight_line', 'front_single', 'front_pair', 'side_pair_left', 'side_pair_right']) {
-  ROBOT[name] = ROBOT[name.replaceAll('_', ' ')] ?? name;
-}
+/** Names as commands have them, which are read as those of the buttons. */
+export const UNDERSCORED = ['front_distance', 'front_align', 'wall_hold', 'wall_follow', 'wheel_speed', 'straight_line', 'front_single', 'front_pair', 'side_pair_left', 'side_pair_right'];
+for (const name of UNDERSCORED) ROBOT[name] = ROBOT[name.replaceAll('_', ' ')] ?? name;

@@ -218,3 +218,20 @@ proptest! {
         prop_assert_eq!(robot.applied, asked);
     }
 }
+
+#[test]
+fn what_is_wanted_first_is_read_first_and_the_rest_as_it_came() {
+    let mut manager = CommandManager::new(SESSION);
+    (0..4).for_each(|id| manager.submit_background(Command::GetParam { id }));
+    manager.read_first(|command| match command {
+        Command::GetParam { id: 2 } => 0,
+        _ => 1,
+    });
+    let mut read = Vec::new();
+    for step in 0..4u64 {
+        let asked = manager.poll(step * 100_000).unwrap();
+        read.push(command_of(asked));
+        manager.acknowledge(&ack(number_of(asked)), step * 100_000 + 50_000);
+    }
+    assert_eq!(read, [2, 0, 1, 3].map(|id| Command::GetParam { id }));
+}
