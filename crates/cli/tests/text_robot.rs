@@ -124,6 +124,7 @@ fn the_original_program_is_recognised_commanded_watched_and_recorded() {
         sent.ends_with("\nON\nREF 60\nPID A 0 0 0\nOFF\nOFF\n"),
         "{sent:?}"
     );
+    replayed(&path, log.duration_s());
     for arguments in [&["export"][..], &["compare"]] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_rumbo"));
         command
@@ -137,6 +138,41 @@ fn the_original_program_is_recognised_commanded_watched_and_recorded() {
         let said = String::from_utf8_lossy(&done.stderr);
         assert_eq!(done.status.code(), Some(0), "{said}");
     }
+}
+
+/// Its log in the dashboard: what the robot told, and its lines in the console of the link, as far as the playhead is.
+fn replayed(log: &Path, end_s: f64) {
+    let replay = Running::start(&[
+        "replay",
+        log.to_str().unwrap(),
+        "--no-browser",
+        "--port",
+        "0",
+        "--speed",
+        "0",
+    ]);
+    let mut page = Page::open(&replay.said);
+    let columns = columns(&mut page);
+    page.say(&json!({"type": "seek", "t_s": end_s}));
+    let (mut lines, mut state, mut mode) = (String::new(), Value::Null, None);
+    page.wait_for("the end of the log", |message| {
+        for said in message["said"].as_array().into_iter().flatten() {
+            assert_eq!(said["usart"], 255);
+            lines += said["text"].as_str().unwrap();
+        }
+        if !message["state"].is_null() {
+            state = message["state"].clone();
+        }
+        mode = signal(message, &columns, "mode").or(mode);
+        (lines.contains(", 60.00, 5, ")
+            && mode == Some(5.0)
+            && state["t_s"].as_f64() >= Some(end_s - 0.01))
+        .then_some(())
+    });
+    assert_eq!(state["robot"]["text"], true);
+    assert_eq!(state["robot"]["mode"], 5);
+    page.say(&json!({"type": "type", "usart": 255, "text": "REF 10"}));
+    page.wait_for_event("this is a replay: nothing is sent to a robot");
 }
 
 #[test]
