@@ -10,7 +10,7 @@ use rumbo_plant::params::Params;
 use rumbo_scenario::dialect;
 use rumbo_scenario::files::{Library, RobotFile};
 use rumbo_scenario::identify::{
-    self, DriveLog, GENERATIONS, Identification, IdentifyError, RunScore,
+    self, DriveLog, GENERATIONS, Identification, IdentifyError, Plot, RunScore,
 };
 use rumbo_scenario::sonar_stats::{self, Comparison, SonarLog};
 use rumbo_wire::csv;
@@ -53,6 +53,9 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     let name = args.check.as_ref().unwrap_or(&args.robot);
     let robot = Library::new().robot(name).map_err(Failure::input)?;
     let logs = read(&args.logs)?;
+    if let Some(folder) = &args.plots {
+        place::try_folder(folder)?;
+    }
     let doing = match args.check {
         Some(_) => "comparing with the plant",
         None => "searching for the plant that repeats the runs; two cores take some two minutes",
@@ -155,12 +158,6 @@ fn plot(
     params: &Params,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| {
-        Failure::Input(format!(
-            "{}: cannot be made ({error}); choose another folder with --plots",
-            folder.display()
-        ))
-    })?;
     let runs = match drive {
         Drive::Identified(found) => &found.runs,
         Drive::Checked { runs } => runs,
@@ -168,8 +165,12 @@ fn plot(
     let mut plots = Vec::new();
     for run in runs {
         for log in logs.drive.iter().filter(|log| log.name == run.name) {
-            plots
-                .extend(identify::plot(log, params, run.nuisance, folder).map_err(Failure::input)?);
+            let plot = Plot::new(log, params, run.nuisance);
+            for ending in ["svg", "png"] {
+                let path = folder.join(Path::new(&log.name).with_extension(ending));
+                place::make(&path, |place| plot.draw(place).map_err(Failure::input))?;
+                plots.push(path);
+            }
         }
     }
     Ok(plots)

@@ -2,11 +2,14 @@
 
 use crate::args::RunArgs;
 use crate::failure::Failure;
+use crate::place;
 use rumbo_scenario::files::Setup;
-use rumbo_scenario::observe::{self, Wanted};
+use rumbo_scenario::observe::{self, Seen, Wanted};
 use rumbo_scenario::run::{RunResult, run_by};
+use std::fs::File;
 use std::io::Write;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::path::Path;
 
 /// Something of the program is to be seen.
 pub(crate) fn is_wanted(args: &RunArgs) -> bool {
@@ -26,16 +29,26 @@ pub(crate) fn run(args: &RunArgs, jobs: &[(&Setup, u64)]) -> Result<RunResult, F
         .gdb
         .map(|port| wait_for_debugger(port, args))
         .transpose()?;
-    let wanted = Wanted {
-        profile: args.profile.clone(),
-        vcd: args.vcd.clone(),
-        debugger,
+    let look = |vcd: Option<File>| {
+        let wanted = Wanted {
+            profile: args.profile.is_some(),
+            vcd,
+            debugger,
+        };
+        let mut seen = Seen::default();
+        let result = run_by(setup, *seed, |run| {
+            seen = observe::go_on(run, wanted)?;
+            Ok::<(), Failure>(())
+        })?;
+        Ok((result, seen))
     };
-    let mut seen = observe::Seen::default();
-    let result = run_by(setup, *seed, |run| {
-        seen = observe::go_on(run, wanted)?;
-        Ok::<(), Failure>(())
-    })?;
+    let (result, seen) = match &args.vcd {
+        Some(path) => drawn(path, look)?,
+        None => look(None)?,
+    };
+    if let (Some(path), Some(folded)) = (&args.profile, seen.folded) {
+        place::write(path, folded)?;
+    }
     if let Some(profile) = seen.profile {
         tell(&profile);
     }
@@ -45,6 +58,20 @@ pub(crate) fn run(args: &RunArgs, jobs: &[(&Setup, u64)]) -> Result<RunResult, F
         ));
     }
     Ok(result)
+}
+
+/// Has the pins drawn into a file.
+fn drawn<T>(
+    path: &Path,
+    look: impl FnOnce(Option<File>) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    let mut seen = None;
+    place::make(path, |place| {
+        let file = File::create(place).map_err(|error| place::unwritable(path, &error))?;
+        seen = Some(look(Some(file))?);
+        Ok(())
+    })?;
+    seen.ok_or_else(|| Failure::Input(format!("{}: nothing was drawn", path.display())))
 }
 
 fn wait_for_debugger(port: u16, args: &RunArgs) -> Result<TcpStream, Failure> {

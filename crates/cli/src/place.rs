@@ -72,16 +72,12 @@ pub(crate) fn unwritable(path: &Path, error: &Error) -> Failure {
     let (shown, what) = (path.display(), "cannot be written");
     Failure::Input(match error.kind() {
         ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
-            format!(
-                "{shown}: {what}, a file stands where a folder is needed; choose another place with --out"
-            )
+            format!("{shown}: {what}, a file stands where a folder is needed; choose another place")
         }
         ErrorKind::StorageFull => {
-            format!(
-                "{shown}: {what}, the disk is full; make room or choose another place with --out"
-            )
+            format!("{shown}: {what}, the disk is full; make room or choose another place")
         }
-        _ => format!("{shown}: {what} ({error}); choose another place with --out"),
+        _ => format!("{shown}: {what} ({error}); choose another place"),
     })
 }
 

@@ -166,7 +166,7 @@ fn bad_input_gets_one_line_with_the_remedy() {
             "no such experiment; there are manual, mode1",
         ),
         (vec!["--real", "nowhere"], "give --real a folder"),
-        (vec!["--out", "file"], "choose another place with --out"),
+        (vec!["--out", "file"], "choose another place"),
         (vec!["--firmware", "none.elf"], "none.elf"),
     ] {
         let output = experiments(folder.path(), "C", &arguments);

@@ -1,31 +1,111 @@
-//! CSVs as spreadsheets write them: semicolons or tabulators between the columns, commas in the numbers, UTF-16, a byte-order mark.
+//! CSVs as spreadsheets write them: semicolons or tabulators between the columns, commas in the numbers, quoted cells, a
+//! first line that names the separator, UTF-16, a byte-order mark.
 
 use std::borrow::Cow;
 
-/// The text of a CSV of numbers with commas between the columns and points in the numbers, whatever stood there. Lines stay lines.
+/// The text of a CSV of numbers with commas between the columns and points in the numbers, whatever stood there. Lines stay lines, but for a first one
+/// that only names the separator (`sep=;`), which a spreadsheet does not count either.
 ///
 /// # Errors
 /// Bytes that are no text.
 pub fn plain(bytes: &[u8]) -> Result<Cow<'_, str>, String> {
-    let text = text_of(bytes)?;
-    let count = |mark| {
-        text.lines()
-            .next()
-            .unwrap_or_default()
-            .matches(mark)
-            .count()
+    let whole = text_of(bytes)?;
+    let (first, rest) = whole.split_once('\n').unwrap_or((&whole, ""));
+    let named = named_separator(first);
+    let text = if named.is_some() { rest } else { &whole };
+    let between = named.unwrap_or_else(|| separator(text.lines().next().unwrap_or_default()));
+    if named.is_none() && between == ',' && !text.contains('"') {
+        return Ok(whole);
+    }
+    Ok(Cow::Owned(in_points(text, between)))
+}
+
+/// The separator that a first line such as `sep=;` names.
+fn named_separator(line: &str) -> Option<char> {
+    let name = line.trim_matches(|c: char| c == '"' || c == '\r');
+    let (key, separator) = name.split_at_checked(4)?;
+    let mut separator = separator.chars();
+    let only = separator.next().filter(|_| separator.next().is_none());
+    only.filter(|_| key.eq_ignore_ascii_case("sep="))
+}
+
+/// What parts the cells of a line.
+fn separator(line: &str) -> char {
+    let count = |wanted: char| {
+        let mut quoted = false;
+        let counts = |&c: &char| {
+            quoted ^= c == '"';
+            c == wanted && !quoted
+        };
+        line.chars().filter(counts).count()
     };
     // A row of numbers has at most one comma in each.
     let parts = |mark: &char| count(*mark) > 0 && count(',') <= count(*mark) + 1;
-    let Some(between) = [';', '\t'].into_iter().find(parts) else {
-        return Ok(text);
-    };
-    let mark = |mark| match mark {
-        ',' => '.',
-        _ if mark == between => ',',
-        _ => mark,
-    };
-    Ok(text.chars().map(mark).collect())
+    [';', '\t'].into_iter().find(parts).unwrap_or(',')
+}
+
+fn in_points(text: &str, between: char) -> String {
+    let mut plain = String::with_capacity(text.len());
+    for line in text.split_inclusive('\n') {
+        let cells = line.trim_end_matches(['\r', '\n']);
+        for (number, cell) in Cells(Some(cells), between).enumerate() {
+            if number > 0 {
+                plain.push(',');
+            }
+            match cell {
+                Cell::Plain(cell) if between == ',' => plain += cell,
+                Cell::Plain(cell) => plain += &cell.replace(',', "."),
+                Cell::Quoted(cell) => plain += &unquoted(cell),
+            }
+        }
+        plain += &line[cells.len()..];
+    }
+    plain
+}
+
+/// A quoted cell's comma is that of its number; a whole row between quotes stays one.
+fn unquoted(cell: &str) -> String {
+    let number = cell.replacen(',', ".", 1);
+    match number.trim().parse::<f64>() {
+        Ok(_) => number,
+        Err(_) => cell.to_owned(),
+    }
+}
+
+enum Cell<'a> {
+    Plain(&'a str),
+    Quoted(&'a str),
+}
+
+/// The cells of a line. A quotation mark counts only around a whole cell.
+struct Cells<'a>(Option<&'a str>, char);
+
+impl<'a> Iterator for Cells<'a> {
+    type Item = Cell<'a>;
+
+    fn next(&mut self) -> Option<Cell<'a>> {
+        let Self(line, between) = self;
+        let left = (*line)?;
+        let quoted = left.strip_prefix('"').and_then(|left| {
+            let (cell, after) = left.split_once('"')?;
+            let after = match after.strip_prefix(*between) {
+                Some(after) => Some(after),
+                None if after.is_empty() => None,
+                None => return None,
+            };
+            Some((cell, after))
+        });
+        if let Some((cell, after)) = quoted {
+            *line = after;
+            return Some(Cell::Quoted(cell));
+        }
+        let (cell, after) = match left.split_once(*between) {
+            Some((cell, after)) => (cell, Some(after)),
+            None => (left, None),
+        };
+        *line = after;
+        Some(Cell::Plain(cell))
+    }
 }
 
 fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, String> {
@@ -78,6 +158,25 @@ mod tests {
     fn points_in_the_numbers_may_stay_where_semicolons_part_them() {
         assert_eq!(plain(b"a;b\n1.5;2\n").unwrap(), "a,b\n1.5,2\n");
         assert_eq!(plain(b"1;50,5;3\n").unwrap(), "1,50.5,3\n");
+    }
+
+    #[test]
+    fn quoted_cells_and_a_line_that_names_the_separator_are_read_as_what_they_mean() {
+        for text in [
+            "sep=;\r\ndt_ms;left_cm\r\n60;1,5\r\n",
+            "\"sep=;\"\r\n\"dt_ms\";\"left_cm\"\r\n\"60\";\"1,5\"\r\n",
+            "SEP=|\r\ndt_ms|left_cm\r\n60|1.5\r\n",
+            "\"dt_ms\",\"left_cm\"\r\n60,\"1,5\"\r\n",
+            "\"dt_ms\",\"left_cm\"\r\n\"60\",\"1.5\"\r\n",
+            // A capture in a spreadsheet's first column.
+            "\"dt_ms,left_cm\"\r\n\"60,1.5\"\r\n",
+        ] {
+            assert_eq!(plain(text.as_bytes()).unwrap(), PLAIN, "{text}");
+        }
+        // A quotation mark within a cell, or one that is left open, is no quotation.
+        for text in ["title = \"t\"\n", "\"60,1\n", "60,\"1\"5\n"] {
+            assert_eq!(plain(text.as_bytes()).unwrap(), text);
+        }
     }
 
     #[test]

@@ -13,15 +13,14 @@ use rumbo_emulator::observe::waveform::Waveform;
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::net::TcpStream;
-use std::path::{Path, PathBuf};
 
 /// What is to be seen of the program.
 #[derive(Debug, Default)]
 pub struct Wanted {
-    /// A file for cycles by function, as tools that draw flame graphs read them.
-    pub profile: Option<PathBuf>,
+    /// Cycles by function.
+    pub profile: bool,
     /// A file for the pins over time, as viewers of waveforms read them.
-    pub vcd: Option<PathBuf>,
+    pub vcd: Option<File>,
     /// A debugger that is connected.
     pub debugger: Option<TcpStream>,
 }
@@ -31,6 +30,8 @@ pub struct Wanted {
 pub struct Seen {
     /// The profile in tables.
     pub profile: Option<String>,
+    /// The profile as tools that draw flame graphs read it.
+    pub folded: Option<String>,
     /// The debugger ended the run before its time.
     pub ended: bool,
 }
@@ -41,7 +42,7 @@ pub(crate) type Waves = Waveform<BufWriter<File>>;
 /// Lets a run go on to its end, and shows what is wanted of its program.
 ///
 /// # Errors
-/// There is no image in the robot, a file cannot be written, or the line to the debugger broke.
+/// There is no image in the robot, the file cannot be written, or the line to the debugger broke.
 pub fn go_on(run: &mut Run<'_>, wanted: Wanted) -> Result<Seen, FileError> {
     let Some(mega) = run.sim().mega_mut() else {
         let what = "nothing of the program can be seen without --firmware";
@@ -49,16 +50,16 @@ pub fn go_on(run: &mut Run<'_>, wanted: Wanted) -> Result<Seen, FileError> {
     };
     let image = mega.firmware().image().clone();
     let signals = mega.firmware().signals();
-    if wanted.profile.is_some() {
+    if wanted.profile {
         mega.chip_mut()
             .observers_mut()
             .profile(Profile::new(&image));
     }
-    if let Some(path) = &wanted.vcd {
+    let drawn = wanted.vcd.is_some();
+    if let Some(file) = wanted.vcd {
         mega.chip_mut().record_levels();
-        let file = File::create(path).map(BufWriter::new);
-        let waves = file.and_then(|file| Waveform::new(file, &signals));
-        run.draw(waves.map_err(|error| unwritten(path, &error))?);
+        let waves = Waveform::new(BufWriter::new(file), &signals);
+        run.draw(waves.map_err(|error| unwritten(&error))?);
     }
     let mut seen = Seen::default();
     if let Some(connection) = wanted.debugger {
@@ -69,25 +70,22 @@ pub fn go_on(run: &mut Run<'_>, wanted: Wanted) -> Result<Seen, FileError> {
     while !seen.ended && !run.is_over() {
         run.advance();
     }
-    if let Some(path) = &wanted.vcd {
-        run.finish_drawing()
-            .map_err(|error| unwritten(path, &error))?;
+    if drawn {
+        run.finish_drawing().map_err(|error| unwritten(&error))?;
     }
-    if let Some(path) = &wanted.profile
-        && let Some(profile) = run
-            .mega()
-            .and_then(|mega| mega.chip().observers().profiled())
+    if let Some(profile) = run
+        .mega()
+        .and_then(|mega| mega.chip().observers().profiled())
     {
-        std::fs::write(path, profile.folded()).map_err(|error| unwritten(path, &error))?;
+        seen.folded = Some(profile.folded());
         seen.profile = Some(profile.report());
     }
     Ok(seen)
 }
 
-fn unwritten(path: &Path, error: &io::Error) -> FileError {
+fn unwritten(error: &io::Error) -> FileError {
     FileError::Setting(format!(
-        "{}: cannot be written ({error}); choose another file",
-        path.display()
+        "the pins over time cannot be written ({error}); choose another file"
     ))
 }
 

@@ -13,7 +13,7 @@ Examples:
   rumbo import runs/mode5.csv --out logs/mode5.mcap --json
   rumbo import terminal.txt
 
-A CSV begins with the names of its columns; as a spreadsheet has saved it (semicolons, decimal commas, UTF-16) it is taken too:
+A CSV begins with the names of its columns; as a spreadsheet has saved it (semicolons, decimal commas, quoted cells, UTF-16) it is taken too:
   modes 1 to 4  dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b
   modes 5, 6    dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b
   mode 7        dt_ms,speed_a_rpm,speed_b_rpm,reference_a_rpm,reference_b_rpm,x_m,y_m,heading_deg,pwm_a,pwm_b

@@ -58,6 +58,12 @@ fn a_csv_that_a_spanish_spreadsheet_saved_is_imported_and_another_log_of_its_nam
         .replace('\n', "\r\n");
     let spanish = import("spanish.csv", &format!("\u{feff}{semicolons}"));
     assert_eq!(summary(&spanish), summary(&plain));
+    let quoted = RECORDING
+        .lines()
+        .map(|row| format!("\"{}\"", row.replace(',', "\";\"").replace('.', ",")))
+        .collect::<Vec<_>>();
+    let quoted = import("quoted.csv", &format!("sep=;\n{}\n", quoted.join("\n")));
+    assert_eq!(summary(&quoted), summary(&plain), "{}", stderr(&quoted));
     // The same again is no loss; another recording of that name would be one.
     assert!(import("plain.csv", RECORDING).status.success());
     let other = import("plain.csv", &RECORDING.replace(",5,", ",6,"));

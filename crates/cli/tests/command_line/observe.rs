@@ -38,6 +38,19 @@ fn a_program_is_shown_as_a_profile_and_as_a_waveform() {
     ]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("one run, here are 2"));
+    // What cannot be written is said before or after, and nothing half is left.
+    for option in ["--profile", "--vcd"] {
+        let run = [
+            "run",
+            "moment.toml",
+            "--firmware",
+            "spin.hex",
+            "--no-record",
+        ];
+        let output = rumbo(&[&run[..], &[option, "nowhere/x.out"]].concat());
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).starts_with("error: nowhere/x.out: cannot be written"));
+    }
     let output = rumbo(&["run", "mode5", "--vcd", "x"]);
     assert_eq!(output.status.code(), Some(2));
 }

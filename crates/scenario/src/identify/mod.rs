@@ -13,7 +13,7 @@
 pub use error::IdentifyError;
 pub use fit::{Check, GENERATIONS, Identification, Identified, check, identify};
 pub use log::DriveLog;
-pub use plot::plot;
+pub use plot::Plot;
 pub use replay::Nuisance;
 pub use rewrite::rewrite;
 pub use score::{RunScore, WheelError};

@@ -8,7 +8,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::FontStyle;
 use rumbo_plant::params::Params;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const SIZE: (u32, u32) = (1200, 900);
 const RPM_PER_RAD_S: f64 = 30.0 / std::f64::consts::PI;
@@ -26,38 +26,41 @@ struct Panel {
     simulated: Option<Series>,
 }
 
-/// Writes `<log>.svg` and `<log>.png` into `folder`, which must exist; returns their paths.
-///
-/// # Errors
-/// A file that cannot be written.
-pub fn plot(
-    log: &DriveLog,
-    params: &Params,
-    nuisance: Nuisance,
-    folder: &Path,
-) -> Result<Vec<PathBuf>, IdentifyError> {
-    // Registering the same font again changes nothing; the bytes are a font, so that it cannot fail.
-    let _ =
-        plotters::style::register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular());
-    let panels = panels(log, params, nuisance);
-    let stem = Path::new(&log.name).with_extension("");
-    let (svg, png) = (
-        folder.join(stem.with_extension("svg")),
-        folder.join(stem.with_extension("png")),
-    );
-    draw(
-        &SVGBackend::new(&svg, SIZE).into_drawing_area(),
-        &log.name,
-        &panels,
-    )
-    .map_err(|cause| IdentifyError::Plot(format!("{}: {cause}", svg.display())))?;
-    draw(
-        &BitMapBackend::new(&png, SIZE).into_drawing_area(),
-        &log.name,
-        &panels,
-    )
-    .map_err(|cause| IdentifyError::Plot(format!("{}: {cause}", png.display())))?;
-    Ok(vec![svg, png])
+/// A recorded run against its simulation.
+pub struct Plot<'a> {
+    title: &'a str,
+    panels: Vec<Panel>,
+}
+
+impl<'a> Plot<'a> {
+    /// The run of a log, with these parameters.
+    pub fn new(log: &'a DriveLog, params: &Params, nuisance: Nuisance) -> Self {
+        Self {
+            title: &log.name,
+            panels: panels(log, params, nuisance),
+        }
+    }
+
+    /// Draws it into a file: as an image if its name ends in `png`, else as SVG.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn draw(&self, path: &Path) -> Result<(), IdentifyError> {
+        // Registering the same font again changes nothing; the bytes are a font, so that it cannot fail.
+        let _ = plotters::style::register_font(
+            "sans-serif",
+            FontStyle::Normal,
+            dejavu::sans::regular(),
+        );
+        let wrong = |cause: String| IdentifyError::Plot(format!("{}: {cause}", path.display()));
+        if path.extension().is_some_and(|ending| ending == "png") {
+            let area = BitMapBackend::new(path, SIZE).into_drawing_area();
+            draw(&area, self.title, &self.panels).map_err(|cause| wrong(cause.to_string()))
+        } else {
+            let area = SVGBackend::new(path, SIZE).into_drawing_area();
+            draw(&area, self.title, &self.panels).map_err(|cause| wrong(cause.to_string()))
+        }
+    }
 }
 
 fn panels(log: &DriveLog, params: &Params, nuisance: Nuisance) -> Vec<Panel> {

@@ -295,7 +295,11 @@ fn plots_are_written_as_svg_and_png() {
         battery_v: 7.4,
         floor_scale: 1.0,
     };
-    let paths = plot(&log, &Params::default(), nuisance, &folder).unwrap();
+    let plot = Plot::new(&log, &Params::default(), nuisance);
+    let paths = ["svg", "png"].map(|ending| folder.join("log").with_extension(ending));
+    for path in &paths {
+        plot.draw(path).unwrap();
+    }
     let svg = std::fs::read_to_string(&paths[0]).unwrap();
     let png = std::fs::read(&paths[1]).unwrap();
     std::fs::remove_dir_all(&folder).unwrap();
