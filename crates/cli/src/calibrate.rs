@@ -78,13 +78,13 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
         robot: Some(args.robot.clone()),
         rig: args.rig.clone(),
         world: args.world.clone(),
-        parameters: args.params.clone(),
+        parameters: args.parameters.params.clone(),
         ..Overrides::default()
     };
     let setup = Library::new()
         .setup(SCENARIO, &overrides)
         .map_err(Failure::input)?;
-    let (found, sim) = calibrate::calibrate_simulated(&setup, args.seed, args.world.is_some())
+    let (found, sim) = calibrate::calibrate_simulated(&setup, args.seed.seed, args.world.is_some())
         .map_err(Failure::input)?;
     let found = found.map_err(Failure::input)?;
     let rows = calibrate::rows(&found, Some(sim.params()));
@@ -104,7 +104,7 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     if args.json {
         return output::json(&Report {
             robot: &args.robot,
-            seed: args.seed,
+            seed: args.seed.seed,
             duration_s: found.duration_s,
             way_m: found.way_m,
             contacts,
@@ -113,7 +113,7 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
             written: written.map(output::shown),
         });
     }
-    report(&found, &rows, contacts, args.seed)?;
+    report(&found, &rows, contacts, args.seed.seed)?;
     match written {
         Some(path) => output::line(&format!(
             "\n{}: its [parameters] table holds what was found",

@@ -22,11 +22,11 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
     }
     let robot = Port::open(&args.address, args.baud).map_err(Failure::input)?;
     let config = LabConfig {
-        at: args.serve.at(),
+        at: args.session.serve.at(),
         speed: 1.0,
-        recording: logs::recording(args.out.as_deref()),
+        recording: logs::recording(args.session.out.as_deref()),
         #[cfg(feature = "foxglove")]
-        bridge: lab::bridge(args.bridge)?,
+        bridge: lab::bridge(args.session.bridge)?,
     };
     let robot: Box<dyn Target> = match &args.ghost {
         Some(scenario) => Box::new(Haunted::new(robot, scenario)?),
@@ -34,5 +34,5 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
     };
     let served = rumbo_station::serve_with(config, robot, calibrate::in_dashboard())
         .map_err(Failure::input)?;
-    lab::show(served, args.serve, args.no_browser)
+    lab::show(served, args.session.serve)
 }

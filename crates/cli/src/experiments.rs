@@ -31,12 +31,10 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
     };
     let request = Request {
         only: args.only.clone(),
-        seed: args.seed,
+        seed: args.seed.seed,
         overrides: Overrides {
             robot: args.robot.clone(),
-            firmware: args.firmware.clone(),
-            wiring: args.wiring.clone(),
-            ..Overrides::default()
+            ..args.image.overrides()
         },
         real,
     };
@@ -45,7 +43,7 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
     let progress = progress(args, &plan);
     let mut data = plan.run(|simulated_s| progress.inc((10.0 * simulated_s) as u64))?;
     progress.finish_and_clear();
-    data.firmware = args.firmware.as_deref().map(named);
+    data.firmware = args.image.firmware.as_deref().map(named);
     let (page, _) = html(&data, language(args));
     let place = args.out.join(REPORT);
     place::write(&place, page)?;
@@ -58,7 +56,7 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
 /// The bar, which says from the start about how long it will take.
 fn progress(args: &ExperimentsArgs, plan: &Plan) -> ProgressBar {
     let threads = std::thread::available_parallelism().map_or(1.0, |count| count.get() as f64);
-    let speed = if args.firmware.is_some() {
+    let speed = if args.image.firmware.is_some() {
         EMULATED_SPEED
     } else {
         NATIVE_SPEED

@@ -23,15 +23,13 @@ use std::io::Write;
 pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
     let choice = Choice {
         scenario: args.scenario.clone(),
-        world: args.world.clone(),
-        rig: args.rig.clone(),
-        seed: args.seed,
+        world: args.setting.world.clone(),
+        rig: args.setting.rig.clone(),
+        seed: args.seed.seed,
     };
     let overrides = Overrides {
-        robot: args.robot.clone(),
-        firmware: args.firmware.clone(),
-        wiring: args.wiring.clone(),
-        ..Overrides::default()
+        robot: args.setting.robot.clone(),
+        ..args.image.overrides()
     };
     let mut robot = SimulatedRobot::new(overrides, choice).map_err(Failure::input)?;
     if let Some(port) = args.gdb {
@@ -42,15 +40,15 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
         return crate::pty::offer(robot, args.speed);
     }
     let config = LabConfig {
-        at: args.serve.at(),
+        at: args.session.serve.at(),
         speed: args.speed,
-        recording: logs::recording(args.out.as_deref()),
+        recording: logs::recording(args.session.out.as_deref()),
         #[cfg(feature = "foxglove")]
-        bridge: bridge(args.bridge)?,
+        bridge: bridge(args.session.bridge)?,
     };
     let lab = rumbo_station::serve_with(config, Box::new(robot), calibrate::in_dashboard())
         .map_err(Failure::input)?;
-    show(lab, args.serve, args.no_browser)
+    show(lab, args.session.serve)
 }
 
 /// The port at which a debugger may call, told on stderr.
@@ -62,7 +60,7 @@ fn debugging(port: u16, args: &LabArgs) -> Result<Debugging, Failure> {
     };
     let debugging = Debugging::at(port).map_err(refused)?;
     let port = debugging.port().map_err(refused)?;
-    let image = args.firmware.as_ref();
+    let image = args.image.firmware.as_ref();
     let image = image.map_or_else(String::new, |path| path.display().to_string());
     let _ = writeln!(
         std::io::stderr(),
@@ -90,12 +88,12 @@ pub(crate) fn bridge(
 }
 
 /// Prints the address, opens the browser, and returns when the lab has ended.
-pub(crate) fn show(lab: Lab, serve: ServeArgs, no_browser: bool) -> Result<(), Failure> {
+pub(crate) fn show(lab: Lab, serve: ServeArgs) -> Result<(), Failure> {
     output::line(lab.url())?;
     if serve.listen.is_some() {
         output::line(&format!("viewers: {}", lab.viewers_url()))?;
     }
-    if !no_browser && open::that_detached(lab.url()).is_err() {
+    if !serve.no_browser && open::that_detached(lab.url()).is_err() {
         // The address is on stdout; nobody may be reading stderr.
         let _ = writeln!(
             std::io::stderr(),

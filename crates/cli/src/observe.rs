@@ -83,6 +83,7 @@ fn wait_for_debugger(port: u16, args: &RunArgs) -> Result<TcpStream, Failure> {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(refused)?;
     let port = listener.local_addr().map_err(refused)?.port();
     let image = args
+        .image
         .firmware
         .as_ref()
         .map(|path| path.display().to_string());

@@ -30,5 +30,5 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         .into_owned();
     let served = rumbo_station::serve_log(args.serve.at(), args.speed, name, log, ghost)
         .map_err(Failure::input)?;
-    lab::show(served, args.serve, args.no_browser)
+    lab::show(served, args.serve)
 }

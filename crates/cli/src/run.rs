@@ -20,17 +20,16 @@ use std::sync::atomic::Ordering;
 /// Runs every scenario with every seed; one line or table per scenario, or one JSON object per run.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let overrides = Overrides {
-        robot: args.robot.clone(),
-        rig: args.rig.clone(),
-        world: args.world.clone(),
-        parameters: args.params.clone(),
+        robot: args.setting.robot.clone(),
+        rig: args.setting.rig.clone(),
+        world: args.setting.world.clone(),
+        parameters: args.parameters.params.clone(),
         program: match args.program {
             ProgramName::Rumbo => Program::Rumbo,
             ProgramName::Original => Program::Original,
         },
-        firmware: args.firmware.clone(),
-        wiring: args.wiring.clone(),
         texts: args.commands.clone(),
+        ..args.image.overrides()
     };
     let library = Library::new();
     let setup = |name: &String| library.setup(name, &overrides).map_err(Failure::input);
@@ -46,7 +45,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
             .map_err(Failure::input)?;
     }
     let runs = args.runs as usize;
-    let seeds = || (0..args.runs).map(|index| args.seed.wrapping_add(u64::from(index)));
+    let seeds = || (0..args.runs).map(|index| args.seed.seed.wrapping_add(u64::from(index)));
     let jobs: Vec<_> = setups
         .iter()
         .flat_map(|setup| seeds().map(move |seed| (setup, seed)))

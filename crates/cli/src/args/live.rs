@@ -1,40 +1,9 @@
 //! Options of the commands that drive: `lab`, `connect`; and of `flash`.
 
+use super::groups::{ImageArgs, SeedArgs, SessionArgs, SettingArgs};
 use super::values::speed;
 use clap::Args;
 use std::path::PathBuf;
-
-/// Where the dashboard is served.
-#[derive(Args, Clone, Copy, Debug)]
-pub(crate) struct ServeArgs {
-    /// Port of the dashboard; 0 takes any free one
-    #[arg(long, value_name = "N", default_value_t = rumbo_station::DEFAULT_PORT)]
-    pub(crate) port: u16,
-    /// Serve the dashboard to the network too, at this address of this computer; prints an address that opens once and one for viewers.
-    /// Not encrypted (docs/security.md)
-    #[arg(long, value_name = "ADDRESS")]
-    pub(crate) listen: Option<std::net::IpAddr>,
-}
-
-/// The live bridge.
-#[cfg(feature = "foxglove")]
-#[derive(Args, Clone, Copy, Debug)]
-pub(crate) struct BridgeArgs {
-    /// Show the session to Foxglove or Lichtblick too, on this port of 127.0.0.1; read-only
-    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8765")]
-    pub(crate) foxglove: Option<u16>,
-}
-
-impl ServeArgs {
-    /// The address and port.
-    pub(crate) fn at(self) -> rumbo_station::ServeAt {
-        let here = rumbo_station::ServeAt::here(self.port);
-        rumbo_station::ServeAt {
-            address: self.listen.unwrap_or(here.address),
-            ..here
-        }
-    }
-}
 
 /// Options of `rumbo lab`.
 #[derive(Args, Clone, Debug)]
@@ -52,46 +21,20 @@ pub(crate) struct LabArgs {
     /// Scenario that the robot starts in: name or path
     #[arg(long, value_name = "NAME", default_value = "mode1")]
     pub(crate) scenario: String,
-    /// Robot instead of the scenario's own: name or path
-    #[arg(long, value_name = "NAME")]
-    pub(crate) robot: Option<String>,
-    /// World instead of the scenario's own: name or path
-    #[arg(long, value_name = "NAME")]
-    pub(crate) world: Option<String>,
-    /// Rig instead of the scenario's own: where the sonars sit
-    #[arg(long, value_name = "NAME")]
-    pub(crate) rig: Option<String>,
-    /// Program image for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
-    #[arg(long, value_name = "IMAGE")]
-    pub(crate) firmware: Option<PathBuf>,
-    /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own image]
-    #[arg(long, value_name = "NAME", requires = "firmware")]
-    pub(crate) wiring: Option<String>,
+    #[command(flatten)]
+    pub(crate) setting: SettingArgs,
+    #[command(flatten)]
+    pub(crate) image: ImageArgs,
     /// Port on 127.0.0.1 where avr-gdb may come and go; 0 takes any free one. Robot and world stand while it holds the program
     #[arg(long, value_name = "PORT", requires = "firmware")]
     pub(crate) gdb: Option<u16>,
     #[command(flatten)]
-    pub(crate) serve: ServeArgs,
-    #[cfg(feature = "foxglove")]
-    #[command(flatten)]
-    pub(crate) bridge: BridgeArgs,
-    /// Do not open the browser
-    #[arg(long)]
-    pub(crate) no_browser: bool,
+    pub(crate) session: SessionArgs,
     /// Seconds of simulation per second; 0 starts paused
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
     pub(crate) speed: f64,
-    /// Seed of everything random
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1,
-        allow_negative_numbers = true
-    )]
-    pub(crate) seed: u64,
-    /// Folder for the log of each run; made if need be [default: rumbo/logs in the user's data folder]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) seed: SeedArgs,
     /// Offer the robot as a serial port to other programs, without a dashboard; prints the port's name
     #[cfg(unix)]
     #[arg(long, conflicts_with_all = ["port", "listen", "no_browser", "out"])]
@@ -120,16 +63,7 @@ pub(crate) struct ConnectArgs {
     #[arg(long, value_name = "N", default_value_t = rumbo_station::port::DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(300..=2_000_000))]
     pub(crate) baud: u32,
     #[command(flatten)]
-    pub(crate) serve: ServeArgs,
-    #[cfg(feature = "foxglove")]
-    #[command(flatten)]
-    pub(crate) bridge: BridgeArgs,
-    /// Do not open the browser
-    #[arg(long)]
-    pub(crate) no_browser: bool,
-    /// Folder for the log; made if need be [default: rumbo/logs in the user's data folder]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    pub(crate) session: SessionArgs,
 }
 
 /// Options of `rumbo flash`.

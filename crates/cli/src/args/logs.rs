@@ -1,6 +1,6 @@
 //! Options of the commands for logs: `import`, `replay`, `export`, `compare`, `rerun`.
 
-use super::live::ServeArgs;
+use super::groups::ServeArgs;
 use super::values::{percent, speed};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -49,9 +49,6 @@ pub(crate) struct ReplayArgs {
     pub(crate) ghost: Option<Option<String>>,
     #[command(flatten)]
     pub(crate) serve: ServeArgs,
-    /// Do not open the browser
-    #[arg(long)]
-    pub(crate) no_browser: bool,
     /// Seconds of the log per second; 0 starts paused
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
     pub(crate) speed: f64,

@@ -1,13 +1,15 @@
 //! The command line: subcommands, options, and the examples that each `--help` shows. Each file here is one group of subcommands.
 
+mod groups;
 mod live;
 mod logs;
 mod runs;
 mod values;
 
 #[cfg(feature = "foxglove")]
-pub(crate) use live::BridgeArgs;
-pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs, ServeArgs};
+pub(crate) use groups::BridgeArgs;
+pub(crate) use groups::ServeArgs;
+pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs};
 pub(crate) use logs::{CompareArgs, ExportArgs, Format, ImportArgs, ReplayArgs, RerunArgs};
 pub(crate) use runs::{
     CalibrateArgs, ExperimentsArgs, IdentifyArgs, LanguageName, ProgramName, RunArgs,

@@ -1,6 +1,7 @@
 //! Options of the commands that run experiments and fit numbers: `run`, `experiments`, `identify`, `calibrate`.
 
-use super::values::{parameter, timed_text};
+use super::groups::{ImageArgs, ParameterArgs, SeedArgs, SettingArgs};
+use super::values::timed_text;
 use clap::{Args, ValueEnum};
 use rumbo_scenario::files::TimedText;
 use std::path::PathBuf;
@@ -26,42 +27,30 @@ pub(crate) struct RunArgs {
     /// Scenarios: names, or paths of files
     #[arg(required = true, value_name = "SCENARIO")]
     pub(crate) scenarios: Vec<String>,
-    /// Seed of the first run; each further run takes the next
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1,
-        allow_negative_numbers = true
-    )]
-    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) seed: SeedArgs,
     /// Runs of each scenario, each with a seed of its own
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) runs: u32,
-    /// Robot instead of the scenario's own: name or path
-    #[arg(long, value_name = "NAME")]
-    pub(crate) robot: Option<String>,
-    /// World instead of the scenario's own: name or path
-    #[arg(long, value_name = "NAME")]
-    pub(crate) world: Option<String>,
-    /// Rig instead of the scenario's own
-    #[arg(long, value_name = "NAME")]
-    pub(crate) rig: Option<String>,
+    #[command(flatten)]
+    pub(crate) setting: SettingArgs,
     /// Program at the robot's pins: ours, or the report's with its schemes and gains (of parameters, only the plant's
     /// count for that one)
-    #[arg(long, value_enum, value_name = "NAME", default_value_t)]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "NAME",
+        default_value_t,
+        conflicts_with = "firmware"
+    )]
     pub(crate) program: ProgramName,
-    /// Program image for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
-    #[arg(long, value_name = "IMAGE", conflicts_with = "program")]
-    pub(crate) firmware: Option<PathBuf>,
-    /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own image]
-    #[arg(long, value_name = "NAME", requires = "firmware")]
-    pub(crate) wiring: Option<String>,
+    #[command(flatten)]
+    pub(crate) image: ImageArgs,
     /// Line of text sent over the link at a time, e.g. 'REF 40@6'; may be repeated
     #[arg(long = "command", value_name = "TEXT@SECONDS", value_parser = timed_text, conflicts_with = "program")]
     pub(crate) commands: Vec<TimedText>,
-    /// Parameter of the control core or the plant (`rumbo list`); may be repeated
-    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
-    pub(crate) params: Vec<(String, f64)>,
+    #[command(flatten)]
+    pub(crate) parameters: ParameterArgs,
     /// Folder for the log, the result and the true signals of each run; made if need be
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -117,26 +106,16 @@ pub(crate) struct ExperimentsArgs {
     /// These experiments only: names as in the report's links, e.g. mode1, or of scenarios
     #[arg(long, value_name = "NAME", num_args = 1..)]
     pub(crate) only: Vec<String>,
-    /// Seed of all runs
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1,
-        allow_negative_numbers = true
-    )]
-    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) seed: SeedArgs,
     /// Folder with recorded runs of a real robot, shown beside ours: CSVs of the original program, logs of `rumbo connect`
     #[arg(long, value_name = "DIR")]
     pub(crate) real: Option<PathBuf>,
     /// Robot instead of the scenarios' own: name or path
     #[arg(long, value_name = "NAME")]
     pub(crate) robot: Option<String>,
-    /// Program image for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
-    #[arg(long, value_name = "IMAGE")]
-    pub(crate) firmware: Option<PathBuf>,
-    /// Wiring of that Mega, of the robot file [default: the report's for each experiment; `final` for our own image]
-    #[arg(long, value_name = "NAME", requires = "firmware")]
-    pub(crate) wiring: Option<String>,
+    #[command(flatten)]
+    pub(crate) image: ImageArgs,
     /// Also the true signals of each run as CSV, and its metrics as JSON
     #[arg(long)]
     pub(crate) data: bool,
@@ -204,17 +183,10 @@ pub(crate) struct CalibrateArgs {
     /// World instead of the one made for it; the robot starts at x = -1.1, y = -0.45 m there, along x
     #[arg(long, value_name = "NAME")]
     pub(crate) world: Option<String>,
-    /// Seed that draws the robot and everything random
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1,
-        allow_negative_numbers = true
-    )]
-    pub(crate) seed: u64,
-    /// Parameter of the control core or the plant (`rumbo list`); may be repeated
-    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
-    pub(crate) params: Vec<(String, f64)>,
+    #[command(flatten)]
+    pub(crate) seed: SeedArgs,
+    #[command(flatten)]
+    pub(crate) parameters: ParameterArgs,
     /// Robot file whose [parameters] table is rewritten; a new file starts as a copy of the robot's
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) out: Option<PathBuf>,

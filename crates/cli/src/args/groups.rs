@@ -1,0 +1,111 @@
+//! Options that several commands have.
+
+use super::values::parameter;
+use clap::Args;
+use rumbo_scenario::files::Overrides;
+use std::path::PathBuf;
+
+/// What takes the place of the scenario's own.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct SettingArgs {
+    /// Robot instead of the scenario's own: name or path
+    #[arg(long, value_name = "NAME")]
+    pub(crate) robot: Option<String>,
+    /// World instead of the scenario's own: name or path
+    #[arg(long, value_name = "NAME")]
+    pub(crate) world: Option<String>,
+    /// Rig instead of the scenario's own: where the sonars sit
+    #[arg(long, value_name = "NAME")]
+    pub(crate) rig: Option<String>,
+}
+
+/// A program for the Mega.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ImageArgs {
+    /// Program image for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
+    #[arg(long, value_name = "IMAGE")]
+    pub(crate) firmware: Option<PathBuf>,
+    /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own image]
+    #[arg(long, value_name = "NAME", requires = "firmware")]
+    pub(crate) wiring: Option<String>,
+}
+
+impl ImageArgs {
+    /// What it changes of a scenario.
+    pub(crate) fn overrides(&self) -> Overrides {
+        Overrides {
+            firmware: self.firmware.clone(),
+            wiring: self.wiring.clone(),
+            ..Overrides::default()
+        }
+    }
+}
+
+/// The seed.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct SeedArgs {
+    /// Seed of everything random, the robot's own differences too; of several runs each takes the next
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true
+    )]
+    pub(crate) seed: u64,
+}
+
+/// Parameters.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ParameterArgs {
+    /// Parameter of the control core or the plant (`rumbo list`); may be repeated
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter)]
+    pub(crate) params: Vec<(String, f64)>,
+}
+
+/// Where the dashboard is served.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct ServeArgs {
+    /// Port of the dashboard; 0 takes any free one
+    #[arg(long, value_name = "N", default_value_t = rumbo_station::DEFAULT_PORT)]
+    pub(crate) port: u16,
+    /// Serve the dashboard to the network too, at this address of this computer; prints an address that opens once and one for viewers.
+    /// Not encrypted (docs/security.md)
+    #[arg(long, value_name = "ADDRESS")]
+    pub(crate) listen: Option<std::net::IpAddr>,
+    /// Do not open the browser
+    #[arg(long)]
+    pub(crate) no_browser: bool,
+}
+
+impl ServeArgs {
+    /// The address and port.
+    pub(crate) fn at(self) -> rumbo_station::ServeAt {
+        let here = rumbo_station::ServeAt::here(self.port);
+        rumbo_station::ServeAt {
+            address: self.listen.unwrap_or(here.address),
+            ..here
+        }
+    }
+}
+
+/// A session with a robot.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct SessionArgs {
+    #[command(flatten)]
+    pub(crate) serve: ServeArgs,
+    #[cfg(feature = "foxglove")]
+    #[command(flatten)]
+    pub(crate) bridge: BridgeArgs,
+    /// Folder for the log, of a simulated robot one for each run; made if need be [default: rumbo/logs in the user's data folder]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// The live bridge.
+#[cfg(feature = "foxglove")]
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct BridgeArgs {
+    /// Show the session to Foxglove or Lichtblick too, on this port of 127.0.0.1; read-only
+    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8765")]
+    pub(crate) foxglove: Option<u16>,
+}
