@@ -72,8 +72,9 @@ export class StateBand {
       ctx.fillStyle = stretch.faulted ? colours.bad : stretch.armed ? stateColour(stretch.state ?? 0) : colours.dim;
       ctx.fillRect(left, bbox.top, right - left, bbox.height);
       ctx.globalAlpha = 1;
+      // Where states are short there is no room for a line between them.
       ctx.fillStyle = colours.panel;
-      ctx.fillRect(left, bbox.top, devicePixelRatio, bbox.height);
+      if (right - left > 4 * devicePixelRatio) ctx.fillRect(left, bbox.top, devicePixelRatio, bbox.height);
       const name = this.#name(stretch);
       if (ctx.measureText(name).width + 8 < right - left) {
         ctx.fillStyle = colours.text;

@@ -60,7 +60,7 @@ export class CheckupDialog {
   /** Opens by itself the first time that this browser meets a real robot. @param {number[]} sonars */
   meet(sonars) {
     const state = this.#state();
-    if (!state || state.simulated || state.replay || state.robot.foreign || !state.link.connected || remembered()) return;
+    if (!state || state.simulated || state.replay || state.robot.foreign || state.robot.text || !state.link.connected || remembered()) return;
     this.open(sonars);
   }
 

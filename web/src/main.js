@@ -193,7 +193,7 @@ function receive(message) {
       stateLine.show(state);
       plots.setMode(state.robot.mode);
       machine.setMode(state.robot.mode);
-      checkup.meet(sonars);
+      if (table.length > 0 && state.robot.rig !== null) checkup.meet(sonars);
       calibration.show(state);
       meter.update(state);
       map.target = state.robot.armed && state.robot.errand.route && state.robot.errand.end === null ? state.robot.reference : null;

@@ -18,6 +18,8 @@ export const GUTTER_PX = 46;
 export const FONT = '11px system-ui, sans-serif';
 /** Right of the plot, where the time axis ends in half a label. */
 const EDGE_PX = 22;
+/** More changes of state than this hide the curves; the band shows them still. */
+const MOST_TRANSITIONS = 60;
 /** A drag that goes further than this along both axes is a box [px]. */
 const BOX_PX = 25;
 
@@ -233,14 +235,15 @@ export function makeNavigable(plot, view) {
 /** A faint line where the state changes. @param {uPlot} plot @param {Store} store @param {[number, number]} range_s */
 function drawTransitions(plot, store, [from_s, to_s]) {
   const { ctx, bbox } = plot;
+  const changes = store.stretches.slice(1).filter((stretch) => stretch.from_s >= from_s && stretch.from_s <= to_s);
+  if (changes.length > MOST_TRANSITIONS) return;
   ctx.save();
   ctx.strokeStyle = colours.dim;
   ctx.globalAlpha = 0.45;
   ctx.lineWidth = devicePixelRatio;
   ctx.setLineDash([2 * devicePixelRatio, 4 * devicePixelRatio]);
   ctx.beginPath();
-  for (const { from_s: at_s } of store.stretches.slice(1)) {
-    if (at_s < from_s || at_s > to_s) continue;
+  for (const { from_s: at_s } of changes) {
     const x = Math.round(plot.valToPos(at_s, 'x', true));
     ctx.moveTo(x, bbox.top);
     ctx.lineTo(x, bbox.top + bbox.height);

@@ -52,8 +52,18 @@ for (const [theme, of] of /** @type {[string, Record<string, string>][]} */ ([['
     assert.ok(contrast(colour('text'), mixed(colour('bad'), colour('panel'), 0.55)) >= LEAST, 'fault');
   });
 
+  test(`${theme}: the edges of fields, 3 to 1 (1.4.11)`, () => {
+    const ratio = contrast(colour('edge'), colour('panel'));
+    assert.ok(ratio >= 3, ratio.toFixed(2));
+  });
+
   test(`${theme}: STOP, and what is pressed`, () => {
     assert.ok(contrast([255, 255, 255], colour('stop')) >= LEAST);
     assert.ok(contrast(colour('text'), mixed(colour('left'), colour('back'), 0.25)) >= LEAST);
+    for (const name of ['text', 'bad']) assert.ok(contrast(colour(name), mixed(colour('bad'), colour('panel'), 0.16)) >= LEAST, `${name} in the banner of a fault`);
   });
 }
+
+test('nothing moves by itself, whatever the reader prefers', () => {
+  assert.doesNotMatch(css, /transition|animation|@keyframes/);
+});

@@ -17,7 +17,7 @@ use rumbo_scenario::sim::Sim;
 use rumbo_station::log::{Kind, Manifest};
 use rumbo_station::{Choice, Lab, LabConfig, MapPose, Scene, Simulation, Standing, Target, Truth};
 use rumbo_wire::Command;
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.
 pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
@@ -93,12 +93,17 @@ pub(crate) fn show(lab: Lab, serve: ServeArgs) -> Result<(), Failure> {
     if serve.listen.is_some() {
         output::line(&format!("viewers: {}", lab.viewers_url()))?;
     }
-    if !serve.no_browser && open::that_detached(lab.url()).is_err() {
-        // The address is on stdout; nobody may be reading stderr.
-        let _ = writeln!(
-            std::io::stderr(),
-            "no browser could be opened; open the address above yourself"
-        );
+    let what = if serve.no_browser {
+        "open the address above in a browser: it opens once"
+    } else if open::that_detached(lab.url()).is_err() {
+        "no browser could be opened; open the address above yourself"
+    } else {
+        "the dashboard opens in the browser; if it does not, open the address above yourself"
+    };
+    // The address alone is on stdout; this is for people, who may have closed stderr.
+    let mut stderr = std::io::stderr();
+    if stderr.is_terminal() {
+        let _ = writeln!(stderr, "{what}. Ctrl-C ends the session");
     }
     lab.wait().map_err(Failure::Input)
 }

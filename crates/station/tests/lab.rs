@@ -206,8 +206,11 @@ async fn a_held_movement_ends_when_the_page_says_no_more() {
         json!({"type": "move_duty", "movement": 1, "duty": 0.4, "held": true}),
     )
     .await;
-    wait_for(&mut page, |message| event(message, "Forward")).await;
-    wait_for(&mut page, |message| event(message, "movement Stop")).await;
+    wait_for(&mut page, |message| event(message, "movement forward")).await;
+    wait_for(&mut page, |message| {
+        event(message, "movement release both wheels")
+    })
+    .await;
 }
 
 fn parameter<'a>(message: &'a Value, name: &str) -> Option<&'a Value> {
