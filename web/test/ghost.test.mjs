@@ -53,6 +53,8 @@ test('a ghost that is in another place is put beside the robot, and goes on from
       input.dispatchEvent(new Event('change'));
     });
     await page.waitForFunction(() => Math.abs(/** @type {any} */ (window).rumbo.state().t_s - 4) < 0.01);
+    // The samples come after the time.
+    await page.waitForFunction(() => /** @type {any} */ (window).rumbo.series('ghost_x_m').t.at(-1) > 3.9);
     const apart = async () => Math.hypot(await last(page, 'ghost_x_m') - await last(page, 'true_x_m'), await last(page, 'ghost_y_m') - await last(page, 'true_y_m'));
     assert.ok(await apart() > 0.1, 'it is elsewhere');
     await page.locator('#ghost-here').click();
@@ -77,7 +79,22 @@ test('the ghost of a robot on a port does what the robot is told', { skip: proce
   try {
     const { page } = dashboard;
     await page.locator('#connection.good').waitFor();
+    // The first time that this browser meets a real robot, the check comes by itself, for the sonars that the robot carries.
+    await page.locator('#checkup-dialog').waitFor();
+    assert.deepEqual((await page.locator('#checkup-dialog .steps li').allTextContents()).slice(4), ['Sonar: front', 'Servo']);
     await page.keyboard.press('Escape');
+    await page.reload();
+    await page.locator('#connection.good').waitFor();
+    await page.locator('#parameters input').first().waitFor();
+    assert.equal(await page.locator('#checkup-dialog').isVisible(), false, 'once');
+    // Its sonar's cone is drawn, though nothing is simulated for it.
+    await page.waitForFunction(() => {
+      const canvas = /** @type {HTMLCanvasElement} */ (document.querySelector('#map'));
+      const pixels = canvas.getContext('2d')?.getImageData(0, 0, canvas.width, canvas.height).data ?? [];
+      let found = 0;
+      for (let at = 0; at < pixels.length; at += 4) if ((pixels[at + 1] ?? 0) > 200 && (pixels[at] ?? 0) < 100) found += 1;
+      return found > 20;
+    });
     assert.equal(await page.locator('#simulation').isVisible(), false, 'a robot on a port is no simulation');
     await page.locator('#modes button[value="1"]').click();
     await page.locator('#reference-cm').fill('30');

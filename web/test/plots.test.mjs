@@ -120,6 +120,42 @@ test('a click sets a mark, from which the numbers in all plots are counted', asy
   assert.equal((await plots()).mark_s, null);
 });
 
+test('the view slides with the newest data, as wide as the window says', async () => {
+  await page.locator('#window').selectOption('10');
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1) > 11);
+  const { range_s: [from_s, to_s] } = await plots();
+  assert.ok(Math.abs(to_s - from_s - 10) < 1e-6 && from_s > 0, `${from_s} to ${to_s}`);
+  await page.waitForFunction((before) => /** @type {any} */ (window).rumbo.plots().range_s[1] > before + 0.5, to_s);
+  await page.locator('#window').selectOption('20');
+});
+
+test('a click on lock keeps the axis as it is, another lets it go', async () => {
+  const lock = page.locator('.plot-head', { hasText: 'wheels' }).getByRole('button', { name: 'lock' });
+  const wheels = async () => (await plots()).layout.plots.find(({ title }) => title === 'wheels');
+  await lock.click();
+  const scale = await page.evaluate(() => /** @type {any} */ (window).rumbo.scales('wheels').y);
+  const kept = await wheels();
+  assert.deepEqual([kept?.min, kept?.max], scale);
+  await lock.click();
+  assert.equal((await wheels())?.min, null);
+});
+
+test('the states of the run stand below the plots, each in its own colour', async () => {
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.series('range_front_cm').y.slice(-25).every((/** @type {number} */ cm) => Math.abs(cm - 30) < 3));
+  const colours = await page.evaluate(() => {
+    const canvas = /** @type {HTMLCanvasElement} */ ([...document.querySelectorAll('#plots canvas')].at(-1));
+    const row = canvas.getContext('2d')?.getImageData(0, 10, canvas.width, 1).data ?? [];
+    /** @type {Record<string, number>} */
+    const count = {};
+    for (let at = 0; at < row.length; at += 4) {
+      const key = `${row[at]},${row[at + 1]},${row[at + 2]}`;
+      if (row[at + 3]) count[key] = (count[key] ?? 0) + 1;
+    }
+    return Object.values(count).filter((each) => each > 8).length;
+  });
+  assert.ok(colours >= 4, `off, approach, settle and hold: ${colours}`);
+});
+
 test('what is seen of a plot is saved as SVG, PNG and CSV', async () => {
   await change('distance');
   const svg = await saved('SVG');

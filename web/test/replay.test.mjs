@@ -65,6 +65,18 @@ test('a step is one telemetry frame', async () => {
   await page.waitForFunction((before) => /** @type {any} */ (window).rumbo.series('range_front_cm').t.at(-1) <= before, before_s);
 });
 
+test('it plays at the speed asked for', async () => {
+  await scrub(1);
+  await page.locator('#replay-speed').selectOption('4');
+  await page.keyboard.press('k');
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().speed === 4);
+  await page.locator('#connection', { hasText: 'replay × 4' }).waitFor();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().t_s > 3);
+  await page.locator('#replay-play').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().speed === 0);
+  await page.locator('#replay-speed').selectOption('1');
+});
+
 test('it plays, and pauses at its end', async () => {
   await scrub(8.5);
   await page.locator('#replay-play').click();

@@ -35,6 +35,7 @@ test('a station that dies is missed, and a STOP that does not reach the robot is
   await notice('No connection to the station. Trying again…');
   await page.locator('#notice', { hasText: /STOP does not reach the robot/ }).waitFor();
   await page.locator('#connection.bad', { hasText: 'no connection' }).waitFor();
+  assert.equal(await page.locator('#map').evaluate((map) => getComputedStyle(map).filter), 'grayscale(1)', 'what is shown is old');
   await page.keyboard.press('Space');
   await page.locator('#events li', { hasText: 'STOP was not sent' }).waitFor();
 });
