@@ -185,7 +185,7 @@ impl RangeFilter {
         let innovation_m = middle_m - self.distance_m;
         let gate_m = GATE_M + GATE_SHARE * self.distance_m;
         if abs(innovation_m) > gate_m {
-            self.refused += 1;
+            self.refused = self.refused.saturating_add(1);
             if self.refused >= GIVE_IN && spread(self.recent_m) < 2.0 * gate_m {
                 self.begin(middle_m);
             }

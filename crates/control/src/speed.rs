@@ -4,6 +4,8 @@
 //! poles, and half a motor turn late. The edges of the last tick over the time they took (M/T method) are fresh, and off by
 //! as much as the poles are uneven. What the poles can explain is taken from the first, what they cannot is a
 //! real change and taken from the second. When edges stop coming, the speed is bounded by one edge over the time since.
+//!
+//! What neither poles nor motors can explain is told too: edges that are missing, or are none.
 
 use crate::math::{from_u32, max, min};
 use crate::types::{Edges, Micros, TICK_S};
@@ -18,6 +20,8 @@ const EDGES_PER_TURN: u16 = 8;
 const UNEVENNESS: f32 = 0.12;
 /// What a motor turn's mean may lag behind a wheel that speeds up, relative.
 const LAG: f32 = 0.02;
+/// A tick's edges are judged while a motor turn takes less than this [us], above 3.3 rad/s: a slower wheel may change its speed by much in one.
+const BRISK_US: u32 = 40_000;
 /// Without an edge for this long the wheel counts as standing [us]: then it turns below 4 rpm.
 const STANDING_US: u32 = 40_000;
 
@@ -42,6 +46,8 @@ pub struct WheelMotion {
     pub edges: u16,
     /// No edge for long enough that the wheel may be driven the other way.
     pub standing: bool,
+    /// These edges cannot be all of a turning disc and nothing else.
+    pub uneven: bool,
 }
 
 impl SpeedEstimator {
@@ -57,8 +63,9 @@ impl SpeedEstimator {
             };
         }
         let new = edges.count.wrapping_sub(self.count);
+        let mut uneven = false;
         if new > 0 {
-            self.take(new, edges);
+            uneven = self.take(new, edges);
         } else if !self.standing {
             let silent_us = now.since(edges.last);
             if silent_us >= STANDING_US {
@@ -77,10 +84,12 @@ impl SpeedEstimator {
             speed_rad_s: self.speed_rad_s,
             edges: new,
             standing: self.standing,
+            uneven,
         }
     }
 
-    fn take(&mut self, new: u16, edges: &Edges) {
+    /// Takes in new edges; says whether they are uneven.
+    fn take(&mut self, new: u16, edges: &Edges) -> bool {
         let span_us = edges.last.since(self.last);
         let fresh = if self.standing || span_us == 0 {
             // From rest the time of the first gap is unknown; the tick bounds it.
@@ -107,7 +116,27 @@ impl SpeedEstimator {
         self.count = edges.count;
         self.last = edges.last;
         self.standing = false;
+        whole_turn && is_uneven(new, span_us, edges.turn_us)
     }
+}
+
+/// Whether so many edges in this time are half an edge off what the last turn of the motor leads to expect.
+///
+/// A disc whose pulses are longer than its pauses shifts an odd number of edges, so those may be off by three quarters.
+fn is_uneven(new: u16, span_us: u32, turn_us: u32) -> bool {
+    if turn_us >= BRISK_US {
+        return false;
+    }
+    // All below 65 ms, else the wheel has stood.
+    let edge_us = (turn_us / u32::from(EDGES_PER_TURN)) as u16;
+    let off_us = (span_us as u16).abs_diff(new.wrapping_mul(edge_us));
+    let half_us = edge_us / 2;
+    let allowed_us = if new.is_multiple_of(2) {
+        half_us
+    } else {
+        half_us + half_us / 2
+    };
+    off_us > allowed_us
 }
 
 /// What uneven poles and the lag of a turn's mean explain of the difference of both measurements, relative, with so
@@ -141,6 +170,8 @@ mod tests {
         next: u32,
         edges: Edges,
         poles: [u32; 8],
+        /// Whether its edge of this number arrives.
+        arrives: fn(u32) -> bool,
     }
 
     impl Disc {
@@ -151,7 +182,18 @@ mod tests {
                 next: 1,
                 edges: Edges::default(),
                 poles: [0; 8],
+                arrives: |_| true,
             }
+        }
+
+        fn edge(&mut self, us: u32) {
+            let pole = &mut self.poles[usize::from(self.edges.count % 8)];
+            if self.edges.count >= 8 {
+                self.edges.turn_us = us - *pole;
+            }
+            *pole = us;
+            self.edges.last = Micros(us);
+            self.edges.count = self.edges.count.wrapping_add(1);
         }
 
         /// Turns for one tick that ends at `now_us`, in steps of 1 us.
@@ -160,12 +202,9 @@ mod tests {
                 self.angle_edges += speed_rad_s * 1e-6 / f64::from(EDGE_RAD);
                 let pole = self.next as usize % 8;
                 if self.angle_edges >= f64::from(self.next) + f64::from(self.places[pole]) {
-                    if self.next > 8 {
-                        self.edges.turn_us = us - self.poles[pole];
+                    if (self.arrives)(self.next) {
+                        self.edge(us);
                     }
-                    self.poles[pole] = us;
-                    self.edges.last = Micros(us);
-                    self.edges.count = self.edges.count.wrapping_add(1);
                     self.next += 1;
                 }
             }
@@ -225,6 +264,46 @@ mod tests {
             .skip(50)
             .position(|(_, speed, standing)| *standing && *speed == 0.0);
         assert!(stood.is_some_and(|ticks| ticks <= 5), "{stood:?}");
+    }
+
+    /// Pulses half as long as the pauses, and the poles of [`UNEVEN`].
+    const LOPSIDED: [f32; 8] = [0.2, -0.15, 0.17, -0.2, 0.2, -0.17, 0.18, -0.2];
+
+    /// Of 300 ticks in which a wheel speeds up, turns and slows down, those with uneven edges.
+    fn uneven(mut disc: Disc) -> usize {
+        let mut estimator = SpeedEstimator::default();
+        let uneven = |tick: &u32| {
+            let tick = *tick;
+            let speed = f64::from(tick.min(300 - tick).min(80)) * 0.01 * 20.0;
+            let edges = disc.tick(tick * 10_000, speed);
+            estimator.step(&edges, Micros((tick + 1) * 10_000)).uneven
+        };
+        (0..300).filter(uneven).count()
+    }
+
+    #[test]
+    fn a_disc_is_even_whatever_its_poles_and_however_its_speed_changes() {
+        for places in [[0.0; 8], UNEVEN, LOPSIDED] {
+            assert_eq!(uneven(Disc::new(places)), 0, "{places:?}");
+        }
+    }
+
+    #[test]
+    fn lost_edges_are_uneven() {
+        let kinds: [fn(u32) -> bool; 3] = [
+            |edge| edge % 10 != 0,
+            // Half of them, by no rule.
+            |edge| edge.wrapping_mul(edge).wrapping_mul(2_654_435_769) >> 31 == 0,
+            // A worn magnet: a pole of the disc.
+            |edge| edge % 8 > 1,
+        ];
+        for arrives in kinds {
+            for places in [UNEVEN, LOPSIDED] {
+                let disc = Disc::new(places);
+                let ticks = uneven(Disc { arrives, ..disc });
+                assert!(ticks >= 30, "{ticks}");
+            }
+        }
     }
 
     #[test]

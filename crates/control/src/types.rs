@@ -363,11 +363,15 @@ pub enum Fault {
     Overrun = 9,
     /// Something stands in the way of a mode that does not go around it.
     Blocked = 10,
+    /// The left encoder's edges are not those of a turning wheel.
+    LeftEncoderImplausible = 11,
+    /// The right encoder's edges are not those of a turning wheel.
+    RightEncoderImplausible = 12,
 }
 
 impl Fault {
     /// All faults, by number.
-    pub const ALL: [Fault; 10] = [
+    pub const ALL: [Fault; 12] = [
         Fault::LinkLost,
         Fault::SonarFaulty,
         Fault::SonarStale,
@@ -378,6 +382,8 @@ impl Fault {
         Fault::NotFinite,
         Fault::Overrun,
         Fault::Blocked,
+        Fault::LeftEncoderImplausible,
+        Fault::RightEncoderImplausible,
     ];
 
     /// The fault with this number.
@@ -412,6 +418,12 @@ impl Fault {
             Fault::Overrun => "a control tick took too long",
             Fault::Blocked => {
                 "blocked: something stands in the way; clear the way or turn the robot, then clear the fault and arm again"
+            }
+            Fault::LeftEncoderImplausible => {
+                "left encoder implausible: it loses edges or picks up noise; see its wires, its ground, and the gap between sensor and magnet"
+            }
+            Fault::RightEncoderImplausible => {
+                "right encoder implausible: it loses edges or picks up noise; see its wires, its ground, and the gap between sensor and magnet"
             }
         }
     }

@@ -113,6 +113,12 @@ const fn fault_in_spanish(fault: Fault) -> &'static str {
         Fault::Blocked => {
             "bloqueado: hay algo en el camino; despéjelo o gire el robot, borre el fallo y vuelva a armar"
         }
+        Fault::LeftEncoderImplausible => {
+            "encoder izquierdo no creíble: pierde flancos o capta ruido; compruebe sus cables, su masa y la distancia entre sensor e imán"
+        }
+        Fault::RightEncoderImplausible => {
+            "encoder derecho no creíble: pierde flancos o capta ruido; compruebe sus cables, su masa y la distancia entre sensor e imán"
+        }
     }
 }
 

@@ -10,6 +10,7 @@
 #![no_std]
 
 mod clock;
+mod encoders;
 mod governor;
 mod ledger;
 mod outbox;
@@ -17,7 +18,6 @@ mod pilot;
 mod report;
 mod robot;
 mod sonars;
-mod stall;
 mod store;
 mod supervisor;
 mod text;

@@ -14,9 +14,9 @@ use rumbo_control::rig::Rig;
 use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, SonarId, Wheels};
 use rumbo_wire::Refusal;
 
+use crate::encoders::EncoderWatch;
 use crate::report::Signals;
 use crate::sonars::PingSchedule;
-use crate::stall::StallWatch;
 
 /// Ticks of low battery that stop the robot: 0.5 s, since the voltage dips when the wheels start.
 const LOW_BATTERY_TICKS: u8 = 50;
@@ -36,7 +36,7 @@ pub(crate) struct Pilot {
     action: Action,
     drive: DriveLayer,
     pings: PingSchedule,
-    stall: StallWatch,
+    encoders: EncoderWatch,
     low_battery_ticks: u8,
     duty: Wheels<Duty>,
     wheel_ref_rad_s: Wheels<f32>,
@@ -80,13 +80,16 @@ impl Pilot {
         (outputs, fault)
     }
 
-    /// The rest of a tick: the mode decides what the next one is to do.
+    /// The rest of a tick: the encoders are judged, and the mode decides what the next one is to do.
     ///
     /// # Errors
-    /// Why the mode cannot go on.
+    /// Why the robot cannot go on.
     pub(crate) fn think(&mut self, armed: bool) -> Result<Found, Fault> {
         self.action = self.at_rest();
         if armed {
+            let motion = &self.estimate.motion;
+            self.encoders
+                .step(motion, self.duty, self.wheel_ref_rad_s)?;
             let estimate = &self.estimate;
             self.action = self.mode.step(&self.params, &Situation { estimate })?;
         }
@@ -123,7 +126,9 @@ impl Pilot {
         if !armed {
             return Ok(());
         }
-        self.watch()?;
+        if self.is_battery_low() {
+            return Err(Fault::BatteryLow);
+        }
         let drive = self.action.drive;
         self.apply(&drive, battery_v)
     }
@@ -132,20 +137,6 @@ impl Pilot {
         Action {
             look: self.mode.look(),
             ..Action::default()
-        }
-    }
-
-    /// What no mode should have to look after.
-    fn watch(&mut self) -> Result<(), Fault> {
-        let edges = self.estimate.motion.map(|motion| motion.edges);
-        let silent = self.stall.step(edges, self.duty, self.wheel_ref_rad_s);
-        if let Some(fault) = silent {
-            return Err(fault);
-        }
-        if self.is_battery_low() {
-            Err(Fault::BatteryLow)
-        } else {
-            Ok(())
         }
     }
 
@@ -173,7 +164,7 @@ impl Pilot {
     }
 
     fn release(&mut self) {
-        self.stall = StallWatch::default();
+        self.encoders = EncoderWatch::default();
         // Releasing cannot fail: it asks for no number. Even so the wheels are released.
         if self.apply(&Drive::Release, None).is_err() {
             self.duty = Wheels::both(Duty::RELEASED);

@@ -365,12 +365,12 @@ mod tests {
         reporter.addressed_in(Language::Text);
         for fault in [
             rumbo_control::Fault::LinkLost,
-            rumbo_control::Fault::Blocked,
+            rumbo_control::Fault::RightEncoderImplausible,
         ] {
             reporter.event(0, EventKind::Faulted(fault));
         }
         let said: std::vec::Vec<u8> = core::iter::from_fn(|| reporter.transmit()).collect();
-        assert_eq!(said, b"\0FLT 1\r\nFLT 10\r\n");
+        assert_eq!(said, b"\0FLT 1\r\nFLT 12\r\n");
     }
 
     #[test]

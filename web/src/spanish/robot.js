@@ -63,6 +63,10 @@ export const ROBOT = {
   'wall lost: nothing within the sonar\'s reach; face the robot to a wall': 'pared perdida: nada al alcance del sonar; pon el robot frente a una pared',
   'left encoder silent: the wheel is driven but does not turn, or its sensor is cut': 'encoder izquierdo en silencio: la rueda recibe PWM y no gira, o su sensor está cortado',
   'right encoder silent: the wheel is driven but does not turn, or its sensor is cut': 'encoder derecho en silencio: la rueda recibe PWM y no gira, o su sensor está cortado',
+  'left encoder implausible: it loses edges or picks up noise; see its wires, its ground, and the gap between sensor and magnet':
+    'encoder izquierdo no creíble: pierde flancos o capta ruido; comprueba sus cables, su masa y la distancia entre sensor e imán',
+  'right encoder implausible: it loses edges or picks up noise; see its wires, its ground, and the gap between sensor and magnet':
+    'encoder derecho no creíble: pierde flancos o capta ruido; comprueba sus cables, su masa y la distancia entre sensor e imán',
   'battery low: charge it': 'batería baja: cárgala',
   'a value was not a finite number; reset the parameters': 'un valor no era un número finito; vuelve a los parámetros de fábrica',
   'a control tick took too long': 'un paso de control tardó demasiado',

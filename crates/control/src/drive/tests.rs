@@ -6,11 +6,13 @@ const TURNING: WheelMotion = WheelMotion {
     speed_rad_s: 6.0,
     edges: 4,
     standing: false,
+    uneven: false,
 };
 const STANDING: WheelMotion = WheelMotion {
     speed_rad_s: 0.0,
     edges: 0,
     standing: true,
+    uneven: false,
 };
 
 fn step(layer: &mut DriveLayer, drive: Drive, motion: WheelMotion) -> Wheels<Duty> {
@@ -119,6 +121,7 @@ fn a_standing_wheel_is_kicked_harder_until_it_moves() {
         speed_rad_s: 0.5,
         edges: 1,
         standing: false,
+        uneven: false,
     };
     assert!(step(&mut layer, speed(0.5), moving).left.counts() < later - 30);
 }

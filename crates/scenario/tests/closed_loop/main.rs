@@ -5,6 +5,7 @@
 mod along_a_wall;
 mod before_a_wall;
 mod drive;
+mod encoders;
 mod lane;
 mod mode_6;
 mod mode_7;

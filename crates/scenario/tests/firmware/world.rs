@@ -48,14 +48,19 @@ struct Wheel {
 impl Wheel {
     fn turn(&mut self, duty: i16, now: Micros, random: &mut Random) {
         self.rad_s += (f64::from(duty) / 255.0 * 30.0 - self.rad_s) * 0.1;
-        self.edges_due += self.rad_s.abs() * 0.01 * 384.0 / std::f64::consts::TAU;
-        let mut count = self.edges_due.floor() as u32;
-        self.edges_due -= f64::from(count);
+        let new = self.rad_s.abs() * 0.01 * 384.0 / std::f64::consts::TAU;
+        let tick_us = f64::from(TICK_US);
+        let of_disc = (1..).map(|n| (f64::from(n) - self.edges_due) / new * tick_us);
+        let mut after_us: Vec<u32> = of_disc
+            .take_while(|us| *us <= tick_us)
+            .map(|us| us as u32)
+            .collect();
+        self.edges_due = (self.edges_due + new).fract();
         if random.chance(200) {
-            count += random.below(5);
+            after_us.extend((0..random.below(5)).map(|_| random.below(TICK_US)));
+            after_us.sort_unstable();
         }
-        for n in 1..=count {
-            let after_us = TICK_US / (count + 1) * n + random.below(20);
+        for after_us in after_us {
             let at = Micros(now.0.wrapping_sub(TICK_US).wrapping_add(after_us));
             self.edges.count = self.edges.count.wrapping_add(1);
             let pole = &mut self.poles[usize::from(self.edges.count) % 8];
