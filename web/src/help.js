@@ -12,7 +12,8 @@ const KEYS = () => [
   ['P', t('hold the plots, or go on')],
   ['L', t('follow the newest data')],
   ['M', t('in the plots: set the mark, from which times and values are counted; Escape takes it away')],
-  [t('+ − 0, arrow keys'), t('in the map: zoom, fit, move; in the plots: zoom and move in time')],
+  [t('+ − 0, arrow keys'), t('in the map: zoom, fit, move, and Enter picks the place in the middle; in the plots: zoom and move in time')],
+  [t('fingers'), t('map and plots: one moves, two zoom')],
   [t('K , .'), t('replay: play or pause, one frame back, one frame on')],
   ['? , F1', t('this page')],
 ];
@@ -31,12 +32,15 @@ function list(title, lines) {
     create('dl', {}, ...lines.flatMap(([term = '', words = '']) => [create('dt', { textContent: term }), create('dd', { textContent: words })])));
 }
 
+/** A text with what stands between backticks as code. @param {string} text */
+const withCode = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? create('code', { textContent: part }) : part));
+
 /** Makes the help page; gives what opens it. */
 export function makeHelp() {
   const made = dialog('help-dialog', t('Help'));
   made.body.append(
     create('p', { textContent: t('Choose a mode, set its reference, press ON. OFF stops the mode; STOP releases the wheels at once. The robot never starts because a page was opened.') }),
     create('div', { className: 'help-lists' }, list(t('Keys'), KEYS()), list(t('Colours and lines'), LEGEND())),
-    create('p', { className: 'hint', textContent: t('Every event says its cause and what to do. Each run is recorded; `rumbo list logs` finds it, `rumbo replay` shows it here.') }));
+    create('p', { className: 'hint' }, ...withCode(t('Every event says its cause and what to do. Each run is recorded; `rumbo list logs` finds it, `rumbo replay` shows it here.'))));
   return made.open;
 }

@@ -17,6 +17,7 @@ class Line {
     /** The refusal the operator has seen and left. @type {string | null} */
     this.dismissed = null;
     this.input = decimal(`parameter-${parameter.name}`);
+    this.input.title = said(parameter.description);
     this.input.setAttribute('aria-label', t('{} in {}', parameter.name, parameter.unit || t('no unit')));
     this.apply = create('button', { type: 'button', textContent: t('Apply'), title: t('Write to the robot (Enter)') });
     this.revert = create('button', { type: 'button', textContent: '↺', title: t('Back to what the robot holds (Escape)') });

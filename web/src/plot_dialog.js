@@ -11,6 +11,9 @@ import { numberAs, t } from './text.js';
 /** @typedef {import('./plot.js').PlotPanel} PlotPanel */
 /** @typedef {import('./plots.js').Plots} Plots */
 
+/** What the signals of a unit are. @returns {Record<keyof typeof UNITS, string>} */
+const GROUPS = () => ({ cm: t('distances, cm'), rpm: t('wheel speeds, rpm'), 'of 255': t('PWM, of 255'), '°': t('angles, °'), m: t('places, m') });
+
 export class PlotDialog {
   #plots;
   #dialog;
@@ -35,7 +38,7 @@ export class PlotDialog {
     this.#plots = plots;
     this.#dialog = dialog('plot-dialog', t('Plot'));
     const units = /** @type {(keyof typeof UNITS)[]} */ (Object.keys(UNITS));
-    const groups = units.map((unit) => create('fieldset', {}, create('legend', { textContent: t(unit) }),
+    const groups = units.map((unit) => create('fieldset', {}, create('legend', { textContent: GROUPS()[unit] }),
       ...this.#boxes.filter(({ box }) => SIGNALS.find(({ name }) => name === box.value)?.unit === unit).map(({ label }) => label)));
     const form = create('form', { className: 'stack' },
       create('div', { className: 'row' }, create('label', {}, `${t('title')} `, this.#title),

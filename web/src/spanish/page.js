@@ -43,7 +43,10 @@ export const PAGE = {
     'modo 0, armado: la palanca izquierda o la cruz mueven con un botón superior pulsado; B o círculo es PARAR',
   'hold the plots, or go on': 'detiene las gráficas, o sigue', 'follow the newest data': 'sigue los datos más nuevos',
   'in the plots: set the mark, from which times and values are counted; Escape takes it away': 'en las gráficas: pone la marca desde la que se cuentan tiempos y valores; Escape la quita',
-  '+ − 0, arrow keys': '+ − 0, flechas', 'in the map: zoom, fit, move; in the plots: zoom and move in time': 'en el mapa: ampliar, ajustar, mover; en las gráficas: ampliar y mover en el tiempo',
+  '+ − 0, arrow keys': '+ − 0, flechas', 'in the map: zoom, fit, move, and Enter picks the place in the middle; in the plots: zoom and move in time':
+    'en el mapa: ampliar, ajustar, mover, e Intro elige el lugar del centro; en las gráficas: ampliar y mover en el tiempo',
+  'fingers': 'dedos', 'map and plots: one moves, two zoom': 'mapa y gráficas: uno mueve, dos amplían',
+  'distances, cm': 'distancias, cm', 'wheel speeds, rpm': 'velocidades de rueda, rpm', 'PWM, of 255': 'PWM, de 255', 'angles, °': 'ángulos, °', 'places, m': 'posiciones, m',
   'K , .': 'K , .', 'replay: play or pause, one frame back, one frame on': 'grabación: reproducir o pausar, una trama atrás, una adelante', 'this page': 'esta página',
   'blue': 'azul', 'left wheel, left sonar': 'rueda y sonar izquierdos', 'orange': 'naranja', 'right wheel, right sonar': 'rueda y sonar derechos',
   'green': 'verde', 'front sonar, heading; something good': 'sonar frontal, rumbo; algo bueno', 'thick line': 'línea gruesa', 'as the robot measures or estimates it': 'como lo mide o estima el robot',
