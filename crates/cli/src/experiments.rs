@@ -6,6 +6,7 @@ use crate::manifest;
 use crate::output;
 use crate::place;
 use crate::recorded;
+use crate::run_log::Source;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_report::real::{self, Real};
 use rumbo_report::text::Language;
@@ -29,16 +30,20 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
         Some(folder) => real::read(folder, recorded::from_log).map_err(Failure::input)?,
         None => Real::default(),
     };
-    let request = Request {
-        only: args.only.clone(),
-        seed: args.seed.seed,
-        overrides: Overrides {
+    let (library, overrides) = (
+        Library::new(),
+        Overrides {
             robot: args.robot.clone(),
             ..args.image.overrides()
         },
+    );
+    let request = Request {
+        only: args.only.clone(),
+        seed: args.seed.seed,
+        overrides: overrides.clone(),
         real,
     };
-    let plan = Plan::new(&Library::new(), request)?;
+    let plan = Plan::new(&library, request)?;
     place::try_folder(&args.out)?;
     let progress = progress(args, &plan);
     let mut data = plan.run(|simulated_s| progress.inc((10.0 * simulated_s) as u64))?;
@@ -48,7 +53,11 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
     let place = args.out.join(REPORT);
     place::write(&place, page)?;
     if args.data {
-        write_data(&args.out, &data)?;
+        let source = Source {
+            library: &library,
+            overrides: &overrides,
+        };
+        write_data(&args.out, &source, &data)?;
     }
     report(&data, &place, begun)
 }
@@ -101,9 +110,10 @@ fn named(path: &Path) -> [String; 2] {
     ]
 }
 
-/// The true signals of each run as CSV, and its metrics as JSON.
-fn write_data(folder: &Path, data: &Data) -> Result<(), Failure> {
+/// The log of each run, its true signals as CSV, and its metrics as JSON.
+fn write_data(folder: &Path, source: &Source<'_>, data: &Data) -> Result<(), Failure> {
     for outcome in data.outcomes.values() {
+        source.write(folder, &outcome.setup, &outcome.result)?;
         let stem = format!("{}-{}", outcome.result.scenario, outcome.result.seed);
         let csv = outcome.result.trace.csv();
         place::write(&folder.join(format!("{stem}.csv")), csv)?;

@@ -69,7 +69,7 @@ fn a_recorded_run_stands_beside_ours_and_a_file_of_no_experiment_is_named() {
     assert!(
         page.contains("fig-mode1-real") && page.contains("stop.csv") && page.contains("other.csv")
     );
-    for file in ["mode1-1.csv", "mode1-1.json"] {
+    for file in ["mode1-1.csv", "mode1-1.json", "mode1-1.mcap"] {
         assert!(
             folder.path().join("rumbo-report").join(file).is_file(),
             "{file}"

@@ -6,13 +6,15 @@
 
 #![allow(missing_docs)]
 
+mod shared;
+
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
-use rumbo_scenario::files::{FileError, Kind, Library, Overrides, Setup};
-use rumbo_scenario::run::{RunResult, run_all};
+use rumbo_scenario::files::{Kind, Library, Overrides, Setup};
+use rumbo_scenario::run::RunResult;
+use shared::{built, pages, runs};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const SEEDS: u64 = 20;
@@ -20,8 +22,7 @@ const SEEDS: u64 = 20;
 const ALIKE: f64 = 0.02;
 /// The page, seen from the root, and where in it the table stands.
 const PAGE: &str = "docs/firmware.md";
-const BEGIN: &str = "<!-- medians -->\n";
-const END: &str = "<!-- /medians -->";
+const TABLE: &str = "medians";
 
 /// The tick in which a command is taken and the sample in which a signal is judged: 10 ms each.
 const TIME_S: f64 = 0.02;
@@ -68,7 +69,8 @@ fn compare(seeds: u64, only: &[String]) -> Result<bool, String> {
         };
         let natively = setup(None).and_then(|setup| Ok((runs(&setup, seeds)?, setup)));
         let (natively, setup_of) = natively.map_err(|error| error.to_string())?;
-        let on_chip = setup(Some(image())).and_then(|setup| runs(&setup, seeds));
+        let on_chip =
+            setup(Some(built("firmware/rumbo.elf"))).and_then(|setup| runs(&setup, seeds));
         let on_chip = on_chip.map_err(|error| error.to_string())?;
         table.add(&setup_of, &natively, &on_chip);
         eprintln!("{name}: {} of {} alike so far", table.alike, table.compared);
@@ -76,39 +78,9 @@ fn compare(seeds: u64, only: &[String]) -> Result<bool, String> {
     let text = table.text(seeds);
     println!("{text}");
     if only.is_empty() && seeds == SEEDS {
-        write(&text)?;
+        pages::write(PAGE, TABLE, &text).map_err(|error| error.to_string())?;
     }
     Ok(table.alike == table.compared)
-}
-
-/// Beside the folder that this program was built into: target/debug/examples/medians, target/firmware.
-fn image() -> PathBuf {
-    let here = std::env::current_exe().unwrap_or_default();
-    let target = here.ancestors().nth(3).map(PathBuf::from);
-    target.unwrap_or_default().join("firmware/rumbo.elf")
-}
-
-fn runs(setup: &Setup, seeds: u64) -> Result<Vec<RunResult>, FileError> {
-    let jobs: Vec<_> = (1..=seeds).map(|seed| (setup, seed)).collect();
-    let mut results = Vec::new();
-    run_all(&jobs, |_, result| {
-        results.push(result);
-        Ok::<(), FileError>(())
-    })?;
-    Ok(results)
-}
-
-/// The text between the page's markers is this from now on.
-fn write(table: &str) -> Result<(), String> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join(PAGE);
-    let told = |error| format!("{}: {error}", path.display());
-    let page = std::fs::read_to_string(&path).map_err(told)?;
-    let parts = page.split_once(BEGIN).and_then(|(before, rest)| {
-        let (_, after) = rest.split_once(END)?;
-        Some((before, after))
-    });
-    let (before, after) = parts.ok_or_else(|| format!("{PAGE}: has no {BEGIN}…{END}"))?;
-    std::fs::write(&path, format!("{before}{BEGIN}\n{table}\n{END}{after}")).map_err(told)
 }
 
 #[derive(Default)]

@@ -148,7 +148,11 @@ impl<'a> Run<'a> {
         for (name, bounds) in limits {
             match metrics.get(name) {
                 Some(value) if bounds.admit(*value) => {}
-                Some(value) => failures.push(format!("{name} = {value:.4}: limit {bounds}")),
+                Some(value) if value.is_finite() => {
+                    failures.push(format!("{name} = {value:.4}: limit {bounds}"));
+                }
+                // What is measured did not happen.
+                Some(_) => failures.push(format!("{name} = never: limit {bounds}")),
                 None => failures.push(format!(
                     "{name}: this scenario has no such metric; {}",
                     instead(name, &metrics)

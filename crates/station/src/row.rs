@@ -1,6 +1,7 @@
 //! A sample as it is shown and recorded: one number per signal, small enough to keep an hour of them.
 
 use crate::signals::{COLUMNS, Sample};
+use crate::target::MapPose;
 use serde::Serialize;
 use std::sync::LazyLock;
 
@@ -87,6 +88,28 @@ impl Row {
     pub(crate) fn set(&mut self, name: &str, value: f64) {
         if let Some(column) = Self::column(name) {
             self.values[column] = value as f32;
+        }
+    }
+
+    /// A pose among the signals: the robot's own estimate (`""`), or the one of this prefix (`origin_`, `true_`, `ghost_`).
+    pub(crate) fn pose(&self, whose: &str) -> Option<MapPose> {
+        let part = |name: &str| self.signal(&format!("{whose}{name}"));
+        Some(MapPose {
+            x_m: part("x_m")?,
+            y_m: part("y_m")?,
+            heading_rad: part("heading_rad")?,
+        })
+    }
+
+    /// Sets a pose; what is not a number is not known.
+    pub(crate) fn set_pose(&mut self, whose: &str, pose: MapPose) {
+        let parts = [
+            ("x_m", pose.x_m),
+            ("y_m", pose.y_m),
+            ("heading_rad", pose.heading_rad),
+        ];
+        for (name, value) in parts {
+            self.set(&format!("{whose}{name}"), value);
         }
     }
 

@@ -140,6 +140,15 @@ fn a_port_that_cannot_be_opened_says_what_there_is_and_what_to_do() {
         error.starts_with("port /dev/no_such_port cannot be opened") && !error.contains('\n'),
         "{error}"
     );
+    let folder = tempfile::tempdir().unwrap();
+    let name = folder.path().join("port");
+    let robot = Plugged::new(&name);
+    let _held = Port::open(name.to_str().unwrap(), DEFAULT_BAUD).unwrap();
+    let error = Port::open(name.to_str().unwrap(), DEFAULT_BAUD)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("another program has it open"), "{error}");
+    robot.pull(&name);
     let error = Port::open("tcp:127.0.0.1:1", DEFAULT_BAUD)
         .unwrap_err()
         .to_string();

@@ -34,7 +34,7 @@ pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
     /// Options of `lab`.
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Options of `lab`")]
     pub(crate) lab: LabArgs,
 }
 

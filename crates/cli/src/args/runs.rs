@@ -116,7 +116,7 @@ pub(crate) struct ExperimentsArgs {
     pub(crate) robot: Option<String>,
     #[command(flatten)]
     pub(crate) image: ImageArgs,
-    /// Also the true signals of each run as CSV, and its metrics as JSON
+    /// Also the log of each run, its true signals as CSV, and its metrics as JSON
     #[arg(long)]
     pub(crate) data: bool,
 }

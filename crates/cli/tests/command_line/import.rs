@@ -98,3 +98,17 @@ fn a_recording_and_the_log_made_of_it_are_checked_alike() {
     assert_eq!(recording.0[0]["rows"], 40);
     assert_eq!(recording, check("steady.mcap"));
 }
+
+#[test]
+fn a_recording_that_tells_no_pwm_is_left_out_with_a_note() {
+    let row = "60,10,10,0,1,0,0.1,0.1,0,3,50,50,50\n";
+    let header = "dt_ms,reference_a_rpm,reference_b_rpm,heading_reference_deg,goal_x_m,goal_y_m,x_m,y_m,heading_deg,state,right_cm,left_cm,front_cm\n";
+    file("goals.csv", &format!("{header}{row}{row}"));
+    file("driven.csv", RECORDING);
+    let output = rumbo(&["identify", "goals.csv", "driven.csv", "--check", "memoria"]);
+    let said = stderr(&output);
+    assert!(said.starts_with("note: goals.csv is left out"), "{said}");
+    let alone = rumbo(&["identify", "goals.csv", "--check", "memoria"]);
+    assert_eq!(alone.status.code(), Some(2));
+    assert!(stderr(&alone).contains("give a log of modes 1 to 7"));
+}

@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 
 /// A program that stays where it is.
-const SPIN: &str = ":02000000FFCF30\n:00000001FF\n";
+pub(crate) const SPIN: &str = ":02000000FFCF30\n:00000001FF\n";
 
 #[test]
 fn a_program_is_shown_as_a_profile_and_as_a_waveform() {

@@ -1,5 +1,6 @@
 //! `rumbo run`: what it prints, its exit status, and what it leaves behind.
 
+use crate::observe::SPIN;
 use crate::support::{file, folder, program, rumbo, stderr, stdout};
 use rumbo_scenario::files::Library;
 use rumbo_station::log::Log;
@@ -82,6 +83,17 @@ fn a_missed_limit_is_named_and_gives_status_1() {
             .status
             .code(),
         Some(0)
+    );
+}
+
+#[test]
+fn what_never_happened_misses_its_limit_by_that_word() {
+    file("idle.hex", SPIN);
+    let output = rumbo(&["run", "mode1", "--firmware", "idle.hex", "--no-record"]);
+    let said = stdout(&output);
+    assert!(
+        said.contains("step1.settling_s = never: limit at most"),
+        "{said}"
     );
 }
 

@@ -6,13 +6,14 @@
 //! short into the README, between their markers.
 
 mod experiments;
-mod pages;
+#[path = "../shared/mod.rs"]
+mod shared;
 mod time;
 
 use experiments::{EXPERIMENTS, Experiment, Metric};
 use rumbo_scenario::files::{FileError, Library, Overrides, Program, Setup};
-use rumbo_scenario::run::{RunResult, run_all};
-use std::path::PathBuf;
+use rumbo_scenario::run::RunResult;
+use shared::{built, pages, runs};
 use std::process::ExitCode;
 use time::Times;
 
@@ -60,13 +61,6 @@ fn print(seeds: u64, names: &[String]) -> Result<(), FileError> {
         pages::write("README.md", "beside", &short)?;
     }
     Ok(())
-}
-
-/// A file beside the folder that this program was built into: target/debug/examples/memoria, target/sketches.
-fn built(file: &str) -> PathBuf {
-    let here = std::env::current_exe().unwrap_or_default();
-    let target = here.ancestors().nth(3).map(PathBuf::from);
-    target.unwrap_or_default().join(file)
 }
 
 /// The scenario with our image.
@@ -188,16 +182,6 @@ const TIMES: [(&str, Figure); 7] = [
 
 fn percent(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)
-}
-
-fn runs(setup: &Setup, seeds: u64) -> Result<Vec<RunResult>, FileError> {
-    let jobs: Vec<_> = (1..=seeds).map(|seed| (setup, seed)).collect();
-    let mut results = Vec::new();
-    run_all(&jobs, |_, result| {
-        results.push(result);
-        Ok::<(), FileError>(())
-    })?;
-    Ok(results)
 }
 
 /// What the runs gave, in order.

@@ -66,20 +66,10 @@ pub(crate) trait Sink {
     fn row(&mut self, row: &Row) -> Result<(), Self::Error> {
         let t_us = to_us(row.t_ms);
         self.put(Topic::Telemetry, t_us, row_json(row).to_string().as_bytes())?;
-        let pose = |names: [&str; 3]| {
-            let [x_m, y_m, heading_rad] = names.map(|name| row.signal(name));
-            Some(MapPose {
-                x_m: x_m?,
-                y_m: y_m?,
-                heading_rad: heading_rad?,
-            })
-        };
-        let told = pose(["x_m", "y_m", "heading_rad"]);
-        let origin = pose(["origin_x_m", "origin_y_m", "origin_heading_rad"]);
-        if let (Some(told), Some(origin)) = (told, origin) {
+        if let (Some(told), Some(origin)) = (row.pose(""), row.pose("origin_")) {
             self.pose(Topic::Estimated, t_us, crate::origin::compose(origin, told))?;
         }
-        if let Some(truth) = pose(["true_x_m", "true_y_m", "true_heading_rad"]) {
+        if let Some(truth) = row.pose("true_") {
             self.pose(Topic::True, t_us, truth)?;
         }
         Ok(())

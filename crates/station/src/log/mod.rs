@@ -21,6 +21,7 @@ mod manifest;
 pub(crate) mod messages;
 mod reader;
 pub(crate) mod recorder;
+mod row_json;
 pub(crate) mod schema;
 mod summary;
 mod writer;

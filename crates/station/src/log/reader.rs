@@ -3,6 +3,7 @@
 //! A log without an end, of a writer that was killed, is read as far as it goes, and says so ([`Log::cut`]). Logs that `rumbo import`
 //! made of the original program's CSV are read too, as far as their signals have a place in a [`Row`].
 
+use super::row_json::Signals;
 use super::schema::Topic;
 use super::{Burst, LogError, Manifest, Outcome, Said};
 use crate::board::{Level, LoggedEvent, State};
@@ -15,10 +16,8 @@ use mcap::MAGIC;
 use mcap::records::Record;
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use serde::Deserialize;
-use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
-use std::fmt;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
@@ -74,20 +73,10 @@ impl Log {
         let start = self.scene.is_none().then_some(scene.start);
         for row in &mut self.rows {
             let pose = ghost(u64::try_from(row.t_ms).unwrap_or(0) * 1_000)?;
-            row.set("ghost_x_m", pose.x_m);
-            row.set("ghost_y_m", pose.y_m);
-            row.set("ghost_heading_rad", pose.heading_rad);
+            row.set_pose("ghost_", pose);
             if let Some(start) = start {
-                let own = |name| row.signal(name).unwrap_or(0.0);
-                let at = MapPose {
-                    x_m: own("origin_x_m"),
-                    y_m: own("origin_y_m"),
-                    heading_rad: own("origin_heading_rad"),
-                };
-                let origin = compose(start, at);
-                row.set("origin_x_m", origin.x_m);
-                row.set("origin_y_m", origin.y_m);
-                row.set("origin_heading_rad", origin.heading_rad);
+                let at = row.pose("origin_").unwrap_or_default();
+                row.set_pose("origin_", compose(start, at));
             }
         }
         self.scene.get_or_insert(scene);
@@ -356,56 +345,5 @@ fn event(t_ms: i64, said: Happened) -> LoggedEvent {
         t_s: t_ms as f64 / 1e3,
         level,
         text: said.message,
-    }
-}
-
-/// A row from its JSON object, whatever the order of the names.
-struct Signals(Row);
-
-impl<'de> Deserialize<'de> for Signals {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(RowVisitor).map(Self)
-    }
-}
-
-struct RowVisitor;
-
-impl<'de> Visitor<'de> for RowVisitor {
-    type Value = Row;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("an object of signals")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Row, A::Error> {
-        let mut row = Row::unknown(0);
-        while let Some(name) = map.next_key::<Cow<'de, str>>()? {
-            if let Some(range) = name.strip_suffix("_clear") {
-                map.next_value::<IgnoredAny>()?;
-                row.set(range, f64::INFINITY);
-            } else if let Some(value) = map.next_value::<Option<f64>>()? {
-                set(&mut row, &name, value);
-            }
-        }
-        Ok(row)
-    }
-}
-
-/// Sets a signal, under our name for it or under that of `rumbo import`.
-fn set(row: &mut Row, name: &str, value: f64) {
-    match name {
-        "left_range_m" => row.set("range_left_m", value),
-        "right_range_m" => row.set("range_right_m", value),
-        "front_range_m" => row.set("range_front_m", value),
-        "left_speed_rad_s" => row.set("left_rad_s", value),
-        "right_speed_rad_s" => row.set("right_rad_s", value),
-        "left_reference_rad_s" => row.set("left_ref_rad_s", value),
-        "right_reference_rad_s" => row.set("right_ref_rad_s", value),
-        "reference_rad_s" => {
-            row.set("left_ref_rad_s", value);
-            row.set("right_ref_rad_s", value);
-        }
-        "reference_m" => row.set("reference_left", value),
-        _ => row.set(name, value),
     }
 }

@@ -46,20 +46,22 @@ fn is_file(path: &str) -> bool {
 
 /// Who may open it.
 fn permission(address: &str) -> String {
-    if cfg!(target_os = "linux") {
-        return match group(address) {
-            Some(group) => {
-                format!("join its group with `sudo usermod -aG {group} $USER`, then log in again")
-            }
-            None => format!(
-                "only its owner may open it; allow everybody with `sudo chmod a+rw {address}`"
-            ),
-        };
+    permission_on(std::env::consts::OS, address, group(address).as_deref())
+}
+
+fn permission_on(system: &str, address: &str, group: Option<&str>) -> String {
+    match (system, group) {
+        ("linux", Some(group)) => {
+            format!("join its group with `sudo usermod -aG {group} $USER`, then log in again")
+        }
+        ("linux", None) => {
+            format!("only its owner may open it; allow everybody with `sudo chmod a+rw {address}`")
+        }
+        ("windows", _) => {
+            "another program has it open; close that one, such as the serial monitor of the Arduino IDE".into()
+        }
+        _ => "check its permissions with `ls -l`; on macOS use the /dev/cu.* name, and close the Arduino IDE's serial monitor".into(),
     }
-    if cfg!(windows) {
-        return "another program has it open; close that one, such as the serial monitor of the Arduino IDE".into();
-    }
-    "check its permissions with `ls -l`; on macOS use the /dev/cu.* name, and close the Arduino IDE's serial monitor".into()
 }
 
 /// The group that may read and write a file, if it is one to be joined.
@@ -97,5 +99,35 @@ fn present() -> String {
         "this computer has no serial port now; is the robot plugged in, or its Bluetooth bound (`rfcomm bind`)?".into()
     } else {
         format!("there is {}", names.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_may_not_open_a_port_is_told_what_to_do_on_this_system() {
+        for (system, group, part) in [
+            ("linux", Some("dialout"), "usermod -aG dialout $USER"),
+            ("linux", None, "chmod a+rw /dev/x"),
+            ("windows", None, "another program has it open"),
+            ("macos", Some("wheel"), "/dev/cu.*"),
+        ] {
+            let said = permission_on(system, "/dev/x", group);
+            assert!(said.contains(part) && !said.contains('\n'), "{said}");
+        }
+    }
+
+    #[test]
+    fn every_reason_that_a_port_cannot_be_opened_has_its_remedy() {
+        use io::ErrorKind::{NotFound, PermissionDenied, ResourceBusy};
+        let said = |error: io::Error| PortError::new("/dev/none", &error).to_string();
+        assert!(said(ResourceBusy.into()).contains("another program has it open"));
+        let locked = io::Error::other("Unable to acquire exclusive lock on serial port");
+        assert!(said(locked).contains("another program has it open"));
+        assert!(said(PermissionDenied.into()).starts_with("port /dev/none cannot be opened"));
+        let absent = said(NotFound.into());
+        assert!(absent.contains("there is ") || absent.contains("has no serial port now"));
     }
 }

@@ -12,6 +12,14 @@ const SLICE: Duration = Duration::from_millis(12);
 /// It lives on by so much between two looks at the time \[us\].
 const STEP_US: u64 = 500_000;
 
+/// Whose pose it is, among the signals.
+const GHOST: &str = "ghost_";
+const UNKNOWN: MapPose = MapPose {
+    x_m: f64::NAN,
+    y_m: f64::NAN,
+    heading_rad: f64::NAN,
+};
+
 /// A ghost on its way.
 struct Work {
     /// Where it is put, and when \[us\]; taken when it is there.
@@ -52,7 +60,7 @@ impl Haunting {
         let standing = standing(last).ok_or("the robot did not tell its pose then")?;
         self.ghost.begin()?;
         for row in later {
-            set(row, [f64::NAN; 3]);
+            row.set_pose(GHOST, UNKNOWN);
         }
         self.work = Some(Work {
             put: Some((to_us(last.t_ms), standing)),
@@ -80,7 +88,7 @@ impl Haunting {
             match log.rows.get_mut(work.next_row) {
                 Some(row) => {
                     let at = self.ghost.live(to_us(row.t_ms))?;
-                    set(row, [at.x_m, at.y_m, at.heading_rad]);
+                    row.set_pose(GHOST, at);
                     work.next_row += 1;
                 }
                 None => self.work = None,
@@ -99,27 +107,12 @@ fn to_us(t_ms: i64) -> u64 {
     u64::try_from(t_ms).unwrap_or(0) * 1_000
 }
 
-fn set(row: &mut Row, [x_m, y_m, heading_rad]: [f64; 3]) {
-    row.set("ghost_x_m", x_m);
-    row.set("ghost_y_m", y_m);
-    row.set("ghost_heading_rad", heading_rad);
-}
-
 /// Where the robot stood: as it was where that is known, else as it believed.
 fn standing(row: &Row) -> Option<Standing> {
-    let pose = |names: [&str; 3]| {
-        let [x_m, y_m, heading_rad] = names.map(|name| row.signal(name));
-        Some(MapPose {
-            x_m: x_m?,
-            y_m: y_m?,
-            heading_rad: heading_rad?,
-        })
-    };
-    let told = pose(["x_m", "y_m", "heading_rad"])?;
-    let origin = pose(["origin_x_m", "origin_y_m", "origin_heading_rad"]).unwrap_or_default();
-    let truth = pose(["true_x_m", "true_y_m", "true_heading_rad"]);
+    let told = row.pose("")?;
+    let origin = row.pose("origin_").unwrap_or_default();
     Some(Standing {
-        at: truth.unwrap_or_else(|| compose(origin, told)),
+        at: row.pose("true_").unwrap_or_else(|| compose(origin, told)),
         told,
     })
 }
