@@ -126,10 +126,15 @@ impl Log {
             log.cut = Some(error);
         }
         if log.manifest.is_none() && log.rows.is_empty() {
-            return Err(wrong(
-                "holds neither a manifest nor signals of rumbo; is it another program's log?"
-                    .into(),
-            ));
+            let what = match log.cut {
+                Some(_) => {
+                    "ends before anything of rumbo in it; was it cut off when it was copied, or is it another program's log?"
+                }
+                None => {
+                    "holds neither a manifest nor signals of rumbo; is it another program's log?"
+                }
+            };
+            return Err(wrong(what.into()));
         }
         log.rows.sort_by_key(|row| row.t_ms);
         Ok(log)

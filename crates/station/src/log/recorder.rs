@@ -316,10 +316,14 @@ mod tests {
     fn what_is_no_log_gets_one_line() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x.mcap");
+        let mut foreign = mcap::Writer::new(std::io::Cursor::new(Vec::new())).unwrap();
+        foreign.finish().unwrap();
+        let foreign = foreign.into_inner().into_inner();
         for (bytes, said) in [
             (&b""[..], "is empty"),
+            (&foreign, "neither a manifest"),
             (b"t_s,x_m\n0,0\n", "is no MCAP log"),
-            (mcap::MAGIC, "neither a manifest"),
+            (mcap::MAGIC, "was it cut off"),
         ] {
             std::fs::write(&path, bytes).unwrap();
             let error = Log::read(&path).unwrap_err().to_string();

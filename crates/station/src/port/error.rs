@@ -17,9 +17,10 @@ impl PortError {
             _ if is_file(address) || error.to_string().contains("typewriter") => {
                 format!("it is no serial port; {}", present())
             }
-            io::ErrorKind::NotFound | io::ErrorKind::InvalidInput => present(),
             io::ErrorKind::ResourceBusy => IN_USE.into(),
+            // The lock that was not to be had counts as a port that is not there.
             _ if error.to_string().contains("exclusive lock") => IN_USE.into(),
+            io::ErrorKind::NotFound | io::ErrorKind::InvalidInput => present(),
             _ => format!("is another program using it? {}", present()),
         };
         Self(format!(
@@ -124,7 +125,7 @@ mod tests {
         use io::ErrorKind::{NotFound, PermissionDenied, ResourceBusy};
         let said = |error: io::Error| PortError::new("/dev/none", &error).to_string();
         assert!(said(ResourceBusy.into()).contains("another program has it open"));
-        let locked = io::Error::other("Unable to acquire exclusive lock on serial port");
+        let locked = io::Error::new(NotFound, "Unable to acquire exclusive lock on serial port");
         assert!(said(locked).contains("another program has it open"));
         assert!(said(PermissionDenied.into()).starts_with("port /dev/none cannot be opened"));
         let absent = said(NotFound.into());
