@@ -9,8 +9,7 @@ use crate::manifest;
 use crate::place;
 use crate::scene::scene;
 use rumbo_control::Wheels;
-use rumbo_control::params::Params;
-use rumbo_scenario::files::{FileError, Library, Overrides, Setup};
+use rumbo_scenario::files::{Library, Overrides, Setup};
 use rumbo_scenario::run::RunResult;
 use rumbo_scenario::trace::{SAMPLE_US, Sample, Trace};
 use rumbo_station::log::{Burst, Kind, Manifest, Outcome, Run, Said, record_run, record_run_in};
@@ -37,8 +36,8 @@ impl Source<'_> {
         }
     }
 
-    /// Has `write` write the log of a run.
-    fn told<T>(
+    /// Hands what the log of a run is made of to `write`.
+    fn hand_over<T>(
         &self,
         setup: &Setup,
         result: &RunResult,
@@ -55,7 +54,7 @@ impl Source<'_> {
         let link: Vec<_> = trace.link.iter().map(burst).collect();
         let run = Run {
             scene: Some(scene(self.library, of_seed, choice)?),
-            parameters: parameters(of_seed)?,
+            parameters: trace.parameters,
             truths: &trace.samples.iter().map(truth).collect::<Vec<_>>(),
             told: &told(trace),
             said: &trace.consoles.iter().map(said).collect::<Vec<_>>(),
@@ -77,7 +76,7 @@ impl Source<'_> {
         result: &RunResult,
     ) -> Result<(), Failure> {
         let path = folder.join(format!("{}-{}.mcap", result.scenario, result.seed));
-        self.told(setup, result, |manifest, run| {
+        self.hand_over(setup, result, |manifest, run| {
             place::make(&path, |place| {
                 record_run(place, manifest, run).map_err(|error| Failure::Input(error.of(&path)))
             })
@@ -90,7 +89,7 @@ pub(crate) struct Kept {
     /// `None` where nothing is recorded, or no longer.
     folder: Option<PathBuf>,
     begun: Option<String>,
-    /// So many runs that all are kept only if they miss a limit.
+    /// More runs than are kept: of these only those that miss a limit.
     many: bool,
     logs: Vec<PathBuf>,
 }
@@ -114,7 +113,7 @@ impl Kept {
         if self.logs.len() == KEPT || (self.many && result.pass) {
             return;
         }
-        let written = source.told(setup, result, |manifest, run| {
+        let written = source.hand_over(setup, result, |manifest, run| {
             let manifest = Manifest {
                 started: self.begun.clone(),
                 ..manifest.clone()
@@ -152,19 +151,6 @@ impl Kept {
 /// On stderr, where it is in no result's way; a closed one leaves nobody to tell.
 fn say(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
-}
-
-/// The parameters that the robot begins with, if it has our table of them.
-fn parameters(setup: &Setup) -> Result<Option<Params>, FileError> {
-    if !setup.takes_parameters() {
-        return Ok(None);
-    }
-    let mut parameters = Params::default();
-    for (id, value) in setup.control_parameters()? {
-        // Checked where it was read.
-        let _ = parameters.set(id, value);
-    }
-    Ok(Some(parameters))
 }
 
 /// What a program without a link of ours has told; what came over the link is in its bytes.

@@ -206,6 +206,14 @@ fn parameters_that_differ_are_shown_beside_the_metrics() {
     let said = text(&rumbo(&pair, folder.path()).stdout);
     let (_, parameters) = said.split_once("parameters that differ:\n").unwrap();
     assert_eq!(parameters, "  kv  0.03  0.04\n");
+    // A robot that calibrated itself before the run knows what it found.
+    rumbo(&["run", "mode7", "--out", "."], folder.path());
+    let calibrated = Log::read(&folder.path().join("mode7-1.mcap")).unwrap();
+    let plain = Log::read(&folder.path().join("0.03/mode5-1.mcap")).unwrap();
+    assert_ne!(
+        calibrated.parameters()["base_m"],
+        plain.parameters()["base_m"]
+    );
     let same = ["compare", "0.03/mode5-1.mcap", "0.03/mode5-1.mcap"];
     assert!(!text(&rumbo(&same, folder.path()).stdout).contains("differ:"));
 }

@@ -10,6 +10,7 @@ use crate::observe::Waves;
 use crate::operator::Operator;
 use crate::sim::Sim;
 use crate::trace::{SAMPLE_US, Trace};
+use rumbo_control::params::Params;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -61,7 +62,10 @@ impl<'a> Run<'a> {
         operator.brief(&mut sim)?;
         sim.tap_link();
         let end_us = (setup.scenario.duration_s * 1e6) as u64;
-        let mut trace = Trace::default();
+        let mut trace = Trace {
+            parameters: parameters(setup)?,
+            ..Trace::default()
+        };
         trace.samples.reserve((end_us / SAMPLE_US) as usize + 1);
         Ok(Self {
             setup,
@@ -169,6 +173,19 @@ impl<'a> Run<'a> {
             trace: self.trace,
         }
     }
+}
+
+/// What the table of a robot holds before the first command, if it has one.
+fn parameters(setup: &Setup) -> Result<Option<Params>, FileError> {
+    if !setup.takes_parameters() {
+        return Ok(None);
+    }
+    let mut parameters = Params::default();
+    for (id, value) in setup.control_parameters()? {
+        // Checked where it was read.
+        let _ = parameters.set(id, value);
+    }
+    Ok(Some(parameters))
 }
 
 /// Runs a scenario once.

@@ -1,6 +1,7 @@
 //! What a run really did, sampled at every control tick from the plant and the pins.
 
 use crate::sim::Sim;
+use rumbo_control::params::Params;
 use rumbo_wire::FromRobot;
 use std::fmt::Write;
 
@@ -55,6 +56,8 @@ pub struct Heard {
 /// A whole run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trace {
+    /// The robot's parameters at the start; `None` where its program has no table of ours.
+    pub parameters: Option<Params>,
     /// Telemetry, status, events and heading references as they arrived at the station.
     pub heard: Vec<Heard>,
     /// The samples, in order of time.
