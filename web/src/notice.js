@@ -26,7 +26,8 @@ export class Notice {
 
   /** @param {Connection} now @param {string | null} why */
   #words(now, why) {
-    const old = this.#known ? ` ${t('What is shown is of {}, and STOP does not reach the robot.', this.#since ?? '')}` : '';
+    // A log has no robot that could be stopped.
+    const old = this.#known && !document.body.classList.contains('replay') ? ` ${t('What is shown is of {}, and STOP does not reach the robot.', this.#since ?? '')}` : '';
     if (now === 'locked') return `${t('The station was started again, with a new key: open the address that it printed.')}${old}`;
     return `${why ? t('No connection to the station: {}. Trying again…', said(why)) : t('No connection to the station. Trying again…')}${old}`;
   }

@@ -143,3 +143,29 @@ test('Tab reaches every part of the page and shows where it is', async () => {
   for (const part of ['HEADER', 'stop', 'map', 'on', 'plots', 'plot-section', 'command-section', 'parameter-section', 'event-section', 'checkup']) assert.ok(seen.has(part), `${part} is not reached`);
   assert.deepEqual(dashboard.complaints, []);
 });
+
+test('the longest fault fits beside the controls of every mode', async () => {
+  const longest = Object.keys((await import('../src/spanish/robot.js')).ROBOT).filter((text) => /^(left encoder|blocked|link lost|sonar)/.test(text)).sort((a, b) => b.length - a.length)[0] ?? '';
+  assert.ok(longest.length > 80, longest);
+  await page.addInitScript((fault) => {
+    const { parse } = JSON;
+    JSON.parse = (text) => {
+      const message = parse(text);
+      if (message?.type === 'state') message.state.robot.fault = fault;
+      return message;
+    };
+  }, longest);
+  for (const language of ['es', 'en']) {
+    await page.locator('#language').selectOption(language);
+    await page.waitForFunction((language) => document.documentElement.lang === language, language);
+    for (const mode of [0, 7, 8]) {
+      await page.locator(`#modes button[value="${mode}"]`).click();
+      await page.locator(`#modes button[value="${mode}"][aria-pressed="true"]`).waitFor();
+      for (const [width, height] of /** @type {[number, number][]} */ ([[1280, 720], [1024, 768]])) {
+        await page.setViewportSize({ width, height });
+        await page.locator('#fault').waitFor();
+        assert.deepEqual([await beyond(), await cutOff()], [[0, 0], []], `${language}, mode ${mode}, ${width} x ${height}`);
+      }
+    }
+  }
+});
