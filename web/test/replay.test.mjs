@@ -13,7 +13,7 @@ let page;
 
 before(async () => {
   const out = folder();
-  spawnSync(program(), ['run', 'mode1', '--seed', '3', '--out', out]);
+  spawnSync(program(), ['run', 'mode1', '--seed', '3', '--param', 'link_timeout_s=0.4', '--out', out]);
   dashboard = await open(['replay', join(out, 'mode1-3.mcap'), '--speed', '0']);
   page = dashboard.page;
 });
@@ -40,6 +40,12 @@ test('a log opens paused, and nothing can be sent to a robot', async () => {
   assert.match(await page.locator('#replay-time').textContent() ?? '', /of 8\.9\d s/);
   assert.equal(await page.locator('#stop').isVisible(), false);
   assert.equal(await page.locator('#command-section').evaluate((section) => /** @type {HTMLElement} */ (section).inert), true);
+});
+
+test('the parameters have the values that the run had', async () => {
+  const input = page.locator('#parameter-link_timeout_s');
+  await page.waitForFunction(() => /** @type {HTMLInputElement | null} */ (document.querySelector('#parameter-link_timeout_s'))?.value !== '');
+  assert.equal(await input.inputValue(), '0.4');
 });
 
 test('scrubbing shows what was before that time, forwards and backwards', async () => {
