@@ -246,7 +246,7 @@ export class WorldMap {
     const all = [
       ...(this.#sketch.scene?.obstacles.flatMap((obstacle) => obstacle.corners_m) ?? []),
       [start.x_m - around_m, start.y_m - around_m], [start.x_m + around_m, start.y_m + around_m],
-      ...[[robot.x_m, robot.y_m], ...(goal ? [place(frame, goal)] : []), ...(route?.waypoints.map(({ x_m, y_m }) => place(frame, [x_m, y_m])) ?? [])]
+      ...[[robot.x_m, robot.y_m], ...this.#trailCorners(), ...(goal ? [place(frame, goal)] : []), ...(route?.waypoints.map(({ x_m, y_m }) => place(frame, [x_m, y_m])) ?? [])]
         .map((point) => point.map((each) => Math.round(each / GROWTH_M) * GROWTH_M)),
     ];
     const xs = all.map(([x]) => x ?? 0);
@@ -255,6 +255,16 @@ export class WorldMap {
     const height_px = Math.max(this.#canvas.clientHeight - ABOVE_PX - BELOW_PX, 50);
     const px_per_m = Math.min(this.#canvas.clientWidth / (right - left + 2 * MARGIN_M), height_px / (high - low + 2 * MARGIN_M));
     return { x_m: (left + right) / 2, y_m: (low + high) / 2 + (ABOVE_PX - BELOW_PX) / 2 / px_per_m, px_per_m };
+  }
+
+  /** The corners of where the robot has been, as well as it is known. @returns {Point[]} */
+  #trailCorners() {
+    const { truth, estimated } = this.#store.trails;
+    let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
+    for (const [x, y] of truth.length > 0 ? truth : estimated) {
+      [left, right, low, high] = [Math.min(left, x), Math.max(right, x), Math.min(low, y), Math.max(high, y)];
+    }
+    return left > right ? [] : [[left, low], [right, high]];
   }
 
   /** @param {number} factor @param {Point | null} about Stays where it is [px]; null: the middle. */

@@ -118,7 +118,7 @@ test('the ghost of a robot on a port does what the robot is told', { skip: proce
     });
     // The robot's clock began before the station listened.
     await page.getByRole('tab', { name: 'Link' }).click();
-    await page.locator('#link-figures', { hasText: /robot started at-?[\d.]+ s/ }).waitFor();
+    await page.locator('#link-figures', { hasText: /robot started at[-−]?[\d.]+ s/ }).waitFor();
     if (process.env['SCREENSHOT_GHOST']) await page.screenshot({ path: process.env['SCREENSHOT_GHOST'] });
     await page.locator('#stop').click();
     await page.waitForFunction(() => !(/** @type {any} */ (window).rumbo.state().robot.armed));

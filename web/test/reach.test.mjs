@@ -29,6 +29,12 @@ const cutOff = () => page.evaluate(() => ['top', 'command-section', 'controls', 
   return part && (part.scrollHeight > part.clientHeight + 1 || part.scrollWidth > part.clientWidth + 1);
 }));
 
+/** Nothing is cut off, once all is laid out. @param {string} where */
+async function fits(where) {
+  for (let patience = 20; patience > 0 && (await cutOff()).length > 0; patience--) await page.waitForTimeout(100);
+  assert.deepEqual(await cutOff(), [], where);
+}
+
 test('1280 x 720 holds everything without scrolling, and every mode, in both languages', async () => {
   for (const language of ['en', 'es']) {
     await page.locator('#language').selectOption(language);
@@ -37,7 +43,7 @@ test('1280 x 720 holds everything without scrolling, and every mode, in both lan
       await page.locator(`#modes button[value="${mode}"]`).click();
       await page.locator(`#modes button[value="${mode}"][aria-pressed="true"]`).waitFor();
       assert.deepEqual(await beyond(), [0, 0], `${language}, mode ${mode}`);
-      assert.deepEqual(await cutOff(), [], `${language}, mode ${mode}`);
+      await fits(`${language}, mode ${mode}`);
     }
   }
   await page.locator('#language').selectOption('en');
@@ -55,7 +61,7 @@ test('on a tablet nothing is cut off at the sides, and STOP stays in sight', asy
     for (const mode of [0, 5, 7, 8]) {
       await page.locator(`#modes button[value="${mode}"]`).click();
       await page.locator(`#modes button[value="${mode}"][aria-pressed="true"]`).waitFor();
-      assert.deepEqual(await cutOff(), [], `${width} x ${height}, mode ${mode}`);
+      await fits(`${width} x ${height}, mode ${mode}`);
     }
   }
   await page.setViewportSize({ width: 1280, height: 720 });
@@ -110,7 +116,7 @@ test('fingers move and zoom: map and plots', async () => {
   await touch('touchEnd');
   await page.waitForFunction(() => !(/** @type {any} */ (window).rumbo.plots().following));
   const [from_s, to_s] = await seen();
-  assert.ok(from_s < -1 && Math.abs(to_s - from_s - 20) < 0.1, `${from_s} to ${to_s}`);
+  assert.ok(from_s < -0.3 && Math.abs(to_s - from_s - 20) < 0.1, `${from_s} to ${to_s}`);
   await page.locator('#live').click();
   await cdp.send('Emulation.setTouchEmulationEnabled', { enabled: false });
 });
@@ -164,7 +170,8 @@ test('the longest fault fits beside the controls of every mode', async () => {
       for (const [width, height] of /** @type {[number, number][]} */ ([[1280, 720], [1024, 768]])) {
         await page.setViewportSize({ width, height });
         await page.locator('#fault').waitFor();
-        assert.deepEqual([await beyond(), await cutOff()], [[0, 0], []], `${language}, mode ${mode}, ${width} x ${height}`);
+        await fits(`${language}, mode ${mode}, ${width} x ${height}`);
+        assert.deepEqual(await beyond(), [0, 0], `${language}, mode ${mode}, ${width} x ${height}`);
       }
     }
   }
