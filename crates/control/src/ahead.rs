@@ -74,19 +74,14 @@ impl Ahead {
         }
     }
 
-    /// The sonars that look ahead.
-    fn sonars(&self) -> &'static [SonarId] {
-        if self.paired {
-            &[SonarId::Left, SonarId::Right]
-        } else {
-            &[SonarId::Front]
-        }
+    /// Whether a sonar is one of those that look ahead.
+    fn has(&self, sonar: SonarId) -> bool {
+        self.paired != (sonar == SonarId::Front)
     }
 
-    /// Whether a reading of a sonar at this tick is one of the way ahead.
-    pub fn watches(&self, estimate: &Estimate, sonar: SonarId) -> bool {
-        let aside = estimate.reading.is_some_and(|heard| heard.servo_rad != 0.0);
-        self.sonars().contains(&sonar) && (self.paired || !aside)
+    /// Whether a reading is one of the way ahead.
+    pub fn watches(&self, reading: &Reading) -> bool {
+        self.has(reading.sonar) && (self.paired || reading.servo_rad == 0.0)
     }
 
     /// Whether all sonars that look ahead see something.
@@ -105,8 +100,11 @@ impl Ahead {
     /// Unless `fresh`, a range may be old where one sonar looks ahead now and then only: readings aside count as well, see `deaf_s`.
     fn nearest(&self, estimate: &Estimate, fresh: bool) -> Result<f32, Fault> {
         let mut nearest_m = f32::MAX;
-        for sonar in self.sonars() {
-            let mut range = estimate.range(*sonar);
+        for sonar in SonarId::ALL {
+            if !self.has(sonar) {
+                continue;
+            }
+            let mut range = estimate.range(sonar);
             if !self.paired && !fresh {
                 range.age_ticks = 0;
             }
@@ -123,7 +121,7 @@ impl Ahead {
         state.wall.predict(estimate.rolled_m, estimate.turned_rad);
         state.deaf_s += TICK_S;
         if let Some(reading) = estimate.reading
-            && self.sonars().contains(&reading.sonar)
+            && self.has(reading.sonar)
             && (self.paired || state.sweep.is_from_here(reading.servo_rad))
             && let Range::Valid(range_m) = reading.range
             && self.take(state, &reading, range_m)

@@ -2,6 +2,7 @@
 //!
 //! A pair looks to its own side. On the final rig each side has one, and the front one looks ahead meanwhile.
 
+use crate::ahead::drivable_m;
 use crate::estimate::Estimate;
 use crate::math::min;
 use crate::params::Params;
@@ -26,13 +27,10 @@ impl Beside {
         }
     }
 
-    /// The sonars that look to this side, and from where.
-    pub fn sonars(&self, side: Side) -> impl Iterator<Item = (SonarId, &View)> {
-        [SonarId::Left, SonarId::Right]
-            .iter()
-            .zip(&self.views)
-            .filter(move |(sonar, _)| self.watches(side, **sonar))
-            .map(|(sonar, view)| (*sonar, view))
+    /// From where a sonar looks that looks to this side; `None` of any other.
+    pub fn view(&self, side: Side, sonar: SonarId) -> Option<&View> {
+        let view = self.views.get(sonar as usize)?;
+        self.watches(side, sonar).then_some(view)
     }
 
     /// The point from which distances to a wall on this side are measured, ahead and left [m].
@@ -84,13 +82,9 @@ impl Beside {
     /// Why one of them does not.
     pub fn nearest_m(&self, side: Side, estimate: &Estimate, stale_s: f32) -> Result<f32, Fault> {
         let mut nearest_m = f32::MAX;
-        for (sonar, _) in self.sonars(side) {
-            let range = estimate.range(sonar);
-            match range.range {
-                Range::Valid(_) if range.is_older(stale_s) => return Err(Fault::SonarStale),
-                Range::Valid(range_m) => nearest_m = min(nearest_m, range_m),
-                Range::Clear => return Err(Fault::WallLost),
-                Range::Faulty => return Err(Fault::SonarFaulty),
+        for sonar in [SonarId::Left, SonarId::Right] {
+            if self.watches(side, sonar) {
+                nearest_m = min(nearest_m, drivable_m(estimate.range(sonar), stale_s)?);
             }
         }
         Ok(nearest_m)

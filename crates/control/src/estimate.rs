@@ -120,9 +120,6 @@ impl Estimator {
         estimate.servo_arrived = self.servo_rad == self.servo_target_rad;
         estimate.reading = self.reading(params, inputs);
         self.step_ranges(params, estimate);
-        for (range, filter) in estimate.ranges.iter_mut().zip(&self.ranges) {
-            *range = filter.range();
-        }
     }
 
     /// Reckons the heading's sine and cosine anew, which are turned on tick by tick. For a tick that has little else to do.
@@ -178,14 +175,17 @@ impl Estimator {
         })
     }
 
-    fn step_ranges(&mut self, params: &Params, estimate: &Estimate) {
+    fn step_ranges(&mut self, params: &Params, estimate: &mut Estimate) {
         let edges = estimate
             .motion
             .left
             .edges
             .wrapping_add(estimate.motion.right.edges);
-        for (sonar, filter) in SonarId::ALL.iter().zip(&mut self.ranges) {
-            let sonar = *sonar;
+        for sonar in SonarId::ALL {
+            let (filter, range) = (
+                &mut self.ranges[sonar as usize],
+                &mut estimate.ranges[sonar as usize],
+            );
             // Rolling forward brings a sonar that looks ahead nearer to what it sees; what others see slides by.
             let closer_m = if params.looks_ahead(sonar) {
                 estimate.rolled_m
@@ -199,6 +199,7 @@ impl Estimator {
             {
                 filter.take(reading.range);
             }
+            *range = filter.range();
         }
     }
 
@@ -218,7 +219,8 @@ impl Estimator {
 
     /// Calls the present place the origin.
     pub fn reset_pose(&mut self) {
-        for ping in self.pings.iter_mut().flatten() {
+        for slot in &mut self.pings {
+            let Some(ping) = slot else { continue };
             let then = ping.place.pose;
             let (x_m, y_m) = self.place.to_local(then.x_m, then.y_m);
             let heading_rad = wrap_angle(then.heading_rad - self.place.pose.heading_rad);

@@ -297,11 +297,14 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         let mut params = Self {
-            values: ParamId::ALL.map(|id| id.limits().default),
+            values: [0.0; COUNT],
             geometry: Geometry::new(Wheels::both(1.0), 1.0),
             rig: Rig::Final,
             loops: Wheels::default(),
         };
+        for (id, value) in ParamId::ALL.iter().zip(&mut params.values) {
+            *value = id.limits().default;
+        }
         params.derive();
         params
     }

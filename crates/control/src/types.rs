@@ -35,8 +35,9 @@ impl Side {
 /// Both sides, in the order in which they are always processed.
 pub const SIDES: [Side; 2] = [Side::Left, Side::Right];
 
-/// One value for each wheel.
+/// One value for each wheel. Laid out as written, since tests put such values into the chip's memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
 pub struct Wheels<T> {
     /// The left wheel's.
     pub left: T,
@@ -87,6 +88,7 @@ impl<T> IndexMut<Side> for Wheels<T> {
 
 /// A reading of the robot's free-running microsecond clock. It wraps after 71.6 minutes; differences survive the wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(transparent)]
 pub struct Micros(pub u32);
 
 impl Micros {
@@ -128,8 +130,10 @@ impl Duty {
     }
 }
 
-/// What the encoder interrupt of one wheel left at the tick. One Hall channel: the direction is not measured.
+/// What the encoder interrupt of one wheel left at the tick. One Hall channel: the direction is not measured. Laid out as
+/// written, as [`Wheels`] is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
 pub struct Edges {
     /// Edges seen since the start, wrapping.
     pub count: u16,

@@ -5,7 +5,7 @@
 
 use crate::estimate::Estimate;
 use crate::math::abs;
-use crate::types::{Fault, Range, SonarId};
+use crate::types::{Fault, Range, Reading};
 
 /// A reading further than this from the filtered range, and [`WILD_SHARE`] of that range, is wild [m]: a weak echo errs by less.
 const WILD_M: f32 = 0.05;
@@ -29,21 +29,12 @@ const FAULTY: u8 = 64;
 pub struct Unrest([u8; 3]);
 
 impl Unrest {
-    /// Takes the reading of this tick, if it is of a sonar that matters.
+    /// Takes the reading of this tick, of a sonar that matters.
     ///
     /// # Errors
     /// The sonar's readings are so wild that it is faulty.
-    pub fn take(
-        &mut self,
-        estimate: &Estimate,
-        matters: impl Fn(SonarId) -> bool,
-    ) -> Result<(), Fault> {
-        let Some(reading) = estimate.reading.filter(|reading| matters(reading.sonar)) else {
-            return Ok(());
-        };
-        let Some(unrest) = self.0.get_mut(reading.sonar as usize) else {
-            return Ok(());
-        };
+    pub fn take(&mut self, estimate: &Estimate, reading: &Reading) -> Result<(), Fault> {
+        let unrest = &mut self.0[reading.sonar as usize];
         let wild = match (estimate.range(reading.sonar).range, reading.range) {
             (_, Range::Faulty) => IMPOSSIBLE,
             (Range::Valid(expected_m), Range::Valid(range_m))
@@ -86,20 +77,20 @@ impl Unrest {
 mod tests {
     use super::*;
     use crate::rig::View;
-    use crate::types::Reading;
+    use crate::types::SonarId;
 
     fn unrest_after(readings: impl IntoIterator<Item = Range>) -> (Unrest, Result<(), Fault>) {
         let mut unrest = Unrest::default();
         let mut estimate = Estimate::default();
         estimate.ranges[SonarId::Left as usize].range = Range::Valid(0.5);
         for range in readings {
-            estimate.reading = Some(Reading {
+            let reading = Reading {
                 sonar: SonarId::Left,
                 range,
                 view: View::default(),
                 servo_rad: 0.0,
-            });
-            if let Err(fault) = unrest.take(&estimate, |_| true) {
+            };
+            if let Err(fault) = unrest.take(&estimate, &reading) {
                 return (unrest, Err(fault));
             }
         }

@@ -116,8 +116,8 @@ impl Pilot {
 
     /// Of the sonars that are wanted, those that the rig has.
     fn carried(&self, mut wanted: [bool; 3]) -> [bool; 3] {
-        for (sonar, wanted) in SonarId::ALL.iter().zip(&mut wanted) {
-            *wanted &= self.params.carries(*sonar);
+        for sonar in SonarId::ALL {
+            wanted[sonar as usize] &= self.params.carries(sonar);
         }
         wanted
     }

@@ -5,7 +5,7 @@
 //! taken the row before, at most ten a second. The answer is in the language in which the robot was last addressed.
 
 use rumbo_control::mode::ModeId;
-use rumbo_control::{AgedRange, Duty, Micros, Pose, Range, SonarId, Wheels};
+use rumbo_control::{AgedRange, Duty, Micros, Pose, Wheels};
 use rumbo_wire::text::{
     CM_PER_M, DistanceRow, MissionRow, RAD_PER_DEG, RAD_S_PER_RPM, Row, SpeedRow, WaypointsRow,
     cm_from_range,
@@ -295,21 +295,26 @@ fn is_news(status: &Status, before: &Status) -> bool {
 fn row(dt_ms: u32, status: &Status, signals: &Signals) -> Row {
     let mode = status.mode as u8;
     let pwm = signals.duty.map(Duty::counts);
-    let range_cm = |sonar: SonarId| {
-        let aged = signals.ranges.get(sonar as usize);
-        cm_from_range(aged.map_or(Range::Faulty, |aged| aged.range))
-    };
+    let rpm = |rad_s: Wheels<f32>| rad_s.map(|rad_s| rad_s / RAD_S_PER_RPM);
+    let (wheel_rpm, reference_rpm) = (rpm(signals.wheel_rad_s), rpm(signals.wheel_ref_rad_s));
+    let Pose {
+        x_m,
+        y_m,
+        heading_rad,
+    } = signals.pose;
+    let heading_deg = heading_rad / RAD_PER_DEG;
+    let [left_cm, right_cm, front_cm] = signals.ranges.map(|aged| cm_from_range(aged.range));
     match status.mode {
         ModeId::FrontDistance | ModeId::FrontAlign | ModeId::WallHold | ModeId::WallFollow => {
             // One sonar in front the original sends twice.
-            let (left, right) = match status.mode {
-                ModeId::FrontDistance => (SonarId::Front, SonarId::Front),
-                _ => (SonarId::Left, SonarId::Right),
+            let (left_cm, right_cm) = match status.mode {
+                ModeId::FrontDistance => (front_cm, front_cm),
+                _ => (left_cm, right_cm),
             };
             Row::Distance(DistanceRow {
                 dt_ms,
-                left_cm: range_cm(left),
-                right_cm: range_cm(right),
+                left_cm,
+                right_cm,
                 reference_cm: status.reference.left * CM_PER_M,
                 mode,
                 pwm,
@@ -317,31 +322,31 @@ fn row(dt_ms: u32, status: &Status, signals: &Signals) -> Row {
         }
         ModeId::Waypoints => Row::Waypoints(WaypointsRow {
             dt_ms,
-            wheel_rpm: signals.wheel_rad_s.map(|rad_s| rad_s / RAD_S_PER_RPM),
-            reference_rpm: signals.wheel_ref_rad_s.map(|rad_s| rad_s / RAD_S_PER_RPM),
-            x_m: signals.pose.x_m,
-            y_m: signals.pose.y_m,
-            heading_deg: signals.pose.heading_rad / RAD_PER_DEG,
+            wheel_rpm,
+            reference_rpm,
+            x_m,
+            y_m,
+            heading_deg,
             pwm,
         }),
         ModeId::Mission => Row::Mission(MissionRow {
             dt_ms,
-            reference_rpm: signals.wheel_ref_rad_s.map(|rad_s| rad_s / RAD_S_PER_RPM),
+            reference_rpm,
             heading_reference_deg: signals.heading_ref_rad / RAD_PER_DEG,
             goal_x_m: status.reference.left,
             goal_y_m: status.reference.right,
-            x_m: signals.pose.x_m,
-            y_m: signals.pose.y_m,
-            heading_deg: signals.pose.heading_rad / RAD_PER_DEG,
+            x_m,
+            y_m,
+            heading_deg,
             state: signals.state,
-            right_cm: range_cm(SonarId::Right),
-            left_cm: range_cm(SonarId::Left),
-            front_cm: range_cm(SonarId::Front),
+            right_cm,
+            left_cm,
+            front_cm,
         }),
         ModeId::Manual | ModeId::WheelSpeed | ModeId::StraightLine => Row::Speed(SpeedRow {
             dt_ms,
-            wheel_rpm: signals.wheel_rad_s.map(|rad_s| rad_s / RAD_S_PER_RPM),
-            reference_rpm: signals.wheel_ref_rad_s.right / RAD_S_PER_RPM,
+            wheel_rpm,
+            reference_rpm: reference_rpm.right,
             mode,
             pwm,
         }),

@@ -38,14 +38,15 @@ impl PingSchedule {
         }
         let mut longest = OWN_TICKS - 1;
         let mut chosen = None;
-        for (sonar, (ticks, wanted)) in SonarId::ALL.iter().zip(self.since.iter().zip(&wanted)) {
-            if *wanted && *ticks > longest {
-                longest = *ticks;
-                chosen = Some(*sonar);
+        for sonar in SonarId::ALL {
+            let ticks = self.since[sonar as usize];
+            if wanted[sonar as usize] && ticks > longest {
+                longest = ticks;
+                chosen = Some(sonar);
             }
         }
-        if let Some(slot) = chosen.and_then(|sonar| self.since.get_mut(sonar as usize)) {
-            *slot = 0;
+        if let Some(sonar) = chosen {
+            self.since[sonar as usize] = 0;
         }
         chosen
     }

@@ -70,10 +70,8 @@ impl Store {
         params: &mut Params,
         mut read: impl FnMut(u16) -> u8,
     ) -> Option<Recalled> {
-        let mut found = [Found::None; 2];
-        for (found, place) in found.iter_mut().zip(PLACES) {
-            *found = check(place, &mut read);
-        }
+        let [first, second] = PLACES;
+        let found = [check(first, &mut read), check(second, &mut read)];
         let recalled = match found {
             [Found::None, Found::None] => return None,
             [Found::Good(first), Found::Good(second)] => {

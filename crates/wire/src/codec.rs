@@ -164,7 +164,8 @@ fn put_telemetry(to: &mut Writer, telemetry: &Telemetry) -> Kind {
     to.put(to_i16(pose.x_m, POSITION_PER_M).to_le_bytes());
     to.put(to_i16(pose.y_m, POSITION_PER_M).to_le_bytes());
     to.put(to_turn(pose.heading_rad).to_le_bytes());
-    for sample in wheel_rad_s.iter().chain([wheel_ref_rad_s]) {
+    let [earlier_rad_s, now_rad_s] = wheel_rad_s;
+    for sample in [earlier_rad_s, now_rad_s, wheel_ref_rad_s] {
         let [left_low, left_high] = to_i12(sample.left, SPEED_PER_RAD_S).to_le_bytes();
         let right = to_i12(sample.right, SPEED_PER_RAD_S);
         let [right_low, right_high] = (right << 4).to_le_bytes();
@@ -184,8 +185,10 @@ fn put_telemetry(to: &mut Writer, telemetry: &Telemetry) -> Kind {
         0.0
     };
     to.put((round(servo_rad * SERVO_PER_RAD).clamp(-127, 127) as i8).to_le_bytes());
-    let [left, right, front] = ranges.map(|aged| range_code(aged.range));
-    to.put((left | right << 10 | front << 20).to_le_bytes());
+    let [left, right, front] = ranges;
+    let codes =
+        range_code(left.range) | range_code(right.range) << 10 | range_code(front.range) << 20;
+    to.put(codes.to_le_bytes());
     Kind::Telemetry
 }
 

@@ -200,31 +200,31 @@ impl Row {
         match self {
             Row::Distance(row) => {
                 to.milliseconds(row.dt_ms);
-                to.numbers([row.left_cm, row.right_cm, row.reference_cm]);
-                to.integers([i16::from(row.mode)]);
-                to.integers(a_then_b(row.pwm));
+                to.numbers(&[row.left_cm, row.right_cm, row.reference_cm]);
+                to.integers(&[i16::from(row.mode)]);
+                to.integers(&a_then_b(row.pwm));
             }
             Row::Speed(row) => {
                 to.milliseconds(row.dt_ms);
-                to.numbers(a_then_b(row.wheel_rpm));
-                to.numbers([row.reference_rpm]);
-                to.integers([i16::from(row.mode)]);
-                to.integers(a_then_b(row.pwm));
+                to.numbers(&a_then_b(row.wheel_rpm));
+                to.numbers(&[row.reference_rpm]);
+                to.integers(&[i16::from(row.mode)]);
+                to.integers(&a_then_b(row.pwm));
             }
             Row::Waypoints(row) => {
                 to.milliseconds(row.dt_ms);
-                to.numbers(a_then_b(row.wheel_rpm));
-                to.numbers(a_then_b(row.reference_rpm));
-                to.numbers([row.x_m, row.y_m, row.heading_deg]);
-                to.integers(a_then_b(row.pwm));
+                to.numbers(&a_then_b(row.wheel_rpm));
+                to.numbers(&a_then_b(row.reference_rpm));
+                to.numbers(&[row.x_m, row.y_m, row.heading_deg]);
+                to.integers(&a_then_b(row.pwm));
             }
             Row::Mission(row) => {
                 to.milliseconds(row.dt_ms);
-                to.numbers(a_then_b(row.reference_rpm));
-                to.numbers([row.heading_reference_deg, row.goal_x_m, row.goal_y_m]);
-                to.numbers([row.x_m, row.y_m, row.heading_deg]);
-                to.integers([i16::from(row.state)]);
-                to.numbers([row.right_cm, row.left_cm, row.front_cm]);
+                to.numbers(&a_then_b(row.reference_rpm));
+                to.numbers(&[row.heading_reference_deg, row.goal_x_m, row.goal_y_m]);
+                to.numbers(&[row.x_m, row.y_m, row.heading_deg]);
+                to.integers(&[i16::from(row.state)]);
+                to.numbers(&[row.right_cm, row.left_cm, row.front_cm]);
             }
         }
         to.0.push(b'\r');
@@ -242,17 +242,17 @@ impl Columns {
             .push_integer(i32::try_from(dt_ms).unwrap_or(i32::MAX));
     }
 
-    fn numbers<const N: usize>(&mut self, values: [f32; N]) {
+    fn numbers(&mut self, values: &[f32]) {
         for value in values {
             self.0.push(b',');
-            self.0.push_hundredths(value);
+            self.0.push_hundredths(*value);
         }
     }
 
-    fn integers<const N: usize>(&mut self, values: [i16; N]) {
+    fn integers(&mut self, values: &[i16]) {
         for value in values {
             self.0.push(b',');
-            self.0.push_integer(i32::from(value));
+            self.0.push_integer(i32::from(*value));
         }
     }
 }

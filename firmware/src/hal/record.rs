@@ -8,22 +8,12 @@ use core::cell::UnsafeCell;
 use rumbo_control::{Echo, Edges, Inputs, Micros, Outputs, SonarId, Wheels};
 use rumbo_robot::Robot;
 
-/// One encoder.
-#[derive(Clone, Copy)]
-#[repr(C)]
-struct EdgesRecord {
-    count: u16,
-    last_us: u32,
-    turn_us: u32,
-}
-
 /// The inputs, in this order, little-endian, without gaps.
 #[derive(Clone, Copy)]
 #[repr(C)]
 struct InputsRecord {
-    now_us: u32,
-    left: EdgesRecord,
-    right: EdgesRecord,
+    now: Micros,
+    encoders: Wheels<Edges>,
     /// 0 none, 1 pulse, 2 clear, 3 silent.
     echo: u8,
     /// Number of the sonar.
@@ -47,18 +37,17 @@ struct Shown<T>(UnsafeCell<T>);
 // SAFETY: only the loop touches it.
 unsafe impl<T> Sync for Shown<T> {}
 
-const NO_EDGES: EdgesRecord = EdgesRecord {
+const NO_EDGES: Edges = Edges {
     count: 0,
-    last_us: 0,
+    last: Micros(0),
     turn_us: 0,
 };
 
 // SAFETY, for the names here and below: each is used once.
 #[unsafe(no_mangle)]
 static RUMBO_INPUTS: Shown<InputsRecord> = Shown(UnsafeCell::new(InputsRecord {
-    now_us: 0,
-    left: NO_EDGES,
-    right: NO_EDGES,
+    now: Micros(0),
+    encoders: Wheels::both(NO_EDGES),
     echo: 0,
     sonar: 0,
     pulse_us: 0,
@@ -93,11 +82,6 @@ extern "C" fn rumbo_outputs_left() {
 
 /// Shows the inputs of a tick; gives those to be used.
 pub fn inputs(inputs: &Inputs) -> Inputs {
-    let edges = |edges: Edges| EdgesRecord {
-        count: edges.count,
-        last_us: edges.last.0,
-        turn_us: edges.turn_us,
-    };
     let (echo, sonar, pulse_us) = match inputs.echo {
         None => (0, 0, 0),
         Some((sonar, Echo::Pulse(us))) => (1, sonar as u8, us),
@@ -107,9 +91,8 @@ pub fn inputs(inputs: &Inputs) -> Inputs {
     // SAFETY: only the loop touches it, and no reference to it is left; volatile, for whoever stops the program here.
     let taken = unsafe {
         RUMBO_INPUTS.0.get().write_volatile(InputsRecord {
-            now_us: inputs.now.0,
-            left: edges(inputs.encoders.left),
-            right: edges(inputs.encoders.right),
+            now: inputs.now,
+            encoders: inputs.encoders,
             echo,
             sonar,
             pulse_us,
@@ -117,18 +100,10 @@ pub fn inputs(inputs: &Inputs) -> Inputs {
         rumbo_inputs_latched();
         RUMBO_INPUTS.0.get().read_volatile()
     };
-    let edges = |record: EdgesRecord| Edges {
-        count: record.count,
-        last: Micros(record.last_us),
-        turn_us: record.turn_us,
-    };
     let sonar = SonarId::ALL.get(usize::from(taken.sonar)).copied();
     Inputs {
-        now: Micros(taken.now_us),
-        encoders: Wheels {
-            left: edges(taken.left),
-            right: edges(taken.right),
-        },
+        now: taken.now,
+        encoders: taken.encoders,
         echo: sonar.and_then(|sonar| match taken.echo {
             1 => Some((sonar, Echo::Pulse(taken.pulse_us))),
             2 => Some((sonar, Echo::Clear)),

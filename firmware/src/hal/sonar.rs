@@ -189,17 +189,16 @@ pub struct Listener {
 impl Listener {
     /// A sonar has been asked for a ping.
     pub fn asked(&mut self, sonar: SonarId) {
-        if let Some(waiting) = self.waiting.get_mut(sonar as usize) {
-            *waiting = true;
-        }
+        self.waiting[sonar as usize] = true;
     }
 
     /// What became of a ping, once, at the tick `tick`. It may have left late, or not yet.
     pub fn read(&mut self, tick: Stamp) -> Option<(SonarId, Echo)> {
-        for (sonar, waiting) in SonarId::ALL.iter().zip(&mut self.waiting) {
-            if *waiting && let Some(echo) = echo(*sonar, tick) {
+        for sonar in SonarId::ALL {
+            let waiting = &mut self.waiting[sonar as usize];
+            if *waiting && let Some(echo) = echo(sonar, tick) {
                 *waiting = false;
-                return Some((*sonar, echo));
+                return Some((sonar, echo));
             }
         }
         None

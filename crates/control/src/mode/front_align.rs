@@ -158,8 +158,11 @@ impl Mode for FrontAlign {
 
     fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
         let estimate = at.estimate;
-        let watches = |sonar| self.ahead.watches(estimate, sonar);
-        state.unrest.take(estimate, watches)?;
+        if let Some(reading) = &estimate.reading
+            && self.ahead.watches(reading)
+        {
+            state.unrest.take(estimate, reading)?;
+        }
         let (nearest_m, wall) = self
             .see(&mut state.ahead, estimate)
             .map_err(|fault| state.unrest.cause(fault))?;

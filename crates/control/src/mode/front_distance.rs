@@ -143,8 +143,11 @@ impl Mode for FrontDistance {
     type State = State;
 
     fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
-        let front = |sonar| sonar == SonarId::Front;
-        state.unrest.take(at.estimate, front)?;
+        if let Some(reading) = &at.estimate.reading
+            && reading.sonar == SonarId::Front
+        {
+            state.unrest.take(at.estimate, reading)?;
+        }
         let range_m = drivable_m(at.estimate.range(SonarId::Front), self.stale_s)
             .map_err(|fault| state.unrest.cause(fault))?;
         let error_m = range_m - self.distance_m;

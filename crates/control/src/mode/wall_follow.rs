@@ -157,7 +157,10 @@ impl WallFollow {
     /// Starts the estimate from the ranges that were filtered while the robot stood.
     fn begin(&self, state: &mut State, side: Side, at: &Estimate) -> Result<(), Fault> {
         let mut started = false;
-        for (sonar, view) in self.sonars.sonars(side) {
+        for sonar in [SonarId::Left, SonarId::Right] {
+            let Some(view) = self.sonars.view(side, sonar) else {
+                continue;
+            };
             let Range::Valid(range_m) = at.range(sonar).range else {
                 return Err(Fault::WallLost);
             };
@@ -266,8 +269,11 @@ impl Mode for WallFollow {
             }
         };
         state.side = Some(side);
-        let matters = |sonar| sonar == SonarId::Front || self.sonars.watches(side, sonar);
-        state.unrest.take(estimate, matters)?;
+        if let Some(reading) = &estimate.reading
+            && (reading.sonar == SonarId::Front || self.sonars.watches(side, reading.sonar))
+        {
+            state.unrest.take(estimate, reading)?;
+        }
         self.drive(state, side, estimate)
             .map_err(|fault| state.unrest.cause(fault))
     }

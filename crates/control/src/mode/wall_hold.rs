@@ -19,6 +19,7 @@ pub const STATE_NAMES: [&str; 4] = wall_follow::STATE_NAMES;
 
 /// Readings of each sonar that make the reference.
 const READINGS: usize = 5;
+const HALF: u8 = READINGS as u8 / 2;
 /// Longest time to wait for them [s]; they take 0.3 s.
 const PATIENCE_S: f32 = 1.5;
 
@@ -62,12 +63,17 @@ impl State {
             .get(slot)
             .is_some_and(|count| usize::from(*count) == READINGS);
         let first_m = self.first_m.get(slot).filter(|_| all)?;
-        let is_middle = |candidate: &&f32| {
-            let below = first_m.iter().filter(|other| other < candidate).count();
-            let above = first_m.iter().filter(|other| *other > *candidate).count();
-            below <= READINGS / 2 && above <= READINGS / 2
-        };
-        first_m.iter().find(is_middle).copied()
+        for candidate in first_m {
+            let (mut below, mut above) = (0, 0);
+            for other in first_m {
+                below += u8::from(other < candidate);
+                above += u8::from(other > candidate);
+            }
+            if below <= HALF && above <= HALF {
+                return Some(*candidate);
+            }
+        }
+        None
     }
 }
 
