@@ -35,6 +35,11 @@ fn main() -> ! {
     });
     robot.recall(eeprom::read);
     record::robot(&robot);
+    run(&mut robot)
+}
+
+/// Tick after tick.
+fn run(robot: &mut Robot) -> ! {
     let mut encoders = Encoders::default();
     let mut listener = Listener::default();
     let mut inputs = Inputs::default();
@@ -60,7 +65,8 @@ fn main() -> ! {
         while let Some(byte) = link::receive() {
             robot.receive(byte);
         }
-        let out = robot.tick(&record::inputs(&inputs));
+        record::inputs(&mut inputs);
+        let out = robot.tick(&inputs);
         outputs::leave(&out, tick);
         record::outputs(&out);
         if let Some(sonar) = out.ping {

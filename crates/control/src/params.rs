@@ -277,6 +277,21 @@ impl ParamId {
         Self::ALL.get(usize::from(number)).copied()
     }
 
+    /// Whether a value is one that it may have.
+    ///
+    /// # Errors
+    /// The value is not finite or outside the limits.
+    pub fn check(self, value: f32) -> Result<(), ParamError> {
+        let Limits { min, max, .. } = self.limits();
+        if !value.is_finite() {
+            Err(ParamError::NotFinite)
+        } else if value < min || value > max {
+            Err(ParamError::OutOfRange)
+        } else {
+            Ok(())
+        }
+    }
+
     /// The parameter with this name.
     #[cfg(feature = "names")]
     pub fn from_name(name: &str) -> Option<ParamId> {
@@ -302,10 +317,7 @@ impl Default for Params {
             rig: Rig::Final,
             loops: Wheels::default(),
         };
-        for (id, value) in ParamId::ALL.iter().zip(&mut params.values) {
-            *value = id.limits().default;
-        }
-        params.derive();
+        params.reset();
         params
     }
 }
@@ -324,18 +336,18 @@ impl Params {
     /// # Errors
     /// The value is not finite or outside the parameter's limits; it is then as before.
     pub fn set(&mut self, id: ParamId, value: f32) -> Result<f32, ParamError> {
-        let Limits { min, max, .. } = id.limits();
-        if !value.is_finite() {
-            return Err(ParamError::NotFinite);
-        }
-        if value < min || value > max {
-            return Err(ParamError::OutOfRange);
-        }
-        if let Some(slot) = self.values.get_mut(id as usize) {
-            *slot = value;
-        }
+        id.check(value)?;
+        self.values[id as usize] = value;
         self.derive();
         Ok(value)
+    }
+
+    /// Sets all of them to their defaults.
+    pub fn reset(&mut self) {
+        for id in ParamId::ALL {
+            self.values[id as usize] = id.limits().default;
+        }
+        self.derive();
     }
 
     fn derive(&mut self) {

@@ -320,17 +320,18 @@ impl Pilot {
 
     /// Sets several parameters, or none.
     pub(crate) fn set_params(&mut self, values: [(ParamId, f32); 3]) -> Result<f32, Refusal> {
-        let mut params = self.params;
         for (id, value) in values {
-            params.set(id, value).map_err(refusal_of_param)?;
+            id.check(value).map_err(refusal_of_param)?;
         }
-        self.params = params;
+        for (id, value) in values {
+            self.params.set(id, value).map_err(refusal_of_param)?;
+        }
         Ok(0.0)
     }
 
     /// Sets every parameter to its default.
     pub(crate) fn reset_params(&mut self) {
-        self.params = Params::default();
+        self.params.reset();
     }
 
     /// The robot stands here, as seen from its origin.

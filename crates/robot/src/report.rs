@@ -303,7 +303,9 @@ fn row(dt_ms: u32, status: &Status, signals: &Signals) -> Row {
         heading_rad,
     } = signals.pose;
     let heading_deg = heading_rad / RAD_PER_DEG;
-    let [left_cm, right_cm, front_cm] = signals.ranges.map(|aged| cm_from_range(aged.range));
+    let [left, right, front] = &signals.ranges;
+    let (left_cm, right_cm) = (cm_from_range(left.range), cm_from_range(right.range));
+    let front_cm = cm_from_range(front.range);
     match status.mode {
         ModeId::FrontDistance | ModeId::FrontAlign | ModeId::WallHold | ModeId::WallFollow => {
             // One sonar in front the original sends twice.

@@ -467,9 +467,7 @@ fn command(from: &mut Reader) -> Result<Command, Malformed> {
 }
 
 fn movement(number: u8) -> Option<Movement> {
-    Movement::ALL
-        .into_iter()
-        .find(|movement| *movement as u8 == number)
+    Movement::ALL.get(usize::from(number)).copied()
 }
 
 /// Session and number of a command frame, also of one whose command is not understood: it can still be refused.

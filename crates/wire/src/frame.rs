@@ -59,7 +59,7 @@ impl Kind {
 
     /// The kind with this number.
     pub fn from_number(number: u8) -> Option<Kind> {
-        Self::ALL.into_iter().find(|kind| *kind as u8 == number)
+        Self::ALL.iter().copied().find(|kind| *kind as u8 == number)
     }
 
     /// The byte mixed into the CRC.

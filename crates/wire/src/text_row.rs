@@ -197,6 +197,13 @@ impl Row {
     /// The row as a line for the wire. Floats have at most two decimals.
     pub fn line(&self) -> Line {
         let mut to = Columns(Text::EMPTY);
+        self.write(&mut to);
+        to.0.push(b'\r');
+        to.0.push(b'\n');
+        Line(to.0)
+    }
+
+    fn write(&self, to: &mut Columns) {
         match self {
             Row::Distance(row) => {
                 to.milliseconds(row.dt_ms);
@@ -227,9 +234,6 @@ impl Row {
                 to.numbers(&[row.right_cm, row.left_cm, row.front_cm]);
             }
         }
-        to.0.push(b'\r');
-        to.0.push(b'\n');
-        Line(to.0)
     }
 }
 

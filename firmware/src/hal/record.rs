@@ -80,37 +80,34 @@ extern "C" fn rumbo_outputs_left() {
     avr_device::asm::nop();
 }
 
-/// Shows the inputs of a tick; gives those to be used.
-pub fn inputs(inputs: &Inputs) -> Inputs {
+/// Shows the inputs of a tick, and takes those that are there then.
+pub fn inputs(inputs: &mut Inputs) {
     let (echo, sonar, pulse_us) = match inputs.echo {
         None => (0, 0, 0),
         Some((sonar, Echo::Pulse(us))) => (1, sonar as u8, us),
         Some((sonar, Echo::Clear)) => (2, sonar as u8, 0),
         Some((sonar, Echo::Silent)) => (3, sonar as u8, 0),
     };
+    let record = RUMBO_INPUTS.0.get();
     // SAFETY: only the loop touches it, and no reference to it is left; volatile, for whoever stops the program here.
-    let taken = unsafe {
-        RUMBO_INPUTS.0.get().write_volatile(InputsRecord {
-            now: inputs.now,
-            encoders: inputs.encoders,
-            echo,
-            sonar,
-            pulse_us,
-        });
+    unsafe {
+        (&raw mut (*record).now).write_volatile(inputs.now);
+        (&raw mut (*record).encoders).write_volatile(inputs.encoders);
+        (&raw mut (*record).echo).write_volatile(echo);
+        (&raw mut (*record).sonar).write_volatile(sonar);
+        (&raw mut (*record).pulse_us).write_volatile(pulse_us);
         rumbo_inputs_latched();
-        RUMBO_INPUTS.0.get().read_volatile()
-    };
-    let sonar = SonarId::ALL.get(usize::from(taken.sonar)).copied();
-    Inputs {
-        now: taken.now,
-        encoders: taken.encoders,
-        echo: sonar.and_then(|sonar| match taken.echo {
-            1 => Some((sonar, Echo::Pulse(taken.pulse_us))),
-            2 => Some((sonar, Echo::Clear)),
-            3 => Some((sonar, Echo::Silent)),
+        inputs.now = (&raw const (*record).now).read_volatile();
+        inputs.encoders = (&raw const (*record).encoders).read_volatile();
+        let sonar = (&raw const (*record).sonar).read_volatile();
+        let sonar = SonarId::ALL.get(usize::from(sonar)).copied();
+        let echo = match (&raw const (*record).echo).read_volatile() {
+            1 => Some(Echo::Pulse((&raw const (*record).pulse_us).read_volatile())),
+            2 => Some(Echo::Clear),
+            3 => Some(Echo::Silent),
             _ => None,
-        }),
-        battery_v: inputs.battery_v,
+        };
+        inputs.echo = sonar.zip(echo);
     }
 }
 

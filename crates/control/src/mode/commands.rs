@@ -66,13 +66,12 @@ impl ActiveMode {
                 state.renew();
             }
             Self::Waypoints(..) => {
-                let mut route = Route::empty(false, false);
-                route.push(Waypoint {
+                self.begin_route(false, false)?;
+                self.add_waypoint(Waypoint {
                     x_m,
                     y_m,
                     heading_rad: None,
                 })?;
-                *self = Self::Waypoints(route, waypoints::State::default());
             }
             _ => return Err(SetpointError::NotInThisMode),
         }
@@ -97,10 +96,11 @@ impl ActiveMode {
     /// # Errors
     /// Another mode is selected.
     pub fn begin_route(&mut self, repeat: bool, relative: bool) -> Result<(), SetpointError> {
-        let Self::Waypoints(..) = self else {
+        let Self::Waypoints(route, state) = self else {
             return Err(SetpointError::NotInThisMode);
         };
-        *self = Self::Waypoints(Route::empty(repeat, relative), waypoints::State::default());
+        *route = Route::empty(repeat, relative);
+        *state = waypoints::State::default();
         Ok(())
     }
 

@@ -47,7 +47,7 @@ impl ModeId {
 
     /// The mode with this number.
     pub fn from_number(number: u8) -> Option<ModeId> {
-        Self::ALL.into_iter().find(|mode| *mode as u8 == number)
+        Self::ALL.get(usize::from(number)).copied()
     }
 
     /// The name used in files, commands and the dashboard.

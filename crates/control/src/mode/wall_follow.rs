@@ -219,12 +219,18 @@ impl WallFollow {
 
 /// What the robot does about the distance, and how fast it may.
 impl WallFollow {
-    fn drive(&self, state: &mut State, side: Side, at: &Estimate) -> Result<Action, Fault> {
+    fn drive(
+        &self,
+        state: &mut State,
+        side: Side,
+        at: &Estimate,
+        reference_m: f32,
+    ) -> Result<Action, Fault> {
         self.sonars.nearest_m(side, at, self.stale_s)?;
         let wall = self.estimate(state, side, at)?;
         let free_m_s = self.free_m_s(state, at)?;
         let (distance_m, angle_rad) = self.distance_and_angle(side, &wall);
-        let error_m = distance_m - self.distance_m;
+        let error_m = distance_m - reference_m;
         let (angle_ref_rad, far) = self.angle_ref_rad(state, error_m, wall.bearing_sd_rad());
 
         let turn_rad_s = self.heading_kp * (angle_ref_rad - angle_rad);
@@ -256,11 +262,14 @@ impl WallFollow {
     }
 }
 
-impl Mode for WallFollow {
-    type State = State;
-
-    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
-        let estimate = at.estimate;
+impl WallFollow {
+    /// One tick at this distance [m].
+    pub(super) fn keep(
+        &self,
+        state: &mut State,
+        estimate: &Estimate,
+        reference_m: f32,
+    ) -> Result<Action, Fault> {
         let side = match state.side {
             Some(side) => side,
             None => {
@@ -274,8 +283,16 @@ impl Mode for WallFollow {
         {
             state.unrest.take(estimate, reading)?;
         }
-        self.drive(state, side, estimate)
+        self.drive(state, side, estimate, reference_m)
             .map_err(|fault| state.unrest.cause(fault))
+    }
+}
+
+impl Mode for WallFollow {
+    type State = State;
+
+    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
+        self.keep(state, at.estimate, self.distance_m)
     }
 }
 

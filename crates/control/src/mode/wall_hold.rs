@@ -124,11 +124,7 @@ impl Mode for WallHold {
         let Some(distance_m) = state.reference_m else {
             return Ok(Action::default());
         };
-        let follow = WallFollow {
-            distance_m,
-            ..self.0
-        };
-        follow.step(&mut state.follow, at)
+        self.0.keep(&mut state.follow, at.estimate, distance_m)
     }
 }
 

@@ -28,11 +28,11 @@
 mod route;
 
 use super::{Action, Mode, Situation};
-use crate::math::{sin_cos, wrap_angle};
+use crate::math::wrap_angle;
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
 use crate::params::{ParamId, Params};
 use crate::pursuit::{Point, Pursuit, PursuitState};
-use crate::types::{Drive, Fault, Pose};
+use crate::types::{Drive, Fault, Pose, Transform};
 
 pub use route::{FARTHEST_M, MAX_WAYPOINTS, Route, Waypoint};
 
@@ -71,8 +71,8 @@ pub struct State {
     phase: Phase,
     /// Number of the waypoint to go to.
     next: u8,
-    /// From where the route is reckoned, with the sine and cosine of its heading.
-    frame: Option<(Pose, (f32, f32))>,
+    /// From where the route is reckoned.
+    frame: Option<Transform>,
     /// The waypoint before this one [m].
     from: Option<Point>,
     /// The waypoint to go to [m].
@@ -118,13 +118,17 @@ impl<'a> Waypoints<'a> {
     /// A waypoint of the route by its number, in the frame of the odometry.
     fn waypoint(&self, state: &State, number: u8) -> Option<Waypoint> {
         let waypoint = *self.route.waypoints().get(usize::from(number))?;
-        let Some((frame, (sin, cos))) = state.frame.filter(|_| self.route.relative) else {
+        let Some(frame) = &state.frame else {
             return Some(waypoint);
         };
-        let turned = |heading_rad| wrap_angle(frame.heading_rad + heading_rad);
+        if !self.route.relative {
+            return Some(waypoint);
+        }
+        let (x_m, y_m) = frame.to_world(waypoint.x_m, waypoint.y_m);
+        let turned = |heading_rad| wrap_angle(frame.pose.heading_rad + heading_rad);
         Some(Waypoint {
-            x_m: frame.x_m + cos * waypoint.x_m - sin * waypoint.y_m,
-            y_m: frame.y_m + sin * waypoint.x_m + cos * waypoint.y_m,
+            x_m,
+            y_m,
             heading_rad: waypoint.heading_rad.map(turned),
         })
     }
@@ -155,9 +159,9 @@ impl<'a> Waypoints<'a> {
 
     /// Fixes the line to the next waypoint: from the one before, if the robot is there.
     fn plan(&self, state: &mut State, pose: &Pose) {
-        state
-            .frame
-            .get_or_insert_with(|| (*pose, sin_cos(pose.heading_rad)));
+        if state.frame.is_none() {
+            state.frame = Some(Transform::of(*pose));
+        }
         let Some(waypoint) = self.waypoint(state, state.next) else {
             return;
         };
@@ -172,7 +176,7 @@ impl<'a> Waypoints<'a> {
         } else if self.pursuit.is_some() {
             state.enter(Phase::Pursue);
         } else {
-            state.turn_to(Phase::Turn, state.segment.heading_rad);
+            state.turn_to(Phase::Turn, state.segment.heading_rad());
         }
     }
 

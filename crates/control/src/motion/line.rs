@@ -11,9 +11,9 @@
 
 use super::{CREEP_M_S, Stop, StopState, Stopping};
 use crate::estimate::Estimate;
-use crate::math::{abs, atan2, clamp, max, min, sin_cos, sqrt, wrap_angle};
+use crate::math::{abs, atan2, clamp, max, min, sqrt, wrap_angle};
 use crate::params::{ParamId, Params};
-use crate::types::{Drive, Pose, TICK_S};
+use crate::types::{Drive, Pose, TICK_S, Transform};
 
 /// Largest angle at which the robot heads for the line [rad]: 30 degrees.
 const MOST_APPROACH_RAD: f32 = 0.52;
@@ -25,14 +25,8 @@ const SLOW_RAD: f32 = 0.35;
 /// A straight piece of way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Segment {
-    /// Its start [m].
-    pub x_m: f32,
-    /// Its start [m].
-    pub y_m: f32,
-    /// Its direction [rad].
-    pub heading_rad: f32,
-    /// Sine and cosine of its direction.
-    facing: (f32, f32),
+    /// Its start and its direction.
+    start: Transform,
     /// Its length [m].
     pub length_m: f32,
 }
@@ -41,38 +35,32 @@ impl Segment {
     /// From one point to another. Its direction is 0 when they are one.
     pub fn between(from: (f32, f32), to: (f32, f32)) -> Self {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        let heading_rad = atan2(dy, dx);
-        Self {
+        let start = Pose {
             x_m: from.0,
             y_m: from.1,
-            heading_rad,
-            facing: sin_cos(heading_rad),
-            length_m: sqrt(dx * dx + dy * dy),
-        }
+            heading_rad: atan2(dy, dx),
+        };
+        Self::ahead(&start, sqrt(dx * dx + dy * dy))
     }
 
     /// From where the robot is, the way it looks.
     pub fn ahead(pose: &Pose, length_m: f32) -> Self {
         Self {
-            x_m: pose.x_m,
-            y_m: pose.y_m,
-            heading_rad: pose.heading_rad,
-            facing: sin_cos(pose.heading_rad),
+            start: Transform::of(*pose),
             length_m,
         }
     }
 
-    /// How far along it a point is, and how far to the left of it [m].
-    pub fn place(&self, x_m: f32, y_m: f32) -> (f32, f32) {
-        let (sin, cos) = self.facing;
-        let (dx, dy) = (x_m - self.x_m, y_m - self.y_m);
-        (cos * dx + sin * dy, cos * dy - sin * dx)
+    /// Its direction [rad].
+    #[inline]
+    pub fn heading_rad(&self) -> f32 {
+        self.start.pose.heading_rad
     }
 
-    /// The point this far along it [m].
-    pub fn point(&self, along_m: f32) -> (f32, f32) {
-        let (sin, cos) = self.facing;
-        (self.x_m + along_m * cos, self.y_m + along_m * sin)
+    /// How far along it a point is, and how far to the left of it [m].
+    #[inline]
+    pub fn place(&self, x_m: f32, y_m: f32) -> (f32, f32) {
+        self.start.to_local(x_m, y_m)
     }
 }
 
@@ -143,7 +131,7 @@ impl Line {
             -MOST_APPROACH_RAD,
             MOST_APPROACH_RAD,
         );
-        let heading_ref_rad = wrap_angle(segment.heading_rad - approach_rad);
+        let heading_ref_rad = wrap_angle(segment.heading_rad() - approach_rad);
         let mut step = LineStep {
             drive: Drive::Release,
             heading_ref_rad,

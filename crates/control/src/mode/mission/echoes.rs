@@ -62,6 +62,12 @@ pub(super) struct Echo {
 }
 
 impl Echo {
+    const NONE: Self = Self {
+        at: Place { x_mm: 0, y_mm: 0 },
+        axis: 0,
+        belief: 0,
+    };
+
     /// Where it is, if there is a point.
     #[inline]
     pub(super) fn place(&self) -> Option<Place> {
@@ -126,9 +132,10 @@ pub(super) struct Echoes {
 }
 
 impl Default for Echoes {
+    #[inline]
     fn default() -> Self {
         Self {
-            points: [Echo::default(); CAPACITY],
+            points: [Echo::NONE; CAPACITY],
         }
     }
 }

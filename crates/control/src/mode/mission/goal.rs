@@ -152,8 +152,8 @@ impl Mission {
         state.segment = Segment::between((pose.x_m, pose.y_m), goal_m);
         state.line = LineState::default();
         state.turn = TurnState::default();
-        state.heading_ref_rad = state.segment.heading_rad;
-        let error_rad = wrap_angle(state.segment.heading_rad - pose.heading_rad);
+        state.heading_ref_rad = state.segment.heading_rad();
+        let error_rad = wrap_angle(state.segment.heading_rad() - pose.heading_rad);
         state.phase = if abs(error_rad) > spot_rad {
             Phase::InitialTurn
         } else {
@@ -264,7 +264,7 @@ impl Mission {
             }
             _ => {}
         }
-        let error_rad = wrap_angle(state.segment.heading_rad - estimate.pose.heading_rad);
+        let error_rad = wrap_angle(state.segment.heading_rad() - estimate.pose.heading_rad);
         let speed_m_s = min(self.free_m_s(state), SWEEP_M_S);
         if speed_m_s < 0.04 {
             return Drive::Release;

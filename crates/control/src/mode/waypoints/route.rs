@@ -34,19 +34,23 @@ impl Default for Route {
     /// The square of the report: 1 m, counter-clockwise, once.
     fn default() -> Self {
         let mut route = Route::empty(false, false);
-        for (x_m, y_m) in [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)] {
-            // Four of sixteen fit.
-            let _ = route.push(Waypoint {
-                x_m,
-                y_m,
-                heading_rad: None,
-            });
-        }
+        route.push_square();
         route
     }
 }
 
 impl Route {
+    fn push_square(&mut self) {
+        for (x_m, y_m) in [(1u8, 0u8), (1, 1), (0, 1), (0, 0)] {
+            // Four of sixteen fit.
+            let _ = self.push(Waypoint {
+                x_m: f32::from(x_m),
+                y_m: f32::from(y_m),
+                heading_rad: None,
+            });
+        }
+    }
+
     /// A route without waypoints.
     pub fn empty(repeat: bool, relative: bool) -> Self {
         Self {
