@@ -100,7 +100,7 @@ impl Ahead {
     /// Unless `fresh`, a range may be old where one sonar looks ahead now and then only: readings aside count as well, see `deaf_s`.
     fn nearest(&self, estimate: &Estimate, fresh: bool) -> Result<f32, Fault> {
         let mut nearest_m = f32::MAX;
-        for sonar in SonarId::ALL {
+        for &sonar in &SonarId::ALL {
             if !self.has(sonar) {
                 continue;
             }

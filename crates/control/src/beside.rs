@@ -58,7 +58,7 @@ impl Beside {
     /// The side with a wall, the nearer one where there are two; `None` without one in sight of all sonars of that side.
     pub fn side(&self, estimate: &Estimate, stale_s: f32) -> Option<Side> {
         let mut best: Option<(Side, f32)> = None;
-        for side in SIDES {
+        for &side in &SIDES {
             let possible = match self.rig {
                 Rig::Final => true,
                 rig => rig.paired_side() == Some(side),
@@ -82,7 +82,7 @@ impl Beside {
     /// Why one of them does not.
     pub fn nearest_m(&self, side: Side, estimate: &Estimate, stale_s: f32) -> Result<f32, Fault> {
         let mut nearest_m = f32::MAX;
-        for sonar in [SonarId::Left, SonarId::Right] {
+        for &sonar in &[SonarId::Left, SonarId::Right] {
             if self.watches(side, sonar) {
                 nearest_m = min(nearest_m, drivable_m(estimate.range(sonar), stale_s)?);
             }

@@ -15,7 +15,7 @@
 //! if it stands, and gains no speed if it rolls the right way. From rest no wheel waits for the other to break away: the ramp takes both through
 //! it within 30 ms, and holding the first one back made their start more uneven, not less.
 
-use crate::math::{abs, clamp, max, min, round};
+use crate::math::{abs, clamp, is_finite, max, min, round};
 use crate::params::{ParamId, Params};
 use crate::pid::{NotFinite, Pid, PidState};
 use crate::speed::WheelMotion;
@@ -151,7 +151,7 @@ impl DriveLayer {
         let references = match *drive {
             Drive::Release => None,
             Drive::Duty(duty) => {
-                for side in SIDES {
+                for &side in &SIDES {
                     driven.duty[side] = self.wheels[side].open_loop(duty[side], &motion[side])?;
                 }
                 return Ok(driven);
@@ -163,7 +163,7 @@ impl DriveLayer {
             } => Some(params.geometry().wheels_from_body(forward_m_s, yaw_rad_s)),
         };
         let Some(references) = references else {
-            for side in SIDES {
+            for &side in &SIDES {
                 self.wheels[side].release();
             }
             return Ok(driven);
@@ -173,7 +173,7 @@ impl DriveLayer {
             left: self.wheels.left.must_stop(references.left, &motion.left),
             right: self.wheels.right.must_stop(references.right, &motion.right),
         };
-        for side in SIDES {
+        for &side in &SIDES {
             let wheel_loop = params.speed_loop(side);
             driven.duty[side] = self.wheels[side].speed(
                 wheel_loop,
@@ -223,7 +223,7 @@ impl WheelState {
     }
 
     fn open_loop(&mut self, duty: f32, motion: &WheelMotion) -> Result<Duty, NotFinite> {
-        if !duty.is_finite() {
+        if !is_finite(duty) {
             return Err(NotFinite);
         }
         self.release();
@@ -243,7 +243,7 @@ impl WheelState {
         compensation: f32,
         partner_stops: bool,
     ) -> Result<Duty, NotFinite> {
-        if !reference_rad_s.is_finite() {
+        if !is_finite(reference_rad_s) {
             return Err(NotFinite);
         }
         let standstill = abs(reference_rad_s) < STANDSTILL_RAD_S;

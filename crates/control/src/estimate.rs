@@ -100,7 +100,7 @@ impl Estimator {
     ) {
         let geometry = params.geometry();
         let mut wheel_rad = Wheels::both(0.0);
-        for side in SIDES {
+        for &side in &SIDES {
             let motion = self.speed[side].step(&inputs.encoders[side], inputs.now);
             let direction = directions[side];
             estimate.motion[side] = motion;
@@ -181,7 +181,7 @@ impl Estimator {
             .left
             .edges
             .wrapping_add(estimate.motion.right.edges);
-        for sonar in SonarId::ALL {
+        for &sonar in &SonarId::ALL {
             let (filter, range) = (
                 &mut self.ranges[sonar as usize],
                 &mut estimate.ranges[sonar as usize],

@@ -43,6 +43,13 @@ pub const fn abs(x: f32) -> f32 {
     if x.to_bits() > SIGN { -x } else { x }
 }
 
+/// Whether a number is one: neither infinite nor NaN.
+pub const fn is_finite(x: f32) -> bool {
+    // By its exponent, in the upper half of its bits.
+    const EXPONENT: u16 = 0x7F80;
+    (x.to_bits() >> 16) as u16 & EXPONENT != EXPONENT
+}
+
 /// Square root, correctly rounded; 0 for anything that is not positive.
 ///
 /// On the AVR that of its C library, which takes a quarter of the time; elsewhere, where the core has none of its own, digit by digit
@@ -150,7 +157,7 @@ const TWO_PI: [f32; 2] = [4.0 * HALF_PI[0], 4.0 * HALF_PI[1]];
 
 /// An angle as its equal in (-pi, pi] [rad]; 0 for what is not finite.
 pub fn wrap_angle(angle_rad: f32) -> f32 {
-    if !angle_rad.is_finite() {
+    if !is_finite(angle_rad) {
         return 0.0;
     }
     if angle_rad > -PI && angle_rad <= PI {

@@ -4,6 +4,7 @@
 //! defaults are code, not data, so that on the AVR they stay in flash.
 
 use crate::drive::{Feedforward, SpeedLoop};
+use crate::math::is_finite;
 use crate::mode::ModeId;
 use crate::odometry::{Geometry, OdometryErrors};
 use crate::pid::{Gains, Pid};
@@ -283,7 +284,7 @@ impl ParamId {
     /// The value is not finite or outside the limits.
     pub fn check(self, value: f32) -> Result<(), ParamError> {
         let Limits { min, max, .. } = self.limits();
-        if !value.is_finite() {
+        if !is_finite(value) {
             Err(ParamError::NotFinite)
         } else if value < min || value > max {
             Err(ParamError::OutOfRange)
@@ -344,7 +345,7 @@ impl Params {
 
     /// Sets all of them to their defaults.
     pub fn reset(&mut self) {
-        for id in ParamId::ALL {
+        for &id in &ParamId::ALL {
             self.values[id as usize] = id.limits().default;
         }
         self.derive();

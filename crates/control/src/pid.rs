@@ -8,7 +8,7 @@
 //! The integral is kept in units of the output, so new gains take effect without a bump. The derivative acts on the measurement:
 //! a step of the reference gives no kick. Source: Astrom & Hagglund, *Advanced PID Control*, 2006, chapters 3 and 13.
 
-use crate::math::clamp;
+use crate::math::{clamp, is_finite};
 
 /// Gains of a PID controller; the output's unit per the error's unit, and seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -59,7 +59,7 @@ impl Pid {
         dt_s: f32,
     ) -> Result<f32, NotFinite> {
         let error = reference - measurement;
-        let finite = error.is_finite() && feedforward.is_finite() && dt_s.is_finite() && dt_s > 0.0;
+        let finite = is_finite(error) && is_finite(feedforward) && is_finite(dt_s) && dt_s > 0.0;
         if !finite {
             return Err(NotFinite);
         }
@@ -76,7 +76,7 @@ impl Pid {
             grows += (output - free) / self.tracking_s;
         }
         let integral = state.integral + grows * dt_s;
-        if !output.is_finite() || !integral.is_finite() {
+        if !is_finite(output) || !is_finite(integral) {
             return Err(NotFinite);
         }
         // However strong the tracking, the integral alone never asks for more than the whole span.
@@ -96,7 +96,7 @@ impl Pid {
         feedforward: f32,
     ) {
         let integral = output - feedforward - self.gains.kp * (reference - measurement);
-        if integral.is_finite() {
+        if is_finite(integral) {
             *state = PidState {
                 integral,
                 measurement: Some(measurement),

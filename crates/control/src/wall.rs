@@ -13,7 +13,7 @@
 //! Two sonars side by side thus give the bearing, as the report's trigonometry does, exact also for equal readings;
 //! one sonar and odometry do so over some way, and a sonar on the servo by looking to both sides. Derivation: docs/theory/wall.md.
 
-use crate::math::{abs, atan2, clamp, max, min, rotate, sin_cos, sqrt, wrap_angle};
+use crate::math::{abs, atan2, clamp, is_finite, max, min, rotate, sin_cos, sqrt, wrap_angle};
 use crate::rig::View;
 
 /// Most that a beam's edge may meet the wall off its normal, seen from the beam's edge [rad]; beyond, there is no echo.
@@ -172,7 +172,7 @@ impl WallFilter {
 
     /// Takes a reading; says whether it was believed.
     pub fn take(&mut self, view: &View, beam_rad: f32, range_m: f32) -> bool {
-        if !self.known || !range_m.is_finite() {
+        if !self.known || !is_finite(range_m) {
             return false;
         }
         let Some((expected_m, hd, hb)) = self.expect(view, beam_rad) else {

@@ -18,7 +18,7 @@ impl Governor {
     pub(crate) fn pass(&mut self, wanted: Wheels<Duty>, armed: bool) -> Wheels<Duty> {
         let mut passed = Wheels::both(Duty::RELEASED);
         if armed {
-            for side in SIDES {
+            for &side in &SIDES {
                 let (was, is) = (self.last[side].counts(), wanted[side].counts());
                 if was.signum() * is.signum() >= 0 {
                     passed[side] = wanted[side];

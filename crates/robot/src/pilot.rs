@@ -116,7 +116,7 @@ impl Pilot {
 
     /// Of the sonars that are wanted, those that the rig has.
     fn carried(&self, mut wanted: [bool; 3]) -> [bool; 3] {
-        for sonar in SonarId::ALL {
+        for &sonar in &SonarId::ALL {
             wanted[sonar as usize] &= self.params.carries(sonar);
         }
         wanted
@@ -319,11 +319,11 @@ impl Pilot {
     }
 
     /// Sets several parameters, or none.
-    pub(crate) fn set_params(&mut self, values: [(ParamId, f32); 3]) -> Result<f32, Refusal> {
-        for (id, value) in values {
+    pub(crate) fn set_params(&mut self, values: &[(ParamId, f32)]) -> Result<f32, Refusal> {
+        for &(id, value) in values {
             id.check(value).map_err(refusal_of_param)?;
         }
-        for (id, value) in values {
+        for &(id, value) in values {
             self.params.set(id, value).map_err(refusal_of_param)?;
         }
         Ok(0.0)

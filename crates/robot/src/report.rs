@@ -4,6 +4,7 @@
 //! changed, status twice a second and at once when it changes, events and acknowledgements as they come. In text: the original's row for the mode whenever the link has
 //! taken the row before, at most ten a second. The answer is in the language in which the robot was last addressed.
 
+use rumbo_control::math::is_finite;
 use rumbo_control::mode::ModeId;
 use rumbo_control::{AgedRange, Duty, Micros, Pose, Wheels};
 use rumbo_wire::text::{
@@ -233,7 +234,7 @@ impl Reporter {
     fn say_heading_ref(&mut self, heading_rad: f32) {
         self.heading_in = self.heading_in.saturating_sub(1);
         let sent = self.heading_in == 0
-            && heading_rad.is_finite()
+            && is_finite(heading_rad)
             && heading_rad != self.last_heading_ref_rad
             && self.say(Priority::Telemetry, &FromRobot::HeadingRef(heading_rad));
         if sent {

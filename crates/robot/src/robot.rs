@@ -253,7 +253,7 @@ impl Robot {
             Translated::Command(command) => self.apply(&command),
             Translated::Params(values) => {
                 self.store.changed();
-                self.pilot.set_params(values)
+                self.pilot.set_params(&values)
             }
         }
     }

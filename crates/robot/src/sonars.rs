@@ -38,7 +38,7 @@ impl PingSchedule {
         }
         let mut longest = OWN_TICKS - 1;
         let mut chosen = None;
-        for sonar in SonarId::ALL {
+        for &sonar in &SonarId::ALL {
             let ticks = self.since[sonar as usize];
             if wanted[sonar as usize] && ticks > longest {
                 longest = ticks;

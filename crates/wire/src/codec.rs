@@ -3,7 +3,7 @@
 //! Decoding checks lengths and numbers of enumerations, never plausibility: a value that is not finite arrives as
 //! such, and who applies it refuses it with a reason.
 
-use rumbo_control::math::round;
+use rumbo_control::math::{is_finite, round};
 use rumbo_control::mode::{ModeId, Movement};
 use rumbo_control::rig::Rig;
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Wheels};
@@ -11,7 +11,7 @@ use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Wheels};
 use crate::bytes::{Reader, Writer};
 use crate::frame::{Body, Frame, Kind};
 use crate::message::*;
-use crate::quantise::{from_i12, from_i16, from_turn, to_i12, to_i16, to_turn};
+use crate::quantise::{from_i12, from_i16, from_turn, limited, to_i12, to_i16, to_turn};
 
 /// Why a frame that passed the CRC is no message: the other end speaks something else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,7 +132,7 @@ const SPEED_PER_RAD_S: f32 = 50.0;
 /// Ranges are sent in 2.5 mm: up to 2.5525 m.
 const RANGE_PER_M: f32 = 400.0;
 /// Ten bits, of which the two highest codes mean something else.
-const RANGE_MAX: u32 = 1_021;
+const RANGE_MAX: i16 = 1_021;
 const RANGE_CLEAR: u32 = 1_022;
 const RANGE_FAULTY: u32 = 1_023;
 
@@ -151,7 +151,7 @@ fn put_telemetry(to: &mut Writer, telemetry: &Telemetry) -> Kind {
     } = telemetry;
     to.put(t_ms.to_le_bytes());
     // One marked value makes the whole pose unknown.
-    let known = pose.x_m.is_finite() && pose.y_m.is_finite() && pose.heading_rad.is_finite();
+    let known = is_finite(pose.x_m) && is_finite(pose.y_m) && is_finite(pose.heading_rad);
     let pose = if known {
         *pose
     } else {
@@ -165,7 +165,7 @@ fn put_telemetry(to: &mut Writer, telemetry: &Telemetry) -> Kind {
     to.put(to_i16(pose.y_m, POSITION_PER_M).to_le_bytes());
     to.put(to_turn(pose.heading_rad).to_le_bytes());
     let [earlier_rad_s, now_rad_s] = wheel_rad_s;
-    for sample in [earlier_rad_s, now_rad_s, wheel_ref_rad_s] {
+    for sample in &[earlier_rad_s, now_rad_s, wheel_ref_rad_s] {
         let [left_low, left_high] = to_i12(sample.left, SPEED_PER_RAD_S).to_le_bytes();
         let right = to_i12(sample.right, SPEED_PER_RAD_S);
         let [right_low, right_high] = (right << 4).to_le_bytes();
@@ -179,12 +179,12 @@ fn put_telemetry(to: &mut Writer, telemetry: &Telemetry) -> Kind {
         | u32::from(*faulted) << 23;
     let [low, middle, high, _] = bits.to_le_bytes();
     to.put([low, middle, high]);
-    let servo_rad = if servo_rad.is_finite() {
-        *servo_rad
+    let servo = if is_finite(*servo_rad) {
+        limited(servo_rad * SERVO_PER_RAD, 127)
     } else {
-        0.0
+        0
     };
-    to.put((round(servo_rad * SERVO_PER_RAD).clamp(-127, 127) as i8).to_le_bytes());
+    to.put((servo as i8).to_le_bytes());
     let [left, right, front] = ranges;
     let codes =
         range_code(left.range) | range_code(right.range) << 10 | range_code(front.range) << 20;
@@ -237,9 +237,11 @@ fn telemetry(from: &mut Reader) -> Result<Telemetry, Malformed> {
 
 fn range_code(range: Range) -> u32 {
     match range {
-        Range::Valid(range_m) if range_m.is_finite() => round(range_m * RANGE_PER_M)
-            .clamp(0, RANGE_MAX.cast_signed())
-            .cast_unsigned(),
+        Range::Valid(range_m) if is_finite(range_m) => u32::from(
+            limited(range_m * RANGE_PER_M, RANGE_MAX)
+                .max(0)
+                .unsigned_abs(),
+        ),
         Range::Clear => RANGE_CLEAR,
         Range::Valid(_) | Range::Faulty => RANGE_FAULTY,
     }
@@ -261,7 +263,7 @@ const SERVO_PER_RAD: f32 = 180.0 / core::f32::consts::PI;
 
 fn put_status(to: &mut Writer, status: &Status) -> Kind {
     let battery = match status.battery_v {
-        Some(volts) if volts.is_finite() => round(volts * BATTERY_PER_V).clamp(0, 65_534) as u16,
+        Some(volts) if is_finite(volts) => round(volts * BATTERY_PER_V).clamp(0, 65_534) as u16,
         _ => BATTERY_UNKNOWN,
     };
     to.put([

@@ -1,7 +1,7 @@
 //! Decimal numbers to and from text, small and without `core::fmt` or `core::num::dec2flt`: those cost tens of
 //! kilobytes on the AVR, and the first misprints there.
 
-use rumbo_control::math::{from_u32, round};
+use rumbo_control::math::{from_u32, is_finite, round};
 
 /// Text being written into a fixed buffer. What does not fit is cut; the longest line does (tested in `text`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +37,7 @@ impl<const N: usize> Text<N> {
 
     /// A float with at most two decimals, trailing zeros left out; saturates to +-41943.03. `nan` where not finite.
     pub(crate) fn push_hundredths(&mut self, value: f32) {
-        if !value.is_finite() {
+        if !is_finite(value) {
             for byte in *b"nan" {
                 self.push(byte);
             }
@@ -112,9 +112,7 @@ pub(crate) fn parse(text: &[u8]) -> Option<f32> {
         exponent += parse_exponent(tail)?;
     }
     let value = scale(from_u32(mantissa), exponent);
-    value
-        .is_finite()
-        .then_some(if negative { -value } else { value })
+    is_finite(value).then_some(if negative { -value } else { value })
 }
 
 fn split_sign(text: &[u8]) -> (bool, &[u8]) {

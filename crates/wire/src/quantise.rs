@@ -2,14 +2,14 @@
 
 use core::f32::consts::TAU;
 
-use rumbo_control::math::round;
+use rumbo_control::math::{is_finite, round};
 
 /// Code of a value that is not finite, in a field of 16 bits.
 const NOT_FINITE_16: i16 = i16::MIN;
 
 /// `value` in units of `1 / per_unit`, as 16 bits: saturates to +-32,767.
 pub(crate) fn to_i16(value: f32, per_unit: f32) -> i16 {
-    if !value.is_finite() {
+    if !is_finite(value) {
         return NOT_FINITE_16;
     }
     limited(value * per_unit, 32_767)
@@ -25,7 +25,7 @@ pub(crate) fn from_i16(code: i16, per_unit: f32) -> f32 {
 }
 
 /// `value` as the nearest integer within +-`most`.
-fn limited(value: f32, most: i16) -> i16 {
+pub(crate) fn limited(value: f32, most: i16) -> i16 {
     match i16::try_from(round(value)) {
         Ok(code) if code > most => most,
         Ok(code) if code < -most => -most,
@@ -40,7 +40,7 @@ const NOT_FINITE_12: i16 = -2_048;
 
 /// `value` in units of `1 / per_unit`, as 12 bits: saturates to +-2,047.
 pub(crate) fn to_i12(value: f32, per_unit: f32) -> u16 {
-    let code = if value.is_finite() {
+    let code = if is_finite(value) {
         limited(value * per_unit, 2_047)
     } else {
         NOT_FINITE_12

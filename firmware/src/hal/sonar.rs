@@ -194,7 +194,7 @@ impl Listener {
 
     /// What became of a ping, once, at the tick `tick`. It may have left late, or not yet.
     pub fn read(&mut self, tick: Stamp) -> Option<(SonarId, Echo)> {
-        for sonar in SonarId::ALL {
+        for &sonar in &SonarId::ALL {
             let waiting = &mut self.waiting[sonar as usize];
             if *waiting && let Some(echo) = echo(sonar, tick) {
                 *waiting = false;

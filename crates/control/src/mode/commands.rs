@@ -6,6 +6,7 @@ use super::{
     ActiveMode, Level, MAX_DISTANCE_M, MAX_WALL_M, MAX_WHEEL_RAD_S, MIN_DISTANCE_M, MIN_WALL_M,
     Movement, SetpointError, manual,
 };
+use crate::math::is_finite;
 use crate::types::Wheels;
 
 impl ActiveMode {
@@ -134,7 +135,7 @@ impl ActiveMode {
 
 /// The value, if it is finite and in range.
 pub(super) fn within(value: f32, min: f32, max: f32) -> Result<f32, SetpointError> {
-    if !value.is_finite() {
+    if !is_finite(value) {
         Err(SetpointError::NotFinite)
     } else if value < min || value > max {
         Err(SetpointError::OutOfRange)

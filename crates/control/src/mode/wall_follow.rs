@@ -157,7 +157,7 @@ impl WallFollow {
     /// Starts the estimate from the ranges that were filtered while the robot stood.
     fn begin(&self, state: &mut State, side: Side, at: &Estimate) -> Result<(), Fault> {
         let mut started = false;
-        for sonar in [SonarId::Left, SonarId::Right] {
+        for &sonar in &[SonarId::Left, SonarId::Right] {
             let Some(view) = self.sonars.view(side, sonar) else {
                 continue;
             };

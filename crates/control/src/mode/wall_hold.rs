@@ -97,7 +97,7 @@ impl WallHold {
         }
         state.waited_s += TICK_S;
         let (mut sum_m, mut count) = (0.0, 0.0);
-        for sonar in [SonarId::Left, SonarId::Right] {
+        for &sonar in &[SonarId::Left, SonarId::Right] {
             if sonars.watches(side, sonar) {
                 let Some(median_m) = state.median_m(sonar) else {
                     return if state.waited_s > PATIENCE_S {

@@ -41,7 +41,7 @@ impl Default for Route {
 
 impl Route {
     fn push_square(&mut self) {
-        for (x_m, y_m) in [(1u8, 0u8), (1, 1), (0, 1), (0, 0)] {
+        for &(x_m, y_m) in &[(1u8, 0u8), (1, 1), (0, 1), (0, 0)] {
             // Four of sixteen fit.
             let _ = self.push(Waypoint {
                 x_m: f32::from(x_m),
