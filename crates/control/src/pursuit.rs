@@ -17,7 +17,7 @@ use crate::estimate::Estimate;
 use crate::math::{abs, atan2, clamp, from_u32, max, min, round, sqrt, wrap_angle};
 use crate::motion::{CREEP_M_S, Stop, StopState, Stopping};
 use crate::params::{ParamId, Params};
-use crate::types::{Drive, Pose, TICK_S};
+use crate::types::{Drive, Pose, TICK_S, Transform};
 
 /// A place in the world [m].
 pub type Point = (f32, f32);
@@ -95,6 +95,7 @@ pub struct PursuitStep {
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     from: Point,
+    to: Point,
     /// Its direction; the robot's own where it has no length.
     unit: Point,
     length_m: f32,
@@ -103,17 +104,18 @@ struct Piece {
 }
 
 impl Piece {
-    fn new(from: Point, to: Point, pose: &Pose, fallback: Point) -> Self {
+    fn new(from: &Point, to: &Point, pose: &Pose, fallback: &Point) -> Self {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length_m = sqrt(dx * dx + dy * dy);
         let unit = if length_m < NO_LENGTH_M {
-            fallback
+            *fallback
         } else {
             (dx / length_m, dy / length_m)
         };
         let (px, py) = (pose.x_m - from.0, pose.y_m - from.1);
         Self {
-            from,
+            from: *from,
+            to: *to,
             unit,
             length_m,
             along_m: px * unit.0 + py * unit.1,
@@ -126,6 +128,11 @@ impl Piece {
             self.from.0 + along_m * self.unit.0,
             self.from.1 + along_m * self.unit.1,
         )
+    }
+
+    /// The piece that follows, up to another point.
+    fn next(&self, to: &Point, pose: &Pose) -> Self {
+        Self::new(&self.to, to, pose, &self.unit)
     }
 
     /// Distance of the place from the piece [m].
@@ -158,7 +165,8 @@ impl Pursuit {
         limit_m_s: f32,
         path: impl Fn(u8) -> Option<Point>,
     ) -> PursuitStep {
-        let pose = &estimate.pose;
+        let robot = Transform::of(estimate.pose);
+        let pose = &robot.pose;
         let mut step = PursuitStep {
             drive: Drive::Release,
             heading_ref_rad: pose.heading_rad,
@@ -171,18 +179,31 @@ impl Pursuit {
             return step;
         };
         let from = *state.from.get_or_insert((pose.x_m, pose.y_m));
-        let ahead = crate::math::sin_cos(pose.heading_rad);
-        let piece = Piece::new(from, to, pose, (ahead.1, ahead.0));
+        let mut piece = Piece::new(&from, &to, pose, &(robot.cos, robot.sin));
         step.cross_m = piece.cross_m;
         let lookahead_m = self.lookahead_m(piece.along_m, estimate.forward_m_s);
-        step.passed = is_passed(&piece, to, path(1), pose, lookahead_m);
+        step.passed = is_passed(&piece, path(1), pose, lookahead_m);
         if step.passed {
             state.from = Some(to);
         }
-        let (target, left_m) = look(&piece, to, pose, lookahead_m, self.far_m(), &path);
-        let (x_m, y_m) = pose.to_local(target.0, target.1);
+        let (target, left_m) = look(&mut piece, pose, lookahead_m, self.far_m(), &path);
+        let target = robot.to_local(target.0, target.1);
+        self.head_for(&mut step, state, estimate, &target, left_m, limit_m_s);
+        step
+    }
+
+    /// Towards a point as the robot sees it, with this way left to the end.
+    fn head_for(
+        &self,
+        step: &mut PursuitStep,
+        state: &mut PursuitState,
+        estimate: &Estimate,
+        &(x_m, y_m): &Point,
+        left_m: f32,
+        limit_m_s: f32,
+    ) {
         let bearing_rad = atan2(y_m, x_m);
-        step.heading_ref_rad = wrap_angle(pose.heading_rad + bearing_rad);
+        step.heading_ref_rad = wrap_angle(estimate.pose.heading_rad + bearing_rad);
         let v_m_s = estimate.forward_m_s;
         let stopping = self
             .stop
@@ -190,7 +211,7 @@ impl Pursuit {
         step.done = stopping == Stopping::Done;
         if stopping != Stopping::Drive || limit_m_s <= 0.0 {
             state.speed_m_s = max(v_m_s, 0.0);
-            return step;
+            return;
         }
         let turn_rad = if estimate.standing() {
             TURN_STANDING_RAD
@@ -200,7 +221,7 @@ impl Pursuit {
         if abs(bearing_rad) > turn_rad {
             step.turn = true;
             state.speed_m_s = 0.0;
-            return step;
+            return;
         }
         let most = STEERING_SHARE / self.half_base_m;
         let square = max(x_m * x_m + y_m * y_m, self.lookahead_m * self.lookahead_m);
@@ -210,7 +231,6 @@ impl Pursuit {
             forward_m_s,
             yaw_rad_s: curvature * forward_m_s,
         };
-        step
     }
 
     /// Way left from which the end does not matter yet [m]: twice what stopping takes.
@@ -251,46 +271,41 @@ impl Pursuit {
 }
 
 /// Whether the robot is nearer to the next piece than to this one, or beyond its end. The last piece is never passed.
-fn is_passed(piece: &Piece, to: Point, next: Option<Point>, pose: &Pose, lookahead_m: f32) -> bool {
+fn is_passed(piece: &Piece, next: Option<Point>, pose: &Pose, lookahead_m: f32) -> bool {
     let Some(next) = next else {
         return false;
     };
     let left_m = piece.length_m - piece.along_m;
     left_m <= 0.0
-        || (left_m < lookahead_m
-            && Piece::new(to, next, pose, piece.unit).distance_m() < piece.distance_m())
+        || (left_m < lookahead_m && piece.next(&next, pose).distance_m() < piece.distance_m())
 }
 
-/// The point this far along the path from the robot's place on it, and the way left to the end; of an end farther than
+/// The point this far along the path from the robot's place on its first piece, and the way left to the end; of an end farther than
 /// `far_m` only that it is farther.
-// In its only caller: the AVR has no registers for all its arguments.
-#[inline(always)]
 fn look(
-    first: &Piece,
-    to: Point,
+    piece: &mut Piece,
     pose: &Pose,
     lookahead_m: f32,
     far_m: f32,
     path: &impl Fn(u8) -> Option<Point>,
 ) -> (Point, f32) {
-    let start_m = max(first.along_m, 0.0);
-    let (mut piece, mut end) = (*first, to);
+    let start_m = piece.along_m;
+    let ahead_m = max(start_m, 0.0) + lookahead_m;
     let (mut before_m, mut found) = (0.0, None);
     for number in 1..=MOST_PIECES {
         let next = path(number);
-        let wanted_m = start_m + lookahead_m - before_m;
+        let wanted_m = ahead_m - before_m;
         if found.is_none() && (wanted_m <= piece.length_m || next.is_none()) {
             found = Some(piece.point(wanted_m));
         }
-        let left_m = before_m + piece.length_m - first.along_m;
+        let left_m = before_m + piece.length_m - start_m;
         let Some(next) = next.filter(|_| found.is_none() || left_m < far_m) else {
-            return (found.unwrap_or(end), left_m);
+            return (found.unwrap_or(piece.to), left_m);
         };
         before_m += piece.length_m;
-        piece = Piece::new(end, next, pose, piece.unit);
-        end = next;
+        *piece = piece.next(&next, pose);
     }
-    (found.unwrap_or(end), far_m)
+    (found.unwrap_or(piece.to), far_m)
 }
 
 #[cfg(test)]

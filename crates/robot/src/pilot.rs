@@ -12,7 +12,7 @@ use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, Movement, SetpointE
 use rumbo_control::params::{ParamError, ParamId, Params};
 use rumbo_control::rig::Rig;
 use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, SonarId, Wheels};
-use rumbo_wire::Refusal;
+use rumbo_wire::{Refusal, Telemetry};
 
 use crate::encoders::EncoderWatch;
 use crate::report::Signals;
@@ -192,14 +192,17 @@ impl Pilot {
     /// What telemetry shows of the last tick.
     pub(crate) fn signals(&self) -> Signals {
         Signals {
-            pose: self.estimate.pose,
-            wheel_rad_s: self.estimate.wheel_rad_s,
-            wheel_ref_rad_s: self.wheel_ref_rad_s,
-            duty: self.duty,
-            state: self.action.state,
-            servo_rad: self.estimate.servo_rad,
+            telemetry: Telemetry {
+                pose: self.estimate.pose,
+                wheel_rad_s: [self.estimate.wheel_rad_s; 2],
+                wheel_ref_rad_s: self.wheel_ref_rad_s,
+                duty: self.duty,
+                state: self.action.state,
+                servo_rad: self.estimate.servo_rad,
+                ranges: self.estimator.shown(&self.estimate),
+                ..Telemetry::default()
+            },
             heading_ref_rad: self.action.heading_ref_rad,
-            ranges: self.estimator.shown(&self.estimate),
         }
     }
 

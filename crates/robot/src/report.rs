@@ -6,7 +6,7 @@
 
 use rumbo_control::math::is_finite;
 use rumbo_control::mode::ModeId;
-use rumbo_control::{AgedRange, Duty, Micros, Pose, Wheels};
+use rumbo_control::{Duty, Micros, Pose, Wheels};
 use rumbo_wire::text::{
     CM_PER_M, DistanceRow, MissionRow, RAD_PER_DEG, RAD_S_PER_RPM, Row, SpeedRow, WaypointsRow,
     cm_from_range,
@@ -38,17 +38,19 @@ pub(crate) enum Language {
     Text,
 }
 
-/// What a tick found out, for telemetry.
+/// What a tick found out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Signals {
-    pub(crate) pose: Pose,
-    pub(crate) wheel_rad_s: Wheels<f32>,
-    pub(crate) wheel_ref_rad_s: Wheels<f32>,
-    pub(crate) duty: Wheels<Duty>,
-    pub(crate) state: u8,
-    pub(crate) servo_rad: f32,
+    /// For telemetry, but for the time, the earlier speeds, and what the status tells.
+    pub(crate) telemetry: Telemetry,
     pub(crate) heading_ref_rad: f32,
-    pub(crate) ranges: [AgedRange; 3],
+}
+
+impl Signals {
+    fn wheel_rad_s(&self) -> Wheels<f32> {
+        let [_, now_rad_s] = self.telemetry.wheel_rad_s;
+        now_rad_s
+    }
 }
 
 /// Fills the outbox.
@@ -178,11 +180,11 @@ impl Reporter {
         match self.telemetry_in {
             0 => {
                 self.telemetry_in = TELEMETRY_TICKS;
-                self.say_telemetry(t_ms, status, &signals());
+                self.say_telemetry(t_ms, status, signals());
                 true
             }
             SAMPLE_TICKS => {
-                self.earlier_rad_s = signals().wheel_rad_s;
+                self.earlier_rad_s = signals().wheel_rad_s();
                 false
             }
             _ => self.say_what_is_due(t_ms, status),
@@ -211,20 +213,13 @@ impl Reporter {
         false
     }
 
-    fn say_telemetry(&mut self, t_ms: u16, status: &Status, signals: &Signals) {
+    fn say_telemetry(&mut self, t_ms: u16, status: &Status, signals: Signals) {
         self.say_heading_ref(signals.heading_ref_rad);
-        let telemetry = Telemetry {
-            t_ms,
-            pose: signals.pose,
-            wheel_rad_s: [self.earlier_rad_s, signals.wheel_rad_s],
-            wheel_ref_rad_s: signals.wheel_ref_rad_s,
-            duty: signals.duty,
-            state: signals.state,
-            armed: status.armed,
-            faulted: status.fault.is_some(),
-            servo_rad: signals.servo_rad,
-            ranges: signals.ranges,
-        };
+        let mut telemetry = signals.telemetry;
+        telemetry.t_ms = t_ms;
+        telemetry.wheel_rad_s[0] = self.earlier_rad_s;
+        telemetry.armed = status.armed;
+        telemetry.faulted = status.fault.is_some();
         if !self.say(Priority::Telemetry, &FromRobot::Telemetry(telemetry)) {
             self.dropped = self.dropped.wrapping_add(1);
         }
@@ -295,16 +290,17 @@ fn is_news(status: &Status, before: &Status) -> bool {
 /// The original's row for the mode.
 fn row(dt_ms: u32, status: &Status, signals: &Signals) -> Row {
     let mode = status.mode as u8;
-    let pwm = signals.duty.map(Duty::counts);
+    let told = &signals.telemetry;
+    let pwm = told.duty.map(Duty::counts);
     let rpm = |rad_s: Wheels<f32>| rad_s.map(|rad_s| rad_s / RAD_S_PER_RPM);
-    let (wheel_rpm, reference_rpm) = (rpm(signals.wheel_rad_s), rpm(signals.wheel_ref_rad_s));
+    let (wheel_rpm, reference_rpm) = (rpm(signals.wheel_rad_s()), rpm(told.wheel_ref_rad_s));
     let Pose {
         x_m,
         y_m,
         heading_rad,
-    } = signals.pose;
+    } = told.pose;
     let heading_deg = heading_rad / RAD_PER_DEG;
-    let [left, right, front] = &signals.ranges;
+    let [left, right, front] = &told.ranges;
     let (left_cm, right_cm) = (cm_from_range(left.range), cm_from_range(right.range));
     let front_cm = cm_from_range(front.range);
     match status.mode {
@@ -341,7 +337,7 @@ fn row(dt_ms: u32, status: &Status, signals: &Signals) -> Row {
             x_m,
             y_m,
             heading_deg,
-            state: signals.state,
+            state: told.state,
             right_cm,
             left_cm,
             front_cm,
@@ -394,8 +390,12 @@ mod tests {
         let mut frames = 0;
         for tick in 0..200u16 {
             // A speed that tells the tick it was taken at, in steps that telemetry resolves.
+            let telemetry = Telemetry {
+                wheel_rad_s: [Wheels::both(f32::from(tick) / 10.0); 2],
+                ..Telemetry::default()
+            };
             let signals = Signals {
-                wheel_rad_s: Wheels::both(f32::from(tick) / 10.0),
+                telemetry,
                 ..Signals::default()
             };
             reporter.tick(Micros(0), tick * 10, &Status::default(), || signals);

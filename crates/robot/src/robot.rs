@@ -126,7 +126,7 @@ impl Robot {
     /// The active mode and the state of its machine at the last tick; `None` while the wheels are released.
     pub fn mode_state(&self) -> Option<(ModeId, u8)> {
         let armed = self.supervisor.is_armed();
-        armed.then(|| (self.pilot.mode(), self.pilot.signals().state))
+        armed.then(|| (self.pilot.mode(), self.pilot.signals().telemetry.state))
     }
 
     /// The rest of a tick, which its outputs do not wait for: the mode decides what the next tick is to do; then the robot says what

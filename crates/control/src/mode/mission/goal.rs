@@ -48,25 +48,10 @@ impl Mission {
         estimate: &Estimate,
         goal_m: (f32, f32),
     ) -> Action {
-        let pose = &estimate.pose;
         if state.fresh {
             state.fresh = false;
             state.phase = Phase::Initialise;
         }
-        let (dx, dy) = (goal_m.0 - pose.x_m, goal_m.1 - pose.y_m);
-        let left_m = sqrt(dx * dx + dy * dy);
-        let way = Way {
-            x_m: pose.x_m,
-            y_m: pose.y_m,
-            heading_rad: atan2(dy, dx),
-            facing: if left_m > 0.0 {
-                let per_m = 1.0 / left_m;
-                (dy * per_m, dx * per_m)
-            } else {
-                (0.0, 1.0)
-            },
-            length_m: min(left_m, super::plan::HORIZON_M),
-        };
         let mut action = Action {
             state: state.phase as u8,
             heading_ref_rad: state.heading_ref_rad,
@@ -77,49 +62,37 @@ impl Mission {
             action.unreachable = state.phase == Phase::Unreachable;
             return action;
         }
-        state.age_s += TICK_S;
-        if let Some((_, way_m)) = &mut state.last {
-            *way_m += abs(estimate.rolled_m);
-        }
-        if let Some(detour) = &mut state.detour {
-            detour.way_m += abs(estimate.rolled_m);
-            // Seen from the goal the robot moves along its own bearing, half a turn off.
-            detour.wound_rad += wrap_angle(way.heading_rad - detour.bearing_rad);
-            detour.bearing_rad = way.heading_rad;
-            if abs(detour.wound_rad) > WOUND_RAD {
-                state.phase = Phase::Unreachable;
-            }
-        }
-        let around = state.detour.as_ref().map(|detour| detour.side);
-        let following = following(state.phase);
-        // Every other tick takes a reading into the memory: the plan is for those between.
-        let planned = estimate.reading.is_none()
-            && state
-                .plan
-                .step(&state.echoes, pose, &way, around.filter(|_| following));
-        let ahead = Way {
-            heading_rad: pose.heading_rad,
-            facing: estimate.facing,
-            length_m: 1.0,
-            ..way
-        };
-        // Both read the whole memory: each every other tick, and the longer one where there is no reading to take.
-        state.looks_ahead = !state.looks_ahead && estimate.reading.is_none();
-        if state.looks_ahead {
-            state.gap_m = state
-                .echoes
-                .blocking(&ahead, AHEAD_M, Among::All)
-                .map_or(1.0, |(_, along_m)| along_m - FRONT_M);
-        } else {
-            state.gap_m -= estimate.rolled_m;
-            state.near_m = state
-                .echoes
-                .nearest(pose.x_m, pose.y_m, None)
-                .map_or(f32::MAX, |(_, distance_m)| distance_m);
-        }
+        let (way, left_m) = way_to(&estimate.pose, &goal_m);
+        count(state, estimate, &way);
+        let planned = perceive(state, estimate, &way);
         if state.age_s > self.give_up_s {
             state.phase = Phase::Unreachable;
         }
+        self.act(
+            state,
+            estimate,
+            &goal_m,
+            (&way, left_m),
+            planned,
+            &mut action,
+        );
+        action.look = look(state, estimate);
+        action.state = state.phase as u8;
+        action.heading_ref_rad = state.heading_ref_rad;
+        action
+    }
+
+    /// What the state asks for.
+    fn act(
+        &self,
+        state: &mut State,
+        estimate: &Estimate,
+        goal_m: &(f32, f32),
+        (way, left_m): (&Way, f32),
+        planned: bool,
+        action: &mut Action,
+    ) {
+        let pose = &estimate.pose;
         action.drive = match state.phase {
             Phase::Wait | Phase::Unreachable => Drive::Release,
             Phase::Initialise => {
@@ -127,24 +100,20 @@ impl Mission {
                 state.laps = 0;
                 state.last = None;
                 state.detour = None;
-                self.face(state, pose, goal_m, 0.1);
+                self.face(state, pose, *goal_m, 0.1);
                 Drive::Release
             }
             Phase::InitialTurn => self.turn(state, estimate, way.heading_rad, Phase::GoToGoal),
-            Phase::GoToGoal => self.go(state, estimate, &way, left_m, &mut action),
+            Phase::GoToGoal => self.go(state, estimate, way, left_m, action),
             Phase::SweepRight | Phase::SweepLeft => self.sweep(state, estimate, left_m),
             Phase::Decide => {
-                self.decide(state, pose, goal_m);
+                self.decide(state, pose, *goal_m);
                 Drive::Release
             }
             Phase::AvoidanceTurn | Phase::Seek | Phase::Along | Phase::SafeDistance => {
-                self.around(state, estimate, goal_m, left_m, planned)
+                self.around(state, estimate, *goal_m, left_m, planned)
             }
         };
-        action.look = look(state, estimate);
-        action.state = state.phase as u8;
-        action.heading_ref_rad = state.heading_ref_rad;
-        action
     }
 
     /// Turns to the goal, or drives on where that takes no turn.
@@ -271,4 +240,74 @@ impl Mission {
         }
         self.line.steer(speed_m_s, error_rad)
     }
+}
+
+/// The straight way to the goal, as far as it is judged, and the distance to the goal [m].
+fn way_to(pose: &Pose, goal_m: &(f32, f32)) -> (Way, f32) {
+    let (dx, dy) = (goal_m.0 - pose.x_m, goal_m.1 - pose.y_m);
+    let left_m = sqrt(dx * dx + dy * dy);
+    let way = Way {
+        x_m: pose.x_m,
+        y_m: pose.y_m,
+        heading_rad: atan2(dy, dx),
+        facing: if left_m > 0.0 {
+            let per_m = 1.0 / left_m;
+            (dy * per_m, dx * per_m)
+        } else {
+            (0.0, 1.0)
+        },
+        length_m: min(left_m, super::plan::HORIZON_M),
+    };
+    (way, left_m)
+}
+
+/// Time and way go on. Once around the goal, and a little more, is enough.
+fn count(state: &mut State, estimate: &Estimate, way: &Way) {
+    state.age_s += TICK_S;
+    let rolled_m = abs(estimate.rolled_m);
+    if let Some((_, way_m)) = &mut state.last {
+        *way_m += rolled_m;
+    }
+    if let Some(detour) = &mut state.detour {
+        detour.way_m += rolled_m;
+        // Seen from the goal the robot moves along its own bearing, half a turn off.
+        detour.wound_rad += wrap_angle(way.heading_rad - detour.bearing_rad);
+        detour.bearing_rad = way.heading_rad;
+        if abs(detour.wound_rad) > WOUND_RAD {
+            state.phase = Phase::Unreachable;
+        }
+    }
+}
+
+/// Asks the memory: plans, and looks for what is ahead and what is nearest. Says whether a round of the plan has ended.
+fn perceive(state: &mut State, estimate: &Estimate, way: &Way) -> bool {
+    let pose = &estimate.pose;
+    let around = state.detour.as_ref().map(|detour| detour.side);
+    let following = following(state.phase);
+    // Every other tick takes a reading into the memory: the plan is for those between.
+    let planned = estimate.reading.is_none()
+        && state
+            .plan
+            .step(&state.echoes, pose, way, around.filter(|_| following));
+    // Both read the whole memory: each every other tick, and the longer one where there is no reading to take.
+    state.looks_ahead = !state.looks_ahead && estimate.reading.is_none();
+    if state.looks_ahead {
+        let ahead = Way {
+            heading_rad: pose.heading_rad,
+            facing: estimate.facing,
+            length_m: 1.0,
+            ..*way
+        };
+        state.gap_m = state
+            .echoes
+            .blocking(&ahead, AHEAD_M, Among::All)
+            .map_or(1.0, |(_, along_m)| along_m - FRONT_M);
+    } else {
+        state.gap_m -= estimate.rolled_m;
+        state.near_m = state
+            .echoes
+            .nearest(pose.x_m, pose.y_m, None)
+            .map_or(f32::MAX, |(_, distance_m)| distance_m);
+    }
+    planned
 }
