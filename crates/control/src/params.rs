@@ -1,10 +1,10 @@
 //! The table of parameters: each tunable declared once. Firmware, wire, command line and dashboard derive from it.
 //!
 //! A parameter is a number on the link, a name in files. Names, units and help exist on the host only (feature `names`); limits and
-//! defaults are code, not data, so that on the AVR they stay in flash.
+//! defaults are kept short ([`Decimal`]), since a table of constants lies in the AVR's flash and in its SRAM.
 
 use crate::drive::{Feedforward, SpeedLoop};
-use crate::math::is_finite;
+use crate::math::{is_finite, round};
 use crate::mode::ModeId;
 use crate::odometry::{Geometry, OdometryErrors};
 use crate::pid::{Gains, Pid};
@@ -44,9 +44,9 @@ macro_rules! table {
             /// All parameters, in the order of their numbers.
             pub const ALL: [ParamId; COUNT] = [ $( ParamId::$id, )+ ];
 
-            /// Its limits and default.
-            pub const fn limits(self) -> Limits {
-                match self { $( ParamId::$id => Limits { min: $min, max: $max, default: $default }, )+ }
+            /// The parameter with this number.
+            pub const fn from_number(number: u8) -> Option<ParamId> {
+                match number { $( number if number == ParamId::$id as u8 => Some(ParamId::$id), )+ _ => None }
             }
 
             /// The mode it belongs to; `None` when all modes use it.
@@ -73,6 +73,9 @@ macro_rules! table {
             }
         }
 
+        /// Smallest and largest value and default of each.
+        const LIMITS: [[Decimal; 3]; COUNT] = [ $( [Decimal::of($min), Decimal::of($max), Decimal::of($default)], )+ ];
+
         /// How many parameters there are.
         pub const COUNT: usize = { let names = [ $( $name, )+ ]; names.len() };
 
@@ -97,6 +100,36 @@ const fn fnv(mut hash: u32, bytes: &[u8]) -> u32 {
         i += 1;
     }
     hash
+}
+
+/// A decimal number of few digits in two bytes: `mantissa * 8 + places` for `mantissa / 10^places`.
+#[derive(Clone, Copy)]
+struct Decimal(i16);
+
+impl Decimal {
+    /// A number that has at most four digits, which is seen to when the table is compiled.
+    const fn of(value: f32) -> Self {
+        let (mut places, mut power) = (0, 1.0);
+        while places < 8 {
+            let mantissa = round(value * power);
+            if mantissa as f32 / power == value {
+                assert!(mantissa.unsigned_abs() < 4_096);
+                return Self(mantissa as i16 * 8 + places);
+            }
+            places += 1;
+            power *= 10.0;
+        }
+        panic!("too many digits");
+    }
+
+    /// The number, with the bits that it has in the source: both whole numbers are exact, and what divides them rounds once.
+    fn value(self) -> f32 {
+        let mut power = 1.0;
+        for _ in 0..self.0 & 7 {
+            power *= 10.0;
+        }
+        f32::from(self.0 >> 3) / power
+    }
 }
 
 const FRONT: Option<ModeId> = Some(ModeId::FrontDistance);
@@ -273,9 +306,14 @@ table! {
 }
 
 impl ParamId {
-    /// The parameter with this number.
-    pub fn from_number(number: u8) -> Option<ParamId> {
-        Self::ALL.get(usize::from(number)).copied()
+    /// Its limits and default.
+    pub fn limits(self) -> Limits {
+        let [min, max, default] = &LIMITS[self as usize];
+        Limits {
+            min: min.value(),
+            max: max.value(),
+            default: default.value(),
+        }
     }
 
     /// Whether a value is one that it may have.
@@ -345,8 +383,8 @@ impl Params {
 
     /// Sets all of them to their defaults.
     pub fn reset(&mut self) {
-        for &id in &ParamId::ALL {
-            self.values[id as usize] = id.limits().default;
+        for (value, [_, _, default]) in self.values.iter_mut().zip(&LIMITS) {
+            *value = default.value();
         }
         self.derive();
     }

@@ -148,7 +148,7 @@ impl TextCommand {
             values: 0,
         };
         let name = words.next().ok_or(TextError::UnknownCommand)?;
-        let is = |wanted: &str| name.eq_ignore_ascii_case(wanted.as_bytes());
+        let is = |wanted| is_word(name, wanted);
         let command = if is("ON") {
             TextCommand::On
         } else if is("OFF") {
@@ -243,6 +243,11 @@ pub fn lines_of(command: &Command, mode: ModeId) -> [Option<TextCommand>; 2] {
         }
         _ => [None; 2],
     }
+}
+
+/// Whether a word is the wanted one, in upper or lower case.
+fn is_word(word: &[u8], wanted: &str) -> bool {
+    word.eq_ignore_ascii_case(wanted.as_bytes())
 }
 
 /// Words separated by blanks.
