@@ -383,8 +383,11 @@ impl Params {
 
     /// Sets all of them to their defaults.
     pub fn reset(&mut self) {
-        for (value, [_, _, default]) in self.values.iter_mut().zip(&LIMITS) {
-            *value = default.value();
+        let mut limits = LIMITS.iter();
+        for value in &mut self.values {
+            if let Some([_, _, default]) = limits.next() {
+                *value = default.value();
+            }
         }
         self.derive();
     }

@@ -91,7 +91,11 @@ impl Pilot {
             self.encoders
                 .step(motion, self.duty, self.wheel_ref_rad_s)?;
             let estimate = &self.estimate;
-            self.action = self.mode.step(&self.params, &Situation { estimate })?;
+            let at = Situation { estimate };
+            if let Err(fault) = self.mode.act(&self.params, &at, &mut self.action) {
+                self.action = self.at_rest();
+                return Err(fault);
+            }
         }
         if self.action.new_origin {
             self.estimator.reset_pose();

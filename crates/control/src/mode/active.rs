@@ -167,30 +167,37 @@ impl ActiveMode {
         }
     }
 
-    /// One tick.
+    /// One tick, into an action that asks for nothing yet.
     ///
     /// # Errors
     /// Why the mode cannot go on.
-    pub fn step(&mut self, params: &Params, at: &Situation) -> Result<Action, Fault> {
+    pub fn act(
+        &mut self,
+        params: &Params,
+        at: &Situation,
+        action: &mut Action,
+    ) -> Result<(), Fault> {
         match self {
-            Self::Manual(setpoint) => Manual::new(params, *setpoint).step(&mut (), at),
+            Self::Manual(setpoint) => Manual::new(params, *setpoint).act(&mut (), at, action),
             Self::FrontDistance(distance_m, state) => {
-                FrontDistance::new(params, *distance_m).step(state, at)
+                FrontDistance::new(params, *distance_m).act(state, at, action)
             }
             Self::FrontAlign(distance_m, state) => {
-                FrontAlign::new(params, *distance_m).step(state, at)
+                FrontAlign::new(params, *distance_m).act(state, at, action)
             }
-            Self::WallHold(state) => WallHold::new(params).step(state, at),
+            Self::WallHold(state) => WallHold::new(params).act(state, at, action),
             Self::WallFollow(distance_m, state) => {
-                WallFollow::new(params, *distance_m).step(state, at)
+                WallFollow::new(params, *distance_m).act(state, at, action)
             }
             Self::WheelSpeed(references) => WheelSpeed {
                 references: *references,
             }
-            .step(&mut (), at),
-            Self::StraightLine(rad_s, state) => StraightLine::new(params, *rad_s).step(state, at),
-            Self::Waypoints(route, state) => Waypoints::new(params, route).step(state, at),
-            Self::Mission(task, state) => Mission::new(params, *task).step(state, at),
+            .act(&mut (), at, action),
+            Self::StraightLine(rad_s, state) => {
+                StraightLine::new(params, *rad_s).act(state, at, action)
+            }
+            Self::Waypoints(route, state) => Waypoints::new(params, route).act(state, at, action),
+            Self::Mission(task, state) => Mission::new(params, *task).act(state, at, action),
         }
     }
 }

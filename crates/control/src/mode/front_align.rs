@@ -156,7 +156,12 @@ impl FrontAlign {
 impl Mode for FrontAlign {
     type State = State;
 
-    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
+    fn act(
+        &self,
+        state: &mut Self::State,
+        at: &Situation,
+        action: &mut Action,
+    ) -> Result<(), Fault> {
         let estimate = at.estimate;
         if let Some(reading) = &estimate.reading
             && self.ahead.watches(reading)
@@ -180,7 +185,7 @@ impl Mode for FrontAlign {
             state.turn = TurnState::default();
             state.phase = phase;
         }
-        let drive = match phase {
+        action.drive = match phase {
             Phase::Look | Phase::Hold => Drive::Release,
             Phase::Approach | Phase::Settle => {
                 let uneasy = state.unrest.is_uneasy();
@@ -189,17 +194,13 @@ impl Mode for FrontAlign {
             Phase::Turn => turn.map_or(Drive::Release, |turn| turn.drive),
         };
         let resting = phase == Phase::Hold;
-        let look = self
+        action.look = self
             .ahead
             .look(&mut state.ahead, estimate, wall.bearing_rad, resting);
-        Ok(Action {
-            drive,
-            look,
-            state: phase as u8,
-            heading_ref_rad,
-            reached: phase == Phase::Hold,
-            ..Action::default()
-        })
+        action.state = phase as u8;
+        action.heading_ref_rad = heading_ref_rad;
+        action.reached = resting;
+        Ok(())
     }
 }
 

@@ -142,7 +142,12 @@ impl FrontDistance {
 impl Mode for FrontDistance {
     type State = State;
 
-    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
+    fn act(
+        &self,
+        state: &mut Self::State,
+        at: &Situation,
+        action: &mut Action,
+    ) -> Result<(), Fault> {
         if let Some(reading) = &at.estimate.reading
             && reading.sonar == SonarId::Front
         {
@@ -155,7 +160,7 @@ impl Mode for FrontDistance {
 
         let heading_rad = at.estimate.pose.heading_rad;
         let start_rad = *state.heading_rad.get_or_insert(heading_rad);
-        let drive = match state.phase {
+        action.drive = match state.phase {
             Phase::Hold => Drive::Release,
             Phase::Approach | Phase::Settle => {
                 let forward_m_s = self.speed_m_s(error_m, state.unrest.is_uneasy());
@@ -167,14 +172,10 @@ impl Mode for FrontDistance {
                 }
             }
         };
-        let reached = state.phase == Phase::Hold;
-        Ok(Action {
-            drive,
-            look: Look::only(SonarId::Front),
-            state: state.phase as u8,
-            reached,
-            ..Action::default()
-        })
+        action.look = Look::only(SonarId::Front);
+        action.state = state.phase as u8;
+        action.reached = state.phase == Phase::Hold;
+        Ok(())
     }
 }
 

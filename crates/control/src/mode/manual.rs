@@ -81,20 +81,16 @@ impl Manual {
 impl Mode for Manual {
     type State = ();
 
-    fn step(&self, _: &mut (), _: &Situation) -> Result<Action, Fault> {
+    fn act(&self, _: &mut (), _: &Situation, action: &mut Action) -> Result<(), Fault> {
         let factors = self.factors();
-        let (drive, state) = match (self.setpoint.movement, self.setpoint.level) {
+        (action.drive, action.state) = match (self.setpoint.movement, self.setpoint.level) {
             (Movement::Stop, _) => (Drive::Release, 0),
             (_, Level::Duty(duty)) => (Drive::Duty(factors.map(|factor| factor * duty)), 1),
             (_, Level::Speed(rad_s)) => {
                 (Drive::WheelSpeed(factors.map(|factor| factor * rad_s)), 2)
             }
         };
-        Ok(Action {
-            drive,
-            state,
-            ..Action::default()
-        })
+        Ok(())
     }
 }
 

@@ -103,11 +103,26 @@ pub trait Mode {
     /// What it remembers from tick to tick; the default is its start.
     type State: Default;
 
-    /// One tick.
+    /// One tick, into an action that asks for nothing yet.
     ///
     /// # Errors
-    /// Why it cannot go on; the supervisor then releases the wheels.
-    fn step(&self, state: &mut Self::State, at: &Situation) -> Result<Action, Fault>;
+    /// Why it cannot go on; the supervisor then releases the wheels, whatever was asked for.
+    fn act(
+        &self,
+        state: &mut Self::State,
+        at: &Situation,
+        action: &mut Action,
+    ) -> Result<(), Fault>;
+
+    /// The same, as a value.
+    ///
+    /// # Errors
+    /// As for [`Mode::act`].
+    fn step(&self, state: &mut Self::State, at: &Situation) -> Result<Action, Fault> {
+        let mut action = Action::default();
+        self.act(state, at, &mut action)?;
+        Ok(action)
+    }
 }
 
 /// Why a reference is refused; the last valid one stays.

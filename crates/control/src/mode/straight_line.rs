@@ -142,12 +142,17 @@ impl StraightLine {
 impl Mode for StraightLine {
     type State = State;
 
-    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
+    fn act(
+        &self,
+        state: &mut Self::State,
+        at: &Situation,
+        action: &mut Action,
+    ) -> Result<(), Fault> {
         self.count(state, at);
         state.phase = self.next_phase(state, at.estimate.standing());
         state.ramp_rad_s = self.ramp(state);
         let heading_ref_rad = self.heading_ref_rad(state);
-        let drive = match state.phase {
+        action.drive = match state.phase {
             Phase::Rest => Drive::Release,
             Phase::Drive | Phase::Stop => {
                 let forward_m_s = self.radius_m * state.ramp_rad_s;
@@ -159,12 +164,9 @@ impl Mode for StraightLine {
                 }
             }
         };
-        Ok(Action {
-            drive,
-            state: state.phase as u8,
-            heading_ref_rad,
-            ..Action::default()
-        })
+        action.state = state.phase as u8;
+        action.heading_ref_rad = heading_ref_rad;
+        Ok(())
     }
 }
 

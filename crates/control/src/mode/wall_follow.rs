@@ -225,7 +225,8 @@ impl WallFollow {
         side: Side,
         at: &Estimate,
         reference_m: f32,
-    ) -> Result<Action, Fault> {
+        action: &mut Action,
+    ) -> Result<(), Fault> {
         self.sonars.nearest_m(side, at, self.stale_s)?;
         let wall = self.estimate(state, side, at)?;
         let free_m_s = self.free_m_s(state, at)?;
@@ -249,16 +250,14 @@ impl WallFollow {
             (false, true) => Phase::Approach,
             (false, false) => Phase::Follow,
         };
-        Ok(Action {
-            drive: Drive::Twist {
-                forward_m_s: min(free_m_s, steerable_m_s),
-                yaw_rad_s,
-            },
-            state: phase as u8,
-            heading_ref_rad: sign(side) * angle_ref_rad,
-            reached: abs(error_m) < REACHED.0 && abs(angle_rad) < REACHED.1,
-            ..Action::default()
-        })
+        action.drive = Drive::Twist {
+            forward_m_s: min(free_m_s, steerable_m_s),
+            yaw_rad_s,
+        };
+        action.state = phase as u8;
+        action.heading_ref_rad = sign(side) * angle_ref_rad;
+        action.reached = abs(error_m) < REACHED.0 && abs(angle_rad) < REACHED.1;
+        Ok(())
     }
 }
 
@@ -269,7 +268,8 @@ impl WallFollow {
         state: &mut State,
         estimate: &Estimate,
         reference_m: f32,
-    ) -> Result<Action, Fault> {
+        action: &mut Action,
+    ) -> Result<(), Fault> {
         let side = match state.side {
             Some(side) => side,
             None => {
@@ -283,7 +283,7 @@ impl WallFollow {
         {
             state.unrest.take(estimate, reading)?;
         }
-        self.drive(state, side, estimate, reference_m)
+        self.drive(state, side, estimate, reference_m, action)
             .map_err(|fault| state.unrest.cause(fault))
     }
 }
@@ -291,8 +291,13 @@ impl WallFollow {
 impl Mode for WallFollow {
     type State = State;
 
-    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
-        self.keep(state, at.estimate, self.distance_m)
+    fn act(
+        &self,
+        state: &mut Self::State,
+        at: &Situation,
+        action: &mut Action,
+    ) -> Result<(), Fault> {
+        self.keep(state, at.estimate, self.distance_m, action)
     }
 }
 

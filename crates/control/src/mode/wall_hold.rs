@@ -117,14 +117,21 @@ impl WallHold {
 impl Mode for WallHold {
     type State = State;
 
-    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
+    fn act(
+        &self,
+        state: &mut Self::State,
+        at: &Situation,
+        action: &mut Action,
+    ) -> Result<(), Fault> {
         if state.reference_m.is_none() {
             state.reference_m = self.measure(state, at)?;
         }
-        let Some(distance_m) = state.reference_m else {
-            return Ok(Action::default());
-        };
-        self.0.keep(&mut state.follow, at.estimate, distance_m)
+        match state.reference_m {
+            Some(distance_m) => self
+                .0
+                .keep(&mut state.follow, at.estimate, distance_m, action),
+            None => Ok(()),
+        }
     }
 }
 

@@ -236,15 +236,19 @@ const THERE_M: f32 = 0.01;
 impl Mode for Waypoints<'_> {
     type State = State;
 
-    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
+    fn act(
+        &self,
+        state: &mut Self::State,
+        at: &Situation,
+        action: &mut Action,
+    ) -> Result<(), Fault> {
         if state.phase == Phase::Done
             && let Some(next) = self.after(state.next)
         {
             state.next = next;
             state.enter(Phase::Wait);
         }
-        let mut drive = Drive::Release;
-        let mut heading_ref_rad = state.heading_rad;
+        action.heading_ref_rad = state.heading_rad;
         match (state.phase, self.waypoint(state, state.next)) {
             (Phase::Done, _) => {}
             (_, None) => state.enter(Phase::Wait),
@@ -257,7 +261,7 @@ impl Mode for Waypoints<'_> {
                 let step = self
                     .turn
                     .step(&mut state.turn, at.estimate, state.heading_rad);
-                drive = step.drive;
+                action.drive = step.drive;
                 match (step.done, state.phase) {
                     (false, _) => {}
                     (true, Phase::FinalTurn) => self.advance(state),
@@ -269,23 +273,20 @@ impl Mode for Waypoints<'_> {
                 let step = self
                     .line
                     .step(&mut state.line, at.estimate, &state.segment, f32::MAX);
-                (drive, heading_ref_rad) = (step.drive, step.heading_ref_rad);
+                action.drive = step.drive;
+                action.heading_ref_rad = step.heading_ref_rad;
                 if step.done {
                     self.arrive(state, &waypoint);
                 }
             }
             (Phase::Pursue, Some(waypoint)) => match &self.pursuit {
-                Some(pursuit) => drive = self.pursue(pursuit, state, at, &waypoint),
+                Some(pursuit) => action.drive = self.pursue(pursuit, state, at, &waypoint),
                 None => state.enter(Phase::Wait),
             },
         }
-        Ok(Action {
-            drive,
-            state: state.phase as u8,
-            heading_ref_rad,
-            reached: state.phase == Phase::Done,
-            ..Action::default()
-        })
+        action.state = state.phase as u8;
+        action.reached = state.phase == Phase::Done;
+        Ok(())
     }
 }
 

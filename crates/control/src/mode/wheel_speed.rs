@@ -29,17 +29,12 @@ pub struct WheelSpeed {
 impl Mode for WheelSpeed {
     type State = ();
 
-    fn step(&self, _: &mut (), _: &Situation) -> Result<Action, Fault> {
+    fn act(&self, _: &mut (), _: &Situation, action: &mut Action) -> Result<(), Fault> {
         let turning = self.references != Wheels::both(0.0);
-        let drive = if turning {
-            Drive::WheelSpeed(self.references)
-        } else {
-            Drive::Release
-        };
-        Ok(Action {
-            drive,
-            state: u8::from(turning),
-            ..Action::default()
-        })
+        if turning {
+            action.drive = Drive::WheelSpeed(self.references);
+        }
+        action.state = u8::from(turning);
+        Ok(())
     }
 }

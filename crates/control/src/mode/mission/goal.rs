@@ -46,40 +46,30 @@ impl Mission {
         &self,
         state: &mut State,
         estimate: &Estimate,
-        goal_m: (f32, f32),
-    ) -> Action {
+        goal_m: &(f32, f32),
+        action: &mut Action,
+    ) {
         if state.fresh {
             state.fresh = false;
             state.phase = Phase::Initialise;
         }
-        let mut action = Action {
-            state: state.phase as u8,
-            heading_ref_rad: state.heading_ref_rad,
-            ..Action::default()
-        };
+        action.state = state.phase as u8;
+        action.heading_ref_rad = state.heading_ref_rad;
         if matches!(state.phase, Phase::Wait | Phase::Unreachable) {
             action.reached = state.phase == Phase::Wait;
             action.unreachable = state.phase == Phase::Unreachable;
-            return action;
+            return;
         }
-        let (way, left_m) = way_to(&estimate.pose, &goal_m);
+        let (way, left_m) = way_to(&estimate.pose, goal_m);
         count(state, estimate, &way);
         let planned = perceive(state, estimate, &way);
         if state.age_s > self.give_up_s {
             state.phase = Phase::Unreachable;
         }
-        self.act(
-            state,
-            estimate,
-            &goal_m,
-            (&way, left_m),
-            planned,
-            &mut action,
-        );
+        self.act(state, estimate, goal_m, (&way, left_m), planned, action);
         action.look = look(state, estimate);
         action.state = state.phase as u8;
         action.heading_ref_rad = state.heading_ref_rad;
-        action
     }
 
     /// What the state asks for.

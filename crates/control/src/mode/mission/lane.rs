@@ -155,7 +155,7 @@ pub(super) struct Lane {
 }
 
 impl Mission {
-    pub(super) fn lane(&self, state: &mut State, estimate: &Estimate) -> Action {
+    pub(super) fn lane(&self, state: &mut State, estimate: &Estimate, action: &mut Action) {
         let lane = &mut state.lane;
         if state.fresh {
             state.fresh = false;
@@ -163,7 +163,7 @@ impl Mission {
         }
         lane.ahead.step(estimate);
         let mut heading_ref_rad = lane.heading_rad;
-        let drive = match lane.stage {
+        action.drive = match lane.stage {
             Stage::Start => {
                 lane.heading_rad = estimate.pose.heading_rad;
                 lane.stage = Stage::Straight;
@@ -194,16 +194,9 @@ impl Mission {
             Stage::SweepLeft => lane.sweep.target_rad,
             _ => 0.0,
         };
-        Action {
-            drive,
-            state: lane.stage as u8,
-            heading_ref_rad,
-            look: Look {
-                servo: ServoAngle(servo_rad),
-                ..Look::default()
-            },
-            ..Action::default()
-        }
+        action.state = lane.stage as u8;
+        action.heading_ref_rad = heading_ref_rad;
+        action.look.servo = ServoAngle(servo_rad);
     }
 
     /// On to the next face. Nothing is driven at before three looks ahead.

@@ -203,7 +203,12 @@ impl Mission {
 impl Mode for Mission {
     type State = State;
 
-    fn step(&self, state: &mut State, at: &Situation) -> Result<Action, Fault> {
+    fn act(
+        &self,
+        state: &mut Self::State,
+        at: &Situation,
+        action: &mut Action,
+    ) -> Result<(), Fault> {
         let denies = match &at.estimate.reading {
             Some(reading) => {
                 let robot = at.estimate.transform();
@@ -218,10 +223,11 @@ impl Mode for Mission {
             state.echoes.fade();
         }
         match self.task {
-            Task::Goal { x_m, y_m } => Ok(self.goal(state, at.estimate, (x_m, y_m))),
-            Task::Lane => Ok(self.lane(state, at.estimate)),
-            Task::Wait => Ok(Action::default()),
+            Task::Goal { x_m, y_m } => self.goal(state, at.estimate, &(x_m, y_m), action),
+            Task::Lane => self.lane(state, at.estimate, action),
+            Task::Wait => {}
         }
+        Ok(())
     }
 }
 
