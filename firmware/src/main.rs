@@ -52,16 +52,13 @@ fn run(robot: &mut Robot) -> ! {
         let (last, stamp) = clock::last_tick();
         let passed = last.wrapping_sub(tick);
         tick = last;
-        let now = inputs.now.after(u32::from(passed) * TICK_US);
-        inputs = Inputs {
-            now,
-            encoders: encoders.read(stamp, now),
-            echo: listener.read(stamp),
-            battery_v: robot
-                .battery_input()
-                .and_then(adc::sample)
-                .map(|counts| robot.battery_v(counts)),
-        };
+        inputs.now = inputs.now.after(u32::from(passed) * TICK_US);
+        inputs.encoders = encoders.read(stamp, inputs.now);
+        inputs.echo = listener.read(stamp);
+        inputs.battery_v = robot
+            .battery_input()
+            .and_then(adc::sample)
+            .map(|counts| robot.battery_v(counts));
         while let Some(byte) = link::receive() {
             robot.receive(byte);
         }

@@ -7,12 +7,11 @@
 use rumbo_control::drive::DriveLayer;
 use rumbo_control::estimate::{Estimate, Estimator};
 use rumbo_control::math::round;
-use rumbo_control::mode::waypoints::Waypoint;
-use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, Movement, SetpointError, Situation};
+use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, SetpointError, Situation};
 use rumbo_control::params::{ParamError, ParamId, Params};
 use rumbo_control::rig::Rig;
 use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, SonarId, Wheels};
-use rumbo_wire::{Refusal, Telemetry};
+use rumbo_wire::{Command, Refusal, Telemetry};
 
 use crate::encoders::EncoderWatch;
 use crate::report::Signals;
@@ -251,61 +250,28 @@ impl Pilot {
         self.params.rig()
     }
 
-    /// Sets the goal.
-    pub(crate) fn set_goal(&mut self, x_m: f32, y_m: f32) -> Result<f32, Refusal> {
-        self.mode.set_goal(x_m, y_m).map_err(refusal_of_setpoint)?;
-        Ok(0.0)
-    }
-
-    /// Makes following a lane the task.
-    pub(crate) fn follow_lane(&mut self) -> Result<f32, Refusal> {
-        self.mode.follow_lane().map_err(refusal_of_setpoint)?;
-        Ok(0.0)
-    }
-
-    /// Begins a route.
-    pub(crate) fn begin_route(&mut self, repeat: bool, relative: bool) -> Result<f32, Refusal> {
-        self.mode
-            .begin_route(repeat, relative)
-            .map_err(refusal_of_setpoint)?;
-        Ok(0.0)
-    }
-
-    /// Appends a waypoint.
-    pub(crate) fn add_waypoint(&mut self, waypoint: Waypoint) -> Result<f32, Refusal> {
-        self.mode
-            .add_waypoint(waypoint)
-            .map_err(refusal_of_setpoint)?;
-        Ok(0.0)
-    }
-
-    /// Sets the reference of both wheels; gives it.
-    pub(crate) fn set_reference(&mut self, value: f32) -> Result<f32, Refusal> {
-        self.mode
-            .set_reference(value)
-            .map_err(refusal_of_setpoint)?;
-        Ok(self.mode.reference().left)
-    }
-
-    /// Sets the reference of each wheel; gives the left one's.
-    pub(crate) fn set_wheel_reference(&mut self, value: Wheels<f32>) -> Result<f32, Refusal> {
-        self.mode
-            .set_wheel_reference(value)
-            .map_err(refusal_of_setpoint)?;
-        Ok(self.mode.reference().left)
-    }
-
-    /// Sets the basic movement; gives its level.
-    pub(crate) fn set_movement(
-        &mut self,
-        movement: Movement,
-        level: Level,
-    ) -> Result<f32, Refusal> {
-        self.mode
-            .set_movement(movement, level)
-            .map_err(refusal_of_setpoint)?;
-        let (Level::Duty(value) | Level::Speed(value)) = level;
-        Ok(value)
+    /// Applies a command that is for the mode; gives the value in force, 0 where there is none.
+    pub(crate) fn command(&mut self, command: &Command) -> Result<f32, Refusal> {
+        let mode = &mut self.mode;
+        let done = match *command {
+            Command::Reference(value) => mode.set_reference(value),
+            Command::WheelReference(wheels) => mode.set_wheel_reference(wheels),
+            Command::Move { movement, level } => mode.set_movement(movement, level),
+            Command::Goal { x_m, y_m } => mode.set_goal(x_m, y_m),
+            Command::Lane => mode.follow_lane(),
+            Command::Route { repeat, relative } => mode.begin_route(repeat, relative),
+            Command::Waypoint(waypoint) => mode.add_waypoint(waypoint),
+            _ => Err(SetpointError::NotInThisMode),
+        };
+        done.map_err(refusal_of_setpoint)?;
+        Ok(match *command {
+            Command::Reference(_) | Command::WheelReference(_) => mode.reference().left,
+            Command::Move { level, .. } => {
+                let (Level::Duty(value) | Level::Speed(value)) = level;
+                value
+            }
+            _ => 0.0,
+        })
     }
 
     /// A parameter's value.

@@ -300,9 +300,6 @@ impl Robot {
                 self.event(EventKind::ModeChanged(mode));
                 Ok(f32::from(mode as u8))
             }
-            Command::Reference(value) => self.pilot.set_reference(value),
-            Command::WheelReference(wheels) => self.pilot.set_wheel_reference(wheels),
-            Command::Move { movement, level } => self.pilot.set_movement(movement, level),
             Command::SetParam { id, value } => self.pilot.set_param(id, value),
             Command::GetParam { id } => self.pilot.param(id),
             Command::ResetParams => {
@@ -317,10 +314,13 @@ impl Robot {
                 self.pilot.reset_pose();
                 Ok(0.0)
             }
-            Command::Goal { x_m, y_m } => self.pilot.set_goal(x_m, y_m),
-            Command::Lane => self.pilot.follow_lane(),
-            Command::Route { repeat, relative } => self.pilot.begin_route(repeat, relative),
-            Command::Waypoint(waypoint) => self.pilot.add_waypoint(waypoint),
+            Command::Reference(_)
+            | Command::WheelReference(_)
+            | Command::Move { .. }
+            | Command::Goal { .. }
+            | Command::Lane
+            | Command::Route { .. }
+            | Command::Waypoint(_) => self.pilot.command(command),
         }
     }
 

@@ -15,7 +15,7 @@
 //! are not used. Here the stop is planned, the servo never blocks a tick, and walls at the sides push the robot to the middle:
 //! docs/theory/lane.md.
 
-use super::{Action, Drive, Look, Mission, Pose, Segment, ServoAngle, State};
+use super::{Action, Drive, Mission, Pose, Segment, ServoAngle, State};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
 use crate::motion::{CREEP_M_S, LineState, StopState, Stopping, TurnState};
