@@ -157,11 +157,13 @@ const TWO_PI: [f32; 2] = [4.0 * HALF_PI[0], 4.0 * HALF_PI[1]];
 
 /// An angle as its equal in (-pi, pi] [rad]; 0 for what is not finite.
 pub fn wrap_angle(angle_rad: f32) -> f32 {
+    // By its bits, as for `abs`: -pi alone is not in the range that its magnitude is in.
+    let bits = angle_rad.to_bits();
+    if bits <= PI.to_bits() || bits & !SIGN < PI.to_bits() {
+        return angle_rad;
+    }
     if !is_finite(angle_rad) {
         return 0.0;
-    }
-    if angle_rad > -PI && angle_rad <= PI {
-        return angle_rad;
     }
     let (wrapped, _) = reduce(angle_rad, 1.0 / TAU, TWO_PI);
     if wrapped <= -PI {
@@ -173,7 +175,7 @@ pub fn wrap_angle(angle_rad: f32) -> f32 {
 
 /// Sine and cosine of an angle [rad].
 pub const fn sin_cos(angle_rad: f32) -> (f32, f32) {
-    let (x, quadrant) = if abs(angle_rad) <= FRAC_PI_4 {
+    let (x, quadrant) = if angle_rad.to_bits() & !SIGN <= FRAC_PI_4.to_bits() {
         (angle_rad, 0)
     } else {
         reduce(angle_rad, 1.0 / FRAC_PI_2, HALF_PI)
@@ -215,12 +217,17 @@ pub fn sinc(x_rad: f32) -> f32 {
 
 /// Angle of the point (x, y) from the x axis, in (-pi, pi] [rad]; 0 for the origin.
 pub fn atan2(y: f32, x: f32) -> f32 {
-    let (far, near) = (max(abs(x), abs(y)), min(abs(x), abs(y)));
+    let steep = abs(y) > abs(x);
+    let (far, near) = if steep {
+        (abs(y), abs(x))
+    } else {
+        (abs(x), abs(y))
+    };
     if far <= 0.0 {
         return 0.0;
     }
     let mut angle = atan_of_fraction(near / far);
-    if abs(y) > abs(x) {
+    if steep {
         angle = FRAC_PI_2 - angle;
     }
     if x < 0.0 {

@@ -29,17 +29,16 @@ pub(crate) struct Outbox {
     len: usize,
 }
 
-impl Default for Outbox {
-    fn default() -> Self {
+impl Outbox {
+    /// With a 0x00 in it, which ends the frame that a reset may have cut off: the first one must not go down with it.
+    pub(crate) fn new() -> Self {
         Self {
             bytes: [0; SIZE],
             first: 0,
-            len: 0,
+            len: 1,
         }
     }
-}
 
-impl Outbox {
     /// Takes all of `bytes`, or none; says whether it did.
     pub(crate) fn push(&mut self, priority: Priority, bytes: &[u8]) -> bool {
         let reserve = match priority {
@@ -84,7 +83,8 @@ mod tests {
 
     #[test]
     fn telemetry_gives_way_then_status_and_answers_still_fit() {
-        let mut outbox = Outbox::default();
+        let mut outbox = Outbox::new();
+        outbox.pop();
         let mut fill = |priority, len| {
             (0..100)
                 .filter(|_| outbox.push(priority, &[1; 64][..len]))
@@ -101,7 +101,8 @@ mod tests {
 
     #[test]
     fn bytes_leave_in_the_order_in_which_they_came_round_and_round() {
-        let mut outbox = Outbox::default();
+        let mut outbox = Outbox::new();
+        outbox.pop();
         let mut sent = Vec::new();
         let mut left = Vec::new();
         for byte in 0..250u8 {

@@ -78,14 +78,11 @@ pub(crate) struct Reporter {
 impl Reporter {
     /// A reporter that introduces itself with `hello` first.
     pub(crate) fn new(hello: Hello) -> Self {
-        let mut outbox = Outbox::default();
-        // Ends the frame that a reset may have cut off: HELLO must not go down with it.
-        outbox.push(Priority::Answer, &[0]);
         Self {
             hello,
             recalled: None,
             language: Language::Binary,
-            outbox,
+            outbox: Outbox::new(),
             seq: 0,
             hello_due: true,
             status_due: true,

@@ -30,41 +30,72 @@ impl Writer {
     }
 }
 
-/// Takes a payload from the front.
-pub(crate) struct Reader<'a>(pub(crate) &'a [u8]);
+/// Takes a payload from the front. What is missing reads as 0, and makes the whole malformed.
+pub(crate) struct Reader<'a> {
+    rest: &'a [u8],
+    short: bool,
+}
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
+    pub(crate) fn new(payload: &'a [u8]) -> Self {
+        Self {
+            rest: payload,
+            short: false,
+        }
+    }
+
     /// The next `N` bytes.
-    pub(crate) fn take<const N: usize>(&mut self) -> Result<[u8; N], Malformed> {
-        let (bytes, rest) = self.0.split_first_chunk::<N>().ok_or(Malformed::Length)?;
-        self.0 = rest;
-        Ok(*bytes)
+    pub(crate) fn take<const N: usize>(&mut self) -> [u8; N] {
+        match self.rest.split_first_chunk::<N>() {
+            Some((bytes, rest)) => {
+                self.rest = rest;
+                *bytes
+            }
+            None => {
+                self.short = true;
+                [0; N]
+            }
+        }
     }
 
-    pub(crate) fn u8(&mut self) -> Result<u8, Malformed> {
-        Ok(u8::from_le_bytes(self.take()?))
+    pub(crate) fn u8(&mut self) -> u8 {
+        u8::from_le_bytes(self.take())
     }
 
-    pub(crate) fn i16(&mut self) -> Result<i16, Malformed> {
-        Ok(i16::from_le_bytes(self.take()?))
+    pub(crate) fn i16(&mut self) -> i16 {
+        i16::from_le_bytes(self.take())
     }
 
-    pub(crate) fn u16(&mut self) -> Result<u16, Malformed> {
-        Ok(u16::from_le_bytes(self.take()?))
+    pub(crate) fn u16(&mut self) -> u16 {
+        u16::from_le_bytes(self.take())
     }
 
-    pub(crate) fn u32(&mut self) -> Result<u32, Malformed> {
-        Ok(u32::from_le_bytes(self.take()?))
+    pub(crate) fn u32(&mut self) -> u32 {
+        u32::from_le_bytes(self.take())
     }
 
     /// A float as it is, non-finite values included: who applies it, judges it.
-    pub(crate) fn f32(&mut self) -> Result<f32, Malformed> {
-        Ok(f32::from_le_bytes(self.take()?))
+    pub(crate) fn f32(&mut self) -> f32 {
+        f32::from_le_bytes(self.take())
     }
 
-    /// Nothing may be left over.
+    /// Something that was asked for was not there.
+    pub(crate) fn is_short(&self) -> bool {
+        self.short
+    }
+
+    /// What is wrong when the last number stands for nothing.
+    pub(crate) fn wrong(&self) -> Malformed {
+        if self.short {
+            Malformed::Length
+        } else {
+            Malformed::Number
+        }
+    }
+
+    /// Everything was there, and nothing may be left over.
     pub(crate) fn finish(&self) -> Result<(), Malformed> {
-        if self.0.is_empty() {
+        if self.rest.is_empty() && !self.short {
             Ok(())
         } else {
             Err(Malformed::Length)

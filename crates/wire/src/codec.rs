@@ -54,14 +54,14 @@ impl Message for FromRobot {
     }
 
     fn from_body(body: &Body) -> Result<Self, Malformed> {
-        let mut from = Reader(body.payload());
+        let mut from = Reader::new(body.payload());
         let message = match body.kind {
             Kind::RobotHello => FromRobot::Hello(hello(&mut from)?),
-            Kind::Telemetry => FromRobot::Telemetry(telemetry(&mut from)?),
+            Kind::Telemetry => FromRobot::Telemetry(telemetry(&mut from)),
             Kind::Status => FromRobot::Status(status(&mut from)?),
             Kind::Event => FromRobot::Event(event(&mut from)?),
             Kind::Ack => FromRobot::Ack(ack(&mut from)?),
-            Kind::HeadingRef => FromRobot::HeadingRef(from_turn(from.u16()?)),
+            Kind::HeadingRef => FromRobot::HeadingRef(from_turn(from.u16())),
             Kind::StationHello | Kind::Heartbeat | Kind::Command => {
                 return Err(Malformed::Direction);
             }
@@ -91,14 +91,14 @@ impl Message for ToRobot {
     }
 
     fn from_body(body: &Body) -> Result<Self, Malformed> {
-        let mut from = Reader(body.payload());
+        let mut from = Reader::new(body.payload());
         let message = match body.kind {
             // Whatever a later version adds to its HELLO: it is still one.
             Kind::StationHello => return Ok(ToRobot::Hello),
             Kind::Heartbeat => ToRobot::Heartbeat,
             Kind::Command => ToRobot::Command {
-                session: from.u8()?,
-                number: from.u16()?,
+                session: from.u8(),
+                number: from.u16(),
                 command: command(&mut from)?,
             },
             _ => return Err(Malformed::Direction),
@@ -118,10 +118,10 @@ fn put_hello(to: &mut Writer, hello: &Hello) -> Kind {
 
 fn hello(from: &mut Reader) -> Result<Hello, Malformed> {
     Ok(Hello {
-        protocol: from.u8()?,
-        schema: from.u32()?,
-        image: from.u32()?,
-        reset: ResetCause::from_number(from.u8()?).ok_or(Malformed::Number)?,
+        protocol: from.u8(),
+        schema: from.u32(),
+        image: from.u32(),
+        reset: ResetCause::from_number(from.u8()).ok_or(from.wrong())?,
     })
 }
 
@@ -192,30 +192,30 @@ fn put_telemetry(to: &mut Writer, telemetry: &Telemetry) -> Kind {
     Kind::Telemetry
 }
 
-fn telemetry(from: &mut Reader) -> Result<Telemetry, Malformed> {
-    let t_ms = from.u16()?;
+fn telemetry(from: &mut Reader) -> Telemetry {
+    let t_ms = from.u16();
     let mut pose = Pose {
-        x_m: from_i16(from.i16()?, POSITION_PER_M),
-        y_m: from_i16(from.i16()?, POSITION_PER_M),
-        heading_rad: from_turn(from.u16()?),
+        x_m: from_i16(from.i16(), POSITION_PER_M),
+        y_m: from_i16(from.i16(), POSITION_PER_M),
+        heading_rad: from_turn(from.u16()),
     };
     if pose.x_m.is_nan() {
         pose.heading_rad = f32::NAN;
     }
     let mut speeds = [Wheels::both(0.0); 3];
     for sample in &mut speeds {
-        let [low, middle, high] = from.take()?;
+        let [low, middle, high] = from.take();
         sample.left = from_i12(u16::from_le_bytes([low, middle]) & 0xFFF, SPEED_PER_RAD_S);
         sample.right = from_i12(u16::from_le_bytes([middle, high]) >> 4, SPEED_PER_RAD_S);
     }
     let [earlier_rad_s, now_rad_s, wheel_ref_rad_s] = speeds;
-    let [low, middle, high] = from.take()?;
+    let [low, middle, high] = from.take();
     let bits = u32::from_le_bytes([low, middle, high, 0]);
     // Nine bits, signed.
     let counts = |bits: u32| Duty::new(((bits as u16) << 7).cast_signed() >> 7);
-    let servo_rad = f32::from(i8::from_le_bytes(from.take()?)) / SERVO_PER_RAD;
-    let ranges = from.u32()?;
-    Ok(Telemetry {
+    let servo_rad = f32::from(i8::from_le_bytes(from.take())) / SERVO_PER_RAD;
+    let ranges = from.u32();
+    Telemetry {
         t_ms,
         pose,
         wheel_rad_s: [earlier_rad_s, now_rad_s],
@@ -232,7 +232,7 @@ fn telemetry(from: &mut Reader) -> Result<Telemetry, Malformed> {
             range: range(code & 0x3FF),
             age_ticks: 0,
         }),
-    })
+    }
 }
 
 fn range_code(range: Range) -> u32 {
@@ -286,32 +286,32 @@ fn put_status(to: &mut Writer, status: &Status) -> Kind {
 fn status(from: &mut Reader) -> Result<Status, Malformed> {
     Ok(Status {
         mode: mode(from)?,
-        armed: from.u8()? & 1 != 0,
-        fault: match from.u8()? {
+        armed: from.u8() & 1 != 0,
+        fault: match from.u8() {
             0 => None,
-            number => Some(Fault::from_number(number).ok_or(Malformed::Number)?),
+            number => Some(Fault::from_number(number).ok_or(from.wrong())?),
         },
-        battery_v: match from.u16()? {
+        battery_v: match from.u16() {
             BATTERY_UNKNOWN => None,
             code => Some(f32::from(code) / BATTERY_PER_V),
         },
         reference: Wheels {
-            left: from.f32()?,
-            right: from.f32()?,
+            left: from.f32(),
+            right: from.f32(),
         },
-        crc_errors: from.u8()?,
-        dropped: from.u8()?,
-        overruns: from.u8()?,
-        rig: Rig::from_number(from.u8()?).ok_or(Malformed::Number)?,
+        crc_errors: from.u8(),
+        dropped: from.u8(),
+        overruns: from.u8(),
+        rig: Rig::from_number(from.u8()).ok_or(from.wrong())?,
     })
 }
 
 fn mode(from: &mut Reader) -> Result<ModeId, Malformed> {
-    ModeId::from_number(from.u8()?).ok_or(Malformed::Number)
+    ModeId::from_number(from.u8()).ok_or(from.wrong())
 }
 
 fn fault(from: &mut Reader) -> Result<Fault, Malformed> {
-    Fault::from_number(from.u8()?).ok_or(Malformed::Number)
+    Fault::from_number(from.u8()).ok_or(from.wrong())
 }
 
 fn put_event(to: &mut Writer, event: &Event) -> Kind {
@@ -331,8 +331,8 @@ fn put_event(to: &mut Writer, event: &Event) -> Kind {
 }
 
 fn event(from: &mut Reader) -> Result<Event, Malformed> {
-    let t_ms = from.u16()?;
-    let kind = match from.u8()? {
+    let t_ms = from.u16();
+    let kind = match from.u8() {
         1 => EventKind::Armed,
         2 => EventKind::Disarmed,
         3 => EventKind::Faulted(fault(from)?),
@@ -340,9 +340,9 @@ fn event(from: &mut Reader) -> Result<Event, Malformed> {
         5 => EventKind::ModeChanged(mode(from)?),
         6 => EventKind::Reached,
         7 => EventKind::Unreachable,
-        8 => EventKind::Recalled(Recalled::from_number(from.u8()?).ok_or(Malformed::Number)?),
+        8 => EventKind::Recalled(Recalled::from_number(from.u8()).ok_or(from.wrong())?),
         9 => EventKind::Saved,
-        _ => return Err(Malformed::Number),
+        _ => return Err(from.wrong()),
     };
     Ok(Event { t_ms, kind })
 }
@@ -358,11 +358,11 @@ fn put_ack(to: &mut Writer, ack: &Ack) -> Kind {
 
 fn ack(from: &mut Reader) -> Result<Ack, Malformed> {
     Ok(Ack {
-        session: from.u8()?,
-        number: from.u16()?,
-        result: match from.u8()? {
-            0 => Ok(from.f32()?),
-            number => Err(Refusal::from_number(number).ok_or(Malformed::Number)?),
+        session: from.u8(),
+        number: from.u16(),
+        result: match from.u8() {
+            0 => Ok(from.f32()),
+            number => Err(Refusal::from_number(number).ok_or(from.wrong())?),
         },
     })
 }
@@ -415,48 +415,48 @@ fn put_command(to: &mut Writer, command: &Command) {
 }
 
 fn command(from: &mut Reader) -> Result<Command, Malformed> {
-    Ok(match from.u8()? {
+    Ok(match from.u8() {
         1 => Command::Stop,
         2 => Command::Arm,
         3 => Command::Disarm,
         4 => Command::ClearFault,
         5 => Command::Mode(mode(from)?),
-        6 => Command::Reference(from.f32()?),
+        6 => Command::Reference(from.f32()),
         7 => Command::WheelReference(Wheels {
-            left: from.f32()?,
-            right: from.f32()?,
+            left: from.f32(),
+            right: from.f32(),
         }),
         8 => Command::Move {
-            movement: movement(from.u8()?).ok_or(Malformed::Number)?,
-            level: match from.u8()? {
-                LEVEL_DUTY => Level::Duty(from.f32()?),
-                LEVEL_SPEED => Level::Speed(from.f32()?),
-                _ => return Err(Malformed::Number),
+            movement: movement(from.u8()).ok_or(from.wrong())?,
+            level: match from.u8() {
+                LEVEL_DUTY => Level::Duty(from.f32()),
+                LEVEL_SPEED => Level::Speed(from.f32()),
+                _ => return Err(from.wrong()),
             },
         },
         9 => Command::SetParam {
-            id: from.u8()?,
-            value: from.f32()?,
+            id: from.u8(),
+            value: from.f32(),
         },
-        10 => Command::GetParam { id: from.u8()? },
+        10 => Command::GetParam { id: from.u8() },
         11 => Command::ResetParams,
         12 => Command::ResetPose,
         13 => Command::Goal {
-            x_m: from.f32()?,
-            y_m: from.f32()?,
+            x_m: from.f32(),
+            y_m: from.f32(),
         },
         14 => Command::Lane,
         15 => {
-            let flags = from.u8()?;
+            let flags = from.u8();
             Command::Route {
                 repeat: flags & 1 != 0,
                 relative: flags & 2 != 0,
             }
         }
         16 => {
-            let (x_m, y_m) = (from.f32()?, from.f32()?);
-            let has_heading = from.u8()? != 0;
-            let heading_rad = from.f32()?;
+            let (x_m, y_m) = (from.f32(), from.f32());
+            let has_heading = from.u8() != 0;
+            let heading_rad = from.f32();
             Command::Waypoint(Waypoint {
                 x_m,
                 y_m,
@@ -464,7 +464,7 @@ fn command(from: &mut Reader) -> Result<Command, Malformed> {
             })
         }
         17 => Command::SaveParams,
-        _ => return Err(Malformed::Number),
+        _ => return Err(from.wrong()),
     })
 }
 
@@ -474,9 +474,12 @@ fn movement(number: u8) -> Option<Movement> {
 
 /// Session and number of a command frame, also of one whose command is not understood: it can still be refused.
 pub fn command_number(body: &Body) -> Option<(u8, u16)> {
-    let mut from = Reader(body.payload());
+    let mut from = Reader::new(body.payload());
     match body.kind {
-        Kind::Command => Some((from.u8().ok()?, from.u16().ok()?)),
+        Kind::Command => {
+            let number = (from.u8(), from.u16());
+            (!from.is_short()).then_some(number)
+        }
         _ => None,
     }
 }

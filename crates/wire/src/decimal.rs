@@ -29,51 +29,42 @@ impl<const N: usize> Text<N> {
 
     /// An integer.
     pub(crate) fn push_integer(&mut self, value: i32) {
-        if value < 0 {
-            self.push(b'-');
-        }
-        self.push_digits(value.unsigned_abs(), 1);
+        self.push_decimal(value, 0);
     }
 
     /// A float with at most two decimals, trailing zeros left out; saturates to +-41943.03. `nan` where not finite.
     pub(crate) fn push_hundredths(&mut self, value: f32) {
-        if !is_finite(value) {
-            for byte in *b"nan" {
-                self.push(byte);
-            }
-            return;
-        }
-        let hundredths = round(value * 100.0);
-        if hundredths < 0 {
-            self.push(b'-');
-        }
-        let whole = hundredths.unsigned_abs() / 100;
-        let rest = hundredths.unsigned_abs() % 100;
-        self.push_digits(whole, 1);
-        if rest != 0 {
-            self.push(b'.');
-            if rest.is_multiple_of(10) {
-                self.push_digits(rest / 10, 1)
-            } else {
-                self.push_digits(rest, 2)
+        if is_finite(value) {
+            self.push_decimal(round(value * 100.0), 2);
+        } else {
+            for byte in b"nan" {
+                self.push(*byte);
             }
         }
     }
 
-    /// The decimal digits of `value`, at least `width` of them.
-    fn push_digits(&mut self, value: u32, width: usize) {
-        let mut digits = [0u8; 10];
-        let mut rest = value;
+    /// `value / 10^decimals`, trailing zeros of its decimals left out.
+    fn push_decimal(&mut self, value: i32, mut decimals: u8) {
+        if value < 0 {
+            self.push(b'-');
+        }
+        let mut rest = value.unsigned_abs();
+        while decimals > 0 && rest.is_multiple_of(10) {
+            rest /= 10;
+            decimals -= 1;
+        }
+        // From the last digit on, up to one before the point.
+        let mut digits = Text::<12>::EMPTY;
         let mut count = 0;
-        for digit in &mut digits {
-            if rest == 0 && count >= width {
-                break;
+        while rest > 0 || count <= decimals {
+            if count == decimals && count > 0 {
+                digits.push(b'.');
             }
-            *digit = b'0' + (rest % 10) as u8;
+            digits.push(b'0' + (rest % 10) as u8);
             rest /= 10;
             count += 1;
         }
-        for digit in digits.iter().take(count).rev() {
+        for digit in digits.bytes().iter().rev() {
             self.push(*digit);
         }
     }
