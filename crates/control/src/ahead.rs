@@ -25,20 +25,11 @@ const KNOWN_RAD: f32 = 0.08;
 const PINGS_AHEAD: [u8; 3] = [0, 2, 16];
 
 /// Which sonars look ahead, and from where.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ahead {
+#[derive(Clone, Copy, Debug)]
+pub struct Ahead<'a> {
     /// Two sonars in front; otherwise one on the servo.
     paired: bool,
-    /// Sonars ahead of the wheels' axis [m].
-    pub ahead_m: f32,
-    /// Distance between the two [m].
-    gap_m: f32,
-    /// Half angle of a sonar's beam [rad].
-    beam_rad: f32,
-    /// How far aside the servo looks [rad].
-    aside_rad: f32,
-    /// Oldest range to drive on [s].
-    stale_s: f32,
+    params: &'a Params,
 }
 
 /// What they remember of the wall.
@@ -61,17 +52,28 @@ impl AheadState {
     }
 }
 
-impl Ahead {
+impl<'a> Ahead<'a> {
     /// From the parameters.
-    pub fn new(params: &Params) -> Self {
+    pub fn new(params: &'a Params) -> Self {
         Self {
             paired: params.rig() == Rig::FrontPair,
-            ahead_m: params.get(ParamId::SonarFrontX),
-            gap_m: params.get(ParamId::FrontGap),
-            beam_rad: params.get(ParamId::Beam),
-            aside_rad: params.get(ParamId::SweepAside),
-            stale_s: params.get(ParamId::StaleRange),
+            params,
         }
+    }
+
+    /// Sonars ahead of the wheels' axis [m].
+    pub fn ahead_m(&self) -> f32 {
+        self.params.get(ParamId::SonarFrontX)
+    }
+
+    /// Half angle of a sonar's beam [rad].
+    fn beam_rad(&self) -> f32 {
+        self.params.get(ParamId::Beam)
+    }
+
+    /// Oldest range to drive on [s].
+    fn stale_s(&self) -> f32 {
+        self.params.get(ParamId::StaleRange)
     }
 
     /// Whether a sonar is one of those that look ahead.
@@ -108,7 +110,7 @@ impl Ahead {
             if !self.paired && !fresh {
                 range.age_ticks = 0;
             }
-            nearest_m = min(nearest_m, drivable_m(range, self.stale_s)?);
+            nearest_m = min(nearest_m, drivable_m(range, self.stale_s())?);
         }
         Ok(nearest_m)
     }
@@ -128,11 +130,11 @@ impl Ahead {
         {
             state.deaf_s = 0.0;
         }
-        let anew = (state.known || self.paired) && state.deaf_s > self.stale_s;
+        let anew = (state.known || self.paired) && state.deaf_s > self.stale_s();
         if !state.wall.is_known() || anew {
             self.start(state, estimate).ok_or(Fault::WallLost)?;
         }
-        if state.deaf_s > 2.0 * self.stale_s {
+        if state.deaf_s > 2.0 * self.stale_s() {
             return Err(Fault::SonarStale);
         }
         if !self.paired && !state.known {
@@ -146,7 +148,7 @@ impl Ahead {
         let [sides, ..] = LOOKS;
         let first = !state.known && state.sweep.looks_aside() < sides;
         if self.paired || !first || reading.servo_rad == 0.0 {
-            return state.wall.take(&reading.view, self.beam_rad, range_m);
+            return state.wall.take(&reading.view, self.beam_rad(), range_m);
         }
         let [left, right] = state.echo;
         state.echo = [
@@ -163,9 +165,10 @@ impl Ahead {
                 valid_m(estimate, SonarId::Left)?,
                 valid_m(estimate, SonarId::Right)?,
             ];
+            let gap_m = self.params.get(ParamId::FrontGap);
             state
                 .wall
-                .start_pair(self.ahead_m, self.gap_m, self.beam_rad, ranges_m);
+                .start_pair(self.ahead_m(), gap_m, self.beam_rad(), ranges_m);
             state.known = true;
             return Some(());
         }
@@ -186,7 +189,7 @@ impl Ahead {
 
     fn start_ahead(&self, state: &mut AheadState, range_m: f32, bearing_rad: f32) {
         let ahead = View {
-            x_m: self.ahead_m,
+            x_m: self.ahead_m(),
             ..View::default()
         };
         state.wall.start(&ahead, range_m, bearing_rad, ASKEW_RAD);
@@ -227,7 +230,7 @@ impl Ahead {
         }
         let [starting, driving, at_rest] = PINGS_AHEAD;
         let sweep = Sweep {
-            aside_rad: self.aside_rad,
+            aside_rad: self.params.get(ParamId::SweepAside),
             pings_ahead: match (state.known, resting) {
                 (false, _) => starting,
                 (true, false) => driving,

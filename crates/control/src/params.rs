@@ -110,16 +110,16 @@ impl Decimal {
     /// A number that has at most four digits, which is seen to when the table is compiled.
     const fn of(value: f32) -> Self {
         let (mut places, mut power) = (0, 1.0);
-        while places < 8 {
+        loop {
             let mantissa = round(value * power);
             if mantissa as f32 / power == value {
-                assert!(mantissa.unsigned_abs() < 4_096);
+                assert!(mantissa.unsigned_abs() < 4_096, "too many digits");
                 return Self(mantissa as i16 * 8 + places);
             }
             places += 1;
             power *= 10.0;
+            assert!(places < 8, "too many decimals");
         }
-        panic!("too many digits");
     }
 
     /// The number, with the bits that it has in the source: both whole numbers are exact, and what divides them rounds once.

@@ -34,24 +34,11 @@ const NO_LENGTH_M: f32 = 1e-3;
 const MOST_PIECES: u8 = 20;
 
 /// Configuration of a pure pursuit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pursuit {
-    /// Largest speed [m/s].
-    pub cruise_m_s: f32,
-    /// Planned acceleration [m/s^2].
-    pub accel_m_s2: f32,
+#[derive(Clone, Copy, Debug)]
+pub struct Pursuit<'a> {
+    params: &'a Params,
     /// How it comes to rest [m].
-    pub stop: Stop,
-    /// Largest sideways acceleration [m/s^2].
-    pub side_m_s2: f32,
-    /// Lookahead per speed [s].
-    pub lookahead_s: f32,
-    /// Shortest lookahead [m].
-    pub lookahead_m: f32,
-    /// Distance between the points of the report's lookahead [m]; 0: the lookahead goes by the speed.
-    pub spacing_m: f32,
-    /// Half the distance between the wheels [m].
-    pub half_base_m: f32,
+    stop: Stop<'a>,
 }
 
 /// Memory of a pure pursuit; the default is its start.
@@ -142,19 +129,18 @@ impl Piece {
     }
 }
 
-impl Pursuit {
+impl<'a> Pursuit<'a> {
     /// From the parameters.
-    pub fn new(params: &Params) -> Self {
+    pub fn new(params: &'a Params) -> Self {
         Self {
-            cruise_m_s: params.get(ParamId::LineCruise),
-            accel_m_s2: params.get(ParamId::LineAccel),
+            params,
             stop: Stop::on_the_way(params),
-            side_m_s2: params.get(ParamId::PursuitSide),
-            lookahead_s: params.get(ParamId::PursuitTime),
-            lookahead_m: params.get(ParamId::PursuitLeast),
-            spacing_m: params.get(ParamId::PursuitSpacing),
-            half_base_m: 0.5 * params.get(ParamId::Base),
         }
+    }
+
+    /// Half the distance between the wheels [m].
+    fn half_base_m(&self) -> f32 {
+        0.5 * self.params.get(ParamId::Base)
     }
 
     /// One tick along `path`, at most at `limit_m_s`. Nothing is driven where the path has no point.
@@ -223,8 +209,9 @@ impl Pursuit {
             state.speed_m_s = 0.0;
             return;
         }
-        let most = STEERING_SHARE / self.half_base_m;
-        let square = max(x_m * x_m + y_m * y_m, self.lookahead_m * self.lookahead_m);
+        let most = STEERING_SHARE / self.half_base_m();
+        let least_m = self.params.get(ParamId::PursuitLeast);
+        let square = max(x_m * x_m + y_m * y_m, least_m * least_m);
         let curvature = clamp(2.0 * y_m / square, -most, most);
         let forward_m_s = self.speed_m_s(state, estimate, left_m, curvature, limit_m_s);
         step.drive = Drive::Twist {
@@ -235,17 +222,21 @@ impl Pursuit {
 
     /// Way left from which the end does not matter yet [m]: twice what stopping takes.
     fn far_m(&self) -> f32 {
-        let stop_s = 0.5 * self.cruise_m_s / self.stop.brake + self.stop.lag_s;
-        2.0 * self.cruise_m_s * stop_s
+        let cruise_m_s = self.params.get(ParamId::LineCruise);
+        let stop_s = 0.5 * cruise_m_s / self.stop.brake() + self.stop.lag_s();
+        2.0 * cruise_m_s * stop_s
     }
 
     fn lookahead_m(&self, along_m: f32, forward_m_s: f32) -> f32 {
-        if self.spacing_m <= 0.0 {
-            return max(self.lookahead_m, self.lookahead_s * forward_m_s);
+        // Between the points of the report's lookahead; 0: the lookahead goes by the speed.
+        let spacing_m = self.params.get(ParamId::PursuitSpacing);
+        if spacing_m <= 0.0 {
+            let by_speed_m = self.params.get(ParamId::PursuitTime) * forward_m_s;
+            return max(self.params.get(ParamId::PursuitLeast), by_speed_m);
         }
         let along_m = max(along_m, 0.0);
-        let nearest = round(along_m / self.spacing_m).unsigned_abs();
-        from_u32(nearest.saturating_add(1)) * self.spacing_m - along_m
+        let nearest = round(along_m / spacing_m).unsigned_abs();
+        from_u32(nearest.saturating_add(1)) * spacing_m - along_m
     }
 
     fn speed_m_s(
@@ -258,12 +249,16 @@ impl Pursuit {
     ) -> f32 {
         let bend = abs(curvature);
         // The outer wheel turns faster than the middle.
-        let cruise_m_s = self.cruise_m_s / (1.0 + 0.5 * bend * self.half_base_m);
-        let side_m_s = sqrt(self.side_m_s2 / max(bend, 1e-3));
+        let cruise_m_s =
+            self.params.get(ParamId::LineCruise) / (1.0 + 0.5 * bend * self.half_base_m());
+        let side_m_s = sqrt(self.params.get(ParamId::PursuitSide) / max(bend, 1e-3));
         let braking_m_s = self.stop.speed(left_m, estimate.forward_m_s);
         let wanted = min(min(cruise_m_s, side_m_s), min(limit_m_s, braking_m_s));
         state.speed_m_s = max(
-            min(wanted, state.speed_m_s + self.accel_m_s2 * TICK_S),
+            min(
+                wanted,
+                state.speed_m_s + self.params.get(ParamId::LineAccel) * TICK_S,
+            ),
             min(CREEP_M_S, limit_m_s),
         );
         state.speed_m_s

@@ -56,18 +56,13 @@ const YAW_RAD_S: f32 = 1.5;
 const STEERING_SHARE: f32 = 0.5;
 
 /// Configuration of mode 2.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrontAlign {
+#[derive(Clone, Copy, Debug)]
+pub struct FrontAlign<'a> {
     /// The speed towards the reference, as in mode 1.
-    pub approach: FrontDistance,
-    /// The turn on the spot at the end.
-    pub turn: Turn,
-    /// Yaw rate per bearing on the way [1/s].
-    pub kp: f32,
-    /// Angle to the wall that is good enough [rad].
-    pub tolerance_rad: f32,
+    approach: FrontDistance<'a>,
     /// The sonars.
-    pub ahead: Ahead,
+    ahead: Ahead<'a>,
+    params: &'a Params,
 }
 
 /// Where mode 2 stands.
@@ -93,15 +88,13 @@ pub struct State {
     unrest: Unrest,
 }
 
-impl FrontAlign {
+impl<'a> FrontAlign<'a> {
     /// From the parameters.
-    pub fn new(params: &Params, distance_m: f32) -> Self {
+    pub fn new(params: &'a Params, distance_m: f32) -> Self {
         Self {
             approach: FrontDistance::new(params, distance_m),
-            turn: Turn::new(params),
-            kp: params.get(ParamId::AlignKp),
-            tolerance_rad: params.get(ParamId::AlignTolerance),
             ahead: Ahead::new(params),
+            params,
         }
     }
 
@@ -113,16 +106,17 @@ impl FrontAlign {
 
     fn next_phase(&self, state: &mut State, error_m: f32, bearing_rad: f32, turned: bool) -> Phase {
         let (off, askew) = (abs(error_m), abs(bearing_rad));
+        let tolerance_rad = self.params.get(ParamId::AlignTolerance);
         let lasting = |time_s: f32, too_far: bool| if too_far { time_s + TICK_S } else { 0.0 };
         state.off_s = lasting(state.off_s, off > 2.0 * self.approach.tolerance_m);
-        state.askew_s = lasting(state.askew_s, askew > ASKEW_SHARE * self.tolerance_rad);
+        state.askew_s = lasting(state.askew_s, askew > ASKEW_SHARE * tolerance_rad);
         match state.phase {
             _ if !state.ahead.is_known() => Phase::Look,
             Phase::Look => Phase::Approach,
             Phase::Approach if off < front_distance::NEAR_M => Phase::Settle,
             Phase::Settle | Phase::Hold if off > front_distance::FAR_M => Phase::Approach,
             Phase::Settle if off < self.approach.tolerance_m => {
-                if askew > self.tolerance_rad {
+                if askew > tolerance_rad {
                     Phase::Turn
                 } else {
                     Phase::Hold
@@ -143,17 +137,17 @@ impl FrontAlign {
         }
         let forward_m_s = self.approach.speed_m_s(error_m, uneasy);
         let most = min(
-            STEERING_SHARE * abs(forward_m_s) / self.turn.half_base_m,
+            STEERING_SHARE * abs(forward_m_s) / (0.5 * self.params.get(ParamId::Base)),
             YAW_RAD_S,
         );
         Drive::Twist {
             forward_m_s,
-            yaw_rad_s: clamp(self.kp * bearing_rad, -most, most),
+            yaw_rad_s: clamp(self.params.get(ParamId::AlignKp) * bearing_rad, -most, most),
         }
     }
 }
 
-impl Mode for FrontAlign {
+impl Mode for FrontAlign<'_> {
     type State = State;
 
     fn act(
@@ -171,12 +165,15 @@ impl Mode for FrontAlign {
         let (nearest_m, wall) = self
             .see(&mut state.ahead, estimate)
             .map_err(|fault| state.unrest.cause(fault))?;
-        let error_m = wall.distance_m - self.ahead.ahead_m - self.approach.distance_m;
+        let error_m = wall.distance_m - self.ahead.ahead_m() - self.approach.distance_m;
         let free_m = nearest_m - self.approach.distance_m + NEARER_M;
         let heading_ref_rad = wrap_angle(estimate.pose.heading_rad + wall.bearing_rad);
 
         let turn = match state.phase {
-            Phase::Turn => Some(self.turn.step(&mut state.turn, estimate, heading_ref_rad)),
+            Phase::Turn => {
+                let turn = Turn::new(self.params);
+                Some(turn.step(&mut state.turn, estimate, heading_ref_rad))
+            }
             _ => None,
         };
         let turned = turn.is_some_and(|turn| turn.done);
@@ -210,10 +207,10 @@ mod tests {
     use crate::rig::Rig;
     use crate::types::{AgedRange, Range};
 
-    fn mode(rig: Rig) -> FrontAlign {
+    fn params(rig: Rig) -> Params {
         let mut params = Params::default();
         params.set(ParamId::Rig, f32::from(rig as u8)).unwrap();
-        FrontAlign::new(&params, 0.3)
+        params
     }
 
     /// What the sonars left, right and front say; 0 is nothing in sight.
@@ -233,7 +230,7 @@ mod tests {
     /// A tick of the pair.
     fn step(state: &mut State, left_m: f32, right_m: f32) -> Result<Action, Fault> {
         let estimate = &seeing([left_m, right_m, 0.0]);
-        mode(Rig::FrontPair).step(state, &Situation { estimate })
+        FrontAlign::new(&params(Rig::FrontPair), 0.3).step(state, &Situation { estimate })
     }
 
     fn twist(action: &Action) -> (f32, f32) {
@@ -295,7 +292,7 @@ mod tests {
 
     #[test]
     fn it_is_ready_only_when_every_sonar_it_needs_sees_the_wall() {
-        let ready = |rig, ranges_m| mode(rig).ahead.is_ready(&seeing(ranges_m));
+        let ready = |rig, ranges_m| Ahead::new(&params(rig)).is_ready(&seeing(ranges_m));
         assert!(ready(Rig::FrontPair, [1.0, 1.0, 0.0]));
         assert!(!ready(Rig::FrontPair, [1.0, 0.0, 1.0]));
         assert!(ready(Rig::Final, [0.0, 0.0, 1.0]));
@@ -316,14 +313,16 @@ mod tests {
             let at = Situation {
                 estimate: &estimate,
             };
-            let stopped = mode(Rig::FrontPair).step(&mut State::default(), &at);
+            let stopped =
+                FrontAlign::new(&params(Rig::FrontPair), 0.3).step(&mut State::default(), &at);
             assert_eq!(stopped, Err(fault));
         }
     }
 
     #[test]
     fn with_one_sonar_on_the_servo_it_first_stands_and_looks_aside() {
-        let (mut state, mode) = (State::default(), mode(Rig::Final));
+        let params = params(Rig::Final);
+        let (mut state, mode) = (State::default(), FrontAlign::new(&params, 0.3));
         let estimate = &seeing([0.0, 0.0, 1.0]);
         let first = mode.step(&mut state, &Situation { estimate }).unwrap();
         assert_eq!((first.drive, first.state), (Drive::Release, 0));

@@ -52,24 +52,13 @@ const UNEASY_SHARE: f32 = 0.3;
 const STEERING_SHARE: f32 = 0.3;
 
 /// Configuration of mode 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrontDistance {
+#[derive(Clone, Copy, Debug)]
+pub struct FrontDistance<'a> {
     /// Reference [m].
     pub distance_m: f32,
-    /// Largest speed [m/s].
-    pub cruise_m_s: f32,
-    /// Planned deceleration [m/s^2].
-    pub brake_m_s2: f32,
-    /// Speed per error near the reference [1/s].
-    pub kp: f32,
     /// Error within which the wheels are released [m].
     pub tolerance_m: f32,
-    /// Yaw rate per heading error [1/s].
-    pub heading_kp: f32,
-    /// Distance between the wheels [m].
-    pub base_m: f32,
-    /// Oldest range to drive on [s].
-    pub stale_s: f32,
+    params: &'a Params,
 }
 
 /// Where mode 1 stands.
@@ -92,24 +81,24 @@ pub struct State {
     unrest: Unrest,
 }
 
-impl FrontDistance {
+impl<'a> FrontDistance<'a> {
     /// From the parameters.
-    pub fn new(params: &Params, distance_m: f32) -> Self {
+    pub fn new(params: &'a Params, distance_m: f32) -> Self {
         Self {
             distance_m,
-            cruise_m_s: params.get(ParamId::FrontCruise),
-            brake_m_s2: params.get(ParamId::FrontBrake),
-            kp: params.get(ParamId::FrontKp),
             tolerance_m: params.get(ParamId::FrontTolerance),
-            heading_kp: params.get(ParamId::FrontHeading),
-            base_m: params.get(ParamId::Base),
-            stale_s: params.get(ParamId::StaleRange),
+            params,
         }
     }
 
     /// Whether the sonar sees something.
     pub fn is_ready(&self, estimate: &Estimate) -> bool {
-        drivable_m(estimate.range(SonarId::Front), self.stale_s).is_ok()
+        self.range_m(estimate).is_ok()
+    }
+
+    fn range_m(&self, estimate: &Estimate) -> Result<f32, Fault> {
+        let stale_s = self.params.get(ParamId::StaleRange);
+        drivable_m(estimate.range(SonarId::Front), stale_s)
     }
 
     fn next_phase(&self, state: &mut State, error_m: f32) -> Phase {
@@ -131,15 +120,16 @@ impl FrontDistance {
     /// The speed at a distance error, slow where the sonars are `uneasy`.
     pub(super) fn speed_m_s(&self, error_m: f32, uneasy: bool) -> f32 {
         let off = abs(error_m);
-        let braking = sqrt(2.0 * self.brake_m_s2 * off);
+        let braking = sqrt(2.0 * self.params.get(ParamId::FrontBrake) * off);
         let share = if uneasy { UNEASY_SHARE } else { 1.0 };
-        let cruise = share * self.cruise_m_s;
-        let speed = max(min(min(cruise, braking), self.kp * off), CREEP_M_S);
+        let cruise = share * self.params.get(ParamId::FrontCruise);
+        let near = self.params.get(ParamId::FrontKp) * off;
+        let speed = max(min(min(cruise, braking), near), CREEP_M_S);
         if error_m < 0.0 { -speed } else { speed }
     }
 }
 
-impl Mode for FrontDistance {
+impl Mode for FrontDistance<'_> {
     type State = State;
 
     fn act(
@@ -153,7 +143,8 @@ impl Mode for FrontDistance {
         {
             state.unrest.take(at.estimate, reading)?;
         }
-        let range_m = drivable_m(at.estimate.range(SonarId::Front), self.stale_s)
+        let range_m = self
+            .range_m(at.estimate)
             .map_err(|fault| state.unrest.cause(fault))?;
         let error_m = range_m - self.distance_m;
         state.phase = self.next_phase(state, error_m);
@@ -164,11 +155,16 @@ impl Mode for FrontDistance {
             Phase::Hold => Drive::Release,
             Phase::Approach | Phase::Settle => {
                 let forward_m_s = self.speed_m_s(error_m, state.unrest.is_uneasy());
-                let most = STEERING_SHARE * abs(forward_m_s) / (0.5 * self.base_m);
+                let half_base_m = 0.5 * self.params.get(ParamId::Base);
+                let most = STEERING_SHARE * abs(forward_m_s) / half_base_m;
                 let error_rad = crate::math::wrap_angle(start_rad - heading_rad);
                 Drive::Twist {
                     forward_m_s,
-                    yaw_rad_s: clamp(self.heading_kp * error_rad, -most, most),
+                    yaw_rad_s: clamp(
+                        self.params.get(ParamId::FrontHeading) * error_rad,
+                        -most,
+                        most,
+                    ),
                 }
             }
         };
@@ -191,7 +187,8 @@ mod tests {
     }
 
     fn step(state: &mut State, range: Range, age_ticks: u16) -> Result<Action, Fault> {
-        let mode = FrontDistance::new(&Params::default(), 0.3);
+        let params = Params::default();
+        let mode = FrontDistance::new(&params, 0.3);
         mode.step(
             state,
             &Situation {
@@ -257,7 +254,8 @@ mod tests {
 
     #[test]
     fn it_steers_back_to_the_heading_it_started_with() {
-        let mode = FrontDistance::new(&Params::default(), 0.3);
+        let params = Params::default();
+        let mode = FrontDistance::new(&params, 0.3);
         let mut state = State::default();
         let mut estimate = estimate(Range::Valid(1.0), 0);
         mode.step(

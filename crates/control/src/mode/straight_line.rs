@@ -38,22 +38,13 @@ const STEERING_SHARE: f32 = 0.3;
 const MOST_HEADING_RAD: f32 = 0.15;
 
 /// Configuration of mode 6.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StraightLine {
+#[derive(Clone, Copy, Debug)]
+pub struct StraightLine<'a> {
     /// Reference of both wheels [rad/s].
-    pub speed_rad_s: f32,
-    /// Yaw rate per heading [1/s].
-    pub kp: f32,
-    /// Heading per offset from the line [rad/m].
-    pub ky_rad_m: f32,
-    /// Slope of the ramp when speeding up [rad/s^2].
-    pub accel_rad_s2: f32,
-    /// Slope of the ramp when slowing down [rad/s^2].
-    pub decel_rad_s2: f32,
-    /// Mean radius of the wheels [m].
-    pub radius_m: f32,
+    speed_rad_s: f32,
     /// Distance between the wheels [m].
-    pub base_m: f32,
+    base_m: f32,
+    params: &'a Params,
 }
 
 /// Where mode 6 stands.
@@ -77,18 +68,13 @@ pub struct State {
     offset_m: f32,
 }
 
-impl StraightLine {
+impl<'a> StraightLine<'a> {
     /// From the parameters.
-    pub fn new(params: &Params, speed_rad_s: f32) -> Self {
-        let geometry = params.geometry();
+    pub fn new(params: &'a Params, speed_rad_s: f32) -> Self {
         Self {
             speed_rad_s,
-            kp: params.get(ParamId::StraightKp),
-            ky_rad_m: params.get(ParamId::StraightOffset),
-            accel_rad_s2: params.get(ParamId::StraightAccel),
-            decel_rad_s2: params.get(ParamId::StraightDecel),
-            radius_m: geometry.mean_radius_m(),
-            base_m: geometry.base_m(),
+            base_m: params.geometry().base_m(),
+            params,
         }
     }
 
@@ -119,17 +105,17 @@ impl StraightLine {
             Phase::Drive => self.speed_rad_s,
             Phase::Stop => 0.0,
         };
-        let slope = if abs(target) > abs(before) {
-            self.accel_rad_s2
+        let slope = self.params.get(if abs(target) > abs(before) {
+            ParamId::StraightAccel
         } else {
-            self.decel_rad_s2
-        };
+            ParamId::StraightDecel
+        });
         before + clamp(target - before, -slope * TICK_S, slope * TICK_S)
     }
 
     /// Heading that leads back to the line [rad].
     fn heading_ref_rad(&self, state: &State) -> f32 {
-        let towards = -self.ky_rad_m * state.offset_m;
+        let towards = -self.params.get(ParamId::StraightOffset) * state.offset_m;
         let towards = clamp(towards, -MOST_HEADING_RAD, MOST_HEADING_RAD);
         if state.ramp_rad_s < 0.0 {
             -towards
@@ -139,7 +125,7 @@ impl StraightLine {
     }
 }
 
-impl Mode for StraightLine {
+impl Mode for StraightLine<'_> {
     type State = State;
 
     fn act(
@@ -155,9 +141,10 @@ impl Mode for StraightLine {
         action.drive = match state.phase {
             Phase::Rest => Drive::Release,
             Phase::Drive | Phase::Stop => {
-                let forward_m_s = self.radius_m * state.ramp_rad_s;
+                let forward_m_s = self.params.geometry().mean_radius_m() * state.ramp_rad_s;
                 let most = STEERING_SHARE * abs(forward_m_s) / (0.5 * self.base_m);
-                let yaw_rad_s = self.kp * (heading_ref_rad - state.difference_m / self.base_m);
+                let kp = self.params.get(ParamId::StraightKp);
+                let yaw_rad_s = kp * (heading_ref_rad - state.difference_m / self.base_m);
                 Drive::Twist {
                     forward_m_s,
                     yaw_rad_s: max(min(yaw_rad_s, most), -most),
@@ -191,7 +178,8 @@ mod tests {
 
     /// Ticks with the reference `speed_rad_s`; gives forward speed and yaw rate of the last one.
     fn run(state: &mut State, speed_rad_s: f32, estimate: &Estimate, ticks: u32) -> (f32, f32) {
-        let mode = StraightLine::new(&Params::default(), speed_rad_s);
+        let params = Params::default();
+        let mode = StraightLine::new(&params, speed_rad_s);
         let mut last = (0.0, 0.0);
         for _ in 0..ticks {
             last = match mode.step(state, &Situation { estimate }).unwrap().drive {

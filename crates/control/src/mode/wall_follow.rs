@@ -63,34 +63,17 @@ const CREEP_M_S: f32 = 0.03;
 const REACHED: (f32, f32) = (0.01, 0.06);
 
 /// Configuration of mode 4.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallFollow {
+#[derive(Clone, Copy, Debug)]
+pub struct WallFollow<'a> {
     /// Reference [m].
-    pub distance_m: f32,
+    distance_m: f32,
     /// Speed along the wall [m/s].
-    pub cruise_m_s: f32,
-    /// Speed towards the wall per distance error [1/s].
-    pub kp: f32,
-    /// Angle per distance error and time [rad/(m s)].
-    pub ki: f32,
-    /// Largest angle to the wall [rad].
-    pub heading_limit_rad: f32,
-    /// Yaw rate per angle error [1/s].
-    pub heading_kp: f32,
-    /// Yaw rate taken back per yaw rate of the encoders.
-    pub damping: f32,
-    /// Largest yaw rate [rad/s].
-    pub yaw_limit_rad_s: f32,
-    /// Where the robot stops before something ahead, from the front sonar [m].
-    pub stop_m: f32,
-    /// Distance between the wheels [m].
-    pub base_m: f32,
-    /// Half angle of a sonar's beam [rad].
-    pub beam_rad: f32,
+    cruise_m_s: f32,
     /// Oldest range to drive on [s].
-    pub stale_s: f32,
+    pub(super) stale_s: f32,
     /// The sonars.
-    pub sonars: Beside,
+    pub(super) sonars: Beside,
+    params: &'a Params,
 }
 
 /// Where mode 4 stands; 0 is for mode 3, which measures first.
@@ -118,24 +101,21 @@ fn sign(side: Side) -> f32 {
     }
 }
 
-impl WallFollow {
+impl<'a> WallFollow<'a> {
     /// From the parameters.
-    pub fn new(params: &Params, distance_m: f32) -> Self {
+    pub fn new(params: &'a Params, distance_m: f32) -> Self {
         Self {
             distance_m,
             cruise_m_s: params.get(ParamId::WallCruise),
-            kp: params.get(ParamId::WallKp),
-            ki: params.get(ParamId::WallKi),
-            heading_limit_rad: params.get(ParamId::WallHeadingLimit),
-            heading_kp: params.get(ParamId::WallHeadingKp),
-            damping: params.get(ParamId::WallDamping),
-            yaw_limit_rad_s: params.get(ParamId::WallYawLimit),
-            stop_m: params.get(ParamId::WallStop),
-            base_m: params.get(ParamId::Base),
-            beam_rad: params.get(ParamId::Beam),
             stale_s: params.get(ParamId::StaleRange),
             sonars: Beside::new(params),
+            params,
         }
+    }
+
+    /// Half angle of a sonar's beam [rad].
+    fn beam_rad(&self) -> f32 {
+        self.params.get(ParamId::Beam)
     }
 
     /// Moves the estimate of the wall along and corrects it by the reading of this tick.
@@ -148,7 +128,7 @@ impl WallFollow {
                 && let Range::Valid(range_m) = reading.range
                 && self.sonars.watches(side, reading.sonar)
             {
-                state.wall.take(&reading.view, self.beam_rad, range_m);
+                state.wall.take(&reading.view, self.beam_rad(), range_m);
             }
         }
         state.wall.wall().ok_or(Fault::WallLost)
@@ -165,7 +145,7 @@ impl WallFollow {
                 return Err(Fault::WallLost);
             };
             if started {
-                state.wall.take(view, self.beam_rad, range_m);
+                state.wall.take(view, self.beam_rad(), range_m);
             } else {
                 let parallel_rad = sign(side) * FRAC_PI_2;
                 state.wall.start(view, range_m, parallel_rad, ASKEW_RAD);
@@ -194,13 +174,14 @@ impl WallFollow {
             return Ok(cruise_m_s);
         }
         let ahead = at.range(SonarId::Front);
+        let stop_m = self.params.get(ParamId::WallStop);
         match ahead.range {
             _ if ahead.is_older(self.stale_s) => Err(Fault::SonarStale),
             Range::Faulty => Err(Fault::SonarFaulty),
             Range::Clear => Ok(cruise_m_s),
-            Range::Valid(ahead_m) if ahead_m <= self.stop_m => Err(Fault::Blocked),
+            Range::Valid(ahead_m) if ahead_m <= stop_m => Err(Fault::Blocked),
             Range::Valid(ahead_m) => {
-                let free = sqrt(2.0 * BRAKE_M_S2 * (ahead_m - self.stop_m));
+                let free = sqrt(2.0 * BRAKE_M_S2 * (ahead_m - stop_m));
                 Ok(min(max(free, CREEP_M_S), cruise_m_s))
             }
         }
@@ -208,8 +189,10 @@ impl WallFollow {
 
     /// The angle towards the wall that the distance asks for [rad], and whether it is limited.
     fn angle_ref_rad(&self, state: &State, error_m: f32, angle_sd_rad: f32) -> (f32, bool) {
-        let free_rad = self.kp / self.cruise_m_s * error_m + state.integral_rad;
-        let limit_rad = max(self.heading_limit_rad - DOUBT * angle_sd_rad, 0.0);
+        let free_rad =
+            self.params.get(ParamId::WallKp) / self.cruise_m_s * error_m + state.integral_rad;
+        let most_rad = self.params.get(ParamId::WallHeadingLimit);
+        let limit_rad = max(most_rad - DOUBT * angle_sd_rad, 0.0);
         (
             clamp(free_rad, -limit_rad, limit_rad),
             abs(free_rad) > limit_rad,
@@ -218,7 +201,7 @@ impl WallFollow {
 }
 
 /// What the robot does about the distance, and how fast it may.
-impl WallFollow {
+impl WallFollow<'_> {
     fn drive(
         &self,
         state: &mut State,
@@ -234,14 +217,16 @@ impl WallFollow {
         let error_m = distance_m - reference_m;
         let (angle_ref_rad, far) = self.angle_ref_rad(state, error_m, wall.bearing_sd_rad());
 
-        let turn_rad_s = self.heading_kp * (angle_ref_rad - angle_rad);
-        let wanted_rad_s = sign(side) * turn_rad_s - self.damping * at.yaw_rad_s;
-        let half_base_m = 0.5 * self.base_m;
+        let turn_rad_s = self.params.get(ParamId::WallHeadingKp) * (angle_ref_rad - angle_rad);
+        let damping = self.params.get(ParamId::WallDamping);
+        let wanted_rad_s = sign(side) * turn_rad_s - damping * at.yaw_rad_s;
+        let half_base_m = 0.5 * self.params.get(ParamId::Base);
         let bend_rad_s = max(free_m_s - INNER_M_S, 0.0) / half_base_m;
-        let most_rad_s = min(self.yaw_limit_rad_s, bend_rad_s);
+        let most_rad_s = min(self.params.get(ParamId::WallYawLimit), bend_rad_s);
         let yaw_rad_s = clamp(wanted_rad_s, -most_rad_s, most_rad_s);
         if !far && abs(wanted_rad_s) <= most_rad_s && abs(error_m) < INTEGRAL_M {
-            let integral_rad = state.integral_rad + self.ki * error_m * TICK_S;
+            let integral_rad =
+                state.integral_rad + self.params.get(ParamId::WallKi) * error_m * TICK_S;
             state.integral_rad = clamp(integral_rad, -INTEGRAL_RAD, INTEGRAL_RAD);
         }
         let steerable_m_s = max(OUTER_M_S - half_base_m * abs(yaw_rad_s), 0.0);
@@ -261,7 +246,7 @@ impl WallFollow {
     }
 }
 
-impl WallFollow {
+impl WallFollow<'_> {
     /// One tick at this distance [m].
     pub(super) fn keep(
         &self,
@@ -288,7 +273,7 @@ impl WallFollow {
     }
 }
 
-impl Mode for WallFollow {
+impl Mode for WallFollow<'_> {
     type State = State;
 
     fn act(
@@ -309,10 +294,10 @@ mod tests {
 
     const PAIRS: [Rig; 2] = [Rig::SidePairLeft, Rig::SidePairRight];
 
-    fn follow(rig: Rig, distance_m: f32) -> WallFollow {
+    fn params(rig: Rig) -> Params {
         let mut params = Params::default();
         params.set(ParamId::Rig, f32::from(rig as u8)).unwrap();
-        WallFollow::new(&params, distance_m)
+        params
     }
 
     /// What the sonars left, right and front say of what stands so far away.
@@ -339,7 +324,7 @@ mod tests {
     /// Yaw rate towards the wall, of a robot parallel to it.
     fn towards(rig: Rig, range_m: f32, reference_m: f32) -> f32 {
         let seen = seeing(range_m, range_m, Range::Clear);
-        let (_, yaw_rad_s) = first(&follow(rig, reference_m), &seen).unwrap();
+        let (_, yaw_rad_s) = first(&WallFollow::new(&params(rig), reference_m), &seen).unwrap();
         match rig {
             Rig::SidePairRight => -yaw_rad_s,
             _ => yaw_rad_s,
@@ -360,14 +345,15 @@ mod tests {
         for (rig, sign) in [(Rig::SidePairLeft, 1.0), (Rig::SidePairRight, -1.0)] {
             // The one in front reads less: it drives towards the wall.
             let seen = seeing(0.39, 0.41, Range::Clear);
-            let (_, yaw_rad_s) = first(&follow(rig, 0.4), &seen).unwrap();
+            let (_, yaw_rad_s) = first(&WallFollow::new(&params(rig), 0.4), &seen).unwrap();
             assert!(sign * yaw_rad_s < -0.1, "{rig:?}: {yaw_rad_s}");
         }
     }
 
     #[test]
     fn a_step_back_and_forth_leaves_no_integral_behind() {
-        let mode = follow(Rig::SidePairLeft, 0.3);
+        let params = params(Rig::SidePairLeft);
+        let mode = WallFollow::new(&params, 0.3);
         let mut state = State::default();
         let seen = seeing(0.5, 0.5, Range::Clear);
         for _ in 0..500 {
@@ -379,11 +365,12 @@ mod tests {
 
     #[test]
     fn a_bend_never_stops_the_inner_wheel_nor_overdrives_the_outer_one() {
-        let mode = follow(Rig::Final, 0.3);
+        let params = params(Rig::Final);
+        let mode = WallFollow::new(&params, 0.3);
         for ahead in [Range::Clear, Range::Valid(0.3), Range::Valid(0.16)] {
             let seen = seeing(1.2, 2.0, ahead);
             let (forward_m_s, yaw_rad_s) = first(&mode, &seen).unwrap();
-            let half_m_s = 0.5 * mode.base_m * yaw_rad_s.abs();
+            let half_m_s = 0.5 * params.get(ParamId::Base) * yaw_rad_s.abs();
             assert!(forward_m_s - half_m_s >= INNER_M_S - 1e-6, "{ahead:?}");
             assert!(forward_m_s + half_m_s <= OUTER_M_S + 1e-6, "{ahead:?}");
         }
@@ -391,7 +378,8 @@ mod tests {
 
     #[test]
     fn something_ahead_slows_it_and_then_stops_it() {
-        let mode = follow(Rig::Final, 0.5);
+        let params = params(Rig::Final);
+        let mode = WallFollow::new(&params, 0.5);
         let speed = |ahead| first(&mode, &seeing(0.5, 2.0, ahead)).map(|(forward, _)| forward);
         assert_eq!(speed(Range::Clear), Ok(mode.cruise_m_s));
         assert_eq!(speed(Range::Valid(1.0)), Ok(mode.cruise_m_s));
@@ -402,7 +390,8 @@ mod tests {
 
     #[test]
     fn it_never_drives_on_a_lost_stale_or_faulty_range_beside_it() {
-        let mode = follow(Rig::SidePairLeft, 0.5);
+        let params = params(Rig::SidePairLeft);
+        let mode = WallFollow::new(&params, 0.5);
         let mut state = State::default();
         let mut seen = seeing(0.5, 0.5, Range::Clear);
         mode.step(&mut state, &Situation { estimate: &seen })

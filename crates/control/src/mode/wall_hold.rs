@@ -24,8 +24,8 @@ const HALF: u8 = READINGS as u8 / 2;
 const PATIENCE_S: f32 = 1.5;
 
 /// Configuration of mode 3: that of mode 4, its reference aside.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallHold(WallFollow);
+#[derive(Clone, Copy, Debug)]
+pub struct WallHold<'a>(WallFollow<'a>);
 
 /// Memory of mode 3.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -77,9 +77,9 @@ impl State {
     }
 }
 
-impl WallHold {
+impl<'a> WallHold<'a> {
     /// From the parameters.
-    pub fn new(params: &Params) -> Self {
+    pub fn new(params: &'a Params) -> Self {
         Self(WallFollow::new(params, 0.0))
     }
 
@@ -114,7 +114,7 @@ impl WallHold {
     }
 }
 
-impl Mode for WallHold {
+impl Mode for WallHold<'_> {
     type State = State;
 
     fn act(

@@ -41,16 +41,13 @@ pub use route::{FARTHEST_M, MAX_WAYPOINTS, Route, Waypoint};
 pub const STATE_NAMES: [&str; 6] = ["wait", "turn", "drive", "pursue", "final turn", "done"];
 
 /// Configuration of mode 7.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Waypoints<'a> {
     /// Where to go.
-    pub route: &'a Route,
-    /// How to turn.
-    pub turn: Turn,
-    /// How to drive straight.
-    pub line: Line,
-    /// How to drive without stopping; `None`: turn, drive, turn.
-    pub pursuit: Option<Pursuit>,
+    route: &'a Route,
+    params: &'a Params,
+    /// Without stopping; otherwise turn, drive, turn.
+    pursues: bool,
 }
 
 /// Where mode 7 stands.
@@ -105,13 +102,11 @@ impl State {
 
 impl<'a> Waypoints<'a> {
     /// From the parameters.
-    pub fn new(params: &Params, route: &'a Route) -> Self {
-        let pursues = params.get(ParamId::WaypointTracker) > 0.5;
+    pub fn new(params: &'a Params, route: &'a Route) -> Self {
         Self {
             route,
-            turn: Turn::new(params),
-            line: Line::new(params),
-            pursuit: pursues.then(|| Pursuit::new(params)),
+            params,
+            pursues: params.get(ParamId::WaypointTracker) > 0.5,
         }
     }
 
@@ -173,7 +168,7 @@ impl<'a> Waypoints<'a> {
         state.pursuit = PursuitState::from(from);
         if Segment::between(here, state.to).length_m < THERE_M {
             self.arrive(state, &waypoint);
-        } else if self.pursuit.is_some() {
+        } else if self.pursues {
             state.enter(Phase::Pursue);
         } else {
             state.turn_to(Phase::Turn, state.segment.heading_rad());
@@ -200,16 +195,10 @@ impl<'a> Waypoints<'a> {
         }
     }
 
-    fn pursue(
-        &self,
-        pursuit: &Pursuit,
-        state: &mut State,
-        at: &Situation,
-        waypoint: &Waypoint,
-    ) -> Drive {
+    fn pursue(&self, state: &mut State, at: &Situation, waypoint: &Waypoint) -> Drive {
         let mut memory = state.pursuit;
         let path = |number| self.path(state, number);
-        let step = pursuit.step(&mut memory, at.estimate, f32::MAX, path);
+        let step = Pursuit::new(self.params).step(&mut memory, at.estimate, f32::MAX, path);
         state.pursuit = memory;
         state.heading_rad = step.heading_ref_rad;
         if step.done {
@@ -258,31 +247,29 @@ impl Mode for Waypoints<'_> {
                 }
             }
             (Phase::Turn | Phase::FinalTurn, Some(_)) => {
-                let step = self
-                    .turn
-                    .step(&mut state.turn, at.estimate, state.heading_rad);
+                let turn = Turn::new(self.params);
+                let step = turn.step(&mut state.turn, at.estimate, state.heading_rad);
                 action.drive = step.drive;
                 match (step.done, state.phase) {
                     (false, _) => {}
                     (true, Phase::FinalTurn) => self.advance(state),
-                    (true, _) if self.pursuit.is_some() => state.enter(Phase::Pursue),
+                    (true, _) if self.pursues => state.enter(Phase::Pursue),
                     (true, _) => state.enter(Phase::Drive),
                 }
             }
             (Phase::Drive, Some(waypoint)) => {
-                let step = self
-                    .line
-                    .step(&mut state.line, at.estimate, &state.segment, f32::MAX);
+                let line = Line::new(self.params);
+                let step = line.step(&mut state.line, at.estimate, &state.segment, f32::MAX);
                 action.drive = step.drive;
                 action.heading_ref_rad = step.heading_ref_rad;
                 if step.done {
                     self.arrive(state, &waypoint);
                 }
             }
-            (Phase::Pursue, Some(waypoint)) => match &self.pursuit {
-                Some(pursuit) => action.drive = self.pursue(pursuit, state, at, &waypoint),
-                None => state.enter(Phase::Wait),
-            },
+            (Phase::Pursue, Some(waypoint)) if self.pursues => {
+                action.drive = self.pursue(state, at, &waypoint);
+            }
+            (Phase::Pursue, Some(_)) => state.enter(Phase::Wait),
         }
         action.state = state.phase as u8;
         action.reached = state.phase == Phase::Done;

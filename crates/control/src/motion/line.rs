@@ -65,20 +65,11 @@ impl Segment {
 }
 
 /// Configuration of a line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
-    /// Largest speed [m/s].
-    pub cruise_m_s: f32,
-    /// Planned acceleration [m/s^2].
-    pub accel_m_s2: f32,
+#[derive(Clone, Copy, Debug)]
+pub struct Line<'a> {
+    params: &'a Params,
     /// How it comes to rest [m].
-    pub stop: Stop,
-    /// Heading per cross-track error [rad/m].
-    pub cross_kp: f32,
-    /// Yaw rate per heading error [1/s].
-    pub heading_kp: f32,
-    /// One over half the distance between the wheels [1/m].
-    pub per_half_base: f32,
+    pub stop: Stop<'a>,
 }
 
 /// Memory of a line; the default is its start.
@@ -102,17 +93,18 @@ pub struct LineStep {
     pub done: bool,
 }
 
-impl Line {
+impl<'a> Line<'a> {
     /// From the parameters.
-    pub fn new(params: &Params) -> Self {
+    pub fn new(params: &'a Params) -> Self {
         Self {
-            cruise_m_s: params.get(ParamId::LineCruise),
-            accel_m_s2: params.get(ParamId::LineAccel),
+            params,
             stop: Stop::on_the_way(params),
-            cross_kp: params.get(ParamId::LineCross),
-            heading_kp: params.get(ParamId::LineHeading),
-            per_half_base: 2.0 * params.geometry().per_base(),
         }
+    }
+
+    /// One over half the distance between the wheels [1/m].
+    fn per_half_base(&self) -> f32 {
+        2.0 * self.params.geometry().per_base()
     }
 
     /// One tick along `segment`, at most at `limit_m_s` ([`f32::MAX`]: as fast as it may; 0: the wheels are released).
@@ -127,7 +119,7 @@ impl Line {
         let (along_m, cross_m) = segment.place(pose.x_m, pose.y_m);
         let left_m = segment.length_m - along_m;
         let approach_rad = clamp(
-            self.cross_kp * cross_m,
+            self.params.get(ParamId::LineCross) * cross_m,
             -MOST_APPROACH_RAD,
             MOST_APPROACH_RAD,
         );
@@ -155,10 +147,14 @@ impl Line {
 
     /// Steers to a heading at a speed [m/s], as a line does.
     pub fn steer(&self, forward_m_s: f32, error_rad: f32) -> Drive {
-        let most = STEERING_SHARE * abs(forward_m_s) * self.per_half_base;
+        let most = STEERING_SHARE * abs(forward_m_s) * self.per_half_base();
         Drive::Twist {
             forward_m_s,
-            yaw_rad_s: clamp(self.heading_kp * error_rad, -most, most),
+            yaw_rad_s: clamp(
+                self.params.get(ParamId::LineHeading) * error_rad,
+                -most,
+                most,
+            ),
         }
     }
 
@@ -172,9 +168,13 @@ impl Line {
     ) -> f32 {
         let braking = self.stop.speed(left_m, estimate.forward_m_s);
         let slow = 1.0 / (1.0 + abs(error_rad) * (1.0 / SLOW_RAD));
-        let wanted = min(min(self.cruise_m_s * slow, limit_m_s), braking);
+        let cruise_m_s = self.params.get(ParamId::LineCruise);
+        let wanted = min(min(cruise_m_s * slow, limit_m_s), braking);
         state.speed_m_s = max(
-            min(wanted, state.speed_m_s + self.accel_m_s2 * TICK_S),
+            min(
+                wanted,
+                state.speed_m_s + self.params.get(ParamId::LineAccel) * TICK_S,
+            ),
             min(CREEP_M_S, limit_m_s),
         );
         state.speed_m_s
@@ -231,13 +231,14 @@ mod tests {
 
     #[test]
     fn it_starts_gently_and_no_wheel_is_ever_asked_to_turn_backward() {
-        let line = Line::new(&Params::default());
+        let params = Params::default();
+        let line = Line::new(&params);
         let mut state = LineState::default();
         let mut last_m_s = 0.0;
         for _ in 0..100 {
             let (forward, yaw) = twist(step(&mut state, &at(0.8, 0.1, 0.5, last_m_s)));
             assert!(forward - last_m_s <= CREEP_M_S + 1e-6);
-            assert!(abs(yaw) < forward * line.per_half_base);
+            assert!(abs(yaw) < forward * line.per_half_base());
             last_m_s = forward;
         }
         assert!(last_m_s > 0.1, "{last_m_s}");
@@ -256,7 +257,8 @@ mod tests {
 
     #[test]
     fn a_limit_of_the_speed_holds_and_zero_releases_the_wheels() {
-        let line = Line::new(&Params::default());
+        let params = Params::default();
+        let line = Line::new(&params);
         let segment = Segment::between(NORTH.0, NORTH.1);
         let mut state = LineState::default();
         let estimate = at(1.0, 0.2, FRAC_PI_2, 0.1);

@@ -16,18 +16,17 @@ use crate::params::{ParamId, Params};
 const RELEASE_DELAY_S: f32 = 0.025;
 
 /// Configuration of a stop; per second and second squared of the goal's unit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop {
+#[derive(Clone, Copy, Debug)]
+pub struct Stop<'a> {
+    params: &'a Params,
     /// Planned deceleration.
-    pub brake: f32,
-    /// Time by which the wheels follow late [s].
-    pub lag_s: f32,
+    brake: ParamId,
     /// Deceleration of the released wheels at creeping speed.
-    pub coast: f32,
+    coast: ParamId,
     /// What may be missing in the end.
-    pub tolerance: f32,
+    tolerance: ParamId,
     /// Drives before the goal is taken as it is.
-    pub most_tries: u8,
+    most_tries: u8,
 }
 
 /// Memory of a stop; the default is the start of a drive.
@@ -48,21 +47,42 @@ pub enum Stopping {
     Done,
 }
 
-impl Stop {
-    /// At the end of a way [m], from the parameters.
-    pub fn on_the_way(params: &Params) -> Self {
+impl<'a> Stop<'a> {
+    /// At the end of a way [m].
+    pub fn on_the_way(params: &'a Params) -> Self {
         Self {
-            brake: params.get(ParamId::LineBrake),
-            lag_s: params.get(ParamId::SpeedLag),
-            coast: params.get(ParamId::LineCoast),
-            tolerance: params.get(ParamId::LineTolerance),
+            params,
+            brake: ParamId::LineBrake,
+            coast: ParamId::LineCoast,
+            tolerance: ParamId::LineTolerance,
             most_tries: 3,
         }
     }
 
+    /// At the end of a turn [rad].
+    pub fn of_a_turn(params: &'a Params) -> Self {
+        Self {
+            params,
+            brake: ParamId::TurnBrake,
+            coast: ParamId::TurnCoast,
+            tolerance: ParamId::TurnTolerance,
+            most_tries: 4,
+        }
+    }
+
+    /// Planned deceleration.
+    pub fn brake(&self) -> f32 {
+        self.params.get(self.brake)
+    }
+
+    /// Time by which the wheels follow late [s].
+    pub fn lag_s(&self) -> f32 {
+        self.params.get(ParamId::SpeedLag)
+    }
+
     /// The speed from which the goal can still be stopped at.
     pub fn speed(&self, left: f32, measured: f32) -> f32 {
-        sqrt(2.0 * self.brake * (left - self.lag_s * max(measured, 0.0)))
+        sqrt(2.0 * self.brake() * (left - self.lag_s() * max(measured, 0.0)))
     }
 
     /// One tick: `left` is the way left (negative beyond the goal), `measured` the speed towards it, `standing` that both wheels stand.
@@ -73,15 +93,16 @@ impl Stop {
         measured: f32,
         standing: bool,
     ) -> Stopping {
+        let tolerance = self.params.get(self.tolerance);
         if state.coasting && standing {
-            if left <= self.tolerance || state.tries >= self.most_tries {
+            if left <= tolerance || state.tries >= self.most_tries {
                 return Stopping::Done;
             }
             state.coasting = false;
         }
         let speed = max(measured, 0.0);
-        let coast = speed * speed / (2.0 * self.coast) + speed * RELEASE_DELAY_S;
-        if !state.coasting && left <= max(coast, 0.5 * self.tolerance) {
+        let coast = speed * speed / (2.0 * self.params.get(self.coast)) + speed * RELEASE_DELAY_S;
+        if !state.coasting && left <= max(coast, 0.5 * tolerance) {
             state.coasting = true;
             state.tries = state.tries.saturating_add(1);
         }
@@ -97,47 +118,47 @@ impl Stop {
 mod tests {
     use super::*;
 
-    const STOP: Stop = Stop {
-        brake: 0.36,
-        lag_s: 0.1,
-        coast: 0.5,
-        tolerance: 0.004,
-        most_tries: 3,
-    };
-
     #[test]
     fn the_speed_can_be_braked_before_the_goal_even_when_the_loops_follow_late() {
+        let params = Params::default();
+        let stop = Stop::on_the_way(&params);
         for millimetres in 1..1_000u16 {
             let left = f32::from(millimetres) * 1e-3;
-            let speed = STOP.speed(left, 0.3);
-            assert!(speed * speed / (2.0 * STOP.brake) <= max(left - 0.03, 0.0) * 1.000_1);
+            let speed = stop.speed(left, 0.3);
+            assert!(speed * speed / (2.0 * stop.brake()) <= max(left - 0.03, 0.0) * 1.000_1);
         }
     }
 
     #[test]
     fn the_wheels_are_released_when_they_would_coast_there_and_not_before() {
-        let coast = 0.04 / (2.0 * STOP.coast) + 0.2 * RELEASE_DELAY_S;
+        let params = Params::default();
+        let stop = Stop::on_the_way(&params);
+        let coast = 0.04 / (2.0 * params.get(stop.coast)) + 0.2 * RELEASE_DELAY_S;
         let mut state = StopState::default();
-        let mut at = |left| STOP.step(&mut state, left, 0.2, false);
+        let mut at = |left| stop.step(&mut state, left, 0.2, false);
         assert_eq!(at(coast + 0.001), Stopping::Drive);
         assert_eq!(at(coast - 0.001), Stopping::Coast);
     }
 
     #[test]
     fn what_is_missing_is_driven_once_more_but_not_for_ever() {
+        let params = Params::default();
+        let stop = Stop::on_the_way(&params);
         let mut state = StopState::default();
-        for _ in 0..STOP.most_tries {
-            assert_eq!(STOP.step(&mut state, 0.02, 0.0, true), Stopping::Drive);
-            assert_eq!(STOP.step(&mut state, 0.001, 0.03, false), Stopping::Coast);
+        for _ in 0..stop.most_tries {
+            assert_eq!(stop.step(&mut state, 0.02, 0.0, true), Stopping::Drive);
+            assert_eq!(stop.step(&mut state, 0.001, 0.03, false), Stopping::Coast);
         }
         // Pushed back each time: it is taken as it is.
-        assert_eq!(STOP.step(&mut state, 0.02, 0.0, true), Stopping::Done);
+        assert_eq!(stop.step(&mut state, 0.02, 0.0, true), Stopping::Done);
     }
 
     #[test]
     fn a_goal_that_was_passed_is_done_when_the_wheels_stand() {
+        let params = Params::default();
+        let stop = Stop::on_the_way(&params);
         let mut state = StopState::default();
-        assert_eq!(STOP.step(&mut state, -0.01, 0.1, false), Stopping::Coast);
-        assert_eq!(STOP.step(&mut state, -0.02, 0.0, true), Stopping::Done);
+        assert_eq!(stop.step(&mut state, -0.01, 0.1, false), Stopping::Coast);
+        assert_eq!(stop.step(&mut state, -0.02, 0.0, true), Stopping::Done);
     }
 }

@@ -17,18 +17,14 @@ use crate::types::Drive;
 const HOLD_PLACE: f32 = 6.0;
 /// Most of the wheels' speed that holding the place may take.
 const HOLD_SHARE: f32 = 0.4;
-/// Turns before the heading is taken as it is.
-const MOST_TRIES: u8 = 4;
 
 /// Configuration of a turn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
+#[derive(Clone, Copy, Debug)]
+pub struct Turn<'a> {
     /// Largest yaw rate [rad/s].
     pub rate_rad_s: f32,
     /// How it comes to rest [rad].
-    pub stop: Stop,
-    /// Slowest steady yaw rate [rad/s].
-    pub creep_rad_s: f32,
+    stop: Stop<'a>,
     /// Half the distance between the wheels [m].
     pub half_base_m: f32,
 }
@@ -50,22 +46,19 @@ pub struct TurnStep {
     pub done: bool,
 }
 
-impl Turn {
+impl<'a> Turn<'a> {
     /// From the parameters.
-    pub fn new(params: &Params) -> Self {
-        let half_base_m = 0.5 * params.get(ParamId::Base);
+    pub fn new(params: &'a Params) -> Self {
         Self {
             rate_rad_s: params.get(ParamId::TurnRate),
-            stop: Stop {
-                brake: params.get(ParamId::TurnBrake),
-                lag_s: params.get(ParamId::SpeedLag),
-                coast: params.get(ParamId::TurnCoast),
-                tolerance: params.get(ParamId::TurnTolerance),
-                most_tries: MOST_TRIES,
-            },
-            creep_rad_s: CREEP_M_S / half_base_m,
-            half_base_m,
+            stop: Stop::of_a_turn(params),
+            half_base_m: 0.5 * params.get(ParamId::Base),
         }
+    }
+
+    /// Slowest steady yaw rate [rad/s].
+    fn creep_rad_s(&self) -> f32 {
+        CREEP_M_S / self.half_base_m
     }
 
     /// One tick towards `heading_rad`, which may change on the way.
@@ -78,7 +71,8 @@ impl Turn {
             estimate.yaw_rad_s
         };
         // Turning away from it: the robot has overshot, or was pushed, and is released until it stands.
-        let left_rad = if towards_rad_s < -0.5 * self.creep_rad_s {
+        let creep_rad_s = self.creep_rad_s();
+        let left_rad = if towards_rad_s < -0.5 * creep_rad_s {
             0.0
         } else {
             abs(error_rad)
@@ -99,7 +93,7 @@ impl Turn {
 
     fn drive(&self, rolled_m: f32, error_rad: f32, towards_rad_s: f32) -> Drive {
         let braking_rad_s = self.stop.speed(abs(error_rad), towards_rad_s);
-        let rate_rad_s = max(min(self.rate_rad_s, braking_rad_s), self.creep_rad_s);
+        let rate_rad_s = max(min(self.rate_rad_s, braking_rad_s), self.creep_rad_s());
         let most_m_s = HOLD_SHARE * rate_rad_s * self.half_base_m;
         Drive::Twist {
             forward_m_s: clamp(-HOLD_PLACE * rolled_m, -most_m_s, most_m_s),
@@ -165,7 +159,7 @@ mod tests {
             drives += 1;
             step(&mut state, &facing(0.1, 0.6), 0.1);
         }
-        assert_eq!(drives, i32::from(MOST_TRIES));
+        assert_eq!(drives, 4);
         let mut state = TurnState::default();
         step(&mut state, &facing(0.1, 0.6), 0.1);
         assert!(step(&mut state, &facing(0.095, 0.0), 0.1).done);

@@ -25,7 +25,7 @@ const CLOSE_RAD_S: f32 = 0.5;
 /// An obstacle that reaches beyond a right angle from the way to the goal costs this much more [m/rad].
 const BEHIND_M: f32 = 0.35;
 
-impl Mission {
+impl Mission<'_> {
     pub(super) fn decide(&self, state: &mut State, pose: &Pose, goal_m: (f32, f32)) {
         let Some(obstacle) = state.plan.obstacle else {
             state.phase = Phase::GoToGoal;

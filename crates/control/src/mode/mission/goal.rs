@@ -3,7 +3,9 @@
 use super::detour::following;
 use super::gaze::{SWEEP_RAD, look};
 use super::obstacle::Among;
-use super::{Action, Drive, Mission, Phase, Place, Pose, Segment, State, Way, abs, min, sqrt};
+use super::{
+    Action, Drive, Mission, ParamId, Phase, Place, Pose, Segment, State, Turn, Way, abs, min, sqrt,
+};
 use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
 use crate::motion::{LineState, TurnState};
@@ -41,7 +43,7 @@ const TIGHT_RAD_S: f32 = 0.6;
 /// Yaw rate per distance beyond [rad/s/m].
 const TIGHT_SLOPE: f32 = 15.0;
 
-impl Mission {
+impl Mission<'_> {
     pub(super) fn goal(
         &self,
         state: &mut State,
@@ -63,7 +65,7 @@ impl Mission {
         let (way, left_m) = way_to(&estimate.pose, goal_m);
         count(state, estimate, &way);
         let planned = perceive(state, estimate, &way);
-        if state.age_s > self.give_up_s {
+        if state.age_s > self.params.get(ParamId::MissionGiveUp) {
             state.phase = Phase::Unreachable;
         }
         self.act(state, estimate, goal_m, (&way, left_m), planned, action);
@@ -129,7 +131,7 @@ impl Mission {
     ) -> Drive {
         let pose = &estimate.pose;
         state.heading_ref_rad = heading_rad;
-        let mut turn = self.turn;
+        let mut turn = Turn::new(self.params);
         let rate_rad_s = (min(state.near_m, 1.0) - TIGHT_M) * TIGHT_SLOPE;
         turn.rate_rad_s = min(turn.rate_rad_s, max(rate_rad_s, TIGHT_RAD_S));
         if state.watch.doubts() {
@@ -181,8 +183,8 @@ impl Mission {
         if step.done && estimate.standing() {
             state.phase = Phase::Wait;
             action.reached = true;
-            action.new_origin = self.reset_origin;
-            if self.reset_origin {
+            action.new_origin = self.params.get(ParamId::MissionResetOrigin) > 0.5;
+            if action.new_origin {
                 state.echoes.move_origin(&estimate.pose, estimate.facing);
             }
         }
@@ -192,7 +194,7 @@ impl Mission {
     /// Fastest speed from which the robot stops before what is ahead.
     pub(super) fn free_m_s(&self, state: &State) -> f32 {
         let room_m = max(state.gap_m - KEEP_M, 0.0);
-        let free_m_s = sqrt(2.0 * self.brake_m_s2 * room_m);
+        let free_m_s = sqrt(2.0 * self.params.get(ParamId::LineBrake) * room_m);
         if state.watch.doubts() {
             min(free_m_s, DOUBT_M_S)
         } else {
@@ -205,7 +207,7 @@ impl Mission {
         if near_m < CAREFUL_M {
             self.around_m_s / (1.0 + abs(error_rad) * (1.0 / CAREFUL_RAD))
         } else {
-            self.cruise_m_s
+            self.params.get(ParamId::MissionCruise)
         }
     }
 

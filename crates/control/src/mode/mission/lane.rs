@@ -15,7 +15,7 @@
 //! are not used. Here the stop is planned, the servo never blocks a tick, and walls at the sides push the robot to the middle:
 //! docs/theory/lane.md.
 
-use super::{Action, Drive, Mission, Pose, Segment, ServoAngle, State};
+use super::{Action, Drive, Mission, ParamId, Pose, Segment, ServoAngle, State, Turn};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
 use crate::motion::{CREEP_M_S, LineState, StopState, Stopping, TurnState};
@@ -154,7 +154,7 @@ pub(super) struct Lane {
     left_rad: Option<f32>,
 }
 
-impl Mission {
+impl Mission<'_> {
     pub(super) fn lane(&self, state: &mut State, estimate: &Estimate, action: &mut Action) {
         let lane = &mut state.lane;
         if state.fresh {
@@ -182,7 +182,8 @@ impl Mission {
                 Drive::Release
             }
             Stage::Turn => {
-                let step = self.turn.step(&mut lane.turn, estimate, lane.heading_rad);
+                let turn = Turn::new(self.params);
+                let step = turn.step(&mut lane.turn, estimate, lane.heading_rad);
                 if step.done {
                     lane.go_on();
                 }
@@ -204,7 +205,7 @@ impl Mission {
         let Some(range_m) = lane.ahead.range_m() else {
             return Drive::Release;
         };
-        let left_m = range_m - self.safe_m;
+        let left_m = range_m - self.params.get(ParamId::LaneSafe);
         let v_m_s = estimate.forward_m_s;
         let stop = &self.line.stop;
         match stop.step(&mut lane.stop, left_m, v_m_s, estimate.standing()) {
@@ -221,7 +222,8 @@ impl Mission {
                 return Drive::Release;
             }
         }
-        let limit_m_s = max(min(self.cruise_m_s, stop.speed(left_m, v_m_s)), CREEP_M_S);
+        let cruise_m_s = self.params.get(ParamId::MissionCruise);
+        let limit_m_s = max(min(cruise_m_s, stop.speed(left_m, v_m_s)), CREEP_M_S);
         let pose = Pose {
             heading_rad,
             ..estimate.pose

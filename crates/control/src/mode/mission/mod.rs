@@ -107,18 +107,13 @@ enum Phase {
 }
 
 /// Configuration of mode 8.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mission {
+#[derive(Clone, Copy, Debug)]
+pub struct Mission<'a> {
     task: Task,
-    turn: Turn,
-    line: Line,
-    cruise_m_s: f32,
+    params: &'a Params,
+    line: Line<'a>,
+    /// Largest speed around an obstacle [m/s].
     around_m_s: f32,
-    brake_m_s2: f32,
-    give_up_s: f32,
-    reset_origin: bool,
-    stale_s: f32,
-    safe_m: f32,
 }
 
 /// The obstacle that is gone around.
@@ -182,25 +177,19 @@ impl State {
     }
 }
 
-impl Mission {
+impl<'a> Mission<'a> {
     /// From the parameters.
-    pub fn new(params: &Params, task: Task) -> Self {
+    pub fn new(params: &'a Params, task: Task) -> Self {
         Self {
             task,
-            turn: Turn::new(params),
+            params,
             line: Line::new(params),
-            cruise_m_s: params.get(ParamId::MissionCruise),
             around_m_s: params.get(ParamId::MissionAround),
-            brake_m_s2: params.get(ParamId::LineBrake),
-            give_up_s: params.get(ParamId::MissionGiveUp),
-            reset_origin: params.get(ParamId::MissionResetOrigin) > 0.5,
-            stale_s: params.get(ParamId::StaleRange),
-            safe_m: params.get(ParamId::LaneSafe),
         }
     }
 }
 
-impl Mode for Mission {
+impl Mode for Mission<'_> {
     type State = State;
 
     fn act(
@@ -216,7 +205,8 @@ impl Mode for Mission {
             }
             None => false,
         };
-        state.watch.step(at.estimate, denies, self.stale_s)?;
+        let stale_s = self.params.get(ParamId::StaleRange);
+        state.watch.step(at.estimate, denies, stale_s)?;
         state.fade_s += TICK_S;
         if state.fade_s > FADE_S {
             state.fade_s = 0.0;
