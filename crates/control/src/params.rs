@@ -3,11 +3,10 @@
 //! A parameter is a number on the link, a name in files. Names, units and help exist on the host only (feature `names`); limits and
 //! defaults are kept short ([`Decimal`]), since a table of constants lies in the AVR's flash and in its SRAM.
 
-use crate::drive::{Feedforward, SpeedLoop};
+use crate::drive::SpeedLoop;
 use crate::math::{is_finite, round};
 use crate::mode::ModeId;
 use crate::odometry::{Geometry, OdometryErrors};
-use crate::pid::{Gains, Pid};
 use crate::rig::Rig;
 use crate::speed::EDGE_RAD;
 use crate::types::{Side, TICK_S, Wheels};
@@ -399,10 +398,8 @@ impl Params {
         };
         self.geometry = Geometry::new(radius_m, self.get(ParamId::Base));
         self.rig = Rig::nearest(self.get(ParamId::Rig));
-        self.loops = Wheels {
-            left: self.loop_of(Side::Left),
-            right: self.loop_of(Side::Right),
-        };
+        self.derive_loop(Side::Left);
+        self.derive_loop(Side::Right);
     }
 
     /// The lengths for odometry.
@@ -433,7 +430,7 @@ impl Params {
         &self.loops[side]
     }
 
-    fn loop_of(&self, side: Side) -> SpeedLoop {
+    fn derive_loop(&mut self, side: Side) {
         use ParamId as Id;
         let ([forward, backward], [kp, ki, kd]) = match side {
             Side::Left => (
@@ -445,27 +442,26 @@ impl Params {
                 [Id::SpeedKpRight, Id::SpeedKiRight, Id::SpeedKdRight],
             ),
         };
-        SpeedLoop {
-            feedforward: Feedforward {
-                static_forward: self.get(forward),
-                static_backward: self.get(backward),
-                velocity: self.get(Id::Velocity),
-                acceleration: self.get(Id::Acceleration),
-            },
-            kick: self.get(Id::Kick),
-            pid: Pid {
-                gains: Gains {
-                    kp: self.get(kp),
-                    ki: self.get(ki),
-                    kd: self.get(kd),
-                },
-                min: 0.0,
-                max: 1.0,
-                tracking_s: 0.1,
-            },
-            accel_rad_s: self.get(Id::WheelAccel) * TICK_S,
-            decel_rad_s: self.get(Id::WheelDecel) * TICK_S,
-        }
+        let values = &self.values;
+        let get = |id: Id| values[id as usize];
+        let SpeedLoop {
+            feedforward,
+            kick,
+            pid,
+            accel_rad_s,
+            decel_rad_s,
+        } = &mut self.loops[side];
+        feedforward.static_forward = get(forward);
+        feedforward.static_backward = get(backward);
+        feedforward.velocity = get(Id::Velocity);
+        feedforward.acceleration = get(Id::Acceleration);
+        *kick = get(Id::Kick);
+        pid.gains.kp = get(kp);
+        pid.gains.ki = get(ki);
+        pid.gains.kd = get(kd);
+        (pid.min, pid.max, pid.tracking_s) = (0.0, 1.0, 0.1);
+        *accel_rad_s = get(Id::WheelAccel) * TICK_S;
+        *decel_rad_s = get(Id::WheelDecel) * TICK_S;
     }
 }
 

@@ -20,7 +20,7 @@ impl Governor {
         if armed {
             for &side in &SIDES {
                 let (was, is) = (self.last[side].counts(), wanted[side].counts());
-                if was.signum() * is.signum() >= 0 {
+                if was == 0 || is == 0 || (was < 0) == (is < 0) {
                     passed[side] = wanted[side];
                 }
             }

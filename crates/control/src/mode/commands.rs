@@ -20,21 +20,21 @@ impl ActiveMode {
                 Err(SetpointError::NotInThisMode)
             }
             Self::FrontDistance(distance_m, _) | Self::FrontAlign(distance_m, _) => {
-                *distance_m = within(value, MIN_DISTANCE_M, MAX_DISTANCE_M)?;
+                within(value, MIN_DISTANCE_M, MAX_DISTANCE_M)?;
+                *distance_m = value;
                 Ok(())
             }
             Self::WallFollow(distance_m, _) => {
-                *distance_m = within(value, MIN_WALL_M, MAX_WALL_M)?;
+                within(value, MIN_WALL_M, MAX_WALL_M)?;
+                *distance_m = value;
                 Ok(())
             }
             Self::StraightLine(rad_s, _) => {
-                *rad_s = within(value, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
+                within(value, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
+                *rad_s = value;
                 Ok(())
             }
-            Self::WheelSpeed(references) => {
-                *references = Wheels::both(within(value, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?);
-                Ok(())
-            }
+            Self::WheelSpeed(_) => self.set_wheel_reference(Wheels::both(value)),
         }
     }
 
@@ -46,9 +46,9 @@ impl ActiveMode {
         let Self::WheelSpeed(references) = self else {
             return Err(SetpointError::NotInThisMode);
         };
-        let left = within(value.left, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
-        let right = within(value.right, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
-        *references = Wheels { left, right };
+        within(value.left, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
+        within(value.right, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
+        *references = value;
         Ok(())
     }
 
@@ -57,10 +57,8 @@ impl ActiveMode {
     /// # Errors
     /// Why it is refused; the last one stays.
     pub fn set_goal(&mut self, x_m: f32, y_m: f32) -> Result<(), SetpointError> {
-        let (x_m, y_m) = (
-            within(x_m, -FARTHEST_M, FARTHEST_M)?,
-            within(y_m, -FARTHEST_M, FARTHEST_M)?,
-        );
+        within(x_m, -FARTHEST_M, FARTHEST_M)?;
+        within(y_m, -FARTHEST_M, FARTHEST_M)?;
         match self {
             Self::Mission(task, state) => {
                 *task = Task::Goal { x_m, y_m };
@@ -124,23 +122,23 @@ impl ActiveMode {
         let Self::Manual(setpoint) = self else {
             return Err(SetpointError::NotInThisMode);
         };
-        let level = match level {
-            Level::Duty(duty) => Level::Duty(within(duty, 0.0, 1.0)?),
-            Level::Speed(rad_s) => Level::Speed(within(rad_s, 0.0, MAX_WHEEL_RAD_S)?),
-        };
+        match level {
+            Level::Duty(duty) => within(duty, 0.0, 1.0)?,
+            Level::Speed(rad_s) => within(rad_s, 0.0, MAX_WHEEL_RAD_S)?,
+        }
         *setpoint = manual::Setpoint { movement, level };
         Ok(())
     }
 }
 
-/// The value, if it is finite and in range.
-pub(super) fn within(value: f32, min: f32, max: f32) -> Result<f32, SetpointError> {
+/// Whether a value is finite and in range.
+pub(super) fn within(value: f32, min: f32, max: f32) -> Result<(), SetpointError> {
     if !is_finite(value) {
         Err(SetpointError::NotFinite)
     } else if value < min || value > max {
         Err(SetpointError::OutOfRange)
     } else {
-        Ok(value)
+        Ok(())
     }
 }
 

@@ -225,15 +225,15 @@ impl Echoes {
     fn clear(&mut self, beam: &Beam, range_mm: i32) -> bool {
         let mut denies = false;
         let axis = beam.axis;
-        let until_mm = range_mm - BEYOND_MM - range_mm * BEYOND_SHARE / 256;
-        let aside_mm = until_mm * SURE_TANGENT / 256;
-        let bounds = Bounds::of(beam.apex, beam.facing, until_mm, aside_mm);
+        let until_mm = range_mm - BEYOND_MM - ((range_mm * BEYOND_SHARE) >> 8);
+        let aside_mm = (until_mm * SURE_TANGENT) >> 8;
+        let bounds = Bounds::of(beam.apex, &beam.facing, until_mm, aside_mm);
         for point in &mut self.points {
             let alike = point.axis.wrapping_sub(axis).unsigned_abs() <= ALIKE.unsigned_abs();
             if point.belief == 0 || !alike || !bounds.hold(point.at) {
                 continue;
             }
-            let (along, across) = point.at.seen(beam.apex, beam.facing);
+            let (along, across) = point.at.seen(beam.apex, &beam.facing);
             if along > 0 && along < until_mm && across.abs() * 256 < along * SURE_TANGENT {
                 denies |= point.belief >= FIRM && along < DENIED_MM;
                 point.belief = if point.belief < FIRM {
@@ -248,13 +248,18 @@ impl Echoes {
 
     /// Whether a point that is known already can have given this echo: it is believed more then, and the echo says nothing new.
     fn explain(&mut self, beam: &Beam, range_mm: i32) -> bool {
-        let within_mm = ALIKE_MM + range_mm * ALIKE_SHARE / 256;
+        let within_mm = ALIKE_MM + ((range_mm * ALIKE_SHARE) >> 8);
         let (near_mm, far_mm) = (range_mm - within_mm, range_mm + within_mm);
         let (near_mm2, far_mm2) = (
             (near_mm * near_mm).unsigned_abs(),
             (far_mm * far_mm).unsigned_abs(),
         );
-        let bounds = Bounds::of(beam.apex, beam.facing, far_mm, far_mm * BEAM_TANGENT / 256);
+        let bounds = Bounds::of(
+            beam.apex,
+            &beam.facing,
+            far_mm,
+            (far_mm * BEAM_TANGENT) >> 8,
+        );
         let mut best: Option<&mut Echo> = None;
         for point in &mut self.points {
             if point.belief == 0 || !bounds.hold(point.at) {
@@ -269,7 +274,7 @@ impl Echoes {
             {
                 continue;
             }
-            let (along, across) = point.at.seen(beam.apex, beam.facing);
+            let (along, across) = point.at.seen(beam.apex, &beam.facing);
             if across.abs() * 256 < along * BEAM_TANGENT {
                 best = Some(point);
             }
@@ -329,7 +334,7 @@ impl Echoes {
         let (here, facing) = (Place::new(origin.x_m, origin.y_m), fractions(facing));
         let turned = direction(origin.heading_rad);
         for point in self.points.iter_mut().filter(|point| point.belief > 0) {
-            point.at = point.at.as_seen(here, facing);
+            point.at = point.at.as_seen(here, &facing);
             point.axis = point.axis.wrapping_sub(turned);
         }
     }

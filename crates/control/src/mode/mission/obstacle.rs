@@ -133,12 +133,12 @@ impl Echoes {
         let half_mm = round(half_width_m * 1_000.0);
         let mut nearest_mm = round(way.length_m * 1_000.0);
         let mut found = None;
-        let bounds = Bounds::of(from, facing, nearest_mm, half_mm);
+        let bounds = Bounds::of(from, &facing, nearest_mm, half_mm);
         for (number, point) in self.points().iter().enumerate() {
             let Some(point) = point.place().filter(|place| bounds.hold(*place)) else {
                 continue;
             };
-            let (along, across) = point.seen(from, facing);
+            let (along, across) = point.seen(from, &facing);
             if along > 0
                 && along < nearest_mm
                 && across.abs() < half_mm

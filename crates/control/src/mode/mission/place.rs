@@ -61,14 +61,14 @@ impl Place {
     }
 
     /// How far along a direction, and how far to the left of it, seen from `from` [mm]. The direction as [`fractions`].
-    pub(super) fn seen(self, from: Place, (sin, cos): (i32, i32)) -> (i32, i32) {
+    pub(super) fn seen(self, from: Place, &(sin, cos): &(i32, i32)) -> (i32, i32) {
         let (x, y) = self.from(from);
         let (x, y) = (i32::from(x), i32::from(y));
         ((x * cos + y * sin) >> 14, (y * cos - x * sin) >> 14)
     }
 
     /// The same place where `from` is the origin and x points in a direction.
-    pub(super) fn as_seen(self, from: Place, facing: (i32, i32)) -> Self {
+    pub(super) fn as_seen(self, from: Place, facing: &(i32, i32)) -> Self {
         let (along, left) = self.seen(from, facing);
         Self {
             x_mm: saturated(along),
@@ -104,7 +104,7 @@ pub(super) struct Bounds {
 
 impl Bounds {
     /// Of the strip from a place on, `length_mm` in a direction, `aside_mm` to both sides.
-    pub(super) fn of(from: Place, (sin, cos): (i32, i32), length_mm: i32, aside_mm: i32) -> Self {
+    pub(super) fn of(from: Place, &(sin, cos): &(i32, i32), length_mm: i32, aside_mm: i32) -> Self {
         /// What rounding may add.
         const SPARE_MM: i32 = 2;
         let span = |from: i16, along: i32| {
@@ -174,9 +174,9 @@ mod tests {
         ) {
             let facing = fractions(sin_cos(heading_rad));
             let (from, point) = (Place::new(0.3, -0.2), Place::new(x_m, y_m));
-            let (along, across) = point.seen(from, facing);
+            let (along, across) = point.seen(from, &facing);
             let inside = along > 0 && along < length_mm && across.abs() < aside_mm;
-            prop_assert!(!inside || Bounds::of(from, facing, length_mm, aside_mm).hold(point));
+            prop_assert!(!inside || Bounds::of(from, &facing, length_mm, aside_mm).hold(point));
         }
 
         #[test]
