@@ -6,11 +6,8 @@
 
 use rumbo_control::math::is_finite;
 use rumbo_control::mode::ModeId;
-use rumbo_control::{Duty, Micros, Pose, Wheels};
-use rumbo_wire::text::{
-    CM_PER_M, DistanceRow, MissionRow, RAD_PER_DEG, RAD_S_PER_RPM, Row, SpeedRow, WaypointsRow,
-    cm_from_range,
-};
+use rumbo_control::{Micros, Wheels};
+use rumbo_wire::text::{CM_PER_M, Line};
 use rumbo_wire::{
     Ack, Event, EventKind, FromRobot, Hello, Message, Recalled, Refusal, Status, Telemetry,
 };
@@ -248,11 +245,15 @@ impl Reporter {
         self.row_in = ROW_TICKS;
         let dt_ms = now.since(self.last_row_at) / 1_000;
         self.last_row_at = now;
-        self.outbox.push(
-            Priority::Answer,
-            row(dt_ms, status, &signals()).line().bytes(),
-        );
+        self.say_row(dt_ms, status, &signals());
         true
+    }
+
+    fn say_row(&mut self, dt_ms: u32, status: &Status, signals: &Signals) {
+        let mut line = Line::new(dt_ms);
+        write_row(&mut line, status, signals);
+        line.end();
+        self.outbox.push(Priority::Answer, line.bytes());
     }
 
     /// Sends a message, or says that it did not fit. Only what is sent takes a number: a gap is the link's loss.
@@ -284,75 +285,55 @@ fn is_news(status: &Status, before: &Status) -> bool {
         || status.reference != before.reference
 }
 
-/// The original's row for the mode.
-fn row(dt_ms: u32, status: &Status, signals: &Signals) -> Row {
-    let mode = status.mode as u8;
+/// The columns of the original's row for the mode, after the time.
+fn write_row(line: &mut Line, status: &Status, signals: &Signals) {
     let told = &signals.telemetry;
-    let pwm = told.duty.map(Duty::counts);
-    let rpm = |rad_s: Wheels<f32>| rad_s.map(|rad_s| rad_s / RAD_S_PER_RPM);
-    let (wheel_rpm, reference_rpm) = (rpm(signals.wheel_rad_s()), rpm(told.wheel_ref_rad_s));
-    let Pose {
-        x_m,
-        y_m,
-        heading_rad,
-    } = told.pose;
-    let heading_deg = heading_rad / RAD_PER_DEG;
     let [left, right, front] = &told.ranges;
-    let (left_cm, right_cm) = (cm_from_range(left.range), cm_from_range(right.range));
-    let front_cm = cm_from_range(front.range);
     match status.mode {
         ModeId::FrontDistance | ModeId::FrontAlign | ModeId::WallHold | ModeId::WallFollow => {
             // One sonar in front the original sends twice.
-            let (left_cm, right_cm) = match status.mode {
-                ModeId::FrontDistance => (front_cm, front_cm),
-                _ => (left_cm, right_cm),
+            let (left, right) = match status.mode {
+                ModeId::FrontDistance => (front, front),
+                _ => (left, right),
             };
-            Row::Distance(DistanceRow {
-                dt_ms,
-                left_cm,
-                right_cm,
-                reference_cm: status.reference.left * CM_PER_M,
-                mode,
-                pwm,
-            })
+            line.range(left.range);
+            line.range(right.range);
+            line.number(status.reference.left * CM_PER_M);
         }
-        ModeId::Waypoints => Row::Waypoints(WaypointsRow {
-            dt_ms,
-            wheel_rpm,
-            reference_rpm,
-            x_m,
-            y_m,
-            heading_deg,
-            pwm,
-        }),
-        ModeId::Mission => Row::Mission(MissionRow {
-            dt_ms,
-            reference_rpm,
-            heading_reference_deg: signals.heading_ref_rad / RAD_PER_DEG,
-            goal_x_m: status.reference.left,
-            goal_y_m: status.reference.right,
-            x_m,
-            y_m,
-            heading_deg,
-            state: told.state,
-            right_cm,
-            left_cm,
-            front_cm,
-        }),
-        ModeId::Manual | ModeId::WheelSpeed | ModeId::StraightLine => Row::Speed(SpeedRow {
-            dt_ms,
-            wheel_rpm,
-            reference_rpm: reference_rpm.right,
-            mode,
-            pwm,
-        }),
+        ModeId::Waypoints => {
+            line.speeds(&signals.wheel_rad_s());
+            line.speeds(&told.wheel_ref_rad_s);
+            line.pose(&told.pose);
+            line.pwm(&told.duty);
+            return;
+        }
+        ModeId::Mission => {
+            line.speeds(&told.wheel_ref_rad_s);
+            line.angle(signals.heading_ref_rad);
+            line.number(status.reference.left);
+            line.number(status.reference.right);
+            line.pose(&told.pose);
+            line.integer(i16::from(told.state));
+            line.range(right.range);
+            line.range(left.range);
+            line.range(front.range);
+            return;
+        }
+        ModeId::Manual | ModeId::WheelSpeed | ModeId::StraightLine => {
+            line.speeds(&signals.wheel_rad_s());
+            line.speed(told.wheel_ref_rad_s.right);
+        }
     }
+    line.integer(i16::from(status.mode as u8));
+    line.pwm(&told.duty);
 }
 
 #[cfg(test)]
 mod tests {
     extern crate std;
     use super::*;
+    use rumbo_control::{AgedRange, Duty, Pose, Range};
+    use rumbo_wire::text::{RAD_PER_DEG, RAD_S_PER_RPM, Row};
     use rumbo_wire::{Decoder, PROTOCOL_VERSION, Received, ResetCause};
 
     #[test]
@@ -372,6 +353,57 @@ mod tests {
         }
         let said: std::vec::Vec<u8> = core::iter::from_fn(|| reporter.transmit()).collect();
         assert_eq!(said, b"\0FLT 1\r\nFLT 12\r\n");
+    }
+
+    #[test]
+    fn each_mode_has_the_columns_of_its_row_in_their_order() {
+        let telemetry = Telemetry {
+            pose: Pose {
+                x_m: 1.0,
+                y_m: 2.0,
+                heading_rad: 3.0 * RAD_PER_DEG,
+            },
+            wheel_rad_s: [Wheels {
+                left: 40.0 * RAD_S_PER_RPM,
+                right: 50.0 * RAD_S_PER_RPM,
+            }; 2],
+            wheel_ref_rad_s: Wheels {
+                left: 60.0 * RAD_S_PER_RPM,
+                right: 70.0 * RAD_S_PER_RPM,
+            },
+            duty: Wheels {
+                left: Duty::new(80),
+                right: Duty::new(-90),
+            },
+            state: 9,
+            ranges: [0.1, 0.2, 0.3].map(|range_m| AgedRange::fresh(Range::Valid(range_m))),
+            ..Telemetry::default()
+        };
+        let signals = Signals {
+            telemetry,
+            heading_ref_rad: 4.0 * RAD_PER_DEG,
+        };
+        let row = |mode| {
+            let status = Status {
+                mode,
+                reference: Wheels {
+                    left: 5.0,
+                    right: 6.0,
+                },
+                ..Status::default()
+            };
+            let mut line = Line::new(12);
+            write_row(&mut line, &status, &signals);
+            line.end();
+            let text = std::string::String::from_utf8(line.bytes().to_vec()).unwrap();
+            assert!(Row::parse(text.strip_suffix("\r\n").unwrap()).is_ok());
+            text
+        };
+        assert_eq!(row(ModeId::FrontDistance), "12,30,30,500,1,-90,80\r\n");
+        assert_eq!(row(ModeId::WallFollow), "12,10,20,500,4,-90,80\r\n");
+        assert_eq!(row(ModeId::WheelSpeed), "12,50,40,70,5,-90,80\r\n");
+        assert_eq!(row(ModeId::Waypoints), "12,50,40,70,60,1,2,3,-90,80\r\n");
+        assert_eq!(row(ModeId::Mission), "12,70,60,4,5,6,1,2,3,9,20,10,30\r\n");
     }
 
     #[test]

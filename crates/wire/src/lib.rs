@@ -20,6 +20,7 @@ pub mod message;
 mod names;
 mod quantise;
 pub mod text;
+mod text_line;
 mod text_row;
 mod text_telemetry;
 

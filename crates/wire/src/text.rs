@@ -11,9 +11,10 @@ use rumbo_control::math::round;
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Range, Side, Wheels};
 
-use crate::decimal::{self, Text};
+use crate::decimal;
 use crate::message::Command;
 
+pub use crate::text_line::Line;
 pub use crate::text_row::{DistanceRow, MissionRow, Row, RowKind, SpeedRow, WaypointsRow};
 
 /// rad/s in one rpm.
@@ -25,16 +26,6 @@ pub const CM_PER_M: f32 = 100.0;
 
 /// Length of the longest row, CR and LF included.
 pub const MAX_LINE: usize = 128;
-
-/// A line for the wire.
-pub struct Line(pub(crate) Text<MAX_LINE>);
-
-impl Line {
-    /// The bytes, CR LF at the end as the original's `println` had it.
-    pub fn bytes(&self) -> &[u8] {
-        self.0.bytes()
-    }
-}
 
 /// What a text row shows for a range [cm]: the original has numbers only. 0 is *faulty*, 400 (the end of the
 /// HC-SR04's scale, beyond the reach that is used) is *clear*.
@@ -286,9 +277,4 @@ impl<'a> Words<'a> {
         self.values += 1;
         decimal::parse(word).ok_or(TextError::NotANumber(self.values))
     }
-}
-
-/// The pair of values that the original sends for motor A, then motor B.
-pub(crate) fn a_then_b<T>(wheels: Wheels<T>) -> [T; 2] {
-    [wheels.right, wheels.left]
 }

@@ -1,10 +1,10 @@
-//! The rows of telemetry of the original's text protocol, to and from text.
+//! The rows of telemetry of the original's text protocol, from text; the robot writes them with [`Line`](crate::text::Line).
 
 use rumbo_control::Wheels;
 use rumbo_control::math::round;
 
-use crate::decimal::{self, Text};
-use crate::text::{Line, TextError, a_then_b};
+use crate::decimal;
+use crate::text::TextError;
 
 /// The row of modes 1 to 4.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -191,72 +191,6 @@ impl Row {
             Row::Speed(_) => RowKind::Speed,
             Row::Waypoints(_) => RowKind::Waypoints,
             Row::Mission(_) => RowKind::Mission,
-        }
-    }
-
-    /// The row as a line for the wire. Floats have at most two decimals.
-    pub fn line(&self) -> Line {
-        let mut to = Columns(Text::EMPTY);
-        self.write(&mut to);
-        to.0.push(b'\r');
-        to.0.push(b'\n');
-        Line(to.0)
-    }
-
-    fn write(&self, to: &mut Columns) {
-        match self {
-            Row::Distance(row) => {
-                to.milliseconds(row.dt_ms);
-                to.numbers(&[row.left_cm, row.right_cm, row.reference_cm]);
-                to.integers(&[i16::from(row.mode)]);
-                to.integers(&a_then_b(row.pwm));
-            }
-            Row::Speed(row) => {
-                to.milliseconds(row.dt_ms);
-                to.numbers(&a_then_b(row.wheel_rpm));
-                to.numbers(&[row.reference_rpm]);
-                to.integers(&[i16::from(row.mode)]);
-                to.integers(&a_then_b(row.pwm));
-            }
-            Row::Waypoints(row) => {
-                to.milliseconds(row.dt_ms);
-                to.numbers(&a_then_b(row.wheel_rpm));
-                to.numbers(&a_then_b(row.reference_rpm));
-                to.numbers(&[row.x_m, row.y_m, row.heading_deg]);
-                to.integers(&a_then_b(row.pwm));
-            }
-            Row::Mission(row) => {
-                to.milliseconds(row.dt_ms);
-                to.numbers(&a_then_b(row.reference_rpm));
-                to.numbers(&[row.heading_reference_deg, row.goal_x_m, row.goal_y_m]);
-                to.numbers(&[row.x_m, row.y_m, row.heading_deg]);
-                to.integers(&[i16::from(row.state)]);
-                to.numbers(&[row.right_cm, row.left_cm, row.front_cm]);
-            }
-        }
-    }
-}
-
-/// Writes columns, a comma before each but the first.
-struct Columns(Text<{ crate::text::MAX_LINE }>);
-
-impl Columns {
-    fn milliseconds(&mut self, dt_ms: u32) {
-        self.0
-            .push_integer(i32::try_from(dt_ms).unwrap_or(i32::MAX));
-    }
-
-    fn numbers(&mut self, values: &[f32]) {
-        for value in values {
-            self.0.push(b',');
-            self.0.push_hundredths(*value);
-        }
-    }
-
-    fn integers(&mut self, values: &[i16]) {
-        for value in values {
-            self.0.push(b',');
-            self.0.push_integer(i32::from(*value));
         }
     }
 }
