@@ -106,11 +106,11 @@ impl<'a> Ahead<'a> {
             if !self.has(sonar) {
                 continue;
             }
-            let mut range = estimate.range(sonar);
+            let mut range = *estimate.range(sonar);
             if !self.paired && !fresh {
                 range.age_ticks = 0;
             }
-            nearest_m = min(nearest_m, drivable_m(range, self.stale_s())?);
+            nearest_m = min(nearest_m, drivable_m(&range, self.stale_s())?);
         }
         Ok(nearest_m)
     }
@@ -245,7 +245,7 @@ impl<'a> Ahead<'a> {
 ///
 /// # Errors
 /// It is too old, there is nothing, or the sonar is faulty.
-pub fn drivable_m(range: AgedRange, stale_s: f32) -> Result<f32, Fault> {
+pub fn drivable_m(range: &AgedRange, stale_s: f32) -> Result<f32, Fault> {
     match range.range {
         Range::Valid(_) if range.is_older(stale_s) => Err(Fault::SonarStale),
         Range::Valid(range_m) => Ok(range_m),

@@ -10,60 +10,54 @@ use crate::rig::{Rig, View};
 use crate::types::{Fault, Range, SIDES, Side, SonarId};
 
 /// Which sonars see a wall beside the robot.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Beside {
-    rig: Rig,
-    /// Where the sonars `Left` and `Right` sit.
-    views: [View; 2],
+#[derive(Clone, Copy, Debug)]
+pub struct Beside<'a> {
+    params: &'a Params,
 }
 
-impl Beside {
+/// The sonar on this side of the final rig.
+fn own(side: Side) -> SonarId {
+    match side {
+        Side::Left => SonarId::Left,
+        Side::Right => SonarId::Right,
+    }
+}
+
+impl<'a> Beside<'a> {
     /// From the parameters.
-    pub fn new(params: &Params) -> Self {
-        let view = |sonar| params.view(sonar, 0.0).unwrap_or_default();
-        Self {
-            rig: params.rig(),
-            views: [view(SonarId::Left), view(SonarId::Right)],
-        }
+    pub fn new(params: &'a Params) -> Self {
+        Self { params }
     }
 
-    /// From where a sonar looks that looks to this side; `None` of any other.
-    pub fn view(&self, side: Side, sonar: SonarId) -> Option<&View> {
-        let view = self.views.get(sonar as usize)?;
-        self.watches(side, sonar).then_some(view)
+    fn paired(&self, side: Side) -> bool {
+        self.params.rig().paired_side() == Some(side)
+    }
+
+    /// From where a sonar looks that sits at a side.
+    pub fn view(&self, sonar: SonarId) -> View {
+        self.params.view(sonar, 0.0).unwrap_or_default()
     }
 
     /// The point from which distances to a wall on this side are measured, ahead and left [m].
     pub fn point_m(&self, side: Side) -> (f32, f32) {
-        let [left, right] = &self.views;
-        if self.rig.paired_side() == Some(side) {
+        if self.paired(side) {
+            let (left, right) = (self.view(SonarId::Left), self.view(SonarId::Right));
             return (0.5 * (left.x_m + right.x_m), 0.5 * (left.y_m + right.y_m));
         }
-        let own = match side {
-            Side::Left => left,
-            Side::Right => right,
-        };
+        let own = self.view(own(side));
         (own.x_m, own.y_m)
     }
 
     /// Whether a sonar is one of those that look to this side.
     pub fn watches(&self, side: Side, sonar: SonarId) -> bool {
-        let own = match side {
-            Side::Left => SonarId::Left,
-            Side::Right => SonarId::Right,
-        };
-        sonar == own || (sonar != SonarId::Front && self.rig.paired_side() == Some(side))
+        sonar == own(side) || (sonar != SonarId::Front && self.paired(side))
     }
 
     /// The side with a wall, the nearer one where there are two; `None` without one in sight of all sonars of that side.
     pub fn side(&self, estimate: &Estimate, stale_s: f32) -> Option<Side> {
         let mut best: Option<(Side, f32)> = None;
         for &side in &SIDES {
-            let possible = match self.rig {
-                Rig::Final => true,
-                rig => rig.paired_side() == Some(side),
-            };
-            if !possible {
+            if !self.looks_ahead() && !self.paired(side) {
                 continue;
             }
             let Ok(range_m) = self.nearest_m(side, estimate, stale_s) else {
@@ -92,7 +86,7 @@ impl Beside {
 
     /// Whether the robot looks ahead while it follows a wall.
     pub fn looks_ahead(&self) -> bool {
-        self.rig == Rig::Final
+        self.params.rig() == Rig::Final
     }
 
     /// Whether the mode may start: a wall beside the robot within `reach`, and a front sonar that works where there is one.
@@ -113,10 +107,10 @@ mod tests {
     use crate::params::ParamId;
     use crate::types::AgedRange;
 
-    fn beside(rig: Rig) -> Beside {
+    fn params(rig: Rig) -> Params {
         let mut params = Params::default();
         params.set(ParamId::Rig, f32::from(rig as u8)).unwrap();
-        Beside::new(&params)
+        params
     }
 
     /// What the sonars left, right and front say; 0 is nothing in sight.
@@ -135,7 +129,7 @@ mod tests {
 
     #[test]
     fn a_pair_looks_to_its_own_side_and_the_final_rig_to_the_nearer_wall() {
-        let side = |rig, ranges_m| beside(rig).side(&seeing(ranges_m), 0.5);
+        let side = |rig, ranges_m| Beside::new(&params(rig)).side(&seeing(ranges_m), 0.5);
         assert_eq!(side(Rig::SidePairLeft, [0.5, 0.5, 0.0]), Some(Side::Left));
         assert_eq!(side(Rig::SidePairRight, [0.5, 0.5, 0.0]), Some(Side::Right));
         assert_eq!(side(Rig::SidePairRight, [0.5, 0.0, 0.0]), None);
@@ -153,20 +147,21 @@ mod tests {
             (Rig::Final, Side::Left, 0.075),
             (Rig::Final, Side::Right, -0.075),
         ] {
-            let (ahead_m, left_m) = beside(rig).point_m(side);
+            let (ahead_m, left_m) = Beside::new(&params(rig)).point_m(side);
             assert!((ahead_m - 0.03).abs() < 1e-6 && left_m == y_m, "{rig:?}");
         }
     }
 
     #[test]
     fn it_is_ready_with_a_wall_in_reach_and_on_the_final_rig_with_eyes_ahead() {
-        let ready = |rig, ranges_m| beside(rig).is_ready(&seeing(ranges_m), 0.5, (0.1, 1.5));
+        let ready =
+            |rig, ranges_m| Beside::new(&params(rig)).is_ready(&seeing(ranges_m), 0.5, (0.1, 1.5));
         assert!(ready(Rig::SidePairLeft, [0.5, 0.5, 0.0]));
         assert!(!ready(Rig::SidePairLeft, [0.5, 0.05, 0.0]));
         assert!(!ready(Rig::SidePairLeft, [1.7, 1.7, 0.0]));
         assert!(ready(Rig::Final, [0.5, 0.0, 0.0]));
         let mut blind = seeing([0.5, 0.0, 0.0]);
         blind.ranges[2].range = Range::Faulty;
-        assert!(!beside(Rig::Final).is_ready(&blind, 0.5, (0.1, 1.5)));
+        assert!(!Beside::new(&params(Rig::Final)).is_ready(&blind, 0.5, (0.1, 1.5)));
     }
 }

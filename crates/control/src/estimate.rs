@@ -69,8 +69,8 @@ pub struct Estimate {
 
 impl Estimate {
     /// The range of one sonar.
-    pub fn range(&self, sonar: SonarId) -> AgedRange {
-        self.ranges.get(sonar as usize).copied().unwrap_or_default()
+    pub fn range(&self, sonar: SonarId) -> &AgedRange {
+        &self.ranges[sonar as usize]
     }
 
     /// The robot in the world: its pose with sine and cosine of the heading.
@@ -358,6 +358,6 @@ mod tests {
             estimate.range(SonarId::Right).range,
             Range::Valid(_)
         ));
-        assert_eq!(estimate.range(SonarId::Front), AgedRange::default());
+        assert_eq!(*estimate.range(SonarId::Front), AgedRange::default());
     }
 }

@@ -9,7 +9,7 @@ use core::fmt;
 
 use rumbo_control::math::round;
 use rumbo_control::mode::ModeId;
-use rumbo_control::{Range, Side, Wheels};
+use rumbo_control::{Range, Side};
 
 use crate::decimal;
 use crate::message::Command;

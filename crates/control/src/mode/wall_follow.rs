@@ -72,7 +72,7 @@ pub struct WallFollow<'a> {
     /// Oldest range to drive on [s].
     pub(super) stale_s: f32,
     /// The sonars.
-    pub(super) sonars: Beside,
+    pub(super) sonars: Beside<'a>,
     params: &'a Params,
 }
 
@@ -138,17 +138,18 @@ impl<'a> WallFollow<'a> {
     fn begin(&self, state: &mut State, side: Side, at: &Estimate) -> Result<(), Fault> {
         let mut started = false;
         for &sonar in &[SonarId::Left, SonarId::Right] {
-            let Some(view) = self.sonars.view(side, sonar) else {
+            if !self.sonars.watches(side, sonar) {
                 continue;
-            };
+            }
+            let view = self.sonars.view(sonar);
             let Range::Valid(range_m) = at.range(sonar).range else {
                 return Err(Fault::WallLost);
             };
             if started {
-                state.wall.take(view, self.beam_rad(), range_m);
+                state.wall.take(&view, self.beam_rad(), range_m);
             } else {
                 let parallel_rad = sign(side) * FRAC_PI_2;
-                state.wall.start(view, range_m, parallel_rad, ASKEW_RAD);
+                state.wall.start(&view, range_m, parallel_rad, ASKEW_RAD);
                 started = true;
             }
         }

@@ -87,8 +87,6 @@ pub struct LineStep {
     pub drive: Drive,
     /// The heading that it steers to [rad].
     pub heading_ref_rad: f32,
-    /// Way left [m]; negative beyond the end.
-    pub left_m: f32,
     /// The robot stands at the end.
     pub done: bool,
 }
@@ -127,7 +125,6 @@ impl<'a> Line<'a> {
         let mut step = LineStep {
             drive: Drive::Release,
             heading_ref_rad,
-            left_m,
             done: false,
         };
         let v_m_s = estimate.forward_m_s;
