@@ -222,6 +222,7 @@ impl AgedRange {
 }
 
 impl Default for AgedRange {
+    #[inline]
     fn default() -> Self {
         Self {
             range: Range::Faulty,
@@ -269,6 +270,7 @@ pub struct Transform {
 }
 
 impl Default for Transform {
+    #[inline]
     fn default() -> Self {
         Self {
             pose: Pose::default(),

@@ -140,7 +140,7 @@ fn line(row: &Row) -> String {
         line.pwm(&pwm.map(Duty::new));
     }
     line.end();
-    String::from_utf8(line.bytes().to_vec()).unwrap()
+    String::from_utf8_lossy(line.bytes()).into_owned()
 }
 
 fn command() -> impl Strategy<Value = TextCommand> {

@@ -78,6 +78,7 @@ pub struct Look {
 }
 
 impl Default for Look {
+    #[inline]
     fn default() -> Self {
         Self {
             servo: ServoAngle::default(),
