@@ -148,40 +148,42 @@ impl DriveLayer {
     ) -> Result<Driven, NotFinite> {
         let compensation = compensation(params, battery_v);
         let mut driven = Driven::default();
-        let references = match *drive {
-            Drive::Release => None,
-            Drive::Duty(duty) => {
-                for &side in &SIDES {
-                    driven.duty[side] = self.wheels[side].open_loop(duty[side], &motion[side])?;
-                }
+        let (open_loop, wanted) = match *drive {
+            Drive::Release => {
+                self.wheels.left.release();
+                self.wheels.right.release();
                 return Ok(driven);
             }
-            Drive::WheelSpeed(references) => Some(references),
+            Drive::Duty(duty) => (true, duty),
+            Drive::WheelSpeed(references) => (false, references),
             Drive::Twist {
                 forward_m_s,
                 yaw_rad_s,
-            } => Some(params.geometry().wheels_from_body(forward_m_s, yaw_rad_s)),
+            } => (
+                false,
+                params.geometry().wheels_from_body(forward_m_s, yaw_rad_s),
+            ),
         };
-        let Some(references) = references else {
-            for &side in &SIDES {
-                self.wheels[side].release();
-            }
-            return Ok(driven);
-        };
-        driven.wheel_ref_rad_s = references;
+        if !open_loop {
+            driven.wheel_ref_rad_s = wanted;
+        }
         let stopping = Wheels {
-            left: self.wheels.left.must_stop(references.left, &motion.left),
-            right: self.wheels.right.must_stop(references.right, &motion.right),
+            left: self.wheels.left.must_stop(wanted.left, &motion.left),
+            right: self.wheels.right.must_stop(wanted.right, &motion.right),
         };
         for &side in &SIDES {
-            let wheel_loop = params.speed_loop(side);
-            driven.duty[side] = self.wheels[side].speed(
-                wheel_loop,
-                references[side],
-                &motion[side],
-                compensation,
-                stopping[side.other()],
-            )?;
+            let (wheel, motion) = (&mut self.wheels[side], &motion[side]);
+            driven.duty[side] = if open_loop {
+                wheel.open_loop(wanted[side], motion)?
+            } else {
+                wheel.speed(
+                    params.speed_loop(side),
+                    wanted[side],
+                    motion,
+                    compensation,
+                    stopping[side.other()],
+                )?
+            };
         }
         Ok(driven)
     }
