@@ -40,7 +40,7 @@ pub struct AheadState {
     /// The bearing is known well enough to drive.
     known: bool,
     /// The first looks to the left and to the right gave an echo.
-    echo: [bool; 2],
+    echo: (bool, bool),
     /// Time since a reading was last believed [s].
     deaf_s: f32,
 }
@@ -150,11 +150,9 @@ impl<'a> Ahead<'a> {
         if self.paired || !first || reading.servo_rad == 0.0 {
             return state.wall.take(&reading.view, self.beam_rad(), range_m);
         }
-        let [left, right] = state.echo;
-        state.echo = [
-            left || reading.servo_rad > 0.0,
-            right || reading.servo_rad < 0.0,
-        ];
+        let (left, right) = &mut state.echo;
+        *left |= reading.servo_rad > 0.0;
+        *right |= reading.servo_rad < 0.0;
         true
     }
 
@@ -200,15 +198,15 @@ impl<'a> Ahead<'a> {
         let [sides, well, most] = LOOKS;
         let looks = state.sweep.looks_aside();
         if looks == sides
-            && state.echo != [false; 2]
+            && state.echo != (false, false)
             && let Some(range_m) = valid_m(estimate, SonarId::Front)
         {
             match state.echo {
-                [true, false] => self.start_ahead(state, range_m, ONE_SIDED_RAD),
-                [false, true] => self.start_ahead(state, range_m, -ONE_SIDED_RAD),
+                (true, false) => self.start_ahead(state, range_m, ONE_SIDED_RAD),
+                (false, true) => self.start_ahead(state, range_m, -ONE_SIDED_RAD),
                 _ => {}
             }
-            state.echo = [false; 2];
+            state.echo = (false, false);
         }
         let sure = |wall: Wall| wall.bearing_variance < KNOWN_RAD * KNOWN_RAD;
         state.known = looks >= most || (looks >= well && state.wall.wall().is_some_and(sure));

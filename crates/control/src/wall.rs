@@ -65,7 +65,7 @@ pub struct WallFilter {
     /// Sine and cosine of the bearing.
     facing: (f32, f32),
     /// Covariance: distance, both, bearing.
-    p: [f32; 3],
+    p: (f32, f32, f32),
     known: bool,
     refused: u8,
 }
@@ -73,7 +73,7 @@ pub struct WallFilter {
 impl WallFilter {
     /// The wall, once a reading has been taken.
     pub fn wall(&self) -> Option<Wall> {
-        let [_, _, bearing_variance] = self.p;
+        let (_, _, bearing_variance) = self.p;
         self.known.then_some(Wall {
             distance_m: self.distance_m,
             bearing_rad: self.bearing_rad,
@@ -97,11 +97,11 @@ impl WallFilter {
             distance_m: range_m + view.x_m * cos + view.y_m * sin,
             bearing_rad,
             facing: (sin, cos),
-            p: [
+            p: (
                 square(noise_m(range_m)) + square(slope_m) * pbb + square(0.5 * pbb * range_m),
                 slope_m * pbb,
                 pbb,
-            ],
+            ),
             known: true,
             refused: 0,
         };
@@ -117,7 +117,7 @@ impl WallFilter {
             distance_m: normal_m + ahead_m * cos,
             bearing_rad,
             facing: (sin, cos),
-            p: [noise, 0.0, 2.0 * noise / square(gap_m * cos) + 1e-4],
+            p: (noise, 0.0, 2.0 * noise / square(gap_m * cos) + 1e-4),
             known: true,
             refused: 0,
         };
@@ -138,13 +138,13 @@ impl WallFilter {
         self.distance_m -= half_m * (before.1 + self.facing.1);
         // d(distance)/d(bearing)
         let slope = half_m * (before.0 + self.facing.0);
-        let [pdd, pdb, pbb] = self.p;
+        let (pdd, pdb, pbb) = self.p;
         let (way, turn) = (abs(forward_m), abs(turn_rad));
-        self.p = [
+        self.p = (
             pdd + 2.0 * slope * pdb + slope * slope * pbb + square(WAY_NOISE) * way,
             pdb + slope * pbb,
             pbb + square(DRIFT_NOISE) * way + square(TURN_NOISE) * turn,
-        ];
+        );
     }
 
     /// The range that a sonar with this view and a beam of half angle `beam_rad` should read, and its slopes over
@@ -180,7 +180,7 @@ impl WallFilter {
         };
         // At the beam's edge the range bends with the bearing: what the slope misses is noise.
         let off_rad = wrap_angle(view.axis_rad - self.bearing_rad);
-        let [pdd, pdb, pbb] = self.p;
+        let (pdd, pdb, pbb) = self.p;
         let bend = if abs(off_rad) > beam_rad - EDGE_RAD {
             square(0.5 * range_m * pbb)
         } else {
@@ -204,11 +204,11 @@ impl WallFilter {
         self.distance_m = max(self.distance_m + kd * innovation_m, 0.0);
         self.bearing_rad = wrap_angle(self.bearing_rad + kb * innovation_m);
         self.facing = sin_cos(self.bearing_rad);
-        self.p = [
+        self.p = (
             max(pdd - kd * gd, 1e-9),
             pdb - kd * gb,
             max(pbb - kb * gb, 1e-9),
-        ];
+        );
         true
     }
 }

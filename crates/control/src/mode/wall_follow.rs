@@ -201,6 +201,16 @@ impl<'a> WallFollow<'a> {
     }
 }
 
+/// What the robot is to do about the wall.
+struct Aim {
+    /// Distance less its reference [m].
+    error_m: f32,
+    /// Angle to turn towards the wall [rad].
+    off_rad: f32,
+    /// The angle is limited.
+    far: bool,
+}
+
 /// What the robot does about the distance, and how fast it may.
 impl WallFollow<'_> {
     fn drive(
@@ -217,33 +227,48 @@ impl WallFollow<'_> {
         let (distance_m, angle_rad) = self.distance_and_angle(side, &wall);
         let error_m = distance_m - reference_m;
         let (angle_ref_rad, far) = self.angle_ref_rad(state, error_m, wall.bearing_sd_rad());
+        let aim = Aim {
+            error_m,
+            off_rad: angle_ref_rad - angle_rad,
+            far,
+        };
+        action.drive = self.steer(state, side, at, &aim, free_m_s);
+        let phase = match (free_m_s < self.cruise_m_s, far) {
+            (true, _) => Phase::Slow,
+            (false, true) => Phase::Approach,
+            (false, false) => Phase::Follow,
+        };
+        action.state = phase as u8;
+        action.heading_ref_rad = sign(side) * angle_ref_rad;
+        action.reached = abs(error_m) < REACHED.0 && abs(angle_rad) < REACHED.1;
+        Ok(())
+    }
 
-        let turn_rad_s = self.params.get(ParamId::WallHeadingKp) * (angle_ref_rad - angle_rad);
+    fn steer(
+        &self,
+        state: &mut State,
+        side: Side,
+        at: &Estimate,
+        aim: &Aim,
+        free_m_s: f32,
+    ) -> Drive {
+        let turn_rad_s = self.params.get(ParamId::WallHeadingKp) * aim.off_rad;
         let damping = self.params.get(ParamId::WallDamping);
         let wanted_rad_s = sign(side) * turn_rad_s - damping * at.yaw_rad_s;
         let half_base_m = 0.5 * self.params.get(ParamId::Base);
         let bend_rad_s = max(free_m_s - INNER_M_S, 0.0) / half_base_m;
         let most_rad_s = min(self.params.get(ParamId::WallYawLimit), bend_rad_s);
         let yaw_rad_s = clamp(wanted_rad_s, -most_rad_s, most_rad_s);
-        if !far && abs(wanted_rad_s) <= most_rad_s && abs(error_m) < INTEGRAL_M {
+        if !aim.far && abs(wanted_rad_s) <= most_rad_s && abs(aim.error_m) < INTEGRAL_M {
             let integral_rad =
-                state.integral_rad + self.params.get(ParamId::WallKi) * error_m * TICK_S;
+                state.integral_rad + self.params.get(ParamId::WallKi) * aim.error_m * TICK_S;
             state.integral_rad = clamp(integral_rad, -INTEGRAL_RAD, INTEGRAL_RAD);
         }
         let steerable_m_s = max(OUTER_M_S - half_base_m * abs(yaw_rad_s), 0.0);
-        let phase = match (free_m_s < self.cruise_m_s, far) {
-            (true, _) => Phase::Slow,
-            (false, true) => Phase::Approach,
-            (false, false) => Phase::Follow,
-        };
-        action.drive = Drive::Twist {
+        Drive::Twist {
             forward_m_s: min(free_m_s, steerable_m_s),
             yaw_rad_s,
-        };
-        action.state = phase as u8;
-        action.heading_ref_rad = sign(side) * angle_ref_rad;
-        action.reached = abs(error_m) < REACHED.0 && abs(angle_rad) < REACHED.1;
-        Ok(())
+        }
     }
 }
 

@@ -28,7 +28,7 @@ const PATIENCE_S: f32 = 1.5;
 pub struct WallHold<'a>(WallFollow<'a>);
 
 /// Memory of mode 3.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// The distance to hold [m].
     reference_m: Option<f32>,
@@ -37,6 +37,19 @@ pub struct State {
     count: [u8; 2],
     waited_s: f32,
     follow: wall_follow::State,
+}
+
+impl Default for State {
+    #[inline]
+    fn default() -> Self {
+        Self {
+            reference_m: None,
+            first_m: [[0.0; READINGS]; 2],
+            count: [0; 2],
+            waited_s: 0.0,
+            follow: wall_follow::State::default(),
+        }
+    }
 }
 
 impl State {

@@ -57,10 +57,20 @@ enum Stage {
 }
 
 /// What is ahead: the median of the last three looks, moved along with the robot.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Ahead {
     last_m: [f32; 3],
     count: u8,
+}
+
+impl Default for Ahead {
+    #[inline]
+    fn default() -> Self {
+        Self {
+            last_m: [0.0; 3],
+            count: 0,
+        }
+    }
 }
 
 impl Ahead {
