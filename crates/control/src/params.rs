@@ -1,15 +1,18 @@
 //! The table of parameters: each tunable declared once. Firmware, wire, command line and dashboard derive from it.
 //!
 //! A parameter is a number on the link, a name in files. Names, units and help exist on the host only (feature `names`); limits and
-//! defaults are kept short ([`Decimal`]), since a table of constants lies in the AVR's flash and in its SRAM.
+//! defaults are kept short (`decimal.rs`), since a table of constants lies in the AVR's flash and in its SRAM.
+
+mod decimal;
 
 use crate::drive::SpeedLoop;
-use crate::math::{is_finite, round};
+use crate::math::is_finite;
 use crate::mode::ModeId;
 use crate::odometry::{Geometry, OdometryErrors};
 use crate::rig::Rig;
 use crate::speed::EDGE_RAD;
 use crate::types::{Side, TICK_S, Wheels};
+use decimal::Decimal;
 
 /// Smallest and largest allowed value, and the one without any override.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,36 +102,6 @@ const fn fnv(mut hash: u32, bytes: &[u8]) -> u32 {
         i += 1;
     }
     hash
-}
-
-/// A decimal number of few digits in two bytes: `mantissa * 8 + places` for `mantissa / 10^places`.
-#[derive(Clone, Copy)]
-struct Decimal(i16);
-
-impl Decimal {
-    /// A number that has at most four digits, which is seen to when the table is compiled.
-    const fn of(value: f32) -> Self {
-        let (mut places, mut power) = (0, 1.0);
-        loop {
-            let mantissa = round(value * power);
-            if mantissa as f32 / power == value {
-                assert!(mantissa.unsigned_abs() < 4_096, "too many digits");
-                return Self(mantissa as i16 * 8 + places);
-            }
-            places += 1;
-            power *= 10.0;
-            assert!(places < 8, "too many decimals");
-        }
-    }
-
-    /// The number, with the bits that it has in the source: both whole numbers are exact, and what divides them rounds once.
-    fn value(self) -> f32 {
-        let mut power = 1.0;
-        for _ in 0..self.0 & 7 {
-            power *= 10.0;
-        }
-        f32::from(self.0 >> 3) / power
-    }
 }
 
 const FRONT: Option<ModeId> = Some(ModeId::FrontDistance);
