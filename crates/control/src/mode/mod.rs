@@ -1,7 +1,7 @@
 //! The modes: what the robot does, one file each.
 //!
 //! A mode is configuration (from the parameters and its setpoint) apart from state, and one function of the
-//! [`Situation`]: [`Mode::step`]. One enum dispatches: [`ActiveMode`]. Numbers of modes appear in [`ModeId`] only.
+//! [`Situation`]: [`Mode::act`]. One enum dispatches: [`ActiveMode`]. Numbers of modes appear in [`ModeId`] only.
 
 pub mod front_align;
 pub mod front_distance;
