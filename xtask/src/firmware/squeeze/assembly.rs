@@ -6,6 +6,7 @@
 use std::fmt;
 
 use super::debugging::{Debugging, Kept};
+use super::effects::Set;
 
 /// One instruction: its name, and its operands as they are written, without spaces.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -160,6 +161,8 @@ pub(super) struct Function {
     pub(super) lines: Vec<Line>,
     /// File and line at which it begins, for debuggers.
     pub(super) source: Option<String>,
+    /// Registers that it changes although the convention would have it keep them.
+    pub(super) lost: Set,
 }
 
 impl Function {
@@ -169,6 +172,7 @@ impl Function {
             names: vec![name],
             lines,
             source: None,
+            lost: Set::NONE,
         }
     }
 

@@ -2,19 +2,18 @@
 //!
 //! A function pushes the registers that it uses and its caller may count on, r2 to r17 and r28, r29, and makes room for
 //! its variables below them; Y points there. At its end all that is undone. Both take up to fifty bytes, and each function has its
-//! own. Here a function goes to a common beginning with Z as the way back, and to a common end that returns in its place:
+//! own. Here a function calls a common beginning, which takes the way back from the stack into Z, and goes to a common end that
+//! returns in its place:
 //!
 //! ```text
 //! ldi r26, 20                    ; bytes of variables
-//! ldi r30, lo8(pm(body))
-//! ldi r31, hi8(pm(body))
-//! rjmp rumbo_enter_frame_8       ; pushes r8 to r17, r28, r29
-//! body: ...
+//! rcall rumbo_enter_frame_8      ; pushes r8 to r17, r28, r29
+//! ...
 //! adiw r28, 20
 //! rjmp rumbo_leave_frame_8       ; pops them, returns
 //! ```
 //!
-//! X and Z are nobody's at both places: they carry neither arguments nor results. Registers are pushed from an even one
+//! X, Z and r0 are nobody's at both places: they carry neither arguments nor results. Registers are pushed from an even one
 //! up without gaps, so a few are pushed in vain; not where arguments lie on the stack, above what is pushed. The way back
 //! has 16 bits: the image stays within 128 KB.
 
@@ -23,8 +22,8 @@ use std::collections::BTreeSet;
 use super::assembly::{Function, Instruction, Line, Program};
 use super::stack_arguments::Shift;
 
-/// Pushes that a common beginning must replace to be worth it: it takes four instructions.
-const WORTH: usize = 5;
+/// Pushes that a common beginning must replace to be worth it.
+const WORTH: usize = 3;
 /// Instructions of a function in which cycles count that make a common beginning cheap beside them.
 const LONG: usize = 120;
 /// Largest frame that one register holds.
@@ -39,24 +38,27 @@ const TO_Y: [&str; 5] = [
     "out 61, r28",
 ];
 
+/// Takes the address to return to from the stack, of which 16 bits say all.
+const TAKE_WAY_BACK: [&str; 3] = ["pop r0", "pop r31", "pop r30"];
+
 /// How a function begins and ends.
 #[derive(Clone, Debug, PartialEq)]
-struct Frame {
+pub(super) struct Frame {
     /// Registers pushed below r28.
-    pushed: Vec<u8>,
+    pub(super) pushed: Vec<u8>,
     /// Whether r28 and r29 are, and Y points to the stack.
-    y: bool,
+    pub(super) y: bool,
     /// Bytes of variables.
     bytes: i32,
     /// Lines of the beginning.
     lines: usize,
     /// Lines of each end, from where they begin.
-    ends: Vec<(usize, usize, Kind)>,
+    pub(super) ends: Vec<(usize, usize, Kind)>,
 }
 
 /// What an end does beside taking registers from the stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-enum Kind {
+pub(super) enum Kind {
     /// Nothing.
     Plain,
     /// r28 and r29 are taken too.
@@ -88,7 +90,7 @@ fn all_show(lines: &[Line], at: usize, texts: &[&str]) -> bool {
 }
 
 /// The register that a line pushes or pops.
-fn moved(line: Option<&Line>, name: &str) -> Option<u8> {
+pub(super) fn moved(line: Option<&Line>, name: &str) -> Option<u8> {
     let instruction = line
         .and_then(Line::instruction)
         .filter(|instruction| instruction.name == name)?;
@@ -97,7 +99,7 @@ fn moved(line: Option<&Line>, name: &str) -> Option<u8> {
 
 impl Frame {
     /// Reads how a function begins and ends; `None` where it is otherwise.
-    fn read(function: &Function) -> Option<Self> {
+    pub(super) fn read(function: &Function) -> Option<Self> {
         let lines = &function.lines;
         let mut pushed: Vec<u8> = (0..).map_while(|at| moved(lines.get(at), "push")).collect();
         let mut at = pushed.len();
@@ -165,6 +167,16 @@ impl Frame {
         Some(ends)
     }
 
+    /// Registers pushed, with Y.
+    pub(super) fn pushes(&self) -> usize {
+        self.pushed.len() + if self.y { 2 } else { 0 }
+    }
+
+    /// Whether it has room for variables, to which Y points.
+    pub(super) fn has_variables(&self) -> bool {
+        self.y && self.bytes > 0
+    }
+
     /// The first of the registers that the common code moves, from there to r17 without gaps.
     fn first(&self) -> u8 {
         self.pushed.first().map_or(18, |first| first & !1)
@@ -177,10 +189,9 @@ impl Frame {
 
     /// Whether the common beginning is for it.
     fn begins_alike(&self) -> bool {
-        let pushes = self.pushed.len() + if self.y { 2 } else { 0 };
         let makes_room = if self.bytes > 0 { 5 } else { 0 };
         let plain = !self.y || (1..=LARGEST).contains(&self.bytes);
-        plain && pushes + makes_room >= WORTH
+        plain && self.pushes() + makes_room >= WORTH
     }
 }
 
@@ -193,7 +204,7 @@ pub(super) fn share(
 ) {
     let mut enters = BTreeSet::new();
     let mut leaves = BTreeSet::new();
-    for (number, function) in program.functions.iter_mut().enumerate() {
+    for function in &mut program.functions {
         let short = function.instructions().count() < LONG;
         if function.is_handler() || is_hot(function) && short {
             continue;
@@ -205,18 +216,13 @@ pub(super) fn share(
         if !begins && !frame.is_exact() || frame.pushed.is_empty() && !frame.y {
             continue;
         }
-        rewrite(function, &frame, begins, number, &mut enters, &mut leaves);
+        rewrite(function, &frame, begins, &mut enters, &mut leaves);
     }
     program.functions.extend(leaves.into_iter().map(leave));
     for y in [false, true] {
-        let firsts: Vec<u8> = enters
-            .iter()
-            .filter(|(kind, _)| *kind == y)
-            .map(|(_, first)| *first)
-            .collect();
-        if let Some(&first) = firsts.first() {
-            program.functions.push(enter(y, first));
-        }
+        let firsts = enters.iter().filter(|(kind, _)| *kind == y);
+        let firsts: Vec<u8> = firsts.map(|(_, first)| *first).collect();
+        program.functions.extend(enter(y, &firsts));
     }
 }
 
@@ -224,28 +230,22 @@ fn rewrite(
     function: &mut Function,
     frame: &Frame,
     begins: bool,
-    number: usize,
     enters: &mut BTreeSet<(bool, u8)>,
     leaves: &mut BTreeSet<(Kind, u8)>,
 ) {
     let first = frame.first();
     let mut lines = Vec::with_capacity(function.lines.len());
     if begins {
-        let body = format!(".Lbody_{number}");
         if frame.y {
             lines.push(Line::Do(Instruction::new(
                 "ldi",
                 &["r26", &frame.bytes.to_string()],
             )));
         }
-        let [low, high] = ["lo8", "hi8"].map(|part| format!("{part}(pm({body}))"));
-        lines.push(Line::Do(Instruction::new("ldi", &["r30", &low])));
-        lines.push(Line::Do(Instruction::new("ldi", &["r31", &high])));
         lines.push(Line::Do(Instruction::new(
-            "jmp",
+            "call",
             &[&enter_label(frame.y, first)],
         )));
-        lines.push(Line::Label(body));
         enters.insert((frame.y, first));
     } else {
         lines.extend_from_slice(&function.lines[..frame.lines]);
@@ -264,8 +264,11 @@ fn rewrite(
     function.lines = lines;
 }
 
+/// What a common beginning is called.
+pub(super) const ENTER: &str = "rumbo_enter_";
+
 fn enter_label(y: bool, first: u8) -> String {
-    format!("rumbo_enter_{}{first}", if y { "frame_" } else { "" })
+    format!("{ENTER}{}{first}", if y { "frame_" } else { "" })
 }
 
 fn leave_label(kind: Kind, first: u8) -> String {
@@ -280,12 +283,21 @@ fn parsed(texts: &[&str]) -> Vec<Line> {
         .collect()
 }
 
-/// The common beginning: pushes from a register on, with a label for each that one may begin at.
-fn enter(y: bool, first: u8) -> Function {
+/// The common beginning: pushes from a register on, with a way in for each that one may begin at.
+fn enter(y: bool, firsts: &[u8]) -> Option<Function> {
+    let (&first, others) = firsts.split_first()?;
+    let pushes = |register: u8| format!(".Lpushes_{}{register}", if y { "frame_" } else { "" });
     let mut lines = Vec::new();
+    for &other in others {
+        lines.push(Line::Label(enter_label(y, other)));
+        lines.extend(parsed(&TAKE_WAY_BACK));
+        lines.push(Line::Do(Instruction::new("jmp", &[&pushes(other)])));
+    }
+    lines.push(Line::Label(enter_label(y, first)));
+    lines.extend(parsed(&TAKE_WAY_BACK));
     for register in first..18 {
-        if register % 2 == 0 && register != first {
-            lines.push(Line::Label(enter_label(y, register)));
+        if others.contains(&register) {
+            lines.push(Line::Label(pushes(register)));
         }
         lines.push(Line::Do(Instruction::new(
             "push",
@@ -293,8 +305,8 @@ fn enter(y: bool, first: u8) -> Function {
         )));
     }
     if y {
-        if first < 18 {
-            lines.push(Line::Label(enter_label(y, 18)));
+        if others.contains(&18) {
+            lines.push(Line::Label(pushes(18)));
         }
         lines.extend(parsed(&[
             "push r28",
@@ -307,7 +319,8 @@ fn enter(y: bool, first: u8) -> Function {
         lines.extend(parsed(&TO_Y));
     }
     lines.extend(parsed(&["ijmp"]));
-    Function::new(enter_label(y, first), lines)
+    let name = format!("{ENTER}{}", if y { "frame" } else { "plain" });
+    Some(Function::new(name, lines))
 }
 
 /// A common end.

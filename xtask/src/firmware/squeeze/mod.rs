@@ -8,9 +8,13 @@
 mod assembly;
 mod branches;
 mod debugging;
+mod effects;
 mod frames;
 mod layout;
+mod liveness;
 mod repeats;
+mod saves;
+mod shifts;
 mod stack_arguments;
 #[cfg(test)]
 mod tests;
@@ -18,6 +22,7 @@ mod tests;
 use std::collections::HashSet;
 
 use assembly::{Function, Program};
+use liveness::Whole;
 
 /// What to do, and for whom.
 pub(crate) struct Options<'a> {
@@ -59,6 +64,16 @@ pub(crate) fn squeeze(text: &str, options: &Options<'_>) -> Result<Squeezed, Str
         }
         branches::simplify(function);
     }
+    saves::drop_vain(&mut program, &has_stack_arguments)?;
+    let whole = Whole::of(&program)?;
+    for function in &mut program.functions {
+        if !function.is_handler() {
+            shifts::gather(function, &whole)?;
+        }
+    }
+    for function in &mut program.functions {
+        shifts::spread(function, &whole)?;
+    }
     frames::share(
         &mut program,
         |function| has_stack_arguments.contains(function.name()),
@@ -77,7 +92,7 @@ pub(crate) fn squeeze(text: &str, options: &Options<'_>) -> Result<Squeezed, Str
         repeats::share(region, may_change, &has_stack_arguments, &mut made);
     }
     program.functions = regions.into_iter().flatten().collect();
-    layout::arrange(&mut program, |function| options.is_hot(function))?;
+    layout::arrange(&mut program, Function::is_handler)?;
     Ok(Squeezed {
         assembly: program.print(),
         repaired,

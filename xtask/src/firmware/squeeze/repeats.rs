@@ -13,7 +13,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::assembly::{Flow, Function, Instruction, Line};
-use super::layout;
+use super::{frames, layout};
 
 /// Longest sequence that is looked for, in instructions.
 const LONGEST: usize = 64;
@@ -303,6 +303,7 @@ impl Place {
                 Place::Apart
             }
             (Flow::Jump | Flow::Return, _) => Place::End,
+            (Flow::Call, _) if instruction.operand(0).starts_with(frames::ENTER) => Place::Apart,
             (Flow::Call, _) if stack_arguments.contains(instruction.operand(0)) => Place::Stack,
             (_, "push" | "pop" | "cli") => Place::Stack,
             (_, "in") if is_stack(instruction.operand(1)) => Place::Stack,

@@ -14,7 +14,7 @@ use super::assembly::{Function, Instruction, Line};
 /// What arguments lie above: the return address, and the byte that the stack pointer points at.
 const RETURN_ADDRESS: i32 = 3 + 1;
 /// Largest displacement of one instruction.
-const FARTHEST: i32 = 63;
+pub(super) const FARTHEST: i32 = 63;
 
 /// A change of Y: in which line, by how much Y goes up, and in how many instructions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,7 +72,7 @@ impl Shift {
 }
 
 /// Which operand of an instruction is at Y + q, and q.
-fn access(instruction: &Instruction) -> Option<(usize, i32)> {
+pub(super) fn access(instruction: &Instruction) -> Option<(usize, i32)> {
     let place = match instruction.name.as_str() {
         "ldd" | "ld" => 1,
         "std" | "st" => 0,

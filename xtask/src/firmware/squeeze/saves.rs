@@ -1,0 +1,50 @@
+//! Registers that are saved for nobody.
+//!
+//! A function gives back the registers r2 to r17 as it found them, by the convention. Where none of its callers has anything in
+//! one when it calls, nor theirs, saving it is in vain.
+
+use std::collections::HashSet;
+
+use super::assembly::{Function, Program};
+use super::effects::Set;
+use super::frames::{Frame, moved};
+use super::liveness::Whole;
+
+/// Leaves out what is saved in vain. Functions with arguments on the stack keep all: these lie above what is saved.
+pub(super) fn drop_vain(
+    program: &mut Program,
+    has_stack_arguments: &HashSet<String>,
+) -> Result<(), String> {
+    let whole = Whole::of(program)?;
+    for function in &mut program.functions {
+        if !function.is_handler() && !has_stack_arguments.contains(function.name()) {
+            drop_of(function, whole.wanted(function));
+        }
+    }
+    Ok(())
+}
+
+fn drop_of(function: &mut Function, wanted: Set) {
+    let Some(frame) = Frame::read(function) else {
+        return;
+    };
+    let vain = frame.pushed.iter().map(|number| Set::register(*number));
+    let vain = vain
+        .filter(|register| !wanted.has(*register))
+        .fold(Set::NONE, |all, register| all | register);
+    let mut at = 0;
+    let saves = |at: usize| {
+        at < frame.pushed.len()
+            || frame
+                .ends
+                .iter()
+                .any(|(from, to, _)| (*from..*to).contains(&at))
+    };
+    function.lines.retain(|line| {
+        let number = moved(Some(line), "push").or(moved(Some(line), "pop"));
+        let keep = !saves(at) || number.is_none_or(|number| !vain.has(Set::register(number)));
+        at += 1;
+        keep
+    });
+    function.lost |= vain;
+}
