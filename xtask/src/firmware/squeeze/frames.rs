@@ -172,6 +172,11 @@ impl Frame {
         self.pushed.len() + if self.y { 2 } else { 0 }
     }
 
+    /// Lines of the beginning.
+    pub(super) fn beginning(&self) -> usize {
+        self.lines
+    }
+
     /// Whether it has room for variables, to which Y points.
     pub(super) fn has_variables(&self) -> bool {
         self.y && self.bytes > 0

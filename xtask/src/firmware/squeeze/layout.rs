@@ -10,8 +10,10 @@ use std::collections::HashMap;
 
 use super::assembly::{Flow, Function, Instruction, Line, Program};
 
+/// Words of code in which equal sequences are looked for: short calls from the middle reach either end when these are found.
+pub(super) const REGION: usize = 4_100;
 /// Words of code with islands in the middle: what is at either end reaches them.
-const REGION: usize = 3_500;
+const ISLANDS: usize = 3_800;
 /// Calls that make an island worth its two words.
 const WORTH: usize = 3;
 
@@ -114,16 +116,19 @@ fn size(function: &Function) -> usize {
     function.instructions().map(words).sum()
 }
 
-/// Functions in their order, in regions small enough for short calls from the middle to either end.
-pub(super) fn split(functions: Vec<Function>) -> Vec<Vec<Function>> {
+/// Functions in their order, in regions small enough for short calls from the middle to either end. None goes on in the next.
+pub(super) fn split(functions: Vec<Function>, most: usize) -> Vec<Vec<Function>> {
     let mut regions: Vec<Vec<Function>> = vec![Vec::new()];
     let mut words = 0;
+    let mut ended = false;
     for function in functions {
-        if words + size(&function) > REGION && words > 0 {
+        if words + size(&function) > most && ended {
             regions.push(Vec::new());
             words = 0;
         }
         words += size(&function);
+        let last = function.lines.last().and_then(Line::instruction);
+        ended = last.is_some_and(Instruction::ends);
         if let Some(region) = regions.last_mut() {
             region.push(function);
         }
@@ -131,13 +136,14 @@ pub(super) fn split(functions: Vec<Function>) -> Vec<Vec<Function>> {
     regions
 }
 
-/// The place in a region that is nearest to both its ends.
+/// The place in a region that is nearest to both its ends, where nothing goes on from one function to the next.
 pub(super) fn middle(region: &[Function]) -> usize {
     let whole: usize = region.iter().map(size).sum();
     let mut before = 0;
     let middle = region.iter().position(|function| {
         before += size(function);
-        before * 2 >= whole
+        let ends = function.lines.last().and_then(Line::instruction);
+        before * 2 >= whole && ends.is_some_and(Instruction::ends)
     });
     middle.map_or(0, |middle| middle + 1)
 }
@@ -150,7 +156,7 @@ struct Regions {
 
 /// Puts islands into the middle of each region.
 fn make_islands(functions: &mut Vec<Function>, direct: &impl Fn(&Function) -> bool) -> Regions {
-    let regions = split(std::mem::take(functions));
+    let regions = split(std::mem::take(functions), ISLANDS);
     let mut result = Regions {
         of: Vec::new(),
         islands: Vec::new(),

@@ -203,6 +203,10 @@ impl Whole {
                 changed |= before != *wanted;
             }
         }
+        if saved.is_some_and(|saved| !saved.is_empty()) {
+            // The common beginning takes them.
+            writes |= pair(26) | pair(30);
+        }
         // What passes through is not read.
         let known = self.complete(function, own, wanted & writes);
         let entry = known.effects[0].reads | known.live[0].without(known.effects[0].writes);

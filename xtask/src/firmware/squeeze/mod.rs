@@ -16,8 +16,10 @@ mod repeats;
 mod saves;
 mod shifts;
 mod stack_arguments;
+mod tails;
 #[cfg(test)]
 mod tests;
+mod values;
 
 use std::collections::HashSet;
 
@@ -71,6 +73,13 @@ pub(crate) fn squeeze(text: &str, options: &Options<'_>) -> Result<Squeezed, Str
             shifts::gather(function, &whole)?;
         }
     }
+    let whole = Whole::of(&program)?;
+    for function in &mut program.functions {
+        if !function.is_handler() {
+            values::simplify(function, &whole)?;
+        }
+    }
+    saves::drop_vain(&mut program, &has_stack_arguments)?;
     for function in &mut program.functions {
         shifts::spread(function, &whole)?;
     }
@@ -79,8 +88,12 @@ pub(crate) fn squeeze(text: &str, options: &Options<'_>) -> Result<Squeezed, Str
         |function| has_stack_arguments.contains(function.name()),
         |function| options.is_hot(function),
     );
+    for function in &mut program.functions {
+        tails::jump(function, &has_stack_arguments);
+    }
+    tails::merge(&mut program.functions);
     layout::order(&mut program.functions);
-    let mut regions = layout::split(std::mem::take(&mut program.functions));
+    let mut regions = layout::split(std::mem::take(&mut program.functions), layout::REGION);
     let may_change = |function: &Function| {
         let is_ours = ["rumbo_enter", "rumbo_leave"]
             .iter()
@@ -89,9 +102,19 @@ pub(crate) fn squeeze(text: &str, options: &Options<'_>) -> Result<Squeezed, Str
     };
     let mut made = 0;
     for region in &mut regions {
-        repeats::share(region, may_change, &has_stack_arguments, &mut made);
+        repeats::share(region, may_change, &has_stack_arguments, 1, &mut made);
+        tails::merge(region);
     }
     program.functions = regions.into_iter().flatten().collect();
+    repeats::share(
+        &mut program.functions,
+        may_change,
+        &has_stack_arguments,
+        2,
+        &mut made,
+    );
+    tails::merge(&mut program.functions);
+    tails::follow(&mut program.functions);
     layout::arrange(&mut program, Function::is_handler)?;
     Ok(Squeezed {
         assembly: program.print(),

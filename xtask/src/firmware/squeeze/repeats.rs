@@ -13,7 +13,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::assembly::{Flow, Function, Instruction, Line};
-use super::{frames, layout};
+use super::{frames, layout, tails};
 
 /// Longest sequence that is looked for, in instructions.
 const LONGEST: usize = 64;
@@ -26,11 +26,16 @@ pub(super) fn share(
     region: &mut Vec<Function>,
     may_change: impl Fn(&Function) -> bool,
     stack_arguments: &HashSet<String>,
+    call_words: usize,
     made: &mut usize,
 ) {
     let old = region.len();
     for _ in 0..ROUNDS {
-        let text = Text::read(region, &may_change, stack_arguments);
+        for function in region.iter_mut() {
+            tails::jump(function, stack_arguments);
+        }
+        let mut text = Text::read(region, &may_change, stack_arguments);
+        text.call_words = call_words;
         let mut taken = vec![false; text.words.len()];
         let before = *made;
         for candidate in text.candidates() {
@@ -98,6 +103,7 @@ enum Place {
 
 /// Instructions of the whole program, one after the other, as numbers: equal ones are equal.
 struct Text {
+    call_words: usize,
     words: Vec<u32>,
     place: Vec<Place>,
     size: Vec<usize>,
@@ -121,6 +127,7 @@ impl Text {
         stack_arguments: &HashSet<String>,
     ) -> Self {
         let mut text = Self {
+            call_words: 1,
             words: Vec::new(),
             place: Vec::new(),
             size: Vec::new(),
@@ -241,7 +248,7 @@ impl Text {
         let size: usize = self.size[first..=last].iter().sum();
         // A call at its end becomes a jump, and the return is somebody else's.
         let returns = usize::from(self.place[last] != Place::End && !self.is_call[last]);
-        (times * size) as i64 - (times + size + returns) as i64
+        (times * size) as i64 - (times * self.call_words + size + returns) as i64
     }
 
     /// Where it stands, without overlaps, in what is not taken.

@@ -18,20 +18,16 @@ pub(super) fn drop_vain(
     let whole = Whole::of(program)?;
     for function in &mut program.functions {
         if !function.is_handler() && !has_stack_arguments.contains(function.name()) {
-            drop_of(function, whole.wanted(function));
+            drop_of(function, &whole)?;
         }
     }
     Ok(())
 }
 
-fn drop_of(function: &mut Function, wanted: Set) {
+fn drop_of(function: &mut Function, whole: &Whole) -> Result<(), String> {
     let Some(frame) = Frame::read(function) else {
-        return;
+        return Ok(());
     };
-    let vain = frame.pushed.iter().map(|number| Set::register(*number));
-    let vain = vain
-        .filter(|register| !wanted.has(*register))
-        .fold(Set::NONE, |all, register| all | register);
     let mut at = 0;
     let saves = |at: usize| {
         at < frame.pushed.len()
@@ -40,11 +36,21 @@ fn drop_of(function: &mut Function, wanted: Set) {
                 .iter()
                 .any(|(from, to, _)| (*from..*to).contains(&at))
     };
+    let effects = whole.about(function)?.effects.into_iter().enumerate();
+    let changed = effects
+        .filter(|(at, _)| !saves(*at))
+        .fold(Set::NONE, |all, (_, effect)| all | effect.writes);
+    let wanted = whole.wanted(function);
+    let vain = frame.pushed.iter().map(|number| Set::register(*number));
+    let vain = vain
+        .filter(|register| !(wanted & changed).has(*register))
+        .fold(Set::NONE, |all, register| all | register);
     function.lines.retain(|line| {
         let number = moved(Some(line), "push").or(moved(Some(line), "pop"));
         let keep = !saves(at) || number.is_none_or(|number| !vain.has(Set::register(number)));
         at += 1;
         keep
     });
-    function.lost |= vain;
+    function.lost |= vain & changed;
+    Ok(())
 }

@@ -4,18 +4,17 @@
 //! the flags meanwhile, whether they matter or not. Between [`gather`] and [`spread`] an access says its whole distance; then
 //! Y moves once for as many accesses as it can.
 
-use super::assembly::{Function, Instruction, Line};
+use super::assembly::{Flow, Function, Instruction, Line};
 use super::effects::{Set, pair, register};
 use super::frames::Frame;
-use super::liveness::Whole;
+use super::liveness::{Known, Whole};
 use super::stack_arguments::{FARTHEST, Shift, access};
 
-/// What takes a place in a function and counts on Y.
+/// Whether a line counts on Y being where it belongs.
 fn is_other_use_of_y(line: &Line, reads: Set, writes: Set) -> bool {
     let it = line.instruction();
     it.is_none_or(|it| {
-        it.flow() != super::assembly::Flow::Next
-            || access(it).is_none() && (reads | writes).meets(pair(28))
+        it.flow() != Flow::Next || access(it).is_none() && (reads | writes).meets(pair(28))
     })
 }
 
@@ -53,7 +52,12 @@ pub(super) fn gather(function: &mut Function, whole: &Whole) -> Result<(), Strin
     })?;
     for group in groups.into_iter().rev() {
         let after = known.live[group.end - 1];
-        if !after.meets(Set::FLAGS) && !(group.keeps_flags && after.has(Set::register(0))) {
+        let lost = if group.keeps_flags {
+            Set::FLAGS | Set::register(0)
+        } else {
+            Set::FLAGS
+        };
+        if !after.meets(lost) {
             function.lines.splice(group.from..group.end, group.accesses);
         }
     }
@@ -172,11 +176,7 @@ pub(super) fn spread(function: &mut Function, whole: &Whole) -> Result<(), Strin
 }
 
 /// Distances of the accesses from a line on, as far as Y may move before each of them.
-fn run<'a>(
-    lines: &'a [Line],
-    at: usize,
-    known: &'a super::liveness::Known,
-) -> impl Iterator<Item = i32> + 'a {
+fn run<'a>(lines: &'a [Line], at: usize, known: &'a Known) -> impl Iterator<Item = i32> + 'a {
     let rest = lines.iter().enumerate().skip(at);
     let straight = rest.take_while(|(at, line)| {
         !is_other_use_of_y(line, known.effects[*at].reads, known.effects[*at].writes)

@@ -32,7 +32,7 @@ fn body(assembly: &str, name: &str) -> Vec<String> {
     lines.map(|line| line.trim().to_owned()).collect()
 }
 
-/// A function that saves r12 to r17 and has 20 bytes of variables.
+/// A function that saves r12 to r17, since it changes them, and has 20 bytes of variables.
 fn with_frame(name: &str, inside: &str) -> String {
     let pushes: String = [12, 13, 14, 15, 16, 17, 28, 29]
         .map(|register| format!("push r{register}\n"))
@@ -40,9 +40,12 @@ fn with_frame(name: &str, inside: &str) -> String {
     let pops: String = [29, 28, 17, 16, 15, 14, 13, 12]
         .map(|register| format!("pop r{register}\n"))
         .concat();
+    let changes: String = (12..18)
+        .map(|register| format!("lds r{register}, far\n"))
+        .collect();
     let moved = "in r0, 63\ncli\nout 62, r29\nout 63, r0\nout 61, r28\n";
     let text = format!(
-        "{pushes}in r28, 61\nin r29, 62\nsbiw r28, 20\n{moved}{inside}\nadiw r28, 20\n{moved}{pops}ret"
+        "{pushes}in r28, 61\nin r29, 62\nsbiw r28, 20\n{moved}{changes}{inside}\nadiw r28, 20\n{moved}{pops}ret"
     );
     function(name, &text)
 }
@@ -50,18 +53,15 @@ fn with_frame(name: &str, inside: &str) -> String {
 #[test]
 fn a_function_with_a_frame_begins_and_ends_in_code_for_all() {
     let assembly = squeezed(&with_frame("one", "std Y+1, r24")).unwrap();
-    let expected = [
-        "ldi r26, 20",
-        "ldi r30, lo8(pm(.Lbody_0))",
-        "ldi r31, hi8(pm(.Lbody_0))",
-        "rjmp rumbo_enter_frame_12",
-        ".Lbody_0:",
-        "std Y+1, r24",
-        "adiw r28, 20",
-        "rjmp rumbo_leave_frame_12",
-    ];
-    assert_eq!(body(&assembly, "one"), expected);
-    let enter = body(&assembly, "rumbo_enter_frame_12");
+    let lines = body(&assembly, "one");
+    assert_eq!(lines[..2], ["ldi r26, 20", "rcall rumbo_enter_frame_12"]);
+    // What it would jump to at its end follows it.
+    assert_eq!(lines[8..], ["std Y+1, r24", "adiw r28, 20"]);
+    assert!(assembly.contains(".size one, .-one\n.type rumbo_leave_frame_12"));
+    let enter = body(&assembly, "rumbo_enter_frame");
+    // The way back lies on top of the stack.
+    let way_back = ["rumbo_enter_frame_12:", "pop r0", "pop r31", "pop r30"];
+    assert_eq!(enter[..4], way_back);
     assert_eq!(
         enter.iter().filter(|line| line.starts_with("push")).count(),
         8
@@ -118,7 +118,8 @@ fn without_gaps_in_what_is_pushed_arguments_would_move() {
     assert_eq!(body(&squeezed(&gap).unwrap(), "one")[0], "push r12");
     let without = gap.replace("Y+30", "Y+20");
     assert!(
-        body(&squeezed(&without).unwrap(), "one").contains(&"rjmp rumbo_enter_frame_12".to_owned())
+        body(&squeezed(&without).unwrap(), "one")
+            .contains(&"rcall rumbo_enter_frame_12".to_owned())
     );
 }
 
@@ -151,8 +152,11 @@ fn what_many_call_and_none_reaches_has_an_island() {
     let assembly = squeezed(&text).unwrap();
     assert_eq!(body(&assembly, "one")[0], "rcall .Lisland_0_0");
     assert!(body(&assembly, "rumbo_island_0").contains(&"jmp far".to_owned()));
-    let hot = squeezed(&text.replace("one", "hot_one")).unwrap();
-    assert_eq!(body(&hot, "hot_one")[0], "call far");
+    let handler = text.replace("one", "__vector_1").replace("ret", "reti");
+    assert_eq!(
+        body(&squeezed(&handler).unwrap(), "__vector_1")[0],
+        "call far"
+    );
 }
 
 #[test]
@@ -237,7 +241,7 @@ fn what_two_functions_end_in_is_jumped_to() {
         function(
             name,
             &format!(
-                "push r{register}\ninc r24\nout 62, r31\nout 61, r30\nmovw r24, r30\npop r16\nret"
+                "push r{register}\nstd Z+1, r24\nout 62, r31\nout 61, r30\nmovw r24, r30\npop r16\nret"
             ),
         )
     });
@@ -246,7 +250,7 @@ fn what_two_functions_end_in_is_jumped_to() {
     assert_eq!(body(&assembly, "two"), ["push r3", "rjmp rumbo_shared_0"]);
     assert_eq!(
         body(&assembly, "rumbo_shared_0")[..2],
-        ["inc r24", "out 62, r31"]
+        ["std Z+1, r24", "out 62, r31"]
     );
 }
 
@@ -277,4 +281,115 @@ fn where_the_hardware_is_touched_no_time_changes() {
     let text = [("one", 2), ("two", 3), ("three", 4)]
         .map(|(name, register)| function(name, &format!("{alike}inc r{register}\nret")));
     assert!(!squeezed(&text.concat()).unwrap().contains("rumbo_shared"));
+}
+
+/// A function that is called from one place only, by a function of which others know.
+fn called(inner: &str, outer: &str) -> String {
+    let known = function("outer", outer);
+    known + &function("inner", inner).replace("\t.globl\tinner\n", "")
+}
+
+#[test]
+fn what_no_caller_holds_is_not_saved() {
+    let inner = "push r15\npush r16\npush r17\nlds r15, far\nlds r16, far\nsts far, r16\nsts far, r15\npop r17\npop r16\npop r15\nret";
+    // r17 is not changed, r16 holds nothing of the caller's, r15 does.
+    let outer = "push r15\npush r16\nlds r16, far\nlds r15, far2\nmov r24, r16\ncall inner\nsts far, r15\npop r16\npop r15\nret";
+    let assembly = squeezed(&called(inner, outer)).unwrap();
+    let lines = body(&assembly, "inner");
+    assert_eq!(lines[..2], ["push r15", "lds r15, far"]);
+    assert_eq!(lines[lines.len() - 2..], ["pop r15", "ret"]);
+    // The caller's own caller may hold something in both.
+    assert_eq!(body(&assembly, "outer")[..2], ["push r15", "push r16"]);
+}
+
+#[test]
+fn an_argument_in_a_register_that_is_saved_is_read() {
+    // `other` would change r14 while it waits for `inner`.
+    let other = "push r14\nlds r14, far\nsts far, r14\npop r14\nret";
+    let outer = "call middle\nret";
+    let text = called("sts far, r14\nret", outer)
+        + &function("middle", "call other\ncall inner\nret").replace("\t.globl\tmiddle\n", "")
+        + &function("other", other).replace("\t.globl\tother\n", "");
+    let assembly = squeezed(&text).unwrap();
+    assert_eq!(body(&assembly, "other")[0], "push r14");
+}
+
+#[test]
+fn y_moves_once_for_what_is_far_and_keeps_flags_only_for_those_who_ask() {
+    let far = "in r0, 63\nadiw r28, 3\nstd Y+63, r17\nsbiw r28, 3\nout 63, r0\nin r0, 63\nadiw r28, 5\nstd Y+63, r16\nsbiw r28, 5\nout 63, r0";
+    let lines = body(&squeezed(&with_frame("hot_one", far)).unwrap(), "hot_one");
+    let at = lines.iter().position(|line| line == "adiw r28, 6").unwrap();
+    // They are arguments, above three bytes of return address.
+    let expected = [
+        "adiw r28, 6",
+        "std Y+61, r17",
+        "std Y+63, r16",
+        "sbiw r28, 6",
+    ];
+    assert_eq!(lines[at..at + 4], expected);
+    let asked = format!("cpi r24, 1\n{far}\nbreq .LBB0_1\nsts far, r24\n.LBB0_1:");
+    let lines = body(
+        &squeezed(&with_frame("hot_one", &asked)).unwrap(),
+        "hot_one",
+    );
+    assert!(lines.contains(&"out 63, r0".to_owned()), "{lines:?}");
+    assert!(lines.contains(&"std Y+63, r17".to_owned()), "{lines:?}");
+}
+
+#[test]
+fn what_is_in_a_register_is_not_put_there_again() {
+    let text = function(
+        "one",
+        "movw r30, r24\nstd Z+1, r22\nmovw r26, r30\nst X, r20\nldi r27, 0\nstd Z+2, r27\nmovw r24, r30\nret",
+    );
+    let expected = [
+        "movw r30, r24",
+        "std Z+1, r22",
+        "st Z, r20",
+        "std Z+2, r1",
+        "ret",
+    ];
+    assert_eq!(body(&squeezed(&text).unwrap(), "one"), expected);
+    // A common beginning takes Z.
+    let saves = "push r15\npush r16\nlds r15, far\nlds r16, far\nsts far, r15\nsts far, r16\npop r16\npop r15\nret";
+    let outer = "push r16\npush r17\nmovw r30, r24\nmovw r16, r24\nst Z, r22\ncall inner\nmovw r30, r16\nst Z, r23\npop r17\npop r16\nret";
+    let assembly = squeezed(&called(saves, outer)).unwrap();
+    let lines = body(&assembly, "outer");
+    let call = lines.iter().position(|line| line == "rcall inner").unwrap();
+    assert_eq!(lines[call + 1..call + 3], ["movw r30, r24", "st Z, r23"]);
+    // Not behind a call that may change it, nor where two ways come together.
+    let lost = function(
+        "one",
+        "movw r16, r24\ncall far\nmovw r24, r16\ncall far\nret",
+    );
+    assert!(body(&squeezed(&lost).unwrap(), "one").contains(&"movw r24, r16".to_owned()));
+    let ways = function(
+        "one",
+        "cpi r22, 1\nbreq .LBB0_1\nmov r25, r24\n.LBB0_1:\nmov r24, r25\nret",
+    );
+    assert_eq!(body(&squeezed(&ways).unwrap(), "one").len(), 6);
+}
+
+#[test]
+fn what_has_just_been_calculated_is_not_compared_with_zero() {
+    let one = |branch: &str| {
+        let text =
+            format!("andi r24, 1\ncpi r24, 0\n{branch} .LBB0_1\nsts far, r24\n.LBB0_1:\nret");
+        body(&squeezed(&function("one", &text)).unwrap(), "one")
+    };
+    assert_eq!(one("breq")[..2], ["andi r24, 1", "breq .LBB0_1"]);
+    // `andi` leaves the carry as it is.
+    assert_eq!(one("brlo")[..2], ["andi r24, 1", "cpi r24, 0"]);
+}
+
+#[test]
+fn functions_that_do_the_same_are_one() {
+    let text = function("one", "cpi r24, 1\nbreq .LBB0_1\ninc r24\n.LBB0_1:\nret")
+        + &function("two", "cpi r24, 1\nbreq .LBB1_1\ninc r24\n.LBB1_1:\nret")
+        + &function("three", "call two\nret")
+        + &function("four", "call three\nsts far, r24\nret");
+    let assembly = squeezed(&text).unwrap();
+    assert_eq!(assembly.matches("inc r24").count(), 1);
+    assert!(assembly.contains("two:") && assembly.contains("three:"));
+    assert_eq!(body(&assembly, "four")[0], "rcall one");
 }
