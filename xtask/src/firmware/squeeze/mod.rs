@@ -1,8 +1,9 @@
 //! Makes the program smaller, in its assembly.
 //!
-//! The compiler writes each function as if it were alone. Here all are known, and what they have in common is
-//! written once ([`frames`], [`repeats`]), what they do in vain is left out ([`branches`]), and everything is put where
-//! short jumps reach it ([`layout`]). Before that, arguments on the stack are repaired if the compiler needs it ([`stack_arguments`]).
+//! The compiler writes each function as if it were alone. Here all are known, and so is what each reads and changes ([`liveness`]). What
+//! they do in vain is left out ([`branches`], [`saves`], [`shifts`], [`values`]), what they have in common is written once ([`frames`],
+//! [`tails`], [`repeats`]), and everything is put where short jumps reach it ([`layout`]). Before that, arguments on the stack are
+//! repaired if the compiler needs it ([`stack_arguments`]).
 //! What is not understood is refused: a wrong image is worse than none.
 
 mod assembly;
@@ -66,30 +67,43 @@ pub(crate) fn squeeze(text: &str, options: &Options<'_>) -> Result<Squeezed, Str
         }
         branches::simplify(function);
     }
-    saves::drop_vain(&mut program, &has_stack_arguments)?;
-    let whole = Whole::of(&program)?;
-    for function in &mut program.functions {
-        if !function.is_handler() {
-            shifts::gather(function, &whole)?;
-        }
-    }
-    let whole = Whole::of(&program)?;
-    for function in &mut program.functions {
-        if !function.is_handler() {
-            values::simplify(function, &whole)?;
-        }
-    }
-    saves::drop_vain(&mut program, &has_stack_arguments)?;
-    for function in &mut program.functions {
-        shifts::spread(function, &whole)?;
-    }
+    leave_out(&mut program, &has_stack_arguments)?;
     frames::share(
         &mut program,
         |function| has_stack_arguments.contains(function.name()),
         |function| options.is_hot(function),
     );
+    share(&mut program, options, &has_stack_arguments);
+    layout::arrange(&mut program, Function::is_handler)?;
+    Ok(Squeezed {
+        assembly: program.print(),
+        repaired,
+    })
+}
+
+/// What functions do in vain.
+fn leave_out(program: &mut Program, has_stack_arguments: &HashSet<String>) -> Result<(), String> {
+    saves::drop_vain(program, has_stack_arguments)?;
+    let whole = Whole::of(program)?;
+    for function in program.functions.iter_mut().filter(|it| !it.is_handler()) {
+        shifts::gather(function, &whole)?;
+    }
+    let whole = Whole::of(program)?;
+    for function in program.functions.iter_mut().filter(|it| !it.is_handler()) {
+        values::simplify(function, &whole)?;
+    }
+    saves::drop_vain(program, has_stack_arguments)?;
+    let whole = Whole::of(program)?;
     for function in &mut program.functions {
-        tails::jump(function, &has_stack_arguments);
+        shifts::spread(function, &whole)?;
+    }
+    Ok(())
+}
+
+/// What they have in common, beside how they begin and end.
+fn share(program: &mut Program, options: &Options<'_>, has_stack_arguments: &HashSet<String>) {
+    for function in &mut program.functions {
+        tails::jump(function, has_stack_arguments);
     }
     tails::merge(&mut program.functions);
     layout::order(&mut program.functions);
@@ -102,22 +116,13 @@ pub(crate) fn squeeze(text: &str, options: &Options<'_>) -> Result<Squeezed, Str
     };
     let mut made = 0;
     for region in &mut regions {
-        repeats::share(region, may_change, &has_stack_arguments, 1, &mut made);
+        repeats::share(region, may_change, has_stack_arguments, 1, &mut made);
         tails::merge(region);
     }
+    // What is left is far apart: a call takes two words.
     program.functions = regions.into_iter().flatten().collect();
-    repeats::share(
-        &mut program.functions,
-        may_change,
-        &has_stack_arguments,
-        2,
-        &mut made,
-    );
-    tails::merge(&mut program.functions);
-    tails::follow(&mut program.functions);
-    layout::arrange(&mut program, Function::is_handler)?;
-    Ok(Squeezed {
-        assembly: program.print(),
-        repaired,
-    })
+    let all = &mut program.functions;
+    repeats::share(all, may_change, has_stack_arguments, 2, &mut made);
+    tails::merge(all);
+    tails::follow(all);
 }

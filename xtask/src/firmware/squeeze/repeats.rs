@@ -21,7 +21,7 @@ const LONGEST: usize = 64;
 const ROUNDS: usize = 40;
 
 /// Writes once what is written more than once in functions of a region that may be changed; calls of those with arguments on the
-/// stack stay. `made` counts the new functions of all regions.
+/// stack stay. A call takes so many words. `made` counts the new functions of all regions.
 pub(super) fn share(
     region: &mut Vec<Function>,
     may_change: impl Fn(&Function) -> bool,

@@ -119,10 +119,12 @@ fn copies(it: &Instruction) -> Vec<(u8, u8)> {
     }
 }
 
-/// Simplifies a function until nothing is left to do; says whether anything was.
-pub(super) fn simplify(function: &mut Function, whole: &Whole) -> Result<bool, String> {
-    let mut changed = false;
-    for _ in 0..16 {
+/// Rounds at most.
+const ROUNDS: usize = 16;
+
+/// Simplifies a function until nothing is left to do.
+pub(super) fn simplify(function: &mut Function, whole: &Whole) -> Result<(), String> {
+    for _ in 0..ROUNDS {
         let known = whole.about(function)?;
         let before = function.clone();
         use_originals(function, &known);
@@ -131,9 +133,8 @@ pub(super) fn simplify(function: &mut Function, whole: &Whole) -> Result<bool, S
         if *function == before {
             break;
         }
-        changed = true;
     }
-    Ok(changed)
+    Ok(())
 }
 
 /// What registers hold before each line; nothing where it is never reached.

@@ -56,9 +56,9 @@ fn documented(scenario: &str, wire: Wire, fault: WireFault) -> End {
     let stuck = matches!(fault, WireFault::Low | WireFault::High);
     match (scenario, wire) {
         // In the middle of a turn the wheels are asked for less.
-        (_, Wire::Encoder(Side::Left)) if stuck => End::Released(1.6, &[Fault::LeftEncoderSilent]),
+        (_, Wire::Encoder(Side::Left)) if stuck => End::Released(2.0, &[Fault::LeftEncoderSilent]),
         (_, Wire::Encoder(Side::Right)) if stuck => {
-            End::Released(1.6, &[Fault::RightEncoderSilent])
+            End::Released(2.0, &[Fault::RightEncoderSilent])
         }
         // While it stands or turns slowly, nothing is missed. How long that is between the boxes hangs on where the way led it.
         (_, Wire::Encoder(side)) => {
