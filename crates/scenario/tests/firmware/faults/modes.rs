@@ -66,9 +66,13 @@ fn documented(scenario: &str, wire: Wire, fault: WireFault) -> End {
                 "mode8-obstacles" => 6.0,
                 _ => 2.0,
             };
-            let cause: &[Fault] = match side {
-                Side::Left => &[Fault::LeftEncoderImplausible],
-                Side::Right => &[Fault::RightEncoderImplausible],
+            // Echoes do not fit a way that is measured as half of what it is: in a crawl that may be noticed first.
+            let misses = scenario == "mode8-obstacles" && fault == WireFault::Losing(0.5);
+            let cause: &[Fault] = match (side, misses) {
+                (Side::Left, false) => &[Fault::LeftEncoderImplausible],
+                (Side::Right, false) => &[Fault::RightEncoderImplausible],
+                (Side::Left, true) => &[Fault::LeftEncoderImplausible, Fault::SonarFaulty],
+                (Side::Right, true) => &[Fault::RightEncoderImplausible, Fault::SonarFaulty],
             };
             End::Released(within_s, cause)
         }
