@@ -3,6 +3,7 @@
 use crate::{Person, seeds, setup, twenty, worst};
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Fault, SonarId};
+use rumbo_plant::world::Wall;
 use rumbo_scenario::campaign::judge;
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::run::RunResult;
@@ -33,6 +34,45 @@ fn the_goal_behind_the_boxes_is_reached_in_35_s_and_3_6_m_without_a_touch() {
     assert!(worst(&runs, "total_time_s") <= 35.0);
     assert!(worst(&runs, "path_m") <= 3.6);
     assert_eq!(worst(&runs, "contacts"), 0.0);
+}
+
+/// How far the robot went to each side of the straight way, left and right [m].
+fn aside_m(run: &RunResult) -> (f64, f64) {
+    let (mut left_m, mut right_m) = (0.0f64, 0.0f64);
+    for sample in &run.trace.samples {
+        left_m = left_m.max(sample.y_m);
+        right_m = right_m.max(-sample.y_m);
+    }
+    (left_m, right_m)
+}
+
+/// From where the robot first looks at the box its ends look alike, a little nearer on this side or that by when the sonar pings as the
+/// servo sweeps.
+#[test]
+fn of_two_ways_that_look_alike_the_side_with_more_room_is_taken_else_the_left_whenever_the_sonar_pings()
+ {
+    let free = setup("mode8-obstacles");
+    let mut walled = free.clone();
+    walled.world.walls.push(Wall {
+        from_m: [-0.4, 0.65],
+        to_m: [0.2, 0.65],
+        thickness_m: 0.0,
+    });
+    for ticks in 0..10 {
+        let later = |setup: &Setup| {
+            let mut setup = setup.clone();
+            for command in &mut setup.scenario.commands {
+                command.at_s += 0.01 * f64::from(ticks);
+            }
+            seeds(&setup, 3..6).iter().map(aside_m).collect::<Vec<_>>()
+        };
+        for (left_m, right_m) in later(&free) {
+            assert!(left_m > 0.6 && right_m < 0.1, "{ticks}: {right_m}");
+        }
+        for (left_m, right_m) in later(&walled) {
+            assert!(right_m > 0.6 && left_m < 0.1, "{ticks}: {left_m}");
+        }
+    }
 }
 
 /// A scenario with a sonar that fails.

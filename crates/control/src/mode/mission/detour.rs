@@ -1,8 +1,9 @@
 //! Around an obstacle: which side, how near, when to leave it, and when there is no way.
 
 use super::goal::{PROGRESS_M, SPOT_RAD};
+use super::lane::side_m;
 use super::obstacle::Obstacle;
-use super::{Detour, Drive, Mission, Phase, Place, Pose, Side, State, abs, min, sqrt};
+use super::{Detour, Drive, Mission, Phase, Place, Side, State, abs, min, sqrt};
 use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
 use crate::motion::TurnState;
@@ -14,6 +15,10 @@ const BACK_MM: u32 = 200;
 /// After so little way the side of the last obstacle is the next one's too, unless the other way is this much shorter [m].
 const SOON_M: f32 = 0.8;
 const STAY_M: f32 = 0.5;
+/// Ways whose lengths differ by less are alike: where an obstacle ends is known no better. The one with more room beside the robot is taken,
+/// the left one where that is alike, too [m].
+const ALIKE_M: f32 = 0.1;
+const ROOM_M: f32 = 0.1;
 /// A side is changed for another whose way is this much shorter [m].
 const CHANGE_M: f32 = 0.2;
 /// A sonar at the side sees the obstacle within this [m].
@@ -26,7 +31,8 @@ const CLOSE_RAD_S: f32 = 0.5;
 const BEHIND_M: f32 = 0.35;
 
 impl Mission<'_> {
-    pub(super) fn decide(&self, state: &mut State, pose: &Pose, goal_m: (f32, f32)) {
+    pub(super) fn decide(&self, state: &mut State, estimate: &Estimate, goal_m: (f32, f32)) {
+        let pose = &estimate.pose;
         let Some(obstacle) = state.plan.obstacle else {
             state.phase = Phase::GoToGoal;
             return;
@@ -38,9 +44,14 @@ impl Mission<'_> {
             Some((Side::Right, way_m)) if way_m < SOON_M => left += STAY_M,
             _ => {}
         }
+        let left_is_shorter = if abs(left - right) < ALIKE_M {
+            side_m(estimate, SonarId::Left) + ROOM_M > side_m(estimate, SonarId::Right)
+        } else {
+            left < right
+        };
         let (dx, dy) = (goal_m.0 - pose.x_m, goal_m.1 - pose.y_m);
         state.detour = Some(Detour {
-            side: if left < right {
+            side: if left_is_shorter {
                 Side::Left
             } else {
                 Side::Right

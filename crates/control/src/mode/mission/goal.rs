@@ -99,7 +99,7 @@ impl Mission<'_> {
             Phase::GoToGoal => self.go(state, estimate, way, left_m, action),
             Phase::SweepRight | Phase::SweepLeft => self.sweep(state, estimate, left_m),
             Phase::Decide => {
-                self.decide(state, pose, *goal_m);
+                self.decide(state, estimate, *goal_m);
                 Drive::Release
             }
             Phase::AvoidanceTurn | Phase::Seek | Phase::Along | Phase::SafeDistance => {

@@ -320,7 +320,7 @@ fn range_m(reading: &Reading) -> f32 {
     }
 }
 
-fn side_m(estimate: &Estimate, sonar: SonarId) -> f32 {
+pub(super) fn side_m(estimate: &Estimate, sonar: SonarId) -> f32 {
     match estimate.range(sonar).range {
         Range::Valid(range_m) => range_m,
         Range::Clear | Range::Faulty => FAR_M,
