@@ -38,20 +38,17 @@ impl Mission<'_> {
             return;
         };
         let here = (pose.x_m, pose.y_m);
-        let (mut left, mut right) = self.costs(&obstacle, here, goal_m);
+        let mut saved_m = saved_by_left_m(&obstacle, here, goal_m);
         match state.last {
-            Some((Side::Left, way_m)) if way_m < SOON_M => right += STAY_M,
-            Some((Side::Right, way_m)) if way_m < SOON_M => left += STAY_M,
+            Some((side, way_m)) if way_m < SOON_M => saved_m += to_left(side, STAY_M),
             _ => {}
         }
-        let left_is_shorter = if abs(left - right) < ALIKE_M {
-            side_m(estimate, SonarId::Left) + ROOM_M > side_m(estimate, SonarId::Right)
-        } else {
-            left < right
-        };
+        if abs(saved_m) < ALIKE_M {
+            saved_m = side_m(estimate, SonarId::Left) - side_m(estimate, SonarId::Right) + ROOM_M;
+        }
         let (dx, dy) = (goal_m.0 - pose.x_m, goal_m.1 - pose.y_m);
         state.detour = Some(Detour {
-            side: if left_is_shorter {
+            side: if saved_m > 0.0 {
                 Side::Left
             } else {
                 Side::Right
@@ -105,14 +102,16 @@ impl Mission<'_> {
             }
             if let Some(obstacle) = state.plan.obstacle {
                 let here = (pose.x_m, pose.y_m);
-                let (left, right) = self.costs(&obstacle, here, goal_m);
-                let (own, other, side) = match detour.side {
-                    Side::Left => (left, right, Side::Right),
-                    Side::Right => (right, left, Side::Left),
-                };
-                if obstacle.nearest_m > BESIDE_M && detour.changes < 1 && other + CHANGE_M < own {
+                let saved_m = saved_by_left_m(&obstacle, here, goal_m);
+                if obstacle.nearest_m > BESIDE_M
+                    && detour.changes < 1
+                    && to_left(detour.side, saved_m) < -CHANGE_M
+                {
                     detour.changes += 1;
-                    detour.side = side;
+                    detour.side = match detour.side {
+                        Side::Left => Side::Right,
+                        Side::Right => Side::Left,
+                    };
                     detour.met = Place::new(pose.x_m, pose.y_m);
                     detour.way_m = 0.0;
                     detour.away = false;
@@ -185,18 +184,26 @@ impl Mission<'_> {
         let gained_m = if detour.vain == 0 { free_m } else { 0.0 };
         left_m - gained_m < detour.least_m - PROGRESS_M
     }
+}
 
-    /// Ways past both ends of an obstacle to the goal [m].
-    fn costs(&self, obstacle: &Obstacle, here: (f32, f32), goal_m: (f32, f32)) -> (f32, f32) {
-        let goal_rad = atan2(goal_m.1 - here.1, goal_m.0 - here.0);
-        let middle_rad = 0.5 * (obstacle.left.pass_rad + obstacle.right.pass_rad);
-        // The goal's bearing on the obstacle's own count.
-        let goal_rad = middle_rad + wrap_angle(goal_rad - middle_rad);
-        let behind = |off_rad: f32| BEHIND_M * max(off_rad - FRAC_PI_2, 0.0);
-        (
-            around_m(here, obstacle.left.at, goal_m) + behind(obstacle.left.pass_rad - goal_rad),
-            around_m(here, obstacle.right.at, goal_m) + behind(goal_rad - obstacle.right.pass_rad),
-        )
+/// What the way past an obstacle's left end to the goal is shorter than that past its right end [m].
+fn saved_by_left_m(obstacle: &Obstacle, here: (f32, f32), goal_m: (f32, f32)) -> f32 {
+    let goal_rad = atan2(goal_m.1 - here.1, goal_m.0 - here.0);
+    let middle_rad = 0.5 * (obstacle.left.pass_rad + obstacle.right.pass_rad);
+    // The goal's bearing on the obstacle's own count.
+    let goal_rad = middle_rad + wrap_angle(goal_rad - middle_rad);
+    let cost_m = |past: Place, off_rad: f32| {
+        around_m(here, past, goal_m) + BEHIND_M * max(off_rad - FRAC_PI_2, 0.0)
+    };
+    cost_m(obstacle.right.at, goal_rad - obstacle.right.pass_rad)
+        - cost_m(obstacle.left.at, obstacle.left.pass_rad - goal_rad)
+}
+
+/// A value as it is for the left side, the other way round for the right one.
+fn to_left(side: Side, value: f32) -> f32 {
+    match side {
+        Side::Left => value,
+        Side::Right => -value,
     }
 }
 
