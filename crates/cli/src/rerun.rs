@@ -14,7 +14,7 @@ use rumbo_control::params::SCHEMA;
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::run;
 use rumbo_scenario::sim::Sim;
-use rumbo_station::log::{Burst, Kind, Log, Manifest, Said};
+use rumbo_station::log::{Burst, Kind, Log, Manifest, Said, Sent};
 use rumbo_wire::message::Hello;
 use rumbo_wire::{Decoder, FromRobot, Message, Received};
 use serde_json::json;
@@ -177,9 +177,8 @@ fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<V
     let Some(end_us) = last.into_iter().flatten().max() else {
         return Ok(Verdict::Equal);
     };
-    let mut typed = log.said.iter().filter(|said| said.to_chip).peekable();
+    let mut sent = log.sent().peekable();
     let mut said = Vec::new();
-    let mut commands = log.link.iter().filter(|burst| burst.to_robot).peekable();
     let mut link = Vec::new();
     loop {
         let t_us = sim.now_us();
@@ -193,11 +192,15 @@ fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<V
             });
         }
         said.extend(consoles(&mut sim, t_us));
-        while let Some(line) = typed.next_if(|line| line.t_us <= t_us) {
-            lab::type_to(&mut sim, line.usart, &String::from_utf8_lossy(&line.bytes));
-        }
-        while let Some(burst) = commands.next_if(|burst| burst.t_us <= t_us) {
-            sim.send(&burst.bytes);
+        // In their order: a line typed to the link's USART goes the same way as the commands.
+        while let Some(next) = sent.next_if(|sent| sent.t_us() <= t_us) {
+            match next {
+                Sent::Link(burst) => sim.send(&burst.bytes),
+                Sent::Typed(line) => {
+                    let text = String::from_utf8_lossy(&line.bytes);
+                    lab::type_to(&mut sim, line.usart, &text);
+                }
+            }
         }
         if t_us >= end_us {
             break;

@@ -59,6 +59,26 @@ pub struct Said {
     pub bytes: Vec<u8>,
 }
 
+/// What somebody sent to the robot.
+#[derive(Clone, Copy, Debug)]
+pub enum Sent<'a> {
+    /// Bytes over the link.
+    Link(&'a Burst),
+    /// A line typed to a USART.
+    Typed(&'a Said),
+}
+
+impl Sent<'_> {
+    /// When, in the target's time \[us\].
+    #[must_use]
+    pub fn t_us(&self) -> u64 {
+        match self {
+            Self::Link(burst) => burst.t_us,
+            Self::Typed(said) => said.t_us,
+        }
+    }
+}
+
 /// What is wrong with a log, or with writing one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogError {

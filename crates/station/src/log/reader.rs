@@ -5,7 +5,7 @@
 
 use super::row_json::Signals;
 use super::schema::Topic;
-use super::{Burst, LogError, Manifest, Outcome, Said};
+use super::{Burst, LogError, Manifest, Outcome, Said, Sent};
 use crate::board::{Level, LoggedEvent, State};
 use crate::origin::compose;
 use crate::row::Row;
@@ -48,8 +48,17 @@ pub struct Log {
     pub link: Vec<Burst>,
     /// What crossed the USARTs of an emulated chip, in order.
     pub said: Vec<Said>,
+    /// What went to the robot, in the order in which it went, which times alone do not tell: places in `link` and `said`.
+    order: Vec<Place>,
     /// Why the log ends early, where it does.
     pub cut: Option<String>,
+}
+
+/// Where something sent is.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    Link(usize),
+    Said(usize),
 }
 
 /// What messages of a channel are.
@@ -81,6 +90,14 @@ impl Log {
         }
         self.scene.get_or_insert(scene);
         Ok(())
+    }
+
+    /// What went to the robot, in the order in which it went.
+    pub fn sent(&self) -> impl Iterator<Item = Sent<'_>> {
+        self.order.iter().filter_map(|place| match *place {
+            Place::Link(at) => self.link.get(at).map(Sent::Link),
+            Place::Said(at) => self.said.get(at).map(Sent::Typed),
+        })
     }
 
     /// Reads a log.
@@ -281,9 +298,13 @@ impl Log {
             }
             Topic::FromRobot | Topic::ToRobot => {
                 let Bytes { data } = serde_json::from_slice(data)?;
+                let to_robot = topic == Topic::ToRobot;
+                if to_robot {
+                    self.order.push(Place::Link(self.link.len()));
+                }
                 self.link.push(Burst {
                     t_us,
-                    to_robot: topic == Topic::ToRobot,
+                    to_robot,
                     bytes: decoded(&data)?,
                 });
             }
@@ -293,6 +314,9 @@ impl Log {
                     to_chip,
                     data,
                 } = serde_json::from_slice(data)?;
+                if to_chip {
+                    self.order.push(Place::Said(self.said.len()));
+                }
                 self.said.push(Said {
                     t_us,
                     usart,

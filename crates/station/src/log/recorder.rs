@@ -236,7 +236,7 @@ fn write(file: File, manifest: &Manifest, entries: &Receiver<Arc<Entry>>) -> Mca
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::Log;
+    use crate::log::{Log, Said, Sent};
 
     fn burst(t_us: u64) -> Entry {
         Entry::Burst(Burst {
@@ -288,6 +288,37 @@ mod tests {
             lengths.iter().any(|length| (1..300).contains(length)),
             "{lengths:?}"
         );
+    }
+
+    #[test]
+    fn what_was_sent_at_one_time_is_told_in_the_order_in_which_it_was_sent() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sent.mcap");
+        let mut recorder = Recorder::at(&path, &Manifest::default()).unwrap();
+        for number in 0..6 {
+            let (t_us, bytes) = (5_000 * (number / 3), vec![number as u8]);
+            recorder.take(match number % 2 {
+                0 => Entry::Burst(Burst {
+                    t_us,
+                    to_robot: true,
+                    bytes,
+                }),
+                _ => Entry::Said(Said {
+                    t_us,
+                    usart: 1,
+                    to_chip: true,
+                    bytes,
+                }),
+            });
+            recorder.take(burst(t_us));
+        }
+        recorder.finish().unwrap();
+        let log = Log::read(&path).unwrap();
+        let sent = log.sent().map(|sent| match sent {
+            Sent::Link(burst) => burst.bytes[0],
+            Sent::Typed(said) => said.bytes[0],
+        });
+        assert_eq!(sent.collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
     }
 
     #[test]
