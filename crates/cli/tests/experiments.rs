@@ -48,6 +48,17 @@ fn the_report_is_in_the_locale_s_language_unless_another_is_asked_for() {
 }
 
 #[test]
+fn the_example_of_another_robot_keeps_the_limits_of_every_mode() {
+    let folder = tempfile::tempdir().unwrap();
+    let robot = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/my_robot/robot.toml");
+    let modes: Vec<String> = (1..=8).map(|mode| format!("mode{mode}")).collect();
+    let mut arguments = vec!["--robot", robot.to_str().unwrap(), "--only"];
+    arguments.extend(modes.iter().map(String::as_str));
+    let output = experiments(folder.path(), "C", &arguments);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+}
+
+#[test]
 fn a_recorded_run_stands_beside_ours_and_a_file_of_no_experiment_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let runs = folder.path().join("runs");
