@@ -109,9 +109,15 @@ impl Page {
     }
 
     pub(crate) fn list(&mut self, items: &[Text]) {
+        let items = items.iter().map(|item| item.of(self.language).to_owned());
+        self.list_of(items.collect());
+    }
+
+    /// A list of what was put together for this robot.
+    pub(crate) fn list_of(&mut self, items: Vec<String>) {
         self.body += "<ul>\n";
         for item in items {
-            let html = self.rich(item.of(self.language));
+            let html = self.rich(&item);
             put(&mut self.body, format_args!("<li>{html}</li>\n"));
         }
         self.body += "</ul>\n";

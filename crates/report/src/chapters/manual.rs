@@ -133,8 +133,8 @@ const FACTORS: Text = t(
 );
 const RADIUS: Text = same(r"r = \frac{b}{2}\,\frac{v_R + v_L}{v_R - v_L}");
 const RADIUS_END: Text = t(
-    "half the base, 5 cm, in a pivot; 15 cm with the inner wheel at half the speed. Open loop the wheels do not keep their ratio, so the circle is another one.",
-    "la mitad de la distancia entre ruedas, 5 cm, en un pivote; 15 cm con la rueda interior a la mitad de velocidad. En bucle abierto las ruedas no conservan su relación, así que la circunferencia es otra.",
+    "half the base in a pivot; one and a half times the base with the inner wheel at half the speed. Open loop the wheels do not keep their ratio, so the circle is another one.",
+    "la mitad de la distancia entre ruedas en un pivote; vez y media esa distancia con la rueda interior a la mitad de velocidad. En bucle abierto las ruedas no conservan su relación, así que la circunferencia es otra.",
 );
 const DEAD: Text = t(
     "The dead zone: the mean current of a standing motor grows with the square of the duty $u$, since the current dies in every off-time. It moves when its torque exceeds the dry friction $T_c$, so",
@@ -158,8 +158,8 @@ const OPEN_WAYS: Text = t(
     "Adónde llevan los movimientos básicos en bucle abierto, todos desde el origen y mirando según x: trayectorias reales del punto medio del eje.",
 );
 const SPEED_WAYS: Text = t(
-    "The same with the speed of each wheel regulated: straight lines are straight, and the arcs are circles of 15 cm.",
-    "Los mismos con la velocidad de cada rueda regulada: las rectas son rectas y los arcos, circunferencias de 15 cm.",
+    "The same with the speed of each wheel regulated: straight lines are straight, and the arcs are circles.",
+    "Los mismos con la velocidad de cada rueda regulada: las rectas son rectas y los arcos, circunferencias.",
 );
 const FORWARD_AXIS: Text = t("forward (rpm)", "hacia delante (rpm)");
 const BACKWARD_AXIS: Text = t("backward (rpm)", "hacia atrás (rpm)");

@@ -37,6 +37,7 @@ const WHAT: Text = t(
      dispone únicamente de un sensor de ultrasonidos que mira hacia delante. Parte a 107 cm, se le envía a 30 cm y después retrocede hasta \
      50 cm.",
 );
+/// With the robot's own `{radius}` and `{base}`.
 const PARTS: [Text; 6] = [
     t(
         "Arduino Mega 2560 (ATmega2560, 16 MHz): runs the program; its pins read the sensors and drive the bridge.",
@@ -52,8 +53,8 @@ const PARTS: [Text; 6] = [
          nivel bajo el motor queda libre.",
     ),
     t(
-        "Two DC gear motors, 48:1, with wheels of 3.25 cm radius, 10 cm apart.",
-        "Dos motores de corriente continua con reductora 48:1 y ruedas de 3,25 cm de radio, separadas 10 cm.",
+        "Two DC gear motors, 48:1, with wheels of {radius} cm radius, {base} cm apart.",
+        "Dos motores de corriente continua con reductora 48:1 y ruedas de {radius} cm de radio, separadas {base} cm.",
     ),
     t(
         "Bluetooth module HC-05 on a serial port at 9600 baud: at most 960 bytes per second for commands and telemetry.",
@@ -182,11 +183,22 @@ const CONTROL: Scheme = Scheme {
     from_above: &[],
 };
 
+/// The components, with the geometry of the robot that ran.
+fn parts_of(language: Language, data: &Data) -> Vec<String> {
+    let plant = data.outcome("mode1").map(|ran| ran.setup.robot.plant);
+    let plant = plant.unwrap_or_default();
+    let radius = language.short(CM * plant.wheels.left.radius_m, 2);
+    let base = language.short(CM * plant.body.base_m, 1);
+    let said = PARTS.iter().map(|part| part.of(language));
+    said.map(|text| text.replace("{radius}", &radius).replace("{base}", &base))
+        .collect()
+}
+
 fn write(page: &mut Page, data: &Data) {
     page.section(DESCRIPTION);
     page.p(WHAT);
     page.section(COMPONENTS);
-    page.list(&PARTS);
+    page.list_of(parts_of(page.language, data));
     parts::rig_figure(page, data, "mode1", "mode1");
     parts::wiring_figure(page, data, "mode1", "mode1", "mode_1");
     let timing = geometry::sonar_timing(page.language, page.say(TIMING));
