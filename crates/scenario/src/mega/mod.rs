@@ -103,6 +103,8 @@ pub struct Mega {
     encoders: [bool; 2],
     echoes: Echoes,
     expected: VecDeque<(u64, Edge)>,
+    /// Those of them that the chip has been given since.
+    given: Vec<Edge>,
     actions: Vec<Action>,
     /// What the module has heard from the chip, and when [us].
     sent: Vec<(u64, u8)>,
@@ -133,6 +135,7 @@ impl Mega {
             encoders: [false; 2],
             echoes: Echoes::default(),
             expected: VecDeque::new(),
+            given: Vec::new(),
             actions: Vec::new(),
             sent: Vec::new(),
             consoles: Default::default(),
@@ -278,6 +281,11 @@ impl Mega {
     /// All edges up to `now_us` that the plant gave after all: what had been announced otherwise is put right.
     pub(crate) fn correct(&mut self, event: rumbo_plant::plant::Event, faults: &mut Faults<'_>) {
         let Some(edge) = edge_of(event) else { return };
+        // One after the other: where a line has changed twice meanwhile, its level now says nothing of the first edge.
+        if let Some(at) = self.given.iter().position(|given| *given == edge) {
+            self.given.remove(at);
+            return;
+        }
         let known = match edge {
             Edge::Encoder(index, level) => self.encoders[index] == level,
             Edge::Echo(sonar, level) => self.echoes.level(sonar) == level,
@@ -287,9 +295,14 @@ impl Mega {
         }
     }
 
-    /// Takes back what was announced.
+    /// Takes back what was announced and not given yet.
     pub(crate) fn expect_nothing(&mut self) {
         self.expected.clear();
+    }
+
+    /// The plant looks ahead anew: what the chip was given until now has happened.
+    pub(crate) fn look_ahead(&mut self) {
+        self.given.clear();
     }
 
     /// Runs the chip to a time [us], or to the first action before it.
@@ -348,6 +361,7 @@ impl Mega {
             match self.expected.front().copied() {
                 Some((at_us, edge)) if forced.is_none_or(|forced| at_us <= forced) => {
                     self.expected.pop_front();
+                    self.given.push(edge);
                     self.deliver(at_us, edge, faults);
                 }
                 _ => {

@@ -55,6 +55,7 @@ impl Sim {
     /// One look ahead; says whether a breakpoint ended it.
     fn lockstep(&mut self, mega: &mut Mega, end_us: u64) -> bool {
         loop {
+            mega.look_ahead();
             let mut ahead = self.state;
             let mut contact_m_s: f64 = 0.0;
             self.plant.advance(&mut ahead, end_us, &mut |event| {
