@@ -4,6 +4,7 @@
 //! That is what [`squeeze`] works on. What it makes is linked with what cargo's own image is linked with: the arithmetic
 //! that `firmware/build.rs` has laid out, and Rust's own for the rest.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -30,7 +31,7 @@ pub(crate) fn build(
     toolchain: &Toolchain,
     build: &Path,
 ) -> Result<Linked, String> {
-    let assembly = build.join("compiled.s");
+    let assembly = build.join(assembly(project, toolchain)?);
     let messages = output(
         toolchain
             .command("cargo")
@@ -74,6 +75,20 @@ pub(crate) fn build(
         image,
         repaired: squeezed.repaired,
     })
+}
+
+/// The file of the assembly. Each compiler and each set of its options has one: cargo keeps what it has built of each, and when one comes
+/// back, it writes nothing.
+fn assembly(project: &Project, toolchain: &Toolchain) -> Result<String, String> {
+    let mut hasher = DefaultHasher::new();
+    output(toolchain.command("rustc").arg("-vV"))?.hash(&mut hasher);
+    for file in ["firmware/.cargo/config.toml", "firmware/Cargo.toml"] {
+        let path = project.root.join(file);
+        std::fs::read(&path)
+            .map_err(|error| format!("{}: {error}", path.display()))?
+            .hash(&mut hasher);
+    }
+    Ok(format!("compiled-{:016x}.s", hasher.finish()))
 }
 
 /// Paths as they are in the names of the compiler's symbols: each word behind its length.
