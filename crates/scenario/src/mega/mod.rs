@@ -10,6 +10,8 @@
 //! |---|---|
 //! | [`pins`] | the board's pin numbers, a wiring as pins of the chip |
 //! | `bridge`, `servo`, `module` | what driver, servo and Bluetooth module make of their lines |
+//! | `inputs` | the edges that the plant announces, as the chip is given them |
+//! | `outputs` | what the chip does, as the robot feels it |
 //! | `echo` | echo lines, and sonars that fail |
 //! | `console` | what the USARTs said, for people |
 //! | `marks` | when the program comes to some of its functions |
@@ -25,30 +27,31 @@ pub mod pins;
 
 mod bridge;
 mod echo;
+mod inputs;
 mod marks;
 mod module;
 mod notes;
+mod outputs;
 mod servo;
 
 use crate::files::Divider;
 use crate::sonar_fault::SonarFaults;
-use crate::wire_fault::{Wire, WireFaults};
+use crate::wire_fault::WireFaults;
 use bridge::HalfBridge;
 use console::Console;
 use echo::Echoes;
 use firmware::Firmware;
+use inputs::Announced;
 use marks::Marks;
 use pins::Wires;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
-use rumbo_emulator::devices::ports::{Drive, Pin};
-use rumbo_emulator::devices::{Cause, Event, Input, Output, Pwm};
+use rumbo_emulator::devices::{Cause, Input};
 use rumbo_emulator::verdict::Verdict;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::sonar::SonarId;
 use servo::ServoInput;
-use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// The Mega's clock is 16 MHz.
@@ -82,13 +85,6 @@ pub(crate) enum Pause {
     Halted(u64),
 }
 
-/// An edge that the plant announces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Edge {
-    Encoder(usize, bool),
-    Echo(SonarId, bool),
-}
-
 /// A Mega with its program.
 #[derive(Clone, Debug)]
 pub struct Mega {
@@ -102,9 +98,7 @@ pub struct Mega {
     triggers: [Option<u64>; 3],
     encoders: [bool; 2],
     echoes: Echoes,
-    expected: VecDeque<(u64, Edge)>,
-    /// Those of them that the chip has been given since.
-    given: Vec<Edge>,
+    announced: Announced,
     actions: Vec<Action>,
     /// What the module has heard from the chip, and when [us].
     sent: Vec<(u64, u8)>,
@@ -134,8 +128,7 @@ impl Mega {
             triggers: [None; 3],
             encoders: [false; 2],
             echoes: Echoes::default(),
-            expected: VecDeque::new(),
-            given: Vec::new(),
+            announced: Announced::default(),
             actions: Vec::new(),
             sent: Vec::new(),
             consoles: Default::default(),
@@ -159,7 +152,7 @@ impl Mega {
     /// The clock of the plant starts over at this cycle: lines are as they are at a start.
     fn begin(&mut self, cycle: u64, encoders: [bool; 2]) {
         self.zero_cycle = cycle;
-        self.expected.clear();
+        self.look_ahead();
         self.echoes = Echoes::default();
         self.encoders = encoders;
         let wires = self.wires();
@@ -272,39 +265,6 @@ impl Mega {
         self.zero_cycle + us * CYCLES_PER_US
     }
 
-    /// An edge that comes unless the chip does something before.
-    pub(crate) fn expect(&mut self, event: rumbo_plant::plant::Event) {
-        let edge = edge_of(event);
-        self.expected.extend(edge.map(|edge| (event.at_us(), edge)));
-    }
-
-    /// All edges up to `now_us` that the plant gave after all: what had been announced otherwise is put right.
-    pub(crate) fn correct(&mut self, event: rumbo_plant::plant::Event, faults: &mut Faults<'_>) {
-        let Some(edge) = edge_of(event) else { return };
-        // One after the other: where a line has changed twice meanwhile, its level now says nothing of the first edge.
-        if let Some(at) = self.given.iter().position(|given| *given == edge) {
-            self.given.remove(at);
-            return;
-        }
-        let known = match edge {
-            Edge::Encoder(index, level) => self.encoders[index] == level,
-            Edge::Echo(sonar, level) => self.echoes.level(sonar) == level,
-        };
-        if !known {
-            self.deliver(event.at_us(), edge, faults);
-        }
-    }
-
-    /// Takes back what was announced and not given yet.
-    pub(crate) fn expect_nothing(&mut self) {
-        self.expected.clear();
-    }
-
-    /// The plant looks ahead anew: what the chip was given until now has happened.
-    pub(crate) fn look_ahead(&mut self) {
-        self.given.clear();
-    }
-
     /// Runs the chip to a time [us], or to the first action before it.
     pub(crate) fn run(&mut self, until_us: u64, faults: &mut Faults<'_>) -> Pause {
         let until = self.cycle_of(until_us);
@@ -345,183 +305,6 @@ impl Mega {
             }
         }
     }
-
-    /// The cycle of the next input that is known of.
-    fn next_input(&self) -> Option<u64> {
-        let expected = self.expected.front().map(|(at_us, _)| *at_us);
-        let forced = self.echoes.next_forced_us();
-        let next = expected.into_iter().chain(forced).min();
-        next.map(|at_us| self.cycle_of(at_us))
-    }
-
-    /// Puts the edges up to a cycle into the chip's queue.
-    fn deliver_up_to(&mut self, cycle: u64, faults: &mut Faults<'_>) {
-        while self.next_input().is_some_and(|next| next <= cycle) {
-            let forced = self.echoes.next_forced_us();
-            match self.expected.front().copied() {
-                Some((at_us, edge)) if forced.is_none_or(|forced| at_us <= forced) => {
-                    self.expected.pop_front();
-                    self.given.push(edge);
-                    self.deliver(at_us, edge, faults);
-                }
-                _ => {
-                    if let Some((at_us, sonar)) = self.echoes.take_forced() {
-                        let pin = self.wires().echoes[sonar.index()];
-                        self.put(self.cycle_of(at_us), pin, false);
-                    }
-                }
-            }
-        }
-    }
-
-    fn deliver(&mut self, at_us: u64, edge: Edge, faults: &mut Faults<'_>) {
-        let (wire, level) = match edge {
-            Edge::Encoder(index, level) => {
-                self.encoders[index] = level;
-                (Wire::Encoder([Side::Left, Side::Right][index]), level)
-            }
-            Edge::Echo(sonar, level) => {
-                if !self.echoes.edge(sonar, level, at_us, faults) {
-                    return;
-                }
-                (
-                    Wire::Echo(rumbo_control::SonarId::ALL[sonar.index()]),
-                    level,
-                )
-            }
-        };
-        if faults.wires.passes(faults.noise, wire, at_us) {
-            self.put(self.cycle_of(at_us), self.pin_of(wire), level);
-        }
-    }
-
-    fn pin_of(&self, wire: Wire) -> Option<Pin> {
-        match wire {
-            Wire::Encoder(side) => self.wires().encoders[side.index()],
-            Wire::Echo(sonar) => self.wires().echoes[sonar as usize],
-        }
-    }
-
-    /// What befalls the wires until then, from now on: they get stuck, or pick up noise.
-    pub(crate) fn disturb(&mut self, from_us: u64, to_us: u64, faults: &mut Faults<'_>) {
-        for (at_us, wire, level) in faults.wires.stuck(from_us, to_us) {
-            self.put(self.cycle_of(at_us), self.pin_of(wire), level);
-        }
-        for (begin_us, end_us, wire) in faults.wires.pulses(faults.noise, from_us) {
-            let level = match wire {
-                Wire::Encoder(side) => self.encoders[side.index()],
-                Wire::Echo(sonar) => self.echoes.level(SonarId::ALL[sonar as usize]),
-            };
-            for (at_us, level) in [(begin_us, !level), (end_us, level)] {
-                self.put(self.cycle_of(at_us), self.pin_of(wire), level);
-            }
-        }
-    }
-
-    fn put(&mut self, cycle: u64, pin: Option<Pin>, level: bool) {
-        if let Some(pin) = pin {
-            self.chip.input(cycle, Input::Pin(pin, Some(level)));
-        }
-    }
-
-    /// Takes in what the chip has done; gives the cycle of the last action.
-    fn listen(&mut self) -> Option<u64> {
-        let mut acted = None;
-        let outputs = self.chip.take_outputs();
-        for Output { cycle, event } in outputs {
-            let before = self.actions.len();
-            match event {
-                Event::Pin(pin, drive) => {
-                    self.level(cycle, pin, matches!(drive, Drive::High | Drive::PullUp));
-                }
-                Event::Duty { pin, pwm } => self.modulate(pin, pwm),
-                Event::Byte { usart, byte, baud } => self.hear(cycle, usart, byte as u8, baud),
-                // The pins tell for themselves.
-                Event::Reset(_) => {}
-            }
-            if self.actions.len() > before {
-                acted = Some(cycle);
-            }
-        }
-        let cycle = self.chip.cycle();
-        let late = self.bridges.iter().filter_map(HalfBridge::expires_cycle);
-        if late.min().is_some_and(|due| due <= cycle) {
-            self.bridges.iter_mut().for_each(|half| half.expire(cycle));
-        }
-        let before = self.actions.len();
-        self.drive();
-        if self.actions.len() > before {
-            acted = acted.or(Some(cycle));
-        }
-        acted
-    }
-
-    fn level(&mut self, cycle: u64, pin: Pin, high: bool) {
-        if let Some(line) = self.line(pin) {
-            line.set(cycle, high);
-        }
-        if self.wires().servo == Some(pin) {
-            let angle_rad = self.servo.set(cycle, high);
-            self.actions.extend(angle_rad.map(Action::Servo));
-        }
-        let triggers = self.wires().triggers;
-        for sonar in SonarId::ALL {
-            if triggers[sonar.index()] != Some(pin) {
-                continue;
-            }
-            let rise = &mut self.triggers[sonar.index()];
-            if high {
-                rise.get_or_insert(cycle);
-            } else if let Some(rise) = rise.take()
-                && cycle - rise >= TRIGGER_CYCLES
-            {
-                self.actions.push(Action::Trigger(sonar));
-            }
-        }
-    }
-
-    fn modulate(&mut self, pin: Pin, pwm: Option<Pwm>) {
-        if let Some(line) = self.line(pin) {
-            line.modulate(pwm);
-        }
-    }
-
-    fn line(&mut self, pin: Pin) -> Option<&mut bridge::Line> {
-        let pins = self.firmware.wires().bridges;
-        for (half, pins) in self.bridges.iter_mut().zip(pins) {
-            let wired = [pins.enable, pins.forward, pins.backward];
-            if let Some(at) = wired.iter().position(|wired| *wired == Some(pin)) {
-                return Some(&mut half.lines[at]);
-            }
-        }
-        None
-    }
-
-    /// Notes what the bridges do now that they did not before.
-    fn drive(&mut self) {
-        for (index, side) in [Side::Left, Side::Right].into_iter().enumerate() {
-            let state = self.bridges[index].state();
-            if state != self.driven[index] {
-                self.driven[index] = state;
-                self.has_driven |= matches!(state.0, Bridge::Forward(_) | Bridge::Backward(_));
-                self.actions.push(Action::Bridge(side, state.0, state.1));
-            }
-        }
-    }
-
-    fn hear(&mut self, cycle: u64, usart: u8, byte: u8, baud: f64) {
-        if let Some(console) = self.consoles.get_mut(usize::from(usart)) {
-            console.push(byte, baud);
-        }
-        if self.wires().link == Some(usart)
-            && let Some(byte) = module::heard(byte, baud, firmware::LINK_BAUD)
-        {
-            let at_us = cycle
-                .saturating_sub(self.zero_cycle)
-                .div_ceil(CYCLES_PER_US);
-            self.sent.push((at_us, byte));
-        }
-    }
 }
 
 /// The faults of sonars and wires, and the noise they draw from.
@@ -529,14 +312,4 @@ pub(crate) struct Faults<'a> {
     pub(crate) sonars: &'a mut SonarFaults,
     pub(crate) wires: &'a mut WireFaults,
     pub(crate) noise: &'a Noise,
-}
-
-fn edge_of(event: rumbo_plant::plant::Event) -> Option<Edge> {
-    use rumbo_plant::plant::Event;
-    match event {
-        Event::Edge { wheel, level, .. } => Some(Edge::Encoder(wheel.index(), level)),
-        Event::EchoRise { sonar, .. } => Some(Edge::Echo(sonar, true)),
-        Event::EchoFall { sonar, .. } => Some(Edge::Echo(sonar, false)),
-        Event::Contact { .. } => None,
-    }
 }

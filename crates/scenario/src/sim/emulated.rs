@@ -81,7 +81,6 @@ impl Sim {
                 }
                 Pause::Act(at_us) | Pause::Halted(at_us) => at_us,
             };
-            mega.expect_nothing();
             self.follow(mega, at_us);
             for action in mega.take_actions() {
                 self.act(action);

@@ -1,0 +1,109 @@
+//! What the chip does with its pins and USARTs, as the robot feels it.
+
+use super::bridge::{self, HalfBridge};
+use super::{Action, CYCLES_PER_US, Mega, TRIGGER_CYCLES, firmware, module};
+use rumbo_emulator::devices::ports::{Drive, Pin};
+use rumbo_emulator::devices::{Event, Output, Pwm};
+use rumbo_plant::drivetrain::{Bridge, Side};
+use rumbo_plant::sonar::SonarId;
+
+impl Mega {
+    /// Takes in what the chip has done; gives the cycle of the last action.
+    pub(super) fn listen(&mut self) -> Option<u64> {
+        let mut acted = None;
+        let outputs = self.chip.take_outputs();
+        for Output { cycle, event } in outputs {
+            let before = self.actions.len();
+            match event {
+                Event::Pin(pin, drive) => {
+                    self.level(cycle, pin, matches!(drive, Drive::High | Drive::PullUp));
+                }
+                Event::Duty { pin, pwm } => self.modulate(pin, pwm),
+                Event::Byte { usart, byte, baud } => self.hear(cycle, usart, byte as u8, baud),
+                // The pins tell for themselves.
+                Event::Reset(_) => {}
+            }
+            if self.actions.len() > before {
+                acted = Some(cycle);
+            }
+        }
+        let cycle = self.chip.cycle();
+        let late = self.bridges.iter().filter_map(HalfBridge::expires_cycle);
+        if late.min().is_some_and(|due| due <= cycle) {
+            self.bridges.iter_mut().for_each(|half| half.expire(cycle));
+        }
+        let before = self.actions.len();
+        self.drive();
+        if self.actions.len() > before {
+            acted = acted.or(Some(cycle));
+        }
+        acted
+    }
+
+    fn level(&mut self, cycle: u64, pin: Pin, high: bool) {
+        if let Some(line) = self.line(pin) {
+            line.set(cycle, high);
+        }
+        if self.wires().servo == Some(pin) {
+            let angle_rad = self.servo.set(cycle, high);
+            self.actions.extend(angle_rad.map(Action::Servo));
+        }
+        let triggers = self.wires().triggers;
+        for sonar in SonarId::ALL {
+            if triggers[sonar.index()] != Some(pin) {
+                continue;
+            }
+            let rise = &mut self.triggers[sonar.index()];
+            if high {
+                rise.get_or_insert(cycle);
+            } else if let Some(rise) = rise.take()
+                && cycle - rise >= TRIGGER_CYCLES
+            {
+                self.actions.push(Action::Trigger(sonar));
+            }
+        }
+    }
+
+    fn modulate(&mut self, pin: Pin, pwm: Option<Pwm>) {
+        if let Some(line) = self.line(pin) {
+            line.modulate(pwm);
+        }
+    }
+
+    fn line(&mut self, pin: Pin) -> Option<&mut bridge::Line> {
+        let pins = self.firmware.wires().bridges;
+        for (half, pins) in self.bridges.iter_mut().zip(pins) {
+            let wired = [pins.enable, pins.forward, pins.backward];
+            if let Some(at) = wired.iter().position(|wired| *wired == Some(pin)) {
+                return Some(&mut half.lines[at]);
+            }
+        }
+        None
+    }
+
+    /// Notes what the bridges do now that they did not before.
+    pub(super) fn drive(&mut self) {
+        for (index, side) in [Side::Left, Side::Right].into_iter().enumerate() {
+            let state = self.bridges[index].state();
+            if state != self.driven[index] {
+                self.driven[index] = state;
+                self.has_driven |= matches!(state.0, Bridge::Forward(_) | Bridge::Backward(_));
+                self.actions.push(Action::Bridge(side, state.0, state.1));
+            }
+        }
+    }
+
+    fn hear(&mut self, cycle: u64, usart: u8, byte: u8, baud: f64) {
+        if let Some(console) = self.consoles.get_mut(usize::from(usart)) {
+            console.push(byte, baud);
+        }
+        if self.wires().link == Some(usart)
+            && let Some(byte) = module::heard(byte, baud, firmware::LINK_BAUD)
+        {
+            let at_us = cycle
+                .saturating_sub(self.zero_cycle)
+                .div_ceil(CYCLES_PER_US);
+            self.sent.push((at_us, byte));
+        }
+    }
+}
