@@ -1,6 +1,6 @@
 //! What is written more than once, written once.
 //!
-//! Instructions without a label between them that occur in several places become a function of their own, and each place
+//! Instructions that occur in several places, with no label between them but for those of their own jumps, become a function of their own, and each place
 //! calls it; where they end in a return or a jump, each place jumps there. The call costs nine cycles, so functions in which
 //! cycles count are left alone; so are those that touch the hardware, where a time may be prescribed between two instructions.
 //!
@@ -21,7 +21,7 @@ const LONGEST: usize = 64;
 const ROUNDS: usize = 40;
 
 /// Writes once what is written more than once in functions of a region that may be changed; calls of those with arguments on the
-/// stack stay. A call takes so many words. `made` counts the new functions of all regions.
+/// stack stay. `made` counts the new functions of all regions.
 pub(super) fn share(
     region: &mut Vec<Function>,
     may_change: impl Fn(&Function) -> bool,
@@ -97,6 +97,8 @@ enum Place {
     Within,
     /// Ends a sequence.
     End,
+    /// A jump and the label that only it goes to: both are in a sequence or none.
+    Paired,
     /// In none.
     Apart,
 }
@@ -108,6 +110,8 @@ struct Text {
     place: Vec<Place>,
     size: Vec<usize>,
     is_call: Vec<bool>,
+    /// The other of a pair.
+    partner: Vec<usize>,
     /// Function and line.
     from: Vec<(usize, usize)>,
 }
@@ -132,24 +136,34 @@ impl Text {
             place: Vec::new(),
             size: Vec::new(),
             is_call: Vec::new(),
+            partner: Vec::new(),
             from: Vec::new(),
         };
-        let mut known: HashMap<&Instruction, u32> = HashMap::new();
+        let mut known: HashMap<Word, u32> = HashMap::new();
         // Numbers of what is like nothing else count down.
         let mut unlike = u32::MAX;
         for (number, function) in functions.iter().enumerate() {
             if !may_change(function) {
                 continue;
             }
+            let pairs = pairs(function);
+            let start = text.words.len();
             for (at, line) in function.lines.iter().enumerate() {
                 let next = known.len() as u32;
-                let (word, place) = match line {
-                    Line::Do(it) => (
-                        *known.entry(it).or_insert(next),
+                let partner = pairs.get(&at).copied();
+                let (word, place) = match (line, partner) {
+                    (line, Some(partner)) => {
+                        let name = line.instruction().map_or("", |it| &it.name);
+                        let word = Word::Paired(name, partner as i64 - at as i64);
+                        (*known.entry(word).or_insert(next), Place::Paired)
+                    }
+                    (Line::Do(it), None) => (
+                        *known.entry(Word::Plain(it)).or_insert(next),
                         Place::of(it, stack_arguments),
                     ),
-                    Line::Label(_) => (0, Place::Apart),
+                    (Line::Label(_), None) => (0, Place::Apart),
                 };
+                text.partner.push(start + partner.unwrap_or(at));
                 unlike -= 1;
                 text.words
                     .push(if place == Place::Apart { unlike } else { word });
@@ -172,6 +186,7 @@ impl Text {
             text.place.push(Place::Apart);
             text.size.push(0);
             text.is_call.push(false);
+            text.partner.push(text.partner.len());
             text.from.push((number, usize::MAX));
         }
         text
@@ -235,10 +250,13 @@ impl Text {
     fn is_whole(&self, at: usize, length: usize) -> bool {
         let places = &self.place[at..at + length];
         let jumped_to = places[length - 1] == Place::End;
-        let on_the_stack = places
+        // Nor may what is called return in place of its caller.
+        let only_by_jump = places
             .iter()
-            .any(|place| matches!(place, Place::Stack | Place::Within));
-        places[0] != Place::Within && (jumped_to || !on_the_stack)
+            .any(|place| matches!(place, Place::Stack | Place::Within | Place::End));
+        let mut pairs = self.partner[at..at + length].iter();
+        let is_inside = |partner: &usize| (at..at + length).contains(partner);
+        places[0] != Place::Within && (jumped_to || !only_by_jump) && pairs.all(is_inside)
     }
 
     /// Words that are saved where it stands so many times.
@@ -288,6 +306,7 @@ impl Text {
                 _ => lines.push(Line::Do(Instruction::new("ret", &[]))),
             }
         }
+        rename_labels(&mut lines, name);
         for &place in places {
             let (function, line) = self.from[place];
             let old = &mut functions[function].lines[line..line + candidate.length];
@@ -298,6 +317,60 @@ impl Text {
             ));
         }
         functions.push(Function::new(name.to_owned(), lines));
+    }
+}
+
+/// What equal lines have in common.
+#[derive(PartialEq, Eq, Hash)]
+enum Word<'a> {
+    Plain(&'a Instruction),
+    /// The name of a jump, none of a label, and how far away the other is.
+    Paired(&'a str, i64),
+}
+
+/// Jumps of a function with the labels that only they go to, by their lines, both ways.
+fn pairs(function: &Function) -> HashMap<usize, usize> {
+    let mut users: HashMap<&str, Vec<usize>> = HashMap::new();
+    for (at, line) in function.lines.iter().enumerate() {
+        for operand in line.instruction().into_iter().flat_map(|it| &it.operands) {
+            let start = operand.find(".L").unwrap_or(operand.len());
+            let label = operand[start..].trim_end_matches(')');
+            users.entry(label).or_default().push(at);
+        }
+    }
+    let mut pairs = HashMap::new();
+    for (at, line) in function.lines.iter().enumerate() {
+        let users = match line {
+            Line::Label(label) => users.get(label.as_str()).map_or(&[][..], Vec::as_slice),
+            Line::Do(_) => continue,
+        };
+        if let [user] = users
+            && at.abs_diff(*user) < LONGEST
+            && function.lines[*user]
+                .instruction()
+                .is_some_and(|it| it.target().is_some())
+        {
+            pairs.extend([(at, *user), (*user, at)]);
+        }
+    }
+    pairs
+}
+
+/// Names labels after the function in which they are.
+fn rename_labels(lines: &mut [Line], function: &str) {
+    let mut new: HashMap<String, String> = HashMap::new();
+    for line in lines.iter_mut() {
+        if let Line::Label(label) = line {
+            let name = format!(".L{function}_{}", new.len());
+            new.insert(std::mem::replace(label, name.clone()), name);
+        }
+    }
+    for line in lines.iter_mut() {
+        if let Line::Do(it) = line
+            && let Some(name) = it.target().and_then(|target| new.get(target))
+        {
+            it.operands[0].clone_from(name);
+        }
     }
 }
 

@@ -393,3 +393,33 @@ fn functions_that_do_the_same_are_one() {
     assert!(assembly.contains("two:") && assembly.contains("three:"));
     assert_eq!(body(&assembly, "four")[0], "rcall one");
 }
+
+#[test]
+fn a_sequence_may_jump_within_itself_but_not_return_for_others() {
+    let three = |alike: &str| {
+        let text = [("one", 2), ("two", 3), ("three", 4)].map(|(name, register)| {
+            let alike = alike.replace(".L", &format!(".LBB{register}_"));
+            function(
+                name,
+                &format!("ldi r24, 7\n{alike}\nsts far, r{register}\nret"),
+            )
+        });
+        squeezed(&text.concat()).unwrap()
+    };
+    let assembly = three("ldd r22, Z+2\ntst r22\nbreq .L1\nstd Z+3, r22\nstd Z+4, r22\n.L1:");
+    let shared = body(&assembly, "rumbo_shared_0");
+    assert_eq!(
+        shared[2..],
+        [
+            "tst r22",
+            "breq .Lrumbo_shared_0_0",
+            "std Z+3, r22",
+            "std Z+4, r22",
+            ".Lrumbo_shared_0_0:",
+            "ret"
+        ]
+    );
+    // A return in it would come back to the caller.
+    let assembly = three("ldd r22, Z+2\ntst r22\nbreq .L1\nstd Z+3, r22\nret\n.L1:\nstd Z+4, r22");
+    assert!(!assembly.contains("breq .Lrumbo_shared"), "{assembly}");
+}
