@@ -312,12 +312,13 @@ impl ParamId {
 
 /// The values in force. Every value is finite and within its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Params {
-    values: [f32; COUNT],
+    rig: Rig,
     /// What every tick would have to make of them again.
     geometry: Geometry,
-    rig: Rig,
     loops: Wheels<SpeedLoop>,
+    values: [f32; COUNT],
 }
 
 impl Default for Params {

@@ -25,22 +25,24 @@ const CONVERTER_V: f32 = 5.0;
 const CONVERTER_COUNTS: f32 = 1_024.0;
 
 /// What drives, and what it remembers.
+// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Debug, Default)]
+#[repr(C)]
 pub(crate) struct Pilot {
-    params: Params,
-    estimator: Estimator,
-    estimate: Estimate,
-    mode: ActiveMode,
-    /// What the mode asked for after the last tick.
-    action: Action,
-    drive: DriveLayer,
-    pings: PingSchedule,
-    encoders: EncoderWatch,
+    reached: bool,
+    unreachable: bool,
     low_battery_ticks: u8,
     duty: Wheels<Duty>,
     wheel_ref_rad_s: Wheels<f32>,
-    reached: bool,
-    unreachable: bool,
+    /// What the mode asked for after the last tick.
+    action: Action,
+    pings: PingSchedule,
+    encoders: EncoderWatch,
+    params: Params,
+    estimate: Estimate,
+    drive: DriveLayer,
+    estimator: Estimator,
+    mode: ActiveMode,
 }
 
 /// What the mode has found out.
