@@ -14,10 +14,12 @@ pub const TICK_S: f32 = 1.0 / TICK_HZ as f32;
 pub const OUTPUT_DELAY_US: u32 = 3_000;
 
 /// A side of the robot, looking forward. The original's motor A is the right wheel, B the left one.
+///
+/// Neither is 0: so "no side" is, and what remembers none begins as zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// Left, towards +y.
-    Left,
+    Left = 1,
     /// Right, towards -y.
     Right,
 }

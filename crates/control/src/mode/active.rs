@@ -88,22 +88,19 @@ impl ActiveMode {
 
     /// Forgets its state and keeps its reference: the wheels have just been armed.
     pub fn start(&mut self) {
-        let mut fresh = Self::new(self.id());
-        match (&mut fresh, &*self) {
-            (Self::Manual(to), Self::Manual(kept)) => *to = *kept,
-            (Self::FrontDistance(to, _), Self::FrontDistance(kept, _))
-            | (Self::FrontAlign(to, _), Self::FrontAlign(kept, _))
-            | (Self::WallFollow(to, _), Self::WallFollow(kept, _))
-            | (Self::StraightLine(to, _), Self::StraightLine(kept, _)) => *to = *kept,
-            (Self::WheelSpeed(to), Self::WheelSpeed(kept)) => *to = *kept,
-            (Self::Waypoints(to, _), Self::Waypoints(kept, _)) => *to = *kept,
-            (Self::Mission(to, state), Self::Mission(kept, _)) => {
-                *to = *kept;
+        match self {
+            Self::Manual(_) | Self::WheelSpeed(_) => {}
+            Self::FrontDistance(_, state) => *state = front_distance::State::default(),
+            Self::FrontAlign(_, state) => *state = front_align::State::default(),
+            Self::WallHold(state) => *state = wall_hold::State::default(),
+            Self::WallFollow(_, state) => *state = wall_follow::State::default(),
+            Self::StraightLine(_, state) => *state = straight_line::State::default(),
+            Self::Waypoints(_, state) => *state = waypoints::State::default(),
+            Self::Mission(_, state) => {
+                *state = mission::State::default();
                 state.renew();
             }
-            _ => {}
         }
-        *self = fresh;
     }
 
     /// Where it needs to look, armed or not.

@@ -15,7 +15,7 @@
 //! are not used. Here the stop is planned, the servo never blocks a tick, and walls at the sides push the robot to the middle:
 //! docs/theory/lane.md.
 
-use super::{Action, Drive, Mission, ParamId, Pose, Segment, ServoAngle, State, Turn};
+use super::{Action, Drive, Mission, ParamId, Phase, Pose, Segment, ServoAngle, State, Turn};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
 use crate::motion::{CREEP_M_S, LineState, StopState, Stopping, TurnState};
@@ -43,17 +43,17 @@ const CLOSE_M: f32 = 0.17;
 const MIDDLE_RAD_M: f32 = 0.5;
 const MOST_ASIDE_RAD: f32 = 0.12;
 
-/// Where a lane stands; the numbers of the mission's states.
+/// Where a lane stands; the numbers of the mission's states, counted from that of its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 enum Stage {
     #[default]
-    Start = 2,
-    SweepRight = 4,
-    SweepLeft = 5,
-    Decide = 6,
-    Turn = 7,
-    Straight = 12,
+    Start = 0,
+    SweepRight = 2,
+    SweepLeft = 3,
+    Decide = 4,
+    Turn = 5,
+    Straight = 10,
 }
 
 /// What is ahead: the median of the last three looks, moved along with the robot.
@@ -205,7 +205,7 @@ impl Mission<'_> {
             Stage::SweepLeft => lane.sweep.target_rad,
             _ => 0.0,
         };
-        action.state = lane.stage as u8;
+        action.state = Phase::Initialise as u8 + lane.stage as u8;
         action.heading_ref_rad = heading_ref_rad;
         action.look.servo = ServoAngle(servo_rad);
     }

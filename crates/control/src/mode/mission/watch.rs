@@ -58,13 +58,24 @@ impl Ear {
 }
 
 /// Memory of the watch, by `SonarId` number.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Watch {
     ears: [Ear; 3],
     /// Denials since the front sonar last heard something.
     deaf: u8,
     /// Way since the last denial [m].
     denied_m: f32,
+}
+
+impl Default for Watch {
+    #[inline]
+    fn default() -> Self {
+        Self {
+            ears: [Ear::default(); 3],
+            deaf: 0,
+            denied_m: 0.0,
+        }
+    }
 }
 
 impl Watch {
