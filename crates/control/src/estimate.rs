@@ -19,7 +19,7 @@ const AHEAD_RAD: f32 = 0.06;
 
 /// Memory of the estimators.
 // What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Estimator {
     place: Transform,
@@ -31,6 +31,20 @@ pub struct Estimator {
     /// The pings whose echoes are waited for, by `SonarId` number: one that left late may end after the next one has left.
     pings: [Option<Ping>; 3],
     ranges: [RangeFilter; 3],
+}
+
+impl Default for Estimator {
+    fn default() -> Self {
+        Self {
+            place: Transform::default(),
+            servo_rad: 0.0,
+            servo_target_rad: 0.0,
+            speed: Wheels::default(),
+            aside: AgedRange::default(),
+            pings: [None; 3],
+            ranges: [RangeFilter::default(); 3],
+        }
+    }
 }
 
 /// A ping whose echo is waited for.
