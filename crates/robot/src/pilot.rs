@@ -26,7 +26,7 @@ const CONVERTER_COUNTS: f32 = 1_024.0;
 
 /// What drives, and what it remembers.
 // What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 #[repr(C)]
 pub(crate) struct Pilot {
     reached: bool,
@@ -52,6 +52,27 @@ pub(crate) struct Found {
     pub(crate) reached: bool,
     /// It has found out at this tick that its goal cannot be reached.
     pub(crate) unreachable: bool,
+}
+
+impl Default for Pilot {
+    // Not derived: what is inlined is put together elsewhere first, in two kilobytes of stack.
+    fn default() -> Self {
+        Self {
+            reached: false,
+            unreachable: false,
+            low_battery_ticks: 0,
+            duty: Wheels::both(Duty::RELEASED),
+            wheel_ref_rad_s: Wheels::both(0.0),
+            action: Action::default(),
+            pings: PingSchedule::default(),
+            encoders: EncoderWatch::default(),
+            params: Params::default(),
+            estimate: Estimate::default(),
+            drive: DriveLayer::default(),
+            estimator: Estimator::default(),
+            mode: ActiveMode::default(),
+        }
+    }
 }
 
 impl Pilot {
