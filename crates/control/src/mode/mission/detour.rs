@@ -3,7 +3,7 @@
 use super::goal::{PROGRESS_M, SPOT_RAD};
 use super::lane::side_m;
 use super::obstacle::Obstacle;
-use super::{Detour, Drive, Mission, Phase, Place, Side, State, abs, min, sqrt};
+use super::{Detour, Drive, Mission, Phase, Place, Plan, Pose, Side, State, abs, min, sqrt};
 use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
 use crate::motion::TurnState;
@@ -31,14 +31,13 @@ const CLOSE_RAD_S: f32 = 0.5;
 const BEHIND_M: f32 = 0.35;
 
 impl Mission<'_> {
-    pub(super) fn decide(&self, state: &mut State, estimate: &Estimate, goal_m: (f32, f32)) {
+    pub(super) fn decide(&self, state: &mut State, estimate: &Estimate, goal_m: &(f32, f32)) {
         let pose = &estimate.pose;
-        let Some(obstacle) = state.plan.obstacle else {
+        let Some(obstacle) = &state.plan.obstacle else {
             state.phase = Phase::GoToGoal;
             return;
         };
-        let here = (pose.x_m, pose.y_m);
-        let mut saved_m = saved_by_left_m(&obstacle, here, goal_m);
+        let mut saved_m = saved_by_left_m(obstacle, pose, goal_m);
         match state.last {
             Some((side, way_m)) if way_m < SOON_M => saved_m += to_left(side, STAY_M),
             _ => {}
@@ -69,20 +68,18 @@ impl Mission<'_> {
         &self,
         state: &mut State,
         estimate: &Estimate,
-        goal_m: (f32, f32),
+        goal_m: &(f32, f32),
         left_m: f32,
         planned: bool,
     ) -> Drive {
         let pose = &estimate.pose;
-        let Some(mut detour) = state.detour else {
+        let Some(detour) = &mut state.detour else {
             self.face(state, pose, goal_m, SPOT_RAD);
             return Drive::Release;
         };
         let here = Place::new(pose.x_m, pose.y_m);
         let from_met_mm2 = here.square_mm2(detour.met);
-        if from_met_mm2 > 4 * BACK_MM * BACK_MM {
-            detour.away = true;
-        }
+        detour.away |= from_met_mm2 > 4 * BACK_MM * BACK_MM;
         if detour.away && detour.way_m > 1.2 && from_met_mm2 < BACK_MM * BACK_MM {
             if state.plan.same || state.laps > 0 {
                 state.phase = Phase::Unreachable;
@@ -95,57 +92,50 @@ impl Mission<'_> {
             return Drive::Release;
         }
         if planned {
-            if self.may_leave(state, &detour, left_m) {
-                state.detour = Some(detour);
+            if may_leave(&state.plan, detour, left_m) {
                 self.face(state, pose, goal_m, SPOT_RAD);
                 return Drive::Release;
             }
-            if let Some(obstacle) = state.plan.obstacle {
-                let here = (pose.x_m, pose.y_m);
-                let saved_m = saved_by_left_m(&obstacle, here, goal_m);
+            if let Some(obstacle) = &state.plan.obstacle {
                 if obstacle.nearest_m > BESIDE_M
                     && detour.changes < 1
-                    && to_left(detour.side, saved_m) < -CHANGE_M
+                    && to_left(detour.side, saved_by_left_m(obstacle, pose, goal_m)) < -CHANGE_M
                 {
                     detour.changes += 1;
-                    detour.side = match detour.side {
-                        Side::Left => Side::Right,
-                        Side::Right => Side::Left,
-                    };
-                    detour.met = Place::new(pose.x_m, pose.y_m);
+                    detour.side = detour.side.other();
+                    detour.met = here;
                     detour.way_m = 0.0;
                     detour.away = false;
                 }
-            }
-            if state.plan.obstacle.is_some() {
                 state.heading_ref_rad = state.plan.past_rad;
             }
         }
-        state.detour = Some(detour);
-        let error_rad = wrap_angle(state.heading_ref_rad - pose.heading_rad);
+        let side = detour.side;
+        self.advance(state, estimate, side)
+    }
+
+    /// Past the obstacle, in the direction that was planned.
+    fn advance(&self, state: &mut State, estimate: &Estimate, side: Side) -> Drive {
         if state.phase == Phase::AvoidanceTurn {
             return self.turn(state, estimate, state.heading_ref_rad, Phase::Seek);
         }
-        if abs(error_rad) > SPOT_RAD {
-            state.phase = Phase::AvoidanceTurn;
-            state.turn = TurnState::default();
-            return Drive::Release;
+        let error_rad = wrap_angle(state.heading_ref_rad - estimate.pose.heading_rad);
+        if abs(error_rad) <= SPOT_RAD {
+            state.phase = self.beside(state, estimate, side);
+            let careful_m_s = self.careful_m_s(state.near_m, error_rad);
+            let speed_m_s = min(self.free_m_s(state), min(self.around_m_s, careful_m_s));
+            if speed_m_s >= 0.03 {
+                let drive = self.line.steer(speed_m_s, error_rad);
+                return if state.near_m < CLOSE_M || state.watch.doubts() {
+                    slow_corners(drive)
+                } else {
+                    drive
+                };
+            }
         }
-        state.phase = self.beside(state, estimate, detour.side);
-        let near_m = state.near_m;
-        let careful_m_s = self.careful_m_s(near_m, error_rad);
-        let speed_m_s = min(self.free_m_s(state), min(self.around_m_s, careful_m_s));
-        if speed_m_s < 0.03 {
-            state.phase = Phase::AvoidanceTurn;
-            state.turn = TurnState::default();
-            return Drive::Release;
-        }
-        let drive = self.line.steer(speed_m_s, error_rad);
-        if near_m < CLOSE_M || state.watch.doubts() {
-            slow_corners(drive)
-        } else {
-            drive
-        }
+        state.phase = Phase::AvoidanceTurn;
+        state.turn = TurnState::default();
+        Drive::Release
     }
 
     /// The state of an advance: what the sonar towards the obstacle sees.
@@ -168,26 +158,27 @@ impl Mission<'_> {
             _ => Phase::Seek,
         }
     }
+}
 
-    fn may_leave(&self, state: &State, detour: &Detour, left_m: f32) -> bool {
-        let plan = &state.plan;
-        if plan.obstacle.is_none() {
-            return true;
-        }
-        let free_m = if plan.clear_m > super::plan::HORIZON_M {
-            min(left_m, 1.0)
-        } else if plan.same || plan.clear_m < 0.7 {
-            return false;
-        } else {
-            plan.clear_m - 0.3
-        };
-        let gained_m = if detour.vain == 0 { free_m } else { 0.0 };
-        left_m - gained_m < detour.least_m - PROGRESS_M
+/// Whether the way to the goal is clear and leads nearer to it than the robot ever was.
+fn may_leave(plan: &Plan, detour: &Detour, left_m: f32) -> bool {
+    if plan.obstacle.is_none() {
+        return true;
     }
+    let free_m = if plan.clear_m > super::plan::HORIZON_M {
+        min(left_m, 1.0)
+    } else if plan.same || plan.clear_m < 0.7 {
+        return false;
+    } else {
+        plan.clear_m - 0.3
+    };
+    let gained_m = if detour.vain == 0 { free_m } else { 0.0 };
+    left_m - gained_m < detour.least_m - PROGRESS_M
 }
 
 /// What the way past an obstacle's left end to the goal is shorter than that past its right end [m].
-fn saved_by_left_m(obstacle: &Obstacle, here: (f32, f32), goal_m: (f32, f32)) -> f32 {
+fn saved_by_left_m(obstacle: &Obstacle, pose: &Pose, goal_m: &(f32, f32)) -> f32 {
+    let here = (pose.x_m, pose.y_m);
     let goal_rad = atan2(goal_m.1 - here.1, goal_m.0 - here.0);
     let middle_rad = 0.5 * (obstacle.left.pass_rad + obstacle.right.pass_rad);
     // The goal's bearing on the obstacle's own count.
@@ -225,13 +216,13 @@ fn slow_corners(drive: Drive) -> Drive {
 }
 
 /// Way from here past a point to the goal.
-fn around_m(here: (f32, f32), past: Place, goal_m: (f32, f32)) -> f32 {
+fn around_m(here: (f32, f32), past: Place, goal_m: &(f32, f32)) -> f32 {
     let (x_m, y_m) = past.metres();
     let leg = |from: (f32, f32), to: (f32, f32)| {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         sqrt(dx * dx + dy * dy)
     };
-    leg(here, (x_m, y_m)) + leg((x_m, y_m), goal_m)
+    leg(here, (x_m, y_m)) + leg((x_m, y_m), *goal_m)
 }
 
 /// The robot goes around something.

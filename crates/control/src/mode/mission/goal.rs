@@ -92,25 +92,25 @@ impl Mission<'_> {
                 state.laps = 0;
                 state.last = None;
                 state.detour = None;
-                self.face(state, pose, *goal_m, 0.1);
+                self.face(state, pose, goal_m, 0.1);
                 Drive::Release
             }
             Phase::InitialTurn => self.turn(state, estimate, way.heading_rad, Phase::GoToGoal),
             Phase::GoToGoal => self.go(state, estimate, way, left_m, action),
             Phase::SweepRight | Phase::SweepLeft => self.sweep(state, estimate, left_m),
             Phase::Decide => {
-                self.decide(state, estimate, *goal_m);
+                self.decide(state, estimate, goal_m);
                 Drive::Release
             }
             Phase::AvoidanceTurn | Phase::Seek | Phase::Along | Phase::SafeDistance => {
-                self.around(state, estimate, *goal_m, left_m, planned)
+                self.around(state, estimate, goal_m, left_m, planned)
             }
         };
     }
 
     /// Turns to the goal, or drives on where that takes no turn.
-    pub(super) fn face(&self, state: &mut State, pose: &Pose, goal_m: (f32, f32), spot_rad: f32) {
-        state.segment = Segment::between((pose.x_m, pose.y_m), goal_m);
+    pub(super) fn face(&self, state: &mut State, pose: &Pose, goal_m: &(f32, f32), spot_rad: f32) {
+        state.segment = Segment::between((pose.x_m, pose.y_m), *goal_m);
         state.line = LineState::default();
         state.turn = TurnState::default();
         state.heading_ref_rad = state.segment.heading_rad();
