@@ -88,26 +88,28 @@ impl ResetCause {
 }
 
 /// The fast signals.
+// What is small first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
 pub struct Telemetry {
     /// Robot time of the sample [ms], wrapping; the receiver unwraps it.
     pub t_ms: u16,
-    /// Estimated pose; sent with 1 mm and 2 pi / 65536.
-    pub pose: Pose,
-    /// Wheel speeds [rad/s], the sample of 20 ms before `t_ms` first; sent with 0.02 rad/s.
-    pub wheel_rad_s: [Wheels<f32>; 2],
-    /// Wheel speed references [rad/s]; 0 when driven open loop; sent with 0.02 rad/s.
-    pub wheel_ref_rad_s: Wheels<f32>,
-    /// PWM applied to the wheels.
-    pub duty: Wheels<Duty>,
     /// State of the mode's machine, 0..=15; names: `ModeId::state_names`.
     pub state: u8,
     /// The wheels may turn.
     pub armed: bool,
     /// A fault is latched; its cause is in [`Status`] and in an [`Event`].
     pub faulted: bool,
+    /// PWM applied to the wheels.
+    pub duty: Wheels<Duty>,
     /// Where the servo points [rad]; sent with 1 degree.
     pub servo_rad: f32,
+    /// Estimated pose; sent with 1 mm and 2 pi / 65536.
+    pub pose: Pose,
+    /// Wheel speeds [rad/s], the sample of 20 ms before `t_ms` first; sent with 0.02 rad/s.
+    pub wheel_rad_s: [Wheels<f32>; 2],
+    /// Wheel speed references [rad/s]; 0 when driven open loop; sent with 0.02 rad/s.
+    pub wheel_ref_rad_s: Wheels<f32>,
     /// Ranges by `SonarId` number, the front one in the servo's direction; sent with 2.5 mm, ages not sent (0).
     pub ranges: [AgedRange; 3],
 }
