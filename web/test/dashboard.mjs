@@ -18,7 +18,7 @@ export const BROWSER_ARGS = [
   ...(process.env['WEB'] ? ['--disable-features=LocalNetworkAccessChecks'] : []),
 ];
 /** Long enough for any machine; nothing is judged by it [ms]. */
-const PATIENCE_MS = 30_000;
+export const PATIENCE_MS = 30_000;
 
 /** The program to test. */
 export function program() {

@@ -75,7 +75,9 @@ test('a gamepad drives while its shoulder button is held, less with the stick ha
   await page.locator('#on').click();
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.armed);
   await gamepad([], [0, -1]);
-  await page.waitForTimeout(300);
+  // Some telemetry later it still stands.
+  const before_s = await page.evaluate(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1));
+  await page.waitForFunction((before_s) => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1) > before_s + 0.3, before_s);
   await latest('left_pwm', 0);
   await gamepad([5], [0, -1]);
   await latest('left_pwm', 89);

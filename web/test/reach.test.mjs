@@ -2,7 +2,7 @@
 /** The page fits and can be used without a pointer: sizes of screens, names, the order of Tab. */
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { folder, open } from './dashboard.mjs';
+import { PATIENCE_MS, folder, open } from './dashboard.mjs';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
 let dashboard;
@@ -29,9 +29,10 @@ const cutOff = () => page.evaluate(() => ['top', 'command-section', 'controls', 
   return part && (part.scrollHeight > part.clientHeight + 1 || part.scrollWidth > part.clientWidth + 1);
 }));
 
-/** Nothing is cut off, once all is laid out. @param {string} where */
+/** Nothing is cut off, once all is laid out: what is asked again until it is so, and told where it never is. @param {string} where */
 async function fits(where) {
-  for (let patience = 20; patience > 0 && (await cutOff()).length > 0; patience--) await page.waitForTimeout(100);
+  const end = Date.now() + PATIENCE_MS;
+  while ((await cutOff()).length > 0 && Date.now() < end) await page.evaluate(() => new Promise(requestAnimationFrame));
   assert.deepEqual(await cutOff(), [], where);
 }
 

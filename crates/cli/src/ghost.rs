@@ -4,13 +4,20 @@
 
 use crate::failure::Failure;
 use crate::lab::SimulatedRobot;
+use rumbo_control::Fault;
 use rumbo_scenario::files::Overrides;
 use rumbo_station::log::{Log, Manifest};
 use rumbo_station::{Choice, Ghost, LinkNews, MapPose, Scene, Simulation, Standing, Target};
+use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, ToRobot};
+use std::collections::VecDeque;
 use std::path::Path;
 
 /// The ghost moves on in steps of this length \[us\].
 const STEP_US: u64 = 5_000;
+/// Longest line of text that the decoder must pass over.
+const LINE: usize = 160;
+/// Session of what only the ghost is told.
+const SESSION: u8 = 0x60;
 
 fn simulated(scenario: &str, seed: u64) -> Result<SimulatedRobot, Failure> {
     let choice = Choice {
@@ -34,6 +41,11 @@ pub(crate) struct Haunted<T> {
     robot: T,
     ghost: SimulatedRobot,
     heard: Vec<u8>,
+    decoder: Decoder<LINE>,
+    /// Faults of the ghost that nobody has been told yet.
+    faults: VecDeque<Fault>,
+    /// How often it was told something of its own.
+    told: u16,
 }
 
 impl<T: Target> Haunted<T> {
@@ -43,7 +55,23 @@ impl<T: Target> Haunted<T> {
             robot,
             ghost: simulated(scenario, 1)?,
             heard: Vec::new(),
+            decoder: Decoder::default(),
+            faults: VecDeque::new(),
+            told: 0,
         })
+    }
+
+    /// Notes the faults in what the ghost has said.
+    fn listen(&mut self) {
+        for byte in &self.heard {
+            if let Some(Received::Frame(body)) = self.decoder.push(*byte)
+                && let Ok(FromRobot::Event(event)) = FromRobot::from_body(&body)
+                && let EventKind::Faulted(fault) = event.kind
+            {
+                self.faults.push_back(fault);
+            }
+        }
+        self.heard.clear();
     }
 }
 
@@ -54,7 +82,9 @@ impl<T: Target> Target for Haunted<T> {
 
     fn advance(&mut self, dt_us: u64) -> Result<(), String> {
         self.robot.advance(dt_us)?;
-        follow(&mut self.ghost, self.robot.now_us(), &mut self.heard)
+        follow(&mut self.ghost, self.robot.now_us(), &mut self.heard)?;
+        self.listen();
+        Ok(())
     }
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), String> {
@@ -75,16 +105,25 @@ impl<T: Target> Target for Haunted<T> {
     }
 
     fn news(&mut self) -> Option<LinkNews> {
-        self.robot.news()
+        self.robot
+            .news()
+            .or_else(|| self.faults.pop_front().map(LinkNews::GhostFault))
     }
 
     fn ghost(&self) -> Option<MapPose> {
         Some(self.ghost.truth().pose)
     }
 
+    /// A fault of its own does not hold it there: the robot may have none to clear. ON starts it again.
     fn restart_ghost(&mut self, at: Standing) -> Result<(), String> {
         self.ghost.place(at);
-        Ok(())
+        self.told = self.told.wrapping_add(1);
+        let clear = ToRobot::Command {
+            session: SESSION,
+            number: self.told,
+            command: Command::ClearFault,
+        };
+        self.ghost.send(clear.frame(0).bytes())
     }
 
     fn surroundings(&mut self) -> Option<Scene> {
@@ -92,12 +131,11 @@ impl<T: Target> Target for Haunted<T> {
     }
 }
 
-/// The ghost lives up to this instant; nobody listens to what it says.
+/// The ghost lives up to this instant; what it says is put after what is there.
 fn follow(ghost: &mut SimulatedRobot, until_us: u64, heard: &mut Vec<u8>) -> Result<(), String> {
     while ghost.now_us() + STEP_US <= until_us {
         ghost.advance(STEP_US)?;
         ghost.receive(heard);
-        heard.clear();
     }
     Ok(())
 }
@@ -130,6 +168,8 @@ impl Ghost for Recorded {
             self.next += 1;
         }
         follow(&mut self.ghost, until_us, &mut self.heard)?;
+        // Beside a log nobody listens to it.
+        self.heard.clear();
         Ok(self.ghost.truth().pose)
     }
 
@@ -173,4 +213,84 @@ pub(crate) fn add_to(
     log.haunt(scene, |t_us| ghost.live(t_us))
         .map_err(Failure::Input)?;
     Ok(ghost)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rumbo_control::mode::ModeId;
+
+    /// A robot on a port that says nothing; its clock goes on by itself.
+    #[derive(Default)]
+    struct Silent {
+        now_us: u64,
+    }
+
+    impl Target for Silent {
+        fn now_us(&self) -> u64 {
+            self.now_us
+        }
+
+        fn advance(&mut self, dt_us: u64) -> Result<(), String> {
+            self.now_us += dt_us;
+            Ok(())
+        }
+
+        fn send(&mut self, _bytes: &[u8]) -> Result<(), String> {
+            Ok(())
+        }
+
+        fn receive(&mut self, _into: &mut Vec<u8>) {}
+
+        fn baud(&self) -> u32 {
+            9_600
+        }
+
+        fn manifest(&self) -> Manifest {
+            Manifest::default()
+        }
+    }
+
+    fn tell(robot: &mut Haunted<Silent>, number: u16, command: Command) {
+        let message = ToRobot::Command {
+            session: 1,
+            number,
+            command,
+        };
+        robot.send(message.frame(0).bytes()).unwrap();
+        robot.advance(100_000).unwrap();
+    }
+
+    #[test]
+    fn a_ghost_that_heard_nothing_for_too_long_says_so_and_goes_on_after_it_was_put_elsewhere() {
+        let mut robot = Haunted::new(Silent::default(), "mode1").unwrap();
+        robot.advance(1_000_000).unwrap();
+        tell(&mut robot, 1, Command::Mode(ModeId::FrontDistance));
+        tell(&mut robot, 2, Command::Arm);
+        let begin_m = robot.ghost().unwrap().x_m;
+        robot.advance(2_000_000).unwrap();
+        let news = robot.news();
+        assert_eq!(
+            news,
+            Some(LinkNews::GhostFault(Fault::LinkLost)),
+            "{:?}",
+            robot.ghost()
+        );
+        assert_eq!(robot.news(), None);
+
+        let standing = Standing {
+            at: robot.ghost().unwrap(),
+            told: MapPose::default(),
+        };
+        robot.restart_ghost(standing).unwrap();
+        tell(&mut robot, 3, Command::Arm);
+        let stood_m = robot.ghost().unwrap().x_m;
+        for _ in 0..5 {
+            robot.send(ToRobot::Heartbeat.frame(0).bytes()).unwrap();
+            robot.advance(200_000).unwrap();
+        }
+        let gone_m = robot.ghost().unwrap().x_m - stood_m;
+        assert!(gone_m > 0.05, "{gone_m} m, after {} m", stood_m - begin_m);
+        assert_eq!(robot.news(), None);
+    }
 }

@@ -301,6 +301,11 @@ impl Session {
             let (level, text) = match news {
                 LinkNews::Lost(text) => (board::Level::Fault, text),
                 LinkNews::Back(text) => (board::Level::Good, text),
+                LinkNews::GhostFault(fault) => {
+                    let why = format!("the ghost has stopped: {}", fault.explanation());
+                    self.note(board::Level::Warning, why);
+                    continue;
+                }
             };
             self.port_gone = level == board::Level::Fault;
             if !self.port_gone {

@@ -5,6 +5,7 @@
 //! through [`Simulation`], and goes to the eyes only: commands and measurements take the link, as with a real robot.
 
 use crate::log::Manifest;
+use rumbo_control::Fault;
 use rumbo_control::Pose;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
@@ -76,6 +77,8 @@ pub enum LinkNews {
     Lost(String),
     /// It is back.
     Back(String),
+    /// The ghost beside it has stopped by itself, and why.
+    GhostFault(Fault),
 }
 
 /// The extras of a simulated robot, whose clock starts with [`Target::now_us`] at 0.

@@ -116,6 +116,7 @@ export const ROBOT = {
   'link lost: nothing heard from the robot for a second; trying again': 'enlace perdido: el robot no dice nada desde hace un segundo; reintentando',
   'the robot speaks protocol {}, this station {}: flash the robot or update the station': 'el robot habla el protocolo {}, esta estación el {}: graba el robot o actualiza la estación',
   'the robot has another parameter table: parameters are neither shown nor written': 'el robot tiene otra tabla de parámetros: ni se muestran ni se escriben',
+  'the ghost has stopped: {}': 'el fantasma se ha detenido: {}',
   'the ghost starts again where the robot is': 'el fantasma empieza de nuevo donde está el robot', 'the ghost: refused, {}': 'el fantasma: rechazado, {}',
   'there is none; start with --ghost': 'no hay ninguno; arranca con --ghost',
   'the robot is gone: {}': 'el robot ya no está: {}', '{}: not sent, {}': '{}: no enviado, {}', 'this robot takes no lines of text from here': 'a este robot no se le escriben líneas desde aquí',
