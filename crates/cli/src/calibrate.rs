@@ -4,14 +4,13 @@ use crate::args::CalibrateArgs;
 use crate::failure::Failure;
 use crate::output::{self, figure};
 use crate::place;
+use crate::run_log::{Kept, Source};
 use rumbo_scenario::calibrate::{self, Calibration, Row};
 use rumbo_scenario::files::{Library, Overrides, RobotFile, Setup};
+use rumbo_station::log::Kind;
 use rumbo_station::{Extras, Finding, Findings, GuestLink};
 use serde::Serialize;
 use std::path::Path;
-
-/// The scenario whose robot and rig are calibrated unless told otherwise.
-const SCENARIO: &str = "mode6";
 
 /// The outcome as JSON.
 #[derive(Serialize)]
@@ -81,14 +80,19 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
         parameters: args.parameters.params.clone(),
         ..Overrides::default()
     };
-    let setup = Library::new()
-        .setup(SCENARIO, &overrides)
-        .map_err(Failure::input)?;
-    let (found, sim) = calibrate::calibrate_simulated(&setup, args.seed.seed, args.world.is_some())
-        .map_err(Failure::input)?;
-    let found = found.map_err(Failure::input)?;
-    let rows = calibrate::rows(&found, Some(sim.params()));
-    let contacts = sim.truth().contacts;
+    let setup = calibrate::calibration_setup(&overrides).map_err(Failure::input)?;
+    let run = calibrate::run_calibration(&setup, args.seed.seed).map_err(Failure::input)?;
+    let source = Source {
+        kind: Kind::Calibration,
+        library: &Library::new(),
+        overrides: &overrides,
+    };
+    let mut kept = Kept::of(1, !args.no_record);
+    kept.take(&source, &setup, &run.result);
+    kept.tell();
+    let found = run.found.map_err(Failure::input)?;
+    let rows = calibrate::rows(&found, Some(run.sim.params()));
+    let contacts = run.sim.truth().contacts;
     let written = match &args.out {
         Some(path) => {
             write(path, &setup, &found)?;

@@ -12,6 +12,7 @@ use rumbo_report::real::{self, Real};
 use rumbo_report::text::Language;
 use rumbo_report::{Data, Plan, Request, html};
 use rumbo_scenario::files::{Library, Overrides};
+use rumbo_station::log::Kind;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::time::Instant;
@@ -54,6 +55,7 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
     place::write(&place, page)?;
     if args.data {
         let source = Source {
+            kind: Kind::Run,
             library: &library,
             overrides: &overrides,
         };

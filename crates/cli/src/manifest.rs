@@ -58,7 +58,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         manifest.seed,
     ) else {
         return Err(wrong(
-            "holds no simulated run; only logs of `rumbo lab` and `rumbo run` can be run again",
+            "holds no simulated run; only logs of `rumbo lab`, `rumbo run` and `rumbo calibrate` can be run again",
         ));
     };
     let mut library = Library::new();

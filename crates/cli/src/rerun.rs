@@ -11,14 +11,14 @@ use crate::manifest;
 use crate::output;
 use crate::run_log;
 use rumbo_control::params::SCHEMA;
+use rumbo_scenario::calibrate;
 use rumbo_scenario::files::Setup;
-use rumbo_scenario::run;
+use rumbo_scenario::run::{self, RunResult};
 use rumbo_scenario::sim::Sim;
 use rumbo_station::log::{Burst, Kind, Log, Manifest, Said, Sent};
 use rumbo_wire::message::Hello;
 use rumbo_wire::{Decoder, FromRobot, Message, Received};
 use serde_json::json;
-use std::collections::BTreeMap;
 
 /// Longest line of text from a robot that is put together.
 const LINE: usize = 160;
@@ -80,7 +80,7 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
     let shown = args.log.display();
     let Some(recorded) = &log.manifest else {
         return Err(Failure::Input(format!(
-            "{shown}: has no manifest; only logs of `rumbo lab` and `rumbo run` can be run again"
+            "{shown}: has no manifest; only logs of `rumbo lab`, `rumbo run` and `rumbo calibrate` can be run again"
         )));
     };
     warn_if_cut(&args.log, &log);
@@ -95,7 +95,8 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
         failure => failure,
     })?;
     let verdict = match recorded.kind {
-        Kind::Run => again(&log, &setup, seed)?,
+        Kind::Run => same(&log, &run::run(&setup, seed)?),
+        Kind::Calibration => same(&log, &calibrate::run_calibration(&setup, seed)?.result),
         Kind::Lab => session(&log, &setup, seed, recorded)?,
         Kind::Robot => {
             return Err(Failure::Input(format!(
@@ -141,30 +142,29 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
     }
 }
 
-fn again(log: &Log, setup: &Setup, seed: u64) -> Result<Verdict, Failure> {
-    let result = run::run(setup, seed)?;
+/// Compares a run without a window, which was done again, with its log.
+fn same(log: &Log, result: &RunResult) -> Verdict {
     let link: Vec<Burst> = result.trace.link.iter().map(run_log::burst).collect();
     let said: Vec<Said> = result.trace.consoles.iter().map(run_log::said).collect();
     let cut = log.cut.is_some();
     let parted =
         first_difference(&log.link, &link, cut).or_else(|| first_difference(&log.said, &said, cut));
     if let Some(difference) = parted {
-        return Ok(difference);
+        return difference;
     }
     let Some(outcome) = &log.outcome else {
-        return Ok(Verdict::Equal);
+        return Verdict::Equal;
     };
     // To the last digit: metrics are of the truth, of which the robot tells only a part.
-    let now: BTreeMap<String, f64> = result.metrics.into_iter().collect();
     let differs = |(name, value): (&String, &f64)| {
-        let other = now.get(name).copied().unwrap_or(f64::NAN);
+        let other = result.metrics.get(name).copied().unwrap_or(f64::NAN);
         (value.to_bits() != other.to_bits() && !(value.is_nan() && other.is_nan()))
             .then(|| format!("{name} was {value}, is {other}"))
     };
-    Ok(match outcome.metrics.iter().find_map(differs) {
+    match outcome.metrics.iter().find_map(differs) {
         Some(what) => Verdict::Differs(log.duration_s(), what),
         None => Verdict::Equal,
-    })
+    }
 }
 
 fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<Verdict, Failure> {

@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_scenario::files::{Library, Overrides, Program, ScenarioFile, Setup};
 use rumbo_scenario::run::{self, RunResult};
 use rumbo_scenario::trace::Trace;
+use rumbo_station::log::Kind;
 use rumbo_station::readable;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -60,6 +61,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
             .is_some_and(|asked| asked.load(Ordering::Relaxed))
     };
     let source = Source {
+        kind: Kind::Run,
         library: &library,
         overrides: &overrides,
     };

@@ -23,6 +23,8 @@ const KEPT: usize = 20;
 
 /// How the runs were set up.
 pub(crate) struct Source<'a> {
+    /// What kind of runs they are.
+    pub(crate) kind: Kind,
     pub(crate) library: &'a Library,
     pub(crate) overrides: &'a Overrides,
 }
@@ -32,7 +34,7 @@ impl Source<'_> {
         Manifest {
             step_us: SAMPLE_US,
             baud: 9_600,
-            ..manifest::of(Kind::Run, setup, self.overrides, seed)
+            ..manifest::of(self.kind, setup, self.overrides, seed)
         }
     }
 

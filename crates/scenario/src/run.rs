@@ -176,7 +176,7 @@ impl<'a> Run<'a> {
 }
 
 /// What the table of a robot holds before the first command, if it has one.
-fn parameters(setup: &Setup) -> Result<Option<Params>, FileError> {
+pub(crate) fn parameters(setup: &Setup) -> Result<Option<Params>, FileError> {
     if !setup.takes_parameters() {
         return Ok(None);
     }

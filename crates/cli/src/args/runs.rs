@@ -190,6 +190,9 @@ pub(crate) struct CalibrateArgs {
     /// Robot file whose [parameters] table is rewritten; a new file starts as a copy of the robot's
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) out: Option<PathBuf>,
+    /// Leave no log behind
+    #[arg(long)]
+    pub(crate) no_record: bool,
     /// The result as JSON on stdout
     #[arg(long)]
     pub(crate) json: bool,

@@ -6,8 +6,10 @@ use crate::sim::Sim;
 
 /// The built-in world of a calibration.
 pub const WORLD: &str = "calibration";
+/// Name of the scenario of a calibration; no built-in one has it.
+pub(super) const PLAN: &str = "calibration";
 /// A scenario that only says where the robot stands: along the wall on its right, free floor ahead.
-const SCENARIO: &str = r#"
+pub(super) const SCENARIO: &str = r#"
 title = "Calibration"
 robot = "memoria"
 rig = "final"
@@ -33,13 +35,18 @@ pub fn calibrate_simulated(
     own.scenario.wheels_in_air = false;
     own.scenario.sonar_faults.clear();
     own.scenario.wire_faults.clear();
-    let plan = ScenarioFile::parse("calibration", "calibration", SCENARIO)?;
+    let plan = ScenarioFile::parse(PLAN, PLAN, SCENARIO)?;
     own.scenario.start = plan.start;
     if !here {
         own.world = Library::new().world(WORLD)?;
         own.scenario.world.clone_from(&own.world.name);
     }
-    let mut sim = Sim::with_noise(&own, seed, 1)?;
+    let mut sim = robot(&own, seed)?;
     let found = calibrate(&mut sim);
     Ok((found, sim))
+}
+
+/// The robot of a seed, on another day: floor, slip and noise are not those of its runs.
+pub(super) fn robot(setup: &Setup, seed: u64) -> Result<Sim, FileError> {
+    Sim::with_noise(setup, seed, 1)
 }

@@ -4,7 +4,8 @@ use super::{Person, seeds, setup, twenty, worst};
 use rumbo_control::SonarId;
 use rumbo_control::mode::ModeId;
 use rumbo_scenario::calibrate::{
-    CalibrateError, Calibration, Linked, calibrate, calibrate_simulated, rewrite,
+    CalibrateError, Calibration, Linked, calibrate, calibrate_simulated, calibration_setup,
+    rewrite, run_calibration,
 };
 use rumbo_scenario::files::{Library, Overrides};
 use rumbo_scenario::sim::Sim;
@@ -59,6 +60,22 @@ fn a_calibration_finds_the_wheels_and_their_distance_within_its_own_error_and_to
         (0.4..2.5).contains(&ratio) && (0.4..2.5).contains(&base),
         "{ratio} {base}"
     );
+}
+
+#[test]
+fn a_calibration_that_is_recorded_finds_the_same() {
+    let plan = calibration_setup(&Overrides::default()).unwrap();
+    let run = run_calibration(&plan, 4).unwrap();
+    let found = run.found.unwrap();
+    assert_eq!(found, calibrated(4).0);
+    let trace = run.result.trace;
+    let last_s = trace.samples.last().unwrap().t_s;
+    assert!((run.sim.now_us() as f64 * 1e-6 - last_s).abs() < 0.01);
+    assert_eq!(
+        trace.samples.len(),
+        ((last_s * 1e6).round() as usize).div_ceil(10_000)
+    );
+    assert!(trace.link.last().unwrap().t_us as f64 * 1e-6 <= last_s);
 }
 
 #[test]

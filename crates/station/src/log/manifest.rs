@@ -14,6 +14,8 @@ pub enum Kind {
     Run,
     /// A robot behind a link.
     Robot,
+    /// The calibration of a simulated robot, without a window.
+    Calibration,
 }
 
 /// What ran. Files are attached to the log under the names given here.
@@ -131,6 +133,7 @@ impl Manifest {
         let what = self.scenario.clone().unwrap_or_else(|| match self.kind {
             Kind::Robot => "robot".into(),
             Kind::Lab | Kind::Run => "run".into(),
+            Kind::Calibration => "calibration".into(),
         });
         let seed = self.seed.map(|seed| seed.to_string());
         let parts: Vec<String> = [when, Some(what), seed].into_iter().flatten().collect();
