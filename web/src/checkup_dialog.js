@@ -57,15 +57,15 @@ export class CheckupDialog {
     this.#made.dialog.addEventListener('close', () => this.#leave());
   }
 
-  /** Opens by itself the first time that this browser meets a real robot. @param {number[]} sonars */
-  meet(sonars) {
+  /** Opens by itself the first time that this browser meets a real robot. @param {number[]} sonars @param {boolean} servo */
+  meet(sonars, servo) {
     const state = this.#state();
     if (!state || state.simulated || state.replay || state.robot.foreign || state.robot.text || !state.link.connected || remembered()) return;
-    this.open(sonars);
+    this.open(sonars, servo);
   }
 
-  /** @param {number[]} sonars that the robot carries, by number */
-  open(sonars) {
+  /** @param {number[]} sonars that the robot carries, by number @param {boolean} servo it carries one, with a sonar on it */
+  open(sonars, servo) {
     remember();
     const names = [t('left|sonar'), t('right|sonar'), t('front|sonar')];
     this.#steps = [
@@ -74,7 +74,7 @@ export class CheckupDialog {
       { title: t('Left motor and encoder'), run: () => this.#motor('left') },
       { title: t('Right motor and encoder'), run: () => this.#motor('right') },
       ...sonars.map((sonar) => ({ title: t('Sonar: {}', names[sonar] ?? ''), run: () => this.#sonar(sonar) })),
-      ...(sonars.includes(2) ? [{ title: t('Servo'), run: () => this.#servo() }] : []),
+      ...(servo ? [{ title: t('Servo'), run: () => this.#servo() }] : []),
     ];
     this.#verdicts = this.#steps.map(() => null);
     this.#at = 0;

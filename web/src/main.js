@@ -49,12 +49,15 @@ let simulated = null;
 let table = [];
 /** The sonars that the robot carries, by number. */
 let sonars = [0, 1, 2];
+/** One of them sits on a servo, as far as is known. */
+let servo = true;
 
 /** The simulation knows the robot's body, or else the robot itself, if it tells. */
 function setBody() {
   const own = typeof state?.robot.rig === 'string' && table.length > 0 ? bodyOf(state.robot.rig, table) : null;
   map.body = own;
   sonars = (simulated ?? own)?.sonars.map(({ id }) => id).sort() ?? [0, 1, 2];
+  servo = (simulated ?? own)?.sonars.some(({ on_servo }) => on_servo) ?? true;
   stateLine.sonars = sonars;
 }
 
@@ -125,7 +128,7 @@ element('add-plot', HTMLButtonElement).addEventListener('click', () => plotDialo
 const layoutDialog = new LayoutDialog(plots);
 element('layouts', HTMLButtonElement).addEventListener('click', () => layoutDialog.open());
 const checkup = new CheckupDialog(send, store, () => state);
-element('checkup', HTMLButtonElement).addEventListener('click', () => checkup.open(sonars));
+element('checkup', HTMLButtonElement).addEventListener('click', () => checkup.open(sonars, servo));
 const calibration = new CalibrationDialog(send);
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
 const help = makeHelp();
@@ -193,7 +196,7 @@ function receive(message) {
       stateLine.show(state);
       plots.setMode(state.robot.mode);
       machine.setMode(state.robot.mode);
-      if (table.length > 0 && state.robot.rig !== null) checkup.meet(sonars);
+      if (table.length > 0 && state.robot.rig !== null) checkup.meet(sonars, servo);
       calibration.show(state);
       meter.update(state);
       map.target = state.robot.armed && state.robot.errand.route && state.robot.errand.end === null ? state.robot.reference : null;

@@ -5,6 +5,7 @@
 
 use crate::args::ImportArgs;
 use crate::failure::Failure;
+use crate::left_out::LeftOut;
 use crate::output;
 use crate::place;
 use rumbo_station::log::{Burst, Kind, Manifest, record_text};
@@ -31,13 +32,15 @@ impl Line {
     }
 }
 
-/// Whether a text is a capture: it begins with a line of the ten kinds, or with the end of a row and then such a line.
+/// Whether a text is a capture: it begins with a line of the ten kinds, or with the end of a row and then such a line, or most of it are such lines and it does not begin with names of columns.
 pub(crate) fn is_one(text: &str) -> bool {
-    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
-    let is_line = |line: Option<&str>| line.is_some_and(|line| Line::parse(line).is_ok());
-    match lines.next() {
-        Some(first) if is_part(first) => is_line(Some(first)) || is_line(lines.next()),
-        first => is_line(first),
+    let lines = || text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let is_line = |line: &&str| Line::parse(line).is_ok();
+    match lines().next() {
+        Some(first) if is_line(&first) => true,
+        Some(first) if is_part(first) && lines().nth(1).as_ref().is_some_and(is_line) => true,
+        Some(first) if first.contains("dt_ms") || first.contains("pwm_") => false,
+        _ => 2 * lines().filter(is_line).count() > lines().count(),
     }
 }
 
@@ -49,7 +52,8 @@ fn is_part(line: &str) -> bool {
 
 /// Checks, converts, writes and sums up.
 pub(crate) fn import(args: &ImportArgs, text: &str, out: &Path) -> Result<(), Failure> {
-    let link = parse(&args.file, text)?;
+    let (link, left_out) = parse(&args.file, text)?;
+    left_out.tell(&args.file);
     let manifest = Manifest {
         kind: Kind::Robot,
         program: "original".into(),
@@ -68,7 +72,7 @@ pub(crate) fn import(args: &ImportArgs, text: &str, out: &Path) -> Result<(), Fa
     );
     if args.json {
         return output::json(
-            &json!({ "log": output::shown(out), "rows": rows, "commands": commands, "duration_s": duration_s }),
+            &json!({ "log": output::shown(out), "rows": rows, "commands": commands, "duration_s": duration_s, "left_out": left_out.json() }),
         );
     }
     output::line(&format!(
@@ -77,22 +81,24 @@ pub(crate) fn import(args: &ImportArgs, text: &str, out: &Path) -> Result<(), Fa
     ))
 }
 
-/// The lines with their times. The first and the last may be cut off, and are left out then.
-fn parse(path: &Path, text: &str) -> Result<Vec<Burst>, Failure> {
+/// The lines with their times, and what is left out: the first and the last silently where a capture was cut there, others as long as more are sound.
+fn parse(path: &Path, text: &str) -> Result<(Vec<Burst>, LeftOut), Failure> {
     let lines: Vec<(usize, &str)> = (1..)
         .zip(text.lines().map(str::trim))
         .filter(|(_, line)| !line.is_empty())
         .collect();
     let (mut link, mut t_us, mut rows) = (Vec::new(), 0, 0);
+    let mut left_out = LeftOut::default();
     for (index, (number, line)) in lines.iter().enumerate() {
         let parsed = match Line::parse(line) {
             Ok(parsed) => parsed,
             Err(_) if is_part(line) && (index == 0 || index + 1 == lines.len()) => continue,
             Err(error) => {
-                return Err(Failure::Input(format!(
-                    "{}:{number}: `{line}` is neither a row nor a command: {error}",
-                    path.display()
-                )));
+                left_out.row(
+                    *number,
+                    format!("`{line}` is neither a row nor a command: {error}"),
+                );
+                continue;
             }
         };
         if let Line::Row(row) = &parsed {
@@ -110,13 +116,19 @@ fn parse(path: &Path, text: &str) -> Result<Vec<Burst>, Failure> {
             bytes: format!("{line}\n").into_bytes(),
         });
     }
+    if let Some((number, what)) = left_out.too_much(link.len()) {
+        return Err(Failure::Input(format!(
+            "{}:{number}: {what}",
+            path.display()
+        )));
+    }
     if rows == 0 {
         return Err(Failure::Input(format!(
             "{}: holds no row of telemetry; is the capture complete?",
             path.display()
         )));
     }
-    Ok(link)
+    Ok((link, left_out))
 }
 
 #[cfg(test)]
@@ -131,24 +143,36 @@ mod tests {
     fn all_ten_kinds_of_lines_are_taken_with_the_times_that_rows_tell() {
         let table = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n60,50,51,30,1,115,115\n";
         assert!(is_one(TEN) && !is_one(table));
-        let link = parse(Path::new("x"), TEN).unwrap();
+        let (link, _) = parse(Path::new("x"), TEN).unwrap();
         let times: Vec<u64> = link.iter().map(|burst| burst.t_us / 1_000).collect();
         assert_eq!(times, [0, 0, 0, 0, 50, 50, 50, 110, 110, 200]);
         assert_eq!(link.iter().filter(|burst| burst.to_robot).count(), 6);
     }
 
     #[test]
-    fn a_bad_line_is_named_unless_the_capture_was_cut_there() {
-        let cut = format!("15, 115\n{TEN}60, 5");
-        assert_eq!(parse(Path::new("x"), &cut).unwrap().len(), 10);
-        let bad = TEN.replace("REF 40", "REF forty");
-        let Err(Failure::Input(said)) = parse(Path::new("x"), &bad) else {
-            panic!("taken")
+    fn a_damaged_line_is_left_out_and_named_unless_the_capture_was_cut_there() {
+        let told = |text: &str| {
+            let (link, left_out) = parse(Path::new("x"), text).unwrap();
+            (link.len(), left_out.json())
         };
-        assert!(
-            said.starts_with("x:4: `REF forty`") && !said.contains('\n'),
-            "{said}"
-        );
-        assert!(parse(Path::new("x"), "ON\nOFF\n").is_err());
+        let cut = format!("15, 115\n{TEN}60, 5");
+        assert_eq!(told(&cut), (10, json!([])));
+        let damaged = TEN.replace("REF 40", "REF forty");
+        assert!(is_one(&damaged));
+        let (lines, why) = told(&damaged);
+        assert_eq!((lines, why.as_array().unwrap().len()), (9, 1));
+        assert_eq!(why[0]["line"], 4);
+        // Also what a terminal caught while the cable was plugged in.
+        let noisy = format!("\u{fffd}\u{fffd}x7\n{TEN}");
+        assert!(is_one(&noisy));
+        assert_eq!(told(&noisy).0, 10);
+    }
+
+    #[test]
+    fn what_is_mostly_no_line_of_a_capture_is_refused() {
+        for text in ["ON\nOFF\n", "ON\none\ntwo\nthree\n"] {
+            assert!(parse(Path::new("x"), text).is_err(), "{text}");
+        }
+        assert!(!is_one("one\ntwo\nON\n"));
     }
 }

@@ -18,7 +18,7 @@ type Metrics = BTreeMap<String, f64>;
 pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let logs = args.logs.iter().map(|path| {
         let log = Log::read(path).map_err(Failure::input)?;
-        warn_if_cut(path, &log);
+        warn_if_cut(path, &log)?;
         Ok(log)
     });
     let logs: Vec<Log> = logs.collect::<Result<_, Failure>>()?;

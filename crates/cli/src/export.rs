@@ -7,14 +7,14 @@ use crate::output;
 use crate::place;
 use rumbo_scenario::chart;
 use rumbo_station::Row;
-use rumbo_station::log::Log;
+use rumbo_station::log::{Kind, Log, Manifest};
 use std::fmt::Write;
 use std::path::Path;
 
 /// Writes what was asked for and prints the paths.
 pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     let log = Log::read(&args.log).map_err(Failure::input)?;
-    warn_if_cut(&args.log, &log);
+    warn_if_cut(&args.log, &log)?;
     let folder = args.out.clone().unwrap_or_default();
     if !folder.as_os_str().is_empty() {
         place::folder(&folder)?;
@@ -52,18 +52,43 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Says on stderr that a log ends early.
-pub(crate) fn warn_if_cut(path: &Path, log: &Log) {
+/// Says on stderr that a log ends early; one in which nothing had happened yet is of no use.
+pub(crate) fn warn_if_cut(path: &Path, log: &Log) -> Result<(), Failure> {
     use std::io::Write;
-    if let Some(why) = &log.cut {
-        // A closed stderr leaves nobody to tell.
-        let _ = writeln!(
-            std::io::stderr(),
-            "note: {} ends at {:.1} s: {why}",
-            path.display(),
-            log.duration_s()
-        );
+    let shown = path.display();
+    let Some(why) = &log.cut else {
+        return Ok(());
+    };
+    if log.holds_nothing() {
+        let again = log
+            .manifest
+            .as_ref()
+            .and_then(once_more)
+            .unwrap_or_default();
+        return Err(Failure::Input(format!(
+            "{shown}: was cut off before anything that happened had reached it{again}"
+        )));
     }
+    let ends_s = log.duration_s();
+    // A closed stderr leaves nobody to tell.
+    let _ = writeln!(
+        std::io::stderr(),
+        "note: {shown} ends at {ends_s:.1} s: {why}"
+    );
+    Ok(())
+}
+
+/// How a run without a window comes again.
+fn once_more(manifest: &Manifest) -> Option<String> {
+    let seed = manifest.seed?;
+    let command = match manifest.kind {
+        Kind::Run => format!("run {}", manifest.scenario.as_ref()?),
+        Kind::Calibration => "calibrate".into(),
+        Kind::Lab | Kind::Robot => return None,
+    };
+    Some(format!(
+        "; `rumbo {command} --seed {seed}` makes such a run again"
+    ))
 }
 
 fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {

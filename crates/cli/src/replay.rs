@@ -14,7 +14,7 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         None => Log::read_signals,
     };
     let mut log = read(&args.log).map_err(Failure::input)?;
-    warn_if_cut(&args.log, &log);
+    warn_if_cut(&args.log, &log)?;
     if log.speaks_text() {
         log = Log::read(&args.log).map_err(Failure::input)?;
     }

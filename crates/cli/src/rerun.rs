@@ -83,7 +83,7 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
             "{shown}: has no manifest; only logs of `rumbo lab`, `rumbo run` and `rumbo calibrate` can be run again"
         )));
     };
-    warn_if_cut(&args.log, &log);
+    warn_if_cut(&args.log, &log)?;
     let recorder = Recorder::of(&log, recorded);
     // What another program has written may not even be read: then that is the reason.
     let (setup, seed) = manifest::setup(&args.log, recorded).map_err(|failure| match failure {

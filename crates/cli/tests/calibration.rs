@@ -45,9 +45,12 @@ fn a_calibration_is_recorded_and_its_log_is_read_like_any_other() {
             "{key}"
         );
     }
-    let base_m = found["parameters"].as_array().unwrap().iter();
-    let base_m = base_m.filter(|named| named[0] == "base_m").next().unwrap()[1].as_f64();
-    assert!((outcome.metrics["base_m"] - base_m.unwrap()).abs() < 1e-6);
+    let parameters = found["parameters"].as_array().unwrap();
+    let base = parameters
+        .iter()
+        .find(|named| named[0] == "base_m")
+        .unwrap();
+    assert!((outcome.metrics["base_m"] - base[1].as_f64().unwrap()).abs() < 1e-6);
     // It drove: along the wall, and its true pose is beside what it said.
     let true_x_m = read.rows.iter().filter_map(|row| row.signal("true_x_m"));
     let (least_m, most_m) = true_x_m.fold((f32::MAX, f32::MIN), |(least, most), x_m| {

@@ -250,6 +250,24 @@ fn a_log_made_with_another_table_of_parameters_says_so_and_a_log_cut_off_says_wh
     assert_eq!(cut.status.code(), Some(0));
     assert!(text(&cut.stderr).contains("cut.mcap ends at"));
 
+    // What ends within its head has nothing to compare, show or draw.
+    for (bytes, said) in [
+        (0, "ends before anything in it"),
+        (5, "ends before anything in it"),
+        (150, "ends before anything in it"),
+        (5_000, "`rumbo run mode5 --seed 1` makes such a run again"),
+    ] {
+        std::fs::write(folder.path().join("head.mcap"), &whole[..bytes]).unwrap();
+        for command in ["rerun", "export", "compare", "replay"] {
+            let log = ["head.mcap", "head.mcap"];
+            let log = &log[..1 + usize::from(command == "compare")];
+            let told = rumbo(&[&[command], log].concat(), folder.path());
+            assert_eq!(told.status.code(), Some(2), "{command}, {bytes} bytes");
+            assert!(text(&told.stderr).contains(said), "{}", text(&told.stderr));
+            assert_eq!(text(&told.stderr).lines().count(), 1);
+        }
+    }
+
     let mut manifest = log.manifest.unwrap();
     manifest.version = "0.0.7".into();
     let from_robot = log.link.iter().filter(|burst| !burst.to_robot);

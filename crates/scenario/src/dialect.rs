@@ -118,13 +118,19 @@ fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, String> {
     match bytes {
         [0xff, 0xfe, ..] => wide(u16::from_le_bytes).map(Cow::Owned).map_err(|_| none()),
         [0xfe, 0xff, ..] => wide(u16::from_be_bytes).map(Cow::Owned).map_err(|_| none()),
-        [0xef, 0xbb, 0xbf, text @ ..] => std::str::from_utf8(text)
-            .map(Cow::Borrowed)
-            .map_err(|_| none()),
-        text => std::str::from_utf8(text)
-            .map(Cow::Borrowed)
-            .map_err(|_| none()),
+        [0xef, 0xbb, 0xbf, text @ ..] | text => narrow(text).ok_or_else(none),
     }
+}
+
+/// Text with some damaged bytes is text; what is mostly others, or holds zeros, is none.
+fn narrow(bytes: &[u8]) -> Option<Cow<'_, str>> {
+    let text = String::from_utf8_lossy(bytes);
+    let (mut damaged, mut all) = (0, 0);
+    for letter in text.chars() {
+        all += 1;
+        damaged += usize::from(letter == char::REPLACEMENT_CHARACTER || letter == '\0');
+    }
+    (16 * damaged <= all).then_some(text)
 }
 
 #[cfg(test)]
@@ -177,6 +183,13 @@ mod tests {
         for text in ["title = \"t\"\n", "\"60,1\n", "60,\"1\"5\n"] {
             assert_eq!(plain(text.as_bytes()).unwrap(), text);
         }
+    }
+
+    #[test]
+    fn a_damaged_byte_damages_its_line_only() {
+        let text = plain(b"dt_ms,left_cm\n60,1.5\n6\xff,1.5\n60,1.5\n").unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!((lines[1], lines[3]), ("60,1.5", "60,1.5"));
     }
 
     #[test]

@@ -100,6 +100,61 @@ fn a_recording_and_the_log_made_of_it_are_checked_alike() {
 }
 
 #[test]
+fn a_damaged_row_near_the_start_costs_that_row_only_and_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let import = |damaged: &[u8]| {
+        std::fs::write(folder.path().join("damaged.csv"), damaged).unwrap();
+        let mut import = program();
+        import.current_dir(&folder).args(["import", "damaged.csv"]);
+        import
+            .args(["--out", "damaged.mcap", "--json"])
+            .output()
+            .unwrap()
+    };
+    let rows: Vec<String> = (0..30)
+        .map(|row| format!("50,{row},{row},60,5,90,91\n"))
+        .collect();
+    let whole = format!(
+        "{}{}",
+        &RECORDING[..RECORDING.find('\n').unwrap() + 1],
+        rows.concat()
+    );
+    let cut = whole.replacen("50,1,1,60,5,90,91", "50,1,1,6", 1);
+    let header = whole.replacen("speed_b_rpm", "spee\u{0007}_rpm", 1);
+    let mut noise = whole.clone().into_bytes();
+    // Of a line of 17 bytes after the header: no text at all.
+    noise[rows[0].len() + whole.find('\n').unwrap() + 5] = 0xFE;
+    for (damaged, line, rows, duration_s) in [
+        (cut.as_bytes(), 3, 29, 1.45),
+        (header.as_bytes(), 1, 30, 1.45),
+        (&noise, 3, 29, 1.45),
+    ] {
+        let output = import(damaged);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let summary: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert_eq!(summary["rows"], rows);
+        assert!((summary["duration_s"].as_f64().unwrap() - duration_s).abs() < 1e-9);
+        assert_eq!(summary["left_out"][0]["line"], line);
+        let told = stderr(&output);
+        assert!(
+            told.starts_with(&format!("note: damaged.csv:{line} is left out: ")),
+            "{told}"
+        );
+        assert!(told.ends_with("note: all the rest is taken\n"), "{told}");
+        // What reads imported logs reads this one, and the file as it was is in it too.
+        let mut check = program();
+        check
+            .current_dir(&folder)
+            .args(["identify", "damaged.mcap", "--check", "memoria"]);
+        assert!(check.output().unwrap().status.success());
+        let log = std::fs::read(folder.path().join("damaged.mcap")).unwrap();
+        let contents = mcap::Summary::read(&log).unwrap().unwrap();
+        let attached = mcap::read::attachment(&log, &contents.attachment_indexes[1]).unwrap();
+        assert_eq!(attached.data, damaged);
+    }
+}
+
+#[test]
 fn a_recording_that_tells_no_pwm_is_left_out_with_a_note() {
     let row = "60,10,10,0,1,0,0.1,0.1,0,3,50,50,50\n";
     let header = "dt_ms,reference_a_rpm,reference_b_rpm,heading_reference_deg,goal_x_m,goal_y_m,x_m,y_m,heading_deg,state,right_cm,left_cm,front_cm\n";

@@ -24,6 +24,10 @@ use std::path::Path;
 
 /// Longest record of a log that is shorter itself: what its compressed chunks may hold \[bytes\].
 const LONGEST: usize = 64 << 20;
+/// A log that is shorter has no whole manifest \[bytes\].
+const SHORTEST: u64 = 256;
+/// What a log is that its writer had no time to begin.
+const NOTHING_YET: &str = "ends before anything in it: whoever wrote it was stopped in the first moment, or it was cut off when it was copied; nothing of it can be had";
 /// The topic of a log made by `rumbo import`.
 const IMPORTED: &str = "telemetry";
 
@@ -129,14 +133,13 @@ impl Log {
         // A file of another kind may be too long for the memory.
         let start = file.fill_buf().map_err(unreadable)?;
         if !start.starts_with(MAGIC) {
-            let what = if start.is_empty() {
-                "is empty"
-            } else {
-                "is no MCAP log"
-            };
-            return Err(wrong(format!(
-                "{what}; give a log of rumbo, or convert a CSV with `rumbo import`"
-            )));
+            return Err(wrong(match MAGIC.starts_with(start) {
+                true => NOTHING_YET.into(),
+                false => {
+                    "is no MCAP log; give a log of rumbo, or convert a CSV with `rumbo import`"
+                        .into()
+                }
+            }));
         }
         let mut log = Self::default();
         if let Err(error) = log.take_all(file, length, with_link) {
@@ -144,6 +147,7 @@ impl Log {
         }
         if log.manifest.is_none() && log.rows.is_empty() {
             let what = match log.cut {
+                Some(_) if length < SHORTEST => NOTHING_YET,
                 Some(_) => {
                     "ends before anything of rumbo in it; was it cut off when it was copied, or is it another program's log?"
                 }
@@ -155,6 +159,13 @@ impl Log {
         }
         log.rows.sort_by_key(|row| row.t_ms);
         Ok(log)
+    }
+
+    /// Nothing of what happened is in it: it ends within its manifest and the files that ran.
+    #[must_use]
+    pub fn holds_nothing(&self) -> bool {
+        let heard = self.rows.is_empty() && self.states.is_empty() && self.events.is_empty();
+        heard && self.link.is_empty() && self.said.is_empty()
     }
 
     /// The robot spoke the original's text: what it said is for people, too.

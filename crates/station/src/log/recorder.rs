@@ -351,10 +351,11 @@ mod tests {
         foreign.finish().unwrap();
         let foreign = foreign.into_inner().into_inner();
         for (bytes, said) in [
-            (&b""[..], "is empty"),
+            (&b""[..], "ends before anything in it"),
             (&foreign, "neither a manifest"),
             (b"t_s,x_m\n0,0\n", "is no MCAP log"),
-            (mcap::MAGIC, "was it cut off"),
+            (&mcap::MAGIC[..3], "ends before anything in it"),
+            (mcap::MAGIC, "ends before anything in it"),
         ] {
             std::fs::write(&path, bytes).unwrap();
             let error = Log::read(&path).unwrap_err().to_string();

@@ -33,9 +33,14 @@ impl Summary {
         let unreadable =
             |error: io::Error| LogError::new(path, format!("cannot be read ({error})"));
         let mut file = File::open(path).map_err(unreadable)?;
-        let mut magic = [0; MAGIC.len()];
-        if file.read_exact(&mut magic).is_err() || magic != MAGIC {
-            return Err(LogError::new(path, "is no MCAP log"));
+        let mut start = Vec::new();
+        let mut first = (&mut file).take(MAGIC.len() as u64);
+        first.read_to_end(&mut start).map_err(unreadable)?;
+        match start.as_slice() {
+            MAGIC => {}
+            // Its writer was stopped before it had begun.
+            start if MAGIC.starts_with(start) => return Ok(Self::default()),
+            _ => return Err(LogError::new(path, "is no MCAP log")),
         }
         match Self::by_index(&mut file) {
             Ok(Some(summary)) => Ok(summary),

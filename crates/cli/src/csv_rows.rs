@@ -1,0 +1,240 @@
+//! The rows of a CSV of the original program: checked, in SI units, with their times.
+//!
+//! A row that is cut or damaged is left out and told, as long as more of them are sound; so is a header, where the rows tell what they are. What is
+//! mostly damaged is refused as a whole, with the first thing that is wrong.
+
+use crate::failure::Failure;
+use crate::left_out::LeftOut;
+use rumbo_wire::csv;
+use rumbo_wire::text::{Row, RowKind};
+use std::f64::consts::PI;
+use std::path::Path;
+
+/// What becomes of a column: its unit's factor, and what its values must lie within.
+pub(crate) struct Column {
+    original: &'static csv::Column,
+    pub(crate) name: String,
+    factor: f64,
+    min: f64,
+    max: f64,
+}
+
+/// A checked recording, in SI units.
+pub(crate) struct Recording {
+    pub(crate) modes: &'static str,
+    pub(crate) columns: Vec<Column>,
+    /// Time since the first row, in s, and the row's values.
+    pub(crate) rows: Vec<(f64, Vec<f64>)>,
+    pub(crate) longest_gap_s: f64,
+    /// The sound rows under their header, as they were.
+    pub(crate) sound: String,
+    /// What is not among them.
+    pub(crate) left_out: LeftOut,
+}
+
+impl Column {
+    /// What a column becomes: units to SI, motor A to the right wheel and B to the left one.
+    fn of(original: &'static csv::Column) -> Self {
+        let (unit, factor) = match original.unit {
+            "cm" => ("_m", 0.01),
+            "rpm" => ("_rad_s", PI / 30.0),
+            "deg" => ("_rad", PI / 180.0),
+            "m" => ("_m", 1.0),
+            _ => ("", 1.0),
+        };
+        let suffix = format!("_{}", original.unit);
+        let stem = original
+            .name
+            .strip_suffix(suffix.as_str())
+            .unwrap_or(original.name);
+        let stem = match stem {
+            "left" | "right" | "front" => format!("{stem}_range"),
+            "pwm_a" => "right_pwm".into(),
+            "pwm_b" => "left_pwm".into(),
+            "speed_a" => "right_speed".into(),
+            "speed_b" => "left_speed".into(),
+            "reference_a" => "right_reference".into(),
+            "reference_b" => "left_reference".into(),
+            other => other.to_owned(),
+        };
+        let (min, max) = match original.name {
+            "pwm_a" | "pwm_b" => (-255.0, 255.0),
+            "mode" => (0.0, 8.0),
+            "state" => (0.0, 15.0),
+            "dt_ms" => (0.0, 600_000.0),
+            _ => (-1e6, 1e6),
+        };
+        Self {
+            original,
+            name: format!("{stem}{unit}"),
+            factor,
+            min,
+            max,
+        }
+    }
+}
+
+/// The modes whose rows look like this.
+fn modes(kind: RowKind) -> &'static str {
+    match kind {
+        RowKind::Distance => "modes 1 to 4",
+        RowKind::Speed => "modes 5 and 6",
+        RowKind::Waypoints => "mode 7",
+        RowKind::Mission => "mode 8",
+    }
+}
+
+fn header_of(kind: RowKind) -> String {
+    kind.columns()
+        .iter()
+        .map(|column| column.name)
+        .collect::<Vec<_>>()
+        .join(",")
+}
+
+/// What a header lacks that is none of the original program's.
+fn unknown(header: &str) -> String {
+    let found: Vec<&str> = header.split(',').map(str::trim).collect();
+    let matching = |kind: &RowKind| {
+        let due = kind.columns().iter().map(|column| column.name);
+        due.filter(|name| found.contains(name)).count()
+    };
+    let nearest = RowKind::ALL.into_iter().max_by_key(matching);
+    match nearest.filter(|kind| matching(kind) > 2) {
+        Some(kind) => format!(
+            "`{header}` is no header of the original program; the nearest is that of {}: {}",
+            modes(kind),
+            header_of(kind)
+        ),
+        None => format!(
+            "`{}` is neither a header of the original program nor a line of a capture; `rumbo import --help` shows the headers",
+            header.chars().take(60).collect::<String>()
+        ),
+    }
+}
+
+/// The kind of the rows that most lines are, where a first line that is no header of theirs was meant to be one.
+fn told_by_rows(header: &str, text: &str) -> Option<RowKind> {
+    let names = RowKind::ALL.iter().flat_map(|kind| kind.columns());
+    let known = |name: &str| names.clone().any(|column| column.name == name);
+    if header.split(',').filter(|name| known(name.trim())).count() < 3 {
+        return None;
+    }
+    let lines = || {
+        text.lines()
+            .skip(1)
+            .map(str::trim)
+            .filter(|row| !row.is_empty())
+    };
+    let of = |kind: &RowKind| {
+        let rows = lines().filter(|line| Row::parse(line).is_ok_and(|row| row.kind() == *kind));
+        2 * rows.count() > lines().count()
+    };
+    RowKind::ALL.into_iter().find(of)
+}
+
+/// A row's values in their own units; if it is no sound row, what is wrong with it.
+fn values(columns: &[Column], row: &str, kind: RowKind) -> Result<Vec<f64>, String> {
+    let fields: Vec<&str> = row.split(',').map(str::trim).collect();
+    if fields.len() != columns.len() {
+        let (found, due) = (fields.len(), columns.len());
+        let header = header_of(kind);
+        return Err(format!(
+            "{found} values in a row of {due} columns; expected {header}"
+        ));
+    }
+    let value = |(column, field): (&Column, &str)| {
+        let Column {
+            original, min, max, ..
+        } = column;
+        let value = field
+            .parse::<f64>()
+            .ok()
+            .filter(|value| (*min..=*max).contains(value));
+        value.ok_or_else(|| {
+            format!(
+                "{} = `{field}`: must be a number within {min}..{max}",
+                original.name
+            )
+        })
+    };
+    columns.iter().zip(fields).map(value).collect()
+}
+
+/// The period at the beginning of a damaged row [ms], if that is whole.
+fn period_ms(row: &str, columns: &[Column]) -> Option<f64> {
+    let (first, _) = row.split_once(',')?;
+    let dt = columns.first()?;
+    let value = first.trim().parse::<f64>().ok()?;
+    (dt.min..=dt.max).contains(&value).then_some(value)
+}
+
+/// Reads a recording.
+///
+/// # Errors
+/// No header of the original program, no rows, or as many damaged ones as sound ones.
+pub(crate) fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
+    let wrong =
+        |line: usize, what: String| Failure::Input(format!("{}:{line}: {what}", path.display()));
+    let mut left_out = LeftOut::default();
+    let mut lines = (1..).zip(text.lines().map(str::trim));
+    let header = lines.next().unwrap_or_default().1;
+    let kind = match csv::recognise(header) {
+        Some(kind) => kind,
+        None => {
+            let kind = told_by_rows(header, text).ok_or_else(|| wrong(1, unknown(header)))?;
+            left_out.header(format!(
+                "`{header}` is no header; by its rows it is of {}",
+                modes(kind)
+            ));
+            kind
+        }
+    };
+    let columns: Vec<Column> = kind.columns().iter().map(Column::of).collect();
+    let mut sound = header_of(kind) + "\n";
+    let (mut rows, mut time_s, mut longest_gap_s) = (Vec::new(), 0.0, 0.0_f64);
+    // Since the last sound row, and a guess for rows that do not tell it.
+    let (mut gap_s, mut usual_s) = (0.0, 0.0);
+    for (line, row) in lines.filter(|(_, row)| !row.is_empty()) {
+        let values = match values(&columns, row, kind) {
+            Ok(values) => values,
+            Err(what) => {
+                gap_s += period_ms(row, &columns).map_or(usual_s, |ms| ms / 1000.0);
+                left_out.row(line, what);
+                continue;
+            }
+        };
+        let dt_s = values.first().copied().unwrap_or_default() / 1000.0;
+        gap_s += dt_s;
+        // The first row's period is the time the program waited before the run.
+        if !rows.is_empty() {
+            time_s += gap_s;
+            longest_gap_s = longest_gap_s.max(gap_s);
+            usual_s = dt_s;
+        }
+        gap_s = 0.0;
+        sound = sound + row + "\n";
+        let scaled = columns
+            .iter()
+            .zip(values)
+            .map(|(column, value)| value * column.factor);
+        rows.push((time_s, scaled.collect()));
+    }
+    if let Some((line, what)) = left_out.too_much(rows.len()) {
+        return Err(wrong(line, what));
+    }
+    if rows.is_empty() {
+        return Err(wrong(
+            1,
+            "no rows under the header; is the recording complete?".into(),
+        ));
+    }
+    Ok(Recording {
+        modes: modes(kind),
+        columns,
+        rows,
+        longest_gap_s,
+        sound,
+        left_out,
+    })
+}
