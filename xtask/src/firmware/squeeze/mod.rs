@@ -2,8 +2,8 @@
 //!
 //! The compiler writes each function as if it were alone. Here all are known, and so is what each reads and changes ([`liveness`]). What
 //! they do in vain is left out ([`branches`], [`saves`], [`shifts`], [`values`]), what they have in common is written once ([`frames`],
-//! [`tails`], [`repeats`]), and everything is put where short jumps reach it ([`layout`]). Before that, arguments on the stack are
-//! repaired if the compiler needs it ([`stack_arguments`]).
+//! [`tails`], [`repeats`]), and everything is put where short jumps reach it ([`order`], [`islands`], [`layout`]). Before that, arguments on
+//! the stack are repaired if the compiler needs it ([`stack_arguments`]).
 //! What is not understood is refused: a wrong image is worse than none.
 
 mod assembly;
@@ -11,8 +11,10 @@ mod branches;
 mod debugging;
 mod effects;
 mod frames;
+mod islands;
 mod layout;
 mod liveness;
+mod order;
 mod repeats;
 mod saves;
 mod shifts;
@@ -106,23 +108,15 @@ fn share(program: &mut Program, options: &Options<'_>, has_stack_arguments: &Has
         tails::jump(function, has_stack_arguments);
     }
     tails::merge(&mut program.functions);
-    layout::order(&mut program.functions);
-    let mut regions = layout::split(std::mem::take(&mut program.functions), layout::REGION);
     let may_change = |function: &Function| {
         let is_ours = ["rumbo_enter", "rumbo_leave"]
             .iter()
             .any(|name| function.name().starts_with(name));
         !is_ours && !options.is_hot(function) && !repeats::touches_hardware(function)
     };
-    let mut made = 0;
-    for region in &mut regions {
-        repeats::share(region, may_change, has_stack_arguments, 1, &mut made);
-        tails::merge(region);
-    }
-    // What is left is far apart: a call takes two words.
-    program.functions = regions.into_iter().flatten().collect();
     let all = &mut program.functions;
-    repeats::share(all, may_change, has_stack_arguments, 2, &mut made);
+    repeats::share(all, may_change, has_stack_arguments);
     tails::merge(all);
     tails::follow(all);
+    order::order(all, Function::is_handler);
 }

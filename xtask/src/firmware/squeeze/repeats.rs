@@ -13,31 +13,29 @@
 use std::collections::{HashMap, HashSet};
 
 use super::assembly::{Flow, Function, Instruction, Line};
-use super::{frames, layout, tails};
+use super::{frames, tails};
 
 /// Longest sequence that is looked for, in instructions.
 const LONGEST: usize = 64;
+/// Fewest words that are taken out: for one word less a call's cycles are too many.
+const SHORTEST: usize = 3;
 /// Rounds at most.
 const ROUNDS: usize = 40;
 
-/// Writes once what is written more than once in functions of a region that may be changed; calls of those with arguments on the
-/// stack stay. `made` counts the new functions of all regions.
+/// Writes once what is written more than once in functions that may be changed; calls of those with arguments on the stack stay.
 pub(super) fn share(
-    region: &mut Vec<Function>,
+    functions: &mut Vec<Function>,
     may_change: impl Fn(&Function) -> bool,
     stack_arguments: &HashSet<String>,
-    call_words: usize,
-    made: &mut usize,
 ) {
-    let old = region.len();
+    let mut made = 0;
     for _ in 0..ROUNDS {
-        for function in region.iter_mut() {
+        for function in functions.iter_mut() {
             tails::jump(function, stack_arguments);
         }
-        let mut text = Text::read(region, &may_change, stack_arguments);
-        text.call_words = call_words;
+        let text = Text::read(functions, &may_change, stack_arguments);
         let mut taken = vec![false; text.words.len()];
-        let before = *made;
+        let before = made;
         for candidate in text.candidates() {
             let places = text.free_places(&candidate, &taken);
             if text.saving(&candidate, places.len()) < 1 {
@@ -46,22 +44,23 @@ pub(super) fn share(
             for &place in &places {
                 taken[place..place + candidate.length].fill(true);
             }
-            text.replace(region, &candidate, &places, &format!("rumbo_shared_{made}"));
-            *made += 1;
+            text.replace(
+                functions,
+                &candidate,
+                &places,
+                &format!("rumbo_shared_{made}"),
+            );
+            made += 1;
         }
-        if *made == before {
+        if made == before {
             break;
         }
-        for function in region.iter_mut() {
+        for function in functions.iter_mut() {
             function
                 .lines
                 .retain(|line| line.instruction().is_none_or(|it| !it.name.is_empty()));
         }
     }
-    // Where all of the region reach them by short calls.
-    let new = region.split_off(old);
-    let middle = layout::middle(region);
-    region.splice(middle..middle, new);
 }
 
 /// Whether a function works on the hardware's registers or on interrupts.
@@ -105,7 +104,6 @@ enum Place {
 
 /// Instructions of the whole program, one after the other, as numbers: equal ones are equal.
 struct Text {
-    call_words: usize,
     words: Vec<u32>,
     place: Vec<Place>,
     size: Vec<usize>,
@@ -131,7 +129,6 @@ impl Text {
         stack_arguments: &HashSet<String>,
     ) -> Self {
         let mut text = Self {
-            call_words: 1,
             words: Vec::new(),
             place: Vec::new(),
             size: Vec::new(),
@@ -264,9 +261,12 @@ impl Text {
         let first = candidate.places[0];
         let last = first + candidate.length - 1;
         let size: usize = self.size[first..=last].iter().sum();
+        if size < SHORTEST {
+            return 0;
+        }
         // A call at its end becomes a jump, and the return is somebody else's.
         let returns = usize::from(self.place[last] != Place::End && !self.is_call[last]);
-        (times * size) as i64 - (times * self.call_words + size + returns) as i64
+        (times * size) as i64 - (times + size + returns) as i64
     }
 
     /// Where it stands, without overlaps, in what is not taken.
