@@ -10,21 +10,23 @@ import { said, t } from './text.js';
 
 /** One line of the table. */
 class Line {
-  /** @param {Parameter} parameter @param {Send} send */
-  constructor(parameter, send) {
+  /** @param {Parameter} parameter @param {Send} send @param {(line: Line) => void} explain shows what it is */
+  constructor(parameter, send, explain) {
     this.parameter = parameter;
     this.edited = false;
     /** The refusal the operator has seen and left. @type {string | null} */
     this.dismissed = null;
     this.input = decimal(`parameter-${parameter.name}`);
     this.input.title = said(parameter.description);
+    this.about = create('span', { id: `about-${parameter.name}`, textContent: said(parameter.description) });
+    this.note = create('span', { className: 'refused', id: `note-${parameter.name}` });
+    this.input.setAttribute('aria-describedby', `${this.about.id} ${this.note.id}`);
     this.input.setAttribute('aria-label', t('{} in {}', parameter.name, parameter.unit || t('no unit')));
     this.apply = create('button', { type: 'button', textContent: t('Apply'), title: t('Write to the robot (Enter)') });
     this.revert = create('button', { type: 'button', textContent: '↺', title: t('Back to what the robot holds (Escape)') });
     this.revert.setAttribute('aria-label', t('Revert'));
-    this.note = create('span', { className: 'refused' });
     this.row = create('tr', {},
-      create('td', { textContent: parameter.name, title: said(parameter.description) }),
+      create('td', { className: 'asks', textContent: parameter.name, title: said(parameter.description) }),
       create('td', {}, this.input),
       create('td', { textContent: unitWords(parameter.unit) }),
       create('td', { className: 'number', textContent: `${formatFloat(parameter.min)} … ${formatFloat(parameter.max)}` }),
@@ -53,6 +55,9 @@ class Line {
       if (event.key === 'Enter') write();
       if (event.key === 'Escape') revert();
     });
+    // A tooltip is for a mouse; a finger taps the line, the keyboard comes to its value.
+    this.input.addEventListener('focus', () => explain(this));
+    this.row.addEventListener('click', () => explain(this));
     this.show(parameter);
   }
 
@@ -69,7 +74,8 @@ class Line {
       check(this.input);
     }
     this.apply.hidden = this.revert.hidden = this.input.value === held && !refused;
-    this.row.className = parameter.pending ? 'pending' : refused ? 'bad' : this.edited ? 'edited' : '';
+    const look = parameter.pending ? 'pending' : refused ? 'bad' : this.edited ? 'edited' : '';
+    for (const each of ['pending', 'bad', 'edited']) this.row.classList.toggle(each, each === look);
     setText(this.note, parameter.pending ? t('waiting…') : refused ? t('refused: {}', said(refused)) : parameter.value === null ? t('not read yet') : '');
   }
 }
@@ -81,6 +87,9 @@ export class ParameterTable {
   #save = element('save-parameters', HTMLButtonElement);
   #reset = element('reset-parameters', HTMLButtonElement);
   #table = element('parameter-section', HTMLElement);
+  #about = element('parameter-about', HTMLParagraphElement);
+  /** What every parameter is, for readers of the screen. */
+  #abouts = element('parameter-abouts', HTMLDivElement);
   #send;
   /** @type {Map<number, Line>} */
   #lines = new Map();
@@ -102,7 +111,9 @@ export class ParameterTable {
   show(parameters) {
     const same = parameters.length === this.#lines.size && parameters.every(({ id, name }) => this.#lines.get(id)?.parameter.name === name);
     if (!same) {
-      this.#lines = new Map(parameters.map((parameter) => [parameter.id, new Line(parameter, this.#send)]));
+      this.#lines = new Map(parameters.map((parameter) => [parameter.id, new Line(parameter, this.#send, (line) => this.#explain(line))]));
+      this.#abouts.replaceChildren(...[...this.#lines.values()].map(({ about }) => about));
+      setText(this.#about, t('Tap a line, or go to its value, to read what it is.'));
       this.#filter();
     }
     for (const parameter of parameters) this.#lines.get(parameter.id)?.show(parameter);
@@ -121,6 +132,12 @@ export class ParameterTable {
     if (mode === this.#mode) return;
     this.#mode = mode;
     this.#filter();
+  }
+
+  /** Says below the table what a parameter is, and marks its line. @param {Line} chosen */
+  #explain(chosen) {
+    for (const line of this.#lines.values()) line.row.classList.toggle('chosen', line === chosen);
+    this.#about.replaceChildren(create('b', { textContent: chosen.parameter.name }), ` ${said(chosen.parameter.description)}`);
   }
 
   #tell() {

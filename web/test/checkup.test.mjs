@@ -10,7 +10,7 @@ let dashboard;
 let page;
 
 before(async () => {
-  dashboard = await open(['lab', '--scenario', 'manual-curve-air-forward', '--out', folder()]);
+  dashboard = await open(['lab', '--scenario', 'manual-curve-air-forward', '--rig', 'final', '--out', folder()]);
   page = dashboard.page;
   await page.waitForSelector('#connection.good');
 });

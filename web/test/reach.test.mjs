@@ -179,3 +179,35 @@ test('the longest fault fits beside the controls of every mode', async () => {
     }
   }
 });
+
+test('what a parameter is can be read with a finger and with the keyboard, on a tablet too', async () => {
+  const tablet = await open(['lab', '--scenario', 'mode1', '--out', folder()], { viewport: { width: 900, height: 1180 }, hasTouch: true });
+  try {
+    const { page } = tablet;
+    await page.waitForSelector('#connection.good');
+    const about = page.locator('#parameter-about');
+    await about.getByText('Tap a line').waitFor();
+    await page.locator('#parameters td', { hasText: /^link_timeout_s$/ }).tap();
+    await about.getByText('link_timeout_s Time without a sign of life after which the wheels are released.').waitFor();
+    const box = await about.boundingBox();
+    assert.ok(box && box.x >= 0 && box.x + box.width <= 900, JSON.stringify(box));
+    // From one value to the next by Tab; what is told of each is also tied to it.
+    const input = page.locator('#parameter-link_timeout_s');
+    await input.focus();
+    await page.keyboard.press('Tab');
+    const next = await page.evaluate(() => {
+      const input = document.activeElement;
+      const [id = ''] = input?.getAttribute('aria-describedby')?.split(' ') ?? [];
+      return { name: input?.id.replace('parameter-', ''), told: document.getElementById(id)?.textContent };
+    });
+    assert.ok(next.name && next.name !== 'link_timeout_s' && next.told, JSON.stringify(next));
+    await about.getByText(`${next.name} ${next.told}`).waitFor();
+    await page.locator('#language').selectOption('es');
+    await page.waitForFunction(() => document.documentElement.lang === 'es' && /** @type {any} */ (window).rumbo?.state());
+    await page.locator('#parameter-link_timeout_s').tap();
+    await about.getByText('Tiempo sin señal de vida tras el que se sueltan las ruedas.').waitFor();
+    assert.deepEqual(tablet.complaints, []);
+  } finally {
+    await tablet.close();
+  }
+});

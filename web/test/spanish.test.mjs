@@ -27,7 +27,7 @@ test('a Spanish browser gets the page, the modes and the events in Spanish', asy
   await page.locator('#on').click();
   await event(/^\d+,\d\d s.armado$/);
   await page.locator('#state', { hasText: 'acercarse' }).waitFor();
-  await event(/consigna alcanzada/);
+  await event(/referencia alcanzada/);
 });
 
 test('what is refused and what fails is told in Spanish, with the remedy', async () => {

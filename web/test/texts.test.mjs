@@ -79,3 +79,8 @@ test('a text keeps its values in the other language, and stands in one table onl
   const keys = TABLES.flatMap((table) => Object.keys(table));
   assert.deepEqual(keys.filter((key, index) => keys.indexOf(key) !== index), []);
 });
+
+test('Spanish has one word for one thing: lazo for a control loop, referencia, PWM a she', () => {
+  const wrong = Object.values(SPANISH).filter((spanish) => /\bbucles?\b|consigna|\bordenad[ao]s?\b|\b(?:el|del|los) PWM\b/i.test(spanish));
+  assert.deepEqual(wrong, []);
+});

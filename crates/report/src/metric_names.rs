@@ -45,7 +45,7 @@ const KNOWN: &[Known] = &[
         "reverse_drive_rad_s",
         t(
             "wheel driven against its motion, at most",
-            "rueda actuada contra su giro, máximo",
+            "velocidad de una rueda accionada contra su giro, máxima",
         ),
         RPM,
         "rpm",
@@ -125,7 +125,7 @@ const KNOWN: &[Known] = &[
         "cruise_m_s",
         t(
             "slowest half second along the wall",
-            "medio segundo más lento a lo largo de la pared",
+            "velocidad a lo largo de la pared en el medio segundo más lento",
         ),
         1.0,
         "m/s",
@@ -315,7 +315,7 @@ const KNOWN: &[Known] = &[
         "left_dead_zone_duty",
         t(
             "left wheel starts at a PWM of",
-            "la rueda izquierda arranca con una PWM de",
+            "PWM a la que arranca la rueda izquierda",
         ),
         PWM,
         "",
@@ -324,7 +324,7 @@ const KNOWN: &[Known] = &[
         "right_dead_zone_duty",
         t(
             "right wheel starts at a PWM of",
-            "la rueda derecha arranca con una PWM de",
+            "PWM a la que arranca la rueda derecha",
         ),
         PWM,
         "",
@@ -333,7 +333,7 @@ const KNOWN: &[Known] = &[
         "left_stop_duty",
         t(
             "left wheel stops at a PWM of",
-            "la rueda izquierda se para con una PWM de",
+            "PWM a la que se para la rueda izquierda",
         ),
         PWM,
         "",
@@ -342,7 +342,7 @@ const KNOWN: &[Known] = &[
         "right_stop_duty",
         t(
             "right wheel stops at a PWM of",
-            "la rueda derecha se para con una PWM de",
+            "PWM a la que se para la rueda derecha",
         ),
         PWM,
         "",

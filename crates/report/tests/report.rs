@@ -215,6 +215,16 @@ fn no_text_is_left_in_the_other_language() {
 }
 
 #[test]
+fn spanish_has_one_word_for_one_thing() {
+    // lazo for a control loop, referencia for what is asked for, punto de paso for a waypoint.
+    let others = ["bucle", "consigna", "ordenada ", "waypoint"];
+    for text in texts(&html(data(), Language::Spanish).0) {
+        let text = text.to_lowercase();
+        assert!(!others.iter().any(|other| text.contains(other)), "{text}");
+    }
+}
+
+#[test]
 fn spanish_numbers_have_decimal_commas() {
     let digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
     for text in texts(&html(data(), Language::Spanish).0) {

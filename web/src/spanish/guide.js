@@ -44,7 +44,7 @@ export const GUIDE = {
   'Calibrate': 'Calibrar', 'Let the robot measure itself: dead zones, feedforward, wheels, base': 'El robot se mide a sí mismo: zonas muertas, prealimentación, ruedas, base',
   '{} s of about {} s': '{} s de unos {} s', 'Begin the calibration': 'Empezar la calibración', 'Put the simulated robot there': 'Poner ahí el robot simulado',
   'The robot finds out by itself: the duty at which each wheel starts, the duty for each speed, the ratio of the wheels\' radii, and the distance between the wheels.':
-    'El robot averigua por sí mismo: el PWM con que arranca cada rueda, el PWM de cada velocidad, el cociente de los radios de las ruedas y la distancia entre ellas.',
+    'El robot averigua por sí mismo: la PWM con que arranca cada rueda, la PWM de cada velocidad, el cociente de los radios de las ruedas y la distancia entre ellas.',
   'A sonar ahead on the servo and one on each side: rig final. Battery charged.': 'Un sonar al frente sobre el servo y uno a cada lado: montaje final. Batería cargada.',
   'Put it on the floor beside a straight wall, 0.3 to 0.5 m from it and along it, with 2.5 m free ahead.': 'Ponlo en el suelo junto a una pared recta, a 0,3-0,5 m y paralelo a ella, con 2,5 m libres delante.',
   'It drives to and fro along the wall and turns on the spot, for about two and a half minutes. STOP ends it at any moment.':

@@ -33,7 +33,7 @@ export const PAGE = {
   // Help.
   'Help': 'Ayuda', 'Help: keys, colours and lines (?)': 'Ayuda: teclas, colores y líneas (?)', 'Keys': 'Teclas', 'Colours and lines': 'Colores y líneas',
   'Choose a mode, set its reference, press ON. OFF stops the mode; STOP releases the wheels at once. The robot never starts because a page was opened.':
-    'Elige un modo, fija su consigna, pulsa ON. OFF detiene el modo; PARAR suelta las ruedas al instante. El robot nunca arranca porque se abra una página.',
+    'Elige un modo, fija su referencia, pulsa ON. OFF detiene el modo; PARAR suelta las ruedas al instante. El robot nunca arranca porque se abra una página.',
   'Every event says its cause and what to do. Each run is recorded; `rumbo list logs` finds it, `rumbo replay` shows it here.':
     'Cada suceso dice su causa y qué hacer. Cada ejecución se graba; `rumbo list logs` la encuentra, `rumbo replay` la muestra aquí.',
   'STOP, from anywhere but a line of text. In forms Enter ticks a box and presses a button.': 'PARAR, desde cualquier sitio salvo una línea de texto. En los formularios Intro marca casillas y pulsa botones.',
@@ -50,7 +50,7 @@ export const PAGE = {
   'K , .': 'K , .', 'replay: play or pause, one frame back, one frame on': 'grabación: reproducir o pausar, una trama atrás, una adelante', 'this page': 'esta página',
   'blue': 'azul', 'left wheel, left sonar': 'rueda y sonar izquierdos', 'orange': 'naranja', 'right wheel, right sonar': 'rueda y sonar derechos',
   'green': 'verde', 'front sonar, heading; something good': 'sonar frontal, rumbo; algo bueno', 'thick line': 'línea gruesa', 'as the robot measures or estimates it': 'como lo mide o estima el robot',
-  'dotted line': 'línea de puntos', 'as it really is, in the simulation': 'como es en realidad, en la simulación', 'dashed line': 'línea de trazos', 'a reference': 'una consigna',
+  'dotted line': 'línea de puntos', 'as it really is, in the simulation': 'como es en realidad, en la simulación', 'dashed line': 'línea de trazos', 'a reference': 'una referencia',
   'dotted upright lines': 'verticales de puntos', 'the state of the mode changed': 'el estado del modo cambió', 'filled robot': 'robot lleno', 'dashed robot': 'robot a trazos', 'dotted robot': 'robot a puntos',
   'the ghost: a simulated robot that gets the same commands': 'el fantasma: un robot simulado que recibe las mismas órdenes',
   'pink': 'rosa', 'goal, route, mark': 'destino, ruta, marca', 'red cone': 'cono rojo', 'a sonar without a reading': 'un sonar sin lectura',
@@ -67,13 +67,13 @@ export const PAGE = {
   'as it is': 'como es', 'as it estimates': 'como lo estima', 'the ellipse holds its place, the sector its heading, with 95 % each, as far as the odometry knows its own errors': 'la elipse contiene su posición y el sector su rumbo, con un 95 % cada uno, hasta donde la odometría conoce sus propios errores', 'Fit': 'Ajustar', 'Ghost here': 'Fantasma aquí', 'Start the ghost again where the robot is now': 'Empieza el fantasma de nuevo donde está ahora el robot', 'Show everything (0 on the map)': 'Muestra todo (0 en el mapa)',
   'Tell it': 'Decírselo', 'Write the rig that it carries to the robot': 'Escribe en el robot el montaje que lleva',
   'The robot believes to carry the rig {}, and carries {}: it misreads its sonars.': 'El robot cree llevar el montaje {} y lleva {}: interpreta mal sus sonares.',
-  'heading': 'rumbo', 'goal': 'destino', 'to': 'hacia', ', {} m away': ', a {} m', 'references': 'consignas', 'contact!': '¡contacto!',
+  'heading': 'rumbo', 'goal': 'destino', 'to': 'hacia', ', {} m away': ', a {} m', 'references': 'referencias', 'contact!': '¡contacto!',
   'follows the lane': 'sigue el carril', 'route of {}': 'ruta de {}', 'route of {}, again and again': 'ruta de {}, una y otra vez',
   'no reading': 'sin lectura', 'clear|sonar': 'libre', 'Clear fault': 'Borrar fallo',
   // Commands.
   'Commands': 'Órdenes', 'Mode': 'Modo', 'Arm and start the mode': 'Arma el robot y empieza el modo', 'Stop the mode and disarm': 'Detiene el modo y desarma',
   'Switch OFF first': 'Primero OFF', 'Scenario {}': 'Escenario {}',
-  'Start the simulation again with an experiment of this mode: its world, its sonars': 'Empieza la simulación de nuevo con un experimento de este modo: su mundo, sus sonares', 'reference': 'consigna', 'Set': 'Fijar', 'now {} cm': 'ahora {} cm', 'now {} rpm': 'ahora {} rpm', '{} to {} {}': 'de {} a {} {}', 'a number': 'un número', 'a number from {} to {}': 'un número de {} a {}',
+  'Start the simulation again with an experiment of this mode: its world, its sonars': 'Empieza la simulación de nuevo con un experimento de este modo: su mundo, sus sonares', 'reference': 'referencia', 'Set': 'Fijar', 'now {} cm': 'ahora {} cm', 'now {} rpm': 'ahora {} rpm', '{} to {} {}': 'de {} a {} {}', 'a number': 'un número', 'a number from {} to {}': 'un número de {} a {}',
   'left': 'izq.', 'right': 'der.', 'front': 'frontal', 'both': 'ambas',
   'Open loop by PWM, or closed loop by speed': 'Lazo abierto por PWM, o lazo cerrado por velocidad', 'pivot on': 'pivote', 'L|wheel': 'I', 'R|wheel': 'D', 'level': 'nivel',
   'Armed, the arrow keys drive while they are held, or a gamepad with a shoulder button.':
@@ -111,9 +111,9 @@ export const PAGE = {
   'true x': 'x real', 'true y': 'y real', 'goal y': 'destino y', 'left − right': 'izq. − der.', 'error l.': 'error izq.', 'error r.': 'error der.', 'error': 'error', 'servo': 'servo',
   'true range, left sonar': 'distancia real, sonar izq.', 'true range, right sonar': 'distancia real, sonar der.', 'true range, front sonar': 'distancia real, sonar frontal',
   'range, left sonar': 'distancia, sonar izq.', 'range, right sonar': 'distancia, sonar der.', 'range, front sonar': 'distancia, sonar frontal',
-  'reference of the distance': 'consigna de distancia', 'range, left minus right sonar': 'distancia, sonar izq. menos der.',
+  'reference of the distance': 'referencia de distancia', 'range, left minus right sonar': 'distancia, sonar izq. menos der.',
   'true speed, left wheel': 'velocidad real, rueda izq.', 'true speed, right wheel': 'velocidad real, rueda der.', 'speed, left wheel': 'velocidad, rueda izq.', 'speed, right wheel': 'velocidad, rueda der.',
-  'reference of the speed, left wheel': 'consigna de velocidad, rueda izq.', 'reference of the speed, right wheel': 'consigna de velocidad, rueda der.',
+  'reference of the speed, left wheel': 'referencia de velocidad, rueda izq.', 'reference of the speed, right wheel': 'referencia de velocidad, rueda der.',
   'error of the speed, left wheel': 'error de velocidad, rueda izq.', 'error of the speed, right wheel': 'error de velocidad, rueda der.', 'PWM, left wheel': 'PWM, rueda izq.', 'PWM, right wheel': 'PWM, rueda der.',
   'true heading': 'rumbo real', 'heading as estimated': 'rumbo estimado', 'heading that the mode wants': 'rumbo que quiere el modo', 'error of the heading': 'error de rumbo', 'angle of the servo': 'ángulo del servo',
   'ghost': 'fantasma', 'ghost x': 'x fantasma', 'ghost y': 'y fantasma', 'heading of the ghost': 'rumbo del fantasma', 'place of the ghost, x': 'posición del fantasma, x', 'place of the ghost, y': 'posición del fantasma, y',
@@ -137,6 +137,7 @@ export const PAGE = {
   'Parameters': 'Parámetros', 'all modes': 'todos los modos', 'Defaults': 'De fábrica', 'Save on the robot': 'Guardar en el robot', 'The robot starts with these values from now on': 'El robot arranca con estos valores a partir de ahora',
   'Set every parameter to its default; save to make that last': 'Pone cada parámetro en su valor de fábrica; guárdalos para que dure',
   'name': 'nombre', 'value': 'valor', 'unit': 'unidad', 'range': 'margen', 'default': 'de fábrica', '{} in {}': '{} en {}', 'no unit': 'sin unidad',
+  'Tap a line, or go to its value, to read what it is.': 'Toca una línea, o ve a su valor, para leer qué es.',
   'Apply': 'Aplicar', 'Write to the robot (Enter)': 'Escribe en el robot (Intro)', 'Back to what the robot holds (Escape)': 'Vuelve a lo que tiene el robot (Escape)', 'Revert': 'Deshacer',
   'waiting…': 'esperando…', 'refused: {}': 'rechazado: {}', 'not read yet': 'aún sin leer', 'the log does not tell them': 'la grabación no los dice', 'the robot speaks text: it does not tell them': 'el robot habla texto: no los dice', 'running': 'en marcha', 'the robot has another table: not shown': 'el robot tiene otra tabla: no se muestra',
   'Events': 'Sucesos', 'States': 'Estados', 'Link': 'Enlace', 'Bytes': 'Bytes', 'Events, states and link': 'Sucesos, estados y enlace', 'Events, newest first': 'Sucesos, los últimos primero',

@@ -36,7 +36,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     number: "0",
     title: t(
         "Basic movements, open loop",
-        "Movimientos básicos en bucle abierto",
+        "Movimientos básicos en lazo abierto",
     ),
     scenarios: &[
         "manual-curve-floor-forward",
@@ -96,7 +96,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 const WHAT: Text = t(
     "The robot is moved without any feedback, to see that it is built right and what stands between a wish and a motion: forward and backward, turns about the centre, pivots about each wheel, \
      arcs. The same movements with the speed loops of mode 5 stand beside them.",
-    "Se mueve el robot sin realimentación alguna, para comprobar que el montaje es correcto y qué se interpone entre lo ordenado y el movimiento: avance y retroceso, giros sobre el centro, pivotes sobre cada rueda \
+    "Se mueve el robot sin realimentación alguna, para comprobar que el montaje es correcto y qué se interpone entre la orden y el movimiento: avance y retroceso, giros sobre el centro, pivotes sobre cada rueda \
      y arcos. Junto a ellos, los mismos movimientos con los lazos de velocidad del modo 5.",
 );
 const FINDINGS: [Text; 4] = [
@@ -114,7 +114,7 @@ const FINDINGS: [Text; 4] = [
     ),
     t(
         "Floor, slip and friction bend every open-loop line.",
-        "El suelo, el deslizamiento y el rozamiento curvan cualquier recta en bucle abierto.",
+        "El suelo, el deslizamiento y el rozamiento curvan cualquier recta en lazo abierto.",
     ),
 ];
 const PARTS: Text = t(
@@ -123,7 +123,7 @@ const PARTS: Text = t(
 );
 const SCHEME_CAPTION: Text = t(
     "Open loop: the PWM of each wheel is given, and nothing comes back.",
-    "Bucle abierto: se da la PWM de cada rueda y nada se realimenta.",
+    "Lazo abierto: se fija la PWM de cada rueda y no hay realimentación.",
 );
 const FACTORS: Text = t(
     "A movement is a factor for each wheel. Straight on both are equal, about the centre opposite, about a wheel that one's is zero. With the speeds $v_R$ and $v_L$ of the wheels on the floor, \
@@ -134,7 +134,7 @@ const FACTORS: Text = t(
 const RADIUS: Text = same(r"r = \frac{b}{2}\,\frac{v_R + v_L}{v_R - v_L}");
 const RADIUS_END: Text = t(
     "half the base in a pivot; one and a half times the base with the inner wheel at half the speed. Open loop the wheels do not keep their ratio, so the circle is another one.",
-    "la mitad de la distancia entre ruedas en un pivote; vez y media esa distancia con la rueda interior a la mitad de velocidad. En bucle abierto las ruedas no conservan su relación, así que la circunferencia es otra.",
+    "la mitad de la distancia entre ruedas en un pivote; vez y media esa distancia con la rueda interior a la mitad de velocidad. En lazo abierto las ruedas no conservan su relación, así que la circunferencia es otra.",
 );
 const DEAD: Text = t(
     "The dead zone: the mean current of a standing motor grows with the square of the duty $u$, since the current dies in every off-time. It moves when its torque exceeds the dry friction $T_c$, so",
@@ -147,7 +147,7 @@ const CURVES: Text = t(
 );
 const DEAD_CAPTION: Text = t(
     "Dead zone on the floor, forward: the PWM grows slowly, and the wheels start when it overcomes friction.",
-    "Zona muerta en el suelo, hacia delante: la PWM crece lentamente y las ruedas arrancan cuando vence al rozamiento.",
+    "Zona muerta en el suelo, hacia delante: la PWM crece lentamente y las ruedas arrancan cuando esta vence el rozamiento.",
 );
 const ASYMMETRY: Text = t(
     "Asymmetry: speeds of both wheels at the same PWM, in the air, forward (above) and backward (below).",
@@ -155,7 +155,7 @@ const ASYMMETRY: Text = t(
 );
 const OPEN_WAYS: Text = t(
     "Where the basic movements lead open loop, all from the origin, looking along x: true ways of the middle of the axis.",
-    "Adónde llevan los movimientos básicos en bucle abierto, todos desde el origen y mirando según x: trayectorias reales del punto medio del eje.",
+    "Adónde llevan los movimientos básicos en lazo abierto, todos desde el origen y mirando según x: trayectorias reales del punto medio del eje.",
 );
 const SPEED_WAYS: Text = t(
     "The same with the speed of each wheel regulated: straight lines are straight, and the arcs are circles.",

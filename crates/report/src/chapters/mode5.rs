@@ -36,8 +36,8 @@ const WHAT: Text = t(
     "Each wheel turns at the speed that it is told, in both directions and through zero. Everything that asks for speeds (modes 1 to 4 and 6 to 8) \
      stands on these two loops. The staircase of the experiment is 60, 50, 100, 70, 0, −100, −50, 0 and 40 rpm, five seconds each; a second \
      run goes straight from 70 to −100 rpm and back.",
-    "Cada rueda gira a la velocidad que se le ordena, en ambos sentidos y pasando por cero. Todo lo que pide velocidades (modos 1 a 4 y 6 a 8) \
-     se apoya en estos dos lazos. La escalera del experimento es 60, 50, 100, 70, 0, −100, −50, 0 y 40 rpm, cinco segundos cada una; una segunda \
+    "Cada rueda gira a la velocidad que se le ordena, en ambos sentidos y pasando por cero. Todos los modos que piden velocidades (1 a 4 y 6 a 8) \
+     se apoyan en estos dos lazos. La escalera del experimento es 60, 50, 100, 70, 0, −100, −50, 0 y 40 rpm, cinco segundos cada una; una segunda \
      ejecución pasa directamente de 70 a −100 rpm y vuelve.",
 );
 const PARTS: Text = t(
@@ -86,7 +86,7 @@ const LAW: Text = same(
 );
 const SPEEDS: Text = t(
     "Speeds of both wheels with their reference, and the PWM of each. In the steady parts the PWM is that of the static curve of its speed.",
-    "Velocidad de ambas ruedas con su referencia y PWM de cada una. En los tramos permanentes la PWM es la de la característica estática para esa velocidad.",
+    "Velocidad de ambas ruedas con su referencia y PWM de cada una. En régimen permanente la PWM es la de la característica estática para esa velocidad.",
 );
 const ERROR: Text = t(
     "Error of each wheel's speed: measured speed less reference. A reference is a step, so the error begins with the whole step.",

@@ -41,8 +41,8 @@ const PARTS: Text = t(
 const SCHEME_WORDS: Text = t(
     "What a regulator of the difference of *speeds* leaves, a regulator of the accumulated difference takes back: the difference of the ways is the heading times the base. A second, slower term \
      leads back to the line itself. What one wheel gets the other loses, so that the mean stays at the commanded speed.",
-    "Lo que un regulador de la diferencia de *velocidades* deja sin corregir, lo recupera un regulador de la diferencia acumulada: la diferencia de recorridos es la orientación por la distancia entre ruedas. Un segundo término, más lento, \
-     devuelve el robot a la propia recta. Lo que gana una rueda lo pierde la otra, de modo que la media se mantiene en la velocidad ordenada.",
+    "Lo que un regulador de la diferencia de *velocidades* deja sin corregir, lo recupera un regulador de la diferencia acumulada: la diferencia de recorridos es el producto de la orientación por la distancia entre ruedas. Un segundo término, más lento, \
+     devuelve el robot a la propia recta. Lo que gana una rueda lo pierde la otra, de modo que la media se mantiene en la velocidad de referencia.",
 );
 const SCHEME_CAPTION: Text = t(
     "Control scheme of mode 6: the part on the left is new, the speed loops are those of mode 5.",
@@ -50,7 +50,7 @@ const SCHEME_CAPTION: Text = t(
 );
 const WAYS: Text = t(
     "The way of a wheel in a period, from its angular speed and its radius, and the difference $d$ of both ways, which is the base times the heading:",
-    "El recorrido de una rueda en un periodo, a partir de su velocidad angular y su radio, y la diferencia $d$ de ambos recorridos, que es la distancia entre ruedas por la orientación:",
+    "El recorrido de una rueda en un periodo, a partir de su velocidad angular y su radio, y la diferencia $d$ de ambos recorridos, igual al producto de la distancia entre ruedas por la orientación:",
 );
 const WAYS_FORMULA: Text =
     same(r"v = \omega\,R, \qquad \Delta s = v\,\Delta t, \qquad d = s_R - s_L = b\,\varphi");
@@ -84,7 +84,7 @@ const STEADY: Text = t(
 );
 const VARIABLE: Text = t(
     "The variable reference of each wheel: the commanded speed and the small share that keeps the line. The wheels follow these, not the constant one.",
-    "Referencia variable de cada rueda: la velocidad ordenada más el pequeño incremento que mantiene la recta. Las ruedas siguen estas referencias, no la constante.",
+    "Referencia variable de cada rueda: la velocidad de referencia más el pequeño incremento que mantiene la recta. Las ruedas siguen estas referencias, no la constante.",
 );
 const VARIABLE_NAME: Text = t("variable reference", "referencia variable");
 const CONSTANT_NAME: Text = t("constant reference", "referencia constante");
@@ -136,7 +136,7 @@ const CONTROL: Scheme = Scheme {
         )],
         level: 1,
     }],
-    from_above: &[(2, t("commanded speed", "velocidad ordenada"))],
+    from_above: &[(2, t("commanded speed", "velocidad de referencia"))],
 };
 
 fn write(page: &mut Page, data: &Data) {

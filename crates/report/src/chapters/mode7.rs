@@ -45,7 +45,7 @@ const PARTS: Text = t(
 const SCHEME_WORDS: Text = t(
     "Two references come from the difference of pose and goal: a distance and a heading. On a side the distance gives the speed, with a stop that friction can keep, and \
      the offset from the side gives the heading; in a corner only the heading counts. Both make the speeds of the wheels, and mode 5 does the rest.",
-    "De la diferencia entre pose y objetivo salen dos referencias: una distancia y una orientación. En un lado, la distancia da la velocidad, con una parada que el rozamiento puede cumplir, y \
+    "De la diferencia entre pose y objetivo salen dos referencias: una distancia y una orientación. En un lado, la distancia da la velocidad, con una frenada que la adherencia de las ruedas permite, y \
      la separación del lado da la orientación; en una esquina solo cuenta la orientación. Ambas determinan las velocidades de las ruedas y del resto se ocupa el modo 5.",
 );
 const SCHEME_CAPTION: Text = t(

@@ -47,7 +47,7 @@ const WHAT: Text = t(
     "The robot goes to a point that it is given, finds what stands in the way, goes around it and on to the point. There it calls its place the new origin and waits for the \
      next goal. With another command it follows a lane between boxes instead, for ever.",
     "El robot va a un punto dado, detecta lo que se interpone, lo rodea y sigue hasta el punto. Allí toma su posición como nuevo origen y espera el \
-     siguiente objetivo. Con otra orden sigue, en cambio, un carril entre cajas, sin fin.",
+     siguiente objetivo. Con otra orden recorre, en cambio, un carril entre cajas, sin término fijado.",
 );
 const IDEA: Text = t(
     "How an obstacle is passed: the servo looks to both sides, the robot passes the edge that makes the shorter way and goes on as soon as the way to the goal is clear.",
@@ -63,8 +63,8 @@ const SCHEME_WORDS: Text = t(
     "State machines above the loops of mode 7. For a goal, echoes are remembered as points; what hangs together with a point on the line to the goal is the obstacle, and its two ends are \
      the directions that just pass it. The robot leaves it as soon as the line to the goal is clear and leads nearer than where the detour began, so every detour ends; once its whole outline has been seen \
      without a way through, the goal is given up.",
-    "Máquinas de estados por encima de los lazos del modo 7. Para un objetivo, los ecos se recuerdan como puntos; lo que está unido a un punto sobre la recta al objetivo es el obstáculo, y sus dos extremos son \
-     las direcciones que lo pasan por poco. El robot lo abandona en cuanto la recta al objetivo queda libre y conduce más cerca que donde empezó el rodeo, de modo que todo rodeo termina; si ha visto todo el contorno \
+    "Máquinas de estados por encima de los lazos del modo 7. Para un objetivo, los ecos se recuerdan como puntos; lo que está unido a un punto sobre la recta al objetivo es el obstáculo, y sus dos extremos dan \
+     las direcciones que pasan justo a su lado. El robot deja de rodearlo en cuanto la recta al objetivo queda libre y él está más cerca de este que al empezar el rodeo, de modo que todo rodeo termina; si ha visto todo el contorno \
      sin hallar paso, abandona el objetivo.",
 );
 const GOAL_MACHINE: Text = t(
@@ -73,7 +73,7 @@ const GOAL_MACHINE: Text = t(
 );
 const LANE_WORDS: Text = t(
     "In a lane the robot drives straight on until a face is 25 cm ahead, looks to both sides, and turns by a quarter to the open one. The lateral sonar must agree: it looks where the robot would go.",
-    "En un carril el robot avanza recto hasta tener una cara a 25 cm, mira a ambos lados y gira un cuarto de vuelta hacia el lado abierto. El sensor lateral debe coincidir: mira hacia donde iría el robot.",
+    "En un carril el robot avanza recto hasta tener una cara a 25 cm, mira a ambos lados y gira un cuarto de vuelta hacia el lado abierto. El sensor lateral debe confirmarlo: mira hacia donde iría el robot.",
 );
 const LANE_MACHINE: Text = t(
     "State machine for a lane of boxes.",

@@ -34,7 +34,7 @@ pub(super) const MODE4: Experiment = Experiment {
     number: "4",
     title: t(
         "Mode 4: along a wall at a commanded distance",
-        "Modo 4: avance paralelo a una pared a la distancia ordenada",
+        "Modo 4: avance paralelo a una pared a la distancia de referencia",
     ),
     scenarios: &["mode4"],
     highlights: &[
@@ -117,7 +117,7 @@ const DISTANCES4: Text = t(
 );
 const ERROR4: Text = t(
     "Errors: the difference of each distance from the reference. Both at zero: at the distance, and parallel to the wall.",
-    "Errores: diferencia de cada distancia con la referencia. Ambos nulos: a la distancia ordenada y paralelo a la pared.",
+    "Errores: diferencia de cada distancia con la referencia. Ambos nulos: a la distancia de referencia y paralelo a la pared.",
 );
 const DIFFERENCE: Text = t(
     "Difference of the distances, first less second: a measure of the angle to the wall, negative on the way towards it.",
@@ -168,7 +168,7 @@ const CONTROL3: Scheme = Scheme {
     from_above: CRUISE,
 };
 const CONTROL4: Scheme = Scheme {
-    input: t("commanded d*", "d* ordenada"),
+    input: t("commanded d*", "referencia d*"),
     row: ROW,
     paths: PATHS,
     from_above: CRUISE,
