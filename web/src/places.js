@@ -45,6 +45,9 @@ export class Places {
   /** @param {Scene | null} scene */
   setScene(scene) {
     this.#scene = scene;
+    const [goal] = scene?.goals ?? [];
+    // The form begins with the goal that the experiment begins with.
+    for (const [index, input] of [this.#x, this.#y].entries()) if (goal) write(input, goal[index] ?? 0);
     if (this.#mode) this.layOut(this.#mode);
   }
 

@@ -181,11 +181,13 @@ test('the longest fault fits beside the controls of every mode', async () => {
 });
 
 test('what a parameter is can be read with a finger and with the keyboard, on a tablet too', async () => {
-  const tablet = await open(['lab', '--scenario', 'mode1', '--out', folder()], { viewport: { width: 900, height: 1180 }, hasTouch: true });
+  const tablet = await open(['lab', '--scenario', 'mode8-obstacles', '--out', folder()], { viewport: { width: 900, height: 1180 }, hasTouch: true });
   try {
     const { page } = tablet;
     await page.waitForSelector('#connection.good');
     const about = page.locator('#parameter-about');
+    await page.locator('#goal').waitFor();
+    assert.equal(await page.locator('#goal-x').inputValue(), '2.5', 'the form begins with the experiment\'s goal');
     await about.getByText('Tap a line').waitFor();
     await page.locator('#parameters td', { hasText: /^link_timeout_s$/ }).tap();
     await about.getByText('link_timeout_s Time without a sign of life after which the wheels are released.').waitFor();

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::lab::SimulatedRobot;
 use rumbo_control::Fault;
 use rumbo_scenario::files::Overrides;
-use rumbo_station::log::{Kind, Log, Manifest};
+use rumbo_station::log::{Log, Manifest};
 use rumbo_station::{Choice, Ghost, LinkNews, MapPose, Scene, Simulation, Standing, Target};
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, ToRobot};
 use std::collections::VecDeque;
@@ -186,10 +186,7 @@ pub(crate) fn add_to(
 ) -> Result<Box<dyn Ghost>, Failure> {
     let shown = path.display();
     let recorded = log.manifest.as_ref();
-    // A calibration is no scenario in which a robot could live.
-    let own = recorded
-        .filter(|manifest| manifest.kind != Kind::Calibration)
-        .and_then(|manifest| manifest.scenario.clone());
+    let own = recorded.and_then(|manifest| manifest.scenario.clone());
     let Some(scenario) = scenario.map(str::to_owned).or(own) else {
         return Err(Failure::Input(format!(
             "{shown}: does not say which scenario it is of; name one, as in --ghost mode1"

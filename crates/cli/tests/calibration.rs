@@ -68,10 +68,6 @@ fn a_calibration_is_recorded_and_its_log_is_read_like_any_other() {
     assert!(exported.status.success(), "{}", stderr(&exported));
     let listed = stdout(&rumbo(logs, &["list", "logs"]));
     assert!(listed.contains("calibration  seed 3"), "{listed}");
-    // No scenario of that name is there for a ghost to live in.
-    let ghost = rumbo(logs, &["replay", &shown, "--ghost", "--no-browser"]);
-    assert_eq!(ghost.status.code(), Some(2));
-    assert!(stderr(&ghost).contains("name one, as in --ghost mode1"));
 }
 
 #[test]

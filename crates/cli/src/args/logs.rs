@@ -19,7 +19,8 @@ A CSV begins with the names of its columns; as a spreadsheet has saved it (semic
   mode 7        dt_ms,speed_a_rpm,speed_b_rpm,reference_a_rpm,reference_b_rpm,x_m,y_m,heading_deg,pwm_a,pwm_b
   mode 8        dt_ms,reference_a_rpm,reference_b_rpm,heading_reference_deg,goal_x_m,goal_y_m,x_m,y_m,heading_deg,state,right_cm,
                 left_cm,front_cm
-A capture of a terminal has rows of telemetry and the commands typed, a line each.")]
+A capture of a terminal has rows of telemetry and the commands typed, a line each. Damaged lines are left out and named, as long as more of them
+are sound.")]
 pub(crate) struct ImportArgs {
     /// CSV of the original program, or what a terminal showed of it
     #[arg(value_name = "FILE.csv")]
@@ -120,7 +121,7 @@ Examples:
 
 Exit status 0 if the run is the same, 1 if it differs.")]
 pub(crate) struct RerunArgs {
-    /// Log of a simulated run: of `rumbo run` or `rumbo lab`
+    /// Log of a simulated run: of `rumbo run`, `rumbo lab` or `rumbo calibrate`
     #[arg(value_name = "LOG")]
     pub(crate) log: PathBuf,
     /// The result as one JSON object

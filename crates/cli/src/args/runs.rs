@@ -172,7 +172,8 @@ Examples:
   rumbo calibrate --seed 7 --out my_robot.toml
 
 The robot stands 0.3 to 0.5 m beside a wall, along it, on its final rig, with 2.5 m free ahead. It drives along the wall to and fro,
-turns on the spot, and is done in less than three minutes.")]
+turns on the spot, and is done in less than three minutes of its time. It is recorded among the logs of runs (`rumbo list logs`), unless
+--no-record is given. A real robot is calibrated from its dashboard: `rumbo connect PORT`.")]
 pub(crate) struct CalibrateArgs {
     /// Robot: name or path
     #[arg(long, value_name = "NAME", default_value = "memoria")]

@@ -1,8 +1,8 @@
 //! A calibration of a simulated robot as a run: what it did and found, to be kept beside other runs and to be had again.
 
-use super::simulated::{PLAN, SCENARIO};
+use super::simulated::PLAN;
 use super::{CalibrateError, Calibration, Linked, calibrate, simulated};
-use crate::files::{FileError, Kind, Library, Overrides, Setup};
+use crate::files::{FileError, Library, Overrides, Setup};
 use crate::metrics::Metrics;
 use crate::run::{self, RunResult};
 use crate::sim::Sim;
@@ -18,14 +18,12 @@ pub struct CalibrationRun {
     pub result: RunResult,
 }
 
-/// The setup of a calibration: a built-in scenario that only says where the robot stands, in the world made for it unless told otherwise.
+/// The setup of a calibration: the built-in scenario of that name, in the world made for it unless told otherwise.
 ///
 /// # Errors
 /// Whatever is wrong with the files.
 pub fn calibration_setup(overrides: &Overrides) -> Result<Setup, FileError> {
-    Library::new()
-        .holding(Kind::Scenario, PLAN, SCENARIO)
-        .setup(PLAN, overrides)
+    Library::new().setup(PLAN, overrides)
 }
 
 /// Calibrates the robot that `seed` draws in a setup of [`calibration_setup`], and keeps what happened. Floor, slip and noise are others than

@@ -1,25 +1,13 @@
 //! The calibration of a simulated robot, in the world made for it.
 
 use super::{CalibrateError, Calibration, calibrate};
-use crate::files::{FileError, Library, ScenarioFile, Setup};
+use crate::files::{FileError, Library, Setup};
 use crate::sim::Sim;
 
 /// The built-in world of a calibration.
 pub const WORLD: &str = "calibration";
-/// Name of the scenario of a calibration; no built-in one has it.
+/// The built-in scenario that only says where the robot stands: along the wall on its right, free floor ahead.
 pub(super) const PLAN: &str = "calibration";
-/// A scenario that only says where the robot stands: along the wall on its right, free floor ahead.
-pub(super) const SCENARIO: &str = r#"
-title = "Calibration"
-robot = "memoria"
-rig = "final"
-world = "calibration"
-mode = "straight_line"
-duration_s = 300
-[start]
-x_m = -1.1
-y_m = -0.45
-"#;
 
 /// Calibrates the robot that `seed` draws in `setup`, on its rig in the world of calibrations (or `setup`'s own with `here`), always from the same place.
 /// Floor, slip and noise are others than those of the run itself. Gives the calibration and the simulation at its end.
@@ -35,10 +23,10 @@ pub fn calibrate_simulated(
     own.scenario.wheels_in_air = false;
     own.scenario.sonar_faults.clear();
     own.scenario.wire_faults.clear();
-    let plan = ScenarioFile::parse(PLAN, PLAN, SCENARIO)?;
-    own.scenario.start = plan.start;
+    let library = Library::new();
+    own.scenario.start = library.scenario(PLAN)?.start;
     if !here {
-        own.world = Library::new().world(WORLD)?;
+        own.world = library.world(WORLD)?;
         own.scenario.world.clone_from(&own.world.name);
     }
     let mut sim = robot(&own, seed)?;
