@@ -169,7 +169,7 @@ fn rows(path: &Path, kind: RowKind, text: &str) -> Result<Vec<(f64, Row)>, RealE
         let row = Row::parse_as(kind, line).map_err(|_| {
             let due = kind.columns().len();
             RealError(format!(
-                "{}:{}: `{line}` is no row of {due} numbers; correct the line or take it out",
+                "{}:{}: `{line}` is no row of {due} numbers; correct it, or take the log that `rumbo import` makes of the other rows",
                 path.display(),
                 index + 1
             ))

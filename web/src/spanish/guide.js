@@ -7,7 +7,7 @@ export const GUIDE = {
   'left|wheel': 'izquierda', 'right|wheel': 'derecha', 'left|sonar': 'izquierdo', 'right|sonar': 'derecho', 'front|sonar': 'frontal',
   'Wheels in the air': 'Ruedas en el aire', 'Left motor and encoder': 'Motor y encoder izquierdos', 'Right motor and encoder': 'Motor y encoder derechos', 'Sonar: {}': 'Sonar {}', 'Servo': 'Servo',
   'Put the robot on a block so that both wheels hang free. The page arms the robot and turns one wheel at a time; STOP works at any moment.':
-    'Pon el robot sobre un taco, con las dos ruedas libres. La página arma el robot y gira una rueda cada vez; PARAR vale en todo momento.',
+    'Pon el robot sobre un taco, con las dos ruedas libres. La página arma el robot y hace girar las ruedas de una en una; PARAR funciona en cualquier momento.',
   'The wheels hang free': 'Las ruedas están libres', 'The {} wheel will turn forward for a moment. Watch it.': 'La rueda {} va a girar hacia delante un momento. Mírala.', 'Turn it': 'Girarla', 'turning…': 'girando…',
   'The encoders counted: left up to {} rpm, right up to {} rpm. What did you see?': 'Los encoders contaron: izquierdo hasta {} rpm, derecho hasta {} rpm. ¿Qué has visto?',
   'the {} wheel turned forward': 'la rueda {} giró hacia delante', 'the {} wheel turned backward': 'la rueda {} giró hacia atrás', 'the other wheel turned': 'giró la otra rueda', 'no wheel turned': 'no giró ninguna',
@@ -48,8 +48,8 @@ export const GUIDE = {
   'A sonar ahead on the servo and one on each side: rig final. Battery charged.': 'Un sonar al frente sobre el servo y uno a cada lado: montaje final. Batería cargada.',
   'Put it on the floor beside a straight wall, 0.3 to 0.5 m from it and along it, with 2.5 m free ahead.': 'Ponlo en el suelo junto a una pared recta, a 0,3-0,5 m y paralelo a ella, con 2,5 m libres delante.',
   'It drives to and fro along the wall and turns on the spot, for about two and a half minutes. STOP ends it at any moment.':
-    'Va y vuelve a lo largo de la pared y gira en el sitio, durante unos dos minutos y medio. PARAR lo acaba en todo momento.',
-  'The robot calibrates itself. Stay out of its way; STOP ends it.': 'El robot se está calibrando. No te pongas en su camino; PARAR lo acaba.',
+    'Va y vuelve a lo largo de la pared y gira en el sitio, durante unos dos minutos y medio. PARAR lo detiene en cualquier momento.',
+  'The robot calibrates itself. Stay out of its way; STOP ends it.': 'El robot se está calibrando. No te pongas en su camino; PARAR lo detiene.',
   'The calibration came to no end: {}': 'La calibración no llegó a su fin: {}', 'Done. The parameters are set; save them to make that last.': 'Hecho. Los parámetros están puestos; guárdalos para que dure.',
   'found': 'hallado', 'standard error': 'error típico', 'parameter': 'parámetro', 'before': 'antes', 'now': 'ahora', 'Put the old values back': 'Volver a los valores de antes',
   'radius, right over left': 'radio, derecho entre izquierdo', 'base_m (with the mean radius in force)': 'base_m (con el radio medio en vigor)', 'mean radius in force, m': 'radio medio en vigor, m',
@@ -60,7 +60,7 @@ export const GUIDE = {
   'calibration: done in {} s, the parameters are set': 'calibración: hecha en {} s, los parámetros están puestos', 'it was stopped': 'se detuvo', 'no thread for it ({})': 'sin hilo para ella ({})',
   'calibration: refused, this program has none': 'calibración: rechazada, este programa no la tiene',
   'one is running already': 'ya hay una en marcha', 'no robot answers': 'ningún robot responde', 'this robot has other parameters': 'este robot tiene otros parámetros', 'the robot is armed: switch OFF first': 'el robot está armado: primero OFF',
-  'refused, the robot calibrates itself; STOP ends that': 'rechazado, el robot se está calibrando; PARAR lo acaba',
+  'refused, the robot calibrates itself; STOP ends that': 'rechazado, el robot se está calibrando; PARAR lo detiene',
   'the robot does not answer; check the link': 'el robot no responde; comprueba el enlace', '{} was refused: {}': '{} fue rechazado: {}', 'the robot stopped: {}': 'el robot se detuvo: {}',
   'a calibration needs a sonar ahead and one on each side; mount the rig `final` and set the parameter rig': 'una calibración necesita un sonar al frente y uno a cada lado; monta el montaje `final` y fija el parámetro rig',
   'no wall beside the robot (left {}, right {}); put it 0.3 to 0.5 m beside a wall, along it, with 2.5 m free ahead':

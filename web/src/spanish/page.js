@@ -136,7 +136,7 @@ export const PAGE = {
   'Send the line, ended by LF, to this USART': 'Envía la línea, acabada en LF, a esta USART',
   'Parameters': 'Parámetros', 'all modes': 'todos los modos', 'Defaults': 'De fábrica', 'Save on the robot': 'Guardar en el robot', 'The robot starts with these values from now on': 'El robot arranca con estos valores a partir de ahora',
   'Set every parameter to its default; save to make that last': 'Pone cada parámetro en su valor de fábrica; guárdalos para que dure',
-  'name': 'nombre', 'value': 'valor', 'unit': 'unidad', 'range': 'margen', 'default': 'de fábrica', '{} in {}': '{} en {}', 'no unit': 'sin unidad',
+  'name': 'nombre', 'value': 'valor', 'unit': 'unidad', 'range': 'rango', 'default': 'de fábrica', '{} in {}': '{} en {}', 'no unit': 'sin unidad',
   'Tap a line, or go to its value, to read what it is.': 'Toca una línea, o ve a su valor, para leer qué es.',
   'Apply': 'Aplicar', 'Write to the robot (Enter)': 'Escribe en el robot (Intro)', 'Back to what the robot holds (Escape)': 'Vuelve a lo que tiene el robot (Escape)', 'Revert': 'Deshacer',
   'waiting…': 'esperando…', 'refused: {}': 'rechazado: {}', 'not read yet': 'aún sin leer', 'the log does not tell them': 'la grabación no los dice', 'the robot speaks text: it does not tell them': 'el robot habla texto: no los dice', 'running': 'en marcha', 'the robot has another table: not shown': 'el robot tiene otra tabla: no se muestra',

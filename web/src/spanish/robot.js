@@ -74,7 +74,7 @@ export const ROBOT = {
     'bloqueado: hay algo en el camino; despéjalo o gira el robot, borra el fallo y arma otra vez',
   // Refusals, each with its remedy.
   'the value is not a finite number; send a number': 'el valor no es un número finito; envía un número',
-  'the value is outside the allowed range; see the limits with `rumbo list`': 'el valor está fuera del margen permitido; mira los límites con `rumbo list`',
+  'the value is outside the allowed range; see the limits with `rumbo list`': 'el valor está fuera del rango permitido; mira los límites con `rumbo list`',
   'no such parameter; see `rumbo list`': 'no hay tal parámetro; mira `rumbo list`',
   'the selected mode takes no such command; select the mode that does': 'el modo elegido no admite esa orden; elige el modo que sí',
   'not while armed; disarm first': 'no mientras está armado; desarma primero',
@@ -86,7 +86,7 @@ export const ROBOT = {
   'the robot\'s sonars do not sit where this mode needs them; mount them so and set the parameter `rig`':
     'los sonares del robot no están donde este modo los necesita; móntalos así y fija el parámetro `rig`',
   'allowed is {} to {}': 'se permite de {} a {}', 'allowed is {} to {} m for each coordinate': 'se permite de {} a {} m en cada coordenada',
-  'allowed is -{} to {} m for each coordinate, and {} waypoints': 'se permite de -{} a {} m en cada coordenada, y {} lugares', 'out of range': 'fuera de margen',
+  'allowed is -{} to {} m for each coordinate, and {} waypoints': 'se permite de -{} a {} m en cada coordenada, y {} lugares', 'out of range': 'fuera de rango',
   'not confirmed': 'sin confirmar', 'too many commands wait for the robot': 'demasiadas órdenes esperan al robot', 'the robot has another parameter table': 'el robot tiene otra tabla de parámetros',
  
   'the battery is low; charge it': 'la batería está baja; cárgala',

@@ -45,7 +45,7 @@ const WHAT: Text = t(
 );
 const LOOKAHEAD: Text = t(
     "The lookahead at the distance L on the path, and the circle that is tangent to the robot's heading and goes through it. The dots are the waypoints of the original's version, which takes the one after the nearest.",
-    "El punto de mira a la distancia L sobre el camino y la circunferencia tangente a la orientación del robot que pasa por él. Los puntos son los puntos de paso de la versión original, que toma el siguiente al más cercano.",
+    "El punto de mira a la distancia L sobre el camino y la circunferencia tangente a la orientación del robot que pasa por él. Marcados, los puntos de paso de la versión original, que toma el siguiente al más cercano.",
 );
 const LAW: Text = t(
     "Seen by the robot the lookahead is at $(x, y)$. The circle has the curvature $\\kappa$, and the yaw rate follows from the speed:",
