@@ -3,6 +3,7 @@
 //! What rustc writes with `--emit=asm` is a list of functions, each in a section of its own, and data. Functions become
 //! lists of labels and instructions; data and what is not in a section `.text` stay as they are.
 
+use std::collections::HashMap;
 use std::fmt;
 
 use super::debugging::{Debugging, Kept};
@@ -184,6 +185,16 @@ impl Function {
     /// An interrupt's handler: hardware calls it, at any time.
     pub(super) fn is_handler(&self) -> bool {
         self.name().starts_with("__vector")
+    }
+
+    /// Its labels and the lines where they are.
+    pub(super) fn places(&self) -> HashMap<&str, usize> {
+        let lines = self.lines.iter().enumerate();
+        let labels = lines.filter_map(|(at, line)| match line {
+            Line::Label(label) => Some((label.as_str(), at)),
+            Line::Do(_) => None,
+        });
+        labels.collect()
     }
 
     /// Its instructions.

@@ -139,7 +139,7 @@ fn far(operand: &str) -> Set {
 }
 
 /// The lower register of a pointer, and whether it moves.
-fn any_pointer(operand: &str) -> Option<(u8, bool)> {
+pub(super) fn any_pointer(operand: &str) -> Option<(u8, bool)> {
     let still = operand.trim_start_matches('-');
     let moving = still.len() != operand.len() || still.ends_with('+');
     pointer(still.trim_end_matches('+')).map(|(base, _)| (base, moving))

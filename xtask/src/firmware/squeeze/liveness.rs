@@ -133,7 +133,7 @@ impl Whole {
     }
 
     /// What a call does.
-    fn call(&self, name: &str) -> Call {
+    pub(super) fn call(&self, name: &str) -> Call {
         self.calls
             .get(name)
             .copied()
@@ -149,7 +149,7 @@ impl Whole {
     }
 
     fn complete(&self, function: &Function, own: &[Effect], wanted: Set) -> Known {
-        let places = places(function);
+        let places = function.places();
         let mut effects = own.to_vec();
         for (line, effect) in function.lines.iter().zip(&mut effects) {
             let Line::Do(it) = line else { continue };
@@ -179,7 +179,7 @@ impl Whole {
     fn update(&mut self, function: &Function, own: &[Effect]) -> bool {
         let wanted = self.wanted(function);
         let known = self.complete(function, own, wanted);
-        let places = places(function);
+        let places = function.places();
         let saved = saved(function);
         let mut writes = function.lost;
         let mut changed = false;
@@ -263,17 +263,6 @@ fn own_effects(function: &Function) -> Result<Vec<Effect>, String> {
         }
     }
     Ok(effects)
-}
-
-/// Labels of a function and the lines where they are.
-fn places(function: &Function) -> HashMap<&str, usize> {
-    let labels = function.lines.iter().enumerate();
-    labels
-        .filter_map(|(at, line)| match line {
-            Line::Label(label) => Some((label.as_str(), at)),
-            Line::Do(_) => None,
-        })
-        .collect()
 }
 
 /// What matters behind each line.

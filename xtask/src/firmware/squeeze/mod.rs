@@ -1,19 +1,21 @@
 //! Makes the program smaller, in its assembly.
 //!
 //! The compiler writes each function as if it were alone. Here all are known, and so is what each reads and changes ([`liveness`]). What
-//! they do in vain is left out ([`branches`], [`saves`], [`shifts`], [`values`]), what they have in common is written once ([`frames`],
+//! they do in vain is left out ([`branches`], [`saves`], [`shifts`], [`values`], [`copies`]), what they have in common is written once ([`frames`],
 //! [`tails`], [`repeats`]), and everything is put where short jumps reach it ([`order`], [`islands`], [`layout`]). Before that, arguments on
 //! the stack are repaired if the compiler needs it ([`stack_arguments`]).
 //! What is not understood is refused: a wrong image is worse than none.
 
 mod assembly;
 mod branches;
+mod copies;
 mod debugging;
 mod effects;
 mod frames;
 mod islands;
 mod layout;
 mod liveness;
+mod operands;
 mod order;
 mod repeats;
 mod saves;
@@ -23,6 +25,7 @@ mod tails;
 #[cfg(test)]
 mod tests;
 mod values;
+mod webs;
 
 use std::collections::HashSet;
 
@@ -94,6 +97,7 @@ fn leave_out(program: &mut Program, has_stack_arguments: &HashSet<String>) -> Re
     for function in program.functions.iter_mut().filter(|it| !it.is_handler()) {
         values::simplify(function, &whole)?;
     }
+    copies::leave_out(program)?;
     saves::drop_vain(program, has_stack_arguments)?;
     let whole = Whole::of(program)?;
     for function in &mut program.functions {

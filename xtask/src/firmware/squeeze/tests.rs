@@ -2,6 +2,8 @@
 
 use super::*;
 
+mod registers;
+
 /// A function as the compiler writes it.
 fn function(name: &str, body: &str) -> String {
     let lines: String = body

@@ -3,10 +3,8 @@
 //! The compiler's moves are its register allocator's, which knew of no function but the one. What is in a register already is not
 //! put there again; what reads a copy reads the original, so that the copy is often for nobody; and what is for nobody is left out.
 
-use std::collections::HashMap;
-
 use super::assembly::{Flow, Function, Instruction, Line};
-use super::effects::{Memory, Set, pair, pointer, register};
+use super::effects::{Memory, Set, any_pointer, pair, pointer, register};
 use super::frames::Frame;
 use super::liveness::{Known, Whole};
 use super::stack_arguments::access;
@@ -140,14 +138,7 @@ pub(super) fn simplify(function: &mut Function, whole: &Whole) -> Result<(), Str
 /// What registers hold before each line; nothing where it is never reached.
 fn states(function: &Function, known: &Known) -> Vec<Option<State>> {
     let lines = &function.lines;
-    let labels: HashMap<&str, usize> = lines
-        .iter()
-        .enumerate()
-        .filter_map(|(at, line)| match line {
-            Line::Label(label) => Some((label.as_str(), at)),
-            Line::Do(_) => None,
-        })
-        .collect();
+    let labels = function.places();
     let mut states: Vec<Option<State>> = vec![None; lines.len() + 1];
     let mut entry = State::unknown();
     entry.set(1, Value::Number(0));
@@ -237,8 +228,9 @@ fn rename(it: &mut Instruction, state: &State) {
         }
         _ => &[],
     };
-    // What is cleared by itself reads nothing.
-    if it.operand(0) == it.operand(1) {
+    // What is cleared by itself reads nothing; and a pointer that moves is not stored meanwhile.
+    if it.operand(0) == it.operand(1) || any_pointer(it.operand(0)).is_some_and(|(_, moves)| moves)
+    {
         return;
     }
     for &place in read {
