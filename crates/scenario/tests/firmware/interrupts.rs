@@ -159,6 +159,12 @@ fn the_stack_keeps_its_margin_around_the_boxes() {
     drive.wait_s(0.3);
     drive.command(Command::Mode(setup.scenario.mode)).unwrap();
     drive.follow(&setup, 12.0);
+    // It may be looking around just then.
+    let until_s = drive.now_s() + 3.0;
+    while drive.speed_rad_s() <= 1.0 && drive.now_s() < until_s {
+        drive.wait_s(0.1);
+    }
+    println!("drives at {:.1} s", drive.now_s());
     assert!(drive.speed_rad_s() > 1.0, "it drives");
     let chip = drive.sim.mega().unwrap().chip();
     let lowest = chip.observers().lowest_stack_pointer().unwrap();
