@@ -15,16 +15,29 @@ pub(super) fn drop_vain(
     program: &mut Program,
     has_stack_arguments: &HashSet<String>,
 ) -> Result<(), String> {
-    let whole = Whole::of(program)?;
-    for function in &mut program.functions {
-        if !function.is_handler() && !has_stack_arguments.contains(function.name()) {
-            drop_of(function, &whole)?;
+    // One after the other: a caller that saves what it does not change itself may do that for a function which it calls, so a function
+    // may leave to its callers only what these still save then.
+    for why in [Why::Unchanged, Why::Unwanted] {
+        let whole = Whole::of(program)?;
+        for function in &mut program.functions {
+            if !function.is_handler() && !has_stack_arguments.contains(function.name()) {
+                drop_of(function, &whole, why)?;
+            }
         }
     }
     Ok(())
 }
 
-fn drop_of(function: &mut Function, whole: &Whole) -> Result<(), String> {
+/// Why saving a register is in vain.
+#[derive(Clone, Copy)]
+enum Why {
+    /// Neither the function nor what it calls changes it.
+    Unchanged,
+    /// No caller has anything in it.
+    Unwanted,
+}
+
+fn drop_of(function: &mut Function, whole: &Whole, why: Why) -> Result<(), String> {
     let Some(frame) = Frame::read(function) else {
         return Ok(());
     };
@@ -40,10 +53,13 @@ fn drop_of(function: &mut Function, whole: &Whole) -> Result<(), String> {
     let changed = effects
         .filter(|(at, _)| !saves(*at))
         .fold(Set::NONE, |all, (_, effect)| all | effect.writes);
-    let wanted = whole.wanted(function);
+    let needed = match why {
+        Why::Unchanged => changed,
+        Why::Unwanted => whole.wanted(function),
+    };
     let vain = frame.pushed.iter().map(|number| Set::register(*number));
     let vain = vain
-        .filter(|register| !(wanted & changed).has(*register))
+        .filter(|register| !needed.has(*register))
         .fold(Set::NONE, |all, register| all | register);
     function.lines.retain(|line| {
         let number = moved(Some(line), "push").or(moved(Some(line), "pop"));

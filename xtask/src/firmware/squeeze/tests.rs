@@ -317,6 +317,18 @@ fn an_argument_in_a_register_that_is_saved_is_read() {
 }
 
 #[test]
+fn of_two_that_save_a_register_for_a_caller_one_goes_on_doing_so() {
+    // `middle` does not change r14 itself.
+    let inner = "push r14\nlds r14, far\nsts far, r14\npop r14\nret";
+    let outer = "push r14\nlds r14, far2\ncall middle\nsts far, r14\npop r14\nret";
+    let middle = "push r14\ncall inner\nsts far, r1\npop r14\nret";
+    let middle = function("middle", middle).replace("\t.globl\tmiddle\n", "");
+    let assembly = squeezed(&(called(inner, outer) + &middle)).unwrap();
+    let saves = |name| body(&assembly, name).contains(&"push r14".to_owned());
+    assert!(saves("inner") && !saves("middle"), "{assembly}");
+}
+
+#[test]
 fn y_moves_once_for_what_is_far_and_keeps_flags_only_for_those_who_ask() {
     let far = "in r0, 63\nadiw r28, 3\nstd Y+63, r17\nsbiw r28, 3\nout 63, r0\nin r0, 63\nadiw r28, 5\nstd Y+63, r16\nsbiw r28, 5\nout 63, r0";
     let lines = body(&squeezed(&with_frame("hot_one", far)).unwrap(), "hot_one");
