@@ -69,12 +69,12 @@ pub(crate) fn warn_if_cut(path: &Path, log: &Log) -> Result<(), Failure> {
             "{shown}: was cut off before anything that happened had reached it{again}"
         )));
     }
-    let ends_s = log.duration_s();
+    let state = match log.has_holes {
+        true => "is damaged".to_owned(),
+        false => format!("ends at {:.1} s", log.duration_s()),
+    };
     // A closed stderr leaves nobody to tell.
-    let _ = writeln!(
-        std::io::stderr(),
-        "note: {shown} ends at {ends_s:.1} s: {why}"
-    );
+    let _ = writeln!(std::io::stderr(), "note: {shown} {state}: {why}");
     Ok(())
 }
 

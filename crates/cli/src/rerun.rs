@@ -84,6 +84,11 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
         )));
     };
     warn_if_cut(&args.log, &log)?;
+    if log.has_holes {
+        return Err(Failure::Input(format!(
+            "{shown}: something within is missing, so it cannot be told whether a run is the same"
+        )));
+    }
     let recorder = Recorder::of(&log, recorded);
     // What another program has written may not even be read: then that is the reason.
     let (setup, seed) = manifest::setup(&args.log, recorded).map_err(|failure| match failure {

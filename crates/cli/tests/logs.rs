@@ -268,6 +268,20 @@ fn a_log_made_with_another_table_of_parameters_says_so_and_a_log_cut_off_says_wh
         }
     }
 
+    // Damaged within, it is read but for that; whether the run is the same cannot be told then.
+    let mut damaged = whole.clone();
+    damaged[9..17].fill(0x7f);
+    std::fs::write(folder.path().join("damaged.mcap"), &damaged).unwrap();
+    let shown = rumbo(&["export", "damaged.mcap"], folder.path());
+    assert_eq!(shown.status.code(), Some(0), "{}", text(&shown.stderr));
+    assert!(text(&shown.stderr).starts_with("note: damaged.mcap is damaged: "));
+    let rows = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    rumbo(&["export", "mode5-1.mcap"], folder.path());
+    assert_eq!(rows("damaged.csv"), rows("mode5-1.csv"));
+    let again = rumbo(&["rerun", "damaged.mcap"], folder.path());
+    assert_eq!(again.status.code(), Some(2));
+    assert!(text(&again.stderr).contains("something within is missing"));
+
     let mut manifest = log.manifest.unwrap();
     manifest.version = "0.0.7".into();
     let from_robot = log.link.iter().filter(|burst| !burst.to_robot);

@@ -79,7 +79,10 @@ impl Replay {
             self.board.push_event(event.clone());
         }
         if let Some(why) = &self.log.cut {
-            self.note(format!("the log ends early: {why}"));
+            self.note(match self.log.has_holes {
+                true => format!("the log is damaged: {why}"),
+                false => format!("the log ends early: {why}"),
+            });
         }
         self.seek(0.0);
         loop {

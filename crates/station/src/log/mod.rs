@@ -19,6 +19,7 @@
 mod headless;
 mod manifest;
 pub(crate) mod messages;
+mod pieces;
 mod reader;
 pub(crate) mod recorder;
 mod row_json;

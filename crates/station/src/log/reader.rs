@@ -1,8 +1,10 @@
 //! Reads a log, whole or cut off.
 //!
-//! A log without an end, of a writer that was killed, is read as far as it goes, and says so ([`Log::cut`]). Logs that `rumbo import`
+//! A log without an end, of a writer that was killed, is read as far as it goes, and says so ([`Log::cut`]). One that is damaged within, and has its
+//! index, is read but for what is damaged. Logs that `rumbo import`
 //! made of the original program's CSV are read too, as far as their signals have a place in a [`Row`].
 
+use super::pieces::Pieces;
 use super::row_json::Signals;
 use super::schema::Topic;
 use super::{Burst, LogError, Manifest, Outcome, Said, Sent};
@@ -28,6 +30,8 @@ const LONGEST: usize = 64 << 20;
 const SHORTEST: u64 = 256;
 /// What a log is that its writer had no time to begin.
 const NOTHING_YET: &str = "ends before anything in it: whoever wrote it was stopped in the first moment, or it was cut off when it was copied; nothing of it can be had";
+/// Why a log ends of which nothing says that it does.
+pub(super) const NO_END: &str = "the log has no end: its writer was stopped";
 /// The topic of a log made by `rumbo import`.
 const IMPORTED: &str = "telemetry";
 
@@ -54,8 +58,10 @@ pub struct Log {
     pub said: Vec<Said>,
     /// What went to the robot, in the order in which it went, which times alone do not tell: places in `link` and `said`.
     order: Vec<Place>,
-    /// Why the log ends early, where it does.
+    /// Why the log ends early, where it does; or why something within is missing.
     pub cut: Option<String>,
+    /// Something within is missing, and what comes after it is there.
+    pub has_holes: bool,
 }
 
 /// Where something sent is.
@@ -67,9 +73,20 @@ enum Place {
 
 /// What messages of a channel are.
 #[derive(Clone, Copy)]
-enum Channel {
+pub(super) enum Channel {
     Ours(Topic),
     Imported,
+}
+
+impl Channel {
+    /// Of a topic; `None`: nothing of it is taken.
+    pub(super) fn of(topic: &str, with_link: bool) -> Option<Self> {
+        match Topic::find(topic) {
+            Some(Topic::FromRobot | Topic::ToRobot) if !with_link => None,
+            Some(topic) => Some(Self::Ours(topic)),
+            None => (topic == IMPORTED).then_some(Self::Imported),
+        }
+    }
 }
 
 impl Log {
@@ -142,8 +159,15 @@ impl Log {
             }));
         }
         let mut log = Self::default();
-        if let Err(error) = log.take_all(file, length, with_link) {
-            log.cut = Some(error);
+        if let Err(error) = log.take_all(file, length, &mut HashMap::new(), with_link) {
+            let pieces = (error != NO_END).then(|| Pieces::find(path)).flatten();
+            log = match pieces {
+                Some(pieces) => pieces.take(&error, with_link),
+                None => Self {
+                    cut: Some(error),
+                    ..log
+                },
+            };
         }
         if log.manifest.is_none() && log.rows.is_empty() {
             let what = match log.cut {
@@ -206,10 +230,11 @@ impl Log {
         row_s.max(state_s).max(link_s)
     }
 
-    fn take_all(
+    pub(super) fn take_all(
         &mut self,
         mut file: impl Read,
         length: u64,
+        channels: &mut HashMap<u16, Option<Channel>>,
         with_link: bool,
     ) -> Result<(), String> {
         // What a damaged length asks for is not there to be read.
@@ -220,7 +245,6 @@ impl Log {
             .with_prevalidate_chunk_crcs(true)
             .with_record_length_limit(longest);
         let mut reader = LinearReader::new_with_options(options);
-        let mut channels = HashMap::new();
         while let Some(event) = reader.next_event() {
             match event.map_err(|error| error.to_string())? {
                 LinearReadEvent::ReadRequest(count) => {
@@ -231,13 +255,13 @@ impl Log {
                 LinearReadEvent::Record { opcode, data } => {
                     let record = mcap::parse_record(opcode, data);
                     let record = record.map_err(|error| error.to_string())?;
-                    if self.take_record(record, &mut channels, with_link)? {
+                    if self.take_record(record, channels, with_link)? {
                         return Ok(());
                     }
                 }
             }
         }
-        Err("the log has no end: its writer was stopped".into())
+        Err(NO_END.into())
     }
 
     /// Whether it was the last one.
@@ -249,12 +273,7 @@ impl Log {
     ) -> Result<bool, String> {
         match record {
             Record::Channel(channel) => {
-                let known = match Topic::find(&channel.topic) {
-                    Some(Topic::FromRobot | Topic::ToRobot) if !with_link => None,
-                    Some(topic) => Some(Channel::Ours(topic)),
-                    None => (channel.topic == IMPORTED).then_some(Channel::Imported),
-                };
-                channels.insert(channel.id, known);
+                channels.insert(channel.id, Channel::of(&channel.topic, with_link));
             }
             Record::Message { header, data } => {
                 if let Some(Some(channel)) = channels.get(&header.channel_id) {

@@ -344,6 +344,45 @@ mod tests {
     }
 
     #[test]
+    fn what_comes_after_damage_near_the_start_is_read_all_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("damaged.mcap");
+        let manifest = Manifest {
+            seed: Some(7),
+            ..Manifest::default()
+        };
+        let mut recorder = Recorder::at(&path, &manifest).unwrap();
+        (0..3_000).for_each(|number| recorder.take(burst(1_000 * number)));
+        recorder.finish().unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        let index = mcap::Summary::read(&whole).unwrap().unwrap();
+        assert!(index.chunk_indexes.len() > 3);
+        let middle = |chunk: &mcap::records::ChunkIndex| {
+            (chunk.chunk_start_offset + chunk.chunk_length / 2) as usize
+        };
+        let [topics, first] = [0, 1].map(|at| middle(&index.chunk_indexes[at]));
+        // The length of the very first record; the chunk that says which channels there are; the first one with messages.
+        for (at, least, most) in [
+            (mcap::MAGIC.len() + 1, 3_000, 3_000),
+            (topics, 3_000, 3_000),
+            (first, 1_000, 2_999),
+        ] {
+            let mut damaged = whole.clone();
+            damaged[at..at + 8].fill(0x7f);
+            std::fs::write(&path, &damaged).unwrap();
+            let log = Log::read(&path).unwrap();
+            assert!(log.has_holes && log.cut.is_some());
+            assert_eq!(log.manifest.as_ref().unwrap().seed, Some(7));
+            assert!(
+                (least..=most).contains(&log.link.len()),
+                "{}",
+                log.link.len()
+            );
+            assert_eq!(log.link.last().unwrap().t_us, 2_999_000);
+        }
+    }
+
+    #[test]
     fn what_is_no_log_gets_one_line() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x.mcap");
