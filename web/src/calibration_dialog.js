@@ -24,6 +24,8 @@ export class CalibrationDialog {
   #before = new Map();
   /** What is shown now. */
   #shown = '';
+  /** When the calibration was asked for whose end has not been shown [s]. @type {number | null} */
+  #asked_s = null;
   /** @type {State | null} */
   #state = null;
 
@@ -55,7 +57,9 @@ export class CalibrationDialog {
       const passed_s = Math.max(0, state.t_s - calibration.since_s);
       this.#progress.value = passed_s;
       setText(this.#since, t('{} s of about {} s', format(passed_s, 0), ABOUT_S));
-    } else if (before === 'running' && calibration) {
+    } else if (calibration && (before === 'running' || (this.#asked_s !== null && calibration.at_s > this.#asked_s))) {
+      // One that ended at once was never seen running.
+      this.#asked_s = null;
       this.#layOut(calibration.phase);
     }
   }
@@ -78,6 +82,7 @@ export class CalibrationDialog {
   #begin() {
     const start = this.#button(t('Begin the calibration'), () => {
       this.#before = new Map(this.#parameters.map(({ id, value }) => [id, value]));
+      this.#asked_s = this.#state?.t_s ?? 0;
       this.#send({ type: 'calibrate' });
     }, 'go');
     const put = this.#state?.simulated

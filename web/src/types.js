@@ -67,7 +67,7 @@
  * @property {boolean} simulated
  * @property {number} speed
  * @property {number} achieved_speed
- * @property {{phase: 'running', since_s: number} | {phase: 'done', findings: Findings} | {phase: 'failed', why: string}} [calibration]
+ * @property {{phase: 'running', since_s: number} | {phase: 'done', findings: Findings, at_s: number} | {phase: 'failed', why: string, at_s: number}} [calibration]
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
  *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number,

@@ -21,9 +21,12 @@ const step = () => page.locator('#calibration-step');
 
 test('where there is no wall, or the wrong rig, the calibration says so', async () => {
   await page.locator('#calibrate').click();
-  await step().getByRole('button', { name: 'Begin the calibration' }).click();
-  await step().getByText('The calibration came to no end: a calibration needs a sonar ahead and one on each side').waitFor();
-  await step().getByRole('button', { name: 'Begin again' }).click();
+  // It ends at once, mostly between two states that the page gets.
+  for (let times = 0; times < 8; times += 1) {
+    await step().getByRole('button', { name: 'Begin the calibration' }).click();
+    await step().getByText('The calibration came to no end: a calibration needs a sonar ahead and one on each side').waitFor();
+    await step().getByRole('button', { name: 'Begin again' }).click();
+  }
 });
 
 test('STOP ends a calibration, and meanwhile nothing else drives', async () => {

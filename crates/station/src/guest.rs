@@ -39,9 +39,20 @@ pub struct Finding {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "phase", rename_all = "snake_case")]
 pub(crate) enum CalibrationState {
-    Running { since_s: f64 },
-    Done { findings: Findings },
-    Failed { why: String },
+    Running {
+        since_s: f64,
+    },
+    Done {
+        findings: Findings,
+        /// When, by the session's time: one that ended at once was never seen running.
+        #[serde(default)]
+        at_s: f64,
+    },
+    Failed {
+        why: String,
+        #[serde(default)]
+        at_s: f64,
+    },
 }
 
 /// A slice of time: when it ended \[us\], and what arrived.

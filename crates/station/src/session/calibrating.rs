@@ -69,15 +69,16 @@ impl Session {
             return;
         };
         let passed_s = (self.target.now_us() - guest.since_us) as f64 / 1e6;
+        let at_s = self.target.now_us() as f64 / 1e6;
         self.calibration = Some(match guest.findings() {
             Ok(findings) => {
                 let text = format!("calibration: done in {passed_s:.0} s, the parameters are set");
                 self.note(Level::Good, text);
-                CalibrationState::Done { findings }
+                CalibrationState::Done { findings, at_s }
             }
             Err(why) => {
                 self.note(Level::Warning, format!("calibration: given up, {why}"));
-                CalibrationState::Failed { why }
+                CalibrationState::Failed { why, at_s }
             }
         });
         self.client.read_parameters();
@@ -93,7 +94,8 @@ impl Session {
                 self.guest = None;
                 let why = "it was stopped".to_owned();
                 self.note(Level::Warning, format!("calibration: given up, {why}"));
-                self.calibration = Some(CalibrationState::Failed { why });
+                let at_s = self.target.now_us() as f64 / 1e6;
+                self.calibration = Some(CalibrationState::Failed { why, at_s });
                 self.client.read_parameters();
                 false
             }
