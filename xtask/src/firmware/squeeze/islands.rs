@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use super::assembly::{Function, Instruction, Line};
-use super::order::{Graph, Place};
+use super::graph::{Graph, Place};
 
 /// Words that a short call reaches, 2,048 but for the few jumps that will be longer than they are taken for.
 const REACH: i64 = 2_030;

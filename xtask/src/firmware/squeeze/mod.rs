@@ -12,6 +12,8 @@ mod copies;
 mod debugging;
 mod effects;
 mod frames;
+mod graph;
+mod heat;
 mod islands;
 mod layout;
 mod liveness;
@@ -112,14 +114,16 @@ fn share(program: &mut Program, options: &Options<'_>, has_stack_arguments: &Has
         tails::jump(function, has_stack_arguments);
     }
     tails::merge(&mut program.functions);
-    let may_change = |function: &Function| {
+    let heat = heat::Heat::of(&program.functions, |function| options.is_hot(function));
+    let least = |function: &Function| {
         let is_ours = ["rumbo_enter", "rumbo_leave"]
             .iter()
             .any(|name| function.name().starts_with(name));
-        !is_ours && !options.is_hot(function) && !repeats::touches_hardware(function)
+        let stays = is_ours || function.is_handler() || repeats::touches_hardware(function);
+        (!stays).then(|| heat.least_words(function))
     };
     let all = &mut program.functions;
-    repeats::share(all, may_change, has_stack_arguments);
+    repeats::share(all, least, has_stack_arguments);
     tails::merge(all);
     tails::follow(all);
     order::order(all, Function::is_handler);

@@ -1,8 +1,8 @@
 //! What is written more than once, written once.
 //!
 //! Instructions that occur in several places, with no label between them but for those of their own jumps, become a function of their own, and each place
-//! calls it; where they end in a return or a jump, each place jumps there. The call costs nine cycles, so functions in which
-//! cycles count are left alone; so are those that touch the hardware, where a time may be prescribed between two instructions.
+//! calls it; where they end in a return or a jump, each place jumps there. The call costs nine cycles, so where cycles count only long
+//! ones are taken out ([`heat`](super::heat)), and none where the hardware is touched: a time may be prescribed between two instructions.
 //!
 //! A call puts three bytes on the stack. What works on the stack may therefore only be reached by a jump: pushes and pops, moves
 //! of the stack pointer, calls that leave arguments there. And the stack pointer's two halves are written without a break.
@@ -17,15 +17,14 @@ use super::{frames, tails};
 
 /// Longest sequence that is looked for, in instructions.
 const LONGEST: usize = 64;
-/// Fewest words that are taken out: for one word less a call's cycles are too many.
-const SHORTEST: usize = 3;
 /// Rounds at most.
 const ROUNDS: usize = 40;
 
-/// Writes once what is written more than once in functions that may be changed; calls of those with arguments on the stack stay.
+/// Writes once what is written more than once. `least` says how many words may be taken out of a function at least, `None` that it stays
+/// as it is; calls of those with arguments on the stack stay.
 pub(super) fn share(
     functions: &mut Vec<Function>,
-    may_change: impl Fn(&Function) -> bool,
+    least: impl Fn(&Function) -> Option<usize>,
     stack_arguments: &HashSet<String>,
 ) {
     let mut made = 0;
@@ -33,7 +32,7 @@ pub(super) fn share(
         for function in functions.iter_mut() {
             tails::jump(function, stack_arguments);
         }
-        let text = Text::read(functions, &may_change, stack_arguments);
+        let text = Text::read(functions, &least, stack_arguments);
         let mut taken = vec![false; text.words.len()];
         let before = made;
         for candidate in text.candidates() {
@@ -110,6 +109,8 @@ struct Text {
     is_call: Vec<bool>,
     /// The other of a pair.
     partner: Vec<usize>,
+    /// Fewest words that may be taken out there.
+    least: Vec<usize>,
     /// Function and line.
     from: Vec<(usize, usize)>,
 }
@@ -125,7 +126,7 @@ struct Candidate {
 impl Text {
     fn read(
         functions: &[Function],
-        may_change: &impl Fn(&Function) -> bool,
+        least: &impl Fn(&Function) -> Option<usize>,
         stack_arguments: &HashSet<String>,
     ) -> Self {
         let mut text = Self {
@@ -134,15 +135,16 @@ impl Text {
             size: Vec::new(),
             is_call: Vec::new(),
             partner: Vec::new(),
+            least: Vec::new(),
             from: Vec::new(),
         };
         let mut known: HashMap<Word, u32> = HashMap::new();
         // Numbers of what is like nothing else count down.
         let mut unlike = u32::MAX;
         for (number, function) in functions.iter().enumerate() {
-            if !may_change(function) {
+            let Some(least) = least(function) else {
                 continue;
-            }
+            };
             let pairs = pairs(function);
             let start = text.words.len();
             for (at, line) in function.lines.iter().enumerate() {
@@ -161,6 +163,7 @@ impl Text {
                     (Line::Label(_), None) => (0, Place::Apart),
                 };
                 text.partner.push(start + partner.unwrap_or(at));
+                text.least.push(least);
                 unlike -= 1;
                 text.words
                     .push(if place == Place::Apart { unlike } else { word });
@@ -184,6 +187,7 @@ impl Text {
             text.size.push(0);
             text.is_call.push(false);
             text.partner.push(text.partner.len());
+            text.least.push(least);
             text.from.push((number, usize::MAX));
         }
         text
@@ -260,13 +264,16 @@ impl Text {
     fn saving(&self, candidate: &Candidate, times: usize) -> i64 {
         let first = candidate.places[0];
         let last = first + candidate.length - 1;
-        let size: usize = self.size[first..=last].iter().sum();
-        if size < SHORTEST {
-            return 0;
-        }
+        let size = self.words_of(candidate);
         // A call at its end becomes a jump, and the return is somebody else's.
         let returns = usize::from(self.place[last] != Place::End && !self.is_call[last]);
         (times * size) as i64 - (times + size + returns) as i64
+    }
+
+    /// Words that it takes.
+    fn words_of(&self, candidate: &Candidate) -> usize {
+        let first = candidate.places[0];
+        self.size[first..first + candidate.length].iter().sum()
     }
 
     /// Where it stands, without overlaps, in what is not taken.
@@ -275,8 +282,9 @@ impl Text {
         let is_free =
             |&at: &usize| taken.is_empty() || !taken[at..at + candidate.length].contains(&true);
         let mut places = candidate.places.clone();
+        let words = self.words_of(candidate);
         places.retain(|at| {
-            let free = *at >= end && is_free(at);
+            let free = *at >= end && is_free(at) && words >= self.least[*at];
             if free {
                 end = at + candidate.length;
             }
