@@ -50,12 +50,13 @@ pub(crate) fn build(
     let read = |path: &Path| {
         std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
     };
-    let hot = hot(&read(&project.root.join(HOT))?);
+    let [hot, warm] = heat(&read(&project.root.join(HOT))?);
     let squeezed = squeeze::squeeze(
         &read(&assembly)?,
         &Options {
             repair: toolchain.misplaces_stack_arguments(build)?,
             hot: &hot,
+            warm: &warm,
         },
     )?;
     let source = build.join("rumbo.s");
@@ -91,20 +92,17 @@ fn assembly(project: &Project, toolchain: &Toolchain) -> Result<String, String> 
     Ok(format!("compiled-{:016x}.s", hasher.finish()))
 }
 
-/// Paths as they are in the names of the compiler's symbols: each word behind its length.
-fn hot(text: &str) -> Vec<String> {
-    let lines = text
-        .lines()
-        .filter_map(|line| line.split('#').next())
-        .map(str::trim);
-    let paths = lines.filter(|line| !line.is_empty());
-    paths
-        .map(|path| {
-            path.split("::")
-                .map(|word| format!("{}{word}", word.len()))
-                .collect()
-        })
-        .collect()
+/// Hot and warm paths as they are in the names of the compiler's symbols: each word behind its length.
+fn heat(text: &str) -> [Vec<String>; 2] {
+    let mut heat = [Vec::new(), Vec::new()];
+    let lines = text.lines().filter_map(|line| line.split('#').next());
+    for line in lines.map(str::trim).filter(|line| !line.is_empty()) {
+        let warm = line.strip_prefix("warm ");
+        let words = warm.unwrap_or(line).trim().split("::");
+        let path = words.map(|word| format!("{}{word}", word.len())).collect();
+        heat[usize::from(warm.is_some())].push(path);
+    }
+    heat
 }
 
 /// What cargo links with the program: objects of the build script, and Rust's arithmetic.

@@ -2,7 +2,7 @@
 //!
 //! To take a sequence out of a function costs the nine cycles of a call and its return, and gives back a word for each of its words but
 //! one. Where cycles count only long sequences are worth that. A few functions are known to be hot; what they call, by whatever way, is
-//! warm, since it runs when they do; the rest is cold.
+//! warm, since it runs when they do, and some others are known to be; the rest is cold.
 
 use std::collections::{HashMap, HashSet};
 
@@ -20,8 +20,12 @@ pub(super) struct Heat {
 }
 
 impl Heat {
-    /// Finds out from those that are known to be hot.
-    pub(super) fn of(functions: &[Function], is_hot: impl Fn(&Function) -> bool) -> Self {
+    /// Finds out from those that are known to be hot, and parts of the names of those that are warm in any case.
+    pub(super) fn of(
+        functions: &[Function],
+        is_hot: impl Fn(&Function) -> bool,
+        known: &[String],
+    ) -> Self {
         let names = |function: &Function| function.names.clone();
         let hot: HashSet<String> = functions
             .iter()
@@ -37,7 +41,8 @@ impl Heat {
                     .map(move |name| (name.as_str(), function))
             })
             .collect();
-        let mut warm = HashSet::new();
+        let is_warm = |it: &&Function| known.iter().any(|part| it.name().contains(part.as_str()));
+        let mut warm: HashSet<String> = functions.iter().filter(is_warm).flat_map(names).collect();
         let mut open: Vec<&str> = hot.iter().map(String::as_str).collect();
         while let Some(name) = open.pop() {
             let Some(function) = by_name.get(name) else {
@@ -85,10 +90,11 @@ mod tests {
             function("two", &["ret"]),
             function("three", &["call hot", "ret"]),
             function("cold", &["call one", "ret"]),
+            function("lukewarm", &["ret"]),
             function("rumbo_shared_1", &["ret"]),
         ];
-        let heat = Heat::of(&functions, |function| function.name() == "hot");
+        let heat = Heat::of(&functions, |it| it.name() == "hot", &["luke".to_owned()]);
         let words = functions.each_ref().map(|it| heat.least_words(it));
-        assert_eq!(words, [HOT, WARM, WARM, WARM, COLD, WARM]);
+        assert_eq!(words, [HOT, WARM, WARM, WARM, COLD, WARM, WARM]);
     }
 }

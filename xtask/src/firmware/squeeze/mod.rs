@@ -32,14 +32,17 @@ mod webs;
 use std::collections::HashSet;
 
 use assembly::{Function, Program};
+use heat::Heat;
 use liveness::Whole;
 
 /// What to do, and for whom.
 pub(crate) struct Options<'a> {
     /// Whether the compiler reads arguments on the stack one byte too low.
     pub(crate) repair: bool,
-    /// Parts of the names of functions in which cycles count.
+    /// Parts of the names of functions in which cycles count,
     pub(crate) hot: &'a [String],
+    /// and of those in which they count less.
+    pub(crate) warm: &'a [String],
 }
 
 impl Options<'_> {
@@ -114,7 +117,7 @@ fn share(program: &mut Program, options: &Options<'_>, has_stack_arguments: &Has
         tails::jump(function, has_stack_arguments);
     }
     tails::merge(&mut program.functions);
-    let heat = heat::Heat::of(&program.functions, |function| options.is_hot(function));
+    let heat = Heat::of(&program.functions, |it| options.is_hot(it), options.warm);
     let least = |function: &Function| {
         let is_ours = ["rumbo_enter", "rumbo_leave"]
             .iter()

@@ -20,6 +20,7 @@ fn squeezed(text: &str) -> Result<String, String> {
     let options = Options {
         repair: true,
         hot: &["hot".to_owned()],
+        warm: &[],
     };
     squeeze(text, &options).map(|squeezed| squeezed.assembly)
 }
