@@ -16,6 +16,8 @@ use crate::types::{
 
 /// The front sonar looks ahead when the servo is within this of it [rad].
 const AHEAD_RAD: f32 = 0.06;
+/// A range ahead that is older is not shown as one: three pings, of which one may be lost and one refused [ticks].
+const SHOWN_TICKS: u16 = 20;
 
 /// Memory of the estimators.
 // What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
@@ -221,10 +223,11 @@ impl Estimator {
         }
     }
 
-    /// What each sonar last saw where it looks now, for people: the front one's last answer while the servo looks aside.
+    /// What each sonar last saw where it looks now, for people: the front one's last answer while the servo looks aside, and while it
+    /// swings past the middle, where what was last heard ahead has been moved along for too long.
     pub fn shown(&self, estimate: &Estimate) -> [AgedRange; 3] {
         let [left, right, front] = estimate.ranges;
-        let aside = abs(self.servo_rad) >= AHEAD_RAD;
+        let aside = abs(self.servo_rad) >= AHEAD_RAD || front.age_ticks > SHOWN_TICKS;
         [left, right, if aside { self.aside } else { front }]
     }
 
@@ -322,7 +325,22 @@ mod tests {
         looking(&mut estimator, 1.2, 24);
         let later = looking(&mut estimator, 1.2, 60);
         assert!(later.servo_arrived && later.servo_rad == 1.2);
-        assert!(matches!(estimator.shown(&later)[2].range, Range::Valid(_)));
+        let Range::Valid(then_m) = estimator.shown(&later)[2].range else {
+            panic!("nothing shown");
+        };
+        let swung = Estimate {
+            ranges: [AgedRange {
+                range: Range::Valid(0.0),
+                age_ticks: 90,
+            }; 3],
+            ..later
+        };
+        estimator.servo_rad = 0.0;
+        assert_eq!(
+            estimator.shown(&swung)[2].range,
+            Range::Valid(then_m),
+            "what was ahead long ago is not what is there now"
+        );
         let ahead = looking(&mut Estimator::default(), 0.0, 60);
         assert!(matches!(ahead.range(SonarId::Front).range, Range::Valid(_)));
     }
