@@ -112,6 +112,8 @@ struct WheelState {
     ramp_rad_s: Option<f32>,
     /// How long the wheel has stood although it is driven [s].
     held_s: f32,
+    /// It has come to rest, and waits for the other one to do so.
+    waits: bool,
 }
 
 /// Memory of the drive layer.
@@ -249,9 +251,13 @@ impl WheelState {
             return Err(NotFinite);
         }
         let standstill = abs(reference_rad_s) < STANDSTILL_RAD_S;
-        let waits = partner_stops && motion.standing;
-        if standstill || !self.may_drive(reference_rad_s, motion) || waits {
+        // A late edge of a wheel that has come to rest ends no waiting, and is no speed to begin at.
+        self.waits = partner_stops && (motion.standing || self.waits);
+        if standstill || !self.may_drive(reference_rad_s, motion) || self.waits {
             self.release();
+            if self.waits {
+                self.ramp_rad_s = Some(0.0);
+            }
             return Ok(Duty::RELEASED);
         }
         let target_rad_s = abs(reference_rad_s);
