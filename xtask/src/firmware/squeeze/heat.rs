@@ -10,7 +10,7 @@ use super::assembly::{Function, Instruction};
 
 /// Fewest words of a sequence that is taken out of a hot, a warm, and a cold function.
 const HOT: usize = 6;
-const WARM: usize = 3;
+const WARM: usize = 4;
 const COLD: usize = 2;
 
 /// Names of the functions that are not cold.
