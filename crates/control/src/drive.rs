@@ -261,7 +261,7 @@ impl WheelState {
             return Ok(Duty::RELEASED);
         }
         let target_rad_s = abs(reference_rad_s);
-        let measured_rad_s = motion.speed_rad_s;
+        let measured_rad_s = motion.believed_rad_s;
         // A wheel that still rolls is taken over at the speed it has.
         let before_rad_s = self.ramp_rad_s.unwrap_or(measured_rad_s);
         let ramp_rad_s = wheel_loop.ramp(before_rad_s, target_rad_s, measured_rad_s, partner_stops);

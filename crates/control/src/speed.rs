@@ -7,7 +7,7 @@
 //!
 //! What neither poles nor motors can explain is told too: edges that are missing, or are none.
 
-use crate::math::{from_u32, max, min};
+use crate::math::{from_u32, max, min, round};
 use crate::types::{Edges, Micros, TICK_S};
 
 /// Wheel angle of one edge [rad]: 8 edges per motor turn, 48 motor turns per wheel turn.
@@ -22,6 +22,10 @@ const UNEVENNESS: f32 = 0.12;
 const LAG: f32 = 0.02;
 /// A tick's edges are judged while a motor turn takes less than this [us], above 3.3 rad/s: a slower wheel may change its speed by much in one.
 const BRISK_US: u32 = 40_000;
+/// A wheel slows down by at most this [rad/s^2]: twice the steepest of sound robots in all scenarios, 28 rad/s^2.
+const STEEPEST_RAD_S2: f32 = 60.0;
+/// Of the edges that are overdue the first may be late: it comes a gap after the last one, and poles are uneven.
+const LATE_EDGES: f32 = 1.0 + 2.0 * UNEVENNESS;
 /// Without an edge for this long the wheel counts as standing [us]: then it turns below 4 rpm.
 const STANDING_US: u32 = 40_000;
 
@@ -35,6 +39,12 @@ pub struct SpeedEstimator {
     standing: bool,
     started: bool,
     speed_rad_s: f32,
+    /// Speed when the last edge came [rad/s].
+    last_rad_s: f32,
+    /// As in [`WheelMotion`] [rad/s].
+    believed_rad_s: f32,
+    /// Speed by the motor turn before the last edge [rad/s]; 0 after a standstill.
+    turn_rad_s: f32,
 }
 
 /// What the edges say about a wheel, without sign.
@@ -42,12 +52,17 @@ pub struct SpeedEstimator {
 pub struct WheelMotion {
     /// Speed [rad/s], 0 or more.
     pub speed_rad_s: f32,
+    /// The same for a speed loop, 0 or more: it falls no faster than a wheel can, and not while edges are overdue, since a wheel must
+    /// not be driven harder for edges that are lost [rad/s].
+    pub believed_rad_s: f32,
     /// Edges since the last tick.
     pub edges: u16,
     /// No edge for long enough that the wheel may be driven the other way.
     pub standing: bool,
     /// These edges cannot be all of a turning disc and nothing else.
     pub uneven: bool,
+    /// So many edges are overdue, however steeply the wheel slows down.
+    pub overdue: u8,
 }
 
 impl SpeedEstimator {
@@ -63,14 +78,17 @@ impl SpeedEstimator {
             };
         }
         let new = edges.count.wrapping_sub(self.count);
-        let mut uneven = false;
+        let (mut uneven, mut overdue) = (false, 0);
         if new > 0 {
             uneven = self.take(new, edges);
+            self.last_rad_s = self.speed_rad_s;
         } else if !self.standing {
+            overdue = self.overdue(now);
             let silent_us = now.since(edges.last);
             if silent_us >= STANDING_US {
                 self.standing = true;
                 self.run = 0;
+                self.turn_rad_s = 0.0;
                 self.speed_rad_s = 0.0;
             } else {
                 const WIDEST_GAP: f32 = EDGE * (1.0 + UNEVENNESS);
@@ -80,12 +98,34 @@ impl SpeedEstimator {
                 );
             }
         }
+        // From rest the first edges say little.
+        if self.run <= EDGES_PER_TURN {
+            self.believed_rad_s = self.speed_rad_s;
+        } else if overdue == 0 {
+            const SLOWER_RAD_S: f32 = STEEPEST_RAD_S2 * TICK_S;
+            self.believed_rad_s = max(self.speed_rad_s, self.believed_rad_s - SLOWER_RAD_S);
+        }
         WheelMotion {
             speed_rad_s: self.speed_rad_s,
+            believed_rad_s: self.believed_rad_s,
             edges: new,
             standing: self.standing,
             uneven,
+            overdue,
         }
+    }
+
+    /// How many edges must have come since the last one, but have not.
+    fn overdue(&self, now: Micros) -> u8 {
+        if self.run <= EDGES_PER_TURN {
+            return 0;
+        }
+        // Below 40 ms, else the wheel stands.
+        let silent_s = 1e-6 * from_u32(now.since(self.last));
+        let slowing_s = min(silent_s, self.last_rad_s * (1.0 / STEEPEST_RAD_S2));
+        let least_rad = (self.last_rad_s - 0.5 * STEEPEST_RAD_S2 * slowing_s) * slowing_s;
+        let edges = least_rad * (1.0 / EDGE_RAD) - LATE_EDGES;
+        u8::try_from(round(max(edges, 0.0))).unwrap_or(u8::MAX)
     }
 
     /// Takes in new edges; says whether they are uneven.
@@ -99,9 +139,16 @@ impl SpeedEstimator {
         };
         self.run = core::cmp::min(self.run.saturating_add(new), EDGES_PER_TURN + 1);
         let whole_turn = self.run > EDGES_PER_TURN && edges.turn_us > 0;
+        let mut uneven = false;
         self.speed_rad_s = if whole_turn {
             const TURN: f32 = EDGES_PER_TURN as f32 * EDGE;
             let turn = TURN / from_u32(edges.turn_us);
+            // A lost edge lengthens the turn by an eighth: no wheel slows down like that.
+            let slower_rad_s = self.turn_rad_s - turn;
+            uneven = is_uneven(new, span_us, edges.turn_us)
+                || (self.turn_rad_s > 0.0
+                    && slower_rad_s > 1e-6 * STEEPEST_RAD_S2 * from_u32(span_us));
+            self.turn_rad_s = turn;
             let explained = turn * explained(new);
             if fresh > turn + explained {
                 fresh - explained
@@ -116,7 +163,7 @@ impl SpeedEstimator {
         self.count = edges.count;
         self.last = edges.last;
         self.standing = false;
-        whole_turn && is_uneven(new, span_us, edges.turn_us)
+        uneven
     }
 }
 
@@ -285,6 +332,55 @@ mod tests {
     fn a_disc_is_even_whatever_its_poles_and_however_its_speed_changes() {
         for places in [[0.0; 8], UNEVEN, LOPSIDED] {
             assert_eq!(uneven(Disc::new(places)), 0, "{places:?}");
+        }
+    }
+
+    /// The most edges that are overdue in a second in which a wheel turns so fast, and then so.
+    fn most_overdue(arrives: fn(u32) -> bool, speed: impl Fn(u32) -> f64) -> u8 {
+        let mut disc = Disc {
+            arrives,
+            ..Disc::new(LOPSIDED)
+        };
+        let mut estimator = SpeedEstimator::default();
+        let overdue = |tick: u32| {
+            let edges = disc.tick(tick * 10_000, speed(tick));
+            estimator.step(&edges, Micros((tick + 1) * 10_000)).overdue
+        };
+        (0..100).map(overdue).max().unwrap_or(0)
+    }
+
+    #[test]
+    fn edges_that_a_rolling_wheel_owes_are_overdue_within_two_ticks() {
+        // 6.7 rad/s are 4.1 edges a tick: the last one of 200 comes in tick 49.
+        let overdue = most_overdue(|edge| edge < 200, |_| 6.7);
+        assert!(overdue >= 8, "{overdue}");
+    }
+
+    #[test]
+    fn a_speed_that_falls_as_no_wheel_can_is_believed_bit_by_bit() {
+        let mut disc = Disc {
+            arrives: |edge| edge < 200 || edge.is_multiple_of(2),
+            ..Disc::new(UNEVEN)
+        };
+        let mut estimator = SpeedEstimator::default();
+        let mut before_rad_s = 0.0;
+        for tick in 0..60 {
+            let edges = disc.tick(tick * 10_000, 6.7);
+            let motion = estimator.step(&edges, Micros((tick + 1) * 10_000));
+            assert!(motion.believed_rad_s >= motion.speed_rad_s);
+            if tick > 10 {
+                assert!(motion.believed_rad_s > before_rad_s - 0.61);
+            }
+            before_rad_s = motion.believed_rad_s;
+        }
+    }
+
+    #[test]
+    fn a_wheel_that_brakes_hard_owes_hardly_an_edge() {
+        for speed in [2.0, 6.7, 15.0] {
+            let braked = |tick: u32| (speed - 0.3 * f64::from(tick.saturating_sub(50))).max(0.0);
+            // A pole may stand a fifth of its pitch off.
+            assert!(most_overdue(|_| true, braked) <= 1, "{speed} rad/s");
         }
     }
 

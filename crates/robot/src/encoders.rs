@@ -1,8 +1,9 @@
 //! Encoders that cannot be believed. The robot must not go on with either kind: what it drives by is what they say.
 //!
-//! *Silent*: a wheel is driven and gives no edges. It is held, or its encoder is cut; the speed loop would push ever harder against what it
-//! cannot see. Driven is what gets a duty that moves any free wheel, and what its speed loop has been asked to turn for long enough: the
-//! loop finds the duty by itself, and slow turns take little.
+//! *Silent*: a rolling wheel owes edges, since no wheel stops at once ([`WheelMotion::overdue`]); that is noticed within two ticks.
+//! A wheel that stands is driven and gives none: it is held, or its encoder is cut, and the speed loop would push ever harder against
+//! what it cannot see. Driven is what gets more duty than any free wheel needs, and what its speed loop has been asked to turn for
+//! long enough: the loop finds the duty by itself, and slow turns take little.
 //!
 //! *Implausible*: edges are missing, or are noise. A disc that turns with a motor keeps time: the edges of a tick come as the last turn of
 //! the motor leads to expect, whatever friction, floor and battery do to the speed. Where they do not, again and again ([`WheelMotion::uneven`]), some
@@ -16,14 +17,19 @@ use rumbo_control::math::abs;
 use rumbo_control::speed::WheelMotion;
 use rumbo_control::{Duty, Fault, SIDES, Side, TICK_S, Wheels};
 
-/// Duty that moves a free wheel for sure: the original needed 65 of 255 on the floor, 35 in the air.
-const HARD: i16 = Duty::MAX * 3 / 5;
-/// Ticks of being driven without an edge that are too many: 0.4 s. Breaking away takes less than a quarter of it.
+/// Duty that moves any free wheel in the end: the original needed 65 of 255 on the floor, 35 in the air.
+const HARD: u16 = Duty::MAX as u16 * 2 / 5;
+/// Duty beyond [`HARD`], summed over the ticks without an edge, that is too much: 4 % of full duty for a second. To break away takes
+/// sound robots half of that at most; with twice the friction of the floor or a battery of 5.2 V, up to 6 %.
+const PUSHED: u16 = 1_000;
+/// Ticks of being asked to turn without an edge that are too many: 0.4 s.
 const PATIENCE_TICKS: u8 = 40;
 /// Speed references below this are for standing [rad/s].
 const STANDING_RAD_S: f32 = 0.5;
 /// Angle that a wheel has been asked to turn, one way, without an edge: 73 of them [rad].
 const ASKED_RAD: f32 = 1.2;
+/// Overdue edges of a rolling wheel that make its encoder silent.
+const OVERDUE: u8 = 3;
 /// What an uneven tick adds to an encoder's doubt; any other one takes one off.
 const UNEVEN: u8 = 24;
 /// Doubt that makes an encoder implausible: six uneven ticks soon after each other, or one of twenty for long.
@@ -39,8 +45,8 @@ pub(crate) struct EncoderWatch {
 /// What a wheel did not answer, since its last edge.
 #[derive(Clone, Copy, Debug, Default)]
 struct Missing {
-    /// Ticks of hard duty, one after the other.
-    hard_ticks: u8,
+    /// Duty beyond [`HARD`], summed over the ticks [counts].
+    pushed: u16,
     /// Ticks of a speed reference, less those in which it was asked to stand.
     asked_ticks: u8,
     /// Angle that it amounts to [rad].
@@ -49,11 +55,11 @@ struct Missing {
 
 impl Missing {
     fn step(&mut self, duty: Duty, reference_rad_s: f32) -> bool {
-        self.hard_ticks = if duty.counts().abs() >= HARD {
-            self.hard_ticks.saturating_add(1)
-        } else {
-            0
-        };
+        let beyond = duty.counts().unsigned_abs().saturating_sub(HARD);
+        self.pushed = self.pushed.saturating_add(beyond);
+        if duty.counts() == 0 {
+            self.pushed = 0;
+        }
         if reference_rad_s == 0.0 {
             // Orders too small to break away, with rests as long, do not add up.
             self.asked_ticks = self.asked_ticks.saturating_sub(1);
@@ -65,7 +71,7 @@ impl Missing {
             self.asked_ticks = self.asked_ticks.saturating_add(1);
             self.asked_rad += reference_rad_s * TICK_S;
         }
-        self.hard_ticks >= PATIENCE_TICKS
+        self.pushed >= PUSHED
             || (self.asked_ticks >= PATIENCE_TICKS && abs(self.asked_rad) >= ASKED_RAD)
     }
 }
@@ -82,25 +88,32 @@ impl EncoderWatch {
         reference_rad_s: Wheels<f32>,
     ) -> Result<(), Fault> {
         for side in SIDES {
+            let WheelMotion {
+                edges,
+                uneven,
+                overdue,
+                ..
+            } = motion[side];
             let doubt = &mut self.doubt[side];
-            *doubt = if motion[side].uneven {
+            *doubt = if uneven {
                 doubt.saturating_add(UNEVEN)
             } else {
                 doubt.saturating_sub(1)
             };
-            if *doubt >= IMPLAUSIBLE {
-                return Err(match side {
-                    Side::Left => Fault::LeftEncoderImplausible,
-                    Side::Right => Fault::RightEncoderImplausible,
-                });
-            }
-            if motion[side].edges > 0 {
+            let silent = if edges > 0 {
                 self.missing[side] = Missing::default();
-            } else if self.missing[side].step(duty[side], reference_rad_s[side]) {
-                return Err(match side {
-                    Side::Left => Fault::LeftEncoderSilent,
-                    Side::Right => Fault::RightEncoderSilent,
-                });
+                false
+            } else {
+                self.missing[side].step(duty[side], reference_rad_s[side]) || overdue >= OVERDUE
+            };
+            // An encoder that loses edges may lose some in a row.
+            let implausible = *doubt >= IMPLAUSIBLE || (silent && *doubt >= UNEVEN);
+            match (side, implausible) {
+                (Side::Left, true) => return Err(Fault::LeftEncoderImplausible),
+                (Side::Right, true) => return Err(Fault::RightEncoderImplausible),
+                (Side::Left, false) if silent => return Err(Fault::LeftEncoderSilent),
+                (Side::Right, false) if silent => return Err(Fault::RightEncoderSilent),
+                (_, false) => {}
             }
         }
         Ok(())
@@ -117,6 +130,15 @@ mod tests {
             edges,
             ..WheelMotion::default()
         })
+    }
+
+    #[test]
+    fn a_rolling_wheel_that_owes_edges_is_a_fault_at_once() {
+        let mut motion = motion(1, 0);
+        motion.right.overdue = OVERDUE;
+        let end =
+            EncoderWatch::default().step(&motion, Wheels::both(Duty::new(70)), Wheels::both(6.0));
+        assert_eq!(end, Err(Fault::RightEncoderSilent));
     }
 
     fn fault(motion: &Wheels<WheelMotion>, right: i16) -> Option<Fault> {

@@ -4,15 +4,19 @@ use super::*;
 
 const TURNING: WheelMotion = WheelMotion {
     speed_rad_s: 6.0,
+    believed_rad_s: 6.0,
     edges: 4,
     standing: false,
     uneven: false,
+    overdue: 0,
 };
 const STANDING: WheelMotion = WheelMotion {
     speed_rad_s: 0.0,
+    believed_rad_s: 0.0,
     edges: 0,
     standing: true,
     uneven: false,
+    overdue: 0,
 };
 
 fn step(layer: &mut DriveLayer, drive: Drive, motion: WheelMotion) -> Wheels<Duty> {
@@ -99,7 +103,7 @@ fn a_wheel_that_nothing_is_asked_of_holds_nobody_back() {
 fn the_duty_never_brakes_by_reversing() {
     let mut layer = DriveLayer::default();
     let fast = WheelMotion {
-        speed_rad_s: 15.0,
+        believed_rad_s: 15.0,
         ..TURNING
     };
     for _ in 0..200 {
@@ -119,9 +123,11 @@ fn a_standing_wheel_is_kicked_harder_until_it_moves() {
     assert!(later > first + 50, "{first} -> {later}");
     let moving = WheelMotion {
         speed_rad_s: 0.5,
+        believed_rad_s: 0.5,
         edges: 1,
         standing: false,
         uneven: false,
+        overdue: 0,
     };
     assert!(step(&mut layer, speed(0.5), moving).left.counts() < later - 30);
 }

@@ -15,8 +15,8 @@ use rumbo_wire::{
 const BYTES_PER_100_TICKS: u32 = 960;
 /// Speed of the bench's wheels at full duty [rad/s].
 const FULL_SPEED_RAD_S: f32 = 20.0;
-/// Share of the way to the speed of their duty that the wheels make in a tick: a time constant of 0.1 s.
-const LAG: f32 = 0.1;
+/// Share of the way to the speed of their duty that the wheels make in a tick: a time constant of 0.25 s.
+const LAG: f32 = 0.04;
 /// Width of an edge [rad].
 const EDGE_RAD: f32 = core::f32::consts::TAU / 384.0;
 /// Speed of the session, if none is given.
@@ -37,9 +37,10 @@ impl Wheel {
         let step_rad = self.speed_rad_s.abs() * 0.001;
         for ms in 0..TICK_US / 1_000 {
             self.angle_rad += step_rad;
-            if self.angle_rad >= EDGE_RAD {
+            while self.angle_rad >= EDGE_RAD {
                 self.angle_rad -= EDGE_RAD;
-                let at_us = from_us.wrapping_add(ms * 1_000);
+                let since_us = 1_000.0 * (1.0 - self.angle_rad / step_rad);
+                let at_us = from_us.wrapping_add(ms * 1_000 + since_us as u32);
                 let slot = usize::from(self.edges.count) % 8;
                 if self.edges.count >= 8 {
                     self.edges.turn_us = at_us.wrapping_sub(self.times[slot]);
