@@ -9,7 +9,7 @@ use crate::metrics::{self, Metrics};
 use crate::observe::Waves;
 use crate::operator::Operator;
 use crate::sim::Sim;
-use crate::trace::{SAMPLE_US, Trace};
+use crate::trace::{Heard, SAMPLE_US, Trace};
 use rumbo_control::params::Params;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -56,7 +56,7 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(setup: &'a Setup, seed: u64) -> Result<Self, FileError> {
+    pub(crate) fn new(setup: &'a Setup, seed: u64) -> Result<Self, FileError> {
         let mut sim = Sim::new(setup, seed)?;
         let mut operator = Operator::new(setup);
         operator.brief(&mut sim)?;
@@ -87,6 +87,16 @@ impl<'a> Run<'a> {
 
     pub(crate) fn mega(&self) -> Option<&Mega> {
         self.sim.mega()
+    }
+
+    /// What the robot has said so far, as metrics need it.
+    pub(crate) fn heard(&self) -> &[Heard] {
+        &self.operator.heard
+    }
+
+    /// What really happened so far.
+    pub(crate) fn trace(&self) -> &Trace {
+        &self.trace
     }
 
     /// The time is over, or the program has ended.

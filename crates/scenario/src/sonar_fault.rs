@@ -10,6 +10,9 @@ const LONGEST_SPIKE_US: f64 = 128_000.0;
 /// Longest spike that looks like a distance within reach: 2.5 m [us].
 const LONGEST_CREDIBLE_US: f64 = 14_500.0;
 
+/// An HC-SR04 without an echo holds its line for this long [us].
+const HELD_US: u64 = 38_000;
+
 /// How a sonar fails.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SonarFault {
@@ -17,6 +20,8 @@ pub enum SonarFault {
     Cut,
     /// It gives the last answer before the failure, for ever.
     Stuck,
+    /// It answers that nothing is in reach, for ever.
+    Clear,
     /// This share of its answers, 0 to 1, are random: half of them credible distances, half as absurd as 0.1 cm or 20 m.
     Spiking(f64),
 }
@@ -76,6 +81,7 @@ impl SonarFaults {
                 echo
             }
             Some(SonarFault::Stuck) => kept,
+            Some(SonarFault::Clear) => Echo::Clear,
             Some(SonarFault::Spiking(share)) => {
                 let source = SPIKES + 2 * sonar as u32;
                 if noise.chance(source, self.answers, share) {
@@ -97,6 +103,7 @@ impl SonarFaults {
                 Some(Echo::Pulse(width_us)) => Some(width_us.into()),
                 _ => None,
             },
+            SonarFault::Clear => Some(HELD_US),
             SonarFault::Spiking(share) => {
                 let source = SPIKES + 2 * sonar as u32;
                 noise

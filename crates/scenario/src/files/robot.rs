@@ -108,7 +108,7 @@ pub struct FirmwareCaps {
 impl Default for FirmwareCaps {
     fn default() -> Self {
         Self {
-            flash_bytes: 48 * 1024,
+            flash_bytes: 128 * 1024,
             sram_bytes: 3 * 1024,
         }
     }

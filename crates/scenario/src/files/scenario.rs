@@ -240,14 +240,15 @@ fn read_sonar_faults(tables: Vec<Table<'_, '_>>, duration_s: f64) -> Vec<TimedSo
                 None
             }
         };
-        let kind = table.required_text("kind", "\"cut\", \"stuck\" or \"spiking\"");
+        let kind = table.required_text("kind", "\"cut\", \"stuck\", \"clear\" or \"spiking\"");
         let fault = match (kind.value.as_str(), share) {
             ("cut", None) => Some(SonarFault::Cut),
             ("stuck", None) => Some(SonarFault::Stuck),
+            ("clear", None) => Some(SonarFault::Clear),
             ("", _) => None,
             ("spiking", share) => Some(SonarFault::Spiking(share.unwrap_or(0.3))),
             (other, _) => {
-                let remedy = "write \"cut\", \"stuck\", or \"spiking\" with share = 0.3";
+                let remedy = "write \"cut\", \"stuck\", \"clear\", or \"spiking\" with share = 0.3";
                 table.complain("kind", kind.line, other, remedy);
                 None
             }

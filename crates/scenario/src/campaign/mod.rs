@@ -4,6 +4,8 @@
 //! touched, and for random worlds the share of goals reached and how long the ways were beside the shortest ones. The examples' `campaign`
 //! prints it for thousands of seeds; a test judges a sample in the same way.
 
+pub mod faults;
+
 use crate::files::{FileError, Kind, Library, Overrides, Setup};
 use crate::metrics::Metrics;
 use crate::run::{self, RunResult};

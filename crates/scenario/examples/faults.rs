@@ -1,0 +1,177 @@
+//! Breaks sensors and wires in thousands of drives, and prints what was touched and what was named.
+//!
+//! `cargo xtask campaign --only faults` builds and starts it. Arguments: `--seeds N` (50), `--from N` first seed (1), `--instants N`
+//! per drive (5), `--image FILE` (on the emulated Mega), `--list` (each run that touched something), `--write` (the table of
+//! docs/faults.md), and words that the name of a drive or of a failure must contain. Exit status 1 if a requirement is missed.
+
+#[path = "shared/pages.rs"]
+mod pages;
+
+use rumbo_scenario::campaign::faults::{
+    Class, DRIVES, Drive, Failure, GENTLE_M_S, INSTANTS, RUNS_PER_TOUCH, drive_all,
+};
+use rumbo_scenario::files::{FileError, Overrides};
+use std::process::ExitCode;
+
+/// What the command line asks for.
+struct Args {
+    seeds: u64,
+    from: u64,
+    instants: usize,
+    image: Option<String>,
+    list: bool,
+    write: bool,
+    words: Vec<String>,
+}
+
+fn parse() -> Option<Args> {
+    let mut parsed = Args {
+        seeds: 50,
+        from: 1,
+        instants: INSTANTS,
+        image: None,
+        list: false,
+        write: false,
+        words: Vec::new(),
+    };
+    let mut args = std::env::args().skip(1);
+    while let Some(arg) = args.next() {
+        match arg.as_str() {
+            "--seeds" => parsed.seeds = args.next()?.parse().ok()?,
+            "--from" => parsed.from = args.next()?.parse().ok()?,
+            "--instants" => parsed.instants = args.next()?.parse().ok()?,
+            "--image" => parsed.image = Some(args.next()?),
+            "--list" => parsed.list = true,
+            "--write" => parsed.write = true,
+            option if option.starts_with("--") => return None,
+            word => parsed.words.push(word.to_owned()),
+        }
+    }
+    Some(parsed)
+}
+
+fn main() -> ExitCode {
+    let Some(args) = parse() else {
+        eprintln!("faults: see the head of examples/faults.rs for the arguments");
+        return ExitCode::from(2);
+    };
+    match campaign(&args) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("faults: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn campaign(args: &Args) -> Result<bool, FileError> {
+    let overrides = Overrides {
+        firmware: args.image.as_ref().map(Into::into),
+        ..Overrides::default()
+    };
+    let keep = |drive: &str, failure: Failure| {
+        let failure = failure.to_string();
+        (args.words.iter()).all(|word| drive.contains(word) || failure.contains(word))
+    };
+    let seeds = args.from..args.from + args.seeds;
+    let drives = drive_all(&overrides, seeds, args.instants, keep)?;
+    let table = table(&drives);
+    println!("{table}");
+    if args.list {
+        for drive in drives.iter().filter(|drive| drive.touch.is_some()) {
+            println!("{}", line(drive));
+        }
+    }
+    let (summary, met) = summary(&drives);
+    println!("{summary}");
+    if args.write {
+        pages::write("docs/faults.md", "campaign", &format!("{table}\n{summary}"))?;
+    }
+    Ok(met)
+}
+
+fn line(drive: &Drive) -> String {
+    let Drive {
+        seed,
+        at_s,
+        failure,
+        class,
+        ..
+    } = drive;
+    let (touch_s, touch_m_s) = drive.touch.unwrap_or_default();
+    let named = drive
+        .named
+        .map_or("nothing named".to_owned(), |(named_s, fault)| {
+            format!("{fault:?} at {named_s:.2} s")
+        });
+    format!(
+        "{} seed {seed}, {failure} at {at_s} s ({class:?}): touch at {touch_s:.2} s, {touch_m_s:.3} m/s; {named}",
+        DRIVES[drive.drive].0
+    )
+}
+
+/// Rows of failures, columns of drives: of how many runs how many touched something, and the fastest touch.
+fn table(drives: &[Drive]) -> String {
+    let columns: Vec<usize> = (0..DRIVES.len())
+        .filter(|column| drives.iter().any(|drive| drive.drive == *column))
+        .collect();
+    let mut text = String::from("| what fails |");
+    for column in &columns {
+        text += &format!(" {} |", DRIVES[*column].0);
+    }
+    text += &format!("\n|---|{}\n", "---|".repeat(columns.len()));
+    for class in [Class::Knowable, Class::FreeFloor] {
+        for failure in Failure::all() {
+            let of_row = |drive: &&Drive| drive.failure == failure && drive.class == class;
+            if !drives.iter().any(|drive| of_row(&drive)) {
+                continue;
+            }
+            let free = if class == Class::FreeFloor {
+                ", floor free before"
+            } else {
+                ""
+            };
+            text += &format!("| {failure}{free} |");
+            for column in &columns {
+                let here = drives
+                    .iter()
+                    .filter(of_row)
+                    .filter(|drive| drive.drive == *column);
+                text += &format!(" {} |", cell(&here.collect::<Vec<_>>()));
+            }
+            text += "\n";
+        }
+    }
+    text
+}
+
+fn cell(drives: &[&Drive]) -> String {
+    let touches: Vec<f64> = drives
+        .iter()
+        .filter_map(|drive| Some(drive.touch?.1))
+        .collect();
+    let fastest = touches.iter().copied().fold(0.0, f64::max);
+    match (drives.len(), touches.len()) {
+        (0, _) => String::new(),
+        (all, 0) => format!("0 of {all}"),
+        (all, count) => format!("{count} of {all} ({fastest:.2} m/s)"),
+    }
+}
+
+fn summary(drives: &[Drive]) -> (String, bool) {
+    let knowable = drives.iter().filter(|drive| drive.class == Class::Knowable);
+    let runs = knowable.clone().count();
+    let touches: Vec<&Drive> = knowable.filter(|drive| drive.touch.is_some()).collect();
+    let count = |of: &dyn Fn(&&&Drive) -> bool| touches.iter().filter(of).count();
+    let hard = count(&|drive| drive.touch.is_some_and(|(_, m_s)| m_s > GENTLE_M_S));
+    let unnamed = count(&|drive| drive.touched_unnamed());
+    let allowed = runs / RUNS_PER_TOUCH;
+    let met = hard == 0 && unnamed == 0 && touches.len() <= allowed;
+    let text = format!(
+        "Of {runs} runs {} touched something (at most {allowed} allowed), {hard} of them faster than {GENTLE_M_S} m/s (none \
+         allowed), {unnamed} before the fault was named (none allowed).",
+        touches.len()
+    );
+    (text, met)
+}
