@@ -12,12 +12,10 @@ const HASH_SYMBOL: &str = "RUMBO_IMAGE_HASH";
 const FORBIDDEN: [&str; 3] = ["panic", "core3fmt", "unwrap_failed"];
 
 /// What the image takes.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Report {
     sections: Vec<(String, u64, bool, bool)>,
     hash: u32,
-    /// Accesses to arguments on the stack that the compiler got wrong.
-    pub(crate) repaired: usize,
 }
 
 impl Report {
@@ -47,11 +45,6 @@ impl fmt::Display for Report {
             let sram = if *in_sram { *size } else { 0 };
             writeln!(f, "{name:<8} {flash:>7} bytes of flash {sram:>6} of SRAM")?;
         }
-        writeln!(
-            f,
-            "accesses to arguments on the stack repaired: {}",
-            self.repaired
-        )?;
         write!(f, "hash {:08x}", self.hash)
     }
 }
@@ -65,10 +58,6 @@ pub(crate) fn finish(bytes: &mut [u8]) -> Result<Report, String> {
             "the image contains {name}: the core must not be able to panic or format text"
         ));
     }
-    let mut report = Report {
-        sections: layout.sections,
-        ..Report::default()
-    };
     let place = layout
         .hash
         .ok_or(format!("the image has no {HASH_SYMBOL}"))?;
@@ -76,18 +65,21 @@ pub(crate) fn finish(bytes: &mut [u8]) -> Result<Report, String> {
         .get_mut(place..place + 4)
         .ok_or("the hash lies outside the file")?;
     target.fill(0);
-    report.hash = layout.loaded.iter().fold(0x811C_9DC5, |hash, (from, to)| {
+    let hash = layout.loaded.iter().fold(0x811C_9DC5, |hash, (from, to)| {
         let loaded = bytes.get(*from..*to).unwrap_or_default();
         loaded.iter().fold(hash, |hash: u32, byte| {
             (hash ^ u32::from(*byte)).wrapping_mul(0x0100_0193)
         })
     });
     // Zero stands for an image that has none.
-    report.hash = report.hash.max(1);
+    let hash = hash.max(1);
     if let Some(target) = bytes.get_mut(place..place + 4) {
-        target.copy_from_slice(&report.hash.to_le_bytes());
+        target.copy_from_slice(&hash.to_le_bytes());
     }
-    Ok(report)
+    Ok(Report {
+        sections: layout.sections,
+        hash,
+    })
 }
 
 /// What the file holds.

@@ -1,15 +1,13 @@
 //! `cargo xtask firmware`: the image for the Mega, whole, with its sizes.
 //!
-//! `firmware/` is built with a Rust for the AVR ([`toolchain`]), its assembly made smaller ([`squeeze`]), and linked
-//! ([`link`]); then the image is finished ([`image`]): its hash written into it, and what must not be in it looked for. The
-//! product is `target/firmware/rumbo.elf` and `rumbo.hex`. More flash or SRAM than the robot file allows is an error.
+//! `firmware/` is built by cargo with a Rust for the AVR ([`toolchain`]); then the image is finished ([`image`]): its hash
+//! written into it, and what must not be in it looked for. The product is `target/firmware/rumbo.elf` and `rumbo.hex`. More
+//! flash or SRAM than the robot file allows is an error.
 
 mod image;
-mod link;
-mod squeeze;
 mod toolchain;
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use crate::project::{Project, run as run_command};
 use crate::test::Stop;
@@ -30,10 +28,15 @@ pub(crate) fn run(project: &Project) -> Result<bool, String> {
 pub(crate) fn build(project: &Project) -> Result<(), Stop> {
     let toolchain = Toolchain::find(project)?;
     let build = project.target.join("firmware/build");
-    let linked = link::build(project, &toolchain, &build)?;
-    let mut bytes = read(&linked.image)?;
-    let mut report = image::finish(&mut bytes)?;
-    report.repaired = linked.repaired;
+    run_command(
+        toolchain
+            .command("cargo")
+            .current_dir(project.root.join("firmware"))
+            .args(["build", "--release", "--locked", "--quiet"])
+            .env("CARGO_TARGET_DIR", &build),
+    )?;
+    let mut bytes = read(&build.join("avr-none/release/rumbo.elf"))?;
+    let report = image::finish(&mut bytes)?;
     let elf = project.target.join("firmware/rumbo.elf");
     let hex = elf.with_extension("hex");
     std::fs::write(&elf, bytes).map_err(|error| format!("{}: {error}", elf.display()))?;
@@ -48,7 +51,7 @@ pub(crate) fn build(project: &Project) -> Result<(), Stop> {
     Ok(check(project, &report)?)
 }
 
-fn read(path: &PathBuf) -> Result<Vec<u8>, String> {
+fn read(path: &Path) -> Result<Vec<u8>, String> {
     std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
 }
 
@@ -87,8 +90,8 @@ mod tests {
 
     #[test]
     fn caps_come_from_the_firmware_table() {
-        let robot = "flash_bytes = 1\n[firmware]\nflash_bytes = 49152\nsram_bytes = 3072\n[parameters]\nx = 2\n";
-        assert_eq!(cap(robot, "flash_bytes"), Some(49_152));
+        let robot = "flash_bytes = 1\n[firmware]\nflash_bytes = 131072\nsram_bytes = 3072\n[parameters]\nx = 2\n";
+        assert_eq!(cap(robot, "flash_bytes"), Some(131_072));
         assert_eq!(cap(robot, "sram_bytes"), Some(3_072));
         assert_eq!(cap(robot, "x"), None);
     }
