@@ -19,9 +19,9 @@ use rumbo_control::{Duty, Fault, SIDES, Side, TICK_S, Wheels};
 
 /// Duty that moves any free wheel in the end: the original needed 65 of 255 on the floor, 35 in the air.
 const HARD: u16 = Duty::MAX as u16 * 2 / 5;
-/// Duty beyond [`HARD`], summed over the ticks without an edge, that is too much: 4 % of full duty for a second. To break away takes
-/// sound robots half of that at most; with twice the friction of the floor or a battery of 5.2 V, up to 6 %.
-const PUSHED: u16 = 1_000;
+/// Duty beyond [`HARD`], summed over the ticks without an edge, that is too much: 7 % of full duty for a second. To break away takes
+/// sound robots 2 % at most, and 6 % with twice the friction of the floor or a battery of 5.2 V.
+const PUSHED: u16 = 1_700;
 /// Ticks of being asked to turn without an edge that are too many: 0.4 s.
 const PATIENCE_TICKS: u8 = 40;
 /// Speed references below this are for standing [rad/s].

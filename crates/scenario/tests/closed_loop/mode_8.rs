@@ -28,11 +28,11 @@ fn four_goals_are_reached_in_24_s_within_4_cm_and_2_percent_of_the_way() {
 }
 
 #[test]
-fn the_goal_behind_the_boxes_is_reached_in_35_s_and_3_6_m_without_a_touch() {
+fn the_goal_behind_the_boxes_is_reached_in_36_s_and_3_75_m_without_a_touch() {
     let runs = twenty("mode8-obstacles");
     assert!(runs.iter().all(|run| run.metrics["reached"] == 1.0));
-    assert!(worst(&runs, "total_time_s") <= 35.0);
-    assert!(worst(&runs, "path_m") <= 3.6);
+    assert!(worst(&runs, "total_time_s") <= 36.0);
+    assert!(worst(&runs, "path_m") <= 3.75);
     assert_eq!(worst(&runs, "contacts"), 0.0);
 }
 
@@ -135,10 +135,11 @@ fn a_stuck_sonar_on_the_way_around_a_box_never_drives_the_robot_hard_against_it(
             ) {
                 let what = format!("{sonar:?} stuck at {at_s} s, seed {}", run.seed);
                 let speed_m_s = run.metrics["contact_speed_m_s"];
-                assert!(speed_m_s < 0.15, "{what}: {speed_m_s} m/s");
+                assert!(speed_m_s < 0.1, "{what}: {speed_m_s} m/s");
                 let told = named(&run) == Some(Fault::SonarFaulty);
-                // One that is stuck at "nothing in reach" may stay unknown until something that was heard before is denied.
-                let gentle = run.metrics["reached"] == 1.0 || sonar == SonarId::Front;
+                // One that is stuck at "nothing in reach" may stay unknown: one at a side does no harm, and the front one is put to the
+                // proof only where something must answer.
+                let gentle = run.metrics["contacts"] == 0.0 || sonar == SonarId::Front;
                 assert!(told || gentle, "{what}: not named");
             }
         }

@@ -10,7 +10,7 @@
 
 use super::place::{Bounds, Place, fractions};
 use crate::math::{round, sin_cos};
-use crate::types::{Pose, Range, Reading, SonarId};
+use crate::types::{Pose, Range, Reading, SonarId, Transform};
 
 /// How many points are remembered.
 pub(super) const CAPACITY: usize = 48;
@@ -46,8 +46,6 @@ const NEAR_MM: i32 = 300;
 /// What a sonar at the side sees within this goes on ahead of it, for so much [mm, m].
 const BESIDE_MM: i32 = 200;
 const GOES_ON_M: f32 = 0.1;
-/// A point that has been heard more than once and is nearer than this would be heard again [mm].
-const DENIED_MM: i32 = 800;
 /// Arcs shorter than this get one point [m].
 const SHORT_M: f32 = 0.18;
 
@@ -76,13 +74,41 @@ impl Echo {
 }
 
 /// A beam of a sonar.
-struct Beam {
+pub(super) struct Beam {
     /// Where it begins.
-    apex: Place,
+    pub apex: Place,
     /// Sine and cosine of its axis, as [`fractions`].
-    facing: (i32, i32),
+    pub facing: (i32, i32),
     /// Its axis, in 256ths of a turn.
-    axis: i8,
+    pub axis: i8,
+}
+
+impl Beam {
+    /// That of a reading, with the robot at `robot`; and the place on its axis from which the echo came, if there was one.
+    pub(super) fn of(robot: &Transform, reading: &Reading) -> (Self, Option<Place>) {
+        let (x_m, y_m) = robot.to_world(reading.view.x_m, reading.view.y_m);
+        let axis_rad = robot.pose.heading_rad + reading.view.axis_rad;
+        let (sin, cos) = sin_cos(axis_rad);
+        let beam = Self {
+            apex: Place::new(x_m, y_m),
+            facing: fractions((sin, cos)),
+            axis: direction(axis_rad),
+        };
+        let at = match reading.range {
+            Range::Valid(range_m) => Some(Place::new(x_m + range_m * cos, y_m + range_m * sin)),
+            Range::Clear | Range::Faulty => None,
+        };
+        (beam, at)
+    }
+
+    /// From a place in a direction of the world.
+    pub(super) fn along(apex: Place, axis_rad: f32) -> Self {
+        Self {
+            apex,
+            facing: fractions(sin_cos(axis_rad)),
+            axis: direction(axis_rad),
+        }
+    }
 }
 
 /// Most points that a reading puts down: those across the beam, and one that goes on ahead.
@@ -167,8 +193,8 @@ impl Echoes {
         (point.belief > 0).then_some(point.at)
     }
 
-    /// Takes a reading, made with the robot at `pose`; says whether it denies a near point that has been heard more than once.
-    pub(super) fn take(&mut self, robot: &crate::types::Transform, reading: &Reading) -> bool {
+    /// Takes in a reading. Unless it is `sure` it takes no belief from what it denies.
+    pub(super) fn ingest(&mut self, robot: &Transform, reading: &Reading, sure: bool) {
         let (pose, view) = (&robot.pose, &reading.view);
         let (x_m, y_m) = robot.to_world(view.x_m, view.y_m);
         let apex = Place::new(x_m, y_m);
@@ -183,21 +209,23 @@ impl Echoes {
         let (range_mm, heard) = match reading.range {
             Range::Valid(range_m) => (round(1_000.0 * range_m), true),
             Range::Clear => (2_500, false),
-            Range::Faulty => return false,
+            Range::Faulty => return,
         };
-        let denies = self.clear(&beam, range_mm);
+        if sure {
+            self.clear(&beam, range_mm);
+        }
         let horizon_mm = if reading.sonar == SonarId::Front {
             front_mm
         } else {
             side_mm
         };
         if !heard || range_mm > horizon_mm {
-            return denies;
+            return;
         }
         let range_m = 1e-3 * crate::math::from_u32(range_mm.unsigned_abs());
         let explained = self.explain(&beam, range_mm);
         if explained && range_mm > NEAR_MM {
-            return denies;
+            return;
         }
         let mut room = self.room(Place::new(pose.x_m, pose.y_m));
         let count = if explained || range_m < SHORT_M {
@@ -218,12 +246,10 @@ impl Echoes {
             );
             self.put(at, beam.axis, &mut room);
         }
-        denies
     }
 
-    /// Takes belief from the points that a beam as far as `range_mm` would have heard; says whether a near one was firm.
-    fn clear(&mut self, beam: &Beam, range_mm: i32) -> bool {
-        let mut denies = false;
+    /// Takes belief from the points that a beam as far as `range_mm` would have heard.
+    fn clear(&mut self, beam: &Beam, range_mm: i32) {
         let axis = beam.axis;
         let until_mm = range_mm - BEYOND_MM - ((range_mm * BEYOND_SHARE) >> 8);
         let aside_mm = (until_mm * SURE_TANGENT) >> 8;
@@ -235,7 +261,6 @@ impl Echoes {
             }
             let (along, across) = point.at.seen(beam.apex, &beam.facing);
             if along > 0 && along < until_mm && across.abs() * 256 < along * SURE_TANGENT {
-                denies |= point.belief >= FIRM && along < DENIED_MM;
                 point.belief = if point.belief < FIRM {
                     0
                 } else {
@@ -243,7 +268,6 @@ impl Echoes {
                 };
             }
         }
-        denies
     }
 
     /// Whether a point that is known already can have given this echo: it is believed more then, and the echo says nothing new.
@@ -341,7 +365,7 @@ impl Echoes {
 }
 
 /// A direction in 256ths of a turn.
-fn direction(angle_rad: f32) -> i8 {
+pub(super) fn direction(angle_rad: f32) -> i8 {
     let wrapped = crate::math::wrap_angle(angle_rad);
     let turns = round(wrapped * (128.0 / core::f32::consts::PI));
     // 128 is half a turn, as -128 is.

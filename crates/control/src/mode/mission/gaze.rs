@@ -1,21 +1,118 @@
-//! Where the servo points: to and fro, and more to where something is near.
+//! Where the servo points: from direction to direction, two looks in each, and more to where something is near.
+//!
+//! Two looks in the same direction tell a sonar that lies from one that hears ([`super::watch`]). A sonar that has been silent for a
+//! while is turned to a face that must answer ([`super::landmarks`]).
 
 use super::detour::following;
+use super::watch::{Watch, Worth};
 use super::{Look, Phase, ServoAngle, Side, State};
 use crate::estimate::Estimate;
-use crate::math::wrap_angle;
-use crate::types::{Range, SonarId};
+use crate::math::{abs, clamp, wrap_angle};
+use crate::types::{Range, Reading, SonarId};
 
 /// The servo looks this far to each side on the way, and while sweeping [rad].
-const SWING_RAD: f32 = 0.75;
+const SWING_RAD: f32 = 0.76;
 pub(super) const SWEEP_RAD: f32 = 1.5;
 /// To the side where something is near, and to the other [rad].
 const WIDE_RAD: f32 = 1.0;
 const NARROW_RAD: f32 = 0.35;
+/// From direction to direction [rad]: what the servo turns in the 60 ms between two pings, and little more than half of a beam.
+const STEP_RAD: f32 = 0.38;
+/// Looks in each direction, one in a sweep, and the most where they contradict each other.
+pub(super) const LOOKS: u8 = 2;
+const MOST_LOOKS: u8 = 8;
+/// Directions between two that are to prove that the sonar hears: the way ahead is looked at in between.
+const BETWEEN_PROOFS: u8 = 3;
+/// The servo points where it was told to within this [rad].
+const THERE_RAD: f32 = 0.03;
 /// Near is what a sonar at the side sees within this [m].
 const NEAR_M: f32 = 0.3;
 /// A heading error beyond this is a turn [rad].
 const TURNS_RAD: f32 = 0.2;
+
+/// Where the servo points, and where it goes next.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Gaze {
+    target_rad: f32,
+    /// Looks at the target so far.
+    looks: u8,
+    /// The last look contradicted the one before.
+    wild: bool,
+    to_left: bool,
+    /// Directions since the last one that was to prove that the sonar hears.
+    since_proof: u8,
+}
+
+impl Gaze {
+    /// An answer of the front sonar.
+    pub(super) fn count(&mut self, reading: &Reading, worth: Worth) {
+        if abs(reading.servo_rad - self.target_rad) < THERE_RAD {
+            self.looks = self.looks.saturating_add(1);
+            self.wild = worth == Worth::Wild;
+        }
+    }
+
+    /// Enough looks at the target: `looks` of them, and more while they contradict each other.
+    fn is_done(&self, looks: u8) -> bool {
+        self.looks >= if self.wild { MOST_LOOKS } else { looks }
+    }
+
+    /// It has looked beyond this direction; positive is left.
+    pub(super) fn has_seen(&self, angle_rad: f32) -> bool {
+        let beyond = if angle_rad < 0.0 {
+            self.target_rad <= angle_rad
+        } else {
+            self.target_rad >= angle_rad
+        };
+        beyond && self.looks > 0
+    }
+
+    /// On to the next direction, if there were so many looks at this one; after two looks the sonar may be put to the proof.
+    pub(super) fn step(
+        &mut self,
+        watch: &Watch,
+        estimate: &Estimate,
+        front_m: (f32, f32),
+        (right_rad, left_rad): (f32, f32),
+        looks: u8,
+    ) {
+        if !self.is_done(looks) {
+            return;
+        }
+        let proof = if looks < LOOKS || self.since_proof < BETWEEN_PROOFS {
+            None
+        } else {
+            watch.look(estimate, front_m)
+        };
+        match proof {
+            Some(servo_rad) => self.prove(servo_rad),
+            None => self.advance(right_rad, left_rad),
+        }
+    }
+
+    /// Where it points [rad].
+    pub(super) fn servo(&self) -> ServoAngle {
+        ServoAngle(self.target_rad)
+    }
+
+    /// To a direction in which the sonar must hear something.
+    fn prove(&mut self, servo_rad: f32) {
+        (self.target_rad, self.looks, self.since_proof) = (servo_rad, 0, 0);
+    }
+
+    /// On to the next direction between two ends.
+    fn advance(&mut self, right_rad: f32, left_rad: f32) {
+        self.looks = 0;
+        self.since_proof = self.since_proof.saturating_add(1);
+        if self.target_rad >= left_rad {
+            self.to_left = false;
+        } else if self.target_rad <= right_rad {
+            self.to_left = true;
+        }
+        let step_rad = if self.to_left { STEP_RAD } else { -STEP_RAD };
+        self.target_rad = clamp(self.target_rad + step_rad, right_rad, left_rad);
+    }
+}
 
 /// How far to the right and to the left the servo swings: mostly to where something is near, or where the robot turns to.
 fn swing(state: &State, estimate: &Estimate) -> (f32, f32) {
@@ -39,31 +136,29 @@ fn swing(state: &State, estimate: &Estimate) -> (f32, f32) {
     }
 }
 
-/// Where the servo points: to and fro.
-pub(super) fn look(state: &mut State, estimate: &Estimate) -> Look {
+/// Where the servo points.
+pub(super) fn look(state: &mut State, estimate: &Estimate, front_m: (f32, f32)) -> Look {
     let (right_rad, left_rad) = match state.phase {
         Phase::SweepRight => {
-            state.servo_left = false;
+            state.gaze.to_left = false;
             (-SWEEP_RAD, 0.0)
         }
         Phase::SweepLeft => {
-            state.servo_left = true;
+            state.gaze.to_left = true;
             (0.0, SWEEP_RAD)
         }
         _ => swing(state, estimate),
     };
-    if estimate.servo_rad >= left_rad {
-        state.servo_left = false;
-    } else if estimate.servo_rad <= right_rad {
-        state.servo_left = true;
-    }
-    let servo = if state.servo_left {
-        left_rad
-    } else {
-        right_rad
+    let looks = match state.phase {
+        Phase::SweepRight | Phase::SweepLeft => 1,
+        _ => LOOKS,
     };
+    let ends_rad = (right_rad, left_rad);
+    state
+        .gaze
+        .step(&state.watch, estimate, front_m, ends_rad, looks);
     Look {
-        servo: ServoAngle(servo),
+        servo: state.gaze.servo(),
         ..Look::default()
     }
 }

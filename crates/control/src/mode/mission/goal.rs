@@ -32,8 +32,8 @@ const AHEAD_M: f32 = 0.1;
 const FRONT_M: f32 = 0.13;
 /// Distance kept ahead [m].
 const KEEP_M: f32 = 0.05;
-/// Speed while the front sonar may be deaf [m/s].
-const DOUBT_M_S: f32 = 0.08;
+/// Speed while a sonar may be lying [m/s].
+pub(super) const DOUBT_M_S: f32 = 0.08;
 /// Speed during a sweep [m/s].
 const SWEEP_M_S: f32 = 0.1;
 /// Nearer than this the robot turns slowly on the spot: its corners reach 0.15 m [m].
@@ -69,7 +69,8 @@ impl Mission<'_> {
             state.phase = Phase::Unreachable;
         }
         self.act(state, estimate, goal_m, (&way, left_m), planned, action);
-        action.look = look(state, estimate);
+        let front_m = (self.params.get(ParamId::SonarFrontX), 0.0);
+        action.look = look(state, estimate, front_m);
         action.state = state.phase as u8;
         action.heading_ref_rad = state.heading_ref_rad;
     }
@@ -186,6 +187,10 @@ impl Mission<'_> {
             action.new_origin = self.params.get(ParamId::MissionResetOrigin) > 0.5;
             if action.new_origin {
                 state.echoes.move_origin(&estimate.pose, estimate.facing);
+                state
+                    .watch
+                    .landmarks
+                    .move_origin(&estimate.pose, estimate.facing);
             }
         }
         step.drive
@@ -195,7 +200,10 @@ impl Mission<'_> {
     pub(super) fn free_m_s(&self, state: &State) -> f32 {
         let room_m = max(state.gap_m - KEEP_M, 0.0);
         let free_m_s = sqrt(2.0 * self.params.get(ParamId::LineBrake) * room_m);
-        if state.watch.doubts() {
+        // Beside an obstacle the front sonar hears it now and then.
+        let beside = following(state.phase) || state.near_m < CAREFUL_M;
+        let silent = beside && state.watch.landmarks.is_silent();
+        if silent || state.watch.doubts() {
             min(free_m_s, DOUBT_M_S)
         } else {
             free_m_s
@@ -212,10 +220,9 @@ impl Mission<'_> {
     }
 
     fn sweep(&self, state: &mut State, estimate: &Estimate, left_m: f32) -> Drive {
-        let servo_rad = estimate.servo_rad;
         match state.phase {
-            Phase::SweepRight if servo_rad <= -SWEEP_RAD => state.phase = Phase::SweepLeft,
-            Phase::SweepLeft if servo_rad >= SWEEP_RAD => {
+            Phase::SweepRight if state.gaze.has_seen(-SWEEP_RAD) => state.phase = Phase::SweepLeft,
+            Phase::SweepLeft if state.gaze.has_seen(SWEEP_RAD) => {
                 state.phase =
                     if state.plan.clear_m < min(left_m, 1.0) && state.plan.obstacle.is_some() {
                         Phase::Decide

@@ -15,6 +15,8 @@
 //! are not used. Here the stop is planned, the servo never blocks a tick, and walls at the sides push the robot to the middle:
 //! docs/theory/lane.md.
 
+use super::gaze::LOOKS;
+use super::goal::DOUBT_M_S;
 use super::{Action, Drive, Mission, ParamId, Phase, Pose, Segment, ServoAngle, State, Turn};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
@@ -166,6 +168,7 @@ pub(super) struct Lane {
 
 impl Mission<'_> {
     pub(super) fn lane(&self, state: &mut State, estimate: &Estimate, action: &mut Action) {
+        let doubts = state.watch.doubts() || !state.watch.landmarks.is_alive();
         let lane = &mut state.lane;
         if state.fresh {
             state.fresh = false;
@@ -181,7 +184,7 @@ impl Mission<'_> {
             }
             Stage::Straight => {
                 heading_ref_rad = wrap_angle(lane.heading_rad + aside_rad(estimate));
-                self.straight(lane, estimate, heading_ref_rad)
+                self.straight(lane, estimate, heading_ref_rad, doubts)
             }
             Stage::SweepRight | Stage::SweepLeft => {
                 lane.look_around(estimate);
@@ -200,18 +203,31 @@ impl Mission<'_> {
                 step.drive
             }
         };
-        let servo_rad = match lane.stage {
-            Stage::SweepRight => -lane.sweep.target_rad,
-            Stage::SweepLeft => lane.sweep.target_rad,
-            _ => 0.0,
+        let servo = match lane.stage {
+            Stage::SweepRight => ServoAngle(-lane.sweep.target_rad),
+            Stage::SweepLeft => ServoAngle(lane.sweep.target_rad),
+            Stage::Straight => {
+                // Ahead, and to what must answer while nothing does.
+                let front_m = (self.params.get(ParamId::SonarFrontX), 0.0);
+                let gaze = &mut state.gaze;
+                gaze.step(&state.watch, estimate, front_m, (0.0, 0.0), LOOKS);
+                gaze.servo()
+            }
+            _ => ServoAngle(0.0),
         };
         action.state = Phase::Initialise as u8 + lane.stage as u8;
         action.heading_ref_rad = heading_ref_rad;
-        action.look.servo = ServoAngle(servo_rad);
+        action.look.servo = servo;
     }
 
     /// On to the next face. Nothing is driven at before three looks ahead.
-    fn straight(&self, lane: &mut Lane, estimate: &Estimate, heading_rad: f32) -> Drive {
+    fn straight(
+        &self,
+        lane: &mut Lane,
+        estimate: &Estimate,
+        heading_rad: f32,
+        doubts: bool,
+    ) -> Drive {
         let Some(range_m) = lane.ahead.range_m() else {
             return Drive::Release;
         };
@@ -232,7 +248,11 @@ impl Mission<'_> {
                 return Drive::Release;
             }
         }
-        let cruise_m_s = self.params.get(ParamId::MissionCruise);
+        let cruise_m_s = if doubts {
+            DOUBT_M_S
+        } else {
+            self.params.get(ParamId::MissionCruise)
+        };
         let limit_m_s = max(min(cruise_m_s, stop.speed(left_m, v_m_s)), CREEP_M_S);
         let pose = Pose {
             heading_rad,
@@ -247,6 +267,11 @@ impl Mission<'_> {
 }
 
 impl Lane {
+    /// It has begun.
+    pub(super) fn is_driving(&self) -> bool {
+        self.stage != Stage::Start
+    }
+
     fn go_on(&mut self) {
         self.stage = Stage::Straight;
         self.ahead = Ahead::default();

@@ -28,10 +28,12 @@
 //! 90 degrees, and leaves when the bearing to the goal is the line's again. Ours needs no right angles, looks while it drives, goes straight
 //! past what it remembers, leaves early, and knows when to give up. Derivation, proof of termination and figures: docs/theory/mission.md.
 
+mod aside;
 mod detour;
 mod echoes;
 mod gaze;
 mod goal;
+mod landmarks;
 mod lane;
 mod obstacle;
 mod place;
@@ -39,15 +41,17 @@ mod plan;
 mod watch;
 
 use super::{Action, Look, Mode, Situation};
+use crate::estimate::Estimate;
 use crate::math::{abs, min, sqrt};
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
 use crate::params::{ParamId, Params};
-use crate::types::{Drive, Fault, Pose, ServoAngle, Side, TICK_S};
+use crate::types::{Drive, Fault, Pose, Range, Reading, ServoAngle, Side, SonarId, TICK_S};
 use echoes::Echoes;
+use gaze::Gaze;
 use obstacle::Way;
 use place::Place;
 use plan::Plan;
-use watch::Watch;
+use watch::{Watch, Worth};
 
 /// Time between two fadings of the memory [s].
 const FADE_S: f32 = 1.0;
@@ -148,7 +152,7 @@ pub struct State {
     phase: Phase,
     /// The gap ahead was measured at this tick, not the distance to what is nearest.
     looks_ahead: bool,
-    servo_left: bool,
+    gaze: Gaze,
     /// Times once around something.
     laps: u8,
     heading_ref_rad: f32,
@@ -177,6 +181,26 @@ impl State {
     pub fn renew(&mut self) {
         self.fresh = true;
     }
+
+    /// Remembers what an answer says, as far as it can be believed.
+    fn ingest(&mut self, estimate: &Estimate, reading: &Reading) {
+        let driving =
+            !matches!(self.phase, Phase::Wait | Phase::Unreachable) || self.lane.is_driving();
+        let worth = self.watch.ingest(estimate, reading, driving);
+        let front = reading.sonar == SonarId::Front;
+        if front {
+            self.gaze.count(reading, worth);
+        }
+        let believed = match reading.range {
+            Range::Valid(_) => true,
+            Range::Clear => worth == Worth::Sure && (!front || self.watch.landmarks.is_alive()),
+            Range::Faulty => false,
+        };
+        if believed {
+            let sure = worth == Worth::Sure;
+            self.echoes.ingest(&estimate.transform(), reading, sure);
+        }
+    }
 }
 
 impl<'a> Mission<'a> {
@@ -200,15 +224,11 @@ impl Mode for Mission<'_> {
         at: &Situation,
         action: &mut Action,
     ) -> Result<(), Fault> {
-        let denies = match &at.estimate.reading {
-            Some(reading) => {
-                let robot = at.estimate.transform();
-                state.echoes.take(&robot, reading)
-            }
-            None => false,
-        };
+        if let Some(reading) = &at.estimate.reading {
+            state.ingest(at.estimate, reading);
+        }
         let stale_s = self.params.get(ParamId::StaleRange);
-        state.watch.step(at.estimate, denies, stale_s)?;
+        state.watch.step(at.estimate, stale_s)?;
         state.fade_s += TICK_S;
         if state.fade_s > FADE_S {
             state.fade_s = 0.0;
@@ -228,8 +248,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_that_is_remembered_fits_into_800_bytes() {
+    fn all_that_is_remembered_fits_into_900_bytes() {
         let bytes = core::mem::size_of::<State>();
-        assert!(bytes <= 800, "{bytes}");
+        assert!(bytes <= 900, "{bytes}");
     }
 }

@@ -158,7 +158,7 @@ mod tests {
                 view: View::default(),
                 servo_rad: 0.0,
             };
-            echoes.take(&Transform::of(from), &reading);
+            echoes.ingest(&Transform::of(from), &reading, true);
         }
         echoes
     }

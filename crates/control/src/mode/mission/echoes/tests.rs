@@ -20,7 +20,7 @@ fn answer(range: Range, axis_rad: f32) -> Reading {
 fn heard(answers: &[(Range, f32)]) -> Echoes {
     let mut echoes = Echoes::default();
     for (range, axis_rad) in answers {
-        echoes.take(&Transform::default(), &answer(*range, *axis_rad));
+        echoes.ingest(&Transform::default(), &answer(*range, *axis_rad), true);
     }
     echoes
 }
@@ -55,9 +55,13 @@ fn a_beam_that_goes_on_farther_takes_what_was_heard_once() {
     let mut echoes = heard(&[(Range::Valid(0.8), 0.0), (Range::Clear, -0.2)]);
     // Of -0.2, 0 and 0.2 rad the beam about -0.2 covers the first two.
     assert_eq!(count(&echoes), 1);
-    echoes.take(&Transform::default(), &answer(Range::Faulty, 0.2));
+    echoes.ingest(&Transform::default(), &answer(Range::Faulty, 0.2), true);
     assert_eq!(count(&echoes), 1, "a faulty sonar says nothing");
-    echoes.take(&Transform::default(), &answer(Range::Valid(0.82), 1.4));
+    echoes.ingest(
+        &Transform::default(),
+        &answer(Range::Valid(0.82), 1.4),
+        true,
+    );
     assert_eq!(count(&echoes), 4, "nor does one that looks elsewhere");
 }
 
@@ -71,7 +75,7 @@ fn silence_from_another_direction_says_nothing() {
     };
     let before = count(&echoes);
     for _ in 0..10 {
-        echoes.take(&Transform::of(beside), &answer(Range::Clear, 0.0));
+        echoes.ingest(&Transform::of(beside), &answer(Range::Clear, 0.0), true);
     }
     assert_eq!(count(&echoes), before);
 }
@@ -93,7 +97,11 @@ fn a_full_memory_gives_up_the_farthest_point_and_keeps_its_size() {
             x_m: 0.1 * f32::from(step),
             ..Pose::default()
         };
-        echoes.take(&Transform::of(pose), &answer(Range::Valid(0.15), 1.57));
+        echoes.ingest(
+            &Transform::of(pose),
+            &answer(Range::Valid(0.15), 1.57),
+            true,
+        );
     }
     assert_eq!(count(&echoes), CAPACITY);
     let nearest = places(&echoes).map(|at| at.x_mm).min().unwrap();
