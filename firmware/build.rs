@@ -62,6 +62,8 @@ const RENAMED: [&str; 2] = [
 fn main() -> Result<(), String> {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=src/float.S");
+    // `cargo xtask firmware` finds whole addresses for debuggers in the relocations.
+    println!("cargo::rustc-link-arg=-Wl,--emit-relocs");
     let out = PathBuf::from(std::env::var_os("OUT_DIR").ok_or("cargo gives no OUT_DIR")?);
     for (library, members) in LIBRARIES {
         let archive = find(library)?;
