@@ -1,10 +1,11 @@
 //! `cargo xtask firmware`: the image for the Mega, whole, with its sizes.
 //!
-//! `firmware/` is built by cargo with a Rust for the AVR ([`toolchain`]); then the image is finished. What must not be in it is looked
-//! for ([`image`], [`stack_arguments`]), its hash is written into it, and debuggers get whole addresses ([`addresses`]). The product is
-//! `target/firmware/rumbo.elf` and `rumbo.hex`. More flash or SRAM than the robot file allows is an error ([`sizes`]).
+//! cargo builds `firmware/` with a Rust for the AVR ([`toolchain`]). Then the image is checked for what must not be in it
+//! ([`image`], [`stack_arguments`]), its debugging information is mended ([`debugging`]) and its hash is written into it.
+//! The product is `target/firmware/rumbo.elf` and `rumbo.hex`. More flash or SRAM than the robot file allows is an error
+//! ([`sizes`]).
 
-mod addresses;
+mod debugging;
 mod image;
 mod sizes;
 mod stack_arguments;
@@ -74,7 +75,7 @@ fn check(project: &Project, linked: &Path) -> Result<Sizes, String> {
 
 /// Makes of the linked image the one that is used; gives its hash.
 fn finish(linked: &Path, elf: &Path) -> Result<u32, String> {
-    let mut bytes = addresses::widen(&read(linked)?)?;
+    let mut bytes = debugging::mend(&read(linked)?)?;
     let hash = image::stamp(&mut bytes)?;
     std::fs::write(elf, bytes).map_err(|error| format!("{}: {error}", elf.display()))?;
     Ok(hash)
