@@ -1,7 +1,7 @@
 //! Gives the linker the arithmetic of avr-libc and libgcc.
 //!
-//! The functions that come with Rust's library for the AVR are written for any processor and take four to seven times as
-//! long. Both are there under the same names; those here are strong symbols, which win over the weak ones of Rust's.
+//! The functions that come with Rust's library for the AVR are written for any processor and take four to seven times
+//! as long. Both are there under the same names; those here are strong symbols, which win over the weak ones of Rust's.
 //! Sums and comparisons, of which a tick has the most, are our own (`src/float.S`), with avr-libc's for what is rare.
 
 use std::path::{Path, PathBuf};

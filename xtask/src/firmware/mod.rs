@@ -1,9 +1,9 @@
 //! `cargo xtask firmware`: the image for the Mega, whole, with its sizes.
 //!
-//! cargo builds `firmware/` with a Rust for the AVR ([`toolchain`]). Then the image is checked for what must not be in it
-//! ([`image`], [`stack_arguments`]), its debugging information is mended ([`debugging`]) and its hash is written into it.
-//! The product is `target/firmware/rumbo.elf` and `rumbo.hex`. More flash or SRAM than the robot file allows is an error
-//! ([`sizes`]).
+//! cargo builds `firmware/` with a Rust for the AVR ([`toolchain`]). Then the image is checked for what must not be in
+//! it ([`image`], [`stack_arguments`]), its debugging information is mended ([`debugging`]) and its hash is written
+//! into it. The product is `target/firmware/rumbo.elf` and `rumbo.hex`. More flash or SRAM than the robot file allows
+//! is an error ([`sizes`]).
 
 mod debugging;
 mod image;

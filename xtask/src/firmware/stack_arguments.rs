@@ -1,10 +1,10 @@
 //! Refuses an image with a function whose arguments do not all fit into registers.
 //!
 //! LLVM takes a return address for two bytes, and the ATmega2560's has three, so that a function reads what its caller
-//! left on the stack one byte too low (rust-lang/rust#149223 shows one consequence). The disassembly shows such a function:
-//! behind `in r28, SPL` and `in r29, SPH` it moves Y down by its frame, and then uses Y+1 to Y+frame; only arguments lie
-//! above. Y also moves for a variable that is far away, with the flags kept in r0 meanwhile. Delete this when LLVM is
-//! mended.
+//! left on the stack one byte too low (rust-lang/rust#149223 shows one consequence). The disassembly shows such a
+//! function: behind `in r28, SPL` and `in r29, SPH` it moves Y down by its frame, and then uses Y+1 to Y+frame; only
+//! arguments lie above. Y also moves for a variable that is far away, with the flags kept in r0 meanwhile. Delete this
+//! when LLVM is mended.
 
 /// Checks the output of `avr-objdump -d --no-show-raw-insn`.
 pub(super) fn check(disassembly: &str) -> Result<(), String> {
@@ -101,8 +101,8 @@ mod tests {
   10:	pop	r29
   14:	ret";
 
-    /// A function with ten bytes of variables and its end, and then one with 100, of which the last is far away, and where
-    /// Y moves back elsewhere.
+    /// A function with ten bytes of variables and its end, and then one with 100, of which the last is far away, and
+    /// where Y moves back elsewhere.
     fn with_frames(last: u8) -> String {
         format!(
             "\

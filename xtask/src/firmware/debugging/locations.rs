@@ -1,8 +1,8 @@
 //! Location lists (`.debug_loc`): where variables are.
 //!
 //! LLVM describes a variable in several registers by pieces of two registers, of which GDB 13 reads one; here each
-//! register has a piece of its own, as avr-gcc has it. And a variable of a frame is one byte above where LLVM puts it: Y
-//! points below the frame, as the stack pointer does. Delete this when LLVM is mended.
+//! register has a piece of its own, as avr-gcc has it. And a variable of a frame is one byte above where LLVM puts it:
+//! Y points below the frame, as the stack pointer does. Delete this when LLVM is mended.
 
 use std::collections::{HashMap, HashSet};
 use std::error::Error;

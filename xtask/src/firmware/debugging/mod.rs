@@ -1,9 +1,9 @@
 //! Mends the image's debugging information for GDB.
 //!
 //! LLVM writes addresses of 16 bits, which reach neither code above 64 KB nor, for GDB, any variable (0x800000 and up).
-//! The linker keeps its relocations (`firmware/build.rs`), and they hold the whole address. The information is read with
-//! them ([`relocated`]) and written with addresses of 32 bits, as avr-gcc has them, and with corrected locations of
-//! variables ([`locations`]). None of it goes to the chip.
+//! The linker keeps its relocations (`firmware/build.rs`), and they hold the whole address. The information is read
+//! with them ([`relocated`]) and written with addresses of 32 bits, as avr-gcc has them, and with corrected locations
+//! of variables ([`locations`]). None of it goes to the chip.
 
 mod locations;
 mod relocated;
