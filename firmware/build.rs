@@ -1,8 +1,8 @@
 //! Gives the linker the arithmetic of avr-libc and libgcc.
 //!
-//! The functions that come with Rust's library for the AVR are written for any processor and take four to seven times as
-//! long. Both are there under the same names; those here are strong symbols, which win over the weak ones of Rust's. Sums and
-//! comparisons, of which a tick has the most, are our own (`src/float.S`), with avr-libc's for what is rare.
+//! The functions that come with Rust's library for the AVR are written for any processor and take four to seven times
+//! as long. Both are there under the same names; those here are strong symbols, which win over the weak ones of Rust's.
+//! Sums and comparisons, of which a tick has the most, are our own (`src/float.S`), with avr-libc's for what is rare.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -62,6 +62,8 @@ const RENAMED: [&str; 2] = [
 fn main() -> Result<(), String> {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=src/float.S");
+    // `cargo xtask firmware` mends the debugging information with the relocations.
+    println!("cargo::rustc-link-arg=-Wl,--emit-relocs");
     let out = PathBuf::from(std::env::var_os("OUT_DIR").ok_or("cargo gives no OUT_DIR")?);
     for (library, members) in LIBRARIES {
         let archive = find(library)?;

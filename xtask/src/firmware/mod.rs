@@ -1,16 +1,21 @@
 //! `cargo xtask firmware`: the image for the Mega, whole, with its sizes.
 //!
-//! `firmware/` is built by cargo with a Rust for the AVR ([`toolchain`]); then the image is finished ([`image`]): its hash
-//! written into it, and what must not be in it looked for. The product is `target/firmware/rumbo.elf` and `rumbo.hex`. More
-//! flash or SRAM than the robot file allows is an error.
+//! cargo builds `firmware/` with a Rust for the AVR ([`toolchain`]). Then the image is checked for what must not be in
+//! it ([`image`], [`stack_arguments`]), its debugging information is mended ([`debugging`]) and its hash is written
+//! into it. The product is `target/firmware/rumbo.elf` and `rumbo.hex`. More flash or SRAM than the robot file allows
+//! is an error ([`sizes`]).
 
+mod debugging;
 mod image;
+mod sizes;
+mod stack_arguments;
 mod toolchain;
 
 use std::path::Path;
 
-use crate::project::{Project, run as run_command};
+use crate::project::{Project, output, run as run_command};
 use crate::test::Stop;
+use sizes::Sizes;
 use toolchain::Toolchain;
 
 /// The robot whose caps hold.
@@ -24,9 +29,10 @@ pub(crate) fn run(project: &Project) -> Result<bool, String> {
     }
 }
 
-/// Builds the image and checks its sizes.
+/// Builds the image and checks it.
 pub(crate) fn build(project: &Project) -> Result<(), Stop> {
     let toolchain = Toolchain::find(project)?;
+    println!("{}", toolchain.describe()?);
     let build = project.target.join("firmware/build");
     run_command(
         toolchain
@@ -35,20 +41,44 @@ pub(crate) fn build(project: &Project) -> Result<(), Stop> {
             .args(["build", "--release", "--locked", "--quiet"])
             .env("CARGO_TARGET_DIR", &build),
     )?;
-    let mut bytes = read(&build.join("avr-none/release/rumbo.elf"))?;
-    let report = image::finish(&mut bytes)?;
+    let linked = build.join("avr-none/release/rumbo.elf");
+    let sizes = check(project, &linked)?;
     let elf = project.target.join("firmware/rumbo.elf");
+    let hash = finish(&linked, &elf)?;
     let hex = elf.with_extension("hex");
-    std::fs::write(&elf, bytes).map_err(|error| format!("{}: {error}", elf.display()))?;
     run_command(
         project
             .command("avr-objcopy")
             .args(["-O", "ihex", "-R", ".eeprom"])
             .args([&elf, &hex]),
     )?;
-    println!("{report}");
+    println!("{sizes}hash {hash:08x}");
     println!("{}\n{}", elf.display(), hex.display());
-    Ok(check(project, &report)?)
+    Ok(within_caps(project, &sizes)?)
+}
+
+/// Refuses what must not be in an image; measures it.
+fn check(project: &Project, linked: &Path) -> Result<Sizes, String> {
+    let disassembly = output(
+        project
+            .command("avr-objdump")
+            .args(["-d", "--no-show-raw-insn"])
+            .arg(linked),
+    )?;
+    stack_arguments::check(&disassembly)?;
+    let bytes = read(linked)?;
+    let wrong = |error: object::read::Error| format!("{}: {error}", linked.display());
+    let file = object::File::parse(&*bytes).map_err(wrong)?;
+    image::check(&file)?;
+    Sizes::of(&file).map_err(wrong)
+}
+
+/// Makes of the linked image the one that is used; gives its hash.
+fn finish(linked: &Path, elf: &Path) -> Result<u32, String> {
+    let mut bytes = debugging::mend(&read(linked)?)?;
+    let hash = image::stamp(&mut bytes)?;
+    std::fs::write(elf, bytes).map_err(|error| format!("{}: {error}", elf.display()))?;
+    Ok(hash)
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, String> {
@@ -56,43 +86,23 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 }
 
 /// The caps of the robot file.
-fn check(project: &Project, report: &image::Report) -> Result<(), String> {
+fn within_caps(project: &Project, sizes: &Sizes) -> Result<(), String> {
     let text = std::fs::read_to_string(project.root.join(ROBOT))
         .map_err(|error| format!("{ROBOT}: {error}"))?;
+    let robot: toml::Table = text.parse().map_err(|error| format!("{ROBOT}: {error}"))?;
     for (key, used) in [
-        ("flash_bytes", report.flash_bytes()),
-        ("sram_bytes", report.sram_bytes()),
+        ("flash_bytes", sizes.whole.flash),
+        ("sram_bytes", sizes.whole.sram),
     ] {
-        let cap = cap(&text, key).ok_or_else(|| format!("{ROBOT}: no `{key}` in [firmware]"))?;
+        let cap = robot.get("firmware").and_then(|table| table.get(key));
+        let cap = cap.and_then(toml::Value::as_integer);
+        let cap = cap.ok_or_else(|| format!("{ROBOT}: no `{key}` in [firmware]"))?;
         println!("{key}: {used} of {cap}");
-        if used > cap {
+        if used > cap.unsigned_abs() {
             return Err(format!(
                 "the image takes {used} {key}, {ROBOT} allows {cap}"
             ));
         }
     }
     Ok(())
-}
-
-/// A number of the table `[firmware]`.
-fn cap(robot: &str, key: &str) -> Option<u64> {
-    let (_, table) = robot.split_once("[firmware]")?;
-    let lines = table.lines().take_while(|line| !line.starts_with('['));
-    lines
-        .filter_map(|line| line.split_once('='))
-        .find(|(name, _)| name.trim() == key)
-        .and_then(|(_, value)| value.trim().parse().ok())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn caps_come_from_the_firmware_table() {
-        let robot = "flash_bytes = 1\n[firmware]\nflash_bytes = 131072\nsram_bytes = 3072\n[parameters]\nx = 2\n";
-        assert_eq!(cap(robot, "flash_bytes"), Some(131_072));
-        assert_eq!(cap(robot, "sram_bytes"), Some(3_072));
-        assert_eq!(cap(robot, "x"), None);
-    }
 }

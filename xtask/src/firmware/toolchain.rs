@@ -1,4 +1,4 @@
-//! Compilers that can build for the AVR: Debian's packages, or a nightly of rustup.
+//! Compilers that can build for the AVR: the nightly that `firmware/rust-toolchain.toml` names, or Debian's packages.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -6,6 +6,8 @@ use std::process::Command;
 use crate::project::{Project, find_program, output};
 use crate::test::{Stop, tools};
 
+/// What pins the nightly; cargo in that folder obeys it too.
+const PIN: &str = "firmware/rust-toolchain.toml";
 const DEBIAN: [&str; 6] = [
     "rustc-web",
     "cargo-web",
@@ -18,26 +20,38 @@ const DEBIAN: [&str; 6] = [
 /// A Rust for the AVR.
 #[derive(Debug)]
 pub(crate) enum Toolchain {
+    /// The pinned nightly, with the sources of the library: rustup, and its name there.
+    Nightly(PathBuf, String),
     /// In `/usr/bin`, from Debian's packages.
     Debian,
-    /// rustup's nightly, with the sources of the library.
-    Nightly(PathBuf),
 }
 
 impl Toolchain {
     /// Finds one, or installs Debian's where that is possible.
     pub(crate) fn find(project: &Project) -> Result<Self, Stop> {
+        let pinned = pinned(project)?;
         let find = || {
             find_program("avr-gcc")?;
-            debian().or_else(nightly)
+            let nightly = find_program("rustup").map(|it| Self::Nightly(it, pinned.clone()));
+            nightly.into_iter().chain([Self::Debian]).find(has_sources)
         };
-        tools::install(
-            project,
-            "Rust for the AVR (and avr-gcc, avr-libc)",
-            &DEBIAN,
-            "`rustup toolchain install nightly --component rust-src`, and avr-gcc with avr-libc",
-            find,
-        )
+        let nightly = format!(
+            "or `rustup toolchain install {pinned} --component rust-src`, and avr-gcc with avr-libc"
+        );
+        let name = "Rust for the AVR (and avr-gcc, avr-libc)";
+        tools::install(project, name, &DEBIAN, &nightly, find)
+    }
+
+    /// Which compiler that is, in one line.
+    pub(crate) fn describe(&self) -> Result<String, String> {
+        let version = output(self.command("rustc").arg("-vV"))?;
+        let mut lines = version.lines();
+        let rustc = lines.next().unwrap_or_default();
+        let llvm = lines.next_back().unwrap_or_default();
+        Ok(match self {
+            Self::Nightly(_, name) => format!("{rustc}, {llvm}: {name}, as {PIN} pins it"),
+            Self::Debian => format!("{rustc}, {llvm}: Debian's rustc-web, not the pinned nightly"),
+        })
     }
 
     /// A command of this toolchain, `cargo` or `rustc`, free of what the cargo around us has set.
@@ -51,9 +65,9 @@ impl Toolchain {
                     .env("PATH", "/usr/bin:/bin");
                 command
             }
-            Self::Nightly(rustup) => {
+            Self::Nightly(rustup, name) => {
                 let mut command = Command::new(rustup);
-                command.args(["run", "nightly", program]);
+                command.args(["run", name, program]);
                 command
             }
         };
@@ -71,13 +85,15 @@ impl Toolchain {
     }
 }
 
-fn debian() -> Option<Toolchain> {
-    has_sources(&Toolchain::Debian).then_some(Toolchain::Debian)
-}
-
-fn nightly() -> Option<Toolchain> {
-    let toolchain = Toolchain::Nightly(find_program("rustup")?);
-    has_sources(&toolchain).then_some(toolchain)
+/// The name of the pinned nightly.
+fn pinned(project: &Project) -> Result<String, String> {
+    let text = std::fs::read_to_string(project.root.join(PIN));
+    let text = text.map_err(|error| format!("{PIN}: {error}"))?;
+    let table: toml::Table = text.parse().map_err(|error| format!("{PIN}: {error}"))?;
+    let channel = table.get("toolchain").and_then(|it| it.get("channel"));
+    let channel = channel.and_then(toml::Value::as_str);
+    let missing = || format!("{PIN}: no `channel` in [toolchain]; it names a nightly");
+    Ok(channel.ok_or_else(missing)?.to_owned())
 }
 
 /// Whether it is there, knows the chip, and has the sources of the library.

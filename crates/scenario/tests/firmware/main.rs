@@ -3,6 +3,7 @@
 #![cfg(test)]
 
 mod board;
+mod debugger;
 mod edges;
 mod experiments;
 mod faults;
