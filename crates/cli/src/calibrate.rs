@@ -81,6 +81,9 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
         ..Overrides::default()
     };
     let setup = calibrate::calibration_setup(&overrides)?;
+    if let Some(path) = &args.out {
+        check_place(path, args)?;
+    }
     let run = calibrate::run_calibration(&setup, args.seed.seed)?;
     let source = Source {
         kind: Kind::Calibration,
@@ -164,6 +167,24 @@ fn report(found: &Calibration, rows: &[Row], contacts: u32, seed: u64) -> Result
         ),
         None => output::line("  mean radius: stays as it is; the front sonar saw nothing ahead"),
     }
+}
+
+/// Refuses, before anything runs, to write over parameters that no calibration found, unless they are those of the robot that is calibrated.
+fn check_place(path: &Path, args: &CalibrateArgs) -> Result<(), Failure> {
+    let is_robot = same_file::is_same_file(path, &args.robot).unwrap_or(false);
+    if args.overwrite.force || is_robot || !path.is_file() {
+        return Ok(());
+    }
+    let file = path.display().to_string();
+    let read = bounded::read_text(path);
+    let text = read.map_err(|error| Failure::Input(format!("{file}: cannot be read ({error})")))?;
+    let before = RobotFile::parse("", &file, &text)?;
+    if before.parameters.is_empty() || calibrate::is_calibrated(&text) {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{file}: has [parameters] that no calibration found; choose another place, or replace them with --force"
+    )))
 }
 
 /// Writes the `[parameters]` table into the file: an existing robot file is rewritten, a new one starts as a copy of the robot's.

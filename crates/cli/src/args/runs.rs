@@ -195,9 +195,12 @@ pub(crate) struct CalibrateArgs {
     pub(crate) seed: SeedArgs,
     #[command(flatten)]
     pub(crate) parameters: ParameterArgs,
-    /// Robot file whose [parameters] table is rewritten; a new file starts as a copy of the robot's
+    /// Robot file whose [parameters] table is rewritten: this robot's own, or one that was calibrated; a new file starts as a copy of the
+    /// robot's
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
     /// Leave no log behind
     #[arg(long)]
     pub(crate) no_record: bool,

@@ -224,3 +224,27 @@ fn a_result_has_the_rights_that_any_new_file_has() {
     assert_eq!(rights("o/task-1.json"), rights("task.toml"));
     assert_eq!(rights("o/task-1.mcap"), rights("task.toml"));
 }
+
+#[test]
+fn a_calibration_replaces_no_parameters_but_those_of_a_calibration() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let robot = rumbo_scenario::files::Library::new()
+        .robot("memoria")
+        .unwrap();
+    let own = robot
+        .text
+        .replace("[parameters]\n", "[parameters]\nkv = 0.03\n");
+    std::fs::write(folder.join("mine.toml"), &own).unwrap();
+    let into_mine = ["calibrate", "--out", "mine.toml"];
+    assert_refused(&rumbo_in(folder, &into_mine), "that no calibration found");
+    assert_eq!(read(folder, "mine.toml"), own.as_bytes());
+    // Its own robot's are meant, and then they are a calibration's.
+    for command in [
+        &["--robot", "./mine.toml", "--out", "mine.toml"][..],
+        &["--out", "mine.toml"],
+    ] {
+        let output = rumbo_in(folder, &[&["calibrate"], command].concat());
+        assert_eq!(status(&output), 0, "{}", stderr(&output));
+    }
+}
