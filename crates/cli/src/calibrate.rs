@@ -6,7 +6,7 @@ use crate::output::{self, figure};
 use crate::place;
 use crate::run_log::{Kept, Source};
 use rumbo_scenario::calibrate::{self, Calibration, Row};
-use rumbo_scenario::files::{Library, Overrides, RobotFile, Setup};
+use rumbo_scenario::files::{Library, Overrides, RobotFile, Setup, bounded};
 use rumbo_station::log::Kind;
 use rumbo_station::{Extras, Finding, Findings, GuestLink};
 use serde::Serialize;
@@ -80,8 +80,11 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
         parameters: args.parameters.params.clone(),
         ..Overrides::default()
     };
-    let setup = calibrate::calibration_setup(&overrides).map_err(Failure::input)?;
-    let run = calibrate::run_calibration(&setup, args.seed.seed).map_err(Failure::input)?;
+    let setup = calibrate::calibration_setup(&overrides)?;
+    if let Some(path) = &args.out {
+        check_place(path, args)?;
+    }
+    let run = calibrate::run_calibration(&setup, args.seed.seed)?;
     let source = Source {
         kind: Kind::Calibration,
         library: &Library::new(),
@@ -119,12 +122,12 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     }
     report(&found, &rows, contacts, args.seed.seed)?;
     match written {
-        Some(path) => output::line(&format!(
-            "\n{}: its [parameters] table holds what was found",
+        Some(path) => output::remark(&format!(
+            "{}: its [parameters] table holds what was found",
             path.display()
         )),
         None => {
-            output::line("\n[parameters]")?;
+            output::remark("[parameters]")?;
             parameters
                 .iter()
                 .try_for_each(|(name, value)| output::line(&format!("{name} = {value}")))
@@ -166,18 +169,36 @@ fn report(found: &Calibration, rows: &[Row], contacts: u32, seed: u64) -> Result
     }
 }
 
+/// Refuses, before anything runs, to write over parameters that no calibration found, unless they are those of the robot that is calibrated.
+fn check_place(path: &Path, args: &CalibrateArgs) -> Result<(), Failure> {
+    let is_robot = same_file::is_same_file(path, &args.robot).unwrap_or(false);
+    if args.overwrite.force || is_robot || !path.is_file() {
+        return Ok(());
+    }
+    let file = path.display().to_string();
+    let read = bounded::read_text(path);
+    let text = read.map_err(|error| Failure::Input(format!("{file}: cannot be read ({error})")))?;
+    let before = RobotFile::parse("", &file, &text)?;
+    if before.parameters.is_empty() || calibrate::is_calibrated(&text) {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{file}: has [parameters] that no calibration found; choose another place, or replace them with --force"
+    )))
+}
+
 /// Writes the `[parameters]` table into the file: an existing robot file is rewritten, a new one starts as a copy of the robot's.
 fn write(path: &Path, setup: &Setup, found: &Calibration) -> Result<(), Failure> {
     let file = path.display().to_string();
     let wrong = |what: String| Failure::Input(format!("{file}: {what}"));
     let text = if path.exists() {
-        std::fs::read_to_string(path).map_err(|error| wrong(format!("cannot be read ({error})")))?
+        bounded::read_text(path).map_err(|error| wrong(format!("cannot be read ({error})")))?
     } else {
         setup.robot.text.clone()
     };
     let today = time::OffsetDateTime::now_utc().date().to_string();
     let text = calibrate::rewrite(&text, found, &today)
         .map_err(|error| wrong(format!("is no robot file ({error})")))?;
-    RobotFile::parse("", &file, &text).map_err(Failure::input)?;
+    RobotFile::parse("", &file, &text)?;
     place::write(path, text)
 }

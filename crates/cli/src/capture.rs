@@ -7,7 +7,7 @@ use crate::args::ImportArgs;
 use crate::failure::Failure;
 use crate::left_out::LeftOut;
 use crate::output;
-use crate::place;
+use crate::place::Guard;
 use rumbo_station::log::{Burst, Kind, Manifest, record_text};
 use rumbo_wire::text::{Row, TextCommand, TextError};
 use serde_json::json;
@@ -51,7 +51,12 @@ fn is_part(line: &str) -> bool {
 }
 
 /// Checks, converts, writes and sums up.
-pub(crate) fn import(args: &ImportArgs, text: &str, out: &Path) -> Result<(), Failure> {
+pub(crate) fn import(
+    args: &ImportArgs,
+    text: &str,
+    out: &Path,
+    guard: &Guard,
+) -> Result<(), Failure> {
     let (link, left_out) = parse(&args.file, text)?;
     left_out.tell(&args.file);
     let manifest = Manifest {
@@ -62,7 +67,7 @@ pub(crate) fn import(args: &ImportArgs, text: &str, out: &Path) -> Result<(), Fa
         baud: BAUD,
         ..Manifest::default()
     };
-    place::make(out, |place| {
+    guard.make_equal(out, |place| {
         record_text(place, &manifest, &link).map_err(|error| Failure::Input(error.of(out)))
     })?;
     let rows = link.iter().filter(|burst| !burst.to_robot).count();

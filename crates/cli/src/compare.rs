@@ -4,8 +4,9 @@ use crate::args::CompareArgs;
 use crate::export::warn_if_cut;
 use crate::failure::Failure;
 use crate::figures;
+use crate::mark::Stamp;
 use crate::output::{self, figure};
-use crate::place;
+use crate::place::{self, Guard};
 use rumbo_scenario::chart;
 use rumbo_station::Row;
 use rumbo_station::log::Log;
@@ -16,17 +17,17 @@ type Metrics = BTreeMap<String, f64>;
 
 /// Prints metrics and differences, draws all over each other if asked, and fails where a tolerance is exceeded.
 pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
+    let names: Vec<String> = args.logs.iter().map(|path| output::shown(path)).collect();
+    let stamp = Stamp::of("compare", &names);
+    if let Some(path) = &args.out {
+        Guard::new(&args.logs, args.overwrite.force).check(path, &stamp.mark())?;
+    }
     let logs = args.logs.iter().map(|path| {
         let log = Log::read(path).map_err(Failure::input)?;
         warn_if_cut(path, &log)?;
         Ok(log)
     });
     let logs: Vec<Log> = logs.collect::<Result<_, Failure>>()?;
-    let names: Vec<String> = args
-        .logs
-        .iter()
-        .map(|path| path.display().to_string())
-        .collect();
     let metrics: Vec<Metrics> = logs.iter().map(metrics).collect();
     let passes: Vec<Option<bool>> = logs
         .iter()
@@ -44,7 +45,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
             )));
         }
         let text = chart::svg(&charts, 1, figures::SIZE).map_err(Failure::Input)?;
-        place::write(path, text)?;
+        place::write(path, stamp.put_on(text))?;
     }
     if args.json {
         let runs = names.iter().zip(&metrics).zip(&passes);

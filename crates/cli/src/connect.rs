@@ -6,9 +6,9 @@ use crate::failure::Failure;
 use crate::ghost::Haunted;
 use crate::lab;
 use crate::logs;
+use crate::output;
 use rumbo_station::port::{self, Port};
 use rumbo_station::{LabConfig, Target};
-use std::io::Write;
 
 /// Opens the port and serves the dashboard.
 pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
@@ -16,8 +16,7 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
         let warning = rumbo_station::check_baud(args.baud)
             .map_err(|error| Failure::Input(format!("--baud: {error}")))?;
         if let Some(warning) = warning {
-            // A closed stderr leaves nobody to tell.
-            let _ = writeln!(std::io::stderr(), "note: {warning}");
+            output::note(&warning);
         }
     }
     let robot = Port::open(&args.address, args.baud).map_err(Failure::input)?;

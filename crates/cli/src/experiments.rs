@@ -3,9 +3,11 @@
 use crate::args::{ExperimentsArgs, LanguageName};
 use crate::failure::Failure;
 use crate::manifest;
+use crate::mark::Stamp;
 use crate::output;
-use crate::place;
+use crate::place::{self, Guard};
 use crate::recorded;
+use crate::results::Results;
 use crate::run_log::Source;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_report::real::{self, Real};
@@ -13,7 +15,7 @@ use rumbo_report::text::Language;
 use rumbo_report::{Data, Plan, Request, html};
 use rumbo_scenario::files::{Library, Overrides};
 use rumbo_station::log::Kind;
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::Path;
 use std::time::Instant;
 
@@ -45,6 +47,7 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
         real,
     };
     let plan = Plan::new(&library, request)?;
+    let stamp = check_places(args, &plan)?;
     place::try_folder(&args.out)?;
     let progress = progress(args, &plan);
     let mut data = plan.run(|simulated_s| progress.inc((10.0 * simulated_s) as u64))?;
@@ -52,7 +55,7 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
     data.firmware = args.image.firmware.as_deref().map(named);
     let (page, _) = html(&data, language(args));
     let place = args.out.join(REPORT);
-    place::write(&place, page)?;
+    place::write(&place, stamp.put_on(page))?;
     if args.data {
         let source = Source {
             kind: Kind::Run,
@@ -62,6 +65,36 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
         write_data(&args.out, &source, &data)?;
     }
     report(&data, &place, begun)
+}
+
+/// Refuses, before anything runs, what would write over something else than an older report of the same; what the report is known by.
+fn check_places(args: &ExperimentsArgs, plan: &Plan) -> Result<Stamp, Failure> {
+    let language = match language(args) {
+        Language::English => "en",
+        Language::Spanish => "es",
+    };
+    let about = [
+        language.into(),
+        args.seed.seed.to_string(),
+        args.robot.clone().unwrap_or_default(),
+        args.image
+            .firmware
+            .as_deref()
+            .map(output::shown)
+            .unwrap_or_default(),
+    ];
+    let stamp = Stamp::of("experiments", &[&about[..], &args.only].concat());
+    let inputs = args.robot.iter().map(Into::into);
+    let guard = Guard::new(
+        inputs.chain(args.image.firmware.clone()),
+        args.overwrite.force,
+    );
+    guard.check(&args.out.join(REPORT), &stamp.mark())?;
+    for scenario in plan.scenarios().filter(|_| args.data) {
+        let seed = args.seed.seed;
+        Results::of(&args.out, &scenario.name, seed).check(&guard, scenario, seed)?;
+    }
+    Ok(stamp)
 }
 
 /// The bar, which says from the start about how long it will take.
@@ -80,8 +113,7 @@ fn progress(args: &ExperimentsArgs, plan: &Plan) -> ProgressBar {
     );
     // Who sees no bar is told once, where there is something to wait for.
     if !std::io::stderr().is_terminal() && expected_s > 3.0 {
-        // A closed stderr leaves nobody to tell.
-        let _ = writeln!(std::io::stderr(), "{message}");
+        output::aside(&message);
     }
     let style = ProgressStyle::with_template("{msg} {bar:30} {percent} %, {eta} left");
     let bar = ProgressBar::new((10.0 * plan.simulated_s()) as u64).with_message(message);
@@ -114,16 +146,10 @@ fn named(path: &Path) -> [String; 2] {
 
 /// The log of each run, its true signals as CSV, and its metrics as JSON.
 fn write_data(folder: &Path, source: &Source<'_>, data: &Data) -> Result<(), Failure> {
-    for outcome in data.outcomes.values() {
-        source.write(folder, &outcome.setup, &outcome.result)?;
-        let stem = format!("{}-{}", outcome.result.scenario, outcome.result.seed);
-        let csv = outcome.result.trace.csv();
-        place::write(&folder.join(format!("{stem}.csv")), csv)?;
-        let path = folder.join(format!("{stem}.json"));
-        let text = serde_json::to_string(&outcome.result).map_err(Failure::input)?;
-        place::write(&path, text + "\n")?;
-    }
-    Ok(())
+    data.outcomes.values().try_for_each(|outcome| {
+        let results = Results::of(folder, &outcome.result.scenario, outcome.result.seed);
+        results.write(source, &outcome.setup, &outcome.result)
+    })
 }
 
 fn report(data: &Data, place: &Path, begun: Instant) -> Result<(), Failure> {

@@ -3,8 +3,9 @@
 use crate::args::{ExportArgs, Format};
 use crate::failure::Failure;
 use crate::figures;
+use crate::mark::{Mark, Stamp};
 use crate::output;
-use crate::place;
+use crate::place::{self, Guard};
 use rumbo_scenario::chart;
 use rumbo_station::Row;
 use rumbo_station::log::{Kind, Log, Manifest};
@@ -13,19 +14,27 @@ use std::path::Path;
 
 /// Writes what was asked for and prints the paths.
 pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
-    let log = Log::read(&args.log).map_err(Failure::input)?;
-    warn_if_cut(&args.log, &log)?;
     let folder = args.out.clone().unwrap_or_default();
-    if !folder.as_os_str().is_empty() {
-        place::folder(&folder)?;
-    }
     let stem = args.log.file_stem().unwrap_or(args.log.as_os_str());
-    let path = |ending: &str| folder.join(stem).with_extension(ending);
+    let stem = stem.to_string_lossy();
+    let path = |ending: &str| folder.join(format!("{stem}.{ending}"));
+    let stamp = Stamp::of("export", &[stem.to_string()]);
     let formats = if args.formats.is_empty() {
         &[Format::Csv, Format::Svg][..]
     } else {
         &args.formats
     };
+    let guard = Guard::new([&args.log], args.overwrite.force);
+    for format in formats {
+        for (ending, mark) in files(*format, &stamp) {
+            guard.check(&path(ending), &mark)?;
+        }
+    }
+    let log = Log::read(&args.log).map_err(Failure::input)?;
+    warn_if_cut(&args.log, &log)?;
+    if !folder.as_os_str().is_empty() {
+        place::folder(&folder)?;
+    }
     let charts = figures::of_one(&log);
     for format in formats {
         match format {
@@ -41,40 +50,54 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
             }
             Format::Svg => {
                 let text = chart::svg(&charts, 1, figures::SIZE).map_err(Failure::Input)?;
-                write(&path("svg"), text)?;
+                write(&path("svg"), stamp.put_on(text))?;
             }
             Format::Png => {
                 let image = chart::png(&charts, 1, figures::SIZE).map_err(Failure::Input)?;
-                write(&path("png"), image)?;
+                write(&path("png"), stamp.put_on(image))?;
             }
         }
     }
     Ok(())
 }
 
+/// The files of a format: how their names end, and what they are known by.
+fn files(format: Format, stamp: &Stamp) -> Vec<(&'static str, Mark)> {
+    let nothing = Log::default();
+    match format {
+        Format::Csv => vec![
+            ("csv", Mark::table(&signals(&nothing))),
+            ("events.csv", Mark::table(&events(&nothing))),
+        ],
+        Format::Svg => vec![("svg", stamp.mark())],
+        Format::Png => vec![("png", stamp.mark())],
+    }
+}
+
 /// Says on stderr that a log ends early; one in which nothing had happened yet is of no use.
 pub(crate) fn warn_if_cut(path: &Path, log: &Log) -> Result<(), Failure> {
-    use std::io::Write;
     let shown = path.display();
-    let Some(why) = &log.cut else {
-        return Ok(());
-    };
-    if log.holds_nothing() {
+    if let Some(why) = log.cut.as_ref().filter(|_| log.holds_nothing()) {
         let again = log
             .manifest
             .as_ref()
             .and_then(once_more)
             .unwrap_or_default();
         return Err(Failure::Input(format!(
-            "{shown}: was cut off before anything that happened had reached it{again}"
+            "{shown}: nothing of what happened can be had from it: {why}{again}"
         )));
     }
+    for note in &log.notes {
+        output::note(&format!("{shown}: {note}"));
+    }
+    let Some(why) = &log.cut else {
+        return Ok(());
+    };
     let state = match log.has_holes {
         true => "is damaged".to_owned(),
         false => format!("ends at {:.1} s", log.duration_s()),
     };
-    // A closed stderr leaves nobody to tell.
-    let _ = writeln!(std::io::stderr(), "note: {shown} {state}: {why}");
+    output::note(&format!("{shown} {state}: {why}"));
     Ok(())
 }
 
@@ -117,7 +140,33 @@ fn events(log: &Log) -> String {
     let mut text = String::from("t_s,level,event\n");
     for (t_s, level, event) in log.events() {
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{t_s:.3},{level},\"{}\"", event.replace('"', "\"\""));
+        let _ = writeln!(text, "{t_s:.3},{level},{}", text_cell(event));
     }
     text
+}
+
+/// A text as a cell of a table: in quotes, in one line, and none that a spreadsheet would compute.
+fn text_cell(text: &str) -> String {
+    let computes = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
+    let apostrophe = if computes { "'" } else { "" };
+    let shown = output::visible(text);
+    format!("\"{apostrophe}{}\"", shown.replace('"', "\"\""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::text_cell;
+
+    #[test]
+    fn a_spreadsheet_computes_nothing_that_a_robot_said() {
+        for (text, cell) in [
+            ("STOP: done", "\"STOP: done\""),
+            ("say \"on\"", "\"say \"\"on\"\"\""),
+            ("=cmd|' /C calc'!A0", "\"'=cmd|' /C calc'!A0\""),
+            ("-1+1", "\"'-1+1\""),
+            ("\t=1\r\n@x", "\"'\\t=1\\r\\n@x\""),
+        ] {
+            assert_eq!(text_cell(text), cell);
+        }
+    }
 }

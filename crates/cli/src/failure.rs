@@ -1,9 +1,9 @@
 //! Why a command did not do what was asked, and the exit status for it.
 
 use crate::interrupt;
+use crate::output;
 use rumbo_scenario::files::FileError;
 use std::fmt;
-use std::io::Write;
 use std::process::ExitCode;
 
 /// What ended a command.
@@ -11,8 +11,10 @@ use std::process::ExitCode;
 pub(crate) enum Failure {
     /// A run missed a limit of its scenario; which one has been printed.
     LimitMissed,
-    /// Wrong input, or something outside the program is not as needed: what, where and the remedy, in one line each.
+    /// Wrong input, or something outside the program is not as needed: what, where and the remedy, in one line.
     Input(String),
+    /// The same of several things, a line each.
+    Inputs(Vec<String>),
     /// Ctrl-C; what was done until then has been printed.
     Interrupted,
     /// Whoever read our output has had enough.
@@ -30,13 +32,11 @@ impl Failure {
         match self {
             Self::LimitMissed => ExitCode::from(1),
             Self::Interrupted => ExitCode::from(interrupt::STATUS),
-            Self::Input(text) => {
-                // A closed stderr leaves nobody to tell.
-                let _ = writeln!(
-                    std::io::stderr(),
-                    "error: {}",
-                    text.replace('\n', "\nerror: ")
-                );
+            Self::Input(text) => Self::Inputs(vec![text]).report(),
+            Self::Inputs(lines) => {
+                for line in lines {
+                    output::aside(&format!("error: {line}"));
+                }
                 ExitCode::from(2)
             }
             Self::ReaderGone => ExitCode::SUCCESS,
@@ -46,18 +46,24 @@ impl Failure {
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::LimitMissed => "a limit is missed",
-            Self::Input(text) => text,
-            Self::Interrupted => "interrupted",
-            Self::ReaderGone => "nobody reads the output",
-        })
+        match self {
+            Self::LimitMissed => f.write_str("a limit is missed"),
+            Self::Input(text) => f.write_str(text),
+            Self::Inputs(lines) => f.write_str(&lines.join("; ")),
+            Self::Interrupted => f.write_str("interrupted"),
+            Self::ReaderGone => f.write_str("nobody reads the output"),
+        }
     }
 }
 
 impl From<FileError> for Failure {
     fn from(error: FileError) -> Self {
-        Self::input(error)
+        match error {
+            FileError::Invalid(problems) => {
+                Self::Inputs(problems.iter().map(ToString::to_string).collect())
+            }
+            other => Self::input(other),
+        }
     }
 }
 

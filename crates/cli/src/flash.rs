@@ -25,8 +25,8 @@ pub(crate) fn flash(args: &FlashArgs) -> Result<(), Failure> {
     // The boot loader erases page by page; the saved parameters stay.
     let write = avrdude(&args.port, &["-D", "-U", &write]);
     if args.print {
-        output::line(&shown(&look))?;
-        return output::line(&shown(&write));
+        output::line(&shown(&look)?)?;
+        return output::line(&shown(&write)?);
     }
     check_port(&args.port)?;
     check_signature(args, look)?;
@@ -67,7 +67,7 @@ fn image(args: &FlashArgs) -> Result<PathBuf, Failure> {
 
 /// avrdude's letter for the file's format.
 fn format_of(image: &Path) -> Result<char, Failure> {
-    let bytes = std::fs::read(image).map_err(Failure::input)?;
+    let bytes = firmware::bytes(image)?;
     Ok(if bytes.starts_with(ELF) { 'e' } else { 'i' })
 }
 
@@ -80,21 +80,20 @@ fn avrdude(port: &str, arguments: &[&str]) -> Command {
     command
 }
 
-/// The command as one would type it.
-fn shown(command: &Command) -> String {
+/// The command as one would type it into a shell of POSIX.
+fn shown(command: &Command) -> Result<String, Failure> {
     let words = std::iter::once(command.get_program()).chain(command.get_args());
-    let words = words.map(|word| {
-        let word = word.to_string_lossy();
-        let plain = word
-            .chars()
-            .all(|c| c.is_ascii_alphanumeric() || "-_./:=".contains(c));
-        if plain {
-            word.into_owned()
-        } else {
-            format!("'{word}'")
-        }
+    let quoted = words.map(|word| {
+        let typed = word.to_str().filter(|word| output::visible(word) == *word);
+        let quoted = typed.and_then(|word| shlex::try_quote(word).ok());
+        quoted.ok_or_else(|| {
+            Failure::Input(format!(
+                "{}: cannot be printed as a command, it holds what nobody types; rename the file",
+                word.to_string_lossy()
+            ))
+        })
     });
-    words.collect::<Vec<_>>().join(" ")
+    Ok(quoted.collect::<Result<Vec<_>, _>>()?.join(" "))
 }
 
 fn missing(error: std::io::Error) -> Failure {
@@ -194,10 +193,24 @@ mod tests {
 
     #[test]
     fn a_command_is_shown_as_one_would_type_it() {
-        let command = avrdude("COM5", &["-D", "-U", "flash:w:my image.hex:i"]);
-        assert_eq!(
-            shown(&command),
-            "avrdude -p atmega2560 -c wiring -P COM5 -b 115200 -D -U 'flash:w:my image.hex:i'"
-        );
+        let shown = |image: &str| shown(&avrdude("COM5", &["-D", "-U", image]));
+        let said = shown("flash:w:it's $(mine)/my image.hex:i").unwrap();
+        let words = [
+            "avrdude",
+            "-p",
+            "atmega2560",
+            "-c",
+            "wiring",
+            "-P",
+            "COM5",
+            "-b",
+            "115200",
+            "-D",
+            "-U",
+            "flash:w:it's $(mine)/my image.hex:i",
+        ];
+        assert_eq!(shlex::split(&said).unwrap(), words);
+        assert!(said.starts_with("avrdude -p atmega2560 -c wiring -P COM5 -b 115200 -D -U "));
+        assert!(shown("flash:w:a\u{1b}[2Kb.hex:i").is_err());
     }
 }

@@ -26,7 +26,7 @@ fn simulated(scenario: &str, seed: u64) -> Result<SimulatedRobot, Failure> {
         rig: None,
         seed,
     };
-    SimulatedRobot::new(Overrides::default(), choice).map_err(Failure::input)
+    Ok(SimulatedRobot::new(Overrides::default(), choice)?)
 }
 
 fn surroundings(ghost: &SimulatedRobot) -> Scene {

@@ -2,13 +2,14 @@
 
 use crate::args::IdentifyArgs;
 use crate::failure::Failure;
+use crate::mark::Stamp;
 use crate::output;
-use crate::place;
+use crate::place::{self, Guard};
 use crate::recorded::{self, attached};
 use indicatif::ProgressBar;
 use rumbo_plant::params::Params;
 use rumbo_scenario::dialect;
-use rumbo_scenario::files::{Library, RobotFile};
+use rumbo_scenario::files::{Library, RobotFile, bounded};
 use rumbo_scenario::identify::{
     self, DriveLog, GENERATIONS, Identification, IdentifyError, Plot, RunScore,
 };
@@ -16,7 +17,6 @@ use rumbo_scenario::sonar_stats::{self, Comparison, SonarLog};
 use rumbo_wire::csv;
 use rumbo_wire::text::RowKind;
 use serde::Serialize;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -52,9 +52,10 @@ enum Drive {
 /// Identifies, or checks, and prints what came of it.
 pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     let name = args.check.as_ref().unwrap_or(&args.robot);
-    let robot = Library::new().robot(name).map_err(Failure::input)?;
+    let robot = Library::new().robot(name)?;
     let logs = read(&args.logs)?;
     if let Some(folder) = &args.plots {
+        check_plots(args, &logs, folder)?;
         place::try_folder(folder)?;
     }
     let doing = match args.check {
@@ -97,12 +98,12 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     }
     report(&drive, &sonars, &plots)?;
     match written {
-        Some(path) => output::line(&format!(
-            "\n{}: its [plant] table is rewritten",
+        Some(path) => output::remark(&format!(
+            "{}: its [plant] table is rewritten",
             path.display()
         )),
-        None if args.check.is_none() => output::line(
-            "\nnothing is written: give --robot as the path of a file to have its [plant] table rewritten",
+        None if args.check.is_none() => output::remark(
+            "nothing is written: give --robot as the path of a file to have its [plant] table rewritten",
         ),
         None => Ok(()),
     }
@@ -126,12 +127,10 @@ fn read(paths: &[PathBuf]) -> Result<Logs, Failure> {
         let text = text_of(path)?;
         let kind = csv::recognise(text.lines().next().unwrap_or_default());
         if kind == Some(RowKind::Mission) && paths.len() > 1 {
-            // A closed stderr leaves nobody to tell.
-            let _ = writeln!(
-                std::io::stderr(),
-                "note: {} is left out: recordings of mode 8 tell no PWM",
-                path.display()
-            );
+            let path = path.display();
+            output::note(&format!(
+                "{path} is left out: recordings of mode 8 tell no PWM"
+            ));
             continue;
         }
         logs.drive
@@ -163,6 +162,28 @@ fn text_of(path: &Path) -> Result<String, Failure> {
     Ok(dialect::plain(&bytes).map_err(wrong)?.into_owned())
 }
 
+/// Where the plots of a run go.
+fn places(folder: &Path, name: &str) -> [PathBuf; 2] {
+    ["svg", "png"].map(|ending| folder.join(Path::new(name).with_extension(ending)))
+}
+
+fn stamp(name: &str) -> Stamp {
+    Stamp::of("identify", &[name.to_owned()])
+}
+
+/// Refuses, before anything is fitted, plots that would be written over something else.
+fn check_plots(args: &IdentifyArgs, logs: &Logs, folder: &Path) -> Result<(), Failure> {
+    let guard = Guard::new(&args.logs, args.overwrite.force);
+    let mut results = Vec::new();
+    for (number, log) in (1..).zip(&logs.drive) {
+        let [svg, png] = places(folder, &log.name);
+        guard.check(&svg, &stamp(&log.name).mark())?;
+        guard.check(&png, &stamp(&log.name).mark())?;
+        results.push((svg, format!("run {number}")));
+    }
+    place::distinct(&results)
+}
+
 fn plot(
     logs: &Logs,
     drive: &Drive,
@@ -177,9 +198,15 @@ fn plot(
     for run in runs {
         for log in logs.drive.iter().filter(|log| log.name == run.name) {
             let plot = Plot::new(log, params, run.nuisance);
-            for ending in ["svg", "png"] {
-                let path = folder.join(Path::new(&log.name).with_extension(ending));
-                place::make(&path, |place| plot.draw(place).map_err(Failure::input))?;
+            for path in places(folder, &log.name) {
+                let stamp = stamp(&log.name);
+                place::make(&path, |place| {
+                    plot.draw(place).map_err(Failure::input)?;
+                    let drawn = std::fs::read(place);
+                    drawn
+                        .and_then(|drawn| std::fs::write(place, stamp.put_on(drawn)))
+                        .map_err(|error| place::unwritable(&path, &error))
+                })?;
                 plots.push(path);
             }
         }
@@ -192,10 +219,10 @@ fn write<'a>(path: &'a Path, found: &Identification) -> Result<&'a Path, Failure
     let file = path.display().to_string();
     let wrong =
         |error: std::io::Error| Failure::Input(format!("{file}: cannot be rewritten ({error})"));
-    let text = std::fs::read_to_string(path).map_err(wrong)?;
+    let text = bounded::read_text(path).map_err(wrong)?;
     let today = time::OffsetDateTime::now_utc().date().to_string();
     let text = identify::rewrite(&text, found, &today).map_err(Failure::input)?;
-    RobotFile::parse("", &file, &text).map_err(Failure::input)?;
+    RobotFile::parse("", &file, &text)?;
     place::write(path, text)?;
     Ok(path)
 }
@@ -206,11 +233,11 @@ fn report(drive: &Drive, sonars: &[Comparison], plots: &[PathBuf]) -> Result<(),
         Drive::Checked { runs } => runs.iter().map(ToString::to_string).collect(),
     };
     if !text.is_empty() {
-        output::line(text.trim())?;
+        output::lines(text.trim())?;
     }
     if !sonars.is_empty() {
         output::line("")?;
-        output::line(sonar_stats::table(sonars).trim_end())?;
+        output::lines(sonar_stats::table(sonars).trim_end())?;
     }
     plots
         .iter()

@@ -9,11 +9,12 @@ use crate::capture;
 use crate::csv_rows::{self, Recording};
 use crate::failure::Failure;
 use crate::output::{self, figure};
-use crate::place;
-use crate::recorded::{self, CSV};
+use crate::place::{self, Guard};
+use crate::recorded::CSV;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, WriteOptions};
 use rumbo_scenario::dialect;
+use rumbo_scenario::files::bounded::{LONGEST_RECORDING, read_at_most};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -26,7 +27,7 @@ const AS_IT_WAS: &str = "application/octet-stream";
 /// Checks, converts, writes and sums up.
 pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     let shown = args.file.display();
-    let bytes = recorded::bytes(&args.file).map_err(|error| {
+    let bytes = read_at_most(&args.file, LONGEST_RECORDING).map_err(|error| {
         Failure::Input(format!(
             "{shown}: cannot be read ({error}); give the path of a CSV file"
         ))
@@ -48,28 +49,17 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
         None => PathBuf::from(args.file.file_stem().unwrap_or(args.file.as_os_str()))
             .with_extension("mcap"),
     };
+    let guard = Guard::new([&args.file], args.overwrite.force);
     if capture::is_one(&text) {
-        return capture::import(args, &text, &out);
+        return capture::import(args, &text, &out, &guard);
     }
     let recording = csv_rows::parse(&args.file, &text)?;
     recording.left_out.tell(&args.file);
     let log = encode(&recording, &args.file, &bytes).map_err(Failure::input)?;
-    if args.out.is_none() {
-        spare(&out, &log)?;
-    }
-    place::write(&out, &log)?;
+    guard.make_equal(&out, |place| {
+        std::fs::write(place, &log).map_err(|error| place::unwritable(&out, &error))
+    })?;
     summary(&recording, &out, args.json)
-}
-
-/// A log of the same name that is another one stays, unless its place was asked for.
-pub(crate) fn spare(out: &Path, log: &[u8]) -> Result<(), Failure> {
-    match std::fs::read(out) {
-        Ok(before) if before != log => Err(Failure::Input(format!(
-            "{}: is another log already; choose a name with --out",
-            out.display()
-        ))),
-        _ => Ok(()),
-    }
 }
 
 /// The log's bytes.

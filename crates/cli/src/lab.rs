@@ -31,7 +31,7 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
         robot: args.setting.robot.clone(),
         ..args.image.overrides()
     };
-    let mut robot = SimulatedRobot::new(overrides, choice).map_err(Failure::input)?;
+    let mut robot = SimulatedRobot::new(overrides, choice)?;
     if let Some(port) = args.gdb {
         robot.debugging = Some(debugging(port, args)?);
     }
@@ -62,10 +62,9 @@ fn debugging(port: u16, args: &LabArgs) -> Result<Debugging, Failure> {
     let port = debugging.port().map_err(refused)?;
     let image = args.image.firmware.as_ref();
     let image = image.map_or_else(String::new, |path| path.display().to_string());
-    let _ = writeln!(
-        std::io::stderr(),
+    output::aside(&format!(
         "a debugger may come at any time: avr-gdb {image} -ex 'target remote :{port}'"
-    );
+    ));
     Ok(debugging)
 }
 

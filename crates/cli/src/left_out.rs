@@ -1,7 +1,7 @@
 //! What an import leaves out of a damaged recording, and how it is told.
 
+use crate::output;
 use serde_json::{Value, json};
-use std::io::Write;
 use std::path::Path;
 
 /// So many lines are told one by one.
@@ -70,8 +70,7 @@ impl LeftOut {
             )),
         }
         for note in notes {
-            // A closed stderr leaves nobody to tell.
-            let _ = writeln!(std::io::stderr(), "note: {note}");
+            output::note(&note);
         }
     }
 }

@@ -34,6 +34,9 @@ pub(crate) fn list(args: &ListArgs) -> Result<(), Failure> {
         } else {
             output::line(name(topic))?;
             output::table(&entries.iter().map(row).collect::<Vec<_>>())?;
+            if topic == Topic::Logs {
+                output::line(&logs::total(&entries))?;
+            }
         }
     }
     if args.json {

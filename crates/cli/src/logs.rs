@@ -1,12 +1,13 @@
 //! Where logs are, and what there is.
 
+use crate::args::PruneArgs;
 use crate::failure::Failure;
-use crate::output::{figure, shown};
+use crate::output::{self, figure, shown};
 use crate::place;
 use rumbo_station::log::{Recording, Summary};
 use serde_json::{Value, json};
-use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// The environment's variable that names another folder for logs.
 const FOLDER: &str = "RUMBO_LOGS";
@@ -14,9 +15,8 @@ const FOLDER: &str = "RUMBO_LOGS";
 /// Where a session is recorded. One that cannot be is driven all the same: the page says so, and so does the terminal.
 pub(crate) fn recording(given: Option<&Path>) -> Option<Recording> {
     let folder = folder(given)?;
-    if let Err(Failure::Input(why)) = place::try_folder(&folder) {
-        // A closed stderr leaves nobody to tell.
-        let _ = writeln!(std::io::stderr(), "note: not recording: {why}");
+    if let Err(why) = place::try_folder(&folder) {
+        output::note(&format!("not recording: {why}"));
     }
     Some(Recording { folder })
 }
@@ -33,6 +33,10 @@ pub(crate) fn folder(given: Option<&Path>) -> Option<PathBuf> {
 
 /// The logs in the default folder, in the order of their names, which begin with the time.
 pub(crate) fn entries() -> Result<Vec<Value>, Failure> {
+    Ok(paths()?.iter().map(|path| entry(path)).collect())
+}
+
+fn paths() -> Result<Vec<PathBuf>, Failure> {
     let Some(folder) = folder(None) else {
         return Ok(Vec::new());
     };
@@ -54,7 +58,51 @@ pub(crate) fn entries() -> Result<Vec<Value>, Failure> {
         })
         .collect();
     paths.sort();
-    Ok(paths.iter().map(|path| entry(path)).collect())
+    Ok(paths)
+}
+
+/// How much there is, and how it becomes less.
+pub(crate) fn total(entries: &[Value]) -> String {
+    let bytes = entries.iter().filter_map(|entry| entry["bytes"].as_u64());
+    let (count, size) = (entries.len(), megabytes(bytes.sum()));
+    format!("{count} logs, {size}; `rumbo prune --keep-days 30` removes those older than 30 days")
+}
+
+/// Removes the logs of the default folder that are older than asked for, and says which. What is no log of Rumbo stays.
+pub(crate) fn prune(args: &PruneArgs) -> Result<(), Failure> {
+    let days = Duration::from_secs(u64::from(args.keep_days) * 86_400);
+    let (mut count, mut bytes) = (0, 0);
+    for path in paths()? {
+        let unwritable = |error: std::io::Error| {
+            let path = path.display();
+            Failure::Input(format!(
+                "{path}: cannot be removed ({error}); check its permissions"
+            ))
+        };
+        let about = std::fs::symlink_metadata(&path).map_err(unwritable)?;
+        // When it was written last: one that is being recorded is as young as can be.
+        let age = about.modified().ok().and_then(|time| time.elapsed().ok());
+        let is_old = about.is_file() && age.is_some_and(|age| age > days);
+        if !is_old || Summary::read(&path).map_or(true, |log| log.manifest.is_none()) {
+            continue;
+        }
+        if !args.dry_run {
+            std::fs::remove_file(&path).map_err(unwritable)?;
+        }
+        output::line(&shown(&path))?;
+        count += 1;
+        bytes += about.len();
+    }
+    let what = if args.dry_run {
+        "would be removed"
+    } else {
+        "removed"
+    };
+    output::line(&format!("{count} logs {what}, {}", megabytes(bytes)))
+}
+
+fn megabytes(bytes: u64) -> String {
+    format!("{} MB", figure(bytes as f64 / 1e6))
 }
 
 fn entry(path: &Path) -> Value {
@@ -72,10 +120,7 @@ fn entry(path: &Path) -> Value {
 /// A log as a row: its path, length, size, what ran, and whether it was ended properly.
 pub(crate) fn row(entry: &Value) -> Vec<String> {
     let text = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
-    let size = format!(
-        "{} MB",
-        figure(entry["bytes"].as_f64().unwrap_or_default() / 1e6)
-    );
+    let size = megabytes(entry["bytes"].as_u64().unwrap_or_default());
     let Some(duration_s) = entry["duration_s"].as_f64() else {
         return vec![text("name"), size, "unreadable".into()];
     };

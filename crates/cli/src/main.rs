@@ -23,6 +23,7 @@ mod left_out;
 mod list;
 mod logs;
 mod manifest;
+mod mark;
 mod observe;
 mod output;
 mod place;
@@ -31,6 +32,7 @@ mod pty;
 mod recorded;
 mod replay;
 mod rerun;
+mod results;
 mod run;
 mod run_log;
 mod scene;
@@ -66,6 +68,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Rerun(args)) => rerun::rerun(&args),
         Some(Command::Identify(args)) => identify::identify(&args),
         Some(Command::Calibrate(args)) => calibrate::calibrate(&args),
+        Some(Command::Prune(args)) => logs::prune(&args),
         None => lab::lab(&cli.lab),
     }
 }

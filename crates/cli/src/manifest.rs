@@ -1,9 +1,21 @@
 //! What a run was made of, as its log says it, and the same made into a run again.
 
 use crate::failure::Failure;
+use crate::mark::crc32;
 use rumbo_scenario::files::{Kind as File, Library, Overrides, Program, Setup, TimedText};
+use rumbo_scenario::mega::firmware;
 use rumbo_station::log::{Kind, Manifest};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
+
+/// How far a simulation advances at once [us].
+const MIN_STEP_US: u64 = 1_000;
+const MAX_STEP_US: u64 = 100_000;
+/// Lines of text beside a scenario's commands, and when the last may come [s].
+const MOST_TEXTS: usize = 10_000;
+pub(crate) const LONGEST_S: f64 = 3_600.0;
+/// Of the ATmega2560 [bytes].
+const EEPROM: usize = 4_096;
 
 /// The manifest of a setup as the command line made it; `step_us` and the time are for the one who runs it.
 pub(crate) fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manifest {
@@ -41,11 +53,41 @@ pub(crate) fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) ->
     }
 }
 
-/// CRC-32 of a file, as hexadecimal digits.
+/// CRC-32 of a program image, as hexadecimal digits.
 pub(crate) fn hash(path: &Path) -> Option<String> {
-    let bytes = std::fs::read(path).ok()?;
-    let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
-    Some(format!("{:08x}", crc.checksum(&bytes)))
+    let bytes = firmware::bytes(path).ok()?;
+    Some(format!("{:08x}", crc32(&bytes)))
+}
+
+/// Refuses what no run that was recorded can have had.
+fn check_ranges(log: &Path, manifest: &Manifest) -> Result<(), Failure> {
+    let wrong = |key: &str, value: &dyn Display, range: &str| {
+        let log = log.display();
+        Failure::Input(format!(
+            "{log}: {key} = {value} in its manifest: must be {range}; the log is damaged or forged"
+        ))
+    };
+    let step_us = manifest.step_us;
+    if !(MIN_STEP_US..=MAX_STEP_US).contains(&step_us) {
+        let range = format!("within {MIN_STEP_US}..{MAX_STEP_US}");
+        return Err(wrong("step_us", &step_us, &range));
+    }
+    if manifest.texts.len() > MOST_TEXTS {
+        let range = format!("at most {MOST_TEXTS} lines");
+        return Err(wrong("texts", &manifest.texts.len(), &range));
+    }
+    let is_late = |(at_s, _): &&(f64, String)| !(0.0..=LONGEST_S).contains(at_s);
+    if let Some((at_s, _)) = manifest.texts.iter().find(is_late) {
+        return Err(wrong("texts", at_s, &format!("within 0..{LONGEST_S} s")));
+    }
+    let eeprom = manifest
+        .eeprom
+        .as_ref()
+        .map_or(0, |digits| digits.len() / 2);
+    if eeprom > EEPROM {
+        return Err(wrong("eeprom", &eeprom, &format!("at most {EEPROM} bytes")));
+    }
+    Ok(())
 }
 
 /// The setup that a manifest describes, and its seed.
@@ -61,6 +103,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
             "holds no simulated run; only logs of `rumbo lab`, `rumbo run` and `rumbo calibrate` can be run again",
         ));
     };
+    check_ranges(log, manifest)?;
     let mut library = Library::new();
     for (kind, file, name) in [
         (File::Scenario, "scenario", scenario),
@@ -75,8 +118,9 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
     }
     let firmware = (!["rumbo", "original"].contains(&manifest.program.as_str()))
         .then(|| PathBuf::from(&manifest.program));
+    // A log may name any file: nothing is made of one that is not the program that it names.
     if let Some(image) = &firmware
-        && hash(image) != manifest.image
+        && (manifest.image.is_none() || hash(image) != manifest.image)
     {
         return Err(wrong(&format!(
             "its program {} is gone or is another one now; put it back there",

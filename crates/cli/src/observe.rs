@@ -2,7 +2,9 @@
 
 use crate::args::RunArgs;
 use crate::failure::Failure;
-use crate::place;
+use crate::mark::{Mark, Stamp};
+use crate::output;
+use crate::place::{self, Guard};
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::observe::{self, Seen, Wanted};
 use rumbo_scenario::run::{RunResult, run_by};
@@ -14,6 +16,30 @@ use std::path::Path;
 /// Something of the program is to be seen.
 pub(crate) fn is_wanted(args: &RunArgs) -> bool {
     args.profile.is_some() || args.vcd.is_some() || args.gdb.is_some()
+}
+
+/// Whether what was asked for may be written where it was asked for.
+pub(crate) fn check_places(args: &RunArgs, guard: &Guard) -> Result<(), Failure> {
+    let files = [
+        (&args.vcd, "--vcd", stamp(args).mark()),
+        (&args.profile, "--profile", Mark::Profile),
+    ];
+    let mut results = Vec::new();
+    for (path, option, mark) in files {
+        if let Some(path) = path {
+            guard.check(path, &mark)?;
+            results.push((path.clone(), option.to_owned()));
+        }
+    }
+    place::distinct(&results)
+}
+
+/// What the waveform of a run is known by.
+fn stamp(args: &RunArgs) -> Stamp {
+    Stamp::of(
+        "run",
+        &[args.scenarios.clone(), vec![args.seed.seed.to_string()]].concat(),
+    )
 }
 
 /// Does the one run.
@@ -43,14 +69,14 @@ pub(crate) fn run(args: &RunArgs, jobs: &[(&Setup, u64)]) -> Result<RunResult, F
         Ok((result, seen))
     };
     let (result, seen) = match &args.vcd {
-        Some(path) => drawn(path, look)?,
+        Some(path) => drawn(path, &stamp(args), look)?,
         None => look(None)?,
     };
     if let (Some(path), Some(folded)) = (&args.profile, seen.folded) {
         place::write(path, folded)?;
     }
     if let Some(profile) = seen.profile {
-        tell(&profile);
+        profile.lines().for_each(output::aside);
     }
     if seen.ended {
         return Err(Failure::Input(
@@ -63,11 +89,14 @@ pub(crate) fn run(args: &RunArgs, jobs: &[(&Setup, u64)]) -> Result<RunResult, F
 /// Has the pins drawn into a file.
 fn drawn<T>(
     path: &Path,
+    stamp: &Stamp,
     look: impl FnOnce(Option<File>) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     let mut seen = None;
     place::make(path, |place| {
-        let file = File::create(place).map_err(|error| place::unwritable(path, &error))?;
+        let unwritable = |error: std::io::Error| place::unwritable(path, &error);
+        let mut file = File::create(place).map_err(unwritable)?;
+        writeln!(file, "$comment {} $end", stamp.0).map_err(unwritable)?;
         seen = Some(look(Some(file))?);
         Ok(())
     })?;
@@ -87,15 +116,10 @@ fn wait_for_debugger(port: u16, args: &RunArgs) -> Result<TcpStream, Failure> {
         .firmware
         .as_ref()
         .map(|path| path.display().to_string());
-    tell(&format!(
-        "waiting for a debugger: avr-gdb {} -ex 'target remote :{port}'\n",
+    output::aside(&format!(
+        "waiting for a debugger: avr-gdb {} -ex 'target remote :{port}'",
         image.unwrap_or_default()
     ));
     let (connection, _) = listener.accept().map_err(refused)?;
     Ok(connection)
-}
-
-/// On stderr, where it is in no result's way; a closed one leaves nobody to tell.
-fn tell(text: &str) {
-    let _ = std::io::stderr().write_all(text.as_bytes());
 }

@@ -1,21 +1,76 @@
-//! What goes to stdout: lines, JSON and aligned tables. A reader who stops reading ends the command quietly.
+//! What goes to stdout and stderr: lines, JSON and aligned tables. A reader who stops reading ends the command quietly.
+//!
+//! Titles, names, contents of logs and words of a robot are printed here and nowhere else, so that none of them can
+//! control the terminal or forge a line ([`visible`]).
 
 use crate::failure::Failure;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::Path;
+
+/// Whether a terminal obeys a character instead of showing it: control characters, ends of lines, and what changes
+/// the direction of writing.
+fn is_control(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// A text with everything that a terminal or a spreadsheet would obey escaped: `\n`, `\u{1b}`.
+pub(crate) fn visible(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_control) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        match is_control(c) {
+            true => shown.extend(c.escape_default()),
+            false => shown.push(c),
+        }
+    }
+    Cow::Owned(shown)
+}
 
 /// Prints one line and flushes it, so that a program that reads us sees it at once.
 pub(crate) fn line(text: &str) -> Result<(), Failure> {
     let mut stdout = std::io::stdout().lock();
-    writeln!(stdout, "{text}")?;
+    writeln!(stdout, "{}", visible(text))?;
     Ok(stdout.flush()?)
+}
+
+/// Prints what is of several lines.
+pub(crate) fn lines(text: &str) -> Result<(), Failure> {
+    text.lines().try_for_each(line)
+}
+
+/// Prints a line set off from what came before.
+pub(crate) fn remark(text: &str) -> Result<(), Failure> {
+    line("")?;
+    line(text)
+}
+
+/// Prints one line to stderr, where it is in no result's way. A closed stderr has no reader.
+pub(crate) fn aside(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{}", visible(text));
+}
+
+/// The same of what a person should know besides the result.
+pub(crate) fn note(text: &str) {
+    aside(&format!("note: {text}"));
 }
 
 /// Prints a value as one line of JSON.
 pub(crate) fn json(value: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string(value).map_err(Failure::input)?;
-    line(&text)
+    // What JSON itself leaves as it is stands in texts, where this is another way to write it.
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match is_control(c) {
+            true => shown += &format!("\\u{:04x}", u32::from(c)),
+            false => shown.push(c),
+        }
+    }
+    line(&shown)
 }
 
 /// A path as text, whatever bytes its name is made of.
@@ -25,13 +80,17 @@ pub(crate) fn shown(path: &Path) -> String {
 
 /// Prints rows with their columns aligned, each row indented by two spaces.
 pub(crate) fn table(rows: &[Vec<String>]) -> Result<(), Failure> {
+    let shown = |row: &Vec<String>| -> Vec<String> {
+        row.iter().map(|cell| visible(cell).into_owned()).collect()
+    };
+    let rows: Vec<Vec<String>> = rows.iter().map(shown).collect();
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column));
         cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..columns).map(width).collect();
-    for row in rows {
+    for row in &rows {
         let cells = row
             .iter()
             .zip(&widths)
@@ -61,7 +120,22 @@ pub(crate) fn figure(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::figure;
+    use super::{figure, visible};
+
+    #[test]
+    fn what_a_terminal_would_obey_is_shown_escaped() {
+        for (text, shown) in [
+            (
+                "Motor de la derecha: 12 °C, 3 → 5",
+                "Motor de la derecha: 12 °C, 3 → 5",
+            ),
+            ("a\n  ok", "a\\n  ok"),
+            ("\u{1b}[2K\u{9b}1A\u{7f}", "\\u{1b}[2K\\u{9b}1A\\u{7f}"),
+            ("\u{202e}ssap", "\\u{202e}ssap"),
+        ] {
+            assert_eq!(visible(text), shown);
+        }
+    }
 
     #[test]
     fn figures_keep_four_significant_digits() {

@@ -1,9 +1,14 @@
-//! Where results go. A file is written whole or not at all: beside its place first and then moved there, so that what was there stays until
-//! the new one is complete.
+//! Where results go. A file is written whole or not at all: beside its place first, under a name that no other program
+//! has, and then moved there.
+//!
+//! Nothing is lost to a result: what a command reads it does not write, and a file that is there already is replaced
+//! only if it carries the [`Mark`] of the same run or report, or with `--force`. [`Guard`] looks before anything runs.
 
 use crate::failure::Failure;
+use crate::mark::Mark;
 use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
+use tempfile::TempPath;
 
 /// Makes a folder, unless it is there.
 pub(crate) fn folder(folder: &Path) -> Result<(), Failure> {
@@ -19,6 +24,103 @@ pub(crate) fn try_folder(place: &Path) -> Result<(), Failure> {
         .map_err(|error| unwritable(place, &error))
 }
 
+/// What keeps a command from writing over something.
+pub(crate) struct Guard {
+    inputs: Vec<PathBuf>,
+    force: bool,
+}
+
+impl Guard {
+    /// Of a command that reads these files, names of built-in ones among them.
+    pub(crate) fn new<P: Into<PathBuf>>(inputs: impl IntoIterator<Item = P>, force: bool) -> Self {
+        let inputs = inputs.into_iter().map(Into::into);
+        Self {
+            inputs: inputs.collect(),
+            force,
+        }
+    }
+
+    /// Whether a file may be written.
+    pub(crate) fn check(&self, path: &Path, mark: &Mark) -> Result<(), Failure> {
+        self.keeps_inputs(path)?;
+        match self.force || !path.is_file() || mark.is_on(path) {
+            true => Ok(()),
+            false => Err(is_another(path)),
+        }
+    }
+
+    /// The same of a file whose contents alone tell what it is: it is made, and replaces only its equal.
+    pub(crate) fn make_equal(
+        &self,
+        path: &Path,
+        make: impl FnOnce(&Path) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        self.keeps_inputs(path)?;
+        self::make(path, |place| {
+            make(place)?;
+            let differs = || std::fs::read(place).ok() != std::fs::read(path).ok();
+            match self.force || place == path || !path.is_file() || !differs() {
+                true => Ok(()),
+                false => Err(is_another(path)),
+            }
+        })
+    }
+
+    fn keeps_inputs(&self, path: &Path) -> Result<(), Failure> {
+        let is_same = |input: &&PathBuf| same_file::is_same_file(input, path).unwrap_or(false);
+        match self.inputs.iter().find(is_same) {
+            None => Ok(()),
+            Some(input) => Err(Failure::Input(format!(
+                "{}: would be written over {}, which this command reads; choose another place",
+                path.display(),
+                input.display()
+            ))),
+        }
+    }
+}
+
+fn is_another(path: &Path) -> Failure {
+    Failure::Input(format!(
+        "{}: is there already, and not of the same run or report; choose another place with --out, or replace it with --force",
+        path.display()
+    ))
+}
+
+/// Refuses two results of one command in one place; `whose` says of what they are.
+pub(crate) fn distinct(results: &[(PathBuf, String)]) -> Result<(), Failure> {
+    for (index, (path, whose)) in results.iter().enumerate() {
+        let before = results
+            .iter()
+            .take(index)
+            .find(|(other, _)| is_one(path, other));
+        if let Some((_, other)) = before {
+            return Err(Failure::Input(format!(
+                "{}: both {other} and {whose} would be written there; rename one, or run them one by one into folders of their own",
+                path.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Whether two paths are one place, whether or not something is there.
+fn is_one(one: &Path, other: &Path) -> bool {
+    if let Ok(same) = same_file::is_same_file(one, other) {
+        return same;
+    }
+    let folder = |path: &Path| {
+        let folder = path.parent().unwrap_or(path);
+        let folder = match folder.as_os_str().is_empty() {
+            true => Path::new("."),
+            false => folder,
+        };
+        std::fs::canonicalize(folder)
+            .or_else(|_| std::path::absolute(folder))
+            .ok()
+    };
+    one.file_name() == other.file_name() && folder(one) == folder(other)
+}
+
 /// Writes a file.
 pub(crate) fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     make(path, |place| {
@@ -31,27 +133,23 @@ pub(crate) fn make(
     path: &Path,
     make: impl FnOnce(&Path) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    let Some(beside) = beside(path) else {
+    let Some(Beside { place, part }) = beside(path) else {
         return make(path);
     };
-    let made = make(&beside.part).and_then(|()| {
-        if let Ok(before) = std::fs::metadata(&beside.place) {
-            // A file that was rewritten belongs to whom it belonged.
-            let _ = std::fs::set_permissions(&beside.part, before.permissions());
-        }
-        std::fs::rename(&beside.part, &beside.place).map_err(|error| unwritable(path, &error))
-    });
-    if made.is_err() {
-        // It may not have been begun.
-        let _ = std::fs::remove_file(&beside.part);
+    // A part that is not moved is removed.
+    make(&part)?;
+    if let Ok(before) = std::fs::metadata(&place) {
+        // A file that was rewritten belongs to whom it belonged.
+        let _ = std::fs::set_permissions(&part, before.permissions());
     }
-    made
+    part.persist(&place)
+        .map_err(|error| unwritable(path, &error.error))
 }
 
 struct Beside {
     /// The file itself, behind any link.
     place: PathBuf,
-    part: PathBuf,
+    part: TempPath,
 }
 
 /// Where a file is made first; `None`: where it belongs, for what is no file (`/dev/stdout`) or stands in a folder where nothing can be made.
@@ -62,9 +160,23 @@ fn beside(path: &Path) -> Option<Beside> {
         Err(_) => path.to_owned(),
     };
     let ending = place.extension().unwrap_or_default().to_string_lossy();
-    let part = place.with_extension(format!("part.{ending}"));
-    std::fs::File::create(&part).ok()?;
-    Some(Beside { place, part })
+    let suffix = format!(".{ending}");
+    let folder = place
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let mut part = tempfile::Builder::new();
+    part.prefix(".rumbo-").suffix(&suffix);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As any new file: the user's mask takes from it what it takes.
+        part.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let part = part.tempfile_in(folder.unwrap_or(Path::new("."))).ok()?;
+    Some(Beside {
+        part: part.into_temp_path(),
+        place,
+    })
 }
 
 /// A place where nothing can be written: what, where, what to do.
@@ -105,5 +217,24 @@ mod tests {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
         write(&path, "after").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"after");
+    }
+
+    #[test]
+    fn two_names_of_one_place_are_one_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let here = folder.path().join("a.csv");
+        let roundabout = folder.path().join("x").join("..").join("a.csv");
+        std::fs::create_dir(folder.path().join("x")).unwrap();
+        let results = |other: &Path| [(here.clone(), "one".into()), (other.into(), "two".into())];
+        assert!(distinct(&results(&roundabout)).is_err());
+        assert!(distinct(&results(&folder.path().join("b.csv"))).is_ok());
+        std::fs::write(&here, "a").unwrap();
+        assert!(distinct(&results(&roundabout)).is_err());
+        #[cfg(unix)]
+        {
+            let link = folder.path().join("link.csv");
+            std::os::unix::fs::symlink(&here, &link).unwrap();
+            assert!(distinct(&results(&link)).is_err());
+        }
     }
 }

@@ -6,6 +6,7 @@
 use rumbo_control::mode::ModeId;
 use rumbo_report::real::FromLog;
 use rumbo_report::text::Text;
+use rumbo_scenario::files::bounded::{LONGEST_RECORDING, read_at_most};
 use rumbo_station::Row;
 use rumbo_station::log::{Kind, Log};
 use rumbo_wire::text::RowKind;
@@ -15,8 +16,6 @@ use std::path::Path;
 
 /// Media type of the CSV that an imported log carries.
 pub(crate) const CSV: &str = "text/csv";
-/// Longest recording that is read: some days of one robot \[bytes\].
-const LARGEST: u64 = 1 << 30;
 /// What stands for nothing in reach \[cm\]: the sonars' reach.
 const CLEAR_CM: f64 = 250.0;
 
@@ -33,12 +32,9 @@ const NOTHING: Text = Text {
     es: "no contiene ninguna prueba de los modos 1 a 8 con el robot armado",
 };
 
-/// A recording's bytes; a file that no recording can be is not read into memory.
+/// The bytes of a CSV, or of the log that was made of it.
 pub(crate) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
-    if std::fs::metadata(path)?.len() > LARGEST {
-        return Err(io::Error::other("longer than any recording"));
-    }
-    std::fs::read(path)
+    read_at_most(path, 4 * LONGEST_RECORDING)
 }
 
 /// What a log comes to, or why it is none of a real robot's run.

@@ -92,12 +92,12 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
     let recorder = Recorder::of(&log, recorded);
     // What another program has written may not even be read: then that is the reason.
     let (setup, seed) = manifest::setup(&args.log, recorded).map_err(|failure| match failure {
-        Failure::Input(text) => {
+        failure if recorder.table.is_none() && recorder.version.is_empty() => failure,
+        failure => {
             let table = recorder.table.as_ref();
             let table = table.map_or_else(String::new, |table| format!("; {table}"));
-            Failure::Input(format!("{text}{table}{}", recorder.version))
+            Failure::Input(format!("{failure}{table}{}", recorder.version))
         }
-        failure => failure,
     })?;
     let verdict = match recorded.kind {
         Kind::Run => same(&log, &run::run(&setup, seed)?),
@@ -210,7 +210,7 @@ fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<V
         if t_us >= end_us {
             break;
         }
-        sim.advance(t_us + recorded.step_us.max(1));
+        sim.advance(t_us + recorded.step_us);
     }
     let from_robot = log.link.iter().filter(|burst| !burst.to_robot);
     let was: Vec<Burst> = from_robot.cloned().collect();

@@ -5,17 +5,16 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::observe;
 use crate::output::{self, figure};
-use crate::place;
+use crate::place::{self, Guard};
+use crate::results::Results;
 use crate::run_log::{Kept, Source};
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_scenario::files::{Library, Overrides, Program, ScenarioFile, Setup};
 use rumbo_scenario::run::{self, RunResult};
 use rumbo_scenario::trace::Trace;
 use rumbo_station::log::Kind;
-use rumbo_station::readable;
 use std::collections::BTreeMap;
-use std::io::Write;
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 /// Runs every scenario with every seed; one line or table per scenario, or one JSON object per run.
@@ -33,8 +32,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         ..args.image.overrides()
     };
     let library = Library::new();
-    let setup = |name: &String| library.setup(name, &overrides).map_err(Failure::input);
+    let setup = |name: &String| library.setup(name, &overrides);
     let setups: Vec<Setup> = args.scenarios.iter().map(setup).collect::<Result<_, _>>()?;
+    check_places(args, &setups)?;
     if let Some(folder) = &args.out {
         place::try_folder(folder)?;
     }
@@ -46,10 +46,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
             .map_err(Failure::input)?;
     }
     let runs = args.runs as usize;
-    let seeds = || (0..args.runs).map(|index| args.seed.seed.wrapping_add(u64::from(index)));
     let jobs: Vec<_> = setups
         .iter()
-        .flat_map(|setup| seeds().map(move |seed| (setup, seed)))
+        .flat_map(|setup| seeds(args).map(move |seed| (setup, seed)))
         .collect();
     let progress = progress_bar(jobs.len());
     let (mut passed, mut results) = (true, Vec::new());
@@ -71,8 +70,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         passed &= result.pass;
         match &args.out {
             Some(folder) => {
-                record(folder, &result)?;
-                source.write(folder, setup, &result)?;
+                let results = Results::of(folder, &result.scenario, result.seed);
+                results.write(&source, setup, &result)?;
             }
             None => progress.suspend(|| kept.take(&source, setup, &result)),
         }
@@ -101,12 +100,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     progress.finish_and_clear();
     kept.tell();
     if matches!(ended, Err(Failure::Interrupted)) {
-        // A closed stderr leaves nobody to tell.
-        let _ = writeln!(
-            std::io::stderr(),
-            "note: interrupted after {done} of {} runs",
-            jobs.len()
-        );
+        output::note(&format!("interrupted after {done} of {} runs", jobs.len()));
     }
     ended?;
     if passed {
@@ -114,6 +108,36 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     } else {
         Err(Failure::LimitMissed)
     }
+}
+
+fn seeds(args: &RunArgs) -> impl Iterator<Item = u64> {
+    let first = args.seed.seed;
+    (0..args.runs).map(move |index| first.wrapping_add(u64::from(index)))
+}
+
+/// Refuses, before anything runs, what would write over something else than an older result of the same run.
+fn check_places(args: &RunArgs, setups: &[Setup]) -> Result<(), Failure> {
+    let named = [&args.setting.robot, &args.setting.world];
+    let inputs = args.scenarios.iter().chain(named.into_iter().flatten());
+    let inputs = inputs.map(PathBuf::from).chain(args.image.firmware.clone());
+    let guard = Guard::new(inputs, args.overwrite.force);
+    observe::check_places(args, &guard)?;
+    let Some(folder) = &args.out else {
+        return Ok(());
+    };
+    // Seeds differ, so that names do if those of the scenarios do.
+    let named = |(scenario, setup): (&String, &Setup)| {
+        let results = Results::of(folder, &setup.scenario.name, args.seed.seed);
+        (results.json(), scenario.clone())
+    };
+    let results: Vec<_> = args.scenarios.iter().zip(setups).map(named).collect();
+    place::distinct(&results)?;
+    for Setup { scenario, .. } in setups {
+        for seed in seeds(args) {
+            Results::of(folder, &scenario.name, seed).check(&guard, scenario, seed)?;
+        }
+    }
+    Ok(())
 }
 
 /// All of them at once; the one whose program is looked at by itself.
@@ -138,22 +162,6 @@ fn progress_bar(runs: usize) -> ProgressBar {
     }
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} runs, {eta} left");
     ProgressBar::new(runs as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-}
-
-/// The result of one run, and what really happened, as files of their own.
-fn record(folder: &Path, result: &RunResult) -> Result<(), Failure> {
-    let stem = format!("{}-{}", result.scenario, result.seed);
-    let path = folder.join(format!("{stem}.json"));
-    let text = serde_json::to_string(result).map_err(Failure::input)?;
-    place::write(&path, text + "\n")?;
-    for usart in 0..4 {
-        let said = result.trace.console(usart);
-        if !said.is_empty() {
-            let path = folder.join(format!("{stem}-usart{usart}.txt"));
-            place::write(&path, readable(&said))?;
-        }
-    }
-    place::write(&folder.join(format!("{stem}.csv")), result.trace.csv())
 }
 
 /// All runs of one scenario: each metric's range over the seeds against its limits, and why runs did not pass.

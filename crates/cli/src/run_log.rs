@@ -6,6 +6,7 @@
 use crate::failure::Failure;
 use crate::logs;
 use crate::manifest;
+use crate::output;
 use crate::place;
 use crate::scene::scene;
 use rumbo_control::Wheels;
@@ -15,7 +16,6 @@ use rumbo_scenario::trace::{SAMPLE_US, Sample, Trace};
 use rumbo_station::log::{Burst, Kind, Manifest, Outcome, Run, Said, record_run, record_run_in};
 use rumbo_station::{Choice, MapPose, Truth};
 use rumbo_wire::FromRobot;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// So many runs of a command are recorded without being asked for: all of them, or the first that miss a limit.
@@ -70,17 +70,16 @@ impl Source<'_> {
         write(&self.manifest(setup, result.seed), run)
     }
 
-    /// Writes the log of a run into a folder that was asked for.
+    /// Writes the log of a run to a place that was asked for.
     pub(crate) fn write(
         &self,
-        folder: &Path,
+        path: &Path,
         setup: &Setup,
         result: &RunResult,
     ) -> Result<(), Failure> {
-        let path = folder.join(format!("{}-{}.mcap", result.scenario, result.seed));
         self.hand_over(setup, result, |manifest, run| {
-            place::make(&path, |place| {
-                record_run(place, manifest, run).map_err(|error| Failure::Input(error.of(&path)))
+            place::make(path, |place| {
+                record_run(place, manifest, run).map_err(|error| Failure::Input(error.of(path)))
             })
         })
     }
@@ -126,7 +125,7 @@ impl Kept {
             Ok(path) => self.logs.push(path),
             Err(failure) => {
                 self.folder = None;
-                say(&format!("note: not recording: {failure}"));
+                output::note(&format!("not recording: {failure}"));
             }
         }
     }
@@ -140,19 +139,14 @@ impl Kept {
         };
         match &self.logs[..] {
             [] => {}
-            [only] => say(&format!("recorded: {}", only.display())),
-            [first, ..] => say(&format!(
+            [only] => output::aside(&format!("recorded: {}", only.display())),
+            [first, ..] => output::aside(&format!(
                 "recorded: {} logs{which} in {}",
                 self.logs.len(),
                 first.parent().unwrap_or(first).display()
             )),
         }
     }
-}
-
-/// On stderr, where it is in no result's way; a closed one leaves nobody to tell.
-fn say(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 /// What a program without a link of ours has told; what came over the link is in its bytes.

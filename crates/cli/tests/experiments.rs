@@ -34,7 +34,7 @@ fn the_report_is_in_the_locale_s_language_unless_another_is_asked_for() {
         ("es_ES.UTF-8", None, "es"),
         ("es_ES.UTF-8", Some("en"), "en"),
     ] {
-        let mut arguments = vec!["--only", "mode1"];
+        let mut arguments = vec!["--force", "--only", "mode1"];
         arguments.extend(option.iter().flat_map(|language| ["--language", *language]));
         let output = experiments(folder.path(), locale, &arguments);
         assert_eq!(output.status.code(), Some(0), "{output:?}");
@@ -80,7 +80,7 @@ fn a_recorded_run_stands_beside_ours_and_a_file_of_no_experiment_is_named() {
     assert!(
         page.contains("fig-mode1-real") && page.contains("stop.csv") && page.contains("other.csv")
     );
-    for file in ["mode1-1.csv", "mode1-1.json", "mode1-1.mcap"] {
+    for file in ["mode1-1.truth.csv", "mode1-1.json", "mode1-1.mcap"] {
         assert!(
             folder.path().join("rumbo-report").join(file).is_file(),
             "{file}"
@@ -137,7 +137,11 @@ fn a_log_of_a_real_robot_stands_beside_ours_and_one_of_a_simulated_robot_does_no
 fn another_seed_is_another_report_and_the_same_one_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let mut pages = ["1", "1", "2"].map(|seed| {
-        experiments(folder.path(), "C", &["--only", "mode1", "--seed", seed]);
+        experiments(
+            folder.path(),
+            "C",
+            &["--force", "--only", "mode1", "--seed", seed],
+        );
         page(folder.path())
     });
     assert!(pages[0] == pages[1] && pages[1] != pages[2]);

@@ -5,7 +5,7 @@ use crate::data::Data;
 use crate::real::{Real, Recording};
 use crate::signals::Outcome;
 use rayon::prelude::*;
-use rumbo_scenario::files::{FileError, Library, Overrides, Setup, TimedCommand};
+use rumbo_scenario::files::{FileError, Library, Overrides, ScenarioFile, Setup, TimedCommand};
 use rumbo_scenario::run::run;
 use rumbo_wire::Command;
 
@@ -76,6 +76,12 @@ impl Plan {
             experiments,
             jobs,
         })
+    }
+
+    /// The scenarios that are run as they are, not with the references of a recorded run.
+    pub fn scenarios(&self) -> impl Iterator<Item = &ScenarioFile> {
+        let as_they_are = self.jobs.iter().filter(|job| !job.as_recorded);
+        as_they_are.map(|job| &job.setup.scenario)
     }
 
     /// How many runs there are.

@@ -2,6 +2,7 @@
 
 use crate::text::{Text, t};
 use rumbo_scenario::dialect;
+use rumbo_scenario::files::bounded::{LONGEST_RECORDING, read_at_most};
 use rumbo_wire::csv;
 use rumbo_wire::text::{Row, RowKind};
 use std::collections::BTreeMap;
@@ -147,7 +148,7 @@ fn is_a(path: &Path, ending: &str) -> bool {
 
 /// A CSV as it is; what is no text has no header of the original program.
 fn csv_of(path: &Path) -> Result<FromLog, RealError> {
-    let bytes = std::fs::read(path).map_err(|error| {
+    let bytes = read_at_most(path, LONGEST_RECORDING).map_err(|error| {
         RealError(format!(
             "{}: cannot be read ({error}); take it out of the folder",
             path.display()

@@ -25,6 +25,9 @@ pub struct RunResult {
     pub scenario: String,
     /// The seed.
     pub seed: u64,
+    /// Path of the scenario, if it is none of the built-in ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path: Option<String>,
     /// No limit is missed, and the robot refused nothing and reported no fault.
     pub pass: bool,
     /// All metrics; units in the names.
@@ -167,6 +170,9 @@ impl<'a> Run<'a> {
                 }
                 // What is measured did not happen.
                 Some(_) => failures.push(format!("{name} = never: limit {bounds}")),
+                None if !self.trace.drove() => failures.push(format!(
+                    "{name} = never: limit {bounds}; the robot was not armed, or its program drove no wheel"
+                )),
                 None => failures.push(format!(
                     "{name}: this scenario has no such metric; {}",
                     instead(name, &metrics)
@@ -176,6 +182,7 @@ impl<'a> Run<'a> {
         RunResult {
             scenario: scenario.name.clone(),
             seed: self.seed,
+            path: scenario.path.clone(),
             pass: failures.is_empty(),
             metrics,
             failures,

@@ -136,6 +136,11 @@ impl Trace {
         &self.samples[index(from_s)..index(until_s).max(index(from_s))]
     }
 
+    /// Whether a wheel was ever driven: of a robot that never was, nothing of its driving can be measured.
+    pub fn drove(&self) -> bool {
+        self.samples.iter().any(|sample| sample.duty != [0; 2])
+    }
+
     /// The samples as CSV, units in the names of the columns.
     pub fn csv(&self) -> String {
         let mut text = String::from(

@@ -165,7 +165,7 @@ fn a_file_on_disk_works_as_well_as_a_name() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/mode1.toml");
     let library = Library::new();
     let mut from_disk = library.setup(path, &Overrides::default()).unwrap();
-    from_disk.scenario.name = "mode1".into();
+    assert_eq!(from_disk.scenario.path.take().as_deref(), Some(path));
     assert_eq!(
         from_disk,
         library.setup("mode1", &Overrides::default()).unwrap()

@@ -49,7 +49,13 @@ pub(crate) enum Order {
 /// The orders as they are to be obeyed when STOP was pressed (`stop`): no older command to the robot comes after it.
 ///
 /// The flag is raised before STOP enters the queue, so a STOP that is not in `waiting` is newer than all that is.
+/// Of several resets only the last one counts: the others would be gone with it, and keep a STOP waiting.
 pub(crate) fn stop_first(mut waiting: Vec<Order>, stop: bool) -> Vec<Order> {
+    let is_reset = |order: &Order| matches!(order, Order::Reset(_));
+    if let Some(last) = waiting.iter().rposition(is_reset) {
+        let mut number = 0..;
+        waiting.retain(|order| number.next() == Some(last) || !is_reset(order));
+    }
     if !stop {
         return waiting;
     }
@@ -419,6 +425,22 @@ mod tests {
             stop_first(vec![robot(Command::Arm)], false),
             [robot(Command::Arm)]
         );
+    }
+
+    #[test]
+    fn of_resets_that_wait_only_the_last_one_counts() {
+        let reset = |seed| {
+            Order::Reset(Choice {
+                scenario: "mode1".into(),
+                world: None,
+                rig: None,
+                seed,
+            })
+        };
+        let waiting: Vec<Order> = (0..250).map(reset).chain([Order::Speed(2.0)]).collect();
+        let stopped = [Order::Robot(Command::Stop), reset(249), Order::Speed(2.0)];
+        assert_eq!(stop_first(waiting.clone(), true), stopped);
+        assert_eq!(stop_first(waiting, false), stopped[1..]);
     }
 
     #[test]

@@ -78,6 +78,9 @@ impl Replay {
         for event in &self.log.events {
             self.board.push_event(event.clone());
         }
+        for note in self.log.notes.clone() {
+            self.note(format!("about the log: {note}"));
+        }
         if let Some(why) = &self.log.cut {
             self.note(match self.log.has_holes {
                 true => format!("the log is damaged: {why}"),

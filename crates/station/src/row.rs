@@ -113,6 +113,12 @@ impl Row {
         }
     }
 
+    /// Nothing is known.
+    pub(crate) fn is_empty(&self) -> bool {
+        let mut signals = self.values.iter().skip(1);
+        signals.all(|value| value.is_nan())
+    }
+
     /// As the page gets it.
     pub(crate) fn cells(&self) -> Vec<Cell> {
         (0..COLUMNS)

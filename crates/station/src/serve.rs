@@ -1,6 +1,7 @@
 //! Starts the lab: binds the port, then runs the session and the web server in threads of their own.
 
 use crate::board::Board;
+use crate::ending::asked_to_end;
 use crate::guard::{self, Guard};
 use crate::lease::Lease;
 use crate::log::{Log, Recording};
@@ -161,30 +162,6 @@ impl Drop for Lab {
         let session = self.session.take().map(JoinHandle::join);
         // Nobody is left to hear of a fault.
         drop((web, session));
-    }
-}
-
-/// Ends when the process is interrupted or terminated by the system.
-async fn asked_to_end() {
-    // Without a handler the process ends at once, as it does anyway.
-    let interrupted = async {
-        if tokio::signal::ctrl_c().await.is_err() {
-            std::future::pending::<()>().await;
-        }
-    };
-    #[cfg(unix)]
-    let terminated = async {
-        use tokio::signal::unix::{SignalKind, signal};
-        match signal(SignalKind::terminate()) {
-            Ok(mut signal) => drop(signal.recv().await),
-            Err(_) => std::future::pending().await,
-        }
-    };
-    #[cfg(not(unix))]
-    let terminated = std::future::pending::<()>();
-    tokio::select! {
-        () = interrupted => {}
-        () = terminated => {}
     }
 }
 

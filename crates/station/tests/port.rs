@@ -172,3 +172,28 @@ fn a_robot_behind_tcp_is_talked_to_like_one_behind_a_wire() {
     }
     assert_eq!(heard, b"from it");
 }
+
+#[test]
+fn a_port_that_is_flooded_is_left_all_the_same() {
+    use std::io::Write;
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = format!("tcp:{}", listener.local_addr().unwrap());
+    std::thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        while stream.write_all(&[0x55; 65_536]).is_ok() {}
+    });
+    let mut port = Port::open(&address, DEFAULT_BAUD).unwrap();
+    let until = Instant::now() + PATIENCE;
+    let mut received = Vec::new();
+    // As much as it holds at once, so that its reader has to wait.
+    while received.len() < 16 << 20 && Instant::now() < until {
+        port.receive(&mut received);
+    }
+    std::thread::sleep(Duration::from_millis(200));
+    let (left, has_left) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        drop(port);
+        left.send(()).unwrap();
+    });
+    assert_eq!(has_left.recv_timeout(PATIENCE), Ok(()));
+}

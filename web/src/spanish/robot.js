@@ -128,6 +128,9 @@ export const ROBOT = {
   'reset: {} with rig {}, seed {}': 'reinicio: {} con el montaje {}, semilla {}', 'reset: {} in world {} with rig {}, seed {}': 'reinicio: {} en el mundo {} con el montaje {}, semilla {}',
   'recording to {}': 'grabando en {}', 'not recording: {}': 'no se graba: {}', 'recording ended: the log cannot be written ({}); is the disk full?': 'fin de la grabación: no se puede escribir ({}); ¿disco lleno?',
   'recording: the disk is slow, {} entries are missing in the log': 'grabación: el disco es lento, faltan {} entradas',
+  'recording: more came in this second than a robot says; {} bytes of the link and {} samples and events are left out':
+    'grabación: en este segundo llegó más de lo que un robot dice; se omiten {} bytes del enlace y {} muestras y eventos',
+  'about the log: {}': 'sobre la grabación: {}',
   'the log is damaged: {}': 'la grabación está dañada: {}',
   'the log ends early: {}': 'la grabación acaba antes de tiempo: {}', 'this is a replay: nothing is sent to a robot': 'esto es una grabación: no se envía nada a ningún robot',
   'port {} is gone ({}); waiting for it': 'el puerto {} ya no está ({}); se espera a que vuelva', 'port {} is back': 'el puerto {} ha vuelto',

@@ -2,8 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use std::time::Duration;
+
 use super::Stop;
 use crate::project::{Project, find_program, output, run};
+
+/// Another apt is looked for this often, and so many times.
+const AGAIN: Duration = Duration::from_secs(5);
+const PATIENCE: u32 = 120;
 
 /// Makes sure that `cargo <subcommand>` exists; rustup installs the component otherwise.
 pub(crate) fn component(project: &Project, subcommand: &str, component: &str) -> Result<(), Stop> {
@@ -126,18 +132,44 @@ pub(crate) fn install<T>(
     let (Some(apt), true) = (find_program("apt-get"), is_root()) else {
         return Err(Stop::Missing(remedy));
     };
-    let install = run(project.command(&apt).args(["-qq", "update"])).and_then(|()| {
-        run(project
-            .command(&apt)
-            .env("DEBIAN_FRONTEND", "noninteractive")
-            .args(["-qq", "install", "--yes", "--no-install-recommends"])
-            .args(packages))
-    });
+    let apt = |arguments: &[&str]| {
+        let run = || {
+            output(
+                project
+                    .command(&apt)
+                    .envs([("DEBIAN_FRONTEND", "noninteractive"), ("LC_ALL", "C")])
+                    .args(arguments),
+            )
+        };
+        when_unlocked(run, PATIENCE, || std::thread::sleep(AGAIN))
+    };
+    let install = ["-qq", "install", "--yes", "--no-install-recommends"];
+    let install = apt(&["-qq", "update"]).and_then(|_| apt(&[&install[..], packages].concat()));
     match (install, find()) {
-        (Ok(()), Some(path)) => Ok(path),
+        (Ok(_), Some(path)) => Ok(path),
         (Err(error), _) => Err(Stop::Missing(format!("{remedy}; {error}"))),
         _ => Err(Stop::Missing(remedy)),
     }
+}
+
+/// Runs apt, again while another one holds a lock. apt's own option for it covers the lock of its lists in newer versions only.
+fn when_unlocked<T>(
+    run: impl Fn() -> Result<T, String>,
+    tries: u32,
+    wait: impl Fn(),
+) -> Result<T, String> {
+    for number in 0..tries {
+        match run() {
+            Err(error) if error.contains("Could not get lock") => {
+                if number == 0 {
+                    eprintln!("another apt is at work; waiting for it, up to ten minutes");
+                }
+                wait();
+            }
+            done => return done,
+        }
+    }
+    run()
 }
 
 fn is_root() -> bool {
@@ -147,4 +179,33 @@ fn is_root() -> bool {
 fn up_to_date(product: &Path, source: &Path) -> bool {
     let time = |path: &Path| path.metadata().and_then(|data| data.modified()).ok();
     time(product).is_some_and(|made| time(source).is_some_and(|wanted| made >= wanted))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::when_unlocked;
+    use std::cell::Cell;
+
+    #[test]
+    fn apt_is_run_again_while_another_one_holds_a_lock_and_any_other_failure_is_one() {
+        let (runs, waits) = (Cell::new(0), Cell::new(0));
+        let apt = |free_after: u32, error: &'static str| {
+            runs.set(0);
+            waits.set(0);
+            let run = || {
+                runs.set(runs.get() + 1);
+                match runs.get() > free_after {
+                    true => Ok(()),
+                    false => Err(error.to_owned()),
+                }
+            };
+            let done = when_unlocked(run, 5, || waits.set(waits.get() + 1));
+            (done.is_ok(), runs.get(), waits.get())
+        };
+        let lock = "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 12 (apt)";
+        assert_eq!(apt(0, lock), (true, 1, 0));
+        assert_eq!(apt(3, lock), (true, 4, 3));
+        assert_eq!(apt(99, lock), (false, 6, 5));
+        assert_eq!(apt(1, "E: Unable to locate package"), (false, 1, 0));
+    }
 }

@@ -41,6 +41,14 @@ impl ImageArgs {
     }
 }
 
+/// What may be overwritten.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct OverwriteArgs {
+    /// Replace files that are there already; without it only those that Rumbo wrote for the same run or report
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
 /// The seed.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct SeedArgs {

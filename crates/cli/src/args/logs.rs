@@ -1,6 +1,6 @@
-//! Options of the commands for logs: `import`, `replay`, `export`, `compare`, `rerun`.
+//! Options of the commands for logs: `import`, `replay`, `export`, `compare`, `rerun`, `prune`.
 
-use super::groups::ServeArgs;
+use super::groups::{OverwriteArgs, ServeArgs};
 use super::values::{percent, speed};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -28,6 +28,8 @@ pub(crate) struct ImportArgs {
     /// The log to write [default: the same name with .mcap, in the current folder]
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
     /// The summary as JSON on stdout
     #[arg(long)]
     pub(crate) json: bool,
@@ -74,6 +76,8 @@ pub(crate) struct ExportArgs {
     /// Folder for the files; made if need be [default: the current one]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
 }
 
 /// What a log can be written as.
@@ -107,6 +111,8 @@ pub(crate) struct CompareArgs {
     /// Figure with all runs over each other
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
     /// The result as one JSON object
     #[arg(long)]
     pub(crate) json: bool,
@@ -127,4 +133,22 @@ pub(crate) struct RerunArgs {
     /// The result as one JSON object
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Options of `rumbo prune`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo prune --keep-days 30 --dry-run
+  rumbo prune --keep-days 30
+
+Removes logs from the folder that `rumbo list logs` shows, by the time when they were written last. Logs in folders of --out stay, and so does
+what is no log of Rumbo. Nothing is ever removed without this command.")]
+pub(crate) struct PruneArgs {
+    /// Logs of so many days stay
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=36_500))]
+    pub(crate) keep_days: u32,
+    /// Only say what would be removed
+    #[arg(long)]
+    pub(crate) dry_run: bool,
 }

@@ -10,7 +10,9 @@ mod values;
 pub(crate) use groups::BridgeArgs;
 pub(crate) use groups::ServeArgs;
 pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs};
-pub(crate) use logs::{CompareArgs, ExportArgs, Format, ImportArgs, ReplayArgs, RerunArgs};
+pub(crate) use logs::{
+    CompareArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
+};
 pub(crate) use runs::{
     CalibrateArgs, ExperimentsArgs, IdentifyArgs, LanguageName, ProgramName, RunArgs,
 };
@@ -65,6 +67,8 @@ pub(crate) enum Command {
     Compare(CompareArgs),
     /// Run a recorded simulation again and compare it bit for bit
     Rerun(RerunArgs),
+    /// Remove old logs of sessions and runs
+    Prune(PruneArgs),
     /// List modes, scenarios, worlds, rigs, robots and parameters
     List(ListArgs),
 }

@@ -1,6 +1,6 @@
 //! Options of the commands that run experiments and fit numbers: `run`, `experiments`, `identify`, `calibrate`.
 
-use super::groups::{ImageArgs, ParameterArgs, SeedArgs, SettingArgs};
+use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, SeedArgs, SettingArgs};
 use super::values::timed_text;
 use clap::{Args, ValueEnum};
 use rumbo_scenario::files::TimedText;
@@ -20,7 +20,8 @@ Examples:
   rumbo run mode1 --seed 7 --param battery.open_circuit_v=6.9 --out out/mode1
 
 Every run is recorded, among the logs of sessions (`rumbo list logs`); of more than 20 runs those that miss a limit, the first 20 of them. With
---out all are recorded, there; with --no-record none. A log that cannot be written is a note on stderr, and the run goes on.
+--out all are recorded, there; with --no-record none. In DIR a run leaves NAME-SEED.json, .truth.csv, .mcap and, with --firmware, what the USARTs
+said; a scenario's path is in the result. Files of the same scenario, path and seed are written again, any other one is kept unless --force is given. A log that cannot be written is a note on stderr, and the run goes on.
 
 Exit status 0: all limits are met; 1: one is missed; 2: wrong input; 130: Ctrl-C, and what was done until then has been printed.")]
 pub(crate) struct RunArgs {
@@ -54,6 +55,8 @@ pub(crate) struct RunArgs {
     /// Folder for the log, the result and the true signals of each run; made if need be
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
     /// Leave no log behind
     #[arg(long, conflicts_with = "out")]
     pub(crate) no_record: bool,
@@ -100,6 +103,8 @@ pub(crate) struct ExperimentsArgs {
     /// Folder for the report; made if need be
     #[arg(long, value_name = "DIR", default_value = "rumbo-report")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
     /// Language of the report [default: that of the locale]
     #[arg(long, value_enum, value_name = "LANGUAGE")]
     pub(crate) language: Option<LanguageName>,
@@ -161,6 +166,8 @@ pub(crate) struct IdentifyArgs {
     /// Folder for plots of measured against simulated, SVG and PNG; made if need be
     #[arg(long, value_name = "DIR")]
     pub(crate) plots: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
 }
 
 /// Options of `rumbo calibrate`.
@@ -188,9 +195,12 @@ pub(crate) struct CalibrateArgs {
     pub(crate) seed: SeedArgs,
     #[command(flatten)]
     pub(crate) parameters: ParameterArgs,
-    /// Robot file whose [parameters] table is rewritten; a new file starts as a copy of the robot's
+    /// Robot file whose [parameters] table is rewritten: this robot's own, or one that was calibrated; a new file starts as a copy of the
+    /// robot's
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
     /// Leave no log behind
     #[arg(long)]
     pub(crate) no_record: bool,

@@ -1,5 +1,6 @@
 //! Values of options that need more than a look: numbers within bounds, pairs.
 
+use crate::manifest::LONGEST_S;
 use rumbo_scenario::files::TimedText;
 
 /// Seconds of simulation or of a log per second.
@@ -15,8 +16,8 @@ pub(super) fn timed_text(text: &str) -> Result<TimedText, String> {
     let wrong = || "write it as TEXT@SECONDS, e.g. 'REF 40@6'".to_owned();
     let (line, at_s) = text.rsplit_once('@').ok_or_else(wrong)?;
     let at_s: f64 = at_s.trim().parse().map_err(|_| wrong())?;
-    if !at_s.is_finite() || at_s < 0.0 {
-        return Err("the time must be 0 or more seconds".into());
+    if !(0.0..=LONGEST_S).contains(&at_s) {
+        return Err(format!("the time must be within 0..{LONGEST_S} s"));
     }
     if line.is_empty() || !line.bytes().all(|byte| (b' '..=b'~').contains(&byte)) {
         return Err("the text must be one line of ASCII".into());

@@ -107,7 +107,7 @@ fn a_damaged_row_near_the_start_costs_that_row_only_and_is_told() {
         let mut import = program();
         import.current_dir(&folder).args(["import", "damaged.csv"]);
         import
-            .args(["--out", "damaged.mcap", "--json"])
+            .args(["--out", "damaged.mcap", "--force", "--json"])
             .output()
             .unwrap()
     };

@@ -129,14 +129,21 @@ fn each_run_leaves_its_result_and_its_trace_in_the_folder_asked_for() {
                 .trim(),
             line
         );
-        let trace = std::fs::read_to_string(folder.join(format!("mode1-{seed}.csv"))).unwrap();
+        let trace =
+            std::fs::read_to_string(folder.join(format!("mode1-{seed}.truth.csv"))).unwrap();
         assert!(trace.starts_with("t_s,") && trace.lines().count() > 800);
     }
 }
 
 #[cfg(unix)]
 #[test]
-fn a_campaign_that_is_interrupted_tells_what_it_had() {
+fn a_campaign_that_is_interrupted_or_terminated_tells_what_it_had() {
+    tells_what_it_had("-INT");
+    tells_what_it_had("-TERM");
+}
+
+#[cfg(unix)]
+fn tells_what_it_had(signal: &str) {
     let mut campaign = program()
         .args(["run", "mode5", "--runs", "1000000", "--json", "--no-record"])
         .stdout(Stdio::piped())
@@ -146,7 +153,7 @@ fn a_campaign_that_is_interrupted_tells_what_it_had() {
     let mut lines = BufReader::new(campaign.stdout.take().unwrap()).lines();
     let first = lines.next().unwrap().unwrap();
     let interrupt = Command::new("kill")
-        .args(["-INT", &campaign.id().to_string()])
+        .args([signal, &campaign.id().to_string()])
         .status();
     assert!(interrupt.unwrap().success());
     let rest: Vec<String> = lines.map(Result::unwrap).collect();

@@ -27,7 +27,7 @@ pub use link::Linked;
 pub use procedure::calibrate;
 pub use recorded::{CalibrationRun, calibration_setup, run_calibration};
 pub use report::{Row, rows};
-pub use rewrite::rewrite;
+pub use rewrite::{is_calibrated, rewrite};
 pub use simulated::{WORLD, calibrate_simulated};
 
 use rumbo_control::params::ParamId;

@@ -49,6 +49,7 @@ pub fn run_calibration(setup: &Setup, seed: u64) -> Result<CalibrationRun, FileE
     }
     trace.link = sim.take_tapped();
     let result = RunResult {
+        path: None,
         scenario: setup.scenario.name.clone(),
         seed,
         pass: found.is_ok(),

@@ -7,6 +7,11 @@ use toml_edit::{DocumentMut, Item, Table, Value};
 /// How the comment of a calibration starts.
 const MARK: &str = "# Calibrated by `rumbo calibrate`";
 
+/// Whether the parameters of a robot file are those of a calibration.
+pub fn is_calibrated(text: &str) -> bool {
+    text.lines().any(|line| line.starts_with(MARK))
+}
+
 /// The text with the calibration's parameters in its table `[parameters]`, made if absent; comments stay. `date` is written as given.
 ///
 /// # Errors

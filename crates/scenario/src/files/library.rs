@@ -1,5 +1,6 @@
 //! Finds robots, worlds and scenarios: built into the program by name, on disk by path.
 
+use super::bounded;
 use super::error::FileError;
 use super::near::near_or_all;
 use super::{RobotFile, ScenarioFile, WorldFile};
@@ -79,6 +80,7 @@ struct Found {
     name: String,
     file: String,
     text: String,
+    on_disk: bool,
 }
 
 impl Library {
@@ -131,7 +133,11 @@ impl Library {
     /// As for [`Library::robot`].
     pub fn scenario(&self, name_or_path: &str) -> Result<ScenarioFile, FileError> {
         let found = self.find(Kind::Scenario, name_or_path)?;
-        ScenarioFile::parse(&found.name, &found.file, &found.text)
+        let scenario = ScenarioFile::parse(&found.name, &found.file, &found.text)?;
+        Ok(ScenarioFile {
+            path: found.on_disk.then_some(found.file),
+            ..scenario
+        })
     }
 
     /// Names of the built-in files of a kind, in order.
@@ -146,11 +152,12 @@ impl Library {
                 name: name_or_path.to_owned(),
                 file: format!("{} {name_or_path}", kind.word()),
                 text: text.clone(),
+                on_disk: false,
             });
         }
         if is_path(name_or_path) {
             let path = self.base.join(name_or_path);
-            let text = std::fs::read_to_string(&path).map_err(|error| FileError::Unreadable {
+            let text = bounded::read_text(&path).map_err(|error| FileError::Unreadable {
                 path: path.display().to_string(),
                 reason: error.to_string(),
             })?;
@@ -161,6 +168,7 @@ impl Library {
                 name: stem.unwrap_or_default(),
                 file: path.display().to_string(),
                 text,
+                on_disk: true,
             });
         }
         let text = kind.built_in(name_or_path).ok_or_else(|| {
@@ -177,6 +185,7 @@ impl Library {
             name: name_or_path.to_owned(),
             file,
             text,
+            on_disk: false,
         })
     }
 }

@@ -5,6 +5,7 @@
 //! problem, with file, line, key, value and what is allowed. Angles are degrees and speeds rpm in the files, radians
 //! and rad/s in what comes out.
 
+pub mod bounded;
 pub mod commands;
 mod error;
 mod library;

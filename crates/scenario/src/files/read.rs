@@ -16,6 +16,8 @@ use toml::de::{DeTable, DeValue};
 pub(crate) struct Source<'t> {
     file: String,
     text: &'t str,
+    /// Where each line of the text ends.
+    line_ends: Vec<usize>,
     problems: RefCell<Vec<Problem>>,
 }
 
@@ -25,6 +27,7 @@ impl<'t> Source<'t> {
         Self {
             file: file.into(),
             text,
+            line_ends: text.match_indices('\n').map(|(at, _)| at).collect(),
             problems: RefCell::default(),
         }
     }
@@ -98,12 +101,7 @@ impl<'t> Source<'t> {
     }
 
     fn line_of(&self, offset: usize) -> usize {
-        1 + self
-            .text
-            .bytes()
-            .take(offset)
-            .filter(|byte| *byte == b'\n')
-            .count()
+        1 + self.line_ends.partition_point(|end| *end < offset)
     }
 }
 
@@ -279,8 +277,8 @@ impl<'a, 't> Table<'a, 't> {
         )
     }
 
-    /// The tables `[[key]]`, in the order of the file.
-    pub(crate) fn tables(&self, key: &str) -> Vec<Table<'a, 't>> {
+    /// The tables `[[key]]`, in the order of the file; there may be so many.
+    pub(crate) fn tables(&self, key: &str, most: usize) -> Vec<Table<'a, 't>> {
         let Some((line, value)) = self.value(key) else {
             return Vec::new();
         };
@@ -293,6 +291,11 @@ impl<'a, 't> Table<'a, 't> {
             );
             return Vec::new();
         };
+        if array.len() > most {
+            let remedy = format!("at most {most} of them are read");
+            self.complain(key, line, &format!("{} tables", array.len()), &remedy);
+            return Vec::new();
+        }
         let mut tables = Vec::new();
         for (index, item) in array.iter().enumerate() {
             let line = self.source.line_of(item.span().start);

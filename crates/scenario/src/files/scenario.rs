@@ -41,6 +41,8 @@ use std::collections::BTreeMap;
 pub struct ScenarioFile {
     /// The name by which commands call it: the file's name without `.toml`.
     pub name: String,
+    /// Where its file is, as it was asked for; `None` of a built-in one.
+    pub path: Option<String>,
     /// One line for people.
     pub title: String,
     /// The text it was read from, kept for the log's manifest.
@@ -142,6 +144,9 @@ pub enum Spread {
 }
 
 const DURATION: Allowed = Allowed::new(0.1, 3600.0, "s");
+/// A person types no more in an hour.
+const MOST_COMMANDS: usize = 10_000;
+const MOST_FAULTS: usize = 1_000;
 const BOUND: Allowed = Allowed::new(-1e9, 1e9, "");
 
 impl ScenarioFile {
@@ -159,6 +164,7 @@ impl ScenarioFile {
         let duration_s = root.number("duration_s", DURATION).unwrap_or(DURATION.max);
         let scenario = Self {
             name: name.into(),
+            path: None,
             title: root
                 .required_text("title", "one line that says what the experiment is")
                 .value,
@@ -180,9 +186,9 @@ impl ScenarioFile {
             start: read_start(&root.table("start")),
             wheels_in_air: root.flag("wheels_in_air").is_some_and(|flag| flag.value),
             calibrated: root.flag("calibrated").is_some_and(|flag| flag.value),
-            commands: read_commands(root.tables("command"), mode, duration_s),
-            sonar_faults: read_sonar_faults(root.tables("sonar_fault"), duration_s),
-            wire_faults: read_wire_faults(root.tables("wire_fault"), duration_s),
+            commands: read_commands(root.tables("command", MOST_COMMANDS), mode, duration_s),
+            sonar_faults: read_sonar_faults(root.tables("sonar_fault", MOST_FAULTS), duration_s),
+            wire_faults: read_wire_faults(root.tables("wire_fault", MOST_FAULTS), duration_s),
             limits: read_limits(&root.table("limits"), ""),
             parameters: read_parameters(&root.table("parameters")),
             spread: read_spread(&root.table("spread")),

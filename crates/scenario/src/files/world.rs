@@ -26,6 +26,8 @@ use rumbo_plant::world::{Block, ShapeError, Wall, World};
 
 /// Coordinates of anything in a world.
 pub(crate) const PLACE: Allowed = Allowed::new(-50.0, 50.0, "m");
+/// Each ray of a sonar meets all of them.
+const MOST_SHAPES: usize = 1_000;
 const SIDE: Allowed = Allowed::new(0.01, 50.0, "m");
 const GROUPS: Allowed = Allowed::new(0.0, 20.0, "count");
 const AWAY: Allowed = Allowed::new(0.5, 15.0, "m");
@@ -76,8 +78,12 @@ impl WorldFile {
             .required_text("title", "one line that says what the world is")
             .value;
         let (arena, mut walls) = read_arena(&root.table("arena"));
-        walls.extend(root.tables("wall").into_iter().map(read_wall));
-        let boxes = root.tables("box").into_iter().map(read_box).collect();
+        walls.extend(root.tables("wall", MOST_SHAPES).into_iter().map(read_wall));
+        let boxes = root
+            .tables("box", MOST_SHAPES)
+            .into_iter()
+            .map(read_box)
+            .collect();
         let random = root
             .has("random")
             .then(|| read_random(&root.table("random")));

@@ -9,6 +9,8 @@ use std::path::Path;
 
 /// Length of the windows in which the original counts encoder edges, ms.
 pub(super) const WINDOW_MS: usize = 50;
+/// Longest run: the simulation is kept for each millisecond.
+const LONGEST_MS: usize = 3_600_000;
 const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;
 
 /// What a run tells about the motion.
@@ -99,6 +101,15 @@ impl DriveLog {
                 record: &record,
             };
             at_ms += fields.duration_ms(columns.dt)?;
+            if at_ms > LONGEST_MS {
+                return Err(IdentifyError::Read {
+                    path: path.into(),
+                    cause: format!(
+                        "lasts longer than {} s, the most that is compared; cut it into shorter runs",
+                        LONGEST_MS / 1_000
+                    ),
+                });
+            }
             rows.push(columns.row(&fields, at_ms)?);
             is_front = columns.is_front(&fields)?;
         }

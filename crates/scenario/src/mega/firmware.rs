@@ -2,6 +2,7 @@
 
 use super::CYCLES_PER_US;
 use super::pins::{Wires, board_signals, chip_pin};
+use crate::files::bounded::read_at_most;
 use crate::files::{FileError, RobotFile, ScenarioFile, Wiring};
 use rumbo_control::mode::ModeId;
 use rumbo_emulator::chip::Chip;
@@ -11,6 +12,7 @@ use rumbo_emulator::devices::ports::Pin;
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
 use rumbo_wire::{Decoder, FromRobot, Message, Received};
+use std::io;
 use std::path::Path;
 
 /// Rate of the Bluetooth module [baud].
@@ -18,6 +20,8 @@ pub const LINK_BAUD: f64 = 9600.0;
 /// Receiving and transmitting pins of the USARTs on the board.
 const RECEIVERS: [u8; 4] = [0, 19, 17, 15];
 const TRANSMITTERS: [u8; 4] = [1, 18, 16, 14];
+/// Longest file of an image, with all that a debugger wants to know [bytes].
+const LONGEST: u64 = 16 << 20;
 /// Our program says HELLO as soon as it runs; this long is waited for it [us].
 const BOOT_US: u64 = 600_000;
 /// A boot loader has handed over after this [cycles], or never will.
@@ -118,11 +122,24 @@ impl Firmware {
 /// # Errors
 /// The file is no program for this chip.
 pub fn read(path: &Path) -> Result<Image, FileError> {
+    let bytes = bytes(path)?;
     let shown = path.display();
-    let bytes = std::fs::read(path).map_err(|error| {
-        FileError::Setting(format!("firmware {shown}: cannot be read ({error}); give the .elf or .hex that the compiler made"))
-    })?;
     Image::parse(&bytes).map_err(|error| FileError::Setting(format!("firmware {shown}: {error}")))
+}
+
+/// The bytes of an image's file.
+///
+/// # Errors
+/// No file of a size that an image can have.
+pub fn bytes(path: &Path) -> Result<Vec<u8>, FileError> {
+    let read = std::fs::metadata(path).and_then(|about| match about.is_file() {
+        true => read_at_most(path, LONGEST),
+        false => Err(io::Error::other("no file")),
+    });
+    read.map_err(|error| {
+        let shown = path.display();
+        FileError::Setting(format!("firmware {shown}: cannot be read ({error}); give the .elf or .hex that the compiler made"))
+    })
 }
 
 fn find<'a>(robot: &'a RobotFile, wiring: &str) -> Result<&'a Wiring, FileError> {

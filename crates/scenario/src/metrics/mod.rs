@@ -25,7 +25,8 @@ use std::collections::BTreeMap;
 /// Metrics by name.
 pub type Metrics = BTreeMap<String, f64>;
 
-/// All metrics of a run.
+/// All metrics of a run. Not a number where what is measured did not happen; of a robot that was never driven, those of its mode are
+/// missing.
 pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
     let mut metrics = Metrics::new();
     let duration_s = setup.scenario.duration_s;
@@ -37,27 +38,37 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
         .filter(|heard| matches!(heard.what, FromRobot::Telemetry(_)));
     metrics.insert("telemetry_hz".into(), frames.count() as f64 / duration_s);
     metrics.insert("control_period_s".into(), sim.control_period_s());
-    match setup.scenario.mode {
-        ModeId::FrontDistance => step::distance_steps(setup, sim, trace, &mut metrics),
-        ModeId::WheelSpeed => step::speed_steps(setup, trace, &mut metrics),
-        ModeId::Manual => {
-            path::movement(setup, trace, &mut metrics);
-            start::dead_zones(trace, &mut metrics);
-            curve::curve(setup, trace, &mut metrics);
-        }
-        ModeId::WallHold | ModeId::WallFollow => wall::following(setup, sim, trace, &mut metrics),
-        ModeId::FrontAlign => align::aligning(setup, sim, trace, &mut metrics),
-        ModeId::Mission => {
-            journey::journey(setup, sim.worst_contact_m_s(), trace, &mut metrics);
-            mission::mission(setup, sim.worst_contact_m_s(), trace, &mut metrics);
-            lane::lane(setup, trace, &mut metrics);
-        }
-        ModeId::Waypoints => route::route(setup, trace, &mut metrics),
-        ModeId::StraightLine => straight::drift(trace, &mut metrics),
+    if trace.drove() {
+        of_mode(setup, sim, trace, &mut metrics);
     }
-    // A billionth of any unit is rounding, not behaviour.
     for value in metrics.values_mut() {
-        *value = (*value * 1e9).round() / 1e9 + 0.0;
+        *value = match value.is_finite() {
+            // A billionth of any unit is rounding, not behaviour.
+            true => (*value * 1e9).round() / 1e9 + 0.0,
+            // Nothing to measure: no wall ahead, for instance.
+            false => f64::NAN,
+        };
     }
     metrics
+}
+
+fn of_mode(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut Metrics) {
+    match setup.scenario.mode {
+        ModeId::FrontDistance => step::distance_steps(setup, sim, trace, metrics),
+        ModeId::WheelSpeed => step::speed_steps(setup, trace, metrics),
+        ModeId::Manual => {
+            path::movement(setup, trace, metrics);
+            start::dead_zones(trace, metrics);
+            curve::curve(setup, trace, metrics);
+        }
+        ModeId::WallHold | ModeId::WallFollow => wall::following(setup, sim, trace, metrics),
+        ModeId::FrontAlign => align::aligning(setup, sim, trace, metrics),
+        ModeId::Mission => {
+            journey::journey(setup, sim.worst_contact_m_s(), trace, metrics);
+            mission::mission(setup, sim.worst_contact_m_s(), trace, metrics);
+            lane::lane(setup, trace, metrics);
+        }
+        ModeId::Waypoints => route::route(setup, trace, metrics),
+        ModeId::StraightLine => straight::drift(trace, metrics),
+    }
 }

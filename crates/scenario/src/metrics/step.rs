@@ -88,6 +88,18 @@ pub(super) struct Response {
     pub(super) ripple: f64,
 }
 
+impl Response {
+    /// Of a signal that is none where the step begins, such as the distance to a wall that is not there.
+    const NONE: Self = Self {
+        settling_s: f64::NAN,
+        rise_s: f64::NAN,
+        overshoot: f64::NAN,
+        steady_error: f64::NAN,
+        rms: f64::NAN,
+        ripple: f64::NAN,
+    };
+}
+
 /// Measures `signal` over the samples of a step, from `start` to `reference`. `NaN` where it never gets there.
 fn response(
     samples: &[Sample],
@@ -97,6 +109,9 @@ fn response(
     band: f64,
     signal: impl Fn(&Sample) -> f64,
 ) -> Response {
+    if !start.is_finite() {
+        return Response::NONE;
+    }
     let direction = if reference < start { -1.0 } else { 1.0 };
     let span = (reference - start).abs();
     let progress = |sample: &Sample| direction * (signal(sample) - start);
@@ -262,6 +277,24 @@ mod tests {
             .settling_s
             .is_nan()
         );
+    }
+
+    #[test]
+    fn where_there_is_no_wall_nothing_has_settled() {
+        let samples = samples(|_| f64::INFINITY);
+        let band = DISTANCE_BAND * f64::INFINITY;
+        let response = response(&samples, 0.0, f64::INFINITY, 0.3, band, |sample| {
+            sample.range_m[2]
+        });
+        let figures = [
+            response.settling_s,
+            response.rise_s,
+            response.overshoot,
+            response.steady_error,
+            response.rms,
+            response.ripple,
+        ];
+        assert!(figures.iter().all(|figure| figure.is_nan()), "{figures:?}");
     }
 
     #[test]

@@ -11,12 +11,16 @@
 //! | `/scene` | `rumbo.Scene` | what the dashboard draws around the robot |
 //! | `/link/from_robot`, `/link/to_robot` | `rumbo.Bytes` | the raw bytes of the link, base64 |
 //! | `/console` | `rumbo.Console` | what the USARTs of an emulated chip sent, and what a person typed to them, base64 |
+//! | `/digest` | `rumbo.Digest` | the checksum of each metadata record |
 //!
 //! Messages are JSON with JSON schemas, times are the run's own, from 0. A metadata record `manifest` says what ran
 //! ([`Manifest`]); the files it was made of are attached. Chunks are compressed and closed every
 //! 0.4 s (`recorder::FLUSH`), so that a log whose writer was killed is readable up to there.
 
+mod bound;
+mod digest;
 mod headless;
+mod intake;
 mod manifest;
 pub(crate) mod messages;
 mod pieces;

@@ -17,10 +17,11 @@ pub(crate) enum Topic {
     FromRobot,
     ToRobot,
     Console,
+    Digest,
 }
 
 impl Topic {
-    pub(crate) const ALL: [Self; 11] = [
+    pub(crate) const ALL: [Self; 12] = [
         Self::Telemetry,
         Self::State,
         Self::Parameters,
@@ -32,6 +33,7 @@ impl Topic {
         Self::FromRobot,
         Self::ToRobot,
         Self::Console,
+        Self::Digest,
     ];
 
     /// Its name in the log.
@@ -48,6 +50,7 @@ impl Topic {
             Self::FromRobot => "/link/from_robot",
             Self::ToRobot => "/link/to_robot",
             Self::Console => "/console",
+            Self::Digest => "/digest",
         }
     }
 
@@ -69,6 +72,7 @@ impl Topic {
             Self::Scene => ("rumbo.Scene", object("rumbo.Scene", json!({}))),
             Self::FromRobot | Self::ToRobot => ("rumbo.Bytes", bytes()),
             Self::Console => ("rumbo.Console", console()),
+            Self::Digest => ("rumbo.Digest", digest()),
         }
     }
 }
@@ -189,6 +193,13 @@ fn bytes() -> Value {
     object(
         "rumbo.Bytes",
         json!({ "data": { "type": "string", "contentEncoding": "base64" } }),
+    )
+}
+
+fn digest() -> Value {
+    object(
+        "rumbo.Digest",
+        json!({ "name": text(), "crc32": { "type": "integer" } }),
     )
 }
 

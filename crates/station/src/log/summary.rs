@@ -1,5 +1,6 @@
 //! What a log is, without reading it: from its index, or, where its writer was stopped, from the heads of its records.
 
+use super::digest::MANIFEST;
 use super::{LogError, Manifest};
 use mcap::records::{MetadataIndex, Record, op};
 use mcap::sans_io::summary_reader::{SummaryReadEvent, SummaryReader};
@@ -127,7 +128,7 @@ impl Summary {
         let mut body = vec![0; length as usize];
         file.read_exact(&mut body)?;
         if let Ok(Record::Metadata(metadata)) = parse_record(op::METADATA, &body)
-            && metadata.name == "manifest"
+            && metadata.name == MANIFEST
         {
             self.manifest = Manifest::from_metadata(&metadata.metadata);
         }

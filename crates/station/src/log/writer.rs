@@ -1,5 +1,6 @@
 //! Writes a log: manifest and files first, then messages as they come.
 
+use super::digest::{Digest, MANIFEST, OUTCOME};
 use super::messages::Sink;
 use super::schema::Topic;
 use super::{Manifest, Outcome};
@@ -30,9 +31,11 @@ impl<W: Write + Seek> LogWriter<W> {
             .profile("")
             .library(concat!("rumbo ", env!("CARGO_PKG_VERSION")))
             .create(into)?;
+        let metadata = manifest.to_metadata();
+        let digest = Digest::of(MANIFEST, &metadata);
         log.write_metadata(&Metadata {
-            name: "manifest".into(),
-            metadata: manifest.to_metadata(),
+            name: MANIFEST.into(),
+            metadata,
         })?;
         for (name, text) in &manifest.files {
             log.attach(&Attachment {
@@ -50,19 +53,30 @@ impl<W: Write + Seek> LogWriter<W> {
             channels[topic as usize] =
                 log.add_channel(schema, topic.name(), "json", &BTreeMap::new())?;
         }
-        Ok(Self {
+        let mut log = Self {
             log,
             channels,
             sequences: [0; Topic::ALL.len()],
+        };
+        log.digest(0, &digest)?;
+        Ok(log)
+    }
+
+    /// How the run ended, and when \[us\].
+    pub(super) fn outcome(&mut self, t_us: u64, outcome: &Outcome) -> McapResult<()> {
+        let metadata = outcome.to_metadata();
+        self.digest(t_us, &Digest::of(OUTCOME, &metadata))?;
+        self.log.write_metadata(&Metadata {
+            name: OUTCOME.into(),
+            metadata,
         })
     }
 
-    /// How the run ended.
-    pub(super) fn outcome(&mut self, outcome: &Outcome) -> McapResult<()> {
-        self.log.write_metadata(&Metadata {
-            name: "outcome".into(),
-            metadata: outcome.to_metadata(),
-        })
+    fn digest(&mut self, t_us: u64, digest: &Digest) -> McapResult<()> {
+        match serde_json::to_vec(digest) {
+            Ok(message) => self.put(Topic::Digest, t_us, &message),
+            Err(_) => Ok(()),
+        }
     }
 
     /// Closes the chunk and hands everything to the system.

@@ -107,6 +107,8 @@ impl Drop for Port {
     fn drop(&mut self) {
         // What was given to be sent, such as the last STOP, is sent before the thread ends.
         drop(self.outgoing.take());
+        // A reader with more than anybody takes does not wait for us.
+        self.incoming = std::sync::mpsc::channel().1;
         self.shared.ended.store(true, Ordering::SeqCst);
         let ended = self.thread.take().map(JoinHandle::join);
         drop(ended);
@@ -139,6 +141,8 @@ impl Target for Port {
     fn receive(&mut self, into: &mut Vec<u8>) {
         self.incoming
             .try_iter()
+            // A flood is taken in parts, so that orders are obeyed in between.
+            .take(WAITING)
             .for_each(|bytes| into.extend(bytes));
     }
 

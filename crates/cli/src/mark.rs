@@ -1,0 +1,168 @@
+//! What shows that Rumbo wrote a file for the same run or report, so that it may write it again.
+//!
+//! | file | its mark |
+//! |---|---|
+//! | log | the manifest's scenario and seed |
+//! | result | its first keys: scenario, seed, and the scenario's path if it has one |
+//! | table | the names of its columns |
+//! | SVG, HTML, waveform | a comment, `rumbo compare 5a1c09e2`: the command and a checksum of what it was about |
+//! | PNG | the same as a text chunk |
+//! | profile | nothing but chains of functions with their cycles |
+
+use rumbo_station::log::{Kind, Summary};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// A mark stands within so many bytes of a file's beginning.
+const BEGINNING: u64 = 4_096;
+/// How an image begins, up to the end of its header.
+const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+const PNG_HEADER: usize = 33;
+
+/// What a file of Rumbo is known by.
+#[derive(Clone, Debug)]
+pub(crate) enum Mark {
+    /// This text at its beginning.
+    Text(String),
+    /// The log of a run.
+    Log { scenario: String, seed: u64 },
+    /// Cycles by function.
+    Profile,
+}
+
+impl Mark {
+    /// A table that begins with the names of its columns.
+    pub(crate) fn table(text: &str) -> Self {
+        let header = text.split_inclusive('\n').next().unwrap_or_default();
+        Self::Text(header.to_owned())
+    }
+
+    /// Whether a file carries it.
+    pub(crate) fn is_on(&self, path: &Path) -> bool {
+        match self {
+            Self::Log { scenario, seed } => Summary::read(path)
+                .ok()
+                .and_then(|log| log.manifest)
+                .is_some_and(|log| {
+                    log.kind == Kind::Run
+                        && log.scenario.as_ref() == Some(scenario)
+                        && log.seed == Some(*seed)
+                }),
+            Self::Text(text) => beginning(path).is_some_and(|beginning| beginning.contains(text)),
+            Self::Profile => beginning(path).is_some_and(|beginning| is_profile(&beginning)),
+        }
+    }
+}
+
+/// The mark that is put on a file whose contents have none: what made it, and a checksum of what it is about.
+#[derive(Clone, Debug)]
+pub(crate) struct Stamp(pub(crate) String);
+
+impl Stamp {
+    /// What a command makes of these.
+    pub(crate) fn of(command: &str, about: &[String]) -> Self {
+        let sum = crc32(about.join("\n").as_bytes());
+        Self(format!("rumbo {command} {sum:08x}"))
+    }
+
+    /// What a file that has it is known by.
+    pub(crate) fn mark(&self) -> Mark {
+        Mark::Text(self.0.clone())
+    }
+
+    /// A PNG, SVG or HTML file with it.
+    pub(crate) fn put_on(&self, file: impl Into<Vec<u8>>) -> Vec<u8> {
+        let (file, text) = (file.into(), &self.0);
+        if file.starts_with(PNG) && file.len() >= PNG_HEADER {
+            let (header, rest) = file.split_at(PNG_HEADER);
+            return [header, &text_chunk(text), rest].concat();
+        }
+        let comment = format!("<!-- {text} -->\n");
+        // Nothing but the document's type comes before a comment in HTML.
+        match file.iter().position(|byte| *byte == b'\n') {
+            Some(end) if file.starts_with(b"<!") => {
+                let (first, rest) = file.split_at(end + 1);
+                [first, comment.as_bytes(), rest].concat()
+            }
+            _ => [comment.as_bytes(), &file].concat(),
+        }
+    }
+}
+
+fn beginning(path: &Path) -> Option<String> {
+    let mut bytes = Vec::new();
+    let file = File::open(path).ok()?;
+    file.take(BEGINNING).read_to_end(&mut bytes).ok()?;
+    Some(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// `main;tick;__mulsf3 1234` in every line that is whole.
+fn is_profile(text: &str) -> bool {
+    let lines = || {
+        text.split_inclusive('\n')
+            .filter(|line| line.ends_with('\n'))
+    };
+    let is_chain = |line: &str| {
+        let parts = line.trim_end().rsplit_once(' ');
+        parts.is_some_and(|(chain, cycles)| !chain.is_empty() && cycles.parse::<u64>().is_ok())
+    };
+    lines().next().is_some() && lines().all(is_chain)
+}
+
+/// A `tEXt` chunk (PNG specification, 11.3.4.3).
+fn text_chunk(text: &str) -> Vec<u8> {
+    let body = [b"tEXtSoftware\0", text.as_bytes()].concat();
+    let length = (body.len() - 4) as u32;
+    let sum = crc32(&body);
+    [&length.to_be_bytes(), &body[..], &sum.to_be_bytes()].concat()
+}
+
+/// CRC-32 as PNG, MCAP and zip have it.
+pub(crate) fn crc32(bytes: &[u8]) -> u32 {
+    crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stamped_file_is_known_again_and_stays_what_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x");
+        let line = rumbo_scenario::chart::Curve::Given {
+            name: "a",
+            points: vec![(0.0, 0.0), (1.0, 1.0)],
+        };
+        let chart = rumbo_scenario::chart::over_time("t", "cm", vec![line]);
+        let charts = [chart];
+        let png = rumbo_scenario::chart::png(&charts, 1, (300, 200)).unwrap();
+        let svg = rumbo_scenario::chart::svg(&charts, 1, (300, 200)).unwrap();
+        let html = b"<!doctype html>\n<html lang=\"en\">\n".to_vec();
+        for file in [png.clone(), svg.into_bytes(), html] {
+            let stamp = |about: &str| Stamp::of("compare", &["a".into(), about.into()]);
+            std::fs::write(&path, stamp("b").put_on(file.clone())).unwrap();
+            assert!(stamp("b").mark().is_on(&path));
+            assert!(!stamp("c").mark().is_on(&path));
+            std::fs::write(&path, file).unwrap();
+            assert!(!stamp("b").mark().is_on(&path));
+        }
+        let stamp = Stamp("rumbo x 01234567".into());
+        let decoder = png::Decoder::new(std::io::Cursor::new(stamp.put_on(png)));
+        let reader = decoder.read_info().unwrap();
+        let chunk = &reader.info().uncompressed_latin1_text[0];
+        assert_eq!(
+            (chunk.keyword.as_str(), &chunk.text),
+            ("Software", &stamp.0)
+        );
+    }
+
+    #[test]
+    fn a_profile_is_told_from_any_other_text() {
+        assert!(is_profile("(unknown) 12\nmain;tick 4\nmain;ti"));
+        for text in ["", "main;tick 4", "t_s,x_m\n0,1\n", "all 12 of them\n"] {
+            assert!(!is_profile(text), "{text}");
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! The files that a run leaves in a folder that was asked for: its result, the true signals, the log, and what an emulated chip's USARTs said.
+
+use crate::failure::Failure;
+use crate::mark::Mark;
+use crate::place::{self, Guard};
+use crate::run_log::Source;
+use rumbo_scenario::files::{ScenarioFile, Setup};
+use rumbo_scenario::run::RunResult;
+use rumbo_scenario::trace::Trace;
+use rumbo_station::readable;
+use std::path::{Path, PathBuf};
+
+/// USARTs of the emulated chip.
+const USARTS: u8 = 4;
+
+/// Where the files of a run are.
+pub(crate) struct Results {
+    folder: PathBuf,
+    stem: String,
+}
+
+impl Results {
+    /// Of a scenario with a seed.
+    pub(crate) fn of(folder: &Path, scenario: &str, seed: u64) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            stem: format!("{scenario}-{seed}"),
+        }
+    }
+
+    /// The result: what the run is known by.
+    pub(crate) fn json(&self) -> PathBuf {
+        self.file(".json")
+    }
+
+    fn file(&self, ending: &str) -> PathBuf {
+        self.folder.join(format!("{}{ending}", self.stem))
+    }
+
+    fn usart(&self, usart: u8) -> PathBuf {
+        self.file(&format!("-usart{usart}.txt"))
+    }
+
+    /// Whether all of them may be written.
+    pub(crate) fn check(
+        &self,
+        guard: &Guard,
+        scenario: &ScenarioFile,
+        seed: u64,
+    ) -> Result<(), Failure> {
+        let result = mark(scenario, seed)?;
+        let log = Mark::Log {
+            scenario: scenario.name.clone(),
+            seed,
+        };
+        guard.check(&self.json(), &result)?;
+        guard.check(&self.file(".mcap"), &log)?;
+        guard.check(
+            &self.file(".truth.csv"),
+            &Mark::table(&Trace::default().csv()),
+        )?;
+        // What a program says looks like anything: it belongs to the result beside it.
+        let beside = result.is_on(&self.json());
+        (0..USARTS)
+            .filter(|_| !beside)
+            .try_for_each(|usart| guard.check(&self.usart(usart), &result))
+    }
+
+    /// Writes all of them.
+    pub(crate) fn write(
+        &self,
+        source: &Source<'_>,
+        setup: &Setup,
+        result: &RunResult,
+    ) -> Result<(), Failure> {
+        let text = serde_json::to_string(result).map_err(Failure::input)?;
+        place::write(&self.json(), text + "\n")?;
+        for usart in 0..USARTS {
+            let said = result.trace.console(usart);
+            if !said.is_empty() {
+                place::write(&self.usart(usart), readable(&said))?;
+            }
+        }
+        place::write(&self.file(".truth.csv"), result.trace.csv())?;
+        source.write(&self.file(".mcap"), setup, result)
+    }
+}
+
+/// How the result of a run begins.
+fn mark(scenario: &ScenarioFile, seed: u64) -> Result<Mark, Failure> {
+    let text = |value: &String| serde_json::to_string(value).map_err(Failure::input);
+    let next = match &scenario.path {
+        Some(path) => format!("\"path\":{},", text(path)?),
+        None => "\"pass\":".into(),
+    };
+    let name = text(&scenario.name)?;
+    Ok(Mark::Text(format!(
+        "{{\"scenario\":{name},\"seed\":{seed},{next}"
+    )))
+}

@@ -1,0 +1,150 @@
+//! Nothing is forged: what files and robots say is shown, and neither a terminal nor a spreadsheet obeys it.
+
+use crate::support::{stderr, stdout};
+use crate::{rumbo_in, scenario, status};
+use rumbo_station::log::{Burst, Log, Manifest, Outcome, Run, record_run};
+
+/// Whether a terminal would obey something in a text.
+fn obeyed(text: &str) -> bool {
+    text.chars()
+        .any(|c| (c.is_control() && c != '\n') || c == '\u{202e}')
+}
+
+/// A result that is none, hidden in a title: an end of a line, colours, a line deleted, letters turned round.
+const FORGED: &str = "x\\nmode5: passes\\u001b[2K\\u001b[31m\\u009b1A\\u202e\\u007f";
+
+#[test]
+fn a_title_neither_begins_a_line_nor_controls_the_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    std::fs::write(folder.join("task.toml"), scenario(FORGED, 0.3)).unwrap();
+    std::fs::write(
+        folder.join("wrong.toml"),
+        scenario(FORGED, 0.3) + "\"a\\nerror: b\\u001b[2K\" = 1\n",
+    )
+    .unwrap();
+    let commands: [&[&str]; 5] = [
+        &["run", "task.toml", "--out", "o"],
+        &["run", "task.toml", "--json", "--no-record"],
+        &["run", "wrong.toml", "--no-record"],
+        &["run", "no\u{1b}[2K\nerror: such.toml"],
+        &["compare", "o/task-1.mcap", "o/task-1.mcap"],
+    ];
+    for command in commands {
+        let output = rumbo_in(folder, command);
+        let said = stdout(&output) + &stderr(&output);
+        assert!(!obeyed(&said), "{said:?}");
+        assert!(!said.contains("\nmode5: passes"), "{said:?}");
+        assert!(
+            !said.contains("\nerror: b") && !said.contains("\nerror: such"),
+            "{said:?}"
+        );
+    }
+    let json = rumbo_in(folder, &["run", "task.toml", "--json", "--no-record"]);
+    let result: serde_json::Value = serde_json::from_str(&stdout(&json)).unwrap();
+    assert_eq!(result["scenario"], "task");
+}
+
+#[test]
+fn what_a_log_says_is_shown_and_not_obeyed() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let hostile = "\u{1b}]0;owned\u{7}\n/tmp: removed\u{9b}2J";
+    let manifest = Manifest {
+        program: hostile.into(),
+        version: hostile.into(),
+        scenario: Some(hostile.into()),
+        robot: Some("memoria".into()),
+        world: Some("open".into()),
+        seed: Some(1),
+        step_us: 10_000,
+        image: Some("00000000".into()),
+        files: ["scenario", "robot", "world"]
+            .map(|name| (name.into(), hostile.into()))
+            .into(),
+        ..Manifest::default()
+    };
+    let link = [Burst {
+        t_us: 1_000,
+        to_robot: false,
+        bytes: b"=cmd|' /C calc'!A0\r\n".to_vec(),
+    }];
+    let run = Run {
+        scene: None,
+        parameters: None,
+        truths: &[(10_000, rumbo_station::Truth::default())],
+        link: &link,
+        said: &[],
+        told: &[],
+        outcome: Outcome {
+            metrics: [(hostile.to_owned(), 1.0)].into(),
+            failures: vec![hostile.into()],
+            pass: false,
+        },
+    };
+    let logs = folder.join("logs");
+    std::fs::create_dir(&logs).unwrap();
+    record_run(&logs.join("x.mcap"), &manifest, run).unwrap();
+    assert!(Log::read(&logs.join("x.mcap")).is_ok());
+    for command in [
+        &["list", "logs"][..],
+        &["list", "logs", "--json"],
+        &["compare", "logs/x.mcap", "logs/x.mcap"],
+        &["compare", "logs/x.mcap", "logs/x.mcap", "--json"],
+        &["rerun", "logs/x.mcap"],
+        &["export", "logs/x.mcap", "--format", "csv"],
+    ] {
+        let output = rumbo_in(folder, command);
+        let said = stdout(&output) + &stderr(&output);
+        assert!(!said.is_empty() && !obeyed(&said), "{said:?}");
+        assert!(!said.contains("\n/tmp: removed"), "{said:?}");
+    }
+}
+
+#[test]
+fn words_of_a_robot_are_no_formulas_in_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // A terminal's capture: what was typed becomes an event.
+    let manifest = Manifest::default();
+    let lines = ["PID A 1 0 0\n", "0, 10, 10, 60, 5, 90, 90\n"];
+    let link: Vec<Burst> = (1..)
+        .zip(lines)
+        .map(|(t, line)| Burst {
+            t_us: 50_000 * t,
+            to_robot: t == 1,
+            bytes: line.into(),
+        })
+        .collect();
+    rumbo_station::log::record_text(&folder.join("x.mcap"), &manifest, &link).unwrap();
+    let output = rumbo_in(folder, &["export", "x.mcap", "--format", "csv"]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    let events = std::fs::read_to_string(folder.join("x.events.csv")).unwrap();
+    for line in events.lines().skip(1) {
+        let cell = line.splitn(3, ',').nth(2).unwrap();
+        let text = cell.trim_start_matches('"');
+        assert!(!text.starts_with(['=', '+', '-', '@']), "{line}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_printed_command_is_what_a_shell_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let name = "it's; $(touch owned) `x`.hex";
+    std::fs::write(folder.join(name), ":02000000FFCF30\n:00000001FF\n").unwrap();
+    let output = rumbo_in(folder, &["flash", "/dev/null", "--print", "--image", name]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    let printed = stdout(&output);
+    let write = printed.lines().last().unwrap();
+    // What a shell makes of it, with another program in avrdude's place.
+    let words = std::process::Command::new("sh")
+        .current_dir(folder)
+        .args(["-c", &write.replacen("avrdude", "printf '%s\\n'", 1)])
+        .output()
+        .unwrap();
+    let last = stdout(&words).lines().last().unwrap().to_owned();
+    assert_eq!(last, format!("flash:w:{name}:i"));
+    assert!(!folder.join("owned").exists());
+}
