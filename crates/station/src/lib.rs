@@ -12,6 +12,7 @@ mod catalogue;
 pub mod client;
 pub mod commands;
 mod console;
+mod door;
 mod errand;
 pub mod fault;
 mod guard;
