@@ -45,6 +45,8 @@ pub use bridge::{BRIDGE_PORT, Bridge};
 pub use catalogue::{ModeEntry, Reference, ReferenceKind, modes};
 pub use console::readable;
 pub use guest::{Calibration, Finding, Findings, GuestLink};
+#[cfg(feature = "fuzzing")]
+pub use orders::commands_of;
 pub use row::Row;
 pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, ServeError, serve, serve_log, serve_with};
 pub use session::Extras;
