@@ -6,7 +6,7 @@
 
 const STORED = 'rumbo.key';
 /** An answer that takes longer is none [ms]. */
-const ANSWER_MS = 1_000;
+const ANSWER_MS = 5_000;
 
 /** The token in the address, until the station has answered. */
 let token = location.search;
@@ -14,14 +14,6 @@ let token = location.search;
 let refused = false;
 /** For a browser that stores nothing: until the page is left. @type {string | null} */
 let own = null;
-
-function stored() {
-  try {
-    return localStorage.getItem(STORED) ?? own;
-  } catch {
-    return own;
-  }
-}
 
 /** @param {string} key */
 function store(key) {
@@ -31,6 +23,17 @@ function store(key) {
   } catch {
     // The page has it.
   }
+  return key;
+}
+
+/** The key, or something random: with it a page that missed the answer may show the token again. */
+function shown() {
+  try {
+    own = localStorage.getItem(STORED) ?? own;
+  } catch {
+    // The page has it, or there is none.
+  }
+  return own ?? store(Array.from(crypto.getRandomValues(new Uint8Array(32)), (byte) => byte.toString(16).padStart(2, '0')).join(''));
 }
 
 /**
@@ -38,22 +41,16 @@ function store(key) {
  * @returns {Promise<{key: string} | {key: null, why: 'closed' | 'locked' | 'used'}>}
  */
 export async function askForKey() {
-  const had = stored();
   try {
-    const answer = await fetch(`/key${token}`, {
-      method: 'POST',
-      headers: had === null ? {} : { Authorization: `Bearer ${had}` },
-      signal: AbortSignal.timeout(ANSWER_MS),
-    });
+    const headers = { Authorization: `Bearer ${shown()}` };
+    const answer = await fetch(`/key${token}`, { method: 'POST', headers, signal: AbortSignal.timeout(ANSWER_MS) });
     const key = await answer.text();
     if (token !== '') {
       refused = !answer.ok;
       token = '';
       history.replaceState(null, '', location.pathname);
     }
-    if (!answer.ok) return { key: null, why: refused ? 'used' : 'locked' };
-    if (key !== had) store(key);
-    return { key };
+    return answer.ok ? { key: store(key) } : { key: null, why: refused ? 'used' : 'locked' };
   } catch {
     return { key: null, why: 'closed' };
   }

@@ -71,3 +71,24 @@ test('the file that the program opens leads the browser to the page', async () =
     server.kill();
   }
 });
+
+test('a page that misses the answer for its token asks again and gets its key', async () => {
+  const { server, url } = await start(['lab', '--out', folder()]);
+  const context = await dashboard.browser.newContext();
+  try {
+    const page = await context.newPage();
+    let missed = false;
+    await page.route(({ pathname }) => pathname === '/key', async (route) => {
+      if (missed) return route.continue();
+      missed = true;
+      await route.fetch();
+      return route.abort();
+    });
+    await page.goto(url);
+    await page.waitForSelector('#connection.good');
+    assert.ok(missed);
+  } finally {
+    await context.close();
+    server.kill();
+  }
+});

@@ -128,7 +128,7 @@ impl Lab {
     fn ask(&self, method: &str, path: &str) -> Result<String, String> {
         let host = self.host()?;
         let request = format!(
-            "{method} {path} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nConnection: close\r\n\r\n"
+            "{method} {path} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nAuthorization: Bearer xtask\r\nConnection: close\r\n\r\n"
         );
         let mut stream = self.connect()?;
         let mut bytes = Vec::new();

@@ -12,7 +12,7 @@
 
 use axum::http::{HeaderMap, header};
 use std::net::{IpAddr, SocketAddr};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::OnceLock;
 use std::sync::mpsc::Sender;
 use subtle::ConstantTimeEq;
 
@@ -78,8 +78,8 @@ pub(crate) struct Guard {
     origins: Vec<String>,
     controller: Access,
     viewer: Access,
-    /// The controller's token has been used.
-    token_used: AtomicBool,
+    /// What the page showed that used the controller's token: should it not get the answer, it asks again.
+    used_by: OnceLock<String>,
     /// Gets a word then.
     opened: Sender<()>,
 }
@@ -131,7 +131,7 @@ impl Guard {
             hosts,
             controller: Access::new(Role::Controller)?,
             viewer: Access::new(Role::Viewer)?,
-            token_used: AtomicBool::new(false),
+            used_by: OnceLock::new(),
             opened,
         })
     }
@@ -187,16 +187,17 @@ impl Guard {
         access.map(|access| access.role).ok_or(Denied::Key)
     }
 
-    /// The key for the token in a query, or the one that the page has: the one that allows more.
-    pub(crate) fn key(&self, has: Option<&str>, query: &str) -> Result<&str, Denied> {
-        let has = has.map_or(Err(Denied::Key), |key| self.role_of(key));
+    /// The key for the token in a query, or the one that the page shows: the one that allows more. A page without a key
+    /// shows something random.
+    pub(crate) fn key(&self, shown: &str, query: &str) -> Result<&str, Denied> {
+        let has = self.role_of(shown);
         let asked = self.accesses().into_iter().find_map(|access| {
             let token = query.strip_prefix(access.parameter())?;
             Some((access, token.strip_prefix('=')?))
         });
         let role = match asked {
             Some((access, token)) if has.map_or(true, |has| has < access.role) => {
-                self.redeem(access, token)?
+                self.redeem(access, token, shown)?
             }
             _ => has?,
         };
@@ -207,12 +208,13 @@ impl Guard {
         Ok(key)
     }
 
-    fn redeem(&self, access: &Access, token: &str) -> Result<Role, Denied> {
+    fn redeem(&self, access: &Access, token: &str, shown: &str) -> Result<Role, Denied> {
         if !access.token.matches(token) {
             return Err(Denied::Token);
         }
         if access.role == Role::Controller {
-            if self.token_used.swap(true, Ordering::SeqCst) {
+            let used_by = self.used_by.get_or_init(|| shown.to_owned());
+            if shown.is_empty() || !bool::from(used_by.as_bytes().ct_eq(shown.as_bytes())) {
                 return Err(Denied::Token);
             }
             // Nobody may wait for it.
@@ -329,16 +331,19 @@ mod tests {
     fn the_token_opens_once_and_the_key_from_then_on() {
         let guard = guard();
         let url = guard.url();
-        assert_eq!(guard.key(None, "token=0000"), Err(Denied::Token));
-        let key = guard.key(None, query(&url)).unwrap();
-        assert_eq!(guard.key(None, query(&url)), Err(Denied::Token));
+        assert_eq!(guard.key("mine", "token=0000"), Err(Denied::Token));
+        let key = guard.key("mine", query(&url)).unwrap();
+        for another in ["", "min", "yours"] {
+            assert_eq!(guard.key(another, query(&url)), Err(Denied::Token));
+        }
         assert_eq!(guard.role_of(key), Ok(Role::Controller));
-        // The browser that has the key may open the address again.
-        assert_eq!(guard.key(Some(key), query(&url)), Ok(key));
-        assert_eq!(guard.key(Some(key), ""), Ok(key));
-        assert_eq!(guard.key(Some("0"), ""), Err(Denied::Key));
-        assert_eq!(guard.key(None, ""), Err(Denied::Key));
-        assert_eq!(guard.role_of(""), Err(Denied::Key));
+        // The browser that has the key may open the address again, and so may the page that missed the answer.
+        assert_eq!(guard.key(key, query(&url)), Ok(key));
+        assert_eq!(guard.key("mine", query(&url)), Ok(key));
+        assert_eq!(guard.key(key, ""), Ok(key));
+        for none in ["mine", "0", ""] {
+            assert_eq!(guard.key(none, ""), Err(Denied::Key));
+        }
     }
 
     #[test]
@@ -347,9 +352,9 @@ mod tests {
         let url = guard.viewers_url();
         let (_, token) = url.rsplit_once('=').unwrap();
         let as_controller = format!("token={token}");
-        assert_eq!(guard.key(None, &as_controller), Err(Denied::Token));
-        for _ in 0..3 {
-            let key = guard.key(None, query(&url)).unwrap();
+        assert_eq!(guard.key("mine", &as_controller), Err(Denied::Token));
+        for page in ["a", "b", "c"] {
+            let key = guard.key(page, query(&url)).unwrap();
             assert_eq!(guard.role_of(key), Ok(Role::Viewer));
         }
     }
@@ -358,10 +363,10 @@ mod tests {
     fn of_two_addresses_the_one_that_allows_more_counts() {
         let guard = guard();
         let (url, viewers_url) = (guard.url(), guard.viewers_url());
-        let watching = guard.key(None, query(&viewers_url)).unwrap();
-        let driving = guard.key(Some(watching), query(&url)).unwrap();
+        let watching = guard.key("mine", query(&viewers_url)).unwrap();
+        let driving = guard.key(watching, query(&url)).unwrap();
         assert_eq!(guard.role_of(driving), Ok(Role::Controller));
-        assert_eq!(guard.key(Some(driving), query(&viewers_url)), Ok(driving));
+        assert_eq!(guard.key(driving, query(&viewers_url)), Ok(driving));
     }
 
     #[test]

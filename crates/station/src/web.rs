@@ -70,17 +70,17 @@ async fn admit(State(guard): State<Arc<Guard>>, request: Request, next: Next) ->
     response
 }
 
-/// A page asks for its key, with the one that it has, or the token of its address, or both.
+/// A page asks for its key: with the one that it has, or something random, and the token of its address, if any.
 async fn key(
     Extension(guard): Extension<Arc<Guard>>,
     uri: Uri,
     headers: HeaderMap,
 ) -> Result<String, Denied> {
     guard.check_origin(&headers)?;
-    let has = headers.get(header::AUTHORIZATION);
-    let has = has.and_then(|value| value.to_str().ok()?.strip_prefix("Bearer "));
+    let shown = headers.get(header::AUTHORIZATION);
+    let shown = shown.and_then(|value| value.to_str().ok()?.strip_prefix("Bearer "));
     guard
-        .key(has, uri.query().unwrap_or_default())
+        .key(shown.unwrap_or_default(), uri.query().unwrap_or_default())
         .map(str::to_owned)
 }
 

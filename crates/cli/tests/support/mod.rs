@@ -98,7 +98,7 @@ impl Page {
         let mut stream = TcpStream::connect(host).unwrap();
         write!(
             stream,
-            "POST /key?{query} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nConnection: close\r\n\r\n"
+            "POST /key?{query} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nAuthorization: Bearer test\r\nConnection: close\r\n\r\n"
         )
         .unwrap();
         let mut answer = String::new();
