@@ -1,24 +1,17 @@
 // @ts-check
-/** The WebSocket to the server. It comes back by itself, and then gets the recent past anew. */
+/** The WebSocket to the server. It comes back by itself, and then gets the recent past again. */
+import { askForKey } from './key.js';
 
 /** @typedef {import('./types.js').FromServer} FromServer */
 /** @typedef {import('./types.js').Order} Order */
 
-/** `locked`: the station was started again, and this browser has no key to it yet. @typedef {'open' | 'closed' | 'locked'} Connection */
+/**
+ * `locked`: a station is there to which this browser has no key; `used`: the address of the page gave none.
+ * @typedef {'open' | 'closed' | 'locked' | 'used'} Connection
+ */
 
 const RETRY_MS = 500;
 const RETRY_MAX_MS = 2_000;
-/** An answer that takes longer is none [ms]. */
-const ANSWER_MS = 1_000;
-
-/** Whether a station is there, and this page has no key to it. */
-async function turnedAway() {
-  try {
-    return (await fetch('/icon.svg?key', { cache: 'no-store', signal: AbortSignal.timeout(ANSWER_MS) })).status === 403;
-  } catch {
-    return false;
-  }
-}
 
 export class Link {
   /** @type {WebSocket | null} */
@@ -26,8 +19,6 @@ export class Link {
   #retryMs = RETRY_MS;
   /** @type {string | null} */
   #lastError = null;
-  /** @type {Connection} */
-  #was = 'closed';
   #onMessage;
   #onChange;
 
@@ -41,13 +32,15 @@ export class Link {
     this.#open();
   }
 
-  #open() {
-    const socket = new WebSocket(`ws://${location.host}/ws`);
+  async #open() {
+    const answer = await askForKey();
+    if (answer.key === null) return this.#again(answer.why);
+    const socket = new WebSocket(`ws://${location.host}/ws`, ['rumbo', answer.key]);
     this.#socket = socket;
     socket.addEventListener('open', () => {
       this.#retryMs = RETRY_MS;
       this.#lastError = null;
-      this.#change('open');
+      this.#onChange('open', null);
     });
     socket.addEventListener('message', (event) => {
       /** @type {FromServer} */
@@ -55,20 +48,17 @@ export class Link {
       if (message.type === 'error') this.#lastError = message.text;
       else this.#onMessage(message);
     });
-    socket.addEventListener('close', async () => {
+    socket.addEventListener('close', () => {
       this.#socket = null;
-      if (this.#was === 'open') this.#change('closed');
-      setTimeout(() => this.#open(), this.#retryMs);
-      this.#retryMs = Math.min(2 * this.#retryMs, RETRY_MAX_MS);
-      const now = await turnedAway() ? 'locked' : 'closed';
-      if (this.#was !== 'open') this.#change(now);
+      this.#again('closed');
     });
   }
 
   /** @param {Connection} now */
-  #change(now) {
-    this.#was = now;
+  #again(now) {
     this.#onChange(now, this.#lastError);
+    setTimeout(() => this.#open(), this.#retryMs);
+    this.#retryMs = Math.min(2 * this.#retryMs, RETRY_MAX_MS);
   }
 
   /**

@@ -103,7 +103,7 @@ const panel = new CommandPanel(send, map);
 const machine = new Machine(store);
 const meter = new LinkMeter();
 const tabs = new Tabs('tabs', (panel) => meter.show(panel === 'bytes'));
-tabs.show('events');
+tabs.show('event-panel');
 const stateLine = new StateLine(store, send);
 const pointer = element('pointer', HTMLOutputElement);
 element('ghost-here', HTMLButtonElement).addEventListener('click', () => send({ type: 'restart_ghost' }));

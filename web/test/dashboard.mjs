@@ -64,12 +64,12 @@ export async function open(options, browserOptions = {}) {
   const page = await context.newPage();
   /** @type {string[]} */
   const complaints = [];
-  await prepare(page, url);
+  await prepare(page);
   page.on('pageerror', (error) => complaints.push(String(error)));
   page.on('console', (message) => {
     if (message.type() === 'error') complaints.push(message.text());
   });
-  await page.goto(process.env['WEB'] ? new URL('/', url).href : url);
+  await page.goto(url);
   const close = async () => {
     await browser.close();
     server.kill();
@@ -81,18 +81,16 @@ export async function open(options, browserOptions = {}) {
 /** A page of this context at an address of the program. @param {import('playwright-core').BrowserContext} context @param {string} url */
 export async function showPage(context, url) {
   const page = await context.newPage();
-  await prepare(page, url);
-  await page.goto(process.env['WEB'] ? new URL('/', url).href : url);
+  await prepare(page);
+  await page.goto(url);
   await page.waitForSelector('#connection.good');
   return page;
 }
 
-/** @param {import('playwright-core').Page} page @param {string} url */
-async function prepare(page, url) {
+/** @param {import('playwright-core').Page} page */
+async function prepare(page) {
   page.setDefaultTimeout(PATIENCE_MS);
-  if (!process.env['WEB']) return;
-  await page.request.get(url);
-  await serveFolder(page);
+  if (process.env['WEB']) await serveFolder(page);
 }
 
 /** @type {Record<string, string>} */
@@ -101,9 +99,9 @@ const TYPES = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript; ch
 /** The page gets its files from this folder. @param {import('playwright-core').Page} page */
 async function serveFolder(page) {
   await page.route('**/*', (route) => {
-    const { pathname, search } = new URL(route.request().url());
+    const { pathname } = new URL(route.request().url());
     const path = new URL(`..${pathname === '/' ? '/index.html' : pathname}`, import.meta.url);
-    if (search !== '' || !existsSync(path)) return route.continue();
+    if (!existsSync(path)) return route.continue();
     return route.fulfill({ body: readFileSync(path), contentType: TYPES[extname(pathname)] ?? 'text/html; charset=utf-8' });
   });
 }

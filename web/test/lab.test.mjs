@@ -295,14 +295,14 @@ test('a reset starts again with the seed asked for', async () => {
 });
 
 test('a page of another origin gets no WebSocket', async () => {
-  const cookie = (await page.context().cookies()).map(({ name, value }) => `${name}=${value}`).join('; ');
+  const key = await page.evaluate(() => localStorage.getItem('rumbo.key'));
   for (const [origin, expected] of [['http://evil.example', 403], [new URL(dashboard.url).origin, 101]]) {
     /** @type {number | undefined} */
     const status = await new Promise((resolve, reject) => {
       const asked = request(new URL('/ws', dashboard.url), {
         headers: {
-          Cookie: cookie, Origin: String(origin), Connection: 'Upgrade', Upgrade: 'websocket', 'Sec-WebSocket-Version': '13',
-          'Sec-WebSocket-Key': 'AAAAAAAAAAAAAAAAAAAAAA==',
+          Origin: String(origin), Connection: 'Upgrade', Upgrade: 'websocket', 'Sec-WebSocket-Version': '13',
+          'Sec-WebSocket-Key': 'AAAAAAAAAAAAAAAAAAAAAA==', 'Sec-WebSocket-Protocol': `rumbo, ${key}`,
         },
       });
       asked.on('response', (answer) => resolve(answer.statusCode));
@@ -319,7 +319,7 @@ test('a page of another origin gets no WebSocket', async () => {
 
 test('garbage is told why and closed, while the robot goes on and the page too', async () => {
   const told = await page.evaluate(() => new Promise((resolve) => {
-    const socket = new WebSocket(`ws://${location.host}/ws`);
+    const socket = new WebSocket(`ws://${location.host}/ws`, ['rumbo', localStorage.getItem('rumbo.key') ?? '']);
     /** @type {string[]} */
     const errors = [];
     socket.onopen = () => socket.send('garbage');

@@ -68,6 +68,23 @@ test('on a tablet nothing is cut off at the sides, and STOP stays in sight', asy
   await page.setViewportSize({ width: 1280, height: 720 });
 });
 
+test('on a telephone, upright and held across, STOP stays in sight wherever the page is scrolled to', async () => {
+  for (const [width, height] of /** @type {[number, number][]} */ ([[390, 844], [640, 360]])) {
+    await page.setViewportSize({ width, height });
+    assert.equal((await beyond())[0], 0, `${width} x ${height}`);
+    for (const y of [0, 300, 10_000]) {
+      await page.evaluate((y) => scrollTo(0, y), y);
+      const seen = await page.locator('#stop').evaluate((stop) => {
+        const { left, top, width, height } = stop.getBoundingClientRect();
+        return stop.contains(document.elementFromPoint(left + width / 2, top + height / 2));
+      });
+      assert.ok(seen, `${width} x ${height}, scrolled to ${y}`);
+    }
+    await page.evaluate(() => scrollTo(0, 0));
+  }
+  await page.setViewportSize({ width: 1280, height: 720 });
+});
+
 /** Where a place 1 m ahead is on the map [px]; how many pixels a metre has. */
 const metre_px = () => page.evaluate(() => {
   const { onMap } = /** @type {any} */ (window).rumbo;
@@ -122,6 +139,13 @@ test('fingers move and zoom: map and plots', async () => {
   assert.ok(Math.abs(to_s - from_s - 20) < 0.1, `${from_s} to ${to_s}`);
   await page.locator('#live').click();
   await cdp.send('Emulation.setTouchEmulationEnabled', { enabled: false });
+});
+
+test('lists hold lines, panels of tabs are no lists, and heads of columns say something', async () => {
+  const odd = await page.evaluate(() => [...document.querySelectorAll(':is(ol, ul)[role], th:empty')]
+    .concat([...document.querySelectorAll('li')].filter((line) => !line.parentElement?.matches('ol, ul')))
+    .map((each) => each.outerHTML.slice(0, 80)));
+  assert.deepEqual(odd, []);
 });
 
 test('everything that can be used has a name', async () => {

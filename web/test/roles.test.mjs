@@ -36,7 +36,7 @@ const isArmed = (armed) => first.waitForFunction((armed) => /** @type {any} */ (
 /** Sends an order as a script would that does not care for the page's buttons; what the station answers it. @param {Page} page @param {string} order */
 function answer(page, order) {
   return page.evaluate((order) => new Promise((resolve) => {
-    const socket = new WebSocket(`ws://${location.host}/ws`);
+    const socket = new WebSocket(`ws://${location.host}/ws`, ['rumbo', localStorage.getItem('rumbo.key') ?? '']);
     let sent = false;
     socket.addEventListener('message', ({ data }) => {
       if (!sent) socket.send(order);

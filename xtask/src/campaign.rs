@@ -1,5 +1,5 @@
 //! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds, a million frames over a link with faults, and the
-//! image for 75 minutes under a flood of bytes, and beside the native robot.
+//! image for 75 minutes under a flood of bytes, and beside the native robot; the fuzz targets for ten minutes each.
 //!
 //! The runs and what is required of them are the scenario crate's (`rumbo_scenario::campaign`); its example is built as users get the
 //! program, optimised, and printed as it comes.
@@ -16,6 +16,10 @@ const IMAGE: &str = "image";
 const MEDIANS: &str = "medians";
 /// Its seeds.
 const MEDIANS_SEEDS: u32 = 20;
+/// The fuzz targets.
+const FUZZ: &str = "fuzz";
+/// Seconds of each.
+const FUZZ_SECONDS: u32 = 600;
 /// Minutes of [`IMAGE`]: past the wrap of the microseconds at 71.6.
 const IMAGE_MINUTES: &str = "75";
 
@@ -36,10 +40,13 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
         let seeds = seeds.unwrap_or(MEDIANS_SEEDS).min(MEDIANS_SEEDS);
         met &= example(project, ["rumbo-scenario", MEDIANS], &[seeds.to_string()])?;
     }
+    if only.is_empty() || only.iter().any(|name| name == FUZZ) {
+        met &= crate::fuzz::campaign(project, Some(FUZZ_SECONDS), &[])?;
+    }
     let mut scenarios = vec![seeds.unwrap_or(SEEDS).to_string()];
     scenarios.extend(
         only.iter()
-            .filter(|name| ![LINK, IMAGE, MEDIANS].contains(&name.as_str()))
+            .filter(|name| ![LINK, IMAGE, MEDIANS, FUZZ].contains(&name.as_str()))
             .cloned(),
     );
     if only.is_empty() || scenarios.len() > 1 {

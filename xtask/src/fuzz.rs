@@ -85,9 +85,12 @@ fn fuzz(project: &Project, programs: &Path, target: &str, seconds: u32) -> Resul
     }
     let program = programs.join(format!("{target}{}", std::env::consts::EXE_SUFFIX));
     let prefix = format!("{}/{target}-", findings.display());
+    // What reaches new code goes to the first folder; the other one is only read.
+    let seeds = project.root.join("fuzz/seeds").join(target);
     let mut command = project.command(&program);
     command
         .arg(&corpus)
+        .args(seeds.is_dir().then_some(&seeds))
         .arg(format!("-max_total_time={seconds}"))
         .arg(format!("-artifact_prefix={prefix}"))
         .args(["-max_len=4096", "-timeout=20", "-print_final_stats=1"])

@@ -18,7 +18,7 @@ pub(crate) struct Lab {
     /// The address it printed, with its one-time token.
     url: String,
     /// What the token became, once the page was fetched.
-    cookie: Option<String>,
+    key: Option<String>,
 }
 
 impl Lab {
@@ -46,7 +46,7 @@ impl Lab {
         let mut lab = Self {
             child,
             url: String::new(),
-            cookie: None,
+            key: None,
         };
         let (send, receive) = mpsc::channel();
         // The reader lives as long as the lab, so that the lab never writes to a closed pipe.
@@ -98,29 +98,13 @@ impl Lab {
         &self.url
     }
 
-    /// Fetches the page as a browser would: the first time with the token, then with the cookie that the token became.
+    /// Fetches the page as a browser would, and once its key.
     pub(crate) fn page(&mut self) -> Result<String, String> {
-        let mut path = match &self.cookie {
-            Some(_) => "/".to_owned(),
-            None => format!("/{}", self.url.splitn(4, '/').nth(3).unwrap_or_default()),
-        };
-        for _ in 0..4 {
-            let answer = self.get(&path)?;
-            if let Some(cookie) = answer.header("set-cookie") {
-                self.cookie = cookie.split(';').next().map(str::to_owned);
-            }
-            match (answer.status, answer.header("location")) {
-                (200, _) => return Ok(answer.body),
-                (301..=308, Some(next)) => path = next.to_owned(),
-                (status, _) => {
-                    return Err(format!(
-                        "GET {path}: status {status}: {}",
-                        answer.body.trim()
-                    ));
-                }
-            }
+        if self.key.is_none() {
+            let query = self.url.split_once('?').map_or("", |(_, query)| query);
+            self.key = Some(self.ask("POST", &format!("/key?{query}"))?);
         }
-        Err(format!("GET {path}: too many redirections"))
+        self.ask("GET", "/")
     }
 
     /// Opens the dashboard's WebSocket.
@@ -133,29 +117,32 @@ impl Lab {
             .map_err(|error| format!("{address}: {error}"))?;
         let request = tungstenite::ClientRequestBuilder::new(uri)
             .with_header("Origin", format!("http://{host}"))
-            .with_header("Cookie", self.cookie.as_deref().unwrap_or_default());
+            .with_sub_protocol("rumbo")
+            .with_sub_protocol(self.key.as_deref().unwrap_or_default());
         let (socket, _) = tungstenite::client(request, self.connect()?)
             .map_err(|error| format!("{address}: {error}"))?;
         Ok(socket)
     }
 
-    fn get(&self, path: &str) -> Result<Answer, String> {
+    /// The body of the answer to a request of the page.
+    fn ask(&self, method: &str, path: &str) -> Result<String, String> {
         let host = self.host()?;
-        let cookie = self
-            .cookie
-            .as_deref()
-            .map(|cookie| format!("Cookie: {cookie}\r\n"))
-            .unwrap_or_default();
-        let request =
-            format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n{cookie}Connection: close\r\n\r\n");
+        let request = format!(
+            "{method} {path} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nAuthorization: Bearer xtask\r\nConnection: close\r\n\r\n"
+        );
         let mut stream = self.connect()?;
         let mut bytes = Vec::new();
         stream
             .write_all(request.as_bytes())
             .and_then(|()| stream.read_to_end(&mut bytes))
-            .map_err(|error| format!("GET {path}: {error}"))?;
-        Answer::parse(&String::from_utf8_lossy(&bytes))
-            .ok_or_else(|| format!("GET {path}: not an HTTP answer"))
+            .map_err(|error| format!("{method} {path}: {error}"))?;
+        let answer = String::from_utf8_lossy(&bytes);
+        let (status, body) =
+            parse(&answer).ok_or_else(|| format!("{method} {path}: not an HTTP answer"))?;
+        match status {
+            200 => Ok(body.to_owned()),
+            _ => Err(format!("{method} {path}: status {status}: {}", body.trim())),
+        }
     }
 
     fn connect(&self) -> Result<TcpStream, String> {
@@ -210,35 +197,11 @@ impl Page {
     }
 }
 
-/// As much of an HTTP answer as is needed here.
-struct Answer {
-    status: u16,
-    headers: Vec<(String, String)>,
-    body: String,
-}
-
-impl Answer {
-    fn parse(text: &str) -> Option<Self> {
-        let (head, body) = text.split_once("\r\n\r\n")?;
-        let mut lines = head.lines();
-        let status = lines.next()?.split(' ').nth(1)?.parse().ok()?;
-        let headers = lines
-            .filter_map(|line| line.split_once(':'))
-            .map(|(name, value)| (name.to_lowercase(), value.trim().to_owned()))
-            .collect();
-        Some(Self {
-            status,
-            headers,
-            body: body.to_owned(),
-        })
-    }
-
-    fn header(&self, name: &str) -> Option<&str> {
-        self.headers
-            .iter()
-            .find(|(known, _)| known == name)
-            .map(|(_, value)| value.as_str())
-    }
+/// Status and body of an HTTP answer.
+fn parse(answer: &str) -> Option<(u16, &str)> {
+    let (head, body) = answer.split_once("\r\n\r\n")?;
+    let status = head.lines().next()?.split(' ').nth(1)?;
+    Some((status.parse().ok()?, body))
 }
 
 #[cfg(test)]
@@ -246,23 +209,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_answer_is_read_whatever_the_case_of_its_headers() {
-        let answer = Answer::parse(
-            "HTTP/1.1 303 See Other\r\nSet-Cookie: a=b; HttpOnly\r\nlocation: /\r\n\r\nbody",
-        );
-        let answer = answer.expect("a valid answer");
-        assert_eq!(
-            (answer.status, answer.header("set-cookie")),
-            (303, Some("a=b; HttpOnly"))
-        );
-        assert_eq!(
-            (answer.header("location"), answer.body.as_str()),
-            (Some("/"), "body")
-        );
-    }
-
-    #[test]
-    fn something_else_is_not_an_answer() {
-        assert!(Answer::parse("hello").is_none());
+    fn an_answer_has_a_status_and_a_body_and_something_else_has_not() {
+        let answer = "HTTP/1.1 403 Forbidden\r\ncontent-length: 4\r\n\r\nbody";
+        assert_eq!(parse(answer), Some((403, "body")));
+        assert_eq!(parse("hello"), None);
     }
 }

@@ -9,6 +9,7 @@ use std::process::ExitCode;
 
 mod bench;
 mod campaign;
+mod deny;
 mod figures;
 mod firmware;
 mod fuzz;
@@ -28,8 +29,8 @@ The project's chores.
 Usage: cargo xtask <command> [options]
 
 Commands:
-  test [--only STEP]...    every check, in order: format, tidy, clippy, docs, sketches, tests, fuzz targets, figures,
-                           dashboard, browser, README
+  test [--only STEP]...    every check, in order: format, tidy, dependencies, clippy, docs, sketches, tests, fuzz
+                           targets, figures, dashboard, browser, README
   tidy                     the rules of ARCHITECTURE.md: dependencies, no_std, files, links
   bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
   firmware                 the image for the Mega, target/firmware/rumbo.elf and .hex, with its sizes
@@ -40,7 +41,8 @@ Commands:
   campaign [--seeds N] [--only SCENARIO]...
                            every scenario with 1,000 seeds or N, mode 8 in as many random worlds; `link`, a million
                            frames over a link with faults; `image`, 75 minutes of the image; `medians`, the image
-                           beside the native robot: what is required beside what was measured
+                           beside the native robot; `fuzz`, the fuzz targets, ten minutes each: what is required
+                           beside what was measured
   fuzz [--seconds N] [--only TARGET]...
                            the fuzz targets of fuzz/, a minute each or N seconds
   figures [--only NAME]... the figures and tables of docs/theory, from runs of both programs

@@ -85,18 +85,22 @@ impl Project {
     }
 }
 
-/// `cargo metadata --no-deps` of the workspace of `manifest`.
+/// `cargo metadata` of the workspace of `manifest`, without dependencies.
 pub(crate) fn metadata(manifest: &Path) -> Result<Value, String> {
+    metadata_with(manifest, &["--no-deps"])
+}
+
+/// The same with all dependencies, of all features.
+pub(crate) fn all_metadata(manifest: &Path) -> Result<Value, String> {
+    metadata_with(manifest, &["--all-features", "--locked"])
+}
+
+fn metadata_with(manifest: &Path, options: &[&str]) -> Result<Value, String> {
     let mut command = Command::new(cargo_program());
     command
-        .args([
-            "metadata",
-            "--no-deps",
-            "--format-version",
-            "1",
-            "--manifest-path",
-        ])
-        .arg(manifest);
+        .args(["metadata", "--format-version", "1", "--manifest-path"])
+        .arg(manifest)
+        .args(options);
     serde_json::from_str(&output(&mut command)?).map_err(|error| format!("cargo metadata: {error}"))
 }
 

@@ -1,10 +1,10 @@
 //! `rumbo connect`: a real robot behind the station's dashboard.
 
 use crate::args::ConnectArgs;
+use crate::browser;
 use crate::calibrate;
 use crate::failure::Failure;
 use crate::ghost::Haunted;
-use crate::lab;
 use crate::logs;
 use crate::output;
 use rumbo_station::port::{self, Port};
@@ -25,7 +25,7 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
         speed: 1.0,
         recording: logs::recording(args.session.out.as_deref()),
         #[cfg(feature = "foxglove")]
-        bridge: lab::bridge(args.session.bridge)?,
+        bridge: crate::lab::bridge(args.session.bridge)?,
     };
     let robot: Box<dyn Target> = match &args.ghost {
         Some(scenario) => Box::new(Haunted::new(robot, scenario)?),
@@ -33,5 +33,5 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
     };
     let served = rumbo_station::serve_with(config, robot, calibrate::in_dashboard())
         .map_err(Failure::input)?;
-    lab::show(served, args.session.serve)
+    browser::show(served, args.session.serve)
 }

@@ -1,11 +1,11 @@
 //! `rumbo lab`: a simulated robot behind the station's dashboard.
 
-use crate::args::{LabArgs, ServeArgs};
+use crate::args::LabArgs;
+use crate::browser;
 use crate::calibrate;
 use crate::failure::Failure;
 use crate::logs;
 use crate::manifest;
-use crate::output;
 use crate::scene::{first_commands, scene};
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
@@ -15,9 +15,9 @@ use rumbo_scenario::mega::firmware::Language;
 use rumbo_scenario::run;
 use rumbo_scenario::sim::Sim;
 use rumbo_station::log::{Kind, Manifest};
-use rumbo_station::{Choice, Lab, LabConfig, MapPose, Scene, Simulation, Standing, Target, Truth};
+use rumbo_station::{Choice, LabConfig, MapPose, Scene, Simulation, Standing, Target, Truth};
 use rumbo_wire::Command;
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.
 pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
@@ -48,7 +48,7 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
     };
     let lab = rumbo_station::serve_with(config, Box::new(robot), calibrate::in_dashboard())
         .map_err(Failure::input)?;
-    show(lab, args.session.serve)
+    browser::show(lab, args.session.serve)
 }
 
 /// The port at which a debugger may call, told on stderr.
@@ -84,27 +84,6 @@ pub(crate) fn bridge(
         bridge.address()
     );
     Ok(Some(bridge))
-}
-
-/// Prints the address, opens the browser, and returns when the lab has ended.
-pub(crate) fn show(lab: Lab, serve: ServeArgs) -> Result<(), Failure> {
-    output::line(lab.url())?;
-    if serve.listen.is_some() {
-        output::line(&format!("viewers: {}", lab.viewers_url()))?;
-    }
-    let what = if serve.no_browser {
-        "open the address above in a browser: it opens once"
-    } else if open::that_detached(lab.url()).is_err() {
-        "no browser could be opened; open the address above yourself"
-    } else {
-        "the dashboard opens in the browser; if it does not, open the address above yourself"
-    };
-    // The address alone is on stdout; this is for people, who may have closed stderr.
-    let mut stderr = std::io::stderr();
-    if stderr.is_terminal() {
-        let _ = writeln!(stderr, "{what}. Ctrl-C ends the session");
-    }
-    lab.wait().map_err(Failure::Input)
 }
 
 /// The simulation as the station drives it.

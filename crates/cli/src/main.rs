@@ -4,6 +4,7 @@
 //! scenario was missed, 2 wrong input, 130 interrupted. Each file here is one subcommand.
 
 mod args;
+mod browser;
 mod calibrate;
 mod capture;
 mod compare;

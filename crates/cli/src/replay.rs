@@ -1,10 +1,10 @@
 //! `rumbo replay`: a log in the dashboard.
 
 use crate::args::ReplayArgs;
+use crate::browser;
 use crate::export::warn_if_cut;
 use crate::failure::Failure;
 use crate::ghost;
-use crate::lab;
 use rumbo_station::log::Log;
 
 /// Serves the dashboard with the log.
@@ -30,5 +30,5 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         .into_owned();
     let served = rumbo_station::serve_log(args.serve.at(), args.speed, name, log, ghost)
         .map_err(Failure::input)?;
-    lab::show(served, args.serve)
+    browser::show(served, args.serve)
 }

@@ -104,7 +104,7 @@ pub fn html(data: &Data, language: Language) -> (String, Vec<String>) {
     let page = format!(
         "<!doctype html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, \
          initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <header><h1>{title}</h1><p class=\"subtitle\">{}</p></header>\n{front}{chapters}</body>\n</html>\n",
+         <header><h1>{title}</h1><p class=\"subtitle\">{}</p></header>\n<main>\n{front}{chapters}</main>\n</body>\n</html>\n",
         language.tag(),
         escape(SUBTITLE.of(language)),
     );

@@ -39,6 +39,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/geometry.js": SCRIPT,
     "src/header.js": SCRIPT,
     "src/help.js": SCRIPT,
+    "src/key.js": SCRIPT,
     "src/layout.js": SCRIPT,
     "src/layout_dialog.js": SCRIPT,
     "src/link.js": SCRIPT,

@@ -1,14 +1,19 @@
-//! Who may use the dashboard: who has the address that was printed, and no page of the internet.
+//! Who may use the dashboard: those who have the address that was printed, and no page of the internet.
 //!
-//! A web page anywhere can make the browser send requests to 127.0.0.1, and with a name of its own that resolves there it can
-//! read the answers (DNS rebinding). So every request must name exactly this host, must come from this origin if it
-//! comes from a page, and must carry a cookie that was given for a token in an address that was printed. There are two: the
-//! controller's opens once, so that an address seen over a shoulder is worth nothing; the viewers' opens for whoever has it, and lets
-//! them watch and stop the robot.
+//! A web page anywhere can make the browser send requests to 127.0.0.1, and with a name of its own that resolves there
+//! it can read the answers (DNS rebinding). So every request must name exactly this host, and must come from this
+//! origin if it comes from a page. The page itself is no secret. Its WebSocket shows and drives the robot, and needs a
+//! key, which is given for a token in an address that was printed. There are two: the controller's opens once, so that
+//! an address seen over a shoulder is worth nothing; the viewers' opens for all who have it, and lets them watch and
+//! stop the robot.
+//!
+//! The key is no cookie: a browser sends cookies to every port of a host, and other people on this computer may serve
+//! something there. The page keeps it in its storage, which belongs to this port alone.
 
 use axum::http::{HeaderMap, header};
 use std::net::{IpAddr, SocketAddr};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::OnceLock;
+use std::sync::mpsc::Sender;
 use subtle::ConstantTimeEq;
 
 /// A random secret of 256 bits, in hexadecimal.
@@ -30,7 +35,7 @@ impl Secret {
     }
 }
 
-/// What who has a cookie may do.
+/// What who has a key may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Role {
     /// Watch, and stop the robot.
@@ -41,18 +46,18 @@ pub(crate) enum Role {
 
 /// What opens the dashboard for a role.
 #[derive(Debug)]
-struct Key {
+struct Access {
     role: Role,
     token: Secret,
-    cookie: Secret,
+    key: Secret,
 }
 
-impl Key {
+impl Access {
     fn new(role: Role) -> Result<Self, getrandom::Error> {
         Ok(Self {
             role,
             token: Secret::new()?,
-            cookie: Secret::new()?,
+            key: Secret::new()?,
         })
     }
 
@@ -63,14 +68,6 @@ impl Key {
             Role::Viewer => "watch",
         }
     }
-
-    /// Cookies are shared between the ports of a host: the name tells two labs apart.
-    fn cookie_name(&self, port: u16) -> String {
-        match self.role {
-            Role::Controller => format!("rumbo_{port}"),
-            Role::Viewer => format!("rumbo_watch_{port}"),
-        }
-    }
 }
 
 /// Decides on requests.
@@ -79,10 +76,12 @@ pub(crate) struct Guard {
     at: SocketAddr,
     hosts: Vec<String>,
     origins: Vec<String>,
-    controller: Key,
-    viewer: Key,
-    /// The controller's token has been used.
-    token_used: AtomicBool,
+    controller: Access,
+    viewer: Access,
+    /// What the page showed that used the controller's token: should it not get the answer, it asks again.
+    used_by: OnceLock<String>,
+    /// Gets a word then.
+    opened: Sender<()>,
 }
 
 /// Why a request is turned away.
@@ -92,8 +91,8 @@ pub(crate) enum Denied {
     Host,
     /// It comes from a page of another origin, or from no page where one is needed.
     Origin,
-    /// It carries no valid cookie.
-    Cookie,
+    /// It carries no valid key.
+    Key,
     /// Its token is wrong or was used already.
     Token,
 }
@@ -106,7 +105,7 @@ impl Denied {
                 "refused: this address is not the dashboard's; open the one that rumbo printed"
             }
             Self::Origin => "refused: only the dashboard's own page may talk to the robot",
-            Self::Cookie => {
+            Self::Key => {
                 "refused: open the address that rumbo printed when it started, with its token"
             }
             Self::Token => {
@@ -117,11 +116,11 @@ impl Denied {
 }
 
 impl Guard {
-    /// A guard for the dashboard at this address.
+    /// A guard for the dashboard at this address, which says when the controller's address has been opened.
     ///
     /// # Errors
     /// When the system gives no randomness.
-    pub(crate) fn new(at: SocketAddr) -> Result<Self, getrandom::Error> {
+    pub(crate) fn new(at: SocketAddr, opened: Sender<()>) -> Result<Self, getrandom::Error> {
         let mut hosts = vec![at.to_string()];
         if at.ip().is_loopback() {
             hosts.push(format!("localhost:{}", at.port()));
@@ -130,9 +129,10 @@ impl Guard {
             at,
             origins: hosts.iter().map(|host| format!("http://{host}")).collect(),
             hosts,
-            controller: Key::new(Role::Controller)?,
-            viewer: Key::new(Role::Viewer)?,
-            token_used: AtomicBool::new(false),
+            controller: Access::new(Role::Controller)?,
+            viewer: Access::new(Role::Viewer)?,
+            used_by: OnceLock::new(),
+            opened,
         })
     }
 
@@ -146,8 +146,13 @@ impl Guard {
         self.address_of(&self.viewer)
     }
 
-    fn address_of(&self, key: &Key) -> String {
-        format!("http://{}/?{}={}", self.at, key.parameter(), key.token.0)
+    fn address_of(&self, access: &Access) -> String {
+        let Secret(token) = &access.token;
+        format!("http://{}/?{}={token}", self.at, access.parameter())
+    }
+
+    fn accesses(&self) -> [&Access; 2] {
+        [&self.controller, &self.viewer]
     }
 
     /// Host and origin are ours. A request without an origin comes from the address bar, not from a page.
@@ -173,52 +178,49 @@ impl Guard {
         }
     }
 
-    /// What the cookie that the request carries allows.
-    pub(crate) fn check_cookie(&self, headers: &HeaderMap) -> Result<Role, Denied> {
-        [&self.controller, &self.viewer]
+    /// What a key allows.
+    pub(crate) fn role_of(&self, key: &str) -> Result<Role, Denied> {
+        let access = self
+            .accesses()
             .into_iter()
-            .find(|key| self.carries(headers, key))
-            .map(|key| key.role)
-            .ok_or(Denied::Cookie)
+            .find(|access| access.key.matches(key));
+        access.map(|access| access.role).ok_or(Denied::Key)
     }
 
-    fn carries(&self, headers: &HeaderMap, key: &Key) -> bool {
-        let name = key.cookie_name(self.at.port());
-        headers
-            .get_all(header::COOKIE)
-            .iter()
-            .filter_map(|value| value.to_str().ok())
-            .flat_map(|value| value.split(';'))
-            .filter_map(|pair| pair.trim().split_once('='))
-            .any(|(known, value)| known == name && key.cookie.matches(value))
-    }
-
-    /// The token in a query, if there is one for a role.
-    pub(crate) fn token_in<'a>(&self, query: &'a str) -> Option<(Role, &'a str)> {
-        [&self.controller, &self.viewer]
-            .into_iter()
-            .find_map(|key| {
-                let token = query.strip_prefix(key.parameter())?.strip_prefix('=')?;
-                Some((key.role, token))
-            })
-    }
-
-    /// Takes the token of the query, the controller's once, and gives the cookie to set.
-    pub(crate) fn redeem(&self, role: Role, token: &str) -> Result<String, Denied> {
-        let key = match role {
-            Role::Controller => &self.controller,
-            Role::Viewer => &self.viewer,
+    /// The key for the token in a query, or the one that the page shows: the one that allows more. A page without a key
+    /// shows something random.
+    pub(crate) fn key(&self, shown: &str, query: &str) -> Result<&str, Denied> {
+        let has = self.role_of(shown);
+        let asked = self.accesses().into_iter().find_map(|access| {
+            let token = query.strip_prefix(access.parameter())?;
+            Some((access, token.strip_prefix('=')?))
+        });
+        let role = match asked {
+            Some((access, token)) if has.map_or(true, |has| has < access.role) => {
+                self.redeem(access, token, shown)?
+            }
+            _ => has?,
         };
-        if !key.token.matches(token)
-            || (role == Role::Controller && self.token_used.swap(true, Ordering::SeqCst))
-        {
+        let Secret(key) = match role {
+            Role::Controller => &self.controller.key,
+            Role::Viewer => &self.viewer.key,
+        };
+        Ok(key)
+    }
+
+    fn redeem(&self, access: &Access, token: &str, shown: &str) -> Result<Role, Denied> {
+        if !access.token.matches(token) {
             return Err(Denied::Token);
         }
-        Ok(format!(
-            "{}={}; HttpOnly; SameSite=Strict; Path=/",
-            key.cookie_name(self.at.port()),
-            key.cookie.0
-        ))
+        if access.role == Role::Controller {
+            let used_by = self.used_by.get_or_init(|| shown.to_owned());
+            if shown.is_empty() || !bool::from(used_by.as_bytes().ct_eq(shown.as_bytes())) {
+                return Err(Denied::Token);
+            }
+            // Nobody may wait for it.
+            let _ = self.opened.send(());
+        }
+        Ok(access.role)
     }
 }
 
@@ -257,7 +259,15 @@ mod tests {
     use axum::http::HeaderValue;
 
     fn guard() -> Guard {
-        Guard::new("127.0.0.1:8360".parse().unwrap()).unwrap()
+        at("127.0.0.1:8360")
+    }
+
+    fn at(address: &str) -> Guard {
+        Guard::new(address.parse().unwrap(), std::sync::mpsc::channel().0).unwrap()
+    }
+
+    fn query(url: &str) -> &str {
+        url.split_once('?').unwrap().1
     }
 
     fn headers(pairs: &[(header::HeaderName, &str)]) -> HeaderMap {
@@ -318,48 +328,50 @@ mod tests {
     }
 
     #[test]
-    fn the_token_opens_once_and_the_cookie_from_then_on() {
+    fn the_token_opens_once_and_the_key_from_then_on() {
         let guard = guard();
-        let token = guard.url().rsplit_once('=').unwrap().1.to_owned();
-        assert_eq!(guard.redeem(Role::Controller, "0000"), Err(Denied::Token));
-        let cookie = guard.redeem(Role::Controller, &token).unwrap();
-        assert!(cookie.contains("HttpOnly") && cookie.contains("SameSite=Strict"));
-        assert_eq!(guard.redeem(Role::Controller, &token), Err(Denied::Token));
-        let pair = cookie.split(';').next().unwrap();
-        assert_eq!(
-            guard.check_cookie(&headers(&[(header::COOKIE, &format!("other=1; {pair}"))])),
-            Ok(Role::Controller)
-        );
-        assert_eq!(
-            guard.check_cookie(&headers(&[(header::COOKIE, "rumbo_8360=0")])),
-            Err(Denied::Cookie)
-        );
-        assert_eq!(guard.check_cookie(&HeaderMap::new()), Err(Denied::Cookie));
+        let url = guard.url();
+        assert_eq!(guard.key("mine", "token=0000"), Err(Denied::Token));
+        let key = guard.key("mine", query(&url)).unwrap();
+        for another in ["", "min", "yours"] {
+            assert_eq!(guard.key(another, query(&url)), Err(Denied::Token));
+        }
+        assert_eq!(guard.role_of(key), Ok(Role::Controller));
+        // The browser that has the key may open the address again, and so may the page that missed the answer.
+        assert_eq!(guard.key(key, query(&url)), Ok(key));
+        assert_eq!(guard.key("mine", query(&url)), Ok(key));
+        assert_eq!(guard.key(key, ""), Ok(key));
+        for none in ["mine", "0", ""] {
+            assert_eq!(guard.key(none, ""), Err(Denied::Key));
+        }
     }
 
     #[test]
     fn the_viewers_address_opens_for_many_and_makes_nobody_a_controller() {
         let guard = guard();
         let url = guard.viewers_url();
-        let (role, token) = guard.token_in(url.split_once('?').unwrap().1).unwrap();
-        assert_eq!(role, Role::Viewer);
-        assert_eq!(guard.redeem(Role::Controller, token), Err(Denied::Token));
-        for _ in 0..3 {
-            let cookie = guard.redeem(role, token).unwrap();
-            let pair = cookie.split(';').next().unwrap();
-            let cookies = headers(&[(header::COOKIE, pair)]);
-            assert_eq!(guard.check_cookie(&cookies), Ok(Role::Viewer));
-            // Under the controller's name it is worth nothing.
-            let (_, value) = pair.split_once('=').unwrap();
-            let renamed = format!("rumbo_8360={value}");
-            let renamed = headers(&[(header::COOKIE, &renamed)]);
-            assert_eq!(guard.check_cookie(&renamed), Err(Denied::Cookie));
+        let (_, token) = url.rsplit_once('=').unwrap();
+        let as_controller = format!("token={token}");
+        assert_eq!(guard.key("mine", &as_controller), Err(Denied::Token));
+        for page in ["a", "b", "c"] {
+            let key = guard.key(page, query(&url)).unwrap();
+            assert_eq!(guard.role_of(key), Ok(Role::Viewer));
         }
     }
 
     #[test]
+    fn of_two_addresses_the_one_that_allows_more_counts() {
+        let guard = guard();
+        let (url, viewers_url) = (guard.url(), guard.viewers_url());
+        let watching = guard.key("mine", query(&viewers_url)).unwrap();
+        let driving = guard.key(watching, query(&url)).unwrap();
+        assert_eq!(guard.role_of(driving), Ok(Role::Controller));
+        assert_eq!(guard.key(driving, query(&viewers_url)), Ok(driving));
+    }
+
+    #[test]
     fn an_address_of_the_network_is_served_under_its_own_name_only() {
-        let guard = Guard::new("192.168.1.7:8360".parse().unwrap()).unwrap();
+        let guard = at("192.168.1.7:8360");
         let host = |host: &str| guard.check_source(&headers(&[(header::HOST, host)]));
         assert_eq!(host("192.168.1.7:8360"), Ok(()));
         assert_eq!(host("localhost:8360"), Err(Denied::Host));

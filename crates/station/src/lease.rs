@@ -7,6 +7,11 @@ use serde::Serialize;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 
+/// Pages at once.
+const PAGES: usize = 100;
+/// Places besides for pages that may have control: viewers leave them free.
+const FOR_CONTROLLERS: usize = 28;
+
 /// The number of a page, in the order in which they came.
 pub(crate) type PageId = u64;
 
@@ -68,17 +73,21 @@ impl Lease {
         self.changed.subscribe()
     }
 
-    /// A page has come.
-    pub(crate) fn sit_down(&self, may_control: bool) -> Place {
+    /// A page has come; `None`: there is no place for it.
+    pub(crate) fn sit_down(&self, may_control: bool) -> Option<Place> {
         let mut holder = self.lock();
+        let places = PAGES + if may_control { FOR_CONTROLLERS } else { 0 };
+        if holder.pages >= places {
+            return None;
+        }
         holder.next += 1;
         holder.pages += 1;
         self.changed.send_replace(());
-        Place {
+        Some(Place {
             page: holder.next,
             may_control,
             lease: self.clone(),
-        }
+        })
     }
 }
 
@@ -158,9 +167,9 @@ mod tests {
     fn one_page_has_control_until_it_goes_or_another_takes_it() {
         let lease = Lease::new();
         let (first, second, viewer) = (
-            lease.sit_down(true),
-            lease.sit_down(true),
-            lease.sit_down(false),
+            lease.sit_down(true).unwrap(),
+            lease.sit_down(true).unwrap(),
+            lease.sit_down(false).unwrap(),
         );
         assert_eq!(second.seat(), Seat::Free);
         assert!(first.ask() && !second.ask() && !viewer.ask());
@@ -186,6 +195,19 @@ mod tests {
         assert_eq!((second.seat(), viewer.view().holder), (Seat::Free, None));
         assert!(second.ask());
         drop(second);
-        assert_eq!(lease.sit_down(true).seat(), Seat::Free);
+        assert_eq!(lease.sit_down(true).unwrap().seat(), Seat::Free);
+    }
+
+    #[test]
+    fn many_viewers_leave_places_for_who_may_drive() {
+        let lease = Lease::new();
+        let viewers: Vec<_> = std::iter::from_fn(|| lease.sit_down(false)).collect();
+        let driver = lease.sit_down(true).unwrap();
+        assert!(driver.ask());
+        let others: Vec<_> = std::iter::from_fn(|| lease.sit_down(true)).collect();
+        let there = viewers.len() + 1 + others.len();
+        assert_eq!((there, viewers.len()), (PAGES + FOR_CONTROLLERS, PAGES));
+        drop(viewers);
+        assert!(lease.sit_down(false).is_some());
     }
 }

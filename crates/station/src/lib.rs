@@ -12,6 +12,7 @@ mod catalogue;
 pub mod client;
 pub mod commands;
 mod console;
+mod door;
 mod ending;
 mod errand;
 pub mod fault;
@@ -46,6 +47,8 @@ pub use catalogue::{ModeEntry, Reference, ReferenceKind, modes};
 pub use console::readable;
 pub use ending::asked_to_end;
 pub use guest::{Calibration, Finding, Findings, GuestLink};
+#[cfg(feature = "fuzzing")]
+pub use orders::commands_of;
 pub use row::Row;
 pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, ServeError, serve, serve_log, serve_with};
 pub use session::Extras;

@@ -321,6 +321,19 @@ fn move_order(movement: u8, level: Level, held: bool) -> Result<Order, BadOrder>
 }
 
 /// A number too large for the robot's 32 bits has become infinite.
+/// The commands for the robot in a page's text, for the fuzz targets.
+///
+/// # Errors
+/// Why it is no order.
+#[cfg(feature = "fuzzing")]
+pub fn commands_of(text: &str) -> Result<Vec<Command>, String> {
+    match parse(text).map_err(|error| error.to_string())? {
+        Order::Robot(command) | Order::Hold(command) => Ok(vec![command]),
+        Order::Route(commands) => Ok(commands),
+        _ => Ok(Vec::new()),
+    }
+}
+
 fn finite(field: &str, value: f32) -> Result<f32, BadOrder> {
     if value.is_finite() {
         Ok(value)

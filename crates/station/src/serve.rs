@@ -1,6 +1,7 @@
 //! Starts the lab: binds the port, then runs the session and the web server in threads of their own.
 
 use crate::board::Board;
+use crate::door;
 use crate::ending::asked_to_end;
 use crate::guard::{self, Guard};
 use crate::lease::Lease;
@@ -11,11 +12,10 @@ use crate::session::{Extras, Orders, Session};
 use crate::socket::Hub;
 use crate::target::{Ghost, Target};
 use crate::web;
-use axum::serve::ListenerExt;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::sync::mpsc::{self, SyncSender};
+use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::thread::JoinHandle;
 use std::{fmt, io};
 use tokio::sync::oneshot;
@@ -120,6 +120,7 @@ impl std::error::Error for ServeError {}
 pub struct Lab {
     url: String,
     viewers_url: String,
+    opened: Receiver<()>,
     /// `None` once ended. The session lives while there are senders.
     orders: Option<SyncSender<Order>>,
     web_ends: Option<oneshot::Sender<()>>,
@@ -136,6 +137,12 @@ impl Lab {
     /// The address for those who are to watch only; it opens as often as it is asked for.
     pub fn viewers_url(&self) -> &str {
         &self.viewers_url
+    }
+
+    /// Returns when [`Self::url`] has been opened, or when there is nothing to open any more.
+    pub fn until_opened(&self) {
+        // An error is the end of all that could say so.
+        let _ = self.opened.recv();
     }
 
     /// Returns when the session has ended: the target is gone, or the process was asked to end.
@@ -237,7 +244,8 @@ fn start_on(
     session: impl FnOnce(Arc<Board>, Orders) -> Result<(), String> + Send + 'static,
 ) -> io::Result<Lab> {
     listener.set_nonblocking(true)?;
-    let guard = Guard::new(listener.local_addr()?).map_err(io::Error::other)?;
+    let (opens, opened) = mpsc::channel();
+    let guard = Guard::new(listener.local_addr()?, opens.clone()).map_err(io::Error::other)?;
     let (url, viewers_url) = (guard.url(), guard.viewers_url());
 
     let board = Arc::new(board);
@@ -250,9 +258,14 @@ fn start_on(
             stop: Arc::clone(&stop),
         },
     );
+    let session_over = opens.clone();
     let session = std::thread::Builder::new()
         .name("session".into())
-        .spawn(move || session(shown, waiting))?;
+        .spawn(move || {
+            let ended = session(shown, waiting);
+            let _ = session_over.send(());
+            ended
+        })?;
 
     let router = web::router(
         Arc::new(guard),
@@ -274,19 +287,19 @@ fn start_on(
                 let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
                     return;
                 };
-                // News are small and must not wait to be gathered. Should that fail, they are late and nothing worse.
-                let listener = listener.tap_io(|connection| drop(connection.set_nodelay(true)));
                 // Connections end with the runtime.
                 tokio::select! {
-                    _ = async { axum::serve(listener, router).await } => {}
+                    () = door::keep(listener, router) => {}
                     _ = ended => {}
                     () = asked_to_end() => {}
                 }
             });
+            let _ = opens.send(());
         })?;
     Ok(Lab {
         url,
         viewers_url,
+        opened,
         orders: Some(orders),
         web_ends: Some(web_ends),
         session: Some(session),

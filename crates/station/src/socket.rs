@@ -13,9 +13,10 @@ use crate::log::Burst;
 use crate::orders::{self, Order};
 use crate::row::{Cell, Row};
 use crate::target::Scene;
+use axum::body::Bytes;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
-use futures_util::stream::{SplitSink, SplitStream};
-use futures_util::{Sink, SinkExt, StreamExt};
+use futures_util::stream::SplitSink;
+use futures_util::{Sink, SinkExt, Stream, StreamExt};
 use rumbo_wire::Command;
 use serde::Serialize;
 use std::sync::Arc;
@@ -23,7 +24,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 use tokio::sync::mpsc;
-use tokio::time::{sleep, timeout};
+use tokio::time::{interval, sleep, timeout};
 
 /// Longest message of a page [bytes].
 pub(crate) const MAX_MESSAGE: usize = 4_096;
@@ -37,6 +38,10 @@ const REFUSALS_WAITING: usize = 8;
 const GATHER: Duration = Duration::from_millis(15);
 /// A page that takes nothing for this long is closed; it comes back by itself and gets the recent past.
 const SEND_TIMEOUT: Duration = Duration::from_secs(5);
+/// A page is asked this often whether it is there; browsers answer by themselves.
+const PING: Duration = Duration::from_secs(5);
+/// A page that says nothing for this long, no answer either, is gone: its computer sleeps, or the network is cut.
+const SILENCE: Duration = Duration::from_secs(15);
 
 /// What every connection shares.
 #[derive(Clone, Debug)]
@@ -112,14 +117,20 @@ struct Goodbye {
 /// Serves one page until either side ends it.
 pub(crate) async fn talk(socket: WebSocket, hub: Hub, role: Role) {
     let (mut out, from_page) = socket.split();
-    let place = hub.lease.sit_down(role == Role::Controller);
-    let (refuse, refusals) = mpsc::channel(REFUSALS_WAITING);
-    let goodbye = tokio::select! {
-        goodbye = tell_news(&mut out, &hub, &place, refusals) => goodbye,
-        goodbye = take_orders(from_page, &hub, &place, &refuse) => goodbye,
+    let goodbye = match hub.lease.sit_down(role == Role::Controller) {
+        Some(place) => {
+            let (refuse, refusals) = mpsc::channel(REFUSALS_WAITING);
+            // Control goes with the page's place, however long it takes to say goodbye.
+            tokio::select! {
+                goodbye = tell_news(&mut out, &hub, &place, refusals) => goodbye,
+                goodbye = take_orders(from_page, &hub, &place, &refuse) => goodbye,
+            }
+        }
+        None => Some(Goodbye {
+            code: close_code::AGAIN,
+            text: "too many pages are open: close some of them".into(),
+        }),
     };
-    // Control goes with the page, however long it takes to say goodbye.
-    drop(place);
     if let Some(goodbye) = goodbye {
         // The page may be gone; then there is nobody to tell.
         let _ = timeout(SEND_TIMEOUT, say_goodbye(&mut out, goodbye)).await;
@@ -167,13 +178,15 @@ async fn say_goodbye(
     .await
 }
 
+/// Ends when the page does, or says what is no order, or nothing any more.
 async fn take_orders(
-    mut from_page: SplitStream<WebSocket>,
+    mut from_page: impl Stream<Item = Result<Message, axum::Error>> + Unpin,
     hub: &Hub,
     place: &Place,
     refuse: &mpsc::Sender<&'static str>,
 ) -> Option<Goodbye> {
-    while let Some(Ok(message)) = from_page.next().await {
+    // After silence nobody is left to hear why.
+    while let Ok(Some(Ok(message))) = timeout(SILENCE, from_page.next()).await {
         let text = match message {
             Message::Text(text) => text,
             Message::Binary(_) => {
@@ -230,6 +243,7 @@ async fn tell_news(
     };
     send(out, &hello).await?;
     let (mut told, mut run, mut t_s) = (None, 0, 0.0);
+    let mut pings = interval(PING);
     loop {
         let view = place.view();
         if told.replace(view) != Some(view) {
@@ -260,6 +274,7 @@ async fn tell_news(
         tokio::select! {
             changed = changed.changed() => changed.ok()?,
             moved = moved.changed() => moved.ok()?,
+            _ = pings.tick() => put(out, Message::Ping(Bytes::new())).await?,
             Some(text) = refusals.recv() => {
                 let events = [LoggedEvent { t_s, level: Level::Warning, text: text.into() }];
                 send(out, &ToPage::Events { events: &events }).await?;
@@ -312,15 +327,19 @@ async fn send_news(out: &mut (impl Sink<Message> + Unpin), news: News) -> Option
 
 async fn send(out: &mut (impl Sink<Message> + Unpin), message: &ToPage<'_>) -> Option<()> {
     let text = serde_json::to_string(message).ok()?;
-    timeout(SEND_TIMEOUT, out.send(Message::Text(text.into())))
-        .await
-        .ok()?
-        .ok()
+    put(out, Message::Text(text.into())).await
+}
+
+async fn put(out: &mut (impl Sink<Message> + Unpin), message: Message) -> Option<()> {
+    timeout(SEND_TIMEOUT, out.send(message)).await.ok()?.ok()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use futures_util::sink::unfold;
+    use futures_util::stream::poll_fn;
+    use std::future::ready;
 
     fn hub() -> Hub {
         Hub {
@@ -331,13 +350,22 @@ mod tests {
         }
     }
 
+    /// To a page, with room for one message on the way, as in full buffers of a connection.
+    fn connection() -> (impl Sink<Message> + Unpin, mpsc::Receiver<Message>) {
+        let (to_page, page) = mpsc::channel(1);
+        let send = |to_page: mpsc::Sender<Message>, message| async move {
+            to_page.send(message).await.map(|()| to_page)
+        };
+        (Box::pin(unfold(to_page, send)), page)
+    }
+
     #[test]
     fn a_viewer_may_stop_and_nothing_else_and_so_may_a_page_without_control() {
         let hub = hub();
         let (driver, other, viewer) = (
-            hub.lease.sit_down(true),
-            hub.lease.sit_down(true),
-            hub.lease.sit_down(false),
+            hub.lease.sit_down(true).unwrap(),
+            hub.lease.sit_down(true).unwrap(),
+            hub.lease.sit_down(false).unwrap(),
         );
         let (stop, arm) = (Order::Robot(Command::Stop), Order::Robot(Command::Arm));
         // STOP takes no control.
@@ -357,18 +385,37 @@ mod tests {
         assert!(admit(&arm, &driver).is_err());
     }
 
+    #[tokio::test(start_paused = true)]
+    async fn a_page_that_answers_no_ping_is_given_up_and_one_that_does_is_not() {
+        let hub = hub();
+        let place = hub.lease.sit_down(true).unwrap();
+        let (refuse, refusals) = mpsc::channel(1);
+        let (mut out, mut page) = connection();
+        let begun = tokio::time::Instant::now();
+        // It answers ten pings, and then none.
+        let answers = poll_fn(|context| page.poll_recv(context))
+            .filter(|message| ready(matches!(message, Message::Ping(_))))
+            .enumerate()
+            .filter_map(|(ping, _)| ready((ping < 10).then(|| Ok(Message::Pong(Bytes::new())))));
+        let goodbye = tokio::select! {
+            _ = tell_news(&mut out, &hub, &place, refusals) => panic!("the page takes all"),
+            goodbye = take_orders(Box::pin(answers), &hub, &place, &refuse) => goodbye,
+        };
+        assert!(goodbye.is_none());
+        let lasted = begun.elapsed();
+        assert!(
+            lasted >= 9 * PING + SILENCE && lasted < 10 * PING + SILENCE,
+            "{lasted:?}"
+        );
+    }
+
     #[tokio::test]
     async fn a_page_that_takes_nothing_for_a_while_loses_samples_and_no_event() {
         const ROUNDS: usize = 300;
         let hub = hub();
         let board = Arc::clone(&hub.board);
-        let place = hub.lease.sit_down(true);
-        // Room for one message on the way, as in full buffers of a connection.
-        let (to_page, mut page) = mpsc::channel::<Message>(1);
-        let mut out = Box::pin(futures_util::sink::unfold(
-            to_page,
-            |to_page, message| async move { to_page.send(message).await.map(|()| to_page) },
-        ));
+        let place = hub.lease.sit_down(true).unwrap();
+        let (mut out, mut page) = connection();
         let (_refuse, refusals) = mpsc::channel(1);
         let reader = async {
             for round in 0..ROUNDS {
@@ -385,8 +432,10 @@ mod tests {
             }
             let (mut events, mut rows, mut last_s) = (Vec::new(), 0, 0.0);
             while events.len() < ROUNDS || last_s < (100 * ROUNDS - 1) as f64 / 1e3 {
-                let Some(Message::Text(text)) = page.recv().await else {
-                    panic!("the page was given up");
+                let text = match page.recv().await {
+                    Some(Message::Text(text)) => text,
+                    Some(Message::Ping(_)) => continue,
+                    gone => panic!("the page was given up: {gone:?}"),
                 };
                 let message: serde_json::Value = serde_json::from_str(&text).unwrap();
                 for event in message["events"].as_array().into_iter().flatten() {

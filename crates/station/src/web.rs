@@ -1,15 +1,15 @@
 //! The web server: the dashboard's files and its WebSocket, behind the [`Guard`].
 
 use crate::assets;
-use crate::guard::{Denied, Guard, Role};
+use crate::guard::{Denied, Guard};
 use crate::socket::{self, Hub};
 use axum::Router;
 use axum::body::Body;
 use axum::extract::{Extension, Request, State, WebSocketUpgrade};
-use axum::http::{HeaderName, HeaderValue, Method, StatusCode, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
-use axum::routing::get;
+use axum::routing::{get, post};
 use std::sync::Arc;
 
 /// Sent with every answer.
@@ -40,74 +40,68 @@ const SECURITY_HEADERS: [(HeaderName, HeaderValue); 7] = [
     (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
 ];
 
+/// The WebSocket's protocol, as the page asks for it: this name, and its key as if it were another one.
+const PROTOCOL: &str = "rumbo";
+
 /// The routes; nothing is reachable around the guard.
 pub(crate) fn router(guard: Arc<Guard>, hub: Hub) -> Router {
     Router::new()
         .route("/ws", get(upgrade))
+        .route("/key", post(key))
         .fallback(file)
         .with_state(hub)
-        .layer(middleware::from_fn_with_state(guard, admit))
+        .layer(middleware::from_fn_with_state(Arc::clone(&guard), admit))
+        .layer(Extension(guard))
+}
+
+impl IntoResponse for Denied {
+    fn into_response(self) -> Response {
+        (StatusCode::FORBIDDEN, self.explanation()).into_response()
+    }
 }
 
 /// Lets a request in, or says why not.
-async fn admit(State(guard): State<Arc<Guard>>, mut request: Request, next: Next) -> Response {
-    let mut response = match check(&guard, &request) {
-        Ok(Pass::As(role)) => {
-            request.extensions_mut().insert(role);
-            next.run(request).await
-        }
-        Ok(Pass::With(cookie)) => {
-            // The token does not stay in the address.
-            (
-                StatusCode::SEE_OTHER,
-                [
-                    (header::LOCATION, "/".to_owned()),
-                    (header::SET_COOKIE, cookie),
-                ],
-            )
-                .into_response()
-        }
-        Err(denied) => (StatusCode::FORBIDDEN, denied.explanation()).into_response(),
+async fn admit(State(guard): State<Arc<Guard>>, request: Request, next: Next) -> Response {
+    let mut response = match guard.check_source(request.headers()) {
+        Ok(()) => next.run(request).await,
+        Err(denied) => denied.into_response(),
     };
     response.headers_mut().extend(SECURITY_HEADERS);
     response
 }
 
-/// How a request may pass.
-enum Pass {
-    /// It has a cookie of this role.
-    As(Role),
-    /// It has brought a token: it gets this cookie and is to ask again.
-    With(String),
-}
-
-/// Whether the request may pass. A token of a role that is not had yet counts before a cookie that is.
-fn check(guard: &Guard, request: &Request) -> Result<Pass, Denied> {
-    guard.check_source(request.headers())?;
-    if request.uri().path() == "/ws" {
-        guard.check_origin(request.headers())?;
-    }
-    let had = guard.check_cookie(request.headers());
-    let query = request.uri().query().unwrap_or_default();
-    match guard.token_in(query) {
-        Some((role, token))
-            if request.uri().path() == "/" && had.map_or(true, |had| had < role) =>
-        {
-            guard.redeem(role, token).map(Pass::With)
-        }
-        _ => had.map(Pass::As),
-    }
+/// A page asks for its key: with the one that it has, or something random, and the token of its address, if any.
+async fn key(
+    Extension(guard): Extension<Arc<Guard>>,
+    uri: Uri,
+    headers: HeaderMap,
+) -> Result<String, Denied> {
+    guard.check_origin(&headers)?;
+    let shown = headers.get(header::AUTHORIZATION);
+    let shown = shown.and_then(|value| value.to_str().ok()?.strip_prefix("Bearer "));
+    guard
+        .key(shown.unwrap_or_default(), uri.query().unwrap_or_default())
+        .map(str::to_owned)
 }
 
 async fn upgrade(
     State(hub): State<Hub>,
-    Extension(role): Extension<Role>,
+    Extension(guard): Extension<Arc<Guard>>,
+    headers: HeaderMap,
     upgrade: WebSocketUpgrade,
-) -> Response {
-    upgrade
+) -> Result<Response, Denied> {
+    guard.check_origin(&headers)?;
+    let protocols = headers.get_all(header::SEC_WEBSOCKET_PROTOCOL).iter();
+    let role = protocols
+        .filter_map(|value| value.to_str().ok())
+        .flat_map(|value| value.split(','))
+        .find_map(|key| guard.role_of(key.trim()).ok())
+        .ok_or(Denied::Key)?;
+    Ok(upgrade
+        .protocols([PROTOCOL])
         .max_message_size(socket::MAX_MESSAGE)
         .max_frame_size(socket::MAX_MESSAGE)
-        .on_upgrade(move |socket| socket::talk(socket, hub, role))
+        .on_upgrade(move |socket| socket::talk(socket, hub, role)))
 }
 
 async fn file(request: Request) -> Response {

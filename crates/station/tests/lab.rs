@@ -52,8 +52,8 @@ fn ending_the_lab_frees_its_port() {
 #[tokio::test]
 async fn garbage_is_told_why_and_closed_while_the_robot_goes_on() {
     let lab = start(4.0);
-    let cookie = open(&lab);
-    let mut driver = connect_own(&lab, &cookie).await;
+    let key = open(&lab);
+    let mut driver = connect_own(&lab, &key).await;
     wait_for(&mut driver, |message| event(message, "connected")).await;
     say(&mut driver, json!({"type": "arm"})).await;
     wait_for(&mut driver, |message| armed(message, true)).await;
@@ -63,7 +63,7 @@ async fn garbage_is_told_why_and_closed_while_the_robot_goes_on() {
         Message::text(r#"{"type":"self_destruct"}"#),
         Message::binary(vec![0xFF; 9]),
     ] {
-        let mut page = connect_own(&lab, &cookie).await;
+        let mut page = connect_own(&lab, &key).await;
         page.send(garbage).await.unwrap();
         let why = wait_for(&mut page, |message| {
             (message["type"] == "error").then(|| message["text"].to_string())
@@ -93,15 +93,15 @@ async fn garbage_is_told_why_and_closed_while_the_robot_goes_on() {
 #[tokio::test]
 async fn a_page_that_comes_back_gets_the_recent_past_and_does_not_arm() {
     let lab = start(8.0);
-    let cookie = open(&lab);
-    let mut page = connect_own(&lab, &cookie).await;
+    let key = open(&lab);
+    let mut page = connect_own(&lab, &key).await;
     let last_s = |message: &Value| message["rows"].as_array()?.last()?[0].as_f64();
     wait_for(&mut page, |message| {
         last_s(message).filter(|t_s| *t_s > 3.0)
     })
     .await;
     drop(page);
-    let mut page = connect_own(&lab, &cookie).await;
+    let mut page = connect_own(&lab, &key).await;
     let first_s = wait_for(&mut page, |message| {
         message["rows"].as_array()?.first()?[0].as_f64()
     })
@@ -113,8 +113,8 @@ async fn a_page_that_comes_back_gets_the_recent_past_and_does_not_arm() {
 #[tokio::test]
 async fn commands_are_acknowledged_stop_disarms_and_a_reset_starts_anew() {
     let lab = start(4.0);
-    let cookie = open(&lab);
-    let mut page = connect_own(&lab, &cookie).await;
+    let key = open(&lab);
+    let mut page = connect_own(&lab, &key).await;
     wait_for(&mut page, |message| event(message, "connected")).await;
     say(&mut page, json!({"type": "mode", "mode": 1})).await;
     say(&mut page, json!({"type": "reference", "value": 0.5})).await;
@@ -158,8 +158,8 @@ async fn commands_are_acknowledged_stop_disarms_and_a_reset_starts_anew() {
 #[tokio::test]
 async fn a_goal_and_a_route_are_passed_on_and_shown_once_the_robot_took_them() {
     let lab = start(8.0);
-    let cookie = open(&lab);
-    let mut page = connect_own(&lab, &cookie).await;
+    let key = open(&lab);
+    let mut page = connect_own(&lab, &key).await;
     wait_for(&mut page, |message| event(message, "connected")).await;
     let errand = |message: &Value| {
         let errand = &message["state"]["robot"]["errand"];
@@ -198,8 +198,8 @@ async fn a_goal_and_a_route_are_passed_on_and_shown_once_the_robot_took_them() {
 #[tokio::test]
 async fn a_held_movement_ends_when_the_page_says_no_more() {
     let lab = start(1.0);
-    let cookie = open(&lab);
-    let mut page = connect_own(&lab, &cookie).await;
+    let key = open(&lab);
+    let mut page = connect_own(&lab, &key).await;
     wait_for(&mut page, |message| event(message, "connected")).await;
     say(
         &mut page,
@@ -221,8 +221,8 @@ fn parameter<'a>(message: &'a Value, name: &str) -> Option<&'a Value> {
 #[tokio::test]
 async fn parameters_are_read_written_and_refused_with_the_reason() {
     let lab = start(8.0);
-    let cookie = open(&lab);
-    let mut page = connect_own(&lab, &cookie).await;
+    let key = open(&lab);
+    let mut page = connect_own(&lab, &key).await;
     let read = |message: &Value| {
         let base = parameter(message, "base_m")?;
         base["value"].as_f64().map(|_| base.clone())
@@ -260,8 +260,8 @@ async fn parameters_are_read_written_and_refused_with_the_reason() {
 #[tokio::test]
 async fn a_paused_simulation_stands_still() {
     let lab = start(0.0);
-    let cookie = open(&lab);
-    let mut page = connect_own(&lab, &cookie).await;
+    let key = open(&lab);
+    let mut page = connect_own(&lab, &key).await;
     let t_s = wait_for(&mut page, |message| message["state"]["t_s"].as_f64()).await;
     assert_eq!(t_s, 0.0);
     say(&mut page, json!({"type": "speed", "factor": 4})).await;

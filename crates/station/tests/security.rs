@@ -12,20 +12,31 @@ use support::Toy;
 use tokio_tungstenite::tungstenite::Error;
 
 #[test]
-fn only_who_has_the_address_that_was_printed_sees_the_page() {
+fn only_who_has_the_address_that_was_printed_gets_a_key_and_once() {
+    let lab = start(0.0);
+    for url in ["", "?token=00", "?token=", "?watch=00", "?"] {
+        assert_eq!(status(&ask_for_key(&lab, url, &[])), "403", "{url}");
+    }
+    let key = open(&lab);
+    let again = ask_for_key(&lab, lab.url(), &[]);
+    assert_eq!(status(&again), "403", "the token opens once");
+    assert!(again.contains("was used already"), "{again}");
+    // In the browser that has the key the address opens again, and without one the page goes on.
+    let has = format!("Bearer {key}");
+    for url in [lab.url(), ""] {
+        let answer = ask_for_key(&lab, url, &[("Authorization", &has)]);
+        assert!(
+            status(&answer) == "200" && answer.ends_with(&key),
+            "{answer}"
+        );
+    }
+}
+
+#[test]
+fn the_page_itself_is_no_secret_and_is_served_with_care() {
     let lab = start(0.0);
     let host = host(&lab);
-    assert_eq!(status(&request(&lab, "/", &[("Host", &host)])), "403");
-    assert_eq!(
-        status(&request(&lab, "/src/main.js", &[("Host", &host)])),
-        "403"
-    );
-    assert_eq!(
-        status(&request(&lab, "/?token=00", &[("Host", &host)])),
-        "403"
-    );
-    let cookie = open(&lab);
-    let page = request(&lab, "/", &[("Host", &host), ("Cookie", &cookie)]);
+    let page = ask(&host, "GET", "/", &[("Host", &host)]);
     assert_eq!(status(&page), "200");
     for header in [
         "content-security-policy: default-src 'self'",
@@ -35,57 +46,92 @@ fn only_who_has_the_address_that_was_printed_sees_the_page() {
     ] {
         assert!(page.contains(header), "{header} is missing: {page}");
     }
-    let again = lab.url().split_once(&host).unwrap().1;
-    assert_eq!(
-        status(&request(&lab, again, &[("Host", &host)])),
-        "403",
-        "the token opens once"
-    );
-    assert_eq!(
-        status(&request(
-            &lab,
-            "/../Cargo.toml",
-            &[("Host", &host), ("Cookie", &cookie)]
-        )),
-        "404"
-    );
+    assert!(!page.contains("set-cookie"), "{page}");
+    let outside = ask(&host, "GET", "/../Cargo.toml", &[("Host", &host)]);
+    assert_eq!(status(&outside), "404");
 }
 
 #[test]
-fn another_host_or_origin_is_refused_even_with_the_cookie() {
+fn what_fetches_the_printed_address_without_being_the_page_does_not_use_it_up() {
     let lab = start(0.0);
     let host = host(&lab);
-    let cookie = open(&lab);
-    for target in ["/", "/ws", "/src/main.js"] {
-        let rebound = request(
-            &lab,
-            target,
-            &[("Host", "evil.example"), ("Cookie", &cookie)],
+    let query = lab.url().split_once('?').unwrap().1;
+    let origin = format!("http://{host}");
+    for (method, target) in [
+        ("HEAD", format!("/?{query}")),
+        ("GET", format!("/?{query}")),
+        ("HEAD", format!("/key?{query}")),
+        ("GET", format!("/key?{query}")),
+    ] {
+        ask(
+            &host,
+            method,
+            &target,
+            &[("Host", &host), ("Origin", &origin)],
         );
-        assert_eq!(status(&rebound), "403", "{target}");
-        let foreign = [
-            ("Host", host.as_str()),
-            ("Cookie", &cookie),
-            ("Origin", "http://evil.example"),
-        ];
-        assert_eq!(status(&request(&lab, target, &foreign)), "403", "{target}");
+    }
+    // A page of another origin, and what is no page.
+    for headers in [
+        &[("Host", host.as_str()), ("Origin", "null")][..],
+        &[("Host", &host), ("Origin", "http://evil.example")],
+        &[("Host", &host)],
+    ] {
+        let answer = ask(&host, "POST", &format!("/key?{query}"), headers);
+        assert_eq!(status(&answer), "403", "{headers:?}");
+    }
+    open(&lab);
+}
+
+#[test]
+fn another_host_or_origin_is_refused_even_with_the_key() {
+    let lab = start(0.0);
+    let host = host(&lab);
+    let has = format!("Bearer {}", open(&lab));
+    let origin = format!("http://{host}");
+    for (method, target) in [("GET", "/"), ("POST", "/key"), ("GET", "/src/main.js")] {
+        for (host, origin) in [
+            ("evil.example", origin.as_str()),
+            (&host, "http://evil.example"),
+        ] {
+            let headers = [("Host", host), ("Origin", origin), ("Authorization", &has)];
+            let answer = ask(&self::host(&lab), method, target, &headers);
+            assert_eq!(status(&answer), "403", "{target}: {host}, {origin}");
+        }
     }
 }
 
 #[tokio::test]
 async fn the_websocket_of_another_page_is_refused() {
     let lab = start(1.0);
-    let cookie = open(&lab);
-    for (cookie, origin) in [
-        (cookie.as_str(), Some("http://evil.example")),
-        (cookie.as_str(), Some("null")),
-        (cookie.as_str(), None),
-        ("", Some(format!("http://{}", host(&lab)).as_str())),
+    let (key, made_up) = (open(&lab), "0".repeat(64));
+    let own = format!("http://{}", host(&lab));
+    for (key, origin) in [
+        (&key, Some("http://evil.example")),
+        (&key, Some("null")),
+        (&key, None),
+        (&made_up, Some(own.as_str())),
     ] {
-        match connect(&lab, cookie, origin).await {
+        match connect(&lab, key, origin).await {
             Err(Error::Http(answer)) => assert_eq!(answer.status(), 403),
             other => panic!("{origin:?}: {other:?}"),
         }
+    }
+}
+
+/// A browser sends its cookies to every port of a host: two labs must not share any, and neither must know the other's
+/// keys.
+#[tokio::test]
+async fn two_labs_at_once_in_one_browser_do_not_get_into_each_others_way() {
+    let labs = [start(1.0), start(1.0)];
+    let keys = labs.each_ref().map(open);
+    for (lab, key) in labs.iter().zip(&keys) {
+        let mut page = connect_own(lab, key).await;
+        wait_for(&mut page, |message| event(message, "connected")).await;
+    }
+    let [first, second] = &labs;
+    for (lab, key) in [(first, &keys[1]), (second, &keys[0])] {
+        let answer = ask_for_key(lab, "", &[("Authorization", &format!("Bearer {key}"))]);
+        assert_eq!(status(&answer), "403");
     }
 }
 
@@ -95,11 +141,11 @@ fn seat<'a>(message: &'a Value, wanted: &str) -> Option<&'a Value> {
 
 /// Pages of a controller, of the same browser's second tab, and of a viewer.
 async fn three_pages(lab: &Lab) -> [Page; 3] {
-    let cookie = open(lab);
+    let key = open(lab);
     let watching = redeem(lab, lab.viewers_url());
     let mut pages = [
-        connect_own(lab, &cookie).await,
-        connect_own(lab, &cookie).await,
+        connect_own(lab, &key).await,
+        connect_own(lab, &key).await,
         connect_own(lab, &watching).await,
     ];
     for page in &mut pages {
@@ -169,26 +215,11 @@ async fn of_two_controllers_one_has_control_until_it_leaves_or_the_other_takes_i
 }
 
 #[test]
-fn the_viewers_address_opens_for_many_and_a_made_up_cookie_for_nobody() {
+fn the_viewers_address_opens_for_many() {
     let lab = start(0.0);
-    let host = host(&lab);
     for _ in 0..3 {
-        let cookie = redeem(&lab, lab.viewers_url());
-        let page = request(&lab, "/", &[("Host", &host), ("Cookie", &cookie)]);
-        assert_eq!(status(&page), "200");
+        redeem(&lab, lab.viewers_url());
     }
-    let port = host.rsplit_once(':').unwrap().1;
-    for cookie in [
-        format!("rumbo_{port}="),
-        format!("rumbo_watch_{port}={}", "0".repeat(64)),
-    ] {
-        let answer = request(&lab, "/", &[("Host", &host), ("Cookie", &cookie)]);
-        assert_eq!(status(&answer), "403", "{cookie}");
-    }
-    // A token in any other place than the address of the page is none.
-    let token = lab.viewers_url().split_once('?').unwrap().1;
-    let file = format!("/src/main.js?{token}");
-    assert_eq!(status(&request(&lab, &file, &[("Host", &host)])), "403");
 }
 
 #[test]

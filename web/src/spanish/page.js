@@ -23,6 +23,10 @@ export const PAGE = {
   'connecting…': 'conectando…', 'no connection': 'sin conexión',
   'No connection to the station. Trying again…': 'Sin conexión con la estación. Reintentando…', 'No connection to the station: {}. Trying again…': 'Sin conexión con la estación: {}. Reintentando…',
   'What is shown is of {}, and STOP does not reach the robot.': 'Lo que se ve es de las {}, y PARAR no llega al robot.',
+  'This browser has no key to the station: open the address that rumbo printed when it started.':
+    'Este navegador no tiene la clave de la estación: abre la dirección que imprimió rumbo al arrancar.',
+  'This address opens once, and was opened before. Go on in the browser in which it was opened, or start rumbo again and open the new address.':
+    'Esta dirección solo se abre una vez, y ya se abrió. Sigue en el navegador en el que se abrió, o arranca rumbo otra vez y abre la nueva dirección.',
   'The station was started again, with a new key: open the address that it printed.': 'La estación arrancó de nuevo, con otra clave: abre la dirección que imprimió.',
   'The station is there again; it was not since {}.': 'La estación ha vuelto; faltaba desde las {}.',
   'replay, paused': 'grabación, en pausa', 'replay × {}': 'grabación × {}', 'simulation paused': 'simulación en pausa',

@@ -155,6 +155,7 @@ export const ROBOT = {
   'waypoint ({}, {}) m': 'lugar ({}; {}) m', '{} = {}': '{} = {}',
   // Why the station closed the connection.
   'not understood: {}': 'no entendido: {}', 'too many orders at once': 'demasiadas órdenes a la vez',
+  'too many pages are open: close some of them': 'hay demasiadas páginas abiertas: cierra alguna',
 };
 
 /** Names as commands have them, which are read as those of the buttons. */

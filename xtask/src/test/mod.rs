@@ -46,7 +46,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 15] = [
+const STEPS: [Step; 16] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
@@ -56,6 +56,11 @@ const STEPS: [Step; 15] = [
         name: "tidy",
         what: "the rules of ARCHITECTURE.md hold",
         check: rules,
+    },
+    Step {
+        name: "deny",
+        what: "licences and sources of the dependencies are those of deny.toml",
+        check: dependencies,
     },
     Step {
         name: "clippy",
@@ -204,10 +209,17 @@ fn fmt(project: &Project) -> Result<(), Stop> {
 }
 
 fn rules(project: &Project) -> Result<(), Stop> {
-    if tidy::run(project)? {
-        Ok(())
-    } else {
-        Err(Stop::Failed("see the findings above".to_owned()))
+    found_nothing(tidy::run(project)?)
+}
+
+fn dependencies(project: &Project) -> Result<(), Stop> {
+    found_nothing(crate::deny::check(project)?)
+}
+
+fn found_nothing(nothing: bool) -> Result<(), Stop> {
+    match nothing {
+        true => Ok(()),
+        false => Err(Stop::Failed("see the findings above".to_owned())),
     }
 }
 
@@ -245,11 +257,7 @@ fn tests(project: &Project) -> Result<(), Stop> {
 }
 
 fn fuzz(project: &Project) -> Result<(), Stop> {
-    if crate::fuzz::campaign(project, Some(5), &[])? {
-        Ok(())
-    } else {
-        Err(Stop::Failed("see the findings above".to_owned()))
-    }
+    found_nothing(crate::fuzz::campaign(project, Some(5), &[])?)
 }
 
 fn bridge(project: &Project) -> Result<(), Stop> {

@@ -94,23 +94,21 @@ pub(crate) struct Page(WebSocket<TcpStream>);
 impl Page {
     pub(crate) fn open(address: &str) -> Self {
         let host = address.split('/').nth(2).unwrap();
-        let path = address.splitn(4, '/').nth(3).unwrap();
+        let query = address.split_once('?').unwrap().1;
         let mut stream = TcpStream::connect(host).unwrap();
         write!(
             stream,
-            "GET /{path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"
+            "POST /key?{query} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nAuthorization: Bearer test\r\nConnection: close\r\n\r\n"
         )
         .unwrap();
         let mut answer = String::new();
         stream.read_to_string(&mut answer).unwrap();
-        let cookie = answer
-            .lines()
-            .find_map(|line| line.strip_prefix("set-cookie: "))
-            .unwrap();
+        let (_, key) = answer.split_once("\r\n\r\n").unwrap();
         let uri = format!("ws://{host}/ws").parse().unwrap();
         let request = tungstenite::ClientRequestBuilder::new(uri)
             .with_header("Origin", format!("http://{host}"))
-            .with_header("Cookie", cookie.split(';').next().unwrap());
+            .with_sub_protocol("rumbo")
+            .with_sub_protocol(key);
         let stream = TcpStream::connect(host).unwrap();
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
         Self(tungstenite::client(request, stream).unwrap().0)

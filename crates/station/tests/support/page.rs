@@ -36,9 +36,9 @@ pub(crate) fn host(lab: &Lab) -> String {
 }
 
 /// One request with these header lines; the whole answer.
-pub(crate) fn request(lab: &Lab, target: &str, headers: &[(&str, &str)]) -> String {
-    let mut stream = TcpStream::connect(host(lab)).unwrap();
-    let mut text = format!("GET {target} HTTP/1.1\r\nConnection: close\r\n");
+pub(crate) fn ask(at: &str, method: &str, target: &str, headers: &[(&str, &str)]) -> String {
+    let mut stream = TcpStream::connect(at).unwrap();
+    let mut text = format!("{method} {target} HTTP/1.1\r\nConnection: close\r\n");
     for (name, value) in headers {
         text += &format!("{name}: {value}\r\n");
     }
@@ -52,47 +52,53 @@ pub(crate) fn status(answer: &str) -> &str {
     answer.split(' ').nth(1).unwrap()
 }
 
-/// The cookie for the token in the lab's address.
+/// The key for the token in the lab's address.
 pub(crate) fn open(lab: &Lab) -> String {
     redeem(lab, lab.url())
 }
 
-/// The cookie for the token in an address.
+/// The key for the token in an address.
 pub(crate) fn redeem(lab: &Lab, url: &str) -> String {
+    let answer = ask_for_key(lab, url, &[("Authorization", "Bearer a page of a test")]);
+    assert_eq!(status(&answer), "200", "{answer}");
+    answer.split_once("\r\n\r\n").unwrap().1.to_owned()
+}
+
+/// The answer to a page that was opened at this address and asks for its key, with these header lines besides.
+pub(crate) fn ask_for_key(lab: &Lab, url: &str, headers: &[(&str, &str)]) -> String {
     let host = host(lab);
-    let target = url.split_once(&host).unwrap().1.to_owned();
-    let answer = request(lab, &target, &[("Host", &host)]);
-    assert_eq!(status(&answer), "303", "{answer}");
-    let cookie = answer
-        .lines()
-        .find_map(|line| line.strip_prefix("set-cookie: "))
-        .unwrap();
-    cookie.split(';').next().unwrap().to_owned()
+    let query = url.split_once('?').map_or("", |(_, query)| query);
+    let origin = format!("http://{host}");
+    let own = [("Host", host.as_str()), ("Origin", &origin)];
+    ask(
+        &host,
+        "POST",
+        &format!("/key?{query}"),
+        &[&own, headers].concat(),
+    )
 }
 
 pub(crate) type Page =
     tokio_tungstenite::WebSocketStream<tokio_tungstenite::MaybeTlsStream<tokio::net::TcpStream>>;
 
-pub(crate) async fn connect(lab: &Lab, cookie: &str, origin: Option<&str>) -> Result<Page, Error> {
+pub(crate) async fn connect(lab: &Lab, key: &str, origin: Option<&str>) -> Result<Page, Error> {
     let mut request = format!("ws://{}/ws", host(lab))
         .into_client_request()
         .unwrap();
-    request
-        .headers_mut()
-        .insert("Cookie", HeaderValue::from_str(cookie).unwrap());
+    let protocols = HeaderValue::from_str(&format!("rumbo, {key}")).unwrap();
+    let headers = request.headers_mut();
+    headers.insert("Sec-WebSocket-Protocol", protocols);
     if let Some(origin) = origin {
-        request
-            .headers_mut()
-            .insert("Origin", HeaderValue::from_str(origin).unwrap());
+        headers.insert("Origin", HeaderValue::from_str(origin).unwrap());
     }
     tokio_tungstenite::connect_async(request)
         .await
         .map(|(page, _)| page)
 }
 
-pub(crate) async fn connect_own(lab: &Lab, cookie: &str) -> Page {
+pub(crate) async fn connect_own(lab: &Lab, key: &str) -> Page {
     let origin = format!("http://{}", host(lab));
-    connect(lab, cookie, Some(&origin)).await.unwrap()
+    connect(lab, key, Some(&origin)).await.unwrap()
 }
 
 pub(crate) async fn say(page: &mut Page, order: Value) {

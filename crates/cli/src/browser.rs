@@ -1,0 +1,67 @@
+//! The dashboard's way into the browser.
+//!
+//! Everybody on the computer can read command lines, and the address has a token in it. So the browser is opened on a
+//! file that only this user can read, which leads it to the address.
+
+use crate::args::ServeArgs;
+use crate::failure::Failure;
+use crate::output;
+use rumbo_station::Lab;
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// Prints the address, opens the browser, and returns when the lab has ended.
+pub(crate) fn show(lab: Lab, serve: ServeArgs) -> Result<(), Failure> {
+    output::line(lab.url())?;
+    if serve.listen.is_some() {
+        output::line(&format!("viewers: {}", lab.viewers_url()))?;
+    }
+    let opening = (!serve.no_browser).then(|| open(lab.url()));
+    let what = match &opening {
+        None => "open the address above in a browser: it opens once",
+        Some(Err(_)) => "no browser could be opened; open the address above yourself",
+        Some(Ok(_)) => {
+            "the dashboard opens in the browser; if it does not, open the address above yourself"
+        }
+    };
+    // The address alone is on stdout; this is for people, who may have closed stderr.
+    let mut stderr = io::stderr();
+    if stderr.is_terminal() {
+        let _ = writeln!(stderr, "{what}. Ctrl-C ends the session");
+    }
+    if let Some(Ok(file)) = opening {
+        lab.until_opened();
+        drop(file);
+    }
+    lab.wait().map_err(Failure::Input)
+}
+
+/// Opens the browser at an address; the file is needed until it is there.
+fn open(url: &str) -> io::Result<NamedTempFile> {
+    let mut file = tempfile::Builder::new()
+        .prefix("rumbo-")
+        .suffix(".html")
+        .tempfile_in(folder())?;
+    writeln!(
+        file,
+        "<!doctype html><meta charset=\"utf-8\"><title>Rumbo</title>\
+         <meta http-equiv=\"refresh\" content=\"0;url={url}\"><a href=\"{url}\">Rumbo</a>"
+    )?;
+    open::that_detached(file.path())?;
+    Ok(file)
+}
+
+/// A folder of this user's that the browser can read. One that is a snap sees neither the folder for the programs of
+/// the session nor the one for temporary files.
+fn folder() -> PathBuf {
+    let snaps = Path::new("/snap").is_dir();
+    let folder = if snaps {
+        dirs::home_dir()
+    } else {
+        dirs::runtime_dir()
+    };
+    folder
+        .filter(|folder| folder.is_dir())
+        .unwrap_or_else(std::env::temp_dir)
+}

@@ -1,0 +1,66 @@
+//! Whatever a page sends is an order or one line says why not; what it has the station send, over a link without
+//! faults, the robot takes.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use rumbo_control::{Inputs, Micros};
+use rumbo_robot::{Config, Robot};
+use rumbo_station::client::{KnownTable, RobotClient};
+use rumbo_station::commands_of;
+use rumbo_wire::ResetCause;
+
+/// Orders of one run.
+const ORDERS: usize = 64;
+/// Ticks for each order, and before the first.
+const TICKS: u32 = 5;
+const TICK_US: u32 = 10_000;
+
+struct Bench {
+    client: RobotClient,
+    robot: Robot,
+    now_us: u32,
+}
+
+impl Bench {
+    fn tick(&mut self) {
+        self.now_us += TICK_US;
+        let (now_us, mut bytes, mut heard) = (self.now_us.into(), Vec::new(), Vec::new());
+        self.client.poll(now_us, &mut bytes, &mut heard);
+        bytes.iter().for_each(|byte| self.robot.receive(*byte));
+        self.robot.tick(&Inputs {
+            now: Micros(self.now_us),
+            ..Inputs::default()
+        });
+        self.robot.report();
+        bytes.clear();
+        bytes.extend(std::iter::from_fn(|| self.robot.transmit()));
+        self.client.hear(&bytes, now_us, &mut heard);
+    }
+}
+
+fuzz_target!(|text: &str| {
+    let mut bench = Bench {
+        client: RobotClient::new(1, true, KnownTable::OURS),
+        robot: Robot::new(Config {
+            image: 0,
+            reset: ResetCause::PowerOn,
+        }),
+        now_us: 0,
+    };
+    (0..TICKS).for_each(|_| bench.tick());
+    for line in text.lines().take(ORDERS) {
+        match commands_of(line) {
+            Ok(commands) => {
+                for command in commands {
+                    // It may be full.
+                    let _ = bench.client.submit(command, bench.now_us.into());
+                }
+            }
+            Err(why) => assert!(!why.is_empty() && !why.contains('\n'), "{why}"),
+        }
+        (0..TICKS).for_each(|_| bench.tick());
+    }
+    assert!(bench.client.connected(), "the robot went silent");
+    let link = bench.client.link(bench.now_us.into());
+    assert_eq!(link.crc_errors, 0);
+});

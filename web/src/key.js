@@ -1,0 +1,57 @@
+// @ts-check
+/**
+ * The page's key to the station: given for the token in the address that the station printed, and kept in the browser's
+ * storage for this address and port. (A cookie would go to every other port of the computer as well.)
+ */
+
+const STORED = 'rumbo.key';
+/** An answer that takes longer is none [ms]. */
+const ANSWER_MS = 5_000;
+
+/** The token in the address, until the station has answered. */
+let token = location.search;
+/** The station did not take it. */
+let refused = false;
+/** For a browser that stores nothing: until the page is left. @type {string | null} */
+let own = null;
+
+/** @param {string} key */
+function store(key) {
+  own = key;
+  try {
+    localStorage.setItem(STORED, key);
+  } catch {
+    // The page has it.
+  }
+  return key;
+}
+
+/** The key, or something random: with it a page that missed the answer may show the token again. */
+function shown() {
+  try {
+    own = localStorage.getItem(STORED) ?? own;
+  } catch {
+    // The page has it, or there is none.
+  }
+  return own ?? store(Array.from(crypto.getRandomValues(new Uint8Array(32)), (byte) => byte.toString(16).padStart(2, '0')).join(''));
+}
+
+/**
+ * The key; or why there is none: no answer, no key to this station, or an address that opens no more.
+ * @returns {Promise<{key: string} | {key: null, why: 'closed' | 'locked' | 'used'}>}
+ */
+export async function askForKey() {
+  try {
+    const headers = { Authorization: `Bearer ${shown()}` };
+    const answer = await fetch(`/key${token}`, { method: 'POST', headers, signal: AbortSignal.timeout(ANSWER_MS) });
+    const key = await answer.text();
+    if (token !== '') {
+      refused = !answer.ok;
+      token = '';
+      history.replaceState(null, '', location.pathname);
+    }
+    return answer.ok ? { key: store(key) } : { key: null, why: refused ? 'used' : 'locked' };
+  } catch {
+    return { key: null, why: 'closed' };
+  }
+}
