@@ -6,6 +6,7 @@ use crate::calibrate;
 use crate::failure::Failure;
 use crate::logs;
 use crate::manifest;
+use crate::output;
 use crate::scene::{first_commands, scene};
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
@@ -17,7 +18,6 @@ use rumbo_scenario::sim::Sim;
 use rumbo_station::log::{Kind, Manifest};
 use rumbo_station::{Choice, LabConfig, MapPose, Scene, Simulation, Standing, Target, Truth};
 use rumbo_wire::Command;
-use std::io::Write;
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.
 pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
@@ -77,12 +77,7 @@ pub(crate) fn bridge(
         return Ok(None);
     };
     let bridge = rumbo_station::Bridge::start(port).map_err(Failure::Input)?;
-    // A closed stderr leaves nobody to tell.
-    let _ = writeln!(
-        std::io::stderr(),
-        "for Foxglove or Lichtblick: {}",
-        bridge.address()
-    );
+    output::aside(&format!("for Foxglove or Lichtblick: {}", bridge.address()));
     Ok(Some(bridge))
 }
 
