@@ -189,7 +189,7 @@ fn scenario_error(text: &str) -> String {
 const WRONG_SCENARIOS: &[(&str, &str)] = &[
     (
         "[[sonar_fault]]\nat_s = 1\nsonar = \"front\"\nkind = \"broken\"",
-        "scenarios/x.toml:10: sonar_fault[1].kind = broken: write \"cut\", \"stuck\", or \"spiking\" with share = 0.3",
+        "scenarios/x.toml:10: sonar_fault[1].kind = broken: write \"cut\", \"stuck\", \"clear\", or \"spiking\" with share = 0.3",
     ),
     (
         "[[wire_fault]]\nat_s = 1\nwire = \"echo\"\nkind = \"low\"",

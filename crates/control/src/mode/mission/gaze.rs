@@ -30,6 +30,17 @@ const NEAR_M: f32 = 0.3;
 /// A heading error beyond this is a turn [rad].
 const TURNS_RAD: f32 = 0.2;
 
+/// Between which directions the servo swings.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Swing {
+    pub right_rad: f32,
+    pub left_rad: f32,
+    /// Looks in each direction.
+    pub looks: u8,
+    /// How far ahead the front sonar sits [m].
+    pub front_m: f32,
+}
+
 /// Where the servo points, and where it goes next.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Gaze {
@@ -68,25 +79,18 @@ impl Gaze {
     }
 
     /// On to the next direction, if there were so many looks at this one; after two looks the sonar may be put to the proof.
-    pub(super) fn step(
-        &mut self,
-        watch: &Watch,
-        estimate: &Estimate,
-        front_m: (f32, f32),
-        (right_rad, left_rad): (f32, f32),
-        looks: u8,
-    ) {
-        if !self.is_done(looks) {
+    pub(super) fn step(&mut self, watch: &Watch, estimate: &Estimate, swing: &Swing) {
+        if !self.is_done(swing.looks) {
             return;
         }
-        let proof = if looks < LOOKS || self.since_proof < BETWEEN_PROOFS {
+        let proof = if swing.looks < LOOKS || self.since_proof < BETWEEN_PROOFS {
             None
         } else {
-            watch.look(estimate, front_m)
+            watch.look(estimate, swing.front_m)
         };
         match proof {
             Some(servo_rad) => self.prove(servo_rad),
-            None => self.advance(right_rad, left_rad),
+            None => self.advance(swing.right_rad, swing.left_rad),
         }
     }
 
@@ -137,7 +141,7 @@ fn swing(state: &State, estimate: &Estimate) -> (f32, f32) {
 }
 
 /// Where the servo points.
-pub(super) fn look(state: &mut State, estimate: &Estimate, front_m: (f32, f32)) -> Look {
+pub(super) fn look(state: &mut State, estimate: &Estimate, front_m: f32) -> Look {
     let (right_rad, left_rad) = match state.phase {
         Phase::SweepRight => {
             state.gaze.to_left = false;
@@ -149,14 +153,16 @@ pub(super) fn look(state: &mut State, estimate: &Estimate, front_m: (f32, f32)) 
         }
         _ => swing(state, estimate),
     };
-    let looks = match state.phase {
-        Phase::SweepRight | Phase::SweepLeft => 1,
-        _ => LOOKS,
+    let swing = Swing {
+        right_rad,
+        left_rad,
+        looks: match state.phase {
+            Phase::SweepRight | Phase::SweepLeft => 1,
+            _ => LOOKS,
+        },
+        front_m,
     };
-    let ends_rad = (right_rad, left_rad);
-    state
-        .gaze
-        .step(&state.watch, estimate, front_m, ends_rad, looks);
+    state.gaze.step(&state.watch, estimate, &swing);
     Look {
         servo: state.gaze.servo(),
         ..Look::default()

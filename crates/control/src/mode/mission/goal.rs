@@ -69,7 +69,7 @@ impl Mission<'_> {
             state.phase = Phase::Unreachable;
         }
         self.act(state, estimate, goal_m, (&way, left_m), planned, action);
-        let front_m = (self.params.get(ParamId::SonarFrontX), 0.0);
+        let front_m = self.params.get(ParamId::SonarFrontX);
         action.look = look(state, estimate, front_m);
         action.state = state.phase as u8;
         action.heading_ref_rad = state.heading_ref_rad;

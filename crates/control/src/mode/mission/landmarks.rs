@@ -112,9 +112,9 @@ impl Landmarks {
         }
     }
 
-    /// Where the servo is to point to a face that must answer [rad], the front sonar being so far ahead and to the left of the robot.
-    pub(super) fn look(&self, robot: &Transform, (x_m, y_m): (f32, f32)) -> Option<f32> {
-        let (x_m, y_m) = robot.to_world(x_m, y_m);
+    /// Where the servo is to point to a face that must answer [rad], the front sonar being so far ahead.
+    pub(super) fn look(&self, robot: &Transform, ahead_m: f32) -> Option<f32> {
+        let (x_m, y_m) = robot.to_world(ahead_m, 0.0);
         let apex = Place::new(x_m, y_m);
         let sure = self.seen.iter().filter(|landmark| landmark.answers >= SURE);
         sure.filter_map(|landmark| {

@@ -15,7 +15,7 @@
 //! are not used. Here the stop is planned, the servo never blocks a tick, and walls at the sides push the robot to the middle:
 //! docs/theory/lane.md.
 
-use super::gaze::LOOKS;
+use super::gaze::{LOOKS, Swing};
 use super::goal::DOUBT_M_S;
 use super::{Action, Drive, Mission, ParamId, Phase, Pose, Segment, ServoAngle, State, Turn};
 use crate::estimate::Estimate;
@@ -208,10 +208,14 @@ impl Mission<'_> {
             Stage::SweepLeft => ServoAngle(lane.sweep.target_rad),
             Stage::Straight => {
                 // Ahead, and to what must answer while nothing does.
-                let front_m = (self.params.get(ParamId::SonarFrontX), 0.0);
-                let gaze = &mut state.gaze;
-                gaze.step(&state.watch, estimate, front_m, (0.0, 0.0), LOOKS);
-                gaze.servo()
+                let swing = Swing {
+                    right_rad: 0.0,
+                    left_rad: 0.0,
+                    looks: LOOKS,
+                    front_m: self.params.get(ParamId::SonarFrontX),
+                };
+                state.gaze.step(&state.watch, estimate, &swing);
+                state.gaze.servo()
             }
             _ => ServoAngle(0.0),
         };

@@ -223,7 +223,7 @@ impl Watch {
     }
 
     /// Where the servo is to point to put the front sonar to the proof [rad]; none while it hears, or where nothing must answer.
-    pub(super) fn look(&self, estimate: &Estimate, front_m: (f32, f32)) -> Option<f32> {
+    pub(super) fn look(&self, estimate: &Estimate, front_m: f32) -> Option<f32> {
         if self.landmarks.is_alive() {
             return None;
         }
