@@ -201,7 +201,7 @@ fn compare(what: &str, mut world: Given) {
     let is_random = matches!(world, Given::Random(..));
     // At least two bytes a tick.
     assert!(
-        (driven > count / 6 || !is_random) && told.len() > 2 * count as usize,
+        (driven > count / 8 || !is_random) && told.len() > 2 * count as usize,
         "{driven} {}",
         told.len()
     );
