@@ -169,7 +169,8 @@ fn report(found: &Calibration, rows: &[Row], contacts: u32, seed: u64) -> Result
     }
 }
 
-/// Refuses, before anything runs, to write over parameters that no calibration found, unless they are those of the robot that is calibrated.
+/// Refuses, before anything runs, to write over parameters that no calibration found, unless they are those of the
+/// robot that is calibrated.
 fn check_place(path: &Path, args: &CalibrateArgs) -> Result<(), Failure> {
     let is_robot = same_file::is_same_file(path, &args.robot).unwrap_or(false);
     if args.overwrite.force || is_robot || !path.is_file() {

@@ -67,7 +67,8 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
     report(&data, &place, begun)
 }
 
-/// Refuses, before anything runs, what would write over something else than an older report of the same; what the report is known by.
+/// Refuses, before anything runs, what would write over something else than an older report of the same. Gives what the
+/// report is known by.
 fn check_places(args: &ExperimentsArgs, plan: &Plan) -> Result<Stamp, Failure> {
     let language = match language(args) {
         Language::English => "en",

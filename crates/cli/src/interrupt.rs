@@ -1,4 +1,5 @@
-//! Ctrl-C, SIGTERM or the end of the terminal while there is something to lose: the first one asks for an end, the second one is an end.
+//! Ctrl-C, SIGTERM or the end of the terminal while there is something to lose: the first one asks for an end, the second
+//! one is an end.
 
 use rumbo_station::asked_to_end;
 use std::pin::pin;

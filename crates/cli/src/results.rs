@@ -1,4 +1,5 @@
-//! The files that a run leaves in a folder that was asked for: its result, the true signals, the log, and what an emulated chip's USARTs said.
+//! The files that a run leaves in a folder that was asked for: its result, the true signals, the log, and what an emulated
+//! chip's USARTs said.
 
 use crate::failure::Failure;
 use crate::mark::Mark;

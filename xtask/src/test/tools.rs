@@ -152,7 +152,8 @@ pub(crate) fn install<T>(
     }
 }
 
-/// Runs apt, again while another one holds a lock. apt's own option for it covers the lock of its lists in newer versions only.
+/// Runs apt, again while another one holds a lock. apt's own option for it covers the lock of its lists in newer versions
+/// only.
 fn when_unlocked<T>(
     run: impl Fn() -> Result<T, String>,
     tries: u32,

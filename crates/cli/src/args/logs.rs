@@ -142,8 +142,8 @@ Examples:
   rumbo prune --keep-days 30 --dry-run
   rumbo prune --keep-days 30
 
-Removes logs from the folder that `rumbo list logs` shows, by the time when they were written last. Logs in folders of --out stay, and so does
-what is no log of Rumbo. Nothing is ever removed without this command.")]
+Removes logs from the folder that `rumbo list logs` shows, by the time when they were written last. Logs in folders of
+--out stay, and so does what is no log of Rumbo. Nothing is ever removed without this command.")]
 pub(crate) struct PruneArgs {
     /// Logs of so many days stay
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=36_500))]

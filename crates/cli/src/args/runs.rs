@@ -19,9 +19,12 @@ Examples:
   rumbo run mode5 --firmware my_sketch.elf --gdb 1234   # then: avr-gdb my_sketch.elf -ex 'target remote :1234'
   rumbo run mode1 --seed 7 --param battery.open_circuit_v=6.9 --out out/mode1
 
-Every run is recorded, among the logs of sessions (`rumbo list logs`); of more than 20 runs those that miss a limit, the first 20 of them. With
---out all are recorded, there; with --no-record none. In DIR a run leaves NAME-SEED.json, .truth.csv, .mcap and, with --firmware, what the USARTs
-said; a scenario's path is in the result. Files of the same scenario, path and seed are written again, any other one is kept unless --force is given. A log that cannot be written is a note on stderr, and the run goes on.
+Every run is recorded, among the logs of sessions (`rumbo list logs`); of more than 20 runs those that miss a limit, the
+first 20 of them. With --out all are recorded, there; with --no-record none. A log that cannot be written is a note on
+stderr, and the run goes on.
+
+In DIR a run leaves NAME-SEED.json, .truth.csv and .mcap, and with --firmware what the USARTs said. Files of the same
+scenario and seed are written again; any other file is kept, and nothing is run, unless --force is given.
 
 Exit status 0: all limits are met; 1: one is missed; 2: wrong input; 130: Ctrl-C, and what was done until then has been printed.")]
 pub(crate) struct RunArgs {
@@ -195,8 +198,8 @@ pub(crate) struct CalibrateArgs {
     pub(crate) seed: SeedArgs,
     #[command(flatten)]
     pub(crate) parameters: ParameterArgs,
-    /// Robot file whose [parameters] table is rewritten: this robot's own, or one that was calibrated; a new file starts as a copy of the
-    /// robot's
+    /// Robot file whose [parameters] table is rewritten: this robot's own, or one that was calibrated; a new file
+    /// starts as a copy of the robot's
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]

@@ -105,26 +105,51 @@ fn what_a_log_says_is_shown_and_not_obeyed() {
 fn words_of_a_robot_are_no_formulas_in_a_table() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    // A terminal's capture: what was typed becomes an event.
-    let manifest = Manifest::default();
-    let lines = ["PID A 1 0 0\n", "0, 10, 10, 60, 5, 90, 90\n"];
-    let link: Vec<Burst> = (1..)
-        .zip(lines)
-        .map(|(t, line)| Burst {
-            t_us: 50_000 * t,
-            to_robot: t == 1,
-            bytes: line.into(),
-        })
-        .collect();
-    rumbo_station::log::record_text(&folder.join("x.mcap"), &manifest, &link).unwrap();
+    let mut log = mcap::Writer::new(std::fs::File::create(folder.join("x.mcap")).unwrap()).unwrap();
+    let manifest = [("kind", "robot"), ("program", "rumbo")];
+    log.write_metadata(&mcap::records::Metadata {
+        name: "manifest".into(),
+        metadata: manifest
+            .map(|(key, value)| (key.into(), value.into()))
+            .into(),
+    })
+    .unwrap();
+    let channel = log
+        .add_channel(0, "/events", "json", &Default::default())
+        .unwrap();
+    let texts = [
+        "=cmd|' /C calc'!A0",
+        "+1",
+        "-1",
+        "@SUM(A1)",
+        "\t=1",
+        "\r=1",
+        "STOP: done",
+    ];
+    for (sequence, text) in (0..).zip(texts) {
+        let event = serde_json::json!({ "level": 2, "message": text, "name": "info" });
+        let header = mcap::records::MessageHeader {
+            channel_id: channel,
+            sequence,
+            log_time: 0,
+            publish_time: 0,
+        };
+        log.write_to_known_channel(&header, event.to_string().as_bytes())
+            .unwrap();
+    }
+    log.finish().unwrap();
     let output = rumbo_in(folder, &["export", "x.mcap", "--format", "csv"]);
     assert_eq!(status(&output), 0, "{}", stderr(&output));
     let events = std::fs::read_to_string(folder.join("x.events.csv")).unwrap();
-    for line in events.lines().skip(1) {
-        let cell = line.splitn(3, ',').nth(2).unwrap();
-        let text = cell.trim_start_matches('"');
-        assert!(!text.starts_with(['=', '+', '-', '@']), "{line}");
-    }
+    let cells = events
+        .lines()
+        .skip(1)
+        .map(|line| line.splitn(3, ',').nth(2).unwrap());
+    let cells: Vec<&str> = cells.map(|cell| cell.trim_matches('"')).collect();
+    assert_eq!(cells.len(), texts.len());
+    let computed = |cell: &&&str| cell.starts_with(['=', '+', '-', '@', '\t', '\r']);
+    assert_eq!(cells.iter().find(computed), None);
+    assert_eq!(cells.last(), Some(&"STOP: done"));
 }
 
 #[cfg(unix)]

@@ -11,9 +11,12 @@ fn read(folder: &Path, name: &str) -> Vec<u8> {
 
 /// Refused before anything ran, with a line that says so.
 fn assert_refused(output: &Output, said: &str) {
-    let told = stderr(output);
-    assert_eq!(status(output), 2, "{told}");
-    assert!(told.contains(said) && told.lines().count() == 1, "{told}");
+    let message = stderr(output);
+    assert_eq!(status(output), 2, "{message}");
+    assert!(
+        message.contains(said) && message.lines().count() == 1,
+        "{message}"
+    );
     assert_eq!(stdout(output), "");
 }
 

@@ -64,11 +64,11 @@ fn a_device_that_never_ends_is_no_file_of_ours() {
         (&["export", "/dev/zero"], "no MCAP log"),
     ] {
         let output = rumbo_in(folder, arguments);
-        let told = stderr(&output);
-        assert_eq!(status(&output), 2, "{told}");
+        let message = stderr(&output);
+        assert_eq!(status(&output), 2, "{message}");
         assert!(
-            told.contains(said) && told.lines().count() == 1,
-            "{arguments:?}: {told}"
+            message.contains(said) && message.lines().count() == 1,
+            "{arguments:?}: {message}"
         );
     }
 }
@@ -79,18 +79,21 @@ fn a_file_of_more_than_it_can_hold_is_refused_with_the_limit() {
     let folder = folder.path();
     let commands = "[[command]]\nat_s = 0.1\nspeed_rpm = 60\n".repeat(10_001);
     std::fs::write(folder.join("many.toml"), scenario("t", 0.2) + &commands).unwrap();
-    let told = stderr(&rumbo_in(folder, &["run", "many.toml"]));
+    let message = stderr(&rumbo_in(folder, &["run", "many.toml"]));
     assert!(
-        told.contains("command = 10003 tables: at most 10000"),
-        "{told}"
+        message.contains("command = 10003 tables: at most 10000"),
+        "{message}"
     );
     let walls = "[[wall]]\nfrom_m = [0, 0]\nto_m = [1, 0]\n".repeat(1_001);
     std::fs::write(folder.join("walls.toml"), format!("title = \"w\"\n{walls}")).unwrap();
-    let told = stderr(&rumbo_in(
+    let message = stderr(&rumbo_in(
         folder,
         &["run", "mode5", "--world", "walls.toml"],
     ));
-    assert!(told.contains("wall = 1001 tables: at most 1000"), "{told}");
+    assert!(
+        message.contains("wall = 1001 tables: at most 1000"),
+        "{message}"
+    );
     let late = ["run", "mode5", "--command", "ON@1e300"];
     assert!(stderr(&rumbo_in(folder, &late)).contains("within 0..3600 s"));
 }
@@ -113,9 +116,12 @@ fn a_log_names_no_program_but_the_one_that_ran() {
         };
         session(&folder.join("x.mcap"), &manifest, 10_000);
         let output = rumbo_in(folder, &["rerun", "x.mcap"]);
-        let told = stderr(&output);
-        assert_eq!(status(&output), 2, "{told}");
-        assert!(told.contains("is gone or is another one now"), "{told}");
+        let message = stderr(&output);
+        assert_eq!(status(&output), 2, "{message}");
+        assert!(
+            message.contains("is gone or is another one now"),
+            "{message}"
+        );
     }
 }
 
@@ -132,29 +138,29 @@ fn times_and_steps_that_no_run_had_are_refused_by_name() {
         assert_eq!(status(&output), 2);
         stderr(&output)
     };
-    let told = changed(&|manifest| manifest.step_us = u64::MAX);
+    let message = changed(&|manifest| manifest.step_us = u64::MAX);
     assert!(
-        told.contains(
+        message.contains(
             "step_us = 18446744073709551615 in its manifest: must be within 1000..100000"
         ),
-        "{told}"
+        "{message}"
     );
-    let told = changed(&|manifest| manifest.step_us = 0);
-    assert!(told.contains("step_us = 0 "), "{told}");
-    let told = changed(&|manifest| manifest.texts = vec![(1e9, "ON".into())]);
+    let message = changed(&|manifest| manifest.step_us = 0);
+    assert!(message.contains("step_us = 0 "), "{message}");
+    let message = changed(&|manifest| manifest.texts = vec![(1e9, "ON".into())]);
     assert!(
-        told.contains("texts = 1000000000 in its manifest: must be within 0..3600 s"),
-        "{told}"
+        message.contains("texts = 1000000000 in its manifest: must be within 0..3600 s"),
+        "{message}"
     );
-    let told = changed(&|manifest| manifest.eeprom = Some("00".repeat(5_000)));
+    let message = changed(&|manifest| manifest.eeprom = Some("00".repeat(5_000)));
     assert!(
-        told.contains("eeprom = 5000 in its manifest: must be at most 4096 bytes"),
-        "{told}"
+        message.contains("eeprom = 5000 in its manifest: must be at most 4096 bytes"),
+        "{message}"
     );
     // A link that spoke for twelve days.
     session(&folder.join("x.mcap"), &manifest, 1_000_000 * 1_000_000);
     let output = rumbo_in(folder, &["rerun", "x.mcap"]);
-    let told = stderr(&output);
-    assert_eq!(status(&output), 2, "{told}");
-    assert!(told.contains("must be within 0..604800 s"), "{told}");
+    let message = stderr(&output);
+    assert_eq!(status(&output), 2, "{message}");
+    assert!(message.contains("must be within 0..604800 s"), "{message}");
 }

@@ -1,4 +1,4 @@
-//! Files as they come and go: nothing that is there is lost, nothing in them is believed that could do harm, and no damage goes unnoticed.
+//! Files as they come and go: nothing that is there is lost, nothing in them is obeyed, and no damage goes unnoticed.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 

@@ -25,8 +25,8 @@ use std::collections::BTreeMap;
 /// Metrics by name.
 pub type Metrics = BTreeMap<String, f64>;
 
-/// All metrics of a run. Not a number where what is measured did not happen; of a robot that was never driven, those of its mode are
-/// missing.
+/// All metrics of a run. Not a number where what is measured did not happen; of a robot that was never driven, those of
+/// its mode are missing.
 pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
     let mut metrics = Metrics::new();
     let duration_s = setup.scenario.duration_s;

@@ -247,18 +247,19 @@ impl Intake {
         };
         let log = &mut self.log;
         self.filled += match topic {
-            Topic::Telemetry => size_of::<Row>(),
             // As text they are about as long as in memory.
             Topic::State | Topic::Parameters | Topic::Events | Topic::Scene => 2 * data.len(),
             Topic::FromRobot | Topic::ToRobot => size_of::<Burst>() + data.len(),
             Topic::Console => size_of::<Said>() + data.len(),
-            Topic::Digest | Topic::Estimated | Topic::True | Topic::World => 0,
+            Topic::Telemetry | Topic::Digest => 0,
+            Topic::Estimated | Topic::True | Topic::World => 0,
         };
         match topic {
             Topic::Telemetry => {
                 let Signals(mut row) = serde_json::from_slice(data)?;
                 row.t_ms = t_ms;
                 if !row.is_empty() {
+                    self.filled += size_of::<Row>();
                     log.rows.push(row);
                 }
             }
