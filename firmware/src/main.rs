@@ -17,7 +17,7 @@ mod pins;
 
 use hal::{adc, clock, eeprom, encoder::Encoders, link, outputs, power, record, sonar::Listener};
 use rumbo_control::{Inputs, TICK_US};
-use rumbo_robot::{Config, Robot};
+use rumbo_robot::{Cell, Config, Robot, START_AT};
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
@@ -29,11 +29,18 @@ fn main() -> ! {
     let reset = power::reset_cause();
     power::start_watchdog();
     hal::start();
+    let start = eeprom::read(START_AT).wrapping_add(1);
     let mut robot = Robot::new(Config {
         image: hal::image_hash(),
         reset,
+        start,
     });
     robot.recall(eeprom::read);
+    // It is there before the first byte of this start has left.
+    eeprom::write(Cell {
+        address: START_AT,
+        value: start,
+    });
     record::robot(&robot);
     run(&mut robot)
 }

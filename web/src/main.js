@@ -4,6 +4,7 @@
  *
  * For tests and for the browser's console, `window.rumbo` gives the signals as plotted.
  */
+import { Alarm } from './alarm.js';
 import { CalibrationDialog } from './calibration_dialog.js';
 import { CheckupDialog } from './checkup_dialog.js';
 import { Consoles } from './consoles.js';
@@ -105,6 +106,7 @@ const meter = new LinkMeter();
 const tabs = new Tabs('tabs', (panel) => meter.show(panel === 'bytes'));
 tabs.show('event-panel');
 const stateLine = new StateLine(store, send);
+const alarm = new Alarm();
 const pointer = element('pointer', HTMLOutputElement);
 element('ghost-here', HTMLButtonElement).addEventListener('click', () => send({ type: 'restart_ghost' }));
 element('fit', HTMLButtonElement).addEventListener('click', () => map.fit());
@@ -194,6 +196,7 @@ function receive(message) {
       replay.show(state);
       panel.show(state);
       stateLine.show(state);
+      alarm.show(state);
       plots.setMode(state.robot.mode);
       machine.setMode(state.robot.mode);
       if (table.length > 0 && state.robot.rig !== null) checkup.meet(sonars, servo);

@@ -19,6 +19,7 @@ export class StateLine {
   #state = element('state', HTMLOutputElement);
   #aim = element('aim', HTMLOutputElement);
   #end = element('end', HTMLOutputElement);
+  #refusal = element('refusal', HTMLOutputElement);
   #fault = element('fault', HTMLDivElement);
   #faultText = element('fault-text', HTMLSpanElement);
   #pose = element('pose', HTMLOutputElement);
@@ -70,6 +71,9 @@ export class StateLine {
     const { fault, errand } = slow.robot;
     this.#fault.hidden = fault === null;
     this.#showFault(fault);
+    const refused = slow.refused ?? '';
+    this.#refusal.hidden = refused === '';
+    setText(this.#refusal, said(refused));
     setText(this.#state, this.#stateWords(slow));
     const aim = this.#aimWords(slow);
     setText(this.#aim, aim);
@@ -104,7 +108,8 @@ export class StateLine {
     const latest = this.#store.latest;
     const mode = this.modes.find((each) => each.id === robot.mode);
     const [left, right] = robot.reference;
-    const words = robot.armed || robot.fault !== null || slow.replay ? [] : [t('ON starts it')];
+    const answers = slow.link.connected || robot.text;
+    const words = !answers || robot.armed || robot.fault !== null || slow.replay || slow.refused ? [] : [t('ON starts it')];
     const at = latest?.estimated;
     const to = latest?.heading_ref_rad ?? null;
     if (at && to !== null) words.push(`${t('heading')} ${degrees(at.heading_rad)} → ${format(near(to * DEG_PER_RAD, at.heading_rad * DEG_PER_RAD), 0)}°`);

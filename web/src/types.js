@@ -67,6 +67,8 @@
  * @property {boolean} simulated
  * @property {number} speed
  * @property {number} achieved_speed
+ * @property {string} [refused] The last order, if it was refused or given up, and why.
+ * @property {string[]} [alarms] What a person has to see to at once.
  * @property {{phase: 'running', since_s: number} | {phase: 'done', findings: Findings, at_s: number} | {phase: 'failed', why: string, at_s: number}} [calibration]
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,

@@ -63,7 +63,7 @@ test('what the robot says: faults, refusals, why it started, events, modes, stat
 const NO_SENTENCE = ['rig', ' in world {}', ' with rig {}', '{}: {}', '{}-{}-{}T{}:{}:{}Z', 'reset: {}{}{}, seed {}', 'a new route, {}', 'allowed is {}', 'parameter {}', 'once', 'again and again'];
 
 test('what the station says', () => {
-  const texts = ['words', 'observer', 'session', 'session/calibrating', 'session/commanding', 'replay', 'log/bound'].flatMap((name) => {
+  const texts = ['words', 'oddity', 'observer', 'session', 'session/calibrating', 'session/commanding', 'replay', 'log/bound'].flatMap((name) => {
     const source = (read(`../../crates/station/src/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '');
     return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => (found[1] ?? '').replace(/\{[^}]*\}/g, '{}'));
   }).map((text) => text.replace('allowed is {} to {} {}', 'allowed is {} to {}').replace(/^allowed is \{\} to \{\} (?:cm|rpm)$/, 'allowed is {} to {}'));

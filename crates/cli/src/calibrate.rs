@@ -68,6 +68,7 @@ pub(crate) fn in_dashboard() -> Extras {
                     .collect(),
             })
         }),
+        ..Extras::default()
     }
 }
 

@@ -8,7 +8,7 @@ use crate::ghost::Haunted;
 use crate::logs;
 use crate::output;
 use rumbo_station::port::{self, Port};
-use rumbo_station::{LabConfig, Target};
+use rumbo_station::{Extras, LabConfig, Target};
 
 /// Opens the port and serves the dashboard.
 pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
@@ -24,6 +24,7 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
         at: args.session.serve.at(),
         speed: 1.0,
         recording: logs::recording(args.session.out.as_deref()),
+        echo: Some(output::aside),
         #[cfg(feature = "foxglove")]
         bridge: crate::lab::bridge(args.session.bridge)?,
     };
@@ -31,7 +32,10 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
         Some(scenario) => Box::new(Haunted::new(robot, scenario)?),
         None => Box::new(robot),
     };
-    let served = rumbo_station::serve_with(config, robot, calibrate::in_dashboard())
-        .map_err(Failure::input)?;
+    let extras = Extras {
+        text: args.text,
+        ..calibrate::in_dashboard()
+    };
+    let served = rumbo_station::serve_with(config, robot, extras).map_err(Failure::input)?;
     browser::show(served, args.session.serve)
 }

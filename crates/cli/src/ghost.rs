@@ -8,7 +8,7 @@ use rumbo_control::Fault;
 use rumbo_scenario::files::Overrides;
 use rumbo_station::log::{Log, Manifest};
 use rumbo_station::{Choice, Ghost, LinkNews, MapPose, Scene, Simulation, Standing, Target};
-use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, ToRobot};
+use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
 use std::collections::VecDeque;
 use std::path::Path;
 
@@ -26,7 +26,9 @@ fn simulated(scenario: &str, seed: u64) -> Result<SimulatedRobot, Failure> {
         rig: None,
         seed,
     };
-    Ok(SimulatedRobot::new(Overrides::default(), choice)?)
+    let mut ghost = SimulatedRobot::new(Overrides::default(), choice)?;
+    ghost.be_ghost();
+    Ok(ghost)
 }
 
 fn surroundings(ghost: &SimulatedRobot) -> Scene {
@@ -122,6 +124,7 @@ impl<T: Target> Target for Haunted<T> {
             session: SESSION,
             number: self.told,
             command: Command::ClearFault,
+            seen: RobotTime::default(),
         };
         self.ghost.send(clear.frame(0).bytes())
     }
@@ -256,6 +259,11 @@ mod tests {
             session: 1,
             number,
             command,
+            // By the clock of the robot, of which the ghost knows nothing.
+            seen: RobotTime {
+                start: 77,
+                ms: 1_000_000,
+            },
         };
         robot.send(message.frame(0).bytes()).unwrap();
         robot.advance(100_000).unwrap();

@@ -43,6 +43,7 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
         at: args.session.serve.at(),
         speed: args.speed,
         recording: logs::recording(args.session.out.as_deref()),
+        echo: None,
         #[cfg(feature = "foxglove")]
         bridge: bridge(args.session.bridge)?,
     };
@@ -196,6 +197,11 @@ fn first_words(setup: &Setup) -> Result<Vec<Command>, FileError> {
 }
 
 impl SimulatedRobot {
+    /// It gets what another robot is given, by that one's clock.
+    pub(crate) fn be_ghost(&mut self) {
+        self.sim.be_ghost();
+    }
+
     /// Puts the robot elsewhere.
     pub(crate) fn place(&mut self, Standing { at, told }: Standing) {
         let at = rumbo_plant::contact::Pose {

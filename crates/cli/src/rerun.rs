@@ -16,8 +16,7 @@ use rumbo_scenario::files::Setup;
 use rumbo_scenario::run::{self, RunResult};
 use rumbo_scenario::sim::Sim;
 use rumbo_station::log::{Burst, Kind, Log, Manifest, Said, Sent};
-use rumbo_wire::message::Hello;
-use rumbo_wire::{Decoder, FromRobot, Message, Received};
+use rumbo_wire::{Decoder, FromRobot, Message, PROTOCOL_VERSION, Received};
 use serde_json::json;
 
 /// Longest line of text from a robot that is put together.
@@ -29,6 +28,9 @@ struct Recorder {
     version: String,
     /// What the robot's table of parameters was and is now, where they differ: then nothing else can be the same.
     table: Option<String>,
+    /// The protocol that the robot spoke, where it was another one: then it said the same in other bytes, at other
+    /// instants.
+    protocol: Option<u8>,
 }
 
 impl Recorder {
@@ -38,8 +40,12 @@ impl Recorder {
             true => String::new(),
             false => format!("; recorded by version {}, this is {here}", recorded.version),
         };
-        let hello = hello(log).filter(|_| recorded.program == "rumbo");
+        let hello = log.hello();
+        let protocol = hello
+            .map(|hello| hello.protocol)
+            .filter(|protocol| *protocol != PROTOCOL_VERSION);
         let table = hello
+            .filter(|_| recorded.program == "rumbo")
             .map(|hello| hello.schema)
             .filter(|table| *table != SCHEMA);
         let table = table.map(|table| {
@@ -48,23 +54,23 @@ impl Recorder {
                  recorded it"
             )
         });
-        Self { version, table }
+        Self {
+            version,
+            table,
+            protocol,
+        }
     }
 }
 
-/// How the robot first named itself in frames.
-fn hello(log: &Log) -> Option<Hello> {
-    let from_robot = log.link.iter().filter(|burst| !burst.to_robot);
-    let mut decoder = Decoder::<LINE>::default();
-    from_robot
-        .flat_map(|burst| &burst.bytes)
-        .find_map(|byte| match decoder.push(*byte) {
-            Some(Received::Frame(body)) => match FromRobot::from_body(&body) {
-                Ok(FromRobot::Hello(hello)) => Some(hello),
-                _ => None,
-            },
-            _ => None,
+impl Recorder {
+    /// Why not all is compared; empty where it is.
+    fn protocol_words(&self) -> String {
+        self.protocol.map_or_else(String::new, |protocol| {
+            format!(
+                "; the metrics alone are compared: the robot spoke protocol {protocol}, now {PROTOCOL_VERSION}, in other bytes at other instants"
+            )
         })
+    }
 }
 
 /// What came of the comparison.
@@ -100,8 +106,18 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
         }
     })?;
     let verdict = match recorded.kind {
-        Kind::Run => same(&log, &run::run(&setup, seed)?),
-        Kind::Calibration => same(&log, &calibrate::run_calibration(&setup, seed)?.result),
+        Kind::Run => same(&log, &run::run(&setup, seed)?, recorder.protocol),
+        Kind::Calibration => {
+            let again = calibrate::run_calibration(&setup, seed)?;
+            same(&log, &again.result, recorder.protocol)
+        }
+        Kind::Lab if let Some(protocol) = recorder.protocol => {
+            return Err(Failure::Input(format!(
+                "{shown}: a session in protocol {protocol}, of which only the bytes could be compared, and this program speaks protocol \
+                 {PROTOCOL_VERSION}; run it again with the program that recorded it{}",
+                recorder.version
+            )));
+        }
         Kind::Lab => session(&log, &setup, seed, recorded)?,
         Kind::Robot => {
             return Err(Failure::Input(format!(
@@ -121,6 +137,10 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
             (false, Some((t_s, recorder.table.as_ref().unwrap_or(what))))
         }
     };
+    let compared = match recorder.protocol {
+        Some(_) => recorder.protocol_words(),
+        None => format!(", {from_robot} bytes from the robot"),
+    };
     if args.json {
         output::json(
             &json!({ "log": output::shown(&args.log), "equal": equal, "duration_s": log.duration_s(), "bytes": from_robot,
@@ -130,12 +150,13 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
     } else {
         output::line(&match first {
             None => format!(
-                "{shown}: equal, {from_robot} bytes from the robot in {:.2} s{}",
+                "{shown}: equal{compared} in {:.2} s{}",
                 log.duration_s(),
                 recorder.version
             ),
             Some((t_s, what)) => format!(
-                "{shown}: differs first at {t_s:.3} s: {what}{}",
+                "{shown}: differs first at {t_s:.3} s: {what}{}{}",
+                recorder.protocol_words(),
                 recorder.version
             ),
         })?;
@@ -148,14 +169,16 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
 }
 
 /// Compares a run without a window, which was done again, with its log.
-fn same(log: &Log, result: &RunResult) -> Verdict {
+fn same(log: &Log, result: &RunResult, other_protocol: Option<u8>) -> Verdict {
     let link: Vec<Burst> = result.trace.link.iter().map(run_log::burst).collect();
     let said: Vec<Said> = result.trace.consoles.iter().map(run_log::said).collect();
     let cut = log.cut.is_some();
-    let parted =
-        first_difference(&log.link, &link, cut).or_else(|| first_difference(&log.said, &said, cut));
-    if let Some(difference) = parted {
-        return difference;
+    if other_protocol.is_none() {
+        let parted = first_difference(&log.link, &link, cut);
+        let parted = parted.or_else(|| first_difference(&log.said, &said, cut));
+        if let Some(difference) = parted {
+            return difference;
+        }
     }
     let Some(outcome) = &log.outcome else {
         return Verdict::Equal;

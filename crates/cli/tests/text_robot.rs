@@ -39,6 +39,7 @@ impl Bench {
         let station = Running::start(&[
             "connect",
             &robot.said,
+            "--text",
             "--no-browser",
             "--port",
             "0",

@@ -131,13 +131,19 @@ const fn refusal_in_spanish(refusal: Refusal) -> &'static str {
         Refusal::Armed => "no puede hacerse con el robot armado; desármelo antes",
         Refusal::Faulted => "hay un fallo retenido; elimine su causa y bórrelo antes",
         Refusal::SonarNotReady => {
-            "el sensor que necesita este modo no da buenas lecturas; compruebe su cableado y que haya algo a menos de 2,5 m"
+            "el sensor que necesita este modo no da buenas lecturas; compruebe su cableado"
         }
         Refusal::NoLink => "al robot no le llega ningún latido; conéctelo y vuelva a armar",
         Refusal::Malformed => {
             "el robot no entendió la orden; use la misma versión en ambos extremos"
         }
         Refusal::BatteryLow => "la batería está baja; cárguela",
+        Refusal::TooOld => {
+            "es demasiado antigua: se dio hace más de 2 s, o antes de que el robot volviera a arrancar; vuelva a darla"
+        }
+        Refusal::NoWall => {
+            "no hay ninguna pared al alcance del sensor que necesita este modo; coloque el robot a menos de 2,5 m de una"
+        }
         Refusal::WrongRig => {
             "los sensores del robot no están donde los necesita este modo; móntelos así y fije el parámetro `rig`"
         }

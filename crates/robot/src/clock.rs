@@ -1,13 +1,15 @@
 //! Milliseconds and overruns out of a microsecond clock that wraps after 71.6 minutes.
+//!
+//! The milliseconds wrap after 49.7 days; telemetry carries the lower half of them.
 
 use rumbo_control::{Micros, TICK_US};
 
-/// Counts milliseconds so that they wrap at 65,536 ms only, also where the microseconds wrap.
+/// Counts milliseconds that go on where the microseconds wrap.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Clock {
     now: Micros,
     started: bool,
-    t_ms: u16,
+    ms: u32,
     rest_us: u32,
     overruns: u8,
 }
@@ -20,12 +22,12 @@ impl Clock {
         self.now = now;
         // What is usual without a division, which takes the AVR 40 us.
         let (whole_ms, rest_us) = if elapsed_us == TICK_US {
-            ((TICK_US / 1_000) as u16, self.rest_us + TICK_US % 1_000)
+            (TICK_US / 1_000, self.rest_us + TICK_US % 1_000)
         } else {
             let total_us = self.rest_us.saturating_add(elapsed_us);
-            (((total_us / 1_000) & 0xFFFF) as u16, total_us % 1_000)
+            (total_us / 1_000, total_us % 1_000)
         };
-        self.t_ms = self.t_ms.wrapping_add(whole_ms);
+        self.ms = self.ms.wrapping_add(whole_ms);
         self.rest_us = rest_us;
         // A tick started late by half a period or more: the one before overran.
         if elapsed_us >= TICK_US + TICK_US / 2 {
@@ -40,8 +42,13 @@ impl Clock {
     }
 
     /// Milliseconds since the first tick, wrapping.
+    pub(crate) fn ms(&self) -> u32 {
+        self.ms
+    }
+
+    /// The same as telemetry tells them.
     pub(crate) fn t_ms(&self) -> u16 {
-        self.t_ms
+        (self.ms & 0xFFFF) as u16
     }
 
     /// Ticks that started late, wrapping.
@@ -60,7 +67,7 @@ mod tests {
         let start = Micros(u32::MAX - 25_300);
         for n in 0..1_000u32 {
             clock.advance(start.after(n * TICK_US));
-            assert_eq!(u32::from(clock.t_ms()), n * 10);
+            assert_eq!(clock.ms(), n * 10);
         }
         assert_eq!(clock.overruns(), 0);
     }
@@ -71,7 +78,17 @@ mod tests {
         (0..=1_000u32).for_each(|n| {
             clock.advance(Micros(n * 1_700));
         });
-        assert_eq!(clock.t_ms(), 1_700);
+        assert_eq!(clock.ms(), 1_700);
+    }
+
+    #[test]
+    fn milliseconds_go_on_for_an_hour_and_a_half() {
+        let mut clock = Clock::default();
+        // Ticks as late as they may be; the microseconds wrap once.
+        (0..=60_000u32).for_each(|n| {
+            clock.advance(Micros(n.wrapping_mul(90_000)));
+        });
+        assert_eq!((clock.ms(), clock.t_ms()), (5_400_000, 26_048));
     }
 
     #[test]

@@ -23,4 +23,4 @@ mod supervisor;
 mod text;
 
 pub use robot::{Config, Robot};
-pub use store::Cell;
+pub use store::{Cell, START_AT};

@@ -10,7 +10,7 @@ use rumbo_control::math::round;
 use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, SetpointError, Situation};
 use rumbo_control::params::{ParamError, ParamId, Params};
 use rumbo_control::rig::Rig;
-use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, SonarId, Wheels};
+use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, Range, SonarId, Wheels};
 use rumbo_wire::{Command, Refusal, Telemetry};
 
 use crate::encoders::EncoderWatch;
@@ -255,9 +255,21 @@ impl Pilot {
             Err(Refusal::WrongRig)
         } else if self.mode.is_ready(&self.params, &self.estimate) {
             Ok(())
-        } else {
+        } else if self.hears_nothing() {
             Err(Refusal::SonarNotReady)
+        } else {
+            Err(Refusal::NoWall)
         }
+    }
+
+    /// Of the sonars that the mode needs, one gives no reading at all, not even that nothing is near.
+    fn hears_nothing(&self) -> bool {
+        let needed = self.carried(self.mode.look().sonars);
+        SonarId::ALL.iter().any(|&sonar| {
+            let stale_s = self.params.get(ParamId::StaleRange);
+            let heard = self.estimate.range(sonar);
+            needed[sonar as usize] && (heard.range == Range::Faulty || heard.is_older(stale_s))
+        })
     }
 
     /// The wheels have been armed.

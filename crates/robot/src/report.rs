@@ -117,9 +117,10 @@ impl Reporter {
         self.recalled = recalled;
     }
 
-    /// HELLO was asked for.
+    /// HELLO was asked for; the status that follows it tells the time.
     pub(crate) fn introduce(&mut self) {
         self.hello_due = true;
+        self.status_due = true;
     }
 
     /// Telemetry frames that the link had no room for, wrapping.

@@ -10,8 +10,8 @@ use rumbo_control::params::{ParamId, SCHEMA};
 use rumbo_control::{Fault, Inputs, Outputs};
 use rumbo_wire::text::TextCommand;
 use rumbo_wire::{
-    Ack, Body, Command, Decoder, EventKind, Hello, Message, PROTOCOL_VERSION, Received, Refusal,
-    ResetCause, Status, ToRobot, codec,
+    Ack, Body, COMMAND_LIFE_MS, Command, Decoder, EventKind, Hello, Message, PROTOCOL_VERSION,
+    Received, Refusal, ResetCause, RobotTime, Status, ToRobot, codec,
 };
 
 use crate::clock::Clock;
@@ -28,13 +28,15 @@ const LINE: usize = 48;
 /// Without a tick for this long [us], the robot does not know what it drives through.
 const TICK_LOST_US: u32 = 100_000;
 
-/// What the robot is told about itself at the start.
+/// What the robot needs to know about itself at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
     /// Hash of the program image; 0 for the native build.
     pub image: u32,
     /// Why the program started.
     pub reset: ResetCause,
+    /// Number of this start, wrapping: another one than at the starts before.
+    pub start: u8,
 }
 
 /// The whole robot, but for its hardware.
@@ -42,6 +44,7 @@ pub struct Config {
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub struct Robot {
+    start: u8,
     supervisor: Supervisor,
     clock: Clock,
     battery_v: Option<f32>,
@@ -63,6 +66,7 @@ impl Robot {
             reset: config.reset,
         };
         Robot {
+            start: config.start,
             clock: Clock::default(),
             decoder: Decoder::default(),
             ledger: Ledger::default(),
@@ -77,9 +81,19 @@ impl Robot {
 
     /// Takes a byte from the link; what it completes is applied at once.
     pub fn receive(&mut self, byte: u8) {
+        self.receive_judging(byte, true);
+    }
+
+    /// The same for a simulated robot that gets what another one is given: by that one's clock, so no command is too old.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn receive_as_ghost(&mut self, byte: u8) {
+        self.receive_judging(byte, false);
+    }
+
+    fn receive_judging(&mut self, byte: u8, age: bool) {
         match self.decoder.push(byte) {
             None => {}
-            Some(Received::Frame(body)) => self.take_frame(&body),
+            Some(Received::Frame(body)) => self.take_frame(&body, age),
             Some(Received::Line(line)) => {
                 let parsed = TextCommand::parse(line);
                 self.take_line(parsed.ok());
@@ -191,7 +205,8 @@ impl Robot {
         cell
     }
 
-    fn take_frame(&mut self, body: &Body) {
+    /// Takes a frame, and judges the age of a command in it if that is wanted.
+    fn take_frame(&mut self, body: &Body, judge_age: bool) {
         let Ok(message) = ToRobot::from_body(body) else {
             if let Some((session, number)) = codec::command_number(body) {
                 self.reporter.addressed_in(Language::Binary);
@@ -211,12 +226,18 @@ impl Robot {
                 session,
                 number,
                 command,
+                seen,
             } => match self.ledger.judge(session, number, &command) {
                 Verdict::New => {
+                    let result = if judge_age && self.is_too_old(&command, seen) {
+                        Err(Refusal::TooOld)
+                    } else {
+                        self.apply(&command)
+                    };
                     let ack = Ack {
                         session,
                         number,
-                        result: self.apply(&command),
+                        result,
                     };
                     self.ledger.record(ack, &command);
                     self.reporter.acknowledge(ack);
@@ -257,6 +278,20 @@ impl Robot {
                 self.store.changed();
                 self.pilot.set_params(&values)
             }
+        }
+    }
+
+    /// What the link held back is not done later.
+    fn is_too_old(&self, command: &Command, seen: RobotTime) -> bool {
+        let age_ms = self.time().since(seen);
+        command.is_timed() && age_ms.is_none_or(|ms| ms > COMMAND_LIFE_MS)
+    }
+
+    /// The time of the last tick.
+    fn time(&self) -> RobotTime {
+        RobotTime {
+            start: self.start,
+            ms: self.clock.ms(),
         }
     }
 
@@ -353,6 +388,7 @@ impl Robot {
             dropped: self.reporter.dropped(),
             overruns: self.clock.overruns(),
             rig: self.pilot.rig(),
+            at: self.time(),
         }
     }
 }

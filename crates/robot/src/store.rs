@@ -27,6 +27,10 @@ const CHECK: u16 = VALUES + 4 * COUNT as u16;
 const LEN: u16 = CHECK + 2;
 /// Where the copies begin. Not at 0, which a reset selects: a write that a failing supply makes by itself goes there.
 const PLACES: [u16; 2] = [16, 2_064];
+/// Where the number of the robot's last start is, which sets its times apart from those of other starts; the
+/// hardware's layer keeps it.
+pub const START_AT: u16 = 8;
+const _: () = assert!(START_AT < PLACES[0]);
 const _: () = assert!(PLACES[0] + LEN <= PLACES[1] && PLACES[1] + LEN <= 4_096 && COUNT < 256);
 const CRC_START: u16 = 0xFFFF;
 

@@ -3,10 +3,12 @@
 mod support;
 
 use proptest::prelude::*;
-use rumbo_control::Wheels;
 use rumbo_control::mode::{Level, ModeId, Movement};
 use rumbo_control::params::ParamId;
-use rumbo_wire::{Command, EventKind, Frame, Kind, Recalled, Refusal, ToRobot};
+use rumbo_control::{Micros, Wheels};
+use rumbo_wire::{
+    COMMAND_LIFE_MS, Command, EventKind, Frame, Kind, Recalled, Refusal, RobotTime, ToRobot,
+};
 use support::{Bench, SESSION};
 
 #[test]
@@ -25,6 +27,7 @@ fn a_repeated_command_is_applied_once_and_answered_each_time() {
         session: SESSION,
         number: 2,
         command: Command::Arm,
+        seen: bench.seen,
     });
     bench.ticks(20);
     assert_eq!(bench.acks().len(), before.len() + 1);
@@ -262,4 +265,98 @@ fn a_save_while_driving_disturbs_nothing() {
         assert_eq!(saving.outputs, other.outputs);
     }
     assert!(saving.events().contains(&EventKind::Saved) && saving.status().armed);
+}
+
+/// Each kind of command that changes what the robot drives, in mode 0, disarmed.
+const TIMED: [Command; 3] = [
+    Command::Arm,
+    Command::Mode(ModeId::Manual),
+    Command::Move {
+        movement: Movement::Forward,
+        level: Level::Duty(0.5),
+    },
+];
+
+#[test]
+fn a_command_that_is_too_old_is_refused_and_one_that_is_old_enough_is_not() {
+    for (age_ms, refused) in [
+        (COMMAND_LIFE_MS, false),
+        (COMMAND_LIFE_MS + 10, true),
+        (60_000, true),
+    ] {
+        for command in TIMED {
+            let mut bench = Bench::alive();
+            let seen = bench.time();
+            bench.ticks(age_ms / 10);
+            bench.seen = seen;
+            let answer = bench.numbered(SESSION, 1, command);
+            assert_eq!(
+                answer == Err(Refusal::TooOld),
+                refused,
+                "{command:?} {age_ms} ms: {answer:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_command_from_the_future_or_from_before_the_start_is_refused() {
+    for (start, ahead_ms) in [(0, 1_000), (1, 0), (255, 0)] {
+        for command in TIMED {
+            let mut bench = Bench::alive();
+            bench.seen.start = start;
+            bench.seen.ms += ahead_ms;
+            assert_eq!(
+                bench.command(command),
+                Err(Refusal::TooOld),
+                "{start} {ahead_ms}"
+            );
+            assert!(!bench.status().armed);
+        }
+    }
+}
+
+#[test]
+fn an_old_stop_or_off_is_obeyed() {
+    for command in [Command::Stop, Command::Disarm] {
+        let mut bench = Bench::alive();
+        bench.drive();
+        bench.seen = RobotTime { start: 9, ms: 9 };
+        assert_eq!(bench.command(command), Ok(0.0));
+        assert!(!bench.is_driven());
+    }
+}
+
+#[test]
+fn the_age_of_a_command_is_right_where_the_clock_of_microseconds_wraps() {
+    let mut bench = Bench::at(Micros(u32::MAX - 700_000));
+    bench.ticks(100);
+    assert_eq!(bench.command(Command::Arm), Ok(0.0));
+    bench.command(Command::Disarm).unwrap();
+    let seen = bench.seen;
+    bench.ticks(250);
+    bench.seen = seen;
+    assert_eq!(bench.command(Command::Arm), Err(Refusal::TooOld));
+}
+
+#[test]
+fn a_repeated_command_is_answered_as_before_however_old_it_has_become() {
+    let mut bench = Bench::alive();
+    let seen = bench.seen;
+    bench.numbered(SESSION, 1, Command::Arm).unwrap();
+    bench.ticks(250);
+    bench.seen = seen;
+    assert_eq!(bench.numbered(SESSION, 1, Command::Arm), Ok(0.0));
+}
+
+#[test]
+fn the_status_after_hello_tells_the_time_since_the_start() {
+    let mut bench = Bench::alive();
+    bench.ticks(25);
+    bench.heard.clear();
+    bench.send(&ToRobot::Hello);
+    bench.ticks(10);
+    let at = bench.status().at;
+    assert_eq!(at.start, 0);
+    assert!((750..=850).contains(&at.ms), "{at:?}");
 }

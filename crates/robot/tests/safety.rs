@@ -119,6 +119,7 @@ fn stop_releases_the_wheels_at_the_next_tick_from_any_session() {
             session,
             number: 0,
             command: Command::Stop,
+            seen: bench.seen,
         });
         bench.ticks(1);
         assert_eq!(bench.outputs.drive, Wheels::default());

@@ -25,6 +25,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "index.html": HTML,
     "style.css": CSS,
     "icon.svg": SVG,
+    "src/alarm.js": SCRIPT,
     "src/band.js": SCRIPT,
     "src/calibration_dialog.js": SCRIPT,
     "src/checkup.js": SCRIPT,

@@ -12,6 +12,7 @@ pub(crate) use event::{ConsoleText, LINK_CONSOLE, Level, LoggedEvent};
 pub(crate) use slow::{LinkState, ReplayState, RobotState, State};
 
 use crate::catalogue::ParameterState;
+use crate::echo::Echo;
 use crate::log::Burst;
 use crate::log::recorder::{Entry, Recorder};
 use crate::row::Row;
@@ -52,6 +53,8 @@ pub(crate) struct Board {
     contents: Mutex<Contents>,
     /// Records what is put on the board.
     recorder: Mutex<Option<Recorder>>,
+    /// Shows what goes wrong on the terminal too.
+    echo: Option<Echo>,
     /// Shows the same to viewers of another protocol.
     #[cfg(feature = "foxglove")]
     bridge: Option<crate::bridge::Bridge>,
@@ -103,6 +106,7 @@ impl Board {
                 state: Versioned::default(),
             }),
             recorder: Mutex::new(None),
+            echo: None,
             #[cfg(feature = "foxglove")]
             bridge: None,
             changed: watch::Sender::new(()),
@@ -151,6 +155,11 @@ impl Board {
         Self { bridge, ..self }
     }
 
+    /// What goes wrong is also shown on the terminal.
+    pub(crate) fn echoed(self, echo: Option<Echo>) -> Self {
+        Self { echo, ..self }
+    }
+
     /// Records raw bytes of the link. Pages get them with the next news: nobody is woken for them.
     pub(crate) fn link(&self, burst: Burst) {
         self.lock().bytes.push(burst.clone());
@@ -183,6 +192,9 @@ impl Board {
 
     pub(crate) fn push_event(&self, event: LoggedEvent) {
         self.take(Entry::Event(event.clone()));
+        if let Some(echo) = &self.echo {
+            echo.event(&event);
+        }
         self.lock().events.push(event);
         self.changed.send_replace(());
     }

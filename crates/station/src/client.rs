@@ -1,39 +1,43 @@
 //! The station's end of the link: bytes from the robot become what was heard, commands become bytes.
 //!
-//! Knows the protocol and nothing of browsers, threads or wall clocks: time is an argument, in the target's time. It asks for
-//! HELLO until the robot answers, then reads the parameters, sends heartbeats, and notices silence and restarts. It
-//! never arms. A robot that leaves HELLO unanswered and sends rows of the original's text is talked to in text.
+//! Knows the protocol and nothing of browsers, threads or wall clocks: time is an argument, in the target's time. It
+//! asks for HELLO until the robot answers, then reads the parameters, sends heartbeats, and notices silence and
+//! restarts. It never arms, and takes no order for a robot that is not there. A robot that leaves HELLO unanswered and
+//! sends rows of the original's text is talked to in text.
 
 mod heard;
+mod hearing;
+mod meeting;
 mod text;
 
-pub use heard::{Heard, KnownTable, LinkFigures};
+pub use heard::{Heard, KnownTable, LinkFigures, NotTaken};
 
-use crate::commands::{CommandManager, Fate, QueueFull};
+use crate::commands::{CommandManager, Fate};
 use crate::meter::Meter;
+use crate::oddity::{Oddity, OddityWatch};
 use crate::robot_clock::RobotClock;
 use crate::terminal::Terminal;
+use meeting::Meeting;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_wire::text::RowKind;
-use rumbo_wire::{
-    Ack, Command, Decoder, EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received,
-    ToRobot,
-};
+use rumbo_wire::{Command, Decoder, Hello, Message, PROTOCOL_VERSION, ToRobot};
 
 /// Room for a line of the original's text, the longest thing a robot says.
 const LINE_BYTES: usize = 128;
 /// HELLO is repeated this often until answered \[us\].
 const HELLO_PERIOD_US: u64 = 300_000;
-/// An answer to HELLO comes within this time; a later HELLO is a robot that started again \[us\].
-const HELLO_ANSWER_US: u64 = 1_000_000;
 /// A sign of life goes out this often, a third of the 500 ms after which the robot stops \[us\].
 const HEARTBEAT_PERIOD_US: u64 = 150_000;
 /// The original program is silent for up to 4 s while it drives \[us\].
 const TEXT_SILENCE_US: u64 = 6_000_000;
 /// The link counts as lost after this long without a frame: 25 telemetry frames \[us\].
 const SILENCE_US: u64 = 1_000_000;
+/// STOP that is not confirmed for this long is an alarm \[us\].
+const STOP_PATIENCE_US: u64 = 1_000_000;
+/// The alarm is repeated this often \[us\].
+const STOP_AGAIN_US: u64 = 10_000_000;
 
 /// Speaks with one robot.
 #[derive(Debug)]
@@ -57,8 +61,15 @@ pub struct RobotClient {
     row_kind: Option<RowKind>,
     manager: CommandManager,
     sequence: u8,
-    hello: Option<Hello>,
+    meeting: Meeting,
+    oddities: OddityWatch,
     connected: bool,
+    /// The robot has acknowledged STOP, and not said since that it is disarmed; since when it has said that it is
+    /// armed \[us\].
+    stopping: bool,
+    still_armed_us: Option<u64>,
+    /// When it was last reported that STOP is not confirmed.
+    stop_reported_us: Option<u64>,
     hello_sent_us: Option<u64>,
     last_sent_us: Option<u64>,
     last_heard_us: u64,
@@ -94,8 +105,12 @@ impl RobotClient {
             row_kind: None,
             manager: CommandManager::new(session),
             sequence: 0,
-            hello: None,
+            meeting: Meeting::default(),
+            oddities: OddityWatch::default(),
             connected: false,
+            stopping: false,
+            still_armed_us: None,
+            stop_reported_us: None,
             hello_sent_us: None,
             last_sent_us: None,
             last_heard_us: 0,
@@ -110,12 +125,13 @@ impl RobotClient {
         }
     }
 
-    /// A client for a robot that speaks the original's text and is in this mode: it needs no greeting.
+    /// A client for a robot that speaks the original's text and is in this mode: it needs no greeting. `clock_known`:
+    /// as above; such a robot is there from the beginning, another one once it is heard.
     pub fn of_text(mode: ModeId, clock_known: bool) -> Self {
         Self {
             text: true,
             undecided: false,
-            connected: true,
+            connected: clock_known,
             mode,
             ..Self::new(0, clock_known, KnownTable::OURS)
         }
@@ -124,9 +140,32 @@ impl RobotClient {
     /// Takes a command from the operator.
     ///
     /// # Errors
-    /// [`QueueFull`]; never for STOP.
-    pub fn submit(&mut self, command: Command, now_us: u64) -> Result<(), QueueFull> {
-        self.manager.submit(command, now_us)
+    /// [`NotTaken`]; never for STOP.
+    pub fn submit(&mut self, command: Command, now_us: u64) -> Result<(), NotTaken> {
+        if !self.connected && command != Command::Stop {
+            return Err(NotTaken::NotConnected);
+        }
+        if command == Command::Arm {
+            (self.stopping, self.still_armed_us) = (false, None);
+        }
+        let seen = self.meeting.newest();
+        let taken = self.manager.submit(command, seen, now_us);
+        taken.map_err(|_| NotTaken::QueueFull)
+    }
+
+    /// Takes commands that belong together, a route for instance. Each has its time from when it is its turn.
+    ///
+    /// # Errors
+    /// [`NotTaken`].
+    pub fn submit_in_turn(
+        &mut self,
+        commands: impl IntoIterator<Item = Command>,
+    ) -> Result<(), NotTaken> {
+        if !self.connected {
+            return Err(NotTaken::NotConnected);
+        }
+        self.manager.submit_in_turn(commands);
+        Ok(())
     }
 
     /// Appends the bytes to be sent now. To be called after every step of time.
@@ -147,9 +186,7 @@ impl RobotClient {
             return;
         }
         if self.connected && now_us.saturating_sub(self.last_heard_us) > SILENCE_US {
-            self.connected = false;
-            self.hello_sent_us = None;
-            (self.hellos, self.words) = (0, 0);
+            self.lose();
             heard.push(Heard::Lost);
         }
         let hello_due = self
@@ -160,9 +197,14 @@ impl RobotClient {
             self.hellos = self.hellos.saturating_add(1);
             self.say(ToRobot::Hello, now_us, to_robot);
         }
-        if let Some(command) = self.manager.poll(now_us) {
+        // Reads too: their answers would count for the robot that was there before.
+        let stops = self.manager.stop_since_us().is_some();
+        if (self.connected || stops)
+            && let Some(command) = self.manager.poll(self.meeting.newest(), now_us)
+        {
             self.say(command, now_us, to_robot);
         }
+        self.watch_stop(now_us, heard);
         if self
             .last_sent_us
             .is_none_or(|sent_us| now_us >= sent_us + HEARTBEAT_PERIOD_US)
@@ -170,6 +212,30 @@ impl RobotClient {
             self.say(ToRobot::Heartbeat, now_us, to_robot);
         }
         self.report_outcomes(heard);
+    }
+
+    /// STOP that is not confirmed is reported, and again from time to time.
+    fn watch_stop(&mut self, now_us: u64, heard: &mut Vec<Heard>) {
+        if !self.stop_unconfirmed(now_us) {
+            self.stop_reported_us = None;
+        } else if self
+            .stop_reported_us
+            .is_none_or(|at_us| now_us >= at_us + STOP_AGAIN_US)
+        {
+            self.stop_reported_us = Some(now_us);
+            heard.push(Heard::StopUnconfirmed);
+        }
+    }
+
+    /// STOP was sent, and the robot has not acknowledged it in time, or says since that it is armed.
+    pub fn stop_unconfirmed(&self, now_us: u64) -> bool {
+        let since_us = self.manager.stop_since_us().or(self.still_armed_us);
+        since_us.is_some_and(|since_us| now_us >= since_us + STOP_PATIENCE_US)
+    }
+
+    /// What no sound robot does, and this one did lately.
+    pub fn oddities(&self, now_us: u64) -> impl Iterator<Item = Oddity> {
+        self.oddities.present(now_us)
     }
 
     fn say(&mut self, message: ToRobot, now_us: u64, to_robot: &mut Vec<u8>) {
@@ -184,83 +250,6 @@ impl RobotClient {
     /// Notes that somebody else sent bytes to the robot.
     pub(crate) fn said(&mut self, bytes: usize, now_us: u64) {
         self.up.add(bytes, now_us);
-    }
-
-    /// Takes bytes that arrived from the robot and appends what they say.
-    pub fn hear(&mut self, bytes: &[u8], now_us: u64, heard: &mut Vec<Heard>) {
-        self.down.add(bytes.len(), now_us);
-        self.heard_bytes += bytes.len() as u64;
-        for byte in bytes {
-            if let Some(told) = self.terminal.hear(*byte, (now_us / 1_000) as i64) {
-                self.hear_row(told, now_us, heard);
-            }
-            let body = match self.decoder.push(*byte) {
-                Some(Received::Frame(body)) => body,
-                // A robot addressed in binary answers so; a line is left from before.
-                Some(Received::Line(_)) | None => continue,
-            };
-            let errors = self.decoder.crc_errors();
-            self.cut_off.get_or_insert(errors.min(1));
-            match FromRobot::from_body(&body) {
-                Ok(_) if self.text => self.hear_frame_in_text(),
-                Ok(message) => self.understand(message, now_us, heard),
-                Err(_) => self.malformed = self.malformed.wrapping_add(1),
-            }
-        }
-        self.report_outcomes(heard);
-    }
-
-    /// Takes a message from the robot and appends what it says.
-    pub(crate) fn understand(&mut self, message: FromRobot, now_us: u64, heard: &mut Vec<Heard>) {
-        self.last_heard_us = now_us;
-        self.frames.add(
-            usize::from(matches!(message, FromRobot::Telemetry(_))),
-            now_us,
-        );
-        let now_ms = (now_us / 1_000) as i64;
-        let way_ms = (self.manager.way_us() / 1_000) as i64;
-        match message {
-            FromRobot::Hello(hello) => self.greet(hello, now_us, heard),
-            FromRobot::Telemetry(telemetry) => {
-                let t_ms = self.clock.session_ms(telemetry.t_ms, now_ms, way_ms);
-                heard.push(Heard::Telemetry(t_ms, telemetry));
-            }
-            FromRobot::Status(status) => {
-                self.enter(status.mode);
-                self.reference = status.reference;
-                heard.push(Heard::Status(status));
-            }
-            FromRobot::Event(event) => {
-                if let EventKind::ModeChanged(mode) = event.kind {
-                    self.enter(mode);
-                }
-                heard.push(Heard::Event(
-                    self.clock.session_ms(event.t_ms, now_ms, way_ms),
-                    event.kind,
-                ));
-            }
-            FromRobot::Ack(ack) => self.acknowledge(&ack, now_us),
-            FromRobot::HeadingRef(heading_rad) => self.heading_ref_rad = heading_rad,
-        }
-    }
-
-    fn greet(&mut self, hello: Hello, now_us: u64, heard: &mut Vec<Heard>) {
-        let answer = self
-            .hello_sent_us
-            .is_some_and(|sent_us| now_us < sent_us + HELLO_ANSWER_US);
-        (self.hellos, self.words) = (0, 0);
-        let known = self.hello.replace(hello).is_some();
-        if known && !answer {
-            self.manager.robot_restarted();
-            self.clock = RobotClock::UNKNOWN;
-            heard.push(Heard::Restarted(hello));
-        } else if !self.connected {
-            heard.push(Heard::Connected(hello));
-        } else {
-            return;
-        }
-        self.connected = true;
-        self.read_parameters();
     }
 
     /// Asks for the value of every parameter, if the robot's table is the one known here.
@@ -285,18 +274,6 @@ impl RobotClient {
                 Some(_) => 3,
             }
         });
-    }
-
-    /// The robot is in this mode.
-    fn enter(&mut self, mode: ModeId) {
-        if self.mode != mode {
-            self.mode = mode;
-            self.read_own_first();
-        }
-    }
-
-    fn acknowledge(&mut self, ack: &Ack, now_us: u64) {
-        self.manager.acknowledge(ack, now_us);
     }
 
     fn report_outcomes(&mut self, heard: &mut Vec<Heard>) {
@@ -327,12 +304,18 @@ impl RobotClient {
 
     /// Who the robot says it is.
     pub fn hello(&self) -> Option<Hello> {
-        self.hello
+        self.meeting.hello()
+    }
+
+    /// The version of the protocol that the robot speaks, if it is another one.
+    pub fn other_protocol(&self) -> Option<u8> {
+        let protocol = self.hello()?.protocol;
+        (protocol != PROTOCOL_VERSION).then_some(protocol)
     }
 
     /// The robot has the parameter table known here, and speaks this protocol.
     pub fn table_matches(&self) -> bool {
-        self.hello.is_some_and(|hello| {
+        self.hello().is_some_and(|hello| {
             hello.schema == self.table.schema && hello.protocol == PROTOCOL_VERSION
         })
     }
@@ -376,6 +359,7 @@ impl RobotClient {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rumbo_wire::FromRobot;
 
     #[test]
     fn who_joins_in_the_middle_of_a_frame_sees_no_error_and_each_damaged_frame_after() {

@@ -1,20 +1,22 @@
-//! Commands to the robot, one at a time: sent, repeated until acknowledged, applied exactly once.
+//! Commands to the robot, one at a time: sent, repeated until acknowledged, applied exactly once, and never late.
 //!
-//! Stop-and-wait: a command leaves only when the one before it was acknowledged, so the robot recognises a repetition by its
-//! session and number alone. STOP waits for nobody: it takes the place of whatever is under way and empties the queue,
-//! since an operator who stops the robot wants nothing older to happen afterwards. Commands that make the wheels turn are given up
-//! after [`MOTION_EXPIRY_US`], so that a link that comes back does not bring an old start with it.
+//! Stop-and-wait: a command leaves only when the one before it was acknowledged, so the robot recognises a repetition
+//! by its session and number alone. STOP and OFF wait for nobody: they take the place of whatever is under way and
+//! empty the queue, since an operator who stops the robot wants nothing older to happen afterwards. Every other order
+//! is given up [`EXPIRY_US`] after it was given, whether it waits or is under way, and when the link is lost: a link
+//! that comes back does not bring an old start with it. What buffers of the link hold back, the robot refuses by the
+//! time in it ([`Command::is_timed`]).
 //!
 //! The time-out follows the measured round trip as TCP's does (RFC 6298), without samples from repeated commands (Karn).
 
 use crate::round_trip::{self, RoundTrip};
-use rumbo_wire::{Ack, Command, Refusal, ToRobot};
+use rumbo_wire::{Ack, COMMAND_LIFE_MS, Command, Refusal, RobotTime, ToRobot};
 use std::collections::VecDeque;
 
-/// Most commands that wait their turn.
+/// Most orders that wait their turn.
 const MAX_WAITING: usize = 64;
-/// A command that makes the wheels turn is given up when it has not been acknowledged for this long \[us\].
-pub const MOTION_EXPIRY_US: u64 = 2_000_000;
+/// An order is given up when it has not been acknowledged for this long \[us\], as the robot does by its own clock.
+pub const EXPIRY_US: u64 = COMMAND_LIFE_MS as u64 * 1_000;
 
 /// A read without an answer is sent this often before another session is tried.
 const SENDS_PER_SESSION: u32 = 6;
@@ -35,27 +37,60 @@ pub enum Fate {
     Applied(f32),
     /// Refused by the robot.
     Refused(Refusal),
-    /// Given up by the station because STOP came after it; it may or may not have been applied before.
+    /// Given up by the station because STOP or OFF came after it; it may or may not have been applied before.
     Superseded,
     /// Given up by the station because no answer came in time; it may or may not have been applied.
     Expired,
     /// Given up by the station because the robot started again.
     RobotRestarted,
+    /// Given up by the station because the port or the robot is gone; it may or may not have been applied before.
+    LinkLost,
 }
 
 /// As many commands wait as may.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct QueueFull;
 
+/// When a command was given.
+#[derive(Clone, Copy, Debug)]
+enum Given {
+    /// By the operator: at this time \[us\], when this robot time was the newest known.
+    At(u64, RobotTime),
+    /// As a part of something longer, a route for instance: its time begins with its turn.
+    InTurn,
+    /// By nobody, to show what the robot has: it can wait, gives way to all others, and is repeated without end.
+    Background,
+}
+
+/// A command that waits.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    command: Command,
+    given: Given,
+}
+
+impl Waiting {
+    fn is_over(&self, now_us: u64) -> bool {
+        let stops = matches!(self.command, Command::Stop | Command::Disarm);
+        matches!(self.given, Given::At(since_us, _) if !stops && now_us >= since_us + EXPIRY_US)
+    }
+}
+
 /// The one command under way.
 #[derive(Clone, Copy, Debug)]
 struct InFlight {
     number: u16,
-    command: Command,
-    background: bool,
-    since_us: u64,
+    order: Waiting,
+    seen: RobotTime,
+    launched_us: u64,
     sends: u32,
     next_send_us: u64,
+}
+
+impl InFlight {
+    fn is_background(&self) -> bool {
+        matches!(self.order.given, Given::Background)
+    }
 }
 
 /// Sends commands so that each is applied once.
@@ -63,7 +98,7 @@ struct InFlight {
 pub struct CommandManager {
     session: u8,
     next_number: u16,
-    waiting: VecDeque<Command>,
+    waiting: VecDeque<Waiting>,
     background: VecDeque<Command>,
     in_flight: Option<InFlight>,
     round_trip: RoundTrip,
@@ -84,20 +119,35 @@ impl CommandManager {
         }
     }
 
-    /// Takes a command from the operator.
+    /// Takes a command from the operator; `seen` is the newest robot time known.
     ///
     /// # Errors
-    /// [`QueueFull`]; never for STOP.
-    pub fn submit(&mut self, command: Command, now_us: u64) -> Result<(), QueueFull> {
-        if command == Command::Stop {
-            self.stop(now_us);
+    /// [`QueueFull`]; never for STOP and OFF.
+    pub fn submit(
+        &mut self,
+        command: Command,
+        seen: RobotTime,
+        now_us: u64,
+    ) -> Result<(), QueueFull> {
+        let given = Given::At(now_us, seen);
+        if matches!(command, Command::Stop | Command::Disarm) {
+            self.go_first(Waiting { command, given }, now_us);
             return Ok(());
         }
         if self.waiting.len() >= MAX_WAITING {
             return Err(QueueFull);
         }
-        self.waiting.push_back(command);
+        self.waiting.push_back(Waiting { command, given });
         Ok(())
+    }
+
+    /// Takes commands that belong together, each of which has its time from when it is its turn.
+    pub fn submit_in_turn(&mut self, commands: impl IntoIterator<Item = Command>) {
+        let given = Given::InTurn;
+        let waiting = commands
+            .into_iter()
+            .map(|command| Waiting { command, given });
+        self.waiting.extend(waiting);
     }
 
     /// Takes a command that gives way to the operator's: reading the parameters.
@@ -110,41 +160,28 @@ impl CommandManager {
         self.background.make_contiguous().sort_by_key(rank);
     }
 
-    fn stop(&mut self, now_us: u64) {
+    /// STOP or OFF.
+    fn go_first(&mut self, order: Waiting, now_us: u64) {
         self.give_up_waiting(Fate::Superseded);
         match &mut self.in_flight {
-            // Pressed again: the same STOP, at once once more.
-            Some(flying) if flying.command == Command::Stop => flying.next_send_us = now_us,
-            flying => {
-                if let Some(old) = flying.take() {
-                    if old.background {
-                        self.background.push_front(old.command);
-                    } else {
-                        self.outcomes.push(Outcome {
-                            command: old.command,
-                            fate: Fate::Superseded,
-                        });
-                    }
-                }
-                self.launch(Command::Stop, false, now_us);
+            // Pressed again, or OFF after STOP, which does more: the same once more, at once.
+            Some(flying) if [Command::Stop, order.command].contains(&flying.order.command) => {
+                flying.next_send_us = now_us;
+            }
+            _ => {
+                self.give_up_flying(Fate::Superseded);
+                self.launch(order, RobotTime::default(), now_us);
             }
         }
     }
 
-    /// The robot started again: nothing asked of the old one is asked of the new one, except STOP.
-    pub fn robot_restarted(&mut self) {
-        self.background.clear();
-        self.give_up_waiting(Fate::RobotRestarted);
-        if let Some(old) = self
-            .in_flight
-            .take_if(|flying| flying.command != Command::Stop)
-            && !old.background
-        {
-            self.outcomes.push(Outcome {
-                command: old.command,
-                fate: Fate::RobotRestarted,
-            });
+    /// The robot is not there any more as it was: nothing asked of it then is asked of it later, except STOP.
+    pub fn give_up(&mut self, fate: Fate) {
+        self.give_up_waiting(fate);
+        if !self.stops() {
+            self.give_up_flying(fate);
         }
+        self.background.clear();
     }
 
     /// The robot speaks another language: nothing is asked of it in this one any more.
@@ -155,42 +192,65 @@ impl CommandManager {
     }
 
     fn give_up_waiting(&mut self, fate: Fate) {
-        self.outcomes.extend(
-            self.waiting
-                .drain(..)
-                .map(|command| Outcome { command, fate }),
-        );
+        let given_up = self.waiting.drain(..).map(|waiting| Outcome {
+            command: waiting.command,
+            fate,
+        });
+        self.outcomes.extend(given_up);
     }
 
-    fn launch(&mut self, command: Command, background: bool, now_us: u64) {
+    /// A read waits again, anything else is over.
+    fn give_up_flying(&mut self, fate: Fate) {
+        let Some(old) = self.in_flight.take() else {
+            return;
+        };
+        let command = old.order.command;
+        if old.is_background() {
+            self.background.push_front(command);
+        } else {
+            self.outcomes.push(Outcome { command, fate });
+        }
+    }
+
+    fn launch(&mut self, order: Waiting, newest: RobotTime, now_us: u64) {
         let number = self.next_number;
         self.next_number = number.wrapping_add(1);
+        let (seen, given) = match order.given {
+            Given::At(_, seen) => (seen, order.given),
+            Given::InTurn => (newest, Given::At(now_us, newest)),
+            Given::Background => (newest, order.given),
+        };
         self.in_flight = Some(InFlight {
             number,
-            command,
-            background,
-            since_us: now_us,
+            order: Waiting { given, ..order },
+            seen,
+            launched_us: now_us,
             sends: 0,
             next_send_us: now_us,
         });
     }
 
-    /// What is to be sent now, if anything. To be called after every step of time.
-    pub fn poll(&mut self, now_us: u64) -> Option<ToRobot> {
-        if let Some(old) = self.in_flight.take_if(|flying| {
-            makes_wheels_turn(&flying.command) && now_us >= flying.since_us + MOTION_EXPIRY_US
-        }) {
-            self.outcomes.push(Outcome {
-                command: old.command,
-                fate: Fate::Expired,
-            });
+    /// What is to be sent now, if anything; `newest` is the newest robot time known. To be called after every step of
+    /// time.
+    pub fn poll(&mut self, newest: RobotTime, now_us: u64) -> Option<ToRobot> {
+        self.expire(now_us);
+        // A read that is not answered does not keep an order waiting.
+        if let Some(flying) = &self.in_flight
+            && flying.is_background()
+            && flying.sends > 0
+            && now_us >= flying.next_send_us
+            && !self.waiting.is_empty()
+        {
+            self.give_up_flying(Fate::Superseded);
         }
         if self.in_flight.is_none() {
-            if let Some(command) = self.waiting.pop_front() {
-                self.launch(command, false, now_us);
-            } else if let Some(command) = self.background.pop_front() {
-                self.launch(command, true, now_us);
-            }
+            let read = |command| Waiting {
+                command,
+                given: Given::Background,
+            };
+            let next = self.waiting.pop_front();
+            let next = next.or_else(|| self.background.pop_front().map(read));
+            self.launch(next?, newest, now_us);
         }
         let timeout_us = self.round_trip.timeout_us();
         let flying = self.in_flight.as_mut()?;
@@ -199,11 +259,14 @@ impl CommandManager {
         }
         // To read twice does no harm, so a read may find out that an earlier station had the same session: the robot takes
         // our numbers for old ones and is silent.
-        if flying.background && flying.sends > 0 && flying.sends.is_multiple_of(SENDS_PER_SESSION) {
+        if flying.is_background()
+            && flying.sends > 0
+            && flying.sends.is_multiple_of(SENDS_PER_SESSION)
+        {
             self.session = self.session.wrapping_add(1);
         }
         // Doubling eases a full link; STOP insists.
-        let doublings = if flying.command == Command::Stop {
+        let doublings = if flying.order.command == Command::Stop {
             0
         } else {
             flying.sends.min(4)
@@ -214,8 +277,29 @@ impl CommandManager {
         Some(ToRobot::Command {
             session: self.session,
             number: flying.number,
-            command: flying.command,
+            command: flying.order.command,
+            // Of when it was given, however often it is repeated.
+            seen: flying.seen,
         })
+    }
+
+    fn expire(&mut self, now_us: u64) {
+        let fate = Fate::Expired;
+        if self
+            .in_flight
+            .is_some_and(|flying| flying.order.is_over(now_us))
+        {
+            self.give_up_flying(fate);
+        }
+        let outcomes = &mut self.outcomes;
+        self.waiting.retain(|waiting| {
+            let over = waiting.is_over(now_us);
+            if over {
+                let command = waiting.command;
+                outcomes.push(Outcome { command, fate });
+            }
+            !over
+        });
     }
 
     /// Takes an acknowledgement; one of an earlier command or of another session is ignored.
@@ -231,14 +315,14 @@ impl CommandManager {
         };
         if done.sends == 1 {
             self.round_trip
-                .measured(now_us.saturating_sub(done.since_us));
+                .measured(now_us.saturating_sub(done.launched_us));
         }
         let fate = match ack.result {
             Ok(value) => Fate::Applied(value),
             Err(refusal) => Fate::Refused(refusal),
         };
         self.outcomes.push(Outcome {
-            command: done.command,
+            command: done.order.command,
             fate,
         });
     }
@@ -260,13 +344,19 @@ impl CommandManager {
 
     /// The operator's commands that are not acknowledged yet.
     pub fn unacknowledged(&self) -> usize {
-        self.waiting.len() + usize::from(self.in_flight.is_some_and(|flying| !flying.background))
+        self.waiting.len()
+            + usize::from(self.in_flight.is_some_and(|flying| !flying.is_background()))
     }
-}
 
-/// A start that arrives late is worse than one that is lost.
-fn makes_wheels_turn(command: &Command) -> bool {
-    matches!(command, Command::Arm | Command::Move { .. })
+    fn stops(&self) -> bool {
+        self.stop_since_us().is_some()
+    }
+
+    /// Since when STOP waits for its acknowledgement \[us\].
+    pub fn stop_since_us(&self) -> Option<u64> {
+        let flying = self.in_flight.as_ref()?;
+        (flying.order.command == Command::Stop).then_some(flying.launched_us)
+    }
 }
 
 #[cfg(test)]

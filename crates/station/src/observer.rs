@@ -17,8 +17,11 @@ use crate::words;
 use rumbo_control::Pose;
 use rumbo_control::params::{ParamId, Params};
 use rumbo_control::rig::Rig;
-use rumbo_wire::{Command, EventKind, Hello, PROTOCOL_VERSION, Recalled, Status, Telemetry};
+use rumbo_wire::{Command, EventKind, Hello, Recalled, Status, Telemetry};
 use std::sync::Arc;
+
+/// Restarts are reported at most this often \[ms\].
+const RESTARTS_MS: i64 = 2_000;
 
 /// What is known of the robot.
 pub(crate) struct Observer {
@@ -36,6 +39,10 @@ pub(crate) struct Observer {
     truths: TruthLog,
     ghosts: TruthLog,
     samples: Vec<Row>,
+    /// The last order, if it was refused or given up, and why.
+    refused: Option<String>,
+    /// When the last restart was reported \[ms\].
+    restart_ms: Option<i64>,
     /// The state changed in a way that the operator waits for.
     urgent: bool,
 }
@@ -56,6 +63,8 @@ impl Observer {
             truths: TruthLog::default(),
             ghosts: TruthLog::default(),
             samples: Vec::new(),
+            refused: None,
+            restart_ms: None,
             urgent: true,
         };
         observer.board.set_parameters(&observer.parameters);
@@ -111,14 +120,12 @@ impl Observer {
         self.rig
     }
 
-    /// A new value is on its way; whether there is such a parameter.
-    pub(crate) fn parameter_pending(&mut self, id: u8) -> bool {
-        let Some(parameter) = self.parameters.get_mut(usize::from(id)) else {
-            return false;
-        };
-        parameter.pending = true;
-        self.board.set_parameters(&self.parameters);
-        true
+    /// A new value is on its way.
+    pub(crate) fn parameter_pending(&mut self, id: u8) {
+        if let Some(parameter) = self.parameters.get_mut(usize::from(id)) {
+            parameter.pending = true;
+            self.board.set_parameters(&self.parameters);
+        }
     }
 
     /// The robot's parameters are these.
@@ -151,6 +158,22 @@ impl Observer {
             level,
             text,
         });
+    }
+
+    /// An order was given: what became of the one before is of no interest any more.
+    pub(crate) fn order_given(&mut self) {
+        self.urgent |= self.refused.take().is_some();
+    }
+
+    /// Notes that an order was refused or given up.
+    pub(crate) fn refuse(&mut self, t_ms: i64, text: String) {
+        self.refused = Some(text.clone());
+        self.note(t_ms, Level::Warning, text);
+    }
+
+    /// The last order, if it was refused or given up, and why.
+    pub(crate) fn refused(&self) -> Option<&str> {
+        self.refused.as_deref()
     }
 
     /// Notes raw bytes of the link.
@@ -237,13 +260,15 @@ impl Observer {
                     self.parameters = unread_parameters();
                     self.believed = Params::default();
                     self.board.set_parameters(&self.parameters);
-                    let why = hello.reset.explanation();
-                    self.note(
-                        now_ms,
-                        Level::Fault,
-                        format!("the robot's program started again: {why}"),
-                    );
+                    self.restarted(hello, now_ms);
                 }
+                Heard::OtherProtocol(hello) => {
+                    self.note(now_ms, Level::Fault, words::other_protocol(hello.protocol));
+                }
+                Heard::StopUnconfirmed => {
+                    self.note(now_ms, Level::Fault, words::STOP_UNCONFIRMED.into());
+                }
+                Heard::Odd(oddity) => self.note(now_ms, Level::Fault, words::alarm(oddity)),
                 Heard::Lost if client.speaks_text() => {
                     let text = "nothing heard from the robot for some seconds, though it is on";
                     self.note(now_ms, Level::Warning, text.into());
@@ -306,14 +331,21 @@ impl Observer {
         self.note(t_ms, level, text);
     }
 
-    fn connected(&mut self, hello: Hello, table_matches: bool, now_ms: i64) {
-        if hello.protocol != PROTOCOL_VERSION {
-            let text = format!(
-                "the robot speaks protocol {}, this station {PROTOCOL_VERSION}: flash the robot or update the station",
-                hello.protocol
-            );
-            return self.note(now_ms, Level::Fault, text);
+    /// Of a robot that starts again and again, a restart is reported once in a while.
+    fn restarted(&mut self, hello: Hello, now_ms: i64) {
+        if self
+            .restart_ms
+            .is_some_and(|at_ms| now_ms < at_ms + RESTARTS_MS)
+        {
+            return;
         }
+        self.restart_ms = Some(now_ms);
+        let why = hello.reset.explanation();
+        let text = format!("the robot's program started again: {why}; it needs a new ON");
+        self.note(now_ms, Level::Fault, text);
+    }
+
+    fn connected(&mut self, hello: Hello, table_matches: bool, now_ms: i64) {
         let why = hello.reset.explanation();
         self.note(
             now_ms,
@@ -341,9 +373,10 @@ impl Observer {
                         Fate::Refused(why) => {
                             Some(words::refusal(why, &ended.command, client.mode()))
                         }
-                        Fate::Superseded | Fate::Expired | Fate::RobotRestarted => {
-                            Some("not confirmed".into())
-                        }
+                        Fate::Superseded
+                        | Fate::Expired
+                        | Fate::RobotRestarted
+                        | Fate::LinkLost => Some("not confirmed".into()),
                     };
                     match fate {
                         Fate::Applied(value) => self.know_parameter(id, value),
@@ -354,19 +387,16 @@ impl Observer {
             (Command::ResetParams, Fate::Applied(_)) => client.read_parameters(),
             _ => {}
         }
-        let level = match ended.fate {
-            Fate::Applied(_) => Level::Info,
-            _ => Level::Warning,
-        };
-        // That a value was read is no event, nor each place of a route.
-        if !matches!(
-            (ended.command, ended.fate),
-            (
-                Command::GetParam { .. } | Command::Waypoint(_),
-                Fate::Applied(_)
-            )
-        ) {
-            self.note(now_ms, level, words::outcome(ended, client.mode()));
+        let text = words::outcome(ended, client.mode());
+        match (ended.command, ended.fate) {
+            // That a value was read is no event, nor each place of a route.
+            (Command::GetParam { .. } | Command::Waypoint(_), Fate::Applied(_)) => {}
+            (_, Fate::Applied(_)) => self.note(now_ms, Level::Info, text),
+            // Said beside the parameter.
+            (Command::GetParam { .. } | Command::SetParam { .. }, _) => {
+                self.note(now_ms, Level::Warning, text);
+            }
+            _ => self.refuse(now_ms, text),
         }
     }
 }

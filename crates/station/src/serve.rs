@@ -2,6 +2,7 @@
 
 use crate::board::Board;
 use crate::door;
+use crate::echo::{Echo, Print};
 use crate::ending::asked_to_end;
 use crate::guard::{self, Guard};
 use crate::lease::Lease;
@@ -58,6 +59,8 @@ pub struct LabConfig {
     pub speed: f64,
     /// Where runs are recorded; `None` for nowhere.
     pub recording: Option<Recording>,
+    /// Prints warnings and faults as well.
+    pub echo: Option<Print>,
     /// A bridge to viewers of Foxglove's protocol.
     #[cfg(feature = "foxglove")]
     pub bridge: Option<crate::bridge::Bridge>,
@@ -69,6 +72,7 @@ impl Default for LabConfig {
             at: ServeAt::default(),
             speed: 1.0,
             recording: None,
+            echo: None,
             #[cfg(feature = "foxglove")]
             bridge: None,
         }
@@ -196,9 +200,10 @@ pub fn serve_with(
         at,
         speed,
         recording,
+        echo,
         ..
     } = config;
-    let board = Board::new();
+    let board = Board::new().echoed(echo.and_then(Echo::start));
     #[cfg(feature = "foxglove")]
     let board = board.bridged(config.bridge);
     start(at, board, move |board, orders| {

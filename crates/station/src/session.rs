@@ -18,6 +18,7 @@ use crate::pace::{Pace, SLICE_US};
 use crate::state::{self, Around};
 use crate::target::{Choice, LinkNews, Target};
 use crate::watch::LinkWatch;
+use rumbo_control::mode::ModeId;
 use rumbo_wire::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,6 +37,9 @@ const STATE_PERIOD: Duration = Duration::from_millis(200);
 /// What a session can do besides, if whoever starts it gives it the means.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extras {
+    /// The robot runs the original program, which is silent until its first ON: it is spoken to in text from the
+    /// beginning.
+    pub text: bool,
     /// How the robot calibrates itself.
     pub calibration: Option<Calibration>,
 }
@@ -88,7 +92,7 @@ impl Session {
     ) -> Self {
         let simulated = target.simulation().is_some();
         Self {
-            client: new_client(target.as_mut()),
+            client: new_client(target.as_mut(), extras),
             target,
             observer: Observer::new(Arc::clone(&board)),
             board,
@@ -165,9 +169,7 @@ impl Session {
             Order::Hold(command) => return self.hold(command),
             Order::Route(commands) => {
                 self.held = None;
-                for command in commands {
-                    self.command(command)?;
-                }
+                return self.commands(commands);
             }
             Order::Type(usart, line) => return self.type_in(usart, &line),
             Order::Speed(factor) if self.simulated => {
@@ -211,7 +213,7 @@ impl Session {
         if let Err(why) = simulation.reset(choice) {
             return self.note(board::Level::Warning, format!("reset: refused, {why}"));
         }
-        self.client = new_client(self.target.as_mut());
+        self.client = new_client(self.target.as_mut(), self.extras);
         self.heard.clear();
         self.held = None;
         self.calibration = None;
@@ -308,10 +310,11 @@ impl Session {
                 }
             };
             self.port_gone = level == board::Level::Fault;
-            if !self.port_gone {
-                self.client.port_is_back();
-            }
             self.note(level, text);
+            if self.port_gone {
+                self.give_up_calibration("the port is gone");
+                self.client.port_is_gone();
+            }
         }
         if let Some(trouble) = self.board.recording_trouble() {
             self.note(board::Level::Warning, trouble);
@@ -332,7 +335,7 @@ impl Session {
 
     /// Says what is wrong with a real link.
     fn watch_link(&mut self) {
-        if self.simulated {
+        if self.simulated || self.client.other_protocol().is_some() {
             return;
         }
         let (now_us, connected) = (self.target.now_us(), self.client.connected());
@@ -367,11 +370,12 @@ fn to_ms(us: u64) -> i64 {
     (us / 1_000) as i64
 }
 
-fn new_client(target: &mut dyn Target) -> RobotClient {
+fn new_client(target: &mut dyn Target, extras: Extras) -> RobotClient {
     let simulation = target.simulation();
     let clock_known = simulation.is_some();
     match simulation.and_then(|simulation| simulation.speaks_text()) {
         Some(mode) => RobotClient::of_text(mode, clock_known),
+        None if extras.text => RobotClient::of_text(ModeId::default(), clock_known),
         None => RobotClient::new(random_session(), clock_known, KnownTable::OURS),
     }
 }

@@ -3,6 +3,7 @@
 use crate::board::{LinkState, RobotState, State};
 use crate::client::RobotClient;
 use crate::observer::Observer;
+use crate::words;
 use rumbo_control::rig::Rig;
 
 /// What only the session knows.
@@ -62,9 +63,19 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
             foreign: client.hello().is_some() && !client.table_matches(),
             text: client.speaks_text(),
         },
+        refused: observer.refused().map(str::to_owned),
+        alarms: alarms(around.t_us, client),
         calibration: None,
         replay: None,
     }
+}
+
+/// What a person has to see to at once.
+fn alarms(now_us: u64, client: &RobotClient) -> Vec<String> {
+    let stop = client.stop_unconfirmed(now_us);
+    let stop = stop.then(|| words::STOP_UNCONFIRMED.to_owned());
+    let odd = client.oddities(now_us).map(words::alarm);
+    stop.into_iter().chain(odd).collect()
 }
 
 /// To `1 / per_unit`: more digits would only be more to send.

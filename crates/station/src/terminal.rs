@@ -105,6 +105,11 @@ impl Terminal {
         self.waiting.push(b'\n');
     }
 
+    /// Nothing that waits is sent any more.
+    pub(crate) fn forget(&mut self) {
+        self.waiting.clear();
+    }
+
     /// Appends what is to be sent now.
     pub(crate) fn poll(&mut self, to_robot: &mut Vec<u8>) {
         to_robot.append(&mut self.waiting);

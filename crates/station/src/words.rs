@@ -1,12 +1,14 @@
 //! What commands and answers are called, for people: cm, rpm and % instead of SI.
 
 use crate::catalogue::{self, Reference, ReferenceKind};
+use crate::client::NotTaken;
 use crate::commands::{Fate, Outcome};
+use crate::oddity::Oddity;
 use rumbo_control::mode::{ModeId, Movement};
 
 use rumbo_control::mode::waypoints::{FARTHEST_M, MAX_WAYPOINTS};
 use rumbo_wire::message::Waypoint;
-use rumbo_wire::{Command, Level, Refusal};
+use rumbo_wire::{Command, Level, PROTOCOL_VERSION, Refusal};
 use std::f32::consts::TAU;
 
 fn rpm(speed_rad_s: f32) -> f32 {
@@ -91,10 +93,37 @@ pub(crate) fn outcome(outcome: &Outcome, mode: ModeId) -> String {
             let why = refusal(why, &outcome.command, mode);
             format!("{asked}: refused, {why}")
         }
-        Fate::Superseded => format!("{asked}: given up, STOP came after it"),
+        Fate::Superseded => format!("{asked}: given up, STOP or OFF came after it"),
         Fate::Expired => format!("{asked}: given up, the robot did not answer in time"),
         Fate::RobotRestarted => format!("{asked}: given up, the robot started again"),
+        Fate::LinkLost => format!("{asked}: given up, the link was lost; it is not sent later"),
     }
+}
+
+/// STOP that the robot does not acknowledge, or does not obey.
+pub(crate) const STOP_UNCONFIRMED: &str =
+    "ALARM: the robot does not confirm STOP; switch off its battery";
+
+/// What no sound robot does.
+pub(crate) fn alarm(oddity: Oddity) -> String {
+    format!("ALARM: {}", oddity.explanation())
+}
+
+/// Why the station did not take a command.
+pub(crate) const fn not_taken(why: NotTaken) -> &'static str {
+    match why {
+        NotTaken::NotConnected => {
+            "no robot answers; check that it is on and in reach, then give the order again"
+        }
+        NotTaken::QueueFull => "too many commands wait for the robot",
+    }
+}
+
+/// The robot speaks another version of the protocol.
+pub(crate) fn other_protocol(protocol: u8) -> String {
+    format!(
+        "the robot speaks protocol {protocol}, this station {PROTOCOL_VERSION}: flash the robot or update the station"
+    )
 }
 
 /// Why the robot refused, with what is allowed where that is known here.

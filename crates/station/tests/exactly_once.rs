@@ -36,7 +36,7 @@ fn step(
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(20))]
     #[test]
-    fn each_command_is_applied_once_and_in_order_though_bytes_get_lost(seed in any::<u32>()) {
+    fn each_command_is_applied_once_at_most_and_in_order_though_bytes_get_lost(seed in any::<u32>()) {
         let mut random = seed;
         // One byte in fifty: a third of the telemetry frames fail their CRC.
         let mut lose = || {
@@ -45,20 +45,25 @@ proptest! {
         };
         let mut toy = Toy::default();
         let mut client = RobotClient::new(3, true, NO_TABLE);
-        let mut heard = Vec::new();
-        let asked: Vec<Command> = (0..20u8).map(|n| Command::Reference(f32::from(n))).collect();
-        for command in &asked {
-            client.submit(*command, 0).unwrap();
-        }
-        for _ in 0..20_000 {
+        let (mut heard, mut asked) = (Vec::new(), Vec::new());
+        while asked.len() < 20 && toy.now_us() < 200_000_000 {
             step(&mut client, &mut toy, &mut lose, &mut heard);
-            if toy.applied.len() >= asked.len() {
-                break;
+            if client.connected() && client.link(toy.now_us()).unacknowledged == 0 {
+                let command = Command::Reference(asked.len() as f32);
+                client.submit(command, toy.now_us()).unwrap();
+                asked.push(command);
             }
         }
-        prop_assert_eq!(&toy.applied, &asked);
-        let applied = heard.iter().filter(|item| matches!(item, Heard::Ended(ended) if matches!(ended.fate, Fate::Applied(_))));
-        prop_assert!(applied.count() >= asked.len() - 1);
+        // One that is given up may have been applied.
+        let mut left = asked.iter();
+        prop_assert!(toy.applied.iter().all(|applied| left.any(|asked| asked == applied)), "{:?}", toy.applied);
+        let done = heard.iter().filter_map(|item| match item {
+            Heard::Ended(ended) if matches!(ended.fate, Fate::Applied(_)) => Some(ended.command),
+            _ => None,
+        });
+        let done: Vec<Command> = done.collect();
+        prop_assert!(done.iter().all(|command| toy.applied.contains(command)));
+        prop_assert!(done.len() > 10, "{}", done.len());
     }
 }
 

@@ -5,7 +5,7 @@
 mod support;
 
 use rumbo_station::Target;
-use rumbo_station::client::{Heard, KnownTable, RobotClient};
+use rumbo_station::client::{Heard, KnownTable, NotTaken, RobotClient};
 use rumbo_station::port::{DEFAULT_BAUD, Port, Pty};
 use rumbo_wire::Command;
 use std::path::Path;
@@ -114,8 +114,8 @@ fn a_port_that_is_pulled_out_and_put_back_is_found_again_and_nothing_is_armed_by
     ));
     // Asked of a robot that is not there.
     let now_us = station.port.now_us();
-    station.client.submit(Command::Arm, now_us).unwrap();
-    station.live_until(|station| station.count(|heard| matches!(heard, Heard::Ended(_))) > 1);
+    let refused = station.client.submit(Command::Arm, now_us);
+    assert_eq!(refused, Err(NotTaken::NotConnected));
 
     let robot = Plugged::new(&name);
     let before = station.count(|heard| matches!(heard, Heard::Telemetry(..)));

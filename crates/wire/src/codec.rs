@@ -81,9 +81,13 @@ impl Message for ToRobot {
                 session,
                 number,
                 command,
+                seen,
             } => {
                 to.put([*session]).put(number.to_le_bytes());
                 put_command(&mut to, command);
+                if command.is_timed() {
+                    put_time(&mut to, seen);
+                }
                 Kind::Command
             }
         };
@@ -96,11 +100,20 @@ impl Message for ToRobot {
             // Whatever a later version adds to its HELLO: it is still one.
             Kind::StationHello => return Ok(ToRobot::Hello),
             Kind::Heartbeat => ToRobot::Heartbeat,
-            Kind::Command => ToRobot::Command {
-                session: from.u8(),
-                number: from.u16(),
-                command: command(&mut from)?,
-            },
+            Kind::Command => {
+                let (session, number) = (from.u8(), from.u16());
+                let command = command(&mut from)?;
+                ToRobot::Command {
+                    session,
+                    number,
+                    command,
+                    seen: if command.is_timed() {
+                        time(&mut from)
+                    } else {
+                        RobotTime::default()
+                    },
+                }
+            }
             _ => return Err(Malformed::Direction),
         };
         from.finish()?;
@@ -280,7 +293,19 @@ fn put_status(to: &mut Writer, status: &Status) -> Kind {
         status.overruns,
         status.rig as u8,
     ]);
+    put_time(to, &status.at);
     Kind::Status
+}
+
+fn put_time(to: &mut Writer, time: &RobotTime) {
+    to.put([time.start]).put(time.ms.to_le_bytes());
+}
+
+fn time(from: &mut Reader) -> RobotTime {
+    RobotTime {
+        start: from.u8(),
+        ms: from.u32(),
+    }
 }
 
 fn status(from: &mut Reader) -> Result<Status, Malformed> {
@@ -303,6 +328,7 @@ fn status(from: &mut Reader) -> Result<Status, Malformed> {
         dropped: from.u8(),
         overruns: from.u8(),
         rig: Rig::from_number(from.u8()).ok_or(from.wrong())?,
+        at: time(from),
     })
 }
 

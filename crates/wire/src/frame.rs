@@ -62,11 +62,11 @@ impl Kind {
         Self::ALL.iter().copied().find(|kind| *kind as u8 == number)
     }
 
-    /// The byte mixed into the CRC.
-    const fn schema(self) -> u8 {
+    /// The byte mixed into the CRC in this version of the protocol.
+    const fn schema(self, protocol: u8) -> u8 {
         match self {
             Kind::RobotHello | Kind::StationHello => 0,
-            _ => PROTOCOL_VERSION,
+            _ => protocol,
         }
     }
 }
@@ -84,7 +84,7 @@ impl Frame {
     pub fn new(kind: Kind, seq: u8, payload: &[u8]) -> Frame {
         let header = (kind as u8) << 4 | (seq & 0xF);
         let payload = payload.get(..MAX_PAYLOAD).unwrap_or(payload);
-        let mut check = crc(crc(CRC_START, kind.schema()), header);
+        let mut check = crc(crc(CRC_START, kind.schema(PROTOCOL_VERSION)), header);
         let mut stuffing = Stuffing::new();
         stuffing.put(header);
         for byte in payload {
@@ -117,6 +117,11 @@ pub struct Body {
 impl Body {
     /// The content of a frame, given without its 0x00; `None` if anything is wrong with it.
     pub fn parse(stuffed: &[u8]) -> Option<Body> {
+        Self::parse_of(PROTOCOL_VERSION, stuffed)
+    }
+
+    /// The same of a frame of another version of the protocol.
+    pub(crate) fn parse_of(protocol: u8, stuffed: &[u8]) -> Option<Body> {
         let mut bytes = [0; MAX_BODY];
         let len = unstuff(stuffed, &mut bytes)?;
         let (checked, check) = bytes.get(..len)?.split_last_chunk::<2>()?;
@@ -124,7 +129,9 @@ impl Body {
         let kind = Kind::from_number(header >> 4)?;
         let sum = checked
             .iter()
-            .fold(crc(CRC_START, kind.schema()), |sum, byte| crc(sum, *byte));
+            .fold(crc(CRC_START, kind.schema(protocol)), |sum, byte| {
+                crc(sum, *byte)
+            });
         (sum == u16::from_le_bytes(*check)).then_some(Body {
             kind,
             seq: header & 0xF,
@@ -265,6 +272,6 @@ mod tests {
         let other = crc(crc(CRC_START, PROTOCOL_VERSION + 1), header).to_le_bytes();
         assert_eq!(Body::parse(&[4, header, other[0], other[1]]), None);
         assert!(Body::parse(&Frame::new(Kind::Heartbeat, 0, &[]).bytes()[..4]).is_some());
-        assert_eq!(Kind::StationHello.schema(), 0);
+        assert_eq!(Kind::StationHello.schema(PROTOCOL_VERSION), 0);
     }
 }

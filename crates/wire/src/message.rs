@@ -7,7 +7,46 @@ use rumbo_control::rig::Rig;
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Wheels};
 
 /// Version of the binary protocol; raised when a change is not understood by the other end.
-pub const PROTOCOL_VERSION: u8 = 2;
+pub const PROTOCOL_VERSION: u8 = 3;
+
+/// Oldest command that a robot obeys, by its own clock, if the command [is timed](Command::is_timed) \[ms\].
+pub const COMMAND_LIFE_MS: u32 = 2_000;
+
+/// An instant by the robot's clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RobotTime {
+    /// Number of the robot's start, wrapping: times of two starts are not comparable.
+    pub start: u8,
+    /// Time since that start [ms], wrapping after 49.7 days.
+    pub ms: u32,
+}
+
+impl RobotTime {
+    /// Time since an earlier instant \[ms\]; `None` if there was a start in between, or `earlier` is later.
+    pub fn since(self, earlier: RobotTime) -> Option<u32> {
+        let ms = self.ms.wrapping_sub(earlier.ms);
+        (self.start == earlier.start && ms < 0x8000_0000).then_some(ms)
+    }
+
+    /// The first instant from this one on whose lower 16 bits telemetry tells; this one if that lies behind.
+    pub fn at_low(self, t_ms: u16) -> RobotTime {
+        let ahead_ms = t_ms.wrapping_sub((self.ms & 0xFFFF) as u16);
+        let ahead_ms = if ahead_ms < 0x8000 { ahead_ms } else { 0 };
+        RobotTime {
+            ms: self.ms.wrapping_add(u32::from(ahead_ms)),
+            ..self
+        }
+    }
+
+    /// The newest time known after a message, of the one known before: a status tells it, telemetry carries it on.
+    pub fn after(before: Option<RobotTime>, message: &FromRobot) -> Option<RobotTime> {
+        match message {
+            FromRobot::Status(status) => Some(status.at),
+            FromRobot::Telemetry(telemetry) => before.map(|before| before.at_low(telemetry.t_ms)),
+            _ => before,
+        }
+    }
+}
 
 /// From the robot to the station.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +81,9 @@ pub enum ToRobot {
         number: u16,
         /// What to do.
         command: Command,
+        /// The newest robot time that the station had received when the order was given. Travels with commands that
+        /// [are timed](Command::is_timed) only; else the default.
+        seen: RobotTime,
     },
 }
 
@@ -136,6 +178,8 @@ pub struct Status {
     pub overruns: u8,
     /// The sonars that the robot believes to carry.
     pub rig: Rig,
+    /// When this was so.
+    pub at: RobotTime,
 }
 
 /// Something that happened, with the time at which it did.
@@ -265,6 +309,32 @@ pub enum Command {
     Waypoint(Waypoint),
 }
 
+impl Command {
+    /// Changes what the robot drives, now or at its next ON. Such a command carries the robot time at which it was
+    /// given, and is refused when it is older than [`COMMAND_LIFE_MS`]: better lost than late.
+    pub fn is_timed(&self) -> bool {
+        match self {
+            Command::Arm
+            | Command::Mode(_)
+            | Command::Reference(_)
+            | Command::WheelReference(_)
+            | Command::Move { .. }
+            | Command::SetParam { .. }
+            | Command::ResetParams
+            | Command::ResetPose
+            | Command::Goal { .. }
+            | Command::Lane
+            | Command::Route { .. }
+            | Command::Waypoint(_) => true,
+            Command::Stop
+            | Command::Disarm
+            | Command::ClearFault
+            | Command::GetParam { .. }
+            | Command::SaveParams => false,
+        }
+    }
+}
+
 /// What became of a command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ack {
@@ -302,11 +372,15 @@ pub enum Refusal {
     WrongRig = 10,
     /// The battery is below its lower limit.
     BatteryLow = 11,
+    /// The command was given too long ago, or before the robot's last start.
+    TooOld = 12,
+    /// The sonar the mode needs works, and sees no wall that the mode can drive by.
+    NoWall = 13,
 }
 
 impl Refusal {
     /// All refusals, by number.
-    pub const ALL: [Refusal; 11] = [
+    pub const ALL: [Refusal; 13] = [
         Refusal::NotFinite,
         Refusal::OutOfRange,
         Refusal::UnknownParam,
@@ -318,6 +392,8 @@ impl Refusal {
         Refusal::Malformed,
         Refusal::WrongRig,
         Refusal::BatteryLow,
+        Refusal::TooOld,
+        Refusal::NoWall,
     ];
 
     /// The refusal with this number.

@@ -19,13 +19,19 @@ impl Refusal {
             Refusal::Armed => "not while armed; disarm first",
             Refusal::Faulted => "a fault is latched; remove its cause and clear it first",
             Refusal::SonarNotReady => {
-                "the sonar this mode needs gives no good reading; check its wiring, and that something is within 2.5 m"
+                "the sonar this mode needs gives no good reading; check its wiring"
             }
             Refusal::NoLink => "no heartbeat arrives at the robot; connect, then arm again",
             Refusal::Malformed => {
                 "the robot did not understand the command; use the same version at both ends"
             }
             Refusal::BatteryLow => "the battery is low; charge it",
+            Refusal::TooOld => {
+                "it is too old: given more than 2 s ago, or before the robot started again; give the order again"
+            }
+            Refusal::NoWall => {
+                "no wall within reach of the sonar this mode needs; put the robot within 2.5 m of one"
+            }
             Refusal::WrongRig => {
                 "the robot's sonars do not sit where this mode needs them; mount them so and set the parameter `rig`"
             }

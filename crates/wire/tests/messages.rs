@@ -153,6 +153,7 @@ fn a_non_finite_value_in_a_command_arrives_as_such() {
         session: 1,
         number: 2,
         command: Command::Reference(f32::NAN),
+        seen: RobotTime::default(),
     };
     let ToRobot::Command {
         command: Command::Reference(value),
@@ -174,6 +175,12 @@ fn an_unknown_command_can_still_be_refused_by_its_number() {
 
 #[test]
 fn the_link_at_9600_baud_carries_25_telemetry_frames_a_second_in_750_bytes() {
-    let frame = FromRobot::Telemetry(Telemetry::default()).frame(0);
-    assert_eq!(frame.bytes().len() * 25, 750);
+    let len = |message: FromRobot| message.frame(0).bytes().len();
+    let telemetry = 25 * len(FromRobot::Telemetry(Telemetry::default()));
+    assert_eq!(telemetry, 750);
+    // With two statuses and the heading 12.5 times, room is left for an answer and an event.
+    let status = 2 * len(FromRobot::Status(Status::default()));
+    let heading = 25 * len(FromRobot::HeadingRef(1.0)) / 2;
+    assert_eq!((status, heading), (54, 87));
+    assert!(telemetry + status + heading + 13 + 9 <= 960);
 }

@@ -33,11 +33,15 @@ fn the_worked_example_of_a_command_is_right() {
         session: 0x51,
         number: 7,
         command,
+        seen: RobotTime {
+            start: 4,
+            ms: 81_500,
+        },
     }
     .frame(2);
     said(&format!(
         "header and payload   {}\n",
-        hex(&body(&frame)[..9])
+        hex(&body(&frame)[..14])
     ));
     said(&format!("with the CRC         {}\n", hex(&body(&frame))));
     said(&format!("on the wire          {}\n", hex(frame.bytes())));
@@ -117,7 +121,7 @@ fn the_numbers_of_the_tables_are_right() {
         let wire = frame.bytes().len();
         said(&format!("| {row} | {} | {wire} |", wire - 5));
     }
-    assert_eq!(PROTOCOL_VERSION, 2, "say so in docs/protocol.md");
+    assert_eq!(PROTOCOL_VERSION, 3, "say so in docs/protocol.md");
 }
 
 #[test]

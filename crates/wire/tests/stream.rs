@@ -5,7 +5,9 @@ mod common;
 use common::*;
 use proptest::prelude::*;
 use rumbo_wire::message::{Level, Waypoint};
-use rumbo_wire::{Command, Decoder, FromRobot, Kind, Message, Received, Telemetry, ToRobot};
+use rumbo_wire::{
+    Command, Decoder, FromRobot, Kind, Message, Received, RobotTime, Telemetry, ToRobot,
+};
 
 /// What came out of a stream: frames as (kind, payload), lines as text.
 #[derive(Debug, PartialEq)]
@@ -153,6 +155,10 @@ fn no_command_with_one_byte_changed_is_another_one() {
                 session: 7,
                 number,
                 command,
+                seen: RobotTime {
+                    start: 3,
+                    ms: 81_500,
+                },
             };
             let whole = message.frame(3).bytes().to_vec();
             for at in 0..whole.len() {

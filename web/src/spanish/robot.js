@@ -79,15 +79,21 @@ export const ROBOT = {
   'the selected mode takes no such command; select the mode that does': 'el modo elegido no admite esa orden; elige el modo que sí',
   'not while armed; disarm first': 'no mientras está armado; desarma primero',
   'a fault is latched; remove its cause and clear it first': 'hay un fallo retenido; quita su causa y bórralo primero',
-  'the sonar this mode needs gives no good reading; check its wiring, and that something is within 2.5 m':
-    'el sonar que este modo necesita no da lecturas buenas; comprueba su cableado y que haya algo a menos de 2,5 m',
+  'the sonar this mode needs gives no good reading; check its wiring': 'el sonar que necesita este modo no da buenas lecturas; comprueba su cableado',
+  'no wall within reach of the sonar this mode needs; put the robot within 2.5 m of one':
+    'no hay ninguna pared al alcance del sonar que necesita este modo; pon el robot a menos de 2,5 m de una',
+  'it is too old: given more than 2 s ago, or before the robot started again; give the order again':
+    'es demasiado antigua: se dio hace más de 2 s, o antes de que el robot volviera a arrancar; da la orden otra vez',
   'no heartbeat arrives at the robot; connect, then arm again': 'al robot no le llega ningún latido; conecta y arma otra vez',
   'the robot did not understand the command; use the same version at both ends': 'el robot no entendió la orden; usa la misma versión en los dos extremos',
   'the robot\'s sonars do not sit where this mode needs them; mount them so and set the parameter `rig`':
     'los sonares del robot no están donde este modo los necesita; móntalos así y fija el parámetro `rig`',
   'allowed is {} to {}': 'se permite de {} a {}', 'allowed is {} to {} m for each coordinate': 'se permite de {} a {} m en cada coordenada',
   'allowed is -{} to {} m for each coordinate, and {} waypoints': 'se permite de -{} a {} m en cada coordenada, y {} lugares', 'out of range': 'fuera de rango',
-  'not confirmed': 'sin confirmar', 'too many commands wait for the robot': 'demasiadas órdenes esperan al robot', 'the robot has another parameter table': 'el robot tiene otra tabla de parámetros',
+  'not confirmed': 'sin confirmar', 'too many commands wait for the robot': 'demasiadas órdenes esperan al robot',
+  'no robot answers; check that it is on and in reach, then give the order again': 'no responde ningún robot; comprueba que está encendido y al alcance, y da la orden otra vez',
+  'the port is gone; give the order again when it is back': 'el puerto ya no está; da la orden otra vez cuando vuelva',
+  'the robot has another parameter table': 'el robot tiene otra tabla de parámetros',
  
   'the battery is low; charge it': 'la batería está baja; cárgala',
   // Why the robot's program started.
@@ -99,7 +105,19 @@ export const ROBOT = {
   'reference reached': 'referencia alcanzada', 'goal unreachable': 'destino inalcanzable', 'goal unreachable: {}': 'destino inalcanzable: {}',
   'every way round was tried; give another goal, or clear the way': 'se probó a rodear por todos lados; da otro destino o despeja el camino',
   'connected; the robot\'s program started after: {}': 'conectado; el programa del robot arrancó por: {}',
-  'the robot\'s program started again: {}': 'el programa del robot arrancó de nuevo: {}',
+  'the robot\'s program started again: {}; it needs a new ON': 'el programa del robot arrancó de nuevo: {}; hay que volver a pulsar ON',
+  // Alarms.
+  'ALARM: {}': 'ALARMA: {}',
+  'ALARM: the robot does not confirm STOP; switch off its battery': 'ALARMA: el robot no confirma PARAR; desconecta su batería',
+  'the robot\'s clock ran back without a restart: its times are wrong; switch it off, and flash it again':
+    'el reloj del robot ha retrocedido sin que el robot arrancara de nuevo: sus tiempos no son fiables; apágalo y grábalo otra vez',
+  'the robot\'s clock jumped ahead: its times are wrong; switch it off, and flash it again':
+    'el reloj del robot ha dado un salto hacia delante: sus tiempos no son fiables; apágalo y grábalo otra vez',
+  'the robot\'s clock runs at another speed than the station\'s: check that its program is built for its crystal':
+    'el reloj del robot no va a la misma velocidad que el de la estación: comprueba que su programa está compilado para su cristal',
+  'the robot sends far more than it should: switch it off, and flash it again': 'el robot envía muchas más tramas de las debidas: apágalo y grábalo otra vez',
+  'the robot repeats what it said before: what is shown may be old; switch it off, and check what is on the link':
+    'el robot repite lo que ya dijo: lo que se muestra puede ser antiguo; apágalo y comprueba qué hay en el enlace',
   'refused: this page may watch, and stop the robot': 'rechazado: esta página puede mirar, y parar el robot',
   'refused: another page has control; take it first': 'rechazado: otra página tiene el control; tómalo antes',
   'connected; the robot speaks the original program\'s text: nothing is acknowledged, and it goes on by itself when the link is lost':
@@ -111,8 +129,6 @@ export const ROBOT = {
   'the link is disturbed: {} damaged frames within 10 s; come nearer, or check the cable':
     'hay perturbaciones en el enlace: {} tramas dañadas en 10 s; acércate o revisa el cable',
   '{}: sent, text is not acknowledged': '{}: enviado, el texto no se confirma',
-  '{}: sent as text, in case the robot runs the original program; nothing was heard from it yet':
-    '{}: enviado como texto, por si el robot ejecuta el programa original; aún no se le ha oído',
   'link lost: nothing heard from the robot for a second; trying again': 'enlace perdido: el robot no dice nada desde hace un segundo; reintentando',
   'the robot speaks protocol {}, this station {}: flash the robot or update the station': 'el robot habla el protocolo {}, esta estación el {}: graba el robot o actualiza la estación',
   'the robot has another parameter table: parameters are neither shown nor written': 'el robot tiene otra tabla de parámetros: ni se muestran ni se escriben',
@@ -146,7 +162,8 @@ export const ROBOT = {
   'save the parameters on the robot': 'guardar los parámetros en el robot',
   // Commands, and how they ended.
   'sent: {}': 'enviado: {}',
-  '{}: done': '{}: hecho', '{}: refused, {}': '{}: rechazado, {}', '{}: given up, STOP came after it': '{}: abandonado, después vino PARAR',
+  '{}: done': '{}: hecho', '{}: refused, {}': '{}: rechazado, {}', '{}: given up, STOP or OFF came after it': '{}: abandonado, después vino PARAR u OFF',
+  '{}: given up, the link was lost; it is not sent later': '{}: abandonado, se perdió el enlace; no se envía después',
   '{}: given up, the robot did not answer in time': '{}: abandonado, el robot no respondió a tiempo', '{}: given up, the robot started again': '{}: abandonado, el robot arrancó de nuevo',
   'clear the fault': 'borrar el fallo', 'mode {} {}': 'modo {} {}', 'reference {} cm': 'referencia {} cm', 'reference {} rpm': 'referencia {} rpm',
   'references left {} rpm, right {} rpm': 'referencias izq. {} rpm, der. {} rpm', 'movement {} with {} % PWM': 'movimiento {} con {} % PWM', 'movement {} at {} rpm': 'movimiento {} a {} rpm',

@@ -48,10 +48,11 @@ Examples:
   rumbo connect /dev/ttyACM0
   rumbo connect /dev/rfcomm0 --baud 9600
   rumbo connect COM5
+  rumbo connect /dev/ttyUSB0 --text
   rumbo connect tcp:192.168.1.7:2000 --no-browser
 
 `rumbo list ports` shows the serial ports of this computer. Connecting arms nothing. Should the port go, the robot stops by itself; it is
-found again when the port is back.")]
+found again when the port is back, and needs a new ON. Warnings and faults are shown here too.")]
 pub(crate) struct ConnectArgs {
     /// Serial port by its name, or tcp:host:port
     #[arg(value_name = "PORT", value_parser = clap::builder::NonEmptyStringValueParser::new())]
@@ -59,6 +60,9 @@ pub(crate) struct ConnectArgs {
     /// Show a simulated robot in this scenario that gets the same commands: put the robot where it begins
     #[arg(long, value_name = "SCENARIO")]
     pub(crate) ghost: Option<String>,
+    /// The robot runs the original program, which says nothing before its first ON: speak to it in text
+    #[arg(long, conflicts_with = "ghost")]
+    pub(crate) text: bool,
     /// Speed of the serial port; the robot's is 9600
     #[arg(long, value_name = "N", default_value_t = rumbo_station::port::DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(300..=2_000_000))]
     pub(crate) baud: u32,

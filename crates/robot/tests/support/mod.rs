@@ -8,7 +8,7 @@ use rumbo_control::{Echo, Edges, Inputs, Micros, Outputs, SIDES, SonarId, TICK_U
 use rumbo_robot::{Config, Robot};
 use rumbo_wire::{
     Ack, Command, Decoder, EventKind, Frame, FromRobot, Message, Received, Refusal, ResetCause,
-    Status, Telemetry, ToRobot,
+    RobotTime, Status, Telemetry, ToRobot,
 };
 
 /// Bytes that 9600 baud carry in 100 ticks.
@@ -80,6 +80,8 @@ pub(crate) struct Bench {
     tick: u32,
     number: u16,
     seq: u8,
+    /// The robot's time in its last status.
+    pub(crate) seen: RobotTime,
 }
 
 impl Bench {
@@ -89,6 +91,7 @@ impl Bench {
             robot: Robot::new(Config {
                 image: 0,
                 reset: ResetCause::PowerOn,
+                start: 0,
             }),
             now: start,
             outputs: Outputs::default(),
@@ -107,6 +110,7 @@ impl Bench {
             tick: 0,
             number: 0,
             seq: 0,
+            seen: RobotTime::default(),
         }
     }
 
@@ -120,6 +124,14 @@ impl Bench {
         let mut bench = Bench::new();
         bench.ticks(50);
         bench
+    }
+
+    /// The robot's time: that of its last tick.
+    pub(crate) fn time(&self) -> RobotTime {
+        RobotTime {
+            start: 0,
+            ms: (self.tick - 1) * (TICK_US / 1_000),
+        }
     }
 
     /// Lets so many ticks pass.
@@ -179,7 +191,13 @@ impl Bench {
         };
         self.bytes += 1;
         match self.decoder.push(byte) {
-            Some(Received::Frame(body)) => self.heard.push(FromRobot::from_body(&body).unwrap()),
+            Some(Received::Frame(body)) => {
+                let message = FromRobot::from_body(&body).unwrap();
+                if let FromRobot::Status(status) = message {
+                    self.seen = status.at;
+                }
+                self.heard.push(message);
+            }
             Some(Received::Line(line)) => {
                 self.lines.push(String::from_utf8_lossy(line).into_owned())
             }
@@ -222,6 +240,7 @@ impl Bench {
             session,
             number,
             command,
+            seen: self.seen,
         });
         self.ticks(20);
         let acks = self.acks();

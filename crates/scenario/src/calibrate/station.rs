@@ -4,7 +4,9 @@ use super::error::CalibrateError;
 use super::link::Linked;
 use rumbo_control::params::ParamId;
 use rumbo_control::{Range, SIDES, SonarId, Wheels};
-use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, Telemetry, ToRobot};
+use rumbo_wire::{
+    Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, Telemetry, ToRobot,
+};
 
 /// Time between two looks at the link [us].
 const LOOK_US: u64 = 5_000;
@@ -58,6 +60,8 @@ pub(super) struct Station<'a, R: Linked> {
     decoder: Decoder<LINE>,
     buffer: Vec<u8>,
     t_ms: Option<u16>,
+    /// The newest robot time received.
+    seen: Option<RobotTime>,
     fault: Option<rumbo_control::Fault>,
     /// The mode has reached its reference since the last command.
     pub(super) reached: bool,
@@ -76,6 +80,7 @@ impl<'a, R: Linked> Station<'a, R> {
             decoder: Decoder::default(),
             buffer: Vec::new(),
             t_ms: None,
+            seen: None,
             fault: None,
             reached: false,
             answer: None,
@@ -97,11 +102,18 @@ impl<'a, R: Linked> Station<'a, R> {
     pub(super) fn command(&mut self, command: Command) -> Result<f32, CalibrateError> {
         self.number = self.number.wrapping_add(1);
         self.reached = false;
+        let until_us = self.robot.now_us() + u64::from(TRIES) * REPEAT_US;
+        while self.seen.is_none() && self.robot.now_us() < until_us {
+            self.look();
+        }
+        // Repeated or not, it was given now.
+        let seen = self.seen.unwrap_or_default();
         for _ in 0..TRIES {
             self.say(&ToRobot::Command {
                 session: SESSION,
                 number: self.number,
                 command,
+                seen,
             });
             let until_us = self.robot.now_us() + REPEAT_US;
             while self.robot.now_us() < until_us {
@@ -195,6 +207,7 @@ impl<'a, R: Linked> Station<'a, R> {
     }
 
     fn hear(&mut self, message: &FromRobot) {
+        self.seen = RobotTime::after(self.seen, message);
         match message {
             FromRobot::Telemetry(telemetry) => self.take(telemetry),
             FromRobot::Ack(ack) if ack.session == SESSION => {

@@ -17,7 +17,7 @@ use crate::sim::Sim;
 use crate::trace::Heard;
 use rumbo_control::mode::ModeId;
 use rumbo_wire::text::TextCommand;
-use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, ToRobot};
+use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
 use text::Terminal;
 
 /// Time between heartbeats [us].
@@ -48,8 +48,10 @@ pub(crate) struct Operator<'a> {
     next: usize,
     number: u16,
     seq: u8,
-    /// The command that waits for its acknowledgement, and when it was last sent.
-    pending: Option<(Command, u64)>,
+    /// The newest robot time received.
+    seen: Option<RobotTime>,
+    /// The command that waits for its acknowledgement, the robot time at which it was given, and when it was last sent.
+    pending: Option<(Command, RobotTime, u64)>,
     heartbeat_due_us: u64,
     /// The robot has said that it reached its goal since the last command was sent.
     reached: bool,
@@ -81,6 +83,7 @@ impl<'a> Operator<'a> {
             next: 0,
             number: 0,
             seq: 0,
+            seen: None,
             pending: None,
             heartbeat_due_us: 0,
             reached: false,
@@ -101,30 +104,44 @@ impl<'a> Operator<'a> {
         let (Some(firmware), Speech::Frames) = (&self.setup.firmware, &self.speech) else {
             return Ok(());
         };
+        let mute = || {
+            FileError::Setting(format!(
+                "firmware {}: does not acknowledge commands on the link of wiring {}; choose another with --wiring",
+                firmware.name(),
+                firmware.wiring()
+            ))
+        };
+        self.listen_until(sim, mute, |operator| operator.seen.is_some())?;
         for (id, value) in self.setup.control_parameters()? {
-            self.number = self.number.wrapping_add(1);
             let id = id as u8;
-            self.send(sim, Command::SetParam { id, value });
-            let since_us = sim.now_us();
-            while self.pending.is_some() {
-                sim.advance(sim.now_us() + BRIEF_STEP_US);
-                self.listen(sim);
-                if let Some(verdict) = sim.verdict() {
-                    return Err(FileError::Setting(verdict));
-                }
-                if sim.now_us() >= since_us + PATIENCE_US {
-                    return Err(FileError::Setting(format!(
-                        "firmware {}: does not acknowledge commands on the link of wiring {}; choose another with --wiring",
-                        firmware.name(),
-                        firmware.wiring()
-                    )));
-                }
-                self.repeat(sim);
-            }
+            self.give(sim, Command::SetParam { id, value });
+            self.listen_until(sim, mute, |operator| operator.pending.is_none())?;
         }
         sim.restart_clock();
         self.heard.clear();
         self.heartbeat_due_us = 0;
+        Ok(())
+    }
+
+    /// Lets time pass before the run until the robot has said what is waited for.
+    fn listen_until(
+        &mut self,
+        sim: &mut Sim,
+        mute: impl Fn() -> FileError,
+        done: impl Fn(&Self) -> bool,
+    ) -> Result<(), FileError> {
+        let since_us = sim.now_us();
+        while !done(self) {
+            sim.advance(sim.now_us() + BRIEF_STEP_US);
+            self.listen(sim);
+            if let Some(verdict) = sim.verdict() {
+                return Err(FileError::Setting(verdict));
+            }
+            if sim.now_us() >= since_us + PATIENCE_US {
+                return Err(mute());
+            }
+            self.repeat(sim);
+        }
         Ok(())
     }
 
@@ -145,6 +162,10 @@ impl<'a> Operator<'a> {
         if self.pending.is_some() {
             return self.repeat(sim);
         }
+        // A command carries the robot's time.
+        if self.seen.is_none() {
+            return;
+        }
         let command = match self.mode.take() {
             Some(mode) => Command::Mode(mode),
             None => match self.due(now_us) {
@@ -152,15 +173,20 @@ impl<'a> Operator<'a> {
                 None => return,
             },
         };
+        self.give(sim, command);
+    }
+
+    /// Gives the next command.
+    fn give(&mut self, sim: &mut Sim, command: Command) {
         self.number = self.number.wrapping_add(1);
-        self.send(sim, command);
+        self.send(sim, command, self.seen.unwrap_or_default());
     }
 
     fn repeat(&mut self, sim: &mut Sim) {
-        if let Some((command, sent_us)) = self.pending
+        if let Some((command, seen, sent_us)) = self.pending
             && sim.now_us() >= sent_us + REPEAT_US
         {
-            self.send(sim, command);
+            self.send(sim, command, seen);
         }
     }
 
@@ -223,14 +249,15 @@ impl<'a> Operator<'a> {
         }
     }
 
-    fn send(&mut self, sim: &mut Sim, command: Command) {
+    fn send(&mut self, sim: &mut Sim, command: Command, seen: RobotTime) {
         let message = ToRobot::Command {
             session: 1,
             number: self.number,
             command,
+            seen,
         };
         self.say(sim, &message);
-        self.pending = Some((command, sim.now_us()));
+        self.pending = Some((command, seen, sim.now_us()));
     }
 
     fn say(&mut self, sim: &mut Sim, message: &ToRobot) {
@@ -247,6 +274,9 @@ impl<'a> Operator<'a> {
                 continue;
             };
             let message = FromRobot::from_body(&body);
+            if let Ok(message) = &message {
+                self.seen = RobotTime::after(self.seen, message);
+            }
             if let Ok(
                 what @ (FromRobot::Telemetry(_)
                 | FromRobot::Event(_)
@@ -260,7 +290,7 @@ impl<'a> Operator<'a> {
             }
             match message {
                 Ok(FromRobot::Ack(ack)) if ack.number == self.number => {
-                    if let (Some((command, _)), Err(refusal)) = (self.pending.take(), ack.result) {
+                    if let (Some((command, ..)), Err(refusal)) = (self.pending.take(), ack.result) {
                         let now_s = sim.now_us() as f64 * 1e-6;
                         let why = refusal.explanation();
                         self.complaints

@@ -314,6 +314,14 @@ impl Sim {
         }
     }
 
+    /// From now on it gets what another robot is given, by that one's clock: one of ours, native, does not judge how
+    /// old that is.
+    pub fn be_ghost(&mut self) {
+        if let Some(Controller::Rumbo(native)) = &mut self.controller {
+            native.be_ghost();
+        }
+    }
+
     /// What is in the robot's EEPROM; what was never written may be missing at the end.
     pub fn memory(&self) -> Vec<u8> {
         match &self.controller {

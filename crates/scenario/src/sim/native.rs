@@ -8,7 +8,7 @@ use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_control::{Inputs, OUTPUT_DELAY_US, Outputs, TICK_US};
 use rumbo_plant::plant::Event;
-use rumbo_robot::{Cell, Config, Robot};
+use rumbo_robot::{Cell, Config, Robot, START_AT};
 use rumbo_wire::ResetCause;
 
 /// The converter's reference, the chip's supply [V].
@@ -19,6 +19,10 @@ const CONVERTER_V: f64 = 5.0;
 pub(super) struct Memory(pub(super) Vec<u8>);
 
 impl Memory {
+    fn read(&self, address: u16) -> u8 {
+        self.0.get(usize::from(address)).copied().unwrap_or(0xFF)
+    }
+
     fn write(&mut self, cell: Cell) {
         let at = usize::from(cell.address);
         if self.0.len() <= at {
@@ -34,6 +38,8 @@ impl Memory {
 #[derive(Clone, Debug)]
 pub(super) struct Native {
     robot: Robot,
+    /// It gets what another robot is given.
+    is_ghost: bool,
     pub(super) board: Board,
     /// Its battery's divider.
     pub(super) divider: Option<Divider>,
@@ -60,19 +66,27 @@ pub struct Latched {
 impl Native {
     /// A robot with what its EEPROM holds, then these parameters, later ones in place of earlier ones.
     pub(super) fn new<'a>(
-        memory: Memory,
+        mut memory: Memory,
         parameters: impl IntoIterator<Item = &'a (ParamId, f32)>,
     ) -> Result<Self, FileError> {
+        // As the firmware counts its starts.
+        let start = memory.read(START_AT).wrapping_add(1);
+        memory.write(Cell {
+            address: START_AT,
+            value: start,
+        });
         let mut robot = Robot::new(Config {
             image: 0,
             reset: ResetCause::PowerOn,
+            start,
         });
-        robot.recall(|address| memory.0.get(usize::from(address)).copied().unwrap_or(0xFF));
+        robot.recall(|address| memory.read(address));
         for (id, value) in parameters {
             set_param(&mut robot, *id, *value)?;
         }
         Ok(Self {
             robot,
+            is_ghost: false,
             board: Board::default(),
             divider: None,
             converted: None,
@@ -86,6 +100,10 @@ impl Native {
     /// The robot stands here, as it believes.
     pub(super) fn set_pose(&mut self, pose: rumbo_control::Pose) {
         self.robot.set_pose(pose);
+    }
+
+    pub(super) fn be_ghost(&mut self) {
+        self.is_ghost = true;
     }
 
     pub(super) fn mode_state(&self) -> Option<(ModeId, u8)> {
@@ -175,7 +193,11 @@ impl Sim {
         let now_us = self.now_us();
         let mut received = Vec::new();
         while let Some((_, byte)) = self.uplink.pop(now_us) {
-            native.robot.receive(byte);
+            if native.is_ghost {
+                native.robot.receive_as_ghost(byte);
+            } else {
+                native.robot.receive(byte);
+            }
             received.push(byte);
         }
         let echo = native

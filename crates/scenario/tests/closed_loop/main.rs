@@ -19,7 +19,7 @@ use rumbo_scenario::files::{Library, Overrides, Setup};
 use rumbo_scenario::run::{RunResult, run, run_all};
 use rumbo_scenario::sim::Sim;
 use rumbo_scenario::trace::Trace;
-use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, ToRobot};
+use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, RobotTime, ToRobot};
 
 /// A revolution per minute in rad/s.
 const RPM: f64 = std::f64::consts::TAU / 60.0;
@@ -125,6 +125,8 @@ fn the_same_seed_gives_the_same_bits_on_one_thread_and_on_four() {
 struct Person {
     sim: Sim,
     number: u16,
+    /// The newest robot time heard.
+    seen: Option<RobotTime>,
     decoder: Decoder<160>,
 }
 
@@ -134,6 +136,7 @@ impl Person {
         Self {
             sim,
             number: 0,
+            seen: None,
             decoder: Decoder::default(),
         }
     }
@@ -144,6 +147,7 @@ impl Person {
             session: 9,
             number: self.number,
             command,
+            seen: self.seen.unwrap_or_default(),
         };
         self.sim.send(message.frame(0).bytes());
     }
@@ -163,13 +167,15 @@ impl Person {
         self.sim.advance(until_us);
         let mut bytes = Vec::new();
         self.sim.receive(&mut bytes);
-        bytes
+        let heard: Vec<_> = bytes
             .into_iter()
             .filter_map(|byte| match self.decoder.push(byte) {
                 Some(Received::Frame(body)) => FromRobot::from_body(&body).ok(),
                 _ => None,
             })
-            .collect()
+            .collect();
+        self.seen = heard.iter().fold(self.seen, RobotTime::after);
+        heard
     }
 
     fn driving(scenario: &str) -> Self {
@@ -210,6 +216,7 @@ fn stop_releases_the_wheels_within_30_ms_and_the_links_time() {
         session: 9,
         number: person.number + 1,
         command: Command::Stop,
+        seen: RobotTime::default(),
     };
     // Ten bits a byte, and the module's delay.
     let link_us = message.frame(0).bytes().len() as u64 * 10_000_000 / 9_600 + 8_000;

@@ -117,6 +117,7 @@ fn visited(mut given: Given) -> BTreeSet<(u8, u8)> {
     let mut robot = Robot::new(Config {
         image: 0,
         reset: ResetCause::PowerOn,
+        start: 0,
     });
     let (mut outputs, mut visited) = (Outputs::default(), BTreeSet::new());
     for tick in 1..=given.ticks() {
@@ -142,6 +143,7 @@ fn compare(what: &str, mut world: Given) {
     let mut robot = Robot::new(Config {
         image: board.hash(),
         reset: ResetCause::PowerOn,
+        start: 0,
     });
     let (mut outputs, mut told) = (Outputs::default(), Vec::new());
     let [mut native, mut chip] = [String::new(), String::new()];

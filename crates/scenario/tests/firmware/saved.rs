@@ -4,9 +4,12 @@ use crate::board::image;
 use crate::talk::Talk;
 use rumbo_control::params::ParamId;
 use rumbo_emulator::image::Image;
+use rumbo_robot::START_AT;
 use rumbo_scenario::files::{Library, Overrides};
 use rumbo_scenario::sim::Sim;
-use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Recalled, Received, ToRobot};
+use rumbo_wire::{
+    Command, Decoder, EventKind, FromRobot, Message, Recalled, Received, RobotTime, ToRobot,
+};
 
 /// A save takes at most so long: a byte a tick [ms].
 const SAVE_MS: u64 = 4_500;
@@ -115,10 +118,15 @@ fn damaged_copies_are_not_used_and_that_is_told() {
 
 /// Sends a command to a simulated robot, lets it live for so long [us], and gives what it said.
 fn tell(sim: &mut Sim, number: u16, command: Command, us: u64) -> Vec<FromRobot> {
+    let start = sim.memory()[usize::from(START_AT)];
     let message = ToRobot::Command {
         session: 7,
         number,
         command,
+        seen: RobotTime {
+            start,
+            ms: (sim.now_us() / 1_000).saturating_sub(10) as u32,
+        },
     };
     sim.send(message.frame(0).bytes());
     sim.advance(sim.now_us() + us);

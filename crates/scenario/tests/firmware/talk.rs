@@ -5,7 +5,7 @@ use rumbo_emulator::chip::Chip;
 use rumbo_emulator::devices::ports::Pin;
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
-use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, ToRobot};
+use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, RobotTime, ToRobot};
 
 /// Cycles of a millisecond.
 pub(crate) const MS: u64 = 16_000;
@@ -18,6 +18,8 @@ pub(crate) struct Talk {
     pub(crate) heard: Vec<FromRobot>,
     decoder: Decoder<128>,
     number: u16,
+    /// The newest robot time heard.
+    seen: Option<RobotTime>,
 }
 
 impl Talk {
@@ -32,6 +34,7 @@ impl Talk {
             heard: Vec::new(),
             decoder: Decoder::default(),
             number: 0,
+            seen: None,
         }
     }
 
@@ -46,7 +49,9 @@ impl Talk {
                 continue;
             };
             if let Some(Received::Frame(body)) = self.decoder.push(byte as u8) {
-                self.heard.push(FromRobot::from_body(&body).unwrap());
+                let message = FromRobot::from_body(&body).unwrap();
+                self.seen = RobotTime::after(self.seen, &message);
+                self.heard.push(message);
             }
         }
     }
@@ -72,6 +77,7 @@ impl Talk {
             session: 7,
             number,
             command,
+            seen: self.seen.unwrap_or_default(),
         });
         for _ in 0..40 {
             self.run_ms(10);

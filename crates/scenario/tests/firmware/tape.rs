@@ -7,7 +7,7 @@ use rumbo_scenario::files::{FileError, Library, Overrides};
 use rumbo_scenario::run::{prepare, run_by};
 use rumbo_scenario::sim::Latched;
 use rumbo_scenario::wire_fault::TimedWireFault;
-use rumbo_wire::{Command, Message, ToRobot};
+use rumbo_wire::{Command, Message, RobotTime, ToRobot};
 
 /// Bytes that fit into a tick beside what else may come.
 const BYTES_PER_TICK: usize = 40;
@@ -113,6 +113,8 @@ fn set(number: usize, id: ParamId, value: f32) -> Vec<u8> {
             id: id as u8,
             value,
         },
+        // They are through long before they are too old.
+        seen: RobotTime::default(),
     };
     command.frame(number as u8).bytes().to_vec()
 }

@@ -4,7 +4,7 @@ use rumbo_control::mode::waypoints::Waypoint;
 use rumbo_control::mode::{Level, ModeId, Movement};
 use rumbo_control::params::ParamId;
 use rumbo_control::{Echo, Edges, Inputs, Micros, Outputs, SonarId, TICK_US, Wheels};
-use rumbo_wire::{Command, Message, ToRobot};
+use rumbo_wire::{Command, Message, RobotTime, ToRobot};
 use std::collections::VecDeque;
 
 /// Ticks of one mode.
@@ -84,6 +84,7 @@ pub(crate) struct World {
     number: u16,
     seq: u8,
     talk: VecDeque<u8>,
+    tick: u32,
     /// It is talked to in lines of text.
     in_text: bool,
 }
@@ -101,6 +102,7 @@ impl World {
             number: 0,
             seq: 0,
             talk: VecDeque::new(),
+            tick: 0,
             in_text: false,
         }
     }
@@ -158,6 +160,7 @@ impl World {
 
     /// The bytes that arrive until the next tick.
     pub(crate) fn bytes(&mut self, tick: u32) -> Vec<u8> {
+        self.tick = tick;
         if self.talk.is_empty() {
             match tick % EPISODE {
                 7 => self.begin(),
@@ -178,10 +181,17 @@ impl World {
 
     fn command(&mut self, command: Command) {
         self.number = self.number.wrapping_add(1);
+        // One in forty comes too late, or from before the start.
+        let late_ms = if self.random.chance(40) { 2_500 } else { 0 };
+        let seen = RobotTime {
+            start: u8::from(self.random.chance(200)),
+            ms: (self.tick * (TICK_US / 1_000)).saturating_sub(100 + late_ms),
+        };
         self.say(&ToRobot::Command {
             session: 1,
             number: self.number,
             command,
+            seen,
         });
     }
 

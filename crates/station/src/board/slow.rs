@@ -17,6 +17,12 @@ pub(crate) struct State {
     pub(crate) achieved_speed: f64,
     pub(crate) link: LinkState,
     pub(crate) robot: RobotState,
+    /// The last order, if it was refused or given up, and why.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) refused: Option<String>,
+    /// What a person has to see to at once.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) alarms: Vec<String>,
     /// The calibration that runs, or ran last in this run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) calibration: Option<CalibrationState>,

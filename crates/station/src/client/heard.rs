@@ -1,6 +1,7 @@
 //! What the station's end of a link tells: what was heard, and how the link does.
 
 use crate::commands::Outcome;
+use crate::oddity::Oddity;
 use rumbo_control::params;
 use rumbo_wire::{EventKind, Hello, Status, Telemetry};
 
@@ -11,7 +12,9 @@ pub enum Heard {
     Connected(Hello),
     /// The robot sends rows of the original's text, for the first time or after silence.
     Text,
-    /// The robot's program started again by itself.
+    /// The robot speaks another version of the protocol: nothing is understood but that.
+    OtherProtocol(Hello),
+    /// The robot's program started again since it was last connected.
     Restarted(Hello),
     /// Nothing came for a second.
     Lost,
@@ -23,6 +26,19 @@ pub enum Heard {
     Event(i64, EventKind),
     /// A command ended.
     Ended(Outcome),
+    /// STOP is not acknowledged, or the robot goes on saying that it is armed.
+    StopUnconfirmed,
+    /// The robot does what no sound robot does.
+    Odd(Oddity),
+}
+
+/// Why a command was not taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotTaken {
+    /// No robot is connected.
+    NotConnected,
+    /// As many commands wait as may.
+    QueueFull,
 }
 
 /// The parameter table the station knows.

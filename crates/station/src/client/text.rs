@@ -21,14 +21,6 @@ impl RobotClient {
         self.row_kind.filter(|_| self.text)
     }
 
-    /// Nothing at all was heard, though the robot was asked again and again: the original program before its first ON is like that.
-    pub fn is_mute(&self) -> bool {
-        !self.text
-            && self.hello.is_none()
-            && self.hellos >= HELLOS_UNANSWERED
-            && self.heard_bytes == 0
-    }
-
     /// Takes a command from the operator for a robot that speaks text; false if text has no words for it.
     pub fn submit_text(&mut self, command: &Command) -> bool {
         let mode = match *command {
@@ -43,16 +35,16 @@ impl RobotClient {
         self.terminal.type_in(line);
     }
 
-    /// Another robot may be at the port now: which language it speaks is to be found out, unless that is known from elsewhere.
-    pub fn port_is_back(&mut self) {
-        if self.undecided && self.text {
-            self.text = false;
-            self.connected = false;
-        }
+    /// The port is gone, and the robot with it. Another one may be there when it is back: which language that speaks
+    /// is to be found out, unless it is known from elsewhere.
+    pub fn port_is_gone(&mut self) {
         self.heard_bytes = 0;
-        if !self.connected {
-            self.hello_sent_us = None;
-            (self.hellos, self.words) = (0, 0);
+        self.terminal.forget();
+        if self.undecided {
+            self.text = false;
+        }
+        if !self.text {
+            self.lose();
         }
     }
 

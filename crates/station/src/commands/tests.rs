@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use rumbo_control::mode::ModeId;
 
 const SESSION: u8 = 7;
+const SEEN: RobotTime = RobotTime { start: 1, ms: 900 };
 
 fn number_of(sent: ToRobot) -> u16 {
     match sent {
@@ -32,10 +33,10 @@ fn ack(number: u16) -> Ack {
 #[test]
 fn a_command_is_repeated_with_its_number_until_it_is_acknowledged() {
     let mut manager = CommandManager::new(SESSION);
-    manager.submit(Command::Arm, 0).unwrap();
-    let first = manager.poll(0).unwrap();
-    assert_eq!(manager.poll(FIRST_TIMEOUT_US - 1), None);
-    let again = manager.poll(FIRST_TIMEOUT_US).unwrap();
+    manager.submit(Command::Arm, SEEN, 0).unwrap();
+    let first = manager.poll(SEEN, 0).unwrap();
+    assert_eq!(manager.poll(SEEN, FIRST_TIMEOUT_US - 1), None);
+    let again = manager.poll(SEEN, FIRST_TIMEOUT_US).unwrap();
     assert_eq!(first, again);
     manager.acknowledge(&ack(number_of(first)), FIRST_TIMEOUT_US + 50_000);
     assert_eq!(
@@ -45,20 +46,20 @@ fn a_command_is_repeated_with_its_number_until_it_is_acknowledged() {
             fate: Fate::Applied(0.0)
         }]
     );
-    assert_eq!(manager.poll(10_000_000), None);
+    assert_eq!(manager.poll(SEEN, 10_000_000), None);
 }
 
 #[test]
 fn the_next_command_waits_for_the_acknowledgement() {
     let mut manager = CommandManager::new(SESSION);
     manager
-        .submit(Command::Mode(ModeId::FrontDistance), 0)
+        .submit(Command::Mode(ModeId::FrontDistance), SEEN, 0)
         .unwrap();
-    manager.submit(Command::Reference(0.5), 0).unwrap();
-    let first = manager.poll(0).unwrap();
-    assert_eq!(manager.poll(1_000), None);
+    manager.submit(Command::Reference(0.5), SEEN, 0).unwrap();
+    let first = manager.poll(SEEN, 0).unwrap();
+    assert_eq!(manager.poll(SEEN, 1_000), None);
     manager.acknowledge(&ack(number_of(first)), 60_000);
-    let second = manager.poll(60_000).unwrap();
+    let second = manager.poll(SEEN, 60_000).unwrap();
     assert_eq!(command_of(second), Command::Reference(0.5));
     assert_ne!(number_of(first), number_of(second));
 }
@@ -66,11 +67,11 @@ fn the_next_command_waits_for_the_acknowledgement() {
 #[test]
 fn stop_goes_first_and_nothing_older_follows_it() {
     let mut manager = CommandManager::new(SESSION);
-    manager.submit(Command::Arm, 0).unwrap();
-    manager.submit(Command::Reference(0.5), 0).unwrap();
-    let arm = manager.poll(0).unwrap();
-    manager.submit(Command::Stop, 10_000).unwrap();
-    let stop = manager.poll(10_000).unwrap();
+    manager.submit(Command::Arm, SEEN, 0).unwrap();
+    manager.submit(Command::Reference(0.5), SEEN, 0).unwrap();
+    let arm = manager.poll(SEEN, 0).unwrap();
+    manager.submit(Command::Stop, SEEN, 10_000).unwrap();
+    let stop = manager.poll(SEEN, 10_000).unwrap();
     assert_eq!(command_of(stop), Command::Stop);
     // The answer to the command that STOP overtook ends nothing.
     manager.acknowledge(&ack(number_of(arm)), 20_000);
@@ -83,36 +84,144 @@ fn stop_goes_first_and_nothing_older_follows_it() {
             fate: Fate::Applied(0.0)
         }]
     );
-    assert_eq!(manager.poll(10_000_000), None);
+    assert_eq!(manager.poll(SEEN, 10_000_000), None);
 }
 
 #[test]
 fn stop_is_taken_when_the_queue_is_full() {
     let mut manager = CommandManager::new(SESSION);
     for _ in 0..MAX_WAITING {
-        manager.submit(Command::Arm, 0).unwrap();
+        manager.submit(Command::Arm, SEEN, 0).unwrap();
     }
-    assert_eq!(manager.submit(Command::Arm, 0), Err(QueueFull));
-    manager.submit(Command::Stop, 0).unwrap();
-    assert_eq!(command_of(manager.poll(0).unwrap()), Command::Stop);
+    assert_eq!(manager.submit(Command::Arm, SEEN, 0), Err(QueueFull));
+    manager.submit(Command::Stop, SEEN, 0).unwrap();
+    assert_eq!(command_of(manager.poll(SEEN, 0).unwrap()), Command::Stop);
 }
 
 #[test]
-fn an_old_start_is_given_up_and_a_setting_is_not() {
+fn an_order_is_given_up_2_s_after_it_was_given_whether_it_waits_or_is_under_way() {
     let mut manager = CommandManager::new(SESSION);
-    manager.submit(Command::Arm, 0).unwrap();
-    manager.submit(Command::Reference(0.5), 0).unwrap();
-    assert_eq!(command_of(manager.poll(0).unwrap()), Command::Arm);
-    let next = manager.poll(MOTION_EXPIRY_US).unwrap();
-    assert_eq!(command_of(next), Command::Reference(0.5));
+    manager.submit(Command::ClearFault, SEEN, 0).unwrap();
+    manager.submit(Command::Arm, SEEN, 500_000).unwrap();
+    manager
+        .submit(Command::Reference(0.5), SEEN, 1_900_000)
+        .unwrap();
     assert_eq!(
-        manager.take_outcomes(),
-        [Outcome {
-            command: Command::Arm,
-            fate: Fate::Expired
-        }]
+        command_of(manager.poll(SEEN, 0).unwrap()),
+        Command::ClearFault
     );
-    assert_eq!(manager.poll(100 * MOTION_EXPIRY_US), Some(next));
+    let next = manager.poll(SEEN, EXPIRY_US).unwrap();
+    assert_eq!(command_of(next), Command::Arm);
+    let next = manager.poll(SEEN, 500_000 + EXPIRY_US).unwrap();
+    assert_eq!(command_of(next), Command::Reference(0.5));
+    assert_eq!(manager.poll(SEEN, 1_900_000 + EXPIRY_US), None);
+    let given_up = [Command::ClearFault, Command::Arm, Command::Reference(0.5)];
+    let given_up = given_up.map(|command| Outcome {
+        command,
+        fate: Fate::Expired,
+    });
+    assert_eq!(manager.take_outcomes(), given_up);
+    assert_eq!(manager.unacknowledged(), 0);
+}
+
+#[test]
+fn a_repetition_carries_the_time_at_which_the_order_was_given() {
+    let later = RobotTime {
+        start: 1,
+        ms: 9_000,
+    };
+    let mut manager = CommandManager::new(SESSION);
+    manager.submit(Command::ClearFault, SEEN, 0).unwrap();
+    manager.submit(Command::Arm, SEEN, 0).unwrap();
+    let clear = manager.poll(SEEN, 0).unwrap();
+    manager.acknowledge(&ack(number_of(clear)), 50_000);
+    for now_us in [50_000, 1_500_000] {
+        let Some(ToRobot::Command { command, seen, .. }) = manager.poll(later, now_us) else {
+            panic!("nothing is sent");
+        };
+        assert_eq!((command, seen), (Command::Arm, SEEN));
+    }
+}
+
+#[test]
+fn a_part_of_a_route_has_its_time_from_when_it_is_its_turn() {
+    let later = RobotTime {
+        start: 1,
+        ms: 9_000,
+    };
+    let mut manager = CommandManager::new(SESSION);
+    manager.submit_in_turn([Command::Lane, Command::Mode(ModeId::Mission)]);
+    let first = manager.poll(SEEN, 0).unwrap();
+    manager.acknowledge(&ack(number_of(first)), 1_900_000);
+    let Some(ToRobot::Command { command, seen, .. }) = manager.poll(later, 3_000_000) else {
+        panic!("nothing is sent");
+    };
+    assert_eq!((command, seen), (Command::Mode(ModeId::Mission), later));
+    assert_eq!(manager.poll(later, 3_000_000 + EXPIRY_US), None);
+}
+
+#[test]
+fn when_the_link_is_lost_everything_is_given_up_but_stop() {
+    let mut manager = CommandManager::new(SESSION);
+    manager.submit(Command::ClearFault, SEEN, 0).unwrap();
+    manager.submit(Command::Arm, SEEN, 0).unwrap();
+    manager.submit_background(Command::GetParam { id: 0 });
+    manager.poll(SEEN, 0);
+    manager.give_up(Fate::LinkLost);
+    assert_eq!(manager.poll(SEEN, 60_000_000), None);
+    let given_up = [Command::Arm, Command::ClearFault].map(|command| Outcome {
+        command,
+        fate: Fate::LinkLost,
+    });
+    assert_eq!(manager.take_outcomes(), given_up);
+    manager.submit(Command::Stop, SEEN, 60_000_000).unwrap();
+    manager.give_up(Fate::LinkLost);
+    let stop = manager.poll(SEEN, 90_000_000).unwrap();
+    assert_eq!(command_of(stop), Command::Stop);
+    assert_eq!(manager.stop_since_us(), Some(60_000_000));
+}
+
+#[test]
+fn off_goes_first_too_and_gives_way_to_stop_alone() {
+    let mut manager = CommandManager::new(SESSION);
+    manager.submit(Command::Arm, SEEN, 0).unwrap();
+    manager.submit(Command::Reference(0.5), SEEN, 0).unwrap();
+    manager.poll(SEEN, 0);
+    manager.submit(Command::Disarm, SEEN, 10_000).unwrap();
+    assert_eq!(
+        command_of(manager.poll(SEEN, 10_000).unwrap()),
+        Command::Disarm
+    );
+    assert_eq!(
+        command_of(manager.poll(SEEN, 90_000_000).unwrap()),
+        Command::Disarm
+    );
+    manager.submit(Command::Stop, SEEN, 90_000_000).unwrap();
+    assert_eq!(
+        command_of(manager.poll(SEEN, 90_000_000).unwrap()),
+        Command::Stop
+    );
+    manager.submit(Command::Disarm, SEEN, 90_000_001).unwrap();
+    assert_eq!(
+        command_of(manager.poll(SEEN, 90_000_001).unwrap()),
+        Command::Stop
+    );
+    let superseded = manager.take_outcomes();
+    assert_eq!(superseded.len(), 3, "{superseded:?}");
+}
+
+#[test]
+fn a_read_that_is_not_answered_does_not_keep_an_order_waiting() {
+    let mut manager = CommandManager::new(SESSION);
+    manager.submit_background(Command::GetParam { id: 0 });
+    manager.poll(SEEN, 0);
+    manager.submit(Command::Arm, SEEN, 1_000).unwrap();
+    assert_eq!(manager.poll(SEEN, 2_000), None);
+    let next = manager.poll(SEEN, FIRST_TIMEOUT_US).unwrap();
+    assert_eq!(command_of(next), Command::Arm);
+    manager.acknowledge(&ack(number_of(next)), 300_000);
+    let next = manager.poll(SEEN, 300_000).unwrap();
+    assert_eq!(command_of(next), Command::GetParam { id: 0 });
 }
 
 #[test]
@@ -120,11 +229,11 @@ fn reading_parameters_gives_way_to_the_operator() {
     let mut manager = CommandManager::new(SESSION);
     manager.submit_background(Command::GetParam { id: 0 });
     manager.submit_background(Command::GetParam { id: 1 });
-    let read = manager.poll(0).unwrap();
-    manager.submit(Command::ClearFault, 1_000).unwrap();
+    let read = manager.poll(SEEN, 0).unwrap();
+    manager.submit(Command::ClearFault, SEEN, 1_000).unwrap();
     manager.acknowledge(&ack(number_of(read)), 50_000);
     assert_eq!(
-        command_of(manager.poll(50_000).unwrap()),
+        command_of(manager.poll(SEEN, 50_000).unwrap()),
         Command::ClearFault
     );
 }
@@ -138,7 +247,7 @@ fn a_robot_that_takes_the_numbers_for_old_ones_is_met_in_another_session() {
         let now_us = step * 10_000;
         if let Some(ToRobot::Command {
             session, number, ..
-        }) = manager.poll(now_us)
+        }) = manager.poll(SEEN, now_us)
             && session != SESSION
         {
             answered = Some(session);
@@ -159,10 +268,10 @@ fn a_robot_that_takes_the_numbers_for_old_ones_is_met_in_another_session() {
 #[test]
 fn a_restarted_robot_is_not_asked_to_arm() {
     let mut manager = CommandManager::new(SESSION);
-    manager.submit(Command::Arm, 0).unwrap();
-    manager.poll(0);
-    manager.robot_restarted();
-    assert_eq!(manager.poll(1_000_000), None);
+    manager.submit(Command::Arm, SEEN, 0).unwrap();
+    manager.poll(SEEN, 0);
+    manager.give_up(Fate::RobotRestarted);
+    assert_eq!(manager.poll(SEEN, 1_000_000), None);
     assert_eq!(
         manager.take_outcomes(),
         [Outcome {
@@ -192,19 +301,17 @@ impl Robot {
 
 proptest! {
     #[test]
-    fn over_a_link_that_loses_frames_each_command_is_applied_once_and_in_order(
+    fn over_a_link_that_loses_frames_each_command_is_applied_once_at_most_and_in_order(
         lost in proptest::collection::vec(any::<(bool, bool)>(), 200),
     ) {
         let mut manager = CommandManager::new(SESSION);
         let mut robot = Robot::default();
         let asked: Vec<Command> = (0..10u8).map(|id| Command::SetParam { id, value: 1.0 }).collect();
-        for command in &asked {
-            manager.submit(*command, 0).unwrap();
-        }
+        manager.submit_in_turn(asked.iter().copied());
         let mut lost = lost.into_iter();
         let mut now_us = 0;
         while manager.unacknowledged() > 0 {
-            if let Some(sent) = manager.poll(now_us) {
+            if let Some(sent) = manager.poll(SEEN, now_us) {
                 let (lost_there, lost_back) = lost.next().unwrap_or_default();
                 if !lost_there {
                     let answer = robot.take(sent);
@@ -215,7 +322,15 @@ proptest! {
             }
             now_us += 50_000;
         }
-        prop_assert_eq!(robot.applied, asked);
+        let mut left = asked.iter();
+        prop_assert!(robot.applied.iter().all(|applied| left.any(|asked| asked == applied)));
+        let outcomes = manager.take_outcomes();
+        prop_assert_eq!(outcomes.len(), asked.len());
+        for outcome in outcomes {
+            let known = matches!(outcome.fate, Fate::Applied(_) | Fate::Expired);
+            let applied = robot.applied.contains(&outcome.command);
+            prop_assert!(known && (applied || outcome.fate == Fate::Expired));
+        }
     }
 }
 
@@ -229,7 +344,7 @@ fn what_is_wanted_first_is_read_first_and_the_rest_as_it_came() {
     });
     let mut read = Vec::new();
     for step in 0..4u64 {
-        let asked = manager.poll(step * 100_000).unwrap();
+        let asked = manager.poll(SEEN, step * 100_000).unwrap();
         read.push(command_of(asked));
         manager.acknowledge(&ack(number_of(asked)), step * 100_000 + 50_000);
     }

@@ -210,6 +210,7 @@ impl Teller {
                 session,
                 number,
                 command,
+                ..
             }) = message
             else {
                 continue;

@@ -19,6 +19,7 @@
 
 mod bound;
 mod digest;
+mod earlier;
 mod headless;
 mod intake;
 mod manifest;

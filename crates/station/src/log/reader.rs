@@ -4,6 +4,7 @@
 //! index, is read but for what is damaged. Logs that `rumbo import`
 //! made of the original program's CSV are read too, as far as their signals have a place in a [`Row`].
 
+use super::earlier;
 use super::intake::{Intake, Stop};
 use super::pieces::Pieces;
 use super::{Burst, LogError, Manifest, Outcome, Said, Sent};
@@ -12,6 +13,7 @@ use crate::origin::compose;
 use crate::row::Row;
 use crate::target::{MapPose, Scene};
 use mcap::MAGIC;
+use rumbo_wire::Hello;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
@@ -149,7 +151,14 @@ impl Log {
             return Err(wrong(what.into()));
         }
         log.rows.sort_by_key(|row| row.t_ms);
+        earlier::renew(&mut log.link);
         Ok(log)
+    }
+
+    /// How the robot first named itself in frames.
+    #[must_use]
+    pub fn hello(&self) -> Option<Hello> {
+        earlier::hello(&self.link)
     }
 
     /// Nothing of what happened is in it: it ends within its manifest and the files that ran.

@@ -84,6 +84,18 @@ impl Session {
         self.client.read_parameters();
     }
 
+    /// Ends a calibration that runs.
+    pub(super) fn give_up_calibration(&mut self, why: &str) {
+        if self.guest.take().is_none() {
+            return;
+        }
+        self.note(Level::Warning, format!("calibration: given up, {why}"));
+        let at_s = self.target.now_us() as f64 / 1e6;
+        let why = why.to_owned();
+        self.calibration = Some(CalibrationState::Failed { why, at_s });
+        self.client.read_parameters();
+    }
+
     /// Whether an order is for the robot, and a calibration in its way. One that stops the robot ends the calibration.
     pub(super) fn is_taken(&mut self, order: &Order) -> bool {
         if self.guest.is_none() {
@@ -91,12 +103,7 @@ impl Session {
         }
         match order {
             Order::Robot(Command::Stop | Command::Disarm) | Order::Reset(_) => {
-                self.guest = None;
-                let why = "it was stopped".to_owned();
-                self.note(Level::Warning, format!("calibration: given up, {why}"));
-                let at_s = self.target.now_us() as f64 / 1e6;
-                self.calibration = Some(CalibrationState::Failed { why, at_s });
-                self.client.read_parameters();
+                self.give_up_calibration("it was stopped");
                 false
             }
             Order::Robot(_) | Order::Hold(_) | Order::Route(_) => {

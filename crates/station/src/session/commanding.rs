@@ -1,7 +1,9 @@
 //! What the session does with a command: in frames or in the original's words, held as long as a key is, or refused with the reason.
 
-use super::Session;
+use super::{Session, to_ms};
 use crate::board;
+use crate::catalogue;
+use crate::client::NotTaken;
 use crate::words;
 use rumbo_control::mode::Movement;
 use rumbo_wire::{Command, Level};
@@ -12,44 +14,64 @@ const HOLD: Duration = Duration::from_millis(600);
 
 impl Session {
     pub(super) fn command(&mut self, command: Command) -> Result<(), String> {
+        self.observer.order_given();
         if self.client.speaks_text() {
             return self.command_in_text(&command);
         }
-        if self.client.is_mute() && self.call_in_text(&command) {
-            return self.send();
-        }
         if let Command::SetParam { id, .. } = command
-            && !(self.client.table_matches() && self.observer.parameter_pending(id))
+            && self.client.connected()
+            && !(self.client.table_matches() && catalogue::entry(id).is_some())
         {
             return self.refuse(&command, "the robot has another parameter table");
         }
-        if self.client.submit(command, self.target.now_us()).is_err() {
-            return self.refuse(&command, "too many commands wait for the robot");
+        if let Err(why) = self.client.submit(command, self.target.now_us()) {
+            return self.refuse(&command, &self.why_not(why));
         }
+        self.await_parameter(&command);
         // At once: STOP does not wait for the next wake.
         self.send()
     }
 
-    /// Nothing was heard yet, and should it be the original program, only its own words wake it. One of ours that cannot be heard
-    /// stops at OFF as well. True if that is all that is to be sent.
-    fn call_in_text(&mut self, command: &Command) -> bool {
-        let stop = matches!(command, Command::Stop | Command::Disarm);
-        if !(stop || matches!(command, Command::Arm | Command::Goal { .. })) {
-            return false;
+    /// Commands that belong together: one after the other, all or none of them taken.
+    pub(super) fn commands(&mut self, commands: Vec<Command>) -> Result<(), String> {
+        if self.client.speaks_text() {
+            return commands
+                .into_iter()
+                .try_for_each(|command| self.command(command));
         }
-        self.client.submit_text(command);
-        let said = words::command(command, self.client.mode());
-        let text = format!(
-            "{said}: sent as text, in case the robot runs the original program; nothing was heard from it yet"
-        );
-        self.note(board::Level::Info, text);
-        !stop
+        self.observer.order_given();
+        let Some(first) = commands.first().copied() else {
+            return Ok(());
+        };
+        if let Err(why) = self.client.submit_in_turn(commands.iter().copied()) {
+            return self.refuse(&first, &self.why_not(why));
+        }
+        commands
+            .iter()
+            .for_each(|command| self.await_parameter(command));
+        self.send()
+    }
+
+    fn await_parameter(&mut self, command: &Command) {
+        if let Command::SetParam { id, .. } = command {
+            self.observer.parameter_pending(*id);
+        }
+    }
+
+    fn why_not(&self, why: NotTaken) -> String {
+        match (why, self.client.other_protocol()) {
+            (NotTaken::NotConnected, _) if self.port_gone => {
+                "the port is gone; give the order again when it is back".into()
+            }
+            (NotTaken::NotConnected, Some(protocol)) => words::other_protocol(protocol),
+            _ => words::not_taken(why).into(),
+        }
     }
 
     /// Sends a command in the original's words.
     fn command_in_text(&mut self, command: &Command) -> Result<(), String> {
         if self.port_gone {
-            return self.refuse(command, "the port is gone");
+            return self.refuse(command, &self.why_not(NotTaken::NotConnected));
         }
         if !self.client.submit_text(command) {
             return self.refuse(
@@ -73,7 +95,7 @@ impl Session {
                 self.observer.typed(now_us, usart, line);
             }),
             None if self.port_gone => Err("the port is gone".into()),
-            None if self.client.speaks_text() || self.client.is_mute() => {
+            None if self.client.speaks_text() => {
                 self.client.type_in(line);
                 return self.send();
             }
@@ -112,10 +134,12 @@ impl Session {
         self.briefed = true;
         let simulation = self.target.simulation();
         let commands = simulation.map_or_else(Vec::new, |simulation| simulation.first_commands());
-        commands
-            .into_iter()
-            .filter(|command| *command != Command::Arm)
-            .try_for_each(|command| self.command(command))
+        let commands = commands.into_iter();
+        self.commands(
+            commands
+                .filter(|command| *command != Command::Arm)
+                .collect(),
+        )
     }
 
     /// Puts the ghost where the robot is.
@@ -131,7 +155,9 @@ impl Session {
 
     fn refuse(&mut self, command: &Command, why: &str) -> Result<(), String> {
         let asked = words::command(command, self.client.mode());
-        self.note(board::Level::Warning, format!("{asked}: refused, {why}"));
+        let now_ms = to_ms(self.target.now_us());
+        self.observer
+            .refuse(now_ms, format!("{asked}: refused, {why}"));
         Ok(())
     }
 }

@@ -128,16 +128,23 @@ pub(crate) struct Commands {
     pub(crate) asked: usize,
     /// Applied by the robot, repetitions included.
     pub(crate) applied: usize,
-    /// In the order in which they were asked, each once.
+    /// In the order in which they were asked, each once at most.
     pub(crate) in_order: bool,
-    /// Told to the operator as applied.
+    /// Acknowledged, so applied.
     pub(crate) acknowledged: usize,
+    /// Given up; they may or may not have been applied.
+    pub(crate) given_up: usize,
+    /// What the robot was accused of, and never did.
+    pub(crate) alarms: usize,
 }
 
 impl Commands {
     pub(crate) fn good(&self) -> bool {
         // The last one may still be on its way.
-        self.in_order && self.asked > 10 && self.acknowledged + 1 >= self.asked
+        let ended = self.acknowledged + self.given_up + 1 >= self.asked;
+        let known = (self.acknowledged..=self.asked).contains(&self.applied);
+        let few = self.given_up * 20 <= self.asked;
+        self.in_order && self.asked > 10 && ended && known && few && self.alarms == 0
     }
 }
 
@@ -149,15 +156,17 @@ impl fmt::Display for Commands {
             applied,
             in_order,
             acknowledged,
+            given_up,
+            alarms,
         } = self;
         let order = if *in_order {
-            "each once, in order"
+            "each once at most, in order"
         } else {
-            "NOT each once and in order"
+            "NOT each once at most and in order"
         };
         write!(
             f,
-            "{frames} frames, {asked} commands asked for, {applied} applied, {order}, {acknowledged} acknowledged"
+            "{frames} frames, {asked} commands asked for, {applied} applied, {order}, {acknowledged} acknowledged, {given_up} given up, {alarms} false alarms"
         )
     }
 }
@@ -183,7 +192,7 @@ pub(crate) fn commands(frames: u64, seed: u64) -> Commands {
         in_order: true,
         ..Commands::default()
     };
-    let mut matched = 0;
+    let (mut matched, mut next) = (0, 0);
     while told.frames < frames {
         if client.link(robot.now_us()).unacknowledged == 0 && client.connected() {
             let command = Command::Reference(asked.len() as f32 * 0.001);
@@ -202,13 +211,18 @@ pub(crate) fn commands(frames: u64, seed: u64) -> Commands {
                 Heard::Telemetry(..) | Heard::Status(_) => told.frames += 1,
                 Heard::Ended(outcome) => {
                     told.frames += 1;
-                    told.acknowledged += usize::from(matches!(outcome.fate, Fate::Applied(_)));
+                    let done = matches!(outcome.fate, Fate::Applied(_));
+                    told.acknowledged += usize::from(done);
+                    told.given_up += usize::from(!done);
                 }
+                Heard::Odd(_) | Heard::StopUnconfirmed => told.alarms += 1,
                 _ => {}
             }
         }
         for applied in robot.target.applied.drain(..) {
-            told.in_order &= asked.get(matched) == Some(&applied);
+            let place = asked.iter().skip(next).position(|asked| *asked == applied);
+            told.in_order &= place.is_some();
+            next += place.map_or(0, |place| place + 1);
             matched += 1;
         }
     }

@@ -14,6 +14,7 @@ use tokio_tungstenite::tungstenite::{Error, Message};
 /// Long enough for any machine; nothing is judged by it.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(20);
 
+#[allow(dead_code, reason = "not every test is about the toy alone")]
 pub(crate) fn start(speed: f64) -> Lab {
     serve(
         LabConfig {

@@ -48,6 +48,10 @@ prop_compose! {
     }
 }
 
+pub(crate) fn time() -> impl Strategy<Value = RobotTime> {
+    any::<(u8, u32)>().prop_map(|(start, ms)| RobotTime { start, ms })
+}
+
 prop_compose! {
     pub(crate) fn status()(
         (mode, armed, fault) in (mode(), any::<bool>(), prop::option::of(fault())),
@@ -55,8 +59,9 @@ prop_compose! {
         reference in wheels(-200.0f32..200.0),
         (crc_errors, dropped, overruns) in any::<(u8, u8, u8)>(),
         rig in prop::sample::select(Rig::ALL.to_vec()),
+        at in time(),
     ) -> Status {
-        Status { mode, armed, fault, battery_v, reference, crc_errors, dropped, overruns, rig }
+        Status { mode, armed, fault, battery_v, reference, crc_errors, dropped, overruns, rig, at }
     }
 }
 
@@ -157,10 +162,18 @@ pub(crate) fn to_robot() -> impl Strategy<Value = ToRobot> {
     prop_oneof![
         Just(ToRobot::Hello),
         Just(ToRobot::Heartbeat),
-        (any::<(u8, u16)>(), command()).prop_map(|((session, number), command)| ToRobot::Command {
-            session,
-            number,
-            command
+        (any::<(u8, u16)>(), command(), time()).prop_map(|((session, number), command, seen)| {
+            ToRobot::Command {
+                session,
+                number,
+                command,
+                // Of commands that do not carry it nothing is said.
+                seen: if command.is_timed() {
+                    seen
+                } else {
+                    RobotTime::default()
+                },
+            }
         }),
     ]
 }

@@ -6,7 +6,8 @@ use rumbo_control::params::ParamId;
 use rumbo_scenario::files::{Library, Overrides, Setup};
 use rumbo_scenario::sim::Sim;
 use rumbo_wire::{
-    Command, Decoder, EventKind, FromRobot, Hello, Message, Received, Refusal, Status, ToRobot,
+    Command, Decoder, EventKind, FromRobot, Hello, Message, Received, Refusal, RobotTime, Status,
+    ToRobot,
 };
 
 /// Time between two looks at the robot [us].
@@ -37,6 +38,8 @@ pub(crate) struct Drive {
     number: u16,
     seq: u8,
     heartbeat_us: u64,
+    /// The newest robot time heard.
+    seen: Option<RobotTime>,
 }
 
 /// A scenario with the image; `None` where that has not been built.
@@ -85,6 +88,7 @@ impl Drive {
             number: 0,
             seq: 0,
             heartbeat_us: 0,
+            seen: None,
         }
     }
 
@@ -143,6 +147,7 @@ impl Drive {
             if let Some(Received::Frame(body)) = self.decoder.push(byte)
                 && let Ok(heard) = FromRobot::from_body(&body)
             {
+                self.seen = RobotTime::after(self.seen, &heard);
                 self.heard.push((self.now_s(), heard));
             }
         }
@@ -160,6 +165,7 @@ impl Drive {
             session: 7,
             number: self.number,
             command,
+            seen: self.seen.unwrap_or_default(),
         };
         message.frame(self.seq).bytes().to_vec()
     }

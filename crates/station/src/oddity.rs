@@ -1,0 +1,242 @@
+//! Watches what the robot says for what no sound robot does, whatever the link loses or delays: a clock that runs
+//! back, jumps or runs at another speed, far too many frames, the same frames again.
+//!
+//! A link only delays: two frames may arrive closer together than they were made, never with more of the robot's time
+//! between them than the wait for the first one explains, and a link that is silent for a second is lost, with which
+//! everything here begins again. A restart looks like a clock that ran back until the next status, so what is
+//! suspicious is judged then. Each oddity is reported again after `AGAIN_US` at the earliest.
+
+use rumbo_wire::RobotTime;
+use std::collections::VecDeque;
+
+/// The same oddity is not reported again within this time \[us\].
+const AGAIN_US: u64 = 30_000_000;
+/// An oddity is shown for so long after it was last seen \[us\].
+const SHOWN_US: u64 = 10_000_000;
+/// The robot's clock may be ahead of the arrivals by so much in one step: longer than a silence that ends the
+/// connection \[ms\].
+const JUMP_MS: i64 = 1_500;
+/// Telemetry of which the times are remembered: ten seconds of it.
+const REMEMBERED: usize = 256;
+/// A link may repeat a frame or two.
+const REPEATS: u32 = 5;
+/// Speed and rate are judged over windows of this length \[ms\]: a delay that changes by 4 s changes the speed by a
+/// fifth.
+const WINDOW_MS: i64 = 20_000;
+/// Most frames a second, twice what the robot sends: 25 of telemetry, 12.5 headings, 2 statuses and some events.
+const FRAMES_S: i64 = 100;
+/// Suspicions are judged after this long without a status \[us\].
+const PATIENCE_US: u64 = 3_000_000;
+
+/// What no sound robot does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Oddity {
+    /// Its clock ran back without a restart.
+    ClockBack,
+    /// Its clock jumped ahead.
+    ClockJump,
+    /// Its clock runs much faster or slower than the station's.
+    ClockSpeed,
+    /// It sends far more than it has to say.
+    Flood,
+    /// It says again what it said before.
+    Repeats,
+}
+
+impl Oddity {
+    /// All of them.
+    pub const ALL: [Oddity; 5] = [
+        Oddity::ClockBack,
+        Oddity::ClockJump,
+        Oddity::ClockSpeed,
+        Oddity::Flood,
+        Oddity::Repeats,
+    ];
+
+    /// What it is, and what to do.
+    #[must_use]
+    pub const fn explanation(self) -> &'static str {
+        match self {
+            Self::ClockBack => {
+                "the robot's clock ran back without a restart: its times are wrong; switch it off, and flash it again"
+            }
+            Self::ClockJump => {
+                "the robot's clock jumped ahead: its times are wrong; switch it off, and flash it again"
+            }
+            Self::ClockSpeed => {
+                "the robot's clock runs at another speed than the station's: check that its program is built for its crystal"
+            }
+            Self::Flood => {
+                "the robot sends far more than it should: switch it off, and flash it again"
+            }
+            Self::Repeats => {
+                "the robot repeats what it said before: what is shown may be old; switch it off, and check what is on the link"
+            }
+        }
+    }
+}
+
+/// A stretch over which speed and rate are measured.
+#[derive(Clone, Copy, Debug)]
+struct Window {
+    began_ms: i64,
+    robot_ms: i64,
+    frames: i64,
+}
+
+/// Remembers what was said.
+#[derive(Debug, Default)]
+pub(crate) struct OddityWatch {
+    /// The robot's time in milliseconds, going on where telemetry wraps, and when it arrived \[ms\].
+    last: Option<(i64, i64)>,
+    recent: VecDeque<u16>,
+    last_status: Option<RobotTime>,
+    repeats: u32,
+    suspected: Vec<Oddity>,
+    suspected_us: Option<u64>,
+    window: Option<Window>,
+    seen_us: [Option<u64>; Oddity::ALL.len()],
+    reported_us: [Option<u64>; Oddity::ALL.len()],
+    to_report: Vec<Oddity>,
+}
+
+impl OddityWatch {
+    /// The robot started again, or was lost: what it says from now on does not follow from what it said before.
+    pub(crate) fn begin(&mut self) {
+        *self = Self {
+            seen_us: self.seen_us,
+            reported_us: self.reported_us,
+            to_report: std::mem::take(&mut self.to_report),
+            ..Self::default()
+        };
+    }
+
+    /// A frame arrived that answers nothing.
+    pub(crate) fn frame(&mut self, now_us: u64) {
+        if let Some(window) = &mut self.window {
+            window.frames += 1;
+        }
+        if self
+            .suspected_us
+            .is_some_and(|since_us| now_us >= since_us + PATIENCE_US)
+        {
+            self.judge(now_us);
+        }
+    }
+
+    /// Telemetry with this time arrived.
+    pub(crate) fn telemetry(&mut self, t_ms: u16, now_us: u64) {
+        if self.recent.contains(&t_ms) {
+            self.repeats += 1;
+            return self.suspect_repeats(now_us);
+        }
+        let before = self.recent.back().copied();
+        self.recent.push_back(t_ms);
+        if self.recent.len() > REMEMBERED {
+            self.recent.pop_front();
+        }
+        let step_ms = before.map_or(0, |before| t_ms.wrapping_sub(before).cast_signed());
+        self.step(step_ms.into(), now_us);
+    }
+
+    /// A status with this time arrived, of the same start as the one before: what was suspicious was no restart.
+    pub(crate) fn status(&mut self, at: RobotTime, now_us: u64) {
+        match self.last_status.replace(at) {
+            Some(before) if before == at => {
+                self.repeats += 1;
+                self.suspect_repeats(now_us);
+            }
+            Some(before) if at.since(before).is_none() => {
+                self.suspect(Oddity::ClockBack, now_us);
+            }
+            _ => {}
+        }
+        self.judge(now_us);
+        self.measure(now_us);
+    }
+
+    fn step(&mut self, step_ms: i64, now_us: u64) {
+        let now_ms = (now_us / 1_000) as i64;
+        let (robot_ms, arrived_ms) = self.last.unwrap_or((0, now_ms));
+        if step_ms < 0 {
+            self.suspect(Oddity::ClockBack, now_us);
+        } else if step_ms > now_ms - arrived_ms + JUMP_MS {
+            self.suspect(Oddity::ClockJump, now_us);
+        }
+        self.last = Some((robot_ms + step_ms, now_ms));
+    }
+
+    fn suspect_repeats(&mut self, now_us: u64) {
+        if self.repeats > REPEATS {
+            self.repeats = 0;
+            self.suspect(Oddity::Repeats, now_us);
+        }
+    }
+
+    fn suspect(&mut self, oddity: Oddity, now_us: u64) {
+        if !self.suspected.contains(&oddity) {
+            self.suspected.push(oddity);
+        }
+        self.suspected_us.get_or_insert(now_us);
+        // A clock that was set says nothing about its speed.
+        if oddity != Oddity::Repeats {
+            self.window = None;
+        }
+    }
+
+    fn judge(&mut self, now_us: u64) {
+        self.suspected_us = None;
+        for oddity in std::mem::take(&mut self.suspected) {
+            self.found(oddity, now_us);
+        }
+    }
+
+    /// Speed and rate, at the end of a window.
+    fn measure(&mut self, now_us: u64) {
+        let now_ms = (now_us / 1_000) as i64;
+        let Some((robot_ms, _)) = self.last else {
+            return;
+        };
+        let window = *self.window.get_or_insert(Window {
+            began_ms: now_ms,
+            robot_ms,
+            frames: 0,
+        });
+        let passed_ms = now_ms - window.began_ms;
+        let lived_ms = robot_ms - window.robot_ms;
+        // What a delay held back comes at once: by the robot's time it is no more than usual.
+        let longer_ms = passed_ms.max(lived_ms);
+        if window.frames > FRAMES_S
+            && window.frames * 1_000 > FRAMES_S * longer_ms + 5_000 * FRAMES_S
+        {
+            self.found(Oddity::Flood, now_us);
+            self.window = None;
+        } else if passed_ms >= WINDOW_MS {
+            if 5 * lived_ms > 6 * passed_ms || 5 * lived_ms < 4 * passed_ms {
+                self.found(Oddity::ClockSpeed, now_us);
+            }
+            self.window = None;
+        }
+    }
+
+    fn found(&mut self, oddity: Oddity, now_us: u64) {
+        let at = oddity as usize;
+        self.seen_us[at] = Some(now_us);
+        if self.reported_us[at].is_none_or(|reported_us| now_us >= reported_us + AGAIN_US) {
+            self.reported_us[at] = Some(now_us);
+            self.to_report.push(oddity);
+        }
+    }
+
+    /// What is to be reported now.
+    pub(crate) fn take(&mut self) -> impl Iterator<Item = Oddity> + use<> {
+        std::mem::take(&mut self.to_report).into_iter()
+    }
+
+    /// What was seen lately.
+    pub(crate) fn present(&self, now_us: u64) -> impl Iterator<Item = Oddity> {
+        let lately = move |at_us: u64| now_us < at_us + SHOWN_US;
+        let seen = Oddity::ALL.into_iter().zip(self.seen_us);
+        seen.filter_map(move |(oddity, at_us)| at_us.is_some_and(lately).then_some(oddity))
+    }
+}

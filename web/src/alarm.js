@@ -1,0 +1,21 @@
+// @ts-check
+/** The bar that says what a person has to see to at once: it stays as long as that is so. */
+import { create, element } from './dom.js';
+import { said } from './text.js';
+
+/** @typedef {import('./types.js').State} State */
+
+export class Alarm {
+  #bar = element('alarm', HTMLDivElement);
+  #shown = '';
+
+  /** @param {State} state */
+  show({ alarms = [] }) {
+    const words = alarms.map(said).join('\n');
+    // Read out once, not with each state.
+    if (words === this.#shown) return;
+    this.#shown = words;
+    this.#bar.hidden = alarms.length === 0;
+    this.#bar.replaceChildren(...alarms.map((text) => create('p', { textContent: said(text) })));
+  }
+}
