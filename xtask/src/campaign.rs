@@ -1,5 +1,6 @@
-//! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds, a million frames over a link with faults, and the
-//! image for 75 minutes under a flood of bytes, and beside the native robot; the fuzz targets for ten minutes each.
+//! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds, everything that can
+//! fail in the middle of drives, a million frames over a link with faults, and the image for 75 minutes under a flood
+//! of bytes, and beside the native robot; the fuzz targets for ten minutes each.
 //!
 //! The runs and what is required of them are the scenario crate's (`rumbo_scenario::campaign`); its example is built as users get the
 //! program, optimised, and printed as it comes.
@@ -16,6 +17,12 @@ const IMAGE: &str = "image";
 const MEDIANS: &str = "medians";
 /// Its seeds.
 const MEDIANS_SEEDS: u32 = 20;
+/// Everything that can fail, natively and on the image.
+const FAULTS: &str = "faults";
+/// Seeds of it, and for the image seeds and instants per drive.
+const FAULTS_SEEDS: u32 = 50;
+const FAULTS_SEEDS_IMAGE: u32 = 5;
+const FAULTS_INSTANTS_IMAGE: u32 = 2;
 /// The fuzz targets.
 const FUZZ: &str = "fuzz";
 /// Seconds of each.
@@ -43,14 +50,34 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if only.is_empty() || only.iter().any(|name| name == FUZZ) {
         met &= crate::fuzz::campaign(project, Some(FUZZ_SECONDS), &[])?;
     }
+    if only.is_empty() || only.iter().any(|name| name == FAULTS) {
+        met &= faults(project, seeds)?;
+    }
     let mut scenarios = vec![seeds.unwrap_or(SEEDS).to_string()];
     scenarios.extend(
         only.iter()
-            .filter(|name| ![LINK, IMAGE, MEDIANS, FUZZ].contains(&name.as_str()))
+            .filter(|name| ![LINK, IMAGE, MEDIANS, FUZZ, FAULTS].contains(&name.as_str()))
             .cloned(),
     );
     if only.is_empty() || scenarios.len() > 1 {
         met &= example(project, ["rumbo-scenario", "campaign"], &scenarios)?;
+    }
+    Ok(met)
+}
+
+/// Breaks everything, natively and on the image; with all seeds the tables of the docs are made.
+fn faults(project: &Project, seeds: Option<u32>) -> Result<bool, String> {
+    crate::firmware::run(project)?;
+    let native = seeds.unwrap_or(FAULTS_SEEDS);
+    let image = native.min(FAULTS_SEEDS_IMAGE);
+    let write = if seeds.is_none() { " --write" } else { "" };
+    let mut met = true;
+    for how in [
+        format!("--seeds {native} --list{write}"),
+        format!("--image --seeds {image} --instants {FAULTS_INSTANTS_IMAGE} --list{write}"),
+    ] {
+        let args: Vec<String> = how.split(' ').map(str::to_owned).collect();
+        met &= example(project, ["rumbo-scenario", FAULTS], &args)?;
     }
     Ok(met)
 }

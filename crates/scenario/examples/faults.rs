@@ -1,14 +1,15 @@
 //! Breaks sensors and wires in thousands of drives, and prints what was touched and what was named.
 //!
-//! `cargo xtask campaign --only faults` builds and starts it. Arguments: `--seeds N` (50), `--from N` first seed (1), `--instants N`
-//! per drive (5), `--image FILE` (on the emulated Mega), `--list` (each run that touched something), `--write` (the table of
-//! docs/faults.md), and words that the name of a drive or of a failure must contain. Exit status 1 if a requirement is missed.
+//! `cargo xtask campaign --only faults` builds and starts it, natively and on the image. Arguments: `--seeds N` (50),
+//! `--from N` first seed (1), `--instants N` per drive (5), `--image` (the built one, on the emulated Mega), `--list`
+//! (each run that touched something), `--write` (the table of docs/faults.md), and words that the name of a drive or of
+//! a failure must contain. Exit status 1 if a requirement is missed.
 
 #[path = "shared/pages.rs"]
 mod pages;
 
 use rumbo_scenario::campaign::faults::{
-    Class, DRIVES, Drive, Failure, GENTLE_M_S, INSTANTS, RUNS_PER_TOUCH, drive_all,
+    Class, DRIVES, Drive, Failure, GENTLE_M_S, INSTANTS, Named, RUNS_PER_TOUCH, drive_all,
 };
 use rumbo_scenario::files::{FileError, Overrides};
 use std::process::ExitCode;
@@ -18,7 +19,7 @@ struct Args {
     seeds: u64,
     from: u64,
     instants: usize,
-    image: Option<String>,
+    image: bool,
     list: bool,
     write: bool,
     words: Vec<String>,
@@ -29,7 +30,7 @@ fn parse() -> Option<Args> {
         seeds: 50,
         from: 1,
         instants: INSTANTS,
-        image: None,
+        image: false,
         list: false,
         write: false,
         words: Vec::new(),
@@ -40,7 +41,7 @@ fn parse() -> Option<Args> {
             "--seeds" => parsed.seeds = args.next()?.parse().ok()?,
             "--from" => parsed.from = args.next()?.parse().ok()?,
             "--instants" => parsed.instants = args.next()?.parse().ok()?,
-            "--image" => parsed.image = Some(args.next()?),
+            "--image" => parsed.image = true,
             "--list" => parsed.list = true,
             "--write" => parsed.write = true,
             option if option.starts_with("--") => return None,
@@ -67,7 +68,7 @@ fn main() -> ExitCode {
 
 fn campaign(args: &Args) -> Result<bool, FileError> {
     let overrides = Overrides {
-        firmware: args.image.as_ref().map(Into::into),
+        firmware: args.image.then(|| pages::built("firmware/rumbo.elf")),
         ..Overrides::default()
     };
     let keep = |drive: &str, failure: Failure| {
@@ -86,7 +87,12 @@ fn campaign(args: &Args) -> Result<bool, FileError> {
     let (summary, met) = summary(&drives);
     println!("{summary}");
     if args.write {
-        pages::write("docs/faults.md", "campaign", &format!("{table}\n{summary}"))?;
+        let place = if args.image {
+            "campaign-image"
+        } else {
+            "campaign"
+        };
+        pages::write("docs/faults.md", place, &format!("{table}\n{summary}"))?;
     }
     Ok(met)
 }
@@ -102,8 +108,9 @@ fn line(drive: &Drive) -> String {
     let (touch_s, touch_m_s) = drive.touch.unwrap_or_default();
     let named = drive
         .named
-        .map_or("nothing named".to_owned(), |(named_s, fault)| {
-            format!("{fault:?} at {named_s:.2} s")
+        .map_or("nothing named".to_owned(), |(named_s, named)| match named {
+            Named::Fault(fault) => format!("{fault:?} at {named_s:.2} s"),
+            Named::Restart => format!("restart at {named_s:.2} s"),
         });
     format!(
         "{} seed {seed}, {failure} at {at_s} s ({class:?}): touch at {touch_s:.2} s, {touch_m_s:.3} m/s; {named}",

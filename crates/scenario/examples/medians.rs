@@ -12,7 +12,7 @@ use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_scenario::files::{Kind, Library, Overrides, Setup};
 use rumbo_scenario::run::RunResult;
-use shared::{built, pages, runs};
+use shared::{pages, runs};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write as _;
 use std::process::ExitCode;
@@ -70,7 +70,7 @@ fn compare(seeds: u64, only: &[String]) -> Result<bool, String> {
         let natively = setup(None).and_then(|setup| Ok((runs(&setup, seeds)?, setup)));
         let (natively, setup_of) = natively.map_err(|error| error.to_string())?;
         let on_chip =
-            setup(Some(built("firmware/rumbo.elf"))).and_then(|setup| runs(&setup, seeds));
+            setup(Some(pages::built("firmware/rumbo.elf"))).and_then(|setup| runs(&setup, seeds));
         let on_chip = on_chip.map_err(|error| error.to_string())?;
         table.add(&setup_of, &natively, &on_chip);
         eprintln!("{name}: {} of {} alike so far", table.alike, table.compared);

@@ -13,7 +13,7 @@ mod time;
 use experiments::{EXPERIMENTS, Experiment, Metric};
 use rumbo_scenario::files::{FileError, Library, Overrides, Program, Setup};
 use rumbo_scenario::run::RunResult;
-use shared::{built, pages, runs};
+use shared::{pages, runs};
 use std::process::ExitCode;
 use time::Times;
 
@@ -66,7 +66,7 @@ fn print(seeds: u64, names: &[String]) -> Result<(), FileError> {
 /// The scenario with our image.
 fn our_setup(experiment: &Experiment) -> Result<Setup, FileError> {
     let overrides = Overrides {
-        firmware: Some(built("firmware/rumbo.elf")),
+        firmware: Some(pages::built("firmware/rumbo.elf")),
         ..Overrides::default()
     };
     Library::new().setup(experiment.scenario, &overrides)
@@ -75,7 +75,7 @@ fn our_setup(experiment: &Experiment) -> Result<Setup, FileError> {
 /// The scenario with the sketch at the pins.
 fn sketch_setup(experiment: &Experiment, plant: &[(&str, f64)]) -> Result<Setup, FileError> {
     let overrides = Overrides {
-        firmware: Some(built(&format!(
+        firmware: Some(pages::built(&format!(
             "sketches/memoria-{}.elf",
             experiment.sketch
         ))),

@@ -4,14 +4,6 @@ pub(crate) mod pages;
 
 use rumbo_scenario::files::{FileError, Setup};
 use rumbo_scenario::run::{RunResult, run_all};
-use std::path::PathBuf;
-
-/// A file beside the folder that this program was built into: of `target/debug/examples/NAME`, `target/FILE`.
-pub(crate) fn built(file: &str) -> PathBuf {
-    let here = std::env::current_exe().unwrap_or_default();
-    let target = here.ancestors().nth(3).map(PathBuf::from);
-    target.unwrap_or_default().join(file)
-}
 
 /// A run with each seed from 1 on.
 ///

@@ -1,7 +1,14 @@
-//! Pages of the project that hold a table made here.
+//! What was built for these programs, and the pages of the project that hold a table made here.
 
 use rumbo_scenario::files::FileError;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// A file beside the folder that this program was built into: of `target/debug/examples/NAME`, `target/FILE`.
+pub(crate) fn built(file: &str) -> PathBuf {
+    let here = std::env::current_exe().unwrap_or_default();
+    let target = here.ancestors().nth(3).map(PathBuf::from);
+    target.unwrap_or_default().join(file)
+}
 
 /// The text between `<!-- NAME -->` and `<!-- /NAME -->` of a page, seen from the root, is this from now on.
 ///

@@ -3,14 +3,17 @@
 //! Each [`Failure`] befalls each drive of [`DRIVES`] at each of its instants, once per seed. Contacts and their speed are ground truth;
 //! the fault is the one that crossed the link. A front sonar that answers "nothing in reach" for ever, after a second in which there
 //! was nothing in its reach, looks like free floor: those runs are a class of their own ([`Class::FreeFloor`]).
+//! On an image the chip fails too ([`ChipFailure`]).
 
 use crate::files::{FileError, Library, Overrides, Setup};
 use crate::run::{Run, prepare};
+use crate::sim::Sim;
 use crate::sonar_fault::{SonarFault, TimedSonarFault};
 use crate::trace::Trace;
 use crate::wire_fault::{TimedWireFault, Wire, WireFault};
 use rayon::prelude::*;
 use rumbo_control::{Fault, SonarId};
+use rumbo_emulator::devices::{Cause, Input};
 use rumbo_plant::drivetrain::Side;
 use rumbo_wire::{EventKind, FromRobot};
 use std::fmt;
@@ -45,10 +48,66 @@ pub enum Failure {
     Sonar(SonarId, SonarFault),
     /// A wire.
     Wire(Wire, WireFault),
+    /// The chip that the image runs on.
+    Chip(ChipFailure),
+}
+
+/// What fails of the chip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChipFailure {
+    /// Somebody presses the button, or opens the port of an adapter.
+    Reset,
+    /// The supply dips.
+    BrownOut,
+    /// A tick comes to no end.
+    Hang,
+    /// The EEPROM holds nothing but zeros, and the chip is reset.
+    Forgets,
+}
+
+/// Where a tick of our image can be stopped.
+const IN_EACH_TICK: &str = "rumbo_inputs_latched";
+/// A jump to itself.
+const FOR_EVER: u16 = 0xCFFF;
+
+impl ChipFailure {
+    fn befall(self, sim: &mut Sim) {
+        let Some(mega) = sim.mega_mut() else {
+            return;
+        };
+        let place = mega.firmware().image().function_named(IN_EACH_TICK);
+        let place = place.map(|function| function.address);
+        let chip = mega.chip_mut();
+        let reset = |cause| Input::Reset(cause);
+        match self {
+            Self::Reset => chip.input(chip.cycle(), reset(Cause::External)),
+            Self::BrownOut => chip.input(chip.cycle(), reset(Cause::BrownOut)),
+            Self::Hang => {
+                if let Some(place) = place {
+                    chip.cpu_mut().write_flash(place, FOR_EVER);
+                }
+            }
+            Self::Forgets => {
+                chip.devices_mut().eeprom_mut().fill(0);
+                chip.input(chip.cycle(), reset(Cause::External));
+            }
+        }
+    }
+}
+
+impl fmt::Display for ChipFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Reset => "chip: reset",
+            Self::BrownOut => "chip: brown-out",
+            Self::Hang => "chip: a tick that hangs",
+            Self::Forgets => "chip: EEPROM of zeros, and a reset",
+        })
+    }
 }
 
 impl Failure {
-    /// Every failure of the campaign.
+    /// Every failure of the campaign; those of the chip are for images.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let encoder = [
@@ -88,7 +147,14 @@ impl Failure {
                 .into_iter()
                 .chain(wires)
         });
-        wheels.chain(sonars).collect()
+        let chip = [
+            ChipFailure::Reset,
+            ChipFailure::BrownOut,
+            ChipFailure::Hang,
+            ChipFailure::Forgets,
+        ];
+        let chip = chip.into_iter().map(Self::Chip);
+        wheels.chain(sonars).chain(chip).collect()
     }
 
     /// Whether the robot carries what fails.
@@ -101,11 +167,12 @@ impl Failure {
         match self {
             Self::Sonar(id, _) | Self::Wire(Wire::Echo(id), _) => mounted(id),
             Self::Wire(Wire::Encoder(_), _) => true,
+            Self::Chip(_) => setup.firmware.is_some(),
         }
     }
 
     /// The same drive, with this failure.
-    pub fn put_into(self, setup: &mut Setup, at_s: f64) {
+    fn put_into(self, setup: &mut Setup, at_s: f64) {
         let scenario = &mut setup.scenario;
         scenario.sonar_faults.clear();
         scenario.wire_faults.clear();
@@ -120,6 +187,7 @@ impl Failure {
                     .wire_faults
                     .push(TimedWireFault { at_s, wire, fault });
             }
+            Self::Chip(_) => {}
         }
     }
 }
@@ -154,6 +222,7 @@ impl fmt::Display for Failure {
                     WireFault::Noisy(rate_hz) => write!(f, "{rate_hz} pulses/s of noise"),
                 }
             }
+            Self::Chip(failure) => failure.fmt(f),
         }
     }
 }
@@ -165,6 +234,15 @@ pub enum Class {
     Knowable,
     /// The sonar's last second and its lie are both "nothing in reach".
     FreeFloor,
+}
+
+/// How a robot says that something is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Named {
+    /// By a fault.
+    Fault(Fault),
+    /// By saying that its program started again.
+    Restart,
 }
 
 /// What became of one drive.
@@ -182,8 +260,8 @@ pub struct Drive {
     pub class: Class,
     /// When something was first touched after the failure [s], and the fastest touch of the run [m/s].
     pub touch: Option<(f64, f64)>,
-    /// When the robot named a fault, and which.
-    pub named: Option<(f64, Fault)>,
+    /// When the robot named what is wrong, and how.
+    pub named: Option<(f64, Named)>,
 }
 
 impl Drive {
@@ -251,16 +329,32 @@ fn one(
     let mut named = None;
     let mut end_s = f64::INFINITY;
     let mut read = 0;
+    let mut chip = match failure {
+        Failure::Chip(chip) => Some(chip),
+        _ => None,
+    };
     while !run.is_over() && run.sim().now_us() as f64 * 1e-6 < end_s {
+        if run.sim().now_us() as f64 * 1e-6 >= at_s
+            && let Some(chip) = chip.take()
+        {
+            chip.befall(run.sim());
+            // One that hangs says nothing.
+            end_s = at_s + ROLLED_OUT_S;
+        }
         run.advance();
         let heard = run.heard();
         for heard in heard.get(read..).unwrap_or_default() {
-            let FromRobot::Event(event) = heard.what else {
-                continue;
+            let kind = match heard.what {
+                FromRobot::Event(event) => event.kind,
+                FromRobot::Hello(_) if heard.t_s > at_s && named.is_none() => {
+                    named = Some((heard.t_s, Named::Restart));
+                    continue;
+                }
+                _ => continue,
             };
-            match event.kind {
+            match kind {
                 EventKind::Faulted(fault) if named.is_none() => {
-                    named = Some((heard.t_s, fault));
+                    named = Some((heard.t_s, Named::Fault(fault)));
                     end_s = heard.t_s + ROLLED_OUT_S;
                 }
                 EventKind::Reached | EventKind::Unreachable if heard.t_s > at_s => {
