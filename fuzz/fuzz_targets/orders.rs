@@ -44,6 +44,7 @@ fuzz_target!(|text: &str| {
         robot: Robot::new(Config {
             image: 0,
             reset: ResetCause::PowerOn,
+            start: 0,
         }),
         now_us: 0,
     };

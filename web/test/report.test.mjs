@@ -16,8 +16,10 @@ function report(language) {
 }
 
 for (const language of ['en', 'es']) {
-  test(`the report in ${language} asks for nothing and fits every page`, async () => {
+  test(`the report in ${language} asks for nothing and fits every page`, async (context) => {
     const browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
+    // Also after a failure: a browser left open keeps the test running.
+    context.after(() => browser.close());
     const page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
     /** @type {string[]} */
     const complaints = [];
@@ -58,6 +60,5 @@ for (const language of ['en', 'es']) {
     await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
     assert.equal(await paper(), light, 'paper is white');
     assert.deepEqual(complaints, []);
-    await browser.close();
   });
 }

@@ -185,6 +185,8 @@ proptest! {
 
     #[test]
     fn garbage_at_line_rate_changes_nothing(noise in prop::collection::vec(any::<u8>(), 2_000..4_000)) {
+        // `ON` is a command however it came to be; three bytes that spell it come once in a hundred runs of this test.
+        prop_assume!(!noise.windows(3).any(|bytes| bytes.eq_ignore_ascii_case(b"on\n")));
         let mut quiet = Bench::alive();
         quiet.drive();
         let mut noisy = Bench::alive();
@@ -198,7 +200,7 @@ proptest! {
             prop_assert_eq!(noisy.outputs, quiet.outputs);
         }
         prop_assert_eq!(noisy.events(), quiet.events());
-        prop_assert!(noisy.lines.is_empty());
+        prop_assert!(noisy.lines.is_empty(), "{:?}", noisy.lines);
     }
 }
 

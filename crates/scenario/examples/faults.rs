@@ -9,7 +9,7 @@
 mod pages;
 
 use rumbo_scenario::campaign::faults::{
-    Class, DRIVES, Drive, Failure, GENTLE_M_S, INSTANTS, Named, RUNS_PER_TOUCH, drive_all,
+    Class, DRIVES, Drive, Failure, GENTLE_M_S, INSTANTS, Named, Verdict, drive_all,
 };
 use rumbo_scenario::files::{FileError, Overrides};
 use std::process::ExitCode;
@@ -167,18 +167,18 @@ fn cell(drives: &[&Drive]) -> String {
 }
 
 fn summary(drives: &[Drive]) -> (String, bool) {
-    let knowable = drives.iter().filter(|drive| drive.class == Class::Knowable);
-    let runs = knowable.clone().count();
-    let touches: Vec<&Drive> = knowable.filter(|drive| drive.touch.is_some()).collect();
-    let count = |of: &dyn Fn(&&&Drive) -> bool| touches.iter().filter(of).count();
-    let hard = count(&|drive| drive.touch.is_some_and(|(_, m_s)| m_s > GENTLE_M_S));
-    let unnamed = count(&|drive| drive.touched_unnamed());
-    let allowed = runs / RUNS_PER_TOUCH;
-    let met = hard == 0 && unnamed == 0 && touches.len() <= allowed;
+    let verdict = Verdict::of(drives);
+    let Verdict {
+        runs,
+        touches,
+        hard,
+        unnamed,
+    } = verdict;
+    let allowed = verdict.allowed();
+    let met = hard == 0 && unnamed == 0 && touches <= allowed;
     let text = format!(
-        "Of {runs} runs {} touched something (at most {allowed} allowed), {hard} of them faster than {GENTLE_M_S} m/s (none \
-         allowed), {unnamed} before the fault was named (none allowed).",
-        touches.len()
+        "Of {runs} runs {touches} touched something (at most {allowed} allowed), {hard} of them faster than {GENTLE_M_S} m/s (none \
+         allowed), {unnamed} before the fault was named (none allowed)."
     );
     (text, met)
 }

@@ -273,6 +273,41 @@ impl Drive {
     }
 }
 
+/// What drives that the robot could have known better show together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Verdict {
+    /// How many there were.
+    pub runs: usize,
+    /// In how many something was touched.
+    pub touches: usize,
+    /// Of these, faster than [`GENTLE_M_S`].
+    pub hard: usize,
+    /// Of these, before a fault was named.
+    pub unnamed: usize,
+}
+
+impl Verdict {
+    /// Of these drives, without those of [`Class::FreeFloor`].
+    #[must_use]
+    pub fn of(drives: &[Drive]) -> Self {
+        let knowable = drives.iter().filter(|drive| drive.class == Class::Knowable);
+        let touches: Vec<&Drive> = knowable.clone().filter(|run| run.touch.is_some()).collect();
+        let count = |of: &dyn Fn(&Drive) -> bool| touches.iter().filter(|run| of(run)).count();
+        Self {
+            runs: knowable.count(),
+            touches: touches.len(),
+            hard: count(&|run| run.touch.is_some_and(|(_, m_s)| m_s > GENTLE_M_S)),
+            unnamed: count(&Drive::touched_unnamed),
+        }
+    }
+
+    /// How many touches are allowed.
+    #[must_use]
+    pub fn allowed(&self) -> usize {
+        self.runs / RUNS_PER_TOUCH
+    }
+}
+
 /// Drives with everything that fails, on all cores.
 ///
 /// `seeds` are those of each drive; `keep` chooses among drives by name and among failures. On an image if `overrides` name one.

@@ -12,6 +12,7 @@ mod mode_7;
 mod mode_8;
 mod odometry;
 mod original;
+mod sonars;
 mod states;
 
 use rumbo_scenario::files::FileError;

@@ -37,6 +37,8 @@ pub(super) struct Swing {
     pub left_rad: f32,
     /// Looks in each direction.
     pub looks: u8,
+    /// It is turned elsewhere now and then, to what must answer.
+    pub proves: bool,
     /// How far ahead the front sonar sits [m].
     pub front_m: f32,
 }
@@ -83,13 +85,13 @@ impl Gaze {
         if !self.is_done(swing.looks) {
             return;
         }
-        let proof = if swing.looks < LOOKS || self.since_proof < BETWEEN_PROOFS {
+        let proof = if !swing.proves || self.since_proof < BETWEEN_PROOFS {
             None
         } else {
             watch.look(estimate, swing.front_m)
         };
         match proof {
-            Some(servo_rad) => self.prove(servo_rad),
+            Some(servo_rad) => self.turn_to(servo_rad),
             None => self.advance(swing.right_rad, swing.left_rad),
         }
     }
@@ -100,7 +102,7 @@ impl Gaze {
     }
 
     /// To a direction in which the sonar must hear something.
-    fn prove(&mut self, servo_rad: f32) {
+    pub(super) fn turn_to(&mut self, servo_rad: f32) {
         (self.target_rad, self.looks, self.since_proof) = (servo_rad, 0, 0);
     }
 
@@ -153,14 +155,20 @@ pub(super) fn look(state: &mut State, estimate: &Estimate, front_m: f32) -> Look
         }
         _ => swing(state, estimate),
     };
+    let sweeps = matches!(state.phase, Phase::SweepRight | Phase::SweepLeft);
     let swing = Swing {
         right_rad,
         left_rad,
-        looks: match state.phase {
-            Phase::SweepRight | Phase::SweepLeft => 1,
-            _ => LOOKS,
+        looks: match sweeps && state.watch.landmarks.is_alive() {
+            true => 1,
+            false => LOOKS,
         },
+        proves: !sweeps,
         front_m,
+    };
+    let swing = match &state.proof {
+        Some(proof) => proof.swing(estimate, &swing),
+        None => swing,
     };
     state.gaze.step(&state.watch, estimate, &swing);
     Look {

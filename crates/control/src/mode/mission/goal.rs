@@ -8,14 +8,14 @@ use super::{
 };
 use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
-use crate::motion::{LineState, TurnState};
-use crate::types::TICK_S;
+use crate::motion::{LineState, TurnState, TurnStep};
+use crate::types::{Fault, TICK_S};
 use core::f32::consts::TAU;
 
 /// An obstacle this near on the way is looked at [m].
 const LOOK_M: f32 = 0.62;
 /// Something within this of the middle of the axis makes the robot careful [m].
-const CAREFUL_M: f32 = 0.33;
+pub(super) const CAREFUL_M: f32 = 0.33;
 /// Heading error that halves the speed then [rad].
 const CAREFUL_RAD: f32 = 0.2;
 /// Heading errors beyond this are turned on the spot [rad].
@@ -50,9 +50,10 @@ impl Mission<'_> {
         estimate: &Estimate,
         goal_m: &(f32, f32),
         action: &mut Action,
-    ) {
+    ) -> Result<(), Fault> {
         if state.fresh {
             state.fresh = false;
+            state.proof = None;
             state.phase = Phase::Initialise;
         }
         action.state = state.phase as u8;
@@ -60,7 +61,7 @@ impl Mission<'_> {
         if matches!(state.phase, Phase::Wait | Phase::Unreachable) {
             action.reached = state.phase == Phase::Wait;
             action.unreachable = state.phase == Phase::Unreachable;
-            return;
+            return Ok(());
         }
         let (way, left_m) = way_to(&estimate.pose, goal_m);
         count(state, estimate, &way);
@@ -68,11 +69,20 @@ impl Mission<'_> {
         if state.age_s > self.params.get(ParamId::MissionGiveUp) {
             state.phase = Phase::Unreachable;
         }
-        self.act(state, estimate, goal_m, (&way, left_m), planned, action);
+        let proving = state.proof.is_some();
+        match self.prove(state, estimate)? {
+            Some(drive) => action.drive = drive,
+            // On from where the robot stands now.
+            None if proving && !following(state.phase) => {
+                self.face(state, &estimate.pose, goal_m, SPOT_RAD)
+            }
+            None => self.act(state, estimate, goal_m, (&way, left_m), planned, action),
+        }
         let front_m = self.params.get(ParamId::SonarFrontX);
         action.look = look(state, estimate, front_m);
         action.state = state.phase as u8;
         action.heading_ref_rad = state.heading_ref_rad;
+        Ok(())
     }
 
     /// What the state asks for.
@@ -130,7 +140,21 @@ impl Mission<'_> {
         heading_rad: f32,
         next: Phase,
     ) -> Drive {
-        let pose = &estimate.pose;
+        let step = self.turn_on_the_spot(state, estimate, heading_rad);
+        let error_rad = wrap_angle(heading_rad - estimate.pose.heading_rad);
+        if step.done || (next != Phase::GoToGoal && abs(error_rad) < TURNED_RAD) {
+            state.phase = next;
+        }
+        step.drive
+    }
+
+    /// One tick of a turn, as fast as what is near allows.
+    pub(super) fn turn_on_the_spot(
+        &self,
+        state: &mut State,
+        estimate: &Estimate,
+        heading_rad: f32,
+    ) -> TurnStep {
         state.heading_ref_rad = heading_rad;
         let mut turn = Turn::new(self.params);
         let rate_rad_s = (min(state.near_m, 1.0) - TIGHT_M) * TIGHT_SLOPE;
@@ -138,12 +162,7 @@ impl Mission<'_> {
         if state.watch.doubts() {
             turn.rate_rad_s = min(turn.rate_rad_s, TIGHT_RAD_S);
         }
-        let step = turn.step(&mut state.turn, estimate, heading_rad);
-        let error_rad = wrap_angle(heading_rad - pose.heading_rad);
-        if step.done || (next != Phase::GoToGoal && abs(error_rad) < TURNED_RAD) {
-            state.phase = next;
-        }
-        step.drive
+        turn.step(&mut state.turn, estimate, heading_rad)
     }
 
     fn go(
@@ -200,10 +219,7 @@ impl Mission<'_> {
     pub(super) fn free_m_s(&self, state: &State) -> f32 {
         let room_m = max(state.gap_m - KEEP_M, 0.0);
         let free_m_s = sqrt(2.0 * self.params.get(ParamId::LineBrake) * room_m);
-        // Beside an obstacle the front sonar hears it now and then.
-        let beside = following(state.phase) || state.near_m < CAREFUL_M;
-        let silent = beside && state.watch.landmarks.is_silent();
-        if silent || state.watch.doubts() {
+        if state.watch.doubts() {
             min(free_m_s, DOUBT_M_S)
         } else {
             free_m_s
@@ -223,6 +239,7 @@ impl Mission<'_> {
         match state.phase {
             Phase::SweepRight if state.gaze.has_seen(-SWEEP_RAD) => state.phase = Phase::SweepLeft,
             Phase::SweepLeft if state.gaze.has_seen(SWEEP_RAD) => {
+                state.watch.has_swept();
                 state.phase =
                     if state.plan.clear_m < min(left_m, 1.0) && state.plan.obstacle.is_some() {
                         Phase::Decide

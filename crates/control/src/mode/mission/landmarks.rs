@@ -30,8 +30,12 @@ const BEYOND: i8 = 2;
 const WIDEST: u8 = 40;
 /// A silence says something only of a sonar that had an echo within this time; after it the sonar is put to the proof [s].
 const ALIVE_S: f32 = 0.6;
-/// Time without an echo beside an obstacle that slows the robot [s].
-const SILENT_S: f32 = 2.0;
+/// A sonar that has passed a proof is believed for so long: time for a sweep [s].
+const TRUST_S: f32 = 4.0;
+/// A face nearer than this must answer a robot that turns to it [mm].
+const NEAR_MM: u16 = 800;
+/// A sweep takes longer [s].
+const SWEPT_S: f32 = 1.2;
 /// Farthest that the servo turns [rad].
 const ASIDE_RAD: f32 = 1.5;
 /// Silences of one landmark after which it is given up: what it stood for may be gone.
@@ -65,6 +69,8 @@ pub(super) struct Landmarks {
     seen: [Landmark; CAPACITY],
     /// Time since the last echo [s].
     silent_s: f32,
+    /// How long its silence is still believed after it has passed a proof [s].
+    trusted_s: f32,
     /// Way since the last silence at a landmark [m].
     doubt_m: f32,
     silences: u8,
@@ -74,6 +80,7 @@ impl Landmarks {
     /// One tick.
     pub(super) fn step(&mut self, rolled_m: f32) {
         self.silent_s += TICK_S;
+        self.trusted_s -= TICK_S;
         self.doubt_m += abs(rolled_m);
     }
 
@@ -128,14 +135,37 @@ impl Landmarks {
         .next()
     }
 
-    /// Whether the sonar has proven within the last moments that it hears: its silence says something.
-    pub(super) fn is_alive(&self) -> bool {
-        self.silent_s < ALIVE_S
+    /// The sonar has passed a proof.
+    pub(super) fn trust(&mut self) {
+        self.trusted_s = TRUST_S;
     }
 
-    /// It has had no echo for so long that beside an obstacle the robot should be slow.
-    pub(super) fn is_silent(&self) -> bool {
-        self.silent_s > SILENT_S
+    /// The silences so far say nothing.
+    pub(super) fn forgive(&mut self) {
+        self.silences = 0;
+        self.silent_s = 0.0;
+    }
+
+    /// All around an obstacle was looked at: silence so long is one of a deaf sonar.
+    pub(super) fn has_swept(&mut self) {
+        if self.silent_s > SWEPT_S && !self.is_alive() {
+            self.silences = DEAF_AFTER;
+        }
+    }
+
+    /// Bearing of the face that answered last, if it is near and not behind the robot [rad].
+    pub(super) fn newest_rad(&self, from: &Pose) -> Option<f32> {
+        let newest = self.seen.first().filter(|landmark| landmark.answers > 0)?;
+        let here = Place::new(from.x_m, from.y_m);
+        let (dx, dy) = newest.at.from(here);
+        let bearing_rad = atan2(f32::from(dy), f32::from(dx));
+        let ahead = abs(wrap_angle(bearing_rad - from.heading_rad)) < ASIDE_RAD;
+        (ahead && newest.at.is_within(NEAR_MM, here)).then_some(bearing_rad)
+    }
+
+    /// Whether the sonar has proven within the last moments that it hears: its silence says something.
+    pub(super) fn is_alive(&self) -> bool {
+        self.silent_s < ALIVE_S || self.trusted_s > 0.0
     }
 
     /// The sonar may be deaf: the robot should be slow.

@@ -21,7 +21,7 @@ use super::{Action, Drive, Mission, ParamId, Phase, Pose, Segment, ServoAngle, S
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
 use crate::motion::{CREEP_M_S, LineState, StopState, Stopping, TurnState};
-use crate::types::{Range, Reading, SonarId};
+use crate::types::{Fault, Range, Reading, SonarId};
 use core::f32::consts::{FRAC_PI_2, PI};
 
 /// The front sonar looks ahead within this of the middle [rad].
@@ -58,10 +58,11 @@ enum Stage {
     Straight = 10,
 }
 
-/// What is ahead: the median of the last three looks, moved along with the robot.
+/// What is ahead: the second nearest of the last five looks, moved along with the robot. One wild look brings nothing nearer, and
+/// what was near is only gone when four looks say so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ahead {
-    last_m: [f32; 3],
+    last_m: [f32; 5],
     count: u8,
 }
 
@@ -69,7 +70,7 @@ impl Default for Ahead {
     #[inline]
     fn default() -> Self {
         Self {
-            last_m: [0.0; 3],
+            last_m: [FAR_M; 5],
             count: 0,
         }
     }
@@ -86,16 +87,21 @@ impl Ahead {
         if abs(reading.servo_rad) > AHEAD_RAD {
             return;
         }
-        let [_, second, third] = self.last_m;
-        self.last_m = [second, third, range_m(reading)];
+        self.last_m.rotate_left(1);
+        if let Some(newest_m) = self.last_m.last_mut() {
+            *newest_m = range_m(reading);
+        }
         self.count = self.count.saturating_add(1);
     }
 
     /// Distance from the sonar; none before three looks.
     fn range_m(&self) -> Option<f32> {
-        let [a, b, c] = self.last_m;
-        let median_m = max(min(a, b), min(max(a, b), c));
-        (self.count >= 3).then_some(median_m)
+        let (mut nearest_m, mut second_m) = (FAR_M, FAR_M);
+        for range_m in self.last_m {
+            second_m = min(second_m, max(nearest_m, range_m));
+            nearest_m = min(nearest_m, range_m);
+        }
+        (self.count >= 3).then_some(second_m)
     }
 }
 
@@ -167,7 +173,14 @@ pub(super) struct Lane {
 }
 
 impl Mission<'_> {
-    pub(super) fn lane(&self, state: &mut State, estimate: &Estimate, action: &mut Action) {
+    pub(super) fn lane(
+        &self,
+        state: &mut State,
+        estimate: &Estimate,
+        action: &mut Action,
+    ) -> Result<(), Fault> {
+        let proving = state.proof.is_some();
+        let proof = self.prove(state, estimate)?;
         let doubts = state.watch.doubts() || !state.watch.landmarks.is_alive();
         let lane = &mut state.lane;
         if state.fresh {
@@ -175,8 +188,14 @@ impl Mission<'_> {
             *lane = Lane::default();
         }
         lane.ahead.step(estimate);
+        if proving && proof.is_none() {
+            // On from where the robot stands now.
+            lane.stage = Stage::Turn;
+            lane.turn = TurnState::default();
+        }
         let mut heading_ref_rad = lane.heading_rad;
         action.drive = match lane.stage {
+            _ if let Some(drive) = proof => drive,
             Stage::Start => {
                 lane.heading_rad = estimate.pose.heading_rad;
                 lane.stage = Stage::Straight;
@@ -203,25 +222,31 @@ impl Mission<'_> {
                 step.drive
             }
         };
+        // Ahead, and to what must answer while nothing does.
+        let straight = Swing {
+            right_rad: 0.0,
+            left_rad: 0.0,
+            looks: LOOKS,
+            proves: true,
+            front_m: self.params.get(ParamId::SonarFrontX),
+        };
+        let swing = match &state.proof {
+            Some(proof) => Some(proof.swing(estimate, &straight)),
+            None => (lane.stage == Stage::Straight).then_some(straight),
+        };
         let servo = match lane.stage {
-            Stage::SweepRight => ServoAngle(-lane.sweep.target_rad),
-            Stage::SweepLeft => ServoAngle(lane.sweep.target_rad),
-            Stage::Straight => {
-                // Ahead, and to what must answer while nothing does.
-                let swing = Swing {
-                    right_rad: 0.0,
-                    left_rad: 0.0,
-                    looks: LOOKS,
-                    front_m: self.params.get(ParamId::SonarFrontX),
-                };
+            _ if let Some(swing) = swing => {
                 state.gaze.step(&state.watch, estimate, &swing);
                 state.gaze.servo()
             }
+            Stage::SweepRight => ServoAngle(-lane.sweep.target_rad),
+            Stage::SweepLeft => ServoAngle(lane.sweep.target_rad),
             _ => ServoAngle(0.0),
         };
         action.state = Phase::Initialise as u8 + lane.stage as u8;
         action.heading_ref_rad = heading_ref_rad;
         action.look.servo = servo;
+        Ok(())
     }
 
     /// On to the next face. Nothing is driven at before three looks ahead.

@@ -28,7 +28,6 @@
 //! 90 degrees, and leaves when the bearing to the goal is the line's again. Ours needs no right angles, looks while it drives, goes straight
 //! past what it remembers, leaves early, and knows when to give up. Derivation, proof of termination and figures: docs/theory/mission.md.
 
-mod aside;
 mod detour;
 mod echoes;
 mod gaze;
@@ -38,6 +37,7 @@ mod lane;
 mod obstacle;
 mod place;
 mod plan;
+mod proof;
 mod watch;
 
 use super::{Action, Look, Mode, Situation};
@@ -46,11 +46,14 @@ use crate::math::{abs, min, sqrt};
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
 use crate::params::{ParamId, Params};
 use crate::types::{Drive, Fault, Pose, Range, Reading, ServoAngle, Side, SonarId, TICK_S};
+use detour::following;
 use echoes::Echoes;
 use gaze::Gaze;
+use goal::CAREFUL_M;
 use obstacle::Way;
 use place::Place;
 use plan::Plan;
+use proof::Proof;
 use watch::{Watch, Worth};
 
 /// Time between two fadings of the memory [s].
@@ -169,6 +172,8 @@ pub struct State {
     last: Option<(Side, f32)>,
     line: LineState,
     turn: TurnState,
+    /// The front sonar is put to the proof.
+    proof: Option<Proof>,
     segment: Segment,
     watch: Watch,
     lane: lane::Lane,
@@ -228,15 +233,18 @@ impl Mode for Mission<'_> {
             state.ingest(at.estimate, reading);
         }
         let stale_s = self.params.get(ParamId::StaleRange);
-        state.watch.step(at.estimate, stale_s)?;
+        let beside = following(state.phase) || state.near_m < CAREFUL_M;
+        state.watch.step(at.estimate, stale_s, beside)?;
         state.fade_s += TICK_S;
         if state.fade_s > FADE_S {
             state.fade_s = 0.0;
             state.echoes.fade();
         }
         match self.task {
-            Task::Goal { x_m, y_m } => self.goal(state, at.estimate, &(x_m, y_m), action),
-            Task::Lane => self.lane(state, at.estimate, action),
+            Task::Goal { x_m, y_m } => {
+                self.goal(state, at.estimate, &(x_m, y_m), action)?;
+            }
+            Task::Lane => self.lane(state, at.estimate, action)?,
             Task::Wait => {}
         }
         Ok(())

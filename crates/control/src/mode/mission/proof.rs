@@ -1,0 +1,137 @@
+//! A front sonar in doubt is put to the proof: the robot stands, and turns it to what must answer.
+//!
+//! A sonar that answers "nothing in reach" for ever looks like free floor. So the robot doubts it where faces that it knows do not
+//! answer ([`super::landmarks`]), and where something has been near beside the robot for a while without an echo
+//! ([`super::watch`]). It looks there from where it stands, and if nothing answers, turns to face it. An echo ends the doubt at any
+//! moment.
+//!
+//! | stage | does | leaves when | to |
+//! |---|---|---|---|
+//! | look | stands, the servo looks there and to both sides | nothing answers in [`DIRECTIONS`] | turn |
+//! | turn | turns on the spot until it faces that | it stands | face |
+//! | face | stands, the servo looks ahead and to both sides | nothing answers in [`DIRECTIONS`] | deaf: a fault |
+
+use super::gaze::{SWEEP_RAD, Swing};
+use super::{Drive, Mission, State};
+use crate::estimate::Estimate;
+use crate::math::{abs, clamp, wrap_angle};
+use crate::motion::TurnState;
+use crate::types::{Fault, Range, SonarId};
+
+/// Directions in which nothing answers, after which a stage is over.
+const DIRECTIONS: u8 = 5;
+/// The servo looks this far to both sides of what must answer [rad].
+const AROUND_RAD: f32 = 0.76;
+/// It faces what is so near to ahead [rad].
+const FACING_RAD: f32 = 0.2;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Stage {
+    Look,
+    Turn,
+    Face,
+}
+
+/// A proof under way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Proof {
+    stage: Stage,
+    /// Direction of what must answer [rad].
+    towards_rad: f32,
+    /// How near a sonar at the side has it [m].
+    range_m: f32,
+}
+
+impl Proof {
+    /// Where the servo looks.
+    pub(super) fn swing(&self, estimate: &Estimate, swing: &Swing) -> Swing {
+        let middle_rad = wrap_angle(self.towards_rad - estimate.pose.heading_rad);
+        Swing {
+            right_rad: clamp(middle_rad - AROUND_RAD, -SWEEP_RAD, SWEEP_RAD),
+            left_rad: clamp(middle_rad + AROUND_RAD, -SWEEP_RAD, SWEEP_RAD),
+            proves: false,
+            ..*swing
+        }
+    }
+
+    /// What a sonar at a side hears nearer than before is what must answer.
+    fn ingest(&mut self, estimate: &Estimate) {
+        let Some(reading) = &estimate.reading else {
+            return;
+        };
+        match reading.range {
+            Range::Valid(range_m) if reading.sonar != SonarId::Front && range_m < self.range_m => {
+                self.range_m = range_m;
+                self.towards_rad = wrap_angle(estimate.pose.heading_rad + reading.view.axis_rad);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Mission<'_> {
+    /// Goes on with a proof, or begins one where the sonar is in doubt; none if the robot may drive.
+    ///
+    /// # Errors
+    /// The front sonar is deaf.
+    pub(super) fn prove(
+        &self,
+        state: &mut State,
+        estimate: &Estimate,
+    ) -> Result<Option<Drive>, Fault> {
+        if !state.watch.suspects() {
+            if state.proof.take().is_some() {
+                state.watch.landmarks.trust();
+            }
+            return Ok(None);
+        }
+        let Some(mut proof) = state.proof.or_else(|| begin(state, estimate)) else {
+            // Nothing is known that must answer.
+            state.watch.forgive();
+            return Ok(None);
+        };
+        if proof.stage == Stage::Turn {
+            proof.ingest(estimate);
+        }
+        let silent = state.watch.unanswered() >= DIRECTIONS;
+        let mut drive = Drive::Release;
+        match proof.stage {
+            Stage::Look if silent => {
+                state.turn = TurnState::default();
+                proof.stage = Stage::Turn;
+                // The robot has rolled on: where it is now, the sonars at the sides say while it turns.
+                proof.range_m = f32::MAX;
+            }
+            Stage::Turn => {
+                let step = self.turn_on_the_spot(state, estimate, proof.towards_rad);
+                drive = step.drive;
+                if step.done {
+                    // What must answer may have come out elsewhere meanwhile.
+                    state.turn = TurnState::default();
+                    if abs(wrap_angle(proof.towards_rad - estimate.pose.heading_rad)) < FACING_RAD {
+                        state.gaze.turn_to(0.0);
+                        state.watch.ask();
+                        proof.stage = Stage::Face;
+                    }
+                }
+            }
+            Stage::Face if silent => return Err(Fault::SonarFaulty),
+            Stage::Look | Stage::Face => {}
+        }
+        state.proof = Some(proof);
+        Ok(Some(drive))
+    }
+}
+
+/// A proof by what is beside the robot, or else by the face that answered last; none where there is neither.
+fn begin(state: &mut State, estimate: &Estimate) -> Option<Proof> {
+    let (towards_rad, range_m) = state.watch.towards(estimate)?;
+    let servo_rad = wrap_angle(towards_rad - estimate.pose.heading_rad);
+    state.gaze.turn_to(clamp(servo_rad, -SWEEP_RAD, SWEEP_RAD));
+    state.watch.ask();
+    Some(Proof {
+        stage: Stage::Look,
+        towards_rad,
+        range_m,
+    })
+}
