@@ -15,6 +15,11 @@ export const ROBOT = {
   'straight on at a commanded speed': 'en línea recta a la velocidad de referencia',
   'visit the places of a route in turn, such as a square of 1 m': 'visitar por orden los lugares de una ruta, como un cuadrado de 1 m',
   'reach a goal around obstacles, or follow a lane of boxes': 'llegar a un destino rodeando obstáculos, o seguir un carril de cajas',
+  // Groups of parameters.
+  'arcs': 'arcos', 'approach to the wall': 'acercamiento a la pared', 'straightening': 'corrección del rumbo', 'angle to the wall': 'ángulo con la pared',
+  'along the wall': 'a lo largo de la pared', 'distance to the wall': 'distancia a la pared', 'ramp': 'rampa', 'route': 'ruta', 'lane': 'carril',
+  'speed loops': 'lazos de velocidad', 'feedforward': 'prealimentación', 'ramps of the wheels': 'rampas de las ruedas', 'turns on the spot': 'giros en el sitio',
+  'straight lines': 'líneas rectas',
   // Rigs.
   'front single': 'un frontal', 'front pair': 'dos frontales', 'side pair left': 'dos a la izquierda', 'side pair right': 'dos a la derecha', 'final': 'final',
   // States.

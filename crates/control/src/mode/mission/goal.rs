@@ -87,7 +87,7 @@ impl Mission<'_> {
     ) {
         let pose = &estimate.pose;
         action.drive = match state.phase {
-            Phase::Wait | Phase::Unreachable => Drive::Release,
+            Phase::Wait | Phase::Unreachable | Phase::StraightOn => Drive::Release,
             Phase::Initialise => {
                 state.age_s = 0.0;
                 state.laps = 0;
