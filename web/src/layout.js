@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * Layouts: which plots there are, what is in each, the limits of its axis, and the window of time. One for each mode, which begins as here
- * and is kept by the browser as it was left; and others by name. A layout is also a file.
+ * Layouts: which plots there are, what is in each, the limits of its axis, and the window of time. One for each mode, which begins as its
+ * description says and is kept by the browser as it was left; and others by name. A layout is also a file.
  */
 import { UNITS, signal } from './signals.js';
 import { t } from './text.js';
@@ -34,22 +34,8 @@ export const PLOTS = [
   plot('place', 4, ['ghost_x_m', 'ghost_y_m', 'true_x_m', 'true_y_m', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m']),
 ];
 
-/** Those of each mode, by its number. @type {string[][]} */
-const OF_MODE = [
-  ['wheels', 'PWM', 'heading'],
-  ['distance', 'wheels', 'PWM'],
-  ['distance', 'heading', 'wheels'],
-  ['distance', 'heading', 'wheels'],
-  ['distance', 'heading', 'wheels'],
-  ['wheels', 'PWM'],
-  ['wheels', 'heading', 'place'],
-  ['place', 'heading', 'wheels'],
-  ['place', 'heading', 'distance', 'wheels'],
-];
-
-/** What a mode begins with. @param {number} mode @returns {Layout} */
-export function initial(mode) {
-  const titles = OF_MODE[mode] ?? OF_MODE[0] ?? [];
+/** What a mode begins with: the plots of these titles. @param {string[]} titles @returns {Layout} */
+function initial(titles) {
   return { window_s: WINDOW_S, plots: titles.flatMap((title) => PLOTS.filter((each) => each.title === title)).map((each) => ({ ...each })) };
 }
 
@@ -129,6 +115,8 @@ export class Shelf {
   #modes = {};
   /** @type {Record<string, Layout>} */
   #named = {};
+  /** What there is to begin with. @type {import('./types.js').ModeEntry[]} */
+  modes = [];
 
   constructor() {
     try {
@@ -146,7 +134,7 @@ export class Shelf {
 
   /** @param {number} mode */
   ofMode(mode) {
-    return this.#modes[mode] ?? initial(mode);
+    return this.#modes[mode] ?? initial(this.modes.find(({ id }) => id === mode)?.plots ?? []);
   }
 
   /** @param {string} name */

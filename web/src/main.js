@@ -168,13 +168,14 @@ function receive(message) {
       // A station of another version has another page.
       if (version !== null && message.version !== version) location.reload();
       version = message.version;
-      store.begin(message.columns);
+      store.begin(message.columns, message.modes);
       events.clear();
       consoles.clear();
       panel.setModes(message.modes);
       plots.modes = message.modes;
       stateLine.modes = message.modes;
       machine.modes = message.modes;
+      parameters.setModes(message.modes);
       meter.clear();
       break;
     case 'scene':

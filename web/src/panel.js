@@ -89,7 +89,8 @@ export class CommandPanel {
       this.#places.layOut(entry);
     }
     this.#showReference(state, entry);
-    const scenario = armed ? null : this.#scenarioOf(mode);
+    setText(this.#about, entry ? this.#aboutWords(entry, state.robot.rig) : '');
+    const scenario = armed || !entry ? null : this.#scenarioOf(entry);
     this.#experiment.hidden = scenario === null;
     if (scenario !== null) {
       this.#experiment.value = scenario;
@@ -97,11 +98,17 @@ export class CommandPanel {
     }
   }
 
-  /** The simulation is in another mode's experiment, whose world and sonars may be wrong for this one: this mode's first. @param {number} mode */
+  /** The simulation is in another mode's experiment, whose world and sonars may be wrong for this one: this mode's first. @param {ModeEntry} mode */
   #scenarioOf(mode) {
-    if (!this.#scene || mode === 0) return null;
-    const own = (/** @type {string} */ name) => new RegExp(`^mode${mode}\\b`).test(name) || (mode === 7 && name.startsWith('pursuit-'));
-    return own(this.#scene.choice.scenario) ? null : this.#scene.scenarios.find(own) ?? null;
+    if (!this.#scene || mode.movements) return null;
+    const own = (this.#scene.experiments ?? []).filter((each) => each.mode === mode.id).map(({ name }) => name);
+    return own.includes(this.#scene.choice.scenario) ? null : own[0] ?? null;
+  }
+
+  /** What the mode does, and what it lacks. @param {ModeEntry} mode @param {string | null} rig */
+  #aboutWords(mode, rig) {
+    const about = said(mode.about);
+    return rig === null || mode.rigs.includes(rig) ? about : t('{}; it needs the rig {}, the robot has {}', about, mode.rigs.map(named).join(' | '), named(rig));
   }
 
   /** @param {State} state @param {ModeEntry | null} mode */
@@ -116,18 +123,17 @@ export class CommandPanel {
 
   /** @param {ModeEntry} mode */
   #layOut(mode) {
-    setText(this.#about, said(mode.about));
     this.#inForce = create('output', { className: 'hint' });
-    const reference = mode.reference;
+    const reference = mode.reference?.commanded ? mode.reference : null;
     this.#reference.hidden = reference === null || reference.kind === 'goal';
     this.#reference.replaceChildren();
     this.#reference.onsubmit = (event) => event.preventDefault();
     if (reference?.kind === 'distance') {
-      this.#layOutOne('reference-cm', mode.id === 4 ? 50 : 30, 'cm', CM_PER_M, reference);
+      this.#layOutOne('reference-cm', 'cm', CM_PER_M, reference);
     } else if (reference?.kind === 'speed') {
-      this.#layOutOne('reference-rpm', 40, 'rpm', RPM_PER_RAD_S, reference);
+      this.#layOutOne('reference-rpm', 'rpm', RPM_PER_RAD_S, reference);
     } else if (reference?.kind === 'wheel_speed') {
-      this.#layOutSpeeds(reference.min * RPM_PER_RAD_S, reference.max * RPM_PER_RAD_S);
+      this.#layOutSpeeds(reference);
     } else {
       this.#inForce = null;
     }
@@ -135,13 +141,12 @@ export class CommandPanel {
 
   /**
    * @param {string} id
-   * @param {number} value
    * @param {string} unit
    * @param {number} factor From the SI unit.
-   * @param {{min: number, max: number}} limits In the SI unit.
+   * @param {import('./types.js').Reference} reference
    */
-  #layOutOne(id, value, unit, factor, { min, max }) {
-    const input = number(id, value, min * factor, max * factor);
+  #layOutOne(id, unit, factor, { min, max, offered }) {
+    const input = number(id, tenths(offered * factor), min * factor, max * factor);
     const range = create('span', { className: 'hint', textContent: t('{} to {} {}', format(min * factor, 0), format(max * factor, 0), unit) });
     this.#reference.replaceChildren(create('label', {}, `${t('reference')} `, input, ` ${unit}`), submit(t('Set')), this.#inForce ?? '', range);
     this.#reference.onsubmit = (event) => {
@@ -150,13 +155,11 @@ export class CommandPanel {
     };
   }
 
-  /**
-   * @param {number} min_rpm
-   * @param {number} max_rpm
-   */
-  #layOutSpeeds(min_rpm, max_rpm) {
-    const left = number('reference-left-rpm', 60, min_rpm, max_rpm);
-    const right = number('reference-right-rpm', 60, min_rpm, max_rpm);
+  /** @param {import('./types.js').Reference} reference */
+  #layOutSpeeds({ min, max, offered }) {
+    const field = (/** @type {string} */ id) => number(id, tenths(offered * RPM_PER_RAD_S), min * RPM_PER_RAD_S, max * RPM_PER_RAD_S);
+    const left = field('reference-left-rpm');
+    const right = field('reference-right-rpm');
     const both = create('input', { type: 'checkbox', id: 'reference-both', checked: true });
     const tie = () => {
       right.disabled = both.checked;
@@ -175,6 +178,9 @@ export class CommandPanel {
     };
   }
 }
+
+/** As a person would write it. @param {number} value */
+const tenths = (value) => Math.round(value * 10) / 10;
 
 /** @param {string} text */
 function submit(text) {

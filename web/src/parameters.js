@@ -94,6 +94,8 @@ export class ParameterTable {
   /** @type {Map<number, Line>} */
   #lines = new Map();
   #mode = 0;
+  /** @type {import('./types.js').ModeEntry[]} */
+  #modes = [];
   /** Some value is known. */
   #known = false;
   /** Why there are no values, if there are none. */
@@ -105,6 +107,12 @@ export class ParameterTable {
     this.#all.addEventListener('change', () => this.#filter());
     this.#save.addEventListener('click', () => send({ type: 'save_params' }));
     this.#reset.addEventListener('click', () => send({ type: 'reset_params' }));
+  }
+
+  /** @param {import('./types.js').ModeEntry[]} modes */
+  setModes(modes) {
+    this.#modes = modes;
+    this.#filter();
   }
 
   /** @param {Parameter[]} parameters */
@@ -122,7 +130,7 @@ export class ParameterTable {
   }
 
   /**
-   * Shows the parameters of this mode and those of all modes.
+   * Shows the parameters of this mode and those of the robot.
    * @param {number} mode
    * @param {string} why there are no values, if there are none
    */
@@ -148,15 +156,27 @@ export class ParameterTable {
     this.#table.classList.toggle('without', why !== '');
   }
 
-  /** The mode's own parameters first, then those of all modes. */
+  /** The mode's own parameters first, then those of the robot, then those of the other modes. */
   #filter() {
-    const lines = [...this.#lines.values()];
-    const own = lines.filter(({ parameter }) => parameter.mode === this.#mode);
-    const others = lines.filter(({ parameter }) => parameter.mode !== this.#mode);
-    for (const { row, parameter } of others) row.hidden = !this.#all.checked && parameter.mode !== null;
-    for (const { row } of own) row.hidden = false;
-    this.#body.replaceChildren(...[...own, ...others].map(({ row }) => row));
+    const rest = new Map(this.#lines);
+    /** Takes the lines of these parameters out of the rest. @param {number[]} ids */
+    const lines = (ids) => ids.flatMap((id) => {
+      const line = rest.get(id);
+      return line && rest.delete(id) ? [line] : [];
+    });
+    const groups = (this.#modes.find(({ id }) => id === this.#mode)?.parameters ?? []).map(([title, ids]) => rows(said(title), lines(ids)));
+    const robot = rows(t('the robot'), lines([...rest.values()].filter(({ parameter }) => parameter.of_robot).map(({ parameter }) => parameter.id)));
+    const others = rows(t('other modes'), [...rest.values()], !this.#all.checked);
+    this.#body.replaceChildren(...groups.flat(), ...robot, ...others);
   }
+}
+
+/** Lines below their title. @param {string} title @param {Line[]} lines @param {boolean} [hidden] */
+function rows(title, lines, hidden = false) {
+  if (lines.length === 0) return [];
+  const made = [create('tr', { className: 'group' }, create('th', { colSpan: 6, textContent: title })), ...lines.map(({ row }) => row)];
+  for (const row of made) row.hidden = hidden;
+  return made;
 }
 
 /** A unit as people write it. @param {string} unit */

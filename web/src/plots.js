@@ -37,8 +37,6 @@ export class Plots {
   range_s = [0, 20];
   /** Differences are counted from here. @type {number | null} */
   mark_s = null;
-  /** @type {import('./types.js').ModeEntry[]} */
-  modes = [];
   #onFollow;
   #redraw;
   /** A plot's title takes another line where its curves' names need one. */
@@ -58,11 +56,20 @@ export class Plots {
     this.#redraw = redraw;
     this.#onFollow = onFollow;
     this.#band = new StateBand(store, this);
-    this.setMode(0);
+    this.#show(this.layout);
     new ResizeObserver(() => this.#fitAnew()).observe(root);
     onThemeChange(() => this.draw());
     this.#window.addEventListener('change', () => this.setWindow(Number(this.#window.value)));
     root.addEventListener('keydown', (event) => this.#press(event));
+  }
+
+  get modes() {
+    return this.shelf.modes;
+  }
+
+  /** @param {import('./types.js').ModeEntry[]} modes */
+  set modes(modes) {
+    this.shelf.modes = modes;
   }
 
   get following() {

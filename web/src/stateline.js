@@ -114,7 +114,7 @@ export class StateLine {
     const to = latest?.heading_ref_rad ?? null;
     if (at && to !== null) words.push(`${t('heading')} ${degrees(at.heading_rad)} → ${format(near(to * DEG_PER_RAD, at.heading_rad * DEG_PER_RAD), 0)}°`);
     const kind = mode?.reference?.kind;
-    if (kind === 'distance' || (mode && !kind && left !== 0)) words.push(`${t('reference')} ${format(left * CM_PER_M)} cm`);
+    if (kind === 'distance' && left !== 0) words.push(`${t('reference')} ${format(left * CM_PER_M)} cm`);
     if (kind === 'speed') words.push(`${t('reference')} ${format(left * RPM_PER_RAD_S, 0)} rpm`);
     if (kind === 'wheel_speed') words.push(`${t('references')} ${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)} rpm`);
     const { goal, lane, route } = robot.errand;

@@ -41,10 +41,6 @@ const SLOW = [
 ];
 const FAST = ['left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm', 'left_error_rpm', 'right_error_rpm', 'true_left_rpm', 'true_right_rpm'];
 
-/** The modes whose reference is a distance, those whose it is a place, and those that want a heading. */
-const DISTANCE_MODES = [1, 2, 3, 4];
-const PLACE_MODES = [7, 8];
-export const HEADING_MODES = [2, 3, 4, 6, 7, 8];
 /** A heading is plotted on through 180 degrees up to here [deg]. */
 const FARTHEST_DEG = 315;
 
@@ -87,6 +83,8 @@ export class Store {
   latest = null;
   /** @type {{estimated: [number, number][], truth: [number, number][], ghost: [number, number][]}} */
   trails = { estimated: [], truth: [], ghost: [] };
+  /** By number. @type {Map<number, import('./types.js').ModeEntry>} */
+  #modes = new Map();
   #run = 0;
   /** The heading plotted last [deg]. */
   #heading_deg = 0;
@@ -96,8 +94,10 @@ export class Store {
   /**
    * A new connection: everything comes again.
    * @param {string[]} columns
+   * @param {import('./types.js').ModeEntry[]} modes
    */
-  begin(columns) {
+  begin(columns, modes) {
+    this.#modes = new Map(modes.map((mode) => [mode.id, mode]));
     this.#index = new Map(columns.map((name, index) => [name, index]));
     this.clear();
   }
@@ -135,13 +135,13 @@ export class Store {
     const ghost = pose(cell('ghost_x_m'), cell('ghost_y_m'), cell('ghost_heading_rad'));
     const truth = pose(cell('true_x_m'), cell('true_y_m'), cell('true_heading_rad'));
     const origin = pose(cell('origin_x_m'), cell('origin_y_m'), cell('origin_heading_rad')) ?? IDENTITY;
-    // Mode 8 waits in its first state, and its last goal and heading are from an origin of before.
-    const waits = mode === 8 && cell('state') === 0;
-    const heading_ref_rad = armed && !waits && HEADING_MODES.includes(mode) ? number(cell('heading_ref_rad')) : null;
-    const toPlace = armed && !waits && PLACE_MODES.includes(mode);
+    const { heading = false, idle = null, reference = null } = this.#modes.get(mode) ?? {};
+    const follows = armed && (idle === null || cell('state') !== idle);
+    const heading_ref_rad = follows && heading ? number(cell('heading_ref_rad')) : null;
+    const toPlace = follows && reference?.kind === 'goal';
 
     this.slow.push(t_s, {
-      reference_cm: DISTANCE_MODES.includes(mode) && cell('reference_left') !== 0 ? cm('reference_left') : null,
+      reference_cm: reference?.kind === 'distance' && cell('reference_left') !== 0 ? cm('reference_left') : null,
       range_left_cm: cm('range_left_m'),
       range_right_cm: cm('range_right_m'),
       range_front_cm: cm('range_front_m'),

@@ -8,12 +8,24 @@
  * @property {number} id
  * @property {string} name
  * @property {string} about What it does, in a few words.
- * @property {{kind: 'distance' | 'wheel_speed' | 'speed' | 'goal', min: number, max: number} | null} reference What its reference is [m or rad/s].
+ * @property {Reference | null} reference
+ * @property {number | null} idle The state in which its reference is not in force.
+ * @property {boolean} heading It wants a heading.
  * @property {boolean} movements Takes basic movements.
  * @property {number | null} route Takes a route of at most so many places.
  * @property {boolean} lane Follows a lane on command.
+ * @property {string[]} rigs The rigs it can drive with.
+ * @property {[string, number[]][]} parameters Title and numbers of each group, those that matter most first.
+ * @property {string[]} plots Titles of those it begins with.
  * @property {string[]} states
  * @property {[number, number, string][]} ways Between the states: from, to, when.
+ *
+ * @typedef {object} Reference What a mode regulates to [m or rad/s].
+ * @property {'distance' | 'wheel_speed' | 'speed' | 'goal'} kind
+ * @property {number} min
+ * @property {number} max
+ * @property {number} offered The value to offer first.
+ * @property {boolean} commanded A command sets it; otherwise the mode finds it.
  *
  * @typedef {{x_m: number, y_m: number, heading_rad: number}} Pose World frame, counter-clockwise heading.
  * @typedef {{x_m: number, y_m: number, correlation: number, heading_rad: number}} Spread Standard deviations of a pose, from its origin.
@@ -26,6 +38,7 @@
  * @typedef {object} Scene
  * @property {{scenario: string, world: string | null, rig: string | null, seed: number}} choice
  * @property {string[]} scenarios
+ * @property {{name: string, mode: number}[]} [experiments] Those of them that command something in a mode.
  * @property {string[]} worlds
  * @property {string[]} rigs
  * @property {string} rig What the robot carries.
@@ -47,7 +60,7 @@
  * @property {number} min
  * @property {number} max
  * @property {number} default
- * @property {number | null} mode
+ * @property {boolean} of_robot It belongs to the robot, not to modes.
  * @property {string} description
  * @property {number | null} value
  * @property {boolean} pending

@@ -47,15 +47,15 @@ test('what the robot says: faults, refusals, why it started, events, modes, stat
   /** The literals of a function, or from a line on. @param {string} path @param {RegExp} where */
   const literals = (path, where) => [...read(path).matchAll(where)].flatMap(([part]) => [...part.matchAll(/"([^"]+)"/g)].map((found) => found[1] ?? ''));
   const explained = /fn (?:explanation|title|detail)\([^]*?\n {4}}/g;
-  const states = ['front_distance', 'front_align', 'manual', 'mission/mod', 'straight_line', 'wall_follow', 'waypoints', 'wheel_speed']
-    .flatMap((mode) => literals(`../../crates/control/src/mode/${mode}.rs`, /STATE_NAMES: [^;]+; [^;]+;/g));
-  const ways = literals('../../crates/control/src/mode/transitions.rs', /way\(\d+, \d+, "[^"]+"\)/g);
-  const names = literals('../../crates/control/src/mode/id.rs', /fn name\([^]*?\n {4}}/g);
+  const modes = ['manual', 'front_distance', 'front_align', 'wall_hold', 'wall_follow', 'wheel_speed', 'straight_line', 'waypoints', 'mission/mod', 'description']
+    .map((mode) => `../../crates/control/src/mode/${mode}.rs`);
+  const states = modes.flatMap((mode) => literals(mode, /^states! {[^]*?^}/gm));
+  const names = modes.flatMap((mode) => literals(mode, /^ {4}(?:name|about): "[^"]+"/gm));
+  const groups = modes.flatMap((mode) => literals(mode, /Group::new\(\s*"[^"]+"/g));
   const parameters = [...(read('../../crates/control/src/params.rs').split('\ntable! {')[1] ?? '').split('\n}')[0]?.matchAll(/\/\/\/ (.+)/g) ?? []].map((found) => found[1] ?? '');
-  assert.ok(states.length > 30 && ways.length > 60 && names.length === 9 && parameters.length > 60, `${states.length} ${names.length} ${parameters.length}`);
+  assert.ok(states.length > 110 && groups.length > 12 && names.length === 18 && parameters.length > 60, `${states.length} ${groups.length} ${names.length} ${parameters.length}`);
   allSpanish([
-    ...literals('../../crates/control/src/types.rs', explained), ...literals('../../crates/wire/src/names.rs', explained), ...states, ...ways, ...names, ...parameters,
-    ...literals('../../crates/station/src/catalogue.rs', /fn about\([^]*?\n}/g),
+    ...literals('../../crates/control/src/types.rs', explained), ...literals('../../crates/wire/src/names.rs', explained), ...states, ...groups, ...names, ...parameters,
   ]);
 });
 

@@ -4,12 +4,12 @@ use crate::args::{ListArgs, Topic};
 use crate::failure::Failure;
 use crate::logs;
 use crate::output::{self, figure};
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::{ModeId, Reference, ReferenceKind};
 use rumbo_control::params::ParamId;
+use rumbo_control::rig::Rig;
 use rumbo_plant::params::Params;
-use rumbo_plant::plant::{Mount, Rig};
+use rumbo_plant::plant::{Mount, Rig as Mounts};
 use rumbo_scenario::files::{FileError, Kind, Library, MOVEMENTS, parameters::exact};
-use rumbo_station::{ModeEntry, Reference, ReferenceKind};
 use serde_json::{Map, Value, json};
 
 /// Lists one topic, or all but the plant's numbers.
@@ -88,7 +88,7 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
             }
         }
         Topic::Modes => {
-            entries.extend(rumbo_station::modes().iter().map(mode_entry));
+            entries.extend(ModeId::ALL.map(mode_entry));
         }
         Topic::Rigs => {
             for robot in library.list(Kind::Robot) {
@@ -105,7 +105,7 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
             let limits = id.limits();
             json!({ "name": id.name(), "min": exact(limits.min), "max": exact(limits.max),
                     "default": exact(limits.default), "unit": id.unit(), "help": id.help(),
-                    "mode": id.mode().map(ModeId::name) })
+                    "modes": id.modes().map(ModeId::name).collect::<Vec<_>>() })
         })),
         Topic::Ports => {
             let ports = rumbo_station::port::serial_ports().map_err(Failure::Input)?;
@@ -121,29 +121,40 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
     Ok(entries)
 }
 
-/// A mode, with its reference in the units that people use.
-fn mode_entry(mode: &ModeEntry) -> Value {
+/// A mode's description, with its reference in the units that people use.
+fn mode_entry(mode: ModeId) -> Value {
+    let about = mode.description();
     let rpm = |rad_s: f32| (f64::from(rad_s) * 30.0 / std::f64::consts::PI).round();
-    let reference = mode.reference.map(|Reference { kind, min, max }| match kind {
-        ReferenceKind::Distance => {
-            let cm = |distance_m: f32| (f64::from(distance_m) * 1e3).round() / 10.0;
-            json!({ "what": "distance", "unit": "cm", "min": cm(min), "max": cm(max) })
-        }
-        ReferenceKind::WheelSpeed => {
-            json!({ "what": "speed of each wheel", "unit": "rpm", "min": rpm(min), "max": rpm(max) })
-        }
-        ReferenceKind::Speed => {
-            json!({ "what": "speed", "unit": "rpm", "min": rpm(min), "max": rpm(max) })
-        }
-        ReferenceKind::Goal => {
-            json!({ "what": "x and y", "unit": "m", "min": exact(min), "max": exact(max) })
-        }
+    let cm = |distance_m: f32| (f64::from(distance_m) * 1e3).round() / 10.0;
+    let reference = about.reference.map(
+        |Reference {
+             kind,
+             min,
+             max,
+             commanded,
+             ..
+         }| {
+            let (what, unit, min, max) = match kind {
+                ReferenceKind::Distance => ("distance", "cm", cm(min), cm(max)),
+                ReferenceKind::WheelSpeed => ("speed of each wheel", "rpm", rpm(min), rpm(max)),
+                ReferenceKind::Speed => ("speed", "rpm", rpm(min), rpm(max)),
+                ReferenceKind::Goal => ("x and y", "m", exact(min), exact(max)),
+            };
+            json!({ "what": what, "unit": unit, "min": min, "max": max, "commanded": commanded })
+        },
+    );
+    let states = about.states.iter().map(|state| state.name);
+    let groups = about.parameters.iter().map(|group| {
+        let names = group.parameters.iter().map(|id| id.name());
+        json!({ "title": group.title, "parameters": names.collect::<Vec<_>>() })
     });
-    json!({ "name": mode.name, "number": mode.id, "help": mode.about, "reference": reference, "states": mode.states })
+    json!({ "name": about.name, "number": about.number, "help": about.about, "reference": reference,
+            "rigs": about.rigs.iter().map(Rig::name).collect::<Vec<_>>(),
+            "states": states.collect::<Vec<_>>(), "parameters": groups.collect::<Vec<_>>() })
 }
 
 /// Where each sonar of a rig looks.
-fn sonars(rig: &Rig) -> Map<String, Value> {
+fn sonars(rig: &Mounts) -> Map<String, Value> {
     let mounts = [
         ("left", rig.left),
         ("right", rig.right),
@@ -168,27 +179,35 @@ fn sonars(rig: &Rig) -> Map<String, Value> {
         .collect()
 }
 
-/// A mode as a row: number, name, what it does, its reference, its states.
+/// A mode as a row: number, name, what it does, its reference, its rigs, its states.
 fn mode_row(entry: &Value) -> Vec<String> {
     let text = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
     let reference = &entry["reference"];
     let limit = |key: &str| reference[key].as_f64().map_or_else(String::new, figure);
     let reference = match (reference["what"].as_str(), reference["unit"].as_str()) {
-        (Some(what), Some(unit)) => format!("{what} {}..{} {unit}", limit("min"), limit("max")),
+        (Some(what), Some(unit)) if reference["commanded"] == true => {
+            format!("{what} {}..{} {unit}", limit("min"), limit("max"))
+        }
         _ => "no reference".into(),
     };
-    let states: Vec<_> = entry["states"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_str)
-        .collect();
+    let words = |key: &str| {
+        let words = entry[key].as_array().into_iter().flatten();
+        words
+            .filter_map(Value::as_str)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let rigs = match entry["rigs"].as_array().map(Vec::len) {
+        Some(all) if all == Rig::ALL.len() => "any rig".into(),
+        _ => format!("rigs: {}", words("rigs")),
+    };
     vec![
         entry["number"].to_string(),
         text("name"),
         text("help"),
         reference,
-        format!("states: {}", states.join(", ")),
+        rigs,
+        format!("states: {}", words("states")),
     ]
 }
 

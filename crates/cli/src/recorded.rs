@@ -3,7 +3,7 @@
 //! A log that `rumbo import` made of a CSV carries it. Any other one has the signals of its telemetry: what was recorded from the first
 //! armed instant to the last becomes rows of the kind that the original program writes in that mode.
 
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::{Description, ModeId, ReferenceKind, Takes};
 use rumbo_report::real::FromLog;
 use rumbo_report::text::Text;
 use rumbo_scenario::files::bounded::{LONGEST_RECORDING, read_at_most};
@@ -98,16 +98,16 @@ fn csv(rows: &[Row]) -> Option<String> {
     Some(text)
 }
 
-const fn kind(mode: ModeId) -> Option<RowKind> {
-    match mode {
-        ModeId::Manual => None,
-        ModeId::FrontDistance | ModeId::FrontAlign | ModeId::WallHold | ModeId::WallFollow => {
-            Some(RowKind::Distance)
-        }
-        ModeId::WheelSpeed | ModeId::StraightLine => Some(RowKind::Speed),
-        ModeId::Waypoints => Some(RowKind::Waypoints),
-        ModeId::Mission => Some(RowKind::Mission),
-    }
+fn kind(mode: ModeId) -> Option<RowKind> {
+    let Description {
+        reference, takes, ..
+    } = mode.description();
+    Some(match (reference.as_ref()?.kind, takes) {
+        (ReferenceKind::Distance, _) => RowKind::Distance,
+        (ReferenceKind::WheelSpeed | ReferenceKind::Speed, _) => RowKind::Speed,
+        (ReferenceKind::Goal, Some(Takes::Lane)) => RowKind::Mission,
+        (ReferenceKind::Goal, _) => RowKind::Waypoints,
+    })
 }
 
 /// A column of the original program, in its unit. Motor A is the right one.

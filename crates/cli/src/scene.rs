@@ -4,8 +4,8 @@ use rumbo_control::SonarId;
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::plant::Mount;
 use rumbo_scenario::files::TimedCommand;
-use rumbo_scenario::files::{FileError, Kind, Library, Setup};
-use rumbo_station::{Choice, MapPose, Obstacle, RoutePlan, Scene, SonarMount};
+use rumbo_scenario::files::{FileError, Kind, Library, ScenarioFile, Setup};
+use rumbo_station::{Choice, Experiment, MapPose, Obstacle, RoutePlan, Scene, SonarMount};
 use rumbo_wire::Command;
 
 /// The scene of a setup.
@@ -46,6 +46,7 @@ pub(crate) fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<
     ];
     let footprint = Footprint::new(&plant.body, &plant.wheels);
     Ok(Scene {
+        experiments: experiments(library, scenario, &choice),
         choice,
         scenarios: library.list(Kind::Scenario),
         worlds: library.list(Kind::World),
@@ -69,6 +70,21 @@ pub(crate) fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<
             .collect(),
         of_ghost: false,
     })
+}
+
+/// The scenarios that command something, each with its mode: those that there are, and the one of a file.
+fn experiments(library: &Library, scenario: &ScenarioFile, choice: &Choice) -> Vec<Experiment> {
+    let of = |name: String, file: &ScenarioFile| {
+        let mode = file.mode as u8;
+        (!file.commands.is_empty()).then_some(Experiment { name, mode })
+    };
+    let names = library.list(Kind::Scenario);
+    let own = (!names.contains(&choice.scenario)).then(|| of(choice.scenario.clone(), scenario));
+    let known = names.into_iter().filter_map(|name| {
+        let file = library.scenario(&name).ok()?;
+        of(name, &file)
+    });
+    own.flatten().into_iter().chain(known).collect()
 }
 
 /// The commands that tell a robot what to do without making it do so: the mode, and what the experiment sets up to where it arms the

@@ -7,6 +7,7 @@ mod decimal;
 
 use crate::drive::SpeedLoop;
 use crate::math::is_finite;
+#[cfg(feature = "names")]
 use crate::mode::ModeId;
 use crate::odometry::{Geometry, OdometryErrors};
 use crate::rig::Rig;
@@ -34,9 +35,9 @@ pub enum ParamError {
     OutOfRange,
 }
 
-/// Declares the table. Each line: help, variant, name, unit, default, limits, mode.
+/// Declares the table. Each line: help, variant, name, unit, default, limits.
 macro_rules! table {
-    ($( #[doc = $help:literal] $id:ident = $name:literal, $unit:literal, $default:expr, $min:expr => $max:expr, $mode:expr; )+) => {
+    ($( #[doc = $help:literal] $id:ident = $name:literal, $unit:literal, $default:expr, $min:expr => $max:expr; )+) => {
         /// Number of a parameter, as on the link.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
@@ -49,11 +50,6 @@ macro_rules! table {
             /// The parameter with this number.
             pub const fn from_number(number: u8) -> Option<ParamId> {
                 match number { $( number if number == ParamId::$id as u8 => Some(ParamId::$id), )+ _ => None }
-            }
-
-            /// The mode it belongs to; `None` when all modes use it.
-            pub const fn mode(self) -> Option<ModeId> {
-                match self { $( ParamId::$id => $mode, )+ }
             }
 
             /// Its name in files, commands and the dashboard.
@@ -104,177 +100,169 @@ const fn fnv(mut hash: u32, bytes: &[u8]) -> u32 {
     hash
 }
 
-const FRONT: Option<ModeId> = Some(ModeId::FrontDistance);
-const ALIGN: Option<ModeId> = Some(ModeId::FrontAlign);
-const WALL: Option<ModeId> = Some(ModeId::WallFollow);
-const WAYPOINTS: Option<ModeId> = Some(ModeId::Waypoints);
-const STRAIGHT: Option<ModeId> = Some(ModeId::StraightLine);
-const MISSION: Option<ModeId> = Some(ModeId::Mission);
-const MANUAL: Option<ModeId> = Some(ModeId::Manual);
-
 table! {
     /// Radius of the left wheel.
-    RadiusLeft = "radius_left_m", "m", 0.0325, 0.01 => 0.2, None;
+    RadiusLeft = "radius_left_m", "m", 0.0325, 0.01 => 0.2;
     /// Radius of the right wheel.
-    RadiusRight = "radius_right_m", "m", 0.0325, 0.01 => 0.2, None;
+    RadiusRight = "radius_right_m", "m", 0.0325, 0.01 => 0.2;
     /// Distance between the wheels' contact points.
-    Base = "base_m", "m", 0.10, 0.03 => 1.0, None;
+    Base = "base_m", "m", 0.10, 0.03 => 1.0;
     /// Slip of one wheel: standard deviation of its way after 1 m.
-    SlipError = "slip_error_m", "m", 0.00038, 0.0 => 0.1, None;
+    SlipError = "slip_error_m", "m", 0.00038, 0.0 => 0.1;
     /// Standard deviation of the ratio of the radii, relative.
-    RatioError = "ratio_error", "1", 0.0041, 0.0 => 0.1, None;
+    RatioError = "ratio_error", "1", 0.0041, 0.0 => 0.1;
     /// Standard deviation of radius over base, relative.
-    TurnError = "turn_error", "1", 0.0117, 0.0 => 0.1, None;
+    TurnError = "turn_error", "1", 0.0117, 0.0 => 0.1;
     /// Standard deviation of the mean radius, relative.
-    ScaleError = "scale_error", "1", 0.002, 0.0 => 0.1, None;
+    ScaleError = "scale_error", "1", 0.002, 0.0 => 0.1;
     /// Which sonars the robot carries: 0 `front_single`, 1 `front_pair`, 2 `side_pair_left`, 3 `side_pair_right`, 4 `final`.
-    Rig = "rig", "1", 4.0, 0.0 => 4.0, None;
+    Rig = "rig", "1", 4.0, 0.0 => 4.0;
     /// Sonars that look ahead: distance ahead of the wheels' axis.
-    SonarFrontX = "sonar_front_x_m", "m", 0.13, -0.3 => 0.3, None;
+    SonarFrontX = "sonar_front_x_m", "m", 0.13, -0.3 => 0.3;
     /// Sonars that look to a side: distance ahead of the wheels' axis, for a pair of its middle.
-    SonarSideX = "sonar_side_x_m", "m", 0.03, -0.3 => 0.3, None;
+    SonarSideX = "sonar_side_x_m", "m", 0.03, -0.3 => 0.3;
     /// Sonars that look to a side: distance from the middle of the robot.
-    SonarSideY = "sonar_side_y_m", "m", 0.075, 0.0 => 0.3, None;
+    SonarSideY = "sonar_side_y_m", "m", 0.075, 0.0 => 0.3;
     /// Distance between two sonars that look ahead.
-    FrontGap = "front_gap_m", "m", 0.12, 0.02 => 0.5, None;
+    FrontGap = "front_gap_m", "m", 0.12, 0.02 => 0.5;
     /// Distance between two sonars that look to one side.
-    SideGap = "side_gap_m", "m", 0.14, 0.02 => 0.5, None;
+    SideGap = "side_gap_m", "m", 0.14, 0.02 => 0.5;
     /// Half angle of a sonar's beam.
-    Beam = "sonar_beam_rad", "rad", 0.31, 0.0 => 1.0, None;
+    Beam = "sonar_beam_rad", "rad", 0.31, 0.0 => 1.0;
     /// Speed of the servo, to know where it points.
-    ServoSpeed = "servo_speed_rad_s", "rad/s", 6.0, 0.5 => 50.0, None;
+    ServoSpeed = "servo_speed_rad_s", "rad/s", 6.0, 0.5 => 50.0;
     /// Speed of sound.
-    SoundSpeed = "sound_speed_m_s", "m/s", 343.4, 300.0 => 380.0, None;
+    SoundSpeed = "sound_speed_m_s", "m/s", 343.4, 300.0 => 380.0;
     /// Duty that balances the left wheel's friction, forward.
-    StaticLeftForward = "ks_left_forward", "1", 0.20, 0.0 => 0.8, None;
+    StaticLeftForward = "ks_left_forward", "1", 0.20, 0.0 => 0.8;
     /// Duty that balances the left wheel's friction, backward.
-    StaticLeftBackward = "ks_left_backward", "1", 0.20, 0.0 => 0.8, None;
+    StaticLeftBackward = "ks_left_backward", "1", 0.20, 0.0 => 0.8;
     /// Duty that balances the right wheel's friction, forward.
-    StaticRightForward = "ks_right_forward", "1", 0.20, 0.0 => 0.8, None;
+    StaticRightForward = "ks_right_forward", "1", 0.20, 0.0 => 0.8;
     /// Duty that balances the right wheel's friction, backward.
-    StaticRightBackward = "ks_right_backward", "1", 0.20, 0.0 => 0.8, None;
+    StaticRightBackward = "ks_right_backward", "1", 0.20, 0.0 => 0.8;
     /// Duty per wheel speed.
-    Velocity = "kv", "s/rad", 0.018, 0.0 => 0.2, None;
+    Velocity = "kv", "s/rad", 0.018, 0.0 => 0.2;
     /// Duty per wheel acceleration.
-    Acceleration = "ka", "s2/rad", 0.008, 0.0 => 0.1, None;
+    Acceleration = "ka", "s2/rad", 0.008, 0.0 => 0.1;
     /// Duty that a standing wheel gets at first when asked to turn; it grows until edges come.
-    Kick = "kick", "1", 0.30, 0.0 => 1.0, None;
+    Kick = "kick", "1", 0.30, 0.0 => 1.0;
     /// Speed loop of the left wheel, proportional gain.
-    SpeedKpLeft = "speed_kp_left", "s/rad", 0.14, 0.0 => 2.0, None;
+    SpeedKpLeft = "speed_kp_left", "s/rad", 0.14, 0.0 => 2.0;
     /// Speed loop of the left wheel, integral gain.
-    SpeedKiLeft = "speed_ki_left", "1/rad", 0.5, 0.0 => 20.0, None;
+    SpeedKiLeft = "speed_ki_left", "1/rad", 0.5, 0.0 => 20.0;
     /// Speed loop of the left wheel, derivative gain.
-    SpeedKdLeft = "speed_kd_left", "s2/rad", 0.0, 0.0 => 1.0, None;
+    SpeedKdLeft = "speed_kd_left", "s2/rad", 0.0, 0.0 => 1.0;
     /// Speed loop of the right wheel, proportional gain.
-    SpeedKpRight = "speed_kp_right", "s/rad", 0.14, 0.0 => 2.0, None;
+    SpeedKpRight = "speed_kp_right", "s/rad", 0.14, 0.0 => 2.0;
     /// Speed loop of the right wheel, integral gain.
-    SpeedKiRight = "speed_ki_right", "1/rad", 0.5, 0.0 => 20.0, None;
+    SpeedKiRight = "speed_ki_right", "1/rad", 0.5, 0.0 => 20.0;
     /// Speed loop of the right wheel, derivative gain.
-    SpeedKdRight = "speed_kd_right", "s2/rad", 0.0, 0.0 => 1.0, None;
+    SpeedKdRight = "speed_kd_right", "s2/rad", 0.0, 0.0 => 1.0;
     /// Largest acceleration asked of a wheel.
-    WheelAccel = "wheel_accel_rad_s2", "rad/s2", 40.0, 1.0 => 500.0, None;
+    WheelAccel = "wheel_accel_rad_s2", "rad/s2", 40.0, 1.0 => 500.0;
     /// Largest deceleration asked of a wheel; beyond about 20 friction alone does not brake it.
-    WheelDecel = "wheel_decel_rad_s2", "rad/s2", 20.0, 1.0 => 500.0, None;
+    WheelDecel = "wheel_decel_rad_s2", "rad/s2", 20.0, 1.0 => 500.0;
     /// Voltage at which the feedforward was measured; used where the battery's voltage is.
-    NominalBattery = "nominal_battery_v", "V", 7.4, 3.0 => 30.0, None;
+    NominalBattery = "nominal_battery_v", "V", 7.4, 3.0 => 30.0;
     /// Voltage below which the robot does not drive; used where the battery's voltage is measured.
-    LowBattery = "low_battery_v", "V", 6.2, 0.0 => 30.0, None;
+    LowBattery = "low_battery_v", "V", 6.2, 0.0 => 30.0;
     /// Battery's voltage over that at the analogue input; 0: no divider is wired, the voltage is not measured.
-    BatteryRatio = "battery_ratio", "1", 0.0, 0.0 => 20.0, None;
+    BatteryRatio = "battery_ratio", "1", 0.0, 0.0 => 20.0;
     /// Analogue input that the divider is wired to: 0 is A0.
-    BatteryInput = "battery_input", "1", 0.0, 0.0 => 15.0, None;
+    BatteryInput = "battery_input", "1", 0.0, 0.0 => 15.0;
     /// Time without a sign of life after which the wheels are released.
-    LinkTimeout = "link_timeout_s", "s", 0.4, 0.05 => 0.45, None;
+    LinkTimeout = "link_timeout_s", "s", 0.4, 0.05 => 0.45;
     /// The same when the robot is addressed in text.
-    TextTimeout = "text_timeout_s", "s", 10.0, 0.1 => 3600.0, None;
+    TextTimeout = "text_timeout_s", "s", 10.0, 0.1 => 3600.0;
     /// Age of a sonar's last good reading beyond which the robot does not drive on it.
-    StaleRange = "stale_range_s", "s", 0.5, 0.1 => 2.0, None;
+    StaleRange = "stale_range_s", "s", 0.5, 0.1 => 2.0;
     /// Time by which the wheels follow a falling speed reference late.
-    SpeedLag = "speed_lag_s", "s", 0.1, 0.0 => 1.0, None;
+    SpeedLag = "speed_lag_s", "s", 0.1, 0.0 => 1.0;
     /// Turns on the spot: largest yaw rate.
-    TurnRate = "turn_rate_rad_s", "rad/s", 3.0, 0.2 => 10.0, None;
+    TurnRate = "turn_rate_rad_s", "rad/s", 3.0, 0.2 => 10.0;
     /// Turns on the spot: planned deceleration.
-    TurnBrake = "turn_brake_rad_s2", "rad/s2", 3.5, 0.5 => 60.0, None;
+    TurnBrake = "turn_brake_rad_s2", "rad/s2", 3.5, 0.5 => 60.0;
     /// Turns on the spot: deceleration of the released wheels just before they stand.
-    TurnCoast = "turn_coast_rad_s2", "rad/s2", 6.0, 0.5 => 100.0, None;
+    TurnCoast = "turn_coast_rad_s2", "rad/s2", 6.0, 0.5 => 100.0;
     /// Turns on the spot: error that is good enough.
-    TurnTolerance = "turn_tolerance_rad", "rad", 0.015, 0.002 => 0.5, None;
+    TurnTolerance = "turn_tolerance_rad", "rad", 0.015, 0.002 => 0.5;
     /// Straight lines: largest speed.
-    LineCruise = "line_cruise_m_s", "m/s", 0.45, 0.02 => 0.8, None;
+    LineCruise = "line_cruise_m_s", "m/s", 0.45, 0.02 => 0.8;
     /// Straight lines: planned acceleration.
-    LineAccel = "line_accel_m_s2", "m/s2", 0.9, 0.05 => 10.0, None;
+    LineAccel = "line_accel_m_s2", "m/s2", 0.9, 0.05 => 10.0;
     /// Straight lines: planned deceleration.
-    LineBrake = "line_brake_m_s2", "m/s2", 0.36, 0.05 => 3.0, None;
+    LineBrake = "line_brake_m_s2", "m/s2", 0.36, 0.05 => 3.0;
     /// Straight lines: deceleration of the released wheels just before they stand.
-    LineCoast = "line_coast_m_s2", "m/s2", 0.5, 0.05 => 5.0, None;
+    LineCoast = "line_coast_m_s2", "m/s2", 0.5, 0.05 => 5.0;
     /// Straight lines: heading per distance from the line.
-    LineCross = "line_cross_kp", "rad/m", 5.0, 0.0 => 50.0, None;
+    LineCross = "line_cross_kp", "rad/m", 5.0, 0.0 => 50.0;
     /// Straight lines: yaw rate per heading error.
-    LineHeading = "line_heading_kp", "1/s", 5.0, 0.0 => 20.0, None;
+    LineHeading = "line_heading_kp", "1/s", 5.0, 0.0 => 20.0;
     /// Straight lines: way left that is good enough.
-    LineTolerance = "line_tolerance_m", "m", 0.004, 0.001 => 0.1, None;
+    LineTolerance = "line_tolerance_m", "m", 0.004, 0.001 => 0.1;
     /// Pure pursuit: lookahead per speed.
-    PursuitTime = "pursuit_lookahead_s", "s", 0.5, 0.05 => 5.0, None;
+    PursuitTime = "pursuit_lookahead_s", "s", 0.5, 0.05 => 5.0;
     /// Pure pursuit: shortest lookahead.
-    PursuitLeast = "pursuit_lookahead_m", "m", 0.12, 0.02 => 2.0, None;
+    PursuitLeast = "pursuit_lookahead_m", "m", 0.12, 0.02 => 2.0;
     /// Pure pursuit: distance between points, of which the one after the nearest is the lookahead, as in the report; 0: by the speed.
-    PursuitSpacing = "pursuit_spacing_m", "m", 0.0, 0.0 => 2.0, None;
+    PursuitSpacing = "pursuit_spacing_m", "m", 0.0, 0.0 => 2.0;
     /// Pure pursuit: largest sideways acceleration, which limits the speed in bends.
-    PursuitSide = "pursuit_side_m_s2", "m/s2", 0.4, 0.01 => 10.0, None;
+    PursuitSide = "pursuit_side_m_s2", "m/s2", 0.4, 0.01 => 10.0;
     /// What follows a route: 0 turns, drives and turns, 1 pure pursuit.
-    WaypointTracker = "waypoint_tracker", "1", 0.0, 0.0 => 1.0, WAYPOINTS;
+    WaypointTracker = "waypoint_tracker", "1", 0.0, 0.0 => 1.0;
     /// Inner wheel's speed over the outer one's in arcs.
-    ArcRatio = "arc_ratio", "1", 0.5, 0.0 => 1.0, MANUAL;
+    ArcRatio = "arc_ratio", "1", 0.5, 0.0 => 1.0;
     /// Largest approach speed.
-    FrontCruise = "front_cruise_m_s", "m/s", 0.5, 0.02 => 0.8, FRONT;
+    FrontCruise = "front_cruise_m_s", "m/s", 0.5, 0.02 => 0.8;
     /// Deceleration planned on the way to the reference.
-    FrontBrake = "front_brake_m_s2", "m/s2", 0.36, 0.05 => 3.0, FRONT;
+    FrontBrake = "front_brake_m_s2", "m/s2", 0.36, 0.05 => 3.0;
     /// Speed per distance near the reference.
-    FrontKp = "front_kp", "1/s", 5.0, 0.1 => 20.0, FRONT;
+    FrontKp = "front_kp", "1/s", 5.0, 0.1 => 20.0;
     /// Distance from the reference within which the wheels are released.
-    FrontTolerance = "front_tolerance_m", "m", 0.0015, 0.0005 => 0.05, FRONT;
+    FrontTolerance = "front_tolerance_m", "m", 0.0015, 0.0005 => 0.05;
     /// Yaw rate per heading error, to drive straight.
-    FrontHeading = "front_heading_kp", "1/s", 4.0, 0.0 => 20.0, FRONT;
+    FrontHeading = "front_heading_kp", "1/s", 4.0, 0.0 => 20.0;
     /// Yaw rate per bearing of the wall's normal, on the way to the reference.
-    AlignKp = "align_kp", "1/s", 3.0, 0.0 => 20.0, ALIGN;
+    AlignKp = "align_kp", "1/s", 3.0, 0.0 => 20.0;
     /// Angle to the wall that is good enough at rest.
-    AlignTolerance = "align_tolerance_rad", "rad", 0.015, 0.002 => 0.2, ALIGN;
+    AlignTolerance = "align_tolerance_rad", "rad", 0.015, 0.002 => 0.2;
     /// How far to the sides of the wall's normal the servo looks to learn its bearing.
-    SweepAside = "sweep_aside_rad", "rad", 0.65, 0.35 => 1.0, ALIGN;
+    SweepAside = "sweep_aside_rad", "rad", 0.65, 0.35 => 1.0;
     /// Speed along the wall.
-    WallCruise = "wall_cruise_m_s", "m/s", 0.16, 0.05 => 0.4, WALL;
+    WallCruise = "wall_cruise_m_s", "m/s", 0.16, 0.05 => 0.4;
     /// Speed towards the wall per distance error.
-    WallKp = "wall_kp", "1/s", 1.6, 0.0 => 10.0, WALL;
+    WallKp = "wall_kp", "1/s", 1.6, 0.0 => 10.0;
     /// Angle to the wall per distance error and time.
-    WallKi = "wall_ki", "rad/(m s)", 1.0, 0.0 => 20.0, WALL;
+    WallKi = "wall_ki", "rad/(m s)", 1.0, 0.0 => 20.0;
     /// Largest angle to the wall on the way to another distance.
-    WallHeadingLimit = "wall_heading_limit_rad", "rad", 0.42, 0.1 => 0.55, WALL;
+    WallHeadingLimit = "wall_heading_limit_rad", "rad", 0.42, 0.1 => 0.55;
     /// Yaw rate per angle error.
-    WallHeadingKp = "wall_heading_kp", "1/s", 5.0, 0.0 => 20.0, WALL;
+    WallHeadingKp = "wall_heading_kp", "1/s", 5.0, 0.0 => 20.0;
     /// Yaw rate taken back per yaw rate that the encoders tell.
-    WallDamping = "wall_damping", "1", 0.3, 0.0 => 2.0, WALL;
+    WallDamping = "wall_damping", "1", 0.3, 0.0 => 2.0;
     /// Largest yaw rate.
-    WallYawLimit = "wall_yaw_limit_rad_s", "rad/s", 1.5, 0.1 => 5.0, WALL;
+    WallYawLimit = "wall_yaw_limit_rad_s", "rad/s", 1.5, 0.1 => 5.0;
     /// Range of the front sonar at which the robot stops before what stands ahead, where the rig looks ahead.
-    WallStop = "wall_stop_m", "m", 0.15, 0.05 => 1.0, WALL;
+    WallStop = "wall_stop_m", "m", 0.15, 0.05 => 1.0;
     /// Yaw rate per difference of distance travelled, as a heading.
-    StraightKp = "straight_kp", "1/s", 4.0, 0.1 => 20.0, STRAIGHT;
+    StraightKp = "straight_kp", "1/s", 4.0, 0.1 => 20.0;
     /// Heading per offset from the line.
-    StraightOffset = "straight_offset_rad_m", "rad/m", 2.0, 0.0 => 20.0, STRAIGHT;
+    StraightOffset = "straight_offset_rad_m", "rad/m", 2.0, 0.0 => 20.0;
     /// Slope of the speed when speeding up.
-    StraightAccel = "straight_accel_rad_s2", "rad/s2", 20.0, 1.0 => 100.0, STRAIGHT;
+    StraightAccel = "straight_accel_rad_s2", "rad/s2", 20.0, 1.0 => 100.0;
     /// Slope of the speed when slowing down; beyond about 10 friction alone does not follow.
-    StraightDecel = "straight_decel_rad_s2", "rad/s2", 8.0, 1.0 => 100.0, STRAIGHT;
+    StraightDecel = "straight_decel_rad_s2", "rad/s2", 8.0, 1.0 => 100.0;
     /// Largest speed on the way to a goal and in a lane.
-    MissionCruise = "mission_cruise_m_s", "m/s", 0.40, 0.05 => 0.8, MISSION;
+    MissionCruise = "mission_cruise_m_s", "m/s", 0.40, 0.05 => 0.8;
     /// Largest speed around an obstacle.
-    MissionAround = "mission_around_m_s", "m/s", 0.22, 0.05 => 0.6, MISSION;
+    MissionAround = "mission_around_m_s", "m/s", 0.22, 0.05 => 0.6;
     /// Range of the front sonar at which a lane turns.
-    LaneSafe = "lane_safe_m", "m", 0.25, 0.15 => 1.0, MISSION;
+    LaneSafe = "lane_safe_m", "m", 0.25, 0.15 => 1.0;
     /// Time after which a goal that has not been reached is given up.
-    MissionGiveUp = "mission_give_up_s", "s", 150.0, 5.0 => 3600.0, MISSION;
+    MissionGiveUp = "mission_give_up_s", "s", 150.0, 5.0 => 3600.0;
     /// Each goal reached becomes the origin: 1 yes, 0 no.
-    MissionResetOrigin = "mission_reset_origin", "1", 1.0, 0.0 => 1.0, MISSION;
+    MissionResetOrigin = "mission_reset_origin", "1", 1.0, 0.0 => 1.0;
 }
 
 impl ParamId {
@@ -301,6 +289,15 @@ impl ParamId {
         } else {
             Ok(())
         }
+    }
+
+    /// The modes that act by it; none for those of the robot, whatever its mode.
+    #[cfg(feature = "names")]
+    pub fn modes(self) -> impl Iterator<Item = ModeId> {
+        ModeId::ALL.into_iter().filter(move |mode| {
+            let mut groups = mode.description().parameters.iter();
+            groups.any(|group| group.parameters.contains(&self))
+        })
     }
 
     /// The parameter with this name.

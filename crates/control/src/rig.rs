@@ -81,6 +81,36 @@ impl Rig {
     }
 }
 
+/// Some of the rigs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rigs(u8);
+
+impl Rigs {
+    /// Any rig.
+    pub const ANY: Rigs = Rigs::of(&Rig::ALL);
+
+    /// These rigs.
+    pub const fn of(rigs: &[Rig]) -> Rigs {
+        let (mut bits, mut i) = (0, 0);
+        while i < rigs.len() {
+            bits |= 1 << rigs[i] as u8;
+            i += 1;
+        }
+        Rigs(bits)
+    }
+
+    /// Which they are.
+    #[cfg(feature = "names")]
+    pub fn iter(self) -> impl Iterator<Item = Rig> {
+        Rig::ALL.into_iter().filter(move |rig| self.contains(*rig))
+    }
+
+    /// Whether this one is among them.
+    pub const fn contains(self, rig: Rig) -> bool {
+        self.0 & (1 << rig as u8) != 0
+    }
+}
+
 /// From where and in which direction a sonar looks, in the robot's frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct View {

@@ -3,7 +3,7 @@
 use crate::judge::{capital, with_unit};
 use crate::signals::{CM, DEG, Outcome, RPM};
 use crate::text::{Language, Text, same, t};
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::ReferenceKind;
 use rumbo_wire::Command;
 
 /// A metric's name, what its value is multiplied with to be shown, and the unit then.
@@ -416,8 +416,8 @@ pub(crate) fn shown(language: Language, outcome: &Outcome, key: &str) -> Option<
 /// The reference of each step of a run, as its metrics count them: those in force while the robot is armed.
 fn step_references(language: Language, outcome: &Outcome) -> Vec<String> {
     let scenario = &outcome.setup.scenario;
-    let (factor, unit) = match scenario.mode {
-        ModeId::WheelSpeed | ModeId::StraightLine => (RPM, "rpm"),
+    let (factor, unit) = match scenario.mode.takes_reference() {
+        Some(ReferenceKind::WheelSpeed | ReferenceKind::Speed) => (RPM, "rpm"),
         _ => (CM, "cm"),
     };
     let (mut armed, mut reference, mut steps) = (false, None, Vec::new());

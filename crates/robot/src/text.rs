@@ -1,6 +1,6 @@
 //! Commands in the words of the original, in the units of the core.
 
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::{ModeId, ReferenceKind};
 use rumbo_control::params::ParamId;
 use rumbo_control::{Duty, Side, Wheels};
 use rumbo_wire::text::{CM_PER_M, RAD_S_PER_RPM, TextCommand};
@@ -33,14 +33,12 @@ pub(crate) fn translate(
         TextCommand::Off => Command::Disarm,
         TextCommand::Save => Command::SaveParams,
         TextCommand::Reset => Command::ResetParams,
-        TextCommand::Reference(value) => match mode {
-            ModeId::FrontDistance | ModeId::FrontAlign | ModeId::WallFollow => {
-                Command::Reference(value / CM_PER_M)
+        TextCommand::Reference(value) => match mode.takes_reference() {
+            Some(ReferenceKind::Distance) => Command::Reference(value / CM_PER_M),
+            Some(ReferenceKind::WheelSpeed | ReferenceKind::Speed) => {
+                Command::Reference(value * RAD_S_PER_RPM)
             }
-            ModeId::WheelSpeed | ModeId::StraightLine => Command::Reference(value * RAD_S_PER_RPM),
-            ModeId::Manual | ModeId::WallHold | ModeId::Waypoints | ModeId::Mission => {
-                return Err(Refusal::NotInThisMode);
-            }
+            Some(ReferenceKind::Goal) | None => return Err(Refusal::NotInThisMode),
         },
         TextCommand::WheelReference(side, rpm) => {
             let mut wheels = reference;

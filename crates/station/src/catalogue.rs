@@ -1,10 +1,8 @@
-//! What there is to choose and to set: modes, movements and parameters, as the page and `rumbo list` get them.
+//! What there is to choose and to set: modes, movements and parameters, as the page gets them.
 
-use rumbo_control::mode::waypoints::{FARTHEST_M, MAX_WAYPOINTS};
-use rumbo_control::mode::{
-    MAX_DISTANCE_M, MAX_WALL_M, MAX_WHEEL_RAD_S, MIN_DISTANCE_M, MIN_WALL_M, ModeId,
-};
+use rumbo_control::mode::{ModeId, StateDescription, Takes};
 use rumbo_control::params::{Limits, ParamId};
+use rumbo_control::rig::Rig;
 use serde::Serialize;
 
 /// A parameter of the table, with its value as far as it is known.
@@ -29,8 +27,8 @@ pub(crate) struct Entry {
     pub(crate) min: f32,
     pub(crate) max: f32,
     pub(crate) default: f32,
-    /// The mode it belongs to; `None` for all.
-    pub(crate) mode: Option<u8>,
+    /// It belongs to the robot, whatever its mode; otherwise to modes, which list it.
+    pub(crate) of_robot: bool,
     pub(crate) description: &'static str,
 }
 
@@ -54,123 +52,91 @@ fn describe(id: ParamId) -> Entry {
         min,
         max,
         default,
-        mode: id.mode().map(|mode| mode as u8),
+        of_robot: id.modes().next().is_none(),
         description: id.help(),
     }
 }
 
-/// A mode to choose.
+/// A mode to choose: its description, as the page gets it.
 #[derive(Clone, Debug, Serialize)]
-pub struct ModeEntry {
-    /// Its number.
-    pub id: u8,
-    /// Its name in files and commands.
-    pub name: &'static str,
-    /// What it does, in a few words.
-    pub about: &'static str,
-    /// What its reference is, if it takes one.
-    pub reference: Option<Reference>,
-    /// Takes basic movements.
-    pub movements: bool,
-    /// Takes a route of at most so many places.
-    pub route: Option<usize>,
-    /// Follows a lane on command.
-    pub lane: bool,
-    /// The names of its states, by the number in the telemetry.
-    pub states: &'static [&'static str],
+pub(crate) struct ModeEntry {
+    id: u8,
+    name: &'static str,
+    about: &'static str,
+    /// Names of its states, by the number in telemetry.
+    states: Vec<&'static str>,
     /// The ways between them: from, to, when.
-    pub ways: Vec<(u8, u8, &'static str)>,
+    ways: Vec<(u8, u8, &'static str)>,
+    /// The state in which its reference is not in force.
+    idle: Option<u8>,
+    reference: Option<ReferenceEntry>,
+    /// It wants a heading.
+    heading: bool,
+    /// Takes basic movements.
+    movements: bool,
+    /// Takes a route of at most so many waypoints.
+    route: Option<usize>,
+    /// Follows a lane on command.
+    lane: bool,
+    /// Names of the rigs it can drive with.
+    rigs: Vec<&'static str>,
+    /// Its parameters by number, those that matter most first: title and numbers.
+    parameters: Vec<(&'static str, Vec<u8>)>,
+    /// Names of the plots to begin with.
+    plots: Vec<&'static str>,
 }
 
-/// A mode's reference.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Reference {
-    /// What it is.
-    pub kind: ReferenceKind,
-    /// Smallest allowed value.
-    pub min: f32,
-    /// Largest allowed value.
-    pub max: f32,
-}
-
-/// What a mode's reference is, in SI units.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ReferenceKind {
-    /// A distance in metres.
-    Distance,
-    /// A speed of each wheel in rad/s.
-    WheelSpeed,
-    /// One speed of both wheels in rad/s.
-    Speed,
-    /// A place: each coordinate in metres.
-    Goal,
+struct ReferenceEntry {
+    kind: &'static str,
+    min: f32,
+    max: f32,
+    offered: f32,
+    commanded: bool,
 }
 
 /// The modes to choose from.
-pub fn modes() -> Vec<ModeEntry> {
+pub(crate) fn modes() -> Vec<ModeEntry> {
     ModeId::ALL.into_iter().map(mode_entry).collect()
 }
 
-/// What a mode's reference may be.
-pub(crate) fn reference(mode: ModeId) -> Option<Reference> {
-    match mode {
-        ModeId::Manual | ModeId::WallHold => None,
-        ModeId::WallFollow => Some(Reference {
-            kind: ReferenceKind::Distance,
-            min: MIN_WALL_M,
-            max: MAX_WALL_M,
-        }),
-        ModeId::FrontDistance | ModeId::FrontAlign => Some(Reference {
-            kind: ReferenceKind::Distance,
-            min: MIN_DISTANCE_M,
-            max: MAX_DISTANCE_M,
-        }),
-        ModeId::WheelSpeed | ModeId::StraightLine => Some(Reference {
-            kind: if mode == ModeId::WheelSpeed {
-                ReferenceKind::WheelSpeed
-            } else {
-                ReferenceKind::Speed
-            },
-            min: -MAX_WHEEL_RAD_S,
-            max: MAX_WHEEL_RAD_S,
-        }),
-        ModeId::Waypoints | ModeId::Mission => Some(Reference {
-            kind: ReferenceKind::Goal,
-            min: -FARTHEST_M,
-            max: FARTHEST_M,
-        }),
-    }
-}
-
-fn about(mode: ModeId) -> &'static str {
-    match mode {
-        ModeId::Manual => "basic movements, open loop or by speed",
-        ModeId::FrontDistance => "stop at a distance from the wall ahead",
-        ModeId::FrontAlign => "stop square to the wall ahead, at a distance from it",
-        ModeId::WallHold => "follow a wall at the distance at which the robot starts",
-        ModeId::WallFollow => "follow a wall at a commanded distance",
-        ModeId::WheelSpeed => "each wheel at a commanded speed",
-        ModeId::StraightLine => "straight on at a commanded speed",
-        ModeId::Waypoints => "visit the places of a route in turn, such as a square of 1 m",
-        ModeId::Mission => "reach a goal around obstacles, or follow a lane of boxes",
-    }
-}
-
 fn mode_entry(mode: ModeId) -> ModeEntry {
+    let about = mode.description();
+    let ways = |(from, state): (u8, &'static StateDescription)| {
+        state.ways.iter().map(move |way| (from, way.to, way.when))
+    };
     ModeEntry {
-        id: mode as u8,
-        name: mode.name(),
-        about: about(mode),
-        reference: reference(mode),
-        movements: mode == ModeId::Manual,
-        route: (mode == ModeId::Waypoints).then_some(MAX_WAYPOINTS),
-        lane: mode == ModeId::Mission,
-        states: mode.state_names(),
-        ways: mode
-            .transitions()
+        id: about.number,
+        name: about.name,
+        about: about.about,
+        states: about.states.iter().map(|state| state.name).collect(),
+        ways: (0..).zip(about.states).flat_map(ways).collect(),
+        idle: about.idle,
+        reference: about.reference.map(|reference| ReferenceEntry {
+            kind: reference.kind.name(),
+            min: reference.min,
+            max: reference.max,
+            offered: reference.offered,
+            commanded: reference.commanded,
+        }),
+        heading: about.heading,
+        movements: about.takes == Some(Takes::Movements),
+        route: match about.takes {
+            Some(Takes::Route(most)) => Some(most),
+            _ => None,
+        },
+        lane: about.takes == Some(Takes::Lane),
+        rigs: about.rigs.iter().map(Rig::name).collect(),
+        parameters: about
+            .parameters
             .iter()
-            .map(|way| (way.from, way.to, way.when))
+            .map(|group| {
+                (
+                    group.title,
+                    group.parameters.iter().map(|id| *id as u8).collect(),
+                )
+            })
             .collect(),
+        plots: about.plots.iter().map(|plot| plot.name()).collect(),
     }
 }

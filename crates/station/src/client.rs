@@ -261,17 +261,22 @@ impl RobotClient {
         }
     }
 
-    /// The parameters of the robot's mode are read first, then those of all modes: they are what people look at.
+    /// The parameters of the robot's mode are read first, group by group, then those of the robot: they are what people look at.
     fn read_own_first(&mut self) {
         let mode = self.mode;
         self.manager.read_first(|command| {
             let Command::GetParam { id } = command else {
                 return 0;
             };
-            match ParamId::from_number(*id).and_then(ParamId::mode) {
-                Some(own) if own == mode => 1,
-                None => 2,
-                Some(_) => 3,
+            let Some(id) = ParamId::from_number(*id) else {
+                return 0;
+            };
+            let mut groups = mode.description().parameters.iter();
+            // In the order of its groups.
+            match groups.position(|group| group.parameters.contains(&id)) {
+                Some(group) => 1 + group as u8,
+                None if id.modes().next().is_none() => u8::MAX - 1,
+                None => u8::MAX,
             }
         });
     }

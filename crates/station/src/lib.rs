@@ -45,7 +45,6 @@ mod words;
 
 #[cfg(feature = "foxglove")]
 pub use bridge::{BRIDGE_PORT, Bridge};
-pub use catalogue::{ModeEntry, Reference, ReferenceKind, modes};
 pub use console::readable;
 pub use echo::Print;
 pub use ending::asked_to_end;
@@ -56,7 +55,7 @@ pub use row::Row;
 pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, ServeError, serve, serve_log, serve_with};
 pub use session::Extras;
 pub use target::{
-    Choice, Ghost, LinkNews, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation, SonarMount,
-    Standing, Target, Truth,
+    Choice, Experiment, Ghost, LinkNews, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation,
+    SonarMount, Standing, Target, Truth,
 };
 pub use watch::check_baud;

@@ -202,6 +202,9 @@ pub struct Scene {
     pub choice: Choice,
     /// Names of the scenarios to choose from.
     pub scenarios: Vec<String>,
+    /// Those of them that command something in a mode.
+    #[serde(default)]
+    pub experiments: Vec<Experiment>,
     /// Names of the worlds to choose from.
     pub worlds: Vec<String>,
     /// Names of the rigs to choose from.
@@ -229,6 +232,15 @@ pub struct Scene {
     /// It is the ghost's: the robot itself is not simulated.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub of_ghost: bool,
+}
+
+/// A scenario that shows a mode.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Experiment {
+    /// Name of the scenario.
+    pub name: String,
+    /// Number of the mode.
+    pub mode: u8,
 }
 
 /// The places of a route.

@@ -1,10 +1,10 @@
 //! What commands and answers are called, for people: cm, rpm and % instead of SI.
 
-use crate::catalogue::{self, Reference, ReferenceKind};
+use crate::catalogue;
 use crate::client::NotTaken;
 use crate::commands::{Fate, Outcome};
 use crate::oddity::Oddity;
-use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::mode::{ModeId, Movement, Reference, ReferenceKind};
 
 use rumbo_control::mode::waypoints::{FARTHEST_M, MAX_WAYPOINTS};
 use rumbo_wire::message::Waypoint;
@@ -23,10 +23,12 @@ pub(crate) fn command(command: &Command, mode: ModeId) -> String {
         Command::Disarm => "OFF".into(),
         Command::ClearFault => "clear the fault".into(),
         Command::Mode(mode) => format!("mode {} {}", *mode as u8, mode.name()),
-        Command::Reference(value) if matches!(mode, ModeId::WheelSpeed | ModeId::StraightLine) => {
-            format!("reference {:.0} rpm", rpm(*value))
-        }
-        Command::Reference(value) => format!("reference {:.1} cm", value * 100.0),
+        Command::Reference(value) => match mode.takes_reference() {
+            Some(ReferenceKind::WheelSpeed | ReferenceKind::Speed) => {
+                format!("reference {:.0} rpm", rpm(*value))
+            }
+            _ => format!("reference {:.1} cm", value * 100.0),
+        },
         Command::WheelReference(wheels) => {
             format!(
                 "references left {:.0} rpm, right {:.0} rpm",
@@ -146,7 +148,7 @@ pub(crate) fn refusal(why: Refusal, command: &Command, mode: ModeId) -> String {
 
 /// What the mode's reference may be.
 fn allowed(mode: ModeId) -> Option<String> {
-    let Reference { kind, min, max } = catalogue::reference(mode)?;
+    let Reference { kind, min, max, .. } = mode.description().reference?;
     Some(match kind {
         ReferenceKind::Distance => {
             format!("allowed is {:.1} to {:.1} cm", min * 100.0, max * 100.0)

@@ -136,7 +136,7 @@ impl ResetCause {
 pub struct Telemetry {
     /// Robot time of the sample [ms], wrapping; the receiver unwraps it.
     pub t_ms: u16,
-    /// State of the mode's machine, 0..=15; names: `ModeId::state_names`.
+    /// State of the mode's machine, 0..=15; names: `rumbo_control::mode::Description::states`.
     pub state: u8,
     /// The wheels may turn.
     pub armed: bool,

@@ -8,7 +8,7 @@
 use core::fmt;
 
 use rumbo_control::math::round;
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::{ModeId, ReferenceKind};
 use rumbo_control::{Range, Side};
 
 use crate::decimal;
@@ -217,8 +217,8 @@ pub fn lines_of(command: &Command, mode: ModeId) -> [Option<TextCommand>; 2] {
         Command::Mode(mode) => single(TextCommand::Mode(mode as u8)),
         Command::Goal { x_m, y_m } => single(TextCommand::Goal { x_m, y_m }),
         Command::Reference(value) => {
-            let value = match mode {
-                ModeId::WheelSpeed | ModeId::StraightLine => value / RAD_S_PER_RPM,
+            let value = match mode.takes_reference() {
+                Some(ReferenceKind::WheelSpeed | ReferenceKind::Speed) => value / RAD_S_PER_RPM,
                 _ => value * CM_PER_M,
             };
             single(TextCommand::Reference(short(value)))

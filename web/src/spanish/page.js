@@ -71,7 +71,8 @@ export const PAGE = {
   'as it is': 'como es', 'as it estimates': 'como lo estima', 'the ellipse holds its place, the sector its heading, with 95 % each, as far as the odometry knows its own errors': 'la elipse contiene su posición y el sector su rumbo, con un 95 % cada uno, hasta donde la odometría conoce sus propios errores', 'Fit': 'Ajustar', 'Ghost here': 'Fantasma aquí', 'Start the ghost again where the robot is now': 'Empieza el fantasma de nuevo donde está ahora el robot', 'Show everything (0 on the map)': 'Muestra todo (0 en el mapa)',
   'Tell it': 'Decírselo', 'Write the rig that it carries to the robot': 'Escribe en el robot el montaje que lleva',
   'The robot believes to carry the rig {}, and carries {}: it misreads its sonars.': 'El robot cree llevar el montaje {} y lleva {}: interpreta mal sus sonares.',
-  'heading': 'rumbo', 'goal': 'destino', 'to': 'hacia', ', {} m away': ', a {} m', 'references': 'referencias', 'contact!': '¡contacto!',
+  'heading': 'rumbo', 'goal': 'destino', 'to': 'hacia', ', {} m away': ', a {} m', 'references': 'referencias',
+  '{}; it needs the rig {}, the robot has {}': '{}; necesita el montaje {} y el robot lleva {}', 'contact!': '¡contacto!',
   'follows the lane': 'sigue el carril', 'route of {}': 'ruta de {}', 'route of {}, again and again': 'ruta de {}, una y otra vez',
   'no reading': 'sin lectura', 'clear|sonar': 'libre', 'Clear fault': 'Borrar fallo',
   // Commands.
@@ -138,7 +139,7 @@ export const PAGE = {
   // Consoles, parameters, events.
   'Consoles': 'Consolas', 'what the emulated chip sends': 'lo que envía el chip emulado', 'Text of the USART': 'Texto de la USART', 'Line to send': 'Línea que enviar', 'Send': 'Enviar',
   'Send the line, ended by LF, to this USART': 'Envía la línea, acabada en LF, a esta USART',
-  'Parameters': 'Parámetros', 'all modes': 'todos los modos', 'Defaults': 'De fábrica', 'Save on the robot': 'Guardar en el robot', 'The robot starts with these values from now on': 'El robot arranca con estos valores a partir de ahora',
+  'Parameters': 'Parámetros', 'all modes': 'todos los modos', 'the robot': 'el robot', 'other modes': 'otros modos', 'Defaults': 'De fábrica', 'Save on the robot': 'Guardar en el robot', 'The robot starts with these values from now on': 'El robot arranca con estos valores a partir de ahora',
   'Set every parameter to its default; save to make that last': 'Pone cada parámetro en su valor de fábrica; guárdalos para que dure',
   'name': 'nombre', 'value': 'valor', 'unit': 'unidad', 'range': 'rango', 'default': 'de fábrica', '{} in {}': '{} en {}', 'no unit': 'sin unidad',
   'Tap a line, or go to its value, to read what it is.': 'Toca una línea, o ve a su valor, para leer qué es.',

@@ -15,6 +15,11 @@ export const ROBOT = {
   'straight on at a commanded speed': 'en línea recta a la velocidad de referencia',
   'visit the places of a route in turn, such as a square of 1 m': 'visitar por orden los lugares de una ruta, como un cuadrado de 1 m',
   'reach a goal around obstacles, or follow a lane of boxes': 'llegar a un destino rodeando obstáculos, o seguir un carril de cajas',
+  // Groups of parameters.
+  'arcs': 'arcos', 'approach to the wall': 'acercamiento a la pared', 'straightening': 'corrección del rumbo', 'angle to the wall': 'ángulo con la pared',
+  'along the wall': 'a lo largo de la pared', 'distance to the wall': 'distancia a la pared', 'ramp': 'rampa', 'route': 'ruta', 'lane': 'carril',
+  'speed loops': 'lazos de velocidad', 'feedforward': 'prealimentación', 'ramps of the wheels': 'rampas de las ruedas', 'turns on the spot': 'giros en el sitio',
+  'straight lines': 'líneas rectas',
   // Rigs.
   'front single': 'un frontal', 'front pair': 'dos frontales', 'side pair left': 'dos a la izquierda', 'side pair right': 'dos a la derecha', 'final': 'final',
   // States.
@@ -23,7 +28,7 @@ export const ROBOT = {
   'at rest': 'en reposo', 'turning': 'girando', 'drive': 'avanzar', 'wait': 'esperar', 'pursue': 'perseguir', 'final turn': 'giro final', 'done': 'acabado',
   'wait for goal': 'esperar destino', 'initial turn': 'giro inicial', 'initialise': 'iniciar', 'go to goal': 'ir al destino', 'sweep right': 'barrer a la derecha',
   'sweep left': 'barrer a la izquierda', 'decide': 'decidir', 'avoidance turn': 'giro de evasión', 'advance seeking the obstacle': 'avanzar buscando el obstáculo',
-  'advance along it': 'avanzar a su lado', 'advance a safe distance': 'avanzar distancia de seguridad', 'unreachable': 'inalcanzable', 'straight on': 'recto', 'reached': 'alcanzado',
+  'advance along it': 'avanzar a su lado', 'advance a safe distance': 'avanzar distancia de seguridad', 'unreachable': 'inalcanzable', 'straight on': 'recto', 'prove the front sonar': 'comprobar el sonar delantero', 'reached': 'alcanzado',
   // Why a state leads to another.
   '12.5 cm on': '12,5 cm más', 'a goal arrives': 'llega un destino', 'a movement by duty': 'un movimiento por PWM',
   'a movement by speed': 'un movimiento por velocidad', 'a reference that is not zero': 'una referencia que no es cero',
@@ -43,6 +48,8 @@ export const ROBOT = {
   'it stands at the waypoint, which has a heading': 'parado en el lugar, que tiene rumbo',
   'lane: a quarter turn, or half a turn': 'carril: un cuarto de vuelta, o media', 'lane: begin': 'carril: empezar',
   'lane: it faces the heading': 'carril: con el rumbo', 'lane: stands before a face': 'carril: parado ante una cara',
+  'the front sonar is in doubt': 'duda del sonar delantero', 'it hears': 'oye', 'it hears, beside an obstacle': 'oye, junto a un obstáculo',
+  'it hears, before an obstacle': 'oye, ante un obstáculo', 'it hears, along an obstacle': 'oye, a lo largo de un obstáculo', 'it hears, around a corner': 'oye, en torno a una esquina',
   'looked to the left': 'ha mirado a la izquierda', 'looked to the right': 'ha mirado a la derecha', 'near the distance': 'cerca de la distancia',
   'pure pursuit': 'persecución pura', 'slow enough': 'bastante despacio', 'something ahead, or a sonar in doubt': 'algo delante, o un sonar dudoso',
   'square': 'perpendicular', 'the bearing is known': 'se conoce el ángulo', 'the distance is known': 'se conoce la distancia',

@@ -1,48 +1,140 @@
-//! The one mode that runs: its setpoint, its state, and what it needs of the robot.
+//! The list of the modes, and the one that runs: its setpoint, its state, and what it needs of the robot.
 
-use super::front_align::{self, FrontAlign};
-use super::front_distance::{self, FrontDistance};
-use super::manual::{self, Manual};
-use super::mission::{self, Mission, Task};
-use super::straight_line::{self, StraightLine};
-use super::wall_follow::{self, WallFollow};
-use super::wall_hold::{self, WallHold};
-use super::waypoints::{self, Route, Waypoints};
-use super::wheel_speed::WheelSpeed;
-use super::{Action, DEFAULT_WALL_M, Look, MAX_WALL_M, MIN_WALL_M, Mode, ModeId, Situation};
-use crate::ahead::Ahead;
-use crate::beside::Beside;
+use super::description::{Description, ReferenceKind};
+use super::{
+    Action, Look, Mode, SetpointError, Situation, front_align, front_distance, manual, mission,
+    straight_line, wall_follow, wall_hold, waypoints, wheel_speed,
+};
 use crate::estimate::Estimate;
-use crate::params::{ParamId, Params};
-use crate::range::{MIN_RANGE_M, REACH_M};
+use crate::params::Params;
 use crate::rig::Rig;
-use crate::types::{Fault, SonarId, Wheels};
+use crate::types::{Fault, Wheels};
 
-/// The mode that runs, with its setpoint and its state.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(
-    clippy::large_enum_variant,
-    reason = "one mode is active at a time, in place; there is no heap to box the large one in"
-)]
-pub enum ActiveMode {
-    /// Mode 0.
-    Manual(manual::Setpoint),
-    /// Mode 1: reference [m] and state.
-    FrontDistance(f32, front_distance::State),
-    /// Mode 2: reference [m] and state.
-    FrontAlign(f32, front_align::State),
-    /// Mode 3: state.
-    WallHold(wall_hold::State),
-    /// Mode 4: reference [m] and state.
-    WallFollow(f32, wall_follow::State),
-    /// Mode 5: references [rad/s].
-    WheelSpeed(Wheels<f32>),
-    /// Mode 6: reference of both wheels [rad/s] and state.
-    StraightLine(f32, straight_line::State),
-    /// Mode 7: route and state.
-    Waypoints(Route, waypoints::State),
-    /// Mode 8: task and state.
-    Mission(Task, mission::State),
+/// Declares [`ModeId`] and [`ActiveMode`] by a list of modes and their modules.
+macro_rules! modes {
+    ($( #[doc = $about:literal] $( #[$default:ident] )? $mode:ident: $module:ident; )+) => {
+        /// The modes of the report, by the number they have there.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum ModeId { $( #[doc = $about] $( #[$default] )? $mode = $module::DESCRIPTION.number, )+ }
+
+        impl ModeId {
+            /// All modes, in the order of their numbers.
+            pub const ALL: [ModeId; [$( $module::DESCRIPTION.number ),+].len()] = [ $( ModeId::$mode ),+ ];
+
+            /// What the mode is.
+            #[cfg(feature = "names")]
+            pub const fn description(self) -> &'static Description {
+                match self { $( ModeId::$mode => &$module::DESCRIPTION, )+ }
+            }
+
+            /// What the reference is that a command sets, if there is one.
+            pub const fn takes_reference(self) -> Option<ReferenceKind> {
+                match self { $( ModeId::$mode => const { commanded(&$module::DESCRIPTION) }, )+ }
+            }
+        }
+
+        /// The mode that runs, with its setpoint and its state.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[allow(
+            clippy::large_enum_variant,
+            reason = "one mode is active at a time, in place; there is no heap to box the large one in"
+        )]
+        pub enum ActiveMode { $(
+            #[doc = $about]
+            $mode(<$module::$mode<'static> as Mode<'static>>::Setpoint, <$module::$mode<'static> as Mode<'static>>::State),
+        )+ }
+
+        impl ActiveMode {
+            /// A mode at its start, with its default setpoint.
+            pub fn new(id: ModeId) -> Self {
+                match id { $( ModeId::$mode => Self::$mode($module::$mode::first(), Default::default()), )+ }
+            }
+
+            /// Which mode it is.
+            pub fn id(&self) -> ModeId {
+                match self { $( Self::$mode(..) => ModeId::$mode, )+ }
+            }
+
+            /// Forgets its state and keeps its setpoint: the wheels have just been armed.
+            pub fn start(&mut self) {
+                match self { $( Self::$mode(_, state) => $module::$mode::start(state), )+ }
+            }
+
+            /// Where it needs to look, armed or not.
+            pub fn look(&self) -> Look {
+                match self { $( Self::$mode(..) => $module::$mode::LOOK, )+ }
+            }
+
+            /// Whether the mode can do its work with the sonars of this rig.
+            pub fn fits(&self, rig: Rig) -> bool {
+                let rigs = match self { $( Self::$mode(..) => const { $module::DESCRIPTION.rigs }, )+ };
+                rigs.contains(rig)
+            }
+
+            /// Whether the sensors it needs give good readings.
+            pub fn is_ready(&self, params: &Params, estimate: &Estimate) -> bool {
+                match self { $( Self::$mode(setpoint, _) => $module::$mode::new(params, setpoint).is_ready(estimate), )+ }
+            }
+
+            /// The reference in force: a distance [m], wheel speeds [rad/s], or the position to go to (x on the left, y on the right)
+            /// [m], by the kind of the mode's reference; 0 where there is none.
+            pub fn reference(&self) -> Wheels<f32> {
+                match self { $( Self::$mode(setpoint, state) => $module::$mode::reference(setpoint, state), )+ }
+            }
+
+            /// Sets the reference: a distance [m], or the speed of both wheels [rad/s].
+            ///
+            /// # Errors
+            /// Why it is refused; the last one stays.
+            pub fn set_reference(&mut self, value: f32) -> Result<(), SetpointError> {
+                match self { $( Self::$mode(setpoint, _) => $module::$mode::set_reference(setpoint, value), )+ }
+            }
+
+            /// One tick, into an action that asks for nothing yet.
+            ///
+            /// # Errors
+            /// Why the mode cannot go on.
+            pub fn act(&mut self, params: &Params, at: &Situation, action: &mut Action) -> Result<(), Fault> {
+                match self { $( Self::$mode(setpoint, state) => $module::$mode::new(params, setpoint).act(state, at, action), )+ }
+            }
+        }
+    };
+}
+
+modes! {
+    /// Basic movements, open loop or by speed (memoria 1).
+    #[default]
+    Manual: manual;
+    /// Stop at a distance from a wall (memoria 2.1).
+    FrontDistance: front_distance;
+    /// Stop square to a wall at a distance from it (memoria 2.2).
+    FrontAlign: front_align;
+    /// Follow a wall at the distance at which the robot starts (memoria 3.1).
+    WallHold: wall_hold;
+    /// Follow a wall at a commanded distance (memoria 3.2).
+    WallFollow: wall_follow;
+    /// Each wheel at a commanded speed (memoria 4.1).
+    WheelSpeed: wheel_speed;
+    /// Straight on, by the difference of distance travelled (memoria 4.2).
+    StraightLine: straight_line;
+    /// A route of poses by odometry (memoria 4.3).
+    Waypoints: waypoints;
+    /// A goal around obstacles, or a lane of boxes (memoria 5).
+    Mission: mission;
+}
+
+impl ModeId {
+    /// Its name in files, commands and the dashboard.
+    #[cfg(feature = "names")]
+    pub const fn name(self) -> &'static str {
+        self.description().name
+    }
+
+    /// The mode with this number.
+    pub fn from_number(number: u8) -> Option<ModeId> {
+        Self::ALL.get(usize::from(number)).copied()
+    }
 }
 
 impl Default for ActiveMode {
@@ -51,161 +143,27 @@ impl Default for ActiveMode {
     }
 }
 
-impl ActiveMode {
-    /// A mode at its start, with its default reference.
-    pub fn new(id: ModeId) -> Self {
-        match id {
-            ModeId::Manual => Self::Manual(manual::Setpoint::default()),
-            ModeId::FrontDistance => {
-                Self::FrontDistance(front_distance::DEFAULT_M, front_distance::State::default())
-            }
-            ModeId::FrontAlign => {
-                Self::FrontAlign(front_distance::DEFAULT_M, front_align::State::default())
-            }
-            ModeId::WallHold => Self::WallHold(wall_hold::State::default()),
-            ModeId::WallFollow => Self::WallFollow(DEFAULT_WALL_M, wall_follow::State::default()),
-            ModeId::WheelSpeed => Self::WheelSpeed(Wheels::both(0.0)),
-            ModeId::StraightLine => Self::StraightLine(0.0, straight_line::State::default()),
-            ModeId::Waypoints => Self::Waypoints(Route::default(), waypoints::State::default()),
-            ModeId::Mission => Self::Mission(Task::default(), mission::State::default()),
-        }
-    }
-
-    /// Which mode it is.
-    pub fn id(&self) -> ModeId {
-        match self {
-            Self::Manual(_) => ModeId::Manual,
-            Self::FrontDistance(..) => ModeId::FrontDistance,
-            Self::FrontAlign(..) => ModeId::FrontAlign,
-            Self::WallHold(_) => ModeId::WallHold,
-            Self::WallFollow(..) => ModeId::WallFollow,
-            Self::WheelSpeed(_) => ModeId::WheelSpeed,
-            Self::StraightLine(..) => ModeId::StraightLine,
-            Self::Waypoints(..) => ModeId::Waypoints,
-            Self::Mission(..) => ModeId::Mission,
-        }
-    }
-
-    /// Forgets its state and keeps its reference: the wheels have just been armed.
-    pub fn start(&mut self) {
-        match self {
-            Self::Manual(_) | Self::WheelSpeed(_) => {}
-            Self::FrontDistance(_, state) => *state = front_distance::State::default(),
-            Self::FrontAlign(_, state) => *state = front_align::State::default(),
-            Self::WallHold(state) => *state = wall_hold::State::default(),
-            Self::WallFollow(_, state) => *state = wall_follow::State::default(),
-            Self::StraightLine(_, state) => *state = straight_line::State::default(),
-            Self::Waypoints(_, state) => *state = waypoints::State::default(),
-            Self::Mission(_, state) => {
-                *state = mission::State::default();
-                state.renew();
-            }
-        }
-    }
-
-    /// Where it needs to look, armed or not.
-    pub fn look(&self) -> Look {
-        match self {
-            Self::FrontDistance(..) => Look::only(SonarId::Front),
-            _ => Look::default(),
-        }
-    }
-
-    /// Whether the mode can do its work with the sonars of this rig.
-    pub fn fits(&self, rig: Rig) -> bool {
-        match self {
-            Self::FrontDistance(..) => matches!(rig, Rig::FrontSingle | Rig::Final),
-            Self::FrontAlign(..) => matches!(rig, Rig::FrontPair | Rig::Final),
-            Self::WallHold(_) | Self::WallFollow(..) => {
-                rig.paired_side().is_some() || rig == Rig::Final
-            }
-            Self::Mission(..) => rig == Rig::Final,
-            Self::Manual(_)
-            | Self::WheelSpeed(_)
-            | Self::StraightLine(..)
-            | Self::Waypoints(..) => true,
-        }
-    }
-
-    /// Whether the sensors it needs give good readings.
-    pub fn is_ready(&self, params: &Params, estimate: &Estimate) -> bool {
-        let stale_s = params.get(ParamId::StaleRange);
-        match self {
-            Self::WallHold(_) => {
-                Beside::new(params).is_ready(estimate, stale_s, (MIN_WALL_M, MAX_WALL_M))
-            }
-            Self::WallFollow(..) => {
-                Beside::new(params).is_ready(estimate, stale_s, (MIN_RANGE_M, REACH_M))
-            }
-            Self::FrontDistance(distance_m, _) => {
-                FrontDistance::new(params, *distance_m).is_ready(estimate)
-            }
-            Self::FrontAlign(..) => Ahead::new(params).is_ready(estimate),
-            _ => true,
-        }
-    }
-
-    /// The reference in force: a distance [m] in modes 1 to 4, wheel speeds [rad/s] in modes 5 and 6, the place to go to
-    /// (x on the left, y on the right) [m] in modes 7 and 8, else 0.
-    pub fn reference(&self) -> Wheels<f32> {
-        match self {
-            Self::FrontDistance(distance_m, _)
-            | Self::FrontAlign(distance_m, _)
-            | Self::WallFollow(distance_m, _) => Wheels::both(*distance_m),
-            Self::WheelSpeed(references) => *references,
-            Self::StraightLine(rad_s, _) => Wheels::both(*rad_s),
-            Self::Mission(Task::Goal { x_m, y_m }, _) => Wheels {
-                left: *x_m,
-                right: *y_m,
-            },
-            Self::Waypoints(_, state) => {
-                let (left, right) = state.target();
-                Wheels { left, right }
-            }
-            Self::WallHold(state) => Wheels::both(state.reference_m()),
-            Self::Manual(_) | Self::Mission(..) => Wheels::both(0.0),
-        }
-    }
-
-    /// One tick, into an action that asks for nothing yet.
-    ///
-    /// # Errors
-    /// Why the mode cannot go on.
-    pub fn act(
-        &mut self,
-        params: &Params,
-        at: &Situation,
-        action: &mut Action,
-    ) -> Result<(), Fault> {
-        match self {
-            Self::Manual(setpoint) => Manual::new(params, *setpoint).act(&mut (), at, action),
-            Self::FrontDistance(distance_m, state) => {
-                FrontDistance::new(params, *distance_m).act(state, at, action)
-            }
-            Self::FrontAlign(distance_m, state) => {
-                FrontAlign::new(params, *distance_m).act(state, at, action)
-            }
-            Self::WallHold(state) => WallHold::new(params).act(state, at, action),
-            Self::WallFollow(distance_m, state) => {
-                WallFollow::new(params, *distance_m).act(state, at, action)
-            }
-            Self::WheelSpeed(references) => WheelSpeed {
-                references: *references,
-            }
-            .act(&mut (), at, action),
-            Self::StraightLine(rad_s, state) => {
-                StraightLine::new(params, *rad_s).act(state, at, action)
-            }
-            Self::Waypoints(route, state) => Waypoints::new(params, route).act(state, at, action),
-            Self::Mission(task, state) => Mission::new(params, *task).act(state, at, action),
-        }
+const fn commanded(description: &Description) -> Option<ReferenceKind> {
+    match description.reference {
+        Some(reference) if reference.commanded => Some(reference.kind),
+        _ => None,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::types::Range;
+    use crate::types::{Range, SonarId};
+
+    #[test]
+    fn modes_are_found_by_their_number() {
+        for (number, mode) in (0..).zip(ModeId::ALL) {
+            assert_eq!(mode as u8, number);
+            assert_eq!(ModeId::from_number(number), Some(mode));
+            assert_eq!(ActiveMode::new(mode).id(), mode);
+        }
+        assert_eq!(ModeId::from_number(ModeId::ALL.len() as u8), None);
+    }
 
     #[test]
     fn the_front_mode_is_ready_only_when_its_sonar_sees_a_wall() {
@@ -232,5 +190,69 @@ mod tests {
         assert_eq!(fits(ModeId::FrontAlign), [false, true, false, false, true]);
         assert_eq!(fits(ModeId::WallFollow), [false, false, true, true, true]);
         assert_eq!(fits(ModeId::Waypoints), [true; 5]);
+    }
+}
+
+/// What the descriptions promise to those who derive from them.
+#[cfg(all(test, feature = "names"))]
+mod descriptions {
+    use super::*;
+
+    #[test]
+    fn a_way_leads_to_another_state_and_is_described_once() {
+        for mode in ModeId::ALL {
+            let states = mode.description().states;
+            assert!(states.len() <= 16, "telemetry has four bits: {mode:?}");
+            for (from, state) in states.iter().enumerate() {
+                for (index, way) in state.ways.iter().enumerate() {
+                    assert_ne!(usize::from(way.to), from, "{mode:?} {way:?}");
+                    let twice = state.ways[..index].iter().any(|other| other.to == way.to);
+                    assert!(!twice, "{mode:?} {way:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_state_can_be_reached() {
+        // Mode 4 has the first state of mode 3, which measures, and never is in it.
+        for mode in ModeId::ALL {
+            let states = mode.description().states;
+            for (number, state) in states.iter().enumerate().skip(1) {
+                let mut ways = states.iter().flat_map(|state| state.ways);
+                assert!(
+                    ways.any(|way| usize::from(way.to) == number),
+                    "{mode:?} {state:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_reference_begins_within_its_range_and_a_parameter_is_in_one_group() {
+        for mode in ModeId::ALL {
+            let about = mode.description();
+            if let Some(reference) = about.reference {
+                let Wheels { left, .. } = ActiveMode::new(mode).reference();
+                assert_eq!(reference.check(reference.offered), Ok(()), "{mode:?}");
+                assert_eq!(
+                    reference.check(left).is_ok(),
+                    reference.commanded,
+                    "{mode:?}"
+                );
+                assert_eq!(
+                    ActiveMode::new(mode)
+                        .set_reference(reference.offered)
+                        .is_ok(),
+                    reference.commanded && reference.kind != ReferenceKind::Goal,
+                );
+            }
+            let mut ids = about.parameters.iter().flat_map(|group| group.parameters);
+            while let Some(id) = ids.next() {
+                assert!(!ids.clone().any(|other| other == id), "{mode:?} {id:?}");
+            }
+            let rigs = Rig::ALL.map(|rig| about.rigs.contains(rig));
+            assert!(rigs.contains(&true), "{mode:?}");
+        }
     }
 }

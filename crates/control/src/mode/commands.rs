@@ -1,53 +1,22 @@
-//! What the running mode takes from outside: references, goals, routes, movements; and what it refuses.
+//! What the running mode takes from outside besides one reference: a pair of them, goals, routes, movements; and what it refuses.
 
 use super::mission::Task;
-use super::waypoints::{self, FARTHEST_M, Route, Waypoint};
-use super::{
-    ActiveMode, Level, MAX_DISTANCE_M, MAX_WALL_M, MAX_WHEEL_RAD_S, MIN_DISTANCE_M, MIN_WALL_M,
-    Movement, SetpointError, manual,
-};
+use super::waypoints::{self, Route, Waypoint};
+use super::{ActiveMode, Level, MAX_WHEEL_RAD_S, Movement, SetpointError, manual, wheel_speed};
 use crate::math::is_finite;
 use crate::types::Wheels;
 
 impl ActiveMode {
-    /// Sets the reference: distance [m] in modes 1, 2 and 4, speed of both wheels [rad/s] in modes 5 and 6.
-    ///
-    /// # Errors
-    /// Why it is refused; the last one stays.
-    pub fn set_reference(&mut self, value: f32) -> Result<(), SetpointError> {
-        match self {
-            Self::Manual(_) | Self::WallHold(_) | Self::Waypoints(..) | Self::Mission(..) => {
-                Err(SetpointError::NotInThisMode)
-            }
-            Self::FrontDistance(distance_m, _) | Self::FrontAlign(distance_m, _) => {
-                within(value, MIN_DISTANCE_M, MAX_DISTANCE_M)?;
-                *distance_m = value;
-                Ok(())
-            }
-            Self::WallFollow(distance_m, _) => {
-                within(value, MIN_WALL_M, MAX_WALL_M)?;
-                *distance_m = value;
-                Ok(())
-            }
-            Self::StraightLine(rad_s, _) => {
-                within(value, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
-                *rad_s = value;
-                Ok(())
-            }
-            Self::WheelSpeed(_) => self.set_wheel_reference(Wheels::both(value)),
-        }
-    }
-
     /// Sets the reference of each wheel [rad/s] in mode 5.
     ///
     /// # Errors
     /// Why it is refused; the last one stays.
     pub fn set_wheel_reference(&mut self, value: Wheels<f32>) -> Result<(), SetpointError> {
-        let Self::WheelSpeed(references) = self else {
+        let Self::WheelSpeed(references, ()) = self else {
             return Err(SetpointError::NotInThisMode);
         };
-        within(value.left, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
-        within(value.right, -MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S)?;
+        wheel_speed::REFERENCE.check(value.left)?;
+        wheel_speed::REFERENCE.check(value.right)?;
         *references = value;
         Ok(())
     }
@@ -57,8 +26,8 @@ impl ActiveMode {
     /// # Errors
     /// Why it is refused; the last one stays.
     pub fn set_goal(&mut self, x_m: f32, y_m: f32) -> Result<(), SetpointError> {
-        within(x_m, -FARTHEST_M, FARTHEST_M)?;
-        within(y_m, -FARTHEST_M, FARTHEST_M)?;
+        waypoints::REFERENCE.check(x_m)?;
+        waypoints::REFERENCE.check(y_m)?;
         match self {
             Self::Mission(task, state) => {
                 *task = Task::Goal { x_m, y_m };
@@ -119,7 +88,7 @@ impl ActiveMode {
     /// # Errors
     /// Why it is refused; the last one stays.
     pub fn set_movement(&mut self, movement: Movement, level: Level) -> Result<(), SetpointError> {
-        let Self::Manual(setpoint) = self else {
+        let Self::Manual(setpoint, ()) = self else {
             return Err(SetpointError::NotInThisMode);
         };
         match level {
@@ -146,6 +115,7 @@ pub(super) fn within(value: f32, min: f32, max: f32) -> Result<(), SetpointError
 mod tests {
     use super::*;
     use crate::mode::ModeId;
+    use crate::mode::waypoints::FARTHEST_M;
 
     #[test]
     fn a_reference_out_of_range_is_refused_and_the_last_one_stays() {

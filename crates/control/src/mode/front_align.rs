@@ -9,18 +9,6 @@
 //! change d, so the two loops do not disturb each other: the robot squares up on the way, and what is left of the angle when it
 //! has arrived it turns on the spot. The reference is the distance from the sonars to the wall once the robot is square to it.
 //!
-//! | state | does | leaves when | to |
-//! |---|---|---|---|
-//! | 0 look | final rig: stands and looks to both sides | the bearing is known | 1 |
-//! | 1 approach | drives, far from the reference | within 5 cm | 2 |
-//! | 2 settle | drives, near the reference | within the tolerance, askew | 3 |
-//! | | | within the tolerance | 4 |
-//! | | | beyond 6 cm | 1 |
-//! | 3 turn | turns on the spot | square | 2 |
-//! | 4 hold | wheels released | error beyond twice the tolerance for 0.15 s | 2 |
-//! | | | askew beyond 1.5 times the tolerance for 0.3 s | 3 |
-//! | | | beyond 6 cm | 1 |
-//!
 //! Rigs: the pair in front, or the final one, whose front sonar then looks ahead and aside in turn ([`crate::sweep`]). Whatever any
 //! sonar hears nearer than the wall is not driven at.
 //!
@@ -29,20 +17,72 @@
 //! mode 1's speed and square up at the same time: 119 -> 30 cm in 2.2 s from 20 degrees askew instead of 3.4, within a degree (`rumbo run mode2
 //! --runs 20`). Derivation and figures: docs/theory/front_align.md.
 
+use super::description::{FEEDFORWARD, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
 use super::front_distance::{self, FrontDistance};
-use super::{Action, Mode, Situation};
+use super::{Action, Description, Group, Mode, Plot, SetpointError, Situation};
 use crate::ahead::{Ahead, AheadState};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
 use crate::motion::{Turn, TurnState};
 use crate::params::{ParamId, Params};
-use crate::types::{Drive, Fault, TICK_S};
+use crate::rig::{Rig, Rigs};
+use crate::types::{Drive, Fault, TICK_S, Wheels};
 use crate::unrest::Unrest;
 use crate::wall::Wall;
 
-/// Names of the states.
-#[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 5] = ["look", "approach", "settle", "turn", "hold"];
+/// What mode 2 is.
+pub const DESCRIPTION: Description = Description {
+    number: 2,
+    name: "front_align",
+    about: "stop square to the wall ahead, at a distance from it",
+    states: STATES,
+    idle: None,
+    reference: Some(front_distance::REFERENCE),
+    heading: true,
+    takes: None,
+    rigs: Rigs::of(&[Rig::FrontPair, Rig::Final]),
+    parameters: &[
+        Group::new(
+            "angle to the wall",
+            &[
+                ParamId::AlignKp,
+                ParamId::AlignTolerance,
+                ParamId::SweepAside,
+            ],
+        ),
+        front_distance::APPROACH,
+        TURNS,
+        SPEED_LOOPS,
+        FEEDFORWARD,
+        WHEEL_RAMPS,
+    ],
+    plots: &[Plot::Distance, Plot::Heading, Plot::Wheels],
+};
+
+states! {
+    /// Where mode 2 stands.
+    enum Phase {
+        /// Final rig: stands and looks to both sides.
+        #[default]
+        Look = "look" { Approach: "the bearing is known" }
+        /// Drives, far from the reference.
+        Approach = "approach" { Settle: "within 5 cm" }
+        /// Drives, near the reference.
+        Settle = "settle" {
+            Approach: "beyond 6 cm",
+            Turn: "within the tolerance, askew",
+            Hold: "within the tolerance",
+        }
+        /// Turns on the spot.
+        Turn = "turn" { Settle: "square" }
+        /// Wheels released.
+        Hold = "hold" {
+            Approach: "beyond 6 cm",
+            Settle: "beyond twice the tolerance for 0.15 s",
+            Turn: "askew for 0.3 s",
+        }
+    }
+}
 
 /// Share of the tolerance beyond which a lasting angle is turned again.
 const ASKEW_SHARE: f32 = 1.5;
@@ -65,17 +105,6 @@ pub struct FrontAlign<'a> {
     params: &'a Params,
 }
 
-/// Where mode 2 stands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Phase {
-    #[default]
-    Look = 0,
-    Approach = 1,
-    Settle = 2,
-    Turn = 3,
-    Hold = 4,
-}
-
 /// Memory of mode 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
@@ -88,16 +117,7 @@ pub struct State {
     unrest: Unrest,
 }
 
-impl<'a> FrontAlign<'a> {
-    /// From the parameters.
-    pub fn new(params: &'a Params, distance_m: f32) -> Self {
-        Self {
-            approach: FrontDistance::new(params, distance_m),
-            ahead: Ahead::new(params),
-            params,
-        }
-    }
-
+impl FrontAlign<'_> {
     /// The nearest thing and the wall.
     fn see(&self, state: &mut AheadState, estimate: &Estimate) -> Result<(f32, Wall), Fault> {
         let nearest_m = self.ahead.nearest_m(estimate)?;
@@ -147,8 +167,34 @@ impl<'a> FrontAlign<'a> {
     }
 }
 
-impl Mode for FrontAlign<'_> {
+impl<'a> Mode<'a> for FrontAlign<'a> {
+    /// [m]
+    type Setpoint = f32;
     type State = State;
+
+    fn first() -> f32 {
+        front_distance::DEFAULT_M
+    }
+
+    fn new(params: &'a Params, distance_m: &'a f32) -> Self {
+        Self {
+            approach: FrontDistance::new(params, distance_m),
+            ahead: Ahead::new(params),
+            params,
+        }
+    }
+
+    fn is_ready(&self, estimate: &Estimate) -> bool {
+        self.ahead.is_ready(estimate)
+    }
+
+    fn reference(distance_m: &f32, _: &State) -> Wheels<f32> {
+        Wheels::both(*distance_m)
+    }
+
+    fn set_reference(distance_m: &mut f32, value: f32) -> Result<(), SetpointError> {
+        FrontDistance::set_reference(distance_m, value)
+    }
 
     fn act(
         &self,
@@ -204,7 +250,6 @@ impl Mode for FrontAlign<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::Rig;
     use crate::types::{AgedRange, Range};
 
     fn params(rig: Rig) -> Params {
@@ -230,7 +275,7 @@ mod tests {
     /// A tick of the pair.
     fn step(state: &mut State, left_m: f32, right_m: f32) -> Result<Action, Fault> {
         let estimate = &seeing([left_m, right_m, 0.0]);
-        FrontAlign::new(&params(Rig::FrontPair), 0.3).step(state, &Situation { estimate })
+        FrontAlign::new(&params(Rig::FrontPair), &0.3).step(state, &Situation { estimate })
     }
 
     fn twist(action: &Action) -> (f32, f32) {
@@ -314,7 +359,7 @@ mod tests {
                 estimate: &estimate,
             };
             let stopped =
-                FrontAlign::new(&params(Rig::FrontPair), 0.3).step(&mut State::default(), &at);
+                FrontAlign::new(&params(Rig::FrontPair), &0.3).step(&mut State::default(), &at);
             assert_eq!(stopped, Err(fault));
         }
     }
@@ -322,7 +367,7 @@ mod tests {
     #[test]
     fn with_one_sonar_on_the_servo_it_first_stands_and_looks_aside() {
         let params = params(Rig::Final);
-        let (mut state, mode) = (State::default(), FrontAlign::new(&params, 0.3));
+        let (mut state, mode) = (State::default(), FrontAlign::new(&params, &0.3));
         let estimate = &seeing([0.0, 0.0, 1.0]);
         let first = mode.step(&mut state, &Situation { estimate }).unwrap();
         assert_eq!((first.drive, first.state), (Drive::Release, 0));

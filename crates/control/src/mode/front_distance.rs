@@ -10,31 +10,77 @@
 //! steep, the proportional law is slower and takes over. Within the tolerance the wheels are released; friction, not
 //! power, holds the robot, and only a lasting error starts it again. A heading loop on the odometry keeps it straight.
 //!
-//! | state | does | leaves when | to |
-//! |---|---|---|---|
-//! | 0 approach | drives, far from the reference | within 5 cm | 1 |
-//! | 1 settle | drives, near the reference | within the tolerance | 2 |
-//! | | | beyond 6 cm | 0 |
-//! | 2 hold | wheels released | error beyond twice the tolerance for 0.15 s | 1 |
-//! | | | beyond 6 cm | 0 |
-//!
 //! The report drives the PWM by the distance, proportional far and PI near, around a PWM at which the robot just moves. Ours closes
 //! the speed loops inside, so the same approach works on any floor and battery, and brakes as late as friction allows. Worst of 20 simulated robots against the
 //! real one: 107 -> 30 cm in 2.0 s instead of 3.0, 30 -> 50 cm in 1.03 s instead of 1.2 (`rumbo run mode1 --runs 20`).
 //!
 //! A sonar whose readings are wild slows the robot, then stops it ([`crate::unrest`]). Derivation, margins and figures: docs/theory/front_distance.md.
 
-use super::{Action, Look, Mode, Situation};
+use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::{
+    Action, Description, Group, Look, MAX_DISTANCE_M, MIN_DISTANCE_M, Mode, Plot, Reference,
+    ReferenceKind, SetpointError, Situation,
+};
 use crate::ahead::drivable_m;
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, sqrt};
 use crate::params::{ParamId, Params};
-use crate::types::{Drive, Fault, SonarId, TICK_S};
+use crate::rig::{Rig, Rigs};
+use crate::types::{Drive, Fault, SonarId, TICK_S, Wheels};
 use crate::unrest::Unrest;
 
-/// Names of the states.
-#[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 3] = ["approach", "settle", "hold"];
+/// What mode 1 is.
+pub const DESCRIPTION: Description = Description {
+    number: 1,
+    name: "front_distance",
+    about: "stop at a distance from the wall ahead",
+    states: STATES,
+    idle: None,
+    reference: Some(REFERENCE),
+    heading: false,
+    takes: None,
+    rigs: Rigs::of(&[Rig::FrontSingle, Rig::Final]),
+    parameters: &[
+        APPROACH,
+        Group::new("straightening", &[ParamId::FrontHeading]),
+        SPEED_LOOPS,
+        FEEDFORWARD,
+        WHEEL_RAMPS,
+    ],
+    plots: &[Plot::Distance, Plot::Wheels, Plot::Pwm],
+};
+
+/// Of the distance, in mode 2 too.
+pub(super) const REFERENCE: Reference = Reference::commanded(
+    ReferenceKind::Distance,
+    MIN_DISTANCE_M,
+    MAX_DISTANCE_M,
+    DEFAULT_M,
+);
+
+/// How the robot comes to the distance, in mode 2 too.
+pub(super) const APPROACH: Group = Group::new(
+    "approach to the wall",
+    &[
+        ParamId::FrontCruise,
+        ParamId::FrontKp,
+        ParamId::FrontBrake,
+        ParamId::FrontTolerance,
+    ],
+);
+
+states! {
+    /// Where mode 1 stands.
+    enum Phase {
+        /// Drives, far from the reference.
+        #[default]
+        Approach = "approach" { Settle: "within 5 cm" }
+        /// Drives, near the reference.
+        Settle = "settle" { Approach: "beyond 6 cm", Hold: "within the tolerance" }
+        /// Wheels released.
+        Hold = "hold" { Approach: "beyond 6 cm", Settle: "beyond twice the tolerance for 0.15 s" }
+    }
+}
 
 /// Reference before the first command [m], as in the report.
 pub const DEFAULT_M: f32 = 0.30;
@@ -61,15 +107,6 @@ pub struct FrontDistance<'a> {
     params: &'a Params,
 }
 
-/// Where mode 1 stands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Phase {
-    #[default]
-    Approach = 0,
-    Settle = 1,
-    Hold = 2,
-}
-
 /// Memory of mode 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
@@ -81,21 +118,7 @@ pub struct State {
     unrest: Unrest,
 }
 
-impl<'a> FrontDistance<'a> {
-    /// From the parameters.
-    pub fn new(params: &'a Params, distance_m: f32) -> Self {
-        Self {
-            distance_m,
-            tolerance_m: params.get(ParamId::FrontTolerance),
-            params,
-        }
-    }
-
-    /// Whether the sonar sees something.
-    pub fn is_ready(&self, estimate: &Estimate) -> bool {
-        self.range_m(estimate).is_ok()
-    }
-
+impl FrontDistance<'_> {
     fn range_m(&self, estimate: &Estimate) -> Result<f32, Fault> {
         let stale_s = self.params.get(ParamId::StaleRange);
         drivable_m(estimate.range(SonarId::Front), stale_s)
@@ -129,8 +152,38 @@ impl<'a> FrontDistance<'a> {
     }
 }
 
-impl Mode for FrontDistance<'_> {
+impl<'a> Mode<'a> for FrontDistance<'a> {
+    /// [m]
+    type Setpoint = f32;
     type State = State;
+
+    const LOOK: Look = Look::only(SonarId::Front);
+
+    fn first() -> f32 {
+        DEFAULT_M
+    }
+
+    fn new(params: &'a Params, distance_m: &f32) -> Self {
+        Self {
+            distance_m: *distance_m,
+            tolerance_m: params.get(ParamId::FrontTolerance),
+            params,
+        }
+    }
+
+    fn is_ready(&self, estimate: &Estimate) -> bool {
+        self.range_m(estimate).is_ok()
+    }
+
+    fn reference(distance_m: &f32, _: &State) -> Wheels<f32> {
+        Wheels::both(*distance_m)
+    }
+
+    fn set_reference(distance_m: &mut f32, value: f32) -> Result<(), SetpointError> {
+        REFERENCE.check(value)?;
+        *distance_m = value;
+        Ok(())
+    }
 
     fn act(
         &self,
@@ -168,7 +221,7 @@ impl Mode for FrontDistance<'_> {
                 }
             }
         };
-        action.look = Look::only(SonarId::Front);
+        action.look = Self::LOOK;
         action.state = state.phase as u8;
         action.reached = state.phase == Phase::Hold;
         Ok(())
@@ -188,7 +241,7 @@ mod tests {
 
     fn step(state: &mut State, range: Range, age_ticks: u16) -> Result<Action, Fault> {
         let params = Params::default();
-        let mode = FrontDistance::new(&params, 0.3);
+        let mode = FrontDistance::new(&params, &0.3);
         mode.step(
             state,
             &Situation {
@@ -255,7 +308,7 @@ mod tests {
     #[test]
     fn it_steers_back_to_the_heading_it_started_with() {
         let params = Params::default();
-        let mode = FrontDistance::new(&params, 0.3);
+        let mode = FrontDistance::new(&params, &0.3);
         let mut state = State::default();
         let mut estimate = estimate(Range::Valid(1.0), 0);
         mode.step(

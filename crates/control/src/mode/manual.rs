@@ -4,21 +4,46 @@
 //! at a ratio of the outer one. A pivot moves one wheel alone, so it also serves the tests of section 1: dead zone,
 //! asymmetry and static curve of each wheel and direction, on the floor or in the air.
 //!
-//! | state | when |
-//! |---|---|
-//! | 0 stop | the movement is *stop*: wheels released |
-//! | 1 open loop | a duty is given |
-//! | 2 by speed | a wheel speed is given |
-//!
 //! The report moves open loop only; by speed the two wheels keep their ratio on any floor.
 
-use super::{Action, Level, Mode, Movement, Situation};
+use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::{Action, Description, Group, Level, Mode, Movement, Plot, Situation, Takes};
 use crate::params::{ParamId, Params};
+use crate::rig::Rigs;
 use crate::types::{Drive, Fault, Wheels};
 
-/// Names of the states.
-#[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 3] = ["stop", "open loop", "by speed"];
+/// What mode 0 is.
+pub const DESCRIPTION: Description = Description {
+    number: 0,
+    name: "manual",
+    about: "basic movements, open loop or by speed",
+    states: STATES,
+    idle: None,
+    reference: None,
+    heading: false,
+    takes: Some(Takes::Movements),
+    rigs: Rigs::ANY,
+    parameters: &[
+        Group::new("arcs", &[ParamId::ArcRatio]),
+        SPEED_LOOPS,
+        FEEDFORWARD,
+        WHEEL_RAMPS,
+    ],
+    plots: &[Plot::Wheels, Plot::Pwm, Plot::Heading],
+};
+
+states! {
+    /// What mode 0 does.
+    enum Phase {
+        /// Wheels released: the movement is *stop*.
+        #[default]
+        Stop = "stop" { OpenLoop: "a movement by duty", BySpeed: "a movement by speed" }
+        /// Drives by a duty.
+        OpenLoop = "open loop" { Stop: "stop", BySpeed: "a movement by speed" }
+        /// Drives by a wheel speed.
+        BySpeed = "by speed" { Stop: "stop", OpenLoop: "a movement by duty" }
+    }
+}
 
 /// What is asked of mode 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,22 +65,14 @@ impl Default for Setpoint {
 
 /// Configuration of mode 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Manual {
+pub struct Manual<'a> {
     /// What to do.
-    pub setpoint: Setpoint,
+    pub setpoint: &'a Setpoint,
     /// Inner wheel's share in arcs, 0..=1.
     pub arc_ratio: f32,
 }
 
-impl Manual {
-    /// From the parameters.
-    pub fn new(params: &Params, setpoint: Setpoint) -> Self {
-        Self {
-            setpoint,
-            arc_ratio: params.get(ParamId::ArcRatio),
-        }
-    }
-
+impl Manual<'_> {
     /// Factors on the level for both wheels.
     fn factors(&self) -> Wheels<f32> {
         let inner = self.arc_ratio;
@@ -78,18 +95,36 @@ impl Manual {
     }
 }
 
-impl Mode for Manual {
+impl<'a> Mode<'a> for Manual<'a> {
+    type Setpoint = Setpoint;
     type State = ();
+
+    fn first() -> Setpoint {
+        Setpoint::default()
+    }
+
+    fn new(params: &'a Params, setpoint: &'a Setpoint) -> Self {
+        Self {
+            setpoint,
+            arc_ratio: params.get(ParamId::ArcRatio),
+        }
+    }
 
     fn act(&self, _: &mut (), _: &Situation, action: &mut Action) -> Result<(), Fault> {
         let factors = self.factors();
-        (action.drive, action.state) = match (self.setpoint.movement, self.setpoint.level) {
-            (Movement::Stop, _) => (Drive::Release, 0),
-            (_, Level::Duty(duty)) => (Drive::Duty(factors.map(|factor| factor * duty)), 1),
-            (_, Level::Speed(rad_s)) => {
-                (Drive::WheelSpeed(factors.map(|factor| factor * rad_s)), 2)
-            }
+        let phase;
+        (action.drive, phase) = match (self.setpoint.movement, self.setpoint.level) {
+            (Movement::Stop, _) => (Drive::Release, Phase::Stop),
+            (_, Level::Duty(duty)) => (
+                Drive::Duty(factors.map(|factor| factor * duty)),
+                Phase::OpenLoop,
+            ),
+            (_, Level::Speed(rad_s)) => (
+                Drive::WheelSpeed(factors.map(|factor| factor * rad_s)),
+                Phase::BySpeed,
+            ),
         };
+        action.state = phase as u8;
         Ok(())
     }
 }
@@ -100,8 +135,7 @@ mod tests {
     use crate::estimate::Estimate;
 
     fn drive(movement: Movement, level: Level) -> Drive {
-        let manual = Manual::new(&Params::default(), Setpoint { movement, level });
-        manual
+        Manual::new(&Params::default(), &Setpoint { movement, level })
             .step(
                 &mut (),
                 &Situation {

@@ -1,7 +1,10 @@
 //! The modes: what the robot does, one file each.
 //!
 //! A mode is configuration (from the parameters and its setpoint) apart from state, and one function of the
-//! [`Situation`]: [`Mode::act`]. One enum dispatches: [`ActiveMode`]. Numbers of modes appear in [`ModeId`] only.
+//! [`Situation`]: [`Mode::act`]. Beside it stands its [`Description`]: number, name, states, reference, rigs, parameters. One list names the
+//! modes, in `active.rs`; from it come [`ModeId`] and [`ActiveMode`], which dispatches.
+
+mod description;
 
 pub mod front_align;
 pub mod front_distance;
@@ -15,18 +18,18 @@ pub mod wheel_speed;
 
 mod active;
 mod commands;
-mod id;
-#[cfg(feature = "names")]
-mod transitions;
+mod movement;
 
-pub use active::ActiveMode;
-pub use id::{Level, ModeId, Movement};
-#[cfg(feature = "names")]
-pub use transitions::Transition;
+pub use active::{ActiveMode, ModeId};
+pub use description::{
+    Description, Group, Plot, Reference, ReferenceKind, StateDescription, Takes, Way,
+};
+pub use movement::{Level, Movement};
 
 use crate::estimate::Estimate;
+use crate::params::Params;
 use crate::range::{MIN_RANGE_M, REACH_M};
-use crate::types::{Drive, Fault, ServoAngle, SonarId};
+use crate::types::{Drive, Fault, ServoAngle, SonarId, Wheels};
 
 /// Fastest wheel reference that is accepted, either way [rad/s]: 191 rpm.
 pub const MAX_WHEEL_RAD_S: f32 = 20.0;
@@ -56,7 +59,7 @@ pub struct Action {
     pub drive: Drive,
     /// Of the sonars and the servo.
     pub look: Look,
-    /// Number of its state, for telemetry; names: `ModeId::state_names`.
+    /// Number of its state, for telemetry; names: [`Description::states`].
     pub state: u8,
     /// The heading that it wants, for telemetry [rad]; 0 where it wants none.
     pub heading_ref_rad: f32,
@@ -80,14 +83,17 @@ pub struct Look {
 impl Default for Look {
     #[inline]
     fn default() -> Self {
-        Self {
-            servo: ServoAngle::default(),
-            sonars: [true; 3],
-        }
+        Self::AHEAD
     }
 }
 
 impl Look {
+    /// The servo ahead, every sonar in turn.
+    pub const AHEAD: Self = Self {
+        servo: ServoAngle(0.0),
+        sonars: [true; 3],
+    };
+
     /// One sonar only, as often as it can.
     pub const fn only(sonar: SonarId) -> Self {
         let mut sonars = [false; 3];
@@ -100,9 +106,43 @@ impl Look {
 }
 
 /// A mode: configuration apart from state.
-pub trait Mode {
+pub trait Mode<'a>: Sized {
+    /// What is commanded.
+    type Setpoint: Copy;
     /// What it remembers from tick to tick; the default is its start.
     type State: Default;
+
+    /// Where it needs to look, armed or not.
+    const LOOK: Look = Look::AHEAD;
+
+    /// The setpoint before the first command.
+    fn first() -> Self::Setpoint;
+
+    /// From the parameters and the setpoint.
+    fn new(params: &'a Params, setpoint: &'a Self::Setpoint) -> Self;
+
+    /// Whether the sensors it needs give good readings.
+    fn is_ready(&self, _estimate: &Estimate) -> bool {
+        true
+    }
+
+    /// The wheels have just been armed.
+    fn start(state: &mut Self::State) {
+        *state = Self::State::default();
+    }
+
+    /// The reference in force, as in [`ActiveMode::reference`].
+    fn reference(_setpoint: &Self::Setpoint, _state: &Self::State) -> Wheels<f32> {
+        Wheels::both(0.0)
+    }
+
+    /// Sets the reference, where it is one number.
+    ///
+    /// # Errors
+    /// Why it is refused; the last one stays.
+    fn set_reference(_setpoint: &mut Self::Setpoint, _value: f32) -> Result<(), SetpointError> {
+        Err(SetpointError::NotInThisMode)
+    }
 
     /// One tick, into an action that asks for nothing yet.
     ///

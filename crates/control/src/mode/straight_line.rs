@@ -10,25 +10,65 @@
 //! backward alike. The speed goes to its reference along a ramp that friction alone can follow downward, so that the wheels
 //! stay regulated, and the robot straight, until it stands; a change of sign goes through zero.
 //!
-//! | state | does | leaves when | to |
-//! |---|---|---|---|
-//! | 0 at rest | wheels released | both stand and the reference is not zero | 1 |
-//! | 1 drive | ramp towards the reference | the reference is zero or has the other sign | 2 |
-//! | 2 stop | ramp to zero, released below a creep | slow enough | 0 |
-//! | | | the reference has the old sign again | 1 |
-//!
 //! The report adds its correction, at most 5 rpm, to one wheel and knows one radius for both: wheels that differ by 1 % drive an arc of 10 m radius.
 //! Ours scales each way by its own wheel's radius (`rumbo calibrate` finds their ratio), corrects both wheels against each other so that their
 //! mean stays as commanded, and brings the robot back onto its line, not only to its heading. Figures: docs/theory/straight_line.md.
 
-use super::{Action, Mode, Situation};
+use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::{
+    Action, Description, Group, MAX_WHEEL_RAD_S, Mode, Plot, Reference, ReferenceKind,
+    SetpointError, Situation,
+};
 use crate::math::{abs, clamp, max, min};
 use crate::params::{ParamId, Params};
-use crate::types::{Drive, Fault, TICK_S};
+use crate::rig::Rigs;
+use crate::types::{Drive, Fault, TICK_S, Wheels};
+use core::f32::consts::TAU;
 
-/// Names of the states.
-#[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 3] = ["at rest", "drive", "stop"];
+/// What mode 6 is.
+pub const DESCRIPTION: Description = Description {
+    number: 6,
+    name: "straight_line",
+    about: "straight on at a commanded speed",
+    states: STATES,
+    idle: None,
+    reference: Some(REFERENCE),
+    heading: true,
+    takes: None,
+    rigs: Rigs::ANY,
+    parameters: &[
+        Group::new(
+            "straightening",
+            &[ParamId::StraightKp, ParamId::StraightOffset],
+        ),
+        Group::new("ramp", &[ParamId::StraightAccel, ParamId::StraightDecel]),
+        SPEED_LOOPS,
+        FEEDFORWARD,
+        WHEEL_RAMPS,
+    ],
+    plots: &[Plot::Wheels, Plot::Heading, Plot::Position],
+};
+
+/// Of both wheels; 40 rpm to begin with.
+const REFERENCE: Reference = Reference::commanded(
+    ReferenceKind::Speed,
+    -MAX_WHEEL_RAD_S,
+    MAX_WHEEL_RAD_S,
+    TAU * 40.0 / 60.0,
+);
+
+states! {
+    /// Where mode 6 stands.
+    enum Phase {
+        /// Wheels released.
+        #[default]
+        Rest = "at rest" { Drive: "both wheels stand and the reference is not zero" }
+        /// Ramp towards the reference.
+        Drive = "drive" { Stop: "the reference is zero or has the other sign" }
+        /// Ramp to zero, released below a creep.
+        Stop = "stop" { Rest: "slow enough", Drive: "the reference has the old sign again" }
+    }
+}
 
 /// Below this the wheels are released on the way to zero [rad/s]: 8 rpm, from where they roll out within millimetres.
 const CREEP_RAD_S: f32 = 0.8;
@@ -47,15 +87,6 @@ pub struct StraightLine<'a> {
     params: &'a Params,
 }
 
-/// Where mode 6 stands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Phase {
-    #[default]
-    Rest = 0,
-    Drive = 1,
-    Stop = 2,
-}
-
 /// Memory of mode 6.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
@@ -68,16 +99,7 @@ pub struct State {
     offset_m: f32,
 }
 
-impl<'a> StraightLine<'a> {
-    /// From the parameters.
-    pub fn new(params: &'a Params, speed_rad_s: f32) -> Self {
-        Self {
-            speed_rad_s,
-            base_m: params.geometry().base_m(),
-            params,
-        }
-    }
-
+impl StraightLine<'_> {
     /// Counts what the wheels rolled since the last tick.
     fn count(&self, state: &mut State, at: &Situation) {
         let before_m = state.difference_m;
@@ -125,8 +147,32 @@ impl<'a> StraightLine<'a> {
     }
 }
 
-impl Mode for StraightLine<'_> {
+impl<'a> Mode<'a> for StraightLine<'a> {
+    /// [rad/s]
+    type Setpoint = f32;
     type State = State;
+
+    fn first() -> f32 {
+        0.0
+    }
+
+    fn new(params: &'a Params, speed_rad_s: &f32) -> Self {
+        Self {
+            speed_rad_s: *speed_rad_s,
+            base_m: params.geometry().base_m(),
+            params,
+        }
+    }
+
+    fn reference(speed_rad_s: &f32, _: &State) -> Wheels<f32> {
+        Wheels::both(*speed_rad_s)
+    }
+
+    fn set_reference(speed_rad_s: &mut f32, value: f32) -> Result<(), SetpointError> {
+        REFERENCE.check(value)?;
+        *speed_rad_s = value;
+        Ok(())
+    }
 
     fn act(
         &self,
@@ -179,7 +225,7 @@ mod tests {
     /// Ticks with the reference `speed_rad_s`; gives forward speed and yaw rate of the last one.
     fn run(state: &mut State, speed_rad_s: f32, estimate: &Estimate, ticks: u32) -> (f32, f32) {
         let params = Params::default();
-        let mode = StraightLine::new(&params, speed_rad_s);
+        let mode = StraightLine::new(&params, &speed_rad_s);
         let mut last = (0.0, 0.0);
         for _ in 0..ticks {
             last = match mode.step(state, &Situation { estimate }).unwrap().drive {

@@ -13,13 +13,6 @@
 //! positive error and turns the robot towards the wall. Both are estimated by [`crate::wall`] from the pair, or from one sonar and the
 //! encoders on the final rig, which takes the side whose wall is nearer at the start and looks ahead with its front sonar.
 //!
-//! | state | does | leaves when | to |
-//! |---|---|---|---|
-//! | 0 measure | mode 3 only: stands and takes the distance | it has it | 1 or 2 |
-//! | 1 approach | drives at the angle limit, on the way to another distance | e asks for less than the limit | 2 |
-//! | 2 follow | keeps the distance | e asks for more than the limit | 1 |
-//! | 3 slow | as 1 or 2, slower: something stands ahead, or a sonar is in doubt | neither any longer | 1 or 2 |
-//!
 //! The integral stands still while the angle or the yaw rate is limited; the speed gives way to steering where a wheel is at its limit.
 //! It stops with a fault when the wall ends (wall lost), a sonar is silent or old, or, on the final rig, something stands ahead (blocked).
 //!
@@ -28,19 +21,76 @@
 //! 2 cm: 59 -> 50 cm in 1.6 s instead of 7.1, 50 -> 30 cm in 3.2 s instead of 6.3, 30 -> 40 cm in 1.6 s instead of 9.0
 //! (`rumbo run mode4 --runs 20`). Derivation and margins: docs/theory/wall_follow.md.
 
-use super::{Action, Mode, Situation};
+use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::{
+    Action, DEFAULT_WALL_M, Description, Group, MAX_WALL_M, MIN_WALL_M, Mode, Plot, Reference,
+    ReferenceKind, SetpointError, Situation,
+};
 use crate::beside::Beside;
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, sqrt, wrap_angle};
 use crate::params::{ParamId, Params};
-use crate::types::{Drive, Fault, Range, Side, SonarId, TICK_S};
+use crate::range::{MIN_RANGE_M, REACH_M};
+use crate::rig::{Rig, Rigs};
+use crate::types::{Drive, Fault, Range, Side, SonarId, TICK_S, Wheels};
 use crate::unrest::Unrest;
 use crate::wall::{Wall, WallFilter};
 use core::f32::consts::FRAC_PI_2;
 
-/// Names of the states.
-#[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 4] = ["measure", "approach", "follow", "slow"];
+/// What mode 4 is.
+pub const DESCRIPTION: Description = Description {
+    number: 4,
+    name: "wall_follow",
+    about: "follow a wall at a commanded distance",
+    states: STATES,
+    idle: None,
+    reference: Some(REFERENCE),
+    heading: true,
+    takes: None,
+    rigs: Rigs::of(&[Rig::SidePairLeft, Rig::SidePairRight, Rig::Final]),
+    parameters: &[
+        Group::new("along the wall", &[ParamId::WallCruise, ParamId::WallStop]),
+        Group::new(
+            "distance to the wall",
+            &[ParamId::WallKp, ParamId::WallKi, ParamId::WallHeadingLimit],
+        ),
+        Group::new(
+            "angle to the wall",
+            &[
+                ParamId::WallHeadingKp,
+                ParamId::WallDamping,
+                ParamId::WallYawLimit,
+            ],
+        ),
+        SPEED_LOOPS,
+        FEEDFORWARD,
+        WHEEL_RAMPS,
+    ],
+    plots: &[Plot::Distance, Plot::Heading, Plot::Wheels],
+};
+
+/// Of the distance.
+pub(super) const REFERENCE: Reference = Reference::commanded(
+    ReferenceKind::Distance,
+    MIN_WALL_M,
+    MAX_WALL_M,
+    DEFAULT_WALL_M,
+);
+
+states! {
+    /// Where modes 3 and 4 stand.
+    pub(super) enum Phase {
+        /// Mode 3 only: stands and takes the distance.
+        #[default]
+        Measure = "measure" { Approach: "the distance is known, far from it", Follow: "the distance is known" }
+        /// Drives at the angle limit, on the way to another distance.
+        Approach = "approach" { Follow: "near the distance", Slow: "something ahead, or a sonar in doubt" }
+        /// Keeps the distance.
+        Follow = "follow" { Approach: "far from the distance", Slow: "something ahead, or a sonar in doubt" }
+        /// The same, slower: something stands ahead, or a sonar is in doubt.
+        Slow = "slow" { Approach: "clear again, far from the distance", Follow: "clear again" }
+    }
+}
 
 /// How far off parallel the robot may start, one standard deviation [rad].
 const ASKEW_RAD: f32 = 0.2;
@@ -76,14 +126,6 @@ pub struct WallFollow<'a> {
     params: &'a Params,
 }
 
-/// Where mode 4 stands; 0 is for mode 3, which measures first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Phase {
-    Approach = 1,
-    Follow = 2,
-    Slow = 3,
-}
-
 /// Memory of mode 4.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
@@ -101,18 +143,7 @@ fn sign(side: Side) -> f32 {
     }
 }
 
-impl<'a> WallFollow<'a> {
-    /// From the parameters.
-    pub fn new(params: &'a Params, distance_m: f32) -> Self {
-        Self {
-            distance_m,
-            cruise_m_s: params.get(ParamId::WallCruise),
-            stale_s: params.get(ParamId::StaleRange),
-            sonars: Beside::new(params),
-            params,
-        }
-    }
-
+impl WallFollow<'_> {
     /// Half angle of a sonar's beam [rad].
     fn beam_rad(&self) -> f32 {
         self.params.get(ParamId::Beam)
@@ -299,8 +330,39 @@ impl WallFollow<'_> {
     }
 }
 
-impl Mode for WallFollow<'_> {
+impl<'a> Mode<'a> for WallFollow<'a> {
+    /// [m]
+    type Setpoint = f32;
     type State = State;
+
+    fn first() -> f32 {
+        DEFAULT_WALL_M
+    }
+
+    fn new(params: &'a Params, distance_m: &f32) -> Self {
+        Self {
+            distance_m: *distance_m,
+            cruise_m_s: params.get(ParamId::WallCruise),
+            stale_s: params.get(ParamId::StaleRange),
+            sonars: Beside::new(params),
+            params,
+        }
+    }
+
+    fn is_ready(&self, estimate: &Estimate) -> bool {
+        let reach = (MIN_RANGE_M, REACH_M);
+        self.sonars.is_ready(estimate, self.stale_s, reach)
+    }
+
+    fn reference(distance_m: &f32, _: &State) -> Wheels<f32> {
+        Wheels::both(*distance_m)
+    }
+
+    fn set_reference(distance_m: &mut f32, value: f32) -> Result<(), SetpointError> {
+        REFERENCE.check(value)?;
+        *distance_m = value;
+        Ok(())
+    }
 
     fn act(
         &self,
@@ -315,7 +377,6 @@ impl Mode for WallFollow<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::Rig;
     use crate::types::AgedRange;
 
     const PAIRS: [Rig; 2] = [Rig::SidePairLeft, Rig::SidePairRight];
@@ -350,7 +411,7 @@ mod tests {
     /// Yaw rate towards the wall, of a robot parallel to it.
     fn towards(rig: Rig, range_m: f32, reference_m: f32) -> f32 {
         let seen = seeing(range_m, range_m, Range::Clear);
-        let (_, yaw_rad_s) = first(&WallFollow::new(&params(rig), reference_m), &seen).unwrap();
+        let (_, yaw_rad_s) = first(&WallFollow::new(&params(rig), &reference_m), &seen).unwrap();
         match rig {
             Rig::SidePairRight => -yaw_rad_s,
             _ => yaw_rad_s,
@@ -371,7 +432,7 @@ mod tests {
         for (rig, sign) in [(Rig::SidePairLeft, 1.0), (Rig::SidePairRight, -1.0)] {
             // The one in front reads less: it drives towards the wall.
             let seen = seeing(0.39, 0.41, Range::Clear);
-            let (_, yaw_rad_s) = first(&WallFollow::new(&params(rig), 0.4), &seen).unwrap();
+            let (_, yaw_rad_s) = first(&WallFollow::new(&params(rig), &0.4), &seen).unwrap();
             assert!(sign * yaw_rad_s < -0.1, "{rig:?}: {yaw_rad_s}");
         }
     }
@@ -379,7 +440,7 @@ mod tests {
     #[test]
     fn a_step_back_and_forth_leaves_no_integral_behind() {
         let params = params(Rig::SidePairLeft);
-        let mode = WallFollow::new(&params, 0.3);
+        let mode = WallFollow::new(&params, &0.3);
         let mut state = State::default();
         let seen = seeing(0.5, 0.5, Range::Clear);
         for _ in 0..500 {
@@ -392,7 +453,7 @@ mod tests {
     #[test]
     fn a_bend_never_stops_the_inner_wheel_nor_overdrives_the_outer_one() {
         let params = params(Rig::Final);
-        let mode = WallFollow::new(&params, 0.3);
+        let mode = WallFollow::new(&params, &0.3);
         for ahead in [Range::Clear, Range::Valid(0.3), Range::Valid(0.16)] {
             let seen = seeing(1.2, 2.0, ahead);
             let (forward_m_s, yaw_rad_s) = first(&mode, &seen).unwrap();
@@ -405,7 +466,7 @@ mod tests {
     #[test]
     fn something_ahead_slows_it_and_then_stops_it() {
         let params = params(Rig::Final);
-        let mode = WallFollow::new(&params, 0.5);
+        let mode = WallFollow::new(&params, &0.5);
         let speed = |ahead| first(&mode, &seeing(0.5, 2.0, ahead)).map(|(forward, _)| forward);
         assert_eq!(speed(Range::Clear), Ok(mode.cruise_m_s));
         assert_eq!(speed(Range::Valid(1.0)), Ok(mode.cruise_m_s));
@@ -417,7 +478,7 @@ mod tests {
     #[test]
     fn it_never_drives_on_a_lost_stale_or_faulty_range_beside_it() {
         let params = params(Rig::SidePairLeft);
-        let mode = WallFollow::new(&params, 0.5);
+        let mode = WallFollow::new(&params, &0.5);
         let mut state = State::default();
         let mut seen = seeing(0.5, 0.5, Range::Clear);
         mode.step(&mut state, &Situation { estimate: &seen })

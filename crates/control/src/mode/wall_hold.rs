@@ -7,15 +7,24 @@
 //! The report takes the median of the first readings too, to be rid of wrong ones. Worst of 20 simulated robots against the real one
 //! over 27 s: 0.16 cm rms instead of 1.2, 0.35 cm at most instead of 4.6 (`rumbo run mode3 --runs 20`).
 
-use super::wall_follow::{self, WallFollow};
-use super::{Action, MAX_WALL_M, MIN_WALL_M, Mode, Situation};
+use super::wall_follow::{self, Phase, WallFollow};
+use super::{Action, Description, MAX_WALL_M, MIN_WALL_M, Mode, Reference, Situation};
+use crate::estimate::Estimate;
 use crate::math::{clamp, max};
 use crate::params::Params;
-use crate::types::{Fault, Range, SonarId, TICK_S};
+use crate::types::{Fault, Range, SonarId, TICK_S, Wheels};
 
-/// Names of the states.
-#[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 4] = wall_follow::STATE_NAMES;
+/// What mode 3 is.
+pub const DESCRIPTION: Description = Description {
+    number: 3,
+    name: "wall_hold",
+    about: "follow a wall at the distance at which the robot starts",
+    reference: Some(Reference {
+        commanded: false,
+        ..wall_follow::REFERENCE
+    }),
+    ..wall_follow::DESCRIPTION
+};
 
 /// Readings of each sonar that make the reference.
 const READINGS: usize = 5;
@@ -92,12 +101,7 @@ impl State {
     }
 }
 
-impl<'a> WallHold<'a> {
-    /// From the parameters.
-    pub fn new(params: &'a Params) -> Self {
-        Self(WallFollow::new(params, 0.0))
-    }
-
+impl WallHold<'_> {
     /// Takes the readings of this tick; the reference, once it is known.
     fn measure(&self, state: &mut State, at: &Situation) -> Result<Option<f32>, Fault> {
         let sonars = &self.0.sonars;
@@ -129,8 +133,26 @@ impl<'a> WallHold<'a> {
     }
 }
 
-impl Mode for WallHold<'_> {
+impl<'a> Mode<'a> for WallHold<'a> {
+    type Setpoint = ();
     type State = State;
+
+    fn first() {}
+
+    fn new(params: &'a Params, (): &()) -> Self {
+        Self(WallFollow::new(params, &0.0))
+    }
+
+    fn is_ready(&self, estimate: &Estimate) -> bool {
+        let WallFollow {
+            sonars, stale_s, ..
+        } = &self.0;
+        sonars.is_ready(estimate, *stale_s, (MIN_WALL_M, MAX_WALL_M))
+    }
+
+    fn reference((): &(), state: &State) -> Wheels<f32> {
+        Wheels::both(state.reference_m())
+    }
 
     fn act(
         &self,
@@ -145,7 +167,10 @@ impl Mode for WallHold<'_> {
             Some(distance_m) => self
                 .0
                 .keep(&mut state.follow, at.estimate, distance_m, action),
-            None => Ok(()),
+            None => {
+                action.state = Phase::Measure as u8;
+                Ok(())
+            }
         }
     }
 }
@@ -153,7 +178,6 @@ impl Mode for WallHold<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::Estimate;
     use crate::params::ParamId;
     use crate::rig::{Rig, View};
     use crate::types::{AgedRange, Drive, Reading};
@@ -176,7 +200,7 @@ mod tests {
             view: View::default(),
             servo_rad: 0.0,
         });
-        WallHold::new(&params).step(
+        WallHold::new(&params, &()).step(
             state,
             &Situation {
                 estimate: &estimate,

@@ -6,17 +6,6 @@
 //! or, with `waypoint_tracker = 1`, a pure pursuit of all waypoints up to the next with a heading (pursuit)
 //! ```
 //!
-//! | state | does | leaves when | to |
-//! |---|---|---|---|
-//! | 0 wait | wheels released | both stand and there is a waypoint: the line to it is fixed | 1, or 3 |
-//! | | | the robot is at the waypoint already | 4, 0 or 5 |
-//! | 1 turn | turns on the spot, along the line or to the lookahead | it faces there | 2, or 3 |
-//! | 2 drive | follows the line to the waypoint | it stands at its end | 4 if the waypoint has a heading, else 0 or 5 |
-//! | 3 pursue | follows the polyline without stopping | it stands at its end | 4, 0 or 5 |
-//! | | | it stands and the lookahead is far to a side | 1 |
-//! | 4 final turn | turns to the waypoint's heading; its place is no longer judged | it faces there | 0 or 5 |
-//! | 5 done | wheels released; the event *reached*, once, at the end of the route | a waypoint is appended | 0 |
-//!
 //! A new route or goal may come at any time: the robot stops and starts it from where it stands. A waypoint that is refused changes
 //! nothing; a route without waypoints waits. A line begins at the waypoint before, not where the robot happens to stand, so errors of the
 //! corners do not add up; the first begins where the robot starts.
@@ -27,18 +16,85 @@
 
 mod route;
 
-use super::{Action, Mode, Situation};
+use super::description::{FEEDFORWARD, LINES, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
+use super::{Action, Description, Group, Mode, Plot, Reference, ReferenceKind, Situation, Takes};
 use crate::math::wrap_angle;
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
 use crate::params::{ParamId, Params};
 use crate::pursuit::{Point, Pursuit, PursuitState};
-use crate::types::{Drive, Fault, Pose, Transform};
+use crate::rig::Rigs;
+use crate::types::{Drive, Fault, Pose, Transform, Wheels};
 
 pub use route::{FARTHEST_M, MAX_WAYPOINTS, Route, Waypoint};
 
-/// Names of the states.
-#[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 6] = ["wait", "turn", "drive", "pursue", "final turn", "done"];
+/// What mode 7 is.
+pub const DESCRIPTION: Description = Description {
+    number: 7,
+    name: "waypoints",
+    about: "visit the places of a route in turn, such as a square of 1 m",
+    states: STATES,
+    idle: None,
+    reference: Some(REFERENCE),
+    heading: true,
+    takes: Some(Takes::Route(MAX_WAYPOINTS)),
+    rigs: Rigs::ANY,
+    parameters: &[
+        Group::new("route", &[ParamId::WaypointTracker]),
+        TURNS,
+        LINES,
+        Group::new(
+            "pure pursuit",
+            &[
+                ParamId::PursuitTime,
+                ParamId::PursuitLeast,
+                ParamId::PursuitSide,
+                ParamId::PursuitSpacing,
+            ],
+        ),
+        SPEED_LOOPS,
+        FEEDFORWARD,
+        WHEEL_RAMPS,
+    ],
+    plots: &[Plot::Position, Plot::Heading, Plot::Wheels],
+};
+
+/// Each coordinate of a waypoint or a goal, in mode 8 too.
+pub(super) const REFERENCE: Reference =
+    Reference::commanded(ReferenceKind::Goal, -FARTHEST_M, FARTHEST_M, 0.0);
+
+states! {
+    /// Where mode 7 stands.
+    enum Phase {
+        /// Wheels released; the line to the next waypoint begins when both stand.
+        #[default]
+        Wait = "wait" {
+            Turn: "both wheels stand and there is a waypoint",
+            Drive: "it faces the waypoint already",
+            Pursue: "pure pursuit",
+            FinalTurn: "at the waypoint already, which has a heading",
+            Done: "at the last waypoint already",
+        }
+        /// Turns on the spot, along the line or to the lookahead.
+        Turn = "turn" { Drive: "it faces the waypoint", Pursue: "it faces the lookahead" }
+        /// Follows the line to the waypoint.
+        Drive = "drive" {
+            Wait: "it stands at the waypoint",
+            FinalTurn: "it stands at the waypoint, which has a heading",
+            Done: "it stands at the last waypoint",
+        }
+        /// Follows the polyline without stopping.
+        Pursue = "pursue" {
+            Wait: "it stands at the waypoint",
+            Turn: "it stands and the lookahead is far to a side",
+            FinalTurn: "it stands at the waypoint, which has a heading",
+            Done: "it stands at the last waypoint",
+        }
+        /// Turns to the waypoint's heading; its position is no longer judged.
+        FinalTurn = "final turn" { Wait: "it faces the waypoint's heading", Done: "it faces the last waypoint's heading" }
+        /// Wheels released; the event *reached*, once, at the end of the route.
+        Done = "done" { Wait: "a waypoint is appended" }
+    }
+}
 
 /// Configuration of mode 7.
 #[derive(Clone, Copy, Debug)]
@@ -48,18 +104,6 @@ pub struct Waypoints<'a> {
     params: &'a Params,
     /// Without stopping; otherwise turn, drive, turn.
     pursues: bool,
-}
-
-/// Where mode 7 stands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Phase {
-    #[default]
-    Wait = 0,
-    Turn = 1,
-    Drive = 2,
-    Pursue = 3,
-    FinalTurn = 4,
-    Done = 5,
 }
 
 /// Memory of mode 7.
@@ -102,16 +146,7 @@ impl State {
     }
 }
 
-impl<'a> Waypoints<'a> {
-    /// From the parameters.
-    pub fn new(params: &'a Params, route: &'a Route) -> Self {
-        Self {
-            route,
-            params,
-            pursues: params.get(ParamId::WaypointTracker) > 0.5,
-        }
-    }
-
+impl Waypoints<'_> {
     /// A waypoint of the route by its number, in the frame of the odometry.
     fn waypoint(&self, state: &State, number: u8) -> Option<Waypoint> {
         let waypoint = *self.route.waypoints().get(usize::from(number))?;
@@ -224,8 +259,26 @@ const NEAR_M: f32 = 0.1;
 /// A waypoint this near needs no drive [m].
 const THERE_M: f32 = 0.01;
 
-impl Mode for Waypoints<'_> {
+impl<'a> Mode<'a> for Waypoints<'a> {
+    type Setpoint = Route;
     type State = State;
+
+    fn first() -> Route {
+        Route::default()
+    }
+
+    fn new(params: &'a Params, route: &'a Route) -> Self {
+        Self {
+            route,
+            params,
+            pursues: params.get(ParamId::WaypointTracker) > 0.5,
+        }
+    }
+
+    fn reference(_: &Route, state: &State) -> Wheels<f32> {
+        let (left, right) = state.target();
+        Wheels { left, right }
+    }
 
     fn act(
         &self,

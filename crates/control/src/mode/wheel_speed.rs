@@ -3,38 +3,91 @@
 //! The mode hands its references to the wheel-speed loops of [`crate::drive`]; ramp, feedforward, PID and the passage
 //! through zero are there, since every other mode uses them too.
 //!
-//! | state | when |
-//! |---|---|
-//! | 0 at rest | both references are zero: wheels released |
-//! | 1 turning | otherwise |
-//!
 //! The report's controller is an equilibrium PWM of 50 plus a PI on a speed counted in 50 ms, in steps of 3.1 rpm. Ours knows
 //! each wheel's friction (feedforward), times the edges, and acts every 10 ms: docs/theory/drive.md, docs/theory/wheel_speed.md. Worst of 20 simulated robots against the real one: 0 -> 60 rpm
 //! in 0.32 s instead of 3.7, 0 -> -100 rpm in 0.44 s instead of 5.3 (`rumbo run mode5 --runs 20`).
 
-use super::{Action, Mode, Situation};
+use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::{
+    Action, Description, MAX_WHEEL_RAD_S, Mode, Plot, Reference, ReferenceKind, SetpointError,
+    Situation,
+};
+use crate::params::Params;
+use crate::rig::Rigs;
 use crate::types::{Drive, Fault, Wheels};
+use core::f32::consts::TAU;
 
-/// Names of the states.
-#[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 2] = ["at rest", "turning"];
+/// What mode 5 is.
+pub const DESCRIPTION: Description = Description {
+    number: 5,
+    name: "wheel_speed",
+    about: "each wheel at a commanded speed",
+    states: STATES,
+    idle: None,
+    reference: Some(REFERENCE),
+    heading: false,
+    takes: None,
+    rigs: Rigs::ANY,
+    parameters: &[SPEED_LOOPS, FEEDFORWARD, WHEEL_RAMPS],
+    plots: &[Plot::Wheels, Plot::Pwm],
+};
+
+/// Of each wheel; 60 rpm to begin with.
+pub(super) const REFERENCE: Reference = Reference::commanded(
+    ReferenceKind::WheelSpeed,
+    -MAX_WHEEL_RAD_S,
+    MAX_WHEEL_RAD_S,
+    TAU,
+);
+
+states! {
+    /// Where mode 5 stands.
+    enum Phase {
+        /// Wheels released: both references are zero.
+        #[default]
+        Rest = "at rest" { Turning: "a reference that is not zero" }
+        /// Regulates the speeds.
+        Turning = "turning" { Rest: "both references are zero" }
+    }
+}
 
 /// Configuration of mode 5.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WheelSpeed {
+pub struct WheelSpeed<'a> {
     /// Speed references [rad/s].
-    pub references: Wheels<f32>,
+    pub references: &'a Wheels<f32>,
 }
 
-impl Mode for WheelSpeed {
+impl<'a> Mode<'a> for WheelSpeed<'a> {
+    /// [rad/s]
+    type Setpoint = Wheels<f32>;
     type State = ();
 
+    fn first() -> Wheels<f32> {
+        Wheels::both(0.0)
+    }
+
+    fn new(_: &Params, references: &'a Wheels<f32>) -> Self {
+        Self { references }
+    }
+
+    fn reference(references: &Wheels<f32>, (): &()) -> Wheels<f32> {
+        *references
+    }
+
+    fn set_reference(references: &mut Wheels<f32>, value: f32) -> Result<(), SetpointError> {
+        REFERENCE.check(value)?;
+        *references = Wheels::both(value);
+        Ok(())
+    }
+
     fn act(&self, _: &mut (), _: &Situation, action: &mut Action) -> Result<(), Fault> {
-        let turning = self.references != Wheels::both(0.0);
-        if turning {
-            action.drive = Drive::WheelSpeed(self.references);
+        let mut phase = Phase::Rest;
+        if *self.references != Wheels::both(0.0) {
+            action.drive = Drive::WheelSpeed(*self.references);
+            phase = Phase::Turning;
         }
-        action.state = u8::from(turning);
+        action.state = phase as u8;
         Ok(())
     }
 }

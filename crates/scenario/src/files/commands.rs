@@ -25,7 +25,7 @@ use super::parameters;
 use super::read::{Allowed, Table};
 use super::route::{self, GOAL, read_route};
 use super::scenario::TimedCommand;
-use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::mode::{Description, ModeId, Movement, ReferenceKind, Takes};
 use rumbo_control::{Duty, Wheels};
 use rumbo_wire::message::{Command, Level};
 use std::f64::consts::PI;
@@ -121,15 +121,21 @@ fn read_command(
     };
     match given[..] {
         ["move"] | ["move", "speed_rpm"] => {
-            needs_mode(table, "move", &[ModeId::Manual], *mode);
+            needs_mode(
+                table,
+                "move",
+                |mode| mode.takes == Some(Takes::Movements),
+                *mode,
+            );
             read_move(table, at_s, duration_s)
         }
         ["goal"] => {
-            needs_mode(table, "goal", &[ModeId::Mission, ModeId::Waypoints], *mode);
+            needs_mode(table, "goal", takes(&[ReferenceKind::Goal]), *mode);
             read_goal_of_world(table, at_s)
         }
         ["route_m"] => {
-            needs_mode(table, "route_m", &[ModeId::Waypoints], *mode);
+            let route = |mode: &Description| matches!(mode.takes, Some(Takes::Route(_)));
+            needs_mode(table, "route_m", route, *mode);
             read_route(table).into_iter().flat_map(single).collect()
         }
         [key] => read_simple(table, key, mode)
@@ -176,7 +182,7 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut Option<ModeId>) -> O
             );
         }
         if command == Command::Lane {
-            needs_mode(table, key, &[ModeId::Mission], *mode);
+            needs_mode(table, key, |mode| mode.takes == Some(Takes::Lane), *mode);
         }
         return Some(command);
     }
@@ -189,26 +195,21 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut Option<ModeId>) -> O
             mode.map(Command::Mode)
         }
         "reference_m" => {
-            let modes = [
-                ModeId::FrontDistance,
-                ModeId::FrontAlign,
-                ModeId::WallFollow,
-            ];
-            needs_mode(table, key, &modes, *mode);
+            needs_mode(table, key, takes(&[ReferenceKind::Distance]), *mode);
             Some(Command::Reference(table.number(key, DISTANCE)? as f32))
         }
         "goal_m" => {
-            needs_mode(table, key, &[ModeId::Mission, ModeId::Waypoints], *mode);
+            needs_mode(table, key, takes(&[ReferenceKind::Goal]), *mode);
             let [x_m, y_m] = table.pair(key, GOAL)?.map(|place| place as f32);
             Some(Command::Goal { x_m, y_m })
         }
         "speed_rpm" => {
-            let modes = [ModeId::WheelSpeed, ModeId::StraightLine];
-            needs_mode(table, key, &modes, *mode);
+            let kinds = [ReferenceKind::WheelSpeed, ReferenceKind::Speed];
+            needs_mode(table, key, takes(&kinds), *mode);
             Some(Command::Reference(rad_s(table.number(key, SPEED)?)))
         }
         "left_rpm" => {
-            needs_mode(table, key, &[ModeId::WheelSpeed], *mode);
+            needs_mode(table, key, takes(&[ReferenceKind::WheelSpeed]), *mode);
             let (left, right) = (
                 table.number(key, SPEED),
                 table.required_number("right_rpm", SPEED),
@@ -314,12 +315,27 @@ fn read_ramp(
         .collect()
 }
 
-fn needs_mode(table: &Table<'_, '_>, key: &str, needed: &[ModeId], mode: Option<ModeId>) {
+/// Whether a command sets the mode's reference, and it is one of these.
+fn takes(kinds: &[ReferenceKind]) -> impl Fn(&Description) -> bool {
+    |mode| {
+        let reference = mode.reference.filter(|reference| reference.commanded);
+        reference.is_some_and(|reference| kinds.contains(&reference.kind))
+    }
+}
+
+/// Complains where the mode is not one of those that take the command.
+fn needs_mode(
+    table: &Table<'_, '_>,
+    key: &str,
+    takes_it: impl Fn(&Description) -> bool,
+    mode: Option<ModeId>,
+) {
     if let Some(mode) = mode
-        && !needed.contains(&mode)
+        && !takes_it(mode.description())
     {
-        let names: Vec<String> = needed
+        let names: Vec<String> = ModeId::ALL
             .iter()
+            .filter(|needed| takes_it(needed.description()))
             .map(|needed| format!("`{}`", needed.name()))
             .collect();
         let text = format!(

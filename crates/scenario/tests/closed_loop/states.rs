@@ -1,4 +1,4 @@
-//! The tables of the modes' state machines tell what really happens.
+//! The state machines in the modes' descriptions are what really happens.
 
 use rumbo_control::mode::ModeId;
 use rumbo_scenario::files::{FileError, Kind, Library, Overrides};
@@ -34,8 +34,11 @@ fn changes(scenario: &str, seed: u64) -> BTreeSet<(u8, u8, u8)> {
 const AT_ONCE: [u8; 2] = [2, 6];
 
 fn is_known(mode: u8, from: u8, to: u8) -> bool {
-    let ways = ModeId::from_number(mode).unwrap().transitions();
-    let joined = |from, to| ways.iter().any(|way| (way.from, way.to) == (from, to));
+    let states = ModeId::from_number(mode).unwrap().description().states;
+    let joined = |from: u8, to| {
+        let ways = states[usize::from(from)].ways;
+        ways.iter().any(|way| way.to == to)
+    };
     let through = |middle: &u8| mode == 8 && joined(from, *middle) && joined(*middle, to);
     joined(from, to) || AT_ONCE.iter().any(through)
 }

@@ -247,8 +247,8 @@ fn what_both_are_given_leads_through_every_state_of_every_mode() {
     let given = random.chain([Given::in_text(9)]).chain(recorded);
     let visited: BTreeSet<(u8, u8)> = given.flat_map(visited).collect();
     for mode in ModeId::ALL {
-        let names = mode.state_names().iter().enumerate();
-        let missed: Vec<_> = names
+        let states = mode.description().states.iter().enumerate();
+        let missed: Vec<_> = states
             .filter(|(state, _)| !NEVER_SEEN.contains(&(mode, *state)))
             .filter(|(state, _)| !visited.contains(&(mode as u8, *state as u8)))
             .collect();

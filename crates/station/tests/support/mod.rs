@@ -326,6 +326,7 @@ impl Simulation for Toy {
         Scene {
             choice: self.choice.clone(),
             scenarios: vec!["toy".into()],
+            experiments: Vec::new(),
             worlds: vec!["wall".into()],
             rigs: vec!["final".into()],
             rig: "final".into(),

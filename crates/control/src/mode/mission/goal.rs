@@ -80,7 +80,7 @@ impl Mission<'_> {
         }
         let front_m = self.params.get(ParamId::SonarFrontX);
         action.look = look(state, estimate, front_m);
-        action.state = state.phase as u8;
+        action.state = state.shown(state.phase as u8);
         action.heading_ref_rad = state.heading_ref_rad;
         Ok(())
     }
@@ -97,7 +97,7 @@ impl Mission<'_> {
     ) {
         let pose = &estimate.pose;
         action.drive = match state.phase {
-            Phase::Wait | Phase::Unreachable => Drive::Release,
+            Phase::Wait | Phase::Unreachable | Phase::StraightOn | Phase::Prove => Drive::Release,
             Phase::Initialise => {
                 state.age_s = 0.0;
                 state.laps = 0;

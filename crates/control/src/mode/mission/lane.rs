@@ -45,17 +45,17 @@ const CLOSE_M: f32 = 0.17;
 const MIDDLE_RAD_M: f32 = 0.5;
 const MOST_ASIDE_RAD: f32 = 0.12;
 
-/// Where a lane stands; the numbers of the mission's states, counted from that of its start.
+/// Where a lane stands, by the numbers of the mission's states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 enum Stage {
     #[default]
-    Start = 0,
-    SweepRight = 2,
-    SweepLeft = 3,
-    Decide = 4,
-    Turn = 5,
-    Straight = 10,
+    Start = Phase::Initialise as u8,
+    SweepRight = Phase::SweepRight as u8,
+    SweepLeft = Phase::SweepLeft as u8,
+    Decide = Phase::Decide as u8,
+    Turn = Phase::AvoidanceTurn as u8,
+    Straight = Phase::StraightOn as u8,
 }
 
 /// What is ahead: the second nearest of the last five looks, moved along with the robot. One wild look brings nothing nearer, and
@@ -243,7 +243,8 @@ impl Mission<'_> {
             Stage::SweepLeft => ServoAngle(lane.sweep.target_rad),
             _ => ServoAngle(0.0),
         };
-        action.state = Phase::Initialise as u8 + lane.stage as u8;
+        let stage = lane.stage as u8;
+        action.state = state.shown(stage);
         action.heading_ref_rad = heading_ref_rad;
         action.look.servo = servo;
         Ok(())

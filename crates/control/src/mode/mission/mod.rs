@@ -5,25 +5,6 @@
 //!        -> forward speed and yaw rate -> wheel-speed loops                  angles count counter-clockwise, left is positive
 //! ```
 //!
-//! | state | does | leaves when | to |
-//! |---|---|---|---|
-//! | 0 wait for goal | wheels released | a goal arrives; at any other time too | 2 |
-//! | 1 initial turn | turns on the spot to the goal | it faces it | 3 |
-//! | 2 initialise | forgets the last goal's detour | at once | 1, or 3 if it faces the goal |
-//! | 3 go to goal | follows the straight line to the goal | it stands there: *reached*, the origin moves there | 0 |
-//! | | | an obstacle is 0.6 m ahead on the way: a new one | 4 |
-//! | | | the one it has just left | 8 |
-//! | 4, 5 sweep right, left | goes on slowly, the servo looks 86 degrees aside | the servo has been there | 5, 6 |
-//! | 6 decide | takes the side past whose end the way to the goal is shorter | at once | 8 |
-//! | 7 avoidance turn | turns on the spot to the direction that passes the end | it faces there | 8 |
-//! | 8 advance seeking the obstacle | drives in that direction, the sonar beside not yet seeing it | the sonar sees it | 9 |
-//! | 9 advance along it | the same along the obstacle | the sonar loses it | 10 |
-//! | 10 advance a safe distance | the same around its corner | 12.5 cm on; the sonar sees it | 8; 9 |
-//! | (8, 9, 10) | | that direction is far from ahead | 7 |
-//! | (7 to 10) | | the way to the goal is clear and leads nearer to it than the robot ever was | 3 |
-//! | | | back where it met the obstacle, or once around the goal | 11 |
-//! | 11 unreachable | wheels released: *unreachable* | a goal arrives | 2 |
-//!
 //! The report turns by 90 degrees to the side on which the obstacle's edge appears at the smaller angle, follows its faces by turns of
 //! 90 degrees, and leaves when the bearing to the goal is the line's again. Ours needs no right angles, looks while it drives, goes straight
 //! past what it remembers, leaves early, and knows when to give up. Derivation, proof of termination and figures: docs/theory/mission.md.
@@ -40,12 +21,14 @@ mod plan;
 mod proof;
 mod watch;
 
-use super::{Action, Look, Mode, Situation};
+use super::description::{FEEDFORWARD, LINES, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
+use super::{Action, Description, Group, Look, Mode, Plot, Situation, Takes, waypoints};
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sqrt};
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
 use crate::params::{ParamId, Params};
-use crate::types::{Drive, Fault, Pose, Range, Reading, ServoAngle, Side, SonarId, TICK_S};
+use crate::rig::{Rig, Rigs};
+use crate::types::{Drive, Fault, Pose, Range, Reading, ServoAngle, Side, SonarId, TICK_S, Wheels};
 use detour::following;
 use echoes::Echoes;
 use gaze::Gaze;
@@ -59,23 +42,135 @@ use watch::{Watch, Worth};
 /// Time between two fadings of the memory [s].
 const FADE_S: f32 = 1.0;
 
-/// Names of the states.
-#[cfg(feature = "names")]
-pub const STATE_NAMES: [&str; 13] = [
-    "wait for goal",
-    "initial turn",
-    "initialise",
-    "go to goal",
-    "sweep right",
-    "sweep left",
-    "decide",
-    "avoidance turn",
-    "advance seeking the obstacle",
-    "advance along it",
-    "advance a safe distance",
-    "unreachable",
-    "straight on",
-];
+/// What mode 8 is.
+pub const DESCRIPTION: Description = Description {
+    number: 8,
+    name: "mission",
+    about: "reach a goal around obstacles, or follow a lane of boxes",
+    states: STATES,
+    idle: Some(Phase::Wait as u8),
+    reference: Some(waypoints::REFERENCE),
+    heading: true,
+    takes: Some(Takes::Lane),
+    rigs: Rigs::of(&[Rig::Final]),
+    parameters: &[
+        Group::new(
+            "goal",
+            &[
+                ParamId::MissionCruise,
+                ParamId::MissionAround,
+                ParamId::MissionGiveUp,
+                ParamId::MissionResetOrigin,
+            ],
+        ),
+        Group::new("lane", &[ParamId::LaneSafe]),
+        TURNS,
+        LINES,
+        SPEED_LOOPS,
+        FEEDFORWARD,
+        WHEEL_RAMPS,
+    ],
+    plots: &[Plot::Position, Plot::Heading, Plot::Distance, Plot::Wheels],
+};
+
+states! {
+    /// Where a mission stands; the report's numbers, and one more for the lane.
+    enum Phase {
+        /// Wheels released.
+        #[default]
+        Wait = "wait for goal" { Initialise: "a goal arrives" }
+        /// Turns on the spot to the goal.
+        InitialTurn = "initial turn" {
+            GoToGoal: "it faces the goal",
+            Prove: "the front sonar is in doubt",
+        }
+        /// Forgets the last goal's detour; left at once.
+        Initialise = "initialise" {
+            InitialTurn: "the goal is not ahead",
+            GoToGoal: "it faces the goal",
+            StraightOn: "lane: begin",
+        }
+        /// Follows the straight line to the goal, at 0.40 m/s at most; at its end the event *reached*.
+        GoToGoal = "go to goal" {
+            Wait: "it stands at the goal",
+            SweepRight: "an obstacle ahead",
+            Seek: "the obstacle that it has just left",
+            Prove: "the front sonar is in doubt",
+        }
+        /// Goes on at 0.1 m/s at most, the servo looks 1.5 rad to the right.
+        SweepRight = "sweep right" {
+            SweepLeft: "looked to the right",
+            Prove: "the front sonar is in doubt",
+        }
+        /// The same to the left.
+        SweepLeft = "sweep left" {
+            Decide: "looked to the left",
+            Prove: "the front sonar is in doubt",
+        }
+        /// Takes the side past whose end the way to the goal is shorter; left at once.
+        Decide = "decide" {
+            Seek: "the shorter way round",
+            GoToGoal: "the way to the goal is clear",
+            InitialTurn: "the goal is not ahead",
+            AvoidanceTurn: "lane: a quarter turn, or half a turn",
+            Prove: "the front sonar is in doubt",
+        }
+        /// Turns on the spot to the direction that passes the end.
+        AvoidanceTurn = "avoidance turn" {
+            Seek: "it faces past the end",
+            GoToGoal: "the way to the goal is clear",
+            InitialTurn: "the goal is not ahead",
+            Unreachable: "there is no way",
+            StraightOn: "lane: it faces the heading",
+            Prove: "the front sonar is in doubt",
+        }
+        /// Drives in that direction, at 0.22 m/s at most, the sonar beside not yet seeing the obstacle.
+        Seek = "advance seeking the obstacle" {
+            Along: "the sonar beside sees the obstacle",
+            AvoidanceTurn: "the way past is far from ahead",
+            GoToGoal: "the way to the goal is clear",
+            InitialTurn: "the goal is not ahead",
+            Unreachable: "there is no way",
+            Prove: "the front sonar is in doubt",
+        }
+        /// The same along the obstacle.
+        Along = "advance along it" {
+            SafeDistance: "the sonar beside loses the obstacle",
+            AvoidanceTurn: "the way past is far from ahead",
+            GoToGoal: "the way to the goal is clear",
+            InitialTurn: "the goal is not ahead",
+            Unreachable: "there is no way",
+            Prove: "the front sonar is in doubt",
+        }
+        /// The same around its corner.
+        SafeDistance = "advance a safe distance" {
+            Seek: "12.5 cm on",
+            Along: "the sonar beside sees the obstacle",
+            AvoidanceTurn: "the way past is far from ahead",
+            GoToGoal: "the way to the goal is clear",
+            InitialTurn: "the goal is not ahead",
+            Unreachable: "there is no way",
+            Prove: "the front sonar is in doubt",
+        }
+        /// Wheels released: the event *unreachable*.
+        Unreachable = "unreachable" { Initialise: "a goal arrives" }
+        /// In a lane only: straight on to the next face.
+        StraightOn = "straight on" {
+            SweepRight: "lane: stands before a face",
+            Prove: "the front sonar is in doubt",
+        }
+        /// Stands and turns the front sonar, and then itself, to what must answer.
+        Prove = "prove the front sonar" {
+            GoToGoal: "it hears",
+            InitialTurn: "the goal is not ahead",
+            AvoidanceTurn: "it hears, beside an obstacle",
+            Seek: "it hears, before an obstacle",
+            Along: "it hears, along an obstacle",
+            SafeDistance: "it hears, around a corner",
+            Unreachable: "there is no way",
+        }
+    }
+}
 
 /// What the mission is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -92,25 +187,6 @@ pub enum Task {
     },
     /// Follow a lane of boxes.
     Lane,
-}
-
-/// Where a mission stands; the report's numbers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-enum Phase {
-    #[default]
-    Wait = 0,
-    InitialTurn = 1,
-    Initialise = 2,
-    GoToGoal = 3,
-    SweepRight = 4,
-    SweepLeft = 5,
-    Decide = 6,
-    AvoidanceTurn = 7,
-    Seek = 8,
-    Along = 9,
-    SafeDistance = 10,
-    Unreachable = 11,
 }
 
 /// Configuration of mode 8.
@@ -187,6 +263,14 @@ impl State {
         self.fresh = true;
     }
 
+    /// The state as it is shown.
+    fn shown(&self, state: u8) -> u8 {
+        match self.proof {
+            Some(_) => Phase::Prove as u8,
+            None => state,
+        }
+    }
+
     /// Remembers what an answer says, as far as it can be believed.
     fn ingest(&mut self, estimate: &Estimate, reading: &Reading) {
         let driving =
@@ -208,20 +292,37 @@ impl State {
     }
 }
 
-impl<'a> Mission<'a> {
-    /// From the parameters.
-    pub fn new(params: &'a Params, task: Task) -> Self {
+impl<'a> Mode<'a> for Mission<'a> {
+    type Setpoint = Task;
+    type State = State;
+
+    fn first() -> Task {
+        Task::default()
+    }
+
+    fn new(params: &'a Params, task: &Task) -> Self {
         Self {
-            task,
+            task: *task,
             params,
             line: Line::new(params),
             around_m_s: params.get(ParamId::MissionAround),
         }
     }
-}
 
-impl Mode for Mission<'_> {
-    type State = State;
+    fn start(state: &mut State) {
+        *state = State::default();
+        state.renew();
+    }
+
+    fn reference(task: &Task, _: &State) -> Wheels<f32> {
+        match *task {
+            Task::Goal { x_m, y_m } => Wheels {
+                left: x_m,
+                right: y_m,
+            },
+            Task::Wait | Task::Lane => Wheels::both(0.0),
+        }
+    }
 
     fn act(
         &self,

@@ -2,6 +2,7 @@
 
 mod baseline;
 mod manual;
+mod states;
 mod walls;
 mod ways;
 mod wheels;
@@ -46,6 +47,15 @@ pub(crate) const PAGES: &[Page] = &[
     page("mode8-obstacles", "original.md", ways::mode8_obstacles),
     page("original", "original.md", baseline::original),
     page("wiring", "../wiring.md", wiring::wiring),
+    page("modes", "README.md", states::modes),
+    page("states-0", "manual.md", states::states::<0>),
+    page("states-1", "front_distance.md", states::states::<1>),
+    page("states-2", "front_align.md", states::states::<2>),
+    page("states-4", "wall_follow.md", states::states::<4>),
+    page("states-5", "wheel_speed.md", states::states::<5>),
+    page("states-6", "straight_line.md", states::states::<6>),
+    page("states-7", "waypoints.md", states::states::<7>),
+    page("states-8", "mission.md", states::states::<8>),
 ];
 
 const fn page(

@@ -1,0 +1,256 @@
+//! What a mode is, for whoever chooses it, draws it or checks it: one constant [`Description`] beside each mode.
+//!
+//! The firmware uses the number, the rigs and the range of the reference, as constants where it needs them. The whole exists on hosts
+//! (`ModeId::description`, feature `names`): page, command line, docs and metrics derive from it.
+
+use super::SetpointError;
+use super::commands::within;
+use crate::params::ParamId;
+use crate::rig::Rigs;
+
+/// What a mode is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Description {
+    /// Its number in the report, on the link and in files.
+    pub number: u8,
+    /// Its name in files, commands and the dashboard.
+    pub name: &'static str,
+    /// What it does, in a few words.
+    pub about: &'static str,
+    /// Its states, by the number in telemetry, and what leads from one to another.
+    pub states: &'static [StateDescription],
+    /// The state in which its reference is not in force: the last one is from before.
+    pub idle: Option<u8>,
+    /// What it regulates to, if that is one value.
+    pub reference: Option<Reference>,
+    /// It wants a heading, which telemetry tells.
+    pub heading: bool,
+    /// What it takes besides.
+    pub takes: Option<Takes>,
+    /// The rigs that carry the sonars it needs.
+    pub rigs: Rigs,
+    /// The parameters it acts by, those that matter most first. A parameter of no mode belongs to the robot.
+    pub parameters: &'static [Group],
+    /// What is worth plotting, in this order.
+    pub plots: &'static [Plot],
+}
+
+/// A state of a mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StateDescription {
+    /// Its name.
+    pub name: &'static str,
+    /// What the robot does in it.
+    pub does: &'static str,
+    /// What leads on from it while the robot is armed; a command may lead back to the first state at any time.
+    pub ways: &'static [Way],
+}
+
+/// A transition to another state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Way {
+    /// Number of the state that follows.
+    pub to: u8,
+    /// When, in a few words.
+    pub when: &'static str,
+}
+
+/// What a mode regulates to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    /// What it is.
+    pub kind: ReferenceKind,
+    /// Smallest allowed value.
+    pub min: f32,
+    /// Largest allowed value.
+    pub max: f32,
+    /// The value to offer first.
+    pub offered: f32,
+    /// A command sets it; otherwise the mode finds it by itself.
+    pub commanded: bool,
+}
+
+impl Reference {
+    /// One that a command sets.
+    pub const fn commanded(kind: ReferenceKind, min: f32, max: f32, offered: f32) -> Self {
+        Self {
+            kind,
+            min,
+            max,
+            offered,
+            commanded: true,
+        }
+    }
+
+    /// Whether a value is allowed.
+    ///
+    /// # Errors
+    /// It is not finite or out of range.
+    #[inline]
+    pub fn check(&self, value: f32) -> Result<(), SetpointError> {
+        within(value, self.min, self.max)
+    }
+}
+
+/// What a reference is, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReferenceKind {
+    /// A distance in metres.
+    Distance,
+    /// A speed of each wheel in rad/s.
+    WheelSpeed,
+    /// One speed of both wheels in rad/s.
+    Speed,
+    /// A position: each coordinate in metres.
+    Goal,
+}
+
+#[cfg(feature = "names")]
+impl ReferenceKind {
+    /// The name in messages to the dashboard.
+    pub const fn name(self) -> &'static str {
+        match self {
+            ReferenceKind::Distance => "distance",
+            ReferenceKind::WheelSpeed => "wheel_speed",
+            ReferenceKind::Speed => "speed",
+            ReferenceKind::Goal => "goal",
+        }
+    }
+}
+
+/// What a mode takes besides its reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Takes {
+    /// The basic movements.
+    Movements,
+    /// A route of at most so many waypoints.
+    Route(usize),
+    /// The command to follow a lane.
+    Lane,
+}
+
+/// Parameters that belong together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// What they are of.
+    pub title: &'static str,
+    /// The parameters.
+    pub parameters: &'static [ParamId],
+}
+
+impl Group {
+    /// A group.
+    pub const fn new(title: &'static str, parameters: &'static [ParamId]) -> Self {
+        Self { title, parameters }
+    }
+}
+
+/// A plot that a mode can begin with; what is in it is the page's matter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plot {
+    /// Ranges and the reference of the distance.
+    Distance,
+    /// Wheel speeds and their references.
+    Wheels,
+    /// PWM of both wheels.
+    Pwm,
+    /// Heading and its reference.
+    Heading,
+    /// Position and goal.
+    Position,
+}
+
+#[cfg(feature = "names")]
+impl Plot {
+    /// The name in messages to the dashboard.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Plot::Distance => "distance",
+            Plot::Wheels => "wheels",
+            Plot::Pwm => "PWM",
+            Plot::Heading => "heading",
+            Plot::Position => "place",
+        }
+    }
+}
+
+/// The PID of each wheel.
+pub(super) const SPEED_LOOPS: Group = Group::new(
+    "speed loops",
+    &[
+        ParamId::SpeedKpLeft,
+        ParamId::SpeedKiLeft,
+        ParamId::SpeedKdLeft,
+        ParamId::SpeedKpRight,
+        ParamId::SpeedKiRight,
+        ParamId::SpeedKdRight,
+    ],
+);
+/// What the wheels get without any error.
+pub(super) const FEEDFORWARD: Group = Group::new(
+    "feedforward",
+    &[
+        ParamId::StaticLeftForward,
+        ParamId::StaticLeftBackward,
+        ParamId::StaticRightForward,
+        ParamId::StaticRightBackward,
+        ParamId::Velocity,
+        ParamId::Acceleration,
+        ParamId::Kick,
+    ],
+);
+/// How fast the wheels' references may change.
+pub(super) const WHEEL_RAMPS: Group = Group::new(
+    "ramps of the wheels",
+    &[ParamId::WheelAccel, ParamId::WheelDecel],
+);
+/// Of [`crate::motion::Turn`].
+pub(super) const TURNS: Group = Group::new(
+    "turns on the spot",
+    &[
+        ParamId::TurnRate,
+        ParamId::TurnTolerance,
+        ParamId::TurnBrake,
+        ParamId::TurnCoast,
+    ],
+);
+/// Of [`crate::motion::Line`].
+pub(super) const LINES: Group = Group::new(
+    "straight lines",
+    &[
+        ParamId::LineCruise,
+        ParamId::LineTolerance,
+        ParamId::LineCross,
+        ParamId::LineHeading,
+        ParamId::LineAccel,
+        ParamId::LineBrake,
+        ParamId::LineCoast,
+        ParamId::SpeedLag,
+    ],
+);
+
+/// Declares the states of a mode: an enum for the mode's code, and `STATES` for its [`Description`]. Each state: what the robot does in it,
+/// its name, and the states that may follow with their conditions. Numbers are given in the order.
+macro_rules! states {
+    (
+        $(#[$meta:meta])*
+        $vis:vis enum $phase:ident {
+            $( #[doc = $does:literal] $( #[$default:ident] )? $state:ident = $name:literal { $( $to:ident: $when:literal ),* $(,)? } )+
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[repr(u8)]
+        $vis enum $phase { $( #[doc = $does] $( #[$default] )? $state, )+ }
+
+        /// The states, by number.
+        pub(super) const STATES: &[$crate::mode::StateDescription] = &[ $(
+            $crate::mode::StateDescription {
+                name: $name,
+                does: $does.trim_ascii(),
+                ways: &[ $( $crate::mode::Way { to: $phase::$to as u8, when: $when } ),* ],
+            },
+        )+ ];
+    };
+}
+pub(super) use states;
