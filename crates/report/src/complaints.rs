@@ -1,8 +1,8 @@
 //! What a run's program or robot complained of, in the reader's language.
 //!
-//! A failure is an English line, as the command line prints it. The kinds of lines are few; a fault and a refusal say the same words each
-//! time. What has no Spanish (a line of a newer program) is shown as it is. The Spanish is
-//! `content/es/messages.md`.
+//! A failure is an English line, as the command line prints it. The kinds of lines are few; a fault and a refusal say the
+//! same words each time, and their Spanish is `content/es/messages.md`. A line without Spanish (of a newer program) is shown
+//! as it is.
 
 use crate::text::{Language, with};
 use crate::words;
@@ -74,7 +74,8 @@ const ENDS: [(&str, &str); 3] = [
     ("stack overflow at ", "stack-overflow"),
 ];
 
-/// `firmware NAME: ...`: how its program ended. Where it was and how it came there are names and numbers of the program.
+/// `firmware NAME: ...`: how its program ended. Where it was and how it came there are names and numbers of the
+/// program.
 fn of_image(line: &str) -> Option<Complaint> {
     let (name, verdict) = line.strip_prefix("firmware ")?.split_once(": ")?;
     let (_, end) = ENDS

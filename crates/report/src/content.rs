@@ -20,7 +20,7 @@ struct Files;
 /// What is wrong in a file of the report's content: which file, which line, what, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ContentError {
-    /// Path from the crate's folder.
+    /// Path from the project's folder.
     pub file: String,
     /// Counted from 1.
     pub line: usize,
@@ -40,7 +40,7 @@ impl std::error::Error for ContentError {}
 /// A file of the content.
 #[derive(Clone, Debug)]
 pub(crate) struct Source {
-    /// Path from the crate's folder.
+    /// Path from the project's folder.
     pub(crate) file: String,
     pub(crate) text: Cow<'static, str>,
 }
@@ -57,7 +57,7 @@ impl Source {
     }
 
     fn read(path: &str) -> Result<Self, ContentError> {
-        let file = format!("content/{path}");
+        let file = format!("crates/report/content/{path}");
         let wrong = |what: &str| ContentError {
             file: file.clone(),
             line: 1,
