@@ -4,7 +4,7 @@ use crate::complaints::{self, Complaint};
 use crate::metric_names::{Shown, shown};
 use crate::signals::Outcome;
 use crate::table::{Cell, Tone, table};
-use crate::text::{Language, Text, escape, quoted, word};
+use crate::text::{Language, Text, escape, quoted, with, word};
 use rumbo_scenario::files::Bounds;
 
 pub(crate) fn capital(text: &str) -> String {
@@ -177,7 +177,10 @@ fn complaints(language: Language, outcome: &Outcome) -> String {
             (false, false) => format!("{} ({span})", quoted(&own)),
         };
         let name = name_of(&outcome.result.scenario);
-        let message = MESSAGE.with(language, &[("scenario", &name), ("message", &said)]);
+        let message = with(
+            &escape(MESSAGE.of(language)),
+            &[("scenario", &name), ("message", &said)],
+        );
         format!("<p class=\"verdict bad\">{message}</p>\n")
     };
     let failures = outcome.result.failures.iter();
