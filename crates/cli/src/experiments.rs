@@ -53,7 +53,7 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
     let mut data = plan.run(|simulated_s| progress.inc((10.0 * simulated_s) as u64))?;
     progress.finish_and_clear();
     data.firmware = args.image.firmware.as_deref().map(named);
-    let (page, _) = html(&data, language(args));
+    let (page, _) = html(&data, language(args)).map_err(Failure::input)?;
     let place = args.out.join(REPORT);
     place::write(&place, stamp.put_on(page))?;
     if args.data {
@@ -166,7 +166,7 @@ fn report(data: &Data, place: &Path, begun: Instant) -> Result<(), Failure> {
             vec![
                 experiment.name.to_owned(),
                 verdict.to_owned(),
-                experiment.title.en.to_owned(),
+                experiment.title(Language::English),
             ]
         })
         .collect();
@@ -179,7 +179,8 @@ fn report(data: &Data, place: &Path, begun: Instant) -> Result<(), Failure> {
     for skipped in &data.real.skipped {
         output::line(&format!(
             "  note: {} is not shown: {}",
-            skipped.file, skipped.why.en
+            skipped.file,
+            skipped.why.text().of(Language::English)
         ))?;
     }
     output::line(&format!(

@@ -4,8 +4,7 @@
 //! armed instant to the last becomes rows of the kind that the original program writes in that mode.
 
 use rumbo_control::mode::{Description, ModeId, ReferenceKind, Takes};
-use rumbo_report::real::FromLog;
-use rumbo_report::text::Text;
+use rumbo_report::real::{FromLog, NotShown};
 use rumbo_scenario::files::bounded::{LONGEST_RECORDING, read_at_most};
 use rumbo_station::Row;
 use rumbo_station::log::{Kind, Log};
@@ -19,37 +18,24 @@ pub(crate) const CSV: &str = "text/csv";
 /// What stands for nothing in reach \[cm\]: the sonars' reach.
 const CLEAR_CM: f64 = 250.0;
 
-const NO_LOG: Text = Text {
-    en: "it is no log of rumbo that can be read",
-    es: "no es un registro de rumbo que pueda leerse",
-};
-const SIMULATED: Text = Text {
-    en: "it is of a simulated robot",
-    es: "es de un robot simulado",
-};
-const NOTHING: Text = Text {
-    en: "it holds no run of modes 1 to 8 with the robot armed",
-    es: "no contiene ninguna prueba de los modos 1 a 8 con el robot armado",
-};
-
 /// The bytes of a CSV, or of the log that was made of it.
 pub(crate) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     read_at_most(path, 4 * LONGEST_RECORDING)
 }
 
 /// What a log comes to, or why it is none of a real robot's run.
-pub(crate) fn from_log(path: &Path) -> Result<FromLog, Text> {
-    let bytes = bytes(path).map_err(|_| NO_LOG)?;
+pub(crate) fn from_log(path: &Path) -> Result<FromLog, NotShown> {
+    let bytes = bytes(path).map_err(|_| NotShown::NoLog)?;
     if let Ok(csv) = attached(&bytes) {
         let csv = String::from_utf8_lossy(&csv).into_owned();
         return Ok(FromLog { csv, ours: false });
     }
-    let log = Log::read_signals(path).map_err(|_| NO_LOG)?;
-    let manifest = log.manifest.as_ref().ok_or(NO_LOG)?;
+    let log = Log::read_signals(path).map_err(|_| NotShown::NoLog)?;
+    let manifest = log.manifest.as_ref().ok_or(NotShown::NoLog)?;
     if manifest.kind != Kind::Robot {
-        return Err(SIMULATED);
+        return Err(NotShown::Simulated);
     }
-    let csv = csv(&log.rows).ok_or(NOTHING)?;
+    let csv = csv(&log.rows).ok_or(NotShown::NoRun)?;
     let ours = manifest.program != "original";
     Ok(FromLog { csv, ours })
 }

@@ -1,9 +1,11 @@
 //! What a run's program or robot complained of, in the reader's language.
 //!
-//! A failure is an English line, as the command line prints it. The kinds of lines are few; a fault and a refusal say the same words each
-//! time. What has no Spanish (a line of a newer program) is shown as it is.
+//! A failure is an English line, as the command line prints it. The kinds of lines are few; a fault and a refusal say the
+//! same words each time, and their Spanish is `content/es/messages.md`. A line without Spanish (of a newer program) is shown
+//! as it is.
 
-use crate::text::Language;
+use crate::text::{Language, with};
+use crate::words;
 use rumbo_control::Fault;
 use rumbo_wire::Refusal;
 
@@ -36,23 +38,27 @@ pub(crate) fn told(language: Language, line: &str) -> Complaint {
 /// `at 1.20 s fault: ...`, `at 1.20 s ... was refused: ...`.
 fn of_robot(line: &str) -> Option<Complaint> {
     let (at_s, what) = line.strip_prefix("at ")?.split_once(" s ")?;
-    let at_s = at_s.replace('.', ",");
+    let seconds = at_s.replace('.', ",");
     let own = match what.strip_prefix("fault: ") {
         Some(why) => {
             let fault = Fault::ALL
                 .into_iter()
                 .find(|fault| fault.explanation() == why)?;
-            format!("a los {at_s} s, fallo: {}", fault_in_spanish(fault))
+            let why = spanish(&format!("Fault::{fault:?}"))?;
+            with(spanish("fault")?, &[("seconds", &seconds), ("why", why)])
         }
         None => {
             let (command, why) = what.rsplit_once(" was refused: ")?;
             let refusal = Refusal::ALL
                 .into_iter()
                 .find(|refusal| refusal.explanation() == why)?;
-            format!(
-                "a los {at_s} s se rechazó {command}: {}",
-                refusal_in_spanish(refusal)
-            )
+            let why = spanish(&format!("Refusal::{refusal:?}"))?;
+            let values = [
+                ("seconds", seconds.as_str()),
+                ("command", command),
+                ("why", why),
+            ];
+            with(spanish("refused")?, &values)
         }
     };
     Some(Complaint {
@@ -61,93 +67,31 @@ fn of_robot(line: &str) -> Option<Complaint> {
     })
 }
 
-/// `firmware NAME: ...`: how its program ended. Where it was and how it came there are names and numbers of the program.
+/// How a program ends, as the emulator begins to say it, and its name in `messages.md`.
+const ENDS: [(&str, &str); 3] = [
+    ("ran into erased flash at ", "erased-flash"),
+    ("illegal instruction ", "illegal-instruction"),
+    ("stack overflow at ", "stack-overflow"),
+];
+
+/// `firmware NAME: ...`: how its program ended. Where it was and how it came there are names and numbers of the
+/// program.
 fn of_image(line: &str) -> Option<Complaint> {
     let (name, verdict) = line.strip_prefix("firmware ")?.split_once(": ")?;
-    let ends = [
-        (
-            "ran into erased flash at ",
-            "el programa entró en memoria flash borrada",
-        ),
-        (
-            "illegal instruction ",
-            "el programa llegó a una instrucción que no existe",
-        ),
-        (
-            "stack overflow at ",
-            "la pila del programa creció hasta sus datos",
-        ),
-    ];
-    let (_, spanish) = ends
+    let (_, end) = ENDS
         .into_iter()
         .find(|(english, _)| verdict.starts_with(english))?;
+    let values = [("name", name), ("why", spanish(end)?)];
     Some(Complaint {
-        own: format!("imagen {name}: {spanish}"),
+        own: with(spanish("image")?, &values),
         english: verdict.into(),
     })
 }
 
-const fn fault_in_spanish(fault: Fault) -> &'static str {
-    match fault {
-        Fault::LinkLost => {
-            "enlace perdido: no llegó a tiempo ningún latido; compruebe la conexión, borre el fallo y vuelva a armar"
-        }
-        Fault::SonarFaulty => {
-            "sensor averiado: su línea de eco calla o da valores imposibles; compruebe su cableado"
-        }
-        Fault::SonarStale => {
-            "sensor sin lecturas: ninguna buena durante demasiado tiempo; ¿hay algo que absorba el eco?"
-        }
-        Fault::WallLost => {
-            "pared perdida: no hay nada al alcance del sensor; ponga el robot frente a una pared"
-        }
-        Fault::LeftEncoderSilent => {
-            "encoder izquierdo en silencio: la rueda recibe PWM y no gira, o su sensor está cortado"
-        }
-        Fault::RightEncoderSilent => {
-            "encoder derecho en silencio: la rueda recibe PWM y no gira, o su sensor está cortado"
-        }
-        Fault::BatteryLow => "batería baja: cárguela",
-        Fault::NotFinite => "un valor no era un número finito; restablezca los parámetros",
-        Fault::Overrun => "un periodo de control duró demasiado",
-        Fault::Blocked => {
-            "bloqueado: hay algo en el camino; despéjelo o gire el robot, borre el fallo y vuelva a armar"
-        }
-        Fault::LeftEncoderImplausible => {
-            "encoder izquierdo no creíble: pierde flancos o capta ruido; compruebe sus cables, su masa y la distancia entre sensor e imán"
-        }
-        Fault::RightEncoderImplausible => {
-            "encoder derecho no creíble: pierde flancos o capta ruido; compruebe sus cables, su masa y la distancia entre sensor e imán"
-        }
-    }
-}
-
-const fn refusal_in_spanish(refusal: Refusal) -> &'static str {
-    match refusal {
-        Refusal::NotFinite => "el valor no es un número finito; envíe un número",
-        Refusal::OutOfRange => "el valor está fuera de los límites, que muestra `rumbo list`",
-        Refusal::UnknownParam => "no existe tal parámetro; `rumbo list` los muestra",
-        Refusal::NotInThisMode => "el modo elegido no admite esa orden; elija el que sí la admite",
-        Refusal::Armed => "no puede hacerse con el robot armado; desármelo antes",
-        Refusal::Faulted => "hay un fallo retenido; elimine su causa y bórrelo antes",
-        Refusal::SonarNotReady => {
-            "el sensor que necesita este modo no da buenas lecturas; compruebe su cableado"
-        }
-        Refusal::NoLink => "al robot no le llega ningún latido; conéctelo y vuelva a armar",
-        Refusal::Malformed => {
-            "el robot no entendió la orden; use la misma versión en ambos extremos"
-        }
-        Refusal::BatteryLow => "la batería está baja; cárguela",
-        Refusal::TooOld => {
-            "es demasiado antigua: se dio hace más de 2 s, o antes de que el robot volviera a arrancar; vuelva a darla"
-        }
-        Refusal::NoWall => {
-            "no hay ninguna pared al alcance del sensor que necesita este modo; coloque el robot a menos de 2,5 m de una"
-        }
-        Refusal::WrongRig => {
-            "los sensores del robot no están donde los necesita este modo; móntelos así y fije el parámetro `rig`"
-        }
-    }
+/// A text of `content/es/messages.md`.
+fn spanish(name: &str) -> Option<&'static str> {
+    let messages = words::messages().ok()?;
+    messages.get(name).map(String::as_str)
 }
 
 #[cfg(test)]
@@ -178,6 +122,18 @@ mod tests {
             "imagen mine.elf: la pila del programa creció hasta sus datos"
         );
         assert!(told.english.contains("loop+4"));
+    }
+
+    #[test]
+    fn every_message_is_one_of_a_fault_a_refusal_or_an_end() {
+        let faults = Fault::ALL.map(|fault| format!("Fault::{fault:?}"));
+        let refusals = Refusal::ALL.map(|refusal| format!("Refusal::{refusal:?}"));
+        let ends = ENDS.map(|(_, name)| name.to_owned());
+        let lines = ["fault", "refused", "image"].map(String::from);
+        let mut due = [&faults[..], &refusals, &ends, &lines].concat();
+        due.sort();
+        let known: Vec<_> = words::messages().unwrap().keys().cloned().collect();
+        assert_eq!(known, due);
     }
 
     #[test]

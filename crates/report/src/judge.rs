@@ -2,9 +2,9 @@
 
 use crate::complaints::{self, Complaint};
 use crate::metric_names::{Shown, shown};
-use crate::page::{Cell, Page, Tone};
 use crate::signals::Outcome;
-use crate::text::{Language, Text, escape, t};
+use crate::table::{Cell, Tone, table};
+use crate::text::{Language, Text, escape, quoted, with, word};
 use rumbo_scenario::files::Bounds;
 
 pub(crate) fn capital(text: &str) -> String {
@@ -33,7 +33,7 @@ pub(crate) fn with_unit(value: String, unit: &str) -> String {
     }
 }
 
-const NEVER: Text = t("never", "nunca");
+const NEVER: Text = word("never");
 
 /// A metric's value as it is shown.
 pub(crate) fn value(language: Language, shown: &Shown, value: f64) -> String {
@@ -80,57 +80,54 @@ fn bounds(language: Language, shown: &Shown, bounds: Bounds) -> String {
     with_unit(text, shown.unit)
 }
 
-const METRIC: Text = t("Metric", "Métrica");
-const VALUE: Text = t("Value", "Valor");
-const LIMIT: Text = t("Limit", "Límite");
-const RESULT: Text = t("Result", "Resultado");
-pub(crate) const KEPT: Text = t("met", "cumple");
-pub(crate) const MISSED: Text = t("missed", "no cumple");
-const MESSAGE: Text = t(
-    "Message of the program in {}: {}",
-    "Mensaje del programa en {}: {}",
-);
+const METRIC: Text = word("metric");
+const VALUE: Text = word("value");
+const LIMIT: Text = word("limit");
+const RESULT: Text = word("result");
+pub(crate) const KEPT: Text = word("met");
+pub(crate) const MISSED: Text = word("missed");
+const MESSAGE: Text = word("message-of-the-program");
 
 /// The metrics of runs against their limits, a table for each run.
-pub(crate) fn limits(page: &mut Page, outcomes: &[&Outcome]) {
-    let header = [METRIC, VALUE, LIMIT, RESULT].map(|text| page.say(text));
+pub(crate) fn limits(language: Language, outcomes: &[&Outcome]) -> String {
+    let header = [METRIC, VALUE, LIMIT, RESULT].map(|text| text.of(language));
+    let mut html = String::new();
     for outcome in outcomes {
-        let rows = rows(page.language, outcome);
+        let rows = rows(language, outcome);
         if !rows.is_empty() {
-            page.html(&format!(
-                "<h4><code translate=\"no\">{}</code></h4>\n",
-                escape(&outcome.result.scenario)
-            ));
-            page.table(&header, &rows);
+            let name = name_of(&outcome.result.scenario);
+            html += &format!("<h4>{name}</h4>\n");
+            html += &table(&header, &rows);
         }
-        complaints(page, outcome);
+        html += &complaints(language, outcome);
     }
+    html
 }
 
-const SCENARIO: Text = t("Scenario", "Escenario");
+/// A name of the program.
+pub(crate) fn name_of(name: &str) -> String {
+    format!("<code translate=\"no\">{}</code>", escape(name))
+}
+
+const SCENARIO: Text = word("scenario");
 
 /// The same of many runs in one table.
-pub(crate) fn limits_together(page: &mut Page, outcomes: &[&Outcome]) {
+pub(crate) fn limits_together(language: Language, outcomes: &[&Outcome]) -> String {
     let mut all = Vec::new();
     for outcome in outcomes {
-        for (index, mut row) in rows(page.language, outcome).into_iter().enumerate() {
+        for (index, mut row) in rows(language, outcome).into_iter().enumerate() {
             // Said once, where the table's rows are many.
             let name = match index {
-                0 => format!(
-                    "<code translate=\"no\">{}</code>",
-                    escape(&outcome.result.scenario)
-                ),
+                0 => name_of(&outcome.result.scenario),
                 _ => String::new(),
             };
             row.insert(0, Cell::html(name));
             all.push(row);
         }
     }
-    let header = [SCENARIO, METRIC, VALUE, LIMIT, RESULT].map(|text| page.say(text));
-    page.table(&header, &all);
-    outcomes
-        .iter()
-        .for_each(|outcome| complaints(page, outcome));
+    let header = [SCENARIO, METRIC, VALUE, LIMIT, RESULT].map(|text| text.of(language));
+    let complaints = outcomes.iter().map(|outcome| complaints(language, outcome));
+    table(&header, &all) + &complaints.collect::<String>()
 }
 
 /// A run's metrics that have a limit.
@@ -160,7 +157,7 @@ fn rows(language: Language, outcome: &Outcome) -> Vec<Vec<Cell>> {
 }
 
 /// What the robot or the program said besides missed limits.
-fn complaints(page: &mut Page, outcome: &Outcome) {
+fn complaints(language: Language, outcome: &Outcome) -> String {
     let is_limit = |line: &str| {
         let of = |key: &String| {
             line.strip_prefix(key.as_str())
@@ -168,37 +165,29 @@ fn complaints(page: &mut Page, outcome: &Outcome) {
         };
         outcome.setup.scenario.limits.keys().any(of)
     };
-    for line in outcome
-        .result
-        .failures
-        .iter()
-        .filter(|line| !is_limit(line))
-    {
-        let name = &outcome.result.scenario;
-        let [before, rest] = page.say(MESSAGE).splitn(2, "{}").collect::<Vec<_>>()[..] else {
-            continue;
-        };
-        let Complaint { own, english } = complaints::told(page.language, line);
-        let english = match (own.is_empty(), english.is_empty()) {
-            (_, true) => String::new(),
-            (true, false) => format!(
-                "<span lang=\"en\" translate=\"no\">{}</span>",
-                escape(&english)
-            ),
-            (false, false) => format!(
-                " (<span lang=\"en\" translate=\"no\">{}</span>)",
-                escape(&english)
-            ),
-        };
-        let html = format!(
-            "<p class=\"verdict bad\">{}<code translate=\"no\">{}</code>{}{}{english}</p>\n",
-            escape(before),
-            escape(name),
-            escape(rest.trim_end_matches("{}")),
-            page.rich(&own)
+    let complaint = |line: &String| {
+        let Complaint { own, english } = complaints::told(language, line);
+        let span = format!(
+            "<span lang=\"en\" translate=\"no\">{}</span>",
+            escape(&english)
         );
-        page.html(&html);
-    }
+        let said = match (own.is_empty(), english.is_empty()) {
+            (_, true) => quoted(&own),
+            (true, false) => span,
+            (false, false) => format!("{} ({span})", quoted(&own)),
+        };
+        let name = name_of(&outcome.result.scenario);
+        let message = with(
+            &escape(MESSAGE.of(language)),
+            &[("scenario", &name), ("message", &said)],
+        );
+        format!("<p class=\"verdict bad\">{message}</p>\n")
+    };
+    let failures = outcome.result.failures.iter();
+    failures
+        .filter(|line| !is_limit(line))
+        .map(complaint)
+        .collect()
 }
 
 #[cfg(test)]

@@ -4,27 +4,33 @@
 //! EXPERIMENTS ─► Plan (setups; those beside a recorded run once more with its references) ─► run on all threads ─► Data ─► html
 //! ```
 //!
-//! A chapter (`chapters/`) is one experiment: what it is for, rig and wiring, control scheme, the mathematics, the figures, the metrics
-//! against their limits. Figures are drawn by `plot` (values) and `drawing` (everything else) as SVG inside the page. Whatever a reader
-//! sees is a [`text::Text`], English and Spanish side by side. The same version, seed and files give the same bytes.
+//! A chapter (`chapters/`) is one experiment. Its text is Markdown in English and Spanish, a file of `content/` with places
+//! for values, tables and figures; Rust computes what fills them. Figures are SVG inside the page: `plot` draws values,
+//! `drawing` what depends on the robot; the other drawings are files. The same version, seed and files give the same bytes.
 
 mod chapters;
 mod complaints;
+mod content;
 mod data;
 mod drawing;
 mod judge;
+mod markdown;
 mod metric_names;
 mod page;
+mod places;
 mod plan;
 mod plot;
 pub mod real;
 mod respond;
 mod signals;
 mod summary;
+mod table;
 pub mod text;
 mod told;
+mod words;
 
 pub use chapters::{EXPERIMENTS, Experiment};
+pub use content::ContentError;
 pub use data::Data;
 pub use plan::{Plan, Request};
 pub use signals::Outcome;

@@ -2,7 +2,7 @@
 
 use crate::judge::{capital, with_unit};
 use crate::signals::{CM, DEG, Outcome, RPM};
-use crate::text::{Language, Text, same, t};
+use crate::text::{Language, Text, same, word};
 use rumbo_control::mode::ReferenceKind;
 use rumbo_wire::Command;
 
@@ -26,336 +26,93 @@ const fn known(stem: &'static str, name: Text, factor: f64, unit: &'static str) 
 const PWM: f64 = 255.0;
 
 const KNOWN: &[Known] = &[
-    known(
-        "contacts",
-        t("contacts with an obstacle", "contactos con un obstáculo"),
-        1.0,
-        "",
-    ),
-    known(
-        "control_period_s",
-        t(
-            "time between two settings of the PWM",
-            "tiempo entre dos actuaciones PWM",
-        ),
-        1000.0,
-        "ms",
-    ),
+    known("contacts", word("contacts-with-an-obstacle"), 1.0, ""),
+    known("control_period_s", word("control-period"), 1000.0, "ms"),
     known(
         "reverse_drive_rad_s",
-        t(
-            "wheel driven against its motion, at most",
-            "velocidad de una rueda accionada contra su giro, máxima",
-        ),
+        word("wheel-driven-against-its-motion"),
         RPM,
         "rpm",
     ),
     Known {
         stem: "telemetry_hz",
-        name: t("telemetry", "telemetría"),
+        name: word("telemetry"),
         factor: 1.0,
-        unit: t("frames/s", "tramas/s"),
+        unit: word("frames-s"),
     },
-    known(
-        "settling_s",
-        t("settling time", "tiempo de establecimiento"),
-        1.0,
-        "s",
-    ),
-    known(
-        "within_2cm_s",
-        t(
-            "time until within 2 cm",
-            "tiempo hasta quedar a menos de 2 cm",
-        ),
-        1.0,
-        "s",
-    ),
-    known("rise_s", t("rise time", "tiempo de subida"), 1.0, "s"),
-    known("overshoot_m", t("overshoot", "sobreoscilación"), CM, "cm"),
-    known(
-        "overshoot_rad_s",
-        t("overshoot", "sobreoscilación"),
-        RPM,
-        "rpm",
-    ),
-    known(
-        "steady_error_m",
-        t("steady error", "error en régimen permanente"),
-        CM,
-        "cm",
-    ),
-    known(
-        "steady_error_rad_s",
-        t("steady error", "error en régimen permanente"),
-        RPM,
-        "rpm",
-    ),
-    known(
-        "rms_m",
-        t("error, root mean square", "error cuadrático medio"),
-        CM,
-        "cm",
-    ),
-    known(
-        "rms_rad_s",
-        t("error, root mean square", "error cuadrático medio"),
-        RPM,
-        "rpm",
-    ),
-    known(
-        "ripple_m",
-        t("ripple, standard deviation", "rizado, desviación típica"),
-        CM,
-        "cm",
-    ),
+    known("settling_s", word("settling-time"), 1.0, "s"),
+    known("within_2cm_s", word("time-until-within-2-cm"), 1.0, "s"),
+    known("rise_s", word("rise-time"), 1.0, "s"),
+    known("overshoot_m", word("overshoot"), CM, "cm"),
+    known("overshoot_rad_s", word("overshoot"), RPM, "rpm"),
+    known("steady_error_m", word("steady-error"), CM, "cm"),
+    known("steady_error_rad_s", word("steady-error"), RPM, "rpm"),
+    known("rms_m", word("error-rms"), CM, "cm"),
+    known("rms_rad_s", word("error-rms"), RPM, "rpm"),
+    known("ripple_m", word("ripple-standard-deviation"), CM, "cm"),
     known(
         "ripple_rad_s",
-        t("ripple, standard deviation", "rizado, desviación típica"),
+        word("ripple-standard-deviation"),
         RPM,
         "rpm",
     ),
-    known(
-        "angle_rad",
-        t("angle to the wall at rest", "ángulo con la pared en reposo"),
-        DEG,
-        "°",
-    ),
-    known(
-        "cruise_m_s",
-        t(
-            "slowest half second along the wall",
-            "velocidad a lo largo de la pared en el medio segundo más lento",
-        ),
-        1.0,
-        "m/s",
-    ),
-    known(
-        "distance_rms_m",
-        t(
-            "distance error, root mean square",
-            "error de distancia, cuadrático medio",
-        ),
-        CM,
-        "cm",
-    ),
-    known(
-        "distance_worst_m",
-        t("distance error, worst", "error de distancia, máximo"),
-        CM,
-        "cm",
-    ),
-    known(
-        "heading_rad",
-        t(
-            "true drift of the heading",
-            "desviación real de la orientación",
-        ),
-        DEG,
-        "°",
-    ),
-    known(
-        "sideways_m",
-        t("true drift sideways", "desviación lateral real"),
-        CM,
-        "cm",
-    ),
-    known("forward_m", t("way ahead", "avance"), 1.0, "m"),
-    known(
-        "left_rad_s",
-        t("speed of the left wheel", "velocidad de la rueda izquierda"),
-        RPM,
-        "rpm",
-    ),
-    known(
-        "right_rad_s",
-        t("speed of the right wheel", "velocidad de la rueda derecha"),
-        RPM,
-        "rpm",
-    ),
-    known(
-        "end_error_m",
-        t(
-            "true distance from the end point",
-            "distancia real al punto final",
-        ),
-        CM,
-        "cm",
-    ),
-    known(
-        "finish_s",
-        t("time to the end", "tiempo hasta el final"),
-        1.0,
-        "s",
-    ),
-    known(
-        "odometry_rms_m",
-        t(
-            "off the route by odometry, root mean square",
-            "separación de la ruta según la odometría, cuadrática media",
-        ),
-        CM,
-        "cm",
-    ),
-    known(
-        "odometry_worst_m",
-        t(
-            "off the route by odometry, worst",
-            "separación de la ruta según la odometría, máxima",
-        ),
-        CM,
-        "cm",
-    ),
-    known(
-        "true_rms_m",
-        t(
-            "truly off the route, root mean square",
-            "separación real de la ruta, cuadrática media",
-        ),
-        CM,
-        "cm",
-    ),
-    known(
-        "true_worst_m",
-        t(
-            "truly off the route, worst",
-            "separación real de la ruta, máxima",
-        ),
-        CM,
-        "cm",
-    ),
-    known("path_m", t("way driven", "camino recorrido"), 1.0, "m"),
+    known("angle_rad", word("angle-to-the-wall-at-rest"), DEG, "°"),
+    known("cruise_m_s", word("slowest-along-the-wall"), 1.0, "m/s"),
+    known("distance_rms_m", word("distance-error-rms"), CM, "cm"),
+    known("distance_worst_m", word("distance-error-worst"), CM, "cm"),
+    known("heading_rad", word("true-drift-of-the-heading"), DEG, "°"),
+    known("sideways_m", word("true-drift-sideways"), CM, "cm"),
+    known("forward_m", word("way-ahead"), 1.0, "m"),
+    known("left_rad_s", word("speed-of-the-left-wheel"), RPM, "rpm"),
+    known("right_rad_s", word("speed-of-the-right-wheel"), RPM, "rpm"),
+    known("end_error_m", word("true-distance-from-the-end"), CM, "cm"),
+    known("finish_s", word("time-to-the-end"), 1.0, "s"),
+    known("odometry_rms_m", word("off-the-route-rms"), CM, "cm"),
+    known("odometry_worst_m", word("off-the-route-worst"), CM, "cm"),
+    known("true_rms_m", word("truly-off-the-route-rms"), CM, "cm"),
+    known("true_worst_m", word("truly-off-the-route-worst"), CM, "cm"),
+    known("path_m", word("way-driven"), 1.0, "m"),
     known(
         "contact_speed_m_s",
-        t(
-            "speed of the hardest contact",
-            "velocidad del contacto más fuerte",
-        ),
+        word("speed-of-the-hardest-contact"),
         1.0,
         "m/s",
     ),
-    known(
-        "error_m",
-        t("true distance from the goal", "distancia real al objetivo"),
-        CM,
-        "cm",
-    ),
-    known(
-        "excess_m",
-        t(
-            "error beyond 4 cm and 2 % of the way",
-            "error por encima de 4 cm más el 2 % del camino",
-        ),
-        CM,
-        "cm",
-    ),
-    known("time_s", t("time", "tiempo"), 1.0, "s"),
-    known(
-        "reached",
-        t("goals reached", "objetivos alcanzados"),
-        1.0,
-        "",
-    ),
-    known(
-        "unreachable",
-        t("goals given up", "objetivos abandonados"),
-        1.0,
-        "",
-    ),
-    known(
-        "total_time_s",
-        t(
-            "time from the first goal to the last arrival",
-            "tiempo desde el primer objetivo hasta la última llegada",
-        ),
-        1.0,
-        "s",
-    ),
+    known("error_m", word("true-distance-from-the-goal"), CM, "cm"),
+    known("excess_m", word("excess-error"), CM, "cm"),
+    known("time_s", word("time"), 1.0, "s"),
+    known("reached", word("goals-reached"), 1.0, ""),
+    known("unreachable", word("goals-given-up"), 1.0, ""),
+    known("total_time_s", word("time-to-the-last-arrival"), 1.0, "s"),
     known(
         "clearance_m",
-        t(
-            "least distance from an obstacle",
-            "distancia mínima a un obstáculo",
-        ),
+        word("least-distance-from-an-obstacle"),
         CM,
         "cm",
     ),
     known(
         "heading_error_rad",
-        t(
-            "heading error on the straights, worst",
-            "error de orientación en los tramos rectos, máximo",
-        ),
+        word("heading-error-on-the-straights"),
         DEG,
         "°",
     ),
-    known(
-        "straights",
-        t("straights driven", "tramos rectos recorridos"),
-        1.0,
-        "",
-    ),
-    known("turn_rad", t("turned by", "giro"), DEG, "°"),
-    known(
-        "asymmetry",
-        t(
-            "right wheel faster than left, share",
-            "exceso de velocidad de la rueda derecha sobre la izquierda",
-        ),
-        100.0,
-        "%",
-    ),
-    known(
-        "radius_m",
-        t("radius of the circle", "radio de la circunferencia"),
-        CM,
-        "cm",
-    ),
-    known(
-        "left_dead_zone_duty",
-        t(
-            "left wheel starts at a PWM of",
-            "PWM a la que arranca la rueda izquierda",
-        ),
-        PWM,
-        "",
-    ),
-    known(
-        "right_dead_zone_duty",
-        t(
-            "right wheel starts at a PWM of",
-            "PWM a la que arranca la rueda derecha",
-        ),
-        PWM,
-        "",
-    ),
-    known(
-        "left_stop_duty",
-        t(
-            "left wheel stops at a PWM of",
-            "PWM a la que se para la rueda izquierda",
-        ),
-        PWM,
-        "",
-    ),
-    known(
-        "right_stop_duty",
-        t(
-            "right wheel stops at a PWM of",
-            "PWM a la que se para la rueda derecha",
-        ),
-        PWM,
-        "",
-    ),
+    known("straights", word("straights-driven"), 1.0, ""),
+    known("turn_rad", word("turned-by"), DEG, "°"),
+    known("asymmetry", word("right-wheel-faster"), 100.0, "%"),
+    known("radius_m", word("radius-of-the-circle"), CM, "cm"),
+    known("left_dead_zone_duty", word("left-wheel-starts"), PWM, ""),
+    known("right_dead_zone_duty", word("right-wheel-starts"), PWM, ""),
+    known("left_stop_duty", word("left-wheel-stops"), PWM, ""),
+    known("right_stop_duty", word("right-wheel-stops"), PWM, ""),
 ];
 
-const STEP: Text = t("Step {}, to {}", "Escalón {}, a {}");
-const GOAL: Text = t("Goal {}", "Objetivo {}");
-const TURN: Text = t("Turn {}", "Giro {}");
-const AFTER: Text = t("After 3 m", "A los 3 m");
-const END: Text = t("At the end", "Al final");
-const UP: Text = t("Rising, {} % of full PWM", "Subida, {} % de la PWM máxima");
-const DOWN: Text = t("Falling, {} % of full PWM", "Bajada, {} % de la PWM máxima");
+const STEP: Text = word("step-number");
+const GOAL: Text = word("goal-number");
+const TURN: Text = word("turn-number");
+const AFTER: Text = word("after-3-m");
+const END: Text = word("at-the-end");
+const UP: Text = word("rising-pwm");
+const DOWN: Text = word("falling-pwm");
 
 /// A metric as it is shown.
 pub(crate) struct Shown {
@@ -380,22 +137,31 @@ pub(crate) fn shown(language: Language, outcome: &Outcome, key: &str) -> Option<
         (
             STEP.with(
                 language,
-                &[&index.to_string(), &reference.unwrap_or_default()],
+                &[
+                    ("number", &index.to_string()),
+                    ("reference", &reference.unwrap_or_default()),
+                ],
             ),
             stem,
         )
     } else if let Some(index) = number("goal") {
-        (GOAL.with(language, &[&index.to_string()]), stem)
+        (GOAL.with(language, &[("number", &index.to_string())]), stem)
     } else if let Some(percent) = number("up") {
-        (UP.with(language, &[&percent.to_string()]), stem)
+        (
+            UP.with(language, &[("percent", &percent.to_string())]),
+            stem,
+        )
     } else if let Some(percent) = number("down") {
-        (DOWN.with(language, &[&percent.to_string()]), stem)
+        (
+            DOWN.with(language, &[("percent", &percent.to_string())]),
+            stem,
+        )
     } else if prefix == "after_3_m" {
         (AFTER.of(language).to_owned(), stem)
     } else if prefix == "end" {
         (END.of(language).to_owned(), stem)
     } else if let Some(index) = turn.filter(|index| !index.is_empty()) {
-        (TURN.with(language, &[index]), "turn_rad")
+        (TURN.with(language, &[("number", index)]), "turn_rad")
     } else {
         (String::new(), stem)
     };

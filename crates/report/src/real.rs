@@ -1,6 +1,6 @@
 //! Recorded runs of a real robot: CSVs of the original program and logs, each matched to the experiment that it is a run of.
 
-use crate::text::{Text, t};
+use crate::text::{Text, word};
 use rumbo_scenario::dialect;
 use rumbo_scenario::files::bounded::{LONGEST_RECORDING, read_at_most};
 use rumbo_wire::csv;
@@ -35,7 +35,7 @@ pub struct Skipped {
     /// File name without folder.
     pub file: String,
     /// Why.
-    pub why: Text,
+    pub why: NotShown,
 }
 
 /// The recordings of a folder.
@@ -59,19 +59,40 @@ impl fmt::Display for RealError {
 
 impl std::error::Error for RealError {}
 
-const UNKNOWN: Text = t(
-    "its header is none that the original program writes",
-    "su cabecera no es ninguna de las que escribe el programa original",
-);
-const NO_EXPERIMENT: Text = t(
-    "no experiment of this report has such a run",
-    "ningún experimento de este informe corresponde a este registro",
-);
-const ANOTHER: Text = t(
-    "another file before it in the alphabet is a run of the same experiment",
-    "otro fichero anterior por orden alfabético es ya un registro del mismo experimento",
-);
-const EMPTY: Text = t("it has fewer than two rows", "tiene menos de dos filas");
+/// Why a file is shown nowhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotShown {
+    /// Its header is none of the original program's.
+    Header,
+    /// No experiment has such a run.
+    NoExperiment,
+    /// Another file before it is a run of the same experiment.
+    Another,
+    /// It has fewer than two rows.
+    Short,
+    /// It is no log that can be read.
+    NoLog,
+    /// It is a log of a simulated robot.
+    Simulated,
+    /// It is a log without a run.
+    NoRun,
+}
+
+impl NotShown {
+    /// As the report says it.
+    #[must_use]
+    pub const fn text(self) -> Text {
+        match self {
+            Self::Header => word("file-with-unknown-header"),
+            Self::NoExperiment => word("file-of-no-experiment"),
+            Self::Another => word("file-after-another"),
+            Self::Short => word("file-too-short"),
+            Self::NoLog => word("file-no-log"),
+            Self::Simulated => word("file-of-simulated-robot"),
+            Self::NoRun => word("file-without-run"),
+        }
+    }
+}
 
 /// Reads all CSVs of a folder, and its logs as `log` has them: what a log comes to, or why it is not shown.
 ///
@@ -79,7 +100,7 @@ const EMPTY: Text = t("it has fewer than two rows", "tiene menos de dos filas");
 /// A folder or a file that cannot be read, or a row that is damaged.
 pub fn read(
     folder: &Path,
-    log: impl Fn(&Path) -> Result<FromLog, Text>,
+    log: impl Fn(&Path) -> Result<FromLog, NotShown>,
 ) -> Result<Real, RealError> {
     let unreadable = |error: std::io::Error| {
         RealError(format!(
@@ -122,17 +143,19 @@ pub fn read(
             }
         };
         let Some(kind) = csv::recognise(text.lines().next().unwrap_or_default()) else {
-            real.skipped.push(skip(UNKNOWN));
+            real.skipped.push(skip(NotShown::Header));
             continue;
         };
         let rows = rows(&path, kind, &text)?;
         if rows.len() < 2 {
-            real.skipped.push(skip(EMPTY));
+            real.skipped.push(skip(NotShown::Short));
             continue;
         }
         match scenario(&rows) {
-            None => real.skipped.push(skip(NO_EXPERIMENT)),
-            Some(scenario) if real.runs.contains_key(scenario) => real.skipped.push(skip(ANOTHER)),
+            None => real.skipped.push(skip(NotShown::NoExperiment)),
+            Some(scenario) if real.runs.contains_key(scenario) => {
+                real.skipped.push(skip(NotShown::Another))
+            }
             Some(scenario) => {
                 real.runs.insert(scenario, Recording { file, rows, ours });
             }
@@ -268,8 +291,8 @@ mod tests {
         folder
     }
 
-    fn no_log(_: &Path) -> Result<FromLog, Text> {
-        Err(EMPTY)
+    fn no_log(_: &Path) -> Result<FromLog, NotShown> {
+        Err(NotShown::Short)
     }
 
     const DISTANCE: &str = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n";
@@ -308,7 +331,10 @@ mod tests {
             .iter()
             .map(|skipped| (skipped.file.as_str(), skipped.why))
             .collect();
-        assert_eq!(skipped, [("b.csv", ANOTHER), ("c.csv", UNKNOWN)]);
+        assert_eq!(
+            skipped,
+            [("b.csv", NotShown::Another), ("c.csv", NotShown::Header)]
+        );
     }
 
     #[test]

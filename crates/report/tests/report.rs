@@ -2,9 +2,11 @@
 
 #![allow(clippy::unwrap_used)]
 
+use rumbo_report::real::{NotShown, Real, read};
 use rumbo_report::text::Language;
 use rumbo_report::{Data, Plan, Request, html};
 use rumbo_scenario::files::Library;
+use rumbo_wire::text::RowKind;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
@@ -91,8 +93,13 @@ fn data() -> &'static Data {
 }
 
 fn run() -> Data {
+    run_beside(Real::default())
+}
+
+fn run_beside(real: Real) -> Data {
     let request = Request {
         seed: 1,
+        real,
         ..Request::default()
     };
     Plan::new(&Library::new(), request)
@@ -130,7 +137,7 @@ fn texts(page: &str) -> Vec<String> {
 #[test]
 fn both_languages_have_every_figure_of_the_original_report() {
     for language in [Language::English, Language::Spanish] {
-        let (page, figures) = html(data(), language);
+        let (page, figures) = html(data(), language).unwrap();
         for figure in FIGURES {
             assert!(
                 figures.iter().any(|id| id == figure),
@@ -156,10 +163,65 @@ fn every_experiment_meets_its_limits() {
     }
 }
 
+/// A recorded run of each experiment that can have one, and a file that is shown nowhere.
+fn recordings() -> Real {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, kind, row) in [
+        ("mode1", RowKind::Distance, "900,60,60,50,1,80,80"),
+        ("mode2", RowKind::Distance, "900,60,60,50,2,80,80"),
+        ("mode3", RowKind::Distance, "900,60,60,60,3,80,80"),
+        ("mode4", RowKind::Distance, "900,60,60,50,4,80,80"),
+        ("mode5", RowKind::Speed, "900,50,50,60,5,80,80"),
+        ("mode6", RowKind::Speed, "900,40,40,40,6,80,80"),
+        ("mode7", RowKind::Waypoints, "900,40,40,40,40,0,0,0,80,80"),
+        (
+            "goals",
+            RowKind::Mission,
+            "900,40,40,0,1,1,0,0,0,3,90,90,90",
+        ),
+        ("lane", RowKind::Mission, "900,40,40,0,0,0,0,0,0,0,30,30,90"),
+        ("boxes", RowKind::Mission, "900,0,0,0,1,1,0,0,0,4,90,90,30"),
+    ] {
+        let columns: Vec<_> = kind.columns().iter().map(|column| column.name).collect();
+        let text = format!("{}\n{row}\n{row}\n{row}\n", columns.join(","));
+        std::fs::write(folder.path().join(format!("{name}.csv")), text).unwrap();
+    }
+    std::fs::write(folder.path().join("other.csv"), "time,value\n1,2\n").unwrap();
+    read(folder.path(), |_| Err(NotShown::NoLog)).unwrap()
+}
+
+#[test]
+fn every_chapter_has_its_place_for_a_recorded_run_in_both_languages() {
+    let real = recordings();
+    let recorded: Vec<_> = real.runs.keys().copied().collect();
+    assert_eq!(recorded.len(), 10, "{recorded:?}");
+    let data = run_beside(real);
+    for language in [Language::English, Language::Spanish] {
+        let (page, figures) = html(&data, language).unwrap();
+        for scenario in &recorded {
+            assert!(
+                figures.contains(&format!("{scenario}-real")),
+                "{language:?}: {scenario}"
+            );
+        }
+        assert!(
+            page.contains("other.csv") && !page.contains("{{"),
+            "{language:?}"
+        );
+    }
+}
+
+#[test]
+fn figures_have_the_same_numbers_in_both_languages() {
+    let [english, spanish] =
+        [Language::English, Language::Spanish].map(|language| html(data(), language).unwrap().1);
+    assert_eq!(english, spanish);
+}
+
 #[test]
 fn nothing_in_the_page_comes_from_elsewhere() {
     for language in [Language::English, Language::Spanish] {
-        let (page, _) = html(data(), language);
+        let (page, _) = html(data(), language).unwrap();
         for outside in [
             "http:", "https:", "//", "src=", "@import", "url(", "<script",
         ] {
@@ -172,7 +234,7 @@ fn nothing_in_the_page_comes_from_elsewhere() {
 fn the_same_runs_give_the_same_bytes() {
     let again = run();
     for language in [Language::English, Language::Spanish] {
-        assert!(html(data(), language) == html(&again, language));
+        assert!(html(data(), language).unwrap() == html(&again, language).unwrap());
     }
 }
 
@@ -199,8 +261,8 @@ const SAME: &[&str] = &[
 
 #[test]
 fn no_text_is_left_in_the_other_language() {
-    let [english, spanish] =
-        [Language::English, Language::Spanish].map(|language| texts(&html(data(), language).0));
+    let [english, spanish] = [Language::English, Language::Spanish]
+        .map(|language| texts(&html(data(), language).unwrap().0));
     let english: BTreeSet<_> = english.into_iter().collect();
     let words = |text: &str| {
         text.split(|letter: char| !letter.is_alphabetic())
@@ -218,7 +280,7 @@ fn no_text_is_left_in_the_other_language() {
 fn spanish_has_one_word_for_one_thing() {
     // lazo for a control loop, referencia for what is asked for, punto de paso for a waypoint.
     let others = ["bucle", "consigna", "ordenada ", "waypoint"];
-    for text in texts(&html(data(), Language::Spanish).0) {
+    for text in texts(&html(data(), Language::Spanish).unwrap().0) {
         let text = text.to_lowercase();
         assert!(!others.iter().any(|other| text.contains(other)), "{text}");
     }
@@ -227,7 +289,7 @@ fn spanish_has_one_word_for_one_thing() {
 #[test]
 fn spanish_numbers_have_decimal_commas() {
     let digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
-    for text in texts(&html(data(), Language::Spanish).0) {
+    for text in texts(&html(data(), Language::Spanish).unwrap().0) {
         let letters: Vec<char> = text.chars().collect();
         let point = (1..letters.len()).find(|at| {
             letters[*at] == '.'
@@ -243,7 +305,7 @@ fn spanish_numbers_have_decimal_commas() {
 #[test]
 fn every_formula_is_set() {
     for language in [Language::English, Language::Spanish] {
-        let (page, _) = html(data(), language);
+        let (page, _) = html(data(), language).unwrap();
         // What could not be converted would stand there as TeX.
         assert!(
             !page.contains('\\') && page.contains("<math"),
@@ -259,7 +321,7 @@ fn the_outline_is_as_before() {
     for language in [Language::English, Language::Spanish] {
         let path = folder.join(format!("report-{}.txt", language.tag()));
         let mut outline = String::new();
-        for text in texts(&html(data(), language).0) {
+        for text in texts(&html(data(), language).unwrap().0) {
             let text = text.replace(
                 |letter: char| letter.is_ascii_digit() || ".,\u{2212}".contains(letter),
                 "",

@@ -4,30 +4,18 @@ use super::manual::{EXPERIMENT, FLOOR};
 use crate::data::Data;
 use crate::judge;
 use crate::metric_names::Shown;
-use crate::page::{Cell, Page};
 use crate::signals::{CM, DEG};
-use crate::text::{Text, t};
+use crate::table::{Cell, table};
+use crate::text::{Language, Text, word};
 
-const STARTS: Text = t(
-    "PWM at which each wheel starts",
-    "PWM a la que arranca cada rueda",
-);
-const MOVEMENTS: Text = t(
-    "What became of each movement",
-    "Resultado de cada movimiento",
-);
 const HEADER: [Text; 5] = [
-    t("Scenario", "Escenario"),
-    t("Way", "Camino"),
-    t("To the side", "Desvío lateral"),
-    t("Turned by", "Giro"),
-    t("Radius", "Radio"),
+    word("scenario"),
+    word("way"),
+    word("to-the-side"),
+    word("turned-by-column"),
+    word("radius"),
 ];
-const START_HEADER: [Text; 3] = [
-    t("Test", "Ensayo"),
-    t("Left wheel", "Rueda izquierda"),
-    t("Right wheel", "Rueda derecha"),
-];
+const START_HEADER: [Text; 3] = [word("test"), word("left-wheel"), word("right-wheel")];
 const TESTS: [(Text, &str, &str); 4] = [
     (
         FLOOR,
@@ -35,26 +23,24 @@ const TESTS: [(Text, &str, &str); 4] = [
         "manual-deadzone-floor-forward",
     ),
     (
-        t("on the floor, backward", "en el suelo, hacia atrás"),
+        word("on-the-floor-backward"),
         "manual-deadzone-floor-backward",
         "manual-deadzone-floor-backward",
     ),
     (
-        t("in the air, forward", "en el aire, hacia delante"),
+        word("in-the-air-forward"),
         "manual-deadzone-left-forward",
         "manual-deadzone-right-forward",
     ),
     (
-        t("in the air, backward", "en el aire, hacia atrás"),
+        word("in-the-air-backward"),
         "manual-deadzone-left-backward",
         "manual-deadzone-right-backward",
     ),
 ];
 
 /// The PWM at which each wheel starts to turn.
-pub(super) fn starts(page: &mut Page, data: &Data) {
-    page.subsection(page.say(STARTS));
-    let language = page.language;
+pub(super) fn starts(language: Language, data: &Data) -> String {
     let cell = |scenario: &str, metric: &str| {
         let found = data
             .outcome(scenario)
@@ -69,20 +55,18 @@ pub(super) fn starts(page: &mut Page, data: &Data) {
         .iter()
         .map(|(name, left, right)| {
             vec![
-                Cell::text(&judge::capital(page.say(*name))),
+                Cell::text(&judge::capital(name.of(language))),
                 cell(left, "left_dead_zone_duty"),
                 cell(right, "right_dead_zone_duty"),
             ]
         })
         .collect();
-    let header = START_HEADER.map(|text| page.say(text));
-    page.table(&header, &rows);
+    let header = START_HEADER.map(|text| text.of(language));
+    table(&header, &rows)
 }
 
 /// Way, sideways drift, turn and radius of every movement.
-pub(super) fn movements(page: &mut Page, data: &Data) {
-    page.subsection(page.say(MOVEMENTS));
-    let language = page.language;
+pub(super) fn movements(language: Language, data: &Data) -> String {
     let rows: Vec<Vec<Cell>> = EXPERIMENT
         .scenarios
         .iter()
@@ -115,6 +99,6 @@ pub(super) fn movements(page: &mut Page, data: &Data) {
             ]
         })
         .collect();
-    let header = HEADER.map(|text| page.say(text));
-    page.table(&header, &rows);
+    let header = HEADER.map(|text| text.of(language));
+    table(&header, &rows)
 }

@@ -2,14 +2,14 @@
 
 use crate::plot::{Curve, Ink, Map, Points, Shape};
 use crate::signals::Outcome;
-use crate::text::{Language, Text, t};
+use crate::text::{Language, Text, same, word};
 use rumbo_wire::Command;
 
-const X_AXIS: Text = t("x (m)", "x (m)");
-const Y_AXIS: Text = t("y (m)", "y (m)");
-const IDEAL: Text = t("ideal", "ideal");
-const BY_ODOMETRY: Text = t("by odometry", "según la odometría");
-const TRUE_WAY: Text = t("true", "real");
+const X_AXIS: Text = same("x (m)");
+const Y_AXIS: Text = same("y (m)");
+const IDEAL: Text = word("ideal");
+const BY_ODOMETRY: Text = word("by-odometry");
+const TRUE_WAY: Text = word("true");
 
 /// A map with nothing on it.
 pub(super) fn map(language: Language) -> Map {

@@ -17,9 +17,10 @@ mod parts;
 mod pursuit;
 mod wall;
 
+use crate::content;
 use crate::data::Data;
-use crate::page::Page;
-use crate::text::Text;
+use crate::places::Places;
+use crate::text::{Language, Text};
 
 /// An experiment of the report.
 #[derive(Debug)]
@@ -28,14 +29,20 @@ pub struct Experiment {
     pub name: &'static str,
     /// Number of its chapter.
     pub number: &'static str,
-    /// Its title.
-    pub title: Text,
     /// The scenarios that it is made of.
     pub scenarios: &'static [&'static str],
     /// Metrics of the summary.
     pub(crate) highlights: &'static [Highlight],
-    /// Writes its chapter.
-    pub(crate) write: fn(&mut Page, &Data),
+    /// Computes what the places of its chapter show.
+    pub(crate) fill: fn(&mut Places, &Data),
+}
+
+impl Experiment {
+    /// The title of its chapter.
+    #[must_use]
+    pub fn title(&self, language: Language) -> String {
+        content::title(language, self.name)
+    }
 }
 
 /// A metric of the summary, and what the robot of the original report did.

@@ -5,30 +5,25 @@ use super::mode8;
 use super::parts;
 use crate::data::Data;
 use crate::judge;
-use crate::page::Page;
+use crate::places::Places;
 use crate::plot::{Map, Panel, Points};
 use crate::real::Recording;
 use crate::signals::unwrapped;
-use crate::text::{Text, t};
+use crate::text::{Text, word};
 use rumbo_wire::text::{MissionRow, Row};
 
-const TIME: Text = t("Duration", "Duración");
-const PATH: Text = t("Way by odometry", "Camino según la odometría");
-const REAL_WAY: Text = t(
-    "The ways of both robots by their own odometry.",
-    "Trayectorias de ambos robots según su propia odometría.",
-);
-const REAL_POSE: Text = t(
-    "Pose of both robots by their own odometry, from the arming of ours and the first motion of the recorded one.",
-    "Pose de ambos robots según su propia odometría, desde el armado del nuestro y el primer movimiento del real.",
-);
+const TIME: Text = word("duration");
+const PATH: Text = word("way-by-odometry");
 
-pub(super) fn write(page: &mut Page, data: &Data, scenario: &str) {
-    let Some((ours, recording)) = data.beside(scenario) else {
+pub(super) fn fill(places: &mut Places, data: &Data, scenario: &str) {
+    let name = scenario.trim_start_matches("mode8-");
+    let found = data.beside(scenario);
+    places.section(&format!("recorded-{name}"), found.is_some());
+    let Some((ours, recording)) = found else {
         return;
     };
-    beside::heading(page, &recording.file, false);
-    let language = page.language;
+    places.value(&format!("file-{name}"), recording.file.as_str());
+    let language = places.language;
     let real = |of: fn(&MissionRow) -> f32| recorded(recording, of);
     let [x, y, heading] = ours
         .pose()
@@ -46,10 +41,10 @@ pub(super) fn write(page: &mut Page, data: &Data, scenario: &str) {
         );
         let map = Map {
             curves,
-            ..mode8::way_map(page, ours, Points::new())
+            ..mode8::way_map(places, ours, Points::new())
         };
-        let svg = map.svg(language, page.say(REAL_WAY));
-        page.figure(&format!("{scenario}-real-way"), &svg, REAL_WAY);
+        let svg = map.svg(language);
+        places.figure(&format!("{scenario}-real-way"), Some(svg));
     }
     let end_s = mode8::end_s(ours).unwrap_or_else(|| ours.duration_s());
     let walked = [
@@ -75,7 +70,7 @@ pub(super) fn write(page: &mut Page, data: &Data, scenario: &str) {
             beside::both(language, recording, y, theirs[1].clone()),
         ),
         Panel::new(
-            page.say(mode8::HEADING),
+            places.say(mode8::HEADING),
             beside::both(
                 language,
                 recording,
@@ -85,14 +80,15 @@ pub(super) fn write(page: &mut Page, data: &Data, scenario: &str) {
         )
         .exactly(-190.0, 190.0),
     ];
-    parts::timed(page, &format!("{scenario}-real"), REAL_POSE, panels);
+    parts::timed(places, &format!("{scenario}-real"), panels);
     let row = |name: Text, values: [f64; 2], unit| {
         let shown = judge::plain(unit);
         let [ours, real] = values.map(|value| judge::value(language, &shown, value));
-        (page.say(name).to_owned(), ours, real)
+        (places.say(name).to_owned(), ours, real)
     };
     let rows = [row(TIME, lasted, "s"), row(PATH, walked, "m")];
-    beside::table(page, recording, &rows);
+    let table = beside::values(language, recording, &rows);
+    places.block(&format!("recorded-values-{name}"), table);
 }
 
 fn recorded(recording: &Recording, of: fn(&MissionRow) -> f32) -> Points {

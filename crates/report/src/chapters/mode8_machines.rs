@@ -1,23 +1,23 @@
 //! The states of mode 8 and how they follow one another.
 
 use crate::drawing::machine::{Machine, State, Transition};
-use crate::text::{Text, same, t};
+use crate::text::{Text, same, word};
 
 /// The states' names, in the order of their numbers.
 pub(super) const STATES: [Text; 13] = [
-    t("wait for goal", "espera de objetivo"),
-    t("initial turn", "giro inicial"),
-    t("initialise", "inicialización"),
-    t("go to goal", "hacia el objetivo"),
-    t("sweep right", "barrido a la derecha"),
-    t("sweep left", "barrido a la izquierda"),
-    t("decide", "decisión"),
-    t("avoidance turn", "giro de evitación"),
-    t("advance: seek the obstacle", "avance: busca el obstáculo"),
-    t("advance: along it", "avance: a lo largo de él"),
-    t("advance: safe distance", "avance: distancia prudente"),
-    t("unreachable", "inalcanzable"),
-    t("straight on", "avance recto"),
+    word("wait-for-goal"),
+    word("initial-turn"),
+    word("initialise"),
+    word("go-to-goal"),
+    word("sweep-right"),
+    word("sweep-left"),
+    word("decide"),
+    word("avoidance-turn"),
+    word("advance-seek-the-obstacle"),
+    word("advance-along-it"),
+    word("advance-safe-distance"),
+    word("unreachable"),
+    word("straight-on"),
 ];
 
 /// The states of the original program in a lane, which it counts anew.
@@ -87,7 +87,7 @@ pub(super) const GOAL: Machine = Machine {
         Transition {
             way: &[(150.0, 60.0), (216.0, 60.0)],
             at: (155.0, 52.0),
-            condition: &[t("goal", "objetivo")],
+            condition: &[word("goal")],
         },
         Transition {
             way: &[(326.0, 60.0), (370.0, 60.0)],
@@ -97,55 +97,52 @@ pub(super) const GOAL: Machine = Machine {
         Transition {
             way: &[(480.0, 60.0), (560.0, 60.0)],
             at: (484.0, 50.0),
-            condition: &[t("faces it", "orientado")],
+            condition: &[word("faces-it")],
         },
         Transition {
             way: &[(630.0, 45.0), (630.0, 18.0), (80.0, 18.0), (80.0, 45.0)],
             at: (330.0, 13.0),
-            condition: &[t("reached", "alcanzado")],
+            condition: &[word("reached")],
         },
         Transition {
             way: &[(630.0, 75.0), (630.0, 143.0)],
             at: (500.0, 108.0),
-            condition: &[t("obstacle ahead", "obstáculo delante")],
+            condition: &[word("obstacle-ahead")],
         },
         Transition {
             way: &[(630.0, 188.0), (630.0, 260.0)],
             at: (520.0, 228.0),
-            condition: &[t("both edges seen", "esquinas vistas")],
+            condition: &[word("both-edges-seen")],
         },
         Transition {
             way: &[(580.0, 275.0), (470.0, 275.0)],
             at: (478.0, 266.0),
-            condition: &[t("side chosen", "lado elegido")],
+            condition: &[word("side-chosen")],
         },
         Transition {
             way: &[(330.0, 305.0), (330.0, 365.0)],
             at: (180.0, 339.0),
-            condition: &[t("direction 40° off", "rumbo desviado 40°")],
+            condition: &[word("direction-40-off")],
         },
         Transition {
             way: &[(410.0, 365.0), (410.0, 305.0)],
             at: (418.0, 339.0),
-            condition: &[t("faces it", "orientado")],
+            condition: &[word("faces-it")],
         },
         Transition {
             way: &[(425.0, 245.0), (425.0, 75.0)],
             at: (262.0, 150.0),
-            condition: &[
-                t("way to the goal clear,", "camino libre y más"),
-                t("nearer than before", "cerca que antes"),
-            ],
+            condition: &[word("way-to-the-goal-clear"), word("nearer-than-before")],
         },
         Transition {
             way: &[(270.0, 275.0), (140.0, 275.0)],
             at: (150.0, 252.0),
-            condition: &[t("whole outline", "todo el contorno"), same("")],
+            condition: &[word("whole-outline"), same("")],
         },
         Transition {
             way: &[(80.0, 260.0), (80.0, 75.0)],
             at: (88.0, 170.0),
-            condition: &[t("new goal", "objetivo nuevo")],
+            condition: &[word("new-goal")],
         },
     ],
 };
@@ -189,27 +186,27 @@ pub(super) const LANE: Machine = Machine {
         Transition {
             way: &[(155.0, 40.0), (270.0, 40.0)],
             at: (162.0, 30.0),
-            condition: &[t("face at 25 cm", "cara a 25 cm")],
+            condition: &[word("face-at-25-cm")],
         },
         Transition {
             way: &[(430.0, 40.0), (520.0, 40.0)],
             at: (436.0, 16.0),
-            condition: &[t("jump of 30 cm", "salto de 30 cm"), t("or 86°", "o 86°")],
+            condition: &[word("jump-of-30-cm"), word("or-86")],
         },
         Transition {
             way: &[(600.0, 55.0), (600.0, 135.0)],
             at: (490.0, 98.0),
-            condition: &[t("jump or 86°", "salto u 86°")],
+            condition: &[word("jump-or-86")],
         },
         Transition {
             way: &[(545.0, 150.0), (420.0, 150.0)],
             at: (434.0, 140.0),
-            condition: &[t("to the open side", "lado abierto")],
+            condition: &[word("to-the-open-side")],
         },
         Transition {
             way: &[(280.0, 150.0), (90.0, 150.0), (90.0, 55.0)],
             at: (110.0, 140.0),
-            condition: &[t("faces it, at rest", "orientado y en reposo")],
+            condition: &[word("faces-it-at-rest")],
         },
     ],
 };

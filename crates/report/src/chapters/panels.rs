@@ -1,10 +1,10 @@
 //! Panels that several chapters show: PWM, distances, speeds with their references, states.
 
 use super::parts::{self, DISTANCE, ERROR_CM, LEFT, MEASURED, PWM, REFERENCE, RIGHT};
-use crate::page::Page;
+use crate::places::Places;
 use crate::plot::{Curve, Ink, Panel, Points};
 use crate::signals::{Outcome, Place, difference};
-use crate::text::{Language, Text, t};
+use crate::text::{Language, Text, word};
 
 /// PWM of both wheels.
 pub(super) fn pwm_panel(language: Language, outcome: &Outcome) -> Panel {
@@ -21,8 +21,6 @@ pub(super) fn pwm_panel(language: Language, outcome: &Outcome) -> Panel {
 
 /// What is shown of a pair of sonars.
 pub(super) struct Pair {
-    /// Of the distances, and of the errors.
-    pub(super) captions: [Text; 2],
     /// The distance that is wanted [cm].
     pub(super) reference: Points,
     /// What the distances' axis shows at least [cm].
@@ -33,16 +31,16 @@ pub(super) struct Pair {
 
 impl Pair {
     /// Both distances with the reference over the PWM, and how far both are from it.
-    pub(super) fn write(&self, page: &mut Page, id: &str, outcome: &Outcome) {
-        let language = page.language;
+    pub(super) fn fill(&self, places: &mut Places, id: &str, outcome: &Outcome) {
+        let language = places.language;
         let [from, to] = self.distances_cm;
         let distances = self.distances(language, outcome).at_least(from, to);
         let panels = vec![distances, pwm_panel(language, outcome)];
-        parts::timed(page, &format!("{id}-distances"), self.captions[0], panels);
+        parts::timed(places, &format!("{id}-distances"), panels);
         let errors = self.errors(language, outcome);
         let errors =
             Panel::new(ERROR_CM.of(language), errors).at_least(-self.error_cm, self.error_cm);
-        parts::timed(page, &format!("{id}-error"), self.captions[1], vec![errors]);
+        parts::timed(places, &format!("{id}-error"), vec![errors]);
     }
 
     fn distances(&self, language: Language, outcome: &Outcome) -> Panel {
@@ -72,10 +70,10 @@ fn each(language: Language, outcome: &Outcome, points: impl Fn(Place) -> Points)
         .collect()
 }
 
-const FIRST: Text = t("first sonar (ahead)", "primer sensor (delantero)");
-const SECOND: Text = t("second sonar (behind)", "segundo sensor (trasero)");
-const LEFT_SONAR: Text = t("left sonar", "sensor izquierdo");
-const RIGHT_SONAR: Text = t("right sonar", "sensor derecho");
+const FIRST: Text = word("first-sonar-ahead");
+const SECOND: Text = word("second-sonar-behind");
+const LEFT_SONAR: Text = word("left-sonar");
+const RIGHT_SONAR: Text = word("right-sonar");
 
 /// What the two of a pair are called: beside the robot they are one behind the other.
 fn pair_names(outcome: &Outcome) -> [Text; 2] {
@@ -102,11 +100,11 @@ pub(super) fn mean_cm(outcome: &Outcome) -> Points {
         .collect()
 }
 
-const LEFT_REFERENCE: Text = t("left reference", "referencia izquierda");
-const RIGHT_REFERENCE: Text = t("right reference", "referencia derecha");
-const LEFT_AXIS: Text = t("left wheel (rpm)", "rueda izquierda (rpm)");
-const RIGHT_AXIS: Text = t("right wheel (rpm)", "rueda derecha (rpm)");
-const REFERENCES_AXIS: Text = t("references (rpm)", "referencias (rpm)");
+const LEFT_REFERENCE: Text = word("left-reference");
+const RIGHT_REFERENCE: Text = word("right-reference");
+const LEFT_AXIS: Text = word("left-wheel-rpm");
+const RIGHT_AXIS: Text = word("right-wheel-rpm");
+const REFERENCES_AXIS: Text = word("references-rpm");
 
 /// Speed references of both wheels.
 pub(super) fn references_panel(language: Language, outcome: &Outcome) -> Panel {
@@ -142,10 +140,10 @@ pub(super) fn wheel_panels(language: Language, outcome: &Outcome) -> Vec<Panel> 
     ]
 }
 
-const LEFT_RANGE: Text = t("left", "izquierdo");
-const RIGHT_RANGE: Text = t("right", "derecho");
-const FRONT_RANGE: Text = t("front", "frontal");
-const RANGE_AXIS: Text = t("range (cm)", "distancia medida (cm)");
+const LEFT_RANGE: Text = word("left-sonar-name");
+const RIGHT_RANGE: Text = word("right-sonar-name");
+const FRONT_RANGE: Text = word("front");
+const RANGE_AXIS: Text = word("range-cm");
 
 /// The ranges of the three sonars.
 pub(super) fn range_panels(language: Language, outcome: &Outcome) -> Vec<Panel> {
@@ -160,7 +158,7 @@ pub(super) fn range_panels(language: Language, outcome: &Outcome) -> Vec<Panel> 
     ]
 }
 
-const STATE_AXIS: Text = t("state", "estado");
+const STATE_AXIS: Text = word("state");
 
 /// The states of a mode over time; those that never occur are left out. Their names come in the order of their numbers.
 pub(super) fn state_panel(language: Language, outcome: &Outcome, names: &[Text]) -> Panel {

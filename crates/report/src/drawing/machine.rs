@@ -27,7 +27,7 @@ pub(crate) struct Machine {
 
 impl Machine {
     /// The drawing.
-    pub(crate) fn svg(&self, language: Language, description: &str) -> String {
+    pub(crate) fn svg(&self, language: Language) -> String {
         let mut sketch = Sketch::new();
         for Transition { way, .. } in self.transitions {
             sketch.arrow(way);
@@ -45,6 +45,6 @@ impl Machine {
                 );
             }
         }
-        sketch.finish(self.size.0, self.size.1, description)
+        sketch.finish(self.size.0, self.size.1)
     }
 }

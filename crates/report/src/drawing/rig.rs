@@ -1,7 +1,7 @@
 //! A rig seen from above: footprint, wheels, and each sonar with its beam, as the robot file places them.
 
 use super::sketch::{Anchor, Sketch};
-use crate::text::{Language, Text, t};
+use crate::text::{Language, Text, word};
 use rumbo_plant::plant::Mount;
 use rumbo_scenario::files::Setup;
 
@@ -11,15 +11,15 @@ const WIDTH: f64 = 620.0;
 /// How far the beams are drawn [m].
 const BEAM_M: f64 = 0.11;
 
-const LEFT: Text = t("left", "izquierdo");
-const RIGHT: Text = t("right", "derecho");
-const FIRST: Text = t("first", "primero");
-const SECOND: Text = t("second", "segundo");
-const FRONT: Text = t("front", "frontal");
-const ON_SERVO: Text = t("front, on the servo", "frontal, sobre el servo");
+const LEFT: Text = word("left-sonar-name");
+const RIGHT: Text = word("right-sonar-name");
+const FIRST: Text = word("first");
+const SECOND: Text = word("second");
+const FRONT: Text = word("front");
+const ON_SERVO: Text = word("front-on-the-servo");
 
 /// The drawing.
-pub(crate) fn svg(language: Language, setup: &Setup, description: &str) -> String {
+pub(crate) fn svg(language: Language, setup: &Setup) -> String {
     let mut sketch = Sketch::new();
     let body = &setup.robot.plant.body;
     // x ahead is to the right of the page, y to the left of the robot is up.
@@ -93,7 +93,7 @@ pub(crate) fn svg(language: Language, setup: &Setup, description: &str) -> Strin
         sonar(&mut sketch, at, &mount, half_rad, name.of(language));
     }
     dimensions(&mut sketch, language, setup, place);
-    sketch.finish(WIDTH, height, description)
+    sketch.finish(WIDTH, height)
 }
 
 fn sonar(sketch: &mut Sketch, at: (f64, f64), mount: &Mount, half_rad: f64, name: &str) {

@@ -39,7 +39,7 @@ const GAP: f64 = 30.0;
 
 impl Scheme {
     /// The drawing.
-    pub(crate) fn svg(&self, language: Language, description: &str) -> String {
+    pub(crate) fn svg(&self, language: Language) -> String {
         let mut sketch = Sketch::new();
         let above = if self.paths.iter().any(|path| path.level < 0) {
             78.0
@@ -95,7 +95,7 @@ impl Scheme {
             }
             lowest = f64::max(lowest, level + 0.5 * size.1);
         }
-        sketch.finish((end + 6.0).max(560.0), lowest + 8.0, description)
+        sketch.finish((end + 6.0).max(560.0), lowest + 8.0)
     }
 
     fn draw_part(

@@ -28,10 +28,9 @@ impl Sketch {
     }
 
     /// The drawing, of this size.
-    pub(super) fn finish(self, width: f64, height: f64, description: &str) -> String {
+    pub(super) fn finish(self, width: f64, height: f64) -> String {
         format!(
-            "<svg class=\"plot\" viewBox=\"0 0 {width:.0} {height:.0}\" role=\"img\" aria-label=\"{}\">{}</svg>",
-            escape(description),
+            "<svg class=\"plot\" viewBox=\"0 0 {width:.0} {height:.0}\">{}</svg>",
             self.body
         )
     }
@@ -151,23 +150,6 @@ impl Sketch {
             0.5 * (from.1 + to.1) + beside.1,
         );
         self.text(middle, name, Anchor::Middle);
-    }
-
-    /// An arc about a point, angles counter-clockwise from the right [rad].
-    pub(super) fn arc(
-        &mut self,
-        (x, y): (f64, f64),
-        radius: f64,
-        from_rad: f64,
-        to_rad: f64,
-        class: &str,
-    ) {
-        let steps = 24;
-        let points: Vec<(f64, f64)> = (0..=steps)
-            .map(|step| from_rad + (to_rad - from_rad) * f64::from(step) / f64::from(steps))
-            .map(|angle| (x + radius * angle.cos(), y - radius * angle.sin()))
-            .collect();
-        self.line(&points, class);
     }
 }
 

@@ -1,7 +1,7 @@
 //! A wiring as the robot file has it: the Mega in the middle, modules on both sides, a line for each pin.
 
 use super::sketch::{Anchor, Sketch};
-use crate::text::{Language, Text, t};
+use crate::text::{Language, Text, word};
 use rumbo_scenario::files::Wiring;
 
 const ROW: f64 = 19.0;
@@ -15,36 +15,36 @@ struct Module {
     lines: &'static [(&'static str, &'static str)],
 }
 
-const FIVE_VOLTS: Text = t("5 V and GND from the Mega", "5 V y GND del Mega");
+const FIVE_VOLTS: Text = word("supply-from-the-mega");
 
 const LEFT: [Module; 6] = [
     Module {
-        name: t("HC-SR04, front", "HC-SR04 frontal"),
+        name: word("hc-sr04-front"),
         supply: FIVE_VOLTS,
         lines: &[("front_trigger", "TRIG"), ("front_echo", "ECHO")],
     },
     Module {
-        name: t("HC-SR04, left or first", "HC-SR04 izquierdo o primero"),
+        name: word("hc-sr04-left-or-first"),
         supply: FIVE_VOLTS,
         lines: &[("left_trigger", "TRIG"), ("left_echo", "ECHO")],
     },
     Module {
-        name: t("HC-SR04, right or second", "HC-SR04 derecho o segundo"),
+        name: word("hc-sr04-right-or-second"),
         supply: FIVE_VOLTS,
         lines: &[("right_trigger", "TRIG"), ("right_echo", "ECHO")],
     },
     Module {
-        name: t("Hall encoder A, right", "Encoder Hall A, derecho"),
+        name: word("hall-encoder-a-right"),
         supply: FIVE_VOLTS,
         lines: &[("right_encoder", "OUT")],
     },
     Module {
-        name: t("Hall encoder B, left", "Encoder Hall B, izquierdo"),
+        name: word("hall-encoder-b-left"),
         supply: FIVE_VOLTS,
         lines: &[("left_encoder", "OUT")],
     },
     Module {
-        name: t("Servo", "Servomotor"),
+        name: word("servo"),
         supply: FIVE_VOLTS,
         lines: &[("servo", "PWM")],
     },
@@ -52,10 +52,7 @@ const LEFT: [Module; 6] = [
 
 const RIGHT: [Module; 3] = [
     Module {
-        name: t(
-            "L298N: A right, B left motor",
-            "L298N: A motor dcho., B izdo.",
-        ),
+        name: word("bridge-module"),
         supply: FIVE_VOLTS,
         lines: &[
             ("right_enable", "ENA"),
@@ -67,22 +64,19 @@ const RIGHT: [Module; 3] = [
         ],
     },
     Module {
-        name: t(
-            "Bluetooth HC-05, 9600 baud",
-            "Bluetooth HC-05, 9600 baudios",
-        ),
+        name: word("bluetooth-module"),
         supply: FIVE_VOLTS,
         lines: &[("link_tx", "RXD"), ("link_rx", "TXD")],
     },
     Module {
-        name: t("Battery, Li-ion, 2 cells", "Batería Li-ion, 2 celdas"),
-        supply: t("7.2 V, 2600 mAh", "7,2 V, 2600 mAh"),
+        name: word("battery-module"),
+        supply: word("battery-charge"),
         lines: &[("battery", "+")],
     },
 ];
 
 /// The drawing.
-pub(crate) fn svg(language: Language, wiring: &Wiring, description: &str) -> String {
+pub(crate) fn svg(language: Language, wiring: &Wiring) -> String {
     let mut sketch = Sketch::new();
     let left = side(&mut sketch, language, wiring, &LEFT, (8.0, 205.0), MEGA.0);
     let right = side(
@@ -102,7 +96,7 @@ pub(crate) fn svg(language: Language, wiring: &Wiring, description: &str) -> Str
     );
     pins(&mut sketch, wiring, &LEFT, MEGA.0 + 6.0, Anchor::Start);
     pins(&mut sketch, wiring, &RIGHT, MEGA.1 - 6.0, Anchor::End);
-    sketch.finish(WIDTH, height + 10.0, description)
+    sketch.finish(WIDTH, height + 10.0)
 }
 
 /// A module's lines that this wiring has.

@@ -25,8 +25,8 @@ pub(crate) struct Map {
 }
 
 impl Map {
-    /// The picture; `description` is for those who cannot see it.
-    pub(crate) fn svg(&self, language: Language, description: &str) -> String {
+    /// The picture.
+    pub(crate) fn svg(&self, language: Language) -> String {
         let [x_all, y_all] = self.range.unwrap_or_else(|| self.all());
         let width = WIDTH - LEFT - RIGHT;
         // As large as the page is wide, unless that is higher than a screen.
@@ -78,7 +78,7 @@ impl Map {
                 escape(&self.x)
             ),
         );
-        wrap(&body, bottom + 42.0, description)
+        wrap(&body, bottom + 42.0)
     }
 
     fn all(&self) -> [[f64; 2]; 2] {

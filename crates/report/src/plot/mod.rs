@@ -7,7 +7,7 @@ mod map;
 #[cfg(test)]
 mod tests;
 
-use crate::text::{Language, Text, escape, put, t};
+use crate::text::{Language, Text, escape, put, word};
 pub(crate) use map::{Map, Shape};
 
 /// Points of a curve; what is not finite is a gap.
@@ -19,7 +19,7 @@ const LEFT: f64 = 62.0;
 const RIGHT: f64 = 14.0;
 const LEGEND_ROW: f64 = 19.0;
 /// What a panel without a value says: nothing was in reach, or the program does not tell it.
-const NO_VALUE: Text = t("no value in this run", "sin valores en esta ejecución");
+const NO_VALUE: Text = word("no-value");
 /// Width of a letter of a legend, about [px].
 const LETTER: f64 = 6.7;
 
@@ -274,8 +274,8 @@ impl Frame {
 }
 
 impl Plot {
-    /// The picture; `description` is for those who cannot see it.
-    pub(crate) fn svg(&self, language: Language, description: &str) -> String {
+    /// The picture.
+    pub(crate) fn svg(&self, language: Language) -> String {
         let x_range = self.x_range.unwrap_or_else(|| self.all_x());
         let longest = self
             .panels
@@ -328,7 +328,7 @@ impl Plot {
                 escape(&self.x)
             ),
         );
-        wrap(&body, y + 42.0, description)
+        wrap(&body, y + 42.0)
     }
 
     fn all_x(&self) -> [f64; 2] {
@@ -345,11 +345,8 @@ impl Plot {
     }
 }
 
-fn wrap(body: &str, height: f64, description: &str) -> String {
-    format!(
-        "<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {height:.0}\" role=\"img\" aria-label=\"{}\">{body}</svg>",
-        escape(description)
-    )
+fn wrap(body: &str, height: f64) -> String {
+    format!("<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {height:.0}\">{body}</svg>")
 }
 
 /// The names of the curves in rows above them; each name once. Gives the height taken.
