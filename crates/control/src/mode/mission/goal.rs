@@ -20,6 +20,8 @@ pub(super) const CAREFUL_M: f32 = 0.33;
 const CAREFUL_RAD: f32 = 0.2;
 /// Heading errors beyond this are turned on the spot [rad].
 pub(super) const SPOT_RAD: f32 = 0.7;
+/// A robot that stands faces its goal within this [rad].
+const FACED_RAD: f32 = 0.1;
 /// Until this is left [rad].
 const TURNED_RAD: f32 = 0.12;
 /// Progress that counts [m].
@@ -74,7 +76,7 @@ impl Mission<'_> {
             Some(drive) => action.drive = drive,
             // On from where the robot stands now.
             None if proving && !following(state.phase) => {
-                self.face(state, &estimate.pose, goal_m, SPOT_RAD)
+                self.face(state, &estimate.pose, goal_m, FACED_RAD)
             }
             None => self.act(state, estimate, goal_m, (&way, left_m), planned, action),
         }
@@ -103,7 +105,7 @@ impl Mission<'_> {
                 state.laps = 0;
                 state.last = None;
                 state.detour = None;
-                self.face(state, pose, goal_m, 0.1);
+                self.face(state, pose, goal_m, FACED_RAD);
                 Drive::Release
             }
             Phase::InitialTurn => self.turn(state, estimate, way.heading_rad, Phase::GoToGoal),

@@ -223,7 +223,7 @@ impl Watch {
             return None;
         }
         if self.aside_m > ASIDE_M {
-            match walls_m(estimate, WALL_M) {
+            match walls_m(estimate, NEAR_M) {
                 [Some(left_m), Some(right_m)] if right_m < left_m => return Some(-SWEEP_RAD),
                 [Some(_), _] => return Some(SWEEP_RAD),
                 [None, Some(_)] => return Some(-SWEEP_RAD),
