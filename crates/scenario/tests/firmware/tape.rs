@@ -12,6 +12,9 @@ use rumbo_wire::{Command, Message, RobotTime, ToRobot};
 /// Bytes that fit into a tick beside what else may come.
 const BYTES_PER_TICK: usize = 40;
 
+/// Ticks after which sonars that ping in turn, three, two or one of them, are back at the first.
+const ROUND: u32 = 36;
+
 /// A recorded run, with its parameters told over the link before it begins.
 pub(crate) struct Tape {
     pub(crate) mode: ModeId,
@@ -55,8 +58,9 @@ impl Tape {
         }
     }
 
+    /// Ticks before the run; the sonars ping in turn, so whole rounds of them: else the answers came from others.
     fn before(&self) -> u32 {
-        self.parameters.len().div_ceil(BYTES_PER_TICK) as u32 + 1
+        (self.parameters.len().div_ceil(BYTES_PER_TICK) as u32 + 1).next_multiple_of(ROUND)
     }
 
     /// How many ticks it has.
