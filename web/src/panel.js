@@ -89,7 +89,7 @@ export class CommandPanel {
       this.#places.layOut(entry);
     }
     this.#showReference(state, entry);
-    setText(this.#about, entry ? this.#aboutWords(entry, state.robot.rig) : '');
+    if (entry) this.#showAbout(entry, state.robot.rig);
     const scenario = armed || !entry ? null : this.#scenarioOf(entry);
     this.#experiment.hidden = scenario === null;
     if (scenario !== null) {
@@ -105,10 +105,12 @@ export class CommandPanel {
     return own.includes(this.#scene.choice.scenario) ? null : own[0] ?? null;
   }
 
-  /** What the mode does, and what it lacks. @param {ModeEntry} mode @param {string | null} rig */
-  #aboutWords(mode, rig) {
+  /** What the mode does, or what it lacks. @param {ModeEntry} mode @param {string | null} rig The robot's. */
+  #showAbout(mode, rig) {
     const about = said(mode.about);
-    return rig === null || mode.rigs.includes(rig) ? about : t('{}; it needs the rig {}, the robot has {}', about, mode.rigs.map(named).join(' | '), named(rig));
+    const fits = rig === null || mode.rigs.includes(rig);
+    setText(this.#about, fits ? about : t('needs the rig {}', mode.rigs.map(named).join(' | ')));
+    if (this.#about.title !== about) this.#about.title = about;
   }
 
   /** @param {State} state @param {ModeEntry | null} mode */

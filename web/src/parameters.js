@@ -1,9 +1,8 @@
 // @ts-check
 /** The parameter table: what each is, what the robot holds, and what may be written. */
-import { check, decimal, read, setLimits } from './decimal.js';
 import { create, element, setText } from './dom.js';
-import { formatFloat } from './units.js';
 import { said, t } from './text.js';
+import { rangeWords, valueField, valueWords } from './value_field.js';
 
 /** @typedef {import('./types.js').Parameter} Parameter */
 /** @typedef {import('./panel.js').Send} Send */
@@ -16,7 +15,8 @@ class Line {
     this.edited = false;
     /** The refusal the operator has seen and left. @type {string | null} */
     this.dismissed = null;
-    this.input = decimal(`parameter-${parameter.name}`);
+    this.field = valueField(parameter);
+    this.input = this.field.element;
     this.input.title = said(parameter.description);
     this.about = create('span', { id: `about-${parameter.name}`, textContent: said(parameter.description) });
     this.note = create('span', { className: 'refused', id: `note-${parameter.name}` });
@@ -29,16 +29,17 @@ class Line {
       create('td', { className: 'asks', textContent: parameter.name, title: said(parameter.description) }),
       create('td', {}, this.input),
       create('td', { textContent: unitWords(parameter.unit) }),
-      create('td', { className: 'number', textContent: `${formatFloat(parameter.min)} … ${formatFloat(parameter.max)}` }),
-      create('td', { className: 'number', textContent: formatFloat(parameter.default) }),
+      create('td', { className: 'number', textContent: rangeWords(parameter) }),
+      create('td', { className: 'number', textContent: valueWords(parameter, parameter.default) }),
       create('td', { className: 'acts' }, this.apply, this.revert, this.note),
     );
     const write = () => {
-      if (Number.isNaN(read(this.input))) return;
+      const value = this.field.read();
+      if (Number.isNaN(value)) return;
       // A value out of range goes to the robot too: it refuses, and says why.
       this.edited = false;
       this.dismissed = null;
-      send({ type: 'set_param', id: this.parameter.id, value: read(this.input) });
+      send({ type: 'set_param', id: this.parameter.id, value });
     };
     const revert = () => {
       this.edited = false;
@@ -52,7 +53,8 @@ class Line {
       this.show(this.parameter);
     });
     this.input.addEventListener('keydown', (event) => {
-      if (event.key === 'Enter') write();
+      // Enter ticks a switch.
+      if (event.key === 'Enter' && this.parameter.type !== 'switch') write();
       if (event.key === 'Escape') revert();
     });
     // A tooltip is for a mouse; a finger taps the line, the keyboard comes to its value.
@@ -64,16 +66,12 @@ class Line {
   /** @param {Parameter} parameter */
   show(parameter) {
     this.parameter = parameter;
-    const held = formatFloat(parameter.value);
+    const held = this.field.text(parameter.value);
     const refused = parameter.refused === this.dismissed ? null : parameter.refused;
-    // What has not been read yet is not wrong.
-    setLimits(this.input, parameter.min, parameter.max, parameter.value !== null);
+    this.field.limit(parameter);
     // What is being typed is not overwritten; a refused value stays to be corrected.
-    if (!this.edited && !refused && !parameter.pending && this.input.value !== held) {
-      this.input.value = held;
-      check(this.input);
-    }
-    this.apply.hidden = this.revert.hidden = this.input.value === held && !refused;
+    if (!this.edited && !refused && !parameter.pending && this.field.held() !== held) this.field.hold(held);
+    this.apply.hidden = this.revert.hidden = this.field.held() === held && !refused;
     const look = parameter.pending ? 'pending' : refused ? 'bad' : this.edited ? 'edited' : '';
     for (const each of ['pending', 'bad', 'edited']) this.row.classList.toggle(each, each === look);
     setText(this.note, parameter.pending ? t('waiting…') : refused ? t('refused: {}', said(refused)) : parameter.value === null ? t('not read yet') : '');

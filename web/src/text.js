@@ -123,9 +123,9 @@ function translate(english) {
   return null;
 }
 
-/** A name of the robot's, such as a mode's, as people read it. @param {string} name */
+/** A name of the robot's, such as a mode's, as people read it; that of a pin is the same in any language. @param {string} name */
 export function named(name) {
-  return t(name.replaceAll('_', ' '));
+  return /^[A-Z]\d+$/.test(name) ? name : t(name.replaceAll('_', ' '));
 }
 
 const ATTRIBUTES = ['title', 'aria-label', 'placeholder', 'alt'];

@@ -60,6 +60,8 @@
  * @property {number} min
  * @property {number} max
  * @property {number} default
+ * @property {'number' | 'switch' | 'choice'} type
+ * @property {string[]} choices Names of the values 0, 1, ... of a switch or a choice.
  * @property {boolean} of_robot It belongs to the robot, not to modes.
  * @property {string} description
  * @property {number | null} value

@@ -1,6 +1,7 @@
 // @ts-check
 /** What stands beside the events: the state machine of the mode and the link. */
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { folder, open } from './dashboard.mjs';
 
@@ -31,10 +32,13 @@ test('the states of the mode are drawn, with the live one lit and the way that l
 });
 
 test('each mode has its own machine, with every state in a box', async () => {
+  const declared = (/** @type {string} */ file) => readFileSync(new URL(`../../crates/control/src/mode/${file}.rs`, import.meta.url), 'utf8').match(/^ {8}\w+ = "/gm)?.length;
+  /** @type {Record<number, number | undefined>} */
+  const states = { 0: declared('manual'), 8: declared('mission/mod') };
   for (const mode of [0, 8]) {
     await page.locator(`#modes button[value="${mode}"]`).click();
     await page.waitForFunction((mode) => /** @type {any} */ (window).rumbo.state().robot.mode === mode, mode);
-    await page.waitForFunction((count) => document.querySelectorAll('.state-box').length === count, mode === 0 ? 3 : 13);
+    await page.waitForFunction((count) => document.querySelectorAll('.state-box').length === count, states[mode]);
   }
 });
 

@@ -52,10 +52,13 @@ test('what the robot says: faults, refusals, why it started, events, modes, stat
   const states = modes.flatMap((mode) => literals(mode, /^states! {[^]*?^}/gm));
   const names = modes.flatMap((mode) => literals(mode, /^ {4}(?:name|about): "[^"]+"/gm));
   const groups = modes.flatMap((mode) => literals(mode, /Group::new\(\s*"[^"]+"/g));
+  const values = [...literals('../../crates/control/src/params.rs', /ParamKind::Choice\(&\[[^\]]*\]/g), ...literals('../../crates/control/src/params/kind.rs', /ParamKind::Switch => &\[[^\]]*\]/g)]
+    .map((name) => name.replaceAll('_', ' '));
+  assert.deepEqual(values, ['straight', 'pure pursuit', 'no', 'yes']);
   const parameters = [...(read('../../crates/control/src/params.rs').split('\ntable! {')[1] ?? '').split('\n}')[0]?.matchAll(/\/\/\/ (.+)/g) ?? []].map((found) => found[1] ?? '');
   assert.ok(states.length > 110 && groups.length > 12 && names.length === 18 && parameters.length > 60, `${states.length} ${groups.length} ${names.length} ${parameters.length}`);
   allSpanish([
-    ...literals('../../crates/control/src/types.rs', explained), ...literals('../../crates/wire/src/names.rs', explained), ...states, ...groups, ...names, ...parameters,
+    ...literals('../../crates/control/src/types.rs', explained), ...literals('../../crates/wire/src/names.rs', explained), ...states, ...groups, ...names, ...values, ...parameters,
   ]);
 });
 

@@ -105,6 +105,7 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
             let limits = id.limits();
             json!({ "name": id.name(), "min": exact(limits.min), "max": exact(limits.max),
                     "default": exact(limits.default), "unit": id.unit(), "help": id.help(),
+                    "type": id.kind().name(), "choices": id.kind().names(),
                     "modes": id.modes().map(ModeId::name).collect::<Vec<_>>() })
         })),
         Topic::Ports => {
@@ -240,6 +241,23 @@ fn rig_row(entry: &Value) -> Vec<String> {
     vec![text("name"), text("robot"), sonars.join("; ")]
 }
 
+/// A switch or a choice as a row: name, default, type, no unit, what it is with its values; `None` for a number.
+fn named_row(entry: &Value) -> Option<Vec<String>> {
+    let choices: Vec<_> = entry["choices"]
+        .as_array()?
+        .iter()
+        .filter_map(Value::as_str)
+        .collect();
+    let default = *choices.get(entry["default"].as_f64()? as usize)?;
+    let text = |key: &str| entry[key].as_str().unwrap_or_default();
+    let help = format!("{} Values: {}", text("help"), choices.join(", "));
+    Some(
+        [text("name"), default, text("type"), "", &help]
+            .map(str::to_owned)
+            .to_vec(),
+    )
+}
+
 /// An entry as a row of a table: its name, then whatever it has of the rest.
 fn row(entry: &Value) -> Vec<String> {
     if entry.get("states").is_some() {
@@ -250,6 +268,9 @@ fn row(entry: &Value) -> Vec<String> {
     }
     if entry.get("bytes").is_some() {
         return logs::row(entry);
+    }
+    if let Some(row) = named_row(entry) {
+        return row;
     }
     let text = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
     let number = |key: &str| entry[key].as_f64().map(figure);

@@ -4,6 +4,11 @@
 //! defaults are kept short (`decimal.rs`), since a table of constants lies in the AVR's flash and in its SRAM.
 
 mod decimal;
+#[cfg(feature = "names")]
+mod kind;
+
+#[cfg(feature = "names")]
+pub use kind::ParamKind;
 
 use crate::drive::SpeedLoop;
 use crate::math::is_finite;
@@ -35,9 +40,9 @@ pub enum ParamError {
     OutOfRange,
 }
 
-/// Declares the table. Each line: help, variant, name, unit, default, limits.
+/// Declares the table. Each line: help, variant, name, unit, default, limits, and the type where it is no number.
 macro_rules! table {
-    ($( #[doc = $help:literal] $id:ident = $name:literal, $unit:literal, $default:expr, $min:expr => $max:expr; )+) => {
+    ($( #[doc = $help:literal] $id:ident = $name:literal, $unit:literal, $default:expr, $min:expr => $max:expr $(, $kind:expr)?; )+) => {
         /// Number of a parameter, as on the link.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
@@ -62,6 +67,12 @@ macro_rules! table {
             #[cfg(feature = "names")]
             pub const fn unit(self) -> &'static str {
                 match self { $( ParamId::$id => $unit, )+ }
+            }
+
+            /// Its type.
+            #[cfg(feature = "names")]
+            pub const fn kind(self) -> ParamKind {
+                match self { $( ParamId::$id => [$( $kind, )? ParamKind::Number][0], )+ }
             }
 
             /// What it is, in one line.
@@ -100,6 +111,13 @@ const fn fnv(mut hash: u32, bytes: &[u8]) -> u32 {
     hash
 }
 
+/// Of the Mega.
+#[cfg(feature = "names")]
+const ANALOGUE_INPUTS: [&str; 16] = [
+    "A0", "A1", "A2", "A3", "A4", "A5", "A6", "A7", "A8", "A9", "A10", "A11", "A12", "A13", "A14",
+    "A15",
+];
+
 table! {
     /// Radius of the left wheel.
     RadiusLeft = "radius_left_m", "m", 0.0325, 0.01 => 0.2;
@@ -115,8 +133,8 @@ table! {
     TurnError = "turn_error", "1", 0.0117, 0.0 => 0.1;
     /// Standard deviation of the mean radius, relative.
     ScaleError = "scale_error", "1", 0.002, 0.0 => 0.1;
-    /// Which sonars the robot carries: 0 `front_single`, 1 `front_pair`, 2 `side_pair_left`, 3 `side_pair_right`, 4 `final`.
-    Rig = "rig", "1", 4.0, 0.0 => 4.0;
+    /// Which sonars the robot carries, and where.
+    Rig = "rig", "1", 4.0, 0.0 => 4.0, ParamKind::Choice(&Rig::NAMES);
     /// Sonars that look ahead: distance ahead of the wheels' axis.
     SonarFrontX = "sonar_front_x_m", "m", 0.13, -0.3 => 0.3;
     /// Sonars that look to a side: distance ahead of the wheels' axis, for a pair of its middle.
@@ -169,8 +187,8 @@ table! {
     LowBattery = "low_battery_v", "V", 6.2, 0.0 => 30.0;
     /// Battery's voltage over that at the analogue input; 0: no divider is wired, the voltage is not measured.
     BatteryRatio = "battery_ratio", "1", 0.0, 0.0 => 20.0;
-    /// Analogue input that the divider is wired to: 0 is A0.
-    BatteryInput = "battery_input", "1", 0.0, 0.0 => 15.0;
+    /// Analogue input that the divider is wired to.
+    BatteryInput = "battery_input", "1", 0.0, 0.0 => 15.0, ParamKind::Choice(&ANALOGUE_INPUTS);
     /// Time without a sign of life after which the wheels are released.
     LinkTimeout = "link_timeout_s", "s", 0.4, 0.05 => 0.45;
     /// The same when the robot is addressed in text.
@@ -209,8 +227,8 @@ table! {
     PursuitSpacing = "pursuit_spacing_m", "m", 0.0, 0.0 => 2.0;
     /// Pure pursuit: largest sideways acceleration, which limits the speed in bends.
     PursuitSide = "pursuit_side_m_s2", "m/s2", 0.4, 0.01 => 10.0;
-    /// What follows a route: 0 turns, drives and turns, 1 pure pursuit.
-    WaypointTracker = "waypoint_tracker", "1", 0.0, 0.0 => 1.0;
+    /// What follows a route: straight lines with turns on the spot between them, or a pure pursuit.
+    WaypointTracker = "waypoint_tracker", "1", 0.0, 0.0 => 1.0, ParamKind::Choice(&["straight", "pure_pursuit"]);
     /// Inner wheel's speed over the outer one's in arcs.
     ArcRatio = "arc_ratio", "1", 0.5, 0.0 => 1.0;
     /// Largest approach speed.
@@ -261,8 +279,8 @@ table! {
     LaneSafe = "lane_safe_m", "m", 0.25, 0.15 => 1.0;
     /// Time after which a goal that has not been reached is given up.
     MissionGiveUp = "mission_give_up_s", "s", 150.0, 5.0 => 3600.0;
-    /// Each goal reached becomes the origin: 1 yes, 0 no.
-    MissionResetOrigin = "mission_reset_origin", "1", 1.0, 0.0 => 1.0;
+    /// Each goal reached becomes the origin.
+    MissionResetOrigin = "mission_reset_origin", "1", 1.0, 0.0 => 1.0, ParamKind::Switch;
 }
 
 impl ParamId {
@@ -338,6 +356,11 @@ impl Params {
             Some(value) => *value,
             None => 0.0,
         }
+    }
+
+    /// Whether a switch is on.
+    pub fn is_on(&self, id: ParamId) -> bool {
+        self.get(id) > 0.5
     }
 
     /// Sets a parameter; gives the value in force.
@@ -437,45 +460,4 @@ impl Params {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_default_is_within_its_limits_and_every_number_finds_its_parameter() {
-        for id in ParamId::ALL {
-            let Limits { min, max, default } = id.limits();
-            assert!(min <= default && default <= max && min < max, "{id:?}");
-            assert_eq!(ParamId::from_number(id as u8), Some(id));
-            assert_eq!(Params::default().get(id), default);
-        }
-        assert_eq!(ParamId::from_number(COUNT as u8), None);
-    }
-
-    #[test]
-    fn a_value_out_of_range_or_not_finite_is_refused_and_changes_nothing() {
-        let mut params = Params::default();
-        for id in ParamId::ALL {
-            let Limits { min, max, .. } = id.limits();
-            assert_eq!(params.set(id, max + 1.0), Err(ParamError::OutOfRange));
-            assert_eq!(params.set(id, min - 1.0), Err(ParamError::OutOfRange));
-            assert_eq!(params.set(id, f32::NAN), Err(ParamError::NotFinite));
-        }
-        assert_eq!(params, Params::default());
-        assert_eq!(params.set(ParamId::Base, 0.2), Ok(0.2));
-        assert_eq!(params.geometry().base_m(), 0.2);
-    }
-
-    #[cfg(feature = "names")]
-    #[test]
-    fn names_are_unique_and_carry_their_unit() {
-        extern crate std;
-        let mut names: std::vec::Vec<_> = ParamId::ALL.iter().map(|id| id.name()).collect();
-        for id in ParamId::ALL {
-            assert_eq!(ParamId::from_name(id.name()), Some(id));
-            assert!(!id.help().is_empty() && !id.unit().is_empty());
-        }
-        names.sort_unstable();
-        names.dedup();
-        assert_eq!(names.len(), COUNT);
-    }
-}
+mod tests;

@@ -44,6 +44,17 @@ impl Rig {
         Self::ALL.into_iter().find(|rig| *rig as u8 == number)
     }
 
+    /// The names, by number.
+    #[cfg(feature = "names")]
+    pub const NAMES: [&str; Self::ALL.len()] = {
+        let (mut names, mut i) = ([""; Self::ALL.len()], 0);
+        while i < names.len() {
+            names[i] = Self::ALL[i].name();
+            i += 1;
+        }
+        names
+    };
+
     /// The name used in files.
     #[cfg(feature = "names")]
     pub const fn name(self) -> &'static str {

@@ -1,6 +1,7 @@
 //! The built-in files are right, and wrong ones are told what is wrong, line by line.
 
 use rumbo_control::mode::Movement;
+use rumbo_control::params::ParamId;
 use rumbo_scenario::files::{Kind, Library, Overrides, RobotFile, ScenarioFile, WorldFile};
 use rumbo_wire::message::{Command, Level};
 
@@ -284,6 +285,30 @@ const WRONG_SCENARIOS: &[(&str, &str)] = &[
         "scenarios/x.toml:12: command[2].goal = \"here\": must be \"world\", the goal of a random world; a place is goal_m = [x, y]",
     ),
     (
+        "[parameters]\nwaypoint_tracker = \"pursuit\"",
+        "scenarios/x.toml:8: parameters.waypoint_tracker = \"pursuit\": must be `straight` or `pure_pursuit`",
+    ),
+    (
+        "[parameters]\nrig = 2.5",
+        "scenarios/x.toml:8: parameters.rig = 2.5: must be `front_single`, `front_pair`, `side_pair_left`, `side_pair_right` or `final`",
+    ),
+    (
+        "[parameters]\nmission_reset_origin = 2",
+        "scenarios/x.toml:8: parameters.mission_reset_origin = 2: must be `no` or `yes`",
+    ),
+    (
+        "[parameters]\nkv = \"high\"",
+        "scenarios/x.toml:8: parameters.kv = \"high\": must be a number in s/rad, without quotes",
+    ),
+    (
+        "[[command]]\nat_s = 1\nparameter = \"rig\"\nvalue = \"finale\"",
+        "scenarios/x.toml:10: command[1].value = \"finale\": must be `front_single`, `front_pair`, `side_pair_left`, `side_pair_right` or `final`",
+    ),
+    (
+        "[[command]]\nat_s = 1\nparameter = \"rig\"",
+        "scenarios/x.toml:7: command[1].value is missing: must be `front_single`, `front_pair`, `side_pair_left`, `side_pair_right` or `final`",
+    ),
+    (
         "[start\nx_m = 1",
         "scenarios/x.toml:7: not valid TOML: unclosed table, expected `]`",
     ),
@@ -293,6 +318,31 @@ const WRONG_SCENARIOS: &[(&str, &str)] = &[
 fn a_wrong_scenario_is_told_line_key_value_and_what_is_allowed() {
     for &(wrong, expected) in WRONG_SCENARIOS {
         assert_eq!(scenario_error(&format!("{SCENARIO}{wrong}\n")), expected);
+    }
+}
+
+#[test]
+fn a_switch_or_a_choice_is_given_by_name_or_number() {
+    let parsed = |parameters: &str| {
+        let text = format!("{SCENARIO}[parameters]\n{parameters}\n");
+        ScenarioFile::parse("x", "scenarios/x.toml", &text)
+            .unwrap()
+            .parameters
+    };
+    let expected = [
+        (ParamId::BatteryInput, 3.0),
+        (ParamId::WaypointTracker, 1.0),
+        (ParamId::MissionResetOrigin, 0.0),
+    ];
+    for values in [
+        ["\"A3\"", "\"pure_pursuit\"", "false"],
+        ["3", "1", "\"no\""],
+    ] {
+        let [input, tracker, reset] = values;
+        let text = format!(
+            "battery_input = {input}\nwaypoint_tracker = {tracker}\nmission_reset_origin = {reset}"
+        );
+        assert_eq!(parsed(&text), expected);
     }
 }
 

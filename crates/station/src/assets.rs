@@ -75,6 +75,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/touch.js": SCRIPT,
     "src/types.js": SCRIPT,
     "src/units.js": SCRIPT,
+    "src/value_field.js": SCRIPT,
     "vendor/uplot/uPlot.js": SCRIPT,
     "vendor/uplot/uPlot.css": CSS,
     "vendor/uplot/LICENSE": TEXT,

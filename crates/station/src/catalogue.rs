@@ -27,6 +27,11 @@ pub(crate) struct Entry {
     pub(crate) min: f32,
     pub(crate) max: f32,
     pub(crate) default: f32,
+    /// `number`, `switch` or `choice`.
+    #[serde(rename = "type")]
+    pub(crate) kind: &'static str,
+    /// Names of the values 0, 1, ... of a switch or a choice.
+    pub(crate) choices: &'static [&'static str],
     /// It belongs to the robot, whatever its mode; otherwise to modes, which list it.
     pub(crate) of_robot: bool,
     pub(crate) description: &'static str,
@@ -52,6 +57,8 @@ fn describe(id: ParamId) -> Entry {
         min,
         max,
         default,
+        kind: id.kind().name(),
+        choices: id.kind().names(),
         of_robot: id.modes().next().is_none(),
         description: id.help(),
     }

@@ -5,6 +5,7 @@ use crate::client::NotTaken;
 use crate::commands::{Fate, Outcome};
 use crate::oddity::Oddity;
 use rumbo_control::mode::{ModeId, Movement, Reference, ReferenceKind};
+use rumbo_control::params::ParamId;
 
 use rumbo_control::mode::waypoints::{FARTHEST_M, MAX_WAYPOINTS};
 use rumbo_wire::message::Waypoint;
@@ -50,7 +51,13 @@ pub(crate) fn command(command: &Command, mode: ModeId) -> String {
             let movement = movement_words(*movement);
             format!("movement {movement} at {:.0} rpm", rpm(*speed_rad_s))
         }
-        Command::SetParam { id, value } => format!("{} = {value}", parameter(*id)),
+        Command::SetParam { id, value } => {
+            let kind = ParamId::from_number(*id).map(ParamId::kind);
+            match kind.and_then(|kind| kind.name_of(*value)) {
+                Some(name) => format!("{} = {name}", parameter(*id)),
+                None => format!("{} = {value}", parameter(*id)),
+            }
+        }
         Command::GetParam { id } => format!("read {}", parameter(*id)),
         Command::ResetParams => "all parameters to their defaults".into(),
         Command::SaveParams => "save the parameters on the robot".into(),
@@ -132,6 +139,9 @@ pub(crate) fn other_protocol(protocol: u8) -> String {
 pub(crate) fn refusal(why: Refusal, command: &Command, mode: ModeId) -> String {
     match (why, command) {
         (Refusal::OutOfRange, Command::SetParam { id, .. }) => match catalogue::entry(*id) {
+            Some(entry) if !entry.choices.is_empty() => {
+                format!("allowed is one of {}", entry.choices.join(", "))
+            }
             Some(entry) => format!("allowed is {} to {} {}", entry.min, entry.max, entry.unit),
             None => "out of range".into(),
         },
@@ -167,6 +177,26 @@ fn parameter(id: u8) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_parameter_that_is_a_choice_or_a_switch_is_named_with_its_value() {
+        let set = |id: ParamId, value| {
+            let command = Command::SetParam {
+                id: id as u8,
+                value,
+            };
+            (
+                super::command(&command, ModeId::Manual),
+                refusal(Refusal::OutOfRange, &command, ModeId::Manual),
+            )
+        };
+        assert_eq!(set(ParamId::Rig, 4.0).0, "rig = final");
+        let (said, why) = set(ParamId::MissionResetOrigin, 0.0);
+        assert_eq!(said, "mission_reset_origin = no");
+        assert_eq!(why, "allowed is one of no, yes");
+        assert_eq!(set(ParamId::Rig, 9.0).0, "rig = 9");
+        assert_eq!(set(ParamId::Velocity, 0.5).0, "kv = 0.5");
+    }
 
     #[test]
     fn a_value_out_of_range_is_refused_with_what_is_allowed_in_the_mode() {

@@ -72,7 +72,7 @@ export const PAGE = {
   'Tell it': 'Decírselo', 'Write the rig that it carries to the robot': 'Escribe en el robot el montaje que lleva',
   'The robot believes to carry the rig {}, and carries {}: it misreads its sonars.': 'El robot cree llevar el montaje {} y lleva {}: interpreta mal sus sonares.',
   'heading': 'rumbo', 'goal': 'destino', 'to': 'hacia', ', {} m away': ', a {} m', 'references': 'referencias',
-  '{}; it needs the rig {}, the robot has {}': '{}; necesita el montaje {} y el robot lleva {}', 'contact!': '¡contacto!',
+  'needs the rig {}': 'necesita el montaje {}', 'contact!': '¡contacto!',
   'follows the lane': 'sigue el carril', 'route of {}': 'ruta de {}', 'route of {}, again and again': 'ruta de {}, una y otra vez',
   'no reading': 'sin lectura', 'clear|sonar': 'libre', 'Clear fault': 'Borrar fallo',
   // Commands.

@@ -5,7 +5,7 @@
 export const PARAMETERS = {
   'Battery\'s voltage over that at the analogue input; 0: no divider is wired, the voltage is not measured.':
     'Tensión de la batería entre la de la entrada analógica; 0: no hay divisor y la tensión no se mide.',
-  'Analogue input that the divider is wired to: 0 is A0.': 'Entrada analógica a la que va el divisor: 0 es A0.',
+  'Analogue input that the divider is wired to.': 'Entrada analógica a la que va el divisor.',
   'Radius of the left wheel.': 'Radio de la rueda izquierda.',
   'Radius of the right wheel.': 'Radio de la rueda derecha.',
   'Distance between the wheels\' contact points.': 'Distancia entre los puntos de apoyo de las ruedas.',
@@ -13,8 +13,7 @@ export const PARAMETERS = {
   'Standard deviation of the ratio of the radii, relative.': 'Desviación típica del cociente de los radios, relativa.',
   'Standard deviation of radius over base, relative.': 'Desviación típica del radio entre la base, relativa.',
   'Standard deviation of the mean radius, relative.': 'Desviación típica del radio medio, relativa.',
-  'Which sonars the robot carries: 0 `front_single`, 1 `front_pair`, 2 `side_pair_left`, 3 `side_pair_right`, 4 `final`.':
-    'Qué sonares lleva el robot: 0 `front_single`, 1 `front_pair`, 2 `side_pair_left`, 3 `side_pair_right`, 4 `final`.',
+  'Which sonars the robot carries, and where.': 'Qué sonares lleva el robot y dónde.',
   'Sonars that look ahead: distance ahead of the wheels\' axis.': 'Sonares que miran al frente: distancia por delante del eje de las ruedas.',
   'Sonars that look to a side: distance ahead of the wheels\' axis, for a pair of its middle.':
     'Sonares que miran a un lado: distancia por delante del eje de las ruedas; en una pareja, la de su punto medio.',
@@ -65,7 +64,8 @@ export const PARAMETERS = {
   'Pure pursuit: distance between points, of which the one after the nearest is the lookahead, as in the report; 0: by the speed.':
     'Persecución pura: distancia entre puntos; el siguiente al más cercano es el objetivo, como en la memoria; 0: según la velocidad.',
   'Pure pursuit: largest sideways acceleration, which limits the speed in bends.': 'Persecución pura: mayor aceleración lateral, que limita la velocidad en las curvas.',
-  'What follows a route: 0 turns, drives and turns, 1 pure pursuit.': 'Cómo se sigue una ruta: 0 gira, avanza y gira; 1 persecución pura.',
+  'What follows a route: straight lines with turns on the spot between them, or a pure pursuit.':
+    'Cómo se sigue una ruta: por líneas rectas con giros en el sitio entre ellas, o en persecución pura.',
   'Inner wheel\'s speed over the outer one\'s in arcs.': 'Velocidad de la rueda interior entre la de la exterior en los arcos.',
   'Largest approach speed.': 'Mayor velocidad de acercamiento.',
   'Deceleration planned on the way to the reference.': 'Deceleración prevista hasta la referencia.',
@@ -93,5 +93,5 @@ export const PARAMETERS = {
   'Largest speed around an obstacle.': 'Mayor velocidad alrededor de un obstáculo.',
   'Range of the front sonar at which a lane turns.': 'Lectura del sonar frontal a la que un carril gira.',
   'Time after which a goal that has not been reached is given up.': 'Tiempo tras el que se abandona un destino no alcanzado.',
-  'Each goal reached becomes the origin: 1 yes, 0 no.': 'Cada destino alcanzado pasa a ser el origen: 1 sí, 0 no.',
+  'Each goal reached becomes the origin.': 'Cada destino alcanzado pasa a ser el origen.',
 };

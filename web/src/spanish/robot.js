@@ -20,6 +20,8 @@ export const ROBOT = {
   'along the wall': 'a lo largo de la pared', 'distance to the wall': 'distancia a la pared', 'ramp': 'rampa', 'route': 'ruta', 'lane': 'carril',
   'speed loops': 'lazos de velocidad', 'feedforward': 'prealimentación', 'ramps of the wheels': 'rampas de las ruedas', 'turns on the spot': 'giros en el sitio',
   'straight lines': 'líneas rectas',
+  // Values of parameters.
+  'yes': 'sí', 'no': 'no', 'straight': 'línea recta y giros',
   // Rigs.
   'front single': 'un frontal', 'front pair': 'dos frontales', 'side pair left': 'dos a la izquierda', 'side pair right': 'dos a la derecha', 'final': 'final',
   // States.
@@ -95,7 +97,7 @@ export const ROBOT = {
   'the robot did not understand the command; use the same version at both ends': 'el robot no entendió la orden; usa la misma versión en los dos extremos',
   'the robot\'s sonars do not sit where this mode needs them; mount them so and set the parameter `rig`':
     'los sonares del robot no están donde este modo los necesita; móntalos así y fija el parámetro `rig`',
-  'allowed is {} to {}': 'se permite de {} a {}', 'allowed is {} to {} m for each coordinate': 'se permite de {} a {} m en cada coordenada',
+  'allowed is one of {}': 'se permite uno de {}', 'allowed is {} to {}': 'se permite de {} a {}', 'allowed is {} to {} m for each coordinate': 'se permite de {} a {} m en cada coordenada',
   'allowed is -{} to {} m for each coordinate, and {} waypoints': 'se permite de -{} a {} m en cada coordenada, y {} lugares', 'out of range': 'fuera de rango',
   'not confirmed': 'sin confirmar', 'too many commands wait for the robot': 'demasiadas órdenes esperan al robot',
   'no robot answers; check that it is on and in reach, then give the order again': 'no responde ningún robot; comprueba que está encendido y al alcance, y da la orden otra vez',
@@ -183,5 +185,5 @@ export const ROBOT = {
 };
 
 /** Names as commands have them, which are read as those of the buttons. */
-export const UNDERSCORED = ['front_distance', 'front_align', 'wall_hold', 'wall_follow', 'wheel_speed', 'straight_line', 'front_single', 'front_pair', 'side_pair_left', 'side_pair_right'];
+export const UNDERSCORED = ['front_distance', 'front_align', 'wall_hold', 'wall_follow', 'wheel_speed', 'straight_line', 'front_single', 'front_pair', 'side_pair_left', 'side_pair_right', 'pure_pursuit'];
 for (const name of UNDERSCORED) ROBOT[name] = ROBOT[name.replaceAll('_', ' ')] ?? name;

@@ -1,7 +1,7 @@
 //! Values of options that need more than a look: numbers within bounds, pairs.
 
 use crate::manifest::LONGEST_S;
-use rumbo_scenario::files::TimedText;
+use rumbo_scenario::files::{TimedText, parameters};
 
 /// Seconds of simulation or of a log per second.
 pub(super) fn speed(text: &str) -> Result<f64, String> {
@@ -36,18 +36,11 @@ pub(super) fn percent(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A parameter and its value: `kv=0.03`.
+/// A parameter and its value: `kv=0.03`, `rig=final`.
 pub(super) fn parameter(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text
         .split_once('=')
         .ok_or("write it as name=value, e.g. battery.open_circuit_v=6.9")?;
-    let value: f64 = value
-        .trim()
-        .parse()
-        .map_err(|_| format!("`{value}` is not a number"))?;
-    if value.is_finite() {
-        Ok((name.trim().to_owned(), value))
-    } else {
-        Err("the value must be finite".into())
-    }
+    let name = name.trim();
+    Ok((name.to_owned(), parameters::parse(name, value.trim())?))
 }

@@ -109,6 +109,17 @@ fn a_parameter_from_the_command_line_changes_the_run() {
 }
 
 #[test]
+fn a_choice_is_made_by_its_name_as_by_its_number() {
+    let result = |param: &str| {
+        let output = rumbo(&["run", "mode7", "--json", "--no-record", "--param", param]);
+        objects(&output)[0]["metrics"].clone()
+    };
+    let named = result("waypoint_tracker=pure_pursuit");
+    assert_eq!(named, result("waypoint_tracker=1"));
+    assert_ne!(named, result("waypoint_tracker=straight"));
+}
+
+#[test]
 fn each_run_leaves_its_result_and_its_trace_in_the_folder_asked_for() {
     let output = rumbo(&[
         "run",

@@ -44,10 +44,39 @@ fn list_names_what_there_is() {
         assert!(!mode["help"].as_str().unwrap().is_empty(), "{mode}");
         assert!(!mode["states"].as_array().unwrap().is_empty(), "{mode}");
     }
-    let reference = serde_json::json!({"what": "distance", "unit": "cm", "min": 5.0, "max": 200.0});
+    let reference = serde_json::json!(
+        {"what": "distance", "unit": "cm", "min": 5.0, "max": 200.0, "commanded": true});
     assert_eq!(modes[1]["reference"], reference);
+    assert_eq!(
+        modes[1]["rigs"],
+        serde_json::json!(["front_single", "final"])
+    );
+    assert_eq!(
+        modes[1]["parameters"][0]["parameters"][0],
+        "front_cruise_m_s"
+    );
     let modes = stdout(&rumbo(&["list", "modes"]));
     assert!(modes.contains("distance 5..200 cm"), "{modes}");
+    assert!(modes.contains("rigs: front_single, final"), "{modes}");
+    let parameters = stdout(&rumbo(&["list", "parameters"]));
+    let line = parameters
+        .lines()
+        .find(|line| line.contains("waypoint_tracker"));
+    assert!(
+        line.is_some_and(|line| line.contains("choice") && line.ends_with("straight, pure_pursuit")),
+        "{line:?}"
+    );
+    let json: serde_json::Value =
+        serde_json::from_str(&stdout(&rumbo(&["list", "parameters", "--json"]))).unwrap();
+    let parameters = json["parameters"].as_array().unwrap();
+    let find = |name: &str| parameters.iter().find(|each| each["name"] == name).unwrap();
+    assert_eq!(find("mission_reset_origin")["type"], "switch");
+    assert_eq!(find("rig")["choices"][4], "final");
+    assert_eq!(find("rig")["modes"], serde_json::json!([]));
+    assert_eq!(
+        find("wall_kp")["modes"],
+        serde_json::json!(["wall_hold", "wall_follow"])
+    );
     let rigs = stdout(&rumbo(&["list", "rigs"]));
     assert!(rigs.contains("front looks ahead, on the servo"), "{rigs}");
 }

@@ -32,7 +32,7 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         "comma.toml",
         "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = 0\nduration_s = 0,5\n",
     );
-    let cases: [(&[&str], &str); 25] = [
+    let cases: [(&[&str], &str); 27] = [
         (
             &["run", "typos.toml"],
             "error: typos.toml:5: mode = font_distance: unknown mode; did you mean `front_distance` (1)?",
@@ -96,6 +96,14 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         (
             &["run", "mode1", "--param", "battery.open_circuit_v=90"],
             "error: parameter battery.open_circuit_v = 90: must be within 5..9 V",
+        ),
+        (
+            &["run", "mode7", "--param", "waypoint_tracker=pursuit"],
+            "error: invalid value 'waypoint_tracker=pursuit' for '--param <NAME=VALUE>': waypoint_tracker must be `straight` or `pure_pursuit`, not `pursuit`; see `rumbo run --help`",
+        ),
+        (
+            &["run", "mode7", "--param", "waypoint_tracker=0.5"],
+            "error: parameter waypoint_tracker = 0.5: must be `straight` or `pure_pursuit`",
         ),
         (
             &["run", "mode1", "--param", "battery"],

@@ -15,10 +15,7 @@ impl ActiveMode {
         let Self::WheelSpeed(references, ()) = self else {
             return Err(SetpointError::NotInThisMode);
         };
-        wheel_speed::REFERENCE.check(value.left)?;
-        wheel_speed::REFERENCE.check(value.right)?;
-        *references = value;
-        Ok(())
+        wheel_speed::set(references, value)
     }
 
     /// Sets the goal: the task of mode 8, a route of one waypoint in mode 7. It may arrive at any time.

@@ -3,7 +3,7 @@
 //! ```text
 //! turn:  heading error -> yaw rate that friction can still brake       (motion::turn; left is positive)
 //! drive: distance from the line -> heading -> yaw rate; way left -> speed       (motion::line; left of the line steers right)
-//! or, with `waypoint_tracker = 1`, a pure pursuit of all waypoints up to the next with a heading (pursuit)
+//! or, with `waypoint_tracker = "pure_pursuit"`, a pure pursuit of all waypoints up to the next with a heading (pursuit)
 //! ```
 //!
 //! A new route or goal may come at any time: the robot stops and starts it from where it stands. A waypoint that is refused changes
@@ -271,7 +271,7 @@ impl<'a> Mode<'a> for Waypoints<'a> {
         Self {
             route,
             params,
-            pursues: params.get(ParamId::WaypointTracker) > 0.5,
+            pursues: params.is_on(ParamId::WaypointTracker),
         }
     }
 

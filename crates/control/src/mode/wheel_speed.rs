@@ -33,7 +33,7 @@ pub const DESCRIPTION: Description = Description {
 };
 
 /// Of each wheel; 60 rpm to begin with.
-pub(super) const REFERENCE: Reference = Reference::commanded(
+const REFERENCE: Reference = Reference::commanded(
     ReferenceKind::WheelSpeed,
     -MAX_WHEEL_RAD_S,
     MAX_WHEEL_RAD_S,
@@ -49,6 +49,14 @@ states! {
         /// Regulates the speeds.
         Turning = "turning" { Rest: "both references are zero" }
     }
+}
+
+/// Sets both references, or neither.
+pub(super) fn set(references: &mut Wheels<f32>, value: Wheels<f32>) -> Result<(), SetpointError> {
+    REFERENCE.check(value.left)?;
+    REFERENCE.check(value.right)?;
+    *references = value;
+    Ok(())
 }
 
 /// Configuration of mode 5.
@@ -76,9 +84,7 @@ impl<'a> Mode<'a> for WheelSpeed<'a> {
     }
 
     fn set_reference(references: &mut Wheels<f32>, value: f32) -> Result<(), SetpointError> {
-        REFERENCE.check(value)?;
-        *references = Wheels::both(value);
-        Ok(())
+        set(references, Wheels::both(value))
     }
 
     fn act(&self, _: &mut (), _: &Situation, action: &mut Action) -> Result<(), Fault> {

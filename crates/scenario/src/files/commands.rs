@@ -226,10 +226,10 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut Option<ModeId>) -> O
                     table.complain(key, name.line, &format!("{:?}", name.value), &remedy)
                 })
                 .ok()?;
-            let value = table.required_number("value", parameters::allowed(id));
+            let value = parameters::required(table, "value", id)?;
             Some(Command::SetParam {
                 id: id as u8,
-                value: value as f32,
+                value,
             })
         }
         _ => None,

@@ -304,16 +304,12 @@ fn stands_free(
 /// Sets one parameter, of the plant or of the control core, whichever has the name.
 fn apply(scenario: &mut ScenarioFile, name: &str, value: f64) -> Result<(), FileError> {
     let wrong = |remedy: &str| FileError::Setting(format!("parameter {name} = {value}: {remedy}"));
-    let judge = |allowed: Allowed| {
-        if allowed.admits(value) {
-            Ok(())
-        } else {
-            Err(wrong(&allowed.remedy()))
-        }
-    };
     let limits = Params::limits();
     if let Some(limit) = limits.iter().find(|limit| limit.key == name) {
-        judge(Allowed::new(limit.min, limit.max, limit.unit))?;
+        let allowed = Allowed::new(limit.min, limit.max, limit.unit);
+        if !allowed.admits(value) {
+            return Err(wrong(&allowed.remedy()));
+        }
         scenario.plant.insert(name.to_owned(), value);
         return Ok(());
     }
@@ -328,7 +324,7 @@ fn apply(scenario: &mut ScenarioFile, name: &str, value: f64) -> Result<(), File
             near: near(name, known).into_iter().map(str::to_owned).collect(),
         });
     };
-    judge(parameters::allowed(id))?;
+    parameters::check(id, value).map_err(|remedy| wrong(&remedy))?;
     scenario.parameters.push((id, value as f32));
     Ok(())
 }

@@ -205,7 +205,7 @@ impl Mission<'_> {
         if step.done && estimate.standing() {
             state.phase = Phase::Wait;
             action.reached = true;
-            action.new_origin = self.params.get(ParamId::MissionResetOrigin) > 0.5;
+            action.new_origin = self.params.is_on(ParamId::MissionResetOrigin);
             if action.new_origin {
                 state.echoes.move_origin(&estimate.pose, estimate.facing);
                 state
