@@ -108,7 +108,7 @@ export class CommandPanel {
   /** What the mode does, and what it lacks. @param {ModeEntry} mode @param {string | null} rig */
   #aboutWords(mode, rig) {
     const about = said(mode.about);
-    return rig === null || mode.rigs.includes(rig) ? about : t('{}; it needs the rig {}, the robot has {}', about, mode.rigs.map(named).join(' | '), named(rig));
+    return rig === null || mode.rigs.includes(rig) ? about : t('{}; it needs the sensor layout {}, the robot has {}', about, mode.rigs.map(named).join(' | '), named(rig));
   }
 
   /** @param {State} state @param {ModeEntry | null} mode */
@@ -148,7 +148,7 @@ export class CommandPanel {
   #layOutOne(id, unit, factor, { min, max, offered }) {
     const input = number(id, tenths(offered * factor), min * factor, max * factor);
     const range = create('span', { className: 'hint', textContent: t('{} to {} {}', format(min * factor, 0), format(max * factor, 0), unit) });
-    this.#reference.replaceChildren(create('label', {}, `${t('reference')} `, input, ` ${unit}`), submit(t('Set')), this.#inForce ?? '', range);
+    this.#reference.replaceChildren(create('label', {}, `${t('setpoint')} `, input, ` ${unit}`), submit(t('Set')), this.#inForce ?? '', range);
     this.#reference.onsubmit = (event) => {
       event.preventDefault();
       this.#send({ type: 'reference', value: read(input) / factor });

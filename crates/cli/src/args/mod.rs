@@ -48,7 +48,7 @@ pub(crate) enum Command {
     Lab(LabArgs),
     /// Drive a real robot from the same dashboard, over a serial port or TCP
     Connect(ConnectArgs),
-    /// Write the image to an Arduino Mega
+    /// Write the firmware to an Arduino Mega
     Flash(FlashArgs),
     /// Run scenarios as fast as the machine can and judge their metrics
     Run(RunArgs),

@@ -216,7 +216,7 @@ fn shown(metric: &Metric, value: f64) -> String {
     }
 }
 
-/// Median, and in parentheses least and most.
+/// Median, with min and max in parentheses.
 fn cell(metric: &Metric, runs: &[RunResult]) -> String {
     let values = sorted(metric, runs);
     let (Some(least), Some(most)) = (values.first(), values.last()) else {
