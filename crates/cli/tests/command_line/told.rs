@@ -44,7 +44,9 @@ fn list_names_what_there_is() {
         assert!(!mode["help"].as_str().unwrap().is_empty(), "{mode}");
         assert!(!mode["states"].as_array().unwrap().is_empty(), "{mode}");
     }
-    let reference = serde_json::json!({"what": "distance", "unit": "cm", "min": 5.0, "max": 200.0});
+    let reference = serde_json::json!({
+        "what": "distance", "unit": "cm", "min": 5.0, "max": 200.0, "commanded": true
+    });
     assert_eq!(modes[1]["reference"], reference);
     let modes = stdout(&rumbo(&["list", "modes"]));
     assert!(modes.contains("distance 5..200 cm"), "{modes}");
