@@ -90,7 +90,7 @@ export class CalibrationDialog {
     return [
       create('p', { textContent: t('The robot finds out by itself: the duty at which each wheel starts, the duty for each speed, the ratio of the wheels\' radii, and the distance between the wheels.') }),
       create('ol', {}, ...[
-        t('A sonar ahead on the servo and one on each side: rig final. Battery charged.'),
+        t('A sonar ahead on the servo and one on each side: sensor layout final. Battery charged.'),
         t('Put it on the floor beside a straight wall, 0.3 to 0.5 m from it and along it, with 2.5 m free ahead.'),
         t('It drives to and fro along the wall and turns on the spot, for about two and a half minutes. STOP ends it at any moment.'),
       ].map((textContent) => create('li', { textContent }))),

@@ -212,7 +212,7 @@ export class CheckupDialog {
   }
 
   #servo() {
-    this.#say(t('The servo is told to look straight ahead, {}°. Where does the front sonar look?', format((this.#store.latest?.servo_rad ?? 0) * 180 / Math.PI, 0)),
+    this.#say(t('The servo is commanded straight ahead, {}°. Where does the front sonar look?', format((this.#store.latest?.servo_rad ?? 0) * 180 / Math.PI, 0)),
       this.#buttons([t('straight ahead'), () => this.#verdict(judgeServo('ahead'))], [t('to the left'), () => this.#verdict(judgeServo('left'))], [t('to the right'), () => this.#verdict(judgeServo('right'))]));
   }
 

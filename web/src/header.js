@@ -48,8 +48,8 @@ export class Header {
     this.#form.hidden = scene === null;
     if (!scene) return;
     this.#scenario.replaceChildren(...scene.scenarios.map((name) => option(name, name)));
-    this.#world.replaceChildren(option(OWN, t('its own')), ...scene.worlds.map((name) => option(name, name)));
-    this.#rig.replaceChildren(option(OWN, t('its own')), ...scene.rigs.map((name) => option(name, named(name))));
+    this.#world.replaceChildren(option(OWN, t('scenario default')), ...scene.worlds.map((name) => option(name, name)));
+    this.#rig.replaceChildren(option(OWN, t('scenario default')), ...scene.rigs.map((name) => option(name, named(name))));
     this.#rig.title = named(scene.rig);
     this.#scenario.value = scene.choice.scenario;
     this.#world.value = scene.choice.world ?? OWN;

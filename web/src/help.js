@@ -12,7 +12,7 @@ const KEYS = () => [
   ['P', t('hold the plots, or go on')],
   ['L', t('follow the newest data')],
   ['M', t('in the plots: set the mark, from which times and values are counted; Escape takes it away')],
-  [t('+ − 0, arrow keys'), t('in the map: zoom, fit, move, and Enter picks the place in the middle; in the plots: zoom and move in time')],
+  [t('+ − 0, arrow keys'), t('in the map: zoom, fit, move, and Enter picks the point in the middle; in the plots: zoom and move in time')],
   [t('fingers'), t('map and plots: one moves, two zoom')],
   [t('K , .'), t('replay: play or pause, one frame back, one frame on')],
   ['? , F1', t('this page')],
@@ -21,8 +21,8 @@ const KEYS = () => [
 /** Lines and colours. */
 const LEGEND = () => [
   [t('blue'), t('left wheel, left sonar')], [t('orange'), t('right wheel, right sonar')], [t('green'), t('front sonar, heading; something good')],
-  [t('thick line'), t('as the robot measures or estimates it')], [t('dotted line'), t('as it really is, in the simulation')], [t('dashed line'), t('a reference')],
-  [t('dotted upright lines'), t('the state of the mode changed')], [t('filled robot'), t('as it is')], [t('dashed robot'), t('as it estimates')], [t('dotted robot'), t('the ghost: a simulated robot that gets the same commands')],
+  [t('thick line'), t('measured or estimated by the robot')], [t('dotted line'), t('ground truth, in the simulation')], [t('dashed line'), t('a setpoint')],
+  [t('dotted upright lines'), t('the state of the mode changed')], [t('filled robot'), t('true pose')], [t('dashed robot'), t('estimated pose')], [t('dotted robot'), t('the ghost: a simulated robot that gets the same commands')],
   [t('pink'), t('goal, route, mark')], [t('red cone'), t('a sonar without a reading')], [t('grey page'), t('what is shown is old: the link or the station is silent')],
 ];
 
@@ -39,7 +39,7 @@ const withCode = (text) => text.split('`').map((part, index) => (index % 2 === 1
 export function makeHelp() {
   const made = dialog('help-dialog', t('Help'));
   made.body.append(
-    create('p', { textContent: t('Choose a mode, set its reference, press ON. OFF stops the mode; STOP releases the wheels at once. The robot never starts because a page was opened.') }),
+    create('p', { textContent: t('Choose a mode, enter its setpoint, press ON. OFF stops the mode; STOP releases the wheels at once. The robot never starts because a page was opened.') }),
     create('div', { className: 'help-lists' }, list(t('Keys'), KEYS()), list(t('Colours and lines'), LEGEND())),
     create('p', { className: 'hint' }, ...withCode(t('Every event says its cause and what to do. Each run is recorded; `rumbo list logs` finds it, `rumbo replay` shows it here.'))));
   return made.open;

@@ -31,7 +31,7 @@ export const PLOTS = [
   plot('wheels', 5, ['true_left_rpm', 'true_right_rpm', 'left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm']),
   plot('PWM', 3, ['left_pwm', 'right_pwm']),
   plot('heading', 4, ['ghost_heading_deg', 'true_heading_deg', 'heading_deg', 'heading_ref_deg']),
-  plot('place', 4, ['ghost_x_m', 'ghost_y_m', 'true_x_m', 'true_y_m', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m']),
+  plot('position', 4, ['ghost_x_m', 'ghost_y_m', 'true_x_m', 'true_y_m', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m']),
 ];
 
 /** What a mode begins with: the plots of these titles. @param {string[]} titles @returns {Layout} */
@@ -83,8 +83,8 @@ function checkedPlot(from, index) {
   const units = unitsOf(from.signals);
   check(units.length <= MOST_UNITS, t('the signals of {} have more than two units: {}', here, units.join(', ')));
   const { min = null, max = null, right = null, weight = 4 } = from;
-  check((min === null && max === null) || isSpan(min, max), t('the limits of {} are none', here));
-  check(right === null || (Array.isArray(right) && right.length === 2 && isSpan(right[0], right[1])), t('the limits of {} are none', here));
+  check((min === null && max === null) || isSpan(min, max), t('the limits of {} are not two numbers, min below max', here));
+  check(right === null || (Array.isArray(right) && right.length === 2 && isSpan(right[0], right[1])), t('the limits of {} are not two numbers, min below max', here));
   check(isNumber(weight) && weight >= 1 && weight <= 20, t('the weight of {} must be {} to {}', here, 1, 20));
   return { title: from.title, signals: [...new Set(/** @type {string[]} */ (from.signals))], min, max, ...(right ? { right } : {}), weight };
 }

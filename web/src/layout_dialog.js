@@ -18,7 +18,7 @@ export class LayoutDialog {
   constructor(plots) {
     this.#plots = plots;
     const keep = create('form', { className: 'row' }, create('label', {}, `${t('name')} `, this.#name),
-      create('button', { type: 'submit', className: 'go', textContent: t('Keep'), title: t('Keep the plots as they are in this browser, by this name') }));
+      create('button', { type: 'submit', className: 'go', textContent: t('Save'), title: t('Save the plots as they are in this browser, under this name') }));
     keep.addEventListener('submit', (event) => {
       event.preventDefault();
       plots.shelf.name(this.#name.value, plots.layout);
@@ -26,13 +26,13 @@ export class LayoutDialog {
     });
     const save = create('button', { type: 'button', textContent: t('Save file'), id: 'layout-save' });
     save.addEventListener('click', () => saveFile(`${this.#name.value || 'rumbo'}.layout.json`, new Blob([toText(plots.layout)], { type: 'application/json' })));
-    const initial = create('button', { type: 'button', textContent: t('As the mode begins'), id: 'layout-initial' });
+    const initial = create('button', { type: 'button', textContent: t('Restore default'), id: 'layout-initial' });
     initial.addEventListener('click', () => {
       plots.use(null);
       this.#dialog.dialog.close();
     });
     this.#dialog.body.append(
-      create('p', { className: 'hint', textContent: t('A layout is which plots there are, their signals and axes, and the window of time. Each mode keeps its own.') }),
+      create('p', { className: 'hint', textContent: t('A layout is a set of plots with their signals and axes, and the window of time. Each mode has its own.') }),
       this.#list, keep, create('div', { className: 'row' }, save, fileButton(t('Load file'), '.json,application/json', (name, text) => this.#take(name, text)), initial), this.#complaint);
   }
 
@@ -50,8 +50,8 @@ export class LayoutDialog {
         this.#name.value = name;
         this.#dialog.dialog.close();
       });
-      const forget = create('button', { type: 'button', className: 'small', textContent: t('Forget') });
-      forget.setAttribute('aria-label', t('Forget the layout {}', name));
+      const forget = create('button', { type: 'button', className: 'small', textContent: t('Delete') });
+      forget.setAttribute('aria-label', t('Delete the layout {}', name));
       forget.addEventListener('click', () => {
         this.#plots.shelf.name(name, null);
         this.#show();

@@ -205,7 +205,7 @@ function receive(message) {
       meter.update(state);
       map.target = state.robot.armed && state.robot.errand.route && state.robot.errand.end === null ? state.robot.reference : null;
       map.setErrand(state.robot.errand);
-      parameters.setMode(state.robot.mode, state.robot.text ? t('the robot speaks text: it does not tell them') : state.robot.foreign ? t('the robot has another table: not shown') : '');
+      parameters.setMode(state.robot.mode, state.robot.text ? t('parameters are not available over the text protocol') : state.robot.foreign ? t('the robot has another table: not shown') : '');
       // Check and calibration are made of commands that such a robot does not know.
       document.body.classList.toggle('foreign', state.robot.foreign || Boolean(state.robot.text));
       map.servo_rad = state.robot.servo_rad;

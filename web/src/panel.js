@@ -109,7 +109,7 @@ export class CommandPanel {
   #showAbout(mode, rig) {
     const about = said(mode.about);
     const fits = rig === null || mode.rigs.includes(rig);
-    setText(this.#about, fits ? about : t('needs the rig {}', mode.rigs.map(named).join(' | ')));
+    setText(this.#about, fits ? about : t('needs the sensor layout {}', mode.rigs.map(named).join(' | ')));
     if (this.#about.title !== about) this.#about.title = about;
   }
 
@@ -150,7 +150,7 @@ export class CommandPanel {
   #layOutOne(id, unit, factor, { min, max, offered }) {
     const input = number(id, tenths(offered * factor), min * factor, max * factor);
     const range = create('span', { className: 'hint', textContent: t('{} to {} {}', format(min * factor, 0), format(max * factor, 0), unit) });
-    this.#reference.replaceChildren(create('label', {}, `${t('reference')} `, input, ` ${unit}`), submit(t('Set')), this.#inForce ?? '', range);
+    this.#reference.replaceChildren(create('label', {}, `${t('setpoint')} `, input, ` ${unit}`), submit(t('Set')), this.#inForce ?? '', range);
     this.#reference.onsubmit = (event) => {
       event.preventDefault();
       this.#send({ type: 'reference', value: read(input) / factor });

@@ -148,7 +148,7 @@ export class ParameterTable {
 
   #tell() {
     const replay = document.body.classList.contains('replay');
-    const why = replay && !this.#known ? t('the log does not tell them') : this.#why;
+    const why = replay && !this.#known ? t('the log does not contain the parameters') : this.#why;
     setText(this.#note, why);
     for (const button of [this.#save, this.#reset]) button.hidden = replay || why !== '';
     this.#table.classList.toggle('without', why !== '');

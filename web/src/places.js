@@ -105,7 +105,7 @@ export class Places {
     this.#root.replaceChildren(
       create('div', { className: 'row' },
         button(t('Square 1 m'), t('Take the square of the report'), () => this.#take({ repeat: this.#repeat.checked, relative: this.#relative.checked, waypoints: SQUARE.map(([x_m, y_m]) => ({ x_m, y_m, heading_rad: null })) })),
-        ...own, button(t('Clear'), t('Begin anew'), () => this.#change([])),
+        ...own, button(t('Clear'), t('Start over'), () => this.#change([])),
         create('label', { title: t('Starts over at the end') }, this.#repeat, ` ${t('repeat')}`),
         create('label', { title: t('As seen from where the robot starts, not from its origin') }, this.#relative, ` ${t('relative')}`), this.#set),
       this.#list,
@@ -149,11 +149,11 @@ export class Places {
     this.#set.disabled = draft.length === 0;
     this.#map.setDraft(draft.length === 0 ? null : { repeat, relative, waypoints: draft.map(([x_m, y_m]) => ({ x_m, y_m, heading_rad: null })) });
     if (draft.length === 0) {
-      setText(this.#list, t('Clicks on the map add places, {} at most.', this.#mode?.route ?? 0));
+      setText(this.#list, t('Clicks on the map add waypoints, {} at most.', this.#mode?.route ?? 0));
       return;
     }
     this.#list.replaceChildren(...draft.map((at, index) => {
-      const chip = create('button', { type: 'button', className: 'place', title: t('Take this place out') }, create('b', { textContent: String(index + 1) }), inWords(at), ' ×');
+      const chip = create('button', { type: 'button', className: 'place', title: t('Remove this waypoint') }, create('b', { textContent: String(index + 1) }), inWords(at), ' ×');
       chip.addEventListener('click', () => this.#change(draft.filter((_place, each) => each !== index)));
       return chip;
     }));

@@ -30,7 +30,7 @@ export class PlotPanel {
   curves;
   /** Limits of the axes, left and right, while they are zoomed into. @type {[[number, number], [number, number] | null] | null} */
   #zoomed = null;
-  #lock = create('button', { type: 'button', className: 'small', textContent: t('lock'), title: t('Keep the limits of the axis as they are') });
+  #lock = create('button', { type: 'button', className: 'small', textContent: t('lock'), title: t('Hold the limits of the axis') });
   #chips;
   /** @type {HTMLElement[]} */
   parts;

@@ -12,7 +12,7 @@ import { numberAs, t } from './text.js';
 /** @typedef {import('./plots.js').Plots} Plots */
 
 /** What the signals of a unit are. @returns {Record<keyof typeof UNITS, string>} */
-const GROUPS = () => ({ cm: t('distances, cm'), rpm: t('wheel speeds, rpm'), 'of 255': t('PWM, of 255'), '°': t('angles, °'), m: t('places, m') });
+const GROUPS = () => ({ cm: t('distances, cm'), rpm: t('wheel speeds, rpm'), 'of 255': t('PWM, of 255'), '°': t('angles, °'), m: t('positions, m') });
 
 export class PlotDialog {
   #plots;
@@ -24,7 +24,7 @@ export class PlotDialog {
   #max = decimal('plot-max');
   #rightMin = decimal('plot-right-min');
   #rightMax = decimal('plot-right-max');
-  #right = create('div', { className: 'row' }, create('label', {}, `${t('right axis from')} `, this.#rightMin), create('label', {}, `${t('axis to')} `, this.#rightMax));
+  #right = create('div', { className: 'row' }, create('label', {}, `${t('right axis: y min')} `, this.#rightMin), create('label', {}, `${t('y max')} `, this.#rightMax));
   #boxes = SIGNALS.map(({ name, about }) => {
     const box = create('input', { type: 'checkbox', value: name });
     return { box, label: create('label', {}, box, ` ${t(about)}`) };
@@ -42,7 +42,7 @@ export class PlotDialog {
       ...this.#boxes.filter(({ box }) => SIGNALS.find(({ name }) => name === box.value)?.unit === unit).map(({ label }) => label)));
     const form = create('form', { className: 'stack' },
       create('div', { className: 'row' }, create('label', {}, `${t('title')} `, this.#title),
-        create('label', {}, `${t('axis from')} `, this.#min), create('label', {}, `${t('axis to')} `, this.#max), create('span', { className: 'hint', textContent: t('empty: by the values') })),
+        create('label', {}, `${t('y min')} `, this.#min), create('label', {}, `${t('y max')} `, this.#max), create('span', { className: 'hint', textContent: t('empty = auto') })),
       this.#right,
       create('div', { className: 'signal-choice' }, ...groups), this.#complaint,
       create('div', { className: 'row' }, create('button', { type: 'submit', className: 'go', textContent: t('Apply') }), this.#remove, create('span', { className: 'spacer' }), this.#pictures));
@@ -107,7 +107,7 @@ export class PlotDialog {
     const left = limits(this.#min, this.#max);
     const right = this.#right.hidden ? null : limits(this.#rightMin, this.#rightMax);
     if (signals.length === 0) return this.#complain(t('choose a signal at least'));
-    if (left === undefined || right === undefined) return this.#complain(t('an axis has two limits, the lower one first, or none'));
+    if (left === undefined || right === undefined) return this.#complain(t('give y min and y max, min below max, or leave both empty'));
     const old = this.#panel?.spec ?? null;
     // A title that stands in two languages is kept as it is.
     const title = old && this.#title.value === t(old.title) ? old.title : this.#title.value;

@@ -62,7 +62,7 @@ export class StateLine {
     const believed = this.#slow?.robot.rig ?? null;
     const wrong = this.#carried !== null && believed !== null && believed !== this.#carried;
     this.#rig.hidden = !wrong;
-    if (wrong) setText(this.#rigText, t('The robot believes to carry the rig {}, and carries {}: it misreads its sonars.', believed ?? '', this.#carried ?? ''));
+    if (wrong) setText(this.#rigText, t('The robot is set to the sensor layout {}, but {} is mounted: it misreads its sonars.', believed ?? '', this.#carried ?? ''));
   }
 
   draw() {
@@ -114,9 +114,9 @@ export class StateLine {
     const to = latest?.heading_ref_rad ?? null;
     if (at && to !== null) words.push(`${t('heading')} ${degrees(at.heading_rad)} → ${format(near(to * DEG_PER_RAD, at.heading_rad * DEG_PER_RAD), 0)}°`);
     const kind = mode?.reference?.kind;
-    if (kind === 'distance' && left !== 0) words.push(`${t('reference')} ${format(left * CM_PER_M)} cm`);
-    if (kind === 'speed') words.push(`${t('reference')} ${format(left * RPM_PER_RAD_S, 0)} rpm`);
-    if (kind === 'wheel_speed') words.push(`${t('references')} ${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)} rpm`);
+    if (kind === 'distance' && left !== 0) words.push(`${t('setpoint')} ${format(left * CM_PER_M)} cm`);
+    if (kind === 'speed') words.push(`${t('setpoint')} ${format(left * RPM_PER_RAD_S, 0)} rpm`);
+    if (kind === 'wheel_speed') words.push(`${t('setpoints')} ${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)} rpm`);
     const { goal, lane, route } = robot.errand;
     if (lane) words.push(t('follows the lane'));
     if (route) words.push(t(route.repeat ? 'route of {}, again and again' : 'route of {}', route.waypoints.length));

@@ -111,7 +111,7 @@ async function startScenario(scenario) {
   await page.locator('#world').selectOption('');
   await page.locator('#rig').selectOption('');
   await page.locator('#simulation button[type=submit]').click();
-  await page.waitForFunction((scenario) => [...document.querySelectorAll('#events li')][0]?.textContent?.includes('done')
+  await page.waitForFunction((scenario) => [...document.querySelectorAll('#events li')][0]?.textContent?.includes('acknowledged')
     && [...document.querySelectorAll('#events li')].some((line) => line.textContent?.includes(`reset: ${scenario}, `)), scenario);
 }
 
@@ -166,7 +166,7 @@ test('a parameter is written and held, and a value out of range is refused with 
   await page.waitForFunction(() => /** @type {HTMLInputElement | null} */ (document.querySelector('#parameter-link_timeout_s'))?.value !== '');
   await input.fill('0.3');
   await input.press('Enter');
-  await page.waitForFunction(() => [...document.querySelectorAll('#events li')].some((line) => line.textContent?.includes('link_timeout_s = 0.3: done')));
+  await page.waitForFunction(() => [...document.querySelectorAll('#events li')].some((line) => line.textContent?.includes('link_timeout_s = 0.3: acknowledged')));
   const row = page.locator('#parameters tr', { has: input });
   await input.fill('99');
   await input.press('Enter');
@@ -254,14 +254,14 @@ test('parameters saved on the robot are still there when it starts again', async
   await page.waitForFunction(() => /** @type {HTMLInputElement} */ (document.querySelector('#parameter-link_timeout_s')).value === '0.4');
 });
 
-test('a rig that the robot does not carry is warned about, and the robot can be told', async () => {
+test('a sensor layout that the robot does not carry is warned about, and the robot can be updated', async () => {
   await page.locator('#rig').selectOption('front_single');
   await page.locator('#simulation button[type=submit]').click();
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.rig === 'front_single');
   assert.equal(await page.locator('#rig-warning').isVisible(), false);
   await page.locator('#reset-parameters').click();
   await page.waitForSelector('#rig-warning');
-  assert.match(await page.locator('#rig-text').innerText(), /believes to carry the rig final, and carries front_single/);
+  assert.match(await page.locator('#rig-text').innerText(), /is set to the sensor layout final, but front_single is mounted/);
   await page.locator('#rig-tell').click();
   await page.waitForSelector('#rig-warning', { state: 'hidden' });
 });

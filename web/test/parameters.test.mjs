@@ -52,7 +52,7 @@ test('a mode that shares parameters with another shows them too', async () => {
 
 test('a mode that the rig cannot serve says so, and offers its experiment', async () => {
   await select(8);
-  await page.locator('#about', { hasText: /^needs the rig final$/ }).waitFor();
+  await page.locator('#about', { hasText: /^needs the sensor layout final$/ }).waitFor();
   await page.locator('#mode-scenario', { hasText: 'Scenario mode8-goals' }).waitFor();
   await select(1);
   await page.locator('#about', { hasText: /^stop at a distance from the wall ahead$/ }).waitFor();

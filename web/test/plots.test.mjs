@@ -172,19 +172,19 @@ test('what is seen of a plot is saved as SVG, PNG and CSV', async () => {
   await page.keyboard.press('Escape');
 });
 
-test('a layout is kept by name and as a file, and loaded again', async () => {
-  await page.locator('#plot-choice button', { hasText: 'place' }).click();
+test('a layout is saved by name and as a file, and loaded again', async () => {
+  await page.locator('#plot-choice button', { hasText: 'position' }).click();
   await page.locator('#window').selectOption('60');
   await page.locator('#layouts').click();
   await page.locator('#layout-name').fill('mine');
-  await page.getByRole('button', { name: 'Keep' }).click();
+  await page.getByRole('button', { name: 'Save', exact: true }).click();
   const file = await saved('Save file');
   assert.equal(file.name, 'mine.layout.json');
   await page.locator('#layout-initial').click();
   assert.deepEqual(await titles(), ['distance', 'wheels', 'PWM']);
   await page.locator('#layouts').click();
   await page.getByRole('button', { name: 'mine', exact: true }).click();
-  assert.deepEqual(await titles(), ['distance', 'wheels', 'PWM', 'place']);
+  assert.deepEqual(await titles(), ['distance', 'wheels', 'PWM', 'position']);
   assert.equal((await plots()).layout.window_s, 60);
   await page.locator('#layouts').click();
   await page.locator('#layout-initial').click();

@@ -91,7 +91,7 @@ test('it plays, and pauses at its end', async () => {
 });
 
 test('a click on an event goes to its time', async () => {
-  const line = page.locator('#events li', { hasText: 'sent: reference 50.0 cm' });
+  const line = page.locator('#events li', { hasText: 'sent: setpoint 50.0 cm' });
   await line.click();
   await page.waitForFunction(() => Math.abs(/** @type {any} */ (window).rumbo.state().t_s - 5.5) < 0.1);
   assert.ok(Math.abs((await shown_s()) - 5.5) < 0.1);
@@ -99,7 +99,7 @@ test('a click on an event goes to its time', async () => {
 
 test('Enter on an event goes to its time too', async () => {
   await scrub(2);
-  await page.locator('#events li', { hasText: 'sent: reference 50.0 cm' }).focus();
+  await page.locator('#events li', { hasText: 'sent: setpoint 50.0 cm' }).focus();
   await page.keyboard.press('Enter');
   await page.waitForFunction(() => Math.abs(/** @type {any} */ (window).rumbo.state().t_s - 5.5) < 0.1);
 });

@@ -36,7 +36,7 @@ test('what is refused and what fails is told in Spanish, with the remedy', async
   await input.press('Enter');
   await event(/front_kp = 99: rechazado, se permite de 0,1 a 20/);
   await page.locator('#stop').click();
-  await event(/PARAR: hecho/);
+  await event(/PARAR: confirmado/);
   await page.locator('#scenario').selectOption('free');
   await page.locator('#simulation button[type=submit]').click();
   await event(/reinicio: free, semilla 1/);
@@ -56,7 +56,7 @@ test('numbers have a decimal comma, and fields take a point too', async () => {
   for (const [typed, told] of [['0,3', '0,3'], ['0.35', '0,35']]) {
     await input.fill(/** @type {string} */ (typed));
     await input.press('Enter');
-    await event(new RegExp(`link_timeout_s = ${told}: hecho`));
+    await event(new RegExp(`link_timeout_s = ${told}: confirmado`));
     await page.waitForFunction((told) => /** @type {HTMLInputElement} */ (document.querySelector('#parameter-link_timeout_s')).value === told, told);
   }
   await input.press('ArrowUp');
@@ -67,7 +67,7 @@ test('numbers have a decimal comma, and fields take a point too', async () => {
   await page.locator('#goal-x').fill('0,5');
   await page.locator('#goal-y').fill('-0.25');
   await page.locator('#goal button').click();
-  await event(/destino \(0,50; [-−]0,25\) m: hecho/);
+  await event(/destino \(0,50; [-−]0,25\) m: confirmado/);
   await page.locator('#aim', { hasText: 'destino (0,5; −0,25) m' }).waitFor();
   // Bytes and the file's name are none.
   const points = await page.evaluate(() => document.body.innerText.split('\n').filter((line) => /\d\.\d/.test(line) && !line.includes('/')));

@@ -1,9 +1,9 @@
 //! The project's chores, run as `cargo xtask <command>`.
 //!
 //! [`test`] is everything that must hold before a change is merged, [`tidy`] the rules no compiler checks,
-//! [`bench`] the figures of the README, [`campaign`] what must hold over thousands of seeds, [`sketches`] the images that
-//! tests and examples run, [`figures`] the figures and tables of docs/theory, [`fuzz`] the fuzz targets. Each prints what it does; none needs
-//! anything but cargo to start.
+//! [`bench`] the measured figures of docs/figures.md, [`campaign`] what must hold over thousands of seeds, [`sketches`]
+//! the images that tests and examples run, [`figures`] the figures and tables of docs/theory, [`fuzz`] the fuzz targets.
+//! Each prints what it does; none needs anything but cargo to start.
 
 use std::process::ExitCode;
 

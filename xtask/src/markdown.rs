@@ -1,6 +1,8 @@
-//! What the chores need to know of a Markdown file: its links, headings and code blocks, each with its line.
+//! What the chores need to know of a Markdown file: its links, headings, code blocks and tables, each with its line.
 
-use pulldown_cmark::{CodeBlockKind, Event, Parser, Tag, TagEnd};
+use std::ops::Range;
+
+use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag, TagEnd};
 
 /// The parts of one Markdown text.
 #[derive(Debug, Default, PartialEq)]
@@ -11,6 +13,8 @@ pub(crate) struct Markdown {
     pub(crate) anchors: Vec<String>,
     /// Fenced code blocks.
     pub(crate) blocks: Vec<Block>,
+    /// Lines of tables and of code blocks, which may be as long as they are wide.
+    pub(crate) wide: Vec<Range<usize>>,
 }
 
 /// A fenced code block.
@@ -30,8 +34,11 @@ impl Markdown {
         let mut parts = Self::default();
         let mut heading: Option<String> = None;
         let mut in_block = false;
-        for (event, range) in Parser::new(text).into_offset_iter() {
+        for (event, range) in Parser::new_ext(text, Options::ENABLE_TABLES).into_offset_iter() {
             let line = 1 + text[..range.start].matches('\n').count();
+            if let Event::Start(Tag::CodeBlock(_) | Tag::Table(_)) = event {
+                parts.wide.push(line..line + text[range].lines().count());
+            }
             match event {
                 Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => {
                     parts.links.push((line, dest_url.into_string()));
@@ -98,6 +105,12 @@ mod tests {
             text: "rumbo list\n".to_owned(),
         };
         assert_eq!(parts.blocks, [block]);
+    }
+
+    #[test]
+    fn tables_and_code_blocks_are_wide() {
+        let text = "Text\n\n| a |\n|---|\n| b |\n\nText\n\n- item\n\n  ```text\n  code\n  ```\n";
+        assert_eq!(Markdown::parse(text).wide, [3..6, 11..14]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `cargo xtask memoria`: the report's program as an Arduino sketch, its native form, our core and our image, scenario by scenario.
 //!
-//! The table of docs/theory/original.md and its short form in the README come from here; `crates/scenario/examples/memoria/` runs all of it.
+//! The table of docs/theory/original.md and its short form in docs/figures.md come from here;
+//! `crates/scenario/examples/memoria/` runs all of it.
 
 use crate::project::{Project, run as run_command};
 use crate::sketches;

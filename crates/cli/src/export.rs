@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn a_spreadsheet_computes_nothing_that_a_robot_said() {
         for (text, cell) in [
-            ("STOP: done", "\"STOP: done\""),
+            ("STOP: acknowledged", "\"STOP: acknowledged\""),
             ("say \"on\"", "\"say \"\"on\"\"\""),
             ("=cmd|' /C calc'!A0", "\"'=cmd|' /C calc'!A0\""),
             ("-1+1", "\"'-1+1\""),

@@ -156,7 +156,7 @@ fn map_chart(curves: Vec<Curve<'_>>) -> Option<Chart<'_>> {
     };
     curves.iter().any(is_way).then(|| Chart {
         legend: Legend::UpperLeft,
-        ..map("Way", curves)
+        ..map("Trajectory", curves)
     })
 }
 

@@ -54,7 +54,7 @@ fn image(args: &FlashArgs) -> Result<PathBuf, Failure> {
                 .join(BUILT);
             if !built.exists() {
                 return Err(Failure::Input(format!(
-                    "there is no image {}: build it with `cargo xtask firmware` in the folder of Rumbo's sources, or give one with --image",
+                    "there is no firmware {}: build it with `cargo xtask firmware` in the folder of Rumbo's sources, or give one with --image",
                     built.display()
                 )));
             }

@@ -189,7 +189,7 @@ fn mode_row(entry: &Value) -> Vec<String> {
         (Some(what), Some(unit)) if reference["commanded"] == true => {
             format!("{what} {}..{} {unit}", limit("min"), limit("max"))
         }
-        _ => "no reference".into(),
+        _ => "no setpoint".into(),
     };
     let words = |key: &str| {
         let words = entry[key].as_array().into_iter().flatten();

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::mark::crc32;
+use rumbo_scenario::MODEL;
 use rumbo_scenario::files::{Kind as File, Library, Overrides, Program, Setup, TimedText};
 use rumbo_scenario::mega::firmware;
 use rumbo_station::log::{Kind, Manifest};
@@ -32,6 +33,7 @@ pub(crate) fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) ->
     Manifest {
         kind,
         version: env!("CARGO_PKG_VERSION").into(),
+        model: Some(MODEL),
         scenario: Some(setup.scenario.name.clone()),
         robot: Some(setup.robot.name.clone()),
         world: Some(setup.world.name.clone()),

@@ -11,10 +11,10 @@ use crate::manifest;
 use crate::output;
 use crate::run_log;
 use rumbo_control::params::SCHEMA;
-use rumbo_scenario::calibrate;
 use rumbo_scenario::files::Setup;
 use rumbo_scenario::run::{self, RunResult};
 use rumbo_scenario::sim::Sim;
+use rumbo_scenario::{MODEL, calibrate};
 use rumbo_station::log::{Burst, Kind, Log, Manifest, Said, Sent};
 use rumbo_wire::{Decoder, FromRobot, Message, PROTOCOL_VERSION, Received};
 use serde_json::json;
@@ -26,6 +26,8 @@ const LINE: usize = 160;
 struct Recorder {
     /// Which it was and which this is; empty where they are the same.
     version: String,
+    /// Which model of robot and world it had, where that was another one: then other metrics are expected.
+    model: Option<String>,
     /// What the robot's table of parameters was and is now, where they differ: then nothing else can be the same.
     table: Option<String>,
     /// The protocol that the robot spoke, where it was another one: then it said the same in other bytes, at other
@@ -40,6 +42,13 @@ impl Recorder {
             true => String::new(),
             false => format!("; recorded by version {}, this is {here}", recorded.version),
         };
+        let model = (recorded.model != Some(MODEL)).then(|| {
+            let number = recorded.model.map_or_else(
+                || "before models had numbers".to_owned(),
+                |number| format!("with model {number}"),
+            );
+            format!("recorded {number}, this is model {MODEL}: robot or world changed between them")
+        });
         let hello = log.hello();
         let protocol = hello
             .map(|hello| hello.protocol)
@@ -56,6 +65,7 @@ impl Recorder {
         });
         Self {
             version,
+            model,
             table,
             protocol,
         }
@@ -63,6 +73,13 @@ impl Recorder {
 }
 
 impl Recorder {
+    /// What to say before a difference; empty where the model is the same.
+    fn model_words(&self) -> String {
+        self.model
+            .as_ref()
+            .map_or_else(String::new, |model| format!("{model}; "))
+    }
+
     /// Why not all is compared; empty where it is.
     fn protocol_words(&self) -> String {
         self.protocol.map_or_else(String::new, |protocol| {
@@ -145,6 +162,7 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
         output::json(
             &json!({ "log": output::shown(&args.log), "equal": equal, "duration_s": log.duration_s(), "bytes": from_robot,
             "recorded_by": recorded.version, "run_by": env!("CARGO_PKG_VERSION"),
+            "recorded_model": recorded.model, "run_model": MODEL,
             "first_difference_s": first.map(|(t_s, _)| t_s), "difference": first.map(|(_, what)| what) }),
         )?;
     } else {
@@ -155,7 +173,8 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
                 recorder.version
             ),
             Some((t_s, what)) => format!(
-                "{shown}: differs first at {t_s:.3} s: {what}{}{}",
+                "{shown}: {}differs first at {t_s:.3} s: {what}{}{}",
+                recorder.model_words(),
                 recorder.protocol_words(),
                 recorder.version
             ),

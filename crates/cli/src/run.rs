@@ -187,7 +187,7 @@ fn report(scenario: &ScenarioFile, results: &[RunResult]) -> Result<(), Failure>
     let mut rows = Vec::new();
     if results.len() > 1 {
         rows.push(
-            ["", "least", "median", "most", "limit"]
+            ["", "min", "median", "max", "limit"]
                 .map(String::from)
                 .to_vec(),
         );
@@ -209,7 +209,7 @@ fn report(scenario: &ScenarioFile, results: &[RunResult]) -> Result<(), Failure>
     Ok(())
 }
 
-/// One metric: its value, or least, median and most of many; its limit, and whether that is kept.
+/// One metric: its value, or min, median and max of many; its limit, and whether that is kept.
 fn row(scenario: &ScenarioFile, metric: &str, mut values: Vec<f64>) -> Vec<String> {
     values.sort_by(f64::total_cmp);
     let mut row = vec![metric.to_owned()];

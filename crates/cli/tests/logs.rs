@@ -252,9 +252,9 @@ fn a_log_made_with_another_table_of_parameters_says_so_and_a_log_cut_off_says_wh
 
     // What ends within its head has nothing to compare, show or draw.
     for (bytes, said) in [
-        (0, "ends before anything in it"),
-        (5, "ends before anything in it"),
-        (150, "ends before anything in it"),
+        (0, "ends before its first record"),
+        (5, "ends before its first record"),
+        (150, "ends before its first record"),
         (5_000, "`rumbo run mode5 --seed 1` makes such a run again"),
     ] {
         std::fs::write(folder.path().join("head.mcap"), &whole[..bytes]).unwrap();

@@ -51,7 +51,7 @@ fn a_full_disk_is_reported_once_driving_goes_on_and_the_log_is_readable_up_to_th
     page.wait_for_event("is the disk full?");
     // The robot is still driven: it takes orders, and telemetry comes.
     page.say(&json!({"type": "reference", "value": 4.0}));
-    page.wait_for_event("done");
+    page.wait_for_event("acknowledged");
     let (mut first_s, mut told) = (None, 0);
     page.wait_for("samples", |message| {
         let events = message["events"].as_array().into_iter().flatten();
@@ -67,7 +67,7 @@ fn a_full_disk_is_reported_once_driving_goes_on_and_the_log_is_readable_up_to_th
     });
     assert_eq!(told, 0, "told again");
     page.say(&json!({"type": "stop"}));
-    page.wait_for_event("STOP: done");
+    page.wait_for_event("STOP: acknowledged");
     drop(page);
     lab.end();
     let path = std::fs::read_dir(folder.path())

@@ -92,7 +92,7 @@ fn the_original_program_is_recognised_commanded_watched_and_recorded() {
     bench
         .page
         .say(&json!({"type": "reference", "value": 60.0 * std::f64::consts::TAU / 60.0}));
-    bench.page.wait_for_event("reference 60 rpm: sent");
+    bench.page.wait_for_event("setpoint 60 rpm: sent");
     bench.wait_for("right_ref_rad_s", |rad_s| {
         (rad_s - std::f64::consts::TAU).abs() < 0.01
     });

@@ -140,7 +140,7 @@ impl Table {
             others => format!(" in every scenario, of both, but for these:{others}"),
         };
         format!(
-            "Medians of {seeds} seeds: {} of {} figures are alike, {} of them the same number and left out below. Within their limits are \
+            "Medians of {seeds} seeds: {} of {} figures are alike, {} of them the same number and left out below.\nWithin their limits are \
              all {seeds} seeds{passes}\n\n\
              | scenario | figure | natively | on the Mega | difference | quantum | alike |\n|---|---|---|---|---|---|---|\n{}",
             self.alike, self.compared, self.equal, self.rows

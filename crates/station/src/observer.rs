@@ -270,11 +270,12 @@ impl Observer {
                 }
                 Heard::Odd(oddity) => self.note(now_ms, Level::Fault, words::alarm(oddity)),
                 Heard::Lost if client.speaks_text() => {
-                    let text = "nothing heard from the robot for some seconds, though it is on";
+                    let text = "nothing received from the robot for some seconds, though it is on";
                     self.note(now_ms, Level::Warning, text.into());
                 }
                 Heard::Lost => {
-                    let text = "link lost: nothing heard from the robot for a second; trying again";
+                    let text =
+                        "link lost: nothing received from the robot for a second; trying again";
                     self.note(now_ms, Level::Fault, text.into());
                 }
             }

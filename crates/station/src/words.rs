@@ -26,13 +26,13 @@ pub(crate) fn command(command: &Command, mode: ModeId) -> String {
         Command::Mode(mode) => format!("mode {} {}", *mode as u8, mode.name()),
         Command::Reference(value) => match mode.takes_reference() {
             Some(ReferenceKind::WheelSpeed | ReferenceKind::Speed) => {
-                format!("reference {:.0} rpm", rpm(*value))
+                format!("setpoint {:.0} rpm", rpm(*value))
             }
-            _ => format!("reference {:.1} cm", value * 100.0),
+            _ => format!("setpoint {:.1} cm", value * 100.0),
         },
         Command::WheelReference(wheels) => {
             format!(
-                "references left {:.0} rpm, right {:.0} rpm",
+                "setpoints left {:.0} rpm, right {:.0} rpm",
                 rpm(wheels.left),
                 rpm(wheels.right)
             )
@@ -61,7 +61,7 @@ pub(crate) fn command(command: &Command, mode: ModeId) -> String {
         Command::GetParam { id } => format!("read {}", parameter(*id)),
         Command::ResetParams => "all parameters to their defaults".into(),
         Command::SaveParams => "save the parameters on the robot".into(),
-        Command::ResetPose => "the present place is the origin".into(),
+        Command::ResetPose => "the current position is the origin".into(),
         Command::Goal { x_m, y_m } => format!("goal ({x_m:.2}, {y_m:.2}) m"),
         Command::Lane => "follow the lane".into(),
         Command::Route { repeat, .. } => {
@@ -97,7 +97,7 @@ fn movement_words(movement: Movement) -> &'static str {
 pub(crate) fn outcome(outcome: &Outcome, mode: ModeId) -> String {
     let asked = command(&outcome.command, mode);
     match outcome.fate {
-        Fate::Applied(_) => format!("{asked}: done"),
+        Fate::Applied(_) => format!("{asked}: acknowledged"),
         Fate::Refused(why) => {
             let why = refusal(why, &outcome.command, mode);
             format!("{asked}: refused, {why}")

@@ -120,12 +120,12 @@ async fn commands_are_acknowledged_stop_disarms_and_a_reset_starts_anew() {
     say(&mut page, json!({"type": "reference", "value": 0.5})).await;
     say(&mut page, json!({"type": "arm"})).await;
     wait_for(&mut page, |message| {
-        event(message, "reference 50.0 cm: done")
+        event(message, "setpoint 50.0 cm: acknowledged")
     })
     .await;
     wait_for(&mut page, |message| armed(message, true)).await;
     say(&mut page, json!({"type": "stop"})).await;
-    wait_for(&mut page, |message| event(message, "STOP: done")).await;
+    wait_for(&mut page, |message| event(message, "STOP: acknowledged")).await;
     wait_for(&mut page, |message| armed(message, false)).await;
 
     say(

@@ -175,7 +175,7 @@ async fn a_viewer_cannot_drive_and_can_stop() {
     wait_for(&mut driver, |message| armed(message, true)).await;
     wait_for(&mut viewer, |message| armed(message, true)).await;
     say(&mut viewer, json!({"type": "stop"})).await;
-    wait_for(&mut driver, |message| event(message, "STOP: done")).await;
+    wait_for(&mut driver, |message| event(message, "STOP: acknowledged")).await;
     wait_for(&mut driver, |message| armed(message, false)).await;
 }
 
@@ -196,7 +196,7 @@ async fn of_two_controllers_one_has_control_until_it_leaves_or_the_other_takes_i
     .await;
     // It may stop all the same, and that takes no control.
     say(&mut second, json!({"type": "stop"})).await;
-    wait_for(&mut second, |message| event(message, "STOP: done")).await;
+    wait_for(&mut second, |message| event(message, "STOP: acknowledged")).await;
     say(&mut first, json!({"type": "arm"})).await;
     wait_for(&mut first, |message| armed(message, true)).await;
 

@@ -129,7 +129,10 @@ async fn on_while_the_port_is_gone_is_refused_beside_the_button_and_not_obeyed_w
     wait_for(&mut page, |message| event(message, "connected")).await;
     // What the robot gets after anything old is an order of now.
     say(&mut page, json!({"type": "clear_fault"})).await;
-    wait_for(&mut page, |message| event(message, "clear the fault: done")).await;
+    wait_for(&mut page, |message| {
+        event(message, "clear the fault: acknowledged")
+    })
+    .await;
     assert!(!bench.has(Command::Arm) && !bench.has(Command::Reference(0.5)));
     wait_for(&mut page, |message| {
         let state = message["state"].as_object()?;
@@ -152,7 +155,7 @@ async fn a_stop_that_nobody_acknowledges_is_an_alarm_until_somebody_does() {
     // On the way or not, it is dropped, and said to be.
     say(&mut page, json!({"type": "reference", "value": 0.5})).await;
     wait_for(&mut page, |message| {
-        event(message, "reference 50.0 cm: given up, the link was lost")
+        event(message, "setpoint 50.0 cm: given up, the link was lost")
     })
     .await;
     say(&mut page, json!({"type": "stop"})).await;
@@ -163,7 +166,7 @@ async fn a_stop_that_nobody_acknowledges_is_an_alarm_until_somebody_does() {
         "{alarm}"
     );
     bench.deaf.store(false, Ordering::SeqCst);
-    wait_for(&mut page, |message| event(message, "STOP: done")).await;
+    wait_for(&mut page, |message| event(message, "STOP: acknowledged")).await;
     wait_for(&mut page, |message| {
         let state = message["state"].as_object()?;
         (!state.contains_key("alarms")).then_some(())

@@ -79,7 +79,7 @@ impl EventKind {
             EventKind::Faulted(_) => "fault",
             EventKind::Cleared(_) => "fault cleared",
             EventKind::ModeChanged(_) => "mode changed",
-            EventKind::Reached => "reference reached",
+            EventKind::Reached => "setpoint reached",
             EventKind::Unreachable => "goal unreachable",
             EventKind::Recalled(_) => "saved parameters",
             EventKind::Saved => "parameters saved on the robot",

@@ -12,7 +12,7 @@ export const GUIDE = {
   'The encoders counted: left up to {} rpm, right up to {} rpm. What did you see?': 'Los encoders contaron: izquierdo hasta {} rpm, derecho hasta {} rpm. ¿Qué has visto?',
   'the {} wheel turned forward': 'la rueda {} giró hacia delante', 'the {} wheel turned backward': 'la rueda {} giró hacia atrás', 'the other wheel turned': 'giró la otra rueda', 'no wheel turned': 'no giró ninguna',
   'Next': 'Siguiente', 'Again': 'Otra vez', 'Skip': 'Saltar', 'Begin again': 'Empezar de nuevo', 'Hold a hand 10 to 30 cm before the {} sonar.': 'Pon una mano de 10 a 30 cm delante del sonar {}.',
-  'The servo is told to look straight ahead, {}°. Where does the front sonar look?': 'Al servo se le manda mirar al frente, {}°. ¿Adónde mira el sonar frontal?',
+  'The servo is commanded straight ahead, {}°. Where does the front sonar look?': 'Se ordena al servo mirar al frente, {}°. ¿Adónde mira el sonar frontal?',
   'straight ahead': 'al frente', 'to the left': 'a la izquierda', 'to the right': 'a la derecha',
   'There is something to put right:': 'Hay algo que arreglar:', 'All that was checked works. Put the robot on the floor, and calibrate it.': 'Todo lo comprobado funciona. Pon el robot en el suelo y calíbralo.',
   'The {} wheel turns forward, and its encoder counts.': 'La rueda {} gira hacia delante y su encoder cuenta.',
@@ -45,7 +45,7 @@ export const GUIDE = {
   '{} s of about {} s': '{} s de unos {} s', 'Begin the calibration': 'Empezar la calibración', 'Put the simulated robot there': 'Poner ahí el robot simulado',
   'The robot finds out by itself: the duty at which each wheel starts, the duty for each speed, the ratio of the wheels\' radii, and the distance between the wheels.':
     'El robot averigua por sí mismo: la PWM con que arranca cada rueda, la PWM de cada velocidad, el cociente de los radios de las ruedas y la distancia entre ellas.',
-  'A sonar ahead on the servo and one on each side: rig final. Battery charged.': 'Un sonar al frente sobre el servo y uno a cada lado: montaje final. Batería cargada.',
+  'A sonar ahead on the servo and one on each side: sensor layout final. Battery charged.': 'Un sonar al frente sobre el servo y uno a cada lado: montaje final. Batería cargada.',
   'Put it on the floor beside a straight wall, 0.3 to 0.5 m from it and along it, with 2.5 m free ahead.': 'Ponlo en el suelo junto a una pared recta, a 0,3-0,5 m y paralelo a ella, con 2,5 m libres delante.',
   'It drives to and fro along the wall and turns on the spot, for about two and a half minutes. STOP ends it at any moment.':
     'Va y vuelve a lo largo de la pared y gira en el sitio, durante unos dos minutos y medio. PARAR lo detiene en cualquier momento.',
@@ -67,5 +67,5 @@ export const GUIDE = {
     'no hay pared junto al robot (izq. {}, der. {}); ponlo a 0,3-0,5 m de una pared, paralelo a ella, con 2,5 m libres delante', 'nothing': 'nada',
   '{} took too long; is the robot held, or its battery empty?': '{} tardó demasiado; ¿está sujeto el robot, o su batería vacía?',
   'only {} m free along the wall; give it at least 1 m, better 2.5 m': 'solo {} m libres junto a la pared; dale al menos 1 m, mejor 2,5 m',
-  'what was measured does not tell {}; is the wall straight and the robot free to move?': 'lo medido no determina {}; ¿es recta la pared y se mueve libre el robot?',
+  'the measurements do not determine {}; is the wall straight and the robot free to move?': 'las mediciones no determinan {}; ¿es recta la pared y se mueve libre el robot?',
 };

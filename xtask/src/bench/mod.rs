@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: the measured figures of the README, as a table of measurement and budget.
+//! `cargo xtask bench`: the measured figures of docs/figures.md, as a table of measurement and budget.
 //!
 //! The figures are of the machine at hand, whatever else it does at the time: they are printed, never asserted.
 
@@ -73,7 +73,7 @@ const PARTS: [Part; 7] = [
     },
 ];
 
-/// Prints a table of its own, which is also that of docs/theory/original.md and the README.
+/// Prints a table of its own, which is also that of docs/theory/original.md and docs/figures.md.
 fn memoria(project: &Project) -> Result<Vec<Figure>, String> {
     crate::memoria::run(project, None, &[]).map(|_| Vec::new())
 }

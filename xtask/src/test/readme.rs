@@ -3,7 +3,7 @@
 //! Every line of its `sh` blocks is a command: `cargo run --release` and `rumbo lab` must serve the dashboard's page
 //! (on a free port, without opening a browser), other `rumbo` commands must succeed, `cargo xtask` commands must be
 //! known. A line of any other kind is an error: nobody would notice when it stops working. Blocks without `sh` are
-//! not commands.
+//! not run: they need a file or a robot of the reader's. README.es.md has the same blocks, so its commands are those.
 
 use std::path::Path;
 use std::process::Stdio;
@@ -11,16 +11,26 @@ use std::time::{Duration, Instant};
 
 use super::Stop;
 use crate::lab::Lab;
-use crate::markdown::Markdown;
+use crate::markdown::{Block, Markdown};
 use crate::project::{Project, shown};
 
 /// Longest time that one command of the README may take.
 const LIMIT: Duration = Duration::from_secs(300);
 
+/// The page in English, whose commands are run.
+const ENGLISH: &str = "README.md";
+/// The page in Spanish, which has the same commands.
+const SPANISH: &str = "README.es.md";
+
 /// Runs the commands of `README.md`; the page's server and the exit statuses decide.
 pub(crate) fn check(project: &Project) -> Result<(), Stop> {
-    let text = std::fs::read_to_string(project.root.join("README.md"))
-        .map_err(|error| format!("README.md: {error}"))?;
+    let read = |name: &str| {
+        std::fs::read_to_string(project.root.join(name)).map_err(|error| format!("{name}: {error}"))
+    };
+    let text = read(ENGLISH)?;
+    if let Some(what) = difference(&text, &read(SPANISH)?) {
+        return Err(Stop::Failed(what));
+    }
     let commands = commands(&text);
     if !commands.iter().any(|(_, command)| {
         matches!(
@@ -54,6 +64,27 @@ pub(crate) fn check(project: &Project) -> Result<(), Stop> {
     }
 }
 
+/// The first command that differs between the pages, of all blocks; comments may.
+fn difference(english: &str, spanish: &str) -> Option<String> {
+    let [english, spanish] = [english, spanish].map(|page| {
+        let blocks = Markdown::parse(page).blocks;
+        lines(blocks).collect::<Vec<_>>()
+    });
+    let shown = |page: &[Line], index: usize| match page.get(index) {
+        Some(Line { number, words, .. }) => format!("line {number} is `{}`", words.join(" ")),
+        None => "has no further command".to_owned(),
+    };
+    let meaning = |line: &Line| (line.language.clone(), line.words.clone());
+    let count = english.len().max(spanish.len());
+    let index = (0..count)
+        .find(|&index| english.get(index).map(meaning) != spanish.get(index).map(meaning))?;
+    Some(format!(
+        "the commands differ: {ENGLISH} {}, {SPANISH} {}; change either, or the language of its block",
+        shown(&english, index),
+        shown(&spanish, index)
+    ))
+}
+
 /// What one line of the README is.
 #[derive(Debug, PartialEq)]
 enum Command {
@@ -72,22 +103,34 @@ enum Command {
 
 /// The commands of the `sh` blocks, with their line.
 fn commands(readme: &str) -> Vec<(usize, Command)> {
-    let blocks = Markdown::parse(readme)
-        .blocks
-        .into_iter()
-        .filter(|block| block.language == "sh");
-    blocks
-        .flat_map(|block| {
-            let lines: Vec<_> = block.text.lines().map(str::to_owned).enumerate().collect();
-            lines
-                .into_iter()
-                .map(move |(offset, text)| (block.line + offset, text))
-        })
-        .filter_map(|(line, text)| {
-            let words = words(&text);
-            (!words.is_empty()).then(|| (line, classify(&words, &text)))
-        })
+    lines(Markdown::parse(readme).blocks)
+        .filter(|line| line.language == "sh")
+        .map(|line| (line.number, classify(&line.words, &line.text)))
         .collect()
+}
+
+/// A line of a block that is more than a comment.
+struct Line {
+    language: String,
+    number: usize,
+    text: String,
+    words: Vec<String>,
+}
+
+fn lines(blocks: Vec<Block>) -> impl Iterator<Item = Line> {
+    let split = |block: Block| {
+        let line = |(offset, text): (usize, &str)| Line {
+            language: block.language.clone(),
+            number: block.line + offset,
+            text: text.to_owned(),
+            words: words(text),
+        };
+        block.text.lines().enumerate().map(line).collect::<Vec<_>>()
+    };
+    blocks
+        .into_iter()
+        .flat_map(split)
+        .filter(|line| !line.words.is_empty())
 }
 
 fn classify(words: &[String], text: &str) -> Command {
@@ -206,6 +249,33 @@ mod tests {
         assert_eq!(
             commands(readme),
             [(9, lab), (10, Command::Rumbo(strings(&["run", "mode1"])))]
+        );
+    }
+
+    #[test]
+    fn a_translation_has_the_same_commands_and_comments_of_its_own() {
+        let english = "Text\n\n```sh\nrumbo list # all\n```\n\n```text\nrumbo connect PORT\n```\n";
+        let spanish = english
+            .replace("Text", "Texto\n\nmás")
+            .replace("# all", "# todo");
+        assert_eq!(difference(english, &spanish), None);
+        for (now, then) in [
+            ("PORT", "PUERTO"),
+            ("```sh", "```text"),
+            ("rumbo list", "# nada"),
+        ] {
+            assert!(
+                difference(english, &spanish.replace(now, then)).is_some(),
+                "{then}"
+            );
+        }
+        let longer = format!("{spanish}\n```sh\nrumbo run mode1\n```\n");
+        let what = difference(english, &longer).unwrap_or_default();
+        assert!(
+            what.contains(
+                "README.md has no further command, README.es.md line 14 is `rumbo run mode1`"
+            ),
+            "{what}"
         );
     }
 

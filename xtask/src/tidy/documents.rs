@@ -1,4 +1,5 @@
-//! Documents: relative links reach a file and a heading, decision records are numbered without gaps.
+//! Documents: relative links reach a file and a heading, lines of text fit on a screen, decision records are numbered
+//! without gaps.
 
 use super::{Finding, Tree};
 use crate::markdown::Markdown;
@@ -6,12 +7,24 @@ use crate::markdown::Markdown;
 /// Folder of the decision records.
 const RECORDS: &str = "docs/adr/";
 
+/// Longest line of text, in characters.
+const WIDTH: usize = 120;
+
 /// Checks all Markdown files.
 pub(crate) fn check(tree: &Tree) -> Vec<Finding> {
     let mut findings = records(tree);
     for (path, text) in tree.texts(|path| path.ends_with(".md") && !path.contains("node_modules/"))
     {
-        for (line, target) in Markdown::parse(text).links {
+        let parts = Markdown::parse(text);
+        let long = (1..).zip(text.lines()).filter(|(line, text)| {
+            text.chars().count() > WIDTH && !parts.wide.iter().any(|wide| wide.contains(line))
+        });
+        findings.extend(long.map(|(line, text)| {
+            let length = text.chars().count();
+            let what = format!("{length} characters; a line of text has at most {WIDTH}: break it");
+            Finding::error(path, line, what)
+        }));
+        for (line, target) in parts.links {
             if let Some(what) = broken(tree, path, &target) {
                 findings.push(Finding::error(path, line, what));
             }
@@ -127,6 +140,16 @@ mod tests {
     #[test]
     fn a_link_to_a_missing_heading_is_found() {
         assert!(found(&[("a.md", "[b](#b)\n")])[0].contains("names a heading"));
+    }
+
+    #[test]
+    fn a_line_of_text_has_at_most_120_characters_but_tables_and_code_have_their_width() {
+        let (fits, long) = ("é".repeat(120), "é".repeat(121));
+        let page = format!("{fits}\n\n| a |\n|---|\n| {long} |\n\n```text\n{long}\n```\n");
+        assert_eq!(found(&[("a.md", &page)]), [""; 0]);
+        let page = format!("{page}\n- {long}\n");
+        let what = "a.md:11: 123 characters; a line of text has at most 120: break it";
+        assert_eq!(found(&[("a.md", &page)]), [what]);
     }
 
     #[test]

@@ -3,8 +3,9 @@
 use super::{Finding, Tree};
 
 /// Files and folders (with a `/` at the end) that must exist, and what for.
-const EXPECTED: [(&str, &str); 18] = [
+const EXPECTED: [(&str, &str); 20] = [
     ("README.md", "what the project is"),
+    ("README.es.md", "what the project is, in Spanish"),
     ("ARCHITECTURE.md", "how it is built"),
     ("CONTRIBUTING.md", "how to change it"),
     ("CHANGELOG.md", "what changed"),
@@ -13,6 +14,10 @@ const EXPECTED: [(&str, &str); 18] = [
     (".ci/run", "what CI runs"),
     ("Cargo.lock", "builds repeat"),
     ("docs/protocol.md", "the bytes of the link"),
+    (
+        "docs/figures.md",
+        "what was measured; `cargo xtask memoria` writes into it",
+    ),
     ("docs/theory/README.md", "the derivations"),
     ("docs/adr/", "the decisions"),
     ("docs/img/dashboard.png", "the picture of the README"),

@@ -8,13 +8,13 @@ use std::path::PathBuf;
 /// What takes the place of the scenario's own.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SettingArgs {
-    /// Robot instead of the scenario's own: name or path
+    /// Robot: name or path [default: the scenario's]
     #[arg(long, value_name = "NAME")]
     pub(crate) robot: Option<String>,
-    /// World instead of the scenario's own: name or path
+    /// World: name or path [default: the scenario's]
     #[arg(long, value_name = "NAME")]
     pub(crate) world: Option<String>,
-    /// Rig instead of the scenario's own: where the sonars sit
+    /// Sensor layout (rig): which sonars there are, and where [default: the scenario's]
     #[arg(long, value_name = "NAME")]
     pub(crate) rig: Option<String>,
 }
@@ -22,10 +22,10 @@ pub(crate) struct SettingArgs {
 /// A program for the Mega.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct ImageArgs {
-    /// Program image for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
+    /// Firmware for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
     #[arg(long, value_name = "IMAGE")]
     pub(crate) firmware: Option<PathBuf>,
-    /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own image]
+    /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own firmware]
     #[arg(long, value_name = "NAME", requires = "firmware")]
     pub(crate) wiring: Option<String>,
 }
@@ -52,7 +52,7 @@ pub(crate) struct OverwriteArgs {
 /// The seed.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct SeedArgs {
-    /// Seed of everything random, the robot's own differences too; of several runs each takes the next
+    /// Random seed, robot-to-robot variation included; run i uses seed + i
     #[arg(
         long,
         value_name = "N",

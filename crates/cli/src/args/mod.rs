@@ -23,6 +23,7 @@ use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 /// Rumbo: the lab of a small robot. Without a subcommand, `lab`.
 #[derive(Debug, Parser)]
 #[command(
+    name = "rumbo",
     version,
     args_conflicts_with_subcommands = true,
     after_help = "\
@@ -47,7 +48,7 @@ pub(crate) enum Command {
     Lab(LabArgs),
     /// Drive a real robot from the same dashboard, over a serial port or TCP
     Connect(ConnectArgs),
-    /// Write the image to an Arduino Mega
+    /// Write the firmware to an Arduino Mega
     Flash(FlashArgs),
     /// Run scenarios as fast as the machine can and judge their metrics
     Run(RunArgs),
@@ -148,6 +149,12 @@ fn command_asked() -> String {
 mod tests {
     use super::Cli;
     use clap::{CommandFactory, Parser};
+
+    #[test]
+    fn the_version_is_that_of_the_rumbo_command() {
+        let version = concat!("rumbo ", env!("CARGO_PKG_VERSION"), "\n");
+        assert_eq!(Cli::command().render_version(), version);
+    }
 
     #[test]
     fn every_example_of_the_help_is_a_valid_command() {

@@ -33,7 +33,7 @@ pub(crate) struct RunArgs {
     pub(crate) scenarios: Vec<String>,
     #[command(flatten)]
     pub(crate) seed: SeedArgs,
-    /// Runs of each scenario, each with a seed of its own
+    /// Runs of each scenario, with consecutive seeds
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) runs: u32,
     #[command(flatten)]
@@ -119,7 +119,7 @@ pub(crate) struct ExperimentsArgs {
     /// Folder with recorded runs of a real robot, shown beside ours: CSVs of the original program, logs of `rumbo connect`
     #[arg(long, value_name = "DIR")]
     pub(crate) real: Option<PathBuf>,
-    /// Robot instead of the scenarios' own: name or path
+    /// Robot: name or path [default: the scenarios']
     #[arg(long, value_name = "NAME")]
     pub(crate) robot: Option<String>,
     #[command(flatten)]
@@ -188,10 +188,10 @@ pub(crate) struct CalibrateArgs {
     /// Robot: name or path
     #[arg(long, value_name = "NAME", default_value = "memoria")]
     pub(crate) robot: String,
-    /// Rig instead of `final`; it must have a sonar ahead and one on each side
+    /// Sensor layout (rig) with a sonar ahead and one on each side [default: final]
     #[arg(long, value_name = "NAME")]
     pub(crate) rig: Option<String>,
-    /// World instead of the one made for it; the robot starts at x = -1.1, y = -0.45 m there, along x
+    /// World [default: the one made for it]; the robot starts at x = -1.1, y = -0.45 m there, along x
     #[arg(long, value_name = "NAME")]
     pub(crate) world: Option<String>,
     #[command(flatten)]

@@ -124,7 +124,7 @@ fn words_of_a_robot_are_no_formulas_in_a_table() {
         "@SUM(A1)",
         "\t=1",
         "\r=1",
-        "STOP: done",
+        "STOP: acknowledged",
     ];
     for (sequence, text) in (0..).zip(texts) {
         let event = serde_json::json!({ "level": 2, "message": text, "name": "info" });
@@ -149,7 +149,7 @@ fn words_of_a_robot_are_no_formulas_in_a_table() {
     assert_eq!(cells.len(), texts.len());
     let computed = |cell: &&&str| cell.starts_with(['=', '+', '-', '@', '\t', '\r']);
     assert_eq!(cells.iter().find(computed), None);
-    assert_eq!(cells.last(), Some(&"STOP: done"));
+    assert_eq!(cells.last(), Some(&"STOP: acknowledged"));
 }
 
 #[cfg(unix)]

@@ -7,6 +7,7 @@ mod forged;
 mod kept;
 mod limits;
 mod logs;
+mod model;
 #[path = "../support/mod.rs"]
 mod support;
 

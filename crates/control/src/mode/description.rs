@@ -169,7 +169,7 @@ impl Plot {
             Plot::Wheels => "wheels",
             Plot::Pwm => "PWM",
             Plot::Heading => "heading",
-            Plot::Position => "place",
+            Plot::Position => "position",
         }
     }
 }

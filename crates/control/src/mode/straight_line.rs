@@ -62,11 +62,11 @@ states! {
     enum Phase {
         /// Wheels released.
         #[default]
-        Rest = "at rest" { Drive: "both wheels stand and the reference is not zero" }
-        /// Ramp towards the reference.
-        Drive = "drive" { Stop: "the reference is zero or has the other sign" }
+        Rest = "at rest" { Drive: "both wheels stand and the setpoint is not zero" }
+        /// Ramp towards the setpoint.
+        Drive = "drive" { Stop: "the setpoint is zero or has the other sign" }
         /// Ramp to zero, released below a creep.
-        Stop = "stop" { Rest: "slow enough", Drive: "the reference has the old sign again" }
+        Stop = "stop" { Rest: "slow enough", Drive: "the setpoint has the old sign again" }
     }
 }
 

@@ -31,7 +31,7 @@ pub use route::{FARTHEST_M, MAX_WAYPOINTS, Route, Waypoint};
 pub const DESCRIPTION: Description = Description {
     number: 7,
     name: "waypoints",
-    about: "visit the places of a route in turn, such as a square of 1 m",
+    about: "visit the waypoints of a route in turn, such as a square of 1 m",
     states: STATES,
     idle: None,
     reference: Some(REFERENCE),

@@ -43,11 +43,11 @@ const REFERENCE: Reference = Reference::commanded(
 states! {
     /// Where mode 5 stands.
     enum Phase {
-        /// Wheels released: both references are zero.
+        /// Wheels released: both setpoints are zero.
         #[default]
-        Rest = "at rest" { Turning: "a reference that is not zero" }
+        Rest = "at rest" { Turning: "a setpoint that is not zero" }
         /// Regulates the speeds.
-        Turning = "turning" { Rest: "both references are zero" }
+        Turning = "turning" { Rest: "both setpoints are zero" }
     }
 }
 

@@ -2,8 +2,8 @@
 //! core, natively and as the Mega's image: one table of what each scenario measures and where the chip's time goes.
 //! `cargo xtask bench --only memoria` or `cargo xtask memoria`.
 //!
-//! Arguments: how many seeds (default 5), and scenarios (default all). All of them with 5 seeds go into docs/theory/original.md, and in
-//! short into the README, between their markers.
+//! Arguments: how many seeds (default 5), and scenarios (default all). All of them with 5 seeds go into
+//! docs/theory/original.md, and in short into docs/figures.md, between their markers.
 
 mod experiments;
 #[path = "../shared/mod.rs"]
@@ -58,7 +58,7 @@ fn print(seeds: u64, names: &[String]) -> Result<(), FileError> {
     println!("{whole}\n{short}");
     if names.is_empty() && seeds == SEEDS {
         pages::write("docs/theory/original.md", "beside", &whole)?;
-        pages::write("README.md", "beside", &short)?;
+        pages::write("docs/figures.md", "beside", &short)?;
     }
     Ok(())
 }
@@ -216,7 +216,7 @@ fn shown(metric: &Metric, value: f64) -> String {
     }
 }
 
-/// Median, and in parentheses least and most.
+/// Median, with min and max in parentheses.
 fn cell(metric: &Metric, runs: &[RunResult]) -> String {
     let values = sorted(metric, runs);
     let (Some(least), Some(most)) = (values.first(), values.last()) else {

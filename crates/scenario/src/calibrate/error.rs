@@ -58,7 +58,7 @@ impl fmt::Display for CalibrateError {
             ),
             Self::NotDetermined(what) => write!(
                 f,
-                "what was measured does not tell {what}; is the wall straight and the robot free to move?"
+                "the measurements do not determine {what}; is the wall straight and the robot free to move?"
             ),
         }
     }

@@ -7,6 +7,7 @@
 
 pub mod bounded;
 pub mod commands;
+mod dropped;
 mod error;
 mod library;
 mod names;

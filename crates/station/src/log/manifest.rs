@@ -26,6 +26,9 @@ pub struct Manifest {
     pub kind: Kind,
     /// Version of Rumbo that wrote it.
     pub version: String,
+    /// Number of the model of robot and world that a simulated run was made with; `None` of a real robot, and of logs
+    /// before models had numbers.
+    pub model: Option<u32>,
     /// When it began, UTC; `None` for runs without a window that go to a folder of one's own: those logs depend on nothing but their inputs.
     pub started: Option<String>,
     /// Name of the scenario.
@@ -205,6 +208,7 @@ mod tests {
             version: "1".into(),
             scenario: Some("7".into()),
             seed: Some(u64::MAX),
+            model: Some(2),
             parameters: vec![("kv".into(), 0.03)],
             texts: vec![(1.5, "ON".into())],
             step_us: 10_000,

@@ -22,7 +22,7 @@ use std::path::Path;
 /// A log that is shorter has no whole manifest \[bytes\].
 const SHORTEST: u64 = 256;
 /// What a log is that its writer had no time to begin.
-const NOTHING_YET: &str = "ends before anything in it: whoever wrote it was stopped in the first moment, or it was cut off when it was copied; nothing of it can be had";
+const NOTHING_YET: &str = "ends before its first record: its writer was stopped at once, or it was cut off when it was copied; nothing of it can be read";
 
 /// A log in memory.
 #[derive(Clone, Debug, Default)]

@@ -412,11 +412,11 @@ mod tests {
         foreign.finish().unwrap();
         let foreign = foreign.into_inner().into_inner();
         for (bytes, said) in [
-            (&b""[..], "ends before anything in it"),
+            (&b""[..], "ends before its first record"),
             (&foreign, "neither a manifest"),
             (b"t_s,x_m\n0,0\n", "is no MCAP log"),
-            (&mcap::MAGIC[..3], "ends before anything in it"),
-            (mcap::MAGIC, "ends before anything in it"),
+            (&mcap::MAGIC[..3], "ends before its first record"),
+            (mcap::MAGIC, "ends before its first record"),
         ] {
             std::fs::write(&path, bytes).unwrap();
             let error = Log::read(&path).unwrap_err().to_string();

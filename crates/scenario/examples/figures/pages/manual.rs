@@ -132,7 +132,7 @@ fn movements() -> Result<Option<String>, String> {
         );
     }
     text += &format!(
-        "\n{} simulated robots: median, and in parentheses least and most. `rumbo run manual-curve-floor-forward --runs {}`, and the like.\n",
+        "\n{} simulated robots: median, min and max in parentheses.\n`rumbo run manual-curve-floor-forward --runs {}`, and the like.\n",
         runs::SEEDS,
         runs::SEEDS
     );

@@ -131,7 +131,7 @@ fn pwm(original: &Runs, ours: &Runs) -> Chart {
 
 const REPORT: &str = "the report's program";
 const AS_RECORDED: &str = "on robots as recorded";
-const EXPLAINED: &str = "\n*As recorded*: the same robots, made to turn (and, along or before a wall, to roll or to hear) as the report's own \
+const EXPLAINED: &str = "\n*As recorded*: the same robots, made to turn (and, along or before a wall, to roll or to hear) as the report's own\n\
 did ([why](original.md)); the figure shows its program on these.";
 
 /// The words below a figure of both programs: the table, and what was run.

@@ -7,7 +7,7 @@ use rumbo_control::rig::Rig;
 /// The modes, one a row.
 pub(crate) fn modes() -> Result<Option<Made>, String> {
     let mut words = String::from(
-        "| mode | does | reference | rigs | parameters first |\n|---|---|---|---|---|\n",
+        "| mode | does | setpoint | rigs | parameters first |\n|---|---|---|---|---|\n",
     );
     for mode in ModeId::ALL {
         let about = mode.description();

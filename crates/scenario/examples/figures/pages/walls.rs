@@ -56,7 +56,7 @@ pub(super) fn mode1() -> Result<Option<Made>, String> {
     Ok(Some(Made {
         figures: vec![(
             "mode1",
-            "Distance to the wall and PWM over time: ours reaches each reference sooner and without passing it",
+            "Distance to the wall and PWM over time: ours reaches each setpoint sooner, without overshoot",
             svg(&charts, 1, WIDE)?,
         )],
         words: words(&[(REPORT, &original), ("ours", &ours)], "mode1", &rows),
