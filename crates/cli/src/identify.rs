@@ -7,13 +7,12 @@ use crate::output;
 use crate::place::{self, Guard};
 use crate::recorded::{self, attached};
 use indicatif::ProgressBar;
-use rumbo_plant::params::Params;
-use rumbo_scenario::dialect;
-use rumbo_scenario::files::{Library, RobotFile, bounded};
-use rumbo_scenario::identify::{
-    self, DriveLog, GENERATIONS, Identification, IdentifyError, Plot, RunScore,
+use rumbo_identify::sonar_stats::{self, Comparison, SonarLog};
+use rumbo_identify::{
+    DriveLog, GENERATIONS, Identification, IdentifyError, Plot, RunScore, dialect,
 };
-use rumbo_scenario::sonar_stats::{self, Comparison, SonarLog};
+use rumbo_plant::params::Params;
+use rumbo_scenario::files::{Library, RobotFile, bounded};
 use rumbo_wire::csv;
 use rumbo_wire::text::RowKind;
 use serde::Serialize;
@@ -67,7 +66,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     let (drive, params) = match args.check {
         Some(_) => (check(&logs, &robot.plant)?, robot.plant),
         None => {
-            let found = identify::identify(&logs.drive, &robot.plant, GENERATIONS)
+            let found = rumbo_identify::identify(&logs.drive, &robot.plant, GENERATIONS)
                 .map_err(Failure::input)?;
             let params = found.params;
             (Drive::Identified(Box::new(found)), params)
@@ -110,7 +109,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
 }
 
 fn check(logs: &Logs, params: &Params) -> Result<Drive, Failure> {
-    match identify::check(&logs.drive, params) {
+    match rumbo_identify::check(&logs.drive, params) {
         Ok(check) => Ok(Drive::Checked { runs: check.runs }),
         // Runs beside a wall tell nothing of the drive, and all of the sonars.
         Err(IdentifyError::NothingToFit) if !logs.sonar.is_empty() => {
@@ -221,7 +220,7 @@ fn write<'a>(path: &'a Path, found: &Identification) -> Result<&'a Path, Failure
         |error: std::io::Error| Failure::Input(format!("{file}: cannot be rewritten ({error})"));
     let text = bounded::read_text(path).map_err(wrong)?;
     let today = time::OffsetDateTime::now_utc().date().to_string();
-    let text = identify::rewrite(&text, found, &today).map_err(Failure::input)?;
+    let text = rumbo_identify::rewrite(&text, found, &today).map_err(Failure::input)?;
     RobotFile::parse("", &file, &text)?;
     place::write(path, text)?;
     Ok(path)

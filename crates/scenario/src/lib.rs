@@ -1,13 +1,11 @@
-//! Rumbo's experiments: the robot against the plant, metrics, identification.
+//! Rumbo's experiments: the robot against the plant, metrics.
 
 mod board;
 pub mod calibrate;
 pub mod campaign;
 pub mod chart;
 pub mod debugging;
-pub mod dialect;
 pub mod files;
-pub mod identify;
 pub mod mega;
 pub mod metrics;
 pub mod observe;
@@ -18,6 +16,5 @@ pub mod run;
 pub mod shortest_path;
 pub mod sim;
 pub mod sonar_fault;
-pub mod sonar_stats;
 pub mod trace;
 pub mod wire_fault;

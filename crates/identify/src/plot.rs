@@ -1,9 +1,9 @@
 //! Measured against simulated, as SVG and PNG: speeds of both wheels or the distance ahead, and the PWM below.
 
-use super::error::IdentifyError;
-use super::log::{DriveLog, Seen};
-use super::replay::{Nuisance, Replay};
-use super::score::start_range_m;
+use crate::error::IdentifyError;
+use crate::log::{DriveLog, Seen};
+use crate::replay::{Nuisance, Replay};
+use crate::score::start_range_m;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::FontStyle;

@@ -3,9 +3,9 @@
 //! Comments stay, also those within the table. A comment above each table that holds identified values says which
 //! they are, from which runs and when; the one of an earlier identification is replaced.
 
-use super::error::IdentifyError;
-use super::fit::Identification;
-use super::report::significant;
+use crate::error::IdentifyError;
+use crate::fit::Identification;
+use crate::report::significant;
 use toml_edit::{DocumentMut, Item, Table, Value};
 
 /// How the comment of an identification starts.
