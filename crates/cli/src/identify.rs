@@ -216,11 +216,11 @@ fn plot(
 /// Rewrites the `[plant]` table of a robot file, after a look whether the outcome is a valid robot.
 fn write<'a>(path: &'a Path, found: &Identification) -> Result<&'a Path, Failure> {
     let file = path.display().to_string();
-    let wrong =
-        |error: std::io::Error| Failure::Input(format!("{file}: cannot be rewritten ({error})"));
-    let text = bounded::read_text(path).map_err(wrong)?;
+    let wrong = |what: String| Failure::Input(format!("{file}: cannot be rewritten ({what})"));
+    let text = bounded::read_text(path).map_err(|error| wrong(error.to_string()))?;
     let today = time::OffsetDateTime::now_utc().date().to_string();
-    let text = rumbo_identify::rewrite(&text, found, &today).map_err(Failure::input)?;
+    let text =
+        rumbo_identify::rewrite(&text, found, &today).map_err(|error| wrong(error.to_string()))?;
     RobotFile::parse("", &file, &text)?;
     place::write(path, text)?;
     Ok(path)
