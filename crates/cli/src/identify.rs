@@ -9,7 +9,7 @@ use crate::recorded::{self, attached};
 use indicatif::ProgressBar;
 use rumbo_identify::sonar_stats::{self, Comparison, SonarLog};
 use rumbo_identify::{
-    DriveLog, GENERATIONS, Identification, IdentifyError, Plot, RunScore, dialect,
+    DriveLog, GENERATIONS, Identification, IdentifyError, RunScore, chart, dialect,
 };
 use rumbo_plant::params::Params;
 use rumbo_scenario::files::{Library, RobotFile, bounded};
@@ -18,6 +18,9 @@ use rumbo_wire::text::RowKind;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+/// Size of one chart of a plot [px].
+const PLOT_SIZE: (u32, u32) = (1200, 300);
 
 /// What the runs recorded: the drive, and the sonars where there are any.
 #[derive(Default)]
@@ -196,16 +199,15 @@ fn plot(
     let mut plots = Vec::new();
     for run in runs {
         for log in logs.drive.iter().filter(|log| log.name == run.name) {
-            let plot = Plot::new(log, params, run.nuisance);
-            for path in places(folder, &log.name) {
-                let stamp = stamp(&log.name);
-                place::make(&path, |place| {
-                    plot.draw(place).map_err(Failure::input)?;
-                    let drawn = std::fs::read(place);
-                    drawn
-                        .and_then(|drawn| std::fs::write(place, stamp.put_on(drawn)))
-                        .map_err(|error| place::unwritable(&path, &error))
-                })?;
+            let charts = rumbo_identify::plot(log, params, run.nuisance);
+            let stamp = stamp(&log.name);
+            let svg = chart::svg(&charts, 1, PLOT_SIZE).map_err(Failure::Input)?;
+            let png = chart::png(&charts, 1, PLOT_SIZE).map_err(Failure::Input)?;
+            for (path, drawn) in places(folder, &log.name)
+                .into_iter()
+                .zip([svg.into_bytes(), png])
+            {
+                place::write(&path, stamp.put_on(drawn))?;
                 plots.push(path);
             }
         }

@@ -37,8 +37,6 @@ pub enum IdentifyError {
     NothingToFit,
     /// The optimiser failed.
     Optimiser(String),
-    /// A plot could not be written.
-    Plot(String),
 }
 
 impl fmt::Display for IdentifyError {
@@ -70,7 +68,6 @@ impl fmt::Display for IdentifyError {
                 )
             }
             Self::Optimiser(cause) => write!(f, "the fit did not converge: {cause}"),
-            Self::Plot(cause) => write!(f, "plot: {cause}"),
         }
     }
 }

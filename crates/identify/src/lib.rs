@@ -5,7 +5,7 @@
 //!            ├─► log ─► replay: the recorded duty on a plant ─► residuals (problem) ─► search and fit
 //!            │                                                       │
 //!            │            score: RMSE, R^2 per run ◄─────────────────┤ parameters, uncertainties
-//!            │            plot: measured against simulated ◄─────────┤
+//!            │            plot: charts, measured and simulated ◄─────┤
 //!            │            rewrite: [plant] of a robot file ◄─────────┘
 //!            └─► sonar_stats: noise, outliers and losses, beside those of the plant's sonars
 //! ```
@@ -15,6 +15,7 @@
 //!
 //! It knows the plant, and the texts it is given: no scenario, no simulator, no files of the project.
 
+pub mod chart;
 pub mod dialect;
 pub mod problem;
 pub mod sonar_stats;
@@ -34,7 +35,7 @@ mod tests;
 pub use error::IdentifyError;
 pub use fit::{Check, GENERATIONS, Identification, Identified, check, identify};
 pub use log::DriveLog;
-pub use plot::Plot;
+pub use plot::plot;
 pub use replay::Nuisance;
 pub use rewrite::rewrite;
 pub use score::{RunScore, WheelError};

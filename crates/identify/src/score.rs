@@ -5,7 +5,7 @@ use crate::replay::{Correct, Nuisance, Replay, Trace};
 use rumbo_plant::params::Params;
 use serde::Serialize;
 
-const RPM_PER_RAD_S: f64 = 30.0 / std::f64::consts::PI;
+pub(crate) const RPM_PER_RAD_S: f64 = 30.0 / std::f64::consts::PI;
 
 /// Error of one wheel, or of both; rpm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

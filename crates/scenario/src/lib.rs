@@ -3,7 +3,6 @@
 mod board;
 pub mod calibrate;
 pub mod campaign;
-pub mod chart;
 pub mod debugging;
 pub mod files;
 pub mod mega;
