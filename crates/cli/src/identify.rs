@@ -161,7 +161,8 @@ fn text_of(path: &Path) -> Result<String, Failure> {
     } else {
         bytes
     };
-    Ok(dialect::plain(&bytes).map_err(wrong)?.into_owned())
+    let text = dialect::plain(&bytes).map_err(|error| wrong(error.to_string()))?;
+    Ok(text.into_owned())
 }
 
 /// Where the plots of a run go.
