@@ -1,4 +1,4 @@
-//! `cargo xtask figures`: the figures and tables of docs/theory, drawn by `crates/scenario/examples/figures/`.
+//! `cargo xtask figures`: the figures and tables of docs/theory, drawn by `crates/report/examples/figures/`.
 
 use crate::project::{Project, run as run_command};
 
@@ -18,7 +18,7 @@ fn draw(project: &Project, args: &[String]) -> Result<(), String> {
         "run",
         "--locked",
         "-p",
-        "rumbo-scenario",
+        "rumbo-report",
         "--example",
         "figures",
         "--",

@@ -7,7 +7,7 @@ use crate::figures;
 use crate::mark::Stamp;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
-use rumbo_scenario::chart;
+use rumbo_identify::chart;
 use rumbo_station::Row;
 use rumbo_station::log::Log;
 use serde_json::{Map, Value, json};

@@ -6,7 +6,7 @@ use crate::figures;
 use crate::mark::{Mark, Stamp};
 use crate::output;
 use crate::place::{self, Guard};
-use rumbo_scenario::chart;
+use rumbo_identify::chart;
 use rumbo_station::Row;
 use rumbo_station::log::{Kind, Log, Manifest};
 use std::fmt::Write;

@@ -1,6 +1,6 @@
 //! Figures of logs: the signals of one, or those of several over each other.
 
-use rumbo_scenario::chart::{Chart, Curve, Legend, PALETTE, Points, map, over_time};
+use rumbo_identify::chart::{Chart, Curve, Legend, PALETTE, Points, map, over_time};
 use rumbo_station::Row;
 use rumbo_station::log::Log;
 use std::f64::consts::{PI, TAU};

@@ -7,18 +7,20 @@ use crate::output;
 use crate::place::{self, Guard};
 use crate::recorded::{self, attached};
 use indicatif::ProgressBar;
-use rumbo_plant::params::Params;
-use rumbo_scenario::dialect;
-use rumbo_scenario::files::{Library, RobotFile, bounded};
-use rumbo_scenario::identify::{
-    self, DriveLog, GENERATIONS, Identification, IdentifyError, Plot, RunScore,
+use rumbo_identify::sonar_stats::{self, Comparison, SonarLog};
+use rumbo_identify::{
+    DriveLog, GENERATIONS, Identification, IdentifyError, RunScore, chart, dialect,
 };
-use rumbo_scenario::sonar_stats::{self, Comparison, SonarLog};
+use rumbo_plant::params::Params;
+use rumbo_scenario::files::{Library, RobotFile, bounded};
 use rumbo_wire::csv;
 use rumbo_wire::text::RowKind;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+/// Size of one chart of a plot [px].
+const PLOT_SIZE: (u32, u32) = (1200, 300);
 
 /// What the runs recorded: the drive, and the sonars where there are any.
 #[derive(Default)]
@@ -67,7 +69,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     let (drive, params) = match args.check {
         Some(_) => (check(&logs, &robot.plant)?, robot.plant),
         None => {
-            let found = identify::identify(&logs.drive, &robot.plant, GENERATIONS)
+            let found = rumbo_identify::identify(&logs.drive, &robot.plant, GENERATIONS)
                 .map_err(Failure::input)?;
             let params = found.params;
             (Drive::Identified(Box::new(found)), params)
@@ -110,7 +112,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
 }
 
 fn check(logs: &Logs, params: &Params) -> Result<Drive, Failure> {
-    match identify::check(&logs.drive, params) {
+    match rumbo_identify::check(&logs.drive, params) {
         Ok(check) => Ok(Drive::Checked { runs: check.runs }),
         // Runs beside a wall tell nothing of the drive, and all of the sonars.
         Err(IdentifyError::NothingToFit) if !logs.sonar.is_empty() => {
@@ -159,7 +161,8 @@ fn text_of(path: &Path) -> Result<String, Failure> {
     } else {
         bytes
     };
-    Ok(dialect::plain(&bytes).map_err(wrong)?.into_owned())
+    let text = dialect::plain(&bytes).map_err(|error| wrong(error.to_string()))?;
+    Ok(text.into_owned())
 }
 
 /// Where the plots of a run go.
@@ -197,16 +200,15 @@ fn plot(
     let mut plots = Vec::new();
     for run in runs {
         for log in logs.drive.iter().filter(|log| log.name == run.name) {
-            let plot = Plot::new(log, params, run.nuisance);
-            for path in places(folder, &log.name) {
-                let stamp = stamp(&log.name);
-                place::make(&path, |place| {
-                    plot.draw(place).map_err(Failure::input)?;
-                    let drawn = std::fs::read(place);
-                    drawn
-                        .and_then(|drawn| std::fs::write(place, stamp.put_on(drawn)))
-                        .map_err(|error| place::unwritable(&path, &error))
-                })?;
+            let charts = rumbo_identify::plot(log, params, run.nuisance);
+            let stamp = stamp(&log.name);
+            let svg = chart::svg(&charts, 1, PLOT_SIZE).map_err(Failure::Input)?;
+            let png = chart::png(&charts, 1, PLOT_SIZE).map_err(Failure::Input)?;
+            for (path, drawn) in places(folder, &log.name)
+                .into_iter()
+                .zip([svg.into_bytes(), png])
+            {
+                place::write(&path, stamp.put_on(drawn))?;
                 plots.push(path);
             }
         }
@@ -217,11 +219,11 @@ fn plot(
 /// Rewrites the `[plant]` table of a robot file, after a look whether the outcome is a valid robot.
 fn write<'a>(path: &'a Path, found: &Identification) -> Result<&'a Path, Failure> {
     let file = path.display().to_string();
-    let wrong =
-        |error: std::io::Error| Failure::Input(format!("{file}: cannot be rewritten ({error})"));
-    let text = bounded::read_text(path).map_err(wrong)?;
+    let wrong = |what: String| Failure::Input(format!("{file}: cannot be rewritten ({what})"));
+    let text = bounded::read_text(path).map_err(|error| wrong(error.to_string()))?;
     let today = time::OffsetDateTime::now_utc().date().to_string();
-    let text = identify::rewrite(&text, found, &today).map_err(Failure::input)?;
+    let text =
+        rumbo_identify::rewrite(&text, found, &today).map_err(|error| wrong(error.to_string()))?;
     RobotFile::parse("", &file, &text)?;
     place::write(path, text)?;
     Ok(path)

@@ -13,7 +13,7 @@ use crate::place::{self, Guard};
 use crate::recorded::CSV;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, WriteOptions};
-use rumbo_scenario::dialect;
+use rumbo_identify::dialect;
 use rumbo_scenario::files::bounded::{LONGEST_RECORDING, read_at_most};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;

@@ -131,14 +131,14 @@ mod tests {
     fn a_stamped_file_is_known_again_and_stays_what_it_is() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x");
-        let line = rumbo_scenario::chart::Curve::Given {
+        let line = rumbo_identify::chart::Curve::Given {
             name: "a",
             points: vec![(0.0, 0.0), (1.0, 1.0)],
         };
-        let chart = rumbo_scenario::chart::over_time("t", "cm", vec![line]);
+        let chart = rumbo_identify::chart::over_time("t", "cm", vec![line]);
         let charts = [chart];
-        let png = rumbo_scenario::chart::png(&charts, 1, (300, 200)).unwrap();
-        let svg = rumbo_scenario::chart::svg(&charts, 1, (300, 200)).unwrap();
+        let png = rumbo_identify::chart::png(&charts, 1, (300, 200)).unwrap();
+        let svg = rumbo_identify::chart::svg(&charts, 1, (300, 200)).unwrap();
         let html = b"<!doctype html>\n<html lang=\"en\">\n".to_vec();
         for file in [png.clone(), svg.into_bytes(), html] {
             let stamp = |about: &str| Stamp::of("compare", &["a".into(), about.into()]);

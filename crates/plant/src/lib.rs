@@ -24,6 +24,7 @@ pub mod link;
 pub mod noise;
 pub mod params;
 pub mod plant;
+pub mod rewrite;
 pub mod rig;
 pub mod servo;
 pub mod sonar;

@@ -1,4 +1,4 @@
-//! Rumbo's experiments: the robot against the plant, metrics, identification.
+//! Rumbo's experiments: the robot against the plant, metrics.
 
 /// Number of the model: of robot, plant, world and metrics together. Raised with every change of `tests/golden/*.toml`;
 /// two runs of the same scenario and seed are comparable bit for bit only within one model.
@@ -7,11 +7,8 @@ pub const MODEL: u32 = 1;
 mod board;
 pub mod calibrate;
 pub mod campaign;
-pub mod chart;
 pub mod debugging;
-pub mod dialect;
 pub mod files;
-pub mod identify;
 pub mod mega;
 pub mod metrics;
 pub mod observe;
@@ -22,6 +19,5 @@ pub mod run;
 pub mod shortest_path;
 pub mod sim;
 pub mod sonar_fault;
-pub mod sonar_stats;
 pub mod trace;
 pub mod wire_fault;

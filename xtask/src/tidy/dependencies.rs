@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 11] = [
+const ARROWS: [(&str, &[&str]); 12] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
@@ -19,8 +19,9 @@ const ARROWS: [(&str, &[&str]); 11] = [
         "rumbo-scenario",
         &["rumbo-robot", "rumbo-plant", "rumbo-emulator"],
     ),
+    ("rumbo-identify", &["rumbo-plant"]),
     ("rumbo-station", &["rumbo-wire"]),
-    ("rumbo-report", &["rumbo-scenario"]),
+    ("rumbo-report", &["rumbo-scenario", "rumbo-identify"]),
     ("rumbo-cli", &["rumbo-station", "rumbo-report"]),
     ("rumbo-firmware", &["rumbo-robot"]),
     ("xtask", &[]),
@@ -141,6 +142,12 @@ mod tests {
             findings("rumbo-plant", "rumbo-control", Some("dev")).len(),
             1
         );
+    }
+
+    #[test]
+    fn identification_knows_the_plant_and_no_simulator() {
+        assert_eq!(findings("rumbo-identify", "rumbo-plant", None), [""; 0]);
+        assert_eq!(findings("rumbo-identify", "rumbo-scenario", None).len(), 1);
     }
 
     #[test]

@@ -287,28 +287,44 @@ fn a_robot_file_whose_plant_is_no_table_is_refused() {
 }
 
 #[test]
-fn plots_are_written_as_svg_and_png() {
+fn a_plot_names_the_run_and_shows_it_beside_the_simulation() {
     let log = log(&recorded(&Params::default(), exercise, 3.0));
-    let folder = std::env::temp_dir().join(format!("rumbo-plot-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    let nuisance = Nuisance {
-        battery_v: 7.4,
-        floor_scale: 1.0,
-    };
-    let plot = Plot::new(&log, &Params::default(), nuisance);
-    let paths = ["svg", "png"].map(|ending| folder.join("log").with_extension(ending));
-    for path in &paths {
-        plot.draw(path).unwrap();
+    let charts = plot(&log, &Params::default(), NOMINAL);
+    let text = chart::svg(&charts, 1, (1200, 300)).unwrap();
+    for word in [
+        "test.csv",
+        "measured",
+        "simulated",
+        "left wheel",
+        "right wheel",
+        "PWM",
+    ] {
+        assert!(text.contains(word), "{word}");
     }
-    let svg = std::fs::read_to_string(&paths[0]).unwrap();
-    let png = std::fs::read(&paths[1]).unwrap();
-    std::fs::remove_dir_all(&folder).unwrap();
-    assert!(
-        ["measured", "simulated", "left wheel", "right wheel"]
-            .iter()
-            .all(|word| svg.contains(word))
-    );
-    assert!(png.starts_with(b"\x89PNG") && png.len() > 10_000);
+    let image = chart::png(&charts, 1, (1200, 300)).unwrap();
+    assert!(image.starts_with(b"\x89PNG") && image.len() > 10_000);
+}
+
+#[test]
+fn the_simulated_curve_of_a_known_plant_lies_on_the_measured_one() {
+    let log = log(&recorded(&Params::default(), exercise, 3.0));
+    let charts = plot(&log, &Params::default(), NOMINAL);
+    let points = |curve: &chart::Curve<'_>| match curve {
+        chart::Curve::Line { points, .. } => points.clone(),
+        _ => panic!("no line"),
+    };
+    let [measured, simulated] = [0, 1].map(|i| points(&charts[0].curves[i]));
+    assert_eq!(measured.len(), log.rows.len());
+    let apart = |(one, other): (&(f64, f64), &(f64, f64))| {
+        (one.0 - other.0).abs() + (one.1 - other.1).abs()
+    };
+    let worst = measured
+        .iter()
+        .zip(&simulated)
+        .map(apart)
+        .fold(0.0, f64::max);
+    // A window of 50 ms counts whole edges of 3.1 rpm each.
+    assert!(worst < 7.0, "{worst}");
 }
 
 /// The plant of the project's robot file.

@@ -2,13 +2,26 @@
 //! first line that names the separator, UTF-16, a byte-order mark.
 
 use std::borrow::Cow;
+use std::fmt;
+
+/// Bytes that are no text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NoText;
+
+impl fmt::Display for NoText {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("is no text; give a CSV")
+    }
+}
+
+impl std::error::Error for NoText {}
 
 /// The text of a CSV of numbers with commas between the columns and points in the numbers, whatever stood there. Lines stay lines, but for a first one
 /// that only names the separator (`sep=;`), which a spreadsheet does not count either.
 ///
 /// # Errors
 /// Bytes that are no text.
-pub fn plain(bytes: &[u8]) -> Result<Cow<'_, str>, String> {
+pub fn plain(bytes: &[u8]) -> Result<Cow<'_, str>, NoText> {
     let whole = text_of(bytes)?;
     let (first, rest) = whole.split_once('\n').unwrap_or((&whole, ""));
     let named = named_separator(first);
@@ -108,17 +121,17 @@ impl<'a> Iterator for Cells<'a> {
     }
 }
 
-fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, String> {
+fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, NoText> {
     let wide = |unit: fn([u8; 2]) -> u16| {
         let units = bytes.chunks_exact(2).skip(1);
         let units = units.map(|pair| unit([pair[0], pair[1]]));
-        char::decode_utf16(units).collect::<Result<String, _>>()
+        let text = char::decode_utf16(units).collect::<Result<String, _>>();
+        text.map(Cow::Owned).map_err(|_| NoText)
     };
-    let none = || "is no text; give a CSV".to_owned();
     match bytes {
-        [0xff, 0xfe, ..] => wide(u16::from_le_bytes).map(Cow::Owned).map_err(|_| none()),
-        [0xfe, 0xff, ..] => wide(u16::from_be_bytes).map(Cow::Owned).map_err(|_| none()),
-        [0xef, 0xbb, 0xbf, text @ ..] | text => narrow(text).ok_or_else(none),
+        [0xff, 0xfe, ..] => wide(u16::from_le_bytes),
+        [0xfe, 0xff, ..] => wide(u16::from_be_bytes),
+        [0xef, 0xbb, 0xbf, text @ ..] | text => narrow(text).ok_or(NoText),
     }
 }
 
@@ -194,7 +207,7 @@ mod tests {
 
     #[test]
     fn what_is_no_text_is_refused() {
-        assert!(plain(&[0x7f, b'E', 0xff, 0x00]).is_err());
-        assert!(plain(&[0xff, 0xfe, 0x00, 0xd8]).is_err());
+        assert_eq!(plain(&[0x7f, b'E', 0xff, 0x00]), Err(NoText));
+        assert_eq!(plain(&[0xff, 0xfe, 0x00, 0xd8]), Err(NoText));
     }
 }

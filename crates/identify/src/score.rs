@@ -1,11 +1,11 @@
 //! How well a plant repeats a run: RMSE and R^2 per wheel, whole run and half a second ahead.
 
-use super::log::{DriveLog, Row, Seen};
-use super::replay::{Correct, Nuisance, Replay, Trace};
+use crate::log::{DriveLog, Row, Seen};
+use crate::replay::{Correct, Nuisance, Replay, Trace};
 use rumbo_plant::params::Params;
 use serde::Serialize;
 
-const RPM_PER_RAD_S: f64 = 30.0 / std::f64::consts::PI;
+pub(crate) const RPM_PER_RAD_S: f64 = 30.0 / std::f64::consts::PI;
 
 /// Error of one wheel, or of both; rpm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -43,7 +43,7 @@ pub struct RunScore {
 
 /// Replays a run and compares.
 #[must_use]
-pub(super) fn score(log: &DriveLog, params: &Params, nuisance: Nuisance) -> RunScore {
+pub(crate) fn score(log: &DriveLog, params: &Params, nuisance: Nuisance) -> RunScore {
     let replay = Replay::new(log, params, nuisance);
     let mut score = RunScore {
         name: log.name.clone(),
@@ -130,7 +130,7 @@ fn errors(pairs: &[Pair<'_>], choose: impl Fn(&Row) -> bool) -> Option<[WheelErr
 
 /// The distance at the start that fits a trace best: the median of distance plus way.
 #[must_use]
-pub(super) fn start_range_m(log: &DriveLog, trace: &Trace) -> f64 {
+pub(crate) fn start_range_m(log: &DriveLog, trace: &Trace) -> f64 {
     let mut starts: Vec<f64> = log
         .rows
         .iter()

@@ -3,10 +3,10 @@
 //!
 //! The search is seeded and its objective has no randomness: the same logs and robot give the same parameters.
 
-use super::error::IdentifyError;
-use super::log::{DriveLog, Seen};
-use super::problem::{Problem, UNKNOWNS, dead_zone_pwm};
-use super::score::{RunScore, score};
+use crate::error::IdentifyError;
+use crate::log::{DriveLog, Seen};
+use crate::problem::{Problem, UNKNOWNS, dead_zone_pwm};
+use crate::score::{RunScore, score};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::DVector;
 use rumbo_plant::params::Params;

@@ -4,11 +4,11 @@
 //! next: the duty was applied then, the speeds are those of the latest completed 50 ms window. Where the applied
 //! reference is zero (modes 5 to 7), the bridge was released whatever the PWM column says.
 
-use super::error::IdentifyError;
+use crate::error::IdentifyError;
 use std::path::Path;
 
 /// Length of the windows in which the original counts encoder edges, ms.
-pub(super) const WINDOW_MS: usize = 50;
+pub(crate) const WINDOW_MS: usize = 50;
 /// Longest run: the simulation is kept for each millisecond.
 const LONGEST_MS: usize = 3_600_000;
 const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;

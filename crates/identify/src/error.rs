@@ -1,4 +1,4 @@
-//! What can go wrong between a log and a robot file.
+//! What can go wrong between a log and its parameters.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -37,10 +37,6 @@ pub enum IdentifyError {
     NothingToFit,
     /// The optimiser failed.
     Optimiser(String),
-    /// The robot file is no TOML, or its `[plant]` is no table.
-    RobotFile(String),
-    /// A plot could not be written.
-    Plot(String),
 }
 
 impl fmt::Display for IdentifyError {
@@ -72,8 +68,6 @@ impl fmt::Display for IdentifyError {
                 )
             }
             Self::Optimiser(cause) => write!(f, "the fit did not converge: {cause}"),
-            Self::RobotFile(cause) => write!(f, "robot file: {cause}"),
-            Self::Plot(cause) => write!(f, "plot: {cause}"),
         }
     }
 }

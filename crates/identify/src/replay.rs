@@ -8,14 +8,14 @@
 //! wheel is. Battery and friction memory are those of the plant that runs along. No row after the start is used, but
 //! for the duty, which is the prediction's input.
 
-use super::log::{DriveLog, Row, WINDOW_MS};
+use crate::log::{DriveLog, Row, WINDOW_MS};
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side, State};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
 
 const STEP_S: f64 = 0.001;
 /// Horizon of the short prediction, ms.
-pub(super) const AHEAD_MS: usize = 500;
+pub(crate) const AHEAD_MS: usize = 500;
 
 /// Share of the speed's error that a window corrects.
 const SPEED_GAIN: f64 = 0.7;
@@ -26,7 +26,7 @@ const SLOWEST_TELLING_RAD_S: f64 = 1.0;
 
 /// What the measurements correct in the plant that runs along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Correct {
+pub(crate) enum Correct {
     /// The wheels' speeds alone: errors of the parameters stay visible, as a fit needs them.
     Speeds,
     /// Also the floor's resistance, as a prediction wants it.
@@ -35,7 +35,7 @@ pub(super) enum Correct {
 
 /// The state of the robot as the measurements up to a row tell it.
 #[derive(Clone, Copy)]
-pub(super) struct Observed {
+pub(crate) struct Observed {
     state: State,
     /// Dry resistance of the floor here beyond the mean, each wheel, N m.
     resist_n_m: [f64; 2],
@@ -51,7 +51,7 @@ pub struct Nuisance {
 }
 
 /// The plant of one run.
-pub(super) struct Replay<'a> {
+pub(crate) struct Replay<'a> {
     log: &'a DriveLog,
     drivetrain: Drivetrain,
     /// Share of the floor's resistance that is another one after each radian rolled.
@@ -59,7 +59,7 @@ pub(super) struct Replay<'a> {
 }
 
 /// Angles and way on the millisecond grid.
-pub(super) struct Trace {
+pub(crate) struct Trace {
     /// Both wheels' angles at each millisecond, rad.
     pub angle_rad: Vec<[f64; 2]>,
     /// Way of the body at each millisecond, m.
@@ -69,7 +69,7 @@ pub(super) struct Trace {
 impl<'a> Replay<'a> {
     /// The run of this log on a plant with these parameters.
     #[must_use]
-    pub(super) fn new(log: &'a DriveLog, params: &Params, nuisance: Nuisance) -> Self {
+    pub(crate) fn new(log: &'a DriveLog, params: &Params, nuisance: Nuisance) -> Self {
         let mut params = *params;
         params.battery.open_circuit_v = nuisance.battery_v;
         params.floor.friction_scale *= nuisance.floor_scale;
@@ -86,7 +86,7 @@ impl<'a> Replay<'a> {
 
     /// The whole run from rest.
     #[must_use]
-    pub(super) fn whole(&self) -> Trace {
+    pub(crate) fn whole(&self) -> Trace {
         let mut trace = Trace {
             angle_rad: Vec::new(),
             way_m: Vec::new(),
@@ -109,7 +109,7 @@ impl<'a> Replay<'a> {
 
     /// Speeds that the rows of the log would have shown in this trace, rad/s.
     #[must_use]
-    pub(super) fn speeds(&self, trace: &Trace) -> Vec<[f64; 2]> {
+    pub(crate) fn speeds(&self, trace: &Trace) -> Vec<[f64; 2]> {
         let speed = |row: &Row| {
             let end_ms = self.log.window_end_ms(row);
             window_speed(
@@ -122,7 +122,7 @@ impl<'a> Replay<'a> {
 
     /// The state at the end of each row's window.
     #[must_use]
-    pub(super) fn observe(&self, correct: Correct) -> Vec<Observed> {
+    pub(crate) fn observe(&self, correct: Correct) -> Vec<Observed> {
         let mut now = Observed {
             state: self.drivetrain.start(),
             resist_n_m: [0.0; 2],
@@ -153,7 +153,7 @@ impl<'a> Replay<'a> {
     /// Predicts half a second from the state `observed` at row `index`: the row predicted and its speeds, rad/s.
     /// `None` near the end of the log.
     #[must_use]
-    pub(super) fn ahead(&self, index: usize, observed: &Observed) -> Option<(usize, [f64; 2])> {
+    pub(crate) fn ahead(&self, index: usize, observed: &Observed) -> Option<(usize, [f64; 2])> {
         let from_ms = self.log.window_end_ms(&self.log.rows[index]);
         let after = &self.log.rows[index..];
         let target = index

@@ -7,8 +7,8 @@
 //! friction. Two facts of the report are such residuals too: wheels start to turn at a PWM of about 35 in the air and
 //! 65 on the floor.
 
-use super::log::{DriveLog, Seen};
-use super::replay::{Correct, Nuisance, Replay};
+use crate::log::{DriveLog, Seen};
+use crate::replay::{Correct, Nuisance, Replay};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use rayon::prelude::*;
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side};

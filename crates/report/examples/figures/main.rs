@@ -11,9 +11,9 @@
 
 /// The library's charts, with names that are known beforehand.
 mod chart {
-    pub(crate) use rumbo_scenario::chart::{Legend, ORIGINAL, OURS, THIRD, map, over_time, svg};
-    pub(crate) type Chart = rumbo_scenario::chart::Chart<'static>;
-    pub(crate) type Curve = rumbo_scenario::chart::Curve<'static>;
+    pub(crate) use rumbo_identify::chart::{Legend, ORIGINAL, OURS, THIRD, map, over_time, svg};
+    pub(crate) type Chart = rumbo_identify::chart::Chart<'static>;
+    pub(crate) type Curve = rumbo_identify::chart::Curve<'static>;
 }
 mod pages;
 mod runs;

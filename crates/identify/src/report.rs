@@ -1,7 +1,7 @@
 //! Identification in words: tables for a terminal.
 
-use super::fit::{Check, Identification};
-use super::score::{RunScore, WheelError};
+use crate::fit::{Check, Identification};
+use crate::score::{RunScore, WheelError};
 use std::fmt;
 
 impl fmt::Display for Identification {
@@ -89,7 +89,7 @@ fn words(error: &WheelError) -> String {
 
 /// Four significant digits.
 #[must_use]
-pub(super) fn significant(value: f64) -> String {
+pub(crate) fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }

@@ -1,0 +1,41 @@
+//! The plant's parameters from recorded runs, and how noisy their sonars were.
+//!
+//! ```text
+//! CSV ─► dialect: as one program writes it
+//!            ├─► log ─► replay: the recorded duty on a plant ─► residuals (problem) ─► search and fit
+//!            │                                                       │
+//!            │            score: RMSE, R^2 per run ◄─────────────────┤ parameters, uncertainties
+//!            │            plot: charts, measured and simulated ◄─────┤
+//!            │            rewrite: [plant] of a robot file ◄─────────┘
+//!            └─► sonar_stats: noise, outliers and losses, beside those of the plant's sonars
+//! ```
+//!
+//! What differs from run to run, the battery's voltage and the floor's friction, is fitted per run as a nuisance;
+//! [`check`] fits nothing else. Derivation and choice of the unknowns: [`problem`].
+//!
+//! It knows the plant, and the texts it is given: no scenario, no simulator, no files of the project.
+
+pub mod chart;
+pub mod dialect;
+pub mod problem;
+pub mod sonar_stats;
+
+mod error;
+mod fit;
+mod log;
+mod plot;
+mod replay;
+mod report;
+mod rewrite;
+mod score;
+
+#[cfg(test)]
+mod tests;
+
+pub use error::IdentifyError;
+pub use fit::{Check, GENERATIONS, Identification, Identified, check, identify};
+pub use log::DriveLog;
+pub use plot::plot;
+pub use replay::Nuisance;
+pub use rewrite::rewrite;
+pub use score::{RunScore, WheelError};
