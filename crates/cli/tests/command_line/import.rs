@@ -1,6 +1,6 @@
 //! `rumbo import`, and what is read of what it made.
 
-use crate::support::{file, folder, program, rumbo, stderr, stdout};
+use crate::support::{file, program, rumbo, stderr, stdout};
 use std::process::Output;
 
 /// A short recording in the format of the original program, made up here.
@@ -9,12 +9,16 @@ const RECORDING: &str = "dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,
 
 #[test]
 fn an_imported_recording_is_in_si_units_with_the_original_attached() {
-    file("recording.csv", RECORDING);
+    // A folder of its own: a log that another version left there would be kept.
+    let folder = tempfile::tempdir().unwrap();
+    let [csv, out] =
+        ["csv", "mcap"].map(|ending| folder.path().join("recording").with_extension(ending));
+    std::fs::write(&csv, RECORDING).unwrap();
     let output = rumbo(&[
         "import",
-        "recording.csv",
+        csv.to_str().unwrap(),
         "--out",
-        "recording.mcap",
+        out.to_str().unwrap(),
         "--json",
     ]);
     let summary: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
@@ -22,7 +26,7 @@ fn an_imported_recording_is_in_si_units_with_the_original_attached() {
     // The first row's time is how long the original program waited for its start.
     assert!((summary["duration_s"].as_f64().unwrap() - 0.09).abs() < 1e-9);
 
-    let log = std::fs::read(folder().join("recording.mcap")).unwrap();
+    let log = std::fs::read(&out).unwrap();
     let messages: Vec<_> = mcap::MessageStream::new(&log)
         .unwrap()
         .map(Result::unwrap)
