@@ -109,6 +109,7 @@ fuzz_target!(|steps: Vec<Step>| {
         robot: Robot::new(Config {
             image: 0,
             reset: ResetCause::PowerOn,
+            start: 0,
         }),
         said: Decoder::default(),
         now: Micros(u32::MAX - 3_000_000),
