@@ -70,7 +70,7 @@ test('a choice is one of its names, and applied like any value', async () => {
   assert.equal(await field.inputValue(), '0');
   await field.selectOption('pure pursuit');
   await row.getByRole('button', { name: 'Apply' }).click();
-  await event('waypoint_tracker = pure pursuit: done');
+  await event('waypoint_tracker = pure pursuit: acknowledged');
   await row.getByRole('button', { name: 'Apply' }).waitFor({ state: 'hidden' });
   assert.equal(await field.inputValue(), '1');
 });
@@ -86,7 +86,7 @@ test('a switch is ticked, by the keyboard too', async () => {
   await page.keyboard.press('Enter');
   assert.equal(await field.isChecked(), false);
   await page.locator('#parameters tr', { has: field }).getByRole('button', { name: 'Apply' }).click();
-  await event('mission_reset_origin = no: done');
+  await event('mission_reset_origin = no: acknowledged');
   assert.equal(await field.isChecked(), false);
   assert.deepEqual(dashboard.complaints, []);
 });
