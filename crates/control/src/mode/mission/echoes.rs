@@ -14,6 +14,8 @@ use crate::types::{Pose, Range, Reading, SonarId, Transform};
 
 /// How many points are remembered.
 pub(super) const CAPACITY: usize = 48;
+/// How many silences of the front sonar wait for its next echo: those of two sweeps.
+const SILENCES: usize = 12;
 /// Points nearer to each other than this are one [mm].
 const MERGE_MM: u16 = 50;
 /// Belief in a point heard once, in one heard again, and the most.
@@ -24,6 +26,8 @@ const MOST_BELIEF: u8 = 6;
 const CLOSE_MM: u16 = 350;
 /// Farthest point put down, of the front sonar and of one at a side [mm].
 const HORIZON_MM: [i32; 2] = [1_300, 700];
+/// What silence denies is nearer than this [mm].
+const REACH_MM: i32 = 2_500;
 /// Half width of the part of a beam in which a point would surely be heard, as a tangent in 256ths: 0.21 rad.
 const SURE_TANGENT: i32 = 54;
 /// A reading this much beyond a point contradicts it: [mm] and 256ths of the range.
@@ -151,10 +155,21 @@ impl Room {
     }
 }
 
+/// A silence that waits for the echo after it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Silence {
+    apex: Place,
+    axis: i8,
+}
+
 /// The memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Echoes {
     points: [Echo; CAPACITY],
+    /// Silences of the front sonar, the oldest first: how many there are, and how many of them are believed.
+    silences: [Silence; SILENCES],
+    silent: u8,
+    believed: u8,
 }
 
 impl Default for Echoes {
@@ -162,6 +177,9 @@ impl Default for Echoes {
     fn default() -> Self {
         Self {
             points: [Echo::NONE; CAPACITY],
+            silences: [Silence::default(); SILENCES],
+            silent: 0,
+            believed: 0,
         }
     }
 }
@@ -208,7 +226,7 @@ impl Echoes {
         let [front_mm, side_mm] = HORIZON_MM;
         let (range_mm, heard) = match reading.range {
             Range::Valid(range_m) => (round(1_000.0 * range_m), true),
-            Range::Clear => (2_500, false),
+            Range::Clear => (REACH_MM, false),
             Range::Faulty => return,
         };
         if sure {
@@ -246,6 +264,42 @@ impl Echoes {
             );
             self.put(at, beam.axis, &mut room);
         }
+    }
+
+    /// The front sonar answered that nothing is in reach. That takes no belief from anything until it has had an echo again:
+    /// a sonar that is silent for ever denies nothing.
+    pub(super) fn silence(&mut self, robot: &Transform, reading: &Reading) {
+        if usize::from(self.silent) == SILENCES {
+            self.silences.rotate_left(1);
+            self.silent -= 1;
+            self.believed = self.believed.saturating_sub(1);
+        }
+        let (beam, _) = Beam::of(robot, reading);
+        if let Some(next) = self.silences.get_mut(usize::from(self.silent)) {
+            *next = Silence {
+                apex: beam.apex,
+                axis: beam.axis,
+            };
+            self.silent += 1;
+        }
+    }
+
+    /// The front sonar has had an echo: it heard during the silences before.
+    pub(super) fn hears(&mut self) {
+        self.believed = self.silent;
+    }
+
+    /// Takes in one of the silences that are believed. To be called in ticks without a reading.
+    pub(super) fn settle(&mut self) {
+        if self.believed == 0 {
+            return;
+        }
+        let [Silence { apex, axis }, ..] = self.silences;
+        self.silences.rotate_left(1);
+        self.silent -= 1;
+        self.believed -= 1;
+        let axis_rad = f32::from(axis) * (core::f32::consts::PI / 128.0);
+        self.clear(&Beam::along(apex, axis_rad), REACH_MM);
     }
 
     /// Takes belief from the points that a beam as far as `range_mm` would have heard.
@@ -360,6 +414,10 @@ impl Echoes {
         for point in self.points.iter_mut().filter(|point| point.belief > 0) {
             point.at = point.at.as_seen(here, &facing);
             point.axis = point.axis.wrapping_sub(turned);
+        }
+        for silence in &mut self.silences {
+            silence.apex = silence.apex.as_seen(here, &facing);
+            silence.axis = silence.axis.wrapping_sub(turned);
         }
     }
 }

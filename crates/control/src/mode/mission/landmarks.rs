@@ -9,6 +9,7 @@
 //! | two equal echoes in a row from a place | the landmark there is renewed, or the one unheard for longest gives way; all silence is forgiven |
 //! | two silences in a row at a landmark | one more silence of that landmark; with [`SILENCES`] of them it is given up |
 //! | [`DOUBT_AFTER`] silences at landmarks since the last echo | doubt: the robot is slow for the next [`DOUBT_M`] |
+//! | [`LASTING`] | doubt until the next echo |
 //! | [`DEAF_AFTER`] | deaf |
 
 use super::echoes::{Beam, direction};
@@ -44,6 +45,8 @@ const SILENCES: u8 = 4;
 const DOUBT_AFTER: u8 = 1;
 /// Way in doubt [m].
 const DOUBT_M: f32 = 0.5;
+/// Silences since the last echo after which the doubt lasts until the next one.
+const LASTING: u8 = 3;
 /// Silences since the last echo after which the sonar is deaf.
 const DEAF_AFTER: u8 = 4;
 
@@ -140,10 +143,9 @@ impl Landmarks {
         self.trusted_s = TRUST_S;
     }
 
-    /// The silences so far say nothing.
-    pub(super) fn forgive(&mut self) {
-        self.silences = 0;
-        self.silent_s = 0.0;
+    /// Its silence cannot be put to the proof here: it stays in doubt until its next echo.
+    pub(super) fn postpone(&mut self) {
+        self.silences = core::cmp::min(self.silences, LASTING);
     }
 
     /// All around an obstacle was looked at: silence so long is one of a deaf sonar.
@@ -170,7 +172,8 @@ impl Landmarks {
 
     /// The sonar may be deaf: the robot should be slow.
     pub(super) fn doubts(&self) -> bool {
-        self.silences >= DOUBT_AFTER && self.doubt_m < DOUBT_M
+        let lately = self.silences >= DOUBT_AFTER && self.doubt_m < DOUBT_M;
+        lately || self.silences >= LASTING
     }
 
     /// It is deaf.

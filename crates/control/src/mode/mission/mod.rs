@@ -280,14 +280,17 @@ impl State {
         if front {
             self.gaze.count(reading, worth);
         }
-        let believed = match reading.range {
-            Range::Valid(_) => true,
-            Range::Clear => worth == Worth::Sure && (!front || self.watch.landmarks.is_alive()),
-            Range::Faulty => false,
-        };
-        if believed {
-            let sure = worth == Worth::Sure;
-            self.echoes.ingest(&estimate.transform(), reading, sure);
+        let (robot, sure) = (estimate.transform(), worth == Worth::Sure);
+        match reading.range {
+            Range::Clear if sure && front => self.echoes.silence(&robot, reading),
+            Range::Clear if sure => self.echoes.ingest(&robot, reading, sure),
+            Range::Valid(_) => {
+                self.echoes.ingest(&robot, reading, sure);
+                if sure && front {
+                    self.echoes.hears();
+                }
+            }
+            Range::Clear | Range::Faulty => {}
         }
     }
 }
@@ -332,6 +335,8 @@ impl<'a> Mode<'a> for Mission<'a> {
     ) -> Result<(), Fault> {
         if let Some(reading) = &at.estimate.reading {
             state.ingest(at.estimate, reading);
+        } else {
+            state.echoes.settle();
         }
         let stale_s = self.params.get(ParamId::StaleRange);
         let beside = following(state.phase) || state.near_m < CAREFUL_M;
@@ -357,8 +362,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_that_is_remembered_fits_into_900_bytes() {
+    fn all_that_is_remembered_fits_into_1_000_bytes() {
         let bytes = core::mem::size_of::<State>();
-        assert!(bytes <= 900, "{bytes}");
+        assert!(bytes <= 1_000, "{bytes}");
     }
 }

@@ -1,8 +1,8 @@
 //! A front sonar in doubt is put to the proof: the robot stands, and turns it to what must answer.
 //!
 //! A sonar that answers "nothing in reach" for ever looks like free floor. So the robot doubts it where faces that it knows do not
-//! answer ([`super::landmarks`]), and where something has been near beside the robot for a while without an echo
-//! ([`super::watch`]). It looks there from where it stands, and if nothing answers, turns to face it. An echo ends the doubt at any
+//! answer ([`super::landmarks`]), where something has been near beside the robot for a while without an echo, and after a long
+//! way without one ([`super::watch`]). It looks there from where it stands, and if nothing answers, turns to face it. An echo ends the doubt at any
 //! moment.
 //!
 //! | stage | does | leaves when | to |
@@ -14,7 +14,7 @@
 use super::gaze::{SWEEP_RAD, Swing};
 use super::{Drive, Mission, State};
 use crate::estimate::Estimate;
-use crate::math::{abs, clamp, wrap_angle};
+use crate::math::{abs, atan2, clamp, wrap_angle};
 use crate::motion::TurnState;
 use crate::types::{Fault, Range, SonarId};
 
@@ -24,6 +24,9 @@ const DIRECTIONS: u8 = 5;
 const AROUND_RAD: f32 = 0.76;
 /// It faces what is so near to ahead [rad].
 const FACING_RAD: f32 = 0.2;
+
+/// What is remembered must answer within this [m].
+const REMEMBERED_M: f32 = 1.5;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
@@ -86,8 +89,7 @@ impl Mission<'_> {
             return Ok(None);
         }
         let Some(mut proof) = state.proof.or_else(|| begin(state, estimate)) else {
-            // Nothing is known that must answer.
-            state.watch.forgive();
+            state.watch.postpone();
             return Ok(None);
         };
         if proof.stage == Stage::Turn {
@@ -123,9 +125,10 @@ impl Mission<'_> {
     }
 }
 
-/// A proof by what is beside the robot, or else by the face that answered last; none where there is neither.
+/// A proof by what is beside the robot, or else by the face that answered last or what is remembered; none where there is nothing.
 fn begin(state: &mut State, estimate: &Estimate) -> Option<Proof> {
-    let (towards_rad, range_m) = state.watch.towards(estimate)?;
+    let known = state.watch.towards(estimate);
+    let (towards_rad, range_m) = known.or_else(|| remembered(state, estimate))?;
     let servo_rad = wrap_angle(towards_rad - estimate.pose.heading_rad);
     state.gaze.turn_to(clamp(servo_rad, -SWEEP_RAD, SWEEP_RAD));
     state.watch.ask();
@@ -134,4 +137,12 @@ fn begin(state: &mut State, estimate: &Estimate) -> Option<Proof> {
         towards_rad,
         range_m,
     })
+}
+
+/// Direction and distance of the nearest point that is remembered, if it is not far [rad, m].
+fn remembered(state: &State, estimate: &Estimate) -> Option<(f32, f32)> {
+    let pose = &estimate.pose;
+    let (number, range_m) = state.echoes.nearest(pose.x_m, pose.y_m, None)?;
+    let (x_m, y_m) = state.echoes.get(number)?.metres();
+    (range_m < REMEMBERED_M).then_some((atan2(y_m - pose.y_m, x_m - pose.x_m), range_m))
 }

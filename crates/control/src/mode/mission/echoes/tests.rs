@@ -121,3 +121,22 @@ fn a_moved_origin_leaves_the_points_where_they_are() {
     let (x_m, y_m) = at.metres();
     assert!((x_m + 0.1).abs() < 2e-3 && y_m.abs() < 2e-3, "{at:?}");
 }
+
+#[test]
+fn a_silence_denies_nothing_before_an_echo_has_come_after_it() {
+    let robot = Transform::default();
+    let mut echoes = heard(&[(Range::Valid(0.8), 0.0)]);
+    let settle = |echoes: &mut Echoes| (0..2 * SILENCES).for_each(|_| echoes.settle());
+    for _ in 0..2 * SILENCES {
+        echoes.silence(&robot, &answer(Range::Clear, 0.0));
+        settle(&mut echoes);
+    }
+    assert_eq!(count(&echoes), 3);
+    echoes.hears();
+    echoes.silence(&robot, &answer(Range::Clear, 0.4));
+    settle(&mut echoes);
+    assert_eq!(count(&echoes), 0, "ahead they are believed");
+    let before = echoes;
+    settle(&mut echoes);
+    assert_eq!(echoes, before, "the one after the echo waits");
+}
