@@ -327,21 +327,20 @@ impl ParamId {
 
 /// The values in force. Every value is finite and within its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
 pub struct Params {
+    values: [f32; COUNT],
+    // What every tick would have to make of them again.
     rig: Rig,
-    /// What every tick would have to make of them again.
     geometry: Geometry,
     loops: Wheels<SpeedLoop>,
-    values: [f32; COUNT],
 }
 
 impl Default for Params {
     fn default() -> Self {
         let mut params = Self {
             values: [0.0; COUNT],
-            geometry: Geometry::new(Wheels::both(1.0), 1.0),
             rig: Rig::Final,
+            geometry: Geometry::new(Wheels::both(1.0), 1.0),
             loops: Wheels::default(),
         };
         params.reset();

@@ -25,24 +25,22 @@ const CONVERTER_V: f32 = 5.0;
 const CONVERTER_COUNTS: f32 = 1_024.0;
 
 /// What drives, and what it remembers.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Debug)]
-#[repr(C)]
 pub(crate) struct Pilot {
-    reached: bool,
-    unreachable: bool,
-    low_battery_ticks: u8,
-    duty: Wheels<Duty>,
-    wheel_ref_rad_s: Wheels<f32>,
+    params: Params,
+    estimator: Estimator,
+    estimate: Estimate,
+    mode: ActiveMode,
     /// What the mode asked for after the last tick.
     action: Action,
+    reached: bool,
+    unreachable: bool,
+    drive: DriveLayer,
+    wheel_ref_rad_s: Wheels<f32>,
+    duty: Wheels<Duty>,
     pings: PingSchedule,
     encoders: EncoderWatch,
-    params: Params,
-    estimate: Estimate,
-    drive: DriveLayer,
-    estimator: Estimator,
-    mode: ActiveMode,
+    low_battery_ticks: u8,
 }
 
 /// What the mode has found out.
@@ -55,22 +53,22 @@ pub(crate) struct Found {
 }
 
 impl Default for Pilot {
-    // Not derived: what is inlined is put together elsewhere first, in two kilobytes of stack.
+    // Not derived: that would be inlined, and the robot be put together on the stack first, in two kilobytes.
     fn default() -> Self {
         Self {
+            params: Params::default(),
+            estimator: Estimator::default(),
+            estimate: Estimate::default(),
+            mode: ActiveMode::default(),
+            action: Action::default(),
             reached: false,
             unreachable: false,
-            low_battery_ticks: 0,
-            duty: Wheels::both(Duty::RELEASED),
+            drive: DriveLayer::default(),
             wheel_ref_rad_s: Wheels::both(0.0),
-            action: Action::default(),
+            duty: Wheels::both(Duty::RELEASED),
             pings: PingSchedule::default(),
             encoders: EncoderWatch::default(),
-            params: Params::default(),
-            estimate: Estimate::default(),
-            drive: DriveLayer::default(),
-            estimator: Estimator::default(),
-            mode: ActiveMode::default(),
+            low_battery_ticks: 0,
         }
     }
 }

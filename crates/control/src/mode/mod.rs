@@ -81,7 +81,6 @@ pub struct Look {
 }
 
 impl Default for Look {
-    #[inline]
     fn default() -> Self {
         Self::AHEAD
     }

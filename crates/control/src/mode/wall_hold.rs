@@ -37,30 +37,15 @@ const PATIENCE_S: f32 = 1.5;
 pub struct WallHold<'a>(WallFollow<'a>);
 
 /// Memory of mode 3.
-// What is small first: the AVR reaches 64 bytes from a pointer by one instruction each.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
+    /// First readings of the sonars `Left` and `Right` [m], and how many there are.
+    first_m: [[f32; READINGS]; 2],
+    count: [u8; 2],
+    waited_s: f32,
     /// The distance to hold [m].
     reference_m: Option<f32>,
-    waited_s: f32,
     follow: wall_follow::State,
-    count: [u8; 2],
-    /// First readings of the sonars `Left` and `Right` [m].
-    first_m: [[f32; READINGS]; 2],
-}
-
-impl Default for State {
-    #[inline]
-    fn default() -> Self {
-        Self {
-            reference_m: None,
-            first_m: [[0.0; READINGS]; 2],
-            count: [0; 2],
-            waited_s: 0.0,
-            follow: wall_follow::State::default(),
-        }
-    }
 }
 
 impl State {

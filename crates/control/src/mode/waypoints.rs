@@ -107,25 +107,24 @@ pub struct Waypoints<'a> {
 }
 
 /// Memory of mode 7.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C)]
 pub struct State {
     phase: Phase,
+    /// Where the route began; a relative one is seen from there.
+    frame: Option<Transform>,
     /// Number of the waypoint to go to.
     next: u8,
+    /// The waypoint before this one [m].
+    from: Option<Point>,
     /// The waypoint to go to [m].
     to: Point,
+    /// The way between them.
+    segment: Segment,
+    line: LineState,
     /// Heading of the present turn, latched when it begins [rad].
     heading_rad: f32,
     turn: TurnState,
-    line: LineState,
-    /// The waypoint before this one [m].
-    from: Option<Point>,
-    /// From where the route is reckoned.
-    frame: Option<Transform>,
     pursuit: PursuitState,
-    segment: Segment,
 }
 
 impl State {

@@ -158,7 +158,6 @@ pub(super) struct Echoes {
 }
 
 impl Default for Echoes {
-    #[inline]
     fn default() -> Self {
         Self {
             points: [Echo::NONE; CAPACITY],

@@ -85,19 +85,16 @@ impl Points {
 }
 
 /// The search.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
 pub(super) struct Search {
-    so_far: Obstacle,
     /// Points that belong to it, and those of them whose neighbours are still to be found.
     member: Points,
     open: Points,
     bearing: [i8; CAPACITY],
+    so_far: Obstacle,
 }
 
 impl Default for Search {
-    #[inline]
     fn default() -> Self {
         Self {
             member: Points::NONE,

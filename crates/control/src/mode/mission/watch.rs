@@ -157,7 +157,7 @@ impl Ear {
 }
 
 /// Memory of the watch, by `SonarId` number.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Watch {
     ears: [Ear; 3],
     /// What the front sonar must hear.
@@ -168,19 +168,6 @@ pub(super) struct Watch {
     aside_m: f32,
     /// Way with something near beside the robot since the front sonar's last echo [m].
     blind_m: f32,
-}
-
-impl Default for Watch {
-    #[inline]
-    fn default() -> Self {
-        Self {
-            ears: [Ear::default(); 3],
-            landmarks: Landmarks::default(),
-            unanswered: 0,
-            aside_m: 0.0,
-            blind_m: 0.0,
-        }
-    }
 }
 
 impl Watch {
