@@ -7,7 +7,7 @@
 use rumbo_control::drive::DriveLayer;
 use rumbo_control::estimate::{Estimate, Estimator};
 use rumbo_control::math::round;
-use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, SetpointError, Situation};
+use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, SetpointError};
 use rumbo_control::params::{ParamError, ParamId, Params};
 use rumbo_control::rig::Rig;
 use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, Range, SonarId, Wheels};
@@ -110,12 +110,7 @@ impl Pilot {
             let motion = &self.estimate.motion;
             self.encoders
                 .step(motion, self.duty, self.wheel_ref_rad_s)?;
-            let estimate = &self.estimate;
-            let at = Situation { estimate };
-            if let Err(fault) = self.mode.act(&self.params, &at, &mut self.action) {
-                self.action = self.at_rest();
-                return Err(fault);
-            }
+            self.action = self.mode.step(&self.params, &self.estimate)?;
         }
         if self.action.new_origin {
             self.estimator.reset_pose();

@@ -22,7 +22,7 @@ mod proof;
 mod watch;
 
 use super::description::{FEEDFORWARD, LINES, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
-use super::{Action, Description, Group, Look, Mode, Plot, Situation, Takes, waypoints};
+use super::{Action, Description, Group, Look, Mode, Plot, Takes, waypoints};
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sqrt};
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
@@ -327,31 +327,23 @@ impl<'a> Mode<'a> for Mission<'a> {
         }
     }
 
-    fn act(
-        &self,
-        state: &mut Self::State,
-        at: &Situation,
-        action: &mut Action,
-    ) -> Result<(), Fault> {
-        if let Some(reading) = &at.estimate.reading {
-            state.ingest(at.estimate, reading);
+    fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
+        if let Some(reading) = &estimate.reading {
+            state.ingest(estimate, reading);
         }
         let stale_s = self.params.get(ParamId::StaleRange);
         let beside = following(state.phase) || state.near_m < CAREFUL_M;
-        state.watch.step(at.estimate, stale_s, beside)?;
+        state.watch.step(estimate, stale_s, beside)?;
         state.fade_s += TICK_S;
         if state.fade_s > FADE_S {
             state.fade_s = 0.0;
             state.echoes.fade();
         }
         match self.task {
-            Task::Goal { x_m, y_m } => {
-                self.goal(state, at.estimate, &(x_m, y_m), action)?;
-            }
-            Task::Lane => self.lane(state, at.estimate, action)?,
-            Task::Wait => {}
+            Task::Goal { x_m, y_m } => self.goal(state, estimate, &(x_m, y_m)),
+            Task::Lane => self.lane(state, estimate),
+            Task::Wait => Ok(Action::default()),
         }
-        Ok(())
     }
 }
 
