@@ -218,6 +218,7 @@ impl AgedRange {
 }
 
 impl Default for AgedRange {
+    #[inline]
     fn default() -> Self {
         Self {
             range: Range::Faulty,
@@ -265,6 +266,7 @@ pub struct Transform {
 }
 
 impl Default for Transform {
+    #[inline]
     fn default() -> Self {
         Self {
             pose: Pose::default(),

@@ -74,6 +74,7 @@ pub struct Look {
 }
 
 impl Default for Look {
+    #[inline]
     fn default() -> Self {
         Self::AHEAD
     }

@@ -158,6 +158,7 @@ pub(super) struct Echoes {
 }
 
 impl Default for Echoes {
+    #[inline]
     fn default() -> Self {
         Self {
             points: [Echo::NONE; CAPACITY],

@@ -67,6 +67,7 @@ struct Ahead {
 }
 
 impl Default for Ahead {
+    #[inline]
     fn default() -> Self {
         Self {
             last_m: [FAR_M; 5],

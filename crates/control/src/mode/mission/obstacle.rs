@@ -95,6 +95,7 @@ pub(super) struct Search {
 }
 
 impl Default for Search {
+    #[inline]
     fn default() -> Self {
         Self {
             member: Points::NONE,
