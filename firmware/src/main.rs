@@ -61,7 +61,7 @@ fn run(robot: &mut Robot) -> ! {
         tick = last;
         inputs.now = inputs.now.after(u32::from(passed) * TICK_US);
         inputs.encoders = encoders.read(stamp, inputs.now);
-        inputs.echo = listener.read(stamp);
+        inputs.echo = listener.read(stamp, inputs.now);
         inputs.battery_v = robot
             .battery_input()
             .and_then(adc::sample)

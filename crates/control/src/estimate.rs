@@ -20,33 +20,17 @@ const AHEAD_RAD: f32 = 0.06;
 const SHOWN_TICKS: u16 = 20;
 
 /// Memory of the estimators.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimator {
+    speed: Wheels<SpeedEstimator>,
     place: Transform,
     servo_rad: f32,
     servo_target_rad: f32,
-    speed: Wheels<SpeedEstimator>,
-    /// What the front sonar last said off the middle.
-    aside: AgedRange,
     /// The pings whose echoes are waited for, by `SonarId` number: one that left late may end after the next one has left.
     pings: [Option<Ping>; 3],
     ranges: [RangeFilter; 3],
-}
-
-impl Default for Estimator {
-    fn default() -> Self {
-        Self {
-            place: Transform::default(),
-            servo_rad: 0.0,
-            servo_target_rad: 0.0,
-            speed: Wheels::default(),
-            aside: AgedRange::default(),
-            pings: [None; 3],
-            ranges: [RangeFilter::default(); 3],
-        }
-    }
+    /// What the front sonar last said off the middle.
+    aside: AgedRange,
 }
 
 /// A ping whose echo is waited for.
@@ -57,9 +41,7 @@ struct Ping {
 }
 
 /// What the estimators say at one tick.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C)]
 pub struct Estimate {
     /// Pose by odometry.
     pub pose: Pose,
@@ -73,6 +55,8 @@ pub struct Estimate {
     pub rolled_m: f32,
     /// Angle turned since the last tick [rad].
     pub turned_rad: f32,
+    /// Signed wheel speeds [rad/s].
+    pub wheel_rad_s: Wheels<f32>,
     /// What the edges say, without sign.
     pub motion: Wheels<WheelMotion>,
     /// Where the servo points [rad].
@@ -83,8 +67,6 @@ pub struct Estimate {
     pub reading: Option<Reading>,
     /// Filtered ranges by `SonarId` number; of a sonar on the servo only those ahead.
     pub ranges: [AgedRange; 3],
-    /// Signed wheel speeds [rad/s].
-    pub wheel_rad_s: Wheels<f32>,
 }
 
 impl Estimate {

@@ -1,9 +1,7 @@
 //! The table of parameters: each tunable declared once. Firmware, wire, command line and dashboard derive from it.
 //!
-//! A parameter is a number on the link, a name in files. Names, units and help exist on the host only (feature `names`); limits and
-//! defaults are kept short (`decimal.rs`), since a table of constants lies in the AVR's flash and in its SRAM.
+//! A parameter is a number on the link, a name in files. Names, units and help exist on the host only (feature `names`).
 
-mod decimal;
 #[cfg(feature = "names")]
 mod kind;
 
@@ -18,7 +16,6 @@ use crate::odometry::{Geometry, OdometryErrors};
 use crate::rig::Rig;
 use crate::speed::EDGE_RAD;
 use crate::types::{Side, TICK_S, Wheels};
-use decimal::Decimal;
 
 /// Smallest and largest allowed value, and the one without any override.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +80,7 @@ macro_rules! table {
         }
 
         /// Smallest and largest value and default of each.
-        const LIMITS: [[Decimal; 3]; COUNT] = [ $( [Decimal::of($min), Decimal::of($max), Decimal::of($default)], )+ ];
+        static LIMITS: [Limits; COUNT] = [ $( Limits { min: $min, max: $max, default: $default }, )+ ];
 
         /// How many parameters there are.
         pub const COUNT: usize = { let names = [ $( $name, )+ ]; names.len() };
@@ -286,12 +283,7 @@ table! {
 impl ParamId {
     /// Its limits and default.
     pub fn limits(self) -> Limits {
-        let [min, max, default] = &LIMITS[self as usize];
-        Limits {
-            min: min.value(),
-            max: max.value(),
-            default: default.value(),
-        }
+        LIMITS[self as usize]
     }
 
     /// Whether a value is one that it may have.
@@ -327,21 +319,20 @@ impl ParamId {
 
 /// The values in force. Every value is finite and within its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
 pub struct Params {
+    values: [f32; COUNT],
+    // What every tick would have to make of them again.
     rig: Rig,
-    /// What every tick would have to make of them again.
     geometry: Geometry,
     loops: Wheels<SpeedLoop>,
-    values: [f32; COUNT],
 }
 
 impl Default for Params {
     fn default() -> Self {
         let mut params = Self {
             values: [0.0; COUNT],
-            geometry: Geometry::new(Wheels::both(1.0), 1.0),
             rig: Rig::Final,
+            geometry: Geometry::new(Wheels::both(1.0), 1.0),
             loops: Wheels::default(),
         };
         params.reset();
@@ -376,11 +367,8 @@ impl Params {
 
     /// Sets all of them to their defaults.
     pub fn reset(&mut self) {
-        let mut limits = LIMITS.iter();
-        for value in &mut self.values {
-            if let Some([_, _, default]) = limits.next() {
-                *value = default.value();
-            }
+        for (value, limits) in self.values.iter_mut().zip(&LIMITS) {
+            *value = limits.default;
         }
         self.derive();
     }

@@ -14,12 +14,10 @@ pub const TICK_S: f32 = 1.0 / TICK_HZ as f32;
 pub const OUTPUT_DELAY_US: u32 = 3_000;
 
 /// A side of the robot, looking forward. The original's motor A is the right wheel, B the left one.
-///
-/// Neither is 0: so "no side" is, and what remembers none begins as zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// Left, towards +y.
-    Left = 1,
+    Left,
     /// Right, towards -y.
     Right,
 }
@@ -37,9 +35,8 @@ impl Side {
 /// Both sides, in the order in which they are always processed.
 pub const SIDES: [Side; 2] = [Side::Left, Side::Right];
 
-/// One value for each wheel. Laid out as written, since tests put such values into the chip's memory.
+/// One value for each wheel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(C)]
 pub struct Wheels<T> {
     /// The left wheel's.
     pub left: T,
@@ -90,7 +87,6 @@ impl<T> IndexMut<Side> for Wheels<T> {
 
 /// A reading of the robot's free-running microsecond clock. It wraps after 71.6 minutes; differences survive the wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(transparent)]
 pub struct Micros(pub u32);
 
 impl Micros {
@@ -132,10 +128,8 @@ impl Duty {
     }
 }
 
-/// What the encoder interrupt of one wheel left at the tick. One Hall channel: the direction is not measured. Laid out as
-/// written, as [`Wheels`] is.
+/// What the encoder interrupt of one wheel left at the tick. One Hall channel: the direction is not measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(C)]
 pub struct Edges {
     /// Edges seen since the start, wrapping.
     pub count: u16,

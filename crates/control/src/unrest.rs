@@ -25,15 +25,8 @@ const SUSPECT: u8 = 52;
 const FAULTY: u8 = 64;
 
 /// How wild each sonar's readings have been lately. A calm reading takes one off, a wild one adds eight.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Unrest([u8; 3]);
-
-impl Default for Unrest {
-    #[inline]
-    fn default() -> Self {
-        Self([0; 3])
-    }
-}
 
 impl Unrest {
     /// Takes the reading of this tick, of a sonar that matters.

@@ -22,13 +22,11 @@ pub(crate) enum Priority {
 }
 
 /// The ring.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Debug)]
-#[repr(C)]
 pub(crate) struct Outbox {
+    bytes: [u8; SIZE],
     first: usize,
     len: usize,
-    bytes: [u8; SIZE],
 }
 
 impl Outbox {

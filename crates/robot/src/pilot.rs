@@ -7,7 +7,7 @@
 use rumbo_control::drive::DriveLayer;
 use rumbo_control::estimate::{Estimate, Estimator};
 use rumbo_control::math::round;
-use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, SetpointError, Situation};
+use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, SetpointError};
 use rumbo_control::params::{ParamError, ParamId, Params};
 use rumbo_control::rig::Rig;
 use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, Range, SonarId, Wheels};
@@ -25,24 +25,22 @@ const CONVERTER_V: f32 = 5.0;
 const CONVERTER_COUNTS: f32 = 1_024.0;
 
 /// What drives, and what it remembers.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Debug)]
-#[repr(C)]
 pub(crate) struct Pilot {
-    reached: bool,
-    unreachable: bool,
-    low_battery_ticks: u8,
-    duty: Wheels<Duty>,
-    wheel_ref_rad_s: Wheels<f32>,
+    params: Params,
+    estimator: Estimator,
+    estimate: Estimate,
+    mode: ActiveMode,
     /// What the mode asked for after the last tick.
     action: Action,
+    reached: bool,
+    unreachable: bool,
+    drive: DriveLayer,
+    wheel_ref_rad_s: Wheels<f32>,
+    duty: Wheels<Duty>,
     pings: PingSchedule,
     encoders: EncoderWatch,
-    params: Params,
-    estimate: Estimate,
-    drive: DriveLayer,
-    estimator: Estimator,
-    mode: ActiveMode,
+    low_battery_ticks: u8,
 }
 
 /// What the mode has found out.
@@ -55,22 +53,22 @@ pub(crate) struct Found {
 }
 
 impl Default for Pilot {
-    // Not derived: what is inlined is put together elsewhere first, in two kilobytes of stack.
+    // Not derived: that would be inlined, and the robot be put together on the stack first, in two kilobytes.
     fn default() -> Self {
         Self {
+            params: Params::default(),
+            estimator: Estimator::default(),
+            estimate: Estimate::default(),
+            mode: ActiveMode::default(),
+            action: Action::default(),
             reached: false,
             unreachable: false,
-            low_battery_ticks: 0,
-            duty: Wheels::both(Duty::RELEASED),
+            drive: DriveLayer::default(),
             wheel_ref_rad_s: Wheels::both(0.0),
-            action: Action::default(),
+            duty: Wheels::both(Duty::RELEASED),
             pings: PingSchedule::default(),
             encoders: EncoderWatch::default(),
-            params: Params::default(),
-            estimate: Estimate::default(),
-            drive: DriveLayer::default(),
-            estimator: Estimator::default(),
-            mode: ActiveMode::default(),
+            low_battery_ticks: 0,
         }
     }
 }
@@ -112,12 +110,7 @@ impl Pilot {
             let motion = &self.estimate.motion;
             self.encoders
                 .step(motion, self.duty, self.wheel_ref_rad_s)?;
-            let estimate = &self.estimate;
-            let at = Situation { estimate };
-            if let Err(fault) = self.mode.act(&self.params, &at, &mut self.action) {
-                self.action = self.at_rest();
-                return Err(fault);
-            }
+            self.action = self.mode.step(&self.params, &self.estimate)?;
         }
         if self.action.new_origin {
             self.estimator.reset_pose();

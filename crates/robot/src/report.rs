@@ -51,13 +51,12 @@ impl Signals {
 }
 
 /// Fills the outbox.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Debug)]
-#[repr(C)]
 pub(crate) struct Reporter {
     hello: Hello,
     recalled: Option<Recalled>,
     language: Language,
+    outbox: Outbox,
     seq: u8,
     hello_due: bool,
     status_due: bool,
@@ -71,7 +70,6 @@ pub(crate) struct Reporter {
     last_row_at: Micros,
     earlier_rad_s: Wheels<f32>,
     dropped: u8,
-    outbox: Outbox,
 }
 
 impl Reporter {

@@ -40,20 +40,18 @@ pub struct Config {
 }
 
 /// The whole robot, but for its hardware.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Debug)]
-#[repr(C)]
 pub struct Robot {
     start: u8,
-    supervisor: Supervisor,
     clock: Clock,
-    battery_v: Option<f32>,
-    governor: Governor,
-    ledger: Ledger,
-    store: Store,
-    pilot: Pilot,
-    reporter: Reporter,
     decoder: Decoder<LINE>,
+    ledger: Ledger,
+    supervisor: Supervisor,
+    pilot: Pilot,
+    governor: Governor,
+    reporter: Reporter,
+    battery_v: Option<f32>,
+    store: Store,
 }
 
 impl Robot {

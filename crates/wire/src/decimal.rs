@@ -4,12 +4,10 @@
 use rumbo_control::math::{from_u32, is_finite, round};
 
 /// Text being written into a fixed buffer. What does not fit is cut; the longest line does (tested in `text`).
-// The length first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(C)]
 pub(crate) struct Text<const N: usize> {
-    len: usize,
     bytes: [u8; N],
+    len: usize,
 }
 
 impl<const N: usize> Text<N> {

@@ -130,9 +130,7 @@ impl ResetCause {
 }
 
 /// The fast signals.
-// What is small first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C)]
 pub struct Telemetry {
     /// Robot time of the sample [ms], wrapping; the receiver unwraps it.
     pub t_ms: u16,

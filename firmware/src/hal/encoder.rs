@@ -1,4 +1,4 @@
-//! Encoders: every edge leaves its stamp in a ring; the loop makes counts and times of them.
+//! Encoders: every edge leaves its stamp in a ring; at the tick [`rumbo_robot::latch`] makes counts and times of them.
 //!
 //! The handler does no more than that, so it is short. A ring holds 32 edges, 3,200 a second: five times what the
 //! wheels can make. Noise beyond that overwrites stamps, which the count survives.
@@ -7,11 +7,10 @@ use super::clock::{self, Stamp};
 use super::registers::{external, handler, put};
 use super::shared::{Byte, CriticalSection, Word};
 use rumbo_control::{Edges, Micros, Wheels};
+use rumbo_robot::latch::EdgeCounter;
 
 /// Stamps in a ring, a power of two.
 const RING: u8 = 32;
-/// Edges of a motor turn.
-const POLES: usize = 8;
 
 struct Ring {
     stamps: [Word; RING as usize],
@@ -76,9 +75,7 @@ handler! { __vector_2, "INT1", |section| {
 /// What the loop knows of one encoder.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counter {
-    edges: Edges,
-    poles: [Micros; POLES],
-    seen: u8,
+    latch: EdgeCounter,
     taken: u8,
 }
 
@@ -87,37 +84,21 @@ impl Counter {
         let latched = ring.latched.get();
         let new = latched.wrapping_sub(self.taken);
         if new > RING {
-            // Overwritten before it was read: counted, and their times unknown.
+            // Overwritten before it was read.
             let lost = new - RING;
             self.taken = self.taken.wrapping_add(lost);
-            self.edges.count = self.edges.count.wrapping_add(u16::from(lost));
-            self.seen = 0;
-            self.edges.turn_us = 0;
+            self.latch.unstamped(lost);
         }
         while self.taken != latched {
             let slot = ring.slot(self.taken);
-            let at = avr_device::interrupt::free(|section| slot.get(section));
-            let age = tick.since(Stamp(at));
-            if age > u16::MAX / 2 {
+            let at = Stamp(avr_device::interrupt::free(|section| slot.get(section)));
+            if at.is_after(tick) {
                 // Between the tick and its handler, which edges precede: it belongs to the next tick.
                 return;
             }
             self.taken = self.taken.wrapping_add(1);
-            self.edge(Micros(now.0.wrapping_sub(u32::from(age / 2))));
+            self.latch.edge(at.micros(tick, now));
         }
-    }
-
-    fn edge(&mut self, at: Micros) {
-        self.edges.count = self.edges.count.wrapping_add(1);
-        if let Some(pole) = self.poles.get_mut(usize::from(self.edges.count) % POLES) {
-            if usize::from(self.seen) < POLES {
-                self.seen += 1;
-            } else {
-                self.edges.turn_us = at.since(*pole);
-            }
-            *pole = at;
-        }
-        self.edges.last = at;
     }
 }
 
@@ -130,6 +111,6 @@ impl Encoders {
     pub fn read(&mut self, tick: Stamp, now: Micros) -> Wheels<Edges> {
         self.0.left.take(&LEFT, tick, now);
         self.0.right.take(&RIGHT, tick, now);
-        self.0.map(|counter| counter.edges)
+        self.0.map(|counter| counter.latch.edges())
     }
 }

@@ -26,7 +26,7 @@ pub fn leave(outputs: &Outputs, tick: u8) -> bool {
         LEFT_PWM.set(bridge.left_pwm);
         RIGHT_PWM.set(bridge.right_pwm);
         SERVO.set(servo, section);
-        sonar::ask(outputs.ping);
+        sonar::ask(outputs.ping, section);
         let in_time = APPLIED.get() != tick && clock::ticks() == tick;
         if !in_time {
             apply(tick, section);

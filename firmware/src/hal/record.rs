@@ -5,20 +5,48 @@
 
 use core::cell::UnsafeCell;
 
-use rumbo_control::{Echo, Edges, Inputs, Micros, Outputs, SonarId, Wheels};
+use rumbo_control::{Echo, Edges, Inputs, Micros, Outputs, SonarId};
 use rumbo_robot::Robot;
 
 /// The inputs, in this order, little-endian, without gaps.
 #[derive(Clone, Copy)]
 #[repr(C)]
 struct InputsRecord {
-    now: Micros,
-    encoders: Wheels<Edges>,
+    now_us: u32,
+    left: EdgesRecord,
+    right: EdgesRecord,
     /// 0 none, 1 pulse, 2 clear, 3 silent.
     echo: u8,
     /// Number of the sonar.
     sonar: u8,
     pulse_us: u32,
+}
+
+/// What an encoder left, likewise.
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct EdgesRecord {
+    count: u16,
+    last_us: u32,
+    turn_us: u32,
+}
+
+impl EdgesRecord {
+    const fn new(edges: Edges) -> Self {
+        Self {
+            count: edges.count,
+            last_us: edges.last.0,
+            turn_us: edges.turn_us,
+        }
+    }
+
+    const fn edges(self) -> Edges {
+        Edges {
+            count: self.count,
+            last: Micros(self.last_us),
+            turn_us: self.turn_us,
+        }
+    }
 }
 
 /// The outputs, likewise.
@@ -37,17 +65,18 @@ struct Shown<T>(UnsafeCell<T>);
 // SAFETY: only the loop touches it.
 unsafe impl<T> Sync for Shown<T> {}
 
-const NO_EDGES: Edges = Edges {
+const NO_EDGES: EdgesRecord = EdgesRecord {
     count: 0,
-    last: Micros(0),
+    last_us: 0,
     turn_us: 0,
 };
 
 // SAFETY, for the names here and below: each is used once.
 #[unsafe(no_mangle)]
 static RUMBO_INPUTS: Shown<InputsRecord> = Shown(UnsafeCell::new(InputsRecord {
-    now: Micros(0),
-    encoders: Wheels::both(NO_EDGES),
+    now_us: 0,
+    left: NO_EDGES,
+    right: NO_EDGES,
     echo: 0,
     sonar: 0,
     pulse_us: 0,
@@ -91,14 +120,16 @@ pub fn inputs(inputs: &mut Inputs) {
     let record = RUMBO_INPUTS.0.get();
     // SAFETY: only the loop touches it, and no reference to it is left; volatile, for whoever stops the program here.
     unsafe {
-        (&raw mut (*record).now).write_volatile(inputs.now);
-        (&raw mut (*record).encoders).write_volatile(inputs.encoders);
+        (&raw mut (*record).now_us).write_volatile(inputs.now.0);
+        (&raw mut (*record).left).write_volatile(EdgesRecord::new(inputs.encoders.left));
+        (&raw mut (*record).right).write_volatile(EdgesRecord::new(inputs.encoders.right));
         (&raw mut (*record).echo).write_volatile(echo);
         (&raw mut (*record).sonar).write_volatile(sonar);
         (&raw mut (*record).pulse_us).write_volatile(pulse_us);
         rumbo_inputs_latched();
-        inputs.now = (&raw const (*record).now).read_volatile();
-        inputs.encoders = (&raw const (*record).encoders).read_volatile();
+        inputs.now = Micros((&raw const (*record).now_us).read_volatile());
+        inputs.encoders.left = (&raw const (*record).left).read_volatile().edges();
+        inputs.encoders.right = (&raw const (*record).right).read_volatile().edges();
         let sonar = (&raw const (*record).sonar).read_volatile();
         let sonar = SonarId::ALL.get(usize::from(sonar)).copied();
         let echo = match (&raw const (*record).echo).read_volatile() {

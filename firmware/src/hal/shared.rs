@@ -1,6 +1,6 @@
 //! What interrupt handlers and the loop share: values that cannot be read or written in halves.
 //!
-//! The chip moves a byte at a time. A [`Byte`] may therefore be touched from anywhere, a [`Word`] only by who shows
+//! The chip moves a byte at a time. A [`Byte`] may therefore be touched from anywhere, what is [`Guarded`] only by who shows
 //! that no interrupt can come in between: a handler, or the loop within `avr_device::interrupt::free`.
 
 use core::cell::UnsafeCell;
@@ -31,26 +31,36 @@ impl Byte {
     }
 }
 
+/// A shared value of several bytes.
+pub(super) struct Guarded<T>(UnsafeCell<T>);
+
 /// A shared word.
-pub(super) struct Word(UnsafeCell<u16>);
+pub(super) type Word = Guarded<u16>;
 
 // SAFETY: one core, and whoever has a `CriticalSection` is not interrupted.
-unsafe impl Sync for Word {}
+unsafe impl<T: Copy> Sync for Guarded<T> {}
 
-impl Word {
-    pub(super) const fn new(value: u16) -> Self {
+impl<T: Copy> Guarded<T> {
+    pub(super) const fn new(value: T) -> Self {
         Self(UnsafeCell::new(value))
     }
 
     #[inline(always)]
-    pub(super) fn get(&self, _: CriticalSection<'_>) -> u16 {
+    pub(super) fn get(&self, _: CriticalSection<'_>) -> T {
         // SAFETY: nobody writes meanwhile.
         unsafe { self.0.get().read_volatile() }
     }
 
     #[inline(always)]
-    pub(super) fn set(&self, value: u16, _: CriticalSection<'_>) {
+    pub(super) fn set(&self, value: T, _: CriticalSection<'_>) {
         // SAFETY: nobody reads or writes meanwhile.
         unsafe { self.0.get().write_volatile(value) }
+    }
+
+    /// Changes a part of it. `change` must not come here again.
+    #[inline(always)]
+    pub(super) fn update(&self, change: impl FnOnce(&mut T), _: CriticalSection<'_>) {
+        // SAFETY: as above, and no reference to it is left.
+        change(unsafe { &mut *self.0.get() });
     }
 }

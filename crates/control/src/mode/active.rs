@@ -2,8 +2,8 @@
 
 use super::description::{Description, ReferenceKind};
 use super::{
-    Action, Look, Mode, SetpointError, Situation, front_align, front_distance, manual, mission,
-    straight_line, wall_follow, wall_hold, waypoints, wheel_speed,
+    Action, Look, Mode, SetpointError, front_align, front_distance, manual, mission, straight_line,
+    wall_follow, wall_hold, waypoints, wheel_speed,
 };
 use crate::estimate::Estimate;
 use crate::params::Params;
@@ -91,12 +91,12 @@ macro_rules! modes {
                 match self { $( Self::$mode(setpoint, _) => $module::$mode::set_reference(setpoint, value), )+ }
             }
 
-            /// One tick, into an action that asks for nothing yet.
+            /// One tick.
             ///
             /// # Errors
             /// Why the mode cannot go on.
-            pub fn act(&mut self, params: &Params, at: &Situation, action: &mut Action) -> Result<(), Fault> {
-                match self { $( Self::$mode(setpoint, state) => $module::$mode::new(params, setpoint).act(state, at, action), )+ }
+            pub fn step(&mut self, params: &Params, estimate: &Estimate) -> Result<Action, Fault> {
+                match self { $( Self::$mode(setpoint, state) => $module::$mode::new(params, setpoint).step(state, estimate), )+ }
             }
         }
     };

@@ -19,7 +19,7 @@
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
 use super::front_distance::{self, FrontDistance};
-use super::{Action, Description, Group, Mode, Plot, SetpointError, Situation};
+use super::{Action, Description, Group, Mode, Plot, SetpointError};
 use crate::ahead::{Ahead, AheadState};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
@@ -196,13 +196,7 @@ impl<'a> Mode<'a> for FrontAlign<'a> {
         FrontDistance::set_reference(distance_m, value)
     }
 
-    fn act(
-        &self,
-        state: &mut Self::State,
-        at: &Situation,
-        action: &mut Action,
-    ) -> Result<(), Fault> {
-        let estimate = at.estimate;
+    fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
         if let Some(reading) = &estimate.reading
             && self.ahead.watches(reading)
         {
@@ -228,7 +222,7 @@ impl<'a> Mode<'a> for FrontAlign<'a> {
             state.turn = TurnState::default();
             state.phase = phase;
         }
-        action.drive = match phase {
+        let drive = match phase {
             Phase::Look | Phase::Hold => Drive::Release,
             Phase::Approach | Phase::Settle => {
                 let uneasy = state.unrest.is_uneasy();
@@ -237,13 +231,17 @@ impl<'a> Mode<'a> for FrontAlign<'a> {
             Phase::Turn => turn.map_or(Drive::Release, |turn| turn.drive),
         };
         let resting = phase == Phase::Hold;
-        action.look = self
+        let look = self
             .ahead
             .look(&mut state.ahead, estimate, wall.bearing_rad, resting);
-        action.state = phase as u8;
-        action.heading_ref_rad = heading_ref_rad;
-        action.reached = resting;
-        Ok(())
+        Ok(Action {
+            drive,
+            look,
+            state: phase as u8,
+            heading_ref_rad,
+            reached: resting,
+            ..Action::default()
+        })
     }
 }
 
@@ -275,7 +273,7 @@ mod tests {
     /// A tick of the pair.
     fn step(state: &mut State, left_m: f32, right_m: f32) -> Result<Action, Fault> {
         let estimate = &seeing([left_m, right_m, 0.0]);
-        FrontAlign::new(&params(Rig::FrontPair), &0.3).step(state, &Situation { estimate })
+        FrontAlign::new(&params(Rig::FrontPair), &0.3).step(state, estimate)
     }
 
     fn twist(action: &Action) -> (f32, f32) {
@@ -355,11 +353,8 @@ mod tests {
             (seeing([1.0, 0.0, 0.0]), Fault::WallLost),
             (silent, Fault::SonarFaulty),
         ] {
-            let at = Situation {
-                estimate: &estimate,
-            };
-            let stopped =
-                FrontAlign::new(&params(Rig::FrontPair), &0.3).step(&mut State::default(), &at);
+            let stopped = FrontAlign::new(&params(Rig::FrontPair), &0.3)
+                .step(&mut State::default(), &estimate);
             assert_eq!(stopped, Err(fault));
         }
     }
@@ -369,7 +364,7 @@ mod tests {
         let params = params(Rig::Final);
         let (mut state, mode) = (State::default(), FrontAlign::new(&params, &0.3));
         let estimate = &seeing([0.0, 0.0, 1.0]);
-        let first = mode.step(&mut state, &Situation { estimate }).unwrap();
+        let first = mode.step(&mut state, estimate).unwrap();
         assert_eq!((first.drive, first.state), (Drive::Release, 0));
         assert!(first.look.servo.0.abs() > 0.5, "{:?}", first.look);
     }

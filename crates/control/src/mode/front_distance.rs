@@ -19,7 +19,7 @@
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
     Action, Description, Group, Look, MAX_DISTANCE_M, MIN_DISTANCE_M, Mode, Plot, Reference,
-    ReferenceKind, SetpointError, Situation,
+    ReferenceKind, SetpointError,
 };
 use crate::ahead::drivable_m;
 use crate::estimate::Estimate;
@@ -185,26 +185,21 @@ impl<'a> Mode<'a> for FrontDistance<'a> {
         Ok(())
     }
 
-    fn act(
-        &self,
-        state: &mut Self::State,
-        at: &Situation,
-        action: &mut Action,
-    ) -> Result<(), Fault> {
-        if let Some(reading) = &at.estimate.reading
+    fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
+        if let Some(reading) = &estimate.reading
             && reading.sonar == SonarId::Front
         {
-            state.unrest.take(at.estimate, reading)?;
+            state.unrest.take(estimate, reading)?;
         }
         let range_m = self
-            .range_m(at.estimate)
+            .range_m(estimate)
             .map_err(|fault| state.unrest.cause(fault))?;
         let error_m = range_m - self.distance_m;
         state.phase = self.next_phase(state, error_m);
 
-        let heading_rad = at.estimate.pose.heading_rad;
+        let heading_rad = estimate.pose.heading_rad;
         let start_rad = *state.heading_rad.get_or_insert(heading_rad);
-        action.drive = match state.phase {
+        let drive = match state.phase {
             Phase::Hold => Drive::Release,
             Phase::Approach | Phase::Settle => {
                 let forward_m_s = self.speed_m_s(error_m, state.unrest.is_uneasy());
@@ -221,10 +216,13 @@ impl<'a> Mode<'a> for FrontDistance<'a> {
                 }
             }
         };
-        action.look = Self::LOOK;
-        action.state = state.phase as u8;
-        action.reached = state.phase == Phase::Hold;
-        Ok(())
+        Ok(Action {
+            drive,
+            look: Self::LOOK,
+            state: state.phase as u8,
+            reached: state.phase == Phase::Hold,
+            ..Action::default()
+        })
     }
 }
 
@@ -242,12 +240,7 @@ mod tests {
     fn step(state: &mut State, range: Range, age_ticks: u16) -> Result<Action, Fault> {
         let params = Params::default();
         let mode = FrontDistance::new(&params, &0.3);
-        mode.step(
-            state,
-            &Situation {
-                estimate: &estimate(range, age_ticks),
-            },
-        )
+        mode.step(state, &estimate(range, age_ticks))
     }
 
     fn forward(state: &mut State, range_m: f32) -> f32 {
@@ -311,24 +304,9 @@ mod tests {
         let mode = FrontDistance::new(&params, &0.3);
         let mut state = State::default();
         let mut estimate = estimate(Range::Valid(1.0), 0);
-        mode.step(
-            &mut state,
-            &Situation {
-                estimate: &estimate,
-            },
-        )
-        .unwrap();
+        mode.step(&mut state, &estimate).unwrap();
         estimate.pose.heading_rad = 0.1;
-        match mode
-            .step(
-                &mut state,
-                &Situation {
-                    estimate: &estimate,
-                },
-            )
-            .unwrap()
-            .drive
-        {
+        match mode.step(&mut state, &estimate).unwrap().drive {
             Drive::Twist { yaw_rad_s, .. } => assert!(yaw_rad_s < 0.0),
             other => panic!("{other:?}"),
         }

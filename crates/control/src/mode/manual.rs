@@ -7,7 +7,8 @@
 //! The report moves open loop only; by speed the two wheels keep their ratio on any floor.
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
-use super::{Action, Description, Group, Level, Mode, Movement, Plot, Situation, Takes};
+use super::{Action, Description, Group, Level, Mode, Movement, Plot, Takes};
+use crate::estimate::Estimate;
 use crate::params::{ParamId, Params};
 use crate::rig::Rigs;
 use crate::types::{Drive, Fault, Wheels};
@@ -110,10 +111,9 @@ impl<'a> Mode<'a> for Manual<'a> {
         }
     }
 
-    fn act(&self, _: &mut (), _: &Situation, action: &mut Action) -> Result<(), Fault> {
+    fn step(&self, (): &mut (), _: &Estimate) -> Result<Action, Fault> {
         let factors = self.factors();
-        let phase;
-        (action.drive, phase) = match (self.setpoint.movement, self.setpoint.level) {
+        let (drive, phase) = match (self.setpoint.movement, self.setpoint.level) {
             (Movement::Stop, _) => (Drive::Release, Phase::Stop),
             (_, Level::Duty(duty)) => (
                 Drive::Duty(factors.map(|factor| factor * duty)),
@@ -124,24 +124,21 @@ impl<'a> Mode<'a> for Manual<'a> {
                 Phase::BySpeed,
             ),
         };
-        action.state = phase as u8;
-        Ok(())
+        Ok(Action {
+            drive,
+            state: phase as u8,
+            ..Action::default()
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::Estimate;
 
     fn drive(movement: Movement, level: Level) -> Drive {
         Manual::new(&Params::default(), &Setpoint { movement, level })
-            .step(
-                &mut (),
-                &Situation {
-                    estimate: &Estimate::default(),
-                },
-            )
+            .step(&mut (), &Estimate::default())
             .unwrap()
             .drive
     }

@@ -1,7 +1,7 @@
 //! The modes: what the robot does, one file each.
 //!
-//! A mode is configuration (from the parameters and its setpoint) apart from state, and one function of the
-//! [`Situation`]: [`Mode::act`]. Beside it stands its [`Description`]: number, name, states, reference, rigs, parameters. One list names the
+//! A mode is configuration (from the parameters and its setpoint) apart from state, and one function that makes an
+//! [`Action`] of the [`Estimate`]: [`Mode::step`]. Beside it stands its [`Description`]: number, name, states, reference, rigs, parameters. One list names the
 //! modes, in `active.rs`; from it come [`ModeId`] and [`ActiveMode`], which dispatches.
 
 mod description;
@@ -44,13 +44,6 @@ pub const MIN_WALL_M: f32 = 0.10;
 pub const MAX_WALL_M: f32 = 1.5;
 /// Distance to a wall beside the robot before the first command [m], as in the report.
 pub const DEFAULT_WALL_M: f32 = 0.50;
-
-/// What a mode knows when it steps.
-#[derive(Clone, Copy, Debug)]
-pub struct Situation<'a> {
-    /// What the estimators say.
-    pub estimate: &'a Estimate,
-}
 
 /// What a mode asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -144,26 +137,11 @@ pub trait Mode<'a>: Sized {
         Err(SetpointError::NotInThisMode)
     }
 
-    /// One tick, into an action that asks for nothing yet.
+    /// One tick.
     ///
     /// # Errors
-    /// Why it cannot go on; the supervisor then releases the wheels, whatever was asked for.
-    fn act(
-        &self,
-        state: &mut Self::State,
-        at: &Situation,
-        action: &mut Action,
-    ) -> Result<(), Fault>;
-
-    /// The same, as a value.
-    ///
-    /// # Errors
-    /// As for [`Mode::act`].
-    fn step(&self, state: &mut Self::State, at: &Situation) -> Result<Action, Fault> {
-        let mut action = Action::default();
-        self.act(state, at, &mut action)?;
-        Ok(action)
-    }
+    /// Why it cannot go on; the supervisor then releases the wheels.
+    fn step(&self, state: &mut Self::State, estimate: &Estimate) -> Result<Action, Fault>;
 }
 
 /// Why a reference is refused; the last valid one stays.

@@ -17,8 +17,9 @@
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
     Action, Description, Group, MAX_WHEEL_RAD_S, Mode, Plot, Reference, ReferenceKind,
-    SetpointError, Situation,
+    SetpointError,
 };
+use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min};
 use crate::params::{ParamId, Params};
 use crate::rig::Rigs;
@@ -101,11 +102,11 @@ pub struct State {
 
 impl StraightLine<'_> {
     /// Counts what the wheels rolled since the last tick.
-    fn count(&self, state: &mut State, at: &Situation) {
+    fn count(&self, state: &mut State, estimate: &Estimate) {
         let before_m = state.difference_m;
-        state.difference_m += at.estimate.turned_rad * self.base_m;
+        state.difference_m += estimate.turned_rad * self.base_m;
         let middle_rad = 0.5 * (before_m + state.difference_m) / self.base_m;
-        state.offset_m += at.estimate.rolled_m * middle_rad;
+        state.offset_m += estimate.rolled_m * middle_rad;
     }
 
     fn next_phase(&self, state: &State, standing: bool) -> Phase {
@@ -174,17 +175,12 @@ impl<'a> Mode<'a> for StraightLine<'a> {
         Ok(())
     }
 
-    fn act(
-        &self,
-        state: &mut Self::State,
-        at: &Situation,
-        action: &mut Action,
-    ) -> Result<(), Fault> {
-        self.count(state, at);
-        state.phase = self.next_phase(state, at.estimate.standing());
+    fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
+        self.count(state, estimate);
+        state.phase = self.next_phase(state, estimate.standing());
         state.ramp_rad_s = self.ramp(state);
         let heading_ref_rad = self.heading_ref_rad(state);
-        action.drive = match state.phase {
+        let drive = match state.phase {
             Phase::Rest => Drive::Release,
             Phase::Drive | Phase::Stop => {
                 let forward_m_s = self.params.geometry().mean_radius_m() * state.ramp_rad_s;
@@ -197,16 +193,18 @@ impl<'a> Mode<'a> for StraightLine<'a> {
                 }
             }
         };
-        action.state = state.phase as u8;
-        action.heading_ref_rad = heading_ref_rad;
-        Ok(())
+        Ok(Action {
+            drive,
+            state: state.phase as u8,
+            heading_ref_rad,
+            ..Action::default()
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::Estimate;
     use crate::speed::WheelMotion;
     use crate::types::Wheels;
 
@@ -228,7 +226,7 @@ mod tests {
         let mode = StraightLine::new(&params, &speed_rad_s);
         let mut last = (0.0, 0.0);
         for _ in 0..ticks {
-            last = match mode.step(state, &Situation { estimate }).unwrap().drive {
+            last = match mode.step(state, estimate).unwrap().drive {
                 Drive::Twist {
                     forward_m_s,
                     yaw_rad_s,

@@ -24,7 +24,7 @@
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
     Action, DEFAULT_WALL_M, Description, Group, MAX_WALL_M, MIN_WALL_M, Mode, Plot, Reference,
-    ReferenceKind, SetpointError, Situation,
+    ReferenceKind, SetpointError,
 };
 use crate::beside::Beside;
 use crate::estimate::Estimate;
@@ -250,8 +250,7 @@ impl WallFollow<'_> {
         side: Side,
         at: &Estimate,
         reference_m: f32,
-        action: &mut Action,
-    ) -> Result<(), Fault> {
+    ) -> Result<Action, Fault> {
         self.sonars.nearest_m(side, at, self.stale_s)?;
         let wall = self.estimate(state, side, at)?;
         let free_m_s = self.free_m_s(state, at)?;
@@ -263,16 +262,19 @@ impl WallFollow<'_> {
             off_rad: angle_ref_rad - angle_rad,
             far,
         };
-        action.drive = self.steer(state, side, at, &aim, free_m_s);
+        let drive = self.steer(state, side, at, &aim, free_m_s);
         let phase = match (free_m_s < self.cruise_m_s, far) {
             (true, _) => Phase::Slow,
             (false, true) => Phase::Approach,
             (false, false) => Phase::Follow,
         };
-        action.state = phase as u8;
-        action.heading_ref_rad = sign(side) * angle_ref_rad;
-        action.reached = abs(error_m) < REACHED.0 && abs(angle_rad) < REACHED.1;
-        Ok(())
+        Ok(Action {
+            drive,
+            state: phase as u8,
+            heading_ref_rad: sign(side) * angle_ref_rad,
+            reached: abs(error_m) < REACHED.0 && abs(angle_rad) < REACHED.1,
+            ..Action::default()
+        })
     }
 
     fn steer(
@@ -310,8 +312,7 @@ impl WallFollow<'_> {
         state: &mut State,
         estimate: &Estimate,
         reference_m: f32,
-        action: &mut Action,
-    ) -> Result<(), Fault> {
+    ) -> Result<Action, Fault> {
         let side = match state.side {
             Some(side) => side,
             None => {
@@ -325,7 +326,7 @@ impl WallFollow<'_> {
         {
             state.unrest.take(estimate, reading)?;
         }
-        self.drive(state, side, estimate, reference_m, action)
+        self.drive(state, side, estimate, reference_m)
             .map_err(|fault| state.unrest.cause(fault))
     }
 }
@@ -364,13 +365,8 @@ impl<'a> Mode<'a> for WallFollow<'a> {
         Ok(())
     }
 
-    fn act(
-        &self,
-        state: &mut Self::State,
-        at: &Situation,
-        action: &mut Action,
-    ) -> Result<(), Fault> {
-        self.keep(state, at.estimate, self.distance_m, action)
+    fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
+        self.keep(state, estimate, self.distance_m)
     }
 }
 
@@ -398,8 +394,7 @@ mod tests {
     }
 
     fn first(mode: &WallFollow, estimate: &Estimate) -> Result<(f32, f32), Fault> {
-        let at = Situation { estimate };
-        match mode.step(&mut State::default(), &at)?.drive {
+        match mode.step(&mut State::default(), estimate)?.drive {
             Drive::Twist {
                 forward_m_s,
                 yaw_rad_s,
@@ -444,8 +439,7 @@ mod tests {
         let mut state = State::default();
         let seen = seeing(0.5, 0.5, Range::Clear);
         for _ in 0..500 {
-            mode.step(&mut state, &Situation { estimate: &seen })
-                .unwrap();
+            mode.step(&mut state, &seen).unwrap();
         }
         assert_eq!(state.integral_rad, 0.0);
     }
@@ -481,15 +475,14 @@ mod tests {
         let mode = WallFollow::new(&params, &0.5);
         let mut state = State::default();
         let mut seen = seeing(0.5, 0.5, Range::Clear);
-        mode.step(&mut state, &Situation { estimate: &seen })
-            .unwrap();
+        mode.step(&mut state, &seen).unwrap();
         for (range, age_ticks, fault) in [
             (Range::Clear, 0, Fault::WallLost),
             (Range::Faulty, 0, Fault::SonarFaulty),
             (Range::Valid(0.5), 60, Fault::SonarStale),
         ] {
             seen.ranges[1] = AgedRange { range, age_ticks };
-            let stopped = mode.step(&mut state.clone(), &Situation { estimate: &seen });
+            let stopped = mode.step(&mut state.clone(), &seen);
             assert_eq!(stopped, Err(fault));
         }
     }

@@ -8,7 +8,7 @@
 //! over 27 s: 0.16 cm rms instead of 1.2, 0.35 cm at most instead of 4.6 (`rumbo run mode3 --runs 20`).
 
 use super::wall_follow::{self, Phase, WallFollow};
-use super::{Action, Description, MAX_WALL_M, MIN_WALL_M, Mode, Reference, Situation};
+use super::{Action, Description, MAX_WALL_M, MIN_WALL_M, Mode, Reference};
 use crate::estimate::Estimate;
 use crate::math::{clamp, max};
 use crate::params::Params;
@@ -37,30 +37,15 @@ const PATIENCE_S: f32 = 1.5;
 pub struct WallHold<'a>(WallFollow<'a>);
 
 /// Memory of mode 3.
-// What is small first: the AVR reaches 64 bytes from a pointer by one instruction each.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
+    /// First readings of the sonars `Left` and `Right` [m], and how many there are.
+    first_m: [[f32; READINGS]; 2],
+    count: [u8; 2],
+    waited_s: f32,
     /// The distance to hold [m].
     reference_m: Option<f32>,
-    waited_s: f32,
     follow: wall_follow::State,
-    count: [u8; 2],
-    /// First readings of the sonars `Left` and `Right` [m].
-    first_m: [[f32; READINGS]; 2],
-}
-
-impl Default for State {
-    #[inline]
-    fn default() -> Self {
-        Self {
-            reference_m: None,
-            first_m: [[0.0; READINGS]; 2],
-            count: [0; 2],
-            waited_s: 0.0,
-            follow: wall_follow::State::default(),
-        }
-    }
 }
 
 impl State {
@@ -103,12 +88,12 @@ impl State {
 
 impl WallHold<'_> {
     /// Takes the readings of this tick; the reference, once it is known.
-    fn measure(&self, state: &mut State, at: &Situation) -> Result<Option<f32>, Fault> {
+    fn measure(&self, state: &mut State, estimate: &Estimate) -> Result<Option<f32>, Fault> {
         let sonars = &self.0.sonars;
         let side = sonars
-            .side(at.estimate, self.0.stale_s)
+            .side(estimate, self.0.stale_s)
             .ok_or(Fault::WallLost)?;
-        if let Some(reading) = at.estimate.reading
+        if let Some(reading) = estimate.reading
             && let Range::Valid(range_m) = reading.range
             && sonars.watches(side, reading.sonar)
         {
@@ -154,23 +139,16 @@ impl<'a> Mode<'a> for WallHold<'a> {
         Wheels::both(state.reference_m())
     }
 
-    fn act(
-        &self,
-        state: &mut Self::State,
-        at: &Situation,
-        action: &mut Action,
-    ) -> Result<(), Fault> {
+    fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
         if state.reference_m.is_none() {
-            state.reference_m = self.measure(state, at)?;
+            state.reference_m = self.measure(state, estimate)?;
         }
         match state.reference_m {
-            Some(distance_m) => self
-                .0
-                .keep(&mut state.follow, at.estimate, distance_m, action),
-            None => {
-                action.state = Phase::Measure as u8;
-                Ok(())
-            }
+            Some(distance_m) => self.0.keep(&mut state.follow, estimate, distance_m),
+            None => Ok(Action {
+                state: Phase::Measure as u8,
+                ..Action::default()
+            }),
         }
     }
 }
@@ -200,12 +178,7 @@ mod tests {
             view: View::default(),
             servo_rad: 0.0,
         });
-        WallHold::new(&params, &()).step(
-            state,
-            &Situation {
-                estimate: &estimate,
-            },
-        )
+        WallHold::new(&params, &()).step(state, &estimate)
     }
 
     #[test]

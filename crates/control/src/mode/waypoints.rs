@@ -17,7 +17,8 @@
 mod route;
 
 use super::description::{FEEDFORWARD, LINES, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
-use super::{Action, Description, Group, Mode, Plot, Reference, ReferenceKind, Situation, Takes};
+use super::{Action, Description, Group, Mode, Plot, Reference, ReferenceKind, Takes};
+use crate::estimate::Estimate;
 use crate::math::wrap_angle;
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
 use crate::params::{ParamId, Params};
@@ -107,25 +108,24 @@ pub struct Waypoints<'a> {
 }
 
 /// Memory of mode 7.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C)]
 pub struct State {
     phase: Phase,
+    /// Where the route began; a relative one is seen from there.
+    frame: Option<Transform>,
     /// Number of the waypoint to go to.
     next: u8,
+    /// The waypoint before this one [m].
+    from: Option<Point>,
     /// The waypoint to go to [m].
     to: Point,
+    /// The way between them.
+    segment: Segment,
+    line: LineState,
     /// Heading of the present turn, latched when it begins [rad].
     heading_rad: f32,
     turn: TurnState,
-    line: LineState,
-    /// The waypoint before this one [m].
-    from: Option<Point>,
-    /// From where the route is reckoned.
-    frame: Option<Transform>,
     pursuit: PursuitState,
-    segment: Segment,
 }
 
 impl State {
@@ -232,15 +232,15 @@ impl Waypoints<'_> {
         }
     }
 
-    fn pursue(&self, state: &mut State, at: &Situation, waypoint: &Waypoint) -> Drive {
+    fn pursue(&self, state: &mut State, estimate: &Estimate, waypoint: &Waypoint) -> Drive {
         let mut memory = state.pursuit;
         let path = |number| self.path(state, number);
-        let step = Pursuit::new(self.params).step(&mut memory, at.estimate, f32::MAX, path);
+        let step = Pursuit::new(self.params).step(&mut memory, estimate, f32::MAX, path);
         state.pursuit = memory;
         state.heading_rad = step.heading_ref_rad;
         if step.done {
             self.arrive(state, waypoint);
-        } else if step.turn && at.estimate.standing() {
+        } else if step.turn && estimate.standing() {
             state.turn_to(Phase::Turn, step.heading_ref_rad);
         } else if step.passed
             && let Some(next) = self.after(state.next)
@@ -280,31 +280,27 @@ impl<'a> Mode<'a> for Waypoints<'a> {
         Wheels { left, right }
     }
 
-    fn act(
-        &self,
-        state: &mut Self::State,
-        at: &Situation,
-        action: &mut Action,
-    ) -> Result<(), Fault> {
+    fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
         if state.phase == Phase::Done
             && let Some(next) = self.after(state.next)
         {
             state.next = next;
             state.enter(Phase::Wait);
         }
-        action.heading_ref_rad = state.heading_rad;
+        let mut drive = Drive::Release;
+        let mut heading_ref_rad = state.heading_rad;
         match (state.phase, self.waypoint(state, state.next)) {
             (Phase::Done, _) => {}
             (_, None) => state.enter(Phase::Wait),
             (Phase::Wait, Some(_)) => {
-                if at.estimate.standing() {
-                    self.plan(state, &at.estimate.pose);
+                if estimate.standing() {
+                    self.plan(state, &estimate.pose);
                 }
             }
             (Phase::Turn | Phase::FinalTurn, Some(_)) => {
                 let turn = Turn::new(self.params);
-                let step = turn.step(&mut state.turn, at.estimate, state.heading_rad);
-                action.drive = step.drive;
+                let step = turn.step(&mut state.turn, estimate, state.heading_rad);
+                drive = step.drive;
                 match (step.done, state.phase) {
                     (false, _) => {}
                     (true, Phase::FinalTurn) => self.advance(state),
@@ -314,28 +310,31 @@ impl<'a> Mode<'a> for Waypoints<'a> {
             }
             (Phase::Drive, Some(waypoint)) => {
                 let line = Line::new(self.params);
-                let step = line.step(&mut state.line, at.estimate, &state.segment, f32::MAX);
-                action.drive = step.drive;
-                action.heading_ref_rad = step.heading_ref_rad;
+                let step = line.step(&mut state.line, estimate, &state.segment, f32::MAX);
+                drive = step.drive;
+                heading_ref_rad = step.heading_ref_rad;
                 if step.done {
                     self.arrive(state, &waypoint);
                 }
             }
             (Phase::Pursue, Some(waypoint)) if self.pursues => {
-                action.drive = self.pursue(state, at, &waypoint);
+                drive = self.pursue(state, estimate, &waypoint);
             }
             (Phase::Pursue, Some(_)) => state.enter(Phase::Wait),
         }
-        action.state = state.phase as u8;
-        action.reached = state.phase == Phase::Done;
-        Ok(())
+        Ok(Action {
+            drive,
+            state: state.phase as u8,
+            heading_ref_rad,
+            reached: state.phase == Phase::Done,
+            ..Action::default()
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::Estimate;
     use crate::mode::SetpointError;
 
     fn standing(x_m: f32, y_m: f32, heading_rad: f32) -> Estimate {
@@ -358,7 +357,7 @@ mod tests {
         let mut last = (0, false);
         for _ in 0..6 {
             let action = Waypoints::new(&params, route)
-                .step(state, &Situation { estimate })
+                .step(state, estimate)
                 .unwrap();
             last = (action.state, action.reached);
         }

@@ -10,8 +10,8 @@
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
     Action, Description, MAX_WHEEL_RAD_S, Mode, Plot, Reference, ReferenceKind, SetpointError,
-    Situation,
 };
+use crate::estimate::Estimate;
 use crate::params::Params;
 use crate::rig::Rigs;
 use crate::types::{Drive, Fault, Wheels};
@@ -87,13 +87,16 @@ impl<'a> Mode<'a> for WheelSpeed<'a> {
         set(references, Wheels::both(value))
     }
 
-    fn act(&self, _: &mut (), _: &Situation, action: &mut Action) -> Result<(), Fault> {
-        let mut phase = Phase::Rest;
-        if *self.references != Wheels::both(0.0) {
-            action.drive = Drive::WheelSpeed(*self.references);
-            phase = Phase::Turning;
-        }
-        action.state = phase as u8;
-        Ok(())
+    fn step(&self, (): &mut (), _: &Estimate) -> Result<Action, Fault> {
+        let (drive, phase) = if *self.references == Wheels::both(0.0) {
+            (Drive::Release, Phase::Rest)
+        } else {
+            (Drive::WheelSpeed(*self.references), Phase::Turning)
+        };
+        Ok(Action {
+            drive,
+            state: phase as u8,
+            ..Action::default()
+        })
     }
 }

@@ -23,28 +23,12 @@ const STEERING_SHARE: f32 = 0.6;
 const SLOW_RAD: f32 = 0.35;
 
 /// A straight piece of way.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Segment {
     /// Its start and its direction.
     start: Transform,
     /// Its length [m].
     pub length_m: f32,
-}
-
-impl Default for Segment {
-    /// No way at all, in zeros: memory that has none yet begins as those.
-    #[inline]
-    fn default() -> Self {
-        let start = Transform {
-            pose: Pose::default(),
-            sin: 0.0,
-            cos: 0.0,
-        };
-        Self {
-            start,
-            length_m: 0.0,
-        }
-    }
 }
 
 impl Segment {

@@ -51,19 +51,20 @@ impl Mission<'_> {
         state: &mut State,
         estimate: &Estimate,
         goal_m: &(f32, f32),
-        action: &mut Action,
-    ) -> Result<(), Fault> {
+    ) -> Result<Action, Fault> {
         if state.fresh {
             state.fresh = false;
             state.proof = None;
             state.phase = Phase::Initialise;
         }
-        action.state = state.phase as u8;
-        action.heading_ref_rad = state.heading_ref_rad;
         if matches!(state.phase, Phase::Wait | Phase::Unreachable) {
-            action.reached = state.phase == Phase::Wait;
-            action.unreachable = state.phase == Phase::Unreachable;
-            return Ok(());
+            return Ok(Action {
+                state: state.phase as u8,
+                heading_ref_rad: state.heading_ref_rad,
+                reached: state.phase == Phase::Wait,
+                unreachable: state.phase == Phase::Unreachable,
+                ..Action::default()
+            });
         }
         let (way, left_m) = way_to(&estimate.pose, goal_m);
         count(state, estimate, &way);
@@ -72,33 +73,45 @@ impl Mission<'_> {
             state.phase = Phase::Unreachable;
         }
         let proving = state.proof.is_some();
-        match self.prove(state, estimate)? {
-            Some(drive) => action.drive = drive,
+        let drive = match self.prove(state, estimate)? {
+            Some(drive) => drive,
             // On from where the robot stands now.
             None if proving && !following(state.phase) => {
-                self.face(state, &estimate.pose, goal_m, FACED_RAD)
+                self.face(state, &estimate.pose, goal_m, FACED_RAD);
+                Drive::Release
             }
-            None => self.act(state, estimate, goal_m, (&way, left_m), planned, action),
-        }
+            None => self.drive(state, estimate, goal_m, (&way, left_m), planned),
+        };
         let front_m = self.params.get(ParamId::SonarFrontX);
-        action.look = look(state, estimate, front_m);
-        action.state = state.shown(state.phase as u8);
-        action.heading_ref_rad = state.heading_ref_rad;
-        Ok(())
+        let look = look(state, estimate, front_m);
+        let arrived = state.phase == Phase::Wait;
+        Ok(Action {
+            drive,
+            look,
+            state: state.shown(state.phase as u8),
+            heading_ref_rad: state.heading_ref_rad,
+            reached: arrived,
+            unreachable: false,
+            new_origin: arrived && self.moves_origin(),
+        })
+    }
+
+    /// Each goal reached becomes the origin.
+    fn moves_origin(&self) -> bool {
+        self.params.is_on(ParamId::MissionResetOrigin)
     }
 
     /// What the state asks for.
-    fn act(
+    fn drive(
         &self,
         state: &mut State,
         estimate: &Estimate,
         goal_m: &(f32, f32),
         (way, left_m): (&Way, f32),
         planned: bool,
-        action: &mut Action,
-    ) {
+    ) -> Drive {
         let pose = &estimate.pose;
-        action.drive = match state.phase {
+        match state.phase {
             Phase::Wait | Phase::Unreachable | Phase::StraightOn | Phase::Prove => Drive::Release,
             Phase::Initialise => {
                 state.age_s = 0.0;
@@ -109,7 +122,7 @@ impl Mission<'_> {
                 Drive::Release
             }
             Phase::InitialTurn => self.turn(state, estimate, way.heading_rad, Phase::GoToGoal),
-            Phase::GoToGoal => self.go(state, estimate, way, left_m, action),
+            Phase::GoToGoal => self.go(state, estimate, way, left_m),
             Phase::SweepRight | Phase::SweepLeft => self.sweep(state, estimate, left_m),
             Phase::Decide => {
                 self.decide(state, estimate, goal_m);
@@ -118,7 +131,7 @@ impl Mission<'_> {
             Phase::AvoidanceTurn | Phase::Seek | Phase::Along | Phase::SafeDistance => {
                 self.around(state, estimate, goal_m, left_m, planned)
             }
-        };
+        }
     }
 
     /// Turns to the goal, or drives on where that takes no turn.
@@ -167,14 +180,7 @@ impl Mission<'_> {
         turn.step(&mut state.turn, estimate, heading_rad)
     }
 
-    fn go(
-        &self,
-        state: &mut State,
-        estimate: &Estimate,
-        way: &Way,
-        left_m: f32,
-        action: &mut Action,
-    ) -> Drive {
+    fn go(&self, state: &mut State, estimate: &Estimate, way: &Way, left_m: f32) -> Drive {
         if state
             .detour
             .is_some_and(|detour| left_m < detour.least_m - PROGRESS_M)
@@ -204,14 +210,10 @@ impl Mission<'_> {
         state.heading_ref_rad = step.heading_ref_rad;
         if step.done && estimate.standing() {
             state.phase = Phase::Wait;
-            action.reached = true;
-            action.new_origin = self.params.is_on(ParamId::MissionResetOrigin);
-            if action.new_origin {
-                state.echoes.move_origin(&estimate.pose, estimate.facing);
-                state
-                    .watch
-                    .landmarks
-                    .move_origin(&estimate.pose, estimate.facing);
+            if self.moves_origin() {
+                let (pose, facing) = (&estimate.pose, estimate.facing);
+                state.echoes.move_origin(pose, facing);
+                state.watch.landmarks.move_origin(pose, facing);
             }
         }
         step.drive

@@ -17,7 +17,7 @@
 
 use super::gaze::{LOOKS, Swing};
 use super::goal::DOUBT_M_S;
-use super::{Action, Drive, Mission, ParamId, Phase, Pose, Segment, ServoAngle, State, Turn};
+use super::{Action, Drive, Look, Mission, ParamId, Phase, Pose, Segment, ServoAngle, State, Turn};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
 use crate::motion::{CREEP_M_S, LineState, StopState, Stopping, TurnState};
@@ -173,12 +173,7 @@ pub(super) struct Lane {
 }
 
 impl Mission<'_> {
-    pub(super) fn lane(
-        &self,
-        state: &mut State,
-        estimate: &Estimate,
-        action: &mut Action,
-    ) -> Result<(), Fault> {
+    pub(super) fn lane(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
         let proving = state.proof.is_some();
         let proof = self.prove(state, estimate)?;
         let doubts = state.watch.doubts() || !state.watch.landmarks.is_alive();
@@ -194,7 +189,7 @@ impl Mission<'_> {
             lane.turn = TurnState::default();
         }
         let mut heading_ref_rad = lane.heading_rad;
-        action.drive = match lane.stage {
+        let drive = match lane.stage {
             _ if let Some(drive) = proof => drive,
             Stage::Start => {
                 lane.heading_rad = estimate.pose.heading_rad;
@@ -244,10 +239,16 @@ impl Mission<'_> {
             _ => ServoAngle(0.0),
         };
         let stage = lane.stage as u8;
-        action.state = state.shown(stage);
-        action.heading_ref_rad = heading_ref_rad;
-        action.look.servo = servo;
-        Ok(())
+        Ok(Action {
+            drive,
+            look: Look {
+                servo,
+                ..Look::AHEAD
+            },
+            state: state.shown(stage),
+            heading_ref_rad,
+            ..Action::default()
+        })
     }
 
     /// On to the next face. Nothing is driven at before three looks ahead.

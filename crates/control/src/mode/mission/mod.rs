@@ -22,7 +22,7 @@ mod proof;
 mod watch;
 
 use super::description::{FEEDFORWARD, LINES, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
-use super::{Action, Description, Group, Look, Mode, Plot, Situation, Takes, waypoints};
+use super::{Action, Description, Group, Look, Mode, Plot, Takes, waypoints};
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sqrt};
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
@@ -222,39 +222,42 @@ struct Detour {
 }
 
 /// Memory of mode 8.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C)]
 pub struct State {
     /// There is a task that has not been begun.
     fresh: bool,
     phase: Phase,
-    /// The gap ahead was measured at this tick, not the distance to what is nearest.
-    looks_ahead: bool,
-    gaze: Gaze,
-    /// Times once around something.
-    laps: u8,
+    age_s: f32,
     heading_ref_rad: f32,
     speed_m_s: f32,
-    /// Way since the obstacle beside was lost [m].
-    lost_m: f32,
+    /// The way to the goal.
+    segment: Segment,
+    line: LineState,
+    turn: TurnState,
+    lane: lane::Lane,
+
+    /// What is remembered of the surroundings, and the time since it last faded [s].
+    echoes: Echoes,
+    fade_s: f32,
+    /// The gap ahead was measured at this tick, not the distance to what is nearest.
+    looks_ahead: bool,
     gap_m: f32,
     /// Distance from the middle of the axis to what is nearest [m].
     near_m: f32,
-    age_s: f32,
-    fade_s: f32,
+
+    plan: Plan,
     detour: Option<Detour>,
     /// The side on which the last obstacle was passed, and the way since [m].
     last: Option<(Side, f32)>,
-    line: LineState,
-    turn: TurnState,
+    /// Way since the obstacle beside was lost [m].
+    lost_m: f32,
+    /// Times once around something.
+    laps: u8,
+
+    gaze: Gaze,
+    watch: Watch,
     /// The front sonar is put to the proof.
     proof: Option<Proof>,
-    segment: Segment,
-    watch: Watch,
-    lane: lane::Lane,
-    plan: Plan,
-    echoes: Echoes,
 }
 
 impl State {
@@ -327,33 +330,25 @@ impl<'a> Mode<'a> for Mission<'a> {
         }
     }
 
-    fn act(
-        &self,
-        state: &mut Self::State,
-        at: &Situation,
-        action: &mut Action,
-    ) -> Result<(), Fault> {
-        if let Some(reading) = &at.estimate.reading {
-            state.ingest(at.estimate, reading);
+    fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
+        if let Some(reading) = &estimate.reading {
+            state.ingest(estimate, reading);
         } else {
             state.echoes.settle();
         }
         let stale_s = self.params.get(ParamId::StaleRange);
         let beside = following(state.phase) || state.near_m < CAREFUL_M;
-        state.watch.step(at.estimate, stale_s, beside)?;
+        state.watch.step(estimate, stale_s, beside)?;
         state.fade_s += TICK_S;
         if state.fade_s > FADE_S {
             state.fade_s = 0.0;
             state.echoes.fade();
         }
         match self.task {
-            Task::Goal { x_m, y_m } => {
-                self.goal(state, at.estimate, &(x_m, y_m), action)?;
-            }
-            Task::Lane => self.lane(state, at.estimate, action)?,
-            Task::Wait => {}
+            Task::Goal { x_m, y_m } => self.goal(state, estimate, &(x_m, y_m)),
+            Task::Lane => self.lane(state, estimate),
+            Task::Wait => Ok(Action::default()),
         }
-        Ok(())
     }
 }
 

@@ -85,15 +85,13 @@ impl Points {
 }
 
 /// The search.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
 pub(super) struct Search {
-    so_far: Obstacle,
     /// Points that belong to it, and those of them whose neighbours are still to be found.
     member: Points,
     open: Points,
     bearing: [i8; CAPACITY],
+    so_far: Obstacle,
 }
 
 impl Default for Search {
@@ -158,24 +156,29 @@ impl Echoes {
     /// The point nearest to a place, of those of an obstacle or of all, and its distance [m].
     pub(super) fn nearest(&self, x_m: f32, y_m: f32, of: Option<&Search>) -> Option<(usize, f32)> {
         let from = Place::new(x_m, y_m);
-        let mut best: Option<(usize, u32)> = None;
-        // No point that is nearer has a longer distance of the cheap kind than this.
+        // By the cheap kind of distance first: products are for the few that may be nearer than its nearest.
         let mut most_mm = u16::MAX;
         for (number, point) in self.points().iter().enumerate() {
-            let Some(point) = point.place() else { continue };
-            let about_mm = point.about_mm(from);
-            if about_mm > most_mm || of.is_some_and(|search| !search.has(number)) {
+            if let Some(place) = point.place()
+                && of.is_none_or(|search| search.has(number))
+            {
+                most_mm = core::cmp::min(most_mm, place.about_mm(from));
+            }
+        }
+        most_mm = most_mm.saturating_add(most_mm >> 3).saturating_add(1);
+        let mut best: Option<(usize, u32)> = None;
+        for (number, point) in self.points().iter().enumerate() {
+            let Some(place) = point.place() else { continue };
+            if place.about_mm(from) > most_mm || of.is_some_and(|search| !search.has(number)) {
                 continue;
             }
-            let square = point.square_mm2(from);
+            let square = place.square_mm2(from);
             if best.is_none_or(|(_, least)| square < least) {
                 best = Some((number, square));
-                most_mm = about_mm.saturating_add(about_mm >> 3).saturating_add(1);
             }
         }
         let (number, square) = best?;
-        let square = from_u32(square);
-        Some((number, sqrt(square) * 1e-3))
+        Some((number, sqrt(from_u32(square)) * 1e-3))
     }
 }
 

@@ -4,7 +4,7 @@
 //! always one of comparisons of 16 bits, which the AVR does in a twentieth of the time of a product of floats: does the point lie within
 //! [`Bounds`]?
 
-use crate::math::{clamp, round};
+use crate::math::round;
 
 /// A place on the floor [mm].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -88,7 +88,7 @@ pub(super) fn fractions((sin, cos): (f32, f32)) -> (i32, i32) {
 }
 
 fn to_i16(value: f32) -> i16 {
-    saturated(round(clamp(value, -32_000.0, 32_000.0)))
+    saturated(round(value))
 }
 
 fn saturated(value: i32) -> i16 {

@@ -22,10 +22,9 @@ const PAST_M: f32 = 0.5;
 const TIGHT_RAD: f32 = 0.35;
 
 /// The planner's memory.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C)]
 pub(super) struct Plan {
+    search: Search,
     busy: bool,
     /// The obstacle of the last round.
     pub obstacle: Option<Obstacle>,
@@ -35,7 +34,6 @@ pub(super) struct Plan {
     pub clear_m: f32,
     /// What blocks it is the obstacle of the last round.
     pub same: bool,
-    search: Search,
 }
 
 impl Plan {

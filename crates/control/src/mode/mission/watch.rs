@@ -161,7 +161,7 @@ impl Ear {
 }
 
 /// Memory of the watch, by `SonarId` number.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Watch {
     ears: [Ear; 3],
     /// What the front sonar must hear.
@@ -174,20 +174,6 @@ pub(super) struct Watch {
     blind_m: f32,
     /// Way since the front sonar's last echo; none before the first, and where nothing is known that must answer [m].
     silent_m: Option<f32>,
-}
-
-impl Default for Watch {
-    #[inline]
-    fn default() -> Self {
-        Self {
-            ears: [Ear::default(); 3],
-            landmarks: Landmarks::default(),
-            unanswered: 0,
-            aside_m: 0.0,
-            blind_m: 0.0,
-            silent_m: None,
-        }
-    }
 }
 
 impl Watch {

@@ -20,39 +20,34 @@ pub struct Waypoint {
 }
 
 /// The waypoints to visit in turn.
-// What is small and often used first: the AVR reaches 64 bytes from a pointer by one instruction each.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
 pub struct Route {
+    waypoints: [Waypoint; MAX_WAYPOINTS],
     len: u8,
     /// Starts over at the end, until it is stopped.
     pub repeat: bool,
     /// The places are as seen from where the robot starts, not from the origin.
     pub relative: bool,
-    waypoints: [Waypoint; MAX_WAYPOINTS],
 }
 
 impl Default for Route {
     /// The square of the report: 1 m, counter-clockwise, once.
     fn default() -> Self {
         let mut route = Route::empty(false, false);
-        route.push_square();
+        for (x_m, y_m) in [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)] {
+            let corner = Waypoint {
+                x_m,
+                y_m,
+                heading_rad: None,
+            };
+            // Four of sixteen fit.
+            let _ = route.push(corner);
+        }
         route
     }
 }
 
 impl Route {
-    fn push_square(&mut self) {
-        for &(x_m, y_m) in &[(1u8, 0u8), (1, 1), (0, 1), (0, 0)] {
-            // Four of sixteen fit.
-            let _ = self.push(Waypoint {
-                x_m: f32::from(x_m),
-                y_m: f32::from(y_m),
-                heading_rad: None,
-            });
-        }
-    }
-
     /// A route without waypoints.
     pub fn empty(repeat: bool, relative: bool) -> Self {
         Self {

@@ -1,0 +1,238 @@
+//! The sensor latch: what the interrupts' stamps mean at a tick, natively and on the chip.
+//!
+//! ```text
+//! encoder: edge -> stamp  -> EdgeCounter: count, last edge, time of a motor turn
+//! sonar:   ping, rise, fall -> Line: stamps -> EchoLatch: a pulse, clear or silent, once
+//! ```
+//!
+//! An interrupt only leaves the stamp of its timer; all else is done at the tick, in the robot's microseconds.
+
+use rumbo_control::{Echo, Edges, Micros, SonarId};
+
+/// Edges of a motor turn.
+const POLES: usize = 8;
+/// The echo line must have risen by this time after the ping, or the sonar is silent [us].
+const RISE_US: u32 = 5_000;
+/// An echo line that is still high after this time has nothing within reach to say [us]: 2.51 m. Two ticks after its ping that is
+/// known.
+const REACH_US: u32 = 14_600;
+
+/// Counts and times of one encoder's edges.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EdgeCounter {
+    edges: Edges,
+    /// The last edge of each pole.
+    poles: [Micros; POLES],
+    /// How many of them are known.
+    known: u8,
+}
+
+impl EdgeCounter {
+    /// An edge.
+    pub fn edge(&mut self, at: Micros) {
+        self.edges.count = self.edges.count.wrapping_add(1);
+        if let Some(pole) = self.poles.get_mut(usize::from(self.edges.count) % POLES) {
+            if usize::from(self.known) < POLES {
+                self.known += 1;
+            } else {
+                self.edges.turn_us = at.since(*pole);
+            }
+            *pole = at;
+        }
+        self.edges.last = at;
+    }
+
+    /// Edges whose stamps are lost.
+    pub fn unstamped(&mut self, edges: u8) {
+        self.edges.count = self.edges.count.wrapping_add(u16::from(edges));
+        self.known = 0;
+        self.edges.turn_us = 0;
+    }
+
+    /// What the robot gets of them.
+    pub fn edges(&self) -> Edges {
+        self.edges
+    }
+}
+
+/// The echo line of a sonar, with the stamps that its interrupts have left since the last ping.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Line<T> {
+    /// No ping has left yet.
+    #[default]
+    Idle,
+    /// A ping has left.
+    Pinged(T),
+    /// The line has risen.
+    Risen(T),
+    /// It has risen and fallen.
+    Fallen(T, T),
+}
+
+impl<T: Copy> Line<T> {
+    /// An edge, which leads to this level. After a ping the first rise counts, and the fall after it.
+    #[inline(always)]
+    pub fn edge(&mut self, high: bool, at: T) {
+        match *self {
+            Line::Pinged(_) if high => *self = Line::Risen(at),
+            Line::Risen(rise) if !high => *self = Line::Fallen(rise, at),
+            _ => {}
+        }
+    }
+
+    /// The same with other stamps.
+    pub fn map<U>(self, stamp: impl Fn(T) -> U) -> Line<U> {
+        match self {
+            Line::Idle => Line::Idle,
+            Line::Pinged(at) => Line::Pinged(stamp(at)),
+            Line::Risen(at) => Line::Risen(stamp(at)),
+            Line::Fallen(rise, fall) => Line::Fallen(stamp(rise), stamp(fall)),
+        }
+    }
+}
+
+impl Line<Micros> {
+    /// What the sonar has answered by now, if that is decided.
+    fn echo(self, now: Micros) -> Option<Echo> {
+        match self {
+            Line::Fallen(rise, fall) => Some(Echo::Pulse(fall.since(rise))),
+            Line::Risen(at) if passed(at, now, REACH_US) => Some(Echo::Clear),
+            Line::Pinged(at) if passed(at, now, RISE_US) => Some(Echo::Silent),
+            Line::Idle | Line::Pinged(_) | Line::Risen(_) => None,
+        }
+    }
+}
+
+/// Whether so much time lies between `from` and `now`; `from` may come after the tick.
+fn passed(from: Micros, now: Micros, us: u32) -> bool {
+    let since_us = now.since(from);
+    since_us >= us && since_us < u32::MAX / 2
+}
+
+/// The sonars whose answers are waited for: one that left late may answer after the next one has left.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EchoLatch {
+    waiting: [bool; 3],
+}
+
+impl EchoLatch {
+    /// A sonar has been asked for a ping.
+    pub fn asked(&mut self, sonar: SonarId) {
+        self.waiting[sonar as usize] = true;
+    }
+
+    /// An answer that is decided at the tick `now`, once.
+    pub fn read(
+        &mut self,
+        now: Micros,
+        line: impl Fn(SonarId) -> Line<Micros>,
+    ) -> Option<(SonarId, Echo)> {
+        for &sonar in &SonarId::ALL {
+            let waiting = &mut self.waiting[sonar as usize];
+            if *waiting && let Some(echo) = line(sonar).echo(now) {
+                *waiting = false;
+                return Some((sonar, echo));
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_of_a_motor_turn_spans_eight_edges() {
+        let mut counter = EdgeCounter::default();
+        for n in 0..9 {
+            counter.edge(Micros(1_000 + n * 700 + (n % 2) * 50));
+        }
+        let expected = Edges {
+            count: 9,
+            last: Micros(6_600),
+            turn_us: 5_600,
+        };
+        assert_eq!(counter.edges(), expected);
+    }
+
+    #[test]
+    fn edges_without_stamps_count_and_the_time_of_a_turn_begins_again() {
+        let mut counter = EdgeCounter::default();
+        (0..20).for_each(|n| counter.edge(Micros(n * 700)));
+        counter.unstamped(3);
+        assert_eq!((counter.edges().count, counter.edges().turn_us), (23, 0));
+        (0..8).for_each(|n| counter.edge(Micros(30_000 + n * 500)));
+        assert_eq!(counter.edges().turn_us, 0);
+        counter.edge(Micros(34_000));
+        assert_eq!(
+            (counter.edges().count, counter.edges().turn_us),
+            (32, 4_000)
+        );
+    }
+
+    /// What a sonar that has been asked answers at `now_us`.
+    fn answer(line: Line<Micros>, now_us: u32) -> Option<Echo> {
+        let mut latch = EchoLatch::default();
+        latch.asked(SonarId::Front);
+        let answer = latch.read(Micros(now_us), |_| line);
+        if answer.is_some() {
+            assert_eq!(latch.read(Micros(now_us), |_| line), None, "once");
+        }
+        answer.map(|(_, echo)| echo)
+    }
+
+    #[test]
+    fn a_ping_is_answered_once_by_a_pulse_clear_or_silence() {
+        // Across the wrap of the clock.
+        let sent = Micros(u32::MAX - 1_000);
+        let at = |us: u32| sent.after(us).0;
+        let mut line = Line::Pinged(sent);
+        assert_eq!(answer(Line::Idle, at(30_000)), None);
+        assert_eq!(answer(line, at(4_999)), None);
+        assert_eq!(answer(line, at(5_000)), Some(Echo::Silent));
+        line.edge(true, sent.after(450));
+        assert_eq!(answer(line, at(15_049)), None);
+        assert_eq!(answer(line, at(15_050)), Some(Echo::Clear));
+        line.edge(false, sent.after(3_450));
+        assert_eq!(answer(line, at(7_000)), Some(Echo::Pulse(3_000)));
+    }
+
+    #[test]
+    fn a_ping_that_leaves_after_the_tick_is_not_silent() {
+        let line = Line::Pinged(Micros(13_000));
+        assert_eq!(answer(line, 10_000), None);
+    }
+
+    #[test]
+    fn the_first_rise_after_a_ping_counts_and_the_fall_after_it() {
+        let (mut line, mut idle) = (Line::Pinged(0), Line::Idle);
+        for (high, at) in [
+            (false, 1),
+            (true, 2),
+            (true, 3),
+            (false, 5),
+            (true, 8),
+            (false, 9),
+        ] {
+            line.edge(high, at);
+            idle.edge(high, at);
+        }
+        assert_eq!((line, idle), (Line::Fallen(2, 5), Line::Idle));
+    }
+
+    #[test]
+    fn a_sonar_that_answers_late_does_so_beside_the_next_one() {
+        let mut latch = EchoLatch::default();
+        latch.asked(SonarId::Left);
+        latch.asked(SonarId::Right);
+        let lines = |sonar| match sonar {
+            SonarId::Left => Line::Risen(Micros(0)),
+            _ => Line::Fallen(Micros(1_000), Micros(2_000)),
+        };
+        let pulse = Some((SonarId::Right, Echo::Pulse(1_000)));
+        assert_eq!(latch.read(Micros(10_000), lines), pulse);
+        let clear = Some((SonarId::Left, Echo::Clear));
+        assert_eq!(latch.read(Micros(20_000), lines), clear);
+    }
+}
