@@ -1,6 +1,7 @@
 //! The table of parameters: each tunable declared once. Firmware, wire, command line and dashboard derive from it.
 //!
-//! A parameter is a number on the link, a name in files. Names, units and help exist on the host only (feature `names`).
+//! A parameter is a number on the link, a name in files. Names, units and help exist on the host only (feature
+//! `names`).
 
 #[cfg(feature = "names")]
 mod kind;

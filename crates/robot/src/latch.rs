@@ -13,8 +13,8 @@ use rumbo_control::{Echo, Edges, Micros, SonarId};
 const POLES: usize = 8;
 /// The echo line must have risen by this time after the ping, or the sonar is silent [us].
 const RISE_US: u32 = 5_000;
-/// An echo line that is still high after this time has nothing within reach to say [us]: 2.51 m. Two ticks after its ping that is
-/// known.
+/// An echo line that is still high after this time has nothing within reach to say [us]: 2.51 m. That is known two
+/// ticks after its ping.
 const REACH_US: u32 = 14_600;
 
 /// Counts and times of one encoder's edges.

@@ -1,4 +1,5 @@
-//! The native stand-in for the Mega's interrupt routines: it leaves the stamps of edges and echoes for [`rumbo_robot::latch`].
+//! The native stand-in for the Mega's interrupt routines: it leaves the stamps of edges and echoes for
+//! [`rumbo_robot::latch`].
 
 use rumbo_control::{Echo, Edges, Micros, SonarId, Wheels};
 use rumbo_plant::drivetrain::Side;

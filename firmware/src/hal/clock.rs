@@ -16,7 +16,8 @@ const TICK_COUNTS: u16 = (TICK_US * COUNTS_PER_US) as u16;
 /// Counts from the tick to its outputs.
 const OUTPUT_COUNTS: u16 = (OUTPUT_DELAY_US * COUNTS_PER_US) as u16;
 
-/// A stamp up to so many counts after a tick is one of after it, 4 ms: a ping leaves with the outputs. Else it is of before.
+/// A stamp this many counts ahead of the tick, 4 ms, is later than it, since a ping leaves with the outputs; any other
+/// is earlier.
 const AHEAD_COUNTS: u16 = OUTPUT_COUNTS / 3 * 4;
 
 /// A reading of timer 1 [0.5 us].
@@ -29,7 +30,7 @@ impl Stamp {
         self.0.wrapping_sub(earlier.0)
     }
 
-    /// Whether it is one of after this tick.
+    /// Whether it is later than this tick.
     pub fn is_after(self, tick: Stamp) -> bool {
         (1..=AHEAD_COUNTS).contains(&self.since(tick))
     }

@@ -1,7 +1,7 @@
 //! What interrupt handlers and the loop share: values that cannot be read or written in halves.
 //!
-//! The chip moves a byte at a time. A [`Byte`] may therefore be touched from anywhere, what is [`Guarded`] only by who shows
-//! that no interrupt can come in between: a handler, or the loop within `avr_device::interrupt::free`.
+//! The chip moves a byte at a time. A [`Byte`] may therefore be touched from anywhere, what is [`Guarded`] only by who
+//! shows that no interrupt can come in between: a handler, or the loop within `avr_device::interrupt::free`.
 
 use core::cell::UnsafeCell;
 

@@ -1,8 +1,9 @@
 //! The modes: what the robot does, one file each.
 //!
 //! A mode is configuration (from the parameters and its setpoint) apart from state, and one function that makes an
-//! [`Action`] of the [`Estimate`]: [`Mode::step`]. Beside it stands its [`Description`]: number, name, states, reference, rigs, parameters. One list names the
-//! modes, in `active.rs`; from it come [`ModeId`] and [`ActiveMode`], which dispatches.
+//! [`Action`] of the [`Estimate`]: [`Mode::step`]. Beside it stands its [`Description`]: number, name, states,
+//! reference, rigs, parameters. One list names the modes, in `active.rs`; from it come [`ModeId`] and [`ActiveMode`],
+//! which dispatches.
 
 mod description;
 
