@@ -2,9 +2,9 @@
 
 use crate::failure::Failure;
 use crate::mark::crc32;
-use rumbo_scenario::MODEL;
-use rumbo_scenario::files::{Kind as File, Library, Overrides, Program, Setup, TimedText};
-use rumbo_scenario::mega::firmware;
+use rumbo_experiment::MODEL;
+use rumbo_experiment::files::firmware;
+use rumbo_experiment::files::{Kind as File, Library, NativeProgram, Overrides, Setup, TimedText};
 use rumbo_station::log::{Kind, Manifest};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -22,8 +22,8 @@ const EEPROM: usize = 4_096;
 pub(crate) fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manifest {
     let program = match (&overrides.firmware, setup.program) {
         (Some(image), _) => image.display().to_string(),
-        (None, Program::Rumbo) => "rumbo".into(),
-        (None, Program::Original) => "original".into(),
+        (None, NativeProgram::Rumbo) => "rumbo".into(),
+        (None, NativeProgram::Baseline) => "baseline".into(),
     };
     let files = [
         ("scenario", &setup.scenario.text),
@@ -118,8 +118,12 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
             .ok_or_else(|| wrong(&format!("its {file} is missing; the log is damaged")))?;
         library = library.holding(kind, name, text);
     }
-    let firmware = (!["rumbo", "original"].contains(&manifest.program.as_str()))
-        .then(|| PathBuf::from(&manifest.program));
+    let (program, firmware) = match manifest.program.as_str() {
+        "rumbo" => (NativeProgram::Rumbo, None),
+        // Its name until 0.2.
+        "baseline" | "original" => (NativeProgram::Baseline, None),
+        image => (NativeProgram::default(), Some(PathBuf::from(image))),
+    };
     // A log may name any file: nothing is made of one that is not the program that it names.
     if let Some(image) = &firmware
         && (manifest.image.is_none() || hash(image) != manifest.image)
@@ -134,11 +138,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         rig: manifest.rig.clone(),
         world: Some(world.clone()),
         parameters: manifest.parameters.clone(),
-        program: if manifest.program == "original" {
-            Program::Original
-        } else {
-            Program::Rumbo
-        },
+        program,
         firmware,
         wiring: manifest.wiring.clone(),
         texts: manifest

@@ -5,8 +5,8 @@ use crate::data::Data;
 use crate::real::{Real, Recording};
 use crate::signals::Outcome;
 use rayon::prelude::*;
-use rumbo_scenario::files::{FileError, Library, Overrides, ScenarioFile, Setup, TimedCommand};
-use rumbo_scenario::run::run;
+use rumbo_experiment::files::{FileError, Library, Overrides, ScenarioFile, Setup, TimedCommand};
+use rumbo_experiment::run::run;
 use rumbo_wire::Command;
 
 /// What is asked for.

@@ -1,8 +1,8 @@
 //! Recorded runs of a real robot: CSVs of the original program and logs, each matched to the experiment that it is a run of.
 
 use crate::text::{Text, word};
+use rumbo_experiment::files::bounded::{LONGEST_RECORDING, read_at_most};
 use rumbo_identify::dialect;
-use rumbo_scenario::files::bounded::{LONGEST_RECORDING, read_at_most};
 use rumbo_wire::csv;
 use rumbo_wire::text::{Row, RowKind};
 use std::collections::BTreeMap;

@@ -13,7 +13,7 @@ fn a_run_of_another_model_that_differs_says_so_first() {
     rumbo_in(folder, &["run", "task.toml", "--out", "o"]);
     let log = Log::read(&folder.join("o/task-1.mcap")).unwrap();
     let recorded = log.manifest.clone().unwrap();
-    let here = rumbo_scenario::MODEL;
+    let here = rumbo_experiment::MODEL;
     assert_eq!(recorded.model, Some(here));
     let rerun = |model, metric: f64| {
         let mut outcome = log.outcome.clone().unwrap();
