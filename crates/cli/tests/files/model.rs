@@ -3,7 +3,8 @@
 use crate::support::{stderr, stdout};
 use crate::{rumbo_in, scenario, status};
 use rumbo_station::Truth;
-use rumbo_station::log::{Log, Manifest, Run, record_run};
+use rumbo_station::headless::{Run, record_run};
+use rumbo_station::log::{Log, Manifest};
 
 #[test]
 fn a_run_of_another_model_that_differs_says_so_first() {

@@ -1,7 +1,7 @@
 //! A sample as it is shown and recorded: one number per signal, small enough to keep an hour of them.
 
-use crate::signals::{COLUMNS, Sample};
-use crate::target::MapPose;
+use super::{COLUMNS, Sample};
+use crate::scene::MapPose;
 use serde::Serialize;
 use std::sync::LazyLock;
 

@@ -1,12 +1,13 @@
 //! The log of a run without a window, made when the run is over: what crossed the link goes the way that it takes in a live session.
 
-use super::recorder::{Entry, Recorder};
-use super::{Burst, LogError, Manifest, Outcome, Said};
-use crate::board::{Board, Level};
+use crate::board::Board;
 use crate::client::{Heard, KnownTable, RobotClient};
+use crate::event::Level;
+use crate::log::recorder::{Entry, Recorder};
+use crate::log::{Burst, LogError, Manifest, Outcome, Said};
 use crate::observer::Observer;
-use crate::state;
-use crate::target::{Scene, Truth};
+use crate::observer::describe::{Around, describe};
+use crate::scene::{Scene, Truth};
 use crate::words;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::Params;
@@ -139,7 +140,7 @@ pub fn record_text(path: &Path, manifest: &Manifest, link: &[Burst]) -> Result<(
         }
         observer.publish(t_ms);
         if burst.t_us >= state_due_us {
-            let around = state::Around {
+            let around = Around {
                 t_us: burst.t_us,
                 simulated: false,
                 speed: 1.0,
@@ -147,7 +148,7 @@ pub fn record_text(path: &Path, manifest: &Manifest, link: &[Burst]) -> Result<(
                 baud: manifest.baud,
                 true_battery_v: None,
             };
-            observer.show_state(state::describe(&around, &mut client, &observer));
+            observer.show_state(describe(&around, &mut client, &observer));
             state_due_us = burst.t_us + STATE_PERIOD_US;
         }
     }
@@ -263,7 +264,7 @@ impl Teller {
     }
 
     fn state(&mut self, t_us: u64) {
-        let around = state::Around {
+        let around = Around {
             t_us,
             simulated: true,
             speed: 1.0,
@@ -271,7 +272,7 @@ impl Teller {
             baud: self.baud,
             true_battery_v: self.battery_v,
         };
-        let state = state::describe(&around, &mut self.client, &self.observer);
+        let state = describe(&around, &mut self.client, &self.observer);
         self.observer.show_state(state);
     }
 }
