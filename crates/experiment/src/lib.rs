@@ -6,6 +6,7 @@ pub const MODEL: u32 = 1;
 
 pub mod calibrate;
 pub mod calibration_run;
+#[cfg(feature = "host")]
 pub mod campaign;
 pub mod files;
 pub mod metrics;

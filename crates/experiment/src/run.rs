@@ -2,6 +2,12 @@
 //!
 //! A run depends on its setup and seed alone, so its result is the same on one thread and on many.
 
+#[cfg(feature = "host")]
+mod batch;
+
+#[cfg(feature = "host")]
+pub use batch::run_all;
+
 use crate::calibrate::calibrate_simulated;
 use crate::files::{FileError, Setup, near};
 use crate::metrics::{self, Metrics};
@@ -13,11 +19,8 @@ use rumbo_sim::mega::Mega;
 use rumbo_sim::trace::{Heard, SAMPLE_US, Trace};
 use serde::Serialize;
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufWriter};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, sync_channel};
 
 /// The file of a run's waveforms.
 pub(crate) type Waves = Waveform<BufWriter<File>>;
@@ -275,59 +278,4 @@ fn instead(name: &str, metrics: &Metrics) -> String {
         [] => format!("it has {}", known().collect::<Vec<_>>().join(", ")),
         near => near::did_you_mean(&near.iter().map(ToString::to_string).collect::<Vec<_>>()),
     }
-}
-
-/// Results that wait for their reader: a slow one holds the runs back, so that their traces do not fill the memory.
-const WAITING: usize = 16;
-
-/// Runs all `jobs`, each a setup and a seed, on as many threads as the current pool has, and hands the results to `handle`
-/// in the order of the jobs, each as soon as it and all before it are there.
-///
-/// # Errors
-/// The first error, of a setup or of `handle`; no further run is begun.
-pub fn run_all<E: From<FileError>>(
-    jobs: &[(&Setup, u64)],
-    handle: impl FnMut(&Setup, RunResult) -> Result<(), E>,
-) -> Result<(), E> {
-    let next = AtomicUsize::new(0);
-    let (done, results) = sync_channel(WAITING);
-    // Threads of their own: the caller may be one of the pool's, perhaps its only one, and waits for the results.
-    std::thread::scope(|scope| {
-        for _ in 0..rayon::current_num_threads() {
-            let (done, next) = (done.clone(), &next);
-            scope.spawn(move || {
-                loop {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    let Some((setup, seed)) = jobs.get(index) else {
-                        return;
-                    };
-                    // Nobody listens any more: an error has ended it.
-                    if done.send((index, run(setup, *seed))).is_err() {
-                        return;
-                    }
-                }
-            });
-        }
-        drop(done);
-        in_order(jobs, results, handle)
-    })
-}
-
-fn in_order<E: From<FileError>>(
-    jobs: &[(&Setup, u64)],
-    results: Receiver<(usize, Result<RunResult, FileError>)>,
-    mut handle: impl FnMut(&Setup, RunResult) -> Result<(), E>,
-) -> Result<(), E> {
-    let mut early = BTreeMap::new();
-    let mut left = jobs.iter().enumerate().peekable();
-    for (index, result) in results {
-        early.insert(index, result);
-        while let Some((due, (setup, _))) = left.peek()
-            && let Some(result) = early.remove(due)
-        {
-            handle(setup, result?)?;
-            left.next();
-        }
-    }
-    Ok(())
 }
