@@ -120,7 +120,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
     }
     let (program, firmware) = match manifest.program.as_str() {
         "rumbo" => (NativeProgram::Rumbo, None),
-        // Its name until 0.2.
+        // `original` in logs of 0.2.0 and before.
         "baseline" | "original" => (NativeProgram::Baseline, None),
         image => (NativeProgram::default(), Some(PathBuf::from(image))),
     };
@@ -151,4 +151,35 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
             .collect(),
     };
     Ok((library.setup(scenario, &overrides)?, seed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_of_the_baseline_is_run_again_under_its_name_and_its_earlier_one() {
+        let overrides = Overrides {
+            program: NativeProgram::Baseline,
+            ..Overrides::default()
+        };
+        let made = Library::new().setup("mode1", &overrides).unwrap();
+        let manifest = Manifest {
+            step_us: MIN_STEP_US,
+            ..of(Kind::Lab, &made, &overrides, 3)
+        };
+        assert_eq!(manifest.program, "baseline");
+        for program in ["baseline", "original"] {
+            let manifest = Manifest {
+                program: program.into(),
+                ..manifest.clone()
+            };
+            let (again, seed) = setup(Path::new("a.mcap"), &manifest).unwrap();
+            assert_eq!(
+                (again.program, seed),
+                (NativeProgram::Baseline, 3),
+                "{program}"
+            );
+        }
+    }
 }
