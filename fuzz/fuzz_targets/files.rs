@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use rumbo_scenario::files::{
+use rumbo_experiment::files::{
     FileError, Kind, Library, Overrides, RobotFile, ScenarioFile, WorldFile,
 };
 

@@ -2,8 +2,8 @@
 //! fail in the middle of drives, a million frames over a link with faults, and the image for 75 minutes under a flood
 //! of bytes, and beside the native robot; the fuzz targets for ten minutes each.
 //!
-//! The runs and what is required of them are the scenario crate's (`rumbo_scenario::campaign`); its example is built as users get the
-//! program, optimised, and printed as it comes.
+//! The runs and what is required of them are those of `rumbo_experiment::campaign`. Each program is built as users get
+//! theirs, optimised, and its output is printed as it comes.
 
 use crate::project::{Project, shown};
 use std::process::Stdio;
@@ -37,7 +37,11 @@ const SEEDS: u32 = 1000;
 pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Result<bool, String> {
     let mut met = true;
     if only.is_empty() || only.iter().any(|name| name == LINK) {
-        met &= example(project, ["rumbo-station", "link_campaign"], &[])?;
+        met &= program(
+            project,
+            ["rumbo-station", "--example", "link_campaign"],
+            &[],
+        )?;
     }
     if only.is_empty() || only.iter().any(|name| name == IMAGE) {
         met &= soak(project)?;
@@ -45,7 +49,7 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if only.is_empty() || only.iter().any(|name| name == MEDIANS) {
         crate::firmware::run(project)?;
         let seeds = seeds.unwrap_or(MEDIANS_SEEDS).min(MEDIANS_SEEDS);
-        met &= example(project, ["rumbo-scenario", MEDIANS], &[seeds.to_string()])?;
+        met &= tool(project, MEDIANS, &[seeds.to_string()])?;
     }
     if only.is_empty() || only.iter().any(|name| name == FUZZ) {
         met &= crate::fuzz::campaign(project, Some(FUZZ_SECONDS), &[])?;
@@ -60,7 +64,7 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
             .cloned(),
     );
     if only.is_empty() || scenarios.len() > 1 {
-        met &= example(project, ["rumbo-scenario", "campaign"], &scenarios)?;
+        met &= tool(project, "campaign", &scenarios)?;
     }
     Ok(met)
 }
@@ -77,7 +81,7 @@ fn faults(project: &Project, seeds: Option<u32>) -> Result<bool, String> {
         format!("--image --seeds {image} --instants {FAULTS_INSTANTS_IMAGE} --list{write}"),
     ] {
         let args: Vec<String> = how.split(' ').map(str::to_owned).collect();
-        met &= example(project, ["rumbo-scenario", FAULTS], &args)?;
+        met &= tool(project, FAULTS, &args)?;
     }
     Ok(met)
 }
@@ -91,7 +95,7 @@ fn soak(project: &Project) -> Result<bool, String> {
         "--release",
         "--locked",
         "--package",
-        "rumbo-scenario",
+        "rumbo-firmware-tests",
         "--test",
         "firmware",
         "soak",
@@ -106,8 +110,17 @@ fn soak(project: &Project) -> Result<bool, String> {
     Ok(status.success())
 }
 
-/// Runs an example of a crate; true if it found everything met.
-fn example(project: &Project, [package, name]: [&str; 2], args: &[String]) -> Result<bool, String> {
+/// Runs a program of `tools/`; true if it found everything met.
+fn tool(project: &Project, name: &str, args: &[String]) -> Result<bool, String> {
+    program(project, ["rumbo-tools", "--bin", name], args)
+}
+
+/// Runs a program of a package, `--bin` or `--example`; true if it found everything met.
+fn program(
+    project: &Project,
+    [package, kind, name]: [&str; 3],
+    args: &[String],
+) -> Result<bool, String> {
     let mut command = project.cargo(&[
         "run",
         "--quiet",
@@ -115,7 +128,7 @@ fn example(project: &Project, [package, name]: [&str; 2], args: &[String]) -> Re
         "--locked",
         "--package",
         package,
-        "--example",
+        kind,
         name,
         "--",
     ]);

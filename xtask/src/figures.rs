@@ -1,4 +1,4 @@
-//! `cargo xtask figures`: the figures and tables of docs/theory, drawn by `crates/report/examples/figures/`.
+//! `cargo xtask figures`: the figures and tables of docs/theory, drawn by `tools/src/bin/figures/`.
 
 use crate::project::{Project, run as run_command};
 
@@ -18,8 +18,8 @@ fn draw(project: &Project, args: &[String]) -> Result<(), String> {
         "run",
         "--locked",
         "-p",
-        "rumbo-report",
-        "--example",
+        "rumbo-tools",
+        "--bin",
         "figures",
         "--",
     ];

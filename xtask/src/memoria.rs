@@ -1,7 +1,7 @@
 //! `cargo xtask memoria`: the report's program as an Arduino sketch, its native form, our core and our image, scenario by scenario.
 //!
-//! The table of docs/theory/original.md and its short form in docs/figures.md come from here;
-//! `crates/scenario/examples/memoria/` runs all of it.
+//! The table of docs/theory/baseline.md and its short form in docs/figures.md come from here;
+//! `tools/src/bin/memoria/` runs all of it.
 
 use crate::project::{Project, run as run_command};
 use crate::sketches;
@@ -14,8 +14,8 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
         "run",
         "--locked",
         "-p",
-        "rumbo-scenario",
-        "--example",
+        "rumbo-tools",
+        "--bin",
         "memoria",
         "--",
     ]);

@@ -5,8 +5,9 @@ use crate::failure::Failure;
 use crate::output::{self, figure};
 use crate::place;
 use crate::run_log::{Kept, Source};
-use rumbo_scenario::calibrate::{self, Calibration, Row};
-use rumbo_scenario::files::{Library, Overrides, RobotFile, Setup, bounded};
+use rumbo_experiment::calibrate::{self, Calibration, Row};
+use rumbo_experiment::calibration_run;
+use rumbo_experiment::files::{Library, Overrides, RobotFile, Setup, bounded};
 use rumbo_station::log::Kind;
 use rumbo_station::{Extras, Finding, Findings, GuestLink};
 use serde::Serialize;
@@ -81,11 +82,11 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
         parameters: args.parameters.params.clone(),
         ..Overrides::default()
     };
-    let setup = calibrate::calibration_setup(&overrides)?;
+    let setup = calibration_run::calibration_setup(&overrides)?;
     if let Some(path) = &args.out {
         check_place(path, args)?;
     }
-    let run = calibrate::run_calibration(&setup, args.seed.seed)?;
+    let run = calibration_run::run_calibration(&setup, args.seed.seed)?;
     let source = Source {
         kind: Kind::Calibration,
         library: &Library::new(),
@@ -107,7 +108,7 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     let parameters: Vec<(&'static str, f64)> = found
         .parameters()
         .into_iter()
-        .map(|(id, value)| (id.name(), rumbo_scenario::files::parameters::exact(value)))
+        .map(|(id, value)| (id.name(), rumbo_experiment::files::parameters::exact(value)))
         .collect();
     if args.json {
         return output::json(&Report {

@@ -2,7 +2,7 @@
 
 use crate::interrupt;
 use crate::output;
-use rumbo_scenario::files::FileError;
+use rumbo_experiment::files::FileError;
 use std::fmt;
 use std::process::ExitCode;
 

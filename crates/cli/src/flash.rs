@@ -3,7 +3,7 @@
 use crate::args::FlashArgs;
 use crate::failure::Failure;
 use crate::output;
-use rumbo_scenario::mega::firmware;
+use rumbo_experiment::files::firmware;
 use rumbo_station::port::Port;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

@@ -5,7 +5,7 @@
 use crate::failure::Failure;
 use crate::lab::SimulatedRobot;
 use rumbo_control::Fault;
-use rumbo_scenario::files::Overrides;
+use rumbo_experiment::files::Overrides;
 use rumbo_station::log::{Log, Manifest};
 use rumbo_station::{Choice, Ghost, LinkNews, MapPose, Scene, Simulation, Standing, Target};
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};

@@ -7,12 +7,12 @@ use crate::output;
 use crate::place::{self, Guard};
 use crate::recorded::{self, attached};
 use indicatif::ProgressBar;
+use rumbo_experiment::files::{Library, RobotFile, bounded};
 use rumbo_identify::sonar_stats::{self, Comparison, SonarLog};
 use rumbo_identify::{
     DriveLog, GENERATIONS, Identification, IdentifyError, RunScore, chart, dialect,
 };
 use rumbo_plant::params::Params;
-use rumbo_scenario::files::{Library, RobotFile, bounded};
 use rumbo_wire::csv;
 use rumbo_wire::text::RowKind;
 use serde::Serialize;

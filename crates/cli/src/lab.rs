@@ -10,11 +10,11 @@ use crate::output;
 use crate::scene::{first_commands, scene};
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
-use rumbo_scenario::debugging::Debugging;
-use rumbo_scenario::files::{FileError, Library, Overrides, Setup};
-use rumbo_scenario::mega::firmware::Language;
-use rumbo_scenario::run;
-use rumbo_scenario::sim::Sim;
+use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
+use rumbo_experiment::run;
+use rumbo_sim::debugging::Debugging;
+use rumbo_sim::mega::firmware::Language;
+use rumbo_sim::{Config, Sim};
 use rumbo_station::log::{Kind, Manifest};
 use rumbo_station::{Choice, LabConfig, MapPose, Scene, Simulation, Standing, Target, Truth};
 use rumbo_wire::Command;
@@ -170,7 +170,10 @@ fn prepare(
     let setup = setup.of_seed(choice.seed)?;
     let ready = run::prepare(&setup, choice.seed)?;
     Ok(Prepared {
-        sim: Sim::with_memory(&ready, choice.seed, memory)?,
+        sim: Sim::new(Config {
+            memory: memory.to_vec(),
+            ..ready.config(choice.seed)?
+        })?,
         mode: setup.scenario.mode,
         scene: scene(library, &setup, choice)?,
         first_commands: first_words(&ready)?,

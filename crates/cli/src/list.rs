@@ -7,9 +7,9 @@ use crate::output::{self, figure};
 use rumbo_control::mode::{ModeId, Reference, ReferenceKind};
 use rumbo_control::params::ParamId;
 use rumbo_control::rig::Rig;
+use rumbo_experiment::files::{FileError, Kind, Library, MOVEMENTS, parameters::exact};
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig as Mounts};
-use rumbo_scenario::files::{FileError, Kind, Library, MOVEMENTS, parameters::exact};
 use serde_json::{Map, Value, json};
 
 /// Lists one topic, or all but the plant's numbers.

@@ -2,9 +2,9 @@
 
 use crate::failure::Failure;
 use crate::mark::crc32;
-use rumbo_scenario::MODEL;
-use rumbo_scenario::files::{Kind as File, Library, Overrides, Program, Setup, TimedText};
-use rumbo_scenario::mega::firmware;
+use rumbo_experiment::MODEL;
+use rumbo_experiment::files::firmware;
+use rumbo_experiment::files::{Kind as File, Library, NativeProgram, Overrides, Setup, TimedText};
 use rumbo_station::log::{Kind, Manifest};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -22,8 +22,8 @@ const EEPROM: usize = 4_096;
 pub(crate) fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manifest {
     let program = match (&overrides.firmware, setup.program) {
         (Some(image), _) => image.display().to_string(),
-        (None, Program::Rumbo) => "rumbo".into(),
-        (None, Program::Original) => "original".into(),
+        (None, NativeProgram::Rumbo) => "rumbo".into(),
+        (None, NativeProgram::Baseline) => "baseline".into(),
     };
     let files = [
         ("scenario", &setup.scenario.text),
@@ -118,8 +118,12 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
             .ok_or_else(|| wrong(&format!("its {file} is missing; the log is damaged")))?;
         library = library.holding(kind, name, text);
     }
-    let firmware = (!["rumbo", "original"].contains(&manifest.program.as_str()))
-        .then(|| PathBuf::from(&manifest.program));
+    let (program, firmware) = match manifest.program.as_str() {
+        "rumbo" => (NativeProgram::Rumbo, None),
+        // `original` in logs of 0.2.0 and before.
+        "baseline" | "original" => (NativeProgram::Baseline, None),
+        image => (NativeProgram::default(), Some(PathBuf::from(image))),
+    };
     // A log may name any file: nothing is made of one that is not the program that it names.
     if let Some(image) = &firmware
         && (manifest.image.is_none() || hash(image) != manifest.image)
@@ -134,11 +138,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         rig: manifest.rig.clone(),
         world: Some(world.clone()),
         parameters: manifest.parameters.clone(),
-        program: if manifest.program == "original" {
-            Program::Original
-        } else {
-            Program::Rumbo
-        },
+        program,
         firmware,
         wiring: manifest.wiring.clone(),
         texts: manifest
@@ -151,4 +151,35 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
             .collect(),
     };
     Ok((library.setup(scenario, &overrides)?, seed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_of_the_baseline_is_run_again_under_its_name_and_its_earlier_one() {
+        let overrides = Overrides {
+            program: NativeProgram::Baseline,
+            ..Overrides::default()
+        };
+        let made = Library::new().setup("mode1", &overrides).unwrap();
+        let manifest = Manifest {
+            step_us: MIN_STEP_US,
+            ..of(Kind::Lab, &made, &overrides, 3)
+        };
+        assert_eq!(manifest.program, "baseline");
+        for program in ["baseline", "original"] {
+            let manifest = Manifest {
+                program: program.into(),
+                ..manifest.clone()
+            };
+            let (again, seed) = setup(Path::new("a.mcap"), &manifest).unwrap();
+            assert_eq!(
+                (again.program, seed),
+                (NativeProgram::Baseline, 3),
+                "{program}"
+            );
+        }
+    }
 }

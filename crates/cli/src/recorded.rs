@@ -4,8 +4,8 @@
 //! armed instant to the last becomes rows of the kind that the original program writes in that mode.
 
 use rumbo_control::mode::{Description, ModeId, ReferenceKind, Takes};
+use rumbo_experiment::files::bounded::{LONGEST_RECORDING, read_at_most};
 use rumbo_report::real::{FromLog, NotShown};
-use rumbo_scenario::files::bounded::{LONGEST_RECORDING, read_at_most};
 use rumbo_station::Row;
 use rumbo_station::log::{Kind, Log};
 use rumbo_wire::text::RowKind;

@@ -11,10 +11,10 @@ use crate::manifest;
 use crate::output;
 use crate::run_log;
 use rumbo_control::params::SCHEMA;
-use rumbo_scenario::files::Setup;
-use rumbo_scenario::run::{self, RunResult};
-use rumbo_scenario::sim::Sim;
-use rumbo_scenario::{MODEL, calibrate};
+use rumbo_experiment::files::{FileError, Setup};
+use rumbo_experiment::run::{self, RunResult};
+use rumbo_experiment::{MODEL, calibration_run};
+use rumbo_sim::{Config, Sim};
 use rumbo_station::log::{Burst, Kind, Log, Manifest, Said, Sent};
 use rumbo_wire::{Decoder, FromRobot, Message, PROTOCOL_VERSION, Received};
 use serde_json::json;
@@ -125,7 +125,7 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
     let verdict = match recorded.kind {
         Kind::Run => same(&log, &run::run(&setup, seed)?, recorder.protocol),
         Kind::Calibration => {
-            let again = calibrate::run_calibration(&setup, seed)?;
+            let again = calibration_run::run_calibration(&setup, seed)?;
             same(&log, &again.result, recorder.protocol)
         }
         Kind::Lab if let Some(protocol) = recorder.protocol => {
@@ -216,7 +216,11 @@ fn same(log: &Log, result: &RunResult, other_protocol: Option<u8>) -> Verdict {
 
 fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<Verdict, Failure> {
     let setup = &*setup.of_seed(seed)?;
-    let mut sim = Sim::with_memory(&*run::prepare(setup, seed)?, seed, &recorded.memory())?;
+    let mut sim = Sim::new(Config {
+        memory: recorded.memory(),
+        ..run::prepare(setup, seed)?.config(seed)?
+    })
+    .map_err(FileError::from)?;
     let last = [
         log.link.last().map(|burst| burst.t_us),
         log.said.last().map(|said| said.t_us),

@@ -5,9 +5,9 @@ use crate::failure::Failure;
 use crate::mark::Mark;
 use crate::place::{self, Guard};
 use crate::run_log::Source;
-use rumbo_scenario::files::{ScenarioFile, Setup};
-use rumbo_scenario::run::RunResult;
-use rumbo_scenario::trace::Trace;
+use rumbo_experiment::files::{ScenarioFile, Setup};
+use rumbo_experiment::run::RunResult;
+use rumbo_sim::trace::Trace;
 use rumbo_station::readable;
 use std::path::{Path, PathBuf};
 

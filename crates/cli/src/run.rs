@@ -9,9 +9,9 @@ use crate::place::{self, Guard};
 use crate::results::Results;
 use crate::run_log::{Kept, Source};
 use indicatif::{ProgressBar, ProgressStyle};
-use rumbo_scenario::files::{Library, Overrides, Program, ScenarioFile, Setup};
-use rumbo_scenario::run::{self, RunResult};
-use rumbo_scenario::trace::Trace;
+use rumbo_experiment::files::{Library, NativeProgram, Overrides, ScenarioFile, Setup};
+use rumbo_experiment::run::{self, RunResult};
+use rumbo_sim::trace::Trace;
 use rumbo_station::log::Kind;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -25,8 +25,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         world: args.setting.world.clone(),
         parameters: args.parameters.params.clone(),
         program: match args.program {
-            ProgramName::Rumbo => Program::Rumbo,
-            ProgramName::Original => Program::Original,
+            ProgramName::Rumbo => NativeProgram::Rumbo,
+            ProgramName::Baseline => NativeProgram::Baseline,
         },
         texts: args.commands.clone(),
         ..args.image.overrides()

@@ -10,10 +10,11 @@ use crate::output;
 use crate::place;
 use crate::scene::scene;
 use rumbo_control::Wheels;
-use rumbo_scenario::files::{Library, Overrides, Setup};
-use rumbo_scenario::run::RunResult;
-use rumbo_scenario::trace::{SAMPLE_US, Sample, Trace};
-use rumbo_station::log::{Burst, Kind, Manifest, Outcome, Run, Said, record_run, record_run_in};
+use rumbo_experiment::files::{Library, Overrides, Setup};
+use rumbo_experiment::run::RunResult;
+use rumbo_sim::trace::{SAMPLE_US, Sample, Trace};
+use rumbo_station::headless::{Run, record_run, record_run_in};
+use rumbo_station::log::{Burst, Kind, Manifest, Outcome, Said};
 use rumbo_station::{Choice, MapPose, Truth};
 use rumbo_wire::FromRobot;
 use std::path::{Path, PathBuf};
@@ -162,7 +163,7 @@ fn micros(t_s: f64) -> u64 {
     (t_s * 1e6).round() as u64
 }
 
-pub(crate) fn burst(burst: &rumbo_scenario::trace::Burst) -> Burst {
+pub(crate) fn burst(burst: &rumbo_sim::Burst) -> Burst {
     Burst {
         t_us: burst.t_us,
         to_robot: burst.to_robot,
@@ -170,7 +171,7 @@ pub(crate) fn burst(burst: &rumbo_scenario::trace::Burst) -> Burst {
     }
 }
 
-pub(crate) fn said(said: &rumbo_scenario::trace::Said) -> Said {
+pub(crate) fn said(said: &rumbo_sim::trace::Said) -> Said {
     Said {
         t_us: said.t_us,
         usart: said.usart,

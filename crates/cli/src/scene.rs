@@ -1,10 +1,10 @@
 //! What the dashboard draws around a simulated robot: world, footprint, sonars, and what could be chosen instead.
 
 use rumbo_control::SonarId;
+use rumbo_experiment::files::TimedCommand;
+use rumbo_experiment::files::{FileError, Kind, Library, ScenarioFile, Setup};
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::plant::Mount;
-use rumbo_scenario::files::TimedCommand;
-use rumbo_scenario::files::{FileError, Kind, Library, ScenarioFile, Setup};
 use rumbo_station::{Choice, Experiment, MapPose, Obstacle, RoutePlan, Scene, SonarMount};
 use rumbo_wire::Command;
 
@@ -156,7 +156,7 @@ fn routes(commands: &[TimedCommand]) -> Vec<RoutePlan> {
 mod tests {
     use super::*;
     use rumbo_control::mode::ModeId;
-    use rumbo_scenario::files::Overrides;
+    use rumbo_experiment::files::Overrides;
 
     #[test]
     fn the_lab_begins_in_every_scenario_s_mode_and_never_armed_or_moving() {

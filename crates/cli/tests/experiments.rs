@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use rumbo_station::Truth;
-use rumbo_station::log::{Kind, Log, Manifest, Outcome, Run, record_run};
+use rumbo_station::headless::{Run, record_run};
+use rumbo_station::log::{Kind, Log, Manifest, Outcome};
 use std::path::Path;
 use std::process::{Command, Output};
 

@@ -3,7 +3,8 @@
 #![cfg(test)]
 
 use rumbo_station::Truth;
-use rumbo_station::log::{Burst, Log, Outcome, Run, record_run};
+use rumbo_station::headless::{Run, record_run};
+use rumbo_station::log::{Burst, Log, Outcome};
 use rumbo_wire::message::Hello;
 use rumbo_wire::{Decoder, FromRobot, Message, Received, ToRobot};
 use std::io::{BufRead, BufReader};

@@ -20,13 +20,13 @@ const TEXT: RGBColor = RGBColor(0x33, 0x33, 0x33);
 /// The first of the colour-blind-safe palette of Okabe and Ito: our program.
 pub const OURS: RGBColor = RGBColor(0x00, 0x72, 0xb2);
 /// The second: the report's program.
-pub const ORIGINAL: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
+pub const BASELINE: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
 /// The third.
 pub const THIRD: RGBColor = RGBColor(0x00, 0x9e, 0x73);
 /// The whole palette, for curves that have no other order.
 pub const PALETTE: [RGBColor; 7] = [
     OURS,
-    ORIGINAL,
+    BASELINE,
     THIRD,
     RGBColor(0xcc, 0x79, 0xa7),
     RGBColor(0xe6, 0x9f, 0x00),

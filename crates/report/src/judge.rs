@@ -5,7 +5,7 @@ use crate::metric_names::{Shown, shown};
 use crate::signals::Outcome;
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, escape, quoted, with, word};
-use rumbo_scenario::files::Bounds;
+use rumbo_experiment::files::Bounds;
 
 pub(crate) fn capital(text: &str) -> String {
     let mut letters = text.chars();
@@ -194,8 +194,8 @@ fn complaints(language: Language, outcome: &Outcome) -> String {
 mod tests {
     use super::*;
     use crate::signals::DEG;
-    use rumbo_scenario::files::{Library, Overrides};
-    use rumbo_scenario::run::run;
+    use rumbo_experiment::files::{Library, Overrides};
+    use rumbo_experiment::run::run;
 
     #[test]
     fn every_metric_that_has_a_limit_has_a_name_in_both_languages() {

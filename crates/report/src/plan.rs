@@ -4,9 +4,10 @@ use crate::chapters::{EXPERIMENTS, Experiment};
 use crate::data::Data;
 use crate::real::{Real, Recording};
 use crate::signals::Outcome;
+#[cfg(feature = "host")]
 use rayon::prelude::*;
-use rumbo_scenario::files::{FileError, Library, Overrides, ScenarioFile, Setup, TimedCommand};
-use rumbo_scenario::run::run;
+use rumbo_experiment::files::{FileError, Library, Overrides, ScenarioFile, Setup, TimedCommand};
+use rumbo_experiment::run::run;
 use rumbo_wire::Command;
 
 /// What is asked for.
@@ -117,9 +118,11 @@ impl Plan {
             data.robot = [job.setup.robot.name.clone(), job.setup.robot.title.clone()];
         }
         // One at a time from a common heap: a split in halves would leave one thread without work.
+        #[cfg(feature = "host")]
+        let jobs = jobs.into_par_iter().with_max_len(1);
+        #[cfg(not(feature = "host"))]
+        let jobs = jobs.into_iter();
         let results: Vec<_> = jobs
-            .into_par_iter()
-            .with_max_len(1)
             .map(|Job { setup, as_recorded }| {
                 let result = run(&setup, request.seed)?;
                 done(setup.scenario.duration_s);

@@ -1,7 +1,7 @@
 //! What a program tells in the original's text protocol: rows of telemetry, found in the raw bytes of the link.
 
 use crate::signals::Place;
-use rumbo_scenario::trace::Burst;
+use rumbo_sim::Burst;
 use rumbo_wire::text::{MissionRow, Row};
 
 /// The rows in what came from the robot, with the time at which each had arrived [s].

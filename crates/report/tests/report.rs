@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used)]
 
+use rumbo_experiment::files::Library;
 use rumbo_report::real::{NotShown, Real, read};
 use rumbo_report::text::Language;
 use rumbo_report::{Data, Plan, Request, html};
-use rumbo_scenario::files::Library;
 use rumbo_wire::text::RowKind;
 use std::collections::BTreeSet;
 use std::fmt::Write;

@@ -4,19 +4,16 @@
 //! gets the recent past and never holds the session up; the rest is one current value each, with a version.
 //! Nobody reads, nothing is made: rows become JSON in the connections.
 
-mod event;
 mod ring;
-mod slow;
-
-pub(crate) use event::{ConsoleText, LINK_CONSOLE, Level, LoggedEvent};
-pub(crate) use slow::{LinkState, ReplayState, RobotState, State};
 
 use crate::catalogue::ParameterState;
 use crate::echo::Echo;
+use crate::event::{ConsoleText, LoggedEvent};
 use crate::log::Burst;
 use crate::log::recorder::{Entry, Recorder};
-use crate::row::Row;
-use crate::target::Scene;
+use crate::scene::Scene;
+use crate::signals::Row;
+use crate::state::State;
 use ring::{Ring, Versioned};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
@@ -262,6 +259,7 @@ impl Board {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::event::Level;
 
     fn sample(t_ms: i64) -> Row {
         Row::unknown(t_ms)

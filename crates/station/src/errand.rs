@@ -2,7 +2,7 @@
 //!
 //! Made of the commands that the robot acknowledged and of its events; telemetry does not repeat a route.
 
-use crate::target::{Place, RoutePlan};
+use crate::scene::{Place, RoutePlan};
 use rumbo_control::Pose;
 use rumbo_control::mode::ModeId;
 use rumbo_control::mode::waypoints::Route;

@@ -4,7 +4,7 @@
 //! bytes that it sends, and goes on showing and recording. With each slice of time it gets its turn and the session waits for its answer,
 //! so that a fast simulation does not run away from it. When the session takes the link back, time ends for it at once.
 
-use serde::{Deserialize, Serialize};
+use crate::state::Findings;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -14,46 +14,6 @@ const PATIENCE: Duration = Duration::from_millis(20);
 
 /// Calibrates the robot at the other end of the link, which is left with the parameters found; or says why not.
 pub type Calibration = fn(&mut GuestLink) -> Result<Findings, String>;
-
-/// What a calibration found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Findings {
-    /// The quantities.
-    pub rows: Vec<Finding>,
-    /// The parameters set, by number.
-    pub parameters: Vec<(u8, f32)>,
-}
-
-/// A quantity that was found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Finding {
-    /// What it is, with its unit.
-    pub name: String,
-    /// Its value.
-    pub found: f64,
-    /// Standard deviation of its error.
-    pub standard_error: Option<f64>,
-}
-
-/// How a calibration stands, for the page.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "phase", rename_all = "snake_case")]
-pub(crate) enum CalibrationState {
-    Running {
-        since_s: f64,
-    },
-    Done {
-        findings: Findings,
-        /// When, by the session's time: one that ended at once was never seen running.
-        #[serde(default)]
-        at_s: f64,
-    },
-    Failed {
-        why: String,
-        #[serde(default)]
-        at_s: f64,
-    },
-}
 
 /// A slice of time: when it ended \[us\], and what arrived.
 type Slice = (u64, Vec<u8>);

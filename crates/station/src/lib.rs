@@ -16,9 +16,11 @@ mod door;
 mod echo;
 mod ending;
 mod errand;
+mod event;
 pub mod fault;
 mod guard;
 mod guest;
+pub mod headless;
 mod lease;
 pub mod log;
 mod meter;
@@ -31,7 +33,7 @@ pub mod port;
 mod replay;
 mod robot_clock;
 mod round_trip;
-mod row;
+mod scene;
 mod serve;
 mod session;
 mod signals;
@@ -48,14 +50,15 @@ pub use bridge::{BRIDGE_PORT, Bridge};
 pub use console::readable;
 pub use echo::Print;
 pub use ending::asked_to_end;
-pub use guest::{Calibration, Finding, Findings, GuestLink};
+pub use guest::{Calibration, GuestLink};
 #[cfg(feature = "fuzzing")]
 pub use orders::commands_of;
-pub use row::Row;
+pub use scene::{
+    Choice, Experiment, MapPose, Obstacle, Place, RoutePlan, Scene, SonarMount, Truth,
+};
 pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, ServeError, serve, serve_log, serve_with};
 pub use session::Extras;
-pub use target::{
-    Choice, Experiment, Ghost, LinkNews, MapPose, Obstacle, Place, RoutePlan, Scene, Simulation,
-    SonarMount, Standing, Target, Truth,
-};
+pub use signals::Row;
+pub use state::{Finding, Findings};
+pub use target::{Ghost, LinkNews, Simulation, Standing, Target};
 pub use watch::check_baud;

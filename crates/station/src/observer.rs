@@ -1,17 +1,22 @@
 //! Keeps the board up to date with what was heard: samples, events in words, the status, the parameters' values.
 
-use crate::board::{Board, ConsoleText, LINK_CONSOLE, Level, LoggedEvent, State};
+pub(crate) mod describe;
+
+use crate::board::Board;
 use crate::catalogue::{self, ParameterState};
 use crate::client::{Heard, RobotClient};
 use crate::commands::{Fate, Outcome};
 use crate::console::readable;
 use crate::errand::Errand;
+use crate::event::{ConsoleText, LINK_CONSOLE, Level, LoggedEvent};
 use crate::log::recorder::Entry;
 use crate::log::{Burst, Said};
 use crate::origin::Origin;
-use crate::row::Row;
+use crate::scene::{MapPose, Scene, Truth};
+use crate::signals::Row;
 use crate::signals::{EARLIER_MS, Sample, TruthLog};
-use crate::target::{MapPose, Scene, Standing, Truth};
+use crate::state::State;
+use crate::target::Standing;
 use crate::terminal;
 use crate::words;
 use rumbo_control::Pose;

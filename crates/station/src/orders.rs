@@ -1,6 +1,6 @@
 //! What a page may ask: JSON text to a checked order.
 
-use crate::target::Choice;
+use crate::scene::Choice;
 use rumbo_control::Wheels;
 use rumbo_control::mode::waypoints::{MAX_WAYPOINTS, Waypoint};
 use rumbo_control::mode::{ModeId, Movement};

@@ -8,7 +8,7 @@
 //! How far the pose may be off since is reckoned here too, from the poses told: the robot itself has no use for it. Derivation:
 //! docs/theory/odometry.md.
 
-use crate::target::MapPose;
+use crate::scene::MapPose;
 use rumbo_control::Pose;
 use rumbo_control::odometry::{OdometryErrors, Piece, Uncertainty};
 

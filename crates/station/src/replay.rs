@@ -6,11 +6,13 @@
 mod haunting;
 mod speech;
 
-use crate::board::{Board, Level, LoggedEvent, ReplayState, State};
+use crate::board::Board;
 use crate::catalogue::{self, ParameterState};
+use crate::event::{Level, LoggedEvent};
 use crate::log::Log;
 use crate::orders::Order;
 use crate::session::Orders;
+use crate::state::{ReplayState, State};
 use crate::target::Ghost;
 use haunting::Haunting;
 use speech::Speech;

@@ -8,15 +8,18 @@ mod calibrating;
 mod commanding;
 mod recording;
 
-use crate::board::{self, Board, State};
+use crate::board::Board;
 use crate::client::{Heard, KnownTable, RobotClient};
-use crate::guest::{Calibration, CalibrationState, Guest};
+use crate::event::Level;
+use crate::guest::{Calibration, Guest};
 use crate::log::Recording;
 use crate::observer::Observer;
+use crate::observer::describe::{Around, describe};
 use crate::orders::{self, MAX_SPEED, Order};
 use crate::pace::{Pace, SLICE_US};
-use crate::state::{self, Around};
-use crate::target::{Choice, LinkNews, Target};
+use crate::scene::Choice;
+use crate::state::{CalibrationState, State};
+use crate::target::{LinkNews, Target};
 use crate::watch::LinkWatch;
 use rumbo_control::mode::ModeId;
 use rumbo_wire::Command;
@@ -124,7 +127,7 @@ impl Session {
     pub(crate) fn run(mut self) -> Result<(), String> {
         let ended = self.run_until_ended();
         if let Err(why) = &ended {
-            self.note(board::Level::Fault, format!("the robot is gone: {why}"));
+            self.note(Level::Fault, format!("the robot is gone: {why}"));
         }
         ended
     }
@@ -177,17 +180,16 @@ impl Session {
                 self.state_noted = None;
             }
             Order::Speed(_) => self.note(
-                board::Level::Warning,
+                Level::Warning,
                 "speed: refused, a real robot lives at its own".into(),
             ),
             Order::Reset(choice) => self.reset(&choice),
             Order::Calibrate => self.calibrate(),
             Order::TakeControl | Order::ReleaseControl => {}
             Order::RestartGhost => self.restart_ghost(),
-            Order::Seek(_) | Order::Step(_) => self.note(
-                board::Level::Warning,
-                "refused, this is no replay of a log".into(),
-            ),
+            Order::Seek(_) | Order::Step(_) => {
+                self.note(Level::Warning, "refused, this is no replay of a log".into())
+            }
         }
         Ok(())
     }
@@ -206,12 +208,12 @@ impl Session {
     fn reset(&mut self, choice: &Choice) {
         let Some(simulation) = self.target.simulation() else {
             return self.note(
-                board::Level::Warning,
+                Level::Warning,
                 "reset: refused, this is a real robot".into(),
             );
         };
         if let Err(why) = simulation.reset(choice) {
-            return self.note(board::Level::Warning, format!("reset: refused, {why}"));
+            return self.note(Level::Warning, format!("reset: refused, {why}"));
         }
         self.client = new_client(self.target.as_mut(), self.extras);
         self.heard.clear();
@@ -233,7 +235,7 @@ impl Session {
             .map(|rig| format!(" with rig {rig}"))
             .unwrap_or_default();
         self.note(
-            board::Level::Info,
+            Level::Info,
             format!(
                 "reset: {}{world}{rig}, seed {}",
                 choice.scenario, choice.seed
@@ -265,11 +267,10 @@ impl Session {
                 self.observer.truth(to_ms(now_us), simulation.truth());
                 self.observer.consoles(now_us, simulation.consoles());
                 for news in simulation.news() {
-                    self.observer
-                        .note(to_ms(now_us), board::Level::Warning, news);
+                    self.observer.note(to_ms(now_us), Level::Warning, news);
                 }
                 if let Some(why) = simulation.ended() {
-                    self.observer.note(to_ms(now_us), board::Level::Fault, why);
+                    self.observer.note(to_ms(now_us), Level::Fault, why);
                 }
             }
             self.bytes.clear();
@@ -291,7 +292,7 @@ impl Session {
         Ok(())
     }
 
-    fn note(&mut self, level: board::Level, text: String) {
+    fn note(&mut self, level: Level, text: String) {
         self.observer.note(to_ms(self.target.now_us()), level, text);
     }
 
@@ -301,15 +302,15 @@ impl Session {
             .digest(&mut self.heard, &mut self.client, now_ms);
         while let Some(news) = self.target.news() {
             let (level, text) = match news {
-                LinkNews::Lost(text) => (board::Level::Fault, text),
-                LinkNews::Back(text) => (board::Level::Good, text),
+                LinkNews::Lost(text) => (Level::Fault, text),
+                LinkNews::Back(text) => (Level::Good, text),
                 LinkNews::GhostFault(fault) => {
                     let why = format!("the ghost has stopped: {}", fault.explanation());
-                    self.note(board::Level::Warning, why);
+                    self.note(Level::Warning, why);
                     continue;
                 }
             };
-            self.port_gone = level == board::Level::Fault;
+            self.port_gone = level == Level::Fault;
             self.note(level, text);
             if self.port_gone {
                 self.give_up_calibration("the port is gone");
@@ -317,7 +318,7 @@ impl Session {
             }
         }
         if let Some(trouble) = self.board.recording_trouble() {
-            self.note(board::Level::Warning, trouble);
+            self.note(Level::Warning, trouble);
         }
         self.watch_link();
         let urgent = self.observer.publish(now_ms);
@@ -345,7 +346,7 @@ impl Session {
             .link_watch
             .look(now_us, &figures, connected, dropped, baud);
         if let Some(trouble) = trouble {
-            self.note(board::Level::Warning, trouble);
+            self.note(Level::Warning, trouble);
         }
     }
 
@@ -361,7 +362,7 @@ impl Session {
         };
         State {
             calibration: self.calibration.clone(),
-            ..state::describe(&around, &mut self.client, &self.observer)
+            ..describe(&around, &mut self.client, &self.observer)
         }
     }
 }

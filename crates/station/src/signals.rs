@@ -1,8 +1,12 @@
 //! Samples of the signals: what the robot said of one instant, beside what was really the case.
 
+mod row;
+
+pub(crate) use row::Cell;
+pub use row::Row;
+
 use crate::origin::Spread;
-use crate::row::Row;
-use crate::target::{MapPose, Truth};
+use crate::scene::{MapPose, Truth};
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Range, Wheels};
 use rumbo_wire::Telemetry;

@@ -5,14 +5,16 @@
 //!
 //! STOP is taken from every page, anything else from the page that has control ([`Lease`]).
 
-use crate::board::{Board, ConsoleText, Cursor, Heard, Level, LoggedEvent, News, State};
+use crate::board::{Board, Cursor, Heard, News};
 use crate::catalogue::{self, ModeEntry, ParameterState};
+use crate::event::{ConsoleText, Level, LoggedEvent};
 use crate::guard::Role;
 use crate::lease::{Lease, Place, Seat, View};
 use crate::log::Burst;
 use crate::orders::{self, Order};
-use crate::row::{Cell, Row};
-use crate::target::Scene;
+use crate::scene::Scene;
+use crate::signals::{Cell, Row};
+use crate::state::State;
 use axum::body::Bytes;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use futures_util::stream::SplitSink;

@@ -212,7 +212,7 @@ pub(crate) fn untold(kind: RowKind) -> impl Iterator<Item = &'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row::Row as Signals;
+    use crate::signals::Row as Signals;
 
     fn hear(terminal: &mut Terminal, bytes: &[u8], now_ms: i64) -> Vec<Told> {
         let told = bytes.iter().map(|byte| terminal.hear(*byte, now_ms));

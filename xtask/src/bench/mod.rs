@@ -73,7 +73,7 @@ const PARTS: [Part; 7] = [
     },
 ];
 
-/// Prints a table of its own, which is also that of docs/theory/original.md and docs/figures.md.
+/// Prints a table of its own, which is also that of docs/theory/baseline.md and docs/figures.md.
 fn memoria(project: &Project) -> Result<Vec<Figure>, String> {
     crate::memoria::run(project, None, &[]).map(|_| Vec::new())
 }

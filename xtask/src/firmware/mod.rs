@@ -9,7 +9,7 @@ mod debugging;
 mod image;
 mod sizes;
 mod stack_arguments;
-mod toolchain;
+pub(crate) mod toolchain;
 
 use std::path::Path;
 

@@ -16,7 +16,7 @@ use compiler::Compiler;
 /// Folders of sketches: each sketch is a folder with a file of its name.
 const FOLDERS: [&str; 3] = [
     "crates/emulator/tests/sketches",
-    "crates/scenario/tests/sketches",
+    "crates/experiment/tests/sketches",
     "examples/arduino",
 ];
 

@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 
 pub(crate) use tools::installed_chromium;
 
+use crate::firmware::toolchain::Toolchain;
 use crate::project::{Project, run as run_command};
 use crate::tidy;
 
@@ -46,7 +47,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 16] = [
+const STEPS: [Step; 17] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
@@ -81,6 +82,11 @@ const STEPS: [Step; 16] = [
         name: "firmware",
         what: "the image for the Mega builds and keeps to its caps",
         check: crate::firmware::build,
+    },
+    Step {
+        name: "wasm",
+        what: "simulator, experiments and report compile for a browser",
+        check: wasm,
     },
     Step {
         name: "test",
@@ -282,6 +288,24 @@ fn bridge(project: &Project) -> Result<(), Stop> {
         "foxglove",
     ];
     Ok(run_command(&mut project.cargo(&check))?)
+}
+
+/// With the firmware's Rust, which has the sources of the library: no further target need be installed.
+fn wasm(project: &Project) -> Result<(), Stop> {
+    let mut check = Toolchain::find(project)?.command("cargo");
+    check.current_dir(&project.root).args([
+        "check",
+        "--locked",
+        "-Zbuild-std=std,panic_abort",
+        "--target=wasm32-unknown-unknown",
+        "--no-default-features",
+    ]);
+    for package in ["rumbo-sim", "rumbo-experiment", "rumbo-report"] {
+        check.args(["--package", package]);
+    }
+    // Apart, so that this compiler and the usual one do not build each other's crates again.
+    check.arg("--target-dir").arg(project.target.join("wasm"));
+    Ok(run_command(&mut check)?)
 }
 
 fn build(project: &Project) -> Result<(), Stop> {

@@ -9,21 +9,24 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 12] = [
+const ARROWS: [(&str, &[&str]); 15] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
     ("rumbo-plant", &[]),
     ("rumbo-emulator", &[]),
     (
-        "rumbo-scenario",
+        "rumbo-sim",
         &["rumbo-robot", "rumbo-plant", "rumbo-emulator"],
     ),
+    ("rumbo-experiment", &["rumbo-sim"]),
     ("rumbo-identify", &["rumbo-plant"]),
     ("rumbo-station", &["rumbo-wire"]),
-    ("rumbo-report", &["rumbo-scenario", "rumbo-identify"]),
+    ("rumbo-report", &["rumbo-experiment", "rumbo-identify"]),
     ("rumbo-cli", &["rumbo-station", "rumbo-report"]),
     ("rumbo-firmware", &["rumbo-robot"]),
+    ("rumbo-firmware-tests", &["rumbo-experiment"]),
+    ("rumbo-tools", &["rumbo-experiment", "rumbo-identify"]),
     ("xtask", &[]),
 ];
 
@@ -147,7 +150,7 @@ mod tests {
     #[test]
     fn identification_knows_the_plant_and_no_simulator() {
         assert_eq!(findings("rumbo-identify", "rumbo-plant", None), [""; 0]);
-        assert_eq!(findings("rumbo-identify", "rumbo-scenario", None).len(), 1);
+        assert_eq!(findings("rumbo-identify", "rumbo-sim", None).len(), 1);
     }
 
     #[test]

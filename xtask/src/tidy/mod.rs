@@ -1,9 +1,10 @@
 //! `cargo xtask tidy`: the rules that no compiler checks, each with the place and the remedy.
 //!
-//! [`dependencies`] keeps the diagram of ARCHITECTURE.md true, [`source`] what the crates promise about their code,
-//! [`documents`] links and numbering, [`presence`] the files that others rely on. Rules are functions of a [`Tree`],
-//! so that they are tested on small made-up trees.
+//! [`dependencies`] keeps the diagram of ARCHITECTURE.md true, [`circles`] that modules of a crate depend one way,
+//! [`source`] what the crates promise about their code, [`documents`] links and numbering, [`presence`] the files that
+//! others rely on. Rules are functions of a [`Tree`], so that they are tested on small made-up trees.
 
+mod circles;
 mod dependencies;
 mod documents;
 mod presence;
@@ -115,7 +116,12 @@ pub(crate) fn run(project: &Project) -> Result<bool, String> {
     if firmware.is_file() {
         findings.extend(dependencies::check(&metadata(&firmware)?));
     }
-    for rule in [source::check, documents::check, presence::check] {
+    for rule in [
+        circles::check,
+        source::check,
+        documents::check,
+        presence::check,
+    ] {
         findings.extend(rule(&tree));
     }
     findings.sort_by(|a, b| (a.hint, &a.path, a.line).cmp(&(b.hint, &b.path, b.line)));

@@ -2,7 +2,7 @@
 
 use super::values::parameter;
 use clap::Args;
-use rumbo_scenario::files::Overrides;
+use rumbo_experiment::files::Overrides;
 use std::path::PathBuf;
 
 /// What takes the place of the scenario's own.

@@ -3,7 +3,7 @@
 use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, SeedArgs, SettingArgs};
 use super::values::timed_text;
 use clap::{Args, ValueEnum};
-use rumbo_scenario::files::TimedText;
+use rumbo_experiment::files::TimedText;
 use std::path::PathBuf;
 
 /// Options of `rumbo run`.
@@ -12,7 +12,7 @@ use std::path::PathBuf;
 Examples:
   rumbo run mode1
   rumbo run mode5 --runs 20 --json --no-record
-  rumbo run mode5 --runs 20 --program original
+  rumbo run mode5 --runs 20 --program baseline
   rumbo run mode1 --rig final --world room
   rumbo run mode5 --firmware my_sketch.elf --command 'REF 40@20'
   rumbo run mode5 --firmware my_sketch.elf --profile cycles.folded --vcd pins.vcd
@@ -87,7 +87,7 @@ pub(crate) enum ProgramName {
     #[default]
     Rumbo,
     /// The report's, as a baseline
-    Original,
+    Baseline,
 }
 
 /// Options of `rumbo experiments`.

@@ -1,7 +1,7 @@
 //! Values of options that need more than a look: numbers within bounds, pairs.
 
 use crate::manifest::LONGEST_S;
-use rumbo_scenario::files::{TimedText, parameters};
+use rumbo_experiment::files::{TimedText, parameters};
 
 /// Seconds of simulation or of a log per second.
 pub(super) fn speed(text: &str) -> Result<f64, String> {

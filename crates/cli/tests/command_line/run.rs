@@ -2,7 +2,7 @@
 
 use crate::observe::SPIN;
 use crate::support::{file, folder, program, rumbo, stderr, stdout};
-use rumbo_scenario::files::Library;
+use rumbo_experiment::files::Library;
 use rumbo_station::log::Log;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};

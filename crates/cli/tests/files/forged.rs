@@ -2,7 +2,8 @@
 
 use crate::support::{stderr, stdout};
 use crate::{rumbo_in, scenario, status};
-use rumbo_station::log::{Burst, Log, Manifest, Outcome, Run, record_run};
+use rumbo_station::headless::{Run, record_run};
+use rumbo_station::log::{Burst, Log, Manifest, Outcome};
 
 /// Whether a terminal would obey something in a text.
 fn obeyed(text: &str) -> bool {

@@ -232,7 +232,7 @@ fn a_result_has_the_rights_that_any_new_file_has() {
 fn a_calibration_replaces_no_parameters_but_those_of_a_calibration() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let robot = rumbo_scenario::files::Library::new()
+    let robot = rumbo_experiment::files::Library::new()
         .robot("memoria")
         .unwrap();
     let own = robot

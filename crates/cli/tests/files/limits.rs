@@ -3,7 +3,8 @@
 use crate::support::stderr;
 use crate::{rumbo_in, scenario, status};
 use rumbo_station::Truth;
-use rumbo_station::log::{Burst, Log, Manifest, Outcome, Run, record_run};
+use rumbo_station::headless::{Run, record_run};
+use rumbo_station::log::{Burst, Log, Manifest, Outcome};
 use std::path::Path;
 
 /// A log of a session in the lab with this manifest, and something sent at a time \[us\].

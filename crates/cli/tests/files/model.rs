@@ -3,7 +3,8 @@
 use crate::support::{stderr, stdout};
 use crate::{rumbo_in, scenario, status};
 use rumbo_station::Truth;
-use rumbo_station::log::{Log, Manifest, Run, record_run};
+use rumbo_station::headless::{Run, record_run};
+use rumbo_station::log::{Log, Manifest};
 
 #[test]
 fn a_run_of_another_model_that_differs_says_so_first() {
@@ -13,7 +14,7 @@ fn a_run_of_another_model_that_differs_says_so_first() {
     rumbo_in(folder, &["run", "task.toml", "--out", "o"]);
     let log = Log::read(&folder.join("o/task-1.mcap")).unwrap();
     let recorded = log.manifest.clone().unwrap();
-    let here = rumbo_scenario::MODEL;
+    let here = rumbo_experiment::MODEL;
     assert_eq!(recorded.model, Some(here));
     let rerun = |model, metric: f64| {
         let mut outcome = log.outcome.clone().unwrap();

@@ -2,8 +2,8 @@
 
 use super::sketch::{Anchor, Sketch};
 use crate::text::{Language, Text, word};
+use rumbo_experiment::files::Setup;
 use rumbo_plant::plant::Mount;
-use rumbo_scenario::files::Setup;
 
 /// Pixels per metre.
 const SCALE: f64 = 900.0;

@@ -2,7 +2,7 @@
 
 use super::sketch::{Anchor, Sketch};
 use crate::text::{Language, Text, word};
-use rumbo_scenario::files::Wiring;
+use rumbo_sim::wiring::Wiring;
 
 const ROW: f64 = 19.0;
 const WIDTH: f64 = 680.0;

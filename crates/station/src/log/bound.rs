@@ -1,8 +1,8 @@
 //! How much of a real robot is recorded: a link says some kilobytes in a second, whatever floods a port fills no disk.
 
 use super::recorder::Entry;
-use crate::board::{Level, LoggedEvent};
-use crate::row::Row;
+use crate::event::{Level, LoggedEvent};
+use crate::signals::Row;
 
 /// So much of link, signals and consoles is recorded in a second, as it is in the log before compression \[bytes\].
 const ROOM: usize = 128 << 10;

@@ -41,7 +41,7 @@ pub struct Manifest {
     pub rig: Option<String>,
     /// Name of the wiring, where a firmware image was asked to use one.
     pub wiring: Option<String>,
-    /// The program at the pins: `rumbo`, `original`, or the file of an image.
+    /// The program at the pins: `rumbo`, `baseline`, `original` on a real robot, or the file of an image.
     pub program: String,
     /// Hash of the image that ran on the emulated Mega, or that the robot named in HELLO.
     pub image: Option<String>,

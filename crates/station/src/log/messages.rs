@@ -3,10 +3,11 @@
 use super::recorder::Entry;
 use super::schema::Topic;
 use super::{Burst, Said};
-use crate::board::{Level, LoggedEvent, State};
 use crate::catalogue::ParameterState;
-use crate::row::Row;
-use crate::target::{MapPose, Scene};
+use crate::event::{Level, LoggedEvent};
+use crate::scene::{MapPose, Scene};
+use crate::signals::Row;
+use crate::state::State;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};

@@ -20,7 +20,6 @@
 mod bound;
 mod digest;
 mod earlier;
-mod headless;
 mod intake;
 mod manifest;
 pub(crate) mod messages;
@@ -32,7 +31,6 @@ pub(crate) mod schema;
 mod summary;
 mod writer;
 
-pub use headless::{Run, record_run, record_run_in, record_text};
 pub use manifest::{Kind, Manifest, Outcome};
 pub use reader::Log;
 pub use recorder::Recording;

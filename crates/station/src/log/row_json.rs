@@ -1,6 +1,6 @@
 //! The signals of one instant as a log has them.
 
-use crate::row::Row;
+use crate::signals::Row;
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 use std::borrow::Cow;

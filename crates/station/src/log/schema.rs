@@ -1,6 +1,6 @@
 //! The JSON schemas of the log's messages. Those named `foxglove.*` are well known to viewers; of them, what is used here.
 
-use crate::row::Row;
+use crate::signals::Row;
 use serde_json::{Map, Value, json};
 
 /// Where messages of one kind go.

@@ -3,8 +3,9 @@
 
 use crate::log::Log;
 use crate::origin::compose;
-use crate::row::Row;
-use crate::target::{Ghost, MapPose, Standing};
+use crate::scene::MapPose;
+use crate::signals::Row;
+use crate::target::{Ghost, Standing};
 use std::time::{Duration, Instant};
 
 /// Time spent on the ghost at once.

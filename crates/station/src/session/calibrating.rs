@@ -1,9 +1,10 @@
 //! The session while the robot calibrates itself: the guest has its turns, and any command of a person's ends it.
 
 use super::Session;
-use crate::board::Level;
-use crate::guest::{CalibrationState, Guest};
+use crate::event::Level;
+use crate::guest::Guest;
 use crate::orders::Order;
+use crate::state::CalibrationState;
 use rumbo_wire::Command;
 
 impl Session {

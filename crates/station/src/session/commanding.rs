@@ -1,9 +1,9 @@
 //! What the session does with a command: in frames or in the original's words, held as long as a key is, or refused with the reason.
 
 use super::{Session, to_ms};
-use crate::board;
 use crate::catalogue;
 use crate::client::NotTaken;
+use crate::event;
 use crate::words;
 use rumbo_control::mode::Movement;
 use rumbo_wire::{Command, Level};
@@ -81,7 +81,7 @@ impl Session {
         }
         let said = words::command(command, self.client.mode());
         self.note(
-            board::Level::Info,
+            event::Level::Info,
             format!("{said}: sent, text is not acknowledged"),
         );
         self.send()
@@ -102,7 +102,7 @@ impl Session {
             None => Err("this robot takes no lines of text from here".to_owned()),
         };
         if let Err(why) = typed {
-            self.note(board::Level::Warning, format!("{line}: not sent, {why}"));
+            self.note(event::Level::Warning, format!("{line}: not sent, {why}"));
         }
         Ok(())
     }
@@ -146,10 +146,10 @@ impl Session {
     pub(super) fn restart_ghost(&mut self) {
         match self.target.restart_ghost(self.observer.standing()) {
             Ok(()) => self.note(
-                board::Level::Info,
+                event::Level::Info,
                 "the ghost starts again where the robot is".into(),
             ),
-            Err(why) => self.note(board::Level::Warning, format!("the ghost: refused, {why}")),
+            Err(why) => self.note(event::Level::Warning, format!("the ghost: refused, {why}")),
         }
     }
 

@@ -1,7 +1,7 @@
 //! What of a session goes into its log.
 
 use super::Session;
-use crate::board;
+use crate::event::Level;
 use crate::log::recorder::Recorder;
 use crate::log::{Burst, Manifest};
 use crate::pace::SLICE_US;
@@ -23,9 +23,9 @@ impl Session {
             Ok(recorder) => {
                 let text = format!("recording to {}", recorder.path().display());
                 self.board.record(recorder);
-                self.note(board::Level::Info, text);
+                self.note(Level::Info, text);
             }
-            Err(error) => self.note(board::Level::Warning, format!("not recording: {error}")),
+            Err(error) => self.note(Level::Warning, format!("not recording: {error}")),
         }
     }
 

@@ -1,0 +1,85 @@
+//! What is wrong with a file: one line per problem, each naming the file, the line, the key, the value and the remedy.
+
+use rumbo_sim::SimError;
+use std::fmt;
+
+/// One thing to put right in a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// The file as the user would name it.
+    pub file: String,
+    /// Line, from 1; 0 for the file as a whole.
+    pub line: usize,
+    /// Key, value and what is allowed.
+    pub text: String,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            0 => write!(f, "{}: {}", self.file, self.text),
+            line => write!(f, "{}:{line}: {}", self.file, self.text),
+        }
+    }
+}
+
+/// Why a robot, a world or a scenario cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FileError {
+    /// No built-in file and no setting has this name.
+    Unknown {
+        /// What was asked for: `scenario`, `world`, `robot`, `rig`, ...
+        kind: &'static str,
+        /// The name asked for.
+        name: String,
+        /// The names that resemble it, best first; all names where none does.
+        near: Vec<String>,
+    },
+    /// The file is not there or cannot be read.
+    Unreadable {
+        /// Its path.
+        path: String,
+        /// What the system says.
+        reason: String,
+    },
+    /// The file was read and is wrong; at least one problem, in the order of lines.
+    Invalid(Vec<Problem>),
+    /// A value given from outside the file, such as `--param`, is wrong.
+    Setting(String),
+}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown { kind, name, near } => {
+                write!(
+                    f,
+                    "unknown {kind} `{name}`; {}",
+                    super::near::did_you_mean(near)
+                )
+            }
+            Self::Unreadable { path, reason } => {
+                write!(
+                    f,
+                    "{path}: cannot be read ({reason}); give the path of an existing file"
+                )
+            }
+            Self::Invalid(problems) => {
+                for (index, problem) in problems.iter().enumerate() {
+                    let separator = if index == 0 { "" } else { "\n" };
+                    write!(f, "{separator}{problem}")?;
+                }
+                Ok(())
+            }
+            Self::Setting(text) => f.write_str(text),
+        }
+    }
+}
+
+impl std::error::Error for FileError {}
+
+impl From<SimError> for FileError {
+    fn from(error: SimError) -> Self {
+        Self::Setting(error.to_string())
+    }
+}

@@ -1,0 +1,119 @@
+//! A program image from its file, and the wiring that it is for.
+
+use super::bounded::read_at_most;
+use super::{FileError, RobotFile, ScenarioFile};
+use rumbo_control::mode::ModeId;
+use rumbo_emulator::image::Image;
+use rumbo_sim::mega::firmware::{Firmware, Language, Opening, opening};
+use rumbo_sim::mega::pins::link_usart;
+use rumbo_sim::wiring::Wiring;
+use std::io;
+use std::path::Path;
+
+/// Longest file of an image, with all that a debugger wants to know [bytes].
+const LONGEST: u64 = 16 << 20;
+
+/// Reads an image, listens to how it begins, and wires it: as `wiring` says, or else as the language and the scenario
+/// suggest.
+///
+/// # Errors
+/// The file is no program for this chip, or the robot has no such wiring.
+pub fn load(
+    path: &Path,
+    wiring: Option<&str>,
+    robot: &RobotFile,
+    scenario: &ScenarioFile,
+) -> Result<Firmware, FileError> {
+    let image = read(path)?;
+    let name = path.file_name().map_or_else(
+        || path.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    );
+    let opening = opening(&image);
+    let wiring = match wiring {
+        Some(wiring) => wiring.to_owned(),
+        None => default_wiring(opening, robot, scenario),
+    };
+    let pins = find(robot, &wiring)?;
+    Ok(Firmware::new(
+        &name,
+        image,
+        opening.language,
+        (&wiring, pins),
+    )?)
+}
+
+/// Reads an image.
+///
+/// # Errors
+/// The file is no program for this chip.
+pub fn read(path: &Path) -> Result<Image, FileError> {
+    let bytes = bytes(path)?;
+    let shown = path.display();
+    Image::parse(&bytes).map_err(|error| FileError::Setting(format!("firmware {shown}: {error}")))
+}
+
+/// The bytes of an image's file.
+///
+/// # Errors
+/// No file of a size that an image can have.
+pub fn bytes(path: &Path) -> Result<Vec<u8>, FileError> {
+    let read = std::fs::metadata(path).and_then(|about| match about.is_file() {
+        true => read_at_most(path, LONGEST),
+        false => Err(io::Error::other("no file")),
+    });
+    read.map_err(|error| {
+        let shown = path.display();
+        FileError::Setting(format!("firmware {shown}: cannot be read ({error}); give the .elf or .hex that the compiler made"))
+    })
+}
+
+fn find<'a>(robot: &'a RobotFile, wiring: &str) -> Result<&'a Wiring, FileError> {
+    robot.wirings.get(wiring).ok_or_else(|| FileError::Unknown {
+        kind: "wiring",
+        name: wiring.to_owned(),
+        near: robot.wirings.keys().cloned().collect(),
+    })
+}
+
+/// Our program knows the final build only; of another one, the report's build for this experiment. If the program has not
+/// switched on the transmitter of that build's link, but that of another build's: that one.
+fn default_wiring(opening: Opening, robot: &RobotFile, scenario: &ScenarioFile) -> String {
+    let name = match (opening.language, scenario.rig.as_str(), scenario.mode) {
+        (Language::Frames, ..) => "final",
+        (_, "front_single", ModeId::FrontDistance) => "mode_1",
+        (_, "front_pair" | "side_pair_left" | "side_pair_right", _) => "modes_2_to_4",
+        (_, _, ModeId::WheelSpeed | ModeId::StraightLine | ModeId::Waypoints | ModeId::Manual) => {
+            "modes_5_to_7"
+        }
+        _ => "final",
+    };
+    let fits = |name: &str| {
+        let wiring = robot.wirings.get(name);
+        let link = wiring.and_then(|wiring| link_usart(name, wiring).ok().flatten());
+        link.is_some_and(|usart| opening.transmits[usize::from(usart)])
+    };
+    let mut names = robot.wirings.keys();
+    let found = match names.len() {
+        0 | 1 => names.next(),
+        _ if fits(name) => None,
+        _ => names.find(|other| fits(other)),
+    };
+    found.map_or_else(|| name.to_owned(), Clone::clone)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::Library;
+
+    #[test]
+    fn the_report_s_wirings_have_the_module_on_usart_1_and_2() {
+        let robot = Library::new().robot("memoria").unwrap();
+        let link = |name: &str| link_usart(name, &robot.wirings[name]).unwrap();
+        assert_eq!(link("final"), Some(2));
+        for name in ["mode_1", "modes_2_to_4", "modes_5_to_7"] {
+            assert_eq!(link(name), Some(1), "{name}");
+        }
+    }
+}

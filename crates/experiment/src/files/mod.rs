@@ -1,0 +1,31 @@
+//! The files that describe robots, worlds and experiments.
+//!
+//! [`Library`] finds a file by name (built in) or path (on disk) and reads it; [`Library::setup`] puts a scenario
+//! together with its robot, rig and world. Everything is checked while it is read: a wrong file yields one line per
+//! problem, with file, line, key, value and what is allowed. Angles are degrees and speeds rpm in the files, radians
+//! and rad/s in what comes out.
+
+pub mod bounded;
+pub mod commands;
+mod dropped;
+mod error;
+pub mod firmware;
+mod library;
+mod names;
+pub(crate) mod near;
+pub mod parameters;
+mod read;
+mod robot;
+mod route;
+mod scenario;
+mod setup;
+mod value;
+mod world;
+
+pub use error::{FileError, Problem};
+pub use library::{Kind, Library};
+pub use names::{MOVEMENTS, find_mode, find_movement};
+pub use robot::{FirmwareCaps, RobotFile};
+pub use scenario::{Bounds, ScenarioFile, Spread, Start, TimedCommand};
+pub use setup::{NativeProgram, Overrides, Setup, TimedText};
+pub use world::{Arena, WorldFile};

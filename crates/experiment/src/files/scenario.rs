@@ -1,0 +1,345 @@
+//! A scenario file: an experiment, as robot + rig + world + mode + timed commands + limits on its metrics.
+//!
+//! ```toml
+//! title = "Stop at a distance from a wall"
+//! robot = "memoria"      # a built-in name, or the path of a file beside this one
+//! rig = "front_single"
+//! world = "wall_front"
+//! mode = "front_distance"
+//! duration_s = 9
+//! [start]
+//! x_m = 0
+//! [[command]]            # one action each; see `commands.rs` for all of them
+//! at_s = 0.5
+//! reference_m = 0.3
+//! [[wire_fault]]         # none in most scenarios
+//! [[sonar_fault]]        # none in most scenarios
+//! at_s = 2.0
+//! sonar = "front"        # or "left", "right"
+//! kind = "stuck"         # or "cut", or "spiking" with share = 0.3
+//! [limits]
+//! "step1.settling_s" = { max = 2.4 }
+//! ```
+
+use super::commands::read_commands;
+use super::error::FileError;
+use super::names::find_mode;
+use super::parameters::read_parameters;
+use super::read::{Allowed, Source, Table};
+use super::robot::read_plant;
+use super::world::{ANGLE, PLACE};
+use rumbo_control::SonarId;
+use rumbo_control::mode::ModeId;
+use rumbo_control::params::ParamId;
+use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
+use rumbo_sim::wire_fault::{TimedWireFault, Wire, WireFault};
+use rumbo_wire::message::Command;
+use std::collections::BTreeMap;
+
+/// An experiment, as `scenarios/*.toml` describes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScenarioFile {
+    /// The name by which commands call it: the file's name without `.toml`.
+    pub name: String,
+    /// Where its file is, as it was asked for; `None` of a built-in one.
+    pub path: Option<String>,
+    /// One line for people.
+    pub title: String,
+    /// The text it was read from, kept for the log's manifest.
+    pub text: String,
+    /// Name of the robot, or path of its file.
+    pub robot: String,
+    /// Name of one of the robot's rigs.
+    pub rig: String,
+    /// Name of the world, or path of its file.
+    pub world: String,
+    /// The mode selected before the first command.
+    pub mode: ModeId,
+    /// How long it lasts, in s.
+    pub duration_s: f64,
+    /// Where the robot stands at first.
+    pub start: Start,
+    /// The wheels turn freely: no floor, the body stays where it is.
+    pub wheels_in_air: bool,
+    /// A calibration of this seed's robot comes first; its parameters are sent before the first command.
+    pub calibrated: bool,
+    /// What the station sends, in order of time, ramps already resolved into single commands.
+    pub commands: Vec<TimedCommand>,
+    /// Sonars that fail on the way.
+    pub sonar_faults: Vec<TimedSonarFault>,
+    /// Wires that fail on the way.
+    pub wire_faults: Vec<TimedWireFault>,
+    /// What each metric must keep to for the run to pass.
+    pub limits: BTreeMap<String, Bounds>,
+    /// Control parameters sent before the first command, from `[parameters]`; they win over the robot file's, and later
+    /// ones over earlier ones.
+    pub parameters: Vec<(ParamId, f32)>,
+    /// Whether each seed draws its own robot.
+    pub spread: Spread,
+    /// Plant values that hold in every run, set after the draw, from `[plant]`; dotted keys of `Params`.
+    pub plant: BTreeMap<String, f64>,
+}
+
+/// The pose at the start, in the world frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Start {
+    /// Middle of the wheels' axis, in m.
+    pub x_m: f64,
+    /// Middle of the wheels' axis, in m.
+    pub y_m: f64,
+    /// Counter-clockwise from x, in rad.
+    pub heading_rad: f64,
+}
+
+/// A command and when the station sends it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimedCommand {
+    /// Time since the start, in s.
+    pub at_s: f64,
+    /// It is sent sooner, as soon as the robot says that it has reached what the command before asked for.
+    pub after_reached: bool,
+    /// What is sent, in the units of the link (m, rad/s, fraction of full PWM).
+    pub command: Command,
+    /// The goal is the one of the seed's world: `command` is put in by [`super::Setup::of_seed`].
+    pub goal_of_world: bool,
+}
+
+/// What a metric must keep to; a missing end is free.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bounds {
+    /// Smallest value that passes.
+    pub min: Option<f64>,
+    /// Largest value that passes.
+    pub max: Option<f64>,
+}
+
+impl Bounds {
+    /// Whether a value passes. What is not a number never does.
+    pub fn admit(&self, value: f64) -> bool {
+        !value.is_nan()
+            && self.min.is_none_or(|min| value >= min)
+            && self.max.is_none_or(|max| value <= max)
+    }
+}
+
+impl std::fmt::Display for Bounds {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match (self.min, self.max) {
+            (Some(min), Some(max)) => write!(f, "{min} to {max}"),
+            (Some(min), None) => write!(f, "at least {min}"),
+            (None, Some(max)) => write!(f, "at most {max}"),
+            (None, None) => write!(f, "none"),
+        }
+    }
+}
+
+/// Whether each seed draws its own robot about the robot file's values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spread {
+    /// Each seed draws radii, base, friction, battery, sensors.
+    #[default]
+    Drawn,
+    /// Every seed drives the robot of the file; only the noise differs.
+    None,
+}
+
+const DURATION: Allowed = Allowed::new(0.1, 3600.0, "s");
+/// A person types no more in an hour.
+const MOST_COMMANDS: usize = 10_000;
+const MOST_FAULTS: usize = 1_000;
+const BOUND: Allowed = Allowed::new(-1e9, 1e9, "");
+
+impl ScenarioFile {
+    /// Reads a scenario. Whether its robot, rig and world exist is for [`super::Library::setup`] to say.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text, by line of `file`.
+    pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, FileError> {
+        let source = Source::new(file, text);
+        let parsed = source.parse()?;
+        let root = source.root(&parsed);
+        let mode = read_mode(&root);
+        root.require("duration_s", &DURATION.remedy());
+        // One that is wrong shortens nothing else.
+        let duration_s = root.number("duration_s", DURATION).unwrap_or(DURATION.max);
+        let scenario = Self {
+            name: name.into(),
+            path: None,
+            title: root
+                .required_text("title", "one line that says what the experiment is")
+                .value,
+            text: text.into(),
+            robot: root
+                .required_text("robot", "name of a robot, e.g. \"memoria\"")
+                .value,
+            rig: root
+                .required_text(
+                    "rig",
+                    "name of one of the robot's rigs, e.g. \"front_single\"",
+                )
+                .value,
+            world: root
+                .required_text("world", "name of a world, e.g. \"open\"")
+                .value,
+            mode: mode.unwrap_or_default(),
+            duration_s,
+            start: read_start(&root.table("start")),
+            wheels_in_air: root.flag("wheels_in_air").is_some_and(|flag| flag.value),
+            calibrated: root.flag("calibrated").is_some_and(|flag| flag.value),
+            commands: read_commands(root.tables("command", MOST_COMMANDS), mode, duration_s),
+            sonar_faults: read_sonar_faults(root.tables("sonar_fault", MOST_FAULTS), duration_s),
+            wire_faults: read_wire_faults(root.tables("wire_fault", MOST_FAULTS), duration_s),
+            limits: read_limits(&root.table("limits"), ""),
+            parameters: read_parameters(&root.table("parameters")),
+            spread: read_spread(&root.table("spread")),
+            plant: read_plant(&root.table("plant"), ""),
+        };
+        root.finish();
+        source.verdict()?;
+        Ok(scenario)
+    }
+}
+
+fn read_mode(root: &Table<'_, '_>) -> Option<ModeId> {
+    if !root.has("mode") {
+        root.complain_here(
+            "mode is missing: name or number of a mode, e.g. \"front_distance\" or 1",
+        );
+    }
+    root.word("mode")
+        .and_then(|word| match find_mode(&word.value) {
+            Ok(mode) => Some(mode),
+            Err(remedy) => {
+                root.complain("mode", word.line, &word.value, &remedy);
+                None
+            }
+        })
+}
+
+fn read_start(table: &Table<'_, '_>) -> Start {
+    let start = Start {
+        x_m: table.number("x_m", PLACE).unwrap_or(0.0),
+        y_m: table.number("y_m", PLACE).unwrap_or(0.0),
+        heading_rad: table
+            .number("heading_deg", ANGLE)
+            .unwrap_or(0.0)
+            .to_radians(),
+    };
+    table.finish();
+    start
+}
+
+fn read_sonar_faults(tables: Vec<Table<'_, '_>>, duration_s: f64) -> Vec<TimedSonarFault> {
+    let mut faults = Vec::new();
+    for table in tables {
+        let at_s = table.required_number("at_s", Allowed::new(0.0, duration_s, "s"));
+        let share = table.number("share", Allowed::new(0.0, 1.0, ""));
+        let sonar = table.required_text("sonar", "\"left\", \"right\" or \"front\"");
+        let sonar_id = match sonar.value.as_str() {
+            "left" => Some(SonarId::Left),
+            "right" => Some(SonarId::Right),
+            "front" => Some(SonarId::Front),
+            "" => None,
+            other => {
+                let remedy = "write \"left\", \"right\" or \"front\"";
+                table.complain("sonar", sonar.line, other, remedy);
+                None
+            }
+        };
+        let kind = table.required_text("kind", "\"cut\", \"stuck\", \"clear\" or \"spiking\"");
+        let fault = match (kind.value.as_str(), share) {
+            ("cut", None) => Some(SonarFault::Cut),
+            ("stuck", None) => Some(SonarFault::Stuck),
+            ("clear", None) => Some(SonarFault::Clear),
+            ("", _) => None,
+            ("spiking", share) => Some(SonarFault::Spiking(share.unwrap_or(0.3))),
+            (other, _) => {
+                let remedy = "write \"cut\", \"stuck\", \"clear\", or \"spiking\" with share = 0.3";
+                table.complain("kind", kind.line, other, remedy);
+                None
+            }
+        };
+        table.finish();
+        if let (Some(sonar), Some(fault)) = (sonar_id, fault) {
+            faults.push(TimedSonarFault { at_s, sonar, fault });
+        }
+    }
+    faults
+}
+
+fn read_wire_faults(tables: Vec<Table<'_, '_>>, duration_s: f64) -> Vec<TimedWireFault> {
+    let mut faults = Vec::new();
+    for table in tables {
+        let at_s = table.required_number("at_s", Allowed::new(0.0, duration_s, "s"));
+        let share = table.number("share", Allowed::new(0.0, 1.0, ""));
+        let rate_hz = table.number("rate_hz", Allowed::new(0.0, 20_000.0, "Hz"));
+        let named = table.required_text("wire", "\"left_encoder\" or \"front_echo\", for instance");
+        let wire = Wire::ALL.into_iter().find(|(name, _)| *name == named.value);
+        if wire.is_none() && !named.value.is_empty() {
+            let names = Wire::ALL.map(|(name, _)| name).join(", ");
+            let remedy = format!("write one of {names}");
+            table.complain("wire", named.line, &named.value, &remedy);
+        }
+        let kind = table.required_text("kind", "\"low\", \"high\", \"losing\" or \"noisy\"");
+        let fault = match (kind.value.as_str(), share, rate_hz) {
+            ("low", None, None) => Some(WireFault::Low),
+            ("high", None, None) => Some(WireFault::High),
+            ("losing", share, None) => Some(WireFault::Losing(share.unwrap_or(0.3))),
+            ("noisy", None, rate_hz) => Some(WireFault::Noisy(rate_hz.unwrap_or(1_000.0))),
+            ("", ..) => None,
+            (other, ..) => {
+                let remedy = "write \"low\", \"high\", \"losing\" with share = 0.3, or \"noisy\" with rate_hz = 1000";
+                table.complain("kind", kind.line, other, remedy);
+                None
+            }
+        };
+        table.finish();
+        if let (Some((_, wire)), Some(fault)) = (wire, fault) {
+            faults.push(TimedWireFault { at_s, wire, fault });
+        }
+    }
+    faults
+}
+
+fn read_spread(table: &Table<'_, '_>) -> Spread {
+    let none = table.flag("none").is_some_and(|flag| flag.value);
+    table.finish();
+    if none { Spread::None } else { Spread::Drawn }
+}
+
+/// Limits by metric. A dot in a metric's name may be quoted or not: TOML then nests, and the names are joined again.
+fn read_limits(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String, Bounds> {
+    let mut limits = BTreeMap::new();
+    for key in table.keys() {
+        let metric = format!("{prefix}{}", key.value);
+        let below = table.table(key.value);
+        if !below.has("min")
+            && !below.has("max")
+            && below
+                .keys()
+                .iter()
+                .any(|inner| below.holds_table(inner.value))
+        {
+            limits.extend(read_limits(&below, &format!("{metric}.")));
+            continue;
+        }
+        let bounds = Bounds {
+            min: below.number("min", BOUND),
+            max: below.number("max", BOUND),
+        };
+        if below.keys().is_empty() && table.holds_table(key.value) {
+            below.complain_here("has neither min nor max: write e.g. { max = 2.4 }");
+        }
+        if let Bounds {
+            min: Some(min),
+            max: Some(max),
+        } = bounds
+            && min > max
+        {
+            below.complain_here(&format!("min {min} is above max {max}: nothing could pass"));
+        }
+        below.finish();
+        limits.insert(metric, bounds);
+    }
+    limits
+}

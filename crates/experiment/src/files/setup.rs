@@ -1,0 +1,396 @@
+//! A scenario with everything it names, and what the command line changes about it.
+
+use super::error::FileError;
+use super::near::{near, near_or_all};
+use super::read::Allowed;
+use super::{Library, RobotFile, ScenarioFile, Spread, Start, WorldFile, firmware, parameters};
+use crate::random_world::{Site, Size};
+use rumbo_control::params::ParamId;
+use rumbo_plant::contact::{Footprint, Pose};
+use rumbo_plant::params::Params;
+use rumbo_plant::plant::{Mount, Rig};
+use rumbo_plant::world::Point;
+use rumbo_sim::mega::firmware::{Firmware, Language};
+use rumbo_sim::wiring::Divider;
+use rumbo_sim::{Config, Program, Sim};
+use rumbo_wire::Command;
+use std::borrow::Cow;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// The program that drives the robot natively, as part of the simulator.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NativeProgram {
+    /// Ours, behind its link.
+    #[default]
+    Rumbo,
+    /// The report's, rewritten from its description (docs/theory/baseline.md).
+    Baseline,
+}
+
+/// A line of text and when it is sent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimedText {
+    /// Time since the start [s].
+    pub at_s: f64,
+    /// The line, without its end.
+    pub text: String,
+}
+
+/// What the command line sets in place of the scenario's own.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Overrides {
+    /// Another robot.
+    pub robot: Option<String>,
+    /// Another rig.
+    pub rig: Option<String>,
+    /// Another world.
+    pub world: Option<String>,
+    /// Parameters by name: those of the control core, and the dotted keys of the plant such as `battery.open_circuit_v`.
+    pub parameters: Vec<(String, f64)>,
+    /// The program that drives the robot.
+    pub program: NativeProgram,
+    /// An image for an emulated Mega, in place of `program`.
+    pub firmware: Option<PathBuf>,
+    /// Another wiring for it.
+    pub wiring: Option<String>,
+    /// Lines of text sent over the link besides the scenario's commands.
+    pub texts: Vec<TimedText>,
+}
+
+/// A scenario ready to be run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// The scenario, with the overrides applied.
+    pub scenario: ScenarioFile,
+    /// Its robot.
+    pub robot: RobotFile,
+    /// Where its sonars sit.
+    pub rig: Rig,
+    /// Its world.
+    pub world: WorldFile,
+    /// The native program that drives the robot.
+    pub program: NativeProgram,
+    /// An image on an emulated Mega that does, in its place.
+    pub firmware: Option<Arc<Firmware>>,
+    /// Lines of text sent over the link besides its commands, in order of time.
+    pub texts: Vec<TimedText>,
+}
+
+impl Library {
+    /// Reads a scenario and what it names, with overrides. Paths in the scenario are relative to its own file, paths
+    /// in the overrides to the current folder.
+    ///
+    /// # Errors
+    /// Whatever is wrong with any of them.
+    pub fn setup(&self, name_or_path: &str, overrides: &Overrides) -> Result<Setup, FileError> {
+        let mut scenario = self.scenario(name_or_path)?;
+        let beside = self.beside(name_or_path);
+        let robot = match &overrides.robot {
+            Some(robot) => self.robot(robot)?,
+            None => beside.robot(&scenario.robot)?,
+        };
+        let world = match &overrides.world {
+            Some(world) => self.world(world)?,
+            None => beside.world(&scenario.world)?,
+        };
+        scenario.robot.clone_from(&robot.name);
+        scenario.world.clone_from(&world.name);
+        if let Some(rig) = &overrides.rig {
+            scenario.rig.clone_from(rig);
+        }
+        for (name, value) in &overrides.parameters {
+            apply(&mut scenario, name, *value)?;
+        }
+        stands_free(&scenario, &robot, &world)?;
+        has_its_goal(&scenario, &world)?;
+        let rig = robot
+            .rigs
+            .get(&scenario.rig)
+            .copied()
+            .ok_or_else(|| FileError::Unknown {
+                kind: "rig",
+                name: scenario.rig.clone(),
+                near: near_or_all(&scenario.rig, robot.rigs.keys().map(String::as_str)),
+            })?;
+        let wiring = overrides.wiring.as_deref();
+        let load = |path: &PathBuf| firmware::load(path, wiring, &robot, &scenario).map(Arc::new);
+        let firmware = overrides.firmware.as_ref().map(load).transpose()?;
+        let mut texts = overrides.texts.clone();
+        texts.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));
+        Ok(Setup {
+            scenario,
+            robot,
+            rig,
+            world,
+            program: overrides.program,
+            firmware,
+            texts,
+        })
+    }
+}
+
+impl Setup {
+    /// The setup of a seed: with boxes and goal in place where the world is random, and else this one as it is.
+    ///
+    /// # Errors
+    /// A random world that finds no room.
+    pub fn of_seed(&self, seed: u64) -> Result<Cow<'_, Self>, FileError> {
+        let Some(random) = self.world.random else {
+            return Ok(Cow::Borrowed(self));
+        };
+        let Start { x_m, y_m, .. } = self.scenario.start;
+        let site = Site {
+            from_m: self.world.arena.from_m,
+            to_m: self.world.arena.to_m,
+            walls: &self.world.walls,
+            boxes: &self.world.boxes,
+            start_m: [x_m, y_m],
+            robot: Size::of(&self.robot.plant.body),
+        };
+        let drawn = random.draw(&site, seed).ok_or_else(|| {
+            FileError::Setting(format!(
+                "world {}: no room for boxes and a goal with seed {seed}; make its arena larger, or ask for fewer groups or nearer goals in \
+                 [random]",
+                self.world.name
+            ))
+        })?;
+        let mut own = self.clone();
+        own.world.random = None;
+        own.world.boxes.extend(drawn.boxes);
+        for timed in &mut own.scenario.commands {
+            if timed.goal_of_world {
+                timed.command = goal_seen_from(&self.scenario.start, drawn.journey.goal_m);
+            }
+        }
+        own.world.journey = Some(drawn.journey);
+        Ok(Cow::Owned(own))
+    }
+
+    /// The robot of a seed at its start.
+    ///
+    /// # Errors
+    /// If the files' values do not fit together.
+    pub fn sim(&self, seed: u64) -> Result<Sim, FileError> {
+        Ok(Sim::new(self.config(seed)?)?)
+    }
+
+    /// What the simulation of a seed is made from: `seed` draws the robot's parameters, unless the scenario says not
+    /// to, its noise, and a random world.
+    ///
+    /// # Errors
+    /// If the files' values do not fit together.
+    pub fn config(&self, seed: u64) -> Result<Config, FileError> {
+        let setup = &*self.of_seed(seed)?;
+        let scenario = &setup.scenario;
+        let world = setup
+            .world
+            .world()
+            .map_err(|error| FileError::Setting(format!("world {}: {error}", setup.world.name)))?;
+        let program = match (&setup.firmware, setup.program) {
+            (Some(firmware), _) => Program::Image(firmware.clone()),
+            (None, NativeProgram::Rumbo) => Program::Rumbo {
+                parameters: setup.control_parameters()?,
+                divider: setup.divider(),
+            },
+            (None, NativeProgram::Baseline) => Program::Baseline {
+                mode: scenario.mode,
+                rig: scenario.rig.clone(),
+            },
+        };
+        Ok(Config {
+            plant: setup.drawn_params(seed)?,
+            rig: setup.rig,
+            world,
+            start: Pose {
+                x_m: scenario.start.x_m,
+                y_m: scenario.start.y_m,
+                heading_rad: scenario.start.heading_rad,
+            },
+            wheels_in_air: scenario.wheels_in_air,
+            program,
+            memory: Vec::new(),
+            sonar_faults: scenario.sonar_faults.clone(),
+            wire_faults: scenario.wire_faults.clone(),
+            seed,
+            day: 0,
+        })
+    }
+
+    /// The robot file's parameters, drawn for the seed, with the scenario's own values on top.
+    fn drawn_params(&self, seed: u64) -> Result<Params, FileError> {
+        let mut params = match self.scenario.spread {
+            Spread::Drawn => self.robot.plant.draw(seed, 0),
+            Spread::None => self.robot.plant,
+        };
+        for (key, value) in &self.scenario.plant {
+            params
+                .set(key, *value)
+                .map_err(|error| FileError::Setting(error.to_string()))?;
+        }
+        Ok(params)
+    }
+
+    /// Whether the program takes the control core's parameters: our own does, and an image that speaks its frames.
+    pub fn takes_parameters(&self) -> bool {
+        match &self.firmware {
+            Some(firmware) => firmware.language() == Language::Frames,
+            None => self.program == NativeProgram::Rumbo,
+        }
+    }
+
+    /// The control parameters of a run before its first command: the rig's, the wiring's, the robot file's, the scenario's; later ones win.
+    ///
+    /// # Errors
+    /// As for [`Setup::rig_parameters`].
+    pub fn control_parameters(&self) -> Result<Vec<(ParamId, f32)>, FileError> {
+        let mut parameters = self.rig_parameters()?;
+        if let Some(Divider { input, ratio }) = self.divider() {
+            parameters.push((ParamId::BatteryInput, f32::from(input)));
+            parameters.push((ParamId::BatteryRatio, ratio as f32));
+        }
+        parameters.extend(&self.robot.parameters);
+        parameters.extend(&self.scenario.parameters);
+        Ok(parameters)
+    }
+
+    /// The battery's divider in the wiring that our own program knows.
+    pub fn divider(&self) -> Option<Divider> {
+        self.robot.wirings.get("final")?.battery
+    }
+
+    /// What the robot must be told about the rig it carries, as control parameters.
+    ///
+    /// # Errors
+    /// The rig's name is none that the control core knows, or it lacks a sonar of that rig.
+    pub fn rig_parameters(&self) -> Result<Vec<(ParamId, f32)>, FileError> {
+        use rumbo_control::rig::Rig as Known;
+        let name = &self.scenario.rig;
+        let known = Known::ALL.into_iter().find(|rig| rig.name() == name);
+        let Some(rig) = known else {
+            return Err(FileError::Unknown {
+                kind: "rig of the control core",
+                name: name.clone(),
+                near: near_or_all(name, Known::ALL.iter().map(|rig| rig.name())),
+            });
+        };
+        let need = |mount: Option<Mount>, sonar: &str| {
+            mount.ok_or_else(|| {
+                FileError::Setting(format!(
+                    "robot {}: rig {name} needs a `{sonar}` sonar; add [rig.{name}.{sonar}]",
+                    self.robot.name
+                ))
+            })
+        };
+        let mut values = vec![(ParamId::Rig, f64::from(rig as u8))];
+        if matches!(rig, Known::FrontSingle | Known::Final) {
+            values.push((ParamId::SonarFrontX, need(self.rig.front, "front")?.x_m));
+        }
+        if rig != Known::FrontSingle {
+            let left = need(self.rig.left, "left")?;
+            let right = need(self.rig.right, "right")?;
+            match rig {
+                Known::FrontPair => values.extend([
+                    (ParamId::SonarFrontX, left.x_m),
+                    (ParamId::FrontGap, left.y_m - right.y_m),
+                ]),
+                Known::SidePairLeft | Known::SidePairRight => values.extend([
+                    (ParamId::SonarSideX, 0.5 * (left.x_m + right.x_m)),
+                    (ParamId::SonarSideY, left.y_m.abs()),
+                    (ParamId::SideGap, left.x_m - right.x_m),
+                ]),
+                Known::FrontSingle | Known::Final => values.extend([
+                    (ParamId::SonarSideX, left.x_m),
+                    (ParamId::SonarSideY, left.y_m),
+                ]),
+            }
+        }
+        Ok(values
+            .into_iter()
+            .map(|(id, value)| (id, value as f32))
+            .collect())
+    }
+}
+
+/// The command to go to a point of the world, for a robot whose origin is the start.
+fn goal_seen_from(start: &Start, goal_m: Point) -> Command {
+    let (x_m, y_m) = (goal_m[0] - start.x_m, goal_m[1] - start.y_m);
+    let (sin, cos) = (libm::sin(start.heading_rad), libm::cos(start.heading_rad));
+    Command::Goal {
+        x_m: (cos * x_m + sin * y_m) as f32,
+        y_m: (cos * y_m - sin * x_m) as f32,
+    }
+}
+
+/// Complains about a goal that only a random world could give.
+fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result<(), FileError> {
+    let asks = scenario.commands.iter().any(|timed| timed.goal_of_world);
+    if !asks || world.random.is_some() {
+        return Ok(());
+    }
+    Err(FileError::Setting(format!(
+        "scenario {}: its goal is that of the world, and world {} has none; give a world with [random], or goal_m in place of goal",
+        scenario.name, world.name
+    )))
+}
+
+/// Complains about a start inside a wall or a box.
+fn stands_free(
+    scenario: &ScenarioFile,
+    robot: &RobotFile,
+    world: &WorldFile,
+) -> Result<(), FileError> {
+    let obstacles = world
+        .world()
+        .map_err(|error| FileError::Setting(format!("world {}: {error}", world.name)))?;
+    let Start {
+        x_m,
+        y_m,
+        heading_rad,
+    } = scenario.start;
+    let footprint = Footprint::new(&robot.plant.body, &robot.plant.wheels);
+    if footprint.clearance_m(
+        &obstacles,
+        &Pose {
+            x_m,
+            y_m,
+            heading_rad,
+        },
+    ) >= 0.0
+        || scenario.wheels_in_air
+    {
+        return Ok(());
+    }
+    Err(FileError::Setting(format!(
+        "scenario {}: its start x_m = {x_m}, y_m = {y_m} is inside a wall or box of world {}; move [start] or choose another world",
+        scenario.name, world.name
+    )))
+}
+
+/// Sets one parameter, of the plant or of the control core, whichever has the name.
+fn apply(scenario: &mut ScenarioFile, name: &str, value: f64) -> Result<(), FileError> {
+    let wrong = |remedy: &str| FileError::Setting(format!("parameter {name} = {value}: {remedy}"));
+    let limits = Params::limits();
+    if let Some(limit) = limits.iter().find(|limit| limit.key == name) {
+        let allowed = Allowed::new(limit.min, limit.max, limit.unit);
+        if !allowed.admits(value) {
+            return Err(wrong(&allowed.remedy()));
+        }
+        scenario.plant.insert(name.to_owned(), value);
+        return Ok(());
+    }
+    let Some(id) = ParamId::from_name(name) else {
+        let known = limits
+            .iter()
+            .map(|limit| limit.key.as_str())
+            .chain(ParamId::ALL.map(ParamId::name));
+        return Err(FileError::Unknown {
+            kind: "parameter",
+            name: name.to_owned(),
+            near: near(name, known).into_iter().map(str::to_owned).collect(),
+        });
+    };
+    parameters::check(id, value).map_err(|remedy| wrong(&remedy))?;
+    scenario.parameters.push((id, value as f32));
+    Ok(())
+}

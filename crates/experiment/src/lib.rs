@@ -1,0 +1,17 @@
+//! Rumbo's experiments: files that describe them, runs, metrics, campaigns, calibration.
+
+/// Number of the model: of robot, plant, world and metrics together. Raised with every change of `tests/golden/*.toml`;
+/// two runs of the same scenario and seed are comparable bit for bit only within one model.
+pub const MODEL: u32 = 1;
+
+pub mod calibrate;
+pub mod calibration_run;
+#[cfg(feature = "host")]
+pub mod campaign;
+pub mod files;
+pub mod metrics;
+pub mod observe;
+mod operator;
+pub mod random_world;
+pub mod run;
+pub mod shortest_path;

@@ -1,0 +1,74 @@
+//! Metrics of a run: from the plant's truth and what crosses the pins, never from the robot's own estimates.
+//!
+//! Some are given for every run, some depend on the mode; each step of a reference has a group of its own, named after its place in the
+//! scenario: `step1.settling_s`. Names end in their unit; docs/scenarios.md lists them all.
+
+mod align;
+mod curve;
+mod journey;
+mod lane;
+mod mission;
+mod path;
+mod route;
+mod start;
+mod step;
+mod straight;
+mod wall;
+
+use crate::files::Setup;
+use rumbo_control::mode::ModeId;
+use rumbo_sim::Sim;
+use rumbo_sim::trace::Trace;
+use rumbo_wire::FromRobot;
+use std::collections::BTreeMap;
+
+/// Metrics by name.
+pub type Metrics = BTreeMap<String, f64>;
+
+/// All metrics of a run. Not a number where what is measured did not happen; of a robot that was never driven, those of
+/// its mode are missing.
+pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
+    let mut metrics = Metrics::new();
+    let duration_s = setup.scenario.duration_s;
+    metrics.insert("contacts".into(), f64::from(sim.truth().contacts));
+    metrics.insert("reverse_drive_rad_s".into(), sim.worst_reverse_rad_s());
+    let frames = trace
+        .heard
+        .iter()
+        .filter(|heard| matches!(heard.what, FromRobot::Telemetry(_)));
+    metrics.insert("telemetry_hz".into(), frames.count() as f64 / duration_s);
+    metrics.insert("control_period_s".into(), sim.control_period_s());
+    if trace.drove() {
+        of_mode(setup, sim, trace, &mut metrics);
+    }
+    for value in metrics.values_mut() {
+        *value = match value.is_finite() {
+            // A billionth of any unit is rounding, not behaviour.
+            true => (*value * 1e9).round() / 1e9 + 0.0,
+            // Nothing to measure: no wall ahead, for instance.
+            false => f64::NAN,
+        };
+    }
+    metrics
+}
+
+fn of_mode(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut Metrics) {
+    match setup.scenario.mode {
+        ModeId::FrontDistance => step::distance_steps(setup, sim, trace, metrics),
+        ModeId::WheelSpeed => step::speed_steps(setup, trace, metrics),
+        ModeId::Manual => {
+            path::movement(setup, trace, metrics);
+            start::dead_zones(trace, metrics);
+            curve::curve(setup, trace, metrics);
+        }
+        ModeId::WallHold | ModeId::WallFollow => wall::following(setup, sim, trace, metrics),
+        ModeId::FrontAlign => align::aligning(setup, sim, trace, metrics),
+        ModeId::Mission => {
+            journey::journey(setup, sim.worst_contact_m_s(), trace, metrics);
+            mission::mission(setup, sim.worst_contact_m_s(), trace, metrics);
+            lane::lane(setup, trace, metrics);
+        }
+        ModeId::Waypoints => route::route(setup, trace, metrics),
+        ModeId::StraightLine => straight::drift(trace, metrics),
+    }
+}

@@ -1,0 +1,329 @@
+//! Metrics of a response to a step of the reference.
+//!
+//! A step lasts from the command that sets the reference (or arms the robot) until the next one. *Settling* is the time after which the
+//! signal stays within the band; the band is 5 % of the step for distances, 3.2 rpm (the resolution of the original) for speeds.
+
+use super::Metrics;
+use crate::files::{Setup, TimedCommand};
+use rumbo_sim::Sim;
+use rumbo_sim::trace::{Sample, Trace};
+use rumbo_wire::Command;
+
+/// Band in which a wheel's speed counts as settled [rad/s]: 3.2 rpm.
+const SPEED_BAND_RAD_S: f64 = 3.2 * std::f64::consts::TAU / 60.0;
+/// Share of a distance step that is its band.
+pub(super) const DISTANCE_BAND: f64 = 0.05;
+/// Share of a step, at its end, over which steady error and ripple are taken.
+pub(super) const STEADY_SHARE: f64 = 0.4;
+/// Speed of sound that the robot reckons with [m/s]: 20 degrees.
+const SOUND_M_S: f64 = 331.3 + 0.606 * 20.0;
+
+/// A step of a reference.
+pub(super) struct Step {
+    pub(super) from_s: f64,
+    pub(super) until_s: f64,
+    pub(super) reference: [f64; 2],
+}
+
+impl Step {
+    /// How a signal responded; the reference is that of `wheel`, the band in the signal's unit. `None` without samples.
+    pub(super) fn response(
+        &self,
+        trace: &Trace,
+        wheel: usize,
+        band: f64,
+        signal: impl Fn(&Sample) -> f64,
+    ) -> Option<Response> {
+        let samples = trace.between(self.from_s, self.until_s);
+        let start = signal(samples.first()?);
+        let reference = self.reference[wheel];
+        Some(response(
+            samples,
+            self.from_s,
+            start,
+            reference,
+            band,
+            signal,
+        ))
+    }
+}
+
+/// The steps of a scenario: each time the reference in force changes while the robot is armed.
+pub(super) fn steps(commands: &[TimedCommand], duration_s: f64) -> Vec<Step> {
+    let (mut armed, mut reference) = (false, None);
+    let mut steps: Vec<Step> = Vec::new();
+    for TimedCommand { at_s, command, .. } in commands {
+        match command {
+            Command::Arm => armed = true,
+            Command::Disarm | Command::Stop => armed = false,
+            Command::Reference(value) => reference = Some([f64::from(*value); 2]),
+            Command::WheelReference(wheels) => {
+                reference = Some([f64::from(wheels.left), f64::from(wheels.right)])
+            }
+            _ => continue,
+        }
+        if let Some(last) = steps.last_mut()
+            && last.until_s > *at_s
+        {
+            last.until_s = *at_s;
+        }
+        if let (true, Some(reference)) = (armed, reference) {
+            steps.push(Step {
+                from_s: *at_s,
+                until_s: duration_s,
+                reference,
+            });
+        }
+    }
+    steps
+}
+
+/// A signal's response to one step.
+pub(super) struct Response {
+    pub(super) settling_s: f64,
+    pub(super) rise_s: f64,
+    pub(super) overshoot: f64,
+    pub(super) steady_error: f64,
+    pub(super) rms: f64,
+    pub(super) ripple: f64,
+}
+
+impl Response {
+    /// Of a signal that is none where the step begins, such as the distance to a wall that is not there.
+    const NONE: Self = Self {
+        settling_s: f64::NAN,
+        rise_s: f64::NAN,
+        overshoot: f64::NAN,
+        steady_error: f64::NAN,
+        rms: f64::NAN,
+        ripple: f64::NAN,
+    };
+}
+
+/// Measures `signal` over the samples of a step, from `start` to `reference`. `NaN` where it never gets there.
+fn response(
+    samples: &[Sample],
+    from_s: f64,
+    start: f64,
+    reference: f64,
+    band: f64,
+    signal: impl Fn(&Sample) -> f64,
+) -> Response {
+    if !start.is_finite() {
+        return Response::NONE;
+    }
+    let direction = if reference < start { -1.0 } else { 1.0 };
+    let span = (reference - start).abs();
+    let progress = |sample: &Sample| direction * (signal(sample) - start);
+    let first = |level: f64| {
+        samples
+            .iter()
+            .find(|sample| progress(sample) >= level * span)
+            .map(|sample| sample.t_s)
+    };
+    let within = |sample: &Sample| (signal(sample) - reference).abs() <= band;
+    let last_outside = samples.iter().rev().find(|sample| !within(sample));
+    let settled = samples.last().is_some_and(within);
+    let steady = &samples[(samples.len() as f64 * (1.0 - STEADY_SHARE)) as usize..];
+    let count = steady.len() as f64;
+    let mean = steady.iter().map(&signal).sum::<f64>() / count;
+    let variance = steady
+        .iter()
+        .map(|sample| (signal(sample) - mean).powi(2))
+        .sum::<f64>()
+        / count;
+    let square = samples
+        .iter()
+        .map(|sample| (signal(sample) - reference).powi(2))
+        .sum::<f64>()
+        / samples.len() as f64;
+    Response {
+        settling_s: if settled {
+            last_outside.map_or(0.0, |sample| sample.t_s - from_s)
+        } else {
+            f64::NAN
+        },
+        rise_s: match (first(0.1), first(0.9)) {
+            (Some(low), Some(high)) => high - low,
+            _ => f64::NAN,
+        },
+        overshoot: samples
+            .iter()
+            .map(|sample| progress(sample) - span)
+            .fold(0.0, f64::max),
+        steady_error: (mean - reference).abs(),
+        rms: square.sqrt(),
+        ripple: variance.sqrt(),
+    }
+}
+
+/// What the robot of this run reads for a metre: it reckons with another speed of sound than the air's.
+pub(super) fn sound_scale(sim: &Sim) -> f64 {
+    SOUND_M_S / (331.3 + 0.606 * sim.params().sonar.temperature_c)
+}
+
+/// Steps of the distance to the wall in front. The run's scale of the speed of sound is removed: the robot cannot know it.
+pub(super) fn distance_steps(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut Metrics) {
+    let scale = sound_scale(sim);
+    let distance = |sample: &Sample| sample.range_m[2] * scale;
+    for (index, step) in steps(&setup.scenario.commands, setup.scenario.duration_s)
+        .iter()
+        .enumerate()
+    {
+        let samples = trace.between(step.from_s, step.until_s);
+        let Some(start) = samples.first().map(distance) else {
+            continue;
+        };
+        let [reference, _] = step.reference;
+        let band = DISTANCE_BAND * (reference - start).abs();
+        let response = response(samples, step.from_s, start, reference, band, distance);
+        let mut put =
+            |name: &str, value| metrics.insert(format!("step{}.{name}", index + 1), value);
+        put("settling_s", response.settling_s);
+        put("rise_s", response.rise_s);
+        put("overshoot_m", response.overshoot);
+        put("steady_error_m", response.steady_error);
+        put("rms_m", response.rms);
+        put("ripple_m", response.ripple);
+    }
+}
+
+/// Steps of the wheel speeds; each figure is the worse of the two wheels'.
+pub(super) fn speed_steps(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
+    for (index, step) in steps(&setup.scenario.commands, setup.scenario.duration_s)
+        .iter()
+        .enumerate()
+    {
+        let samples = trace.between(step.from_s, step.until_s);
+        let Some(first) = samples.first() else {
+            continue;
+        };
+        let [left, right] = [0, 1].map(|wheel| {
+            let start = first.wheel_rad_s[wheel];
+            response(
+                samples,
+                step.from_s,
+                start,
+                step.reference[wheel],
+                SPEED_BAND_RAD_S,
+                |sample| sample.wheel_rad_s[wheel],
+            )
+        });
+        let mut put = |name: &str, left: f64, right: f64| {
+            let worse = if left.is_nan() || right.is_nan() {
+                f64::NAN
+            } else {
+                left.max(right)
+            };
+            metrics.insert(format!("step{}.{name}", index + 1), worse);
+        };
+        put("settling_s", left.settling_s, right.settling_s);
+        put("rise_s", left.rise_s, right.rise_s);
+        put("overshoot_rad_s", left.overshoot, right.overshoot);
+        put("steady_error_rad_s", left.steady_error, right.steady_error);
+        put("rms_rad_s", left.rms, right.rms);
+        put("ripple_rad_s", left.ripple, right.ripple);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn samples(signal: impl Fn(f64) -> f64) -> Vec<Sample> {
+        (1..=400)
+            .map(|n| f64::from(n) * 0.01)
+            .map(|t_s| Sample {
+                t_s,
+                x_m: 0.0,
+                y_m: 0.0,
+                heading_rad: 0.0,
+                wheel_rad_s: [0.0; 2],
+                duty: [0; 2],
+                range_m: [f64::INFINITY, f64::INFINITY, signal(t_s)],
+                servo_rad: 0.0,
+                battery_v: 7.4,
+                touching: false,
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_first_order_response_settles_after_three_time_constants() {
+        let samples = samples(|t| 1.0 - 0.7 * (1.0 - (-t / 0.4).exp()));
+        let response = response(&samples, 0.0, 1.0, 0.3, 0.05 * 0.7, |sample| {
+            sample.range_m[2]
+        });
+        assert!(
+            (response.settling_s - 0.4 * 20f64.ln()).abs() < 0.02,
+            "{}",
+            response.settling_s
+        );
+        assert!(
+            (response.rise_s - 0.4 * 9f64.ln()).abs() < 0.02,
+            "{}",
+            response.rise_s
+        );
+        assert!(response.overshoot < 1e-9 && response.steady_error < 0.01);
+    }
+
+    #[test]
+    fn what_leaves_the_band_at_the_end_has_not_settled() {
+        let samples = samples(|t| if t < 3.9 { 0.3 } else { 0.5 });
+        assert!(
+            response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| {
+                sample.range_m[2]
+            })
+            .settling_s
+            .is_nan()
+        );
+    }
+
+    #[test]
+    fn where_there_is_no_wall_nothing_has_settled() {
+        let samples = samples(|_| f64::INFINITY);
+        let band = DISTANCE_BAND * f64::INFINITY;
+        let response = response(&samples, 0.0, f64::INFINITY, 0.3, band, |sample| {
+            sample.range_m[2]
+        });
+        let figures = [
+            response.settling_s,
+            response.rise_s,
+            response.overshoot,
+            response.steady_error,
+            response.rms,
+            response.ripple,
+        ];
+        assert!(figures.iter().all(|figure| figure.is_nan()), "{figures:?}");
+    }
+
+    #[test]
+    fn overshoot_is_what_goes_beyond_the_reference_in_the_direction_of_the_step() {
+        let samples = samples(|t| if t < 1.0 { 0.27 } else { 0.31 });
+        let response = response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| sample.range_m[2]);
+        assert!((response.overshoot - 0.03).abs() < 1e-9);
+        assert!((response.steady_error - 0.01).abs() < 1e-9 && response.ripple < 1e-9);
+    }
+
+    #[test]
+    fn a_reference_set_before_arming_counts_from_the_arming() {
+        let at = |at_s, command| TimedCommand {
+            at_s,
+            command,
+            after_reached: false,
+            goal_of_world: false,
+        };
+        let commands = [
+            at(0.2, Command::Reference(0.3)),
+            at(0.5, Command::Arm),
+            at(5.0, Command::Reference(0.5)),
+            at(8.0, Command::Stop),
+        ];
+        let steps = steps(&commands, 9.0);
+        let times: Vec<_> = steps
+            .iter()
+            .map(|step| (step.from_s, step.until_s))
+            .collect();
+        assert_eq!(times, [(0.5, 5.0), (5.0, 8.0)]);
+    }
+}

@@ -1,0 +1,135 @@
+//! A run whose program is looked at: a profile, pins over time, a debugger.
+//!
+//! None of it changes the run: robot and world stand still in time while a debugger holds the program.
+
+use crate::files::FileError;
+use crate::run::{Run, Waves};
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::cpu::Stopped;
+use rumbo_emulator::gdb::{self, Farewell, Machine};
+use rumbo_emulator::observe::profile::Profile;
+use rumbo_sim::mega::Mega;
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::net::TcpStream;
+
+/// What is to be seen of the program.
+#[derive(Debug, Default)]
+pub struct Wanted {
+    /// Cycles by function.
+    pub profile: bool,
+    /// A file for the pins over time, as viewers of waveforms read them.
+    pub vcd: Option<File>,
+    /// A debugger that is connected.
+    pub debugger: Option<TcpStream>,
+}
+
+/// What was seen.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Seen {
+    /// The profile in tables.
+    pub profile: Option<String>,
+    /// The profile as tools that draw flame graphs read it.
+    pub folded: Option<String>,
+    /// The debugger ended the run before its time.
+    pub ended: bool,
+}
+
+/// Lets a run go on to its end, and shows what is wanted of its program.
+///
+/// # Errors
+/// There is no image in the robot, the file cannot be written, or the line to the debugger broke.
+pub fn go_on(run: &mut Run<'_>, wanted: Wanted) -> Result<Seen, FileError> {
+    let Some(mega) = run.sim().mega_mut() else {
+        let what = "nothing of the program can be seen without --firmware";
+        return Err(FileError::Setting(what.into()));
+    };
+    let image = mega.firmware().image().clone();
+    let signals = mega.firmware().signals();
+    if wanted.profile {
+        mega.chip_mut()
+            .observers_mut()
+            .profile(Profile::new(&image));
+    }
+    let drawn = wanted.vcd.is_some();
+    if let Some(file) = wanted.vcd {
+        mega.chip_mut().record_levels();
+        let waves = Waves::new(BufWriter::new(file), &signals);
+        run.draw(waves.map_err(|error| unwritten(&error))?);
+    }
+    let mut seen = Seen::default();
+    if let Some(connection) = wanted.debugger {
+        let farewell = gdb::serve(&mut Debugged(run), connection);
+        let farewell = farewell.map_err(|error| FileError::Setting(error.to_string()))?;
+        seen.ended = farewell == Farewell::Ended && !run.is_over();
+    }
+    while !seen.ended && !run.is_over() {
+        run.advance();
+    }
+    if drawn {
+        run.finish_drawing().map_err(|error| unwritten(&error))?;
+    }
+    if let Some(profile) = run
+        .mega()
+        .and_then(|mega| mega.chip().observers().profiled())
+    {
+        seen.folded = Some(profile.folded());
+        seen.profile = Some(profile.report());
+    }
+    Ok(seen)
+}
+
+fn unwritten(error: &io::Error) -> FileError {
+    FileError::Setting(format!(
+        "the pins over time cannot be written ({error}); choose another file"
+    ))
+}
+
+/// A run with an emulated Mega in it, in the hands of a debugger.
+struct Debugged<'r, 'a>(&'r mut Run<'a>);
+
+impl Debugged<'_, '_> {
+    fn mega(&mut self) -> &mut Mega {
+        match self.0.sim().mega_mut() {
+            Some(mega) => mega,
+            None => unreachable!("there was one at the beginning"),
+        }
+    }
+
+    fn go_on(&mut self) -> Stopped {
+        self.0.advance();
+        if let Some(stopped) = self.mega().take_halt() {
+            return stopped;
+        }
+        match self.chip().cpu().verdict() {
+            Some(verdict) => Stopped::Ended(verdict.clone()),
+            None => Stopped::Reached,
+        }
+    }
+}
+
+impl Machine for Debugged<'_, '_> {
+    fn chip(&self) -> &Chip {
+        match self.0.mega() {
+            Some(mega) => mega.chip(),
+            None => unreachable!("there was one at the beginning"),
+        }
+    }
+
+    fn chip_mut(&mut self) -> &mut Chip {
+        self.mega().chip_mut()
+    }
+
+    fn go(&mut self) -> Stopped {
+        self.go_on()
+    }
+
+    fn step(&mut self) -> Stopped {
+        self.mega().step();
+        self.go_on()
+    }
+
+    fn is_over(&self) -> bool {
+        self.0.is_over()
+    }
+}

@@ -1,0 +1,316 @@
+//! Sends a scenario's commands at their times, as a person at the dashboard would: over the link, in the language of the
+//! program at its other end.
+//!
+//! | program | language |
+//! |---|---|
+//! | ours, or an image that speaks its frames | one command at a time, repeated until it is acknowledged, with a heartbeat in between |
+//! | any other image | lines of the original's text: [`text`] |
+//! | the report's, native | handed over directly |
+//!
+//! Lines given on the command line ([`Setup::texts`]) go out as they are, whatever the language.
+
+mod goal;
+mod text;
+
+use crate::files::{FileError, Setup, TimedCommand, TimedText};
+use rumbo_control::mode::ModeId;
+use rumbo_sim::Sim;
+use rumbo_sim::trace::Heard;
+use rumbo_wire::text::TextCommand;
+use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
+use text::Terminal;
+
+/// Time between heartbeats [us].
+const HEARTBEAT_US: u64 = 100_000;
+/// Time after which an unanswered command is repeated [us].
+const REPEAT_US: u64 = 200_000;
+/// A robot that has not answered for this long before its run begins never will [us].
+const PATIENCE_US: u64 = 3_000_000;
+/// Time between two looks at the link before the run [us].
+const BRIEF_STEP_US: u64 = 10_000;
+/// Longest line of the original's telemetry.
+const LINE: usize = 160;
+
+/// How the program at the pins is spoken to.
+enum Speech {
+    Frames,
+    Text(Box<Terminal>),
+    Direct,
+}
+
+/// The sending side of a run.
+pub(crate) struct Operator<'a> {
+    setup: &'a Setup,
+    commands: &'a [TimedCommand],
+    texts: &'a [TimedText],
+    speech: Speech,
+    mode: Option<ModeId>,
+    next: usize,
+    number: u16,
+    seq: u8,
+    /// The newest robot time received.
+    seen: Option<RobotTime>,
+    /// The command that waits for its acknowledgement, the robot time at which it was given, and when it was last sent.
+    pending: Option<(Command, RobotTime, u64)>,
+    heartbeat_due_us: u64,
+    /// The robot has said that it reached its goal since the last command was sent.
+    reached: bool,
+    decoder: Decoder<LINE>,
+    buffer: Vec<u8>,
+    /// What the robot refused or reported.
+    pub(crate) complaints: Vec<String>,
+    /// What else a reader of the result should know.
+    pub(crate) notes: Vec<String>,
+    /// Telemetry, status, events and heading references received.
+    pub(crate) heard: Vec<Heard>,
+}
+
+impl<'a> Operator<'a> {
+    pub(crate) fn new(setup: &'a Setup) -> Self {
+        let speech = if setup.takes_parameters() {
+            Speech::Frames
+        } else if setup.firmware.is_some() {
+            Speech::Text(Box::new(Terminal::new(setup)))
+        } else {
+            Speech::Direct
+        };
+        Self {
+            setup,
+            commands: &setup.scenario.commands,
+            texts: &setup.texts,
+            speech,
+            mode: Some(setup.scenario.mode),
+            next: 0,
+            number: 0,
+            seq: 0,
+            seen: None,
+            pending: None,
+            heartbeat_due_us: 0,
+            reached: false,
+            decoder: Decoder::default(),
+            buffer: Vec::new(),
+            complaints: Vec::new(),
+            notes: Vec::new(),
+            heard: Vec::new(),
+        }
+    }
+
+    /// Tells an image that speaks our frames its parameters. The clock of the run begins after that, as that of the native robot
+    /// does, which knows them from the start.
+    ///
+    /// # Errors
+    /// It does not answer.
+    pub(crate) fn brief(&mut self, sim: &mut Sim) -> Result<(), FileError> {
+        let (Some(firmware), Speech::Frames) = (&self.setup.firmware, &self.speech) else {
+            return Ok(());
+        };
+        let mute = || {
+            FileError::Setting(format!(
+                "firmware {}: does not acknowledge commands on the link of wiring {}; choose another with --wiring",
+                firmware.name(),
+                firmware.wiring()
+            ))
+        };
+        self.listen_until(sim, mute, |operator| operator.seen.is_some())?;
+        for (id, value) in self.setup.control_parameters()? {
+            let id = id as u8;
+            self.give(sim, Command::SetParam { id, value });
+            self.listen_until(sim, mute, |operator| operator.pending.is_none())?;
+        }
+        sim.restart_clock();
+        self.heard.clear();
+        self.heartbeat_due_us = 0;
+        Ok(())
+    }
+
+    /// Lets time pass before the run until the robot has said what is waited for.
+    fn listen_until(
+        &mut self,
+        sim: &mut Sim,
+        mute: impl Fn() -> FileError,
+        done: impl Fn(&Self) -> bool,
+    ) -> Result<(), FileError> {
+        let since_us = sim.now_us();
+        while !done(self) {
+            sim.advance(sim.now_us() + BRIEF_STEP_US);
+            self.listen(sim);
+            if let Some(verdict) = sim.verdict() {
+                return Err(FileError::Setting(verdict));
+            }
+            if sim.now_us() >= since_us + PATIENCE_US {
+                return Err(mute());
+            }
+            self.repeat(sim);
+        }
+        Ok(())
+    }
+
+    /// Listens, then says what is due.
+    pub(crate) fn step(&mut self, sim: &mut Sim) {
+        let now_us = sim.now_us();
+        self.type_texts(sim);
+        match &mut self.speech {
+            Speech::Direct => return self.order(sim),
+            Speech::Text(_) => return self.write(sim),
+            Speech::Frames => {}
+        }
+        self.listen(sim);
+        if now_us >= self.heartbeat_due_us {
+            self.say(sim, &ToRobot::Heartbeat);
+            self.heartbeat_due_us = now_us + HEARTBEAT_US;
+        }
+        if self.pending.is_some() {
+            return self.repeat(sim);
+        }
+        // A command carries the robot's time.
+        if self.seen.is_none() {
+            return;
+        }
+        let command = match self.mode.take() {
+            Some(mode) => Command::Mode(mode),
+            None => match self.due(now_us) {
+                Some(command) => command,
+                None => return,
+            },
+        };
+        self.give(sim, command);
+    }
+
+    /// Gives the next command.
+    fn give(&mut self, sim: &mut Sim, command: Command) {
+        self.number = self.number.wrapping_add(1);
+        self.send(sim, command, self.seen.unwrap_or_default());
+    }
+
+    fn repeat(&mut self, sim: &mut Sim) {
+        if let Some((command, seen, sent_us)) = self.pending
+            && sim.now_us() >= sent_us + REPEAT_US
+        {
+            self.send(sim, command, seen);
+        }
+    }
+
+    /// Sends the lines of the command line that are due.
+    fn type_texts(&mut self, sim: &mut Sim) {
+        while let Some((timed, later)) = self.texts.split_first()
+            && timed.at_s * 1e6 <= sim.now_us() as f64
+        {
+            self.texts = later;
+            // An image may know words of its own.
+            if let (true, Err(error)) = (
+                self.setup.firmware.is_none(),
+                TextCommand::parse(&timed.text),
+            ) {
+                let TimedText { at_s, text } = timed;
+                self.notes.push(format!("at {at_s} s `{text}`: {error}"));
+            }
+            sim.send(timed.text.as_bytes());
+            sim.send(b"\n");
+        }
+    }
+
+    /// The same with an image that reads lines.
+    fn write(&mut self, sim: &mut Sim) {
+        self.buffer.clear();
+        sim.receive(&mut self.buffer);
+        let Speech::Text(terminal) = &mut self.speech else {
+            return;
+        };
+        terminal.read(&self.buffer, sim.now_us(), &mut self.heard);
+        self.reached |= terminal.watch(sim, &mut self.heard);
+        while let Some(command) = self.due(sim.now_us()) {
+            if let Speech::Text(terminal) = &mut self.speech {
+                self.notes.extend(terminal.write(sim, command));
+            }
+        }
+    }
+
+    /// The next command of the scenario, if it is time for it.
+    fn due(&mut self, now_us: u64) -> Option<Command> {
+        let timed = self.commands.get(self.next)?;
+        let soon = timed.after_reached && self.reached;
+        if timed.at_s * 1e6 > now_us as f64 && !soon {
+            return None;
+        }
+        self.next += 1;
+        self.reached = false;
+        Some(timed.command)
+    }
+
+    /// The same with the report's native program, which has no link.
+    fn order(&mut self, sim: &mut Sim) {
+        let t_s = sim.now_us() as f64 * 1e-6;
+        let told = sim.told();
+        self.reached |= told.iter().any(has_reached);
+        self.heard
+            .extend(told.into_iter().map(|what| Heard { t_s, what }));
+        while let Some(command) = self.due(sim.now_us()) {
+            sim.order(command);
+        }
+    }
+
+    fn send(&mut self, sim: &mut Sim, command: Command, seen: RobotTime) {
+        let message = ToRobot::Command {
+            session: 1,
+            number: self.number,
+            command,
+            seen,
+        };
+        self.say(sim, &message);
+        self.pending = Some((command, seen, sim.now_us()));
+    }
+
+    fn say(&mut self, sim: &mut Sim, message: &ToRobot) {
+        sim.send(message.frame(self.seq).bytes());
+        self.seq = self.seq.wrapping_add(1);
+    }
+
+    fn listen(&mut self, sim: &mut Sim) {
+        let mut buffer = std::mem::take(&mut self.buffer);
+        buffer.clear();
+        sim.receive(&mut buffer);
+        for byte in &buffer {
+            let Some(Received::Frame(body)) = self.decoder.push(*byte) else {
+                continue;
+            };
+            let message = FromRobot::from_body(&body);
+            if let Ok(message) = &message {
+                self.seen = RobotTime::after(self.seen, message);
+            }
+            if let Ok(
+                what @ (FromRobot::Telemetry(_)
+                | FromRobot::Event(_)
+                | FromRobot::Status(_)
+                | FromRobot::HeadingRef(_)),
+            ) = message
+            {
+                let t_s = sim.now_us() as f64 * 1e-6;
+                self.reached |= has_reached(&what);
+                self.heard.push(Heard { t_s, what });
+            }
+            match message {
+                Ok(FromRobot::Ack(ack)) if ack.number == self.number => {
+                    if let (Some((command, ..)), Err(refusal)) = (self.pending.take(), ack.result) {
+                        let now_s = sim.now_us() as f64 * 1e-6;
+                        let why = refusal.explanation();
+                        self.complaints
+                            .push(format!("at {now_s:.2} s {command:?} was refused: {why}"));
+                    }
+                }
+                Ok(FromRobot::Event(event)) => {
+                    if let EventKind::Faulted(fault) = event.kind {
+                        let now_s = sim.now_us() as f64 * 1e-6;
+                        self.complaints
+                            .push(format!("at {now_s:.2} s fault: {}", fault.explanation()));
+                    }
+                }
+                Ok(_) | Err(_) => {}
+            }
+        }
+        self.buffer = buffer;
+    }
+}
+
+fn has_reached(message: &FromRobot) -> bool {
+    matches!(message, FromRobot::Event(event) if event.kind == EventKind::Reached)
+}

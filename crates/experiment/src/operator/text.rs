@@ -1,0 +1,147 @@
+//! The link to a program that speaks the original's text: lines out, rows of telemetry in.
+
+use super::goal::{GoalWatch, RouteWatch};
+use crate::files::Setup;
+use rumbo_control::mode::ModeId;
+use rumbo_plant::contact;
+use rumbo_sim::Sim;
+use rumbo_sim::trace::Heard;
+use rumbo_wire::message::Event;
+use rumbo_wire::text::{self, Row};
+use rumbo_wire::{Command, EventKind, FromRobot, Telemetry};
+
+/// A line longer than this is none.
+const LONGEST: usize = 256;
+
+/// The station's end of a link of text.
+#[derive(Debug)]
+pub(super) struct Terminal {
+    mode: ModeId,
+    line: Vec<u8>,
+    clock_ms: u32,
+    /// Where goals are counted from, in the world.
+    origin: contact::Pose,
+    goal: GoalWatch,
+    route: RouteWatch,
+    /// State of mode 8 in the last row; 0 is *wait for goal*.
+    state: u8,
+    /// A row has said that the goal or the end of the route is reached.
+    told: bool,
+}
+
+impl Terminal {
+    pub(super) fn new(setup: &Setup) -> Self {
+        let start = &setup.scenario.start;
+        Self {
+            mode: setup.scenario.mode,
+            line: Vec::new(),
+            clock_ms: 0,
+            origin: contact::Pose {
+                x_m: start.x_m,
+                y_m: start.y_m,
+                heading_rad: start.heading_rad,
+            },
+            goal: GoalWatch::default(),
+            route: RouteWatch::default(),
+            state: 0,
+            told: false,
+        }
+    }
+
+    /// Sends a command; says what there are no words for.
+    pub(super) fn write(&mut self, sim: &mut Sim, command: Command) -> Option<String> {
+        match command {
+            Command::Mode(mode) => self.mode = mode,
+            Command::Goal { x_m, y_m } => self.send_to(sim, x_m, y_m),
+            Command::Route { .. } => self.route = RouteWatch::default(),
+            Command::Waypoint(place) => {
+                self.send_to(sim, place.x_m, place.y_m);
+                self.route.add(place.x_m, place.y_m);
+            }
+            _ => {}
+        }
+        let lines = text::lines_of(&command, self.mode);
+        // The route itself has been noted.
+        let of_route = matches!(command, Command::Waypoint(_));
+        if lines == [None; 2] && of_route {
+            return None;
+        }
+        if lines == [None; 2] {
+            return Some(format!(
+                "the original's text has no words for {command:?}: not sent"
+            ));
+        }
+        for line in lines.into_iter().flatten() {
+            sim.send(format!("{line}\n").as_bytes());
+        }
+        None
+    }
+
+    fn send_to(&mut self, sim: &Sim, x_m: f32, y_m: f32) {
+        let (sin, cos) = self.origin.heading_rad.sin_cos();
+        let (x_m, y_m) = (f64::from(x_m), f64::from(y_m));
+        let at_m = [
+            self.origin.x_m + cos * x_m - sin * y_m,
+            self.origin.y_m + sin * x_m + cos * y_m,
+        ];
+        self.goal.send(at_m, &sim.truth());
+    }
+
+    /// Notes a goal reached. Mode 8 tells it by its state, mode 7 by its pose; else the truth is asked.
+    pub(super) fn watch(&mut self, sim: &Sim, heard: &mut Vec<Heard>) -> bool {
+        if !matches!(self.mode, ModeId::Mission | ModeId::Waypoints) {
+            return false;
+        }
+        let truth = sim.truth();
+        let told_us = std::mem::take(&mut self.told).then_some(truth.now_us);
+        let Some(at_us) = told_us.or_else(|| self.goal.reached(&truth)) else {
+            return false;
+        };
+        self.goal = GoalWatch::default();
+        if self.mode == ModeId::Mission {
+            // The report's mission calls each goal its new origin.
+            self.origin = truth.pose;
+        }
+        let t_ms = ((at_us / 1_000) & 0xffff) as u16;
+        let kind = EventKind::Reached;
+        heard.push(Heard {
+            t_s: at_us as f64 * 1e-6,
+            what: FromRobot::Event(Event { t_ms, kind }),
+        });
+        true
+    }
+
+    /// Takes in what has arrived; what is no row of telemetry says nothing to a metric.
+    pub(super) fn read(&mut self, bytes: &[u8], now_us: u64, heard: &mut Vec<Heard>) {
+        for byte in bytes {
+            if *byte != b'\n' {
+                if self.line.len() < LONGEST {
+                    self.line.push(*byte);
+                }
+                continue;
+            }
+            let line = std::mem::take(&mut self.line);
+            let row = str::from_utf8(&line).ok().map(str::trim);
+            if let Some(Ok(row)) = row.map(Row::parse) {
+                match &row {
+                    Row::Mission(row) => {
+                        self.told |= row.state == 0 && self.state != 0 && self.goal.is_set();
+                        self.state = row.state;
+                    }
+                    Row::Waypoints(row) => self.told |= self.route.passes(row.x_m, row.y_m),
+                    _ => {}
+                }
+                heard.push(Heard {
+                    t_s: now_us as f64 * 1e-6,
+                    what: FromRobot::Telemetry(self.telemetry(&row)),
+                });
+            }
+        }
+    }
+
+    /// What a row tells, as a telemetry frame.
+    fn telemetry(&mut self, row: &Row) -> Telemetry {
+        self.clock_ms = self.clock_ms.wrapping_add(row.dt_ms());
+        row.telemetry((self.clock_ms & 0xffff) as u16, true)
+    }
+}

@@ -1,0 +1,57 @@
+//! What every mode may rely on when it asks for wheel speeds.
+
+use super::{seeds, setup};
+use rumbo_experiment::run::RunResult;
+
+/// Wheel angle of one edge [rad].
+const EDGE_RAD: f64 = std::f64::consts::TAU / 384.0;
+
+/// What the wheels did in the second after a command that turns both the ways `signs`.
+struct Start {
+    /// Time between the first edges of both wheels [s].
+    apart_s: f64,
+    /// Farthest that one wheel was ahead of the other, as a heading [rad].
+    ahead_rad: f64,
+}
+
+fn start(run: &RunResult, from_s: f64, signs: [f64; 2]) -> Start {
+    let (mut turned_rad, mut first_s, mut ahead_rad) = ([0.0; 2], [f64::NAN; 2], 0.0_f64);
+    for sample in run.trace.between(from_s, from_s + 1.0) {
+        for wheel in 0..2 {
+            turned_rad[wheel] += 0.01 * f64::max(sample.wheel_rad_s[wheel] * signs[wheel], 0.0);
+            if first_s[wheel].is_nan() && turned_rad[wheel] > EDGE_RAD {
+                first_s[wheel] = sample.t_s;
+            }
+        }
+        ahead_rad = ahead_rad.max((turned_rad[0] - turned_rad[1]).abs() * 0.0325 / 0.10);
+    }
+    Start {
+        apart_s: (first_s[0] - first_s[1]).abs(),
+        ahead_rad,
+    }
+}
+
+fn assert_together(scenario: &str, from_s: f64, signs: [f64; 2], apart_s: f64, ahead_deg: f64) {
+    for run in seeds(&setup(scenario), 1..51) {
+        let start = start(&run, from_s, signs);
+        assert!(
+            start.apart_s <= apart_s && start.ahead_rad <= ahead_deg.to_radians(),
+            "{scenario} from {from_s} s, seed {}: {:.3} s apart, {:.1} deg",
+            run.seed,
+            start.apart_s,
+            start.ahead_rad.to_degrees()
+        );
+    }
+}
+
+#[test]
+fn both_wheels_start_together_from_rest() {
+    assert_together("manual-straight-speed", 0.5, [1.0, 1.0], 0.011, 2.0);
+    assert_together("manual-turn-left-speed", 0.5, [-1.0, 1.0], 0.031, 4.5);
+}
+
+#[test]
+fn both_wheels_start_together_after_a_reversal() {
+    assert_together("mode5-reversal", 5.5, [-1.0, -1.0], 0.021, 3.0);
+    assert_together("mode5-reversal", 10.5, [1.0, 1.0], 0.021, 3.0);
+}

@@ -1,0 +1,20 @@
+//! Rumbo's simulator: robot, plant and emulator on one clock.
+//!
+//! A [`Sim`] is made from a [`Config`]: which robot in which world, and which program is at its pins. It knows no
+//! files, no command line and no threads; `rumbo-experiment` makes a configuration from files.
+
+mod baseline;
+mod board;
+mod config;
+pub mod debugging;
+mod error;
+pub mod mega;
+mod sim;
+pub mod sonar_fault;
+pub mod trace;
+pub mod wire_fault;
+pub mod wiring;
+
+pub use config::{Config, Program};
+pub use error::SimError;
+pub use sim::{Burst, Latched, Sim};

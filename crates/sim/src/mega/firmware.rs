@@ -1,0 +1,153 @@
+//! A program image for the Mega: what it is, which language it speaks on its link, and how it is wired.
+
+use super::CYCLES_PER_US;
+use super::pins::{Wires, board_signals, chip_pin};
+use crate::error::SimError;
+use crate::wiring::Wiring;
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::cpu::Stopped;
+use rumbo_emulator::devices::ports::Drive;
+use rumbo_emulator::devices::ports::Pin;
+use rumbo_emulator::devices::{Event, Input};
+use rumbo_emulator::image::Image;
+use rumbo_wire::{Decoder, FromRobot, Message, Received};
+
+/// Rate of the Bluetooth module [baud].
+pub const LINK_BAUD: f64 = 9600.0;
+/// Receiving and transmitting pins of the USARTs on the board.
+const RECEIVERS: [u8; 4] = [0, 19, 17, 15];
+const TRANSMITTERS: [u8; 4] = [1, 18, 16, 14];
+/// Our program says HELLO as soon as it runs; this long is waited for it [us].
+const BOOT_US: u64 = 600_000;
+/// A boot loader has handed over after this [cycles], or never will.
+pub(super) const LONGEST_BOOT: u64 = 5_000_000 * CYCLES_PER_US;
+/// Room for what a robot says at once.
+const LINE: usize = 128;
+
+/// What a program speaks on its link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// The frames of docs/protocol.md.
+    Frames,
+    /// The original's lines of text, or nothing.
+    Text,
+}
+
+/// A program with all that is known of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Firmware {
+    name: String,
+    image: Image,
+    language: Language,
+    wiring: String,
+    wires: Wires,
+}
+
+impl Firmware {
+    /// An image called `name`, wired so.
+    ///
+    /// # Errors
+    /// The link's pins are those of no USART.
+    pub fn new(
+        name: &str,
+        image: Image,
+        language: Language,
+        (wiring, pins): (&str, &Wiring),
+    ) -> Result<Self, SimError> {
+        Ok(Self {
+            name: name.to_owned(),
+            image,
+            language,
+            wiring: wiring.to_owned(),
+            wires: Wires::new(wiring, pins)?,
+        })
+    }
+
+    /// The file's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The program.
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
+    /// Names for pins: the wired ones by what they are for, and all of the board by their numbers.
+    pub fn signals(&self) -> Vec<(String, Pin)> {
+        let mut signals = self.wires.signals();
+        signals.extend(board_signals());
+        signals
+    }
+
+    /// What it speaks on its link.
+    pub fn language(&self) -> Language {
+        self.language
+    }
+
+    /// Name of the wiring.
+    pub fn wiring(&self) -> &str {
+        &self.wiring
+    }
+
+    /// The USART that the Bluetooth module is on, if the wiring has one.
+    pub fn link_usart(&self) -> Option<u8> {
+        self.wires.link
+    }
+
+    pub(super) fn wires(&self) -> &Wires {
+        &self.wires
+    }
+}
+
+/// How a program begins on a chip with nothing attached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Opening {
+    /// What it speaks.
+    pub language: Language,
+    /// The USARTs whose transmitter it has switched on; not looked at where it speaks frames.
+    pub transmits: [bool; 4],
+}
+
+/// Runs a program for a moment on a chip with nothing attached, and looks for a frame of ours among what it sends.
+#[must_use]
+pub fn opening(image: &Image) -> Opening {
+    let mut chip = Chip::new(image);
+    for pin in RECEIVERS.into_iter().filter_map(chip_pin) {
+        chip.input(0, Input::Pin(pin, Some(true)));
+    }
+    chip.pass_boot_loader(LONGEST_BOOT);
+    let start = chip.cycle();
+    let mut decoders: [Decoder<LINE>; 4] = Default::default();
+    // In slices, so that what is said is seen soon.
+    for slice in 1..=10 {
+        let stopped = chip.run_until(start + slice * BOOT_US / 10 * CYCLES_PER_US);
+        for output in chip.take_outputs() {
+            let Event::Byte { usart, byte, .. } = output.event else {
+                continue;
+            };
+            let decoder = decoders.get_mut(usize::from(usart));
+            let received = decoder.and_then(|decoder| decoder.push(byte as u8));
+            if let Some(Received::Frame(body)) = received
+                && FromRobot::from_body(&body).is_ok()
+            {
+                return Opening {
+                    language: Language::Frames,
+                    transmits: [false; 4],
+                };
+            }
+        }
+        if matches!(stopped, Stopped::Ended(_)) {
+            break;
+        }
+    }
+    // A transmitter that is on holds its idle line high.
+    let transmits = TRANSMITTERS.map(|number| {
+        let pin = chip_pin(number);
+        pin.is_some_and(|pin| chip.devices().drive(pin) == Drive::High)
+    });
+    Opening {
+        language: Language::Text,
+        transmits,
+    }
+}

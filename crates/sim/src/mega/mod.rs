@@ -1,0 +1,315 @@
+//! An emulated Arduino Mega at the robot's pins: the chip of `rumbo-emulator`, wired as the robot file says.
+//!
+//! ```text
+//! plant events ──► encoder and echo pins, at their cycle ──► chip ──► enable and direction pins ──► bridges
+//!                                                             │  └──► trigger and servo pins ──► sonars, servo
+//!                       Bluetooth module ◄── USART of the link ┘
+//! ```
+//!
+//! | file | part |
+//! |---|---|
+//! | [`pins`] | the board's pin numbers, a wiring as pins of the chip |
+//! | `bridge`, `servo`, `module` | what driver, servo and Bluetooth module make of their lines |
+//! | `inputs` | the edges that the plant announces, as the chip is given them |
+//! | `outputs` | what the chip does, as the robot feels it |
+//! | `echo` | echo lines, and sonars that fail |
+//! | `console` | what the USARTs said, for people |
+//! | `marks` | when the program comes to some of its functions |
+//! | `notes` | what is odd about a program, for people |
+//! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
+//!
+//! `Mega::run` runs the chip until something happens that the plant must know of, so that the plant can follow to the same
+//! microsecond before anything else happens: see `sim::emulated`.
+
+mod console;
+pub mod firmware;
+pub mod pins;
+
+mod bridge;
+mod echo;
+mod inputs;
+mod marks;
+mod module;
+mod notes;
+mod outputs;
+mod servo;
+
+use crate::sonar_fault::SonarFaults;
+use crate::wire_fault::WireFaults;
+use crate::wiring::Divider;
+use bridge::HalfBridge;
+use console::Console;
+use echo::Echoes;
+use firmware::Firmware;
+use inputs::Announced;
+use marks::Marks;
+use pins::Wires;
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::cpu::Stopped;
+use rumbo_emulator::devices::{Cause, Input};
+use rumbo_emulator::verdict::Verdict;
+use rumbo_plant::drivetrain::{Bridge, Side};
+use rumbo_plant::noise::Noise;
+use rumbo_plant::sonar::SonarId;
+use servo::ServoInput;
+use std::sync::Arc;
+
+/// The Mega's clock is 16 MHz.
+pub const CYCLES_PER_US: u64 = 16;
+/// Battery at which the chip's brown-out detector, set to 2.7 V by the Mega's fuses, resets it: the regulator drops 1.1 V.
+const BROWN_OUT_V: f64 = 3.8;
+/// A sonar needs its trigger high for 10 us (HC-SR04 user's manual); what is shorter it may ignore.
+const TRIGGER_CYCLES: u64 = 10 * CYCLES_PER_US;
+/// An input goes into the chip's queue this long before its cycle: until then nothing the chip does can change it.
+const AHEAD_CYCLES: u64 = CYCLES_PER_US;
+
+/// Something the chip did that the robot feels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Action {
+    /// A half of the bridge is driven in another way, at this frequency of the PWM [Hz].
+    Bridge(Side, Bridge, Option<f64>),
+    /// A pulse to the servo: where it is to point [rad], 0 ahead, positive to the left.
+    Servo(f64),
+    /// A trigger pulse has ended.
+    Trigger(SonarId),
+}
+
+/// Why [`Mega::run`] came back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pause {
+    /// The time is reached.
+    Reached,
+    /// There are actions, all at this time [us].
+    Act(u64),
+    /// A debugger has the program: time stands still here [us].
+    Halted(u64),
+}
+
+/// A Mega with its program.
+#[derive(Clone, Debug)]
+pub struct Mega {
+    chip: Chip,
+    firmware: Arc<Firmware>,
+    /// The chip's cycle at the plant's time 0.
+    zero_cycle: u64,
+    bridges: [HalfBridge; 2],
+    driven: [(Bridge, Option<f64>); 2],
+    servo: ServoInput,
+    triggers: [Option<u64>; 3],
+    encoders: [bool; 2],
+    echoes: Echoes,
+    announced: Announced,
+    actions: Vec<Action>,
+    /// What the module has heard from the chip, and when [us].
+    sent: Vec<(u64, u8)>,
+    consoles: [Console; 4],
+    verdict: Option<Verdict>,
+    /// When the program came to the functions that were asked for.
+    marks: Marks,
+    /// A motor was driven.
+    has_driven: bool,
+    /// The program does one instruction and halts.
+    stepping: bool,
+    /// Why the program stands, until a debugger lets it go on.
+    halt: Option<Stopped>,
+}
+
+impl Mega {
+    /// A Mega that has just been switched on; `encoders` are the levels of both Hall sensors, left and right.
+    pub(crate) fn new(firmware: Arc<Firmware>, encoders: [bool; 2]) -> Self {
+        let mut chip = Chip::new(firmware.image());
+        chip.watch(&firmware.wires().felt());
+        let mut mega = Self {
+            chip,
+            zero_cycle: 0,
+            bridges: Default::default(),
+            driven: [(Bridge::Released, None); 2],
+            servo: ServoInput::default(),
+            triggers: [None; 3],
+            encoders: [false; 2],
+            echoes: Echoes::default(),
+            announced: Announced::default(),
+            actions: Vec::new(),
+            sent: Vec::new(),
+            consoles: Default::default(),
+            verdict: None,
+            marks: Marks::default(),
+            has_driven: false,
+            stepping: false,
+            halt: None,
+            firmware,
+        };
+        for pin in mega.wires().receivers.into_iter().flatten() {
+            mega.chip.input(0, Input::Pin(pin, Some(true)));
+        }
+        // A boot loader's wait is over before the run begins, as for somebody who switches the robot on and then goes to the laptop.
+        mega.chip.pass_boot_loader(firmware::LONGEST_BOOT);
+        mega.chip.take_outputs();
+        mega.begin(mega.chip.cycle(), encoders);
+        mega
+    }
+
+    /// The clock of the plant starts over at this cycle: lines are as they are at a start.
+    fn begin(&mut self, cycle: u64, encoders: [bool; 2]) {
+        self.zero_cycle = cycle;
+        self.look_ahead();
+        self.echoes = Echoes::default();
+        self.encoders = encoders;
+        let wires = self.wires();
+        let encoders = wires.encoders.into_iter().zip(encoders);
+        let echoes = wires.echoes.into_iter().map(|pin| (pin, false));
+        for (pin, level) in encoders.chain(echoes).collect::<Vec<_>>() {
+            self.put(cycle, pin, level);
+        }
+    }
+
+    /// The plant's clock starts over now; what the chip drives goes on.
+    pub(crate) fn restart_clock(&mut self, encoders: [bool; 2]) {
+        let cycle = self.chip.cycle();
+        self.begin(cycle, encoders);
+        for index in 0..2 {
+            self.driven[index] = (Bridge::Released, None);
+        }
+        self.drive();
+    }
+
+    fn wires(&self) -> &Wires {
+        self.firmware.wires()
+    }
+
+    /// The program.
+    pub fn firmware(&self) -> &Firmware {
+        &self.firmware
+    }
+
+    /// The chip, to look at.
+    pub fn chip(&self) -> &Chip {
+        &self.chip
+    }
+
+    /// The chip, as a debugger holds it.
+    pub fn chip_mut(&mut self) -> &mut Chip {
+        &mut self.chip
+    }
+
+    /// From here on the program does one instruction, and halts.
+    pub fn step(&mut self) {
+        self.stepping = true;
+    }
+
+    /// Why the program stands; it goes on at the next advance.
+    pub fn take_halt(&mut self) -> Option<Stopped> {
+        self.halt.take()
+    }
+
+    /// How the program ended, if it could not go on: what, where, when.
+    pub fn verdict(&self) -> Option<String> {
+        let verdict = self.verdict.as_ref()?;
+        let name = self.firmware.name();
+        let verdict = verdict.told(self.firmware.image());
+        Some(format!("firmware {name}: {verdict}"))
+    }
+
+    /// What USART `usart` has sent since it was last asked, whatever it is connected to.
+    pub fn take_console(&mut self, usart: u8) -> Vec<u8> {
+        let console = self.consoles.get_mut(usize::from(usart));
+        console.map(Console::take).unwrap_or_default()
+    }
+
+    /// Sends bytes to a USART from a terminal at the rate at which it last spoke.
+    pub fn type_in(&mut self, usart: u8, bytes: &[u8]) {
+        let Some(console) = self.consoles.get(usize::from(usart)) else {
+            return;
+        };
+        let (cycle, baud) = (self.chip.cycle(), console.baud());
+        for byte in bytes {
+            let byte = *byte;
+            self.chip.input(cycle, Input::Serial { usart, byte, baud });
+        }
+    }
+
+    /// A byte whose last bit reaches the link's USART at this time [us], sent at `baud`.
+    pub(crate) fn receive(&mut self, at_us: u64, byte: u8, baud: u32) {
+        let Some(usart) = self.wires().link else {
+            return;
+        };
+        let frame = 10 * 1_000_000 * CYCLES_PER_US / u64::from(baud.max(1));
+        let begin = self.cycle_of(at_us).saturating_sub(frame);
+        self.chip.input(begin, Input::Serial { usart, byte, baud });
+    }
+
+    /// What the module has heard since it was last asked: when the last bit came [us], and what.
+    pub(crate) fn take_sent(&mut self) -> Vec<(u64, u8)> {
+        std::mem::take(&mut self.sent)
+    }
+
+    /// The actions that the pause spoke of.
+    pub(crate) fn take_actions(&mut self) -> Vec<Action> {
+        std::mem::take(&mut self.actions)
+    }
+
+    /// The battery's voltage from now on: where a divider brings it to an analogue input, and as what the chip lives on.
+    pub(crate) fn supply(&mut self, battery_v: f64) {
+        if battery_v < BROWN_OUT_V {
+            let cycle = self.chip.cycle();
+            self.chip.input(cycle, Input::Reset(Cause::BrownOut));
+        }
+        if let Some(Divider { input, ratio }) = self.wires().battery {
+            let (channel, volts) = (input, battery_v / ratio);
+            let cycle = self.chip.cycle();
+            self.chip.input(cycle, Input::Volts { channel, volts });
+        }
+    }
+
+    fn cycle_of(&self, us: u64) -> u64 {
+        self.zero_cycle + us * CYCLES_PER_US
+    }
+
+    /// Runs the chip to a time [us], or to the first action before it.
+    pub(crate) fn run(&mut self, until_us: u64, faults: &mut Faults<'_>) -> Pause {
+        let until = self.cycle_of(until_us);
+        loop {
+            let now = self.chip.cycle();
+            if self.halt.is_some() {
+                let at_us = (now - self.zero_cycle) / CYCLES_PER_US;
+                return Pause::Halted(at_us.min(until_us));
+            }
+            if self.verdict.is_some() || now >= until {
+                self.deliver_up_to(until, faults);
+                return Pause::Reached;
+            }
+            self.deliver_up_to(now + AHEAD_CYCLES, faults);
+            let waves = self.bridges.iter().filter_map(HalfBridge::expires_cycle);
+            let target = waves
+                .chain(self.next_input().map(|cycle| cycle - AHEAD_CYCLES))
+                .fold(until, u64::min);
+            let stepping = std::mem::take(&mut self.stepping);
+            let stopped = if stepping {
+                self.chip.step()
+            } else {
+                self.chip.run_until(target.max(now + 1))
+            };
+            let passed = stopped == Stopped::Breakpoint && self.pass_mark();
+            let acted = self.listen();
+            if let Stopped::Ended(verdict) = &stopped {
+                self.verdict = Some(verdict.clone());
+            } else if stepping
+                || matches!(stopped, Stopped::Watched { .. })
+                || (stopped == Stopped::Breakpoint && !passed)
+            {
+                self.halt = Some(stopped);
+            }
+            if let Some(cycle) = acted {
+                let at_us = (cycle - self.zero_cycle).div_ceil(CYCLES_PER_US);
+                return Pause::Act(at_us.min(until_us));
+            }
+        }
+    }
+}
+
+/// The faults of sonars and wires, and the noise they draw from.
+pub(crate) struct Faults<'a> {
+    pub(crate) sonars: &'a mut SonarFaults,
+    pub(crate) wires: &'a mut WireFaults,
+    pub(crate) noise: &'a Noise,
+}

@@ -1,0 +1,451 @@
+//! A simulated robot: a program at the pins of the robot of `rumbo-plant`, on one clock, behind a simulated serial link.
+//!
+//! | program | file | |
+//! |---|---|---|
+//! | our robot, native | `native` | ticks on multiples of 10 ms; outputs reach the plant exactly 3 ms later, as on the chip |
+//! | the report's, native | `baseline` | keeps its own time; [`Sim::order`] hands it commands without a link |
+//! | any image, on an emulated Mega | `emulated` | chip and plant in lockstep |
+//!
+//! Bytes go through [`Link`]s at 9600 baud: whoever uses a [`Sim`] meets the robot as it would behind a real port. A clone is a
+//! snapshot, which goes on to the same bits.
+
+mod baseline;
+mod emulated;
+mod native;
+
+use crate::baseline::Baseline;
+use crate::config::{Config, Program};
+use crate::error::SimError;
+use crate::mega::Mega;
+use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
+use crate::wire_fault::{TimedWireFault, WireFaults};
+pub use native::Latched;
+use native::{Memory, Native};
+use rumbo_control::mode::ModeId;
+use rumbo_control::{Duty, SIDES, SonarId, Wheels};
+use rumbo_plant::contact::Pose;
+use rumbo_plant::drivetrain::{Bridge, Side};
+use rumbo_plant::link::{Direction, Link, LinkParams};
+use rumbo_plant::noise::Noise;
+use rumbo_plant::params::Params;
+use rumbo_plant::plant::{Event, Plant, State, Truth};
+use rumbo_wire::{Command, FromRobot};
+
+/// What is at the robot's pins.
+#[derive(Clone, Debug)]
+enum Controller {
+    Rumbo(Box<Native>),
+    Baseline(Box<Baseline>),
+    Mega(Box<Mega>),
+}
+
+/// Raw bytes that crossed the link together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Burst {
+    /// When they were sent to the robot, or had arrived from it [us].
+    pub t_us: u64,
+    /// To the robot, or from it.
+    pub to_robot: bool,
+    /// What.
+    pub bytes: Vec<u8>,
+}
+
+/// A simulated robot in its world.
+#[derive(Clone, Debug)]
+pub struct Sim {
+    plant: Plant,
+    params: Params,
+    start: Pose,
+    state: State,
+    /// Taken out only while it runs.
+    controller: Option<Controller>,
+    uplink: Link,
+    downlink: Link,
+    baud: u32,
+    duty: Wheels<Duty>,
+    worst_reverse_rad_s: f64,
+    worst_contact_m_s: f64,
+    sonar_faults: SonarFaults,
+    wire_faults: WireFaults,
+    noise: Noise,
+    /// When outputs first and last took effect, and how often since the first [us].
+    outputs_us: (u64, u64, u64),
+    /// What crossed the link, if somebody wants to know.
+    tapped: Option<Vec<Burst>>,
+}
+
+impl Sim {
+    /// A robot at its start.
+    ///
+    /// # Errors
+    /// If the program does not take its parameters, or there is none for the mode.
+    pub fn new(config: Config) -> Result<Self, SimError> {
+        let Config {
+            plant: params,
+            rig,
+            world,
+            start,
+            wheels_in_air,
+            program,
+            memory,
+            sonar_faults: failing_sonars,
+            wire_faults: failing_wires,
+            seed,
+            day,
+        } = config;
+        let plant = Plant::new(rumbo_plant::plant::Setup {
+            params,
+            rig,
+            world,
+            seed,
+            robot: day,
+            wheels_in_air,
+        });
+        let state = plant.start(start);
+        let controller = match program {
+            Program::Rumbo {
+                parameters,
+                divider,
+            } => {
+                let mut native = Native::new(Memory(memory), &parameters)?;
+                native.divider = divider;
+                Controller::Rumbo(Box::new(native))
+            }
+            Program::Baseline { mode, rig } => {
+                Controller::Baseline(Box::new(Baseline::new(mode, &rig)?))
+            }
+            Program::Image(firmware) => {
+                let encoders = plant.encoder_levels(&state);
+                let mut mega = Mega::new(firmware, encoders);
+                let eeprom = mega.chip_mut().devices_mut().eeprom_mut();
+                eeprom
+                    .iter_mut()
+                    .zip(memory)
+                    .for_each(|(to, from)| *to = from);
+                Controller::Mega(Box::new(mega))
+            }
+        };
+        let link = LinkParams::default();
+        let noise = Noise::new(seed, day);
+        let mut sonar_faults = SonarFaults::default();
+        for fault in failing_sonars {
+            sonar_faults.add(fault);
+        }
+        let mut wire_faults = WireFaults::default();
+        for fault in failing_wires {
+            wire_faults.add(fault);
+        }
+        Ok(Self {
+            plant,
+            params,
+            start,
+            state,
+            controller: Some(controller),
+            baud: link.baud,
+            uplink: Link::new(link.clone(), noise, Direction::ToRobot),
+            downlink: Link::new(link, noise, Direction::ToStation),
+            duty: Wheels::default(),
+            worst_reverse_rad_s: 0.0,
+            worst_contact_m_s: 0.0,
+            sonar_faults,
+            wire_faults,
+            noise,
+            outputs_us: (0, 0, 0),
+            tapped: None,
+        })
+    }
+
+    /// Simulated time since the start [us].
+    pub fn now_us(&self) -> u64 {
+        self.state.now_us()
+    }
+
+    /// Speed of the link [baud].
+    pub fn baud(&self) -> u32 {
+        self.baud
+    }
+
+    /// The plant's parameters, as drawn for this seed.
+    pub fn params(&self) -> &Params {
+        &self.params
+    }
+
+    /// What is really the case.
+    pub fn truth(&self) -> Truth {
+        self.plant.truth(&self.state)
+    }
+
+    /// The duties in force at the bridges.
+    pub fn duty(&self) -> Wheels<Duty> {
+        self.duty
+    }
+
+    /// Fastest that a wheel turned while its bridge drove it the other way [rad/s].
+    pub fn worst_reverse_rad_s(&self) -> f64 {
+        self.worst_reverse_rad_s
+    }
+
+    /// Fastest that a point of the body met an obstacle [m/s]; 0 without a contact.
+    pub fn worst_contact_m_s(&self) -> f64 {
+        self.worst_contact_m_s
+    }
+
+    /// Mean time between two settings of the bridges [s].
+    pub fn control_period_s(&self) -> f64 {
+        let (first_us, last_us, count) = self.outputs_us;
+        (last_us - first_us) as f64 * 1e-6 / count.max(1) as f64
+    }
+
+    /// From now on notes what our native robot is given at each tick.
+    pub fn record_inputs(&mut self) {
+        if let Some(Controller::Rumbo(native)) = &mut self.controller {
+            native.recorded = Some(Vec::new());
+        }
+    }
+
+    /// What it was given since then, or since the last call.
+    pub fn take_inputs(&mut self) -> Vec<Latched> {
+        match &mut self.controller {
+            Some(Controller::Rumbo(native)) => native
+                .recorded
+                .as_mut()
+                .map(std::mem::take)
+                .unwrap_or_default(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// When the bridges were last set to something else [us]; 0 before the first time.
+    pub fn driven_us(&self) -> u64 {
+        self.outputs_us.1
+    }
+
+    /// Puts bytes for the robot on the line.
+    pub fn send(&mut self, bytes: &[u8]) {
+        self.note(true, bytes);
+        self.uplink.send(self.now_us(), bytes);
+    }
+
+    /// Appends the bytes that have arrived from the robot.
+    pub fn receive(&mut self, into: &mut Vec<u8>) {
+        let from = into.len();
+        self.downlink.receive(self.now_us(), into);
+        self.note(false, into.get(from..).unwrap_or_default());
+    }
+
+    /// From now on notes what crosses the link.
+    pub fn tap_link(&mut self) {
+        self.tapped = Some(Vec::new());
+    }
+
+    /// What crossed the link since it was tapped.
+    pub fn take_tapped(&mut self) -> Vec<Burst> {
+        self.tapped.take().unwrap_or_default()
+    }
+
+    fn note(&mut self, to_robot: bool, bytes: &[u8]) {
+        let t_us = self.now_us();
+        if let Some(tapped) = &mut self.tapped
+            && !bytes.is_empty()
+        {
+            tapped.push(Burst {
+                t_us,
+                to_robot,
+                bytes: bytes.to_vec(),
+            });
+        }
+    }
+
+    /// Makes a sonar fail at a time. The report's program, which times its own edges, notices a cut one only.
+    pub fn fail_sonar(&mut self, fault: TimedSonarFault) {
+        self.sonar_faults.add(fault);
+    }
+
+    /// Makes a wire fail at a time.
+    pub fn fail_wire(&mut self, fault: TimedWireFault) {
+        self.wire_faults.add(fault);
+    }
+
+    /// Cuts a sonar's wires: from now on it answers no ping.
+    pub fn cut_sonar(&mut self, sonar: SonarId) {
+        self.fail_sonar(TimedSonarFault {
+            at_s: self.now_us() as f64 * 1e-6,
+            sonar,
+            fault: SonarFault::Cut,
+        });
+    }
+
+    /// Hands a command to the report's native program, as a line of text would. False if another program is at the pins: it
+    /// listens to the link.
+    pub fn order(&mut self, command: Command) -> bool {
+        let Some(Controller::Baseline(baseline)) = &mut self.controller else {
+            return false;
+        };
+        baseline.command(command);
+        true
+    }
+
+    /// What the report's native program has told since it was last asked; nothing from others, who speak on the link.
+    pub fn told(&mut self) -> Vec<FromRobot> {
+        match &mut self.controller {
+            Some(Controller::Baseline(baseline)) => baseline.told(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The native robot's mode and the state of its machine; `None` while it is not armed, and of any other robot.
+    pub fn mode_state(&self) -> Option<(ModeId, u8)> {
+        match &self.controller {
+            Some(Controller::Rumbo(native)) => native.mode_state(),
+            _ => None,
+        }
+    }
+
+    /// Puts the robot elsewhere in the world, as a hand would; a native one of ours also believes from now on to stand at `told` from its
+    /// origin.
+    pub fn place(&mut self, at: Pose, told: rumbo_control::Pose) {
+        self.state.place(at);
+        if let Some(Controller::Rumbo(native)) = &mut self.controller {
+            native.set_pose(told);
+        }
+    }
+
+    /// From now on it gets what another robot is given, by that one's clock: one of ours, native, does not judge how
+    /// old that is.
+    pub fn be_ghost(&mut self) {
+        if let Some(Controller::Rumbo(native)) = &mut self.controller {
+            native.be_ghost();
+        }
+    }
+
+    /// What is in the robot's EEPROM; what was never written may be missing at the end.
+    pub fn memory(&self) -> Vec<u8> {
+        match &self.controller {
+            Some(Controller::Rumbo(native)) => native.memory.0.clone(),
+            Some(Controller::Mega(mega)) => mega.chip().devices().eeprom().to_vec(),
+            Some(Controller::Baseline(_)) | None => Vec::new(),
+        }
+    }
+
+    /// The emulated Mega, if one is at the pins.
+    pub fn mega(&self) -> Option<&Mega> {
+        match &self.controller {
+            Some(Controller::Mega(mega)) => Some(mega),
+            _ => None,
+        }
+    }
+
+    /// The same, as a debugger or a terminal holds it.
+    pub fn mega_mut(&mut self) -> Option<&mut Mega> {
+        match &mut self.controller {
+            Some(Controller::Mega(mega)) => Some(mega),
+            _ => None,
+        }
+    }
+
+    /// How the program at the pins ended, if it could not go on.
+    pub fn verdict(&self) -> Option<String> {
+        self.mega().and_then(Mega::verdict)
+    }
+
+    /// The clock starts over and the robot is back at its start, at rest; the program goes on and notices nothing. For a program
+    /// that is told its parameters over the link before its run begins.
+    pub fn restart_clock(&mut self) {
+        self.state = self.plant.start(self.start);
+        self.uplink = Link::new(self.uplink.params().clone(), self.noise, Direction::ToRobot);
+        self.downlink = Link::new(
+            self.downlink.params().clone(),
+            self.noise,
+            Direction::ToStation,
+        );
+        self.worst_reverse_rad_s = 0.0;
+        self.worst_contact_m_s = 0.0;
+        self.outputs_us = (0, 0, 0);
+        let encoders = self.plant.encoder_levels(&self.state);
+        if let Some(mega) = self.mega_mut() {
+            mega.restart_clock(encoders);
+        }
+    }
+
+    /// Lets program and plant live until this time [us], or to a breakpoint.
+    pub fn advance(&mut self, until_us: u64) {
+        let mut controller = self.controller.take();
+        match &mut controller {
+            Some(Controller::Rumbo(native)) => self.advance_native(native, until_us),
+            Some(Controller::Baseline(baseline)) => self.advance_baseline(baseline, until_us),
+            Some(Controller::Mega(mega)) => self.advance_mega(mega, until_us),
+            None => {}
+        }
+        self.controller = controller;
+    }
+
+    fn advance_plant(&mut self, until_us: u64, take: &mut impl FnMut(Event)) {
+        let worst_contact_m_s = &mut self.worst_contact_m_s;
+        self.plant.advance(&mut self.state, until_us, &mut |event| {
+            if let Event::Contact { speed_m_s, .. } = event {
+                *worst_contact_m_s = worst_contact_m_s.max(speed_m_s);
+            }
+            take(event);
+        });
+        self.watch_reverse();
+    }
+
+    fn trigger(&mut self, sonar: SonarId) {
+        if !self.sonar_faults.is_cut(sonar, self.now_us()) {
+            self.plant.trigger(&mut self.state, plant_sonar(sonar));
+        }
+    }
+
+    fn set_bridges(&mut self, drive: Wheels<Duty>) {
+        for side in SIDES {
+            self.plant
+                .set_bridge(&mut self.state, plant_side(side), bridge(drive[side]));
+        }
+        self.driven(drive);
+    }
+
+    /// The bridges have been set.
+    fn driven(&mut self, drive: Wheels<Duty>) {
+        let now_us = self.now_us();
+        self.outputs_us = match self.outputs_us {
+            (0, ..) => (now_us, now_us, 0),
+            (first_us, _, count) => (first_us, now_us, count + 1),
+        };
+        self.duty = drive;
+        self.watch_reverse();
+    }
+
+    fn watch_reverse(&mut self) {
+        let wheels = self.plant.wheel_rad_s(&self.state);
+        for (side, speed) in SIDES.into_iter().zip(wheels) {
+            let against = -speed * f64::from(self.duty[side].counts().signum());
+            self.worst_reverse_rad_s = self.worst_reverse_rad_s.max(against);
+        }
+    }
+}
+
+fn bridge(duty: Duty) -> Bridge {
+    let share = f64::from(duty.counts()) / f64::from(Duty::MAX);
+    if duty == Duty::RELEASED {
+        Bridge::Released
+    } else if share > 0.0 {
+        Bridge::Forward(share)
+    } else {
+        Bridge::Backward(-share)
+    }
+}
+
+fn plant_side(side: rumbo_control::Side) -> Side {
+    match side {
+        rumbo_control::Side::Left => Side::Left,
+        rumbo_control::Side::Right => Side::Right,
+    }
+}
+
+fn plant_sonar(sonar: SonarId) -> rumbo_plant::sonar::SonarId {
+    match sonar {
+        SonarId::Left => rumbo_plant::sonar::SonarId::Left,
+        SonarId::Right => rumbo_plant::sonar::SonarId::Right,
+        SonarId::Front => rumbo_plant::sonar::SonarId::Front,
+    }
+}

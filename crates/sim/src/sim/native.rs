@@ -1,0 +1,238 @@
+//! Our robot as it runs on this machine: its ticks, and what stands for the chip's interrupts and timers.
+
+use super::Sim;
+use crate::board::{Board, micros};
+use crate::error::SimError;
+use crate::wire_fault::Wire;
+use crate::wiring::Divider;
+use rumbo_control::mode::ModeId;
+use rumbo_control::params::ParamId;
+use rumbo_control::{Inputs, OUTPUT_DELAY_US, Outputs, TICK_US};
+use rumbo_plant::plant::Event;
+use rumbo_robot::{Cell, Config, Robot, START_AT};
+use rumbo_wire::ResetCause;
+
+/// The converter's reference, the chip's supply [V].
+const CONVERTER_V: f64 = 5.0;
+
+/// The EEPROM's bytes; what has never been written is missing at the end.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Memory(pub(super) Vec<u8>);
+
+impl Memory {
+    fn read(&self, address: u16) -> u8 {
+        self.0.get(usize::from(address)).copied().unwrap_or(0xFF)
+    }
+
+    fn write(&mut self, cell: Cell) {
+        let at = usize::from(cell.address);
+        if self.0.len() <= at {
+            self.0.resize(at + 1, 0xFF);
+        }
+        if let Some(byte) = self.0.get_mut(at) {
+            *byte = cell.value;
+        }
+    }
+}
+
+/// The robot, and what it has not done yet.
+#[derive(Clone, Debug)]
+pub(super) struct Native {
+    robot: Robot,
+    /// It gets what another robot is given.
+    is_ghost: bool,
+    pub(super) board: Board,
+    /// Its battery's divider.
+    pub(super) divider: Option<Divider>,
+    /// The conversion that was begun at the last tick: of which input, and what it gives.
+    converted: Option<(u8, u16)>,
+    /// Its EEPROM.
+    pub(super) memory: Memory,
+    pub(super) next_tick_us: u64,
+    /// Outputs and when they take effect.
+    pub(super) pending: Option<(u64, Outputs)>,
+    /// What it was given, if somebody wants to know.
+    pub(super) recorded: Option<Vec<Latched>>,
+}
+
+/// What the robot is given at a tick.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Latched {
+    /// Bytes that it receives before the tick.
+    pub received: Vec<u8>,
+    /// What latched at the tick.
+    pub inputs: Inputs,
+}
+
+impl Native {
+    /// A robot with what its EEPROM holds, then these parameters, later ones in place of earlier ones.
+    pub(super) fn new<'a>(
+        mut memory: Memory,
+        parameters: impl IntoIterator<Item = &'a (ParamId, f32)>,
+    ) -> Result<Self, SimError> {
+        // As the firmware counts its starts.
+        let start = memory.read(START_AT).wrapping_add(1);
+        memory.write(Cell {
+            address: START_AT,
+            value: start,
+        });
+        let mut robot = Robot::new(Config {
+            image: 0,
+            reset: ResetCause::PowerOn,
+            start,
+        });
+        robot.recall(|address| memory.read(address));
+        for (id, value) in parameters {
+            set_param(&mut robot, *id, *value)?;
+        }
+        Ok(Self {
+            robot,
+            is_ghost: false,
+            board: Board::default(),
+            divider: None,
+            converted: None,
+            memory,
+            next_tick_us: 0,
+            pending: None,
+            recorded: None,
+        })
+    }
+
+    /// The robot stands here, as it believes.
+    pub(super) fn set_pose(&mut self, pose: rumbo_control::Pose) {
+        self.robot.set_pose(pose);
+    }
+
+    pub(super) fn be_ghost(&mut self) {
+        self.is_ghost = true;
+    }
+
+    pub(super) fn mode_state(&self) -> Option<(ModeId, u8)> {
+        self.robot.mode_state()
+    }
+}
+
+impl Native {
+    /// The battery's voltage as the chip's converter finds it: begun at a tick, read at the next one.
+    fn convert(&mut self, battery_v: impl Fn() -> f64) -> Option<f32> {
+        let input = self.robot.battery_input()?;
+        let volts = match self.divider {
+            Some(divider) if divider.input == input => battery_v() / divider.ratio,
+            _ => 0.0,
+        };
+        let counts = (volts / CONVERTER_V * 1_024.0).clamp(0.0, 1_023.0) as u16;
+        let last = self.converted.replace((input, counts))?;
+        (last.0 == input).then(|| self.robot.battery_v(last.1))
+    }
+}
+
+fn set_param(robot: &mut Robot, id: ParamId, value: f32) -> Result<(), SimError> {
+    robot
+        .set_param(id as u8, value)
+        .map(|_| ())
+        .map_err(|refusal| SimError::Parameter { id, value, refusal })
+}
+
+impl Sim {
+    /// Lets robot and plant live until this time [us].
+    pub(super) fn advance_native(&mut self, native: &mut Native, until_us: u64) {
+        loop {
+            let mut next_us = native.next_tick_us.min(until_us);
+            if let Some((at_us, _)) = native.pending {
+                next_us = next_us.min(at_us);
+            }
+            self.sense(native, next_us);
+            if let Some((at_us, outputs)) = native.pending
+                && at_us == next_us
+            {
+                native.pending = None;
+                self.apply(native, &outputs);
+            }
+            if native.next_tick_us == next_us && next_us < until_us {
+                self.tick(native);
+            }
+            if next_us == until_us {
+                return;
+            }
+        }
+    }
+
+    /// The plant lives until this time, and what its wires bring to the board is latched.
+    fn sense(&mut self, native: &mut Native, until_us: u64) {
+        if self.wire_faults.is_empty() {
+            self.advance_plant(until_us, &mut |event| native.board.take(event));
+            return;
+        }
+        let from_us = self.now_us();
+        let mut events = Vec::new();
+        self.advance_plant(until_us, &mut |event| events.push(event));
+        let (faults, noise) = (&mut self.wire_faults, &self.noise);
+        events.retain(|event| {
+            let edge = Wire::of(event);
+            edge.is_none_or(|(wire, _)| faults.passes(noise, wire, event.at_us()))
+        });
+        let milliseconds = from_us.div_ceil(1_000)..until_us.div_ceil(1_000);
+        for (begin_us, end_us, wire) in milliseconds.flat_map(|ms| faults.pulses(noise, ms * 1_000))
+        {
+            // An echo line that is disturbed while it rests is a short pulse; the board takes the first one.
+            events.push(wire.edge(begin_us, true));
+            events.push(wire.edge(end_us, false));
+        }
+        events.sort_by_key(Event::at_us);
+        for event in events {
+            native.board.take(event);
+        }
+    }
+
+    fn tick(&mut self, native: &mut Native) {
+        let now_us = self.now_us();
+        let mut received = Vec::new();
+        while let Some((_, byte)) = self.uplink.pop(now_us) {
+            if native.is_ghost {
+                native.robot.receive_as_ghost(byte);
+            } else {
+                native.robot.receive(byte);
+            }
+            received.push(byte);
+        }
+        let echo = native
+            .board
+            .echo(now_us)
+            .map(|answer| self.sonar_faults.answer(&self.noise, answer, now_us));
+        let battery_v = native.convert(|| self.truth().battery_v);
+        let inputs = Inputs {
+            now: micros(now_us),
+            encoders: native.board.encoders(),
+            echo,
+            battery_v,
+        };
+        let outputs = native.robot.tick(&inputs);
+        if let Some(recorded) = &mut native.recorded {
+            recorded.push(Latched { received, inputs });
+        }
+        native.robot.report();
+        // A byte takes 3.4 ms: the one before is written.
+        if let Some(cell) = native.robot.store() {
+            native.memory.write(cell);
+        }
+        native.pending = Some((now_us + u64::from(OUTPUT_DELAY_US), outputs));
+        native.next_tick_us += u64::from(TICK_US);
+        // The transmit interrupt hands a byte to the line whenever the line is free.
+        while self.downlink.line_free_us() < native.next_tick_us {
+            let Some(byte) = native.robot.transmit() else {
+                break;
+            };
+            self.downlink.send(now_us, &[byte]);
+        }
+    }
+
+    fn apply(&mut self, native: &mut Native, outputs: &Outputs) {
+        self.set_bridges(outputs.drive);
+        self.plant
+            .set_servo(&mut self.state, f64::from(outputs.servo.0));
+        if let Some(sonar) = outputs.ping {
+            self.trigger(sonar);
+            native.board.pinged(sonar, self.state.now_us());
+        }
+    }
+}

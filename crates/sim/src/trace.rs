@@ -1,0 +1,167 @@
+//! What a run really did, sampled at every control tick from the plant and the pins.
+
+use crate::sim::{Burst, Sim};
+use rumbo_control::params::Params;
+use rumbo_wire::FromRobot;
+use std::fmt::Write;
+
+/// Period of the samples [us].
+pub const SAMPLE_US: u64 = 10_000;
+
+/// The truth at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Time since the start [s].
+    pub t_s: f64,
+    /// Position in the world [m].
+    pub x_m: f64,
+    /// Position in the world [m].
+    pub y_m: f64,
+    /// Heading, not wrapped, so that turns add up [rad].
+    pub heading_rad: f64,
+    /// True wheel speeds, left and right [rad/s].
+    pub wheel_rad_s: [f64; 2],
+    /// PWM at the bridges, left and right, -255..=255.
+    pub duty: [i16; 2],
+    /// True range of the left, right and front sonar [m]; infinite when nothing is within reach.
+    pub range_m: [f64; 3],
+    /// Where the servo points [rad].
+    pub servo_rad: f64,
+    /// Battery at its terminals [V].
+    pub battery_v: f64,
+    /// The body touches something.
+    pub touching: bool,
+}
+
+/// Something that crossed the link and that metrics need.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heard {
+    /// When the station had it, since the start [s].
+    pub t_s: f64,
+    /// What.
+    pub what: FromRobot,
+}
+
+/// A whole run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trace {
+    /// The robot's parameters at the start; `None` where its program has no table of ours.
+    pub parameters: Option<Params>,
+    /// Telemetry, status, events and heading references as they arrived at the station.
+    pub heard: Vec<Heard>,
+    /// The samples, in order of time.
+    pub samples: Vec<Sample>,
+    /// What crossed the link, in order.
+    pub link: Vec<Burst>,
+    /// What the USARTs of an emulated Mega have sent, in order.
+    pub consoles: Vec<Said>,
+}
+
+/// What a USART of an emulated Mega has sent since the sample before.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// When it was taken [us].
+    pub t_us: u64,
+    /// Which USART.
+    pub usart: u8,
+    /// What.
+    pub bytes: Vec<u8>,
+}
+
+impl Trace {
+    /// Adds the present.
+    pub fn take(&mut self, sim: &Sim) {
+        let truth = sim.truth();
+        let wrapped_rad = truth.pose.heading_rad;
+        let heading_rad = self.samples.last().map_or(wrapped_rad, |last| {
+            let change = wrapped_rad - last.heading_rad;
+            last.heading_rad + change
+                - std::f64::consts::TAU * (change / std::f64::consts::TAU).round()
+        });
+        let duty = sim.duty();
+        self.samples.push(Sample {
+            t_s: truth.now_us as f64 * 1e-6,
+            x_m: truth.pose.x_m,
+            y_m: truth.pose.y_m,
+            heading_rad,
+            wheel_rad_s: truth.wheel_rad_s,
+            duty: [duty.left.counts(), duty.right.counts()],
+            range_m: truth
+                .range_m
+                .map(|range_m| range_m.unwrap_or(f64::INFINITY)),
+            servo_rad: truth.servo_rad,
+            battery_v: truth.battery_v,
+            touching: truth.touching,
+        });
+    }
+
+    /// Adds what the USARTs of an emulated Mega have sent since.
+    pub fn listen(&mut self, sim: &mut Sim) {
+        let t_us = sim.now_us();
+        if let Some(mega) = sim.mega_mut() {
+            let said = (0..4).map(|usart| Said {
+                t_us,
+                usart,
+                bytes: mega.take_console(usart),
+            });
+            self.consoles
+                .extend(said.filter(|said| !said.bytes.is_empty()));
+        }
+    }
+
+    /// All that a USART has sent.
+    #[must_use]
+    pub fn console(&self, usart: u8) -> Vec<u8> {
+        let of_it = self.consoles.iter().filter(|said| said.usart == usart);
+        of_it.flat_map(|said| said.bytes.iter().copied()).collect()
+    }
+
+    /// The samples from `from_s` to just before `until_s`.
+    pub fn between(&self, from_s: f64, until_s: f64) -> &[Sample] {
+        let index = |t_s: f64| {
+            self.samples
+                .partition_point(|sample| sample.t_s < t_s - 1e-9)
+        };
+        &self.samples[index(from_s)..index(until_s).max(index(from_s))]
+    }
+
+    /// Whether a wheel was ever driven: of a robot that never was, nothing of its driving can be measured.
+    pub fn drove(&self) -> bool {
+        self.samples.iter().any(|sample| sample.duty != [0; 2])
+    }
+
+    /// The samples as CSV, units in the names of the columns.
+    pub fn csv(&self) -> String {
+        let mut text = String::from(
+            "t_s,x_m,y_m,heading_rad,left_rad_s,right_rad_s,left_duty,right_duty,left_m,right_m,front_m,servo_rad,battery_v\n",
+        );
+        for sample in &self.samples {
+            let Sample {
+                t_s,
+                x_m,
+                y_m,
+                heading_rad,
+                wheel_rad_s,
+                duty,
+                range_m,
+                servo_rad,
+                battery_v,
+                touching: _,
+            } = sample;
+            let [left_m, right_m, front_m] = range_m.map(|range_m| {
+                if range_m.is_finite() {
+                    format!("{range_m:.5}")
+                } else {
+                    String::new()
+                }
+            });
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "{t_s:.3},{x_m:.5},{y_m:.5},{heading_rad:.5},{:.4},{:.4},{},{},{left_m},{right_m},{front_m},{servo_rad:.4},{battery_v:.3}",
+                wheel_rad_s[0], wheel_rad_s[1], duty[0], duty[1],
+            );
+        }
+        text
+    }
+}

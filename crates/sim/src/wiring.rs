@@ -1,0 +1,44 @@
+//! Which signal is on which pin of the Mega.
+
+use std::collections::BTreeMap;
+
+/// The signals that a wiring may place: enable and direction inputs of the bridge, encoders, servo, sonars and UARTs.
+pub const SIGNALS: [&str; 19] = [
+    "left_enable",
+    "left_forward",
+    "left_backward",
+    "left_encoder",
+    "right_enable",
+    "right_forward",
+    "right_backward",
+    "right_encoder",
+    "servo",
+    "left_trigger",
+    "left_echo",
+    "right_trigger",
+    "right_echo",
+    "front_trigger",
+    "front_echo",
+    "link_tx",
+    "link_rx",
+    "debug_tx",
+    "debug_rx",
+];
+
+/// Signals, of [`SIGNALS`], and the Mega's pin numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wiring {
+    /// Pin of each signal.
+    pub pins: BTreeMap<String, u8>,
+    /// The divider that brings the battery's voltage to an analogue input, where there is one.
+    pub battery: Option<Divider>,
+}
+
+/// A divider between battery and analogue input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Divider {
+    /// Analogue input, 0..=15: A0 to A15.
+    pub input: u8,
+    /// Battery's voltage over that at the input.
+    pub ratio: f64,
+}

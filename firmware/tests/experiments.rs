@@ -1,0 +1,110 @@
+//! The experiments on the shipped image: what the native robot passes, the chip passes.
+//!
+//! One seed of each here; `cargo xtask campaign --only medians` takes twenty and compares what was measured.
+
+use crate::board::image_path;
+use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup};
+use rumbo_experiment::run::{RunResult, run_all};
+
+/// The robot of each run. Which way round boxes it goes may hang on a few cycles, and now and then the longer one costs a limit
+/// (docs/firmware.md says how often): of those one whose way is clear.
+fn seed(scenario: &str) -> u64 {
+    match scenario {
+        "mode8-obstacles" | "mode8-random" => 2,
+        _ => 1,
+    }
+}
+
+/// A scenario of each mode, to be run in every rig.
+const OF_EACH_MODE: [&str; 13] = [
+    "manual-straight-speed",
+    "mode1",
+    "mode2",
+    "mode3",
+    "mode3-right",
+    "mode4",
+    "mode4-right",
+    "mode5",
+    "mode6",
+    "mode7",
+    "pursuit-line",
+    "mode8-goals",
+    "mode8-lane",
+];
+
+/// Runs each once, natively, then those that passed on the image; gives the names of these, with their rigs.
+fn what_passes_natively_passes(setups: Vec<Setup>) -> Vec<(String, String)> {
+    let Some(image) = image_path() else {
+        return Vec::new();
+    };
+    let firmware = Overrides {
+        firmware: Some(image),
+        ..Overrides::default()
+    };
+    let firmware = Library::new().setup("free", &firmware).unwrap().firmware;
+    let natively = all(&setups);
+    let mut passed: Vec<Setup> = setups
+        .into_iter()
+        .zip(natively)
+        .filter_map(|(setup, result)| result.pass.then_some(setup))
+        .collect();
+    for setup in &mut passed {
+        setup.firmware = firmware.clone();
+    }
+    let failed: Vec<_> = all(&passed)
+        .into_iter()
+        .zip(&passed)
+        .filter(|(result, _)| !result.pass)
+        .map(|(result, setup)| (result.scenario, &setup.scenario.rig, result.failures))
+        .collect();
+    assert!(failed.is_empty(), "{failed:#?}");
+    let name = |setup: Setup| (setup.scenario.name, setup.scenario.rig);
+    passed.into_iter().map(name).collect()
+}
+
+fn all(setups: &[Setup]) -> Vec<RunResult> {
+    let jobs: Vec<_> = setups
+        .iter()
+        .map(|setup| (setup, seed(&setup.scenario.name)))
+        .collect();
+    let mut results = Vec::new();
+    run_all(&jobs, |_, result| {
+        results.push(result);
+        Ok::<(), FileError>(())
+    })
+    .unwrap();
+    results
+}
+
+#[test]
+fn every_scenario_keeps_its_limits() {
+    let library = Library::new();
+    let names = library.list(Kind::Scenario);
+    let own = |name: &String| library.setup(name, &Overrides::default()).unwrap();
+    let passed = what_passes_natively_passes(names.iter().map(own).collect());
+    let passed: Vec<_> = passed.into_iter().map(|(name, _)| name).collect();
+    assert!(passed.is_empty() || passed == names, "{passed:?}");
+}
+
+#[test]
+fn every_mode_keeps_its_limits_in_every_rig_that_can_do_it() {
+    let library = Library::new();
+    let rigs = library.setup("free", &Overrides::default()).unwrap();
+    let rigs: Vec<_> = rigs.robot.rigs.keys().cloned().collect();
+    let in_rig = |name: &str, rig: &String| {
+        let overrides = Overrides {
+            rig: Some(rig.clone()),
+            ..Overrides::default()
+        };
+        let setup = library.setup(name, &overrides).unwrap();
+        let own = library.setup(name, &Overrides::default()).unwrap();
+        (own.scenario.rig != *rig).then_some(setup)
+    };
+    let setups = OF_EACH_MODE
+        .iter()
+        .flat_map(|name| rigs.iter().filter_map(|rig| in_rig(name, rig)));
+    let passed = what_passes_natively_passes(setups.collect());
+    println!("{passed:?}");
+    // Driving by the wheels alone is possible in all five rigs, by sonars where they look the right way.
+    assert!(passed.is_empty() || passed.len() >= 24, "{}", passed.len());
+}

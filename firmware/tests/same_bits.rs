@@ -1,0 +1,257 @@
+//! The image and the native robot, given the same, give the same: every output, every byte on the link, and every field of their state.
+
+use crate::board::{Board, elf, image, outputs_record};
+use crate::tape::Tape;
+use crate::world::World;
+use rumbo_control::mode::ModeId;
+use rumbo_control::params::ParamId;
+use rumbo_control::{Inputs, Outputs, SonarId};
+use rumbo_robot::{Config, Robot};
+use rumbo_sim::wire_fault::{TimedWireFault, Wire, WireFault};
+use rumbo_wire::ResetCause;
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+/// Ticks of one run, more than four minutes: a mode after the other. Eight runs make 200,000.
+const TICKS: u32 = 25_000;
+
+/// Cycles of the 3 ms in which the outputs are due.
+const IN_TIME: u64 = 48_000;
+/// Most cycles from the inputs to the outputs, in any mode.
+const MOST: u64 = 45_000;
+
+/// Experiments whose inputs are recorded, and of which robots.
+const RECORDED: [(&str, u64); 15] = [
+    ("manual-arc-left-speed", 1),
+    ("manual-straight", 1),
+    ("mode1-final", 1),
+    ("mode2", 1),
+    ("mode2-final", 1),
+    ("mode3-final", 1),
+    ("mode4", 1),
+    ("mode5", 1),
+    ("mode5-reversal", 1),
+    ("mode6", 1),
+    ("mode7", 1),
+    ("pursuit-curve", 1),
+    ("mode8-goals", 1),
+    ("mode8-lane", 1),
+    ("mode8-obstacles", 1),
+];
+/// A sonar in doubt, beside a wall.
+const NOISE: TimedWireFault = TimedWireFault {
+    at_s: 2.0,
+    wire: Wire::Echo(SonarId::Left),
+    fault: WireFault::Noisy(200.0),
+};
+/// Mode 4 has the states of mode 3, which measures first; mode 8 leaves *initialise* in the tick in which it comes to it.
+const NEVER_SEEN: [(ModeId, usize); 2] = [(ModeId::WallFollow, 0), (ModeId::Mission, 2)];
+/// Ticks of a run in text.
+const TICKS_IN_TEXT: u32 = 12_000;
+
+/// What both robots are given.
+enum Given {
+    Random(Box<World>, u32),
+    Recorded(Tape),
+}
+
+impl Given {
+    fn random(seed: u64) -> Given {
+        Given::Random(Box::new(World::new(seed)), TICKS)
+    }
+
+    fn in_text(seed: u64) -> Given {
+        Given::Random(Box::new(World::in_text(seed)), TICKS_IN_TEXT)
+    }
+
+    fn ticks(&self) -> u32 {
+        match self {
+            Given::Random(_, ticks) => *ticks,
+            Given::Recorded(tape) => tape.ticks(),
+        }
+    }
+
+    fn inputs(&mut self, tick: u32, last: &Outputs) -> Inputs {
+        match self {
+            Given::Random(world, _) => world.inputs(tick, last),
+            Given::Recorded(tape) => tape.inputs(tick),
+        }
+    }
+
+    fn bytes(&mut self, tick: u32) -> Vec<u8> {
+        match self {
+            Given::Random(world, _) => world.bytes(tick),
+            Given::Recorded(tape) => tape.bytes(tick),
+        }
+    }
+
+    fn mode(&self) -> ModeId {
+        match self {
+            Given::Random(world, _) => world.mode(),
+            Given::Recorded(tape) => tape.mode,
+        }
+    }
+}
+
+/// What the native robot was given in each of [`RECORDED`], and with [`NOISE`].
+fn recorded() -> impl Iterator<Item = (String, Given)> {
+    let tapes = RECORDED
+        .into_iter()
+        .map(|(scenario, seed)| (scenario, seed, None));
+    let tapes = tapes.chain([
+        ("mode3-final", 1, Some(NOISE)),
+        ("mode4-final", 1, Some(NOISE)),
+    ]);
+    let tapes = tapes.map(|(scenario, seed, fault)| {
+        let tape = Tape::of(scenario, seed, fault.as_slice(), &[]);
+        (format!("{scenario} {fault:?}"), Given::Recorded(tape))
+    });
+    // Impatient: it calls its goal unreachable on the way.
+    let impatient = [(ParamId::MissionGiveUp, 5.0)];
+    let tape = Tape::of("mode8-obstacles", 1, &[], &impatient);
+    tapes.chain([("impatient".to_owned(), Given::Recorded(tape))])
+}
+
+/// The states of modes in which the native robot is, given this.
+fn visited(mut given: Given) -> BTreeSet<(u8, u8)> {
+    let mut robot = Robot::new(Config {
+        image: 0,
+        reset: ResetCause::PowerOn,
+        start: 0,
+    });
+    let (mut outputs, mut visited) = (Outputs::default(), BTreeSet::new());
+    for tick in 1..=given.ticks() {
+        outputs = robot.tick(&given.inputs(tick, &outputs));
+        robot.report();
+        let state = robot.mode_state();
+        visited.extend(state.map(|(mode, state)| (mode as u8, state)));
+        given
+            .bytes(tick)
+            .into_iter()
+            .for_each(|byte| robot.receive(byte));
+        while robot.transmit().is_some() {}
+    }
+    visited
+}
+
+/// Runs both; prints the cycles of the ticks by mode.
+fn compare(what: &str, mut world: Given) {
+    let (Some(elf), Some(image)) = (elf(), image()) else {
+        return;
+    };
+    let mut board = Board::new(&elf, &image);
+    let mut robot = Robot::new(Config {
+        image: board.hash(),
+        reset: ResetCause::PowerOn,
+        start: 0,
+    });
+    let (mut outputs, mut told) = (Outputs::default(), Vec::new());
+    let [mut native, mut chip] = [String::new(), String::new()];
+    let (mut worst, mut driven) = ([0; 9], 0);
+    let (mut ticks, mut late) = ([0; 9], [0; 9]);
+    let count = world.ticks();
+    for tick in 1..=count {
+        let inputs = world.inputs(tick, &outputs);
+        outputs = robot.tick(&inputs);
+        robot.report();
+        let bytes = world.bytes(tick);
+        board.arrive(&bytes);
+        let (left, cycles) = board.tick(&inputs);
+        ticks[world.mode() as usize] += 1;
+        late[world.mode() as usize] += u32::from(cycles > IN_TIME);
+        assert_eq!(
+            left,
+            outputs_record(&outputs),
+            "{what}, tick {tick}: {inputs:?} {outputs:?}"
+        );
+        for byte in bytes {
+            robot.receive(byte);
+        }
+        let handed_over = usize::from(board.handed_over());
+        told.extend(std::iter::from_fn(|| robot.transmit()).take(handed_over));
+        let sent = board.sent();
+        assert_eq!(
+            sent,
+            &told[..sent.len().min(told.len())],
+            "{what}, tick {tick}"
+        );
+        native.clear();
+        chip.clear();
+        write!(native, "{robot:?}").unwrap();
+        board.write_state(&mut chip);
+        assert!(
+            native == chip,
+            "{what}, tick {tick}: {}",
+            first_difference(&native, &chip)
+        );
+        worst[world.mode() as usize] = cycles.max(worst[world.mode() as usize]);
+        driven += u32::from(outputs.drive != Outputs::default().drive);
+    }
+    println!(
+        "{what}: {count} ticks, {driven} of them driven, by mode: most cycles to the outputs {worst:?}, late {late:?} of {ticks:?}"
+    );
+    let (in_state, of) = board.bytes_in_state();
+    println!(
+        "{in_state} of the robot's {of} bytes are compared, as {} characters",
+        chip.len()
+    );
+    // The rest belongs to variants that it is not in, such as bytes of a message that is not there.
+    assert!(in_state > of / 2, "{in_state} of {of}");
+    for (mode, worst) in worst.into_iter().enumerate() {
+        assert!(worst <= MOST, "mode {mode}: {worst} cycles");
+    }
+    let is_random = matches!(world, Given::Random(..));
+    // At least two bytes a tick.
+    assert!(
+        (driven > count / 8 || !is_random) && told.len() > 2 * count as usize,
+        "{driven} {}",
+        told.len()
+    );
+}
+
+/// What two texts have around the place where they begin to differ.
+fn first_difference(native: &str, chip: &str) -> String {
+    let alike = native.bytes().zip(chip.bytes());
+    let at = alike.take_while(|(one, other)| one == other).count();
+    let around = |text: &str| {
+        let bytes = &text.as_bytes()[at.saturating_sub(120)..text.len().min(at + 60)];
+        String::from_utf8_lossy(bytes).into_owned()
+    };
+    format!("{} natively, {} on the chip", around(native), around(chip))
+}
+
+#[test]
+fn the_image_computes_the_same_bits_as_the_native_robot() {
+    (1..=4).for_each(|seed| compare(&format!("seed {seed}"), Given::random(seed)));
+}
+
+#[test]
+fn and_with_other_inputs() {
+    (5..=8).for_each(|seed| compare(&format!("seed {seed}"), Given::random(seed)));
+}
+
+#[test]
+fn and_in_the_original_s_text() {
+    compare("text", Given::in_text(9));
+}
+
+#[test]
+fn and_with_what_the_experiments_record() {
+    recorded().for_each(|(what, given)| compare(&what, given));
+}
+
+#[test]
+fn what_both_are_given_leads_through_every_state_of_every_mode() {
+    let random = (1..=8).map(Given::random);
+    let recorded = recorded().map(|(_, given)| given);
+    let given = random.chain([Given::in_text(9)]).chain(recorded);
+    let visited: BTreeSet<(u8, u8)> = given.flat_map(visited).collect();
+    for mode in ModeId::ALL {
+        let states = mode.description().states.iter().enumerate();
+        let missed: Vec<_> = states
+            .filter(|(state, _)| !NEVER_SEEN.contains(&(mode, *state)))
+            .filter(|(state, _)| !visited.contains(&(mode as u8, *state as u8)))
+            .collect();
+        assert!(missed.is_empty(), "{mode:?}: {missed:?}");
+    }
+}

@@ -1,0 +1,187 @@
+//! What each page of docs/theory shows, and docs/wiring.md.
+
+mod baseline;
+mod manual;
+mod states;
+mod walls;
+mod ways;
+mod wheels;
+mod wiring;
+
+use crate::chart::{BASELINE, Chart, Curve, Legend, OURS, THIRD, map, over_time, svg};
+use crate::runs::{self, Change, Runs, runs};
+use crate::table::{Row, row, spread, table};
+use rumbo_experiment::files::Setup;
+use rumbo_sim::trace::Sample;
+use rumbo_wire::Command;
+
+const RPM: f64 = 30.0 / std::f64::consts::PI;
+const DEG: f64 = 180.0 / std::f64::consts::PI;
+const WIDE: (u32, u32) = (860, 290);
+
+/// A section of a page.
+pub(crate) struct Page {
+    pub(crate) name: &'static str,
+    pub(crate) file: &'static str,
+    pub(crate) make: fn() -> Result<Option<Made>, String>,
+}
+
+/// What is to stand in it: figures with name, alternative text and SVG, and the words below them.
+pub(crate) struct Made {
+    pub(crate) figures: Vec<(&'static str, &'static str, String)>,
+    pub(crate) words: String,
+}
+
+pub(crate) const PAGES: &[Page] = &[
+    page("manual", "manual.md", manual::manual),
+    page("mode1", "front_distance.md", walls::mode1),
+    page("mode2", "front_align.md", walls::mode2),
+    page("mode3", "wall_follow.md", walls::mode3),
+    page("mode4", "wall_follow.md", walls::mode4),
+    page("mode5", "wheel_speed.md", wheels::mode5),
+    page("mode6", "straight_line.md", wheels::mode6),
+    page("mode7", "waypoints.md", ways::mode7),
+    page("pursuit", "pursuit.md", ways::pursuit),
+    page("mode8-lane", "lane.md", ways::mode8_lane),
+    page("mode8-goals", "baseline.md", ways::mode8_goals),
+    page("mode8-obstacles", "baseline.md", ways::mode8_obstacles),
+    page("baseline", "baseline.md", baseline::beside),
+    page("wiring", "../wiring.md", wiring::wiring),
+    page("modes", "README.md", states::modes),
+    page("states-0", "manual.md", states::states::<0>),
+    page("states-1", "front_distance.md", states::states::<1>),
+    page("states-2", "front_align.md", states::states::<2>),
+    page("states-4", "wall_follow.md", states::states::<4>),
+    page("states-5", "wheel_speed.md", states::states::<5>),
+    page("states-6", "straight_line.md", states::states::<6>),
+    page("states-7", "waypoints.md", states::states::<7>),
+    page("states-8", "mission.md", states::states::<8>),
+];
+
+const fn page(
+    name: &'static str,
+    file: &'static str,
+    make: fn() -> Result<Option<Made>, String>,
+) -> Page {
+    Page { name, file, make }
+}
+
+/// Both programs' runs of a scenario, the report's first.
+fn both(scenario: &str, baseline: Change) -> Result<Option<[Runs; 2]>, String> {
+    Ok(runs(scenario, baseline)?
+        .zip(runs(scenario, runs::OURS)?)
+        .map(|(baseline, ours)| [baseline, ours]))
+}
+
+/// The report's program, the same on robots that turn as its own did, and ours.
+fn three(scenario: &str, baseline: Change) -> Result<Option<[Runs; 3]>, String> {
+    let Some(recorded) = runs(scenario, runs::as_recorded(scenario, baseline))? else {
+        return Ok(None);
+    };
+    let both = both(scenario, baseline)?;
+    Ok(both.map(|[baseline, ours]| [baseline, recorded, ours]))
+}
+
+/// A signal over time, of both programs.
+fn signal(baseline: &Runs, ours: &Runs, signal: impl Fn(&Sample, f64) -> f64) -> Vec<Curve> {
+    vec![
+        Curve::Seeds {
+            name: REPORT,
+            colour: BASELINE,
+            runs: baseline.over_time(&signal),
+        },
+        Curve::Seeds {
+            name: "ours",
+            colour: OURS,
+            runs: ours.over_time(&signal),
+        },
+    ]
+}
+
+/// The reference over time, in its unit times `factor`.
+fn reference(setup: &Setup, factor: f64) -> Curve {
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    for timed in &setup.scenario.commands {
+        let value = match timed.command {
+            Command::Reference(value) => f64::from(value),
+            Command::WheelReference(wheels) => f64::from(wheels.left),
+            _ => continue,
+        } * factor;
+        if let Some(&(_, last)) = points.last() {
+            points.push((timed.at_s, last));
+        }
+        points.push((timed.at_s, value));
+    }
+    if let Some(&(_, last)) = points.last() {
+        points.push((setup.scenario.duration_s, last));
+    }
+    Curve::Given {
+        name: "reference",
+        points,
+    }
+}
+
+fn pwm(baseline: &Runs, ours: &Runs) -> Chart {
+    over_time(
+        "PWM of the left wheel",
+        "of 255",
+        signal(baseline, ours, |sample, _| f64::from(sample.duty[0])),
+    )
+}
+
+const REPORT: &str = "the report's program";
+const AS_RECORDED: &str = "on robots as recorded";
+const EXPLAINED: &str = "\n*As recorded*: the same robots, made to turn (and, along or before a wall, to roll or to hear) as the report's own\n\
+did ([why](baseline.md)); the figure shows its program on these.";
+
+/// The words below a figure of both programs: the table, and what was run.
+fn words(columns: &[(&str, &Runs)], scenario: &str, rows: &[Row]) -> String {
+    let end = match columns {
+        [(_, baseline), .., (_, ours)]
+            if baseline.setup.scenario.duration_s > ours.setup.scenario.duration_s =>
+        {
+            format!(
+                "; the report's was given {} s",
+                baseline.setup.scenario.duration_s
+            )
+        }
+        _ => String::new(),
+    };
+    let recorded = columns.iter().any(|(name, _)| *name == AS_RECORDED);
+    format!(
+        "{}\nThe same {seeds} simulated robots with both programs: median, and the range of all.{}\n`rumbo run {scenario} --runs {seeds}`, and \
+with `--program baseline`{end}.\n",
+        table(columns, rows),
+        if recorded { EXPLAINED } else { "" },
+        seeds = runs::SEEDS,
+    )
+}
+
+/// The report's program needs longer than the scenario lasts.
+const SLOW_STEPS: Change = Change {
+    duration_s: Some(30.0),
+    later: Some(1.4),
+    ..runs::BASELINE
+};
+const SLOW_SQUARE: Change = Change {
+    duration_s: Some(60.0),
+    ..runs::BASELINE
+};
+const SLOW_MISSION: Change = Change {
+    duration_s: Some(150.0),
+    later: Some(4.0),
+    ..runs::BASELINE
+};
+
+/// Every seed's way.
+type Ways = Vec<Vec<(f64, f64)>>;
+
+/// Every seed's way as seen from the start.
+fn ways(runs: &Runs) -> Ways {
+    let start = runs.setup.scenario.start;
+    let (sin, cos) = start.heading_rad.sin_cos();
+    runs.each(|sample, _| {
+        let (dx, dy) = (sample.x_m - start.x_m, sample.y_m - start.y_m);
+        (cos * dx + sin * dy, cos * dy - sin * dx)
+    })
+}

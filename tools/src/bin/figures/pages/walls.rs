@@ -1,0 +1,257 @@
+//! Modes 1 to 4: before a wall and along one.
+
+use super::*;
+
+pub(super) fn mode1() -> Result<Option<Made>, String> {
+    let Some([baseline, ours]) = both("mode1", runs::BASELINE)? else {
+        return Ok(None);
+    };
+    let mut distance = signal(&baseline, &ours, |sample, scale| {
+        100.0 * sample.range_m[2] * scale
+    });
+    distance.insert(0, reference(&ours.setup, 100.0));
+    let charts = [
+        over_time("Mode 1: distance to the wall", "cm", distance),
+        pwm(&baseline, &ours),
+    ];
+    let rows = [
+        row(
+            "107 -> 30 cm, within 5 %",
+            "step1.settling_s",
+            1.0,
+            "s",
+            "3.0 s",
+        ),
+        row("overshoot", "step1.overshoot_m", 100.0, "cm", "0.6 cm"),
+        row(
+            "steady error",
+            "step1.steady_error_m",
+            100.0,
+            "cm",
+            "0.02 cm",
+        ),
+        row(
+            "30 -> 50 cm, within 5 %",
+            "step2.settling_s",
+            1.0,
+            "s",
+            "1.2 s",
+        ),
+        row("overshoot", "step2.overshoot_m", 100.0, "cm", ""),
+        row(
+            "driven against its motion",
+            "reverse_drive_rad_s",
+            1.0,
+            "rad/s",
+            "",
+        ),
+        row(
+            "time between two settings of the PWM",
+            "control_period_s",
+            1000.0,
+            "ms",
+            "65 ms",
+        ),
+    ];
+    Ok(Some(Made {
+        figures: vec![(
+            "mode1",
+            "Distance to the wall and PWM over time: ours reaches each setpoint sooner, without overshoot",
+            svg(&charts, 1, WIDE)?,
+        )],
+        words: words(&[(REPORT, &baseline), ("ours", &ours)], "mode1", &rows),
+    }))
+}
+
+/// Distance of the middle of the front pair from the wall at x = 1.2 m.
+fn ahead_m(sample: &Sample) -> f64 {
+    1.2 - sample.x_m - 0.13 * sample.heading_rad.cos()
+}
+
+pub(super) fn mode2() -> Result<Option<Made>, String> {
+    let (Some([baseline, recorded, ours]), Some(turning)) = (
+        three("mode2", runs::BASELINE)?,
+        runs("mode2-final", runs::OURS)?,
+    ) else {
+        return Ok(None);
+    };
+    let mut distance = signal(&recorded, &ours, |sample, _| 100.0 * ahead_m(sample));
+    distance.insert(0, reference(&ours.setup, 100.0));
+    let mut charts = [
+        over_time("Mode 2: distance to the wall", "cm", distance),
+        over_time(
+            "Angle to the wall's normal",
+            "deg",
+            signal(&recorded, &ours, |sample, _| DEG * sample.heading_rad),
+        ),
+    ];
+    charts[0].y_range = Some([0.0, 125.0]);
+    charts[1].y_range = Some([-20.0, 40.0]);
+    let rows = [
+        row(
+            "119 -> 30 cm, within 5 %",
+            "step1.settling_s",
+            1.0,
+            "s",
+            "3.4 s",
+        ),
+        row(
+            "steady error",
+            "step1.steady_error_m",
+            100.0,
+            "cm",
+            "0.64 cm",
+        ),
+        row(
+            "angle to the wall at rest",
+            "step1.angle_rad",
+            DEG,
+            "deg",
+            "not measured",
+        ),
+        row(
+            "50 -> 15 cm, within 2 cm",
+            "step3.within_2cm_s",
+            1.0,
+            "s",
+            "5.5 s",
+        ),
+        row("overshoot", "step3.overshoot_m", 100.0, "cm", "5.7 cm"),
+        row("contacts", "contacts", 1.0, "", "0"),
+    ];
+    Ok(Some(Made {
+        figures: vec![(
+            "mode2",
+            "Distance and angle to the wall over time: ours stands square at every reference",
+            svg(&charts, 1, WIDE)?,
+        )],
+        words: words(
+            &[
+                (REPORT, &baseline),
+                (AS_RECORDED, &recorded),
+                ("ours, one sonar on the servo (`mode2-final`)", &turning),
+                ("ours", &ours),
+            ],
+            "mode2",
+            &rows,
+        ),
+    }))
+}
+
+/// Distance of the middle of the side pair from the wall at y = 0.65 m.
+fn beside_m(sample: &Sample) -> f64 {
+    let (sin, cos) = sample.heading_rad.sin_cos();
+    0.65 - sample.y_m - 0.03 * sin - 0.075 * cos
+}
+
+pub(super) fn mode3() -> Result<Option<Made>, String> {
+    let Some([baseline, recorded, ours]) = three("mode3", runs::BASELINE)? else {
+        return Ok(None);
+    };
+    let curves = signal(&recorded, &ours, |sample, _| {
+        100.0 * (beside_m(sample) - 0.575)
+    });
+    let mut chart = over_time("Mode 3: error of the distance to the wall", "cm", curves);
+    chart.legend = Legend::UpperLeft;
+    let rows = [
+        row(
+            "distance error, rms",
+            "distance_rms_m",
+            100.0,
+            "cm",
+            "1.2 cm",
+        ),
+        row("worst", "distance_worst_m", 100.0, "cm", "4.6 cm"),
+        Row {
+            least_is_worst: true,
+            ..row("slowest half second", "cruise_m_s", 1.0, "m/s", "")
+        },
+        row("contacts", "contacts", 1.0, "", "0"),
+    ];
+    Ok(Some(Made {
+        figures: vec![(
+            "mode3",
+            "Error of the distance to the wall over time: ours stays within half a centimetre",
+            svg(&[chart], 1, WIDE)?,
+        )],
+        words: words(
+            &[
+                (REPORT, &baseline),
+                (AS_RECORDED, &recorded),
+                ("ours", &ours),
+            ],
+            "mode3",
+            &rows,
+        ),
+    }))
+}
+
+pub(super) fn mode4() -> Result<Option<Made>, String> {
+    let Some([baseline, recorded, ours]) = three("mode4", SLOW_STEPS)? else {
+        return Ok(None);
+    };
+    let chart = |title, name, colour, runs: &Runs| {
+        let distance = Curve::Seeds {
+            name,
+            colour,
+            runs: runs.over_time(|sample, _| 100.0 * beside_m(sample)),
+        };
+        Chart {
+            x_range: Some([-1.0, 31.0]),
+            y_range: Some([20.0, 70.0]),
+            ..over_time(title, "cm", vec![reference(&runs.setup, 100.0), distance])
+        }
+    };
+    let charts = [
+        chart(
+            "Mode 4: distance to the wall, the report's program",
+            REPORT,
+            BASELINE,
+            &recorded,
+        ),
+        chart("ours, its references sooner", "ours", OURS, &ours),
+    ];
+    let rows = [
+        row(
+            "59 -> 50 cm, within 2 cm",
+            "step1.within_2cm_s",
+            1.0,
+            "s",
+            "7.1 s",
+        ),
+        row("50 -> 30 cm", "step2.within_2cm_s", 1.0, "s", "6.3 s"),
+        row("30 -> 40 cm", "step3.within_2cm_s", 1.0, "s", "9.0 s"),
+        row(
+            "swing at 50 cm, standard deviation",
+            "step1.ripple_m",
+            100.0,
+            "cm",
+            "",
+        ),
+        row("swing at 30 cm", "step2.ripple_m", 100.0, "cm", ""),
+        row(
+            "overshoot of 50 -> 30 cm",
+            "step2.overshoot_m",
+            100.0,
+            "cm",
+            "",
+        ),
+        row("contacts", "contacts", 1.0, "", "0"),
+    ];
+    Ok(Some(Made {
+        figures: vec![(
+            "mode4",
+            "Distance to the wall over time: ours takes each step without swinging",
+            svg(&charts, 1, WIDE)?,
+        )],
+        words: words(
+            &[
+                (REPORT, &baseline),
+                (AS_RECORDED, &recorded),
+                ("ours", &ours),
+            ],
+            "mode4",
+            &rows,
+        ),
+    }))
+}

@@ -1,0 +1,256 @@
+//! Modes 7 and 8 and pure pursuit: maps.
+
+use super::*;
+
+/// Maps of both programs beside each other, in the frame of the world or of the start.
+fn maps(
+    of: [&Runs; 2],
+    titles: [&'static str; 2],
+    around: impl Fn() -> Vec<Curve>,
+    way: fn(&Runs) -> Ways,
+    x_range: Option<[f64; 2]>,
+    y_range: Option<[f64; 2]>,
+) -> Result<String, String> {
+    let charts: Vec<Chart> = of
+        .into_iter()
+        .zip(titles)
+        .zip([BASELINE, OURS])
+        .map(|((runs, title), colour)| {
+            let mut curves = around();
+            curves.push(Curve::Ways {
+                name: "",
+                colour,
+                runs: way(runs),
+            });
+            Chart {
+                x_range,
+                y_range,
+                ..map(title, curves)
+            }
+        })
+        .collect();
+    svg(&charts, 2, (430, 430))
+}
+
+pub(super) fn mode7() -> Result<Option<Made>, String> {
+    let Some([baseline, recorded, ours]) = three("mode7", SLOW_SQUARE)? else {
+        return Ok(None);
+    };
+    let square = || {
+        vec![Curve::Given {
+            name: "",
+            points: vec![(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)],
+        }]
+    };
+    let rows = [
+        row(
+            "off the square by odometry, worst",
+            "odometry_worst_m",
+            100.0,
+            "cm",
+            "6 cm",
+        ),
+        row("the same, rms", "odometry_rms_m", 100.0, "cm", "2.4 cm"),
+        row(
+            "truly off the square, worst",
+            "true_worst_m",
+            100.0,
+            "cm",
+            "not measured",
+        ),
+        row(
+            "true closing error",
+            "end_error_m",
+            100.0,
+            "cm",
+            "not measured",
+        ),
+        row("once round", "finish_s", 1.0, "s", "30 s"),
+    ];
+    let titles = ["Mode 7: the report's program", "ours, calibrated"];
+    let range = Some([-0.3, 1.3]);
+    Ok(Some(Made {
+        figures: vec![(
+            "mode7",
+            "True ways of 20 robots around a square of 1 m: ours all but on it",
+            maps([&recorded, &ours], titles, square, ways, range, range)?,
+        )],
+        words: words(
+            &[
+                (REPORT, &baseline),
+                (AS_RECORDED, &recorded),
+                ("ours", &ours),
+            ],
+            "mode7",
+            &rows,
+        ),
+    }))
+}
+
+pub(super) fn pursuit() -> Result<Option<Made>, String> {
+    let (Some(line), Some(curve)) = (
+        runs("pursuit-line", runs::OURS)?,
+        runs("pursuit-curve", runs::OURS)?,
+    ) else {
+        return Ok(None);
+    };
+    let charts: Vec<Chart> = [
+        (&line, "Pure pursuit of a line from 18 degrees off it"),
+        (&curve, "and of a sine"),
+    ]
+    .into_iter()
+    .map(|(runs, title)| {
+        let mut path = vec![(0.0, 0.0)];
+        for timed in &runs.setup.scenario.commands {
+            if let Command::Waypoint(point) = timed.command {
+                path.push((f64::from(point.x_m), f64::from(point.y_m)));
+            }
+        }
+        map(
+            title,
+            vec![
+                Curve::Given {
+                    name: "",
+                    points: path,
+                },
+                Curve::Ways {
+                    name: "",
+                    colour: OURS,
+                    runs: ways(runs),
+                },
+            ],
+        )
+    })
+    .collect();
+    let rows = [
+        row(
+            "off the path by odometry, worst",
+            "odometry_worst_m",
+            100.0,
+            "cm",
+            "",
+        ),
+        row("the same, rms", "odometry_rms_m", 100.0, "cm", ""),
+        row("truly off the path, worst", "true_worst_m", 100.0, "cm", ""),
+        row("finished after", "finish_s", 1.0, "s", ""),
+    ];
+    let columns = [("line", &line), ("curve", &curve)];
+    Ok(Some(Made {
+        figures: vec![(
+            "pursuit",
+            "True ways of 20 robots along a line and along a sine",
+            svg(&charts, 1, (860, 330))?,
+        )],
+        words: format!(
+            "{}\nTrue ways of 20 robots, calibrated; limits are the curve's. `rumbo run pursuit-line pursuit-curve --runs 20`.\n",
+            table(&columns, &rows)
+        ),
+    }))
+}
+
+/// Walls and boxes of the world.
+fn shapes(setup: &Setup) -> Vec<Curve> {
+    let Ok(world) = setup.world.world() else {
+        return Vec::new();
+    };
+    world
+        .obstacles()
+        .iter()
+        .map(|obstacle| {
+            let corners = obstacle.corners().map(|[x_m, y_m]| (x_m, y_m));
+            Curve::Shape(corners.collect())
+        })
+        .collect()
+}
+
+fn in_the_world(runs: &Runs) -> Ways {
+    runs.each(|sample, _| (sample.x_m, sample.y_m))
+}
+
+/// A mission: maps, and the figures that its metrics give.
+fn mission(
+    scenario: &'static str,
+    alt: &'static str,
+    range: [Option<[f64; 2]>; 2],
+    rows: &[Row],
+) -> Result<Option<Made>, String> {
+    let Some([baseline, recorded, ours]) = three(scenario, SLOW_MISSION)? else {
+        return Ok(None);
+    };
+    let titles = ["Mode 8: the report's program", "ours"];
+    let figure = maps(
+        [&recorded, &ours],
+        titles,
+        || shapes(&ours.setup),
+        in_the_world,
+        range[0],
+        range[1],
+    )?;
+    Ok(Some(Made {
+        figures: vec![(scenario, alt, figure)],
+        words: words(
+            &[
+                (REPORT, &baseline),
+                (AS_RECORDED, &recorded),
+                ("ours", &ours),
+            ],
+            scenario,
+            rows,
+        ),
+    }))
+}
+
+pub(super) fn mode8_goals() -> Result<Option<Made>, String> {
+    let rows = [
+        row("all four goals", "total_time_s", 1.0, "s", "32 s"),
+        Row {
+            least_is_worst: true,
+            ..row("goals reached", "reached", 1.0, "", "4")
+        },
+    ];
+    mission(
+        "mode8-goals",
+        "True ways of 20 robots to four goals",
+        [None, None],
+        &rows,
+    )
+}
+
+pub(super) fn mode8_obstacles() -> Result<Option<Made>, String> {
+    let rows = [
+        row("time", "total_time_s", 1.0, "s", "73.6 s"),
+        row("way", "path_m", 1.0, "m", "4.16 m"),
+        row("contacts", "contacts", 1.0, "", "0"),
+        Row {
+            least_is_worst: true,
+            ..row("reached", "reached", 1.0, "", "1")
+        },
+    ];
+    mission(
+        "mode8-obstacles",
+        "True ways of 20 robots around a box and a block of two",
+        [Some([-0.4, 3.0]), Some([-1.6, 1.6])],
+        &rows,
+    )
+}
+
+pub(super) fn mode8_lane() -> Result<Option<Made>, String> {
+    let rows = [
+        row("time of the four straights", "finish_s", 1.0, "s", "57.8 s"),
+        Row {
+            least_is_worst: true,
+            ..row("straights driven", "straights", 1.0, "", "4")
+        },
+        row("contacts", "contacts", 1.0, "", "0"),
+        Row {
+            least_is_worst: true,
+            ..row("least clearance", "clearance_m", 100.0, "cm", "")
+        },
+    ];
+    mission(
+        "mode8-lane",
+        "True ways of 20 robots along a lane of boxes",
+        [Some([-0.6, 2.8]), Some([-1.0, 1.4])],
+        &rows,
+    )
+}

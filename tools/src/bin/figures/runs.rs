@@ -1,0 +1,148 @@
+//! Twenty seeds of a scenario with one program at the pins.
+
+use rumbo_experiment::files::{Kind, Library, NativeProgram, Overrides, Setup};
+use rumbo_experiment::run::{RunResult, run_all};
+use rumbo_sim::trace::Sample;
+
+pub(crate) const SEEDS: u64 = 20;
+
+/// What differs from the scenario as it is.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Change {
+    pub(crate) program: NativeProgram,
+    /// Longer than the scenario, for a program that needs it [s].
+    pub(crate) duration_s: Option<f64>,
+    /// Commands from the third on come this many times later.
+    pub(crate) later: Option<f64>,
+    /// As the robot comes, whatever the scenario says.
+    pub(crate) uncalibrated: bool,
+    /// Numbers of the plant.
+    pub(crate) plant: &'static [(&'static str, f64)],
+}
+
+/// The report's program, as it is.
+pub(crate) const BASELINE: Change = Change {
+    program: NativeProgram::Baseline,
+    duration_s: None,
+    later: None,
+    uncalibrated: false,
+    plant: &[],
+};
+pub(crate) const OURS: Change = Change {
+    program: NativeProgram::Rumbo,
+    ..BASELINE
+};
+
+const YAW: &[(&str, f64)] = &[
+    ("body.yaw_inertia_kg_m2", 0.0047),
+    ("floor.yaw_damping_n_m_s", 0.016),
+];
+const YAW_AND_EARS: &[(&str, f64)] = &[YAW[0], YAW[1], ("sonar.disturbed_weakness", 1.0)];
+const YAW_AND_FLOOR: &[(&str, f64)] = &[YAW[0], YAW[1], ("floor.friction_scale", 0.64)];
+
+/// The same on robots like the report's: they turn as it did along its wall; in mode 2 their sonars disturb each other no
+/// more at a metre than its report tells; in modes 3 and 4 the floor is the one of its runs before walls. See
+/// docs/theory/baseline.md.
+pub(crate) fn as_recorded(scenario: &str, change: Change) -> Change {
+    let plant = match scenario {
+        "mode2" => YAW_AND_EARS,
+        "mode3" | "mode4" => YAW_AND_FLOOR,
+        _ => YAW,
+    };
+    Change { plant, ..change }
+}
+
+/// The runs, and what is needed to read them.
+pub(crate) struct Runs {
+    pub(crate) setup: Setup,
+    pub(crate) results: Vec<RunResult>,
+    /// For each run: distances times this are those of a robot that hears sound at 343.4 m/s.
+    scales: Vec<f64>,
+}
+
+/// The seeds of a scenario; none if there is no such scenario yet.
+pub(crate) fn runs(scenario: &str, change: Change) -> Result<Option<Runs>, String> {
+    let library = Library::new();
+    if !library
+        .list(Kind::Scenario)
+        .iter()
+        .any(|name| name == scenario)
+    {
+        return Ok(None);
+    }
+    let overrides = Overrides {
+        program: change.program,
+        parameters: change
+            .plant
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), *value))
+            .collect(),
+        ..Overrides::default()
+    };
+    let mut setup = library
+        .setup(scenario, &overrides)
+        .map_err(|error| error.to_string())?;
+    if let Some(duration_s) = change.duration_s {
+        setup.scenario.duration_s = duration_s;
+    }
+    setup.scenario.calibrated &= !change.uncalibrated;
+    for timed in setup.scenario.commands.iter_mut().skip(2) {
+        timed.at_s *= change.later.unwrap_or(1.0);
+    }
+    let jobs: Vec<_> = (1..=SEEDS).map(|seed| (&setup, seed)).collect();
+    let mut results = Vec::new();
+    run_all(&jobs, |_, result| {
+        results.push(result);
+        Ok(())
+    })
+    .map_err(|error: rumbo_experiment::files::FileError| error.to_string())?;
+    let scale = |seed| {
+        let temperature_c = setup.sim(seed)?.params().sonar.temperature_c;
+        Ok(343.42 / (331.3 + 0.606 * temperature_c))
+    };
+    let scales = (1..=SEEDS)
+        .map(scale)
+        .collect::<Result<_, rumbo_experiment::files::FileError>>()
+        .map_err(|error| error.to_string())?;
+    Ok(Some(Runs {
+        setup,
+        results,
+        scales,
+    }))
+}
+
+impl Runs {
+    /// A signal over time in each run; the scale of its distances comes with the sample.
+    pub(crate) fn over_time(&self, signal: impl Fn(&Sample, f64) -> f64) -> Vec<Vec<(f64, f64)>> {
+        self.each(|sample, scale| (sample.t_s, signal(sample, scale)))
+    }
+
+    /// A curve in each run.
+    pub(crate) fn each(&self, point: impl Fn(&Sample, f64) -> (f64, f64)) -> Vec<Vec<(f64, f64)>> {
+        self.results
+            .iter()
+            .zip(&self.scales)
+            .map(|(result, &scale)| {
+                let samples = result.trace.samples.iter();
+                samples.map(|sample| point(sample, scale)).collect()
+            })
+            .collect()
+    }
+
+    /// Median and worst of a metric; what never happened is the worst there is. `None` where no run has it.
+    pub(crate) fn median_and_worst(&self, metric: &str, least_is_worst: bool) -> Option<[f64; 2]> {
+        let mut values: Vec<f64> = self
+            .results
+            .iter()
+            .filter_map(|result| result.metrics.get(metric).copied())
+            .map(|value| if value.is_nan() { f64::INFINITY } else { value })
+            .collect();
+        values.sort_by(f64::total_cmp);
+        let worst = if least_is_worst {
+            values.first()
+        } else {
+            values.last()
+        };
+        Some([*values.get(values.len() / 2)?, *worst?])
+    }
+}
