@@ -9,7 +9,7 @@ use super::{
 use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
 use crate::motion::{LineState, TurnState, TurnStep};
-use crate::types::{Fault, SonarId, TICK_S};
+use crate::types::{Fault, TICK_S};
 use core::f32::consts::TAU;
 
 /// An obstacle this near on the way is looked at [m].
@@ -309,14 +309,8 @@ fn perceive(state: &mut State, estimate: &Estimate, way: &Way) -> bool {
         && state
             .plan
             .step(&state.echoes, pose, way, around.filter(|_| following));
-    // Both read the whole memory: each every other tick, and the longer one where there is no reading to take. A tick that
-    // takes the front sonar's has enough to do.
-    let reads_front =
-        (estimate.reading.as_ref()).is_some_and(|reading| reading.sonar == SonarId::Front);
+    // Both read the whole memory: each every other tick, and the longer one where there is no reading to take.
     state.looks_ahead = !state.looks_ahead && estimate.reading.is_none();
-    if !state.looks_ahead {
-        state.gap_m -= estimate.rolled_m;
-    }
     if state.looks_ahead {
         let ahead = Way {
             heading_rad: pose.heading_rad,
@@ -328,7 +322,8 @@ fn perceive(state: &mut State, estimate: &Estimate, way: &Way) -> bool {
             .echoes
             .blocking(&ahead, AHEAD_M, Among::All)
             .map_or(1.0, |(_, along_m)| along_m - FRONT_M);
-    } else if !reads_front {
+    } else {
+        state.gap_m -= estimate.rolled_m;
         state.near_m = state
             .echoes
             .nearest(pose.x_m, pose.y_m, None)
