@@ -118,14 +118,14 @@ struct Goodbye {
 
 /// Serves one page until either side ends it.
 pub(crate) async fn talk(socket: WebSocket, hub: Hub, role: Role) {
-    let (mut out, from_page) = socket.split();
+    let (mut out, mut from_page) = socket.split();
     let goodbye = match hub.lease.sit_down(role == Role::Controller) {
         Some(place) => {
             let (refuse, refusals) = mpsc::channel(REFUSALS_WAITING);
             // Control goes with the page's place, however long it takes to say goodbye.
             tokio::select! {
                 goodbye = tell_news(&mut out, &hub, &place, refusals) => goodbye,
-                goodbye = take_orders(from_page, &hub, &place, &refuse) => goodbye,
+                goodbye = take_orders(&mut from_page, &hub, &place, &refuse) => goodbye,
             }
         }
         None => Some(Goodbye {
@@ -134,8 +134,14 @@ pub(crate) async fn talk(socket: WebSocket, hub: Hub, role: Role) {
         }),
     };
     if let Some(goodbye) = goodbye {
-        // The page may be gone; then there is nobody to tell.
-        let _ = timeout(SEND_TIMEOUT, say_goodbye(&mut out, goodbye)).await;
+        // The page may be gone; then nobody needs to know.
+        let _ = timeout(SEND_TIMEOUT, async {
+            say_goodbye(&mut out, goodbye).await?;
+            // A connection with unread bytes would be reset, and the reason lost on its way.
+            while let Some(Ok(_)) = from_page.next().await {}
+            Ok::<(), axum::Error>(())
+        })
+        .await;
     }
 }
 
