@@ -174,9 +174,14 @@ fn summary(drives: &[Drive]) -> (String, bool) {
     } = verdict;
     let allowed = verdict.allowed();
     let met = hard == 0 && unnamed == 0 && touches <= allowed;
+    let last = drives
+        .iter()
+        .map(|drive| drive.seed)
+        .max()
+        .unwrap_or_default();
     let text = format!(
-        "Of {runs} runs {touches} touched something (at most {allowed} allowed), {hard} of them faster than {GENTLE_M_S} m/s (none \
-         allowed), {unnamed} before the fault was named (none allowed)."
+        "Seeds up to {last}. Of {runs} runs {touches} touched something (at most {allowed} allowed), {hard} of them\n\
+         faster than {GENTLE_M_S} m/s (none allowed), {unnamed} before the fault was named (none allowed)."
     );
     (text, met)
 }
