@@ -142,6 +142,8 @@ test('STOP stops the wheels, by the button and by Space from anywhere', async ()
 
   await page.locator('#on').click();
   await isArmed(true);
+  // The robot may have got there before STOP.
+  await setReference(80);
   await wheelsTurn();
   await page.locator('#reference-cm').focus();
   await page.keyboard.press('Space');
