@@ -284,7 +284,7 @@ impl Echoes {
         }
     }
 
-    /// The front sonar has had an echo: it heard during the silences before.
+    /// The front sonar has had an echo: it worked during the silences before.
     pub(super) fn hears(&mut self) {
         self.believed = self.silent;
     }
