@@ -1,15 +1,24 @@
 //! The chip with our image, stopped at each tick where the image shows its inputs and its outputs.
 
-use crate::state::State;
+use crate::state::{State, Variable};
 use rumbo_control::{Echo, Inputs, Outputs};
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::{SRAM_START, Stopped};
-use rumbo_emulator::devices::Event;
+use rumbo_emulator::devices::ports::Pin;
+use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
+use rumbo_robot::latch::Stamp;
 use std::path::{Path, PathBuf};
 
 /// Where in one of the image's rings the count of bytes put in lies: behind its 64 bytes.
 const RING: usize = 64;
+
+/// Bytes of `RUMBO_INPUTS`.
+const INPUTS_BYTES: usize = 30;
+/// Timer 1 in the data space: its control register, the low byte of its count; its cycles per count.
+const TCCR1B: u16 = 0x81;
+const TCNT1: u16 = 0x84;
+const TIMER_CYCLES: u64 = 8;
 
 /// Where the image is; `None` where it has not been built.
 pub(crate) fn image_path() -> Option<PathBuf> {
@@ -38,6 +47,8 @@ pub(crate) fn elf() -> Option<Vec<u8>> {
 /// The chip at its ticks.
 pub(crate) struct Board {
     chip: Chip,
+    /// When timer 1 was started [counts of the chip's cycles].
+    timer_began: u64,
     inputs_latched: u32,
     outputs_left: u32,
     inputs: usize,
@@ -56,14 +67,23 @@ impl Board {
         let variable =
             |name| image.variable(name).unwrap().address as usize - usize::from(SRAM_START);
         let mut chip = Chip::new(image);
+        for (port, bit) in [('D', 0), ('D', 1), ('D', 2), ('D', 3), ('E', 5)] {
+            let sensor = Pin::new(port, bit).unwrap();
+            chip.input(0, Input::Pin(sensor, Some(false)));
+        }
         let (inputs_latched, outputs_left) = (
             function("rumbo_inputs_latched"),
             function("rumbo_outputs_left"),
         );
+        while chip.read_data(TCCR1B) == 0 {
+            chip.step();
+        }
+        let timer_began = chip.cycle() / TIMER_CYCLES;
         chip.cpu_mut().set_breakpoint(inputs_latched);
         chip.cpu_mut().set_breakpoint(outputs_left);
         let mut board = Board {
             chip,
+            timer_began,
             inputs_latched,
             outputs_left,
             inputs: variable("RUMBO_INPUTS"),
@@ -110,6 +130,12 @@ impl Board {
     pub(crate) fn write_state(&self, text: &mut String) {
         let sram = self.chip.cpu().sram();
         self.state.write(text, sram, usize::from(SRAM_START));
+    }
+
+    /// A variable at an address of the data space as text.
+    pub(crate) fn write(&self, address: usize, shape: &Variable) -> String {
+        let at = address - usize::from(SRAM_START);
+        shape.text(&self.chip.cpu().sram()[at..])
     }
 
     /// How many bytes of the robot are in that text, and how many it has.
@@ -162,6 +188,11 @@ impl Board {
         let record = inputs_record(inputs);
         self.chip.cpu_mut().sram_mut()[self.inputs..self.inputs + record.len()]
             .copy_from_slice(&record);
+        self.go_on()
+    }
+
+    /// One tick with the inputs that the image has latched.
+    pub(crate) fn go_on(&mut self) -> ([u8; 9], u64) {
         let start = self.chip.cpu().cycle();
         self.chip.step();
         self.run_to(self.outputs_left);
@@ -173,10 +204,40 @@ impl Board {
         self.run_to(self.inputs_latched);
         (left, cycles)
     }
+
+    /// The inputs that it has latched.
+    pub(crate) fn inputs(&self) -> &[u8] {
+        &self.chip.cpu().sram()[self.inputs..self.inputs + INPUTS_BYTES]
+    }
+
+    /// The chip's cycle.
+    pub(crate) fn cycle(&self) -> u64 {
+        self.chip.cycle()
+    }
+
+    /// Something that comes to the chip at a cycle.
+    pub(crate) fn input(&mut self, cycle: u64, input: Input) {
+        self.chip.input(cycle, input);
+    }
+
+    /// A word at an address of the data space.
+    pub(crate) fn word(&self, address: usize) -> u16 {
+        let at = address - usize::from(SRAM_START);
+        let sram = self.chip.cpu().sram();
+        u16::from_le_bytes([sram[at], sram[at + 1]])
+    }
+
+    /// The cycle at which timer 1 came to the count of a stamp, one of the last 32 ms.
+    pub(crate) fn cycle_of(&self, stamp: Stamp) -> u64 {
+        let counts = self.chip.cycle() / TIMER_CYCLES - self.timer_began;
+        assert_eq!(counts as u8, self.chip.read_data(TCNT1));
+        let ago = (counts as u16).wrapping_sub(stamp.0);
+        (self.timer_began + counts - u64::from(ago)) * TIMER_CYCLES
+    }
 }
 
 /// Inputs as the image has them in `RUMBO_INPUTS`.
-fn inputs_record(inputs: &Inputs) -> Vec<u8> {
+pub(crate) fn inputs_record(inputs: &Inputs) -> Vec<u8> {
     let mut record = inputs.now.0.to_le_bytes().to_vec();
     for edges in [inputs.encoders.left, inputs.encoders.right] {
         record.extend(edges.count.to_le_bytes());

@@ -17,4 +17,5 @@ mod soak;
 mod state;
 mod talk;
 mod tape;
+mod through_pins;
 mod world;

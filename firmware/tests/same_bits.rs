@@ -210,7 +210,7 @@ fn compare(what: &str, mut world: Given) {
 }
 
 /// What two texts have around the place where they begin to differ.
-fn first_difference(native: &str, chip: &str) -> String {
+pub(crate) fn first_difference(native: &str, chip: &str) -> String {
     let alike = native.bytes().zip(chip.bytes());
     let at = alike.take_while(|(one, other)| one == other).count();
     let around = |text: &str| {

@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! encoder: edge -> stamp  -> EdgeCounter: count, last edge, time of a motor turn
-//! sonar:   ping, rise, fall -> Line: stamps -> EchoLatch: a pulse, clear or silent, once
+//! sonar:   ping, rise, fall -> EchoLine: stamps -> EchoLatch: a pulse, clear or silent, once
 //! ```
 //!
 //! An interrupt only leaves the stamp of its timer; all else is done at the tick, in the robot's microseconds.
 
-use rumbo_control::{Echo, Edges, Micros, SonarId};
+use rumbo_control::{Echo, Edges, Micros, OUTPUT_DELAY_US, SonarId};
 
 /// Edges of a motor turn.
 const POLES: usize = 8;
@@ -16,6 +16,38 @@ const RISE_US: u32 = 5_000;
 /// An echo line that is still high after this time has nothing within reach to say [us]: 2.51 m. That is known two
 /// ticks after its ping.
 const REACH_US: u32 = 14_600;
+
+/// Counts of the chip's timer per microsecond.
+pub const COUNTS_PER_US: u32 = 2;
+/// A stamp this many counts ahead of the tick, 4 ms, is later than it, since a ping leaves with the outputs; any other
+/// is earlier.
+const AHEAD_COUNTS: u16 = (OUTPUT_DELAY_US * COUNTS_PER_US) as u16 / 3 * 4;
+
+/// A reading of the chip's timer [0.5 us].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stamp(pub u16);
+
+impl Stamp {
+    /// Time from `earlier` to `self` [0.5 us], right below 32.768 ms.
+    fn since(self, earlier: Stamp) -> u16 {
+        self.0.wrapping_sub(earlier.0)
+    }
+
+    /// Whether it is later than this tick.
+    pub fn is_after(self, tick: Stamp) -> bool {
+        (1..=AHEAD_COUNTS).contains(&self.since(tick))
+    }
+
+    /// The same in the robot's time, where the tick is at `now`.
+    pub fn micros(self, tick: Stamp, now: Micros) -> Micros {
+        let us = |counts: u16| u32::from(counts) / COUNTS_PER_US;
+        if self.is_after(tick) {
+            now.after(us(self.since(tick)))
+        } else {
+            Micros(now.0.wrapping_sub(us(tick.since(self))))
+        }
+    }
+}
 
 /// Counts and times of one encoder's edges.
 #[derive(Clone, Copy, Debug, Default)]
@@ -57,7 +89,7 @@ impl EdgeCounter {
 
 /// The echo line of a sonar, with the stamps that its interrupts have left since the last ping.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Line<T> {
+pub enum EchoLine<T> {
     /// No ping has left yet.
     #[default]
     Idle,
@@ -69,36 +101,36 @@ pub enum Line<T> {
     Fallen(T, T),
 }
 
-impl<T: Copy> Line<T> {
+impl<T: Copy> EchoLine<T> {
     /// An edge, which leads to this level. After a ping the first rise counts, and the fall after it.
     #[inline(always)]
     pub fn edge(&mut self, high: bool, at: T) {
         match *self {
-            Line::Pinged(_) if high => *self = Line::Risen(at),
-            Line::Risen(rise) if !high => *self = Line::Fallen(rise, at),
+            EchoLine::Pinged(_) if high => *self = EchoLine::Risen(at),
+            EchoLine::Risen(rise) if !high => *self = EchoLine::Fallen(rise, at),
             _ => {}
         }
     }
 
     /// The same with other stamps.
-    pub fn map<U>(self, stamp: impl Fn(T) -> U) -> Line<U> {
+    pub fn map<U>(self, stamp: impl Fn(T) -> U) -> EchoLine<U> {
         match self {
-            Line::Idle => Line::Idle,
-            Line::Pinged(at) => Line::Pinged(stamp(at)),
-            Line::Risen(at) => Line::Risen(stamp(at)),
-            Line::Fallen(rise, fall) => Line::Fallen(stamp(rise), stamp(fall)),
+            EchoLine::Idle => EchoLine::Idle,
+            EchoLine::Pinged(at) => EchoLine::Pinged(stamp(at)),
+            EchoLine::Risen(at) => EchoLine::Risen(stamp(at)),
+            EchoLine::Fallen(rise, fall) => EchoLine::Fallen(stamp(rise), stamp(fall)),
         }
     }
 }
 
-impl Line<Micros> {
+impl EchoLine<Micros> {
     /// What the sonar has answered by now, if that is decided.
     fn echo(self, now: Micros) -> Option<Echo> {
         match self {
-            Line::Fallen(rise, fall) => Some(Echo::Pulse(fall.since(rise))),
-            Line::Risen(at) if passed(at, now, REACH_US) => Some(Echo::Clear),
-            Line::Pinged(at) if passed(at, now, RISE_US) => Some(Echo::Silent),
-            Line::Idle | Line::Pinged(_) | Line::Risen(_) => None,
+            EchoLine::Fallen(rise, fall) => Some(Echo::Pulse(fall.since(rise))),
+            EchoLine::Risen(at) if passed(at, now, REACH_US) => Some(Echo::Clear),
+            EchoLine::Pinged(at) if passed(at, now, RISE_US) => Some(Echo::Silent),
+            EchoLine::Idle | EchoLine::Pinged(_) | EchoLine::Risen(_) => None,
         }
     }
 }
@@ -125,7 +157,7 @@ impl EchoLatch {
     pub fn read(
         &mut self,
         now: Micros,
-        line: impl Fn(SonarId) -> Line<Micros>,
+        line: impl Fn(SonarId) -> EchoLine<Micros>,
     ) -> Option<(SonarId, Echo)> {
         for &sonar in &SonarId::ALL {
             let waiting = &mut self.waiting[sonar as usize];
@@ -141,6 +173,16 @@ impl EchoLatch {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_stamp_is_at_most_4_ms_after_its_tick_or_else_before_it() {
+        let (tick, now) = (Stamp(65_000), Micros(1_000_000));
+        let at = |counts: u16| Stamp(tick.0.wrapping_add(counts)).micros(tick, now).0;
+        assert_eq!([at(0), at(1), at(8_000)], [1_000_000, 1_000_000, 1_004_000]);
+        // The timer wraps between the two.
+        assert_eq!([at(8_001), at(u16::MAX)], [971_233, 1_000_000]);
+        assert!(Stamp(465).is_after(tick) && !tick.is_after(Stamp(465)));
+    }
 
     #[test]
     fn the_time_of_a_motor_turn_spans_eight_edges() {
@@ -172,7 +214,7 @@ mod tests {
     }
 
     /// What a sonar that has been asked answers at `now_us`.
-    fn answer(line: Line<Micros>, now_us: u32) -> Option<Echo> {
+    fn answer(line: EchoLine<Micros>, now_us: u32) -> Option<Echo> {
         let mut latch = EchoLatch::default();
         latch.asked(SonarId::Front);
         let answer = latch.read(Micros(now_us), |_| line);
@@ -187,8 +229,8 @@ mod tests {
         // Across the wrap of the clock.
         let sent = Micros(u32::MAX - 1_000);
         let at = |us: u32| sent.after(us).0;
-        let mut line = Line::Pinged(sent);
-        assert_eq!(answer(Line::Idle, at(30_000)), None);
+        let mut line = EchoLine::Pinged(sent);
+        assert_eq!(answer(EchoLine::Idle, at(30_000)), None);
         assert_eq!(answer(line, at(4_999)), None);
         assert_eq!(answer(line, at(5_000)), Some(Echo::Silent));
         line.edge(true, sent.after(450));
@@ -200,13 +242,13 @@ mod tests {
 
     #[test]
     fn a_ping_that_leaves_after_the_tick_is_not_silent() {
-        let line = Line::Pinged(Micros(13_000));
+        let line = EchoLine::Pinged(Micros(13_000));
         assert_eq!(answer(line, 10_000), None);
     }
 
     #[test]
     fn the_first_rise_after_a_ping_counts_and_the_fall_after_it() {
-        let (mut line, mut idle) = (Line::Pinged(0), Line::Idle);
+        let (mut line, mut idle) = (EchoLine::Pinged(0), EchoLine::Idle);
         for (high, at) in [
             (false, 1),
             (true, 2),
@@ -218,7 +260,7 @@ mod tests {
             line.edge(high, at);
             idle.edge(high, at);
         }
-        assert_eq!((line, idle), (Line::Fallen(2, 5), Line::Idle));
+        assert_eq!((line, idle), (EchoLine::Fallen(2, 5), EchoLine::Idle));
     }
 
     #[test]
@@ -227,8 +269,8 @@ mod tests {
         latch.asked(SonarId::Left);
         latch.asked(SonarId::Right);
         let lines = |sonar| match sonar {
-            SonarId::Left => Line::Risen(Micros(0)),
-            _ => Line::Fallen(Micros(1_000), Micros(2_000)),
+            SonarId::Left => EchoLine::Risen(Micros(0)),
+            _ => EchoLine::Fallen(Micros(1_000), Micros(2_000)),
         };
         let pulse = Some((SonarId::Right, Echo::Pulse(1_000)));
         assert_eq!(latch.read(Micros(10_000), lines), pulse);

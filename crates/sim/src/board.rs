@@ -4,14 +4,14 @@
 use rumbo_control::{Echo, Edges, Micros, SonarId, Wheels};
 use rumbo_plant::drivetrain::Side;
 use rumbo_plant::plant::Event;
-use rumbo_robot::latch::{EchoLatch, EdgeCounter, Line};
+use rumbo_robot::latch::{EchoLatch, EchoLine, EdgeCounter};
 
 /// What the interrupts have latched.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Board {
     counters: Wheels<EdgeCounter>,
     /// By `SonarId` number.
-    lines: [Line<Micros>; 3],
+    lines: [EchoLine<Micros>; 3],
     echoes: EchoLatch,
 }
 
@@ -38,7 +38,7 @@ impl Board {
 
     /// A sonar has been triggered.
     pub(crate) fn pinged(&mut self, sonar: SonarId, at_us: u64) {
-        self.lines[sonar as usize] = Line::Pinged(micros(at_us));
+        self.lines[sonar as usize] = EchoLine::Pinged(micros(at_us));
         self.echoes.asked(sonar);
     }
 

@@ -7,44 +7,13 @@
 use super::registers::{get, handler, put, timer_1};
 use super::shared::{Byte, CriticalSection, Word};
 use super::{encoder, outputs, sonar};
-use rumbo_control::{Micros, OUTPUT_DELAY_US, TICK_US};
+use rumbo_control::{OUTPUT_DELAY_US, TICK_US};
+use rumbo_robot::latch::{COUNTS_PER_US, Stamp};
 
-/// Counts of timer 1 per microsecond.
-const COUNTS_PER_US: u32 = 2;
 /// Counts from tick to tick.
 const TICK_COUNTS: u16 = (TICK_US * COUNTS_PER_US) as u16;
 /// Counts from the tick to its outputs.
 const OUTPUT_COUNTS: u16 = (OUTPUT_DELAY_US * COUNTS_PER_US) as u16;
-
-/// A stamp this many counts ahead of the tick, 4 ms, is later than it, since a ping leaves with the outputs; any other
-/// is earlier.
-const AHEAD_COUNTS: u16 = OUTPUT_COUNTS / 3 * 4;
-
-/// A reading of timer 1 [0.5 us].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stamp(pub u16);
-
-impl Stamp {
-    /// Time from `earlier` to `self` [0.5 us], right below 32.768 ms.
-    fn since(self, earlier: Stamp) -> u16 {
-        self.0.wrapping_sub(earlier.0)
-    }
-
-    /// Whether it is later than this tick.
-    pub fn is_after(self, tick: Stamp) -> bool {
-        (1..=AHEAD_COUNTS).contains(&self.since(tick))
-    }
-
-    /// The same in the robot's time, where the tick is at `now`.
-    pub fn micros(self, tick: Stamp, now: Micros) -> Micros {
-        let us = |counts: u16| u32::from(counts) / COUNTS_PER_US;
-        if self.is_after(tick) {
-            now.after(us(self.since(tick)))
-        } else {
-            Micros(now.0.wrapping_sub(us(tick.since(self))))
-        }
-    }
-}
 
 /// The flag of compare C; written as 1 it is cleared.
 const COMPARE_C: u8 = 1 << 3;

@@ -3,11 +3,11 @@
 //! The handler does no more than that, so it is short. A ring holds 32 edges, 3,200 a second: five times what the
 //! wheels can make. Noise beyond that overwrites stamps, which the count survives.
 
-use super::clock::{self, Stamp};
+use super::clock;
 use super::registers::{external, handler, put};
 use super::shared::{Byte, CriticalSection, Word};
 use rumbo_control::{Edges, Micros, Wheels};
-use rumbo_robot::latch::EdgeCounter;
+use rumbo_robot::latch::{EdgeCounter, Stamp};
 
 /// Stamps in a ring, a power of two.
 const RING: u8 = 32;

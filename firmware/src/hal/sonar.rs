@@ -3,14 +3,14 @@
 //! The handler of an echo pin notes the instants of the first rise and the fall after it; what that means is decided
 //! at the tick, by [`rumbo_robot::latch`]. The level is read, never toggled: a lost edge costs one reading.
 
-use super::clock::{self, Stamp};
+use super::clock;
 use super::registers::{change, get, handler, port_b, port_d, port_e, port_j};
 use super::shared::{Byte, CriticalSection, Guarded};
 use crate::pins;
 use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType, OutputPin};
 use rumbo_control::{Echo, Micros, SonarId};
-use rumbo_robot::latch::{EchoLatch, Line};
+use rumbo_robot::latch::{EchoLatch, EchoLine, Stamp};
 
 /// The trigger pulse: 12 us, of which the sonar needs 10 [0.5 us].
 const TRIGGER_COUNTS: u16 = 24;
@@ -24,11 +24,11 @@ const NONE: u8 = 0xFF;
 /// The sonar to be triggered, by its number.
 static PING: Byte = Byte::new(NONE);
 
-type SharedLine = Guarded<Line<Stamp>>;
+type SharedLine = Guarded<EchoLine<Stamp>>;
 
-static LEFT: SharedLine = Guarded::new(Line::Idle);
-static RIGHT: SharedLine = Guarded::new(Line::Idle);
-static FRONT: SharedLine = Guarded::new(Line::Idle);
+static LEFT: SharedLine = Guarded::new(EchoLine::Idle);
+static RIGHT: SharedLine = Guarded::new(EchoLine::Idle);
+static FRONT: SharedLine = Guarded::new(EchoLine::Idle);
 
 fn line(sonar: SonarId) -> &'static SharedLine {
     match sonar {
@@ -55,7 +55,7 @@ pub(super) fn start() {
 #[inline(always)]
 pub(super) fn ask(ping: Option<SonarId>, section: CriticalSection<'_>) {
     if let Some(sonar) = ping {
-        line(sonar).update(|line| *line = Line::Idle, section);
+        line(sonar).update(|line| *line = EchoLine::Idle, section);
     }
     PING.set(ping.map_or(NONE, |sonar| sonar as u8));
 }
@@ -109,7 +109,7 @@ pub(super) fn trigger(section: CriticalSection<'_>) {
 #[inline(always)]
 fn raise(line: &SharedLine, mut trigger: Trigger<'_>) {
     let at = Stamp(clock::now(trigger.1));
-    line.update(|line| *line = Line::Pinged(at), trigger.1);
+    line.update(|line| *line = EchoLine::Pinged(at), trigger.1);
     let Ok(()) = trigger.set_high();
     clock::trigger_again_in(TRIGGER_COUNTS, trigger.1);
 }

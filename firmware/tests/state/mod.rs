@@ -50,6 +50,22 @@ impl State {
     }
 }
 
+/// A type of the image, by its name with its parameters.
+pub(crate) struct Variable(Shape);
+
+impl Variable {
+    /// From the bytes of an ELF file.
+    pub(crate) fn of(elf: &[u8], name: &str) -> Variable {
+        Variable(Shape::named(elf, name).unwrap().1)
+    }
+
+    /// What these bytes hold, as `{:?}` writes it.
+    pub(crate) fn text(&self, bytes: &[u8]) -> String {
+        let shape = &self.0;
+        format!("{:?}", Held { shape, bytes })
+    }
+}
+
 /// Something of a shape, at the beginning of these bytes.
 struct Held<'a> {
     shape: &'a Shape,
