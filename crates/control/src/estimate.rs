@@ -124,7 +124,7 @@ impl Estimator {
         self.step_ranges(params, estimate);
     }
 
-    /// Reckons the heading's sine and cosine anew, which are turned on tick by tick. For a tick that has little else to do.
+    /// Recomputes the heading's sine and cosine, which each tick only rotates. For a tick that has little else to do.
     pub fn refresh(&mut self) {
         self.place = Transform::of(self.place.pose);
     }

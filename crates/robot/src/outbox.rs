@@ -3,7 +3,7 @@
 //! Nothing ever waits here. What does not fit is not sent, and what matters less needs more room: telemetry gives
 //! way first, so that acknowledgements, events and status still find a place when the link is slow or silent.
 
-/// Bytes in the ring: a text row (128) behind a few frames.
+/// Bytes in the ring: a text row (128) behind a few frames. An index of 8 bits wraps by itself.
 const SIZE: usize = 256;
 /// Room that telemetry leaves to all the rest: HELLO, status, two events and two acknowledgements take 86 bytes.
 const TELEMETRY_RESERVE: usize = 96;
@@ -25,7 +25,7 @@ pub(crate) enum Priority {
 #[derive(Clone, Debug)]
 pub(crate) struct Outbox {
     bytes: [u8; SIZE],
-    first: usize,
+    first: u8,
     len: usize,
 }
 
@@ -39,7 +39,7 @@ impl Outbox {
         }
     }
 
-    /// Takes all of `bytes`, or none; says whether it did.
+    /// Queues all of `bytes` or none; whether it did.
     pub(crate) fn push(&mut self, priority: Priority, bytes: &[u8]) -> bool {
         let reserve = match priority {
             Priority::Telemetry => TELEMETRY_RESERVE,
@@ -50,7 +50,8 @@ impl Outbox {
             return false;
         }
         for byte in bytes {
-            if let Some(slot) = self.bytes.get_mut((self.first + self.len) % SIZE) {
+            let last = self.first.wrapping_add(self.len as u8);
+            if let Some(slot) = self.bytes.get_mut(usize::from(last)) {
                 *slot = *byte;
                 self.len += 1;
             }
@@ -59,12 +60,13 @@ impl Outbox {
     }
 
     /// The next byte for the link.
+    #[inline(always)]
     pub(crate) fn pop(&mut self) -> Option<u8> {
         if self.len == 0 {
             return None;
         }
-        let byte = self.bytes.get(self.first).copied();
-        self.first = (self.first + 1) % SIZE;
+        let byte = self.bytes.get(usize::from(self.first)).copied();
+        self.first = self.first.wrapping_add(1);
         self.len -= 1;
         byte
     }

@@ -20,6 +20,11 @@ use crate::sonars::PingSchedule;
 /// Ticks of low battery that stop the robot: 0.5 s, since the voltage dips when the wheels start.
 const LOW_BATTERY_TICKS: u8 = 50;
 
+/// The heading's sine and cosine are recomputed every so many ticks, or one later: not in a tick with a reading.
+const REFRESH_TICKS: u8 = 4;
+/// The first time between two samples of telemetry.
+const FIRST_REFRESH_TICKS: u8 = 2;
+
 /// Reference of the chip's converter, its supply, and the steps that it is cut into.
 const CONVERTER_V: f32 = 5.0;
 const CONVERTER_COUNTS: f32 = 1_024.0;
@@ -41,6 +46,7 @@ pub(crate) struct Pilot {
     pings: PingSchedule,
     encoders: EncoderWatch,
     low_battery_ticks: u8,
+    refresh_in: u8,
 }
 
 /// What the mode has found out.
@@ -69,6 +75,7 @@ impl Default for Pilot {
             pings: PingSchedule::default(),
             encoders: EncoderWatch::default(),
             low_battery_ticks: 0,
+            refresh_in: FIRST_REFRESH_TICKS,
         }
     }
 }
@@ -115,6 +122,11 @@ impl Pilot {
         if self.action.new_origin {
             self.estimator.reset_pose();
         }
+        self.refresh_in = self.refresh_in.saturating_sub(1);
+        if self.refresh_in == 0 && !self.has_reading() {
+            self.refresh_in = REFRESH_TICKS;
+            self.estimator.refresh();
+        }
         let Action {
             reached,
             unreachable,
@@ -128,9 +140,9 @@ impl Pilot {
         })
     }
 
-    /// Keeps the estimates exact.
-    pub(crate) fn refresh(&mut self) {
-        self.estimator.refresh();
+    /// A sonar answered at this tick, which makes the tick a long one.
+    pub(crate) fn has_reading(&self) -> bool {
+        self.estimate.reading.is_some()
     }
 
     /// Of the sonars that are wanted, those that the rig has.

@@ -1,8 +1,9 @@
 //! What the robot says, when, and in which language.
 //!
-//! In binary: telemetry every fourth tick with the speeds of two ticks, the heading reference before every second one if it
-//! changed, status twice a second and at once when it changes, events and acknowledgements as they come. In text: the original's row for the mode whenever the link has
-//! taken the row before, at most ten a second. The answer is in the language in which the robot was last addressed.
+//! In binary: telemetry of every fourth tick with the speeds of two ticks, the heading reference before every second one if
+//! it changed, status twice a second and at once when it changes, events and acknowledgements as they come. In text: the
+//! baseline's row for the mode whenever the link is free, at most ten a second. The answer is in the language in which the
+//! robot was last addressed.
 
 use rumbo_control::math::is_finite;
 use rumbo_control::mode::ModeId;
@@ -35,10 +36,10 @@ pub(crate) enum Language {
     Text,
 }
 
-/// What a tick found out.
+/// Values of a tick, for telemetry.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Signals {
-    /// For telemetry, but for the time, the earlier speeds, and what the status tells.
+    /// All but the time, the earlier speeds and the flags of the status.
     pub(crate) telemetry: Telemetry,
     pub(crate) heading_ref_rad: f32,
 }
@@ -69,6 +70,10 @@ pub(crate) struct Reporter {
     row_in: u8,
     last_row_at: Micros,
     earlier_rad_s: Wheels<f32>,
+    /// Telemetry that is to be sent.
+    sampled: Option<Signals>,
+    /// What was due at the last tick, a busy one, waits for the next.
+    waits: bool,
     dropped: u8,
 }
 
@@ -91,11 +96,14 @@ impl Reporter {
             row_in: ROW_TICKS,
             last_row_at: Micros(0),
             earlier_rad_s: Wheels::both(0.0),
+            sampled: None,
+            waits: false,
             dropped: 0,
         }
     }
 
     /// The next byte for the link.
+    #[inline(always)]
     pub(crate) fn transmit(&mut self) -> Option<u8> {
         self.outbox.pop()
     }
@@ -110,12 +118,12 @@ impl Reporter {
         self.language = language;
     }
 
-    /// The parameters came from this copy; told after each HELLO.
+    /// The parameters came from this copy; sent after each HELLO.
     pub(crate) fn recalled(&mut self, recalled: Option<Recalled>) {
         self.recalled = recalled;
     }
 
-    /// HELLO was asked for; the status that follows it tells the time.
+    /// HELLO was asked for; the status that follows it carries the time.
     pub(crate) fn introduce(&mut self) {
         self.hello_due = true;
         self.status_due = true;
@@ -136,7 +144,7 @@ impl Reporter {
         self.say_number(*b"ERR ", refusal as u8);
     }
 
-    /// Tells what happened.
+    /// Sends what happened.
     pub(crate) fn event(&mut self, t_ms: u16, kind: EventKind) {
         match (self.language, kind) {
             (Language::Binary, _) => {
@@ -147,26 +155,29 @@ impl Reporter {
         }
     }
 
-    /// At the end of every tick: says at most one of what is due, and whether it did. `signals` gives what telemetry tells.
+    /// At the end of every tick: sends at most one of what is due; after a `busy` tick nothing that has not waited already.
+    /// `signals` gives the values for telemetry.
     pub(crate) fn tick(
         &mut self,
         now: Micros,
         t_ms: u16,
+        busy: bool,
         status: &Status,
         signals: impl FnOnce() -> Signals,
-    ) -> bool {
+    ) {
         match self.language {
-            Language::Binary => self.tick_binary(t_ms, status, signals),
-            Language::Text => self.tick_text(now, status, signals),
+            Language::Binary => self.tick_binary(t_ms, busy, status, signals),
+            Language::Text => self.tick_text(now, busy, status, signals),
         }
     }
 
     fn tick_binary(
         &mut self,
         t_ms: u16,
+        busy: bool,
         status: &Status,
         signals: impl FnOnce() -> Signals,
-    ) -> bool {
+    ) {
         self.status_in = self.status_in.saturating_sub(1);
         if self.status_in == 0 || is_news(status, &self.last_status) {
             self.status_due = true;
@@ -175,27 +186,39 @@ impl Reporter {
         match self.telemetry_in {
             0 => {
                 self.telemetry_in = TELEMETRY_TICKS;
-                self.say_telemetry(t_ms, status, signals());
-                true
+                let mut signals = signals();
+                signals.telemetry.t_ms = t_ms;
+                signals.telemetry.wheel_rad_s[0] = self.earlier_rad_s;
+                signals.telemetry.armed = status.armed;
+                signals.telemetry.faulted = status.fault.is_some();
+                self.sampled = Some(signals);
             }
-            SAMPLE_TICKS => {
-                self.earlier_rad_s = signals().wheel_rad_s();
-                false
+            SAMPLE_TICKS => self.earlier_rad_s = signals().wheel_rad_s(),
+            _ => {}
+        }
+        let is_due = self.sampled.is_some() || self.hello_due || self.status_due;
+        self.waits = busy && is_due && !self.waits;
+        if self.waits {
+            return;
+        }
+        match self.sampled.take() {
+            Some(signals) if self.say_heading_ref(signals.heading_ref_rad) => {
+                // One frame a tick.
+                self.sampled = Some(signals);
             }
-            _ => self.say_what_is_due(t_ms, status),
+            Some(signals) => self.say_telemetry(signals.telemetry),
+            None => self.say_what_is_due(t_ms, status),
         }
     }
 
     /// HELLO or the status: on ticks that have no telemetry.
-    fn say_what_is_due(&mut self, t_ms: u16, status: &Status) -> bool {
+    fn say_what_is_due(&mut self, t_ms: u16, status: &Status) {
         if self.hello_due && self.say(Priority::Answer, &FromRobot::Hello(self.hello)) {
             self.hello_due = false;
             if let Some(recalled) = self.recalled {
                 self.event(t_ms, EventKind::Recalled(recalled));
             }
-            return true;
-        }
-        if self.status_due && self.say(Priority::Status, &FromRobot::Status(*status)) {
+        } else if self.status_due && self.say(Priority::Status, &FromRobot::Status(*status)) {
             self.status_due = false;
             self.status_in = STATUS_TICKS;
             self.last_status = *status;
@@ -203,26 +226,18 @@ impl Reporter {
             if self.last_heading_ref_rad != 0.0 {
                 self.last_heading_ref_rad = f32::NAN;
             }
-            return true;
         }
-        false
     }
 
-    fn say_telemetry(&mut self, t_ms: u16, status: &Status, signals: Signals) {
-        self.say_heading_ref(signals.heading_ref_rad);
-        let mut telemetry = signals.telemetry;
-        telemetry.t_ms = t_ms;
-        telemetry.wheel_rad_s[0] = self.earlier_rad_s;
-        telemetry.armed = status.armed;
-        telemetry.faulted = status.fault.is_some();
+    fn say_telemetry(&mut self, telemetry: Telemetry) {
+        self.heading_in = self.heading_in.saturating_sub(1);
         if !self.say(Priority::Telemetry, &FromRobot::Telemetry(telemetry)) {
             self.dropped = self.dropped.wrapping_add(1);
         }
     }
 
-    /// Ahead of telemetry, so that the receiver has both of one instant.
-    fn say_heading_ref(&mut self, heading_rad: f32) {
-        self.heading_in = self.heading_in.saturating_sub(1);
+    /// If it changed, a tick ahead of the telemetry of the same instant; says whether.
+    fn say_heading_ref(&mut self, heading_rad: f32) -> bool {
         let sent = self.heading_in == 0
             && is_finite(heading_rad)
             && heading_rad != self.last_heading_ref_rad
@@ -231,23 +246,25 @@ impl Reporter {
             self.heading_in = HEADING_FRAMES;
             self.last_heading_ref_rad = heading_rad;
         }
+        sent
     }
 
     fn tick_text(
         &mut self,
         now: Micros,
+        busy: bool,
         status: &Status,
         signals: impl FnOnce() -> Signals,
-    ) -> bool {
+    ) {
         self.row_in = self.row_in.saturating_sub(1);
-        if self.row_in > 0 || !self.outbox.is_empty() {
-            return false;
+        self.waits = busy && !self.waits;
+        if self.waits || self.row_in > 0 || !self.outbox.is_empty() {
+            return;
         }
         self.row_in = ROW_TICKS;
         let dt_ms = now.since(self.last_row_at) / 1_000;
         self.last_row_at = now;
         self.say_row(dt_ms, status, &signals());
-        true
     }
 
     fn say_row(&mut self, dt_ms: u32, status: &Status, signals: &Signals) {
@@ -288,8 +305,8 @@ fn is_news(status: &Status, before: &Status) -> bool {
 
 /// The columns of the original's row for the mode, after the time.
 fn write_row(line: &mut Line, status: &Status, signals: &Signals) {
-    let told = &signals.telemetry;
-    let [left, right, front] = &told.ranges;
+    let telemetry = &signals.telemetry;
+    let [left, right, front] = &telemetry.ranges;
     match status.mode {
         ModeId::FrontDistance | ModeId::FrontAlign | ModeId::WallHold | ModeId::WallFollow => {
             // One sonar in front the original sends twice.
@@ -303,18 +320,18 @@ fn write_row(line: &mut Line, status: &Status, signals: &Signals) {
         }
         ModeId::Waypoints => {
             line.speeds(&signals.wheel_rad_s());
-            line.speeds(&told.wheel_ref_rad_s);
-            line.pose(&told.pose);
-            line.pwm(&told.duty);
+            line.speeds(&telemetry.wheel_ref_rad_s);
+            line.pose(&telemetry.pose);
+            line.pwm(&telemetry.duty);
             return;
         }
         ModeId::Mission => {
-            line.speeds(&told.wheel_ref_rad_s);
+            line.speeds(&telemetry.wheel_ref_rad_s);
             line.angle(signals.heading_ref_rad);
             line.number(status.reference.left);
             line.number(status.reference.right);
-            line.pose(&told.pose);
-            line.integer(i16::from(told.state));
+            line.pose(&telemetry.pose);
+            line.integer(i16::from(telemetry.state));
             line.range(right.range);
             line.range(left.range);
             line.range(front.range);
@@ -322,11 +339,11 @@ fn write_row(line: &mut Line, status: &Status, signals: &Signals) {
         }
         ModeId::Manual | ModeId::WheelSpeed | ModeId::StraightLine => {
             line.speeds(&signals.wheel_rad_s());
-            line.speed(told.wheel_ref_rad_s.right);
+            line.speed(telemetry.wheel_ref_rad_s.right);
         }
     }
     line.integer(i16::from(status.mode as u8));
-    line.pwm(&told.duty);
+    line.pwm(&telemetry.duty);
 }
 
 #[cfg(test)]
@@ -338,7 +355,7 @@ mod tests {
     use rumbo_wire::{Decoder, PROTOCOL_VERSION, Received, ResetCause};
 
     #[test]
-    fn a_fault_with_two_digits_is_told_whole_in_text() {
+    fn a_fault_with_two_digits_is_sent_whole_in_text() {
         let mut reporter = Reporter::new(Hello {
             protocol: PROTOCOL_VERSION,
             schema: 0,
@@ -419,7 +436,9 @@ mod tests {
         let mut decoder = Decoder::<64>::default();
         let mut frames = 0;
         for tick in 0..200u16 {
-            // A speed that tells the tick it was taken at, in steps that telemetry resolves.
+            // Every third tick is a long one: what it would have sent leaves with the next.
+            let busy = tick % 3 == 0;
+            // A speed that shows its tick, in steps that telemetry resolves.
             let telemetry = Telemetry {
                 wheel_rad_s: [Wheels::both(f32::from(tick) / 10.0); 2],
                 ..Telemetry::default()
@@ -428,7 +447,7 @@ mod tests {
                 telemetry,
                 ..Signals::default()
             };
-            reporter.tick(Micros(0), tick * 10, &Status::default(), || signals);
+            reporter.tick(Micros(0), tick * 10, busy, &Status::default(), || signals);
             while let Some(byte) = reporter.transmit() {
                 let Some(Received::Frame(body)) = decoder.push(byte) else {
                     continue;
@@ -439,16 +458,19 @@ mod tests {
                 let ticks = telemetry
                     .wheel_rad_s
                     .map(|wheels| (wheels.left * 10.0).round() as u16);
-                assert_eq!(ticks, [tick - 2, tick]);
-                assert_eq!(telemetry.t_ms, tick * 10);
+                let sampled = telemetry.t_ms / 10;
+                assert_eq!(ticks, [sampled - 2, sampled]);
+                assert_eq!(telemetry.t_ms % 40, 30);
+                let late = u16::from(telemetry.t_ms / 10 % 3 == 0);
+                assert_eq!(telemetry.t_ms, (tick - late) * 10);
                 frames += 1;
             }
         }
         assert_eq!(frames, 50);
     }
 
-    /// What the station hears while the mode wants these headings, one per tick.
-    fn heard_of(headings_rad: impl Iterator<Item = f32>) -> std::vec::Vec<FromRobot> {
+    /// What the station receives while the mode wants these headings, one per tick.
+    fn received_of(headings_rad: impl Iterator<Item = f32>) -> std::vec::Vec<FromRobot> {
         let mut reporter = Reporter::new(Hello {
             protocol: PROTOCOL_VERSION,
             schema: 0,
@@ -456,39 +478,39 @@ mod tests {
             reset: ResetCause::PowerOn,
         });
         let mut decoder = Decoder::<64>::default();
-        let mut heard = std::vec::Vec::new();
+        let mut received = std::vec::Vec::new();
         for heading_ref_rad in headings_rad {
             let signals = Signals {
                 heading_ref_rad,
                 ..Signals::default()
             };
-            reporter.tick(Micros(0), 0, &Status::default(), || signals);
+            reporter.tick(Micros(0), 0, false, &Status::default(), || signals);
             while let Some(byte) = reporter.transmit() {
                 if let Some(Received::Frame(body)) = decoder.push(byte) {
-                    heard.extend(FromRobot::from_body(&body));
+                    received.extend(FromRobot::from_body(&body));
                 }
             }
         }
-        heard
+        received
     }
 
     #[test]
-    fn a_heading_reference_that_moves_is_told_12_times_a_second_ahead_of_telemetry() {
-        let heard = heard_of((0..1_000u16).map(|tick| f32::from(tick) * 1e-3));
-        let places: std::vec::Vec<_> = (0..heard.len())
-            .filter(|place| matches!(heard[*place], FromRobot::HeadingRef(_)))
+    fn a_heading_reference_that_moves_is_sent_12_times_a_second_ahead_of_telemetry() {
+        let received = received_of((0..1_000u16).map(|tick| f32::from(tick) * 1e-3));
+        let places: std::vec::Vec<_> = (0..received.len())
+            .filter(|place| matches!(received[*place], FromRobot::HeadingRef(_)))
             .collect();
         assert!((120..=126).contains(&places.len()), "{}", places.len());
         for place in places {
-            assert!(matches!(heard[place + 1], FromRobot::Telemetry(_)));
+            assert!(matches!(received[place + 1], FromRobot::Telemetry(_)));
         }
     }
 
     #[test]
-    fn a_heading_reference_that_rests_is_told_with_the_status_and_none_never() {
+    fn a_heading_reference_that_rests_is_sent_with_the_status_and_none_never() {
         let count = |heading_rad| {
-            let heard = heard_of(core::iter::repeat_n(heading_rad, 1_000));
-            let headings = heard
+            let received = received_of(core::iter::repeat_n(heading_rad, 1_000));
+            let headings = received
                 .iter()
                 .filter(|message| matches!(message, FromRobot::HeadingRef(_)));
             headings.count()
