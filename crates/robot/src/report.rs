@@ -19,6 +19,8 @@ use crate::outbox::{Outbox, Priority};
 const TELEMETRY_TICKS: u8 = 4;
 /// The earlier of its two speed samples is so many ticks older: 20 ms.
 const SAMPLE_TICKS: u8 = 2;
+/// What is due waits for so many busy ticks in a row: a late echo and that of the next ping.
+const MOST_BUSY_TICKS: u8 = 2;
 /// The heading reference with every so many telemetry frames at most: 12.5 Hz.
 const HEADING_FRAMES: u8 = 2;
 /// A status every so many ticks: 2 Hz.
@@ -72,8 +74,8 @@ pub(crate) struct Reporter {
     earlier_rad_s: Wheels<f32>,
     /// Telemetry that is to be sent.
     sampled: Option<Signals>,
-    /// What was due at the last tick, a busy one, waits for the next.
-    waits: bool,
+    /// Busy ticks for which what is due has waited.
+    waited: u8,
     dropped: u8,
 }
 
@@ -97,7 +99,7 @@ impl Reporter {
             last_row_at: Micros(0),
             earlier_rad_s: Wheels::both(0.0),
             sampled: None,
-            waits: false,
+            waited: 0,
             dropped: 0,
         }
     }
@@ -155,7 +157,7 @@ impl Reporter {
         }
     }
 
-    /// At the end of every tick: sends at most one of what is due; after a `busy` tick nothing that has not waited already.
+    /// At the end of every tick: sends at most one of what is due. After a `busy` tick that waits.
     /// `signals` gives the values for telemetry.
     pub(crate) fn tick(
         &mut self,
@@ -197,10 +199,11 @@ impl Reporter {
             _ => {}
         }
         let is_due = self.sampled.is_some() || self.hello_due || self.status_due;
-        self.waits = busy && is_due && !self.waits;
-        if self.waits {
+        if busy && is_due && self.waited < MOST_BUSY_TICKS {
+            self.waited += 1;
             return;
         }
+        self.waited = 0;
         match self.sampled.take() {
             Some(signals) if self.say_heading_ref(signals.heading_ref_rad) => {
                 // One frame a tick.
@@ -257,8 +260,7 @@ impl Reporter {
         signals: impl FnOnce() -> Signals,
     ) {
         self.row_in = self.row_in.saturating_sub(1);
-        self.waits = busy && !self.waits;
-        if self.waits || self.row_in > 0 || !self.outbox.is_empty() {
+        if busy || self.row_in > 0 || !self.outbox.is_empty() {
             return;
         }
         self.row_in = ROW_TICKS;
