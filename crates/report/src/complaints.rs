@@ -1,23 +1,23 @@
-//! What a run's program or robot complained of, in the reader's language.
+//! Failures of a run's program or robot, in the reader's language.
 //!
-//! A failure is an English line, as the command line prints it. The kinds of lines are few; a fault and a refusal say the
-//! same words each time, and their Spanish is `content/es/messages.md`. A line without Spanish (of a newer program) is shown
-//! as it is.
+//! A failure is an English line, as the command line prints it. There are few kinds of lines; faults and refusals have
+//! fixed wordings, translated in `content/es/messages.md`. A line without a translation (from a newer program) is
+//! shown as it is.
 
 use crate::text::{Language, with};
 use crate::words;
 use rumbo_control::Fault;
 use rumbo_wire::Refusal;
 
-/// A complaint as it is shown: what is in the reader's language, and what follows it in English.
+/// A complaint as shown: the part in the reader's language, and the part that follows in English.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Complaint {
     pub(crate) own: String,
     pub(crate) english: String,
 }
 
-/// A line in a language.
-pub(crate) fn told(language: Language, line: &str) -> Complaint {
+/// The complaint that a line makes, in a language.
+pub(crate) fn complaint(language: Language, line: &str) -> Complaint {
     let spanish = match language {
         Language::English => None,
         Language::Spanish => of_robot(line).or_else(|| of_image(line)),
@@ -67,15 +67,15 @@ fn of_robot(line: &str) -> Option<Complaint> {
     })
 }
 
-/// How a program ends, as the emulator begins to say it, and its name in `messages.md`.
+/// How a program ended: the beginning of the emulator's message, and its name in `messages.md`.
 const ENDS: [(&str, &str); 3] = [
     ("ran into erased flash at ", "erased-flash"),
     ("illegal instruction ", "illegal-instruction"),
     ("stack overflow at ", "stack-overflow"),
 ];
 
-/// `firmware NAME: ...`: how its program ended. Where it was and how it came there are names and numbers of the
-/// program.
+/// `firmware NAME: ...`: how its program ended. Location and call stack are names and numbers of the program and stay
+/// as they are.
 fn of_image(line: &str) -> Option<Complaint> {
     let (name, verdict) = line.strip_prefix("firmware ")?.split_once(": ")?;
     let (_, end) = ENDS
@@ -99,29 +99,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn faults_and_refusals_are_told_in_spanish_whole_and_in_english_as_they_are() {
+    fn faults_and_refusals_are_translated_whole_and_left_alone_in_english() {
         let faults = Fault::ALL.map(|fault| format!("at 1.20 s fault: {}", fault.explanation()));
         let refusals = Refusal::ALL
             .map(|refusal| format!("at 0.50 s Arm was refused: {}", refusal.explanation()));
         for line in faults.iter().chain(&refusals) {
-            let spanish = told(Language::Spanish, line);
+            let spanish = complaint(Language::Spanish, line);
             assert!(
                 spanish.own.starts_with("a los ") && spanish.english.is_empty(),
                 "{line}: {spanish:?}"
             );
-            assert_eq!(&told(Language::English, line).own, line);
+            assert_eq!(&complaint(Language::English, line).own, line);
         }
     }
 
     #[test]
-    fn how_an_image_ended_is_told_in_spanish_with_the_place_as_the_emulator_names_it() {
+    fn how_an_image_ended_is_translated_but_for_the_location_in_the_program() {
         let line = "firmware mine.elf: stack overflow at loop+4 in cycle 12: 900 bytes deep";
-        let told = told(Language::Spanish, line);
+        let complaint = complaint(Language::Spanish, line);
         assert_eq!(
-            told.own,
+            complaint.own,
             "imagen mine.elf: la pila del programa creció hasta sus datos"
         );
-        assert!(told.english.contains("loop+4"));
+        assert!(complaint.english.contains("loop+4"));
     }
 
     #[test]
@@ -138,9 +138,9 @@ mod tests {
 
     #[test]
     fn a_line_of_no_known_kind_stays_english() {
-        let told = told(Language::Spanish, "something new");
+        let complaint = complaint(Language::Spanish, "something new");
         assert_eq!(
-            (told.own.as_str(), told.english.as_str()),
+            (complaint.own.as_str(), complaint.english.as_str()),
             ("", "something new")
         );
     }

@@ -1,14 +1,14 @@
-//! What the runs of a report gave, and what was asked for.
+//! The results of a report's runs, and what was requested.
 
 use crate::chapters::Experiment;
 use crate::real::{Real, Recording};
 use crate::signals::Outcome;
 use std::collections::BTreeMap;
 
-/// Everything that a report is written from.
+/// Everything that goes into a report.
 #[derive(Debug, Default)]
 pub struct Data {
-    /// The experiments that were asked for, in the report's order.
+    /// The requested experiments, in the report's order.
     pub experiments: Vec<&'static Experiment>,
     /// The seed of all runs.
     pub seed: u64,

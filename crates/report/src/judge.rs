@@ -59,7 +59,7 @@ pub(crate) fn value(language: Language, shown: &Shown, value: f64) -> String {
 }
 
 fn bounds(language: Language, shown: &Shown, bounds: Bounds) -> String {
-    // Whoever wrote a limit in rad wrote a round number of degrees, rounded.
+    // A limit in rad was a round number of degrees before it was converted and rounded.
     let number = |value: f64| {
         let value = value * shown.factor;
         let decimals = if value.abs() >= 100.0 {
@@ -156,7 +156,7 @@ fn rows(language: Language, outcome: &Outcome) -> Vec<Vec<Cell>> {
         .collect()
 }
 
-/// What the robot or the program said besides missed limits.
+/// Failures of the robot or the program besides missed limits.
 fn complaints(language: Language, outcome: &Outcome) -> String {
     let is_limit = |line: &str| {
         let of = |key: &String| {
@@ -166,7 +166,7 @@ fn complaints(language: Language, outcome: &Outcome) -> String {
         outcome.setup.scenario.limits.keys().any(of)
     };
     let complaint = |line: &String| {
-        let Complaint { own, english } = complaints::told(language, line);
+        let Complaint { own, english } = complaints::complaint(language, line);
         let span = format!(
             "<span lang=\"en\" translate=\"no\">{}</span>",
             escape(&english)

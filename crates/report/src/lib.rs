@@ -26,7 +26,7 @@ mod signals;
 mod summary;
 mod table;
 pub mod text;
-mod told;
+mod text_rows;
 mod words;
 
 pub use chapters::{EXPERIMENTS, Experiment};

@@ -29,7 +29,7 @@ mod tests;
 
 type Inside<'a> = Vec<(Event<'a>, Range<usize>)>;
 
-/// A text on its way into HTML.
+/// A text being turned into HTML.
 struct Writer<'a> {
     page: &'a mut Page,
     source: &'a Source,
@@ -313,7 +313,7 @@ fn figure_needs_caption(name: &str) -> String {
     format!("`{name}` is a figure: write ![its caption](run:{name}), alone in its paragraph")
 }
 
-/// The words of a caption, for those who cannot see the figure.
+/// The words of a caption, for screen readers.
 fn plain(inside: &[(Event<'_>, Range<usize>)]) -> String {
     let words = inside.iter().map(|(event, _)| match event {
         Event::Text(text) | Event::Code(text) | Event::InlineMath(text) => text,

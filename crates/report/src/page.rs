@@ -1,4 +1,4 @@
-//! The page under way: chapters with their places in the table of contents, numbered figures, formulas.
+//! The page being built: chapters with their entries in the table of contents, numbered figures, formulas.
 
 use crate::content::ContentError;
 use crate::markdown;
@@ -7,7 +7,7 @@ use crate::text::{Language, Text, escape, word};
 use crate::words;
 use math_core::{LatexToMathML, MathCoreConfig, MathDisplay};
 
-/// A page under way.
+/// A page being built.
 pub(crate) struct Page {
     language: Language,
     contents: Vec<(String, String)>,
@@ -62,7 +62,7 @@ impl Page {
         })
     }
 
-    /// A figure; `caption` is HTML, `description` says it to those who cannot see it. Its identifier is the same in every
+    /// A figure; `caption` is HTML, `description` its text for screen readers. Its identifier is the same in every
     /// language.
     pub(crate) fn figure(
         &mut self,

@@ -10,7 +10,7 @@ use rumbo_experiment::files::{FileError, Library, Overrides, ScenarioFile, Setup
 use rumbo_experiment::run::run;
 use rumbo_wire::Command;
 
-/// What is asked for.
+/// The request.
 #[derive(Debug, Default)]
 pub struct Request {
     /// Names of experiments or of their scenarios; none: all.
@@ -42,7 +42,7 @@ impl Plan {
     /// Reads all setups.
     ///
     /// # Errors
-    /// A name that is no experiment, or whatever is wrong with a file.
+    /// A name that is no experiment, or a mistake in a file.
     pub fn new(library: &Library, request: Request) -> Result<Self, FileError> {
         let experiments = chosen(&request.only)?;
         let mut jobs = Vec::new();
@@ -98,7 +98,7 @@ impl Plan {
             .sum()
     }
 
-    /// Runs everything; `done` is told the length [s] of each run that has ended.
+    /// Runs everything; calls `done` with the length [s] of each finished run.
     ///
     /// # Errors
     /// A setup that does not fit together, or a program that cannot be run at all.
@@ -141,7 +141,7 @@ impl Plan {
     }
 }
 
-/// The experiments that were asked for, in the report's order.
+/// The requested experiments, in the report's order.
 fn chosen(only: &[String]) -> Result<Vec<&'static Experiment>, FileError> {
     let has = |experiment: &Experiment, name: &String| {
         experiment.name == name || experiment.scenarios.contains(&name.as_str())

@@ -1,4 +1,4 @@
-//! Recorded runs of a real robot: CSVs of the original program and logs, each matched to the experiment that it is a run of.
+//! Recorded runs of a real robot: CSVs of the original program and logs, each matched to its experiment.
 
 #[cfg(feature = "host")]
 mod folder;
@@ -22,10 +22,10 @@ pub struct Recording {
     pub ours: bool,
 }
 
-/// What a log of a real robot comes to.
+/// The run in a log of a real robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FromLog {
-    /// The run as the original program's CSV that tells the same.
+    /// The run as a CSV of the original program.
     pub csv: String,
     /// The robot ran our program.
     pub ours: bool,
@@ -81,7 +81,7 @@ pub enum NotShown {
 }
 
 impl NotShown {
-    /// As the report says it.
+    /// The reason as the report words it.
     #[must_use]
     pub const fn text(self) -> Text {
         match self {

@@ -1,4 +1,4 @@
-//! How a measured signal responded to each step of its reference: the same reckoning for ours and for a recorded run.
+//! Response of a measured signal to each step of its reference, computed alike for our runs and recorded ones.
 
 use crate::plot::Points;
 
@@ -9,7 +9,7 @@ const DISTANCE_BAND: f64 = 0.05;
 /// Share of a step, at its end, that counts as steady.
 const STEADY_SHARE: f64 = 0.4;
 
-/// What of a response is settled.
+/// Band within which a response counts as settled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// Within 5 % of the step, in cm.
@@ -33,7 +33,7 @@ pub(crate) struct Response {
     pub(crate) ripple: f64,
 }
 
-/// The response to each reference, which begin at these times; the last one ends with the signal.
+/// The response to each reference; references start at these times, and the last one ends with the signal.
 pub(crate) fn responses(kind: Kind, references: &[(f64, f64)], signal: &Points) -> Vec<Response> {
     let ends = references
         .iter()
@@ -90,7 +90,7 @@ fn response(kind: Kind, from_s: f64, to: f64, part: &Points) -> Option<Response>
     })
 }
 
-/// Root mean square and largest size of a signal.
+/// Root mean square and largest absolute value of a signal.
 pub(crate) fn rms_and_worst(signal: &Points) -> [f64; 2] {
     let values: Vec<f64> = signal
         .iter()

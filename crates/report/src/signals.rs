@@ -1,7 +1,7 @@
-//! What figures show of a run: what the station heard of the robot, else what was truly the case, over the time since the arming.
+//! Signals of a run over the time since arming: the robot's telemetry where there is any, otherwise ground truth.
 
 use crate::plot::Points;
-use crate::told;
+use crate::text_rows;
 use rumbo_control::Range;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
@@ -16,16 +16,16 @@ pub(crate) const RPM: f64 = 30.0 / PI;
 pub(crate) const DEG: f64 = 180.0 / PI;
 pub(crate) const CM: f64 = 100.0;
 
-/// A run and what it was made of.
+/// A run and its setup.
 #[derive(Debug)]
 pub struct Outcome {
     /// The scenario and all that it names.
     pub setup: Setup,
-    /// What came of it.
+    /// Its trace, metrics and failures.
     pub result: RunResult,
 }
 
-/// A wheel or a sonar, by its place in arrays.
+/// A wheel or a sonar, by its index in arrays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Place {
     Left = 0,
@@ -38,7 +38,7 @@ impl Outcome {
         &self.result.trace
     }
 
-    /// When the robot was armed: zero of all time axes [s].
+    /// When the robot was armed [s]: the zero of all time axes.
     pub(crate) fn armed_s(&self) -> f64 {
         let commands = &self.setup.scenario.commands;
         let arm = commands.iter().find(|timed| timed.command == Command::Arm);
@@ -50,7 +50,7 @@ impl Outcome {
         self.setup.scenario.duration_s - self.armed_s()
     }
 
-    /// A true signal.
+    /// A signal of ground truth.
     pub(crate) fn truth(&self, signal: impl Fn(&Sample) -> f64) -> Points {
         let armed_s = self.armed_s();
         let samples = self.trace().samples.iter();
@@ -59,31 +59,31 @@ impl Outcome {
             .collect()
     }
 
-    /// Whether the program at the pins told telemetry, in frames or in text.
-    pub(crate) fn tells(&self) -> bool {
+    /// Whether the program sent telemetry, as frames or as text.
+    pub(crate) fn has_telemetry(&self) -> bool {
         self.telemetry().next().is_some()
     }
 
-    /// The frames of telemetry, and when each was heard since the arming.
+    /// The telemetry frames, each with its time of arrival since arming.
     pub(crate) fn telemetry(&self) -> impl Iterator<Item = (f64, &Telemetry)> {
         let armed_s = self.armed_s();
         self.trace()
             .heard
             .iter()
-            .filter_map(move |heard| match &heard.what {
-                FromRobot::Telemetry(told) => Some((heard.t_s - armed_s, told)),
+            .filter_map(move |received| match &received.what {
+                FromRobot::Telemetry(frame) => Some((received.t_s - armed_s, frame)),
                 _ => None,
             })
     }
 
-    fn told(&self, signal: impl Fn(&Telemetry) -> f64) -> Points {
+    fn frames(&self, signal: impl Fn(&Telemetry) -> f64) -> Points {
         self.telemetry()
-            .map(|(t_s, told)| (t_s, signal(told)))
+            .map(|(t_s, frame)| (t_s, signal(frame)))
             .collect()
     }
 
-    /// What the robot told in rows of text, which say more than what was made of them, else in frames, else what is true, if that is
-    /// asked for.
+    /// The best source there is: text rows, which hold more than the telemetry parsed from them; else frames; else
+    /// ground truth, if given.
     fn best(
         &self,
         frames: impl Fn(&Telemetry) -> f64,
@@ -93,44 +93,44 @@ impl Outcome {
         let points = self.text(text);
         match truth {
             _ if !points.is_empty() => points,
-            _ if self.tells() => self.told(frames),
+            _ if self.has_telemetry() => self.frames(frames),
             Some(truth) => self.truth(truth),
             None => points,
         }
     }
 
-    /// What the robot told in rows of the original's text.
+    /// A signal of the rows of the original text protocol.
     fn text(&self, of: impl Fn(&Row) -> Option<f64>) -> Points {
         let armed_s = self.armed_s();
-        let rows = told::rows(&self.trace().link);
+        let rows = text_rows::rows(&self.trace().link);
         rows.iter()
             .filter_map(|(t_s, row)| Some((t_s - armed_s, of(row)?)))
             .collect()
     }
 
-    /// Whether it tells rows of the original's text.
-    pub(crate) fn tells_in_text(&self) -> bool {
-        !told::rows(&self.trace().link).is_empty()
+    /// Whether the robot sent rows of the original text protocol.
+    pub(crate) fn has_text_rows(&self) -> bool {
+        !text_rows::rows(&self.trace().link).is_empty()
     }
 
-    /// A sonar's range as the robot has it [cm]; a gap where there is none.
+    /// A sonar's range as the robot measures it [cm]; a gap where there is none.
     pub(crate) fn range_cm(&self, sonar: Place) -> Points {
         self.best(
-            |told| match told.ranges[sonar as usize].range {
+            |frame| match frame.ranges[sonar as usize].range {
                 Range::Valid(range_m) => CM * f64::from(range_m),
                 Range::Clear | Range::Faulty => f64::NAN,
             },
-            |row| told::range_cm(row, sonar),
+            |row| text_rows::range_cm(row, sonar),
             Some(&|sample| CM * sample.range_m[sonar as usize]),
         )
     }
 
     /// A wheel's measured speed [rpm].
     pub(crate) fn speed_rpm(&self, wheel: Place) -> Points {
-        if self.tells() && !self.tells_in_text() {
+        if self.has_telemetry() && !self.has_text_rows() {
             // Two samples in a frame, the first 20 ms older.
-            let both = self.telemetry().flat_map(|(t_s, told)| {
-                let [before, now] = told.wheel_rad_s;
+            let both = self.telemetry().flat_map(|(t_s, frame)| {
+                let [before, now] = frame.wheel_rad_s;
                 [(t_s - 0.02, before), (t_s, now)]
             });
             return both
@@ -139,16 +139,16 @@ impl Outcome {
         }
         self.best(
             |_| f64::NAN,
-            |row| told::speed_rpm(row, wheel),
+            |row| text_rows::speed_rpm(row, wheel),
             Some(&|sample| RPM * sample.wheel_rad_s[wheel as usize]),
         )
     }
 
-    /// What a wheel's speed loop was asked for [rpm].
+    /// Setpoint of a wheel's speed loop [rpm].
     pub(crate) fn speed_reference_rpm(&self, wheel: Place) -> Points {
         self.best(
-            |told| RPM * f64::from(wheel.of(told.wheel_ref_rad_s)),
-            |row| told::reference_rpm(row, wheel),
+            |frame| RPM * f64::from(wheel.of(frame.wheel_ref_rad_s)),
+            |row| text_rows::reference_rpm(row, wheel),
             None,
         )
     }
@@ -158,8 +158,8 @@ impl Outcome {
         self.truth(|sample| f64::from(sample.duty[wheel as usize]))
     }
 
-    /// The pose as the robot estimates it: x [m], y [m], heading within +-180 [deg]; the true one, seen from the start, where it tells
-    /// none.
+    /// The estimated pose: x [m], y [m], heading within +-180 [deg]. The true pose relative to the start where the robot
+    /// reports none.
     pub(crate) fn pose(&self) -> [Points; 3] {
         let start = self.setup.scenario.start;
         let (sin, cos) = start.heading_rad.sin_cos();
@@ -173,51 +173,52 @@ impl Outcome {
         };
         let [x, y, heading] = [0, 1, 2].map(|index| {
             self.best(
-                |told| {
-                    let pose = told.pose;
+                |frame| {
+                    let pose = frame.pose;
                     [
                         f64::from(pose.x_m),
                         f64::from(pose.y_m),
                         DEG * f64::from(pose.heading_rad),
                     ][index]
                 },
-                |row| Some(told::pose(row)?[index]),
+                |row| Some(text_rows::pose(row)?[index]),
                 Some(&|sample| seen(sample)[index]),
             )
         });
         [x, y, unwrapped(heading)]
     }
 
-    /// The heading that the mode wants [deg].
+    /// The mode's heading setpoint [deg].
     pub(crate) fn heading_reference_deg(&self) -> Points {
         let armed_s = self.armed_s();
-        let heard = self
+        let received = self
             .trace()
             .heard
             .iter()
-            .filter_map(|heard| match heard.what {
+            .filter_map(|received| match received.what {
                 FromRobot::HeadingRef(heading_rad) => {
-                    Some((heard.t_s - armed_s, DEG * f64::from(heading_rad)))
+                    Some((received.t_s - armed_s, DEG * f64::from(heading_rad)))
                 }
                 _ => None,
             });
-        let mut points: Points = heard.collect();
+        let mut points: Points = received.collect();
         if points.is_empty() {
-            points = self.text(|row| Some(f64::from(told::mission(row)?.heading_reference_deg)));
+            points =
+                self.text(|row| Some(f64::from(text_rows::mission(row)?.heading_reference_deg)));
         }
         self.hold_last(&mut points);
         points
     }
 
-    /// The goal as the robot has it [m], x and y.
+    /// The goal that the robot reports [m], x and y.
     pub(crate) fn goal_m(&self) -> [Points; 2] {
         let armed_s = self.armed_s();
         let status = || {
             self.trace()
                 .heard
                 .iter()
-                .filter_map(move |heard| match &heard.what {
-                    FromRobot::Status(status) => Some((heard.t_s - armed_s, status.reference)),
+                .filter_map(move |received| match &received.what {
+                    FromRobot::Status(status) => Some((received.t_s - armed_s, status.reference)),
                     _ => None,
                 })
         };
@@ -229,10 +230,10 @@ impl Outcome {
                 .map(|(t_s, goal)| (t_s, f64::from(goal.right)))
                 .collect(),
         ];
-        if self.tells_in_text() {
+        if self.has_text_rows() {
             goals = [
-                self.text(|row| Some(f64::from(told::mission(row)?.goal_x_m))),
-                self.text(|row| Some(f64::from(told::mission(row)?.goal_y_m))),
+                self.text(|row| Some(f64::from(text_rows::mission(row)?.goal_x_m))),
+                self.text(|row| Some(f64::from(text_rows::mission(row)?.goal_y_m))),
             ];
         }
         goals.iter_mut().for_each(|points| self.hold_last(points));
@@ -241,14 +242,14 @@ impl Outcome {
 
     /// The number of the mode's state.
     pub(crate) fn states(&self) -> Points {
-        let text = |row: &Row| Some(f64::from(told::mission(row)?.state));
-        let mut points = self.best(|told| f64::from(told.state), text, None);
+        let text = |row: &Row| Some(f64::from(text_rows::mission(row)?.state));
+        let mut points = self.best(|frame| f64::from(frame.state), text, None);
         self.hold_last(&mut points);
         points
     }
 
-    /// The true way in the world [m].
-    pub(crate) fn way(&self) -> Points {
+    /// The true path in the world [m].
+    pub(crate) fn true_path(&self) -> Points {
         self.trace()
             .samples
             .iter()
@@ -256,20 +257,20 @@ impl Outcome {
             .collect()
     }
 
-    /// When the robot said that it reached its goal, since the arming [s].
+    /// When the robot reported its goals reached, since arming [s].
     pub(crate) fn reached_s(&self) -> Vec<f64> {
         let armed_s = self.armed_s();
-        let reached = |heard: &Heard| matches!(&heard.what, FromRobot::Event(event) if event.kind == EventKind::Reached);
+        let reached = |received: &Heard| matches!(&received.what, FromRobot::Event(event) if event.kind == EventKind::Reached);
         self.trace()
             .heard
             .iter()
-            .filter(|heard| reached(heard))
-            .map(|heard| heard.t_s - armed_s)
+            .filter(|received| reached(received))
+            .map(|received| received.t_s - armed_s)
             .collect()
     }
 
-    /// Where it truly was at a time since the arming [m].
-    pub(crate) fn place_at(&self, t_s: f64) -> (f64, f64) {
+    /// The true position at a time since arming [m].
+    pub(crate) fn true_position_at(&self, t_s: f64) -> (f64, f64) {
         let samples = &self.trace().samples;
         let at = samples.partition_point(|sample| sample.t_s - self.armed_s() < t_s);
         samples
@@ -277,8 +278,9 @@ impl Outcome {
             .map_or((0.0, 0.0), |sample| (sample.x_m, sample.y_m))
     }
 
-    /// The estimated way in the world [m], from the start. A mission that has reached a goal calls it its origin: there the way ends.
-    pub(crate) fn told_way(&self) -> Points {
+    /// The estimated path in the world [m], from the start. A mission makes a reached goal its new origin: the path ends
+    /// there.
+    pub(crate) fn estimated_path(&self) -> Points {
         let mission = self.setup.scenario.mode == ModeId::Mission;
         let end_s = self
             .reached_s()
@@ -288,7 +290,7 @@ impl Outcome {
             .unwrap_or(f64::INFINITY);
         let start = self.setup.scenario.start;
         let (sin, cos) = start.heading_rad.sin_cos();
-        if !self.tells() {
+        if !self.has_telemetry() {
             return Points::new();
         }
         let [x, y, _] = self.pose();

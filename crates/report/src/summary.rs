@@ -69,7 +69,7 @@ fn front(data: &Data, language: Language, contents: String) -> Places {
     places.section("skipped", !data.real.skipped.is_empty());
     places.block("skipped", skipped(data, language));
     places.block("contents", contents);
-    if data.outcomes.values().all(Outcome::tells) {
+    if data.outcomes.values().all(Outcome::has_telemetry) {
         places.nothing("no-telemetry");
     } else {
         places.value("no-telemetry", HOW_SILENT.of(language));
@@ -149,7 +149,7 @@ fn facts(data: &Data, language: Language) -> String {
     format!("<dl class=\"facts\">\n{rows}</dl>\n")
 }
 
-/// Each experiment's verdict and most telling values.
+/// Each experiment's verdict and most important values.
 fn summary(data: &Data, language: Language) -> String {
     let mut rows = Vec::new();
     for experiment in &data.experiments {

@@ -45,7 +45,7 @@ impl Language {
         }
         let mut digits = format!("{value:.decimals$}");
         if digits.trim_start_matches(['-', '0', '.']).is_empty() {
-            // A rounded nothing has no sign.
+            // A value rounded to zero has no sign.
             digits = digits.trim_start_matches('-').to_owned();
         }
         let digits = digits.replace('-', "\u{2212}");
@@ -55,7 +55,7 @@ impl Language {
         }
     }
 
-    /// A number as short as it can be said with at most this many decimals.
+    /// A number in its shortest form with at most this many decimals.
     #[must_use]
     pub fn short(self, value: f64, decimals: usize) -> String {
         let mut text = self.number(value, decimals);

@@ -4,7 +4,7 @@
 //! - `time-since-arming`: time since arming (s)
 //! ```
 //!
-//! A line that is indented goes on with the one before. Texts of the content and drawings use a word as `{{name}}`, the
+//! An indented line continues the one before. Texts of the content and drawings use a word as `{{name}}`, the
 //! program as `word("name")`.
 
 use crate::content::{ContentError, Source};
@@ -29,7 +29,7 @@ pub(crate) fn words(language: Language) -> Result<&'static Words, ContentError> 
         .map_err(Clone::clone)
 }
 
-/// What robots and programs say, in Spanish: `content/es/messages.md`, in the form of the words.
+/// Messages of robots and programs, in Spanish: `content/es/messages.md`, in the form of the words.
 pub(crate) fn messages() -> Result<&'static Words, ContentError> {
     static MESSAGES: OnceLock<Result<Words, ContentError>> = OnceLock::new();
     let read = || Source::text(Language::Spanish, "messages").and_then(|source| parse(&source));

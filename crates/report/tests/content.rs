@@ -64,7 +64,7 @@ fn words(language: &str) -> BTreeMap<String, (usize, Vec<String>)> {
     words
 }
 
-/// Texts of a language but its words, and what the program itself says in English.
+/// Texts of a language but its words, and the program's own English messages.
 fn texts(language: &str) -> Vec<(PathBuf, String)> {
     let mut texts = files(&format!("content/{language}"), ".md");
     texts.retain(|(path, _)| !path.ends_with("words.md") && !path.ends_with("messages.md"));

@@ -278,7 +278,7 @@ fn no_text_is_left_in_the_other_language() {
 
 #[test]
 fn spanish_has_one_word_for_one_thing() {
-    // lazo for a control loop, referencia for what is asked for, punto de paso for a waypoint.
+    // lazo for a control loop, referencia for a setpoint, punto de paso for a waypoint.
     let others = ["bucle", "consigna", "ordenada ", "waypoint"];
     for text in texts(&html(data(), Language::Spanish).unwrap().0) {
         let text = text.to_lowercase();
@@ -314,7 +314,7 @@ fn every_formula_is_set() {
     }
 }
 
-/// What the page says, numbers left out: a change shows as a small readable difference. `RUMBO_BLESS=1` writes it anew.
+/// The page's text without numbers: a change shows as a small readable difference. `RUMBO_BLESS=1` rewrites it.
 #[test]
 fn the_outline_is_as_before() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/golden");

@@ -1,4 +1,4 @@
-//! A recorded run beside ours: both curves over each other, and a table of what each came to.
+//! A recorded run beside ours: both curves overlaid, and a table of their results.
 
 use super::panels::mean_cm;
 use super::parts::{self, DISTANCE, REFERENCE};
@@ -21,7 +21,7 @@ const fn real(recording: &Recording) -> Text {
     if recording.ours { REAL_OURS } else { REAL }
 }
 
-/// A curve of ours and one of the recorded robot, over each other.
+/// A curve of ours and one of the recorded robot, overlaid.
 pub(super) fn both(
     language: Language,
     recording: &Recording,
@@ -36,7 +36,7 @@ pub(super) fn both(
 
 const QUANTITY: Text = word("quantity");
 
-/// A table of our values beside those of the recorded robot; they come as they are shown.
+/// A table of our values beside those of the recorded robot, already formatted.
 pub(super) fn values(
     language: Language,
     recording: &Recording,
@@ -50,7 +50,8 @@ pub(super) fn values(
     table(&header, &rows)
 }
 
-/// Our run beside a recorded one, and that one. Where there is one, the section `recorded` is shown, with its place `file`.
+/// Our run beside a recorded one, and that one. If there is one, shows the section `recorded` and fills its place
+/// `file`.
 pub(super) fn recorded<'a>(
     places: &mut Places,
     data: &'a Data,
@@ -69,7 +70,7 @@ const OVERSHOOT: Text = word("overshoot");
 const STEADY: Text = word("steady-error");
 const RIPPLE: Text = word("ripple-standard-deviation");
 
-/// A table beside a recorded run of what each step came to.
+/// A table of each step's response, beside a recorded run's.
 pub(super) fn steps(
     places: &mut Places,
     recording: &Recording,

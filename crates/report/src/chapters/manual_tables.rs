@@ -1,4 +1,4 @@
-//! Tables of the basic movements: where each wheel starts, and what became of each movement.
+//! Tables of the basic movements: where each wheel starts, and the outcome of each movement.
 
 use super::manual::{EXPERIMENT, FLOOR};
 use crate::data::Data;
@@ -65,7 +65,7 @@ pub(super) fn starts(language: Language, data: &Data) -> String {
     table(&header, &rows)
 }
 
-/// Way, sideways drift, turn and radius of every movement.
+/// Distance, sideways drift, turn and radius of every movement.
 pub(super) fn movements(language: Language, data: &Data) -> String {
     let rows: Vec<Vec<Cell>> = EXPERIMENT
         .scenarios

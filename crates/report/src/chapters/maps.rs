@@ -1,4 +1,4 @@
-//! Maps that several chapters show: ways, walls and boxes, routes.
+//! Maps that several chapters show: paths, walls and boxes, routes.
 
 use crate::plot::{Curve, Ink, Map, Points, Shape};
 use crate::signals::Outcome;
@@ -9,7 +9,7 @@ const X_AXIS: Text = same("x (m)");
 const Y_AXIS: Text = same("y (m)");
 const IDEAL: Text = word("ideal");
 const BY_ODOMETRY: Text = word("by-odometry");
-const TRUE_WAY: Text = word("true");
+const TRUE_PATH: Text = word("true");
 
 /// A map with nothing on it.
 pub(super) fn map(language: Language) -> Map {
@@ -20,14 +20,18 @@ pub(super) fn map(language: Language) -> Map {
     }
 }
 
-/// The ideal way, the way by odometry, and the true one.
-pub(super) fn ways(language: Language, outcome: &Outcome, ideal: Points) -> Vec<Curve> {
+/// The ideal path, the path by odometry, and the true one.
+pub(super) fn paths(language: Language, outcome: &Outcome, ideal: Points) -> Vec<Curve> {
     let mut curves = vec![Curve::new(IDEAL.of(language), Ink::Reference, ideal)];
-    let told = outcome.told_way();
-    if !told.is_empty() {
-        curves.push(Curve::new(BY_ODOMETRY.of(language), Ink::First, told));
+    let estimated = outcome.estimated_path();
+    if !estimated.is_empty() {
+        curves.push(Curve::new(BY_ODOMETRY.of(language), Ink::First, estimated));
     }
-    curves.push(Curve::new(TRUE_WAY.of(language), Ink::True, outcome.way()));
+    curves.push(Curve::new(
+        TRUE_PATH.of(language),
+        Ink::True,
+        outcome.true_path(),
+    ));
     curves
 }
 

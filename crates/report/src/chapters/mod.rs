@@ -1,4 +1,4 @@
-//! The experiments, a file for each: what its chapter says and shows, and which of its metrics stand in the summary.
+//! The experiments, a file for each: what its chapter shows, and which of its metrics appear in the summary.
 
 mod beside;
 mod manual;
@@ -50,7 +50,7 @@ impl Experiment {
 pub(crate) struct Highlight {
     pub(crate) scenario: &'static str,
     pub(crate) metric: &'static str,
-    /// What of the experiment it belongs to, where the metric's name does not say.
+    /// The part of the experiment, where the metric's name does not show it.
     pub(crate) of: Option<Text>,
     /// In the metric's own unit.
     pub(crate) real: Option<f64>,

@@ -82,14 +82,14 @@ fn results(places: &mut Places, outcome: &Outcome) {
     parts::timed_within(places, "mode6-variable", panels, Some([3.0, 23.0]));
     let base_cm = CM * outcome.setup.robot.plant.body.base_m;
     let [.., heading_deg] = outcome.pose();
-    let ways = heading_deg
+    let angle = heading_deg
         .iter()
         .map(|(t_s, deg)| (*t_s, base_cm * deg / DEG))
         .collect();
     let panels = vec![
         Panel::new(
             places.say(DIFFERENCE_AXIS),
-            vec![Curve::new("", Ink::First, ways)],
+            vec![Curve::new("", Ink::First, angle)],
         )
         .at_least(-0.2, 0.2),
         Panel::new(
@@ -106,7 +106,7 @@ fn results(places: &mut Places, outcome: &Outcome) {
     let start = outcome.setup.scenario.start;
     let line = vec![(start.x_m, start.y_m), (start.x_m + 3.2, start.y_m)];
     let map = Map {
-        curves: maps::ways(language, outcome, line),
+        curves: maps::paths(language, outcome, line),
         range: Some([[start.x_m - 0.1, start.x_m + 3.4], [-0.3, 0.3]]),
         ..maps::map(language)
     };

@@ -94,7 +94,12 @@ fn goals(places: &mut Places, data: &Data) {
     until(places, outcome, "mode8-goals-speeds", vec![panel]);
     let start = outcome.setup.scenario.start;
     let mut ideal = vec![(start.x_m, start.y_m)];
-    ideal.extend(outcome.reached_s().iter().map(|t_s| outcome.place_at(*t_s)));
+    ideal.extend(
+        outcome
+            .reached_s()
+            .iter()
+            .map(|t_s| outcome.true_position_at(*t_s)),
+    );
     let mut marks = vec![(start.x_m, start.y_m, places.say(START).to_owned())];
     marks.extend(
         ideal
@@ -105,7 +110,7 @@ fn goals(places: &mut Places, data: &Data) {
     );
     let curves = vec![
         Curve::new(places.say(STRAIGHT), Ink::Reference, ideal),
-        Curve::new(places.say(TRUE), Ink::Third, outcome.way()),
+        Curve::new(places.say(TRUE), Ink::Third, outcome.true_path()),
     ];
     let svg = Map {
         curves,
@@ -125,13 +130,13 @@ fn lane_results(places: &mut Places, data: &Data) {
     let language = places.language;
     let panel = panels::references_panel(language, outcome);
     until(places, outcome, "mode8-lane-speeds", vec![panel]);
-    let svg = way_map(places, outcome, Points::new()).svg(language);
+    let svg = path_map(places, outcome, Points::new()).svg(language);
     places.figure("mode8-lane-way", Some(svg));
     let panels = panels::range_panels(language, outcome);
     until(places, outcome, "mode8-lane-ranges", panels);
     let panels = pose_panels(language, outcome, false);
     until(places, outcome, "mode8-lane-pose", panels);
-    let names: &[Text] = if outcome.tells_in_text() {
+    let names: &[Text] = if outcome.has_text_rows() {
         &machines::ORIGINAL_LANE
     } else {
         &machines::STATES
@@ -147,7 +152,7 @@ fn obstacles(places: &mut Places, data: &Data) {
     let language = places.language;
     let start = outcome.setup.scenario.start;
     let straight = vec![(start.x_m, start.y_m), (start.x_m + 2.5, start.y_m)];
-    let svg = way_map(places, outcome, straight).svg(language);
+    let svg = path_map(places, outcome, straight).svg(language);
     places.figure("mode8-obstacles-way", Some(svg));
     let panels = pose_panels(language, outcome, true);
     until(places, outcome, "mode8-obstacles-pose", panels);
@@ -159,10 +164,10 @@ fn obstacles(places: &mut Places, data: &Data) {
     parts::timed(places, "mode8-obstacles-states", vec![panel]);
 }
 
-/// Ways between boxes, and where the robot began.
-pub(super) fn way_map(places: &Places, outcome: &Outcome, ideal: Points) -> Map {
+/// Paths between boxes, and where the robot started.
+pub(super) fn path_map(places: &Places, outcome: &Outcome, ideal: Points) -> Map {
     let language = places.language;
-    let mut curves = maps::ways(language, outcome, ideal);
+    let mut curves = maps::paths(language, outcome, ideal);
     if curves[0].points.is_empty() {
         curves.remove(0);
     } else {
@@ -171,7 +176,7 @@ pub(super) fn way_map(places: &Places, outcome: &Outcome, ideal: Points) -> Map 
     let start = outcome.setup.scenario.start;
     let arena = &outcome.setup.world.arena;
     Map {
-        // A lane has an end, the robot's way has none.
+        // A lane has an end, the robot's path has none.
         range: Some([
             [arena.from_m[0], arena.to_m[0]],
             [arena.from_m[1], arena.to_m[1]],

@@ -1,4 +1,4 @@
-//! Mode 8 beside a recorded run: ways and poses by the odometry of both.
+//! Mode 8 beside a recorded run: paths and poses by the odometry of both.
 
 use super::beside;
 use super::mode8;
@@ -30,18 +30,18 @@ pub(super) fn fill(places: &mut Places, data: &Data, scenario: &str) {
         .map(|points| -> Points { points.into_iter().filter(|(t_s, _)| *t_s >= 0.0).collect() });
     let theirs = [real(|row| row.x_m), real(|row| row.y_m)];
     if scenario != "mode8-goals" {
-        let way = |x: &Points, y: &Points| -> Points {
+        let path = |x: &Points, y: &Points| -> Points {
             x.iter().zip(y).map(|(x, y)| (x.1, y.1)).collect()
         };
         let curves = beside::both(
             language,
             recording,
-            ours.told_way(),
-            way(&theirs[0], &theirs[1]),
+            ours.estimated_path(),
+            path(&theirs[0], &theirs[1]),
         );
         let map = Map {
             curves,
-            ..mode8::way_map(places, ours, Points::new())
+            ..mode8::path_map(places, ours, Points::new())
         };
         let svg = map.svg(language);
         places.figure(&format!("{scenario}-real-way"), Some(svg));
@@ -98,7 +98,7 @@ fn recorded(recording: &Recording, of: fn(&MissionRow) -> f32) -> Points {
     })
 }
 
-/// Length of a way until a time [m]. A new origin is no way.
+/// Length of a path until a time [m]. A new origin adds no length.
 fn length(x: &Points, y: &Points, until_s: f64) -> f64 {
     let places: Points = x
         .iter()

@@ -20,7 +20,7 @@ pub(super) const STATES: [Text; 13] = [
     word("straight-on"),
 ];
 
-/// The states of the original program in a lane, which it counts anew.
+/// The states of the original program in a lane, which numbers them from 0 again.
 pub(super) const ORIGINAL_LANE: [Text; 5] =
     [STATES[12], STATES[4], STATES[5], STATES[6], STATES[7]];
 

@@ -45,7 +45,7 @@ fn fill(places: &mut Places, data: &Data) {
         };
         let route = maps::route(outcome);
         let map = Map {
-            curves: maps::ways(places.language, outcome, route.clone()),
+            curves: maps::paths(places.language, outcome, route.clone()),
             ..maps::map(places.language)
         };
         let svg = map.svg(places.language);
@@ -65,7 +65,7 @@ fn off_path_cm(outcome: &Outcome, route: &Points) -> Points {
     let [x, ..] = outcome.pose();
     let times = x.iter().map(|(t_s, _)| *t_s).filter(|t_s| *t_s >= 0.0);
     times
-        .zip(outcome.told_way())
+        .zip(outcome.estimated_path())
         .map(|(t_s, place)| (t_s, CM * maps::off_route(route, place)))
         .collect()
 }

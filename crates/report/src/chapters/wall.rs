@@ -127,7 +127,7 @@ fn fill_mode4(places: &mut Places, data: &Data) {
     beside::distance(places, data, "mode4");
 }
 
-/// The distance that mode 3 holds: what both sonars read while the robot still stood.
+/// The distance that mode 3 holds: what both sonars read while the robot was still standing.
 fn held(outcome: &Outcome) -> Points {
     let mean = panels::mean_cm(outcome);
     let standing = between(&mean, -0.5, 0.3);

@@ -1,4 +1,4 @@
-//! A wiring as the robot file has it: the Mega in the middle, modules on both sides, a line for each pin.
+//! A wiring from the robot file: the Mega in the middle, modules on both sides, a line for each pin.
 
 use super::sketch::{Anchor, Sketch};
 use crate::text::{Language, Text, word};

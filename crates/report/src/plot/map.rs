@@ -1,4 +1,4 @@
-//! Maps: ways, walls and boxes in metres, both axes to one scale.
+//! Maps: paths, walls and boxes in metres, both axes to the same scale.
 
 use super::{Curve, Frame, LEFT, Points, RIGHT, WIDTH, legend, wrap};
 use crate::text::{Language, escape, put};
@@ -20,7 +20,7 @@ pub(crate) struct Map {
     pub(crate) curves: Vec<Curve>,
     /// Places with a name.
     pub(crate) marks: Vec<(f64, f64, String)>,
-    /// What must be seen: else all that there is.
+    /// What must be visible; by default everything.
     pub(crate) range: Option<[[f64; 2]; 2]>,
 }
 

@@ -1,7 +1,8 @@
 //! Diagrams as inline SVG: panels over one axis, and maps.
 //!
-//! A library draws colours into its picture. Here they are classes that the page's style sheet colours, so that one picture serves a
-//! light page, a dark one and paper; decimal marks follow the language, and legends stand above the curves, never on them.
+//! A plotting library writes colours into its picture. Here curves have classes that the page's style sheet colours, so
+//! that one picture serves a light page, a dark one and paper; decimal marks follow the language, and legends stand
+//! above the curves, never on them.
 
 mod map;
 #[cfg(test)]
@@ -18,13 +19,13 @@ pub(crate) const WIDTH: f64 = 680.0;
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 14.0;
 const LEGEND_ROW: f64 = 19.0;
-/// What a panel without a value says: nothing was in reach, or the program does not tell it.
+/// Label of a panel without values: nothing was in range, or the program does not report it.
 const NO_VALUE: Text = word("no-value");
 /// Width of a letter of a legend, about [px].
 const LETTER: f64 = 6.7;
 
-/// How a curve looks. The first two differ in lightness as well as in hue, what is asked for is dashed, what is true dash-dotted and one more
-/// dotted: they are told apart in grey too.
+/// How a curve looks. The first two differ in lightness as well as in hue; references are dashed, ground truth is
+/// dash-dotted, one more is dotted: they remain distinguishable in grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ink {
     /// The left wheel or sonar; our robot.
@@ -33,7 +34,7 @@ pub(crate) enum Ink {
     Second,
     /// The front sonar.
     Third,
-    /// What is true, over what the robot tells.
+    /// Ground truth, over what the robot reports.
     True,
     /// One more.
     Fourth,
@@ -90,7 +91,7 @@ pub(crate) struct Panel {
     pub(crate) curves: Vec<Curve>,
     /// What the axis shows at least; more where the curves need it.
     pub(crate) least_range: Option<[f64; 2]>,
-    /// What it shows, whatever the curves do; what lies outside is cut off.
+    /// The fixed range of the axis; curves outside it are clipped.
     pub(crate) range: Option<[f64; 2]>,
     /// Names of the values 0, 1, 2 ... in place of numbers.
     pub(crate) names: Vec<String>,
@@ -150,7 +151,7 @@ impl Panel {
         if low > high {
             return [0.0, 1.0];
         }
-        // A signal that does not move lies in the middle of a range that says so.
+        // A constant signal lies in the middle of a range around it.
         let margin = (0.06 * (high - low)).max(0.01 * high.abs().max(1.0));
         [low - margin, high + margin]
     }
@@ -349,7 +350,7 @@ fn wrap(body: &str, height: f64) -> String {
     format!("<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {height:.0}\">{body}</svg>")
 }
 
-/// The names of the curves in rows above them; each name once. Gives the height taken.
+/// The names of the curves in rows above them; each name once. Returns the height used.
 fn legend(svg: &mut String, curves: &[Curve], left: f64, top: f64) -> f64 {
     let (mut x, mut y) = (left, top);
     let mut said: Vec<&str> = Vec::new();
@@ -382,8 +383,8 @@ fn legend(svg: &mut String, curves: &[Curve], left: f64, top: f64) -> f64 {
     }
 }
 
-/// The curve's path. Of all points that fall on one column of pixels the first, the last, the lowest and the highest are kept: a spike
-/// is seen however many points there are.
+/// The curve's path. Of all points on one column of pixels, the first, last, lowest and highest are kept: a spike
+/// stays visible however many points there are.
 fn path(frame: &Frame, curve: &Curve) -> String {
     let mut text = String::new();
     for part in curve

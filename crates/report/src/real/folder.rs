@@ -7,7 +7,7 @@ use rumbo_wire::csv;
 use rumbo_wire::text::{Row, RowKind};
 use std::path::{Path, PathBuf};
 
-/// Reads all CSVs of a folder, and its logs as `log` has them: what a log comes to, or why it is not shown.
+/// Reads all CSVs of a folder, and its logs through `log`, which returns the run in a log or why it is not shown.
 ///
 /// # Errors
 /// A folder or a file that cannot be read, or a row that is damaged.
@@ -128,7 +128,7 @@ fn period_ms(row: &Row) -> u32 {
     }
 }
 
-/// The experiment that these are a run of.
+/// The experiment to which these rows belong.
 fn scenario(rows: &[(f64, Row)]) -> Option<&'static str> {
     let (_, first) = rows.first()?;
     match first {

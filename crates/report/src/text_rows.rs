@@ -1,10 +1,10 @@
-//! What a program tells in the original's text protocol: rows of telemetry, found in the raw bytes of the link.
+//! Telemetry rows of the original text protocol, parsed from the raw bytes of the link.
 
 use crate::signals::Place;
 use rumbo_sim::Burst;
 use rumbo_wire::text::{MissionRow, Row};
 
-/// The rows in what came from the robot, with the time at which each had arrived [s].
+/// The rows that the robot sent, each with its time of arrival [s].
 pub(crate) fn rows(link: &[Burst]) -> Vec<(f64, Row)> {
     let (mut rows, mut line) = (Vec::new(), Vec::new());
     for burst in link.iter().filter(|burst| !burst.to_robot) {
@@ -22,7 +22,7 @@ pub(crate) fn rows(link: &[Burst]) -> Vec<(f64, Row)> {
     rows
 }
 
-/// A sonar's range [cm]. A robot with one sonar tells it twice.
+/// A sonar's range [cm]. A robot with one sonar sends it twice.
 pub(crate) fn range_cm(row: &Row, sonar: Place) -> Option<f64> {
     let range_cm = match (row, sonar) {
         (Row::Distance(row), Place::Left | Place::Front) => row.left_cm,
@@ -45,7 +45,7 @@ pub(crate) fn speed_rpm(row: &Row, wheel: Place) -> Option<f64> {
     Some(f64::from(wheel.of(wheels)))
 }
 
-/// What a wheel was asked for [rpm].
+/// A wheel's setpoint [rpm].
 pub(crate) fn reference_rpm(row: &Row, wheel: Place) -> Option<f64> {
     let wheels = match row {
         Row::Speed(row) => return Some(f64::from(row.reference_rpm)),
