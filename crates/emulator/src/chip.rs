@@ -6,7 +6,7 @@ use crate::devices::{Devices, Fuses, Input, Level, Output, Unmodelled};
 use crate::image::{EEPROM_BYTES, Image};
 use crate::observe::{self, Observers};
 
-/// An ATmega2560 with a program. A clone is a snapshot: it goes on exactly as the original.
+/// An ATmega2560 with a program. A clone is a snapshot: it continues exactly as the original.
 #[derive(Clone, Debug)]
 pub struct Chip {
     cpu: Cpu,
@@ -14,7 +14,7 @@ pub struct Chip {
     observers: Observers,
 }
 
-/// How closely the end of a boot loader is looked for [cycles].
+/// Resolution of the search for a boot loader's end [cycles].
 const BOOT_SLICE: u64 = 1_000;
 
 impl Chip {
@@ -44,7 +44,7 @@ impl Chip {
         }
     }
 
-    /// Cycles of the crystal since power-on. Inputs and outputs have their time in these; those of the CPU are the same unless the
+    /// Cycles of the crystal since power-on. Inputs and outputs are timed in these; CPU cycles are the same unless the
     /// program divides its clock.
     pub fn cycle(&self) -> u64 {
         self.devices.clock().time(self.cpu.cycle())
@@ -63,8 +63,8 @@ impl Chip {
         }
     }
 
-    /// Runs a boot loader, if the program starts with one, until it has jumped to the application or `cycles` of the crystal have
-    /// passed. A Mega's waits for somebody who programs it, for most of a second.
+    /// Runs a boot loader, if the program starts with one, until it has jumped to the application or `cycles` of the
+    /// crystal have passed. A Mega's boot loader waits most of a second for a programmer.
     pub fn pass_boot_loader(&mut self, cycles: u64) {
         let end = self.cycle().saturating_add(cycles);
         let boot = Fuses::default().boot_start();
@@ -82,12 +82,12 @@ impl Chip {
         observe::step(&mut self.cpu, &mut self.devices, &mut self.observers)
     }
 
-    /// Something from outside at a cycle; what lies in the past happens at once.
+    /// Schedules an input at a cycle; one in the past takes effect at once.
     pub fn input(&mut self, cycle: u64, input: Input) {
         self.devices.input(cycle, input);
     }
 
-    /// From now on a run pauses ([`Stopped::Output`]) after an instruction in which the chip drives one of these pins in another way.
+    /// Makes runs pause ([`Stopped::Output`]) after an instruction that changes how the chip drives one of these pins.
     pub fn watch(&mut self, pins: &[Pin]) {
         self.devices.watch(pins);
     }
@@ -97,7 +97,7 @@ impl Chip {
         self.devices.take_outputs()
     }
 
-    /// From now on every change of a pin's level is kept, whoever drives it, beginning with the levels now.
+    /// Records every change of a pin's level from now on, by the chip or from outside, starting with the present levels.
     pub fn record_levels(&mut self) {
         self.devices.record_levels(self.cycle());
     }
@@ -107,7 +107,7 @@ impl Chip {
         self.devices.take_levels()
     }
 
-    /// What an instruction would read at an address of the data space; nothing happens because of it.
+    /// What an instruction would read at an address of the data space, without side effects.
     pub fn read_data(&self, address: u16) -> u8 {
         self.cpu.peek(&self.devices, address)
     }
@@ -137,7 +137,7 @@ impl Chip {
         &mut self.devices
     }
 
-    /// What looks at the program while it runs.
+    /// The observers of the running program.
     pub fn observers(&self) -> &Observers {
         &self.observers
     }

@@ -73,7 +73,7 @@ pub fn text(program_counter: u32, op: Op) -> String {
             let target = program_counter.wrapping_add(distance) % FLASH_WORDS as u32;
             format!("{} 0x{:x}", branch(op.code == Code::Brbs, a), 2 * target)
         }
-        // The rest is told apart by its name: pointers stand in it, or it takes two registers.
+        // The name distinguishes the rest: either it contains a pointer, or the operation has two registers.
         _ => match name.split_once(' ') {
             Some((load @ ("ld" | "lpm" | "elpm"), pointer)) => format!("{load} r{a}, {pointer}"),
             Some((store, pointer)) => format!("{store} {pointer}, r{a}"),

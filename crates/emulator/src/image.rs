@@ -27,7 +27,7 @@ pub struct Image {
 pub struct Symbol {
     /// Where it starts: of a function [words], of a variable its address in the data space.
     pub address: u32,
-    /// How long it is, in the same unit; 0 if the image does not say.
+    /// Its length, in the same unit; 0 if the image does not contain it.
     pub size: u32,
     /// As it is written in the source: C++ and Rust with their paths.
     pub name: String,
@@ -65,7 +65,7 @@ impl Image {
         &self.flash
     }
 
-    /// What the image wants in the EEPROM, from address 0.
+    /// The image's EEPROM content, from address 0.
     pub fn eeprom(&self) -> &[u8] {
         &self.eeprom
     }

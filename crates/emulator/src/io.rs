@@ -52,12 +52,12 @@ pub trait Io {
     /// `interrupts_enabled`, or the run is to pause.
     fn deadline(&self, interrupts_enabled: bool) -> u64;
 
-    /// Something has happened for which the caller wants the run to pause; asked once, it is forgotten.
+    /// Whether something has happened for which the caller wants the run to pause; clears the flag.
     fn take_notice(&mut self) -> bool {
         false
     }
 
-    /// What they want of the CPU before it goes on; asked once, it is forgotten. Until then [`Io::deadline`] is 0.
+    /// What the peripherals demand of the CPU before it continues; clears the demand. Until then [`Io::deadline`] is 0.
     fn take_demand(&mut self) -> Option<Demand> {
         None
     }
@@ -71,10 +71,10 @@ pub trait Io {
     /// Where the interrupt vectors start [words]: 0, or the boot section.
     fn vector_base(&self) -> u32;
 
-    /// SLEEP; says whether sleeping is enabled.
+    /// SLEEP; returns whether sleeping is enabled.
     fn sleep(&mut self, cycle: u64) -> bool;
 
-    /// The CPU wakes up; gives the cycles until its clock runs.
+    /// The CPU wakes up; returns the cycles until its clock runs.
     fn wake(&mut self, _: u64) -> u64 {
         0
     }

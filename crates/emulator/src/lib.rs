@@ -1,7 +1,7 @@
 //! An ATmega2560, exact to the cycle. It knows the chip only: what is wired to its pins is its caller's business.
 //!
 //! image file -> [`image`] -> flash -> [`decode`] -> [`cpu`], which meets the peripherals ([`devices`]) through
-//! [`io::Io`]. [`chip::Chip`] is all of it, and [`observe`] looks at a program while it
+//! [`io::Io`]. [`chip::Chip`] is all of it, and [`observe`] watches a program while it
 //! runs.
 
 pub mod chip;

@@ -4,7 +4,7 @@ use crate::image::Image;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// How a run of a program ended before its time. Addresses in words; [`crate::image::Image::place`] names them.
+/// Why a program could not continue. Addresses in words; [`crate::image::Image::place`] names them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// The program counter ran into flash that was never written.
@@ -98,8 +98,8 @@ impl Verdict {
         }
     }
 
-    /// The verdict with the names of the functions that it is about, as far as the image knows them.
-    pub fn told(&self, image: &Image) -> String {
+    /// The verdict with the names of the functions involved, as far as the image has them.
+    pub fn describe(&self, image: &Image) -> String {
         self.text(image)
     }
 
@@ -136,7 +136,7 @@ impl Verdict {
     }
 }
 
-/// What the return addresses say: who is on the stack most often, or who called whom.
+/// Summary of the return addresses: the function most often on the stack, or the chain of calls.
 fn calls(returns: &[u32], image: &Image) -> String {
     let names: Vec<&str> = returns
         .iter()

@@ -21,7 +21,7 @@ fn every_register_of_the_chip_is_one_and_nothing_else_is() {
             read(&mut chip, address);
         }
     }
-    let told: Vec<u16> = chip
+    let addresses: Vec<u16> = chip
         .unmodelled()
         .iter()
         .map(|access| access.address)
@@ -29,17 +29,17 @@ fn every_register_of_the_chip_is_one_and_nothing_else_is() {
     let mut expected: Vec<u16> = reserved.into();
     expected.extend(ranges.into_iter().flatten());
     expected.sort_unstable();
-    assert_eq!(told, expected);
+    assert_eq!(addresses, expected);
 }
 
 #[test]
-fn memory_that_is_not_there_is_told() {
+fn memory_that_is_not_there_is_reported() {
     let (mut chip, _) = set_up(&[(0x74, 0x80), (0x2200, 1)]);
     chip.run_until(50);
-    let told: Vec<u16> = chip
+    let addresses: Vec<u16> = chip
         .unmodelled()
         .iter()
         .map(|access| access.address)
         .collect();
-    assert_eq!(told, [0x74, 0x2200]);
+    assert_eq!(addresses, [0x74, 0x2200]);
 }

@@ -233,7 +233,7 @@ fn avr_gdb_itself_breaks_steps_and_reads() {
         return;
     };
     thread.join().unwrap();
-    // What the monitor says goes to the other stream.
+    // The monitor's output goes to the other stream.
     let text =
         String::from_utf8(output.stdout).unwrap() + &String::from_utf8(output.stderr).unwrap();
     for expected in [

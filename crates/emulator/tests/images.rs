@@ -82,7 +82,7 @@ fn a_program_for_another_machine_is_told_apart() {
         ..Elf::of(&[(0, &[1])])
     };
     assert_eq!(elf.error(), ImageError::Processor(62));
-    // The flags of an Uno's program; the top bit says that the linker may relax.
+    // The flags of an Uno's program; the top bit allows the linker to relax.
     let elf = Elf {
         flags: 0x85,
         ..Elf::of(&[(0, &[1])])
@@ -180,7 +180,7 @@ proptest! {
         }
         let mut again = chip.clone();
         let stopped = chip.run_until(20_000);
-        // Both go the same way, whatever it is, in one go or in pieces.
+        // Both run alike, whatever the program, in one run or in pieces.
         let mut end = Stopped::Reached;
         for cycle in (0..=20_000).step_by(1000) {
             end = again.run_until(cycle);

@@ -1,4 +1,4 @@
-//! Whatever is written to registers and comes in from outside: the chip goes on, and in the same way however its run is divided.
+//! Any register writes, any inputs: the chip keeps running, and alike however its run is divided.
 #![cfg(test)]
 
 mod common;

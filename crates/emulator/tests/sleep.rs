@@ -80,7 +80,7 @@ fn timers_stand_still_where_their_clock_does() {
             expected,
             "mode {mode}"
         );
-        // Awake, it goes on from there: entry, jump, SBI, RETI, RJMP and SLEEP again.
+        // Awake, it continues from there: entry, jump, SBI, RETI, RJMP and SLEEP again.
         chip.input(10_000, Input::Pin(pin('D', 0), Some(true)));
         chip.run_until(40_000);
         let awake = 5 + 5 + 3 + 2 + 5 + 2 + 1;
@@ -241,7 +241,7 @@ fn a_divided_clock_slows_the_chip_and_not_what_is_around_it() {
     let started = 5 + 8 * 21;
     assert!(reset.unwrap().cycle.abs_diff(started + 256_000) <= 8);
     chip.run_until(1_400_000);
-    assert_eq!(read(&mut chip, 0x61), 0x03, "set anew by the program");
+    assert_eq!(read(&mut chip, 0x61), 0x03, "set again by the program");
 }
 
 #[test]

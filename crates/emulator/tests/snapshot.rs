@@ -1,4 +1,4 @@
-//! A run is the same every time, and so is what goes on from a snapshot: all state, all outputs.
+//! A run is the same every time, and so is its continuation from a snapshot: all state, all outputs.
 #![cfg(test)]
 
 mod common;
@@ -83,7 +83,7 @@ proptest! {
         for cycle in cycles {
             first.run_until(cycle);
             other.run_until(cycle);
-            // The copy goes on; what it came from runs elsewhere, and must not matter.
+            // The copy continues; the original runs elsewhere, and must not matter.
             let mut copy = other.clone();
             other.run_until(cycle + 777);
             outputs.extend(copy.take_outputs());
@@ -98,7 +98,7 @@ proptest! {
         prop_assert!(whole.len() > 200, "{}", whole.len());
         prop_assert_eq!(&whole, &outputs);
         prop_assert_eq!(hash, other_hash);
-        // In one go the same happens, whatever the peripherals have left for later.
+        // A single run gives the same, whatever the peripherals have deferred.
         prop_assert_eq!(straight.cpu().registers(), first.cpu().registers());
         prop_assert_eq!(straight.cpu().sram(), first.cpu().sram());
         prop_assert_eq!(whole, straight.take_outputs());

@@ -182,7 +182,7 @@ fn an_unwatched_timer_that_is_skipped_over_stands_where_a_watched_one_does() {
     }
 }
 
-/// What was told of a pin's modulation.
+/// The changes reported of a pin's PWM.
 fn duties(chip: &mut Chip, wanted: Pin) -> Vec<(u64, Option<Pwm>)> {
     let outputs = chip.take_outputs().into_iter();
     outputs
@@ -202,13 +202,16 @@ fn pwm(share: f64, period_cycles: u64) -> Option<Pwm> {
 }
 
 #[test]
-fn a_duty_is_told_when_it_comes_into_force_and_when_the_timer_lets_go() {
+fn a_duty_is_reported_when_it_takes_effect_and_when_the_timer_releases_the_pin() {
     // Timer 3, mode 1, over 64, OC3A on PE3: 100 of 255.
     let (mut chip, start) = set_up(&[(0x2D, 0x08), (0x98, 100), (0x90, 0x81), (0x91, 0x03)]);
     chip.run_until(100_000);
     let e3 = pin('E', 3);
-    let told = duties(&mut chip, e3);
-    assert_eq!(told.last().unwrap(), &(start, pwm(100.0 / 255.0, 32_640)));
+    let reported = duties(&mut chip, e3);
+    assert_eq!(
+        reported.last().unwrap(),
+        &(start, pwm(100.0 / 255.0, 32_640))
+    );
     // A new value waits for the top, tick 255, 765 and so on of the prescaler that began in cycle 0.
     write(&mut chip, 0x98, 200);
     chip.run_until(150_000);
@@ -223,10 +226,10 @@ fn a_duty_is_told_when_it_comes_into_force_and_when_the_timer_lets_go() {
     write(&mut chip, 0x90, 0x01);
     write(&mut chip, 0x90, 0x81);
     write(&mut chip, 0x91, 0);
-    let told: Vec<_> = duties(&mut chip, e3)
+    let reported: Vec<_> = duties(&mut chip, e3)
         .into_iter()
-        .map(|told| told.1)
+        .map(|duty| duty.1)
         .collect();
-    assert_eq!(told[..4], [None, new, None, new]);
-    assert_eq!(told[4].unwrap().period_cycles, None);
+    assert_eq!(reported[..4], [None, new, None, new]);
+    assert_eq!(reported[4].unwrap().period_cycles, None);
 }

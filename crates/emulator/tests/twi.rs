@@ -17,7 +17,7 @@ const TWEA: u8 = 0x40;
 const TWSTA: u8 = 0x20;
 const TWSTO: u8 = 0x10;
 const TWEN: u8 = 0x04;
-/// Half a bit at 100 kHz, as the Arduino library has it.
+/// Half a bit at 100 kHz, as the Arduino library sets it.
 const HALF: u64 = 80;
 
 fn scl() -> Pin {
@@ -42,7 +42,7 @@ fn on_bus(chip: &mut Chip, command: u8) -> (u64, u8) {
 
 #[test]
 fn nobody_answers_on_the_bus() {
-    // 100 kHz as the Arduino library has it: 160 cycles a bit.
+    // 100 kHz as the Arduino library sets it: 160 cycles a bit.
     let (mut chip, _) = set_up(&[(TWBR, 72), (TWCR, TWEN)]);
     chip.run_until(100);
     assert_eq!(read(&mut chip, TWSR), 0xF8);
@@ -63,7 +63,7 @@ fn nobody_answers_on_the_bus() {
     assert_eq!(chip.devices().drive(pin('D', 1)), Drive::Floating);
 }
 
-/// When a line is pulled down or let go, in half bits after `start`.
+/// When a line is pulled down or released, in half bits after `start`.
 fn halves(chip: &Chip, line: Pin, start: u64) -> Vec<(u64, bool)> {
     let outputs = chip.clone().take_outputs().into_iter();
     outputs
@@ -105,7 +105,7 @@ fn start_address_and_stop_are_on_the_lines() {
     chip.run_until(start + 18 * HALF + 10);
     let clocks: Vec<_> = (1..=18).map(|half| (half, half % 2 != 0)).collect();
     assert_eq!(halves(&chip, scl(), start), clocks);
-    // 0100 0010, let go for the acknowledgement.
+    // 0100 0010, released for the acknowledgement.
     let bits = [(2, true), (4, false), (12, true), (14, false), (16, true)];
     assert_eq!(halves(&chip, sda(), start), bits);
     assert_eq!(read(&mut chip, TWSR), 0x20);
@@ -204,7 +204,7 @@ fn somebody_who_acknowledges_can_be_written_to_and_read() {
     assert_eq!(on_bus(&mut chip, 0), (18 * HALF, 0x40));
     chip.run_until(start + 19 * HALF);
     for (command, status, acknowledged) in [(TWEA, 0x50, true), (0, 0x58, false)] {
-        // 0xA7, with the last bit let go.
+        // 0xA7, with the last bit released.
         let start = chip.cycle();
         let bits = [
             (0, None),
@@ -217,7 +217,7 @@ fn somebody_who_acknowledges_can_be_written_to_and_read() {
         chip.take_outputs();
         assert_eq!(on_bus(&mut chip, command), (18 * HALF, status));
         assert_eq!(read(&mut chip, TWDR), 0xA7);
-        // The acknowledgement, which is let go with the next byte.
+        // The acknowledgement, which is released with the next byte.
         let expected = if acknowledged { (16, false) } else { (0, true) };
         assert_eq!(halves(&chip, sda(), start), [expected]);
     }
@@ -230,7 +230,7 @@ fn whoever_sends_a_zero_against_a_one_has_the_bus() {
     let start = chip.cycle();
     write(&mut chip, TWDR, 0x42);
     answer(&mut chip, start, &[(2, Some(false))]);
-    // The second bit is a one: it is lost where SCL is let go.
+    // The second bit is a one: it is lost where SCL is released.
     assert_eq!(on_bus(&mut chip, 0), (3 * HALF, 0x38));
     assert_eq!(chip.devices().drive(sda()), Drive::Floating);
     assert_eq!(chip.devices().drive(scl()), Drive::Floating);

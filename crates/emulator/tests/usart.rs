@@ -218,7 +218,7 @@ fn two_bytes_and_the_shift_register_hold_before_anything_is_lost() {
         assert_eq!(read(&mut chip, UCSR0A) & (RXC | DOR), RXC);
         assert_eq!(read(&mut chip, UDR0), byte);
     }
-    // The start bit of the fourth destroys the third; whoever reads on is told before the next.
+    // The start bit of the fourth overwrites the third; the overrun is flagged before the next byte.
     (1..=4).for_each(|byte| serial(&mut chip, 60_000, byte));
     chip.run_until(140_000);
     for (byte, flags) in [(1, RXC), (2, RXC), (4, RXC | DOR)] {
@@ -376,7 +376,7 @@ fn an_empty_buffer_asks_for_the_next_byte_until_it_has_one() {
 
 #[test]
 fn transmitter_and_receiver_take_their_pins_over() {
-    // PE0 and PE1 are outputs, low; then both are enabled, then the transmitter is let go in the middle of a byte.
+    // PE0 and PE1 are outputs, low; then both are enabled, then the transmitter is disabled in the middle of a byte.
     let (mut chip, _) = set_up(&[(0x2D, 0x03), (UCSR0A, U2X), (UBRR0L, 207)]);
     chip.run_until(100);
     let [receive, transmit] = [pin('E', 0), pin('E', 1)];

@@ -11,7 +11,7 @@ use rumbo_emulator::devices::{Event, Pwm};
 /// What a pin does in the long run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Wave {
-    /// The timer does not have it.
+    /// Not a mode of this timer.
     Port,
     Constant(bool),
     /// Ticks of a period, and of them high.
@@ -63,15 +63,15 @@ fn expected(kind: Kind, top: Top, channel: usize, com: u8, toggles: bool) -> Wav
     }
 }
 
-/// What `pin` did after `from`, and the last PWM that was told of it.
+/// What `pin` did after `from`, and the last PWM reported of it.
 fn observed(chip: &mut Chip, pin: Pin, from: u64) -> (Wave, Option<Pwm>) {
-    let (mut edges, mut told) = (Vec::new(), None);
+    let (mut edges, mut reported) = (Vec::new(), None);
     for output in chip.take_outputs() {
         match output.event {
             Event::Pin(at, drive) if at == pin && output.cycle >= from => {
                 edges.push((output.cycle, drive == Drive::High));
             }
-            Event::Duty { pin: at, pwm } if at == pin => told = pwm,
+            Event::Duty { pin: at, pwm } if at == pin => reported = pwm,
             _ => {}
         }
     }
@@ -95,7 +95,7 @@ fn observed(chip: &mut Chip, pin: Pin, from: u64) -> (Wave, Option<Pwm>) {
             Wave::Pulses(period, fall - rises[0])
         }
     };
-    (wave, told)
+    (wave, reported)
 }
 
 /// One channel: registers written in order, then at least eight periods.
@@ -117,7 +117,7 @@ fn check(name: &str, writes: &[(u16, u8)], pin: Pin, wave: Wave, is_pwm: bool) {
         (10_000, 40_000)
     };
     chip.run_until(start + end);
-    let (seen, told) = observed(&mut chip, pin, start + settled);
+    let (seen, reported) = observed(&mut chip, pin, start + settled);
     let meant = if wave == Wave::Port {
         Wave::Constant(false)
     } else {
@@ -130,16 +130,16 @@ fn check(name: &str, writes: &[(u16, u8)], pin: Pin, wave: Wave, is_pwm: bool) {
         Wave::Constant(high) => Some(f64::from(u8::from(high))),
         Wave::Pulses(period, high) => Some(high as f64 / period as f64),
     };
-    let told_share = told.map(|pwm| pwm.share);
+    let reported_share = reported.map(|pwm| pwm.share);
     assert!(
-        share.is_none() == told_share.is_none()
-            && (share.unwrap_or_default() - told_share.unwrap_or_default()).abs() < 1e-12,
-        "{name}: {told:?}, not {share:?}"
+        share.is_none() == reported_share.is_none()
+            && (share.unwrap_or_default() - reported_share.unwrap_or_default()).abs() < 1e-12,
+        "{name}: {reported:?}, not {share:?}"
     );
     if let Wave::Pulses(period, _) = wave
-        && let Some(told) = told
+        && let Some(reported) = reported
     {
-        assert_eq!(told.period_cycles, Some(period), "{name}");
+        assert_eq!(reported.period_cycles, Some(period), "{name}");
     }
 }
 

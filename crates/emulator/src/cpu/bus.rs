@@ -50,7 +50,7 @@ impl Cpu {
         }
     }
 
-    /// What an instruction would read now, without its effects on the peripherals.
+    /// What an instruction would read now, without side effects on the peripherals.
     pub(crate) fn peek<I: Io + Clone>(&self, io: &I, address: u16) -> u8 {
         let index = usize::from(address.wrapping_sub(SRAM_START));
         match self.sram.get(index) {
@@ -59,7 +59,7 @@ impl Cpu {
         }
     }
 
-    /// Writes as an instruction does now.
+    /// Writes as an instruction would now.
     pub(crate) fn poke<I: Io>(&mut self, io: &mut I, address: u16, value: u8) {
         self.store(io, address, value, self.now());
     }
@@ -71,7 +71,7 @@ impl Cpu {
         }
     }
 
-    /// Stores a byte; says whether the limit must be set anew.
+    /// Stores a byte; returns whether the limit must be recomputed.
     #[inline(always)]
     pub(super) fn store<I: Io>(&mut self, io: &mut I, address: u16, value: u8, at: Access) -> bool {
         let index = usize::from(address.wrapping_sub(SRAM_START));
@@ -111,9 +111,9 @@ impl Cpu {
         }
     }
 
-    /// The program sets the stack pointer. A frame is not larger than [`LARGEST_FRAME`]: beyond that it is another stack, such
-    /// as a scheduler's tasks have among the data, and nobody knows where it must end. The two halves of a pointer are one move: what
-    /// it is in between does not count.
+    /// The program sets the stack pointer. A frame is at most [`LARGEST_FRAME`]: a larger move is a switch to another
+    /// stack, such as a scheduler's task stacks among the data, whose end is unknown. Writing both halves of the pointer
+    /// is one move: the value in between does not count.
     fn move_stack(&mut self, to: u16, cycle: u64) {
         let start = match self.stack_move {
             Some(start) if cycle <= start.cycle + HALVES_CYCLES => start,
@@ -155,7 +155,7 @@ impl Cpu {
         self.push(io, high, cycle);
     }
 
-    /// What LPM reads: fuses and signature too, once the program has asked for something like it.
+    /// What LPM reads: fuses and signature too, if SPMCSR selects them.
     #[inline(always)]
     pub(super) fn load_program<I: Io>(&mut self, io: &mut I, address: u32, at: Access) -> u8 {
         if self.programming

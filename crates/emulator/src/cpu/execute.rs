@@ -11,11 +11,11 @@ const Y: usize = 28;
 const Z: usize = 30;
 
 impl Cpu {
-    /// Runs instructions while the cycle is below `limit`, at least one; says whether a breakpoint stopped it.
+    /// Runs instructions while the cycle is below `limit`, at least one; returns whether a breakpoint stopped it.
     pub(super) fn step_until<I: Io>(&mut self, io: &mut I, mut limit: u64, until: u64) -> bool {
         let mut pc = self.program_counter;
         let mut cycle = self.cycle;
-        // In registers of the machine as long as possible: back to its place for whoever else looks at it.
+        // Kept in host registers as long as possible; written back before anything else reads it.
         let mut status = self.status;
         loop {
             let op = self.operations[pc as usize % FLASH_WORDS];
@@ -41,7 +41,7 @@ impl Cpu {
                     }
                 };
             }
-            /// Back to where others look for it.
+            /// Writes it back for other readers.
             macro_rules! save {
                 () => {
                     self.status = status
@@ -136,7 +136,7 @@ impl Cpu {
                     pc = $target.wrapping_sub(1)
                 };
             }
-            /// A target that only the running program knows.
+            /// A target computed at run time.
             macro_rules! look_ahead {
                 ($target:expr) => {
                     if self.is_astray($target) {

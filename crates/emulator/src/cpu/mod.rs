@@ -2,10 +2,10 @@
 //!
 //! # Theory of operation
 //!
-//! The loop runs until `limit`, the cycle of whatever comes first: the caller's end, an event of the peripherals, or
-//! nothing at all when an interrupt may be due. Only there does it look up from the program: it lets the peripherals
-//! catch up, enters an interrupt, or sleeps. An access to a peripheral may change when the next event is, so it sets
-//! the limit anew. Cost thus grows with what happens, not with what exists.
+//! The loop runs until `limit`, the cycle of whichever comes first: the caller's end or an event of the peripherals; it
+//! is 0 when an interrupt may be due. Only there does the loop leave the program: it lets the peripherals catch up,
+//! enters an interrupt, or sleeps. An access to a peripheral may move the next event, so it recomputes the limit. Cost
+//! thus grows with what happens, not with what exists.
 //!
 //! Instruction timing: 2549Q (ATmega640/1280/1281/2560/2561), section 34; interrupts take 5 cycles to enter, 5 more
 //! out of sleep, and the instruction after SEI or RETI always runs first (sections 7.7 and 7.8).
@@ -39,11 +39,11 @@ const WAKE_CYCLES: u64 = 5;
 pub enum Stopped {
     /// The cycle was reached.
     Reached,
-    /// A breakpoint stands at the program counter; nothing of the instruction has been done.
+    /// A breakpoint is set at the program counter; the instruction has not been executed.
     Breakpoint,
     /// The chip does something else to a pin that is watched ([`crate::chip::Chip::watch`]).
     Output,
-    /// An instruction touched what is watched, and is done.
+    /// An instruction accessed a watched address, and has completed.
     Watched {
         /// The first address of those that it touched.
         address: u16,

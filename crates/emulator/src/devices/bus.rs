@@ -28,7 +28,7 @@ impl Devices {
         }
         if change.is_some() && ports::is_direction(address) {
             for timer in &mut self.timers {
-                timer.tell_duty(&mut self.core, cycle);
+                timer.publish_duty(&mut self.core, cycle);
             }
             for usart in &mut self.usarts {
                 usart.direction_changed(&mut self.core, cycle);

@@ -1,9 +1,9 @@
 //! The system clock: the crystal's over a divisor that CLKPR sets (2549Q, section 10.12).
 //!
-//! CPU and peripherals count cycles of the system clock. What has a clock of its own, and everything outside, counts the crystal's, here
-//! called time. Without a divisor, as on every Mega that is not told otherwise, both are the same.
+//! CPU and peripherals count cycles of the system clock. Everything with a separate clock, and everything outside,
+//! counts cycles of the crystal, here called time. Without a divisor, the default on a Mega, both are the same.
 
-/// How cycles and time belong together.
+/// Conversion between cycles and time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
     /// A cycle, and the time when it began.

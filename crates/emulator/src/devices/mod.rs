@@ -50,10 +50,10 @@ pub const CLOCK_HZ: u64 = 16_000_000;
 
 /// The supply [V].
 const SUPPLY_V: f64 = 5.0;
-/// From a reset to the first instruction: 14 cycles and 65 ms, as the fuses of the Mega have it (2549Q, table 10-4).
+/// From a reset to the first instruction: 14 cycles and 65 ms, as set by the Mega's fuses (2549Q, table 10-4).
 const RESET_CYCLES: u64 = 14 + 65 * CLOCK_HZ / 1000;
 
-/// An access to a register that is not modelled; each address is told once.
+/// An access to a register that is not modelled; each address is reported once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unmodelled {
     /// Its address in the data space.
@@ -117,7 +117,7 @@ impl Default for Devices {
 }
 
 impl Devices {
-    /// Something from outside at `cycle` of the crystal, in any order; what lies in the past happens at once.
+    /// Schedules an input at `cycle` of the crystal, in any order; one in the past takes effect at once.
     pub fn input(&mut self, cycle: u64, input: Input) {
         let at = self.inputs.partition_point(|(other, _)| *other <= cycle);
         self.inputs.insert(at, (cycle, input));
@@ -129,7 +129,7 @@ impl Devices {
         std::mem::take(&mut self.core.outputs)
     }
 
-    /// From now on every level of a pin that changes is kept, beginning with those that all pins have in this cycle.
+    /// Records every change of a pin's level from now on, starting with the levels of all pins in this cycle.
     pub(crate) fn record_levels(&mut self, cycle: u64) {
         let now = |pin| Level {
             cycle,
@@ -149,7 +149,7 @@ impl Devices {
             .unwrap_or_default()
     }
 
-    /// From now on a run pauses after an instruction in which the chip drives one of these pins in another way.
+    /// Makes runs pause after an instruction that changes how the chip drives one of these pins.
     pub fn watch(&mut self, pins: &[Pin]) {
         let bits = pins.iter().map(|pin| 1 << pin.number());
         self.core.watched = bits.fold(0, |all, bit: u128| all | bit);
@@ -170,7 +170,7 @@ impl Devices {
         self.core.ports.drive(pin)
     }
 
-    /// Programs the fuses; `boot` if there is a program in the boot section. Gives where a reset leads [words].
+    /// Programs the fuses; `boot` if there is a program in the boot section. Returns the reset address [words].
     pub(crate) fn set_fuses(&mut self, fuses: Fuses, boot: bool) -> u32 {
         self.programming.fuses = fuses;
         self.power = Power::after_reset(fuses.divides_clock());
@@ -209,7 +209,7 @@ impl Devices {
         match source {
             Source::Input => {
                 if let Some((_, input)) = self.inputs.pop_front() {
-                    self.take(input, cycle);
+                    self.apply(input, cycle);
                 }
                 self.schedule_input();
             }
@@ -229,14 +229,14 @@ impl Devices {
         self.settle();
     }
 
-    /// An input's time has come.
-    fn take(&mut self, input: Input, cycle: u64) {
+    /// Applies an input that is due.
+    fn apply(&mut self, input: Input, cycle: u64) {
         let core = &mut self.core;
         match input {
             Input::Pin(pin, level) => {
                 let change = core.ports.set_outside(pin, level, cycle);
                 core.note(Some(change), cycle);
-                // A line that is let go may be low as a pin, and is high as one of the bus.
+                // A released line may read low as a pin, but is high as a line of the bus.
                 self.twi.pin_changed(core, pin, cycle);
                 if let Some(channel) = analog::channel(pin) {
                     let volts = level.map(|level| if level { SUPPLY_V } else { 0.0 });
@@ -270,7 +270,7 @@ impl Devices {
         }
     }
 
-    /// Everything starts over but memories and what is outside; the CPU follows when the oscillator has settled.
+    /// Resets everything but the memories and what is outside; the CPU follows when the oscillator has settled.
     fn reset(&mut self, cause: Cause, cycle: u64) {
         let divides = self.programming.fuses.divides_clock();
         self.power = Power::after_reset(divides);
@@ -305,11 +305,11 @@ impl Devices {
             cycle: start,
         });
         self.settle();
-        self.core.say(cycle, Event::Reset(cause));
+        self.core.emit(cycle, Event::Reset(cause));
         self.set_divisor(start);
     }
 
-    /// The system clock divides the crystal's as CLKPR has it, from a cycle on.
+    /// The system clock divides the crystal's by CLKPR from a cycle on.
     fn set_divisor(&mut self, cycle: u64) {
         let divisor = self.power.divisor();
         if divisor == self.core.clock.divisor() {
@@ -318,7 +318,7 @@ impl Devices {
         let core = &mut self.core;
         core.clock.set_divisor(divisor, cycle);
         core.rescaled = true;
-        // Whoever counts the crystal's cycles is due in another one of ours.
+        // Events timed in cycles of the crystal now fall in another CPU cycle.
         self.watchdog.reschedule(core, cycle);
         self.eeprom.reschedule(core);
         self.programming.reschedule(core);
@@ -326,22 +326,22 @@ impl Devices {
             usart.reschedule(core);
         }
         for timer in &mut self.timers {
-            timer.tell_duty(core, cycle);
+            timer.publish_duty(core, cycle);
         }
         self.schedule_input();
     }
 
-    /// How cycles and time belong together now.
+    /// The present conversion between cycles and time.
     pub(crate) fn clock(&self) -> Clock {
         self.core.clock
     }
 
-    /// The clock's divisor has changed; asked once, it is forgotten.
+    /// Whether the clock's divisor has changed since the last call.
     pub(crate) fn take_rescaled(&mut self) -> bool {
         std::mem::take(&mut self.core.rescaled)
     }
 
-    /// Gives a clock to whom it is due, and takes it from the others.
+    /// Starts and stops the clocks of the peripherals as sleep and power reduction require.
     fn set_clocks(&mut self, cycle: u64) {
         if !self.power.io_runs() {
             self.stopped_at.get_or_insert(cycle);
@@ -365,14 +365,14 @@ impl Devices {
         self.analog.set_running(&mut self.core, runs, cycle);
     }
 
-    /// Lets those who listen to pins hear what changed, until nothing changes any more.
+    /// Propagates pin changes to the peripherals that watch pins, until nothing changes any more.
     fn settle(&mut self) {
         while let Some((change, cycle)) = self.core.changes.pop_front() {
             for bit in 0..8 {
                 if change.driven >> bit & 1 != 0 {
                     let pin = Pin::at(change.port, bit);
                     let event = Event::Pin(pin, self.core.ports.drive(pin));
-                    self.core.say(cycle, event);
+                    self.core.emit(cycle, event);
                 }
             }
             if change.driven != 0 {
@@ -391,7 +391,7 @@ impl Devices {
                 {
                     self.core.triggered = Some(cycle);
                 }
-                self.tell_pins(&change, cycle);
+                self.notify_pins(&change, cycle);
             }
         }
         if let Some((output, cycle)) = self.core.captured.take() {
@@ -402,7 +402,7 @@ impl Devices {
         }
     }
 
-    fn tell_pins(&mut self, change: &Change, cycle: u64) {
+    fn notify_pins(&mut self, change: &Change, cycle: u64) {
         for bit in 0..8 {
             if change.levels >> bit & 1 != 0 {
                 let pin = Pin::at(change.port, bit);

@@ -129,7 +129,7 @@ impl Port {
 pub(crate) enum Force {
     /// Not at all.
     None,
-    /// It is an input, with the pull-up as the port's registers have it.
+    /// An input, with the pull-up that the port's registers select.
     Input,
     /// It is an output with this level.
     Output(bool),

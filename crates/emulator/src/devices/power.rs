@@ -1,6 +1,6 @@
 //! Which peripherals have a clock: sleep modes and power reduction; the oscillator's registers (2549Q, sections 10 and 11).
 //!
-//! Where a clock stops, its peripheral stands as it is and goes on when the clock is back.
+//! When a clock stops, its peripheral freezes and resumes when the clock is back.
 
 use super::system::Sleep;
 
@@ -12,7 +12,7 @@ const OSCCAL: u16 = 0x66;
 /// Permits to change the system clock's prescaler, in CLKPR, for some cycles.
 const CLKPCE: u8 = 0x80;
 const OPEN_CYCLES: u64 = 4;
-/// A calibration as the factory might have it.
+/// A plausible factory calibration.
 const CALIBRATION: u8 = 0x8D;
 
 /// Cycles of a crystal until it is trusted to have started, and until a running one is passed on (tables 10-4 and 11-2).

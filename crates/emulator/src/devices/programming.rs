@@ -1,7 +1,7 @@
 //! Self-programming: SPM, the page buffer, fuses and signature as a program reads them (2549Q, section 29).
 //!
-//! SPM works from the boot section only, within four cycles after SPMCSR said what for. While a page outside of the last 8 KB is
-//! erased or written the program goes on, but cannot use that part of flash; for the others the CPU stands.
+//! SPM works from the boot section only, within four cycles after SPMCSR selected the operation. While a page outside the last
+//! 8 KB is erased or written the program runs on, but cannot use that part of flash; for the last 8 KB the CPU stalls.
 
 use super::Core;
 use super::interrupts::vector;
@@ -77,7 +77,7 @@ impl Fuses {
 pub(super) struct Programming {
     pub(super) fuses: Fuses,
     control: u8,
-    /// Until when SPM and LPM are what SPMCSR said.
+    /// Until when SPMCSR's selection holds for SPM and LPM.
     open_until: u64,
     /// A page is being erased or written, and it is done at this time.
     busy: Option<u64>,

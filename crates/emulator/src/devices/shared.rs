@@ -26,7 +26,7 @@ pub(crate) struct Core {
     /// Pins whose outputs pause the run, by their number.
     pub(super) watched: u128,
     pub(super) noticed: bool,
-    /// Levels since they were last asked for, if somebody wants to know.
+    /// Levels since the last call, while they are recorded.
     pub(super) levels: Option<Vec<Level>>,
     /// The system clock has another divisor.
     pub(super) rescaled: bool,
@@ -40,8 +40,8 @@ pub(crate) struct Core {
 }
 
 impl Core {
-    /// Says what the chip does, at its cycle.
-    pub(crate) fn say(&mut self, cycle: u64, event: Event) {
+    /// Emits an event of the chip at its cycle.
+    pub(crate) fn emit(&mut self, cycle: u64, event: Event) {
         if let Event::Pin(pin, _) | Event::Duty { pin, .. } = event {
             self.noticed |= self.watched >> pin.number() & 1 != 0;
         }
@@ -58,7 +58,7 @@ impl Core {
         }
     }
 
-    /// The CPU is not to go on by itself: someone wants something of it.
+    /// Makes the CPU's loop return: a peripheral needs its attention.
     #[inline(always)]
     pub(super) fn is_wanted(&self) -> bool {
         self.noticed || self.rescaled || self.demand.is_some()
@@ -94,7 +94,7 @@ impl Core {
         self.note(change, cycle);
     }
 
-    /// Notes what changed on a port; whoever listens to pins hears of it before the access ends.
+    /// Records a change of a port; peripherals that watch pins are notified before the access ends.
     pub(crate) fn note(&mut self, change: Option<Change>, cycle: u64) {
         self.changes.extend(change.map(|change| (change, cycle)));
     }

@@ -1,11 +1,11 @@
-//! What crosses the border of the chip: inputs with the cycle at which they happen, events with theirs.
+//! What crosses the boundary of the chip: inputs and events, each with its cycle.
 
 use super::ports::{Drive, Pin};
 
 /// Something from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Input {
-    /// A pin is driven to a level, or let go (`None`).
+    /// A pin is driven to a level, or released (`None`).
     Pin(Pin, Option<bool>),
     /// A byte arrives at a USART's RXD pin as a frame of 8 data bits, no parity and one stop bit, whose start bit begins at
     /// this cycle, or when the frame before it is over. The line idles high. What the chip makes of it depends on the USART's own
@@ -53,7 +53,7 @@ pub struct Output {
 /// What the chip did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
-    /// It drives a pin in another way. Edges of PWM and of serial lines are among these.
+    /// It drives a pin differently. Includes the edges of PWM and of serial lines.
     Pin(Pin, Drive),
     /// A USART has sent a frame: the end of its last stop bit.
     Byte {
@@ -97,7 +97,7 @@ pub enum Cause {
     Watchdog,
 }
 
-/// A level that a pin has from a cycle on, whoever drives it.
+/// The level of a pin from a cycle on, driven by the chip or from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Level {
     /// When.

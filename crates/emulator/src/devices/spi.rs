@@ -1,6 +1,6 @@
 //! The serial peripheral interface (2549Q, section 21): master and slave, with the edges on its pins.
 //!
-//! A transfer is sixteen steps of half a clock period, at each of which SCK has an edge. CPHA says which of the two in a bit takes
+//! A transfer is sixteen steps of half a clock period, at each of which SCK has an edge. CPHA selects which of the two in a bit takes
 //! the level of the data line, and which puts out the next bit; without CPHA the first bit is out before the first edge. As a
 //! master the steps are the interface's own, as a slave those of the pin.
 
@@ -168,7 +168,7 @@ impl Spi {
         self.steps.is_multiple_of(2) == self.is_set(CPOL)
     }
 
-    /// Takes its pins over as table 21-1 has it: the directions of inputs always, those of outputs are the program's.
+    /// Overrides its pins per table 21-1: directions of inputs always; those of outputs are the program's.
     fn drive_pins(&self, core: &mut Core, cycle: u64) {
         let input = |is_input: bool| if is_input { Force::Input } else { Force::None };
         let (master, slave) = (self.role() == Role::Master, self.role() == Role::Slave);
@@ -205,7 +205,7 @@ impl Spi {
         }
     }
 
-    /// A master that is selected by somebody else becomes a slave (section 21.3.2); a slave that is no more drops what it has of a byte.
+    /// A master selected by another master becomes a slave (section 21.3.2); a deselected slave drops a partial byte.
     fn look_at_select(&mut self, core: &mut Core, cycle: u64) {
         let ports = &core.ports;
         let low = ports.is_driven_outside(SELECT) && !ports.level(SELECT);

@@ -53,13 +53,13 @@ pub(super) enum Sleep {
     PowerDown,
     /// The same, but for timer 2 if it has a clock of its own.
     PowerSave,
-    /// As power-down, but the crystal goes on.
+    /// As power-down, but the crystal keeps running.
     Standby,
-    /// As power-save, but the crystal goes on.
+    /// As power-save, but the crystal keeps running.
     ExtendedStandby,
 }
 
-/// The flag of MCUSR that tells of a reset.
+/// The flag of MCUSR that records a reset.
 const fn flag(cause: Cause) -> u8 {
     match cause {
         Cause::PowerOn => 1,

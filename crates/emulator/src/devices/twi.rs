@@ -1,6 +1,6 @@
 //! The two-wire interface as the master of a bus with pull-ups (2549Q, section 24), with the edges on its pins.
 //!
-//! Both lines are pulled down or let go; a line that nothing drives is high, as the pull-ups of the board have it. What another
+//! Both lines are pulled down or released; a released line is high through the pull-ups of the board. What another
 //! drives counts: an acknowledgement, bits read, a clock held low, arbitration lost. With nothing connected an address is
 //! not acknowledged.
 //!
@@ -93,7 +93,7 @@ pub(super) struct Twi {
     next: Option<u64>,
     /// The nine bits that came in, the first one highest.
     taken: u16,
-    /// The lines are let go, not pulled down.
+    /// The lines are released, not pulled down.
     clock: bool,
     line: bool,
     /// The cycle in which it lost its clock.
@@ -250,7 +250,7 @@ impl Twi {
         }
     }
 
-    /// What goes out as bit `bit` of a byte: ones where somebody else speaks.
+    /// Bit `bit` of a byte as sent: ones while another device sends.
     fn bit_out(&self, action: Action, bit: u32) -> bool {
         match action {
             Action::Write(_) if bit < 8 => self.data >> (7 - bit) & 1 != 0,
@@ -351,7 +351,7 @@ impl Twi {
         self.reschedule(core);
     }
 
-    /// Lines that are let go are inputs, with the pull-up as the port has it; the others are low outputs.
+    /// Released lines are inputs, with the pull-up that the port selects; the others are low outputs.
     fn drive_pins(&self, core: &mut Core, cycle: u64) {
         let on = self.control & TWEN != 0;
         for (pin, high) in [(SCL, self.clock), (SDA, self.line)] {

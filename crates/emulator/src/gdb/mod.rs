@@ -1,8 +1,8 @@
 //! GDB's remote protocol: `avr-gdb` breaks, steps and reads variables of a program on the chip.
 //!
-//! The crate `gdbstub` speaks the protocol; here is what it does not know: the AVR ([`arch`]) and what its requests mean for
-//! the chip (`target`). Time passes on the chip, and for all around it, only while the program runs: [`Machine`] is whoever
-//! has the chip, and moves the rest of the world along with it.
+//! The crate `gdbstub` implements the protocol; this module adds the AVR ([`arch`]) and what its requests mean for the
+//! chip (`target`). Time passes on the chip and around it only while the program runs: a [`Machine`] owns the chip and
+//! advances the rest of the world with it.
 //!
 //! Source: GDB's manual, appendix "Remote Serial Protocol"; the places of the memories are the toolchain's (see `image`).
 
@@ -26,13 +26,13 @@ pub trait Machine {
     /// The chip, to change it while it stands.
     fn chip_mut(&mut self) -> &mut Chip;
 
-    /// Goes on for some milliseconds of the chip's time, or until the program stops; what is connected goes along.
+    /// Runs for some milliseconds of the chip's time, or until the program stops, together with what is connected.
     fn go(&mut self) -> Stopped;
 
-    /// One instruction, also where a breakpoint stands; what is connected goes along.
+    /// Runs one instruction, even at a breakpoint, together with what is connected.
     fn step(&mut self) -> Stopped;
 
-    /// The run is over: there is nothing to go on with.
+    /// The run is over: nothing can continue.
     fn is_over(&self) -> bool {
         false
     }
@@ -61,7 +61,7 @@ impl Machine for Chip {
     }
 }
 
-/// Whoever has a machine for a while.
+/// Owned or borrowed access to a machine.
 impl<M: Machine> Machine for &mut M {
     fn chip(&self) -> &Chip {
         (**self).chip()
@@ -87,16 +87,16 @@ impl<M: Machine> Machine for &mut M {
 /// In cycles of a crystal of 16 MHz.
 const MILLISECOND: u64 = 16_000;
 
-/// How a debugger's visit ended.
+/// How a debugging session ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Farewell {
-    /// It left; the program goes on without it.
+    /// The debugger detached; the program continues without it.
     Detached,
     /// It ended the program, or the program ended itself.
     Ended,
 }
 
-/// Serves a debugger until it leaves. The program stands at the beginning.
+/// Serves a debugger until it leaves. The program is halted at first.
 ///
 /// # Errors
 /// The connection broke, or the debugger broke the protocol.

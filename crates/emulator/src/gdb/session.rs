@@ -1,4 +1,4 @@
-//! A debugger that is served in turns, by somebody who has other things to do in between.
+//! A debugging session served in turns, by a caller with other work in between.
 
 use super::Machine;
 use super::target::Debugger;
@@ -12,7 +12,7 @@ use std::net::TcpStream;
 /// What a turn was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// The program stands, and the debugger has nothing more to say.
+    /// The program is halted, and the debugger has nothing more to send.
     Stands,
     /// The program went on for a while.
     Ran,
@@ -30,7 +30,7 @@ pub struct Session<M: Machine + 'static> {
 }
 
 impl<M: Machine> Session<M> {
-    /// The program stands from now on, until the debugger says otherwise.
+    /// Halts the program until the debugger resumes it.
     ///
     /// # Errors
     /// The connection broke.

@@ -42,10 +42,10 @@ const SIGNATURE: Range<u32> = 0x84_0000..0x84_0003;
 const SIGNATURE_BYTES: [u8; 3] = [0x1E, 0x98, 0x01];
 /// "Bad address", as GDB's protocol numbers it.
 const EFAULT: u8 = 14;
-/// Steps between two looks at the connection.
+/// Steps between two polls of the connection.
 const STEPS: u32 = 10_000;
 
-/// How the debugger wants the program to go on.
+/// How the debugger wants the program to continue.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Motion {
     Continue,
@@ -94,7 +94,7 @@ impl<M: Machine> Debugger<M> {
         2 * self.machine.chip().cpu().program_counter()
     }
 
-    /// Lets the program go on until it stops, or `interrupted` says that the debugger has something to say.
+    /// Runs the program until it stops, or `interrupted` reports that the debugger has sent something.
     fn go(&mut self, mut interrupted: impl FnMut() -> bool) -> Option<SingleThreadStopReason<u32>> {
         let mut steps = 0;
         loop {
@@ -108,7 +108,7 @@ impl<M: Machine> Debugger<M> {
         }
     }
 
-    /// Lets the program go on for a while; says why it stopped, if it did.
+    /// Runs the program for a while; returns why it stopped, if it did.
     pub(super) fn go_on(&mut self) -> Option<SingleThreadStopReason<u32>> {
         let stopped = if std::mem::take(&mut self.stands) {
             // Off a breakpoint at which it may stand.
@@ -132,7 +132,7 @@ impl<M: Machine> Debugger<M> {
         })
     }
 
-    /// What to tell the debugger about a stop, if it was one.
+    /// What to report to the debugger about a stop, if it was one.
     fn stop_reason(&self, stopped: Stopped) -> Option<SingleThreadStopReason<u32>> {
         match stopped {
             Stopped::Reached | Stopped::Output => None,

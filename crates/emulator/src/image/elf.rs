@@ -146,7 +146,7 @@ fn read_symbols(image: &mut Image, file: &object::File) -> Result<(), ImageError
     Ok(())
 }
 
-/// The name as the source has it.
+/// The name as in the source.
 fn demangled(name: &str) -> String {
     if let Ok(rust) = rustc_demangle::try_demangle(name) {
         return format!("{rust:#}");

@@ -1,4 +1,4 @@
-//! A HEX file does not say which chip it is for; its start does: the compiler's first instructions set the stack pointer to the end of
+//! A HEX file does not name its chip, but its start reveals it: the compiler's first instructions set the stack pointer to the end of
 //! the chip's SRAM.
 
 use super::{Image, ImageError};

@@ -1,6 +1,6 @@
 //! Looking at a program while it runs: watchpoints, a trace of instructions, a profile, the stack's depth.
 //!
-//! As long as nothing of it is asked for, the CPU runs as if this module did not exist. Else it goes from one instruction to
+//! While nothing is enabled, the CPU runs as if this module did not exist. Else it goes from one instruction to
 //! the next, and what each is about to do is worked out from its operands ([`touch`]): slower by an order of magnitude, and
 //! the program cannot tell the difference.
 
@@ -40,7 +40,7 @@ impl Watchpoint {
     }
 }
 
-/// What is asked for.
+/// What is enabled.
 #[derive(Clone, Debug, Default)]
 pub struct Observers {
     watchpoints: Vec<Watchpoint>,
@@ -55,7 +55,7 @@ impl Observers {
         self.watchpoints.push(watchpoint);
     }
 
-    /// Removes a watchpoint; says whether there was one.
+    /// Removes a watchpoint; returns whether there was one.
     pub fn unwatch(&mut self, watchpoint: &Watchpoint) -> bool {
         let before = self.watchpoints.len();
         self.watchpoints.retain(|other| other != watchpoint);
@@ -93,7 +93,7 @@ impl Observers {
             .filter(|lowest| *lowest < u16::MAX)
     }
 
-    /// Whether something is looked at from the cycle `now` on, and up to which cycle that holds.
+    /// Whether anything is observed from the cycle `now` on, and up to which cycle that holds.
     fn span(&self, now: u64) -> (bool, u64) {
         let always = !self.watchpoints.is_empty()
             || self.profile.is_some()

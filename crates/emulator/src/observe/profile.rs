@@ -5,7 +5,7 @@
 //! A tree has a node for each chain of calls; the cycles of an instruction go to the node of the code that runs. A call goes
 //! down, and remembers the stack pointer before it. A return goes up as far as the stack has: so a program that drops frames
 //! (`longjmp`, a scheduler) loses no more than the chain it left. A jump to another function takes the place of the one that
-//! jumped. Interrupts have roots of their own, for they interrupt whatever happens to run; so has sleep, and so has `main`.
+//! jumped. Interrupts are separate roots, since they interrupt whatever is running; so are sleep and `main`.
 
 use super::{Moment, vectors};
 use crate::cpu::{Cpu, Turn};
@@ -15,7 +15,7 @@ use std::collections::HashMap;
 
 /// Deepest chain of calls that is followed.
 const DEEPEST: usize = 512;
-/// A function's number if the image does not say.
+/// A function's number where the image has none.
 const UNKNOWN: u16 = 0;
 /// The root of the tree.
 const ROOT: usize = 0;
@@ -338,7 +338,7 @@ impl Profile {
         &self.names[usize::from(function)]
     }
 
-    /// All cycles that were looked at.
+    /// All cycles observed.
     pub fn cycles(&self) -> u64 {
         self.end - self.start.unwrap_or(self.end)
     }

@@ -10,7 +10,7 @@ const CYCLES_PER_US: f64 = 16.0;
 const FUNCTIONS: usize = 20;
 
 impl Profile {
-    /// What it comes to: time asleep, the most expensive functions, every interrupt.
+    /// Summary: time asleep, the most expensive functions, every interrupt.
     pub fn report(&self) -> String {
         let all = self.cycles().max(1) as f64;
         let percent = |cycles: u64| format!("{:.1}", 100.0 * cycles as f64 / all);

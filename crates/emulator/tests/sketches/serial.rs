@@ -49,13 +49,13 @@ fn what_comes_in_on_two_lines_goes_back_on_both() {
 }
 
 #[test]
-fn a_line_by_software_is_heard_and_answered() {
+fn a_software_serial_line_receives_and_replies() {
     let Some(mut board) = Board::with("soft_serial") else {
         return;
     };
     board.set(0, 10, true);
     board.run_us(5_000);
-    // It answers between the letters: it cannot listen while it speaks.
+    // It replies between the letters: it cannot receive while it sends.
     for (index, letter) in "rumbo, 90".bytes().enumerate() {
         board.forget();
         let start = board.cycle() + 37 * index as u64;
@@ -65,12 +65,12 @@ fn a_line_by_software_is_heard_and_answered() {
             board.set(start + bit * BIT, 10, frame >> bit & 1 != 0);
         }
         board.run_us(3_000);
-        assert_eq!(heard(&board.edges(11)), Some(letter.to_ascii_uppercase()));
+        assert_eq!(decoded(&board.edges(11)), Some(letter.to_ascii_uppercase()));
     }
 }
 
 /// The byte that a line's edges make at 9600 baud, sampled in the middle of its bits.
-fn heard(edges: &[(u64, bool)]) -> Option<u8> {
+fn decoded(edges: &[(u64, bool)]) -> Option<u8> {
     let start = edges.iter().find(|edge| !edge.1)?.0;
     let level = |cycle: u64| {
         let before = edges.iter().rev().find(|edge| edge.0 <= cycle);

@@ -17,7 +17,7 @@ fn floats_strings_tables_and_objects_print_what_the_c_library_says() {
     };
     board.run_us(120_000);
     let said = text(&board, 0);
-    // simavr says the same.
+    // simavr gives the same.
     let expected = [
         "10.6200 106.20",
         "14.6005 39.81",
@@ -54,7 +54,7 @@ fn numbers_and_lines_are_read_as_they_come_and_up_to_a_time_out() {
     board.run_us(120_000);
     for (said, wait_us, answer) in [
         ("i-123 ", 20_000, "-246\r\n"),
-        // Without an end only the time-out of 50 ms tells that it is whole.
+        // Without a terminator, only the time-out of 50 ms ends it.
         ("f2.5", 60_000, "5.000\r\n"),
         ("REF 40\n", 20_000, "<REF 40>\r\n"),
         ("half", 60_000, "<half>\r\n"),
@@ -120,7 +120,7 @@ fn an_echo_is_timed_by_a_timer_by_capture_and_by_a_wait_that_ends() {
     let [low, high] = board.variable("captured_ticks", 0);
     assert_eq!(u16::from_le_bytes([low, high]), 1_400);
     assert_eq!(board.variable("captures", 0), [1, 0]);
-    // Nothing came: 25,000 rounds of 11 cycles, not of the 16 that the core reckons with.
+    // Nothing came: 25,000 rounds of 11 cycles, not of the 16 that the Arduino core assumes.
     assert_eq!(board.long("gave", 0), 0);
     let given_up_us = board.long("given_up_us", 0);
     assert!((17_180..17_500).contains(&given_up_us), "{given_up_us}");

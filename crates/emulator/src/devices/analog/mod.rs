@@ -46,7 +46,7 @@ const PORT_E: usize = 4;
 const PORT_F: usize = 5;
 const PORT_K: usize = 9;
 
-/// Cycles of the CPU by which a trigger is late.
+/// Latency of a trigger [CPU cycles].
 const TRIGGER_CYCLES: u64 = 3;
 
 /// What can start a conversion, in the order of ADTS.
@@ -89,7 +89,7 @@ pub(crate) struct Analog {
     comparator: u8,
     /// The comparator's output.
     higher: bool,
-    /// What timer 1 was last told: the comparator's output in the place of its capture pin, or nothing.
+    /// The capture input last handed to timer 1: the comparator's output, or `None` for its own pin.
     captured: Option<bool>,
     /// The cycle in which the converter lost its clock.
     stopped: Option<u64>,
@@ -117,7 +117,7 @@ impl Analog {
         self.compare(core, cycle);
     }
 
-    /// The chip does something else to pins of this port: the comparator looks at them.
+    /// The chip drives pins of this port differently: the comparator samples them.
     pub(crate) fn port_changed(&mut self, core: &mut Core, port: usize, cycle: u64) {
         if matches!(port, PORT_E | PORT_F | PORT_K) {
             self.compare(core, cycle);
@@ -323,7 +323,7 @@ impl Analog {
         core.interrupts.set(vector::COMPARED, compared);
     }
 
-    /// The comparator looks at its inputs.
+    /// The comparator samples its inputs.
     fn compare(&mut self, core: &mut Core, cycle: u64) {
         let higher = self.comparator & ACD == 0 && self.is_higher(core);
         if higher != self.higher {

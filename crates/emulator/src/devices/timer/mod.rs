@@ -1,7 +1,7 @@
 //! Timers 0 to 5: clock, registers, pins. What the counter does is in [`wave`] (2549Q, sections 16 to 20).
 //!
-//! A timer is not stepped: it knows the cycle up to which it is reckoned, and catches up when it is looked at or when something is due
-//! that others notice, an enabled interrupt or an edge on a connected pin.
+//! A timer is not stepped: it keeps the cycle up to which it has been computed, and catches up when it is accessed or
+//! when something visible from outside is due: an enabled interrupt or an edge on a connected pin.
 
 mod duty;
 mod place;
@@ -20,7 +20,7 @@ const ICNC: u8 = 0x80;
 const ICES: u8 = 0x40;
 /// ASSR of timer 2: its clock is at its own pins.
 const AS2: u8 = 0x20;
-/// Cycles for which the noise canceller wants the same level.
+/// Cycles for which the noise canceller requires the same level.
 const NOISE_CYCLES: u64 = 4;
 
 /// A prescaler: timers 0, 1, 3, 4 and 5 share one, timer 2 has its own.
@@ -65,18 +65,18 @@ pub(crate) struct Timer {
     enabled: u8,
     latch: u8,
     asynchronous: u8,
-    /// The cycle up to which the counter is reckoned.
-    reckoned: u64,
+    /// The cycle up to which the counter has been computed.
+    computed_to: u64,
     /// A level on the capture pin that must last until this cycle.
     capture_due: Option<u64>,
     /// The comparator's output, where it takes the place of the capture pin.
     comparator: Option<bool>,
     /// The pins were last given these outputs.
     driven: [Option<bool>; CHANNELS],
-    /// The PWM that was last told of each, and whether something of it may have changed.
-    told: [Option<Pwm>; CHANNELS],
+    /// The PWM last reported of each output, and whether it may have changed since.
+    published: [Option<Pwm>; CHANNELS],
     duty_due: bool,
-    /// Flags that start a conversion, and those that were up when last looked at.
+    /// Flags that start a conversion, and those that were set at the last check.
     wanted: u8,
     shown: u8,
     /// It has no clock.
@@ -97,11 +97,11 @@ fn new(index: usize) -> Timer {
         enabled: 0,
         latch: 0,
         asynchronous: 0,
-        reckoned: 0,
+        computed_to: 0,
         capture_due: None,
         comparator: None,
         driven: [None; CHANNELS],
-        told: [None; CHANNELS],
+        published: [None; CHANNELS],
         duty_due: false,
         wanted: 0,
         shown: 0,
@@ -117,13 +117,13 @@ pub(crate) fn of_vector(vector: u8) -> Option<usize> {
 impl Timer {
     /// Starts over.
     pub(crate) fn reset(&mut self, core: &mut Core, cycle: u64) {
-        let told = self.told;
+        let published = self.published;
         *self = new(self.index);
-        self.reckoned = cycle;
-        for (channel, told) in told.into_iter().enumerate() {
-            if told.is_some() {
+        self.computed_to = cycle;
+        for (channel, last) in published.into_iter().enumerate() {
+            if last.is_some() {
                 let pin = self.place().outputs[channel];
-                core.say(cycle, Event::Duty { pin, pwm: None });
+                core.emit(cycle, Event::Duty { pin, pwm: None });
             }
         }
         self.reschedule(core);
@@ -146,20 +146,20 @@ impl Timer {
         core.prescalers[usize::from(self.index == 2)]
     }
 
-    /// Reckons the counter up to `cycle`.
+    /// Computes the counter up to `cycle`.
     pub(crate) fn catch_up(&mut self, core: &mut Core, cycle: u64) {
         let prescaler = self.prescaler(core);
         if let Clock::Divided(divisor) = self.clock
             && !prescaler.held
             && !self.stopped
-            && cycle > self.reckoned
+            && cycle > self.computed_to
         {
-            let before = prescaler.ticks(divisor, self.reckoned);
+            let before = prescaler.ticks(divisor, self.computed_to);
             let mut left = prescaler.ticks(divisor, cycle) - before;
             let mut tick = before;
             if self.listened().is_none() {
                 let (first, period) = (u64::from(self.wave.max) + 1, self.wave.period());
-                // Nobody sees more of it than where it ends and that all flags are up.
+                // Only its end and the raised flags are visible.
                 if left > first + 2 * period {
                     let skipped = (left - first - period) / period * period;
                     left -= skipped;
@@ -175,14 +175,14 @@ impl Timer {
                 }
             }
         }
-        self.reckoned = self.reckoned.max(cycle);
+        self.computed_to = self.computed_to.max(cycle);
         if self.capture_due.is_some_and(|due| due <= cycle) {
             self.capture_due = None;
             self.capture(core, cycle);
         }
     }
 
-    /// What others notice: the channels whose matches count, or `None` if nothing is noticed at all.
+    /// The channels whose matches are visible from outside, or `None` if nothing of the timer is.
     fn listened(&self) -> Option<u8> {
         let waiting = (self.enabled | self.wanted) & !self.wave.flags;
         let mut channels = 0;
@@ -194,13 +194,13 @@ impl Timer {
         (channels != 0 || waiting & (OVERFLOW | CAPTURE) != 0).then_some(channels)
     }
 
-    /// Tells when it must be looked at next.
+    /// Schedules the next event.
     fn reschedule(&self, core: &mut Core) {
         let prescaler = self.prescaler(core);
         let next = match (self.clock, self.listened()) {
             (Clock::Divided(divisor), Some(channels)) if !prescaler.held && !self.stopped => {
                 let tick =
-                    prescaler.ticks(divisor, self.reckoned) + self.wave.quiet_ticks(channels);
+                    prescaler.ticks(divisor, self.computed_to) + self.wave.quiet_ticks(channels);
                 Some(prescaler.reset + tick * divisor)
             }
             _ => None,
@@ -215,7 +215,7 @@ impl Timer {
         self.reschedule(core);
     }
 
-    /// Gives flags and outputs to whom they concern.
+    /// Passes flags and outputs on to interrupts, pins and converter.
     fn show(&mut self, core: &mut Core, cycle: u64) {
         let place = self.place();
         for (flag, vector) in place.vectors {
@@ -237,20 +237,20 @@ impl Timer {
             }
         }
         if std::mem::take(&mut self.wave.updated) | std::mem::take(&mut self.duty_due) {
-            self.tell_duty(core, cycle);
+            self.publish_duty(core, cycle);
         }
     }
 
-    /// Tells how the pins are modulated, where that has changed.
-    pub(crate) fn tell_duty(&mut self, core: &mut Core, cycle: u64) {
+    /// Reports the PWM of pins on which it has changed.
+    pub(crate) fn publish_duty(&mut self, core: &mut Core, cycle: u64) {
         for channel in 0..self.wave.channels {
             let pin = self.place().outputs[channel];
             let divisor = core.clock.divisor();
             let pwm = duty::pwm(&self.wave, channel, self.clock, divisor)
                 .filter(|_| core.ports.is_output(pin));
-            if pwm != self.told[channel] {
-                self.told[channel] = pwm;
-                core.say(cycle, Event::Duty { pin, pwm });
+            if pwm != self.published[channel] {
+                self.published[channel] = pwm;
+                core.emit(cycle, Event::Duty { pin, pwm });
             }
         }
     }

@@ -21,7 +21,7 @@ pub(super) enum Register {
 }
 
 impl Register {
-    /// The bit of ASSR that says that its new value waits for the clock.
+    /// The bit of ASSR that is set while a new value waits for the clock.
     pub(super) const fn busy(self) -> Option<u8> {
         match self {
             Register::Count => Some(0x10),

@@ -62,7 +62,7 @@ impl Timer {
                 self.wave.count = word;
                 self.wave.blocked = self.clock != Clock::Stopped;
             }
-            // Without a mode that has it as its top, the capture register is read only.
+            // The capture register is writable only in a mode that uses it as the top.
             Register::Capture if self.wave.mode.top == Top::Capture => self.wave.capture = word,
             Register::Capture => {}
             Register::Compare(channel) => self.wave.set_compare(channel, word),

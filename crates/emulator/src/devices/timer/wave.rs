@@ -224,7 +224,7 @@ impl Wave {
         }
     }
 
-    /// The counter goes on by `ticks`, all but the last of them quiet; says whether the last left a value of interest.
+    /// The counter goes on by `ticks`, all but the last of them quiet; returns whether the last left a value of interest.
     pub(crate) fn tick(&mut self, ticks: u64) -> bool {
         let quiet = self.quiet_ticks(0xFF);
         if ticks < quiet {
@@ -284,20 +284,20 @@ impl Wave {
             Kind::Fast => {
                 self.flags |= OVERFLOW;
                 self.count = 0;
-                self.take_over();
+                self.load_compare();
                 self.set_at_bottom();
             }
             Kind::PhaseCorrect | Kind::PhaseFrequencyCorrect if self.down => {
                 self.flags |= OVERFLOW;
                 if self.mode.kind == Kind::PhaseFrequencyCorrect {
-                    self.take_over();
+                    self.load_compare();
                 }
                 self.down = false;
                 self.count = u16::from(self.top() > 0);
             }
             Kind::PhaseCorrect | Kind::PhaseFrequencyCorrect => {
                 if self.mode.kind == Kind::PhaseCorrect {
-                    self.take_over();
+                    self.load_compare();
                 }
                 self.down = true;
                 self.count = self.count.saturating_sub(1);
@@ -305,8 +305,8 @@ impl Wave {
         }
     }
 
-    /// The compare values that were written come into force.
-    fn take_over(&mut self) {
+    /// Loads the buffered compare values.
+    fn load_compare(&mut self) {
         self.updated |= self.compare != self.buffered;
         self.compare = self.buffered;
     }

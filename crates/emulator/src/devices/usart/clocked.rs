@@ -82,7 +82,7 @@ impl Usart {
             if first {
                 self.begin_bit(core, at);
             } else {
-                self.take_bit(core);
+                self.clock_bit(core);
             }
             self.clocked.first = first;
             self.drive_pins(core, at);
@@ -103,7 +103,7 @@ impl Usart {
         if first {
             self.begin_bit(core, cycle);
         } else {
-            self.take_bit(core);
+            self.clock_bit(core);
         }
         self.drive_pins(core, cycle);
         self.request(core);
@@ -126,26 +126,26 @@ impl Usart {
                 byte,
                 baud: CLOCK_HZ as f64 / (bit * core.clock.divisor()) as f64,
             };
-            core.say(cycle, event);
+            core.emit(cycle, event);
         }
     }
 
-    /// The second step: the receiver takes the level of its pin.
-    fn take_bit(&mut self, core: &Core) {
+    /// The second step: the receiver samples its pin.
+    fn clock_bit(&mut self, core: &Core) {
         if !self.listens() {
             return;
         }
         if self.format.mode == Mode::SpiMaster {
             let level = core.ports.level(self.place().receive);
-            self.receiver.take_bare_bit(level, self.format);
+            self.receiver.clock_bare_bit(level, self.format);
         } else {
             let accept = self.acceptor();
             self.receiver
-                .take_bit(self.line_level(core), self.format, accept);
+                .clock_bit(self.line_level(core), self.format, accept);
         }
     }
 
-    /// What the USART gives XCK where that is an output; `None` where the port has it.
+    /// The USART's level on XCK where that is an output; `None` where the port drives it.
     pub(super) fn clock_level(&self) -> Option<bool> {
         let on = self.control_b & (RXEN | TXEN) != 0 || self.transmitter.is_busy();
         if !on || !self.is_clocked() {

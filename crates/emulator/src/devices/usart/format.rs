@@ -6,7 +6,7 @@ pub(super) struct Format {
     /// Data bits, 5 to 9.
     pub(super) data: u32,
     pub(super) parity: Option<Parity>,
-    /// Stop bits sent; the receiver looks at the first one only.
+    /// Stop bits sent; the receiver checks only the first.
     pub(super) stop: u32,
     pub(super) mode: Mode,
     lowest_first: bool,

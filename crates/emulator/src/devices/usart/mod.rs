@@ -91,7 +91,7 @@ fn new(index: usize) -> Usart {
 }
 
 impl Usart {
-    /// Starts over; the sender outside goes on.
+    /// Resets; the sender outside continues.
     pub(crate) fn reset(&mut self, core: &mut Core) {
         let line = std::mem::take(&mut self.line);
         *self = Usart {
@@ -112,7 +112,7 @@ impl Usart {
     /// A frame comes in from outside.
     pub(crate) fn receive(&mut self, core: &mut Core, bits: u16, count: u8, baud: u32, cycle: u64) {
         let pin = self.place().receive;
-        // Until something drives it, nothing is connected; whoever sends was idle before.
+        // Nothing is connected until something drives the line; a sender was idle before.
         if !core.ports.is_driven_outside(pin) {
             let change = core.ports.set_outside(pin, Some(true), cycle);
             core.note(Some(change), cycle);
@@ -156,7 +156,7 @@ impl Usart {
                         byte,
                         baud: CLOCK_HZ as f64 / (self.rate.bit() * core.clock.divisor()) as f64,
                     };
-                    core.say(at, event);
+                    core.emit(at, event);
                     self.drive_pins(core, at);
                 }
                 Some(Step::Level(_)) => self.drive_pins(core, at),
@@ -171,7 +171,7 @@ impl Usart {
         self.request(core);
     }
 
-    /// What a multi-processor receiver takes: addresses only, that is frames whose ninth bit, or stop bit, is one.
+    /// What a multi-processor receiver accepts: only addresses, that is frames whose ninth bit, or stop bit, is one.
     fn acceptor(&self) -> impl Fn(u16, bool) -> bool + use<> {
         let (selective, nine) = (self.settings & MPCM != 0, self.format.data == 9);
         move |data, stop| !selective || if nine { data & 0x100 != 0 } else { stop }
@@ -269,7 +269,7 @@ impl Usart {
         }
     }
 
-    /// Transmitter and receiver take their pins over whatever the direction is.
+    /// Transmitter and receiver override their pins in either direction.
     fn drive_pins(&mut self, core: &mut Core, cycle: u64) {
         let sends = self.control_b & TXEN != 0 || self.transmitter.is_busy();
         let force = |on: bool, force: Force| if on { force } else { Force::None };
@@ -365,7 +365,7 @@ impl Usart {
         self.format = Format::new(size, self.control_c);
     }
 
-    /// Takes over rate and speed; what is on its way is disturbed if they differ.
+    /// Adopts rate and speed; frames in progress are disturbed if they differ.
     fn set_rate(&mut self, origin: u64, cycle: u64) {
         let ticks = u64::from(self.divisor) + 1;
         let rate = match (self.control_c >> 6, self.settings & U2X != 0) {

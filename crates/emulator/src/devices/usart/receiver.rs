@@ -107,8 +107,8 @@ impl Receiver {
         taken
     }
 
-    /// The clock of a synchronous mode takes a bit: a low one begins a frame.
-    pub(super) fn take_bit(
+    /// Samples a bit at the clock of a synchronous mode: a low one begins a frame.
+    pub(super) fn clock_bit(
         &mut self,
         level: bool,
         format: Format,
@@ -125,7 +125,7 @@ impl Receiver {
     }
 
     /// A bit of a byte without a frame.
-    pub(super) fn take_bare_bit(&mut self, level: bool, format: Format) {
+    pub(super) fn clock_bare_bit(&mut self, level: bool, format: Format) {
         if self.decided == 0 {
             self.bits = 0;
         }
@@ -190,7 +190,7 @@ impl Receiver {
         self.high_votes = 0;
     }
 
-    /// Takes all samples before `cycle`; `accept` says of data and stop bit whether the character is for this receiver.
+    /// Takes all samples before `cycle`; `accept` decides from data and stop bit whether the character is for this receiver.
     pub(super) fn sample_before(
         &mut self,
         cycle: u64,

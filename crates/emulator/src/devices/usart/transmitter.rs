@@ -1,6 +1,6 @@
 //! The transmitter: a buffer of one character, and the shift register (2549Q, section 22.6).
 //!
-//! A character goes on to an empty shift register at once, and its start bit begins with the next bit of the clock. What
+//! A character moves to an empty shift register at once, and its start bit begins with the next bit of the clock. What
 //! follows it in the buffer joins on without a gap.
 
 use super::format::Format;
@@ -129,7 +129,7 @@ impl Transmitter {
             .map(|frame| frame.start)
     }
 
-    /// A bit of the clock begins: the frame goes on by one bit, or is over and the next one begins.
+    /// A bit of the clock begins: the frame advances by one bit, or is over and the next one begins.
     pub(super) fn shift(&mut self, format: Format, cycle: u64) -> Option<Step> {
         let mut sent = None;
         if let Some(frame) = self.frame.filter(|frame| frame.begun == frame.count) {

@@ -1,4 +1,4 @@
-// What micros() and millis() say when pin 22 changes its level.
+// micros() and millis() when pin 22 changes its level.
 
 volatile unsigned long micros_at[200];
 volatile unsigned long millis_at[200];

@@ -1,4 +1,4 @@
-// Three ways to time an echo: a timer that looks at the pin every 24 us, input capture, and pulseIn that gives up.
+// Three ways to time an echo: a timer that polls the pin every 24 us, input capture, and pulseIn with a time-out.
 
 volatile unsigned int ticks = 0, ping_us = 0;
 volatile bool waiting = false;
