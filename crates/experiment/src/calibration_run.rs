@@ -45,7 +45,7 @@ pub fn run_calibration(setup: &Setup, seed: u64) -> Result<CalibrationRun, FileE
     });
     if !sim.now_us().is_multiple_of(SAMPLE_US) {
         // What crossed the link since the last sample is of the run, too.
-        trace.take(&sim);
+        trace.sample(&sim);
     }
     trace.link = sim.take_tapped();
     let result = RunResult {
@@ -105,7 +105,7 @@ impl Linked for Watched<'_> {
             let sample_us = (self.sim.now_us() / SAMPLE_US + 1) * SAMPLE_US;
             self.sim.advance(us.min(sample_us));
             if self.sim.now_us() >= sample_us {
-                self.trace.take(self.sim);
+                self.trace.sample(self.sim);
             }
             if self.sim.now_us() >= us {
                 return;

@@ -123,7 +123,7 @@ impl<'a> Run<'a> {
         self.sim.advance(self.sample_us);
         self.draw_levels();
         if self.sim.now_us() >= self.sample_us || self.sim.verdict().is_some() {
-            self.trace.take(&self.sim);
+            self.trace.sample(&self.sim);
             self.trace.listen(&mut self.sim);
         }
     }

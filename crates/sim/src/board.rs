@@ -17,7 +17,7 @@ pub(crate) struct Board {
 
 impl Board {
     /// An edge on one of the input pins.
-    pub(crate) fn take(&mut self, event: Event) {
+    pub(crate) fn handle(&mut self, event: Event) {
         match event {
             Event::Edge { wheel, at_us, .. } => {
                 let counter = match wheel {

@@ -1,5 +1,5 @@
-//! A debugger that comes to a simulation in progress, and may leave it again: robot and world stand still in time while it holds the
-//! program. For the lab, which asks for a stretch of time at a time.
+//! A debugger that attaches to a running simulation and may detach again: robot and world are frozen while it holds the
+//! program. For the lab, which advances the simulation in slices of time.
 
 use crate::sim::Sim;
 use rumbo_emulator::chip::Chip;
@@ -8,14 +8,14 @@ use rumbo_emulator::gdb::{Machine, Progress, Session};
 use std::io;
 use std::net::{Ipv4Addr, TcpListener};
 
-/// The longest that the program goes on before the debugger is listened to [us].
+/// The longest time for which the program runs before the debugger is polled [us].
 const TURN_US: u64 = 1_000;
 
-/// A port at which a debugger may call, and the one that has.
+/// A port to which a debugger may connect, and the session of the one that has.
 pub struct Debugging {
     listener: TcpListener,
     session: Option<Session<Held>>,
-    /// The program stands, and when that was last told [us].
+    /// When it was last announced that the program is halted [us]; `None` while it runs.
     stands: Option<u64>,
     news: Vec<String>,
 }
@@ -24,7 +24,7 @@ impl Debugging {
     /// Listens on this port of 127.0.0.1; 0 takes any free one.
     ///
     /// # Errors
-    /// The port is taken, or not for everybody.
+    /// The port is taken, or needs more rights.
     pub fn at(port: u16) -> io::Result<Debugging> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
@@ -39,17 +39,17 @@ impl Debugging {
     /// The port.
     ///
     /// # Errors
-    /// The system does not say.
+    /// The operating system does not report it.
     pub fn port(&self) -> io::Result<u16> {
         Ok(self.listener.local_addr()?.port())
     }
 
-    /// What has happened between debugger and program since the last call, in words.
+    /// Drains the messages about debugger and program.
     pub fn take_news(&mut self) -> Vec<String> {
         std::mem::take(&mut self.news)
     }
 
-    /// Another simulation takes the place of the one that was looked at: the debugger's connection ends.
+    /// Another simulation replaces the one being debugged: the debugger's connection ends.
     pub fn forget(&mut self) {
         if self.session.take().is_some() {
             self.stands = None;
@@ -57,7 +57,7 @@ impl Debugging {
         }
     }
 
-    /// Lets a simulation live until this time [us], or as far as the debugger lets it.
+    /// Advances a simulation to this time [us], or as far as the debugger allows.
     pub fn advance(&mut self, sim: &mut Sim, until_us: u64) {
         self.welcome(sim);
         let Some(session) = &mut self.session else {
@@ -71,14 +71,18 @@ impl Debugging {
             progress = session.turn();
         }
         std::mem::swap(sim, &mut session.machine_mut().sim);
-        self.tell(progress, sim);
+        self.announce(progress, sim);
     }
 
-    fn tell(&mut self, progress: Progress, sim: &Sim) {
+    fn announce(&mut self, progress: Progress, sim: &Sim) {
         let now_us = sim.now_us();
         match progress {
-            // Not each of the steps by hand: those that are a while apart.
-            Progress::Stands if self.stands.is_none_or(|told| now_us >= told + TURN_US) => {
+            // Only halts some time apart, not every single step.
+            Progress::Stands
+                if self
+                    .stands
+                    .is_none_or(|last_us| now_us >= last_us + TURN_US) =>
+            {
                 self.stands = Some(now_us);
                 let place = place(sim);
                 self.news
@@ -97,7 +101,7 @@ impl Debugging {
         }
     }
 
-    /// A debugger that calls gets the simulation, if that has an emulated Mega in it.
+    /// Attaches a debugger that connects, if the simulation has an emulated Mega.
     fn welcome(&mut self, sim: &Sim) {
         if self.session.is_some() || sim.mega().is_none() {
             return;
@@ -122,7 +126,7 @@ impl Debugging {
     }
 }
 
-/// Where the program stands, for people.
+/// Where the program is halted, for people.
 fn place(sim: &Sim) -> String {
     sim.mega().map_or_else(String::new, |mega| {
         let word = mega.chip().cpu().program_counter();

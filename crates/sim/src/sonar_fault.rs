@@ -1,4 +1,4 @@
-//! Sonars that fail in the middle of a run: what the board hears of them from then on.
+//! Sonars that fail in the middle of a run: what the board receives from then on.
 
 use rumbo_control::{Echo, SonarId};
 use rumbo_plant::noise::Noise;
@@ -18,9 +18,9 @@ const HELD_US: u64 = 38_000;
 pub enum SonarFault {
     /// Its wires are cut: it answers no ping.
     Cut,
-    /// It gives the last answer before the failure, for ever.
+    /// It repeats the last answer before the failure for ever.
     Stuck,
-    /// It answers that nothing is in reach, for ever.
+    /// It reports for ever that nothing is in range.
     Clear,
     /// This share of its answers, 0 to 1, are random: half of them credible distances, half as absurd as 0.1 cm or 20 m.
     Spiking(f64),
@@ -37,7 +37,7 @@ pub struct TimedSonarFault {
     pub fault: SonarFault,
 }
 
-/// The faults of a run and what they remember.
+/// The faults of a run and their state.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SonarFaults {
     faults: Vec<TimedSonarFault>,
@@ -65,7 +65,7 @@ impl SonarFaults {
         self.now(sonar, now_us) == Some(SonarFault::Cut)
     }
 
-    /// What the board hears in place of an answer.
+    /// What the board receives in place of a sonar's answer.
     pub(crate) fn answer(
         &mut self,
         noise: &Noise,
@@ -75,7 +75,7 @@ impl SonarFaults {
         self.answers += 1;
         let last = &mut self.last[sonar as usize];
         let kept = *last.get_or_insert(echo);
-        let heard = match self.now(sonar, now_us) {
+        let answer = match self.now(sonar, now_us) {
             None | Some(SonarFault::Cut) => {
                 self.last[sonar as usize] = Some(echo);
                 echo
@@ -91,10 +91,10 @@ impl SonarFaults {
                 }
             }
         };
-        (sonar, heard)
+        (sonar, answer)
     }
 
-    /// For how long a line that has just risen stays high whatever its sonar hears [us]; `None` if that decides.
+    /// How long a line that has just risen stays high, whatever its sonar receives [us]; `None` if the sonar decides.
     pub(crate) fn width_us(&mut self, noise: &Noise, sonar: SonarId, now_us: u64) -> Option<u64> {
         self.answers += 1;
         match self.now(sonar, now_us)? {
@@ -159,16 +159,16 @@ mod tests {
 
     #[test]
     fn a_stuck_sonar_repeats_its_last_sound_answer_from_the_moment_it_fails() {
-        let heard = answers(SonarFault::Stuck);
-        assert_eq!(heard[16], Echo::Pulse(3_016));
-        assert!(heard[17..].iter().all(|echo| *echo == heard[16]));
+        let received = answers(SonarFault::Stuck);
+        assert_eq!(received[16], Echo::Pulse(3_016));
+        assert!(received[17..].iter().all(|echo| *echo == received[16]));
     }
 
     #[test]
     fn a_spiking_sonar_is_wrong_in_its_share_of_answers() {
-        let heard = answers(SonarFault::Spiking(0.3));
+        let received = answers(SonarFault::Spiking(0.3));
         let wrong = (0..200)
-            .filter(|n| heard[*n as usize] != Echo::Pulse(3_000 + n))
+            .filter(|n| received[*n as usize] != Echo::Pulse(3_000 + n))
             .count();
         assert!((35..75).contains(&wrong), "{wrong}");
     }

@@ -1,4 +1,4 @@
-//! What a run really did, sampled at every control tick from the plant and the pins.
+//! Ground truth of a run, sampled at every control tick from the plant and the pins.
 
 use crate::sim::{Burst, Sim};
 use rumbo_control::params::Params;
@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// Period of the samples [us].
 pub const SAMPLE_US: u64 = 10_000;
 
-/// The truth at one instant.
+/// Ground truth at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Time since the start [s].
@@ -33,10 +33,10 @@ pub struct Sample {
     pub touching: bool,
 }
 
-/// Something that crossed the link and that metrics need.
+/// A message from the robot that metrics need.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heard {
-    /// When the station had it, since the start [s].
+    /// Time of arrival at the station since the start [s].
     pub t_s: f64,
     /// What.
     pub what: FromRobot,
@@ -60,7 +60,7 @@ pub struct Trace {
 /// What a USART of an emulated Mega has sent since the sample before.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Said {
-    /// When it was taken [us].
+    /// Time of the sample [us].
     pub t_us: u64,
     /// Which USART.
     pub usart: u8,
@@ -69,8 +69,8 @@ pub struct Said {
 }
 
 impl Trace {
-    /// Adds the present.
-    pub fn take(&mut self, sim: &Sim) {
+    /// Adds a sample of the present state.
+    pub fn sample(&mut self, sim: &Sim) {
         let truth = sim.truth();
         let wrapped_rad = truth.pose.heading_rad;
         let heading_rad = self.samples.last().map_or(wrapped_rad, |last| {
@@ -125,7 +125,7 @@ impl Trace {
         &self.samples[index(from_s)..index(until_s).max(index(from_s))]
     }
 
-    /// Whether a wheel was ever driven: of a robot that never was, nothing of its driving can be measured.
+    /// Whether a wheel was ever driven; without that there is no driving to measure.
     pub fn drove(&self) -> bool {
         self.samples.iter().any(|sample| sample.duty != [0; 2])
     }

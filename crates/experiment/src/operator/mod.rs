@@ -240,7 +240,7 @@ impl<'a> Operator<'a> {
     /// The same with the report's native program, which has no link.
     fn order(&mut self, sim: &mut Sim) {
         let t_s = sim.now_us() as f64 * 1e-6;
-        let told = sim.told();
+        let told = sim.drain_messages();
         self.reached |= told.iter().any(has_reached);
         self.heard
             .extend(told.into_iter().map(|what| Heard { t_s, what }));

@@ -1,4 +1,4 @@
-//! What the report's program sees and touches: encoder ticks, echoes, the clock, the serial line, the pins.
+//! The hardware of the report's program: encoder ticks, echoes, the clock, the serial line, the pins.
 
 use rumbo_control::{Duty, SonarId, Wheels};
 use rumbo_plant::drivetrain::Side;
@@ -10,7 +10,7 @@ const BYTE_US: u64 = 1042;
 /// The serial library's buffer [bytes]: what is in it does not block the program.
 const BUFFER: u64 = 64;
 
-/// What the program has put on its pins since it was last asked.
+/// What the program has written to its pins since the last call.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pins {
     /// PWM and direction of both bridges, if it wrote them.
@@ -38,8 +38,8 @@ pub(super) struct Chip {
     /// When the serial line will have sent all that was printed [us].
     sent_us: u64,
     pub(super) pins: Pins,
-    /// What it told, in the words of our link, so that one metric serves both programs.
-    pub(super) told: Vec<FromRobot>,
+    /// What it sent, as messages of our link, so that one metric serves both programs.
+    pub(super) messages: Vec<FromRobot>,
 }
 
 impl Chip {
@@ -49,7 +49,7 @@ impl Chip {
     }
 
     /// An edge of an input pin; returns the sonar whose echo has just ended.
-    pub(super) fn take(&mut self, event: Event) -> Option<SonarId> {
+    pub(super) fn handle(&mut self, event: Event) -> Option<SonarId> {
         match event {
             Event::Edge { wheel, .. } => match wheel {
                 Side::Left => self.ticks.left += 1,
@@ -83,7 +83,7 @@ impl Chip {
         self.lines[sonar as usize].answered
     }
 
-    /// The last width of an echo [us]: whatever came, however absurd.
+    /// The last width of an echo [us], however absurd.
     pub(super) fn width_us(&self, sonar: SonarId) -> f64 {
         self.lines[sonar as usize].width_us
     }

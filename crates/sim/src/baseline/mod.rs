@@ -1,9 +1,9 @@
-//! The report's own program as a baseline: its schemes, gains and habits, written anew from its description.
+//! The report's own program as a baseline: its schemes, gains and habits, reimplemented from its description.
 //!
 //! It drives the same plant at the same pins as our robot does, so that one set of metrics judges both. What made the
 //! robot of the report slow or rough is here on purpose (docs/theory/baseline.md): a loop as long as what it prints,
 //! gains per millisecond of that loop, speeds in steps of 3.125 rpm, three sonars fired at once, sleeps of 300 ms.
-//! What it is not: the link. Commands act at their time, as text lines would some 50 ms later.
+//! The link is not modelled: commands act at their time, where text lines would act some 50 ms later.
 //!
 //! | file | report | modes |
 //! |---|---|---|
@@ -29,7 +29,7 @@ use mission::Mission;
 use rumbo_control::mode::ModeId;
 use rumbo_control::{SonarId, Wheels};
 use rumbo_plant::plant::Event;
-use rumbo_wire::message::{Event as Told, EventKind, Telemetry};
+use rumbo_wire::message::{Event as RobotEvent, EventKind, Telemetry};
 use rumbo_wire::{Command, FromRobot};
 use speed::{RAD_S_PER_RPM, SpeedMode};
 use square::{Pose, Square};
@@ -104,9 +104,9 @@ impl Baseline {
     }
 
     /// An edge of an input pin.
-    pub(crate) fn take(&mut self, event: Event) {
+    pub(crate) fn handle(&mut self, event: Event) {
         self.chip.now_us = event.at_us();
-        if let Some(sonar) = self.chip.take(event)
+        if let Some(sonar) = self.chip.handle(event)
             && self.on
             && let Program::Mission(mission) = &mut self.program
         {
@@ -128,12 +128,12 @@ impl Baseline {
         std::mem::take(&mut self.chip.pins)
     }
 
-    /// What it has told since it was last asked, in the words of our link.
-    pub(crate) fn told(&mut self) -> Vec<FromRobot> {
-        std::mem::take(&mut self.chip.told)
+    /// Drains what it has sent, as messages of our link.
+    pub(crate) fn drain_messages(&mut self) -> Vec<FromRobot> {
+        std::mem::take(&mut self.chip.messages)
     }
 
-    /// A line from the station, as the command it means to us. What the program does not know it ignores.
+    /// Handles a line from the station, given as the equivalent command of ours. The program ignores what it does not know.
     pub(crate) fn command(&mut self, command: Command) {
         match (&mut self.program, command) {
             (_, Command::Arm) => self.on = true,
@@ -200,11 +200,13 @@ impl Baseline {
                 reached
             }
         };
-        self.tell();
+        self.publish();
         if reached {
             let t_ms = (self.chip.millis() & 0xffff) as u16;
             let kind = EventKind::Reached;
-            self.chip.told.push(FromRobot::Event(Told { t_ms, kind }));
+            self.chip
+                .messages
+                .push(FromRobot::Event(RobotEvent { t_ms, kind }));
         }
         let bytes = self.line_bytes();
         let blocked_us = self.chip.print(bytes);
@@ -214,8 +216,8 @@ impl Baseline {
         }
     }
 
-    /// Length of the line that it prints: as the serial library writes the numbers, with what the recorded runs' periods
-    /// show to go out besides.
+    /// Length of the line that it prints: numbers as the serial library formats them, plus the extra output that the
+    /// periods of recorded runs imply.
     fn line_bytes(&self) -> usize {
         let float = |value: f64| format!("{value:.2},").len();
         let floats = |values: &[f64]| values.iter().copied().map(float).sum::<usize>();
@@ -258,8 +260,8 @@ impl Baseline {
         }
     }
 
-    /// What a line tells, as a telemetry frame.
-    fn tell(&mut self) {
+    /// Publishes the content of a line as a telemetry frame.
+    fn publish(&mut self) {
         let (speeds, pose, state) = match &self.program {
             Program::Walls(_) => (None, Pose::default(), 0),
             Program::Speed(speed) => (Some(speed.speeds), Pose::default(), 0),
@@ -272,7 +274,7 @@ impl Baseline {
         };
         // Two decimals are printed.
         let printed = |value: f64| (value * 100.0).round() / 100.0;
-        self.chip.told.push(FromRobot::Telemetry(Telemetry {
+        self.chip.messages.push(FromRobot::Telemetry(Telemetry {
             t_ms: (self.chip.millis() & 0xffff) as u16,
             pose: rumbo_control::Pose {
                 x_m: printed(pose.x_m) as f32,

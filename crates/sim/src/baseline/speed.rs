@@ -98,7 +98,7 @@ impl Speeds {
             if wanted != 0 {
                 wheel.direction = wanted;
                 let ahead = f64::from(wanted);
-                // The bridge's direction follows the reference; a controller that wants less than nothing gets nothing.
+                // The bridge's direction follows the reference; a negative demand is clamped to zero.
                 pwm[side] = ahead * (ahead * output + equilibrium).clamp(0.0, 255.0);
             }
         }

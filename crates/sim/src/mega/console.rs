@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-/// Bytes kept that nobody has asked for.
+/// Unread bytes kept.
 const KEPT: usize = 1 << 16;
 /// The rate of a USART that has not spoken yet [baud].
 const SILENT_BAUD: u32 = 9600;

@@ -1,9 +1,9 @@
-//! The echo lines between sonars and chip. A sonar that fails does so here: its line says another width than the plant.
+//! The echo lines between sonars and chip. Failures of a sonar happen here: its line has another width than the plant's.
 
 use super::Faults;
 use rumbo_plant::sonar::SonarId;
 
-/// The same sonar in the words of the control core.
+/// The same sonar as the control core's type.
 fn named(sonar: SonarId) -> rumbo_control::SonarId {
     rumbo_control::SonarId::ALL[sonar.index()]
 }
@@ -14,7 +14,7 @@ struct Line {
     /// Level at the sonar.
     level: bool,
     rise_us: u64,
-    /// The line falls at this time, whatever the sonar heard.
+    /// The line falls at this time, whatever the sonar measured.
     forced_us: Option<u64>,
     /// The sonar's own fall does not reach the chip.
     ignored: bool,
@@ -32,7 +32,7 @@ impl Echoes {
         self.lines[sonar.index()].level
     }
 
-    /// An edge at the sonar; says whether the chip sees it.
+    /// An edge at the sonar; returns whether the chip sees it.
     pub(super) fn edge(
         &mut self,
         sonar: SonarId,

@@ -17,11 +17,11 @@ pub const LINK_BAUD: f64 = 9600.0;
 /// Receiving and transmitting pins of the USARTs on the board.
 const RECEIVERS: [u8; 4] = [0, 19, 17, 15];
 const TRANSMITTERS: [u8; 4] = [1, 18, 16, 14];
-/// Our program says HELLO as soon as it runs; this long is waited for it [us].
+/// Time to wait for HELLO, which our program sends as soon as it runs [us].
 const BOOT_US: u64 = 600_000;
 /// A boot loader has handed over after this [cycles], or never will.
 pub(super) const LONGEST_BOOT: u64 = 5_000_000 * CYCLES_PER_US;
-/// Room for what a robot says at once.
+/// Room for what a robot sends at once.
 const LINE: usize = 128;
 
 /// What a program speaks on its link.
@@ -105,7 +105,7 @@ impl Firmware {
 pub struct Opening {
     /// What it speaks.
     pub language: Language,
-    /// The USARTs whose transmitter it has switched on; not looked at where it speaks frames.
+    /// The USARTs whose transmitter it has switched on; not checked where it sends frames.
     pub transmits: [bool; 4],
 }
 
@@ -119,7 +119,7 @@ pub fn opening(image: &Image) -> Opening {
     chip.pass_boot_loader(LONGEST_BOOT);
     let start = chip.cycle();
     let mut decoders: [Decoder<LINE>; 4] = Default::default();
-    // In slices, so that what is said is seen soon.
+    // In slices, so that output is seen soon.
     for slice in 1..=10 {
         let stopped = chip.run_until(start + slice * BOOT_US / 10 * CYCLES_PER_US);
         for output in chip.take_outputs() {

@@ -1,8 +1,8 @@
-//! The edges that the plant announces, as the chip is given them.
+//! The edges that the plant announces, scheduled for the chip.
 //!
-//! The plant looks ahead and announces the edges of encoders and echoes; each goes into the chip's queue shortly before its cycle. When the
-//! chip acts in between, the plant follows it for good, by another step than in its look ahead: [`Mega::correct`] takes each edge that
-//! it gives then for the announced one, and puts right what fell otherwise.
+//! The plant looks ahead and announces the edges of encoders and echoes; each goes into the chip's queue shortly before
+//! its cycle. When the chip acts in between, the plant follows for good, in a different step than in its look-ahead:
+//! [`Mega::correct`] matches each edge found then with the announced one and corrects the differences.
 
 use super::{Faults, Mega};
 use crate::wire_fault::Wire;
@@ -20,7 +20,7 @@ enum Edge {
     Echo(SonarId, bool),
 }
 
-/// What the plant has announced in its present look ahead.
+/// What the plant has announced in its present look-ahead.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Announced {
     /// Edges to come, and when [us].
@@ -30,13 +30,13 @@ pub(super) struct Announced {
 }
 
 impl Mega {
-    /// The plant looks ahead anew: what the chip was given until now has happened, what it was not given does not come.
+    /// The plant starts a new look-ahead: edges already given to the chip have happened, the others are withdrawn.
     pub(crate) fn look_ahead(&mut self) {
         self.announced.expected.clear();
         self.announced.given.clear();
     }
 
-    /// An edge that comes unless the chip does something before.
+    /// An edge that comes unless the chip acts before.
     pub(crate) fn expect(&mut self, event: Event) {
         let edge = edge_of(event);
         self.announced
@@ -44,10 +44,10 @@ impl Mega {
             .extend(edge.map(|edge| (event.at_us(), edge)));
     }
 
-    /// An edge that the plant gave after all: what had been announced otherwise is put right.
+    /// An edge that the plant actually produced: corrects the announcement where it differs.
     pub(crate) fn correct(&mut self, event: Event, faults: &mut Faults<'_>) {
         let Some(edge) = edge_of(event) else { return };
-        // One after the other: where a line has changed twice meanwhile, its level now says nothing of the first edge.
+        // In order: where a line has changed twice meanwhile, its present level tells nothing about the first edge.
         if let Some(at) = self.announced.given.iter().position(|given| *given == edge) {
             self.announced.given.remove(at);
             return;
@@ -61,7 +61,7 @@ impl Mega {
         }
     }
 
-    /// The cycle of the next input that is known of.
+    /// The cycle of the next known input.
     pub(super) fn next_input(&self) -> Option<u64> {
         let expected = self.announced.expected.front().map(|(at_us, _)| *at_us);
         let forced = self.echoes.next_forced_us();

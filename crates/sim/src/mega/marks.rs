@@ -1,4 +1,4 @@
-//! When a program comes to some of its functions: breakpoints that note the cycle and let it go on.
+//! When a program reaches some of its functions: breakpoints that record the cycle and continue.
 
 use super::Mega;
 
@@ -10,7 +10,8 @@ pub(super) struct Marks {
 }
 
 impl Mega {
-    /// From here on notes when the program comes to these functions; says whether it has them all. Not while a debugger holds it.
+    /// Records from now on when the program reaches these functions; returns whether it has them all. Not while a debugger
+    /// holds it.
     pub fn mark(&mut self, functions: &[&str]) -> bool {
         let image = self.firmware.image();
         let address = |name: &&str| image.function_named(name).map(|function| function.address);
@@ -24,7 +25,7 @@ impl Mega {
         true
     }
 
-    /// Which of the functions it has come to since the last call, by their places in the list, and the chip's cycle of each.
+    /// Drains the functions reached since the last call: index in the list, and the chip's cycle.
     pub fn take_marks(&mut self) -> Vec<(usize, u64)> {
         std::mem::take(&mut self.marks.met)
     }

@@ -1,4 +1,4 @@
-//! An emulated Arduino Mega at the robot's pins: the chip of `rumbo-emulator`, wired as the robot file says.
+//! An emulated Arduino Mega at the robot's pins: the chip of `rumbo-emulator`, wired by the robot file.
 //!
 //! ```text
 //! plant events ──► encoder and echo pins, at their cycle ──► chip ──► enable and direction pins ──► bridges
@@ -10,15 +10,15 @@
 //! |---|---|
 //! | [`pins`] | the board's pin numbers, a wiring as pins of the chip |
 //! | `bridge`, `servo`, `module` | what driver, servo and Bluetooth module make of their lines |
-//! | `inputs` | the edges that the plant announces, as the chip is given them |
-//! | `outputs` | what the chip does, as the robot feels it |
+//! | `inputs` | the edges that the plant announces, scheduled for the chip |
+//! | `outputs` | the chip's outputs as actions on the robot |
 //! | `echo` | echo lines, and sonars that fail |
-//! | `console` | what the USARTs said, for people |
-//! | `marks` | when the program comes to some of its functions |
-//! | `notes` | what is odd about a program, for people |
+//! | `console` | output of the USARTs, for people |
+//! | `marks` | when the program reaches some of its functions |
+//! | `notes` | oddities of a program, for people |
 //! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
 //!
-//! `Mega::run` runs the chip until something happens that the plant must know of, so that the plant can follow to the same
+//! `Mega::run` runs the chip until something happens that affects the plant, so that the plant can follow to the same
 //! microsecond before anything else happens: see `sim::emulated`.
 
 mod console;
@@ -63,7 +63,7 @@ const TRIGGER_CYCLES: u64 = 10 * CYCLES_PER_US;
 /// An input goes into the chip's queue this long before its cycle: until then nothing the chip does can change it.
 const AHEAD_CYCLES: u64 = CYCLES_PER_US;
 
-/// Something the chip did that the robot feels.
+/// An action of the chip on the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Action {
     /// A half of the bridge is driven in another way, at this frequency of the PWM [Hz].
@@ -74,7 +74,7 @@ pub(crate) enum Action {
     Trigger(SonarId),
 }
 
-/// Why [`Mega::run`] came back.
+/// Why [`Mega::run`] returned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pause {
     /// The time is reached.
@@ -100,11 +100,11 @@ pub struct Mega {
     echoes: Echoes,
     announced: Announced,
     actions: Vec<Action>,
-    /// What the module has heard from the chip, and when [us].
+    /// Bytes that the module has received from the chip, and when [us].
     sent: Vec<(u64, u8)>,
     consoles: [Console; 4],
     verdict: Option<Verdict>,
-    /// When the program came to the functions that were asked for.
+    /// When the program reached the functions of interest.
     marks: Marks,
     /// A motor was driven.
     has_driven: bool,
@@ -142,7 +142,7 @@ impl Mega {
         for pin in mega.wires().receivers.into_iter().flatten() {
             mega.chip.input(0, Input::Pin(pin, Some(true)));
         }
-        // A boot loader's wait is over before the run begins, as for somebody who switches the robot on and then goes to the laptop.
+        // The boot loader's wait is over before the run begins, as when the robot is switched on before the laptop.
         mega.chip.pass_boot_loader(firmware::LONGEST_BOOT);
         mega.chip.take_outputs();
         mega.begin(mega.chip.cycle(), encoders);
@@ -163,7 +163,7 @@ impl Mega {
         }
     }
 
-    /// The plant's clock starts over now; what the chip drives goes on.
+    /// Restarts the plant's clock; the chip's outputs stay as they are.
     pub(crate) fn restart_clock(&mut self, encoders: [bool; 2]) {
         let cycle = self.chip.cycle();
         self.begin(cycle, encoders);
@@ -192,12 +192,12 @@ impl Mega {
         &mut self.chip
     }
 
-    /// From here on the program does one instruction, and halts.
+    /// Makes the program run one instruction and halt.
     pub fn step(&mut self) {
         self.stepping = true;
     }
 
-    /// Why the program stands; it goes on at the next advance.
+    /// Why the program is halted; it continues at the next advance.
     pub fn take_halt(&mut self) -> Option<Stopped> {
         self.halt.take()
     }
@@ -206,11 +206,11 @@ impl Mega {
     pub fn verdict(&self) -> Option<String> {
         let verdict = self.verdict.as_ref()?;
         let name = self.firmware.name();
-        let verdict = verdict.told(self.firmware.image());
+        let verdict = verdict.describe(self.firmware.image());
         Some(format!("firmware {name}: {verdict}"))
     }
 
-    /// What USART `usart` has sent since it was last asked, whatever it is connected to.
+    /// Drains what USART `usart` has sent, whatever it is connected to.
     pub fn take_console(&mut self, usart: u8) -> Vec<u8> {
         let console = self.consoles.get_mut(usize::from(usart));
         console.map(Console::take).unwrap_or_default()
@@ -238,17 +238,17 @@ impl Mega {
         self.chip.input(begin, Input::Serial { usart, byte, baud });
     }
 
-    /// What the module has heard since it was last asked: when the last bit came [us], and what.
+    /// Drains the bytes that the module has received, each with the time of its last bit [us].
     pub(crate) fn take_sent(&mut self) -> Vec<(u64, u8)> {
         std::mem::take(&mut self.sent)
     }
 
-    /// The actions that the pause spoke of.
+    /// Drains the actions for which the run paused.
     pub(crate) fn take_actions(&mut self) -> Vec<Action> {
         std::mem::take(&mut self.actions)
     }
 
-    /// The battery's voltage from now on: where a divider brings it to an analogue input, and as what the chip lives on.
+    /// Sets the battery's voltage: at the analogue input with the divider, and as the chip's supply.
     pub(crate) fn supply(&mut self, battery_v: f64) {
         if battery_v < BROWN_OUT_V {
             let cycle = self.chip.cycle();

@@ -1,13 +1,13 @@
-//! The Bluetooth module's ear: what it makes of a byte that the chip sends at some rate.
+//! The Bluetooth module's receiver: what it decodes from a byte that the chip sends at some rate.
 //!
-//! The module listens at the link's baud rate. A sender within [`TOLERANCE`] is understood; of another one the module
-//! samples the wave at its own times, as any UART does, and passes on what comes out.
+//! The module receives at the link's baud rate. A sender within [`TOLERANCE`] is received correctly; at any other rate
+//! the module samples the line at its own times, as any UART does, and passes on the result.
 
 /// Largest error of the sender's rate with which the tenth bit is still sampled within itself.
 const TOLERANCE: f64 = 0.045;
 
-/// The byte heard at `own_baud` when `byte` is sent at `baud`; `None` if the start bit is too short to be one.
-pub(super) fn heard(byte: u8, baud: f64, own_baud: f64) -> Option<u8> {
+/// The byte received at `own_baud` when `byte` is sent at `baud`; `None` if the start bit is too short to be one.
+pub(super) fn decode(byte: u8, baud: f64, own_baud: f64) -> Option<u8> {
     let ratio = baud / own_baud;
     if (ratio - 1.0).abs() <= TOLERANCE {
         return Some(byte);
@@ -31,13 +31,13 @@ mod tests {
 
     #[test]
     fn a_sender_near_the_rate_is_understood_and_others_are_garbage() {
-        // What an AVR makes of 9600 baud: 9615.4.
-        assert_eq!(heard(0x5A, 9_615.4, 9_600.0), Some(0x5A));
-        assert_eq!(heard(0x5A, 115_200.0, 9_600.0), Some(0xFF));
+        // 9600 baud on an AVR is 9615.4.
+        assert_eq!(decode(0x5A, 9_615.4, 9_600.0), Some(0x5A));
+        assert_eq!(decode(0x5A, 115_200.0, 9_600.0), Some(0xFF));
         // Twice as fast: every second bit.
-        assert_eq!(heard(0b0101_0101, 19_200.0, 9_600.0), None);
-        assert_eq!(heard(0b1010_1010, 19_200.0, 9_600.0), Some(0b1111_1000));
+        assert_eq!(decode(0b0101_0101, 19_200.0, 9_600.0), None);
+        assert_eq!(decode(0b1010_1010, 19_200.0, 9_600.0), Some(0b1111_1000));
         // Half as fast: each bit twice.
-        assert_eq!(heard(0b0000_1101, 4_800.0, 9_600.0), Some(0b1110_0110));
+        assert_eq!(decode(0b0000_1101, 4_800.0, 9_600.0), Some(0b1110_0110));
     }
 }

@@ -1,4 +1,4 @@
-//! What the chip does with its pins and USARTs, as the robot feels it.
+//! Outputs of the chip's pins and USARTs, as actions on the robot.
 
 use super::bridge::{self, HalfBridge};
 use super::{Action, CYCLES_PER_US, Mega, TRIGGER_CYCLES, firmware, module};
@@ -8,7 +8,7 @@ use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::sonar::SonarId;
 
 impl Mega {
-    /// Takes in what the chip has done; gives the cycle of the last action.
+    /// Processes the chip's outputs; returns the cycle of the last action.
     pub(super) fn listen(&mut self) -> Option<u64> {
         let mut acted = None;
         let outputs = self.chip.take_outputs();
@@ -19,8 +19,8 @@ impl Mega {
                     self.level(cycle, pin, matches!(drive, Drive::High | Drive::PullUp));
                 }
                 Event::Duty { pin, pwm } => self.modulate(pin, pwm),
-                Event::Byte { usart, byte, baud } => self.hear(cycle, usart, byte as u8, baud),
-                // The pins tell for themselves.
+                Event::Byte { usart, byte, baud } => self.byte_sent(cycle, usart, byte as u8, baud),
+                // Covered by the events of the pins.
                 Event::Reset(_) => {}
             }
             if self.actions.len() > before {
@@ -93,12 +93,12 @@ impl Mega {
         }
     }
 
-    fn hear(&mut self, cycle: u64, usart: u8, byte: u8, baud: f64) {
+    fn byte_sent(&mut self, cycle: u64, usart: u8, byte: u8, baud: f64) {
         if let Some(console) = self.consoles.get_mut(usize::from(usart)) {
             console.push(byte, baud);
         }
         if self.wires().link == Some(usart)
-            && let Some(byte) = module::heard(byte, baud, firmware::LINK_BAUD)
+            && let Some(byte) = module::decode(byte, baud, firmware::LINK_BAUD)
         {
             let at_us = cycle
                 .saturating_sub(self.zero_cycle)

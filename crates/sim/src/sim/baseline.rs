@@ -5,11 +5,11 @@ use crate::baseline::Baseline;
 use rumbo_control::SonarId;
 
 impl Sim {
-    /// Lets program and plant live until this time [us].
+    /// Advances program and plant to this time [us].
     pub(super) fn advance_baseline(&mut self, baseline: &mut Baseline, until_us: u64) {
         loop {
             let next_us = baseline.next_us().max(self.now_us()).min(until_us);
-            self.advance_plant(next_us, &mut |event| baseline.take(event));
+            self.advance_plant(next_us, &mut |event| baseline.handle(event));
             if next_us == until_us {
                 return;
             }

@@ -16,7 +16,7 @@ const AHEAD_US: u64 = 1_000;
 const BYTE_US: u64 = 1_042;
 
 impl Sim {
-    /// Lets chip and plant live until this time [us], or to a breakpoint.
+    /// Advances chip and plant to this time [us], or to a breakpoint.
     pub(super) fn advance_mega(&mut self, mega: &mut Mega, until_us: u64) {
         while self.now_us() < until_us {
             let end_us = ((self.now_us() / AHEAD_US + 1) * AHEAD_US).min(until_us);
@@ -52,7 +52,7 @@ impl Sim {
         }
     }
 
-    /// One look ahead; says whether a breakpoint ended it.
+    /// One look-ahead; returns whether a breakpoint ended it.
     fn lockstep(&mut self, mega: &mut Mega, end_us: u64) -> bool {
         loop {
             mega.look_ahead();
@@ -91,7 +91,7 @@ impl Sim {
         }
     }
 
-    /// The plant follows the chip for good. Its step is another one than in the look ahead, so an edge may fall a little
+    /// The plant follows the chip for good. Its step differs from the look-ahead's, so an edge may fall a little
     /// otherwise.
     fn follow(&mut self, mega: &mut Mega, at_us: u64) {
         let mut faults = Faults {

@@ -6,8 +6,8 @@
 //! | the report's, native | `baseline` | keeps its own time; [`Sim::order`] hands it commands without a link |
 //! | any image, on an emulated Mega | `emulated` | chip and plant in lockstep |
 //!
-//! Bytes go through [`Link`]s at 9600 baud: whoever uses a [`Sim`] meets the robot as it would behind a real port. A clone is a
-//! snapshot, which goes on to the same bits.
+//! Bytes go through [`Link`]s at 9600 baud: the user of a [`Sim`] sees the robot as behind a real port. A clone is a
+//! snapshot, which continues bit for bit the same.
 
 mod baseline;
 mod emulated;
@@ -70,7 +70,7 @@ pub struct Sim {
     noise: Noise,
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
-    /// What crossed the link, if somebody wants to know.
+    /// What crossed the link, while it is tapped.
     tapped: Option<Vec<Burst>>,
 }
 
@@ -78,7 +78,7 @@ impl Sim {
     /// A robot at its start.
     ///
     /// # Errors
-    /// If the program does not take its parameters, or there is none for the mode.
+    /// If the program rejects its parameters, or there is none for the mode.
     pub fn new(config: Config) -> Result<Self, SimError> {
         let Config {
             plant: params,
@@ -170,7 +170,7 @@ impl Sim {
         &self.params
     }
 
-    /// What is really the case.
+    /// Ground truth.
     pub fn truth(&self) -> Truth {
         self.plant.truth(&self.state)
     }
@@ -196,14 +196,14 @@ impl Sim {
         (last_us - first_us) as f64 * 1e-6 / count.max(1) as f64
     }
 
-    /// From now on notes what our native robot is given at each tick.
+    /// Records the inputs of our native robot at each tick from now on.
     pub fn record_inputs(&mut self) {
         if let Some(Controller::Rumbo(native)) = &mut self.controller {
             native.recorded = Some(Vec::new());
         }
     }
 
-    /// What it was given since then, or since the last call.
+    /// Drains the recorded inputs.
     pub fn take_inputs(&mut self) -> Vec<Latched> {
         match &mut self.controller {
             Some(Controller::Rumbo(native)) => native
@@ -220,7 +220,7 @@ impl Sim {
         self.outputs_us.1
     }
 
-    /// Puts bytes for the robot on the line.
+    /// Sends bytes to the robot.
     pub fn send(&mut self, bytes: &[u8]) {
         self.note(true, bytes);
         self.uplink.send(self.now_us(), bytes);
@@ -233,7 +233,7 @@ impl Sim {
         self.note(false, into.get(from..).unwrap_or_default());
     }
 
-    /// From now on notes what crosses the link.
+    /// Records what crosses the link from now on.
     pub fn tap_link(&mut self) {
         self.tapped = Some(Vec::new());
     }
@@ -256,7 +256,7 @@ impl Sim {
         }
     }
 
-    /// Makes a sonar fail at a time. The report's program, which times its own edges, notices a cut one only.
+    /// Makes a sonar fail at a time. The report's program, which times its own edges, is affected only by a cut.
     pub fn fail_sonar(&mut self, fault: TimedSonarFault) {
         self.sonar_faults.add(fault);
     }
@@ -275,8 +275,8 @@ impl Sim {
         });
     }
 
-    /// Hands a command to the report's native program, as a line of text would. False if another program is at the pins: it
-    /// listens to the link.
+    /// Hands a command to the report's native program, as a line of text would. False for any other program: those receive
+    /// commands over the link.
     pub fn order(&mut self, command: Command) -> bool {
         let Some(Controller::Baseline(baseline)) = &mut self.controller else {
             return false;
@@ -285,10 +285,10 @@ impl Sim {
         true
     }
 
-    /// What the report's native program has told since it was last asked; nothing from others, who speak on the link.
-    pub fn told(&mut self) -> Vec<FromRobot> {
+    /// Drains the messages of the report's native program; empty for other programs, which send over the link.
+    pub fn drain_messages(&mut self) -> Vec<FromRobot> {
         match &mut self.controller {
-            Some(Controller::Baseline(baseline)) => baseline.told(),
+            Some(Controller::Baseline(baseline)) => baseline.drain_messages(),
             _ => Vec::new(),
         }
     }
@@ -301,24 +301,24 @@ impl Sim {
         }
     }
 
-    /// Puts the robot elsewhere in the world, as a hand would; a native one of ours also believes from now on to stand at `told` from its
-    /// origin.
-    pub fn place(&mut self, at: Pose, told: rumbo_control::Pose) {
+    /// Moves the robot in the world, as a hand would; our native robot's estimated pose is set to `estimate`, relative to
+    /// its origin.
+    pub fn place(&mut self, at: Pose, estimate: rumbo_control::Pose) {
         self.state.place(at);
         if let Some(Controller::Rumbo(native)) = &mut self.controller {
-            native.set_pose(told);
+            native.set_pose(estimate);
         }
     }
 
-    /// From now on it gets what another robot is given, by that one's clock: one of ours, native, does not judge how
-    /// old that is.
+    /// Makes it accept the bytes meant for another robot, timed by that one's clock: our native robot no longer checks
+    /// their age.
     pub fn be_ghost(&mut self) {
         if let Some(Controller::Rumbo(native)) = &mut self.controller {
             native.be_ghost();
         }
     }
 
-    /// What is in the robot's EEPROM; what was never written may be missing at the end.
+    /// The content of the robot's EEPROM; bytes never written may be missing at the end.
     pub fn memory(&self) -> Vec<u8> {
         match &self.controller {
             Some(Controller::Rumbo(native)) => native.memory.0.clone(),
@@ -348,8 +348,8 @@ impl Sim {
         self.mega().and_then(Mega::verdict)
     }
 
-    /// The clock starts over and the robot is back at its start, at rest; the program goes on and notices nothing. For a program
-    /// that is told its parameters over the link before its run begins.
+    /// Restarts the clock with the robot back at its start, at rest; the program runs on unaware. For a program that
+    /// receives its parameters over the link before its run begins.
     pub fn restart_clock(&mut self) {
         self.state = self.plant.start(self.start);
         self.uplink = Link::new(self.uplink.params().clone(), self.noise, Direction::ToRobot);
@@ -367,7 +367,7 @@ impl Sim {
         }
     }
 
-    /// Lets program and plant live until this time [us], or to a breakpoint.
+    /// Advances program and plant to this time [us], or to a breakpoint.
     pub fn advance(&mut self, until_us: u64) {
         let mut controller = self.controller.take();
         match &mut controller {

@@ -51,7 +51,7 @@ pub(super) struct Native {
     pub(super) next_tick_us: u64,
     /// Outputs and when they take effect.
     pub(super) pending: Option<(u64, Outputs)>,
-    /// What it was given, if somebody wants to know.
+    /// Its inputs, while they are recorded.
     pub(super) recorded: Option<Vec<Latched>>,
 }
 
@@ -134,7 +134,7 @@ fn set_param(robot: &mut Robot, id: ParamId, value: f32) -> Result<(), SimError>
 }
 
 impl Sim {
-    /// Lets robot and plant live until this time [us].
+    /// Advances robot and plant to this time [us].
     pub(super) fn advance_native(&mut self, native: &mut Native, until_us: u64) {
         loop {
             let mut next_us = native.next_tick_us.min(until_us);
@@ -157,10 +157,10 @@ impl Sim {
         }
     }
 
-    /// The plant lives until this time, and what its wires bring to the board is latched.
+    /// Advances the plant to this time, and latches the edges that its wires bring to the board.
     fn sense(&mut self, native: &mut Native, until_us: u64) {
         if self.wire_faults.is_empty() {
-            self.advance_plant(until_us, &mut |event| native.board.take(event));
+            self.advance_plant(until_us, &mut |event| native.board.handle(event));
             return;
         }
         let from_us = self.now_us();
@@ -180,7 +180,7 @@ impl Sim {
         }
         events.sort_by_key(Event::at_us);
         for event in events {
-            native.board.take(event);
+            native.board.handle(event);
         }
     }
 
