@@ -3,7 +3,7 @@
 use crate::codec::Malformed;
 use crate::frame::MAX_PAYLOAD;
 
-/// Fills a payload from the front. What does not fit is left out; the codec's tests show that everything fits.
+/// Fills a payload from the front. What does not fit is dropped; the codec's tests show that everything fits.
 #[derive(Default)]
 pub(crate) struct Writer {
     bytes: [u8; MAX_PAYLOAD],
@@ -30,7 +30,7 @@ impl Writer {
     }
 }
 
-/// Takes a payload from the front. What is missing reads as 0, and makes the whole malformed.
+/// Reads a payload from the front. Missing bytes read as 0 and make the payload malformed.
 pub(crate) struct Reader<'a> {
     rest: &'a [u8],
     short: bool,
@@ -74,17 +74,17 @@ impl<'a> Reader<'a> {
         u32::from_le_bytes(self.take())
     }
 
-    /// A float as it is, non-finite values included: who applies it, judges it.
+    /// A float as it is, non-finite values included: the receiver's logic checks it.
     pub(crate) fn f32(&mut self) -> f32 {
         f32::from_le_bytes(self.take())
     }
 
-    /// Something that was asked for was not there.
+    /// A read went past the end.
     pub(crate) fn is_short(&self) -> bool {
         self.short
     }
 
-    /// What is wrong when the last number stands for nothing.
+    /// The error when the last number has no meaning.
     pub(crate) fn wrong(&self) -> Malformed {
         if self.short {
             Malformed::Length
@@ -93,7 +93,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Everything was there, and nothing may be left over.
+    /// Checks that nothing was missing and nothing is left over.
     pub(crate) fn finish(&self) -> Result<(), Malformed> {
         if self.rest.is_empty() && !self.short {
             Ok(())

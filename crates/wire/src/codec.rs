@@ -1,7 +1,7 @@
 //! Messages to frames and back. All numbers little-endian; `docs/protocol.md` lists every byte.
 //!
-//! Decoding checks lengths and numbers of enumerations, never plausibility: a value that is not finite arrives as
-//! such, and who applies it refuses it with a reason.
+//! Decoding checks lengths and numbers of enumerations, never plausibility: a non-finite value is passed on, and the
+//! robot refuses it with a reason.
 
 use rumbo_control::math::{is_finite, round};
 use rumbo_control::mode::{ModeId, Movement};
@@ -13,14 +13,14 @@ use crate::frame::{Body, Frame, Kind};
 use crate::message::*;
 use crate::quantise::{from_i12, from_i16, from_turn, limited, to_i12, to_i16, to_turn};
 
-/// Why a frame that passed the CRC is no message: the other end speaks something else.
+/// Why a frame that passed the CRC is no message: the other end uses another protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Malformed {
     /// A frame of the other direction.
     Direction,
     /// The payload is too short or too long for what it is.
     Length,
-    /// A number that stands for nothing: mode, fault, command, refusal...
+    /// A number without a meaning: mode, fault, command, refusal...
     Number,
 }
 
@@ -97,7 +97,7 @@ impl Message for ToRobot {
     fn from_body(body: &Body) -> Result<Self, Malformed> {
         let mut from = Reader::new(body.payload());
         let message = match body.kind {
-            // Whatever a later version adds to its HELLO: it is still one.
+            // A later version may append to its HELLO: it is still one.
             Kind::StationHello => return Ok(ToRobot::Hello),
             Kind::Heartbeat => ToRobot::Heartbeat,
             Kind::Command => {
@@ -144,7 +144,7 @@ const POSITION_PER_M: f32 = 1_000.0;
 const SPEED_PER_RAD_S: f32 = 50.0;
 /// Ranges are sent in 2.5 mm: up to 2.5525 m.
 const RANGE_PER_M: f32 = 400.0;
-/// Ten bits, of which the two highest codes mean something else.
+/// Ten bits, of which the two highest codes are special.
 const RANGE_MAX: i16 = 1_021;
 const RANGE_CLEAR: u32 = 1_022;
 const RANGE_FAULTY: u32 = 1_023;
@@ -393,7 +393,7 @@ fn ack(from: &mut Reader) -> Result<Ack, Malformed> {
     })
 }
 
-/// `level` as a byte that says which and the value.
+/// `level` as a byte for the kind and the value.
 const LEVEL_DUTY: u8 = 0;
 const LEVEL_SPEED: u8 = 1;
 

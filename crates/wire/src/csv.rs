@@ -97,7 +97,7 @@ impl RowKind {
     }
 }
 
-/// What a header (the first line of a file) says about the rows; blanks, a byte-order mark and the line's end are
+/// The kind of rows under a header (the first line of a file); blanks, a byte-order mark and the line's end are
 /// ignored. `None` if it is not the original's.
 pub fn recognise(header: &str) -> Option<RowKind> {
     let header = header.trim_start_matches('\u{feff}');

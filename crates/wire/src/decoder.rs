@@ -1,10 +1,9 @@
 //! Finds binary frames and lines of text in a stream of bytes, whichever they are.
 //!
-//! Bytes gather in a fixed buffer since the last 0x00. At a 0x00 they are tried as a frame: whole, and, if a
-//! terminal spoke before, from the end of its last line on. At a LF the bytes since the last LF are a line, if all of
+//! Bytes since the last 0x00 collect in a fixed buffer. At a 0x00 they are tried as a frame: all of them, and, if text
+//! lines came before, those after the last line. At a LF the bytes since the last LF are a line, if all of
 //! them are printable ASCII. Garbage is neither. A LF inside a frame does not end the frame; should the bytes before
-//! it happen to be printable they also come out as a line, which then fails to parse: whoever takes lines ignores
-//! those that say nothing.
+//! it happen to be printable they also come out as a line, which then fails to parse and is ignored.
 
 use crate::frame::Body;
 
@@ -27,7 +26,7 @@ pub struct Decoder<const N: usize> {
     after_text: Option<usize>,
     /// Where bytes after the last LF start.
     line_start: usize,
-    /// Bytes since the last 0x00 were dropped for want of room: no frame can be whole.
+    /// Bytes since the last 0x00 were dropped for lack of space: no frame can be complete.
     frame_cut: bool,
     /// The same for the line.
     line_cut: bool,
@@ -53,7 +52,7 @@ impl<const N: usize> Default for Decoder<N> {
 }
 
 impl<const N: usize> Decoder<N> {
-    /// Takes one byte; gives what it completes.
+    /// Ingests one byte; returns what it completes.
     pub fn push(&mut self, byte: u8) -> Option<Received<'_>> {
         match byte {
             0 => self.end_frame().map(Received::Frame),
@@ -91,7 +90,7 @@ impl<const N: usize> Decoder<N> {
         }
     }
 
-    /// Drops the oldest bytes of a full buffer: lines that are over, then the start of a frame too long to be valid.
+    /// Drops the oldest bytes of a full buffer: finished lines, then the start of a frame too long to be valid.
     fn make_room(&mut self) {
         self.frame_cut = true;
         let keep_from = match self.after_text {

@@ -1,7 +1,7 @@
-//! Frames of protocol 2, which logs hold, as frames of the present one.
+//! Converts frames of protocol 2, found in older logs, to the present protocol.
 //!
-//! Version 3 gave statuses the robot's time, and timed commands the time at which they were given; both are unknown of
-//! an earlier log and read 0.
+//! Version 3 added the robot's time to statuses and the time of issue to timed commands; both are unknown in an earlier
+//! log and read 0.
 
 use crate::codec::Message;
 use crate::frame::{Body, Frame, Kind, MAX_PAYLOAD};

@@ -3,7 +3,7 @@
 //! COBS (Cheshire & Baker, 1999) removes every 0x00 from the bytes, so that 0x00 marks the end of a frame and
 //! nothing else: after a cut, the next frame is found at the next 0x00. The CRC also covers a schema byte that is
 //! not sent, [`PROTOCOL_VERSION`]: a frame of another version fails the CRC instead of being misread. HELLO frames
-//! use 0 there, for ever, so that the two ends can tell each other their versions.
+//! always use 0 there, so that the two ends can exchange their versions.
 //!
 //! Both algorithms are a few lines of our own: a table for the CRC would take 512 bytes of SRAM on the AVR, and
 //! nothing here may panic. The tests compare them with the crates `cobs` and `crc`.
@@ -19,7 +19,7 @@ pub const MAX_FRAME: usize = MAX_PAYLOAD + OVERHEAD;
 /// Header, payload and CRC of the longest frame.
 const MAX_BODY: usize = MAX_PAYLOAD + 3;
 
-/// What a frame carries. The directions have numbers of their own: an echo is not mistaken for an answer.
+/// What a frame carries. The directions use different numbers: an echo is not mistaken for an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Kind {
@@ -148,7 +148,7 @@ impl Body {
 
 const CRC_START: u16 = 0xFFFF;
 
-/// Takes a byte into a sum, which begins as 0xFFFF: CRC-16/MCRF4XX (reflected polynomial 0x1021, start 0xFFFF), one byte at a time without a table; the form of
+/// Updates a CRC-16/MCRF4XX (reflected polynomial 0x1021, start 0xFFFF) with a byte, without a table; the form of
 /// `_crc_ccitt_update` in avr-libc's `util/crc16.h`.
 pub const fn crc(sum: u16, byte: u8) -> u16 {
     let [low, high] = sum.to_le_bytes();
@@ -157,7 +157,7 @@ pub const fn crc(sum: u16, byte: u8) -> u16 {
     (u16::from_le_bytes([high, mixed]) ^ (mixed >> 4) as u16) ^ ((mixed as u16) << 3)
 }
 
-/// COBS of the bytes put in, and the closing 0x00. Runs are below 254 bytes here.
+/// COBS encoder of the bytes put in, with the closing 0x00. Runs are below 254 bytes here.
 struct Stuffing {
     frame: Frame,
     /// Where the length of the present run will be.
@@ -207,7 +207,7 @@ impl Stuffing {
     }
 }
 
-/// Inverse of [`Stuffing`], of a frame without its 0x00; gives the length.
+/// Inverse of [`Stuffing`], of a frame without its 0x00; returns the length.
 fn unstuff(stuffed: &[u8], out: &mut [u8; MAX_BODY]) -> Option<usize> {
     let mut rest = stuffed;
     let mut len = 0;

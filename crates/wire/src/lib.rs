@@ -2,7 +2,7 @@
 //!
 //! Bytes come in through [`Decoder`], which finds binary frames and lines of text by itself. A frame becomes a
 //! message ([`message`]) in [`codec`], a line becomes a command or a row of telemetry in [`text`]; both are checked
-//! values, and acting on them is somebody else's business. On the way out, [`codec`] turns a message into a
+//! values, and acting on them is left to other crates. On the way out, [`codec`] turns a message into a
 //! [`Frame`] and [`text`] formats a line.
 //!
 //! Nothing here allocates, panics, or formats with `core::fmt` on the robot's side. The bytes are described for

@@ -1,4 +1,4 @@
-//! What the two ends say to each other, as values. How they look in bytes: [`crate::codec`].
+//! The messages between the two ends, as values. Their bytes: [`crate::codec`].
 
 pub use rumbo_control::mode::Level;
 pub use rumbo_control::mode::waypoints::Waypoint;
@@ -28,7 +28,7 @@ impl RobotTime {
         (self.start == earlier.start && ms < 0x8000_0000).then_some(ms)
     }
 
-    /// The first instant from this one on whose lower 16 bits telemetry tells; this one if that lies behind.
+    /// The first instant from this one on with the lower 16 bits that telemetry carries; this one if that lies behind.
     pub fn at_low(self, t_ms: u16) -> RobotTime {
         let ahead_ms = t_ms.wrapping_sub((self.ms & 0xFFFF) as u16);
         let ahead_ms = if ahead_ms < 0x8000 { ahead_ms } else { 0 };
@@ -38,7 +38,7 @@ impl RobotTime {
         }
     }
 
-    /// The newest time known after a message, of the one known before: a status tells it, telemetry carries it on.
+    /// The newest robot time after a message, given the one before: a status carries it in full, telemetry advances it.
     pub fn after(before: Option<RobotTime>, message: &FromRobot) -> Option<RobotTime> {
         match message {
             FromRobot::Status(status) => Some(status.at),
@@ -51,7 +51,7 @@ impl RobotTime {
 /// From the robot to the station.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FromRobot {
-    /// Who speaks; the answer to [`ToRobot::Hello`] and the first frame after a reset.
+    /// The robot's identity; the answer to [`ToRobot::Hello`] and the first frame after a reset.
     Hello(Hello),
     /// The fast signals, 25 times a second.
     Telemetry(Telemetry),
@@ -59,10 +59,10 @@ pub enum FromRobot {
     Status(Status),
     /// Something happened.
     Event(Event),
-    /// What became of a command.
+    /// The result of a command.
     Ack(Ack),
-    /// The heading that the mode wants [rad], ahead of the telemetry of the same instant; sent with 2 pi / 65536 when it has
-    /// changed, 12.5 times a second at most, and with every status. 0 where the mode wants none.
+    /// The mode's heading setpoint [rad], ahead of the telemetry of the same instant; sent in units of 2 pi / 65536 when it
+    /// has changed, at most 12.5 times a second, and with every status. 0 where the mode has none.
     HeadingRef(f32),
 }
 
@@ -81,13 +81,13 @@ pub enum ToRobot {
         number: u16,
         /// What to do.
         command: Command,
-        /// The newest robot time that the station had received when the order was given. Travels with commands that
-        /// [are timed](Command::is_timed) only; else the default.
+        /// The newest robot time that the station had received when the command was issued. Sent only with commands that
+        /// [are timed](Command::is_timed); otherwise the default.
         seen: RobotTime,
     },
 }
 
-/// Who the robot is.
+/// The robot's identity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hello {
     /// [`PROTOCOL_VERSION`] of the robot.
@@ -174,9 +174,9 @@ pub struct Status {
     pub dropped: u8,
     /// Control ticks that overran, wrapping.
     pub overruns: u8,
-    /// The sonars that the robot believes to carry.
+    /// The sonars of the configured rig.
     pub rig: Rig,
-    /// When this was so.
+    /// Time of these values.
     pub at: RobotTime,
 }
 
@@ -204,11 +204,11 @@ pub enum EventKind {
     ModeChanged(ModeId),
     /// The mode reached its reference.
     Reached,
-    /// The mode found out that its goal cannot be reached; the robot waits.
+    /// The mode found that its goal cannot be reached; the robot waits.
     Unreachable,
-    /// After HELLO, if parameters have been saved: where those in force at the start came from.
+    /// After HELLO, if parameters have been saved: the source of those in force at the start.
     Recalled(Recalled),
-    /// A save of the parameters is whole.
+    /// A save of the parameters is complete.
     Saved,
 }
 
@@ -253,7 +253,7 @@ pub enum Command {
     Arm,
     /// Stop the mode and disarm.
     Disarm,
-    /// Forget the latched fault.
+    /// Clear the latched fault.
     ClearFault,
     /// Select a mode; refused while armed.
     Mode(ModeId),
@@ -285,7 +285,7 @@ pub enum Command {
     /// Write the parameters in force to the EEPROM, so that the robot starts with them from now on. Acknowledged at once;
     /// [`EventKind::Saved`] follows when it is done.
     SaveParams,
-    /// Call the present place the origin.
+    /// Make the present pose the origin.
     ResetPose,
     /// Go to a point: around obstacles in mode 8, straight in mode 7. It may arrive at any time.
     Goal {
@@ -300,7 +300,7 @@ pub enum Command {
     Route {
         /// Starts over at the end.
         repeat: bool,
-        /// The places are as seen from where the robot starts, not from the origin.
+        /// The waypoints are relative to the pose where the robot starts, not to the origin.
         relative: bool,
     },
     /// Append a waypoint to the route (mode 7).
@@ -309,7 +309,7 @@ pub enum Command {
 
 impl Command {
     /// Changes what the robot drives, now or at its next ON. Such a command carries the robot time at which it was
-    /// given, and is refused when it is older than [`COMMAND_LIFE_MS`]: better lost than late.
+    /// issued, and is refused when it is older than [`COMMAND_LIFE_MS`]: better lost than late.
     pub fn is_timed(&self) -> bool {
         match self {
             Command::Arm
@@ -333,7 +333,7 @@ impl Command {
     }
 }
 
-/// What became of a command.
+/// The result of a command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ack {
     /// The command's session.
@@ -344,7 +344,7 @@ pub struct Ack {
     pub result: Result<f32, Refusal>,
 }
 
-/// Why a command was refused; the robot goes on as before.
+/// Why a command was refused; the robot continues as before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Refusal {
@@ -354,7 +354,7 @@ pub enum Refusal {
     OutOfRange = 2,
     /// No such parameter.
     UnknownParam = 3,
-    /// The mode takes no such command.
+    /// The mode has no such command.
     NotInThisMode = 4,
     /// Not while armed: disarm first.
     Armed = 5,
@@ -370,7 +370,7 @@ pub enum Refusal {
     WrongRig = 10,
     /// The battery is below its lower limit.
     BatteryLow = 11,
-    /// The command was given too long ago, or before the robot's last start.
+    /// The command was issued too long ago, or before the robot's last start.
     TooOld = 12,
     /// The sonar the mode needs works, and sees no wall that the mode can drive by.
     NoWall = 13,

@@ -1,4 +1,4 @@
-//! What people read: explanations with the remedy.
+//! Texts for people: explanations with the remedy.
 
 use rumbo_control::Fault;
 
@@ -86,7 +86,7 @@ impl EventKind {
         }
     }
 
-    /// What it is about: the fault's explanation or the mode's name.
+    /// Its subject: the fault's explanation or the mode's name.
     pub const fn detail(self) -> Option<&'static str> {
         match self {
             EventKind::Faulted(fault) | EventKind::Cleared(fault) => {

@@ -1,4 +1,4 @@
-//! Numbers in few bits: saturating, never wrapping, with a code of their own for what is not finite.
+//! Numbers in few bits: saturating, never wrapping, with a special code for non-finite values.
 
 use core::f32::consts::TAU;
 
@@ -15,7 +15,7 @@ pub(crate) fn to_i16(value: f32, per_unit: f32) -> i16 {
     limited(value * per_unit, 32_767)
 }
 
-/// Inverse of [`to_i16`]; NaN for the code of what is not finite.
+/// Inverse of [`to_i16`]; NaN for the code of a non-finite value.
 pub(crate) fn from_i16(code: i16, per_unit: f32) -> f32 {
     if code == NOT_FINITE_16 {
         f32::NAN
@@ -48,7 +48,7 @@ pub(crate) fn to_i12(value: f32, per_unit: f32) -> u16 {
     code.cast_unsigned() & 0xFFF
 }
 
-/// Inverse of [`to_i12`], of the low 12 bits; NaN for the code of what is not finite.
+/// Inverse of [`to_i12`], of the low 12 bits; NaN for the code of a non-finite value.
 pub(crate) fn from_i12(code: u16, per_unit: f32) -> f32 {
     let signed = (code << 4).cast_signed() >> 4;
     if signed == NOT_FINITE_12 {

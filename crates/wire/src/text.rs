@@ -3,7 +3,7 @@
 //! To the robot: a command a line (`ON`, `OFF`, `REF v`, `REF A v`, `REF B v`, `GOAL x y`, `PID A|B kp ki kd`, and our
 //! `MODE n`, `SAVE`, `RESET`), in upper or lower case. From the robot: a row of comma-separated numbers, whose columns depend on the
 //! mode (`csv` names them). Units are the original's here and nowhere else: cm, degrees, rpm, ms; A is the right wheel,
-//! B the left one. What `REF` means depends on the mode, so values stay as written.
+//! B the left one. The meaning of `REF` depends on the mode, so values stay as written.
 
 use core::fmt;
 
@@ -91,7 +91,7 @@ impl fmt::Display for TextError {
 
 impl core::error::Error for TextError {}
 
-/// A command in the words of the original.
+/// A command of the original text protocol.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TextCommand {
     /// Arm and start.
@@ -205,8 +205,8 @@ impl fmt::Display for TextCommand {
     }
 }
 
-/// A command of the link in the original's words, for a robot in this mode: a line, or one for each wheel; none where it
-/// has no words.
+/// A command of the link in the original text protocol, for a robot in this mode: a line, or one for each wheel; none
+/// where the protocol has no such command.
 pub fn lines_of(command: &Command, mode: ModeId) -> [Option<TextCommand>; 2] {
     // Two decimals are what the original prints, and all that its units need.
     let short = |value: f32| round(value * 100.0) as f32 / 100.0;

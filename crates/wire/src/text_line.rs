@@ -5,7 +5,7 @@ use rumbo_control::{Duty, Pose, Range, Wheels};
 use crate::decimal::Text;
 use crate::text::{MAX_LINE, RAD_PER_DEG, RAD_S_PER_RPM, cm_from_range};
 
-/// A row in the making. Its first column is the time since the row before; [`Row`](crate::text::Row) says which ones follow.
+/// A row being written. Its first column is the time since the previous row; [`Row`](crate::text::Row) defines the rest.
 pub struct Line(Text<MAX_LINE>);
 
 impl Line {
@@ -51,7 +51,7 @@ impl Line {
         self.number(angle_rad / RAD_PER_DEG);
     }
 
-    /// Place and heading.
+    /// Position and heading.
     pub fn pose(&mut self, pose: &Pose) {
         self.number(pose.x_m);
         self.number(pose.y_m);

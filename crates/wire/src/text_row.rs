@@ -64,7 +64,7 @@ pub struct MissionRow {
     pub dt_ms: u32,
     /// Wheel speed references [rpm].
     pub reference_rpm: Wheels<f32>,
-    /// Heading wanted [deg].
+    /// Heading setpoint [deg].
     pub heading_reference_deg: f32,
     /// The goal, forward of the origin [m].
     pub goal_x_m: f32,
@@ -113,7 +113,7 @@ pub enum RowKind {
 }
 
 impl Row {
-    /// The row in a line, given without its end; its columns tell which it is.
+    /// The row in a line, given without its end; its columns determine the kind.
     ///
     /// # Errors
     /// If the line has other columns than any row, or a value is no number.

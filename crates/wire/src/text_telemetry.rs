@@ -1,4 +1,4 @@
-//! A row of the original's text as a telemetry frame: what the row has, and nothing else.
+//! A row of the original text protocol as a telemetry frame: only the values that the row has.
 
 use rumbo_control::{AgedRange, Duty, Pose, SonarId, Wheels};
 
@@ -25,9 +25,9 @@ impl Row {
         }
     }
 
-    /// The frame of a robot that was armed by text, which a row does not tell, at this time on its clock.
+    /// The row as a frame at this robot time; `armed` is not in the row and follows from the text commands sent.
     pub fn telemetry(&self, t_ms: u16, armed: bool) -> Telemetry {
-        let mut told = Telemetry {
+        let mut sample = Telemetry {
             t_ms,
             armed,
             ..Telemetry::default()
@@ -43,36 +43,36 @@ impl Row {
             Row::Distance(row) => {
                 ranges[SonarId::Left as usize] = Some(row.left_cm);
                 ranges[SonarId::Right as usize] = Some(row.right_cm);
-                told.duty = row.pwm.map(Duty::new);
+                sample.duty = row.pwm.map(Duty::new);
             }
             Row::Speed(row) => {
-                told.wheel_rad_s = [rad_s(row.wheel_rpm); 2];
-                told.wheel_ref_rad_s = rad_s(Wheels::both(row.reference_rpm));
-                told.duty = row.pwm.map(Duty::new);
+                sample.wheel_rad_s = [rad_s(row.wheel_rpm); 2];
+                sample.wheel_ref_rad_s = rad_s(Wheels::both(row.reference_rpm));
+                sample.duty = row.pwm.map(Duty::new);
             }
             Row::Waypoints(row) => {
-                told.wheel_rad_s = [rad_s(row.wheel_rpm); 2];
-                told.wheel_ref_rad_s = rad_s(row.reference_rpm);
-                told.pose = pose(row.x_m, row.y_m, row.heading_deg);
-                told.duty = row.pwm.map(Duty::new);
+                sample.wheel_rad_s = [rad_s(row.wheel_rpm); 2];
+                sample.wheel_ref_rad_s = rad_s(row.reference_rpm);
+                sample.pose = pose(row.x_m, row.y_m, row.heading_deg);
+                sample.duty = row.pwm.map(Duty::new);
             }
             Row::Mission(row) => {
                 ranges[SonarId::Left as usize] = Some(row.left_cm);
                 ranges[SonarId::Right as usize] = Some(row.right_cm);
                 ranges[SonarId::Front as usize] = Some(row.front_cm);
-                told.wheel_ref_rad_s = rad_s(row.reference_rpm);
-                told.pose = pose(row.x_m, row.y_m, row.heading_deg);
-                told.state = row.state;
+                sample.wheel_ref_rad_s = rad_s(row.reference_rpm);
+                sample.pose = pose(row.x_m, row.y_m, row.heading_deg);
+                sample.state = row.state;
             }
         }
-        for (told, cm) in told.ranges.iter_mut().zip(ranges) {
+        for (range, cm) in sample.ranges.iter_mut().zip(ranges) {
             if let Some(cm) = cm {
-                *told = AgedRange {
+                *range = AgedRange {
                     range: range_from_cm(cm),
                     age_ticks: 0,
                 };
             }
         }
-        told
+        sample
     }
 }

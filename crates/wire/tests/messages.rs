@@ -9,7 +9,7 @@ use rumbo_control::{AgedRange, Duty, Pose, Range, Wheels};
 use rumbo_wire::frame::MAX_FRAME;
 use rumbo_wire::*;
 
-/// What the receiver makes of a message.
+/// A message as the receiver decodes it.
 fn received<M: Message>(message: &M) -> M {
     let frame = message.frame(3);
     let (_, stuffed) = frame.bytes().split_last().unwrap();
@@ -57,7 +57,7 @@ proptest! {
     }
 
     #[test]
-    fn what_the_robot_says_arrives(sent in from_robot()) {
+    fn what_the_robot_sends_arrives(sent in from_robot()) {
         let back = received(&sent);
         match sent {
             FromRobot::Telemetry(_) | FromRobot::Status(_) | FromRobot::HeadingRef(_) => {
@@ -71,7 +71,7 @@ proptest! {
     }
 
     #[test]
-    fn what_the_station_says_arrives(sent in to_robot()) {
+    fn what_the_station_sends_arrives(sent in to_robot()) {
         prop_assert_eq!(received(&sent), sent);
         prop_assert!(sent.frame(0).bytes().len() <= MAX_FRAME);
     }

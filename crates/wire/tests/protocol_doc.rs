@@ -1,4 +1,4 @@
-//! `docs/protocol.md` says what the code does: its examples, numbers and columns are computed here.
+//! `docs/protocol.md` matches the code: its examples, numbers and columns are computed here.
 #![allow(clippy::unwrap_used, reason = "a test helper")]
 
 use rumbo_control::{AgedRange, Duty, Pose, Range, Wheels};
@@ -21,7 +21,7 @@ fn said(text: &str) {
     assert!(DOC.contains(text), "docs/protocol.md should say:\n{text}");
 }
 
-/// What COBS and the CRC were put around.
+/// The content inside COBS and CRC.
 fn body(frame: &Frame) -> Vec<u8> {
     cobs::decode_vec(frame.bytes().split_last().unwrap().1).unwrap()
 }

@@ -334,7 +334,7 @@ fn clear_and_faulty_keep_their_meaning_in_centimetres() {
     }
 }
 
-/// The recordings of the real robot, when the variable says where they are.
+/// The recordings of the real robot, if the variable points to them.
 #[test]
 fn every_row_of_the_real_recordings_is_read() {
     let Some(folder) = std::env::var_os("RUMBO_DATA") else {

@@ -167,7 +167,7 @@ pub(crate) fn to_robot() -> impl Strategy<Value = ToRobot> {
                 session,
                 number,
                 command,
-                // Of commands that do not carry it nothing is said.
+                // Commands that do not carry it are unconstrained.
                 seen: if command.is_timed() {
                     seen
                 } else {
