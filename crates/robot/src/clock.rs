@@ -4,7 +4,7 @@
 
 use rumbo_control::{Micros, TICK_US};
 
-/// Counts milliseconds that go on where the microseconds wrap.
+/// Counts milliseconds across wraps of the microseconds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Clock {
     now: Micros,
@@ -15,12 +15,12 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
-    /// Takes the time of a tick; gives the time since the one before [us], 0 at the first.
+    /// Updates with the time of a tick; returns the time since the previous one [us], 0 at the first.
     pub(crate) fn advance(&mut self, now: Micros) -> u32 {
         let elapsed_us = if self.started { now.since(self.now) } else { 0 };
         self.started = true;
         self.now = now;
-        // What is usual without a division, which takes the AVR 40 us.
+        // The usual case needs no division, which takes the AVR 40 us.
         let (whole_ms, rest_us) = if elapsed_us == TICK_US {
             (TICK_US / 1_000, self.rest_us + TICK_US % 1_000)
         } else {
@@ -46,7 +46,7 @@ impl Clock {
         self.ms
     }
 
-    /// The same as telemetry tells them.
+    /// The same as sent in telemetry.
     pub(crate) fn t_ms(&self) -> u16 {
         (self.ms & 0xFFFF) as u16
     }

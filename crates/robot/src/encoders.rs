@@ -1,38 +1,40 @@
-//! Encoders that cannot be believed. The robot must not go on with either kind: what it drives by is what they say.
+//! Detects failed encoders. The robot must stop on either kind of failure, since it drives by their edges.
 //!
-//! *Silent*: a rolling wheel owes edges, since no wheel stops at once ([`WheelMotion::overdue`]); that is noticed within two ticks.
-//! A wheel that stands is driven and gives none: it is held, or its encoder is cut, and the speed loop would push ever harder against
-//! what it cannot see. Driven is what gets more duty than any free wheel needs, and what its speed loop has been asked to turn for
-//! long enough: the loop finds the duty by itself, and slow turns take little.
+//! *Silent*: a rolling wheel must produce edges, since no wheel stops at once ([`WheelMotion::overdue`]); their absence is
+//! detected within two ticks. A standing wheel that is driven and produces none is blocked, or its encoder is cut, and
+//! the speed loop would push ever harder blindly. A wheel counts as driven when it gets more duty than any free wheel
+//! needs, or when its speed loop has had a reference for long enough: the loop finds the duty by itself, and slow turns
+//! take little.
 //!
-//! *Implausible*: edges are missing, or are noise. A disc that turns with a motor keeps time: the edges of a tick come as the last turn of
-//! the motor leads to expect, whatever friction, floor and battery do to the speed. Where they do not, again and again ([`WheelMotion::uneven`]), some
-//! are lost, or none of the disc's. Of 2.5 million ticks of fast wheels in healthy runs none is uneven; with poles displaced by up to 22 % of
-//! their pitch 0.23 % are at most; with a tenth of the edges lost 5 %, and more with every other fault: docs/theory/wheel_speed.md.
+//! *Implausible*: edges are missing, or are noise. The edges of a disc on a motor are regular: those of a tick come as
+//! predicted by the motor's last turn, whatever friction, floor and battery do to the speed. Where they repeatedly do not
+//! ([`WheelMotion::uneven`]), edges are lost or spurious. Of 2.5 million ticks of fast wheels in healthy runs none is
+//! uneven; with poles displaced by up to 22 % of their pitch at most 0.23 % are; with a tenth of the edges lost 5 %, and
+//! more with every other fault: docs/theory/wheel_speed.md.
 //!
-//! What this cannot see is an encoder that loses every second edge for ever, which keeps time. The motor's model cannot either: the duty that a
-//! speed takes differs by more between sound robots.
+//! An encoder that constantly loses every second edge stays regular and is not detected. A motor model cannot detect it
+//! either: the duty for a speed differs by more between sound robots.
 
 use rumbo_control::math::abs;
 use rumbo_control::speed::WheelMotion;
 use rumbo_control::{Duty, Fault, SIDES, Side, TICK_S, Wheels};
 
-/// Duty that moves any free wheel in the end: the original needed 65 of 255 on the floor, 35 in the air.
+/// Duty that eventually moves any free wheel: the original needed 65 of 255 on the floor, 35 in the air.
 const HARD: u16 = Duty::MAX as u16 * 2 / 5;
-/// Duty beyond [`HARD`], summed over the ticks without an edge, that is too much: 7 % of full duty for a second. To break away takes
-/// sound robots 2 % at most, and 6 % with twice the friction of the floor or a battery of 5.2 V.
+/// Limit of duty beyond [`HARD`], summed over the ticks without an edge: 7 % of full duty for a second. Sound robots
+/// break away with 2 % at most, and with 6 % at twice the floor's friction or a battery of 5.2 V.
 const PUSHED: u16 = 1_700;
-/// Ticks of being asked to turn without an edge that are too many: 0.4 s.
+/// Limit of ticks with a speed reference but no edge: 0.4 s.
 const PATIENCE_TICKS: u8 = 40;
-/// Speed references below this are for standing [rad/s].
+/// Speed references below this count as standing [rad/s].
 const STANDING_RAD_S: f32 = 0.5;
-/// Angle that a wheel has been asked to turn, one way, without an edge: 73 of them [rad].
+/// Limit of the commanded angle in one direction without an edge: 73 edges [rad].
 const ASKED_RAD: f32 = 1.2;
-/// Overdue edges of a rolling wheel that make its encoder silent.
+/// Overdue edges of a rolling wheel after which its encoder is silent.
 const OVERDUE: u8 = 3;
-/// What an uneven tick adds to an encoder's doubt; any other one takes one off.
+/// What an uneven tick adds to an encoder's doubt; any other tick subtracts one.
 const UNEVEN: u8 = 24;
-/// Doubt that makes an encoder implausible: six uneven ticks soon after each other, or one of twenty for long.
+/// Doubt above which an encoder is implausible: six uneven ticks in quick succession, or one in twenty for long.
 const IMPLAUSIBLE: u8 = 144;
 
 /// Watches both encoders.
@@ -42,12 +44,12 @@ pub(crate) struct EncoderWatch {
     doubt: Wheels<u8>,
 }
 
-/// What a wheel did not answer, since its last edge.
+/// Drive without response since a wheel's last edge.
 #[derive(Clone, Copy, Debug, Default)]
 struct Missing {
     /// Duty beyond [`HARD`], summed over the ticks [counts].
     pushed: u16,
-    /// Ticks of a speed reference, less those in which it was asked to stand.
+    /// Ticks with a speed reference, less those with a reference to stand.
     asked_ticks: u8,
     /// Angle that it amounts to [rad].
     asked_rad: f32,
@@ -61,7 +63,7 @@ impl Missing {
             self.pushed = 0;
         }
         if reference_rad_s == 0.0 {
-            // Orders too small to break away, with rests as long, do not add up.
+            // References too small to break away, alternating with rests as long, do not add up.
             self.asked_ticks = self.asked_ticks.saturating_sub(1);
             if self.asked_ticks == 0 {
                 self.asked_rad = 0.0;
@@ -77,7 +79,7 @@ impl Missing {
 }
 
 impl EncoderWatch {
-    /// One tick: `motion` since the one before, and what drives each wheel. References are 0 in open loop.
+    /// One tick: `motion` since the previous one, and the drive of each wheel. References are 0 in open loop.
     ///
     /// # Errors
     /// An encoder is silent or implausible.
@@ -106,7 +108,7 @@ impl EncoderWatch {
             } else {
                 self.missing[side].step(duty[side], reference_rad_s[side]) || overdue >= OVERDUE
             };
-            // An encoder that loses edges may lose some in a row.
+            // A faulty encoder may lose several edges in a row.
             let implausible = *doubt >= IMPLAUSIBLE || (silent && *doubt >= UNEVEN);
             match (side, implausible) {
                 (Side::Left, true) => return Err(Fault::LeftEncoderImplausible),
@@ -150,7 +152,7 @@ mod tests {
         (0..150).find_map(|_| watch.step(motion, duty, Wheels::both(0.0)).err())
     }
 
-    /// After how many ticks of this duty a right wheel without edges is noticed whose loop is asked for these speeds in turn [rad/s].
+    /// Ticks until a right wheel without edges is detected, at this duty and with these speed references in turn [rad/s].
     fn noticed(duty: i16, references_rad_s: &[f32]) -> Option<usize> {
         let mut watch = EncoderWatch::default();
         let asked = references_rad_s.iter().cycle().take(2_000);
@@ -163,7 +165,7 @@ mod tests {
         asked.map(step).position(|fault| fault)
     }
 
-    /// The tick in which a left encoder is called implausible that is uneven once in so many ticks.
+    /// The tick at which a left encoder that is uneven once in so many ticks is found implausible.
     fn doubted(ticks: usize) -> Option<usize> {
         let mut watch = EncoderWatch::default();
         let step = |tick: usize| {

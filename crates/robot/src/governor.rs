@@ -1,4 +1,4 @@
-//! The last word on the wheels: whatever was decided above, what leaves here does no harm.
+//! The last check of the duty: whatever was decided above, what leaves here does no harm.
 //!
 //! | rule | reason |
 //! |---|---|
@@ -7,14 +7,14 @@
 
 use rumbo_control::{Duty, SIDES, Wheels};
 
-/// Remembers what left last.
+/// Keeps the last output.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Governor {
     last: Wheels<Duty>,
 }
 
 impl Governor {
-    /// What of `wanted` may leave.
+    /// The part of `wanted` that may leave.
     pub(crate) fn pass(&mut self, wanted: Wheels<Duty>, armed: bool) -> Wheels<Duty> {
         let mut passed = Wheels::both(Duty::RELEASED);
         if armed {

@@ -1,4 +1,4 @@
-//! The sensor latch: what the interrupts' stamps mean at a tick, natively and on the chip.
+//! The sensor latch: turns the interrupts' stamps into the inputs of a tick, natively and on the chip.
 //!
 //! ```text
 //! encoder: edge -> stamp  -> EdgeCounter: count, last edge, time of a motor turn
@@ -13,8 +13,8 @@ use rumbo_control::{Echo, Edges, Micros, OUTPUT_DELAY_US, SonarId};
 const POLES: usize = 8;
 /// The echo line must have risen by this time after the ping, or the sonar is silent [us].
 const RISE_US: u32 = 5_000;
-/// An echo line that is still high after this time has nothing within reach to say [us]: 2.51 m. That is known two
-/// ticks after its ping.
+/// An echo line still high after this time means that nothing is within range [us]: 2.51 m. That is known two ticks
+/// after its ping.
 const REACH_US: u32 = 14_600;
 
 /// Counts of the chip's timer per microsecond.
@@ -81,7 +81,7 @@ impl EdgeCounter {
         self.edges.turn_us = 0;
     }
 
-    /// What the robot gets of them.
+    /// The robot's view of them.
     pub fn edges(&self) -> Edges {
         self.edges
     }
@@ -112,7 +112,7 @@ impl<T: Copy> EchoLine<T> {
         }
     }
 
-    /// The same with other stamps.
+    /// The same line with converted stamps.
     pub fn map<U>(self, stamp: impl Fn(T) -> U) -> EchoLine<U> {
         match self {
             EchoLine::Idle => EchoLine::Idle,
@@ -123,8 +123,8 @@ impl<T: Copy> EchoLine<T> {
     }
 }
 
+/// The sonar's answer, if it is decided by now.
 impl EchoLine<Micros> {
-    /// What the sonar has answered by now, if that is decided.
     fn echo(self, now: Micros) -> Option<Echo> {
         match self {
             EchoLine::Fallen(rise, fall) => Some(Echo::Pulse(fall.since(rise))),
@@ -135,20 +135,20 @@ impl EchoLine<Micros> {
     }
 }
 
-/// Whether so much time lies between `from` and `now`; `from` may come after the tick.
+/// Whether this much time lies between `from` and `now`; `from` may be after the tick.
 fn passed(from: Micros, now: Micros, us: u32) -> bool {
     let since_us = now.since(from);
     since_us >= us && since_us < u32::MAX / 2
 }
 
-/// The sonars whose answers are waited for: one that left late may answer after the next one has left.
+/// The sonars with a pending answer: a late ping may be answered after the next one has left.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EchoLatch {
     waiting: [bool; 3],
 }
 
 impl EchoLatch {
-    /// A sonar has been asked for a ping.
+    /// A ping has been requested.
     pub fn asked(&mut self, sonar: SonarId) {
         self.waiting[sonar as usize] = true;
     }
@@ -213,7 +213,7 @@ mod tests {
         );
     }
 
-    /// What a sonar that has been asked answers at `now_us`.
+    /// The answer at `now_us` of a sonar that was pinged.
     fn answer(line: EchoLine<Micros>, now_us: u32) -> Option<Echo> {
         let mut latch = EchoLatch::default();
         latch.asked(SonarId::Front);

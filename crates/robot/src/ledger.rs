@@ -1,10 +1,9 @@
 //! Each command is applied exactly once, however often the link repeats it.
 //!
 //! The station sends one command at a time and repeats it until it is acknowledged; numbers grow within a session.
-//! So one acknowledgement is all that must be remembered: the number it carries is a repetition, a lower one is a
-//! latecomer whose turn is over, a higher one is new. STOP is applied whenever it comes, from any session; it ends
-//! the turn of everything before it, and it does not make another session forget its numbers, lest an old start be
-//! repeated after the stop.
+//! So a single acknowledgement is all the state: a command with its number is a repetition, a lower number is stale, a
+//! higher one is new. STOP is applied whenever it arrives, from any session; it makes everything before it stale, and
+//! it does not reset another session's numbers, so that no old start is repeated after the stop.
 
 use rumbo_wire::{Ack, Command};
 
@@ -13,13 +12,13 @@ use rumbo_wire::{Ack, Command};
 pub(crate) enum Verdict {
     /// Apply it, then [`Ledger::record`] its acknowledgement.
     New,
-    /// It was applied: answer this again.
+    /// It was applied: send this answer again.
     Repeated(Ack),
-    /// Its turn is over: no answer, no effect.
+    /// Stale: no answer, no effect.
     Late,
 }
 
-/// Remembers the last command.
+/// Keeps the last command's acknowledgement.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Ledger {
     last: Option<Ack>,
@@ -41,7 +40,7 @@ impl Ledger {
         }
     }
 
-    /// Remembers the answer to a command that [`Ledger::judge`] called new.
+    /// Records the answer to a command that [`Ledger::judge`] found new.
     pub(crate) fn record(&mut self, ack: Ack, command: &Command) {
         let of_this_session = self.last.is_none_or(|last| last.session == ack.session);
         let not_older = self

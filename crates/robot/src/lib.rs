@@ -2,7 +2,7 @@
 //!
 //! bytes -> [`Robot::receive`]: decoder -> ledger (each command once) -> supervisor, mode, parameters;
 //! sensors -> [`Robot::tick`]: supervisor (link alive?) -> pilot (estimate, mode, drive layer) -> governor -> reporter -> outbox;
-//! [`Robot::transmit`] -> bytes; [`latch`]: what the interrupts' stamps mean at the tick;
+//! [`Robot::transmit`] -> bytes; [`latch`]: the interrupts' stamps as inputs of the tick;
 //! [`Robot::recall`] and [`Robot::store`]: parameters from and to the EEPROM.
 //!
 //! No clock, no pins, no waiting, no allocation: the firmware, the emulated chip and the simulator run this same

@@ -1,23 +1,23 @@
-//! Bytes that wait for the link: a fixed ring that the HAL empties at line rate, one byte at a time.
+//! The transmit queue: a fixed ring that the HAL drains at line rate, one byte at a time.
 //!
-//! Nothing ever waits here. What does not fit is not sent, and what matters less needs more room: telemetry gives
-//! way first, so that acknowledgements, events and status still find a place when the link is slow or silent.
+//! Nothing blocks here. What does not fit is dropped, and lower priorities need more free space: telemetry yields
+//! first, so that acknowledgements, events and status still fit when the link is slow or silent.
 
 /// Bytes in the ring: a text row (128) behind a few frames. An index of 8 bits wraps by itself.
 const SIZE: usize = 256;
-/// Room that telemetry leaves to all the rest: HELLO, status, two events and two acknowledgements take 86 bytes.
+/// Space that telemetry leaves free for the rest: HELLO, status, two events and two acknowledgements take 86 bytes.
 const TELEMETRY_RESERVE: usize = 96;
-/// Room that the status leaves to events and acknowledgements, two of each: 44 bytes.
+/// Space that the status leaves free for events and acknowledgements, two of each: 44 bytes.
 const STATUS_RESERVE: usize = 48;
 
-/// How important something is.
+/// Priority of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Priority {
-    /// Gives way first: the next one is newer anyway.
+    /// Yields first: the next one is newer anyway.
     Telemetry,
-    /// Gives way next: it is repeated.
+    /// Yields next: it is repeated.
     Status,
-    /// Takes any room there is.
+    /// Uses all free space.
     Answer,
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct Outbox {
 }
 
 impl Outbox {
-    /// With a 0x00 in it, which ends the frame that a reset may have cut off: the first one must not go down with it.
+    /// A ring that starts with 0x00, which ends a frame cut off by a reset, so that the first new frame is not lost with it.
     pub(crate) fn new() -> Self {
         Self {
             bytes: [0; SIZE],
@@ -39,7 +39,7 @@ impl Outbox {
         }
     }
 
-    /// Queues all of `bytes` or none; whether it did.
+    /// Queues all of `bytes`, or none; returns whether it did.
     pub(crate) fn push(&mut self, priority: Priority, bytes: &[u8]) -> bool {
         let reserve = match priority {
             Priority::Telemetry => TELEMETRY_RESERVE,
@@ -71,7 +71,7 @@ impl Outbox {
         byte
     }
 
-    /// Nothing waits.
+    /// The ring is empty.
     pub(crate) fn is_empty(&self) -> bool {
         self.len == 0
     }

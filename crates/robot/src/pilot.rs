@@ -1,8 +1,8 @@
 //! The control core put together: estimators -> mode -> drive layer, with the parameters and the setpoint.
 //!
-//! The outputs of a tick wait for the estimators and the drive layer only. The mode decides after they have left, on what the estimators
-//! said, and what it asks for is driven from the next tick on: it may take as long as is left of the period, and its loops are 10 ms
-//! later than those of the wheels' speeds.
+//! The outputs of a tick wait for the estimators and the drive layer only. The mode decides after they have left, from
+//! the same estimates, and its request is driven from the next tick on: it may take the rest of the period, and its
+//! loops lag those of the wheel speeds by 10 ms.
 
 use rumbo_control::drive::DriveLayer;
 use rumbo_control::estimate::{Estimate, Estimator};
@@ -25,18 +25,18 @@ const REFRESH_TICKS: u8 = 4;
 /// The first time between two samples of telemetry.
 const FIRST_REFRESH_TICKS: u8 = 2;
 
-/// Reference of the chip's converter, its supply, and the steps that it is cut into.
+/// Reference of the chip's converter, its supply, and its resolution.
 const CONVERTER_V: f32 = 5.0;
 const CONVERTER_COUNTS: f32 = 1_024.0;
 
-/// What drives, and what it remembers.
+/// Controllers and their state.
 #[derive(Clone, Debug)]
 pub(crate) struct Pilot {
     params: Params,
     estimator: Estimator,
     estimate: Estimate,
     mode: ActiveMode,
-    /// What the mode asked for after the last tick.
+    /// The mode's request after the last tick.
     action: Action,
     reached: bool,
     unreachable: bool,
@@ -49,17 +49,17 @@ pub(crate) struct Pilot {
     refresh_in: u8,
 }
 
-/// What the mode has found out.
+/// An outcome of the mode.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
-    /// It has reached its reference at this tick.
+    /// It reached its reference at this tick.
     pub(crate) reached: bool,
-    /// It has found out at this tick that its goal cannot be reached.
+    /// It found at this tick that its goal cannot be reached.
     pub(crate) unreachable: bool,
 }
 
 impl Default for Pilot {
-    // Not derived: that would be inlined, and the robot be put together on the stack first, in two kilobytes.
+    // Not derived: it would be inlined, and the robot built on the stack first, in two kilobytes.
     fn default() -> Self {
         Self {
             params: Params::default(),
@@ -81,8 +81,8 @@ impl Default for Pilot {
 }
 
 impl Pilot {
-    /// One tick, as far as the outputs wait for it: estimates, and drives as the mode asked after the tick before. Unless `armed`, and
-    /// on a fault, the wheels are released.
+    /// The part of a tick that the outputs depend on: estimates, and drives as the mode requested after the previous tick.
+    /// Releases the wheels on a fault and unless `armed`.
     pub(crate) fn step(&mut self, inputs: &Inputs, armed: bool) -> (Outputs, Option<Fault>) {
         self.estimator.step(
             &self.params,
@@ -107,10 +107,10 @@ impl Pilot {
         (outputs, fault)
     }
 
-    /// The rest of a tick: the encoders are judged, and the mode decides what the next one is to do.
+    /// The rest of a tick: checks the encoders, and lets the mode decide the request for the next tick.
     ///
     /// # Errors
-    /// Why the robot cannot go on.
+    /// Why the robot must stop.
     pub(crate) fn think(&mut self, armed: bool) -> Result<Found, Fault> {
         self.action = self.at_rest();
         if armed {
@@ -145,7 +145,7 @@ impl Pilot {
         self.estimate.reading.is_some()
     }
 
-    /// Of the sonars that are wanted, those that the rig has.
+    /// The wanted sonars that the rig has.
     fn carried(&self, mut wanted: [bool; 3]) -> [bool; 3] {
         for &sonar in &SonarId::ALL {
             wanted[sonar as usize] &= self.params.carries(sonar);
@@ -196,13 +196,13 @@ impl Pilot {
 
     fn release(&mut self) {
         self.encoders = EncoderWatch::default();
-        // Releasing cannot fail: it asks for no number. Even so the wheels are released.
+        // Releasing cannot fail, as it involves no number. Even if it did, the wheels are released.
         if self.apply(&Drive::Release, None).is_err() {
             self.duty = Wheels::both(Duty::RELEASED);
         }
     }
 
-    /// What of the duty was let through.
+    /// The duty that was let through.
     pub(crate) fn drove(&mut self, duty: Wheels<Duty>) {
         self.duty = duty;
     }
@@ -213,14 +213,14 @@ impl Pilot {
         (self.params.get(ParamId::BatteryRatio) > 0.0).then_some((input & 0xF) as u8)
     }
 
-    /// What a conversion by it means [V].
+    /// Battery voltage from its conversion [V].
     pub(crate) fn battery_v(&self, counts: u16) -> f32 {
         f32::from(counts)
             * (CONVERTER_V / CONVERTER_COUNTS)
             * self.params.get(ParamId::BatteryRatio)
     }
 
-    /// What telemetry shows of the last tick.
+    /// The last tick's signals for telemetry.
     pub(crate) fn signals(&self) -> Signals {
         Signals {
             telemetry: Telemetry {
@@ -260,20 +260,20 @@ impl Pilot {
             Err(Refusal::WrongRig)
         } else if self.mode.is_ready(&self.params, &self.estimate) {
             Ok(())
-        } else if self.hears_nothing() {
+        } else if self.lacks_readings() {
             Err(Refusal::SonarNotReady)
         } else {
             Err(Refusal::NoWall)
         }
     }
 
-    /// Of the sonars that the mode needs, one gives no reading at all, not even that nothing is near.
-    fn hears_nothing(&self) -> bool {
+    /// One of the sonars that the mode needs gives no reading at all, not even *clear*.
+    fn lacks_readings(&self) -> bool {
         let needed = self.carried(self.mode.look().sonars);
         SonarId::ALL.iter().any(|&sonar| {
             let stale_s = self.params.get(ParamId::StaleRange);
-            let heard = self.estimate.range(sonar);
-            needed[sonar as usize] && (heard.range == Range::Faulty || heard.is_older(stale_s))
+            let reading = self.estimate.range(sonar);
+            needed[sonar as usize] && (reading.range == Range::Faulty || reading.is_older(stale_s))
         })
     }
 
@@ -285,12 +285,12 @@ impl Pilot {
         self.unreachable = false;
     }
 
-    /// The sonars that the robot believes to carry.
+    /// The sonars of the configured rig.
     pub(crate) fn rig(&self) -> Rig {
         self.params.rig()
     }
 
-    /// Applies a command that is for the mode; gives the value in force, 0 where there is none.
+    /// Applies a command for the mode; returns the value in force, 0 where there is none.
     pub(crate) fn command(&mut self, command: &Command) -> Result<f32, Refusal> {
         let mode = &mut self.mode;
         let done = match *command {
@@ -320,13 +320,13 @@ impl Pilot {
         Ok(self.params.get(id))
     }
 
-    /// Sets a parameter; gives the value in force.
+    /// Sets a parameter; returns the value in force.
     pub(crate) fn set_param(&mut self, number: u8, value: f32) -> Result<f32, Refusal> {
         let id = ParamId::from_number(number).ok_or(Refusal::UnknownParam)?;
         self.params.set(id, value).map_err(refusal_of_param)
     }
 
-    /// The parameters, for whoever keeps them.
+    /// The parameters, for saving.
     pub(crate) fn params_mut(&mut self) -> &mut Params {
         &mut self.params
     }
@@ -347,18 +347,18 @@ impl Pilot {
         self.params.reset();
     }
 
-    /// The robot stands here, as seen from its origin.
+    /// Sets the estimated pose, relative to the origin.
     #[cfg(not(target_arch = "avr"))]
     pub(crate) fn set_pose(&mut self, pose: rumbo_control::Pose) {
         self.estimator.set_pose(pose);
     }
 
-    /// Calls the present place the origin.
+    /// Makes the present pose the origin.
     pub(crate) fn reset_pose(&mut self) {
         self.estimator.reset_pose();
     }
 
-    /// Silence of the link that stops the robot [us].
+    /// Link time-out [us].
     pub(crate) fn link_timeout_us(&self, id: ParamId) -> u32 {
         // At most an hour, which 32 bits hold.
         round(self.params.get(id) * 1_000.0).unsigned_abs() * 1_000

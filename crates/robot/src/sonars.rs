@@ -1,7 +1,7 @@
-//! Which sonar pings when: one at a time, so that none hears another's echo.
+//! Schedules the sonars: one at a time, so that none receives another's echo.
 //!
-//! The HC-SR04 wants 60 ms between its pings; two sonars are kept 20 ms apart. Among those that are wanted the one
-//! that has waited longest goes first.
+//! The HC-SR04 needs 60 ms between its pings; two sonars are kept 20 ms apart. Of the wanted ones the one that has
+//! waited longest goes first.
 
 use rumbo_control::SonarId;
 

@@ -1,4 +1,4 @@
-//! Parameters that last: two copies in the EEPROM, of which a save overwrites the one that does not count.
+//! Persistent parameters: two copies in the EEPROM, of which a save overwrites the inactive one.
 //!
 //! | byte of a copy | what |
 //! |---|---|
@@ -8,9 +8,9 @@
 //! | 6.. | the values, `f32` in the order of their numbers |
 //! | last 2 | CRC-16/MCRF4XX of all from byte 1 on |
 //!
-//! A save first marks its copy as unfinished, then writes it, and marks it as whole with the last byte; the other copy is not
-//! touched. So whenever the power goes, the parameters of before or those of after are there. Who drives the EEPROM takes a
-//! byte from here when the one before is done; nothing waits for it.
+//! A save first marks its copy as unfinished, then writes it, and marks it as complete with the last byte; the other copy
+//! is not touched. So whenever power fails, either the old or the new parameters are there. The EEPROM driver takes a
+//! byte from here when the previous one is done; nothing waits for it.
 
 use rumbo_control::params::{COUNT, ParamId, Params, SCHEMA};
 use rumbo_wire::{Recalled, crc16};
@@ -25,10 +25,9 @@ const VALUES: u16 = 6;
 const CHECK: u16 = VALUES + 4 * COUNT as u16;
 /// Bytes of a copy.
 const LEN: u16 = CHECK + 2;
-/// Where the copies begin. Not at 0, which a reset selects: a write that a failing supply makes by itself goes there.
+/// Where the copies begin. Not at 0, the address after a reset: a spurious write by a failing supply goes there.
 const PLACES: [u16; 2] = [16, 2_064];
-/// Where the number of the robot's last start is, which sets its times apart from those of other starts; the
-/// hardware's layer keeps it.
+/// Address of the robot's start counter, which separates its times from those of other starts; maintained by the HAL.
 pub const START_AT: u16 = 8;
 const _: () = assert!(START_AT < PLACES[0]);
 const _: () = assert!(PLACES[0] + LEN <= PLACES[1] && PLACES[1] + LEN <= 4_096 && COUNT < 256);
@@ -43,31 +42,31 @@ pub struct Cell {
     pub value: u8,
 }
 
-/// What a copy turned out to be.
+/// State of a copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Found {
     /// Never written, or its save was cut off.
     None,
     /// Damaged, or of another table of parameters.
     Bad,
-    /// Good, with its number.
+    /// Valid, with its number.
     Good(u8),
 }
 
-/// Which copy counts, and how far a save is.
+/// Which copy is active, and the progress of a save.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Store {
-    /// The second copy counts.
+    /// The second copy is active.
     second: bool,
     /// Its number.
     number: u8,
-    /// Of a save: bytes handed out, and one more; 0: there is none.
+    /// Progress of a save: bytes handed out plus one; 0 without a save.
     step: u16,
     crc: u16,
 }
 
 impl Store {
-    /// Reads the copies with `read` and puts the values of the one that counts into `params`. Says which one that was; `None`
+    /// Reads the copies with `read` and loads the values of the active one into `params`. Returns which one it was; `None`
     /// if nothing has ever been saved.
     pub(crate) fn recall(
         &mut self,
@@ -98,7 +97,7 @@ impl Store {
             for number in 0..COUNT {
                 let bytes = [read(at), read(at + 1), read(at + 2), read(at + 3)];
                 at += 4;
-                // The table is the same, so the value is within its limits; were it not, the default stays.
+                // The table is the same, so the value is within its limits; if it were not, the default would stay.
                 if let Some(id) = ParamId::from_number(number as u8) {
                     let _ = params.set(id, f32::from_le_bytes(bytes));
                 }
@@ -107,17 +106,17 @@ impl Store {
         Some(recalled)
     }
 
-    /// Begins a save; one that is under way begins anew.
+    /// Begins a save; restarts one in progress.
     pub(crate) fn save(&mut self) {
         self.step = 1;
     }
 
-    /// A parameter has changed: a save that is under way begins anew, so that it is of one moment.
+    /// A parameter has changed: restarts a save in progress, so that a save is consistent.
     pub(crate) fn changed(&mut self) {
         self.step = self.step.min(1);
     }
 
-    /// The next byte of a save, once the one before is done; and whether it is done as a whole.
+    /// The next byte of a save, once the previous one is done, or the end of the save.
     pub(crate) fn next(&mut self, params: &Params) -> (Option<Cell>, bool) {
         let at = match self.step {
             0 => return (None, false),
@@ -171,7 +170,7 @@ impl Store {
     }
 }
 
-/// What the copy at `place` is.
+/// State of the copy at `place`.
 fn check(place: u16, read: &mut impl FnMut(u16) -> u8) -> Found {
     match read(place) {
         LAYOUT => {}
@@ -273,7 +272,7 @@ mod tests {
         let (memory, mut store) = saved(&[0.11, 0.12]);
         let cells = save(&mut store, &with_base(0.13));
         for cut in 0..=cells.len() {
-            // Whatever the byte held on which the power went.
+            // Whatever the byte held when power failed.
             for torn in [None, Some(0x00), Some(LAYOUT), Some(0x5A)] {
                 let mut memory = memory.clone();
                 write(&mut memory, &cells[..cut]);
@@ -331,7 +330,7 @@ mod tests {
         }
         let (_, params, _) = recalled(&memory);
         assert_eq!(params, with_base(0.13));
-        // Without a save under way there is nothing to begin anew.
+        // Without a save in progress there is nothing to restart.
         store.changed();
         assert_eq!(store.next(&params), (None, false));
     }

@@ -2,10 +2,10 @@
 //!
 //! # Theory of operation
 //!
-//! The robot starts disarmed, whatever reset it. Only a command arms it, and only while the other end of the link
-//! has been alive before it, the mode's sensors give good readings, and no fault is latched. While armed, any fault releases the
-//! wheels and latches with its cause until a command clears it; a link that falls silent for longer than its
-//! time-out is such a fault. Nothing but a command arms again: not the return of the link, not the clearing.
+//! The robot starts disarmed after any reset. Only a command arms it, and only if the other end of the link is alive,
+//! the mode's sensors give good readings, and no fault is latched. While armed, any fault releases the wheels and
+//! latches with its cause until a command clears it; a link silent for longer than its time-out is such a fault.
+//! Only a command arms again: neither the return of the link nor the clearing does.
 //!
 //! | from | what happens | to | effect |
 //! |---|---|---|---|
@@ -22,7 +22,7 @@
 use rumbo_control::{Fault, Micros};
 use rumbo_wire::{EventKind, Refusal};
 
-/// Where the supervisor stands.
+/// The supervisor's state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum State {
     /// The wheels are released.
@@ -34,12 +34,12 @@ pub(crate) enum State {
     Faulted(Fault),
 }
 
-/// The state machine and the life of the link.
+/// The state machine and the liveness of the link.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Supervisor {
     state: State,
-    /// The tick that saw the last sign of life; `None` when that is too long ago, so that a wrap of the clock
-    /// never makes an old one young.
+    /// The tick of the last sign of life; `None` when that is too long ago, so that a wrap of the clock never makes an
+    /// old one recent.
     alive_at: Option<Micros>,
 }
 
@@ -57,7 +57,7 @@ impl Supervisor {
         }
     }
 
-    /// Notes a sign of life.
+    /// Records a sign of life.
     pub(crate) fn sign_of_life(&mut self, now: Micros) {
         self.alive_at = Some(now);
     }
@@ -74,10 +74,10 @@ impl Supervisor {
         }
     }
 
-    /// Arms; `ready` is what the mode says about its sensors.
+    /// Arms; `ready` is the mode's check of its sensors.
     ///
     /// # Errors
-    /// The reason why not.
+    /// The reason for the refusal.
     pub(crate) fn arm(&mut self, ready: Result<(), Refusal>) -> Result<Option<EventKind>, Refusal> {
         match self.state {
             State::Armed => Ok(None),
@@ -102,7 +102,7 @@ impl Supervisor {
         Some(EventKind::Disarmed)
     }
 
-    /// Latches a fault if armed; *disarmed* follows the event that this gives.
+    /// Latches a fault if armed; *disarmed* follows the returned event.
     pub(crate) fn fail(&mut self, fault: Fault) -> Option<EventKind> {
         if !self.is_armed() {
             return None;
@@ -111,7 +111,7 @@ impl Supervisor {
         Some(EventKind::Faulted(fault))
     }
 
-    /// Forgets the latched fault.
+    /// Clears the latched fault.
     pub(crate) fn clear(&mut self) -> Option<EventKind> {
         let fault = self.fault()?;
         self.state = State::Disarmed;

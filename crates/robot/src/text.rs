@@ -1,4 +1,4 @@
-//! Commands in the words of the original, in the units of the core.
+//! Commands of the original text protocol, in the units of the core.
 
 use rumbo_control::mode::{ModeId, ReferenceKind};
 use rumbo_control::params::ParamId;
@@ -10,7 +10,7 @@ use rumbo_wire::{Command, Refusal};
 const GAIN_PER_PWM_PER_RPM: f32 = 1.0 / (255.0 * RAD_S_PER_RPM);
 const _: () = assert!(Duty::MAX == 255);
 
-/// What a line asks for.
+/// What a line requests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Translated {
     /// The same as this command.
@@ -19,10 +19,10 @@ pub(crate) enum Translated {
     Params([(ParamId, f32); 3]),
 }
 
-/// Translates a line; what `REF` means depends on the mode, and `REF A` keeps the left wheel's `reference`.
+/// Translates a line; the meaning of `REF` depends on the mode, and `REF A` keeps the left wheel's `reference`.
 ///
 /// # Errors
-/// The mode takes no such command, or there is no such mode.
+/// The mode has no such command, or there is no such mode.
 pub(crate) fn translate(
     command: TextCommand,
     mode: ModeId,

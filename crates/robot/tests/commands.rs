@@ -204,7 +204,7 @@ proptest! {
     }
 }
 
-/// Lets a save go on until the robot says that it is whole.
+/// Runs until the robot reports that its save is complete.
 fn save(bench: &mut Bench, memory: &mut [u8]) {
     for _ in 0..600 {
         if let Some(cell) = bench.robot.store() {
@@ -226,7 +226,7 @@ fn saved_parameters_are_there_after_the_next_start_by_either_language() {
             .unwrap();
         if in_text {
             b"SAVE\n".iter().for_each(|byte| bench.robot.receive(*byte));
-            // Back to frames, to hear that it is done.
+            // Back to frames, to receive the event that it is done.
             bench.command(Command::GetParam { id }).unwrap();
         } else {
             bench.command(Command::SaveParams).unwrap();
@@ -241,8 +241,8 @@ fn saved_parameters_are_there_after_the_next_start_by_either_language() {
                 .events()
                 .contains(&EventKind::Recalled(Recalled::Second))
         );
-        // Asked again, it tells again.
-        bench.heard.clear();
+        // Requested again, it is sent again.
+        bench.received.clear();
         bench.send(&ToRobot::Hello);
         bench.ticks(50);
         assert!(
@@ -352,10 +352,10 @@ fn a_repeated_command_is_answered_as_before_however_old_it_has_become() {
 }
 
 #[test]
-fn the_status_after_hello_has_the_time_since_the_start() {
+fn the_status_after_hello_carries_the_time_since_the_start() {
     let mut bench = Bench::alive();
     bench.ticks(25);
-    bench.heard.clear();
+    bench.received.clear();
     bench.send(&ToRobot::Hello);
     bench.ticks(15);
     let at = bench.status().at;

@@ -1,4 +1,4 @@
-//! What the robot says: how often, in how many bytes, in which language.
+//! What the robot sends: how often, in how many bytes, as frames or text.
 
 mod support;
 
@@ -18,11 +18,11 @@ fn introduces_itself_first_and_when_asked() {
         image: 0,
         reset: ResetCause::PowerOn,
     };
-    assert_eq!(bench.heard.first(), Some(&FromRobot::Hello(hello)));
-    bench.heard.clear();
+    assert_eq!(bench.received.first(), Some(&FromRobot::Hello(hello)));
+    bench.received.clear();
     bench.send(&ToRobot::Hello);
     bench.ticks(20);
-    assert!(bench.heard.contains(&FromRobot::Hello(hello)));
+    assert!(bench.received.contains(&FromRobot::Hello(hello)));
 }
 
 #[test]
@@ -30,11 +30,11 @@ fn sends_25_telemetry_frames_a_second_in_750_bytes_and_two_statuses_beside() {
     let mut bench = Bench::alive();
     bench.drive();
     bench.ticks(100);
-    bench.heard.clear();
+    bench.received.clear();
     let before = bench.bytes;
     bench.ticks(1_000);
     let telemetry = bench.telemetry().len();
-    let statuses = bench.heard.len() - telemetry;
+    let statuses = bench.received.len() - telemetry;
     assert!(
         (249..=251).contains(&telemetry),
         "{telemetry} telemetry frames in 10 s"
@@ -83,9 +83,9 @@ fn answers_in_the_language_in_which_it_was_addressed() {
     bench.heartbeats = false;
     bench.line("MODE 5");
     bench.ticks(30);
-    let frames = bench.heard.len();
+    let frames = bench.received.len();
     bench.ticks(100);
-    assert_eq!(bench.heard.len(), frames, "no frames for a terminal");
+    assert_eq!(bench.received.len(), frames, "no frames for a terminal");
     assert!(bench.lines.len() >= 8);
     let Ok(Row::Speed(row)) = Row::parse(bench.lines.last().unwrap()) else {
         panic!("{:?}", bench.lines.last())
@@ -93,7 +93,7 @@ fn answers_in_the_language_in_which_it_was_addressed() {
     assert_eq!((row.mode, row.dt_ms), (5, 100));
     bench.send(&ToRobot::Heartbeat);
     bench.ticks(50);
-    assert!(bench.heard.len() > frames);
+    assert!(bench.received.len() > frames);
 }
 
 #[test]

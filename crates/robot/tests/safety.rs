@@ -8,7 +8,7 @@ use rumbo_wire::{Command, EventKind, Refusal, ToRobot};
 use support::{Bench, SESSION};
 
 #[test]
-fn is_disarmed_at_the_start_whatever_the_link_says() {
+fn is_disarmed_at_the_start_whatever_the_link_sends() {
     let mut bench = Bench::alive();
     bench.ticks(200);
     assert!(!bench.status().armed && !bench.is_driven());
@@ -133,7 +133,7 @@ fn stop_releases_the_wheels_at_the_next_tick_from_any_session() {
 }
 
 #[test]
-fn a_mode_that_loses_its_wall_stops_and_says_why() {
+fn a_mode_that_loses_its_wall_stops_and_reports_why() {
     let mut bench = Bench::alive();
     bench.command(Command::Mode(ModeId::FrontDistance)).unwrap();
     bench.ticks(60);

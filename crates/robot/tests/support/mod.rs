@@ -58,9 +58,9 @@ pub(crate) struct Bench {
     pub(crate) robot: Robot,
     pub(crate) now: Micros,
     pub(crate) outputs: Outputs,
-    /// Everything the robot said, in order.
-    pub(crate) heard: Vec<FromRobot>,
-    /// Lines of text it said.
+    /// All messages received from the robot, in order.
+    pub(crate) received: Vec<FromRobot>,
+    /// Lines of text received from it.
     pub(crate) lines: Vec<String>,
     /// Bytes it sent.
     pub(crate) bytes: usize,
@@ -95,7 +95,7 @@ impl Bench {
             }),
             now: start,
             outputs: Outputs::default(),
-            heard: Vec::new(),
+            received: Vec::new(),
             lines: Vec::new(),
             bytes: 0,
             link_up: true,
@@ -134,7 +134,7 @@ impl Bench {
         }
     }
 
-    /// Lets so many ticks pass.
+    /// Runs this many ticks.
     pub(crate) fn ticks(&mut self, count: u32) {
         for _ in 0..count {
             self.one_tick();
@@ -180,12 +180,12 @@ impl Bench {
         while self.credit >= 100 {
             self.credit -= 100;
             if self.link_up {
-                self.take_byte();
+                self.receive_byte();
             }
         }
     }
 
-    fn take_byte(&mut self) {
+    fn receive_byte(&mut self) {
         let Some(byte) = self.robot.transmit() else {
             return;
         };
@@ -196,7 +196,7 @@ impl Bench {
                 if let FromRobot::Status(status) = message {
                     self.seen = status.at;
                 }
-                self.heard.push(message);
+                self.received.push(message);
             }
             Some(Received::Line(line)) => {
                 self.lines.push(String::from_utf8_lossy(line).into_owned())
@@ -205,19 +205,19 @@ impl Bench {
         }
     }
 
-    /// Gives the robot a message.
+    /// Sends the robot a message.
     pub(crate) fn send(&mut self, message: &ToRobot) {
         let frame: Frame = message.frame(self.seq);
         self.seq = (self.seq + 1) % 16;
         self.bytes_in(frame.bytes());
     }
 
-    /// Gives the robot bytes.
+    /// Sends the robot bytes.
     pub(crate) fn bytes_in(&mut self, bytes: &[u8]) {
         bytes.iter().for_each(|byte| self.robot.receive(*byte));
     }
 
-    /// Gives the robot a line of text.
+    /// Sends the robot a line of text.
     pub(crate) fn line(&mut self, line: &str) {
         self.bytes_in(format!("{line}\n").as_bytes());
     }
@@ -268,7 +268,7 @@ impl Bench {
 
     /// All answers so far.
     pub(crate) fn acks(&self) -> Vec<Ack> {
-        self.heard
+        self.received
             .iter()
             .filter_map(|m| {
                 if let FromRobot::Ack(ack) = m {
@@ -282,7 +282,7 @@ impl Bench {
 
     /// All events so far.
     pub(crate) fn events(&self) -> Vec<EventKind> {
-        self.heard
+        self.received
             .iter()
             .filter_map(|m| {
                 if let FromRobot::Event(event) = m {
@@ -296,7 +296,7 @@ impl Bench {
 
     /// All telemetry so far.
     pub(crate) fn telemetry(&self) -> Vec<Telemetry> {
-        self.heard
+        self.received
             .iter()
             .filter_map(|m| {
                 if let FromRobot::Telemetry(t) = m {
@@ -310,7 +310,7 @@ impl Bench {
 
     /// The last status.
     pub(crate) fn status(&self) -> Status {
-        self.heard
+        self.received
             .iter()
             .rev()
             .find_map(|m| {
