@@ -1,8 +1,8 @@
-//! The sonars that see a wall ahead of the robot: a pair, or the one on the servo, and where they say that the wall is.
+//! The sonars that look at a wall ahead of the robot, a pair or the one on the servo, and their estimate of the wall.
 //!
-//! A pair tells distance and bearing at once. One sonar feels no bearing while it looks ahead, so the servo sweeps ([`crate::sweep`]); and
-//! since its range does not change with the bearing in the middle of the beam, the first look to each side only asks whether there is an
-//! echo. Derivation: docs/theory/front_align.md.
+//! A pair measures distance and bearing at once. A single sonar measures no bearing while it looks ahead, so the servo
+//! sweeps ([`crate::sweep`]); and since its range does not change with the bearing within the beam, the first look to
+//! each side only checks for an echo. Derivation: docs/theory/front_align.md.
 
 use crate::estimate::Estimate;
 use crate::math::min;
@@ -17,7 +17,7 @@ use crate::wall::{Wall, WallFilter};
 const ONE_SIDED_RAD: f32 = 0.32;
 /// Standard deviation of the bearing after the first look to both sides [rad].
 const ASKEW_RAD: f32 = 0.15;
-/// Looks aside after which the side of the wall is known, after which it is known well, and most.
+/// Looks aside after which the side of the wall is known, after which it is known well, and the maximum.
 const LOOKS: [u8; 3] = [2, 4, 8];
 /// Standard deviation of the bearing with which the robot may drive [rad].
 const KNOWN_RAD: f32 = 0.08;
@@ -32,7 +32,7 @@ pub struct Ahead<'a> {
     params: &'a Params,
 }
 
-/// What they remember of the wall.
+/// Their state: the estimated wall.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AheadState {
     wall: WallFilter,
@@ -41,7 +41,7 @@ pub struct AheadState {
     known: bool,
     /// The first looks to the left and to the right gave an echo.
     echo: (bool, bool),
-    /// Time since a reading was last believed [s].
+    /// Time since a reading was last accepted [s].
     deaf_s: f32,
 }
 
@@ -86,7 +86,7 @@ impl<'a> Ahead<'a> {
         self.has(reading.sonar) && (self.paired || reading.servo_rad == 0.0)
     }
 
-    /// Whether all sonars that look ahead see something.
+    /// Whether all sonars that look ahead have a range.
     pub fn is_ready(&self, estimate: &Estimate) -> bool {
         self.nearest(estimate, true).is_ok()
     }
@@ -94,12 +94,13 @@ impl<'a> Ahead<'a> {
     /// The nearest thing ahead [m].
     ///
     /// # Errors
-    /// Why one of the sonars cannot tell.
+    /// Why one of the sonars has no range.
     pub fn nearest_m(&self, estimate: &Estimate) -> Result<f32, Fault> {
         self.nearest(estimate, false)
     }
 
-    /// Unless `fresh`, a range may be old where one sonar looks ahead now and then only: readings aside count as well, see `deaf_s`.
+    /// Unless `fresh`, a range may be old where the only sonar looks ahead now and then: readings aside count too, see
+    /// `deaf_s`.
     fn nearest(&self, estimate: &Estimate, fresh: bool) -> Result<f32, Fault> {
         let mut nearest_m = f32::MAX;
         for &sonar in &SonarId::ALL {
@@ -115,10 +116,10 @@ impl<'a> Ahead<'a> {
         Ok(nearest_m)
     }
 
-    /// The wall, predicted and corrected by what was heard at this tick. Call it once a tick.
+    /// The wall, predicted and then corrected by this tick's reading. Call it once a tick.
     ///
     /// # Errors
-    /// There is no wall, or no believable reading for too long.
+    /// There is no wall, or no accepted reading for too long.
     pub fn wall(&self, state: &mut AheadState, estimate: &Estimate) -> Result<Wall, Fault> {
         state.wall.predict(estimate.rolled_m, estimate.turned_rad);
         state.deaf_s += TICK_S;
@@ -126,12 +127,12 @@ impl<'a> Ahead<'a> {
             && self.has(reading.sonar)
             && (self.paired || state.sweep.is_from_here(reading.servo_rad))
             && let Range::Valid(range_m) = reading.range
-            && self.take(state, &reading, range_m)
+            && self.correct(state, &reading, range_m)
         {
             state.deaf_s = 0.0;
         }
-        let anew = (state.known || self.paired) && state.deaf_s > self.stale_s();
-        if !state.wall.is_known() || anew {
+        let restart = (state.known || self.paired) && state.deaf_s > self.stale_s();
+        if !state.wall.is_known() || restart {
             self.start(state, estimate).ok_or(Fault::WallLost)?;
         }
         if state.deaf_s > 2.0 * self.stale_s() {
@@ -143,12 +144,13 @@ impl<'a> Ahead<'a> {
         state.wall.wall().ok_or(Fault::WallLost)
     }
 
-    /// Whether a reading was believed. The first looks to both sides only tell on which side the wall's normal is.
-    fn take(&self, state: &mut AheadState, reading: &Reading, range_m: f32) -> bool {
+    /// Corrects by a reading; returns whether it was accepted. The first looks to both sides only show on which side
+    /// the wall's normal is.
+    fn correct(&self, state: &mut AheadState, reading: &Reading, range_m: f32) -> bool {
         let [sides, ..] = LOOKS;
         let first = !state.known && state.sweep.looks_aside() < sides;
         if self.paired || !first || reading.servo_rad == 0.0 {
-            return state.wall.take(&reading.view, self.beam_rad(), range_m);
+            return state.wall.update(&reading.view, self.beam_rad(), range_m);
         }
         let (left, right) = &mut state.echo;
         *left |= reading.servo_rad > 0.0;
@@ -156,7 +158,7 @@ impl<'a> Ahead<'a> {
         true
     }
 
-    /// Where the wall is by the ranges alone.
+    /// Initialises the wall from the ranges alone.
     fn start(&self, state: &mut AheadState, estimate: &Estimate) -> Option<()> {
         if self.paired {
             let ranges_m = [
@@ -170,7 +172,7 @@ impl<'a> Ahead<'a> {
             state.known = true;
             return Some(());
         }
-        // A wall that was known a moment ago is looked for where it was; any other on both sides.
+        // A wall known a moment ago is searched where it was; any other on both sides.
         let [sides, ..] = LOOKS;
         let (bearing_rad, looks) = match state.wall.wall() {
             Some(wall) => (wall.bearing_rad, sides),
@@ -239,7 +241,7 @@ impl<'a> Ahead<'a> {
     }
 }
 
-/// A range that one may drive on, or why not.
+/// A range good enough to drive on.
 ///
 /// # Errors
 /// It is too old, there is nothing, or the sonar is faulty.

@@ -1,4 +1,5 @@
-//! The sonars that see a wall beside the robot, on any rig: which ones, from where, and whether they can be trusted.
+//! The sonars that look at a wall beside the robot, on any rig: which ones, from where, and whether they can be
+//! trusted.
 //!
 //! A pair looks to its own side. On the final rig each side has one, and the front one looks ahead meanwhile.
 
@@ -33,7 +34,7 @@ impl<'a> Beside<'a> {
         self.params.rig().paired_side() == Some(side)
     }
 
-    /// From where a sonar looks that sits at a side.
+    /// Position and direction of a sonar at a side.
     pub fn view(&self, sonar: SonarId) -> View {
         self.params.view(sonar, 0.0).unwrap_or_default()
     }
@@ -113,7 +114,7 @@ mod tests {
         params
     }
 
-    /// What the sonars left, right and front say; 0 is nothing in sight.
+    /// Ranges of the sonars left, right and front; 0 is nothing in sight.
     fn seeing(ranges_m: [f32; 3]) -> Estimate {
         let mut estimate = Estimate::default();
         for (slot, range_m) in estimate.ranges.iter_mut().zip(ranges_m) {

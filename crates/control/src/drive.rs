@@ -1,4 +1,4 @@
-//! From what a mode asks of the wheels to the duty of each bridge. Derivation: docs/theory/drive.md.
+//! From a mode's request to the duty of each bridge. Derivation: docs/theory/drive.md.
 //!
 //! ```text
 //! speed reference -> ramp -> feedforward kS + kV w + kA a --+
@@ -6,14 +6,14 @@
 //!                     +------> PID (w_ref - w_est) -------> + -> limits 0..1 -> duty in the driven direction
 //! ```
 //!
-//! Everything is reckoned in the direction in which the wheel is driven, so the duty never brakes by reversing. A change of
-//! direction goes through zero: the bridge is released until the edges have stopped, and only then does the sign of the
-//! driven direction change; one Hall channel does not tell it otherwise. A wheel that stands although it is asked to
-//! turn gets a kick that grows until edges come.
+//! Everything is computed in the direction in which the wheel is driven, so the duty never brakes by reversing. A
+//! change of direction goes through zero: the bridge is released until the edges have stopped, and only then does the
+//! driven direction change sign, since one Hall channel does not measure direction. A wheel that stands although it has
+//! a reference gets a kick that grows until edges come.
 //!
-//! Both wheels of a movement start together. While one still rolls against its new direction, the other one waits released
-//! if it stands, and gains no speed if it rolls the right way. From rest no wheel waits for the other to break away: the ramp takes both through
-//! it within 30 ms, and holding the first one back made their start more uneven, not less.
+//! Both wheels of a movement start together. While one still rolls against its new direction, the other waits released
+//! if it stands, and gains no speed if it rolls the right way. From rest no wheel waits for the other to break away:
+//! the ramp takes both through it within 30 ms, and holding back the first one made their start less even.
 
 use crate::math::{abs, clamp, is_finite, max, min, round};
 use crate::params::{ParamId, Params};
@@ -25,10 +25,10 @@ use crate::types::{Drive, Duty, SIDES, TICK_S, Wheels};
 const STANDSTILL_RAD_S: f32 = 0.05;
 /// Growth of the kick of a wheel that still stands [1/s].
 const KICK_GROWTH: f32 = 1.5;
-/// The ramp never leads the wheel by more than this [rad/s], lest a held wheel shoot off when it comes free.
+/// The ramp never leads the wheel by more than this [rad/s], so that a blocked wheel does not surge when freed.
 const RAMP_LEAD_RAD_S: f32 = 4.0;
 
-/// Duty that a speed takes at the nominal battery voltage.
+/// Duty for a speed at the nominal battery voltage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Feedforward {
     /// Duty that balances friction, forward.
@@ -48,7 +48,7 @@ pub struct SpeedLoop {
     pub feedforward: Feedforward,
     /// First duty of a standing wheel.
     pub kick: f32,
-    /// What the feedforward misses; output is duty, limits 0..1.
+    /// Corrects the rest; output is duty, limits 0..1.
     pub pid: Pid,
     /// Slope of the ramp when speeding up [rad/s per tick].
     pub accel_rad_s: f32,
@@ -57,7 +57,8 @@ pub struct SpeedLoop {
 }
 
 impl SpeedLoop {
-    /// The ramp one tick on: towards the target, and never far ahead of the wheel. `hold` lets it gain no speed.
+    /// Advances the ramp by a tick: towards the target, and never far ahead of the wheel. `hold` keeps it from gaining
+    /// speed.
     fn ramp(&self, before_rad_s: f32, target_rad_s: f32, measured_rad_s: f32, hold: bool) -> f32 {
         let target_rad_s = if hold {
             min(target_rad_s, before_rad_s)
@@ -103,7 +104,7 @@ impl Direction {
     }
 }
 
-/// Memory of one wheel.
+/// State of one wheel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct WheelState {
     direction: Direction,
@@ -112,17 +113,17 @@ struct WheelState {
     ramp_rad_s: Option<f32>,
     /// How long the wheel has stood although it is driven [s].
     held_s: f32,
-    /// It has come to rest, and waits for the other one to do so.
+    /// It has come to rest, and waits for the other wheel to do so.
     waits: bool,
 }
 
-/// Memory of the drive layer.
+/// State of the drive layer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DriveLayer {
     wheels: Wheels<WheelState>,
 }
 
-/// What the drive layer decided.
+/// Output of the drive layer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Driven {
     /// PWM of both wheels.
@@ -137,7 +138,7 @@ impl DriveLayer {
         self.wheels.map(|wheel| wheel.direction)
     }
 
-    /// One tick: `motion` is what the edges say, `battery_v` the measured voltage if there is one.
+    /// One tick: `motion` is measured from the edges, `battery_v` the battery's voltage if it is measured.
     ///
     /// # Errors
     /// [`NotFinite`] when the request is not a finite number.
@@ -206,14 +207,14 @@ impl WheelState {
         self.held_s = 0.0;
     }
 
-    /// Whether the wheel is asked to turn and still rolls against that.
+    /// Whether the wheel still rolls against its reference.
     fn must_stop(&self, reference_rad_s: f32, motion: &WheelMotion) -> bool {
         abs(reference_rad_s) >= STANDSTILL_RAD_S
             && Direction::of(reference_rad_s) != self.direction
             && !motion.standing
     }
 
-    /// Takes over the direction of `request` if the wheel stands; says whether it may be driven that way.
+    /// Adopts the direction of `request` if the wheel stands; returns whether it may be driven that way.
     fn may_drive(&mut self, request: f32, motion: &WheelMotion) -> bool {
         let wanted = Direction::of(request);
         if wanted == self.direction {
@@ -251,7 +252,7 @@ impl WheelState {
             return Err(NotFinite);
         }
         let standstill = abs(reference_rad_s) < STANDSTILL_RAD_S;
-        // A late edge of a wheel that has come to rest ends no waiting, and is no speed to begin at.
+        // A late edge of a wheel at rest neither ends the waiting nor gives a speed to start from.
         self.waits = partner_stops && (motion.standing || self.waits);
         if standstill || !self.may_drive(reference_rad_s, motion) || self.waits {
             self.release();

@@ -1,7 +1,8 @@
-//! What the robot knows about itself and what is around it, from what latched at the tick.
+//! The robot's estimate of itself and its surroundings, from the latched inputs of the tick.
 //!
 //! edges -> wheel speeds ([`crate::speed`]) and distances -> pose ([`crate::odometry`]); echoes -> ranges ([`crate::range`]),
-//! moved along with the distance in between. The servo's place is reckoned from its commands and its speed: it tells nothing.
+//! predicted by the distance rolled in between. The servo has no feedback: its angle is estimated from its commands and
+//! its speed.
 
 use crate::drive::Direction;
 use crate::math::{abs, clamp, wrap_angle};
@@ -16,31 +17,31 @@ use crate::types::{
 
 /// The front sonar looks ahead when the servo is within this of it [rad].
 const AHEAD_RAD: f32 = 0.06;
-/// A range ahead that is older is not shown as one: three pings, of which one may be lost and one refused [ticks].
+/// A range ahead older than this is not used: three pings, of which one may be lost and one rejected [ticks].
 const SHOWN_TICKS: u16 = 20;
 
-/// Memory of the estimators.
+/// State of the estimators.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimator {
     speed: Wheels<SpeedEstimator>,
     place: Transform,
     servo_rad: f32,
     servo_target_rad: f32,
-    /// The pings whose echoes are waited for, by `SonarId` number: one that left late may end after the next one has left.
+    /// The pings with a pending echo, by `SonarId` number: a late one may end after the next one has left.
     pings: [Option<Ping>; 3],
     ranges: [RangeFilter; 3],
-    /// What the front sonar last said off the middle.
+    /// The front sonar's last reading off the middle.
     aside: AgedRange,
 }
 
-/// A ping whose echo is waited for.
+/// A ping with a pending echo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ping {
     place: Transform,
     servo_rad: f32,
 }
 
-/// What the estimators say at one tick.
+/// The estimate at one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// Pose by odometry.
@@ -51,21 +52,21 @@ pub struct Estimate {
     pub forward_m_s: f32,
     /// Yaw rate [rad/s].
     pub yaw_rad_s: f32,
-    /// Way rolled since the last tick, signed [m].
+    /// Distance rolled since the last tick, signed [m].
     pub rolled_m: f32,
     /// Angle turned since the last tick [rad].
     pub turned_rad: f32,
     /// Signed wheel speeds [rad/s].
     pub wheel_rad_s: Wheels<f32>,
-    /// What the edges say, without sign.
+    /// Motion measured from the edges, without sign.
     pub motion: Wheels<WheelMotion>,
     /// Where the servo points [rad].
     pub servo_rad: f32,
-    /// The servo is where it was told to point.
+    /// The servo has reached its setpoint.
     pub servo_arrived: bool,
-    /// What a sonar said at this tick, unfiltered.
+    /// A sonar's reading of this tick, unfiltered.
     pub reading: Option<Reading>,
-    /// Filtered ranges by `SonarId` number; of a sonar on the servo only those ahead.
+    /// Filtered ranges by `SonarId` number; for a sonar on the servo only readings ahead.
     pub ranges: [AgedRange; 3],
 }
 
@@ -129,7 +130,7 @@ impl Estimator {
         self.place = Transform::of(self.place.pose);
     }
 
-    /// What the pilot decided at this tick: where the servo goes, which sonar pings.
+    /// Records the pilot's decision at this tick: the servo's setpoint and the sonar to ping.
     pub fn commanded(&mut self, servo: ServoAngle, ping: Option<SonarId>) {
         self.servo_target_rad = servo.0;
         if let Some(slot) = ping.and_then(|sonar| self.pings.get_mut(sonar as usize)) {
@@ -153,7 +154,7 @@ impl Estimator {
         };
     }
 
-    /// The echo of this tick, with the place from which it came.
+    /// The echo of this tick, with the view from which it was pinged.
     fn reading(&mut self, params: &Params, inputs: &Inputs) -> Option<Reading> {
         let (sonar, echo) = inputs.echo?;
         let ping = self.pings.get_mut(sonar as usize)?.take()?;
@@ -188,7 +189,7 @@ impl Estimator {
                 &mut self.ranges[sonar as usize],
                 &mut estimate.ranges[sonar as usize],
             );
-            // Rolling forward brings a sonar that looks ahead nearer to what it sees; what others see slides by.
+            // Rolling forward brings a sonar that looks ahead nearer to its target; targets beside the robot slide by.
             let closer_m = if params.looks_ahead(sonar) {
                 estimate.rolled_m
             } else {
@@ -199,28 +200,28 @@ impl Estimator {
                 && reading.sonar == sonar
                 && (sonar != SonarId::Front || abs(reading.servo_rad) < AHEAD_RAD)
             {
-                filter.take(reading.range);
+                filter.update(reading.range);
             }
             *range = filter.range();
         }
     }
 
-    /// What each sonar last saw where it looks now, for people: the front one's last answer while the servo looks aside, and while it
-    /// swings past the middle, where what was last heard ahead has been moved along for too long.
+    /// Each sonar's last range in its present direction, for people: the front one's last answer while the servo looks
+    /// aside, and while it swings past the middle, where the last reading ahead has been predicted for too long.
     pub fn shown(&self, estimate: &Estimate) -> [AgedRange; 3] {
         let [left, right, front] = estimate.ranges;
         let aside = abs(self.servo_rad) >= AHEAD_RAD || front.age_ticks > SHOWN_TICKS;
         [left, right, if aside { self.aside } else { front }]
     }
 
-    /// The robot stands here, as seen from its origin: for a simulated one that is put elsewhere.
+    /// Sets the pose relative to the origin, for a simulated robot that is moved.
     #[cfg(not(target_arch = "avr"))]
     pub fn set_pose(&mut self, pose: Pose) {
         self.pings = Default::default();
         self.place = Transform::of(pose);
     }
 
-    /// Calls the present place the origin.
+    /// Makes the present pose the origin.
     pub fn reset_pose(&mut self) {
         for slot in &mut self.pings {
             let Some(ping) = slot else { continue };
@@ -281,7 +282,7 @@ mod tests {
         assert!(estimate.forward_m_s < 0.0);
     }
 
-    /// Ticks with the front sonar pinging every sixth, the servo told to point to `servo_rad`.
+    /// Ticks with the front sonar pinging every sixth, and the servo's setpoint at `servo_rad`.
     fn looking(estimator: &mut Estimator, servo_rad: f32, ticks: u32) -> Estimate {
         let mut last = Estimate::default();
         for tick in 0..ticks {

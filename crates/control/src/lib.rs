@@ -1,8 +1,8 @@
-//! Rumbo's control core: everything the robot decides, and nothing it touches.
+//! Rumbo's control core: all decisions of the robot, and no hardware.
 //!
-//! Bytes, pins and clocks stay outside: the caller gives the time and what the sensors latched
-//! ([`Inputs`]), and gets back what the wheels, the servo and the sonars are to do ([`Outputs`]). Inside, the flow of
-//! one tick is [`estimate`] (of [`speed`], [`odometry`], [`range`]) -> [`mode`], of [`motion`]s -> [`drive`].
+//! Bytes, pins and clocks stay outside: the caller passes the time and the latched sensors ([`Inputs`]), and receives
+//! the outputs for the wheels, the servo and the sonars ([`Outputs`]). Inside, the flow of one tick is [`estimate`] (of
+//! [`speed`], [`odometry`], [`range`]) -> [`mode`], of [`motion`]s -> [`drive`].
 //!
 //! The same inputs give the same bits on every machine: only `+ - * /`, a correctly rounded square root and
 //! the polynomials of [`math`] are used. Nothing here panics, allocates, loops without bound or formats text.

@@ -43,7 +43,7 @@ pub const fn abs(x: f32) -> f32 {
     if x.to_bits() > SIGN { -x } else { x }
 }
 
-/// Whether a number is one: neither infinite nor NaN.
+/// Whether a number is finite: neither infinite nor NaN.
 pub const fn is_finite(x: f32) -> bool {
     // By its exponent, in the upper half of its bits.
     const EXPONENT: u16 = 0x7F80;
@@ -52,8 +52,8 @@ pub const fn is_finite(x: f32) -> bool {
 
 /// Square root, correctly rounded; 0 for anything that is not positive.
 ///
-/// On the AVR that of its C library, which takes a quarter of the time; elsewhere, where the core has none of its own, digit by digit
-/// as in fdlibm's `e_sqrtf.c`. There is one correct rounding: the bits are the same.
+/// On the AVR that of its C library, in a quarter of the time; elsewhere, since `core` has none, digit by digit as in
+/// fdlibm's `e_sqrtf.c`. There is one correct rounding: the bits are the same.
 pub fn sqrt(x: f32) -> f32 {
     if x.is_nan() || x <= 0.0 {
         return 0.0;
@@ -191,11 +191,12 @@ pub const fn sin_cos(angle_rad: f32) -> (f32, f32) {
     }
 }
 
-/// Largest angle of [`rotate`] [rad]: what its series leaves out is below 4e-8, half of the last bit of a cosine.
+/// Largest angle of [`rotate`] [rad]: its series' truncation error is below 4e-8, half of the last bit of a cosine.
 const ROTATE_RAD: f32 = 0.03;
 
-/// Sine and cosine of an angle that differs from a known one by `by_rad`. `known` are sine and cosine of the known angle, `angle_rad` is
-/// the new one. A third of the time of [`sin_cos`] where they differ by little; errors add up, so that now and then it should be that.
+/// Sine and cosine of an angle that differs from a known one by `by_rad`. `known` are sine and cosine of the known
+/// angle, `angle_rad` is the new one. Takes a third of the time of [`sin_cos`] for a small difference; errors
+/// accumulate, so [`sin_cos`] should replace it now and then.
 pub fn rotate(known: (f32, f32), by_rad: f32, angle_rad: f32) -> (f32, f32) {
     if abs(by_rad) > ROTATE_RAD {
         return sin_cos(angle_rad);

@@ -1,8 +1,8 @@
 //! Pose from the distances of both wheels, by exact arcs, and how far it may be off. Derivation: docs/theory/odometry.md.
 //!
-//! Two kinds of error are kept apart. Slip is new at every millimetre: a covariance that grows with the way. Radii and base are off by
-//! the same all the time: the pose's derivatives by each of them, which also shrink again where a way back undoes the error. No mode needs it;
-//! who hears the robot's poses reckons it from them.
+//! Two kinds of error are kept apart. Slip is random at every millimetre: a covariance that grows with the distance.
+//! Radii and base have constant errors: the pose's derivatives by each of them, which shrink again where the way back
+//! undoes the error. No mode needs it; receivers of the robot's poses compute it from them.
 
 use crate::math::{abs, rotate, sin_cos, sinc, wrap_angle};
 use crate::types::{Pose, Transform, Wheels};
@@ -50,7 +50,7 @@ impl Geometry {
         self.per_base
     }
 
-    /// Ways of the wheels [m] from the angles that they turned [rad]; speeds likewise.
+    /// Distances of the wheels [m] from the angles that they turned [rad]; speeds likewise.
     pub fn ways_of_wheels(&self, wheel_rad: Wheels<f32>) -> Wheels<f32> {
         Wheels {
             left: wheel_rad.left * self.radius_m.left,
@@ -58,7 +58,7 @@ impl Geometry {
         }
     }
 
-    /// Way forward [m] and turn [rad] of the body from the ways of the wheels [m]; speeds likewise.
+    /// Forward distance [m] and turn [rad] of the body from the distances of the wheels [m]; speeds likewise.
     pub fn body_from_ways(&self, way_m: Wheels<f32>) -> (f32, f32) {
         (
             0.5 * (way_m.left + way_m.right),
@@ -81,7 +81,7 @@ impl Geometry {
     }
 }
 
-/// Moves a place by a way [m] and a turn [rad] that were one arc.
+/// Moves a pose along an arc of this length [m] and turn [rad].
 pub fn advance(place: &mut Transform, forward_m: f32, turned_rad: f32) {
     let Transform { pose, sin, cos } = *place;
     if turned_rad == 0.0 {
@@ -109,38 +109,38 @@ pub fn advance(place: &mut Transform, forward_m: f32, turned_rad: f32) {
     place.pose.y_m += way_m * y;
 }
 
-/// How well the robot knows itself: standard deviations.
+/// Uncertainty of the robot's lengths: standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OdometryErrors {
-    /// Slip of one wheel: error of its way after 1 m; it grows with the root of the way [m].
+    /// Slip of one wheel: error of its distance after 1 m; it grows with the root of the distance [m].
     pub slip_m: f32,
     /// Ratio of the wheels' radii, relative.
     pub ratio: f32,
     /// Angle turned per difference of the wheels' angles (radius over base), relative.
     pub turn: f32,
-    /// Way per angle (mean radius), relative.
+    /// Distance per angle (mean radius), relative.
     pub scale: f32,
     /// Distance between the wheels [m].
     pub base_m: f32,
-    /// Way of one encoder edge [m]: where between two edges a wheel is, at the origin and now, nobody knows.
+    /// Distance of one encoder edge [m]: a wheel's position between two edges is unknown, at the origin and now.
     pub edge_m: f32,
 }
 
-/// A piece of way, short enough to be straight within a few degrees.
+/// A step along the path, short enough to be straight within a few degrees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Piece {
     /// Sine and cosine of the heading in its middle.
     pub facing: (f32, f32),
-    /// Way forward, signed [m].
+    /// Forward distance, signed [m].
     pub forward_m: f32,
     /// Angle turned [rad].
     pub turned_rad: f32,
-    /// Way of each wheel, whatever its sign [m].
+    /// Distance of each wheel, without sign [m].
     pub rolled_m: Wheels<f32>,
 }
 
 impl Piece {
-    /// The way between two poses told one after the other, by a robot with wheels `base_m` [m] apart that did not turn back in between.
+    /// The step between two successive poses of a robot with wheels `base_m` [m] apart that did not reverse in between.
     pub fn between(before: &Pose, now: &Pose, base_m: f32) -> Piece {
         let turned_rad = wrap_angle(now.heading_rad - before.heading_rad);
         let facing = sin_cos(before.heading_rad + 0.5 * turned_rad);
@@ -162,21 +162,21 @@ impl Piece {
 /// x, y and heading of something: a derivative, or a row of a covariance.
 type Triple = [f32; 3];
 
-/// Memory of the pose's uncertainty; the default is that of the origin, none.
+/// Uncertainty of the pose; the default is that of the origin, none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Uncertainty {
     /// Covariance by slip: xx, xy, yy, xh, yh, hh.
     slip: [f32; 6],
-    /// Derivatives of the pose by the ratio of the radii, by the turn's scale and by the way's scale, all relative.
+    /// Derivatives of the pose by the ratio of the radii, the scale of turns and the scale of distances, all relative.
     by: [Triple; 3],
 }
 
 impl Uncertainty {
-    /// Takes in a piece of way.
+    /// Updates with a step.
     pub fn advance(&mut self, errors: &OdometryErrors, piece: &Piece) {
         let (sin, cos) = piece.facing;
         let (dx, dy) = (piece.forward_m * cos, piece.forward_m * sin);
-        // What a relative error of each kind adds to the piece: to its turn, to its way.
+        // What a relative error of each kind adds to the step: to its turn, to its distance.
         let adds = [
             (
                 piece.forward_m / errors.base_m,
@@ -207,9 +207,9 @@ impl Uncertainty {
         let turn = 4.0 * way / (errors.base_m * errors.base_m);
         let both = 0.5 * (right - left) / errors.base_m;
         let [xx, xy, yy, xh, yh, hh] = self.slip;
-        // The heading's error so far swings the piece: x - dy h, y + dx h; the piece's own error swings half of it.
+        // The heading's error so far rotates the step: x - dy h, y + dx h; the step's own error rotates half of it.
         let (ax, ay) = (-0.5 * dy, 0.5 * dx);
-        // How the piece's own way (along) and turn (aside) move x and y, and the headings they come with.
+        // Effect of the step's distance (along) and turn (aside) on x, y and heading.
         let (along_x, along_y) = (way * cos + both * ax, way * sin + both * ay);
         let (aside_x, aside_y) = (both * cos + turn * ax, both * sin + turn * ay);
         let (swung_x, swung_y) = (xh - dy * hh, yh + dx * hh);
@@ -226,7 +226,7 @@ impl Uncertainty {
     /// Covariance of x, y and heading.
     pub fn covariance(&self, errors: &OdometryErrors) -> [Triple; 3] {
         let [xx, xy, yy, xh, yh, hh] = self.slip;
-        // Two places of each wheel, evenly anywhere within an edge: variances of a twelfth each.
+        // Two positions of each wheel, each uniform within an edge: variances of a twelfth each.
         let way = errors.edge_m * errors.edge_m / 12.0;
         let turn = 4.0 * way / (errors.base_m * errors.base_m);
         let mut covariance = [[xx + way, xy, xh], [xy, yy + way, yh], [xh, yh, hh + turn]];
@@ -366,7 +366,7 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_the_pose() {
-        // A path with curves, driven by robots that differ a little from what the odometry believes.
+        // A path with curves, driven by robots that differ a little from what the odometry assumes.
         let path = |robot: &Geometry| {
             let mut pose = Pose::default();
             for step in 0..400u16 {
@@ -390,7 +390,7 @@ mod tests {
             };
             Geometry::new(radius_m, 0.1 / (1.0 + base * share))
         };
-        // The way's scale alone leaves the angles: base and radii grow alike.
+        // The scale of distances alone keeps the angles: base and radii grow alike.
         let robots = [
             other(-0.5, 0.5, 0.0),
             other(0.0, 0.0, 1.0),

@@ -255,7 +255,7 @@ table! {
     WallHeadingLimit = "wall_heading_limit_rad", "rad", 0.42, 0.1 => 0.55;
     /// Yaw rate per angle error.
     WallHeadingKp = "wall_heading_kp", "1/s", 5.0, 0.0 => 20.0;
-    /// Yaw rate taken back per yaw rate that the encoders tell.
+    /// Damping: yaw rate subtracted per measured yaw rate.
     WallDamping = "wall_damping", "1", 0.3, 0.0 => 2.0;
     /// Largest yaw rate.
     WallYawLimit = "wall_yaw_limit_rad_s", "rad/s", 1.5, 0.1 => 5.0;
@@ -287,7 +287,7 @@ impl ParamId {
         LIMITS[self as usize]
     }
 
-    /// Whether a value is one that it may have.
+    /// Whether a value is allowed.
     ///
     /// # Errors
     /// The value is not finite or outside the limits.
@@ -302,7 +302,7 @@ impl ParamId {
         }
     }
 
-    /// The modes that act by it; none for those of the robot, whatever its mode.
+    /// The modes that use it; none for parameters of the robot in any mode.
     #[cfg(feature = "names")]
     pub fn modes(self) -> impl Iterator<Item = ModeId> {
         ModeId::ALL.into_iter().filter(move |mode| {
@@ -322,7 +322,7 @@ impl ParamId {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
     values: [f32; COUNT],
-    // What every tick would have to make of them again.
+    // Derived values that every tick would otherwise recompute.
     rig: Rig,
     geometry: Geometry,
     loops: Wheels<SpeedLoop>,
@@ -355,7 +355,7 @@ impl Params {
         self.get(id) > 0.5
     }
 
-    /// Sets a parameter; gives the value in force.
+    /// Sets a parameter; returns the value in force.
     ///
     /// # Errors
     /// The value is not finite or outside the parameter's limits; it is then as before.

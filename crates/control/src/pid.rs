@@ -21,7 +21,7 @@ pub struct Gains {
     pub kd: f32,
 }
 
-/// Configuration of a PID controller; its memory is in [`PidState`].
+/// Configuration of a PID controller; its state is [`PidState`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pid {
     /// Gains; may change between steps.
@@ -34,7 +34,7 @@ pub struct Pid {
     pub tracking_s: f32,
 }
 
-/// Memory of a PID controller. The default is a controller that has just been reset.
+/// State of a PID controller. The default is a controller that has just been reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PidState {
     integral: f32,
@@ -79,14 +79,14 @@ impl Pid {
         if !is_finite(output) || !is_finite(integral) {
             return Err(NotFinite);
         }
-        // However strong the tracking, the integral alone never asks for more than the whole span.
+        // However strong the tracking, the integral alone never demands more than the whole span.
         let span = self.max - self.min;
         state.integral = clamp(integral, -span, span);
         state.measurement = Some(measurement);
         Ok(output)
     }
 
-    /// Sets the state so that the next step, given the same inputs, gives `output`: a transfer without a bump.
+    /// Sets the state so that the next step, given the same inputs, gives `output`: a bumpless transfer.
     pub fn transfer(
         &self,
         state: &mut PidState,
@@ -106,7 +106,7 @@ impl Pid {
 }
 
 impl PidState {
-    /// Forgets everything.
+    /// Resets the state.
     pub fn reset(&mut self) {
         *self = Self::default();
     }

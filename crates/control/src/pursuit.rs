@@ -1,17 +1,18 @@
 //! Pure pursuit: a tracker for a straight line and for any polyline (memoria 6.1.6). Derivation: docs/theory/pursuit.md.
 //!
 //! ```text
-//! place on the path -> point a lookahead L further on -> (x, y) as the robot sees it -> curvature k = 2 y / (x^2 + y^2)
-//! v = min(cruise, sqrt(a_side / |k|), ramp, sqrt(2 a (way left - v measured * lag)))            yaw rate = k v
+//! nearest point of the path -> point a lookahead L further on -> (x, y) in the robot's frame -> curvature k = 2 y / (x^2 + y^2)
+//! v = min(cruise, sqrt(a_side / |k|), ramp, sqrt(2 a (distance left - v measured * lag)))       yaw rate = k v
 //! L = max(L_min, T v), or up to the next point after the nearest one, when points are spread along the path as in the report
 //! ```
 //!
-//! A point on the left has a positive y: steer left. The last piece of the path is prolonged for the lookahead, so the way in which the
-//! robot slows down at the end does not depend on L, and the curvature stays small there. The path is a function from a number to a
-//! point: 0 is the next point, `None` is beyond the end; whoever owns the path moves on when a step says that a point is passed.
+//! A point on the left has a positive y: steer left. The last segment of the path is extended for the lookahead, so the
+//! braking at the end does not depend on L, and the curvature stays small there. The path is a function from an index
+//! to a point: 0 is the next point, `None` is beyond the end; its owner advances it when a step reports a point as
+//! passed.
 //!
-//! The report heads for the point with its orientation controller and regulates the speed by the distance to it: the nearer the point, the
-//! slower. It is one of a fixed number of points spread over the way, so it jumps.
+//! The report heads for the point with its orientation controller and regulates the speed by the distance to it: the
+//! nearer the point, the slower. It is one of a fixed number of points spread over the path, so it jumps.
 
 use crate::estimate::Estimate;
 use crate::math::{abs, atan2, clamp, from_u32, max, min, round, sqrt, wrap_angle};
@@ -22,15 +23,15 @@ use crate::types::{Drive, Pose, TICK_S, Transform};
 /// A place in the world [m].
 pub type Point = (f32, f32);
 
-/// Most of the wheels' speed that steering may take: no wheel stops, let alone turns backward.
+/// Largest share of the wheels' speed for steering: no wheel stops, let alone reverses.
 const STEERING_SHARE: f32 = 0.6;
 /// Bearing of the lookahead from which a standing robot turns to it first [rad].
 const TURN_STANDING_RAD: f32 = 0.35;
-/// The same of a moving one: 75 degrees.
+/// The same for a moving one: 75 degrees.
 const TURN_MOVING_RAD: f32 = 1.3;
-/// Pieces of the path shorter than this have no direction [m].
+/// Segments of the path shorter than this have no direction [m].
 const NO_LENGTH_M: f32 = 1e-3;
-/// Pieces of the path that are looked at ahead.
+/// Segments of the path searched ahead.
 const MOST_PIECES: u8 = 20;
 
 /// Configuration of a pure pursuit.
@@ -41,10 +42,10 @@ pub struct Pursuit<'a> {
     stop: Stop<'a>,
 }
 
-/// Memory of a pure pursuit; the default is its start.
+/// State of a pure pursuit; the default is its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PursuitState {
-    /// Start of the present piece of the path.
+    /// Start of the present segment of the path.
     from: Option<Point>,
     stop: StopState,
     /// The ramped speed [m/s].
@@ -52,7 +53,7 @@ pub struct PursuitState {
 }
 
 impl From<Point> for PursuitState {
-    /// The start of a path that begins at this point; of the default one it begins where the robot is.
+    /// The state for a path that begins at this point; the default begins at the robot.
     fn from(start: Point) -> Self {
         Self {
             from: Some(start),
@@ -61,7 +62,7 @@ impl From<Point> for PursuitState {
     }
 }
 
-/// What a pure pursuit asks for.
+/// Request of a pure pursuit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PursuitStep {
     /// Of the wheels.
@@ -72,13 +73,13 @@ pub struct PursuitStep {
     pub cross_m: f32,
     /// The next point is passed: the one after it is number 0 from now on.
     pub passed: bool,
-    /// The lookahead is so far to a side that the robot should stand and turn to `heading_ref_rad` first.
+    /// The lookahead is so far aside that the robot should stop and turn to `heading_ref_rad` first.
     pub turn: bool,
     /// The robot stands at the end.
     pub done: bool,
 }
 
-/// A piece of the path and a place beside it.
+/// A segment of the path and a point beside it.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     from: Point,
@@ -117,12 +118,12 @@ impl Piece {
         )
     }
 
-    /// The piece that follows, up to another point.
+    /// The next segment, up to another point.
     fn next(&self, to: &Point, pose: &Pose) -> Self {
         Self::new(&self.to, to, pose, &self.unit)
     }
 
-    /// Distance of the place from the piece [m].
+    /// Distance of the point from the segment [m].
     fn distance_m(&self) -> f32 {
         let beyond_m = self.along_m - clamp(self.along_m, 0.0, self.length_m);
         sqrt(beyond_m * beyond_m + self.cross_m * self.cross_m)
@@ -178,7 +179,7 @@ impl<'a> Pursuit<'a> {
         step
     }
 
-    /// Towards a point as the robot sees it, with this way left to the end.
+    /// Request towards a point in the robot's frame, with this distance left to the end.
     fn head_for(
         &self,
         step: &mut PursuitStep,
@@ -220,7 +221,7 @@ impl<'a> Pursuit<'a> {
         };
     }
 
-    /// Way left from which the end does not matter yet [m]: twice what stopping takes.
+    /// Distance left beyond which the end does not matter yet [m]: twice the stopping distance.
     fn far_m(&self) -> f32 {
         let cruise_m_s = self.params.get(ParamId::LineCruise);
         let stop_s = 0.5 * cruise_m_s / self.stop.brake() + self.stop.lag_s();
@@ -265,7 +266,7 @@ impl<'a> Pursuit<'a> {
     }
 }
 
-/// Whether the robot is nearer to the next piece than to this one, or beyond its end. The last piece is never passed.
+/// Whether the robot is nearer to the next segment than to this one, or beyond its end. The last one is never passed.
 fn is_passed(piece: &Piece, next: Option<Point>, pose: &Pose, lookahead_m: f32) -> bool {
     let Some(next) = next else {
         return false;
@@ -275,8 +276,8 @@ fn is_passed(piece: &Piece, next: Option<Point>, pose: &Pose, lookahead_m: f32) 
         || (left_m < lookahead_m && piece.next(&next, pose).distance_m() < piece.distance_m())
 }
 
-/// The point this far along the path from the robot's place on its first piece, and the way left to the end; of an end farther than
-/// `far_m` only that it is farther.
+/// The point this far along the path from the robot's projection on its first segment, and the distance left to the
+/// end; for an end beyond `far_m` only that it is beyond.
 fn look(
     piece: &mut Piece,
     pose: &Pose,

@@ -1,31 +1,31 @@
-//! Ranges from echoes: what a sonar's answer means, and a filter that knows how far the robot rolled in between.
+//! Ranges from echoes: decoding of a sonar's answer, and a filter that uses the distance rolled in between.
 //! Theory: docs/theory/sonar.md.
 //!
-//! echo -> distance, *clear* or *faulty* -> median of three -> gate on the innovation -> two states: the distance, and the rate at
-//! which odometry misjudges its change (slip, a wheel's radius, the speed of sound).
+//! echo -> distance, *clear* or *faulty* -> median of three -> gate on the innovation -> two states: the distance, and
+//! the error rate of odometry's prediction (slip, a wheel's radius, the speed of sound).
 
 use crate::math::{abs, clamp, from_u32, max, min};
 use crate::types::{AgedRange, Echo, Range, TICK_S};
 
 /// Shortest distance an HC-SR04 can measure [m]; less is impossible.
 pub const MIN_RANGE_M: f32 = 0.02;
-/// Reach used [m].
+/// Largest range used [m].
 pub const REACH_M: f32 = 2.5;
-/// Innovation that is always believed [m], plus [`GATE_SHARE`] of the distance.
+/// Innovation that is always accepted [m], plus [`GATE_SHARE`] of the distance.
 const GATE_M: f32 = 0.02;
 /// Share of the distance that the gate adds.
 const GATE_SHARE: f32 = 0.03;
-/// Refused readings that agree with each other and in the end are believed: the world has changed.
+/// Rejected readings that agree with each other, after which they are accepted: the world has changed.
 const GIVE_IN: u8 = 5;
 /// Impossible answers in a row that make the sonar faulty.
 const FAULTY_AFTER: u8 = 3;
-/// Answers without an echo in a row that make the road clear.
+/// Answers without an echo in a row that make the range clear.
 const CLEAR_AFTER: u8 = 3;
-/// Answers in a row that are the same to the microsecond: echoes of a sonar on the move differ by some, so it is stuck.
+/// Answers in a row that are equal to the microsecond: echoes of a moving sonar differ, so it is stuck.
 const STUCK_AFTER: u8 = 8;
 /// Edges of both wheels together in which they must have come: 3 cm of the original's wheels.
 const STUCK_EDGES: u16 = 112;
-/// The same answer so often is enough when the robot has come this much nearer meanwhile by its encoders [m].
+/// The same number of equal answers suffices when the robot has come this much nearer by its encoders [m].
 const STUCK_SOON: (u8, f32) = (3, 0.04);
 /// Gain on the distance at close range, where readings err by a millimetre.
 const GAIN_NEAR: f32 = 0.45;
@@ -33,10 +33,10 @@ const GAIN_NEAR: f32 = 0.45;
 const GAIN_FAR: f32 = 0.15;
 /// Gain on the rate [1/s].
 const GAIN_RATE: f32 = 0.4;
-/// Largest rate that odometry's misjudgement explains [m/s].
+/// Largest rate that odometry's error explains [m/s].
 const RATE_LIMIT_M_S: f32 = 0.03;
 
-/// What one answer means: distance [m] for a sound of `sound_m_s`, clear or faulty.
+/// Decodes an answer: distance [m] at a speed of sound of `sound_m_s`, clear or faulty.
 pub fn range_from_echo(echo: Echo, sound_m_s: f32) -> Range {
     match echo {
         Echo::Clear => Range::Clear,
@@ -54,14 +54,14 @@ pub fn range_from_echo(echo: Echo, sound_m_s: f32) -> Range {
     }
 }
 
-/// Memory of one sonar's filter.
+/// State of one sonar's filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RangeFilter {
-    /// The last three distances, as they would have been at the last answer.
+    /// The last three distances, predicted to the last answer.
     recent_m: [f32; 3],
     count: u8,
     distance_m: f32,
-    /// The rate at which odometry misjudges its change, per tick [m].
+    /// Error rate of odometry's prediction, per tick [m].
     rate_m: f32,
     /// How much nearer the sonar came, and edges of both wheels, since the last answer.
     closer_m: f32,
@@ -69,8 +69,8 @@ pub struct RangeFilter {
     refused: u8,
     clear: u8,
     faulty: u8,
-    /// The last distance answered, as it was, how often it came again, and since it first came: the edges of both wheels, and how
-    /// much nearer the sonar came to what it sees.
+    /// The last distance, unfiltered, its number of repetitions, and since the first of them: the edges of both wheels,
+    /// and how much nearer the sonar came to its target.
     last_m: f32,
     repeated: u8,
     same_edges: u16,
@@ -80,7 +80,7 @@ pub struct RangeFilter {
 }
 
 impl RangeFilter {
-    /// Moves the estimate along by one tick: the sonar came `closer_m` nearer to what it sees, with so many edges of both wheels.
+    /// Predicts by one tick: the sonar came `closer_m` nearer to its target, with this many edges of both wheels.
     pub fn predict(&mut self, closer_m: f32, edges: u16) {
         self.edges = self.edges.saturating_add(edges);
         self.aged.age_ticks = self.aged.age_ticks.saturating_add(1);
@@ -98,7 +98,7 @@ impl RangeFilter {
         }
     }
 
-    /// Brings what is remembered to the present place.
+    /// Predicts the stored distances to the present position.
     fn arrive(&mut self) {
         for recent in &mut self.recent_m {
             *recent -= self.closer_m;
@@ -108,7 +108,7 @@ impl RangeFilter {
         (self.closer_m, self.edges) = (0.0, 0);
     }
 
-    /// Whether the same distance has come so often, although the sonar moved, that it is stuck.
+    /// Whether the sonar is stuck: the same distance repeatedly although it moved.
     fn is_stuck(&mut self, range_m: f32) -> bool {
         if range_m == self.last_m {
             self.repeated = self.repeated.saturating_add(1);
@@ -121,8 +121,8 @@ impl RangeFilter {
             || (self.repeated >= soon && abs(self.same_closer_m) >= closer_m)
     }
 
-    /// Takes an answer of the sonar.
-    pub fn take(&mut self, reading: Range) {
+    /// Updates with an answer of the sonar.
+    pub fn update(&mut self, reading: Range) {
         self.arrive();
         match reading {
             Range::Faulty => {
@@ -144,7 +144,7 @@ impl RangeFilter {
                 }
                 self.clear = 0;
                 self.faulty = 0;
-                self.take_distance(range_m);
+                self.update_distance(range_m);
             }
         }
     }
@@ -161,14 +161,14 @@ impl RangeFilter {
         self.rate_m = 0.0;
     }
 
-    /// The distance is `middle_m`, whatever was believed before.
+    /// Resets the distance to `middle_m`.
     fn begin(&mut self, middle_m: f32) {
         self.declare(Range::Valid(middle_m));
         self.count = 3;
         self.distance_m = middle_m;
     }
 
-    fn take_distance(&mut self, range_m: f32) {
+    fn update_distance(&mut self, range_m: f32) {
         let [_, b, c] = self.recent_m;
         self.recent_m = [b, c, range_m];
         if self.count < 3 {
@@ -217,7 +217,7 @@ mod tests {
     fn fed(readings: &[Range]) -> RangeFilter {
         let mut filter = RangeFilter::default();
         for reading in readings {
-            filter.take(*reading);
+            filter.update(*reading);
         }
         filter
     }
@@ -243,17 +243,17 @@ mod tests {
     #[test]
     fn a_single_spike_does_not_move_the_estimate() {
         let mut filter = fed(&[Range::Valid(0.5); 10]);
-        filter.take(Range::Valid(0.05));
+        filter.update(Range::Valid(0.05));
         assert!((distance(&filter) - 0.5).abs() < 1e-4);
     }
 
     #[test]
     fn a_lost_echo_is_not_a_short_range_and_three_are_a_clear_road() {
         let mut filter = fed(&[Range::Valid(0.5); 10]);
-        filter.take(Range::Clear);
+        filter.update(Range::Clear);
         assert!((distance(&filter) - 0.5).abs() < 1e-4);
-        filter.take(Range::Clear);
-        filter.take(Range::Clear);
+        filter.update(Range::Clear);
+        filter.update(Range::Clear);
         assert_eq!(filter.range().range, Range::Clear);
     }
 
@@ -267,10 +267,10 @@ mod tests {
             Range::Faulty,
         ]);
         assert!(matches!(filter.range().range, Range::Valid(_)));
-        filter.take(Range::Faulty);
+        filter.update(Range::Faulty);
         assert_eq!(filter.range().range, Range::Faulty);
         for _ in 0..3 {
-            filter.take(Range::Valid(0.8));
+            filter.update(Range::Valid(0.8));
         }
         assert!((distance(&filter) - 0.8).abs() < 1e-6);
     }
@@ -281,12 +281,12 @@ mod tests {
         assert!((distance(&filter) - 0.5).abs() < 1e-6);
         for _ in 0..=STUCK_AFTER {
             filter.predict(0.0, 40);
-            filter.take(Range::Valid(0.5));
+            filter.update(Range::Valid(0.5));
         }
         assert_eq!(filter.range().range, Range::Faulty);
         for step in 0..20u8 {
             filter.predict(0.0, 40);
-            filter.take(Range::Valid(0.5 + 2e-4 * f32::from(step)));
+            filter.update(Range::Valid(0.5 + 2e-4 * f32::from(step)));
         }
         assert!((distance(&filter) - 0.5).abs() < 0.01);
     }
@@ -296,7 +296,7 @@ mod tests {
         let mut filter = fed(&[Range::Valid(1.5), Range::Valid(1.5), Range::Valid(1.0)]);
         for _ in 0..3 {
             filter.predict(0.02, 0);
-            filter.take(Range::Valid(1.0));
+            filter.update(Range::Valid(1.0));
         }
         assert_eq!(filter.range().range, Range::Faulty);
     }
@@ -305,7 +305,7 @@ mod tests {
     fn a_world_that_changed_is_believed_in_the_end() {
         let mut filter = fed(&[Range::Valid(0.5); 10]);
         for _ in 0..7 {
-            filter.take(Range::Valid(1.4));
+            filter.update(Range::Valid(1.4));
         }
         assert!((distance(&filter) - 1.4).abs() < 0.01);
     }
@@ -317,7 +317,7 @@ mod tests {
             truth -= 0.4 * TICK_S;
             filter.predict(0.4 * TICK_S, 0);
             if tick % 6 == 0 {
-                filter.take(Range::Valid(truth));
+                filter.update(Range::Valid(truth));
             }
             if tick > 30 {
                 assert!((distance(&filter) - truth).abs() < 1e-3);
@@ -346,7 +346,7 @@ mod tests {
             for (kind, us, closer_m) in answers {
                 let echo = match kind { 0 => Echo::Clear, 1 => Echo::Silent, 2 => Echo::Pulse(us), _ => Echo::Pulse(us % 20_000) };
                 filter.predict(closer_m, 3);
-                filter.take(range_from_echo(echo, 343.0));
+                filter.update(range_from_echo(echo, 343.0));
                 if let Range::Valid(range_m) = filter.range().range {
                     prop_assert!(range_m.is_finite() && range_m >= 0.0);
                 }

@@ -12,7 +12,7 @@ use crate::params::{ParamId, Params};
 use crate::types::{Side, SonarId};
 use core::f32::consts::FRAC_PI_2;
 
-/// Which sensors the robot carries, and where.
+/// Which sonars the robot carries, and where.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Rig {
@@ -122,7 +122,7 @@ impl Rigs {
     }
 }
 
-/// From where and in which direction a sonar looks, in the robot's frame.
+/// Position and direction of a sonar, in the robot's frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct View {
     /// Ahead of the wheels' axis [m].
@@ -152,7 +152,7 @@ impl Params {
         }
     }
 
-    /// From where a sonar looks, with the servo at `servo_rad`; `None` where the rig has no such sonar.
+    /// The view of a sonar, with the servo at `servo_rad`; `None` where the rig has no such sonar.
     pub fn view(&self, sonar: SonarId, servo_rad: f32) -> Option<View> {
         let ahead = self.get(ParamId::SonarFrontX);
         let beside = self.get(ParamId::SonarSideY);

@@ -1,35 +1,36 @@
 //! Wheel speed from the edges of one Hall sensor. Derivation: docs/theory/wheel_speed.md.
 //!
 //! Two measurements are fused. The time of the last eight edges, one turn of the motor, is free of the disc's uneven
-//! poles, and half a motor turn late. The edges of the last tick over the time they took (M/T method) are fresh, and off by
-//! as much as the poles are uneven. What the poles can explain is taken from the first, what they cannot is a
-//! real change and taken from the second. When edges stop coming, the speed is bounded by one edge over the time since.
+//! poles, but lags by half a motor turn. The edges of the last tick over their time (M/T method) are fresh, but carry
+//! the poles' error. A difference that the poles can explain is attributed to them: the first counts; beyond that it is
+//! a real change, and the second counts. When edges stop coming, the speed is bounded by one edge over the time since.
 //!
-//! What neither poles nor motors can explain is told too: edges that are missing, or are none.
+//! What neither poles nor motors can explain is reported too: missing or spurious edges.
 
 use crate::math::{from_u32, max, min, round};
 use crate::types::{Edges, Micros, TICK_S};
 
 /// Wheel angle of one edge [rad]: 8 edges per motor turn, 48 motor turns per wheel turn.
 pub const EDGE_RAD: f32 = core::f32::consts::TAU / (8.0 * 48.0);
-/// The same, to be divided by a time in microseconds [rad us/s].
+/// The same, for division by a time in microseconds [rad us/s].
 const EDGE: f32 = EDGE_RAD * 1e6;
 /// Edges of one motor turn.
 const EDGES_PER_TURN: u16 = 8;
 /// A gap between edges is at most this much wider than the mean: poles +-5 % each, doubled for both ends and for safety.
 const UNEVENNESS: f32 = 0.12;
-/// What a motor turn's mean may lag behind a wheel that speeds up, relative.
+/// Largest lag of a motor turn's mean behind an accelerating wheel, relative.
 const LAG: f32 = 0.02;
-/// A tick's edges are judged while a motor turn takes less than this [us], above 3.3 rad/s: a slower wheel may change its speed by much in one.
+/// A tick's edges are checked while a motor turn takes less than this [us], above 3.3 rad/s: a slower wheel may change
+/// its speed considerably in one turn.
 const BRISK_US: u32 = 40_000;
 /// A wheel slows down by at most this [rad/s^2]: twice the steepest of sound robots in all scenarios, 28 rad/s^2.
 const STEEPEST_RAD_S2: f32 = 60.0;
-/// Of the edges that are overdue the first may be late: it comes a gap after the last one, and poles are uneven.
+/// The first overdue edge may be late: it comes a gap after the last one, and poles are uneven.
 const LATE_EDGES: f32 = 1.0 + 2.0 * UNEVENNESS;
-/// Without an edge for this long the wheel counts as standing [us]: then it turns below 4 rpm.
+/// Without an edge for this long the wheel counts as standing [us]: it turns below 4 rpm.
 const STANDING_US: u32 = 40_000;
 
-/// Memory of one wheel's estimator.
+/// State of one wheel's estimator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpeedEstimator {
     count: u16,
@@ -47,21 +48,21 @@ pub struct SpeedEstimator {
     turn_rad_s: f32,
 }
 
-/// What the edges say about a wheel, without sign.
+/// A wheel's motion measured from its edges, without sign.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WheelMotion {
     /// Speed [rad/s], 0 or more.
     pub speed_rad_s: f32,
-    /// The same for a speed loop, 0 or more: it falls no faster than a wheel can, and not while edges are overdue, since a wheel must
-    /// not be driven harder for edges that are lost [rad/s].
+    /// The same for a speed loop, 0 or more: it falls no faster than a wheel can, and not while edges are overdue,
+    /// since a wheel must not be driven harder because of lost edges [rad/s].
     pub believed_rad_s: f32,
     /// Edges since the last tick.
     pub edges: u16,
     /// No edge for long enough that the wheel may be driven the other way.
     pub standing: bool,
-    /// These edges cannot be all of a turning disc and nothing else.
+    /// Edges are missing or spurious: these are not exactly those of a turning disc.
     pub uneven: bool,
-    /// So many edges are overdue, however steeply the wheel slows down.
+    /// Number of overdue edges, even at the steepest deceleration.
     pub overdue: u8,
 }
 
@@ -80,7 +81,7 @@ impl SpeedEstimator {
         let new = edges.count.wrapping_sub(self.count);
         let (mut uneven, mut overdue) = (false, 0);
         if new > 0 {
-            uneven = self.take(new, edges);
+            uneven = self.ingest(new, edges);
             self.last_rad_s = self.speed_rad_s;
         } else if !self.standing {
             overdue = self.overdue(now);
@@ -98,7 +99,7 @@ impl SpeedEstimator {
                 );
             }
         }
-        // From rest the first edges say little.
+        // From rest the first edges carry little information.
         if self.run <= EDGES_PER_TURN {
             self.believed_rad_s = self.speed_rad_s;
         } else if overdue == 0 {
@@ -115,7 +116,7 @@ impl SpeedEstimator {
         }
     }
 
-    /// How many edges must have come since the last one, but have not.
+    /// Number of edges that should have come since the last one, but have not.
     fn overdue(&self, now: Micros) -> u8 {
         if self.run <= EDGES_PER_TURN {
             return 0;
@@ -128,8 +129,8 @@ impl SpeedEstimator {
         u8::try_from(round(max(edges, 0.0))).unwrap_or(u8::MAX)
     }
 
-    /// Takes in new edges; says whether they are uneven.
-    fn take(&mut self, new: u16, edges: &Edges) -> bool {
+    /// Ingests new edges; returns whether they are uneven.
+    fn ingest(&mut self, new: u16, edges: &Edges) -> bool {
         let span_us = edges.last.since(self.last);
         let fresh = if self.standing || span_us == 0 {
             // From rest the time of the first gap is unknown; the tick bounds it.
@@ -167,7 +168,7 @@ impl SpeedEstimator {
     }
 }
 
-/// Whether so many edges in this time are half an edge off what the last turn of the motor leads to expect.
+/// Whether this number of edges in this time is half an edge off the prediction from the motor's last turn.
 ///
 /// A disc whose pulses are longer than its pauses shifts an odd number of edges, so those may be off by three quarters.
 fn is_uneven(new: u16, span_us: u32, turn_us: u32) -> bool {
@@ -186,8 +187,8 @@ fn is_uneven(new: u16, span_us: u32, turn_us: u32) -> bool {
     off_us > allowed_us
 }
 
-/// What uneven poles and the lag of a turn's mean explain of the difference of both measurements, relative, with so
-/// many new edges.
+/// The part of the difference of both measurements that uneven poles and the lag of a turn's mean explain, relative,
+/// with this many new edges.
 fn explained(new: u16) -> f32 {
     /// For few edges without a division.
     const OF_FEW: [f32; 9] = {
@@ -210,7 +211,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A disc with uneven poles turning at a speed that depends on time, as the interrupt would see it.
+    /// A disc with uneven poles turning at a speed that depends on time, as seen by the interrupt.
     struct Disc {
         places: [f32; 8],
         angle_edges: f64,
@@ -335,7 +336,7 @@ mod tests {
         }
     }
 
-    /// The most edges that are overdue in a second in which a wheel turns so fast, and then so.
+    /// The most overdue edges in a second in which a wheel changes from one speed to another.
     fn most_overdue(arrives: fn(u32) -> bool, speed: impl Fn(u32) -> f64) -> u8 {
         let mut disc = Disc {
             arrives,

@@ -1,8 +1,9 @@
-//! Where the servo looks while the robot regulates on a wall in front: ahead, and aside now and then.
+//! Where the servo points while the robot regulates on a wall in front: ahead, and aside now and then.
 //!
-//! A sonar that looks at a wall within its beam reads the distance and nothing of the bearing. Looking past the beam's edge, to both
-//! sides of the wall's normal in turn, gives it (docs/theory/wall.md). The schedule is: some pings ahead, one to the left of the normal,
-//! some ahead, one to the right. The sonar pings only when the servo has arrived; nothing waits for it.
+//! A sonar with the wall's normal within its beam measures the distance but not the bearing. Looking past the beam's
+//! edge, to both sides of the normal in turn, measures it (docs/theory/wall.md). The schedule is: some pings ahead, one
+//! to the left of the normal, some ahead, one to the right. The sonar pings only when the servo has arrived; nothing
+//! waits for it.
 
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp};
@@ -11,10 +12,10 @@ use crate::types::{ServoAngle, SonarId};
 
 /// Farthest that the servo turns [rad].
 const TRAVEL_RAD: f32 = 1.4;
-/// Ticks that the servo gets beyond its reckoned arrival.
+/// Ticks of margin after the servo's estimated arrival.
 const ARRIVAL_TICKS: u8 = 1;
 
-/// How to look.
+/// Configuration of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sweep {
     /// How far to the side of the wall's normal [rad].
@@ -23,20 +24,20 @@ pub struct Sweep {
     pub pings_ahead: u8,
 }
 
-/// Memory of a sweep; the default looks ahead.
+/// State of a sweep; the default looks ahead.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SweepState {
     servo_rad: f32,
     aside: bool,
     /// The next look aside goes to the right.
     right_next: bool,
-    heard: u8,
+    answers: u8,
     arrived_ticks: u8,
     looks: u8,
 }
 
 impl SweepState {
-    /// Looks ahead, with so many looks aside done.
+    /// Looks ahead, with this many looks aside done.
     pub fn after(looks: u8) -> Self {
         Self {
             looks,
@@ -49,7 +50,7 @@ impl SweepState {
         self.looks
     }
 
-    /// Whether an answer with the servo at `servo_rad` comes from where this sweep looks now.
+    /// Whether an answer with the servo at `servo_rad` is from this sweep's present direction.
     pub fn is_from_here(&self, servo_rad: f32) -> bool {
         abs(servo_rad - self.servo_rad) < 1e-3
     }
@@ -58,12 +59,12 @@ impl SweepState {
 impl Sweep {
     /// One tick; `bearing_rad` is that of the wall's normal.
     pub fn step(&self, state: &mut SweepState, estimate: &Estimate, bearing_rad: f32) -> Look {
-        let heard = estimate.reading.is_some_and(|reading| {
+        let answered = estimate.reading.is_some_and(|reading| {
             reading.sonar == SonarId::Front && state.is_from_here(reading.servo_rad)
         });
-        state.heard = state.heard.saturating_add(u8::from(heard));
+        state.answers = state.answers.saturating_add(u8::from(answered));
         let wanted = if state.aside { 1 } else { self.pings_ahead };
-        if state.heard >= wanted {
+        if state.answers >= wanted {
             self.turn(state, bearing_rad);
         }
         state.arrived_ticks = if estimate.servo_arrived && state.is_from_here(estimate.servo_rad) {
@@ -80,7 +81,7 @@ impl Sweep {
     }
 
     fn turn(&self, state: &mut SweepState, bearing_rad: f32) {
-        state.heard = 0;
+        state.answers = 0;
         state.arrived_ticks = 0;
         if state.aside {
             state.looks = state.looks.saturating_add(1);

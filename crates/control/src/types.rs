@@ -1,4 +1,4 @@
-//! The values that cross the border of the core, each with its unit, and the newtypes of raw counts.
+//! The values that cross the boundary of the core, each with its unit, and the newtypes of raw counts.
 
 use crate::math::sin_cos;
 use crate::rig::View;
@@ -128,7 +128,7 @@ impl Duty {
     }
 }
 
-/// What the encoder interrupt of one wheel left at the tick. One Hall channel: the direction is not measured.
+/// Record of one wheel's encoder interrupt at the tick. One Hall channel: the direction is not measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Edges {
     /// Edges seen since the start, wrapping.
@@ -157,12 +157,12 @@ impl SonarId {
     pub const ALL: [SonarId; 3] = [SonarId::Left, SonarId::Right, SonarId::Front];
 }
 
-/// What became of a ping.
+/// The result of a ping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Echo {
-    /// The echo line was high for this long [us].
+    /// Time for which the echo line was high [us].
     Pulse(u32),
-    /// The line rose and did not fall within the reach: nothing in sight.
+    /// The line rose and did not fall within the range: nothing in sight.
     Clear,
     /// The line never rose, or was already high when the ping was due.
     Silent,
@@ -180,14 +180,14 @@ pub enum Range {
     Faulty,
 }
 
-/// What a sonar said at this tick, before any filter.
+/// A sonar's reading at this tick, unfiltered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// Which one.
     pub sonar: SonarId,
-    /// What it said.
+    /// Its range.
     pub range: Range,
-    /// From where it looked when it pinged, in the robot's present frame: the robot has moved on since.
+    /// Its view when it pinged, in the robot's present frame: the robot has moved since.
     pub view: View,
     /// Where the servo pointed when it pinged [rad].
     pub servo_rad: f32,
@@ -298,7 +298,7 @@ impl Transform {
     }
 }
 
-/// What latched at the tick.
+/// The latched inputs of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inputs {
     /// The instant of the tick.
@@ -311,7 +311,7 @@ pub struct Inputs {
     pub battery_v: Option<f32>,
 }
 
-/// What takes effect [`OUTPUT_DELAY_US`] after the tick.
+/// The outputs of a tick, which take effect [`OUTPUT_DELAY_US`] after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outputs {
     /// PWM and direction of both wheels.
@@ -322,7 +322,7 @@ pub struct Outputs {
     pub ping: Option<SonarId>,
 }
 
-/// What a mode asks of the wheels.
+/// A mode's request to the wheels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Drive {
     /// Both bridges released.

@@ -1,39 +1,40 @@
-//! How far a sonar can be trusted: the share of its readings that are wild.
+//! How far a sonar can be trusted: a score of its outliers.
 //!
-//! The range filter ([`crate::range`]) throws single spikes away, and what is left may be driven on. A sonar that spikes all the time is not
-//! to be driven on all the same: it slows the robot first, then stops it.
+//! The range filter ([`crate::range`]) rejects single spikes, and the rest is good to drive on. A sonar that spikes all
+//! the time is not: it slows the robot first, then stops it.
 
 use crate::estimate::Estimate;
 use crate::math::abs;
 use crate::types::{Fault, Range, Reading};
 
-/// A reading further than this from the filtered range, and [`WILD_SHARE`] of that range, is wild [m]: a weak echo errs by less.
+/// A reading farther than this plus [`WILD_SHARE`] of the range from the filtered range is an outlier [m]: a weak echo
+/// errs by less.
 const WILD_M: f32 = 0.05;
 /// Share of the range that a reading may err.
 const WILD_SHARE: f32 = 0.2;
-/// Where nothing was in sight, a distance beyond this is not wild [m]: something comes into reach.
+/// Where nothing was in sight, a distance beyond this is no outlier [m]: something comes into range.
 const COMES_INTO_SIGHT_M: f32 = 1.0;
-/// What a wild reading adds to a sonar's unrest.
+/// What an outlier adds to a sonar's score.
 const WILD: u8 = 8;
-/// What an answer adds that no sound sonar gives.
+/// What an impossible answer adds.
 const IMPOSSIBLE: u8 = 16;
-/// Unrest that slows the robot: four wild readings.
+/// Score that slows the robot: four outliers.
 const UNEASY: u8 = 32;
-/// Unrest from which another fault is put down to the sonar.
+/// Score from which another fault is attributed to the sonar.
 const SUSPECT: u8 = 52;
-/// Unrest that makes a sonar faulty: eight wild readings, or every fourth one for two seconds.
+/// Score that makes a sonar faulty: eight outliers, or every fourth reading for two seconds.
 const FAULTY: u8 = 64;
 
-/// How wild each sonar's readings have been lately. A calm reading takes one off, a wild one adds eight.
+/// Outlier score of each sonar's recent readings. A good reading subtracts one, an outlier adds eight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Unrest([u8; 3]);
 
 impl Unrest {
-    /// Takes the reading of this tick, of a sonar that matters.
+    /// Updates with the reading of this tick, of a relevant sonar.
     ///
     /// # Errors
-    /// The sonar's readings are so wild that it is faulty.
-    pub fn take(&mut self, estimate: &Estimate, reading: &Reading) -> Result<(), Fault> {
+    /// The sonar has so many outliers that it is faulty.
+    pub fn update(&mut self, estimate: &Estimate, reading: &Reading) -> Result<(), Fault> {
         let unrest = &mut self.0[reading.sonar as usize];
         let wild = match (estimate.range(reading.sonar).range, reading.range) {
             (_, Range::Faulty) => IMPOSSIBLE,
@@ -63,7 +64,7 @@ impl Unrest {
         self.0.iter().any(|unrest| *unrest >= UNEASY)
     }
 
-    /// The cause of a stop: the sonars where they have been wild, else `fault`.
+    /// The cause of a stop: the sonars where they had outliers, else `fault`.
     pub fn cause(&self, fault: Fault) -> Fault {
         if self.0.iter().any(|unrest| *unrest >= SUSPECT) {
             Fault::SonarFaulty
@@ -90,7 +91,7 @@ mod tests {
                 view: View::default(),
                 servo_rad: 0.0,
             };
-            if let Err(fault) = unrest.take(&estimate, &reading) {
+            if let Err(fault) = unrest.update(&estimate, &reading) {
                 return (unrest, Err(fault));
             }
         }

@@ -10,13 +10,14 @@
 //!                       range = h / cos(off - beam)   beyond: the edge of the beam meets the wall first
 //! ```
 //!
-//! Two sonars side by side thus give the bearing, as the report's trigonometry does, exact also for equal readings;
-//! one sonar and odometry do so over some way, and a sonar on the servo by looking to both sides. Derivation: docs/theory/wall.md.
+//! Two sonars side by side thus give the bearing, as the report's trigonometry does, exact also for equal readings; one
+//! sonar and odometry do so over some distance, and a sonar on the servo by looking to both sides. Derivation:
+//! docs/theory/wall.md.
 
 use crate::math::{abs, atan2, clamp, is_finite, max, min, rotate, sin_cos, sqrt, wrap_angle};
 use crate::rig::View;
 
-/// Most that a beam's edge may meet the wall off its normal, seen from the beam's edge [rad]; beyond, there is no echo.
+/// Largest angle between a beam's edge and the wall's normal [rad]; beyond, there is no echo.
 const LARGEST_INCIDENCE_RAD: f32 = 0.7;
 /// Noise of a reading at close range [m].
 const NOISE_M: f32 = 0.002;
@@ -24,15 +25,15 @@ const NOISE_M: f32 = 0.002;
 const NOISE_FAR_M: f32 = 0.008;
 /// Innovations count as at most this many standard deviations.
 const BELIEF_SD: f32 = 2.0;
-/// Innovations beyond this many standard deviations are refused.
+/// Innovations beyond this many standard deviations are rejected.
 const GATE_SD: f32 = 4.0;
 /// From this far within the beam's edge on, ranges are not linear in the bearing [rad].
 const EDGE_RAD: f32 = 0.15;
-/// Refused readings in a row after which the wall is another one.
+/// Rejected readings in a row after which the wall is assumed to be another one.
 const GIVE_IN: u8 = 6;
-/// Standard deviation of the distance gained per way rolled [m/sqrt(m)].
+/// Standard deviation of the distance gained per distance rolled [m/sqrt(m)].
 const WAY_NOISE: f32 = 0.01;
-/// Standard deviation of the bearing gained per way rolled [rad/sqrt(m)].
+/// Standard deviation of the bearing gained per distance rolled [rad/sqrt(m)].
 const DRIFT_NOISE: f32 = 0.03;
 /// Standard deviation of the bearing gained per angle turned [rad/sqrt(rad)].
 const TURN_NOISE: f32 = 0.03;
@@ -57,7 +58,7 @@ impl Wall {
     }
 }
 
-/// Memory of the wall filter.
+/// State of the wall filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WallFilter {
     distance_m: f32,
@@ -71,7 +72,7 @@ pub struct WallFilter {
 }
 
 impl WallFilter {
-    /// The wall, once a reading has been taken.
+    /// The wall, once there has been a reading.
     pub fn wall(&self) -> Option<Wall> {
         let (_, _, bearing_variance) = self.p;
         self.known.then_some(Wall {
@@ -82,7 +83,7 @@ impl WallFilter {
         })
     }
 
-    /// Whether a reading has been taken.
+    /// Whether there has been a reading.
     pub fn is_known(&self) -> bool {
         self.known
     }
@@ -123,7 +124,7 @@ impl WallFilter {
         };
     }
 
-    /// Moves the wall along with the robot, which rolled `forward_m` and turned `turn_rad` since the last tick.
+    /// Predicts the wall after the robot rolled `forward_m` and turned `turn_rad` since the last tick.
     pub fn predict(&mut self, forward_m: f32, turn_rad: f32) {
         if !self.known {
             return;
@@ -170,8 +171,8 @@ impl WallFilter {
         ))
     }
 
-    /// Takes a reading; says whether it was believed.
-    pub fn take(&mut self, view: &View, beam_rad: f32, range_m: f32) -> bool {
+    /// Updates with a reading; returns whether it was accepted.
+    pub fn update(&mut self, view: &View, beam_rad: f32, range_m: f32) -> bool {
         if !self.known || !is_finite(range_m) {
             return false;
         }
@@ -198,7 +199,7 @@ impl WallFilter {
         }
         self.refused = 0;
         let most_m = BELIEF_SD * sqrt(variance);
-        // A reading further off than that is believed in part only, and makes the estimate in part only surer.
+        // An innovation beyond that is clipped, and reduces the covariance only in part.
         let share = most_m / max(abs(innovation_m), most_m) / variance;
         let (kd, kb) = (share * gd, share * gb);
         self.distance_m = max(self.distance_m + kd * innovation_m, 0.0);
@@ -280,7 +281,7 @@ mod tests {
             for _ in 0..10 {
                 for x_m in [0.1, -0.04] {
                     let view = side(x_m);
-                    assert!(filter.take(&view, BEAM, range(&view, distance_m, bearing_rad)));
+                    assert!(filter.update(&view, BEAM, range(&view, distance_m, bearing_rad)));
                 }
             }
             let wall = filter.wall().unwrap();
@@ -324,7 +325,7 @@ mod tests {
             distance_m -= 0.002 * sin_cos(bearing_rad).1;
             filter.predict(0.002, 0.0);
             if tick % 6 == 0 {
-                assert!(filter.take(&view, BEAM, range(&view, distance_m, bearing_rad)));
+                assert!(filter.update(&view, BEAM, range(&view, distance_m, bearing_rad)));
             }
         }
         let wall = filter.wall().unwrap();
@@ -346,7 +347,7 @@ mod tests {
         for _ in 0..20 {
             for axis_rad in [-0.6, 0.0, 0.6] {
                 let view = look(axis_rad);
-                filter.take(&view, BEAM, range(&view, distance_m, bearing_rad));
+                filter.update(&view, BEAM, range(&view, distance_m, bearing_rad));
             }
         }
         let wall = filter.wall().unwrap();
@@ -371,13 +372,13 @@ mod tests {
         let (mut filter, view) = (WallFilter::default(), side(0.03));
         filter.start(&view, 0.5, FRAC_PI_2, 0.05);
         for _ in 0..20 {
-            filter.take(&view, BEAM, 0.5);
+            filter.update(&view, BEAM, 0.5);
         }
         let before = filter.wall();
-        assert!(!filter.take(&view, BEAM, 1.3) && filter.wall() == before);
-        assert!(filter.take(&view, BEAM, 0.5));
+        assert!(!filter.update(&view, BEAM, 1.3) && filter.wall() == before);
+        assert!(filter.update(&view, BEAM, 0.5));
         for _ in 0..GIVE_IN {
-            filter.take(&view, BEAM, 1.3);
+            filter.update(&view, BEAM, 1.3);
         }
         assert_eq!(filter.wall(), None);
     }

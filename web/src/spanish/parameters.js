@@ -80,7 +80,7 @@ export const PARAMETERS = {
   'Angle to the wall per distance error and time.': 'Ángulo con la pared por error de distancia y tiempo.',
   'Largest angle to the wall on the way to another distance.': 'Mayor ángulo con la pared camino de otra distancia.',
   'Yaw rate per angle error.': 'Velocidad de giro por error de ángulo.',
-  'Yaw rate taken back per yaw rate that the encoders tell.': 'Velocidad de giro que se resta por la que indican los encoders.',
+  'Damping: yaw rate subtracted per measured yaw rate.': 'Amortiguamiento: velocidad de giro que se resta por la medida.',
   'Largest yaw rate.': 'Mayor velocidad de giro.',
   'Range of the front sonar at which the robot stops before what stands ahead, where the rig looks ahead.':
     'Lectura del sonar frontal a la que el robot para ante lo que haya delante, si el montaje mira al frente.',

@@ -94,7 +94,7 @@ macro_rules! modes {
             /// One tick.
             ///
             /// # Errors
-            /// Why the mode cannot go on.
+            /// Why the mode must stop.
             pub fn step(&mut self, params: &Params, estimate: &Estimate) -> Result<Action, Fault> {
                 match self { $( Self::$mode(setpoint, state) => $module::$mode::new(params, setpoint).step(state, estimate), )+ }
             }
@@ -193,7 +193,7 @@ mod tests {
     }
 }
 
-/// What the descriptions promise to those who derive from them.
+/// Guarantees of the descriptions for the code that derives from them.
 #[cfg(all(test, feature = "names"))]
 mod descriptions {
     use super::*;

@@ -1,4 +1,4 @@
-//! What the running mode takes from outside besides one reference: a pair of them, goals, routes, movements; and what it refuses.
+//! Commands to the running mode besides a single reference: a pair of them, goals, routes, movements; and refusals.
 
 use super::mission::Task;
 use super::waypoints::{self, Route, Waypoint};

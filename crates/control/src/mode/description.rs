@@ -1,14 +1,14 @@
-//! What a mode is, for whoever chooses it, draws it or checks it: one constant [`Description`] beside each mode.
+//! Descriptions of the modes, for selecting, plotting and checking them: one constant [`Description`] beside each mode.
 //!
-//! The firmware uses the number, the rigs and the range of the reference, as constants where it needs them. The whole exists on hosts
-//! (`ModeId::description`, feature `names`): page, command line, docs and metrics derive from it.
+//! The firmware uses only the number, the rigs and the range of the reference, as constants. The whole description
+//! exists on hosts (`ModeId::description`, feature `names`): page, command line, docs and metrics derive from it.
 
 use super::SetpointError;
 use super::commands::within;
 use crate::params::ParamId;
 use crate::rig::Rigs;
 
-/// What a mode is.
+/// The description of a mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Description {
     /// Its number in the report, on the link and in files.
@@ -19,19 +19,19 @@ pub struct Description {
     pub about: &'static str,
     /// Its states, by the number in telemetry, and what leads from one to another.
     pub states: &'static [StateDescription],
-    /// The state in which its reference is not in force: the last one is from before.
+    /// The state in which its reference is not in force yet: the value is stale.
     pub idle: Option<u8>,
-    /// What it regulates to, if that is one value.
+    /// Its reference, if that is one value.
     pub reference: Option<Reference>,
-    /// It wants a heading, which telemetry tells.
+    /// It has a heading setpoint, which is sent to the station.
     pub heading: bool,
-    /// What it takes besides.
+    /// Its other inputs.
     pub takes: Option<Takes>,
-    /// The rigs that carry the sonars it needs.
+    /// The rigs with the sonars it needs.
     pub rigs: Rigs,
-    /// The parameters it acts by, those that matter most first. A parameter of no mode belongs to the robot.
+    /// The parameters it uses, the most important ones first. A parameter of no mode belongs to the robot.
     pub parameters: &'static [Group],
-    /// What is worth plotting, in this order.
+    /// The plots to show, in this order.
     pub plots: &'static [Plot],
 }
 
@@ -42,7 +42,7 @@ pub struct StateDescription {
     pub name: &'static str,
     /// What the robot does in it.
     pub does: &'static str,
-    /// What leads on from it while the robot is armed; a command may lead back to the first state at any time.
+    /// The transitions from it while the robot is armed; a command may lead back to the first state at any time.
     pub ways: &'static [Way],
 }
 
@@ -55,10 +55,10 @@ pub struct Way {
     pub when: &'static str,
 }
 
-/// What a mode regulates to.
+/// The reference of a mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
-    /// What it is.
+    /// Its kind.
     pub kind: ReferenceKind,
     /// Smallest allowed value.
     pub min: f32,
@@ -66,7 +66,7 @@ pub struct Reference {
     pub max: f32,
     /// The value to offer first.
     pub offered: f32,
-    /// A command sets it; otherwise the mode finds it by itself.
+    /// A command sets it; otherwise the mode determines it.
     pub commanded: bool,
 }
 
@@ -118,7 +118,7 @@ impl ReferenceKind {
     }
 }
 
-/// What a mode takes besides its reference.
+/// An input of a mode besides its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Takes {
     /// The basic movements.
@@ -132,7 +132,7 @@ pub enum Takes {
 /// Parameters that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Group {
-    /// What they are of.
+    /// Their subject.
     pub title: &'static str,
     /// The parameters.
     pub parameters: &'static [ParamId],
@@ -145,7 +145,7 @@ impl Group {
     }
 }
 
-/// A plot that a mode can begin with; what is in it is the page's matter.
+/// A plot that a mode may show by default; the page decides its curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plot {
     /// Ranges and the reference of the distance.
@@ -186,7 +186,7 @@ pub(super) const SPEED_LOOPS: Group = Group::new(
         ParamId::SpeedKdRight,
     ],
 );
-/// What the wheels get without any error.
+/// Feedforward of the wheels.
 pub(super) const FEEDFORWARD: Group = Group::new(
     "feedforward",
     &[
@@ -229,8 +229,8 @@ pub(super) const LINES: Group = Group::new(
     ],
 );
 
-/// Declares the states of a mode: an enum for the mode's code, and `STATES` for its [`Description`]. Each state: what the robot does in it,
-/// its name, and the states that may follow with their conditions. Numbers are given in the order.
+/// Declares the states of a mode: an enum for the mode's code, and `STATES` for its [`Description`]. Each state: what
+/// the robot does in it, its name, and the states that may follow with their conditions. Numbers follow the order.
 macro_rules! states {
     (
         $(#[$meta:meta])*

@@ -5,17 +5,18 @@
 //! e = d - (reference + sonars' place ahead of the axis)     |v| = as in mode 1, sign of e      yaw rate = kp b, limited
 //! ```
 //!
-//! Too far is a positive error and drives forward; a normal to the left is a positive bearing and turns left. Turning on the spot does not
-//! change d, so the two loops do not disturb each other: the robot squares up on the way, and what is left of the angle when it
-//! has arrived it turns on the spot. The reference is the distance from the sonars to the wall once the robot is square to it.
+//! Too far is a positive error and drives forward; a normal to the left is a positive bearing and turns left. Turning
+//! on the spot does not change d, so the two loops do not disturb each other: the robot squares up on the way, and
+//! turns off any remaining angle on the spot. The reference is the distance from the sonars to the wall once the robot
+//! is square to it.
 //!
-//! Rigs: the pair in front, or the final one, whose front sonar then looks ahead and aside in turn ([`crate::sweep`]). Whatever any
-//! sonar hears nearer than the wall is not driven at.
+//! Rigs: the pair in front, or the final one, whose front sonar then looks ahead and aside in turn ([`crate::sweep`]).
+//! The robot does not drive at anything that a sonar detects nearer than the wall.
 //!
-//! The report adds a PI of the angle to the PWM of one wheel, and takes the angle from the two readings of the moment alone, with the old
-//! distance when they are equal. Ours knows the angle from the encoders between the readings, so it can drive at
-//! mode 1's speed and square up at the same time: 119 -> 30 cm in 2.2 s from 20 degrees askew instead of 3.4, within a degree (`rumbo run mode2
-//! --runs 20`). Derivation and figures: docs/theory/front_align.md.
+//! The report adds a PI of the angle to the PWM of one wheel, and computes the angle from the two latest readings
+//! alone, with the old distance when they are equal. Ours tracks the angle with the encoders between the readings, so
+//! it can drive at mode 1's speed and square up at the same time: 119 -> 30 cm in 2.2 s from 20 degrees askew instead
+//! of 3.4, within a degree (`rumbo run mode2 --runs 20`). Derivation and figures: docs/theory/front_align.md.
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
 use super::front_distance::{self, FrontDistance};
@@ -30,7 +31,7 @@ use crate::types::{Drive, Fault, TICK_S, Wheels};
 use crate::unrest::Unrest;
 use crate::wall::Wall;
 
-/// What mode 2 is.
+/// Description of mode 2.
 pub const DESCRIPTION: Description = Description {
     number: 2,
     name: "front_align",
@@ -60,7 +61,7 @@ pub const DESCRIPTION: Description = Description {
 };
 
 states! {
-    /// Where mode 2 stands.
+    /// States of mode 2.
     enum Phase {
         /// Final rig: stands and looks to both sides.
         #[default]
@@ -88,11 +89,11 @@ states! {
 const ASKEW_SHARE: f32 = 1.5;
 /// How long the angle must be off to turn again [s].
 const ASKEW_S: f32 = 0.3;
-/// A sonar may hear the wall this much nearer than the reference [m], since the robot may be askew.
+/// A sonar may measure the wall this much nearer than the reference [m], since the robot may be askew.
 const NEARER_M: f32 = 0.03;
 /// Largest yaw rate on the way [rad/s].
 const YAW_RAD_S: f32 = 1.5;
-/// Most of the wheels' speed that steering may take.
+/// Largest share of the wheels' speed for steering.
 const STEERING_SHARE: f32 = 0.5;
 
 /// Configuration of mode 2.
@@ -105,7 +106,7 @@ pub struct FrontAlign<'a> {
     params: &'a Params,
 }
 
-/// Memory of mode 2.
+/// State of mode 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     phase: Phase,
@@ -149,7 +150,7 @@ impl FrontAlign<'_> {
         }
     }
 
-    /// Towards the reference, turning to the wall's normal on the way; `free_m` is how far nothing stands ahead.
+    /// Drives towards the reference, turning to the wall's normal on the way; `free_m` is the clear distance ahead.
     fn drive(&self, error_m: f32, bearing_rad: f32, free_m: f32, uneasy: bool) -> Drive {
         let error_m = min(error_m, max(free_m, 0.0));
         if error_m == 0.0 {
@@ -200,7 +201,7 @@ impl<'a> Mode<'a> for FrontAlign<'a> {
         if let Some(reading) = &estimate.reading
             && self.ahead.watches(reading)
         {
-            state.unrest.take(estimate, reading)?;
+            state.unrest.update(estimate, reading)?;
         }
         let (nearest_m, wall) = self
             .see(&mut state.ahead, estimate)
@@ -256,7 +257,7 @@ mod tests {
         params
     }
 
-    /// What the sonars left, right and front say; 0 is nothing in sight.
+    /// Ranges of the sonars left, right and front; 0 is nothing in sight.
     fn seeing(ranges_m: [f32; 3]) -> Estimate {
         let mut estimate = Estimate::default();
         for (slot, range_m) in estimate.ranges.iter_mut().zip(ranges_m) {

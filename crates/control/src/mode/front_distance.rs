@@ -8,13 +8,15 @@
 //!
 //! The root is the speed from which the planned deceleration `a` stops at the reference; near it, where the root is
 //! steep, the proportional law is slower and takes over. Within the tolerance the wheels are released; friction, not
-//! power, holds the robot, and only a lasting error starts it again. A heading loop on the odometry keeps it straight.
+//! power, holds the robot, and only a lasting error restarts it. A heading loop on the odometry keeps it straight.
 //!
-//! The report drives the PWM by the distance, proportional far and PI near, around a PWM at which the robot just moves. Ours closes
-//! the speed loops inside, so the same approach works on any floor and battery, and brakes as late as friction allows. Worst of 20 simulated robots against the
-//! real one: 107 -> 30 cm in 2.0 s instead of 3.0, 30 -> 50 cm in 1.03 s instead of 1.2 (`rumbo run mode1 --runs 20`).
+//! The report controls the PWM by the distance, proportional far and PI near, around a PWM at which the robot just
+//! moves. Ours has inner speed loops, so the same approach works on any floor and battery, and brakes as late as
+//! friction allows. Worst of 20 simulated robots against the real one: 107 -> 30 cm in 2.0 s instead of 3.0, 30 -> 50
+//! cm in 1.03 s instead of 1.2 (`rumbo run mode1 --runs 20`).
 //!
-//! A sonar whose readings are wild slows the robot, then stops it ([`crate::unrest`]). Derivation, margins and figures: docs/theory/front_distance.md.
+//! A sonar with many outliers slows the robot, then stops it ([`crate::unrest`]). Derivation, margins and figures:
+//! docs/theory/front_distance.md.
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
@@ -29,7 +31,7 @@ use crate::rig::{Rig, Rigs};
 use crate::types::{Drive, Fault, SonarId, TICK_S, Wheels};
 use crate::unrest::Unrest;
 
-/// What mode 1 is.
+/// Description of mode 1.
 pub const DESCRIPTION: Description = Description {
     number: 1,
     name: "front_distance",
@@ -58,7 +60,7 @@ pub(super) const REFERENCE: Reference = Reference::commanded(
     DEFAULT_M,
 );
 
-/// How the robot comes to the distance, in mode 2 too.
+/// Approach to the distance, in mode 2 too.
 pub(super) const APPROACH: Group = Group::new(
     "approach to the wall",
     &[
@@ -70,7 +72,7 @@ pub(super) const APPROACH: Group = Group::new(
 );
 
 states! {
-    /// Where mode 1 stands.
+    /// States of mode 1.
     enum Phase {
         /// Drives, far from the reference.
         #[default]
@@ -92,9 +94,9 @@ pub(super) const FAR_M: f32 = 0.06;
 const CREEP_M_S: f32 = 0.03;
 /// How long an error must last to start the robot again [s].
 pub(super) const RESTART_S: f32 = 0.15;
-/// Share of the cruise speed with a sonar whose readings are wild ([`crate::unrest`]).
+/// Share of the cruise speed with a sonar that has many outliers ([`crate::unrest`]).
 const UNEASY_SHARE: f32 = 0.3;
-/// Most of the wheels' speed that straightening may take.
+/// Largest share of the wheels' speed for straightening.
 const STEERING_SHARE: f32 = 0.3;
 
 /// Configuration of mode 1.
@@ -107,7 +109,7 @@ pub struct FrontDistance<'a> {
     params: &'a Params,
 }
 
-/// Memory of mode 1.
+/// State of mode 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     phase: Phase,
@@ -189,7 +191,7 @@ impl<'a> Mode<'a> for FrontDistance<'a> {
         if let Some(reading) = &estimate.reading
             && reading.sonar == SonarId::Front
         {
-            state.unrest.take(estimate, reading)?;
+            state.unrest.update(estimate, reading)?;
         }
         let range_m = self
             .range_m(estimate)

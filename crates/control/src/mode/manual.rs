@@ -13,7 +13,7 @@ use crate::params::{ParamId, Params};
 use crate::rig::Rigs;
 use crate::types::{Drive, Fault, Wheels};
 
-/// What mode 0 is.
+/// Description of mode 0.
 pub const DESCRIPTION: Description = Description {
     number: 0,
     name: "manual",
@@ -34,7 +34,7 @@ pub const DESCRIPTION: Description = Description {
 };
 
 states! {
-    /// What mode 0 does.
+    /// States of mode 0.
     enum Phase {
         /// Wheels released: the movement is *stop*.
         #[default]
@@ -46,7 +46,7 @@ states! {
     }
 }
 
-/// What is asked of mode 0.
+/// The setpoint of mode 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setpoint {
     /// Which movement.

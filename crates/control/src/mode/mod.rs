@@ -1,9 +1,8 @@
 //! The modes: what the robot does, one file each.
 //!
-//! A mode is configuration (from the parameters and its setpoint) apart from state, and one function that makes an
-//! [`Action`] of the [`Estimate`]: [`Mode::step`]. Beside it stands its [`Description`]: number, name, states,
-//! reference, rigs, parameters. One list names the modes, in `active.rs`; from it come [`ModeId`] and [`ActiveMode`],
-//! which dispatches.
+//! A mode is configuration (from the parameters and its setpoint) apart from state, and one function from the
+//! [`Estimate`] to an [`Action`]: [`Mode::step`]. Beside it is its [`Description`]: number, name, states, reference,
+//! rigs, parameters. The list of modes in `active.rs` generates [`ModeId`] and [`ActiveMode`], which dispatches.
 
 mod description;
 
@@ -46,7 +45,7 @@ pub const MAX_WALL_M: f32 = 1.5;
 /// Distance to a wall beside the robot before the first command [m], as in the report.
 pub const DEFAULT_WALL_M: f32 = 0.50;
 
-/// What a mode asks for.
+/// Request of a mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Action {
     /// Of the wheels.
@@ -55,13 +54,13 @@ pub struct Action {
     pub look: Look,
     /// Number of its state, for telemetry; names: [`Description::states`].
     pub state: u8,
-    /// The heading that it wants, for telemetry [rad]; 0 where it wants none.
+    /// Its heading setpoint, for telemetry [rad]; 0 where it has none.
     pub heading_ref_rad: f32,
     /// It has reached its reference.
     pub reached: bool,
-    /// It has found out that its goal cannot be reached.
+    /// It has found that its goal cannot be reached.
     pub unreachable: bool,
-    /// The present place is the origin from now on.
+    /// The present pose becomes the origin.
     pub new_origin: bool,
 }
 
@@ -101,9 +100,9 @@ impl Look {
 
 /// A mode: configuration apart from state.
 pub trait Mode<'a>: Sized {
-    /// What is commanded.
+    /// The setpoint.
     type Setpoint: Copy;
-    /// What it remembers from tick to tick; the default is its start.
+    /// Its state from tick to tick; the default is its start.
     type State: Default;
 
     /// Where it needs to look, armed or not.
@@ -141,7 +140,7 @@ pub trait Mode<'a>: Sized {
     /// One tick.
     ///
     /// # Errors
-    /// Why it cannot go on; the supervisor then releases the wheels.
+    /// Why it must stop; the supervisor then releases the wheels.
     fn step(&self, state: &mut Self::State, estimate: &Estimate) -> Result<Action, Fault>;
 }
 
@@ -152,6 +151,6 @@ pub enum SetpointError {
     NotFinite,
     /// Outside what the mode allows.
     OutOfRange,
-    /// The mode takes no such reference.
+    /// The mode has no such reference.
     NotInThisMode,
 }

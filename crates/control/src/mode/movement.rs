@@ -52,7 +52,7 @@ impl Movement {
     ];
 }
 
-/// How much of a basic movement.
+/// Level of a basic movement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Level {
     /// Open loop: fraction of full PWM, 0..=1.

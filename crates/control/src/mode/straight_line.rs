@@ -1,8 +1,8 @@
 //! Mode 6: straight on at a commanded wheel speed, by regulating the difference of distance travelled (memoria 4.2).
 //!
 //! ```text
-//! way of each wheel = angle x its own radius        d = sum of (right - left) [m], the heading times the base
-//! offset y = sum of (way x d / base) [m]            d_ref = -base x ky x y, backward with the other sign, limited
+//! distance of a wheel = angle x its radius          d = sum of (right - left) [m], the heading times the base
+//! offset y = sum of (distance x d / base) [m]       d_ref = -base x ky x y, backward with the other sign, limited
 //! yaw rate = kp (d_ref - d) / base                  at most a share of the speed
 //! ```
 //!
@@ -10,9 +10,10 @@
 //! backward alike. The speed goes to its reference along a ramp that friction alone can follow downward, so that the wheels
 //! stay regulated, and the robot straight, until it stands; a change of sign goes through zero.
 //!
-//! The report adds its correction, at most 5 rpm, to one wheel and knows one radius for both: wheels that differ by 1 % drive an arc of 10 m radius.
-//! Ours scales each way by its own wheel's radius (`rumbo calibrate` finds their ratio), corrects both wheels against each other so that their
-//! mean stays as commanded, and brings the robot back onto its line, not only to its heading. Figures: docs/theory/straight_line.md.
+//! The report adds its correction, at most 5 rpm, to one wheel and uses one radius for both: wheels that differ by 1 %
+//! drive an arc of 10 m radius. Ours scales each distance by the wheel's radius (`rumbo calibrate` finds their ratio),
+//! corrects both wheels against each other so that their mean stays as commanded, and returns the robot to its line,
+//! not only to its heading. Figures: docs/theory/straight_line.md.
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
@@ -26,7 +27,7 @@ use crate::rig::Rigs;
 use crate::types::{Drive, Fault, TICK_S, Wheels};
 use core::f32::consts::TAU;
 
-/// What mode 6 is.
+/// Description of mode 6.
 pub const DESCRIPTION: Description = Description {
     number: 6,
     name: "straight_line",
@@ -50,7 +51,7 @@ pub const DESCRIPTION: Description = Description {
     plots: &[Plot::Wheels, Plot::Heading, Plot::Position],
 };
 
-/// Of both wheels; 40 rpm to begin with.
+/// Of both wheels; 40 rpm by default.
 const REFERENCE: Reference = Reference::commanded(
     ReferenceKind::Speed,
     -MAX_WHEEL_RAD_S,
@@ -59,7 +60,7 @@ const REFERENCE: Reference = Reference::commanded(
 );
 
 states! {
-    /// Where mode 6 stands.
+    /// States of mode 6.
     enum Phase {
         /// Wheels released.
         #[default]
@@ -73,7 +74,7 @@ states! {
 
 /// Below this the wheels are released on the way to zero [rad/s]: 8 rpm, from where they roll out within millimetres.
 const CREEP_RAD_S: f32 = 0.8;
-/// Most of the wheels' speed that steering may take.
+/// Largest share of the wheels' speed for steering.
 const STEERING_SHARE: f32 = 0.3;
 /// Largest heading towards the line [rad].
 const MOST_HEADING_RAD: f32 = 0.15;
@@ -88,20 +89,20 @@ pub struct StraightLine<'a> {
     params: &'a Params,
 }
 
-/// Memory of mode 6.
+/// State of mode 6.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     phase: Phase,
     /// The ramp [rad/s], signed.
     ramp_rad_s: f32,
-    /// Way of the right wheel less that of the left one [m].
+    /// Distance of the right wheel minus that of the left one [m].
     difference_m: f32,
     /// Offset from the line, to the left positive [m].
     offset_m: f32,
 }
 
 impl StraightLine<'_> {
-    /// Counts what the wheels rolled since the last tick.
+    /// Adds the distances rolled since the last tick.
     fn count(&self, state: &mut State, estimate: &Estimate) {
         let before_m = state.difference_m;
         state.difference_m += estimate.turned_rad * self.base_m;
@@ -220,7 +221,7 @@ mod tests {
         }
     }
 
-    /// Ticks with the reference `speed_rad_s`; gives forward speed and yaw rate of the last one.
+    /// Ticks with the reference `speed_rad_s`; returns forward speed and yaw rate of the last one.
     fn run(state: &mut State, speed_rad_s: f32, estimate: &Estimate, ticks: u32) -> (f32, f32) {
         let params = Params::default();
         let mode = StraightLine::new(&params, &speed_rad_s);
@@ -261,7 +262,7 @@ mod tests {
 
     #[test]
     fn both_wheels_go_as_far_as_each_other_not_as_fast() {
-        // The difference of 1 cm stays until it is driven back, although the wheels have long been equally fast.
+        // The difference of 1 cm remains until it is driven back, although the wheels have long been equally fast.
         let mut state = State::default();
         run(&mut state, 4.0, &estimate(0.0, 0.0, true), 100);
         run(&mut state, 4.0, &estimate(0.0, 0.1, false), 1);

@@ -5,16 +5,17 @@
 //! ```text
 //! e = d - d_ref                                 a_ref = kp e / cruise + integral(ki e)  within +-heading limit
 //! yaw = side (heading_kp (a_ref - a)) - damping yaw_enc                                  within +-yaw limit
-//! forward = cruise, less where the outer wheel or the way ahead asks for it
+//! forward = cruise, less where the outer wheel or the path ahead requires it
 //! ```
 //!
 //! d is the distance from the middle of the side sonars (`sonar_side_x_m`, +-`sonar_side_y_m`) to the wall, along its normal. a is
 //! positive when the robot drives towards the wall, on either side; `side` is 1 for a wall on the left, -1 on the right. Too far is a
 //! positive error and turns the robot towards the wall. Both are estimated by [`crate::wall`] from the pair, or from one sonar and the
-//! encoders on the final rig, which takes the side whose wall is nearer at the start and looks ahead with its front sonar.
+//! encoders on the final rig, which follows the wall that is nearer at the start and looks ahead with its front sonar.
 //!
-//! The integral stands still while the angle or the yaw rate is limited; the speed gives way to steering where a wheel is at its limit.
-//! It stops with a fault when the wall ends (wall lost), a sonar is silent or old, or, on the final rig, something stands ahead (blocked).
+//! The integral is frozen while the angle or the yaw rate is limited; steering has priority over speed where a wheel is
+//! at its limit. The mode stops with a fault when the wall ends (wall lost), a sonar is silent or stale, or, on the
+//! final rig, something is ahead (blocked).
 //!
 //! The report closes the same cascade with PI controllers that act on the PWM of one wheel. Ours regulates the yaw rate, damped by the
 //! encoders, and estimates angle and distance with the encoders' help. Worst of 20 simulated robots against the real one, to within
@@ -37,7 +38,7 @@ use crate::unrest::Unrest;
 use crate::wall::{Wall, WallFilter};
 use core::f32::consts::FRAC_PI_2;
 
-/// What mode 4 is.
+/// Description of mode 4.
 pub const DESCRIPTION: Description = Description {
     number: 4,
     name: "wall_follow",
@@ -78,9 +79,9 @@ pub(super) const REFERENCE: Reference = Reference::commanded(
 );
 
 states! {
-    /// Where modes 3 and 4 stand.
+    /// States of modes 3 and 4.
     pub(super) enum Phase {
-        /// Mode 3 only: stands and takes the distance.
+        /// Mode 3 only: stands and measures the distance.
         #[default]
         Measure = "measure" { Approach: "the distance is known, far from it", Follow: "the distance is known" }
         /// Drives at the angle limit, on the way to another distance.
@@ -96,12 +97,12 @@ states! {
 const ASKEW_RAD: f32 = 0.2;
 /// Slowest that the inner wheel turns in a bend [m/s]: below, friction makes it stick.
 const INNER_M_S: f32 = 0.02;
-/// Share of the angle limit that is given up per standard deviation of the angle: it does not turn far towards a wall that it
-/// hardly knows.
+/// Share of the angle limit given up per standard deviation of the angle: it does not turn far towards a poorly known
+/// wall.
 const DOUBT: f32 = 2.0;
-/// Fastest that a wheel is asked to roll [m/s].
+/// Largest wheel speed requested [m/s].
 const OUTER_M_S: f32 = 0.6;
-/// Most that the integral turns the robot [rad].
+/// Limit of the integral [rad].
 const INTEGRAL_RAD: f32 = 0.1;
 /// Distance error within which the integral acts [m].
 const INTEGRAL_M: f32 = 0.03;
@@ -126,7 +127,7 @@ pub struct WallFollow<'a> {
     params: &'a Params,
 }
 
-/// Memory of mode 4.
+/// State of mode 4.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     side: Option<Side>,
@@ -149,7 +150,7 @@ impl WallFollow<'_> {
         self.params.get(ParamId::Beam)
     }
 
-    /// Moves the estimate of the wall along and corrects it by the reading of this tick.
+    /// Predicts the wall and corrects it by the reading of this tick.
     fn estimate(&self, state: &mut State, side: Side, at: &Estimate) -> Result<Wall, Fault> {
         if !state.wall.is_known() {
             self.begin(state, side, at)?;
@@ -159,7 +160,7 @@ impl WallFollow<'_> {
                 && let Range::Valid(range_m) = reading.range
                 && self.sonars.watches(side, reading.sonar)
             {
-                state.wall.take(&reading.view, self.beam_rad(), range_m);
+                state.wall.update(&reading.view, self.beam_rad(), range_m);
             }
         }
         state.wall.wall().ok_or(Fault::WallLost)
@@ -177,7 +178,7 @@ impl WallFollow<'_> {
                 return Err(Fault::WallLost);
             };
             if started {
-                state.wall.take(&view, self.beam_rad(), range_m);
+                state.wall.update(&view, self.beam_rad(), range_m);
             } else {
                 let parallel_rad = sign(side) * FRAC_PI_2;
                 state.wall.start(&view, range_m, parallel_rad, ASKEW_RAD);
@@ -195,7 +196,7 @@ impl WallFollow<'_> {
         (wall.distance_m - x_m * cos - y_m * sin, angle_rad)
     }
 
-    /// The largest speed that the way ahead and the sonars allow [m/s].
+    /// The largest speed that the path ahead and the sonars allow [m/s].
     fn free_m_s(&self, state: &State, at: &Estimate) -> Result<f32, Fault> {
         let cruise_m_s = if state.unrest.is_uneasy() {
             0.5 * self.cruise_m_s
@@ -219,7 +220,7 @@ impl WallFollow<'_> {
         }
     }
 
-    /// The angle towards the wall that the distance asks for [rad], and whether it is limited.
+    /// The angle towards the wall that the distance error calls for [rad], and whether it is limited.
     fn angle_ref_rad(&self, state: &State, error_m: f32, angle_sd_rad: f32) -> (f32, bool) {
         let free_rad =
             self.params.get(ParamId::WallKp) / self.cruise_m_s * error_m + state.integral_rad;
@@ -232,9 +233,9 @@ impl WallFollow<'_> {
     }
 }
 
-/// What the robot is to do about the wall.
+/// Setpoints relative to the wall.
 struct Aim {
-    /// Distance less its reference [m].
+    /// Distance minus its reference [m].
     error_m: f32,
     /// Angle to turn towards the wall [rad].
     off_rad: f32,
@@ -242,7 +243,7 @@ struct Aim {
     far: bool,
 }
 
-/// What the robot does about the distance, and how fast it may.
+/// The state for a distance error, and the speed limit in it.
 impl WallFollow<'_> {
     fn drive(
         &self,
@@ -324,7 +325,7 @@ impl WallFollow<'_> {
         if let Some(reading) = &estimate.reading
             && (reading.sonar == SonarId::Front || self.sonars.watches(side, reading.sonar))
         {
-            state.unrest.take(estimate, reading)?;
+            state.unrest.update(estimate, reading)?;
         }
         self.drive(state, side, estimate, reference_m)
             .map_err(|fault| state.unrest.cause(fault))
@@ -383,7 +384,7 @@ mod tests {
         params
     }
 
-    /// What the sonars left, right and front say of what stands so far away.
+    /// Ranges of the sonars left, right and front to walls this far away.
     fn seeing(left_m: f32, right_m: f32, ahead: Range) -> Estimate {
         let mut estimate = Estimate::default();
         let ranges = [Range::Valid(left_m), Range::Valid(right_m), ahead];
@@ -425,7 +426,7 @@ mod tests {
     #[test]
     fn a_robot_askew_is_straightened_on_either_side() {
         for (rig, sign) in [(Rig::SidePairLeft, 1.0), (Rig::SidePairRight, -1.0)] {
-            // The one in front reads less: it drives towards the wall.
+            // The front one reads less: the robot drives towards the wall.
             let seen = seeing(0.39, 0.41, Range::Clear);
             let (_, yaw_rad_s) = first(&WallFollow::new(&params(rig), &0.4), &seen).unwrap();
             assert!(sign * yaw_rad_s < -0.1, "{rig:?}: {yaw_rad_s}");

@@ -2,17 +2,18 @@
 //!
 //! ```text
 //! turn:  heading error -> yaw rate that friction can still brake       (motion::turn; left is positive)
-//! drive: distance from the line -> heading -> yaw rate; way left -> speed       (motion::line; left of the line steers right)
+//! drive: distance from the line -> heading -> yaw rate; distance left -> speed  (motion::line; left of the line steers right)
 //! or, with `waypoint_tracker = "pure_pursuit"`, a pure pursuit of all waypoints up to the next with a heading (pursuit)
 //! ```
 //!
-//! A new route or goal may come at any time: the robot stops and starts it from where it stands. A waypoint that is refused changes
-//! nothing; a route without waypoints waits. A line begins at the waypoint before, not where the robot happens to stand, so errors of the
-//! corners do not add up; the first begins where the robot starts.
+//! A new route or goal may come at any time: the robot stops and starts it from there. A refused waypoint changes
+//! nothing; a route without waypoints waits. A line begins at the previous waypoint, not at the robot's position, so
+//! errors at the corners do not add up; the first begins where the robot starts.
 //!
-//! The report drives at the point itself, with tolerances of 5 degrees and 10 cm; here the line is followed and every stop is planned.
-//! Worst of 1,000 simulated robots against the real one, off the square by its own odometry: 0.6 cm instead of 6, 18.4 s instead of 30;
-//! calibrated, they end within 3.2 cm of where they began (`rumbo run mode7 --runs 1000`). Theory: docs/theory/waypoints.md.
+//! The report drives at the point itself, with tolerances of 5 degrees and 10 cm; here the line is followed and every
+//! stop is planned. Worst of 1,000 simulated robots against the real one, off the square by the robot's odometry: 0.6
+//! cm instead of 6, 18.4 s instead of 30; calibrated, they end within 3.2 cm of their start (`rumbo run mode7 --runs
+//! 1000`). Theory: docs/theory/waypoints.md.
 
 mod route;
 
@@ -28,7 +29,7 @@ use crate::types::{Drive, Fault, Pose, Transform, Wheels};
 
 pub use route::{FARTHEST_M, MAX_WAYPOINTS, Route, Waypoint};
 
-/// What mode 7 is.
+/// Description of mode 7.
 pub const DESCRIPTION: Description = Description {
     number: 7,
     name: "waypoints",
@@ -64,7 +65,7 @@ pub(super) const REFERENCE: Reference =
     Reference::commanded(ReferenceKind::Goal, -FARTHEST_M, FARTHEST_M, 0.0);
 
 states! {
-    /// Where mode 7 stands.
+    /// States of mode 7.
     enum Phase {
         /// Wheels released; the line to the next waypoint begins when both stand.
         #[default]
@@ -90,7 +91,7 @@ states! {
             FinalTurn: "it stands at the waypoint, which has a heading",
             Done: "it stands at the last waypoint",
         }
-        /// Turns to the waypoint's heading; its position is no longer judged.
+        /// Turns to the waypoint's heading; its position is no longer checked.
         FinalTurn = "final turn" { Wait: "it faces the waypoint's heading", Done: "it faces the last waypoint's heading" }
         /// Wheels released; the event *reached*, once, at the end of the route.
         Done = "done" { Wait: "a waypoint is appended" }
@@ -107,19 +108,19 @@ pub struct Waypoints<'a> {
     pursues: bool,
 }
 
-/// Memory of mode 7.
+/// State of mode 7.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     phase: Phase,
-    /// Where the route began; a relative one is seen from there.
+    /// Start of the route, the frame of a relative one.
     frame: Option<Transform>,
-    /// Number of the waypoint to go to.
+    /// Index of the present waypoint.
     next: u8,
-    /// The waypoint before this one [m].
+    /// The previous waypoint [m].
     from: Option<Point>,
-    /// The waypoint to go to [m].
+    /// The present waypoint [m].
     to: Point,
-    /// The way between them.
+    /// The segment between them.
     segment: Segment,
     line: LineState,
     /// Heading of the present turn, latched when it begins [rad].
@@ -129,7 +130,7 @@ pub struct State {
 }
 
 impl State {
-    /// The place it goes to [m]; the origin before it has one.
+    /// The present target [m]; the origin before there is one.
     pub fn target(&self) -> Point {
         self.to
     }
@@ -175,7 +176,7 @@ impl Waypoints<'_> {
         }
     }
 
-    /// What is driven without stopping: from the next waypoint to the first with a heading, or to the end.
+    /// The part driven without stopping: from the next waypoint to the first with a heading, or to the end.
     fn path(&self, state: &State, number: u8) -> Option<Point> {
         let mut at = state.next;
         for _ in 0..number {
@@ -220,7 +221,7 @@ impl Waypoints<'_> {
         }
     }
 
-    /// On to the next waypoint, or to the first again.
+    /// Advances to the next waypoint, or to the first again.
     fn advance(&self, state: &mut State) {
         state.from = Some(state.to);
         match self.after(state.next) {
@@ -351,7 +352,7 @@ mod tests {
         estimate
     }
 
-    /// The number of the state after a few ticks at one place.
+    /// The number of the state after a few ticks at one position.
     fn rest(route: &Route, state: &mut State, estimate: &Estimate) -> (u8, bool) {
         let params = Params::default();
         let mut last = (0, false);
@@ -397,7 +398,7 @@ mod tests {
         assert_eq!(at(0.0, 0.0, 0.0), (Phase::Turn as u8, false));
         assert_eq!(at(0.0, 0.0, 1.57), (Phase::Drive as u8, false));
         assert_eq!(at(0.0, 0.999, 1.57), (Phase::FinalTurn as u8, false));
-        // Its place is latched: a turn that moves the robot a little does not start the drive again.
+        // Arrival is latched: a turn that moves the robot a little does not restart the drive.
         assert_eq!(at(0.02, 1.02, 0.5), (Phase::FinalTurn as u8, false));
         assert_eq!(at(0.02, 1.02, 0.0), (Phase::Done as u8, true));
     }

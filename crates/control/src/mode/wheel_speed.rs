@@ -1,11 +1,12 @@
 //! Mode 5: each wheel at a commanded speed, both directions, through zero (memoria 4.1).
 //!
-//! The mode hands its references to the wheel-speed loops of [`crate::drive`]; ramp, feedforward, PID and the passage
-//! through zero are there, since every other mode uses them too.
+//! The mode passes its references to the wheel-speed loops of [`crate::drive`]; ramp, feedforward, PID and the passage
+//! through zero are there, since all other modes use them too.
 //!
-//! The report's controller is an equilibrium PWM of 50 plus a PI on a speed counted in 50 ms, in steps of 3.1 rpm. Ours knows
-//! each wheel's friction (feedforward), times the edges, and acts every 10 ms: docs/theory/drive.md, docs/theory/wheel_speed.md. Worst of 20 simulated robots against the real one: 0 -> 60 rpm
-//! in 0.32 s instead of 3.7, 0 -> -100 rpm in 0.44 s instead of 5.3 (`rumbo run mode5 --runs 20`).
+//! The report's controller is an equilibrium PWM of 50 plus a PI on a speed counted in 50 ms, in steps of 3.1 rpm. Ours
+//! has a feedforward of each wheel's friction, times the edges, and acts every 10 ms: docs/theory/drive.md,
+//! docs/theory/wheel_speed.md. Worst of 20 simulated robots against the real one: 0 -> 60 rpm in 0.32 s instead of 3.7,
+//! 0 -> -100 rpm in 0.44 s instead of 5.3 (`rumbo run mode5 --runs 20`).
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
@@ -17,7 +18,7 @@ use crate::rig::Rigs;
 use crate::types::{Drive, Fault, Wheels};
 use core::f32::consts::TAU;
 
-/// What mode 5 is.
+/// Description of mode 5.
 pub const DESCRIPTION: Description = Description {
     number: 5,
     name: "wheel_speed",
@@ -32,7 +33,7 @@ pub const DESCRIPTION: Description = Description {
     plots: &[Plot::Wheels, Plot::Pwm],
 };
 
-/// Of each wheel; 60 rpm to begin with.
+/// Of each wheel; 60 rpm by default.
 const REFERENCE: Reference = Reference::commanded(
     ReferenceKind::WheelSpeed,
     -MAX_WHEEL_RAD_S,
@@ -41,7 +42,7 @@ const REFERENCE: Reference = Reference::commanded(
 );
 
 states! {
-    /// Where mode 5 stands.
+    /// States of mode 5.
     enum Phase {
         /// Wheels released: both setpoints are zero.
         #[default]

@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! cross-track error c [m] -> heading reference = heading of the line - limit(k_c c) -> yaw rate = k_h (reference - heading)
-//! |v| = min(cruise, limit, ramp, sqrt(2 a (way left - v measured * lag))), at least the slowest steady speed
+//! |v| = min(cruise, limit, ramp, sqrt(2 a (distance left - v measured * lag))), at least the slowest steady speed
 //! ```
 //!
-//! Left of the line is a positive cross-track error: steer right, towards a smaller heading. Steering comes before speed: a robot that
-//! does not look along the line slows down. The end is a planned [`stop`](super::stop); what falls short is driven once more, what went too
-//! far is not taken back.
+//! Left of the line is a positive cross-track error: steer right, towards a smaller heading. Steering has priority over
+//! speed: a robot that does not face along the line slows down. The end is a planned [`stop`](super::stop); a shortfall
+//! is driven once more, an overshoot is not driven back.
 
 use super::{CREEP_M_S, Stop, StopState, Stopping};
 use crate::estimate::Estimate;
@@ -15,14 +15,14 @@ use crate::math::{abs, atan2, clamp, max, min, sqrt, wrap_angle};
 use crate::params::{ParamId, Params};
 use crate::types::{Drive, Pose, TICK_S, Transform};
 
-/// Largest angle at which the robot heads for the line [rad]: 30 degrees.
+/// Largest angle at which the robot approaches the line [rad]: 30 degrees.
 const MOST_APPROACH_RAD: f32 = 0.52;
-/// Most of the wheels' speed that steering may take: no wheel stops, let alone turns backward.
+/// Largest share of the wheels' speed for steering: no wheel stops, let alone reverses.
 const STEERING_SHARE: f32 = 0.6;
 /// Heading error at which the speed is halved [rad].
 const SLOW_RAD: f32 = 0.35;
 
-/// A straight piece of way.
+/// A straight segment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Segment {
     /// Its start and its direction.
@@ -32,7 +32,7 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// From one point to another. Its direction is 0 when they are one.
+    /// From one point to another. Its direction is 0 when they coincide.
     pub fn between(from: (f32, f32), to: (f32, f32)) -> Self {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let start = Pose {
@@ -43,7 +43,7 @@ impl Segment {
         Self::ahead(&start, sqrt(dx * dx + dy * dy))
     }
 
-    /// From where the robot is, the way it looks.
+    /// From the robot's pose, in its heading.
     pub fn ahead(pose: &Pose, length_m: f32) -> Self {
         Self {
             start: Transform::of(*pose),
@@ -57,7 +57,7 @@ impl Segment {
         self.start.pose.heading_rad
     }
 
-    /// How far along it a point is, and how far to the left of it [m].
+    /// Distance of a point along it, and to the left of it [m].
     #[inline]
     pub fn place(&self, x_m: f32, y_m: f32) -> (f32, f32) {
         self.start.to_local(x_m, y_m)
@@ -72,7 +72,7 @@ pub struct Line<'a> {
     pub stop: Stop<'a>,
 }
 
-/// Memory of a line; the default is its start.
+/// State of a line; the default is its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineState {
     stop: StopState,
@@ -80,12 +80,12 @@ pub struct LineState {
     speed_m_s: f32,
 }
 
-/// What a line asks for.
+/// Request of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineStep {
     /// Of the wheels.
     pub drive: Drive,
-    /// The heading that it steers to [rad].
+    /// The heading setpoint [rad].
     pub heading_ref_rad: f32,
     /// The robot stands at the end.
     pub done: bool,
@@ -105,7 +105,7 @@ impl<'a> Line<'a> {
         2.0 * self.params.geometry().per_base()
     }
 
-    /// One tick along `segment`, at most at `limit_m_s` ([`f32::MAX`]: as fast as it may; 0: the wheels are released).
+    /// One tick along `segment`, at most at `limit_m_s` ([`f32::MAX`]: no limit; 0: the wheels are released).
     pub fn step(
         &self,
         state: &mut LineState,

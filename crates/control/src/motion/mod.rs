@@ -1,8 +1,9 @@
-//! Movements that several modes are made of: a turn on the spot ([`turn`]) and a straight line to a point ([`line`]); both end in a
-//! planned [`stop`].
+//! Movements that several modes share: a turn on the spot ([`turn`]) and a straight line to a point ([`line`]); both
+//! end in a planned [`stop`].
 //!
-//! Each is configuration (from the parameters) apart from state, and one `step` per tick that gives what the wheels are to do and
-//! whether it is done. The default of a state is the start of a movement. Derivation: docs/theory/waypoints.md.
+//! Each is configuration (from the parameters) apart from state, and one `step` per tick that returns the request for
+//! the wheels and whether it is done. The default state is the start of a movement. Derivation:
+//! docs/theory/waypoints.md.
 
 pub mod line;
 pub mod stop;

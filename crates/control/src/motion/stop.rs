@@ -1,18 +1,19 @@
-//! How wheels that only coast down are brought to rest at a goal: the speed on the way, and when they are released.
+//! Brings wheels that only coast down to rest at a goal: the speed on the way, and the moment of release.
 //!
 //! ```text
 //! speed = sqrt(2 a (left - speed measured * lag))          released when   left <= speed^2 / (2 a_coast) + speed * delay
 //! ```
 //!
-//! `a` is a deceleration that friction gives on any floor; `lag` is how late the speed loops follow a falling reference. The last bit is
-//! left to friction alone; what is then still missing beyond the tolerance is driven once more, a few times at most. The unit is that
-//! of the goal: m along a line, rad in a turn.
+//! `a` is a deceleration that friction gives on any floor; `lag` is the lag of the speed loops behind a falling
+//! reference. The end is left to friction alone; a remainder beyond the tolerance is driven once more, a few times at
+//! most. The unit is that of the goal: m along a line, rad in a turn.
 
 use crate::math::{max, sqrt};
 use crate::params::{ParamId, Params};
 
-/// Way that a wheel still rolls at its speed between the release that is asked for and the bridge letting go: the latch of the inputs,
-/// a tick in which the mode decides, 3 ms to the outputs, and half a pole of the encoder at creeping speed [s].
+/// Delay between the request to release and the bridge's release, in which the wheel rolls on at its speed: the latch
+/// of the inputs, a tick in which the mode decides, 3 ms to the outputs, and half a pole of the encoder at creeping
+/// speed [s].
 const RELEASE_DELAY_S: f32 = 0.025;
 
 /// Configuration of a stop; per second and second squared of the goal's unit.
@@ -23,20 +24,20 @@ pub struct Stop<'a> {
     brake: ParamId,
     /// Deceleration of the released wheels at creeping speed.
     coast: ParamId,
-    /// What may be missing in the end.
+    /// Tolerance at the end.
     tolerance: ParamId,
-    /// Drives before the goal is taken as it is.
+    /// Attempts before the remainder is accepted.
     most_tries: u8,
 }
 
-/// Memory of a stop; the default is the start of a drive.
+/// State of a stop; the default is the start of a drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StopState {
     coasting: bool,
     tries: u8,
 }
 
-/// What is to be done now.
+/// What to do now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stopping {
     /// Drive on.
@@ -48,7 +49,7 @@ pub enum Stopping {
 }
 
 impl<'a> Stop<'a> {
-    /// At the end of a way [m].
+    /// At the end of a line [m].
     pub fn on_the_way(params: &'a Params) -> Self {
         Self {
             params,
@@ -75,17 +76,18 @@ impl<'a> Stop<'a> {
         self.params.get(self.brake)
     }
 
-    /// Time by which the wheels follow late [s].
+    /// Lag of the wheels [s].
     pub fn lag_s(&self) -> f32 {
         self.params.get(ParamId::SpeedLag)
     }
 
-    /// The speed from which the goal can still be stopped at.
+    /// The speed from which the robot can still stop at the goal.
     pub fn speed(&self, left: f32, measured: f32) -> f32 {
         sqrt(2.0 * self.brake() * (left - self.lag_s() * max(measured, 0.0)))
     }
 
-    /// One tick: `left` is the way left (negative beyond the goal), `measured` the speed towards it, `standing` that both wheels stand.
+    /// One tick: `left` is the distance left (negative beyond the goal), `measured` the speed towards it, `standing`
+    /// whether both wheels stand.
     pub fn step(
         &self,
         state: &mut StopState,
@@ -149,7 +151,7 @@ mod tests {
             assert_eq!(stop.step(&mut state, 0.02, 0.0, true), Stopping::Drive);
             assert_eq!(stop.step(&mut state, 0.001, 0.03, false), Stopping::Coast);
         }
-        // Pushed back each time: it is taken as it is.
+        // Pushed back each time: the remainder is accepted.
         assert_eq!(stop.step(&mut state, 0.02, 0.0, true), Stopping::Done);
     }
 

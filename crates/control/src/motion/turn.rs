@@ -1,11 +1,11 @@
 //! A turn on the spot to a heading.
 //!
 //! ```text
-//! |rate| = min(cruise, sqrt(2 a (|e| - rate measured * lag))), at least the slowest steady rate       e = heading wanted - heading, shorter way round
-//! forward = -k (way that the middle has rolled since the start)               holds the wheels together
+//! |rate| = min(cruise, sqrt(2 a (|e| - rate measured * lag))), at least the slowest steady rate    e = setpoint - heading, wrapped
+//! forward = -k (distance that the midpoint has rolled since the start)          keeps the turn on the spot
 //! ```
 //!
-//! The rate comes down as [`stop`](super::stop) plans it; what is missing in the end beyond the tolerance, a second small turn corrects.
+//! The rate falls as [`stop`](super::stop) plans; a remainder beyond the tolerance is corrected by a second small turn.
 
 use super::{CREEP_M_S, Stop, StopState, Stopping};
 use crate::estimate::Estimate;
@@ -13,9 +13,9 @@ use crate::math::{abs, clamp, max, min, wrap_angle};
 use crate::params::{ParamId, Params};
 use crate::types::Drive;
 
-/// Speed per way that the middle has moved [1/s].
+/// Speed per distance that the midpoint has moved [1/s].
 const HOLD_PLACE: f32 = 6.0;
-/// Most of the wheels' speed that holding the place may take.
+/// Largest share of the wheels' speed for holding the position.
 const HOLD_SHARE: f32 = 0.4;
 
 /// Configuration of a turn.
@@ -29,15 +29,15 @@ pub struct Turn<'a> {
     pub half_base_m: f32,
 }
 
-/// Memory of a turn; the default is its start.
+/// State of a turn; the default is its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TurnState {
     stop: StopState,
-    /// Way that the middle has rolled since the start [m].
+    /// Distance that the midpoint has rolled since the start [m].
     rolled_m: f32,
 }
 
-/// What a turn asks for.
+/// Request of a turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnStep {
     /// Of the wheels.
@@ -70,7 +70,7 @@ impl<'a> Turn<'a> {
         } else {
             estimate.yaw_rad_s
         };
-        // Turning away from it: the robot has overshot, or was pushed, and is released until it stands.
+        // Turning away: the robot has overshot or was pushed, and is released until it stands.
         let creep_rad_s = self.creep_rad_s();
         let left_rad = if towards_rad_s < -0.5 * creep_rad_s {
             0.0
@@ -111,7 +111,7 @@ mod tests {
     use super::*;
     use crate::types::Pose;
 
-    /// A robot that faces `heading_rad` and turns at `yaw_rad_s`; it stands when that is 0.
+    /// A robot that faces `heading_rad` and turns at `yaw_rad_s`, or stands when that is 0.
     fn facing(heading_rad: f32, yaw_rad_s: f32) -> Estimate {
         let mut estimate = Estimate {
             pose: Pose {

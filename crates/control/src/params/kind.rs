@@ -1,4 +1,4 @@
-//! The types of parameters: what their numbers mean to people. On the link and on the robot each is an `f32`.
+//! The types of parameters: the meaning of their numbers. On the link and on the robot each is an `f32`.
 
 use crate::math::round;
 
@@ -14,7 +14,7 @@ pub enum ParamKind {
 }
 
 impl ParamKind {
-    /// What the type is called in lists.
+    /// The type's name in lists.
     pub const fn name(self) -> &'static str {
         match self {
             ParamKind::Number => "number",
@@ -32,7 +32,7 @@ impl ParamKind {
         }
     }
 
-    /// The name of a value, as the robot takes it: the nearest.
+    /// The name of a value, rounded as the robot does.
     pub fn name_of(self, value: f32) -> Option<&'static str> {
         self.names()
             .get(usize::try_from(round(value)).ok()?)

@@ -8,14 +8,14 @@ pub const MAX_WAYPOINTS: usize = 16;
 /// Farthest coordinate of a waypoint or a goal from the origin [m].
 pub const FARTHEST_M: f32 = 20.0;
 
-/// A place to go to.
+/// A position to drive to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Waypoint {
     /// Forward of the origin [m].
     pub x_m: f32,
     /// Left of the origin [m].
     pub y_m: f32,
-    /// Heading to turn to there [rad]; `None`: as it comes.
+    /// Heading to turn to there [rad]; `None`: any.
     pub heading_rad: Option<f32>,
 }
 
@@ -26,7 +26,7 @@ pub struct Route {
     len: u8,
     /// Starts over at the end, until it is stopped.
     pub repeat: bool,
-    /// The places are as seen from where the robot starts, not from the origin.
+    /// The waypoints are relative to the pose where the robot starts, not to the origin.
     pub relative: bool,
 }
 
