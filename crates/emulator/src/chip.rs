@@ -97,7 +97,8 @@ impl Chip {
         self.devices.take_outputs()
     }
 
-    /// Records every change of a pin's level from now on, by the chip or from outside, starting with the present levels.
+    /// Records every change of a pin's level from now on, by the chip or from outside, starting with the present
+    /// levels.
     pub fn record_levels(&mut self) {
         self.devices.record_levels(self.cycle());
     }

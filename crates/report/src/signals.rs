@@ -158,8 +158,8 @@ impl Outcome {
         self.truth(|sample| f64::from(sample.duty[wheel as usize]))
     }
 
-    /// The estimated pose: x [m], y [m], heading within +-180 [deg]. The true pose relative to the start where the robot
-    /// reports none.
+    /// The estimated pose: x [m], y [m], heading within +-180 [deg]. The true pose relative to the start where the
+    /// robot reports none.
     pub(crate) fn pose(&self) -> [Points; 3] {
         let start = self.setup.scenario.start;
         let (sin, cos) = start.heading_rad.sin_cos();
@@ -278,8 +278,8 @@ impl Outcome {
             .map_or((0.0, 0.0), |sample| (sample.x_m, sample.y_m))
     }
 
-    /// The estimated path in the world [m], from the start. A mission makes a reached goal its new origin: the path ends
-    /// there.
+    /// The estimated path in the world [m], from the start. A mission makes a reached goal its new origin: the path
+    /// ends there.
     pub(crate) fn estimated_path(&self) -> Points {
         let mission = self.setup.scenario.mode == ModeId::Mission;
         let end_s = self

@@ -1,16 +1,16 @@
 //! Detects failed encoders. The robot must stop on either kind of failure, since it drives by their edges.
 //!
-//! *Silent*: a rolling wheel must produce edges, since no wheel stops at once ([`WheelMotion::overdue`]); their absence is
-//! detected within two ticks. A standing wheel that is driven and produces none is blocked, or its encoder is cut, and
-//! the speed loop would push ever harder blindly. A wheel counts as driven when it gets more duty than any free wheel
-//! needs, or when its speed loop has had a reference for long enough: the loop finds the duty by itself, and slow turns
-//! take little.
+//! *Silent*: a rolling wheel must produce edges, since no wheel stops at once ([`WheelMotion::overdue`]); their absence
+//! is detected within two ticks. A standing wheel that is driven and produces none is blocked, or its encoder is cut,
+//! and the speed loop would push ever harder blindly. A wheel counts as driven when it gets more duty than any free
+//! wheel needs, or when its speed loop has had a reference for long enough: the loop finds the duty by itself, and slow
+//! turns take little.
 //!
 //! *Implausible*: edges are missing, or are noise. The edges of a disc on a motor are regular: those of a tick come as
-//! predicted by the motor's last turn, whatever friction, floor and battery do to the speed. Where they repeatedly do not
-//! ([`WheelMotion::uneven`]), edges are lost or spurious. Of 2.5 million ticks of fast wheels in healthy runs none is
-//! uneven; with poles displaced by up to 22 % of their pitch at most 0.23 % are; with a tenth of the edges lost 5 %, and
-//! more with every other fault: docs/theory/wheel_speed.md.
+//! predicted by the motor's last turn, whatever friction, floor and battery do to the speed. Where they repeatedly do
+//! not ([`WheelMotion::uneven`]), edges are lost or spurious. Of 2.5 million ticks of fast wheels in healthy runs none
+//! is uneven; with poles displaced by up to 22 % of their pitch at most 0.23 % are; with a tenth of the edges lost 5 %,
+//! and more with every other fault: docs/theory/wheel_speed.md.
 //!
 //! An encoder that constantly loses every second edge stays regular and is not detected. A motor model cannot detect it
 //! either: the duty for a speed differs by more between sound robots.
@@ -152,7 +152,8 @@ mod tests {
         (0..150).find_map(|_| watch.step(motion, duty, Wheels::both(0.0)).err())
     }
 
-    /// Ticks until a right wheel without edges is detected, at this duty and with these speed references in turn [rad/s].
+    /// Ticks until a right wheel without edges is detected, at this duty and with these speed references in turn
+    /// [rad/s].
     fn noticed(duty: i16, references_rad_s: &[f32]) -> Option<usize> {
         let mut watch = EncoderWatch::default();
         let asked = references_rad_s.iter().cycle().take(2_000);

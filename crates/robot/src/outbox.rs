@@ -30,7 +30,8 @@ pub(crate) struct Outbox {
 }
 
 impl Outbox {
-    /// A ring that starts with 0x00, which ends a frame cut off by a reset, so that the first new frame is not lost with it.
+    /// A ring that starts with 0x00, which ends a frame cut off by a reset, so that the first new frame is not lost
+    /// with it.
     pub(crate) fn new() -> Self {
         Self {
             bytes: [0; SIZE],

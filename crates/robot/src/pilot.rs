@@ -81,8 +81,8 @@ impl Default for Pilot {
 }
 
 impl Pilot {
-    /// The part of a tick that the outputs depend on: estimates, and drives as the mode requested after the previous tick.
-    /// Releases the wheels on a fault and unless `armed`.
+    /// The part of a tick that the outputs depend on: estimates, and drives as the mode requested after the previous
+    /// tick. Releases the wheels on a fault and unless `armed`.
     pub(crate) fn step(&mut self, inputs: &Inputs, armed: bool) -> (Outputs, Option<Fault>) {
         self.estimator.step(
             &self.params,

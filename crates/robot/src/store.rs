@@ -8,9 +8,9 @@
 //! | 6.. | the values, `f32` in the order of their numbers |
 //! | last 2 | CRC-16/MCRF4XX of all from byte 1 on |
 //!
-//! A save first marks its copy as unfinished, then writes it, and marks it as complete with the last byte; the other copy
-//! is not touched. So whenever power fails, either the old or the new parameters are there. The EEPROM driver takes a
-//! byte from here when the previous one is done; nothing waits for it.
+//! A save first marks its copy as unfinished, then writes it, and marks it as complete with the last byte; the other
+//! copy is not touched. So whenever power fails, either the old or the new parameters are there. The EEPROM driver
+//! takes a byte from here when the previous one is done; nothing waits for it.
 
 use rumbo_control::params::{COUNT, ParamId, Params, SCHEMA};
 use rumbo_wire::{Recalled, crc16};
@@ -66,8 +66,8 @@ pub(crate) struct Store {
 }
 
 impl Store {
-    /// Reads the copies with `read` and loads the values of the active one into `params`. Returns which one it was; `None`
-    /// if nothing has ever been saved.
+    /// Reads the copies with `read` and loads the values of the active one into `params`. Returns which one it was;
+    /// `None` if nothing has ever been saved.
     pub(crate) fn recall(
         &mut self,
         params: &mut Params,

@@ -61,8 +61,8 @@ pub enum FromRobot {
     Event(Event),
     /// The result of a command.
     Ack(Ack),
-    /// The mode's heading setpoint [rad], ahead of the telemetry of the same instant; sent in units of 2 pi / 65536 when it
-    /// has changed, at most 12.5 times a second, and with every status. 0 where the mode has none.
+    /// The mode's heading setpoint [rad], ahead of the telemetry of the same instant; sent in units of 2 pi / 65536
+    /// when it has changed, at most 12.5 times a second, and with every status. 0 where the mode has none.
     HeadingRef(f32),
 }
 
@@ -81,8 +81,8 @@ pub enum ToRobot {
         number: u16,
         /// What to do.
         command: Command,
-        /// The newest robot time that the station had received when the command was issued. Sent only with commands that
-        /// [are timed](Command::is_timed); otherwise the default.
+        /// The newest robot time that the station had received when the command was issued. Sent only with commands
+        /// that [are timed](Command::is_timed); otherwise the default.
         seen: RobotTime,
     },
 }

@@ -112,8 +112,8 @@ impl Cpu {
     }
 
     /// The program sets the stack pointer. A frame is at most [`LARGEST_FRAME`]: a larger move is a switch to another
-    /// stack, such as a scheduler's task stacks among the data, whose end is unknown. Writing both halves of the pointer
-    /// is one move: the value in between does not count.
+    /// stack, such as a scheduler's task stacks among the data, whose end is unknown. Writing both halves of the
+    /// pointer is one move: the value in between does not count.
     fn move_stack(&mut self, to: u16, cycle: u64) {
         let start = match self.stack_move {
             Some(start) if cycle <= start.cycle + HALVES_CYCLES => start,

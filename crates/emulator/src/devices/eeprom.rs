@@ -1,7 +1,7 @@
 //! The EEPROM and its registers (2549Q, sections 8.3 and 9.2.1).
 //!
-//! A write is armed by EEMPE and begun by EEPE within four cycles. It proceeds while the program runs on; a byte read takes
-//! none, but the CPU stands for four cycles.
+//! A write is armed by EEMPE and begun by EEPE within four cycles. It proceeds while the program runs on; a byte read
+//! takes none, but the CPU stands for four cycles.
 
 use super::Core;
 use super::interrupts::vector;

@@ -1,7 +1,8 @@
 //! Self-programming: SPM, the page buffer, fuses and signature as a program reads them (2549Q, section 29).
 //!
-//! SPM works from the boot section only, within four cycles after SPMCSR selected the operation. While a page outside the last
-//! 8 KB is erased or written the program runs on, but cannot use that part of flash; for the last 8 KB the CPU stalls.
+//! SPM works from the boot section only, within four cycles after SPMCSR selected the operation. While a page outside
+//! the last 8 KB is erased or written the program runs on, but cannot use that part of flash; for the last 8 KB the CPU
+//! stalls.
 
 use super::Core;
 use super::interrupts::vector;

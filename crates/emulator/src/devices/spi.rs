@@ -1,8 +1,8 @@
 //! The serial peripheral interface (2549Q, section 21): master and slave, with the edges on its pins.
 //!
-//! A transfer is sixteen steps of half a clock period, at each of which SCK has an edge. CPHA selects which of the two in a bit takes
-//! the level of the data line, and which puts out the next bit; without CPHA the first bit is out before the first edge. As a
-//! master the steps are the interface's own, as a slave those of the pin.
+//! A transfer is sixteen steps of half a clock period, at each of which SCK has an edge. CPHA selects which of the two
+//! in a bit takes the level of the data line, and which puts out the next bit; without CPHA the first bit is out before
+//! the first edge. As a master the steps are the interface's own, as a slave those of the pin.
 
 use super::Core;
 use super::interrupts::vector;

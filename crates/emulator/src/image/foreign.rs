@@ -1,5 +1,5 @@
-//! A HEX file does not name its chip, but its start reveals it: the compiler's first instructions set the stack pointer to the end of
-//! the chip's SRAM.
+//! A HEX file does not name its chip, but its start reveals it: the compiler's first instructions set the stack pointer
+//! to the end of the chip's SRAM.
 
 use super::{Image, ImageError};
 use crate::decode::{Code, decode};

@@ -133,7 +133,8 @@ impl Baseline {
         std::mem::take(&mut self.chip.messages)
     }
 
-    /// Handles a line from the station, given as the equivalent command of ours. The program ignores what it does not know.
+    /// Handles a line from the station, given as the equivalent command of ours. The program ignores what it does not
+    /// know.
     pub(crate) fn command(&mut self, command: Command) {
         match (&mut self.program, command) {
             (_, Command::Arm) => self.on = true,

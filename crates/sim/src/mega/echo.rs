@@ -1,4 +1,5 @@
-//! The echo lines between sonars and chip. Failures of a sonar happen here: its line has another width than the plant's.
+//! The echo lines between sonars and chip. Failures of a sonar happen here: its line has another width than the
+//! plant's.
 
 use super::Faults;
 use rumbo_plant::sonar::SonarId;

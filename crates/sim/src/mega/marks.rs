@@ -10,8 +10,8 @@ pub(super) struct Marks {
 }
 
 impl Mega {
-    /// Records from now on when the program reaches these functions; returns whether it has them all. Not while a debugger
-    /// holds it.
+    /// Records from now on when the program reaches these functions; returns whether it has them all. Not while a
+    /// debugger holds it.
     pub fn mark(&mut self, functions: &[&str]) -> bool {
         let image = self.firmware.image();
         let address = |name: &&str| image.function_named(name).map(|function| function.address);

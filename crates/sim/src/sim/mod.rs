@@ -275,8 +275,8 @@ impl Sim {
         });
     }
 
-    /// Hands a command to the report's native program, as a line of text would. False for any other program: those receive
-    /// commands over the link.
+    /// Hands a command to the report's native program, as a line of text would. False for any other program: those
+    /// receive commands over the link.
     pub fn order(&mut self, command: Command) -> bool {
         let Some(Controller::Baseline(baseline)) = &mut self.controller else {
             return false;
@@ -301,8 +301,8 @@ impl Sim {
         }
     }
 
-    /// Moves the robot in the world, as a hand would; our native robot's estimated pose is set to `estimate`, relative to
-    /// its origin.
+    /// Moves the robot in the world, as a hand would; our native robot's estimated pose is set to `estimate`, relative
+    /// to its origin.
     pub fn place(&mut self, at: Pose, estimate: rumbo_control::Pose) {
         self.state.place(at);
         if let Some(Controller::Rumbo(native)) = &mut self.controller {

@@ -224,7 +224,8 @@ impl Wave {
         }
     }
 
-    /// The counter goes on by `ticks`, all but the last of them quiet; returns whether the last left a value of interest.
+    /// The counter goes on by `ticks`, all but the last of them quiet; returns whether the last left a value of
+    /// interest.
     pub(crate) fn tick(&mut self, ticks: u64) -> bool {
         let quiet = self.quiet_ticks(0xFF);
         if ticks < quiet {

@@ -190,7 +190,8 @@ impl Receiver {
         self.high_votes = 0;
     }
 
-    /// Takes all samples before `cycle`; `accept` decides from data and stop bit whether the character is for this receiver.
+    /// Takes all samples before `cycle`; `accept` decides from data and stop bit whether the character is for this
+    /// receiver.
     pub(super) fn sample_before(
         &mut self,
         cycle: u64,
