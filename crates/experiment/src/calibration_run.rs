@@ -1,4 +1,4 @@
-//! A calibration of a simulated robot as a run: what it did and found, to be kept beside other runs and to be had again.
+//! A calibration of a simulated robot as a run: trace and result, to be stored beside other runs and reproduced.
 
 use crate::calibrate::simulated::{self, PLAN};
 use crate::calibrate::{CalibrateError, Calibration, Linked, calibrate};
@@ -8,26 +8,26 @@ use crate::run::{self, RunResult};
 use rumbo_sim::Sim;
 use rumbo_sim::trace::{SAMPLE_US, Trace};
 
-/// A calibration that is over.
+/// A finished calibration.
 pub struct CalibrationRun {
-    /// What was found, or why it came to no end.
+    /// Its result, or why it failed.
     pub found: Result<Calibration, CalibrateError>,
     /// The simulation at its end.
     pub sim: Sim,
-    /// The run: way, time, contacts, each parameter found, and the trace. It passes if it came to its end.
+    /// The run: distance, time, contacts, each parameter found, and the trace. It passes if the calibration succeeded.
     pub result: RunResult,
 }
 
-/// The setup of a calibration: the built-in scenario of that name, in the world made for it unless told otherwise.
+/// The setup of a calibration: the built-in scenario of that name, by default in the world made for it.
 ///
 /// # Errors
-/// Whatever is wrong with the files.
+/// A mistake in the files.
 pub fn calibration_setup(overrides: &Overrides) -> Result<Setup, FileError> {
     Library::new().setup(PLAN, overrides)
 }
 
-/// Calibrates the robot that `seed` draws in a setup of [`calibration_setup`], and keeps what happened. Floor, slip and noise are others than
-/// those of a run of this seed, the same each time.
+/// Calibrates the robot that `seed` draws in a setup of [`calibration_setup`], and records it. Floor, slip and noise
+/// differ from those of a run of this seed, but are the same each time.
 ///
 /// # Errors
 /// The setup's values do not fit together.
@@ -44,7 +44,7 @@ pub fn run_calibration(setup: &Setup, seed: u64) -> Result<CalibrationRun, FileE
         trace: &mut trace,
     });
     if !sim.now_us().is_multiple_of(SAMPLE_US) {
-        // What crossed the link since the last sample is of the run, too.
+        // What crossed the link since the last sample belongs to the run, too.
         trace.sample(&sim);
     }
     trace.link = sim.take_tapped();
@@ -81,7 +81,7 @@ fn metrics(found: &Result<Calibration, CalibrateError>, sim: &Sim) -> Metrics {
     metrics
 }
 
-/// A simulated robot behind its link, the truth of which is noted as time goes by.
+/// A simulated robot behind its link, with its ground truth recorded.
 struct Watched<'a> {
     sim: &'a mut Sim,
     trace: &'a mut Trace,

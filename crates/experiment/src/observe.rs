@@ -1,6 +1,6 @@
-//! A run whose program is looked at: a profile, pins over time, a debugger.
+//! A run with its program observed: a profile, pins over time, a debugger.
 //!
-//! None of it changes the run: robot and world stand still in time while a debugger holds the program.
+//! None of it changes the run: robot and world are frozen while a debugger holds the program.
 
 use crate::files::FileError;
 use crate::run::{Run, Waves};
@@ -13,29 +13,29 @@ use std::fs::File;
 use std::io::{self, BufWriter};
 use std::net::TcpStream;
 
-/// What is to be seen of the program.
+/// What to observe of the program.
 #[derive(Debug, Default)]
 pub struct Wanted {
     /// Cycles by function.
     pub profile: bool,
-    /// A file for the pins over time, as viewers of waveforms read them.
+    /// A file for the pins over time, for waveform viewers.
     pub vcd: Option<File>,
     /// A debugger that is connected.
     pub debugger: Option<TcpStream>,
 }
 
-/// What was seen.
+/// The observations.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Seen {
     /// The profile in tables.
     pub profile: Option<String>,
-    /// The profile as tools that draw flame graphs read it.
+    /// The profile in the format of flame-graph tools.
     pub folded: Option<String>,
-    /// The debugger ended the run before its time.
+    /// The debugger ended the run early.
     pub ended: bool,
 }
 
-/// Lets a run go on to its end, and shows what is wanted of its program.
+/// Runs to the end and returns the observations.
 ///
 /// # Errors
 /// There is no image in the robot, the file cannot be written, or the line to the debugger broke.

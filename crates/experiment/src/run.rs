@@ -25,14 +25,14 @@ use std::io::{self, BufWriter};
 /// The file of a run's waveforms.
 pub(crate) type Waves = Waveform<BufWriter<File>>;
 
-/// What a run gave.
+/// The result of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunResult {
     /// Name of the scenario.
     pub scenario: String,
     /// The seed.
     pub seed: u64,
-    /// Path of the scenario, if it is none of the built-in ones.
+    /// Path of the scenario, if it is not built in.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
     /// No limit is missed, and the robot refused nothing and reported no fault.
@@ -42,15 +42,15 @@ pub struct RunResult {
     /// Why it did not pass, a line each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub failures: Vec<String>,
-    /// What a reader should know besides, a line each.
+    /// Notes for the reader, a line each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
-    /// What really happened.
+    /// Ground truth.
     #[serde(skip)]
     pub trace: Trace,
 }
 
-/// A run under way.
+/// A run in progress.
 pub struct Run<'a> {
     setup: &'a Setup,
     seed: u64,
@@ -58,9 +58,9 @@ pub struct Run<'a> {
     operator: Operator<'a>,
     trace: Trace,
     end_us: u64,
-    /// Where the sample under way ends [us].
+    /// End of the current sample [us].
     sample_us: u64,
-    /// Where the pins are drawn, if anybody wants to see them.
+    /// Destination of the pins' waveforms, if they are recorded.
     waves: Option<Waves>,
     undrawn: io::Result<()>,
 }
@@ -99,12 +99,12 @@ impl<'a> Run<'a> {
         self.sim.mega()
     }
 
-    /// What the robot has said so far, as metrics need it.
-    pub(crate) fn heard(&self) -> &[Heard] {
-        &self.operator.heard
+    /// The messages received from the robot so far.
+    pub(crate) fn received(&self) -> &[Heard] {
+        &self.operator.received
     }
 
-    /// What really happened so far.
+    /// Ground truth so far.
     pub(crate) fn trace(&self) -> &Trace {
         &self.trace
     }
@@ -114,7 +114,7 @@ impl<'a> Run<'a> {
         self.sim.now_us() >= self.end_us || self.sim.verdict().is_some()
     }
 
-    /// Goes on to the end of a sample, or to where a debugger halts the program.
+    /// Advances to the end of a sample, or to where a debugger halts the program.
     pub fn advance(&mut self) {
         if self.sim.now_us() >= self.sample_us {
             self.operator.step(&mut self.sim);
@@ -128,7 +128,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// From here on the pins are drawn there.
+    /// Records the pins' waveforms from now on.
     pub(crate) fn draw(&mut self, waves: Waves) {
         self.waves = Some(waves);
     }
@@ -143,7 +143,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The drawing ends here.
+    /// Ends the recording of waveforms.
     ///
     /// # Errors
     /// It could not be written.
@@ -158,7 +158,7 @@ impl<'a> Run<'a> {
 
     fn judge(mut self) -> RunResult {
         let (setup, scenario) = (self.setup, &self.setup.scenario);
-        self.trace.heard = self.operator.heard;
+        self.trace.heard = self.operator.received;
         self.trace.link = self.sim.take_tapped();
         let metrics = metrics::compute(setup, &self.sim, &self.trace);
         let mut failures = self.operator.complaints;
@@ -167,7 +167,7 @@ impl<'a> Run<'a> {
         failures.extend(verdict);
         let mut notes = self.operator.notes;
         notes.extend(self.sim.mega().map(Mega::notes).into_iter().flatten());
-        // What its program did not live to do is not judged: the verdict says enough.
+        // What its program could no longer do is not judged: the verdict suffices.
         let limits = scenario.limits.iter().filter(|_| !ended);
         for (name, bounds) in limits {
             match metrics.get(name) {
@@ -175,7 +175,7 @@ impl<'a> Run<'a> {
                 Some(value) if value.is_finite() => {
                     failures.push(format!("{name} = {value:.4}: limit {bounds}"));
                 }
-                // What is measured did not happen.
+                // The measured event did not happen.
                 Some(_) => failures.push(format!("{name} = never: limit {bounds}")),
                 None if !self.trace.drove() => failures.push(format!(
                     "{name} = never: limit {bounds}; the robot was not armed, or its program drove no wheel"
@@ -199,14 +199,14 @@ impl<'a> Run<'a> {
     }
 }
 
-/// What the table of a robot holds before the first command, if it has one.
+/// The parameters of a robot before the first command, if it has a table of them.
 pub(crate) fn parameters(setup: &Setup) -> Result<Option<Params>, FileError> {
     if !setup.takes_parameters() {
         return Ok(None);
     }
     let mut parameters = Params::default();
     for (id, value) in setup.control_parameters()? {
-        // Checked where it was read.
+        // Checked when it was read.
         let _ = parameters.set(id, value);
     }
     Ok(Some(parameters))
@@ -215,7 +215,7 @@ pub(crate) fn parameters(setup: &Setup) -> Result<Option<Params>, FileError> {
 /// Runs a scenario once.
 ///
 /// # Errors
-/// If the setup's values do not fit together, or the calibration that it asks for came to no end.
+/// If the setup's values do not fit together, or its calibration failed.
 pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
     run_by(setup, seed, |run| {
         while !run.is_over() {
@@ -225,7 +225,7 @@ pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
     })
 }
 
-/// Runs a scenario once as the caller lets it go on; what it has come to by then is judged.
+/// Runs a scenario once, driven by the caller; the run is judged as it is when the caller returns.
 ///
 /// # Errors
 /// As [`run`], or the caller's.
@@ -241,18 +241,18 @@ pub fn run_by<E: From<FileError>>(
     Ok(run.judge())
 }
 
-/// The setup as it is run: if its scenario asks for it, with the parameters that a calibration of this seed's robot gives. Those of the
-/// scenario itself win over them; the report's program knows none.
+/// The setup to run: if its scenario requests it, with the parameters from a calibration of this seed's robot. The
+/// scenario's own parameters win over them; the report's program has none.
 ///
 /// # Errors
-/// The calibration came to no end.
+/// The calibration failed.
 pub fn prepare(setup: &Setup, seed: u64) -> Result<Cow<'_, Setup>, FileError> {
     if !setup.scenario.calibrated || !setup.takes_parameters() {
         return Ok(Cow::Borrowed(setup));
     }
-    // Whatever rig the experiment has: sonars are moved back after a calibration, wheels stay.
+    // For any rig of the experiment: sonars are moved back after a calibration, wheels stay.
     let mut own = setup.clone();
-    // An image that speaks our frames has our control core: the native one gives the same parameters sooner.
+    // An image with our frames has our control core: the native one finds the same parameters sooner.
     own.firmware = None;
     if let Some(rig) = own.robot.rigs.get("final") {
         own.rig = *rig;

@@ -1,4 +1,4 @@
-//! The shortest path of a round robot among walls and boxes, exactly known.
+//! The shortest path of a round robot among known walls and boxes.
 //!
 //! Every obstacle is grown by the robot's radius (the sum of Minkowski with a disc: faces move out, corners become arcs), and the robot
 //! shrinks to a point. A shortest path among such shapes is a chain of straight lines from corner to corner, each touching the shapes at
@@ -14,12 +14,12 @@ use std::f64::consts::PI;
 
 type Vector = Vector2<f64>;
 
-/// Largest turn of an arc that one corner stands for [rad].
+/// Largest turn of an arc represented by one corner [rad].
 const ARC_RAD: f64 = PI / 8.0;
 /// A line that enters a shape by less than this only touches it [m].
 const TOUCH_M: f64 = 1e-9;
 
-/// A way from one point to another.
+/// A path from one point to another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
     /// Its length [m].
@@ -111,7 +111,7 @@ impl Floor {
     }
 }
 
-/// What the search knows of a node.
+/// Search state of a node.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     way_m: f64,

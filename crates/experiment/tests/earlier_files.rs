@@ -1,4 +1,4 @@
-//! Files of earlier versions: they load and run, or what replaced a key is named.
+//! Files of earlier versions: they load and run, or the error names a key's successor.
 
 #![cfg(test)]
 

@@ -1,4 +1,4 @@
-//! The built-in files are right, and wrong ones are told what is wrong, line by line.
+//! The built-in files are valid, and errors in others are reported line by line.
 
 use rumbo_control::mode::Movement;
 use rumbo_control::params::ParamId;
@@ -186,7 +186,7 @@ fn scenario_error(text: &str) -> String {
         .map_or_else(|error| error.to_string(), |_| "no problem".into())
 }
 
-/// What is added to a valid scenario, and the complaint it must give.
+/// An addition to a valid scenario, and the error that it must give.
 const WRONG_SCENARIOS: &[(&str, &str)] = &[
     (
         "[[sonar_fault]]\nat_s = 1\nsonar = \"front\"\nkind = \"broken\"",
@@ -315,7 +315,7 @@ const WRONG_SCENARIOS: &[(&str, &str)] = &[
 ];
 
 #[test]
-fn a_wrong_scenario_is_told_line_key_value_and_what_is_allowed() {
+fn errors_in_a_scenario_name_line_key_value_and_what_is_allowed() {
     for &(wrong, expected) in WRONG_SCENARIOS {
         assert_eq!(scenario_error(&format!("{SCENARIO}{wrong}\n")), expected);
     }
@@ -347,7 +347,7 @@ fn a_switch_or_a_choice_is_given_by_name_or_number() {
 }
 
 #[test]
-fn all_problems_of_a_file_are_told_at_once_in_the_order_of_lines() {
+fn all_problems_of_a_file_are_reported_at_once_in_the_order_of_lines() {
     let text = "title = 1\nrobot = \"memoria\"\nrig = \"final\"\nworld = \"open\"\nmode = \"weel_speed\"\nduration_s = -1\n";
     assert_eq!(
         scenario_error(text),
@@ -371,7 +371,7 @@ fn what_is_missing_is_named_with_what_belongs_there() {
 }
 
 #[test]
-fn wrong_worlds_and_robots_are_told_what_is_wrong() {
+fn errors_in_worlds_and_robots_are_reported() {
     let world = |text: &str| {
         WorldFile::parse("x", "worlds/x.toml", text)
             .unwrap_err()
@@ -442,7 +442,7 @@ fn a_random_world_without_room_says_so() {
 }
 
 #[test]
-fn the_goal_of_the_world_is_told_from_where_the_robot_starts() {
+fn the_goal_of_the_world_is_sent_relative_to_the_start() {
     let mut setup = Library::new()
         .setup("mode8-random", &Overrides::default())
         .unwrap();

@@ -1,6 +1,6 @@
 //! Metrics of every scenario at three seeds, kept in `tests/golden/`: a change of behaviour is a readable difference.
 //!
-//! After a change that is meant: raise `MODEL` in `crates/experiment/src/lib.rs`,
+//! After an intended change: raise `MODEL` in `crates/experiment/src/lib.rs`,
 //! `RUMBO_BLESS=1 cargo test -p rumbo-experiment --test golden`, and read the difference.
 
 #![cfg(test)]
@@ -37,7 +37,7 @@ fn metrics_are_those_of_the_golden_files() {
         wrong.is_empty(),
         "other metrics than in tests/golden: {wrong:?}; if that is meant, raise MODEL, run with RUMBO_BLESS=1 and read the difference"
     );
-    // Beside the metrics stand the model's number and their checksum: other metrics take another number.
+    // Beside the metrics are the model's number and their checksum: other metrics need another number.
     let (number, path) = (checksum(folder), folder.join("model.txt"));
     let known = std::fs::read_to_string(&path).unwrap_or_default();
     let (old, sum) = known.trim_end().split_once(' ').unwrap_or(("0", ""));
@@ -52,7 +52,7 @@ fn metrics_are_those_of_the_golden_files() {
     );
 }
 
-/// CRC-32 of all metrics, in the order of their files' names, whatever ends their lines.
+/// CRC-32 of all metrics, in the order of their files' names, with any line ending.
 fn checksum(folder: &Path) -> String {
     let files = std::fs::read_dir(folder).unwrap();
     let mut paths: Vec<_> = files.map(|file| file.unwrap().path()).collect();

@@ -1,4 +1,4 @@
-//! Why a calibration came to no end; the robot has been stopped.
+//! Why a calibration failed; the robot has been stopped.
 
 use rumbo_control::Fault;
 use rumbo_wire::{Command, Refusal};
@@ -19,9 +19,9 @@ pub enum CalibrateError {
     NoWall([Option<f32>; 2]),
     /// A movement took too long.
     TooSlow(&'static str),
-    /// There is not enough room along the wall; the way that was free [m].
+    /// There is not enough room along the wall; the free distance [m].
     TooShort(f64),
-    /// What was measured does not determine this quantity.
+    /// The measurements do not determine this quantity.
     NotDetermined(&'static str),
 }
 

@@ -1,4 +1,4 @@
-//! What the movements tell, by least squares. Derivation: docs/theory/calibration.md.
+//! Fits the movements by least squares. Derivation: docs/theory/calibration.md.
 
 use super::error::CalibrateError;
 use super::station::Sample;
@@ -7,7 +7,7 @@ use rumbo_control::{SIDES, SonarId, Wheels};
 
 /// Fewest ranges of a leg along the wall.
 const FEWEST_RANGES: usize = 25;
-/// Shortest way of a leg that tells a curvature [m].
+/// Shortest leg from which a curvature can be fitted [m].
 const SHORTEST_M: f64 = 0.4;
 
 /// A value and the standard deviation of its error.
@@ -41,20 +41,20 @@ pub(super) fn mean(values: &[(f64, f64)]) -> Option<Measured> {
     })
 }
 
-/// What a leg along the wall tells.
+/// Fit of a leg along the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LegFit {
     /// Heading to the wall at the start of the leg, to the left positive [rad].
     pub(super) start_rad: f64,
     /// The same at its end.
     pub(super) end_rad: f64,
-    /// How much the robot turns per metre of signed way beyond what its odometry says [rad/m].
+    /// Turn per metre of signed distance beyond that of the odometry [rad/m].
     pub(super) curvature_rad_m: f64,
-    /// Way, without sign [m].
+    /// Distance, without sign [m].
     pub(super) way_m: f64,
 }
 
-/// Fits the distances to the wall over the way of a leg. `ahead_m`: place of the side sonar ahead of the wheels' axis.
+/// Fits the distances to the wall along a leg. `ahead_m`: position of the side sonar ahead of the wheels' axis.
 pub(super) fn leg(
     samples: &[Sample],
     side: SonarId,
@@ -65,7 +65,7 @@ pub(super) fn leg(
     let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
         return Err(undetermined);
     };
-    // To the right of the wall the distance grows with the way to the left; on its left it shrinks.
+    // To the right of the wall the distance grows as the robot moves left; on its left it shrinks.
     let sign = if side == SonarId::Left { -1.0 } else { 1.0 };
     let (sin, cos) = first.heading_rad.sin_cos();
     let mut rows = Vec::new();
@@ -97,7 +97,7 @@ pub(super) fn leg(
 
 type Row<const N: usize> = ([f64; N], f64);
 
-/// The rows without those that lie far from a first fit: a sonar's outlier passes its filter now and then.
+/// The rows without outliers from a first fit: a sonar's outlier passes its filter now and then.
 fn robust<const N: usize>(rows: &[Row<N>]) -> Result<Vec<Row<N>>, CalibrateError> {
     let fit = solve(rows).ok_or(CalibrateError::NotDetermined("a straight wall"))?;
     let residual = |(factors, value): &Row<N>| {
@@ -159,7 +159,7 @@ pub(super) fn steady(samples: &[Sample], forward: bool) -> Option<Steady> {
                 && sample.wheel_rad_s.left.abs() > 0.8 * fastest
         })
         .collect();
-    // The first moments still show the start.
+    // The first samples are still affected by the start.
     let kept = cruising.get(cruising.len() / 4..)?;
     if kept.len() < 20 {
         return None;
@@ -238,7 +238,7 @@ pub(super) fn feedforward(legs: &[Steady]) -> Result<Feedforward, CalibrateError
     })
 }
 
-/// True way over the odometry's, by the front sonar on a forward leg; `None` if it saw too little ahead.
+/// True distance over the odometry's, by the front sonar on a forward leg; `None` if it had too few readings ahead.
 pub(super) fn way_scale(samples: &[Sample]) -> Option<f64> {
     let first = samples.first()?;
     let rows: Vec<Row<2>> = samples

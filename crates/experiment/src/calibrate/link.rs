@@ -1,16 +1,16 @@
-//! A robot behind a link, in time: all that a calibration needs to know of whom it calibrates.
+//! A robot behind a link, and its time: all that a calibration needs.
 
 use rumbo_sim::Sim;
 
-/// A robot that hears and sends bytes while time goes by: a simulated one, or one on a serial port.
+/// A robot that receives and sends bytes as time passes: a simulated one, or one on a serial port.
 pub trait Linked {
     /// Time on this side of the link [us].
     fn now_us(&self) -> u64;
-    /// Puts bytes for the robot on the line.
+    /// Sends bytes to the robot.
     fn send(&mut self, bytes: &[u8]);
     /// Appends the bytes that have arrived from the robot.
     fn receive(&mut self, into: &mut Vec<u8>);
-    /// Lets time go by until this instant [us].
+    /// Waits, or simulates, until this instant [us].
     fn wait_until(&mut self, us: u64);
 }
 

@@ -2,13 +2,13 @@
 //!
 //! ```text
 //! slow ramps of the duty          -> dead zone of each wheel and direction
-//! legs along the wall, to and fro -> the distance to the wall over the way is a parabola: ratio of the radii
+//! legs along the wall, to and fro -> the distance to the wall along a leg is a parabola: ratio of the radii
 //!                                    steady duty at three speeds: feedforward of each wheel and direction
-//!                                    the front sonar over the way: mean radius (as good as the speed of sound is known)
+//!                                    the front sonar along a leg: mean radius (as good as the speed of sound is known)
 //! whole turns between two legs    -> the heading to the wall before and after: distance between the wheels
 //! ```
 //!
-//! It works from the station's end of a link ([`Linked`]), with commands and telemetry as anybody there has them.
+//! It works from the station's end of a link ([`Linked`]), with ordinary commands and telemetry.
 
 mod error;
 mod fit;
@@ -31,7 +31,7 @@ pub use simulated::{WORLD, calibrate_simulated};
 use rumbo_control::params::ParamId;
 use rumbo_control::{Side, Wheels};
 
-/// What a calibration found.
+/// Result of a calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
     /// Radius of the right wheel over that of the left one.
@@ -40,15 +40,15 @@ pub struct Calibration {
     pub base_m: Measured,
     /// Mean radius by the front sonar [m]; `None` without a view ahead. Its error includes that of the speed of sound.
     pub radius_m: Option<Measured>,
-    /// Mean radius in force, which stays unless the sonar knows better [m].
+    /// Mean radius in force, kept unless the sonar measures it better [m].
     pub radius_before_m: Measured,
     /// Duty at which each wheel broke away, forward and backward.
     pub dead_zone: [Wheels<Option<f64>>; 2],
-    /// Duty that each speed takes.
+    /// Duty for each speed.
     pub feedforward: Feedforward,
     /// How long it took [s].
     pub duration_s: f64,
-    /// Way driven along the wall [m].
+    /// Distance driven along the wall [m].
     pub way_m: f64,
 }
 
@@ -77,7 +77,7 @@ impl Calibration {
             backward,
             velocity,
         } = &self.feedforward;
-        // The base was found with the mean radius in force; another one stretches it alike.
+        // The base was found with the mean radius in force; another one scales it alike.
         let base_m = self.base_m.value * self.mean_radius_m() / self.radius_before_m.value;
         [
             (ParamId::RadiusLeft, self.wheel_radius_m(Side::Left)),

@@ -15,7 +15,7 @@ const BESIDE_M: f64 = 0.12;
 const ASTRAY_M: f64 = 0.10;
 /// Deceleration of mode 6, on its parameter's default, on the way to zero [m/s^2].
 const BRAKE_M_S2: f64 = 0.26;
-/// From what telemetry shows to what a command does about it [s].
+/// Delay from a telemetry sample to the effect of a command [s].
 const LATENCY_S: f64 = 0.12;
 /// Below this a wheel stands [rad/s].
 const STANDING_RAD_S: f64 = 0.05;
@@ -25,7 +25,7 @@ const PART_RAD: f64 = 2.4;
 const RAMP: (f64, f64, f64) = (0.12, 0.50, 0.08);
 /// Time between two steps of the ramp [s].
 const RAMP_STEP_S: f64 = 0.04;
-/// From a wheel breaking away to the telemetry that shows it turning, within which the ramp has gone on [s].
+/// Delay from a wheel breaking away to the telemetry that shows it turning, in which the ramp rises on [s].
 const SEEN_AFTER_S: f64 = 0.03;
 
 /// Whether both wheels stand.
@@ -58,7 +58,7 @@ impl<R: Linked> Station<'_, R> {
         }
     }
 
-    /// Drives straight on by `way_m` (negative: backward) at a wheel speed; gives what telemetry said from start to rest.
+    /// Drives straight on by `way_m` (negative: backward) at a wheel speed; returns the telemetry from start to rest.
     pub(super) fn leg(
         &mut self,
         side: SonarId,
@@ -97,7 +97,7 @@ impl<R: Linked> Station<'_, R> {
         Ok(self.samples[first..].to_vec())
     }
 
-    /// Turns on the spot by any angle, as odometry sees it.
+    /// Turns on the spot by any angle, as measured by odometry.
     pub(super) fn turn(&mut self, turn_rad: f64) -> Result<(), CalibrateError> {
         self.start(ModeId::Waypoints)?;
         self.command(Command::Route {
@@ -125,7 +125,7 @@ impl<R: Linked> Station<'_, R> {
         }
     }
 
-    /// Raises the duty of both wheels slowly until both turn; gives the duty at which each broke away.
+    /// Raises the duty of both wheels slowly until both turn; returns the duty at which each broke away.
     pub(super) fn break_away(
         &mut self,
         movement: Movement,

@@ -1,4 +1,4 @@
-//! The order of the movements, and what is put together of them.
+//! The sequence of movements, and the calibration computed from them.
 
 use super::error::CalibrateError;
 use super::fit::{self, LegFit, Measured, Steady};
@@ -23,19 +23,19 @@ const ASKEW_RAD: f64 = 0.0175;
 const PAIRS: usize = 3;
 /// Whole turns, counter-clockwise positive; a leg to and fro follows each. The first is short: the base is still poorly known.
 const TURNS: [f64; 3] = [1.0, 3.0, -3.0];
-/// Variance of a fitted parabola's curvature over that of the heading's change per way, when the heading wanders.
+/// Variance of a fitted parabola's curvature over that of the heading's change per distance, when the heading wanders.
 const PARABOLA: f64 = 1.43;
-/// A heading at the end of a fitted leg errs as much as slip does over this way [m].
+/// A heading at the end of a fitted leg errs as much as slip does over this distance [m].
 const HEADING_M: f64 = 0.4;
-/// Standard deviation of the speed of sound about what its parameter says, relative: +-0.9 %, evenly.
+/// Standard deviation of the speed of sound about its parameter, relative: +-0.9 %, uniform.
 const SOUND: f64 = 0.0052;
-/// Standard deviation of a mean radius as the maker gives it, relative: each wheel +-0.5 %, evenly.
+/// Standard deviation of the nominal mean radius, relative: each wheel +-0.5 %, uniform.
 const MAKER: f64 = 0.002;
 
 /// Calibrates a robot that stands beside a wall, along it, with free floor ahead. It is left disarmed, with the parameters found.
 ///
 /// # Errors
-/// Why it came to no end; the robot is stopped.
+/// Why it failed; the robot is stopped.
 pub fn calibrate<R: Linked>(robot: &mut R) -> Result<Calibration, CalibrateError> {
     let mut station = Station::new(robot);
     let result = Course::begin(&mut station).and_then(|course| course.run());
@@ -45,7 +45,7 @@ pub fn calibrate<R: Linked>(robot: &mut R) -> Result<Calibration, CalibrateError
     result
 }
 
-/// A calibration on its way.
+/// A calibration in progress.
 struct Course<'s, 'r, R: Linked> {
     station: &'s mut Station<'r, R>,
     side: SonarId,
@@ -55,11 +55,11 @@ struct Course<'s, 'r, R: Linked> {
     /// Heading to the wall where the last leg ended, to the left positive [rad].
     heading_rad: f64,
     legs: usize,
-    /// Logarithm of the ratio of the radii of each leg, and its way.
+    /// Logarithm of the ratio of the radii of each leg, and its length.
     ratios: Vec<(f64, f64)>,
-    /// What each turn tells of the base.
+    /// Estimate of the base from each turn.
     bases: Vec<Base>,
-    /// True way over the odometry's of each forward leg.
+    /// True distance over the odometry's of each forward leg.
     scales: Vec<(f64, f64)>,
     steady: Vec<Steady>,
 }
@@ -151,7 +151,7 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
         Ok(())
     }
 
-    /// A leg along the wall and back the same way; gives both fits, and keeps what they tell.
+    /// A leg along the wall and back; returns both fits, and records their estimates.
     fn leg_and_back(&mut self) -> Result<(LegFit, LegFit), CalibrateError> {
         let speed_rad_s = SPEEDS_RPM[self.legs % SPEEDS_RPM.len()] * TAU / 60.0;
         self.legs += 1;
@@ -192,7 +192,8 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
         Ok(found)
     }
 
-    /// The base from all turns so far. Too few to scatter: the error is that of the slip which the legs' scatter shows.
+    /// The base from all turns so far. They are too few for a scatter: the error is that of the slip shown by the legs'
+    /// scatter.
     fn base(&self, in_force_m: f64) -> Measured {
         let weight: f64 = self.bases.iter().map(Base::weight).sum();
         if weight == 0.0 {
@@ -226,7 +227,8 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
         let to = self.station.last()?;
         let (there, back) = self.leg_and_back()?;
         let seen_rad = to.heading_rad - from.heading_rad;
-        // A robot that has strayed from its place drives back, and turns the shorter way to its next heading: a whole turn may be missing.
+        // A robot that has drifted drives back, and turns the shorter way to its next heading: a whole turn may be
+        // missing.
         let turns = ((seen_rad + before) / TAU).round();
         let true_rad = TAU * turns + there.start_rad - before;
         if turns != 0.0 {
@@ -240,7 +242,7 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
     }
 }
 
-/// What a number of whole turns tells of the base.
+/// Estimate of the base from a number of whole turns.
 struct Base {
     base_m: f64,
     turns: f64,
@@ -252,7 +254,8 @@ impl Base {
         self.turns * self.turns
     }
 
-    /// Variance of the base, relative: slip on the way of the wheels, and the two headings. `slip`: variance of the heading per metre.
+    /// Variance of the base, relative: slip along the wheels' arcs, and the two headings. `slip`: variance of the
+    /// heading per metre.
     fn variance(&self, slip: f64) -> f64 {
         let turned_rad = TAU * self.turns;
         let way_m = 0.5 * self.base_m * turned_rad.abs();

@@ -1,4 +1,4 @@
-//! What was found, beside what a simulated robot really is.
+//! The values found, beside the true values of a simulated robot.
 
 use super::{Calibration, Measured};
 use rumbo_control::Side;
@@ -9,13 +9,13 @@ use serde::Serialize;
 /// One quantity.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// What it is, with its unit.
+    /// Its name, with its unit.
     pub name: String,
-    /// What was found.
+    /// The value found.
     pub found: f64,
     /// Standard deviation of its error.
     pub standard_error: Option<f64>,
-    /// What it really is, where a number of the simulated robot is that.
+    /// The true value, where the simulated robot has such a number.
     pub truth: Option<f64>,
 }
 

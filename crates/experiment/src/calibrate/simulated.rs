@@ -6,14 +6,15 @@ use rumbo_sim::{Config, Sim};
 
 /// The built-in world of a calibration.
 pub const WORLD: &str = "calibration";
-/// The built-in scenario that only says where the robot stands: along the wall on its right, free floor ahead.
+/// The built-in scenario that only sets the start: along the wall on its right, free floor ahead.
 pub(crate) const PLAN: &str = "calibration";
 
-/// Calibrates the robot that `seed` draws in `setup`, on its rig in the world of calibrations (or `setup`'s own with `here`), always from the same place.
-/// Floor, slip and noise are others than those of the run itself. Gives the calibration and the simulation at its end.
+/// Calibrates the robot that `seed` draws in `setup`, on its rig in the world of calibrations (or `setup`'s own with
+/// `here`), always from the same pose. Floor, slip and noise differ from those of the run itself. Returns the
+/// calibration and the simulation at its end.
 ///
 /// # Errors
-/// Whatever is wrong with the files; the inner one: why the calibration came to no end.
+/// A mistake in the files; the inner one: why the calibration failed.
 pub fn calibrate_simulated(
     setup: &Setup,
     seed: u64,
@@ -34,7 +35,7 @@ pub fn calibrate_simulated(
     Ok((found, sim))
 }
 
-/// The robot of a seed, on another day: floor, slip and noise are not those of its runs.
+/// The robot of a seed on another day: floor, slip and noise differ from those of its runs.
 pub(crate) fn robot(setup: &Setup, seed: u64) -> Result<Sim, FileError> {
     let config = setup.config(seed)?;
     Ok(Sim::new(Config { day: 1, ..config })?)

@@ -8,7 +8,7 @@ use rumbo_wire::{
     Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, Telemetry, ToRobot,
 };
 
-/// Time between two looks at the link [us].
+/// Time between two polls of the link [us].
 const LOOK_US: u64 = 5_000;
 /// Time between heartbeats [us].
 const HEARTBEAT_US: u64 = 100_000;
@@ -18,17 +18,17 @@ const REPEAT_US: u64 = 200_000;
 const TRIES: u32 = 15;
 /// Longest line of the original's telemetry.
 const LINE: usize = 160;
-/// Session of the commands: a calibration speaks to the robot alone.
+/// Session of the commands: nobody else commands the robot during a calibration.
 const SESSION: u8 = 0xCA;
 
-/// What one telemetry frame said.
+/// The content of one telemetry frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sample {
     /// Robot time, unwrapped [s].
     pub(super) t_s: f64,
-    /// Place by odometry [m].
+    /// Position by odometry [m].
     pub(super) x_m: f64,
-    /// Place by odometry [m].
+    /// Position by odometry [m].
     pub(super) y_m: f64,
     /// Heading by odometry, not wrapped [rad].
     pub(super) heading_rad: f64,
@@ -40,7 +40,7 @@ pub(super) struct Sample {
     pub(super) duty: Wheels<f64>,
     /// Ranges of the sonars by number [m].
     pub(super) range_m: [Option<f64>; 3],
-    /// Sonars that answer no more, by number.
+    /// Sonars that no longer answer, by number.
     pub(super) faulty: [bool; 3],
 }
 
@@ -66,7 +66,7 @@ pub(super) struct Station<'a, R: Linked> {
     /// The mode has reached its reference since the last command.
     pub(super) reached: bool,
     answer: Option<(u16, Result<f32, rumbo_wire::Refusal>)>,
-    /// Everything that telemetry said.
+    /// All telemetry.
     pub(super) samples: Vec<Sample>,
 }
 
@@ -98,7 +98,7 @@ impl<'a, R: Linked> Station<'a, R> {
         self.samples.last().copied().ok_or(CalibrateError::NoAnswer)
     }
 
-    /// Sends a command until it is acknowledged; gives the value in force.
+    /// Sends a command until it is acknowledged; returns the value in force.
     pub(super) fn command(&mut self, command: Command) -> Result<f32, CalibrateError> {
         self.number = self.number.wrapping_add(1);
         self.reached = false;
@@ -106,10 +106,10 @@ impl<'a, R: Linked> Station<'a, R> {
         while self.seen.is_none() && self.robot.now_us() < until_us {
             self.look();
         }
-        // Repeated or not, it was given now.
+        // It is issued now; repetitions carry the same time.
         let seen = self.seen.unwrap_or_default();
         for _ in 0..TRIES {
-            self.say(&ToRobot::Command {
+            self.send(&ToRobot::Command {
                 session: SESSION,
                 number: self.number,
                 command,
@@ -146,7 +146,7 @@ impl<'a, R: Linked> Station<'a, R> {
         Ok(())
     }
 
-    /// Lives on until `done`, asked at each new sample, or the time is over; says which. A fault is an error.
+    /// Runs until `done`, called at each new sample, or the time is over; returns which. A fault is an error.
     pub(super) fn until(
         &mut self,
         within_s: f64,
@@ -169,27 +169,27 @@ impl<'a, R: Linked> Station<'a, R> {
         Ok(false)
     }
 
-    /// Lives on for a while.
+    /// Runs for a while.
     pub(super) fn wait(&mut self, seconds: f64) -> Result<(), CalibrateError> {
         self.until(seconds, |_, _| false).map(|_| ())
     }
 
-    /// Stops the robot, whatever has happened before.
+    /// Stops the robot, in any state.
     pub(super) fn stop(&mut self) {
-        // One that answers no more stops by itself: it hears no heartbeat.
+        // A robot that no longer answers stops by itself, for lack of heartbeats.
         let _ = self.command(Command::Stop);
     }
 
-    fn say(&mut self, message: &ToRobot) {
+    fn send(&mut self, message: &ToRobot) {
         self.robot.send(message.frame(self.seq).bytes());
         self.seq = self.seq.wrapping_add(1);
     }
 
-    /// A moment passes.
+    /// One poll interval.
     fn look(&mut self) {
         let now_us = self.robot.now_us();
         if now_us >= self.heartbeat_due_us {
-            self.say(&ToRobot::Heartbeat);
+            self.send(&ToRobot::Heartbeat);
             self.heartbeat_due_us = now_us + HEARTBEAT_US;
         }
         self.robot.wait_until(now_us + LOOK_US);
@@ -200,16 +200,16 @@ impl<'a, R: Linked> Station<'a, R> {
             if let Some(Received::Frame(body)) = self.decoder.push(*byte)
                 && let Ok(message) = FromRobot::from_body(&body)
             {
-                self.hear(&message);
+                self.handle(&message);
             }
         }
         self.buffer = buffer;
     }
 
-    fn hear(&mut self, message: &FromRobot) {
+    fn handle(&mut self, message: &FromRobot) {
         self.seen = RobotTime::after(self.seen, message);
         match message {
-            FromRobot::Telemetry(telemetry) => self.take(telemetry),
+            FromRobot::Telemetry(telemetry) => self.ingest(telemetry),
             FromRobot::Ack(ack) if ack.session == SESSION => {
                 self.answer = Some((ack.number, ack.result));
             }
@@ -222,7 +222,7 @@ impl<'a, R: Linked> Station<'a, R> {
         }
     }
 
-    fn take(&mut self, telemetry: &Telemetry) {
+    fn ingest(&mut self, telemetry: &Telemetry) {
         let before = self.samples.last();
         let passed_ms = self
             .t_ms

@@ -1,9 +1,10 @@
-//! Sensors and wires that fail in the middle of a drive, many times over: what was touched, how fast, and whether the robot named the cause.
+//! Sensors and wires that fail in the middle of a drive, many times over: contacts, their speed, and whether the robot
+//! reported the cause.
 //!
-//! Each [`Failure`] befalls each drive of [`DRIVES`] at each of its instants, once per seed. Contacts and their speed are ground truth;
-//! the fault is the one that crossed the link. A front sonar that answers "nothing in reach" for ever, after a second in which there
-//! was nothing in its reach, looks like free floor: those runs are a class of their own ([`Class::FreeFloor`]).
-//! On an image the chip fails too ([`ChipFailure`]).
+//! Each [`Failure`] is injected into each drive of [`DRIVES`] at each of its instants, once per seed. Contacts and
+//! their speed are ground truth; the fault is the one sent over the link. A front sonar stuck at "nothing in range",
+//! after a second in which nothing was in range, looks like free floor: those runs are a separate class
+//! ([`Class::FreeFloor`]). With an image the chip fails too ([`ChipFailure`]).
 
 use crate::files::{FileError, Library, Overrides, Setup};
 use crate::run::{Run, prepare};
@@ -30,15 +31,15 @@ pub const DRIVES: [(&str, [f64; INSTANTS]); 7] = [
     ("mode8-lane", [1.5, 3.0, 5.0, 7.0, 10.0]),
     ("mode8-random", [2.0, 4.0, 6.0, 9.0, 14.0]),
 ];
-/// A drive is over so long after the robot has named a fault: it has rolled out [s].
+/// A drive ends this long after the robot has reported a fault: it has rolled out [s].
 const ROLLED_OUT_S: f64 = 3.0;
-/// Or so long after it has said that its goal is reached or cannot be.
+/// Or this long after it has reported its goal as reached or unreachable [s].
 const ARRIVED_S: f64 = 1.0;
-/// Front sonars that had nothing in reach for so long before they failed see free floor [s].
+/// A front sonar with nothing in range for this long before it failed sees free floor [s].
 const FREE_S: f64 = 1.0;
-/// Fastest touch that does no harm [m/s].
+/// Fastest harmless contact [m/s].
 pub const GENTLE_M_S: f64 = 0.1;
-/// Runs of which one may touch something.
+/// One run in this many may touch something.
 pub const RUNS_PER_TOUCH: usize = 500;
 
 /// What fails.
@@ -55,11 +56,11 @@ pub enum Failure {
 /// What fails of the chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChipFailure {
-    /// Somebody presses the button, or opens the port of an adapter.
+    /// The button is pressed, or the port of a serial adapter is opened.
     Reset,
     /// The supply dips.
     BrownOut,
-    /// A tick comes to no end.
+    /// A tick hangs.
     Hang,
     /// The EEPROM holds nothing but zeros, and the chip is reset.
     Forgets,
@@ -227,25 +228,25 @@ impl fmt::Display for Failure {
     }
 }
 
-/// Which requirement a run falls under.
+/// Which requirement applies to a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// The robot can know.
+    /// The robot can detect the failure.
     Knowable,
-    /// The sonar's last second and its lie are both "nothing in reach".
+    /// The sonar's last second and its false answer are both "nothing in range".
     FreeFloor,
 }
 
-/// How a robot says that something is wrong.
+/// How a robot reports that something is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Named {
     /// By a fault.
     Fault(Fault),
-    /// By saying that its program started again.
+    /// By reporting a restart of its program.
     Restart,
 }
 
-/// What became of one drive.
+/// The outcome of one drive.
 #[derive(Clone, Debug)]
 pub struct Drive {
     /// Index into [`DRIVES`].
@@ -256,16 +257,16 @@ pub struct Drive {
     pub at_s: f64,
     /// What failed.
     pub failure: Failure,
-    /// Which requirement it falls under.
+    /// The requirement that applies.
     pub class: Class,
     /// When something was first touched after the failure [s], and the fastest touch of the run [m/s].
     pub touch: Option<(f64, f64)>,
-    /// When the robot named what is wrong, and how.
+    /// When the robot reported the failure, and how.
     pub named: Option<(f64, Named)>,
 }
 
 impl Drive {
-    /// A touch came before a fault was named, or without one.
+    /// A contact before a fault was reported, or without one.
     #[must_use]
     pub fn touched_unnamed(&self) -> bool {
         self.touch
@@ -273,7 +274,7 @@ impl Drive {
     }
 }
 
-/// What drives that the robot could have known better show together.
+/// Summary of the drives in which the robot could detect the failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Verdict {
     /// How many there were.
@@ -373,32 +374,32 @@ fn one(
             && let Some(chip) = chip.take()
         {
             chip.befall(run.sim());
-            // One that hangs says nothing.
+            // A hung robot sends nothing.
             end_s = at_s + ROLLED_OUT_S;
         }
         run.advance();
-        let heard = run.heard();
-        for heard in heard.get(read..).unwrap_or_default() {
-            let kind = match heard.what {
+        let received = run.received();
+        for message in received.get(read..).unwrap_or_default() {
+            let kind = match message.what {
                 FromRobot::Event(event) => event.kind,
-                FromRobot::Hello(_) if heard.t_s > at_s && named.is_none() => {
-                    named = Some((heard.t_s, Named::Restart));
+                FromRobot::Hello(_) if message.t_s > at_s && named.is_none() => {
+                    named = Some((message.t_s, Named::Restart));
                     continue;
                 }
                 _ => continue,
             };
             match kind {
                 EventKind::Faulted(fault) if named.is_none() => {
-                    named = Some((heard.t_s, Named::Fault(fault)));
-                    end_s = heard.t_s + ROLLED_OUT_S;
+                    named = Some((message.t_s, Named::Fault(fault)));
+                    end_s = message.t_s + ROLLED_OUT_S;
                 }
-                EventKind::Reached | EventKind::Unreachable if heard.t_s > at_s => {
-                    end_s = end_s.min(heard.t_s + ARRIVED_S);
+                EventKind::Reached | EventKind::Unreachable if message.t_s > at_s => {
+                    end_s = end_s.min(message.t_s + ARRIVED_S);
                 }
                 _ => {}
             }
         }
-        read = heard.len();
+        read = received.len();
     }
     let trace = run.trace();
     let touch_s = trace

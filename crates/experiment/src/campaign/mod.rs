@@ -1,8 +1,8 @@
-//! Large sets of runs and what is required of them together: every scenario over many seeds, and mode 8 over many random worlds.
+//! Large sets of runs and their joint requirements: every scenario over many seeds, and mode 8 over many random worlds.
 //!
-//! A run of a scenario passes or fails by the limits in its file. Here is what many runs must show: the share that passes, that nothing is
-//! touched, and for random worlds the share of goals reached and how long the ways were beside the shortest ones. The examples' `campaign`
-//! prints it for thousands of seeds; a test judges a sample in the same way.
+//! A run of a scenario passes or fails by the limits in its file. Required of many runs are the share that passes, that
+//! nothing is touched, and for random worlds the share of goals reached and the length of the paths relative to the
+//! shortest ones. `cargo xtask campaign` prints this for thousands of seeds; a test judges a sample in the same way.
 
 pub mod faults;
 
@@ -14,7 +14,7 @@ use rumbo_sim::trace::Trace;
 
 /// Share of the seeds that must pass a scenario's limits.
 const PASS: f64 = 0.99;
-/// Share of the goals that can be reached that must be.
+/// Share of the reachable goals that must be reached.
 const REACHED: f64 = 0.98;
 /// Largest median of path over shortest path, in worlds that block the straight line.
 const RATIO_MEDIAN: f64 = 1.3;
@@ -26,19 +26,19 @@ const CONTACTS: f64 = 0.005;
 const CONTACT_M_S: f64 = 0.1;
 /// Time within which a goal that cannot be reached must be called so [s].
 const UNREACHABLE_S: f64 = 180.0;
-/// Share of the random worlds that must block the straight line: else the other figures say little.
+/// Share of the random worlds that must block the straight line, so that the other figures are meaningful.
 const BLOCKED: f64 = 0.7;
 
-/// Something required of many runs, and what they gave.
+/// A requirement on many runs, and its result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// What is measured.
     pub what: String,
-    /// What is required; empty for what is only told.
+    /// The requirement; empty for figures that are only reported.
     pub required: String,
-    /// What the runs gave.
+    /// The result of the runs.
     pub measured: String,
-    /// It is as required.
+    /// The requirement is met.
     pub met: bool,
 }
 
@@ -91,7 +91,7 @@ pub fn campaign(
     Ok(())
 }
 
-/// What the runs of a scenario show together.
+/// Summary of the runs of a scenario.
 #[must_use]
 pub fn judge(setup: &Setup, results: &[RunResult]) -> Vec<Finding> {
     if setup.world.random.is_some() {
@@ -136,7 +136,7 @@ fn judge_limits(setup: &Setup, results: &[RunResult]) -> Finding {
     Finding::new(setup.scenario.name.clone(), required, measured, met)
 }
 
-/// What runs in random worlds show together, by their metrics.
+/// Summary of runs in random worlds, by their metrics.
 #[must_use]
 pub fn judge_worlds(runs: &[&Metrics]) -> Vec<Finding> {
     let value = |run: &Metrics, name: &str| run.get(name).copied().unwrap_or(f64::NAN);
@@ -159,7 +159,7 @@ pub fn judge_worlds(runs: &[&Metrics]) -> Vec<Finding> {
         .iter()
         .filter(|run| is(run, "unreachable_reported") && value(run, "time_s") <= UNREACHABLE_S)
         .count();
-    // A goal that was not reached has a way without end.
+    // A goal that was not reached counts as an infinite path.
     let mut ratios: Vec<f64> = reachable
         .iter()
         .filter(|run| is(run, "blocked"))

@@ -1,4 +1,4 @@
-//! Reads no more of a file than such a file can be: what a path names may be a device that never ends.
+//! Reads files up to a maximum size: a path may name a device that never ends.
 
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read, Result};

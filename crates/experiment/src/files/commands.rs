@@ -1,20 +1,20 @@
 //! The `[[command]]` tables of a scenario: what the station sends to the robot, and when.
 //!
-//! Each has `at_s` and one action. With `after_reached = true` it is sent sooner than that, as soon as the robot says that it has reached
-//! what the command before asked for: `at_s` is then the latest time.
+//! Each has `at_s` and one action. With `after_reached = true` it is sent earlier, as soon as the robot reports that it
+//! has reached the previous command's reference: `at_s` is then the latest time.
 //!
 //! | keys | does |
 //! |---|---|
 //! | `arm = true`, `disarm = true`, `stop = true` | arm and start the mode; end it; release the wheels at once |
-//! | `clear_fault = true`, `reset_pose = true` | forget a latched fault; call the present place the origin |
+//! | `clear_fault = true`, `reset_pose = true` | clear a latched fault; make the present pose the origin |
 //! | `mode = "wheel_speed"` | select a mode (the robot must be disarmed) |
 //! | `reference_m = 0.3` | modes `front_distance`, `front_align`, `wall_follow`: the distance to hold |
 //! | `speed_rpm = 60` | modes `wheel_speed`, `straight_line` |
 //! | `left_rpm = 60` and `right_rpm = 50` | mode `wheel_speed` |
 //! | `goal_m = [1.0, 0.5]` | modes `mission`, `waypoints`: a point to go to |
 //! | `goal = "world"` | the same with the goal of a random world |
-//! | `route_m = [[1, 0], [1, 1, 90]]` | mode `waypoints`: places, each with a heading in deg if it matters |
-//! | the same with `repeat = true`, `frame = "relative"` | again and again; as seen from where the robot starts |
+//! | `route_m = [[1, 0], [1, 1, 90]]` | mode `waypoints`: positions, each with an optional heading in deg |
+//! | the same with `repeat = true`, `frame = "relative"` | repeatedly; relative to the pose where the robot starts |
 //! | `lane = true` | mode `mission`: follow a lane |
 //! | `move = "turn_left"` with `duty = 0.4` or `speed_rpm = 60` | mode `manual`, a basic movement |
 //! | the same with `duty = 0`, `ramp_to_duty = 0.4`, `ramp_s = 12` | open loop, the duty moves by one count of PWM at a time |
@@ -34,7 +34,7 @@ const DISTANCE: Allowed = Allowed::new(0.02, 2.5, "m");
 const SPEED: Allowed = Allowed::new(-200.0, 200.0, "rpm");
 const MOVE_SPEED: Allowed = Allowed::new(0.0, 200.0, "rpm");
 const DUTY: Allowed = Allowed::new(0.0, 1.0, "");
-/// Least time between the commands of a ramp: each is answered before the next is sent.
+/// Minimum time between the commands of a ramp: each is answered before the next is sent.
 const RAMP_STEP_S: f64 = 0.1;
 
 /// The actions that are a bare `true`.
@@ -46,7 +46,7 @@ const FLAGS: [(&str, Command); 6] = [
     ("reset_pose", Command::ResetPose),
     ("lane", Command::Lane),
 ];
-/// The keys that say which action a command is.
+/// The keys that select the action of a command.
 const ACTIONS: [&str; 15] = [
     "arm",
     "disarm",
@@ -67,7 +67,7 @@ const ACTIONS: [&str; 15] = [
 /// The keys that only go with an action.
 const COMPANIONS: [&str; 5] = ["right_rpm", "value", "duty", "ramp_to_duty", "ramp_s"];
 
-/// Reads all commands; `mode` is the mode selected at the start, where that is known: what is wrong with it has been said.
+/// Reads all commands; `mode` is the mode selected at the start, if valid: mistakes in it have been reported.
 pub(crate) fn read_commands(
     tables: Vec<Table<'_, '_>>,
     mut mode: Option<ModeId>,
@@ -152,7 +152,7 @@ fn read_command(
             for key in &known {
                 table.value(key);
             }
-            // An unknown key is probably the missing action, and is complained about anyway.
+            // An unknown key is probably the missing action, and is reported anyway.
             let all_known = table.keys().iter().all(|key| known.contains(&key.value));
             match given[..] {
                 [] if all_known => table.complain_here(&format!(
@@ -236,7 +236,7 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut Option<ModeId>) -> O
     }
 }
 
-/// `goal = "world"`: the place is known once the seed is.
+/// `goal = "world"`: the position is known once the seed is.
 fn read_goal_of_world(table: &Table<'_, '_>, at_s: f64) -> Vec<TimedCommand> {
     if let Some(word) = table.text("goal")
         && word.value != "world"
@@ -323,7 +323,7 @@ fn takes(kinds: &[ReferenceKind]) -> impl Fn(&Description) -> bool {
     }
 }
 
-/// Complains where the mode is not one of those that take the command.
+/// Reports a mode that does not accept the command.
 fn needs_mode(
     table: &Table<'_, '_>,
     key: &str,

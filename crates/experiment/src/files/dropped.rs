@@ -1,7 +1,7 @@
-//! Keys that files had and have no longer, and what takes their place.
+//! Dropped keys of files, and their successors.
 //!
-//! Who renames or drops a key of robot, world or scenario files adds a line here: a file of an earlier version is then
-//! told what to write instead.
+//! A renamed or dropped key of robot, world or scenario files gets a line here: the error for a file of an earlier
+//! version then names what to write instead.
 
 /// Path of the key, without the numbers of tables such as `command[2]`, and its successor.
 const DROPPED: [(&str, &str); 3] = [

@@ -3,10 +3,10 @@
 use rumbo_sim::SimError;
 use std::fmt;
 
-/// One thing to put right in a file.
+/// One problem in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// The file as the user would name it.
+    /// The file, as the user names it.
     pub file: String,
     /// Line, from 1; 0 for the file as a whole.
     pub line: usize,
@@ -28,18 +28,18 @@ impl fmt::Display for Problem {
 pub enum FileError {
     /// No built-in file and no setting has this name.
     Unknown {
-        /// What was asked for: `scenario`, `world`, `robot`, `rig`, ...
+        /// What was requested: `scenario`, `world`, `robot`, `rig`, ...
         kind: &'static str,
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// The names that resemble it, best first; all names where none does.
         near: Vec<String>,
     },
-    /// The file is not there or cannot be read.
+    /// The file does not exist or cannot be read.
     Unreadable {
         /// Its path.
         path: String,
-        /// What the system says.
+        /// The system's message.
         reason: String,
     },
     /// The file was read and is wrong; at least one problem, in the order of lines.

@@ -10,11 +10,11 @@ use rumbo_sim::wiring::Wiring;
 use std::io;
 use std::path::Path;
 
-/// Longest file of an image, with all that a debugger wants to know [bytes].
+/// Longest file of an image, debugging information included [bytes].
 const LONGEST: u64 = 16 << 20;
 
-/// Reads an image, listens to how it begins, and wires it: as `wiring` says, or else as the language and the scenario
-/// suggest.
+/// Reads an image, detects its language from its first output, and wires it: by `wiring`, or else by language and
+/// scenario.
 ///
 /// # Errors
 /// The file is no program for this chip, or the robot has no such wiring.
@@ -76,8 +76,8 @@ fn find<'a>(robot: &'a RobotFile, wiring: &str) -> Result<&'a Wiring, FileError>
     })
 }
 
-/// Our program knows the final build only; of another one, the report's build for this experiment. If the program has not
-/// switched on the transmitter of that build's link, but that of another build's: that one.
+/// For our program the final build; for another one, the report's build for this experiment, unless the program has
+/// switched on the transmitter of another build's link: then that build.
 fn default_wiring(opening: Opening, robot: &RobotFile, scenario: &ScenarioFile) -> String {
     let name = match (opening.language, scenario.rig.as_str(), scenario.mode) {
         (Language::Frames, ..) => "final",

@@ -66,7 +66,7 @@ impl Kind {
     }
 }
 
-/// Where files are found. A name is a built-in file; whatever ends in `.toml` or holds a `/` is a path.
+/// Where files are found. A name is a built-in file; anything that ends in `.toml` or contains a `/` is a path.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Library {
     /// Paths are relative to this folder; empty for the current one.
@@ -75,7 +75,7 @@ pub struct Library {
     held: BTreeMap<(Kind, String), String>,
 }
 
-/// A file's text and how to speak of it.
+/// A file's text and its name for messages.
 struct Found {
     name: String,
     file: String,
@@ -90,7 +90,7 @@ impl Library {
         Self::default()
     }
 
-    /// The same, with paths relative to the folder of the file that holds them.
+    /// The same, with paths relative to the folder of the file that contains them.
     #[must_use]
     pub fn beside(&self, name_or_path: &str) -> Self {
         let folder = is_path(name_or_path)
@@ -112,7 +112,7 @@ impl Library {
     /// A robot.
     ///
     /// # Errors
-    /// An unknown name, an unreadable path, or everything that is wrong with the file.
+    /// An unknown name, an unreadable path, or all problems of the file.
     pub fn robot(&self, name_or_path: &str) -> Result<RobotFile, FileError> {
         let found = self.find(Kind::Robot, name_or_path)?;
         RobotFile::parse(&found.name, &found.file, &found.text)

@@ -3,7 +3,7 @@
 //! [`Library`] finds a file by name (built in) or path (on disk) and reads it; [`Library::setup`] puts a scenario
 //! together with its robot, rig and world. Everything is checked while it is read: a wrong file yields one line per
 //! problem, with file, line, key, value and what is allowed. Angles are degrees and speeds rpm in the files, radians
-//! and rad/s in what comes out.
+//! and rad/s in the result.
 
 pub mod bounded;
 pub mod commands;

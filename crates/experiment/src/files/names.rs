@@ -1,4 +1,4 @@
-//! The names that files and commands use for what the control core knows by number.
+//! The names in files and commands for the control core's numbers.
 
 use super::near;
 use rumbo_control::mode::{ModeId, Movement};

@@ -1,4 +1,4 @@
-//! Names and keys that a mistyped one may have meant.
+//! Suggestions for mistyped names and keys.
 
 /// A unit's suffix in a key, what it measures, and how many of the dimension's base unit it is.
 const UNITS: [(&str, &str, f64); 24] = [
@@ -50,7 +50,7 @@ pub(crate) fn near<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> 
     rated.into_iter().map(|(_, candidate)| candidate).collect()
 }
 
-/// 1 for the same name, 0 for nothing in common; a name that contains the other counts as near.
+/// Similarity: 1 for the same name, 0 for nothing in common; a name that contains the other counts as near.
 fn likeness(name: &str, candidate: &str) -> f64 {
     let (name, candidate) = (name.to_lowercase(), candidate.to_lowercase());
     let edits = strsim::normalized_damerau_levenshtein(&name, &candidate);
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_without_its_unit_is_told_the_unit() {
+    fn for_a_key_without_its_unit_the_unit_is_suggested() {
         assert_eq!(
             remedy_for_key("range", None, &["range_m"]),
             "the key is `range_m`, with its unit: m"

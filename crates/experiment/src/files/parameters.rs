@@ -11,7 +11,7 @@ pub fn exact(value: f32) -> f64 {
     value.to_string().parse().unwrap_or(f64::from(value))
 }
 
-/// A value as the command line has it: a number, or the name that a switch or a choice has for it. Its limits are checked later.
+/// A value from the command line: a number, or the name of a value of a switch or a choice. Limits are checked later.
 ///
 /// # Errors
 /// What to write instead.
@@ -63,7 +63,7 @@ pub(crate) fn read(table: &Table<'_, '_>, key: &str, id: ParamId) -> Option<f32>
     found
 }
 
-/// A value that must be there.
+/// A required value.
 pub(crate) fn required(table: &Table<'_, '_>, key: &str, id: ParamId) -> Option<f32> {
     table.require(
         key,

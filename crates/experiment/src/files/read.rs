@@ -1,8 +1,8 @@
 //! Reads a TOML text key by key, collecting every problem with its line instead of stopping at the first.
 //!
-//! Each loader asks a [`Table`] for the keys it knows, with what is allowed; [`Table::finish`] then complains about
-//! the keys nobody asked for. A missing or wrong value is recorded and the loader goes on with a stand-in, so one
-//! look at the file shows everything that is wrong; [`Source::verdict`] turns the collection into an error.
+//! Each loader asks a [`Table`] for the keys it knows, with what is allowed; [`Table::finish`] then reports the
+//! remaining keys. A missing or wrong value is recorded and the loader continues with a placeholder, so that one pass
+//! reports everything that is wrong; [`Source::verdict`] turns the collection into an error.
 
 use super::dropped;
 use super::error::{FileError, Problem};
@@ -23,7 +23,7 @@ pub(crate) struct Source<'t> {
 }
 
 impl<'t> Source<'t> {
-    /// A file, by the name that complaints use.
+    /// A file, with its name for error messages.
     pub(crate) fn new(file: &str, text: &'t str) -> Self {
         Self {
             file: file.into(),
@@ -111,7 +111,7 @@ pub(crate) struct Table<'a, 't> {
     source: &'a Source<'t>,
     path: String,
     line: usize,
-    /// `None`: the table is missing or was no table, and every key of it counts as missing without complaint.
+    /// `None`: the table is missing or was no table, and all its keys count as missing without further problems.
     entries: Option<&'a DeTable<'t>>,
     known: RefCell<Vec<String>>,
 }
@@ -146,7 +146,7 @@ impl<'a, 't> Table<'a, 't> {
         Some(Placed { value, line })
     }
 
-    /// A number that must be there. A stand-in within the limits where it is missing or wrong.
+    /// A required number. A placeholder within the limits where it is missing or wrong.
     pub(crate) fn required_number(&self, key: &str, allowed: Allowed) -> f64 {
         self.require(key, &allowed.remedy());
         self.number(key, allowed).unwrap_or(allowed.min)
@@ -188,7 +188,7 @@ impl<'a, 't> Table<'a, 't> {
         Some((line, array.iter().map(placed).collect()))
     }
 
-    /// Two numbers that must be there.
+    /// Two required numbers.
     pub(crate) fn required_pair(&self, key: &str, allowed: Allowed) -> [f64; 2] {
         self.require(
             key,
@@ -236,7 +236,7 @@ impl<'a, 't> Table<'a, 't> {
         }
     }
 
-    /// A text that must be there; empty where it is missing or wrong.
+    /// A required text; empty where it is missing or wrong.
     pub(crate) fn required_text(&self, key: &str, what: &str) -> Placed<String> {
         self.require(key, what);
         self.text(key).unwrap_or(Placed {
@@ -257,7 +257,7 @@ impl<'a, 't> Table<'a, 't> {
         }
     }
 
-    /// The value of a key as it stands in the file, with its line; marks the key as known.
+    /// The raw value of a key, with its line; marks the key as known.
     pub(crate) fn value(&self, key: &str) -> Option<(usize, &'a DeValue<'t>)> {
         self.known.borrow_mut().push(key.to_owned());
         let (_, value) = self.entries?.iter().find(|(own, _)| own.get_ref() == key)?;
@@ -278,7 +278,7 @@ impl<'a, 't> Table<'a, 't> {
         )
     }
 
-    /// The tables `[[key]]`, in the order of the file; there may be so many.
+    /// The tables `[[key]]`, in the order of the file, up to a maximum number.
     pub(crate) fn tables(&self, key: &str, most: usize) -> Vec<Table<'a, 't>> {
         let Some((line, value)) = self.value(key) else {
             return Vec::new();
@@ -341,7 +341,7 @@ impl<'a, 't> Table<'a, 't> {
         })
     }
 
-    /// Complains about the keys nobody asked for.
+    /// Reports the unknown keys.
     pub(crate) fn finish(&self) {
         let known = self.known.borrow();
         let known: Vec<&str> = known.iter().map(String::as_str).collect();
@@ -376,7 +376,7 @@ impl<'a, 't> Table<'a, 't> {
         }
     }
 
-    /// Complains if the key is missing.
+    /// Reports a missing key.
     pub(crate) fn require(&self, key: &str, what: &str) {
         if self.has(key) || self.entries.is_none() {
             return;
@@ -387,7 +387,7 @@ impl<'a, 't> Table<'a, 't> {
         );
     }
 
-    /// A value as a number that is allowed; complains if it is none.
+    /// A value as an allowed number; reports a problem if it is not.
     pub(crate) fn judge_number(
         &self,
         key: &str,

@@ -1,4 +1,4 @@
-//! A robot file: what the robot is made of, where its sensors sit, and which control values it prefers.
+//! A robot file: the robot's physics, its sensors' positions, and its control parameters.
 //!
 //! ```toml
 //! title = "The robot of the report"
@@ -23,9 +23,9 @@ use rumbo_plant::plant::{Mount, Rig};
 use rumbo_sim::wiring::{Divider, SIGNALS, Wiring};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Place of a sonar on the body.
+/// Position of a sonar on the body.
 const MOUNT: Allowed = Allowed::new(-1.0, 1.0, "m");
-/// Digital pins of an Arduino Mega, the analogue ones counted on from 54.
+/// Digital pins of an Arduino Mega, the analogue ones numbered from 54.
 const PIN: Allowed = Allowed::new(0.0, 69.0, "count");
 /// Those of them with an analogue input, A0 to A15.
 const ANALOGUE_PIN: Allowed = Allowed::new(54.0, 69.0, "count");
@@ -38,13 +38,13 @@ const SRAM: Allowed = Allowed::new(1.0, 8.0 * 1024.0, "count");
 /// A robot, as `robots/*.toml` describes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotFile {
-    /// The name by which scenarios and commands call it: the file's name without `.toml`.
+    /// Its name in scenarios and commands: the file's name without `.toml`.
     pub name: String,
     /// One line for people.
     pub title: String,
     /// The text it was read from, kept for the log's manifest.
     pub text: String,
-    /// Physics, from `[plant.*]`: nominal values where the file says nothing.
+    /// Physics, from `[plant.*]`: nominal values where the file has none.
     pub plant: Params,
     /// Where the sonars sit, by the name of the rig. At least one. In a pair on one side, `left` is the one in front.
     pub rigs: BTreeMap<String, Rig>,
@@ -52,11 +52,11 @@ pub struct RobotFile {
     pub wirings: BTreeMap<String, Wiring>,
     /// Control parameters that differ from their defaults, from `[parameters]`; sent to the robot before arming.
     pub parameters: Vec<(ParamId, f32)>,
-    /// What the firmware may take of the chip.
+    /// The firmware's limits on the chip.
     pub firmware: FirmwareCaps,
 }
 
-/// Most that an image may take, from `[firmware]`.
+/// Maximum size of an image, from `[firmware]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FirmwareCaps {
     /// Flash, in bytes.
@@ -78,7 +78,7 @@ impl RobotFile {
     /// Reads a robot.
     ///
     /// # Errors
-    /// Everything that is wrong with the text, by line of `file`.
+    /// All problems of the text, by line of `file`.
     pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, FileError> {
         let source = Source::new(file, text);
         let parsed = source.parse()?;
@@ -123,7 +123,7 @@ fn named<T>(table: &Table<'_, '_>, read: impl Fn(&Table<'_, '_>) -> T) -> BTreeM
         .collect()
 }
 
-/// The plant's values that a table holds, by dotted key; `prefix` is the table's own place, e.g. `wheels.left.`.
+/// The plant's values in a table, by dotted key; `prefix` is the path of the table, e.g. `wheels.left.`.
 pub(crate) fn read_plant(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String, f64> {
     let (mut values, mut sections) = (BTreeMap::new(), BTreeSet::new());
     for limit in Params::limits() {

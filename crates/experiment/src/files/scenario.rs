@@ -39,9 +39,9 @@ use std::collections::BTreeMap;
 /// An experiment, as `scenarios/*.toml` describes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenarioFile {
-    /// The name by which commands call it: the file's name without `.toml`.
+    /// Its name in commands: the file's name without `.toml`.
     pub name: String,
-    /// Where its file is, as it was asked for; `None` of a built-in one.
+    /// The path of its file, as given; `None` for a built-in one.
     pub path: Option<String>,
     /// One line for people.
     pub title: String,
@@ -57,9 +57,9 @@ pub struct ScenarioFile {
     pub mode: ModeId,
     /// How long it lasts, in s.
     pub duration_s: f64,
-    /// Where the robot stands at first.
+    /// Where the robot starts.
     pub start: Start,
-    /// The wheels turn freely: no floor, the body stays where it is.
+    /// The wheels turn freely: no floor, the body does not move.
     pub wheels_in_air: bool,
     /// A calibration of this seed's robot comes first; its parameters are sent before the first command.
     pub calibrated: bool,
@@ -69,7 +69,7 @@ pub struct ScenarioFile {
     pub sonar_faults: Vec<TimedSonarFault>,
     /// Wires that fail on the way.
     pub wire_faults: Vec<TimedWireFault>,
-    /// What each metric must keep to for the run to pass.
+    /// Limits on the metrics for the run to pass.
     pub limits: BTreeMap<String, Bounds>,
     /// Control parameters sent before the first command, from `[parameters]`; they win over the robot file's, and later
     /// ones over earlier ones.
@@ -96,7 +96,7 @@ pub struct Start {
 pub struct TimedCommand {
     /// Time since the start, in s.
     pub at_s: f64,
-    /// It is sent sooner, as soon as the robot says that it has reached what the command before asked for.
+    /// It is sent earlier, as soon as the robot reports that it has reached the previous command's reference.
     pub after_reached: bool,
     /// What is sent, in the units of the link (m, rad/s, fraction of full PWM).
     pub command: Command,
@@ -104,7 +104,7 @@ pub struct TimedCommand {
     pub goal_of_world: bool,
 }
 
-/// What a metric must keep to; a missing end is free.
+/// Limits on a metric; a missing end is unlimited.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     /// Smallest value that passes.
@@ -114,7 +114,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Whether a value passes. What is not a number never does.
+    /// Whether a value passes. NaN never does.
     pub fn admit(&self, value: f64) -> bool {
         !value.is_nan()
             && self.min.is_none_or(|min| value >= min)
@@ -150,17 +150,17 @@ const MOST_FAULTS: usize = 1_000;
 const BOUND: Allowed = Allowed::new(-1e9, 1e9, "");
 
 impl ScenarioFile {
-    /// Reads a scenario. Whether its robot, rig and world exist is for [`super::Library::setup`] to say.
+    /// Reads a scenario. [`super::Library::setup`] checks whether its robot, rig and world exist.
     ///
     /// # Errors
-    /// Everything that is wrong with the text, by line of `file`.
+    /// All problems of the text, by line of `file`.
     pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, FileError> {
         let source = Source::new(file, text);
         let parsed = source.parse()?;
         let root = source.root(&parsed);
         let mode = read_mode(&root);
         root.require("duration_s", &DURATION.remedy());
-        // One that is wrong shortens nothing else.
+        // A wrong one does not shorten anything else.
         let duration_s = root.number("duration_s", DURATION).unwrap_or(DURATION.max);
         let scenario = Self {
             name: name.into(),

@@ -1,4 +1,4 @@
-//! A scenario with everything it names, and what the command line changes about it.
+//! A scenario with everything it names, and the overrides of the command line.
 
 use super::error::FileError;
 use super::near::{near, near_or_all};
@@ -28,7 +28,7 @@ pub enum NativeProgram {
     Baseline,
 }
 
-/// A line of text and when it is sent.
+/// A line of text and its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedText {
     /// Time since the start [s].
@@ -37,7 +37,7 @@ pub struct TimedText {
     pub text: String,
 }
 
-/// What the command line sets in place of the scenario's own.
+/// Values of the command line that replace the scenario's.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
     /// Another robot.
@@ -58,7 +58,7 @@ pub struct Overrides {
     pub texts: Vec<TimedText>,
 }
 
-/// A scenario ready to be run.
+/// A scenario ready to run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
     /// The scenario, with the overrides applied.
@@ -71,7 +71,7 @@ pub struct Setup {
     pub world: WorldFile,
     /// The native program that drives the robot.
     pub program: NativeProgram,
-    /// An image on an emulated Mega that does, in its place.
+    /// An image on an emulated Mega that replaces it.
     pub firmware: Option<Arc<Firmware>>,
     /// Lines of text sent over the link besides its commands, in order of time.
     pub texts: Vec<TimedText>,
@@ -82,7 +82,7 @@ impl Library {
     /// in the overrides to the current folder.
     ///
     /// # Errors
-    /// Whatever is wrong with any of them.
+    /// The problems of any of them.
     pub fn setup(&self, name_or_path: &str, overrides: &Overrides) -> Result<Setup, FileError> {
         let mut scenario = self.scenario(name_or_path)?;
         let beside = self.beside(name_or_path);
@@ -131,7 +131,7 @@ impl Library {
 }
 
 impl Setup {
-    /// The setup of a seed: with boxes and goal in place where the world is random, and else this one as it is.
+    /// The setup of a seed: with boxes and goal in place where the world is random, otherwise unchanged.
     ///
     /// # Errors
     /// A random world that finds no room.
@@ -175,8 +175,8 @@ impl Setup {
         Ok(Sim::new(self.config(seed)?)?)
     }
 
-    /// What the simulation of a seed is made from: `seed` draws the robot's parameters, unless the scenario says not
-    /// to, its noise, and a random world.
+    /// The configuration of a seed's simulation: `seed` draws the robot's parameters, unless the scenario disables it,
+    /// its noise, and a random world.
     ///
     /// # Errors
     /// If the files' values do not fit together.
@@ -254,12 +254,12 @@ impl Setup {
         Ok(parameters)
     }
 
-    /// The battery's divider in the wiring that our own program knows.
+    /// The battery's divider in the wiring of our own program.
     pub fn divider(&self) -> Option<Divider> {
         self.robot.wirings.get("final")?.battery
     }
 
-    /// What the robot must be told about the rig it carries, as control parameters.
+    /// The control parameters that describe the robot's rig.
     ///
     /// # Errors
     /// The rig's name is none that the control core knows, or it lacks a sonar of that rig.
@@ -322,7 +322,7 @@ fn goal_seen_from(start: &Start, goal_m: Point) -> Command {
     }
 }
 
-/// Complains about a goal that only a random world could give.
+/// Reports a goal that only a random world could provide.
 fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result<(), FileError> {
     let asks = scenario.commands.iter().any(|timed| timed.goal_of_world);
     if !asks || world.random.is_some() {
@@ -334,7 +334,7 @@ fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result<(), FileEr
     )))
 }
 
-/// Complains about a start inside a wall or a box.
+/// Reports a start inside a wall or a box.
 fn stands_free(
     scenario: &ScenarioFile,
     robot: &RobotFile,

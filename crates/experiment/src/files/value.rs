@@ -1,4 +1,4 @@
-//! Single values of a TOML file: what is allowed for them, and how complaints show them.
+//! Single values of a TOML file: what is allowed for them, and their form in error messages.
 
 use toml::de::DeValue;
 
@@ -35,7 +35,7 @@ impl Allowed {
     }
 }
 
-/// A value with its place, for loaders that judge it themselves.
+/// A value with its line, for loaders that check it themselves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Placed<T> {
     /// The value.
@@ -55,7 +55,7 @@ pub(crate) fn number_of(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-/// A value as a complaint shows it.
+/// A value as error messages show it.
 pub(crate) fn shown(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => format!("{text:?}"),

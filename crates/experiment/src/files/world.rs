@@ -38,7 +38,7 @@ pub(crate) const ANGLE: Allowed = Allowed::new(-360.0, 360.0, "deg");
 /// A world, as `worlds/*.toml` describes it. World frame: x and y in metres, angles counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldFile {
-    /// The name by which scenarios and commands call it: the file's name without `.toml`.
+    /// Its name in scenarios and commands: the file's name without `.toml`.
     pub name: String,
     /// One line for people.
     pub title: String,
@@ -52,7 +52,7 @@ pub struct WorldFile {
     pub boxes: Vec<Block>,
     /// What every seed adds at random.
     pub random: Option<RandomWorld>,
-    /// The goal of a seed's own world, and the truth about the way there.
+    /// The goal of a seed's random world, and the true shortest path to it.
     pub journey: Option<Journey>,
 }
 
@@ -69,7 +69,7 @@ impl WorldFile {
     /// Reads a world.
     ///
     /// # Errors
-    /// Everything that is wrong with the text, by line of `file`.
+    /// All problems of the text, by line of `file`.
     pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, FileError> {
         let source = Source::new(file, text);
         let parsed = source.parse()?;
@@ -101,7 +101,7 @@ impl WorldFile {
         })
     }
 
-    /// The obstacles as the plant wants them.
+    /// The obstacles in the plant's form.
     ///
     /// # Errors
     /// A shape without size; a parsed file has none.

@@ -1,20 +1,20 @@
-//! Whether the robot is where it was sent, judged from the truth: for programs that have no word for it.
+//! Detects from ground truth whether the robot has reached its goal: for programs that do not report it.
 //!
-//! A goal counts as reached where the robot comes to rest within [`NEAR_M`] of it and stays so; how near it really is, the
-//! metrics say.
+//! A goal counts as reached when the robot comes to rest within [`NEAR_M`] of it and stays there; the metrics give the
+//! actual distance.
 
 use rumbo_plant::plant::Truth;
 
-/// What a program may take for its goal [m]: the report's 5 cm, and as much again for its odometry.
+/// Distance within which a goal counts as reached [m]: the report's 5 cm, and as much again for its odometry.
 const NEAR_M: f64 = 0.10;
-/// A robot that was sent off has left after this way [m].
+/// A robot has left its start after this distance [m].
 const LEFT_M: f64 = 0.10;
 /// Fastest wheel that stands [rad/s].
 const REST_RAD_S: f64 = 0.05;
 /// How long it must stand [us].
 const REST_US: u64 = 500_000;
 
-/// Where the robot is sent.
+/// The robot's goal.
 #[derive(Clone, Copy, Debug)]
 struct Goal {
     at_m: [f64; 2],
@@ -23,7 +23,7 @@ struct Goal {
     resting_since_us: Option<u64>,
 }
 
-/// Watches the robot on its way.
+/// Tracks the robot on its way.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GoalWatch {
     goal: Option<Goal>,
@@ -45,7 +45,7 @@ impl GoalWatch {
         self.goal.is_some()
     }
 
-    /// When it came to rest at its goal [us], said once.
+    /// When it came to rest at its goal [us]; returned once.
     pub(super) fn reached(&mut self, truth: &Truth) -> Option<u64> {
         let goal = self.goal.as_mut()?;
         let from_m = |[x_m, y_m]: [f64; 2]| (truth.pose.x_m - x_m).hypot(truth.pose.y_m - y_m);
@@ -67,10 +67,10 @@ impl GoalWatch {
     }
 }
 
-/// How near a program goes to a corner, by its own odometry [m]: the report's 10 cm, and what a row rounds.
+/// How near a program passes a corner, by its own odometry [m]: the report's 10 cm, and the rounding of a row.
 const PASSED_M: f32 = 0.12;
 
-/// A route driven by a program that tells its pose and nothing else.
+/// A route driven by a program that reports only its pose.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RouteWatch {
     points_m: Vec<[f32; 2]>,
@@ -83,7 +83,7 @@ impl RouteWatch {
         self.points_m.push([x_m, y_m]);
     }
 
-    /// The robot believes to be here; true once, at the last point after all others.
+    /// Updates with the estimated position; returns true once, at the last point after all others.
     pub(super) fn passes(&mut self, here_x_m: f32, here_y_m: f32) -> bool {
         let Some([x_m, y_m]) = self.points_m.get(self.next).copied() else {
             return false;

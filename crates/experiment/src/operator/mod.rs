@@ -3,7 +3,7 @@
 //!
 //! | program | language |
 //! |---|---|
-//! | ours, or an image that speaks its frames | one command at a time, repeated until it is acknowledged, with a heartbeat in between |
+//! | ours, or an image with its frames | one command at a time, repeated until it is acknowledged, with heartbeats |
 //! | any other image | lines of the original's text: [`text`] |
 //! | the report's, native | handed over directly |
 //!
@@ -24,14 +24,14 @@ use text::Terminal;
 const HEARTBEAT_US: u64 = 100_000;
 /// Time after which an unanswered command is repeated [us].
 const REPEAT_US: u64 = 200_000;
-/// A robot that has not answered for this long before its run begins never will [us].
+/// Time-out of the robot's answers before its run begins [us].
 const PATIENCE_US: u64 = 3_000_000;
-/// Time between two looks at the link before the run [us].
+/// Time between two polls of the link before the run [us].
 const BRIEF_STEP_US: u64 = 10_000;
 /// Longest line of the original's telemetry.
 const LINE: usize = 160;
 
-/// How the program at the pins is spoken to.
+/// The language of the program at the pins.
 enum Speech {
     Frames,
     Text(Box<Terminal>),
@@ -50,19 +50,20 @@ pub(crate) struct Operator<'a> {
     seq: u8,
     /// The newest robot time received.
     seen: Option<RobotTime>,
-    /// The command that waits for its acknowledgement, the robot time at which it was given, and when it was last sent.
+    /// The command that waits for its acknowledgement, the robot time at which it was issued, and when it was last
+    /// sent.
     pending: Option<(Command, RobotTime, u64)>,
     heartbeat_due_us: u64,
-    /// The robot has said that it reached its goal since the last command was sent.
+    /// The robot has reported its goal as reached since the last command was sent.
     reached: bool,
     decoder: Decoder<LINE>,
     buffer: Vec<u8>,
-    /// What the robot refused or reported.
+    /// Refusals and faults of the robot.
     pub(crate) complaints: Vec<String>,
-    /// What else a reader of the result should know.
+    /// Notes for readers of the result.
     pub(crate) notes: Vec<String>,
     /// Telemetry, status, events and heading references received.
-    pub(crate) heard: Vec<Heard>,
+    pub(crate) received: Vec<Heard>,
 }
 
 impl<'a> Operator<'a> {
@@ -91,12 +92,12 @@ impl<'a> Operator<'a> {
             buffer: Vec::new(),
             complaints: Vec::new(),
             notes: Vec::new(),
-            heard: Vec::new(),
+            received: Vec::new(),
         }
     }
 
-    /// Tells an image that speaks our frames its parameters. The clock of the run begins after that, as that of the native robot
-    /// does, which knows them from the start.
+    /// Sends the parameters to an image that uses our frames. The clock of the run begins after that, since the native
+    /// robot has them from the start.
     ///
     /// # Errors
     /// It does not answer.
@@ -118,12 +119,12 @@ impl<'a> Operator<'a> {
             self.listen_until(sim, mute, |operator| operator.pending.is_none())?;
         }
         sim.restart_clock();
-        self.heard.clear();
+        self.received.clear();
         self.heartbeat_due_us = 0;
         Ok(())
     }
 
-    /// Lets time pass before the run until the robot has said what is waited for.
+    /// Advances time before the run until the robot has sent the awaited message.
     fn listen_until(
         &mut self,
         sim: &mut Sim,
@@ -133,7 +134,7 @@ impl<'a> Operator<'a> {
         let since_us = sim.now_us();
         while !done(self) {
             sim.advance(sim.now_us() + BRIEF_STEP_US);
-            self.listen(sim);
+            self.receive(sim);
             if let Some(verdict) = sim.verdict() {
                 return Err(FileError::Setting(verdict));
             }
@@ -145,7 +146,7 @@ impl<'a> Operator<'a> {
         Ok(())
     }
 
-    /// Listens, then says what is due.
+    /// Receives, then sends what is due.
     pub(crate) fn step(&mut self, sim: &mut Sim) {
         let now_us = sim.now_us();
         self.type_texts(sim);
@@ -154,9 +155,9 @@ impl<'a> Operator<'a> {
             Speech::Text(_) => return self.write(sim),
             Speech::Frames => {}
         }
-        self.listen(sim);
+        self.receive(sim);
         if now_us >= self.heartbeat_due_us {
-            self.say(sim, &ToRobot::Heartbeat);
+            self.transmit(sim, &ToRobot::Heartbeat);
             self.heartbeat_due_us = now_us + HEARTBEAT_US;
         }
         if self.pending.is_some() {
@@ -176,7 +177,7 @@ impl<'a> Operator<'a> {
         self.give(sim, command);
     }
 
-    /// Gives the next command.
+    /// Issues the next command.
     fn give(&mut self, sim: &mut Sim, command: Command) {
         self.number = self.number.wrapping_add(1);
         self.send(sim, command, self.seen.unwrap_or_default());
@@ -196,7 +197,7 @@ impl<'a> Operator<'a> {
             && timed.at_s * 1e6 <= sim.now_us() as f64
         {
             self.texts = later;
-            // An image may know words of its own.
+            // An image may have commands of its own.
             if let (true, Err(error)) = (
                 self.setup.firmware.is_none(),
                 TextCommand::parse(&timed.text),
@@ -216,8 +217,8 @@ impl<'a> Operator<'a> {
         let Speech::Text(terminal) = &mut self.speech else {
             return;
         };
-        terminal.read(&self.buffer, sim.now_us(), &mut self.heard);
-        self.reached |= terminal.watch(sim, &mut self.heard);
+        terminal.read(&self.buffer, sim.now_us(), &mut self.received);
+        self.reached |= terminal.watch(sim, &mut self.received);
         while let Some(command) = self.due(sim.now_us()) {
             if let Speech::Text(terminal) = &mut self.speech {
                 self.notes.extend(terminal.write(sim, command));
@@ -240,10 +241,10 @@ impl<'a> Operator<'a> {
     /// The same with the report's native program, which has no link.
     fn order(&mut self, sim: &mut Sim) {
         let t_s = sim.now_us() as f64 * 1e-6;
-        let told = sim.drain_messages();
-        self.reached |= told.iter().any(has_reached);
-        self.heard
-            .extend(told.into_iter().map(|what| Heard { t_s, what }));
+        let messages = sim.drain_messages();
+        self.reached |= messages.iter().any(has_reached);
+        self.received
+            .extend(messages.into_iter().map(|what| Heard { t_s, what }));
         while let Some(command) = self.due(sim.now_us()) {
             sim.order(command);
         }
@@ -256,16 +257,16 @@ impl<'a> Operator<'a> {
             command,
             seen,
         };
-        self.say(sim, &message);
+        self.transmit(sim, &message);
         self.pending = Some((command, seen, sim.now_us()));
     }
 
-    fn say(&mut self, sim: &mut Sim, message: &ToRobot) {
+    fn transmit(&mut self, sim: &mut Sim, message: &ToRobot) {
         sim.send(message.frame(self.seq).bytes());
         self.seq = self.seq.wrapping_add(1);
     }
 
-    fn listen(&mut self, sim: &mut Sim) {
+    fn receive(&mut self, sim: &mut Sim) {
         let mut buffer = std::mem::take(&mut self.buffer);
         buffer.clear();
         sim.receive(&mut buffer);
@@ -286,7 +287,7 @@ impl<'a> Operator<'a> {
             {
                 let t_s = sim.now_us() as f64 * 1e-6;
                 self.reached |= has_reached(&what);
-                self.heard.push(Heard { t_s, what });
+                self.received.push(Heard { t_s, what });
             }
             match message {
                 Ok(FromRobot::Ack(ack)) if ack.number == self.number => {

@@ -1,4 +1,4 @@
-//! The link to a program that speaks the original's text: lines out, rows of telemetry in.
+//! The link to a program with the original text protocol: lines out, rows of telemetry in.
 
 use super::goal::{GoalWatch, RouteWatch};
 use crate::files::Setup;
@@ -19,14 +19,14 @@ pub(super) struct Terminal {
     mode: ModeId,
     line: Vec<u8>,
     clock_ms: u32,
-    /// Where goals are counted from, in the world.
+    /// Origin of the goals, in the world.
     origin: contact::Pose,
     goal: GoalWatch,
     route: RouteWatch,
     /// State of mode 8 in the last row; 0 is *wait for goal*.
     state: u8,
-    /// A row has said that the goal or the end of the route is reached.
-    told: bool,
+    /// A row has reported the goal or the end of the route as reached.
+    reported: bool,
 }
 
 impl Terminal {
@@ -44,11 +44,11 @@ impl Terminal {
             goal: GoalWatch::default(),
             route: RouteWatch::default(),
             state: 0,
-            told: false,
+            reported: false,
         }
     }
 
-    /// Sends a command; says what there are no words for.
+    /// Sends a command; notes those that the protocol lacks.
     pub(super) fn write(&mut self, sim: &mut Sim, command: Command) -> Option<String> {
         match command {
             Command::Mode(mode) => self.mode = mode,
@@ -87,32 +87,32 @@ impl Terminal {
         self.goal.send(at_m, &sim.truth());
     }
 
-    /// Notes a goal reached. Mode 8 tells it by its state, mode 7 by its pose; else the truth is asked.
-    pub(super) fn watch(&mut self, sim: &Sim, heard: &mut Vec<Heard>) -> bool {
+    /// Records a goal reached: in mode 8 from the state, in mode 7 from the pose, otherwise from ground truth.
+    pub(super) fn watch(&mut self, sim: &Sim, received: &mut Vec<Heard>) -> bool {
         if !matches!(self.mode, ModeId::Mission | ModeId::Waypoints) {
             return false;
         }
         let truth = sim.truth();
-        let told_us = std::mem::take(&mut self.told).then_some(truth.now_us);
-        let Some(at_us) = told_us.or_else(|| self.goal.reached(&truth)) else {
+        let reported_us = std::mem::take(&mut self.reported).then_some(truth.now_us);
+        let Some(at_us) = reported_us.or_else(|| self.goal.reached(&truth)) else {
             return false;
         };
         self.goal = GoalWatch::default();
         if self.mode == ModeId::Mission {
-            // The report's mission calls each goal its new origin.
+            // The report's mission makes each goal its new origin.
             self.origin = truth.pose;
         }
         let t_ms = ((at_us / 1_000) & 0xffff) as u16;
         let kind = EventKind::Reached;
-        heard.push(Heard {
+        received.push(Heard {
             t_s: at_us as f64 * 1e-6,
             what: FromRobot::Event(Event { t_ms, kind }),
         });
         true
     }
 
-    /// Takes in what has arrived; what is no row of telemetry says nothing to a metric.
-    pub(super) fn read(&mut self, bytes: &[u8], now_us: u64, heard: &mut Vec<Heard>) {
+    /// Ingests what has arrived; only rows of telemetry matter to metrics.
+    pub(super) fn read(&mut self, bytes: &[u8], now_us: u64, received: &mut Vec<Heard>) {
         for byte in bytes {
             if *byte != b'\n' {
                 if self.line.len() < LONGEST {
@@ -125,13 +125,13 @@ impl Terminal {
             if let Some(Ok(row)) = row.map(Row::parse) {
                 match &row {
                     Row::Mission(row) => {
-                        self.told |= row.state == 0 && self.state != 0 && self.goal.is_set();
+                        self.reported |= row.state == 0 && self.state != 0 && self.goal.is_set();
                         self.state = row.state;
                     }
-                    Row::Waypoints(row) => self.told |= self.route.passes(row.x_m, row.y_m),
+                    Row::Waypoints(row) => self.reported |= self.route.passes(row.x_m, row.y_m),
                     _ => {}
                 }
-                heard.push(Heard {
+                received.push(Heard {
                     t_s: now_us as f64 * 1e-6,
                     what: FromRobot::Telemetry(self.telemetry(&row)),
                 });
@@ -139,7 +139,7 @@ impl Terminal {
         }
     }
 
-    /// What a row tells, as a telemetry frame.
+    /// The content of a row as a telemetry frame.
     fn telemetry(&mut self, row: &Row) -> Telemetry {
         self.clock_ms = self.clock_ms.wrapping_add(row.dt_ms());
         row.telemetry((self.clock_ms & 0xffff) as u16, true)

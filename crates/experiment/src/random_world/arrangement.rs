@@ -1,4 +1,4 @@
-//! Groups of boxes on a floor, none in another's way.
+//! Groups of boxes on a floor that do not obstruct each other.
 
 use super::Site;
 use super::dice::Dice;
@@ -9,10 +9,10 @@ const TRIES: u32 = 20;
 /// How far a group against a wall may stand out on its other side [m].
 const OUTSIDE_M: f64 = 0.3;
 
-/// What has been put down so far.
+/// The groups placed so far.
 pub(super) struct Arrangement<'a> {
     site: &'a Site<'a>,
-    /// What stands at the site anyway, walls first.
+    /// The obstacles of the site itself, walls first.
     fixed: &'a World,
     /// Circles that stay free: of the start, and of the goal.
     free: [(Point, f64); 2],
@@ -51,8 +51,8 @@ impl<'a> Arrangement<'a> {
             .collect()
     }
 
-    /// Puts down a group, the first of some draws that fits; false if none does. A draw gives boxes and the index of the wall they stand
-    /// against.
+    /// Places a group, the first of some draws that fits; false if none does. A draw is boxes and the index of the wall
+    /// that they stand against.
     pub(super) fn add(
         &mut self,
         dice: &mut Dice,

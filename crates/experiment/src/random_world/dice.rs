@@ -2,7 +2,7 @@
 
 use rumbo_plant::noise::{Noise, source};
 
-/// A sequence that depends on the seed alone, and on nothing else that the seed draws.
+/// A sequence that depends on the seed alone, not on anything else that the seed draws.
 pub(super) struct Dice {
     noise: Noise,
     step: u64,

@@ -1,4 +1,4 @@
-//! Groups of boxes that touch each other, around (0, 0), and where they are put.
+//! Groups of boxes that touch each other, around (0, 0), and their placement.
 
 use super::dice::Dice;
 use rumbo_plant::world::{Block, Point};
@@ -37,7 +37,7 @@ fn single(dice: &mut Dice) -> Vec<Block> {
     vec![upright([0.0; 2], sides(dice))]
 }
 
-/// Two to four boxes at angles of their own, each against a face of the one before.
+/// Two to four boxes at random angles, each against a face of the previous one.
 fn touching(dice: &mut Dice) -> Vec<Block> {
     let mut boxes = single(dice);
     for _ in 0..dice.whole(1.0, 3.0) {

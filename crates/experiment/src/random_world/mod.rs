@@ -1,11 +1,13 @@
-//! Random worlds for mode 8: boxes on the floor and a goal, another arrangement for each seed, with the truth about them.
+//! Random worlds for mode 8: boxes on the floor and a goal, another arrangement for each seed, with the true shortest
+//! path.
 //!
-//! Groups of boxes (one, several that touch, an L, a U; some of them against a wall) are put down at random. Whatever does not touch is far
-//! enough apart for the robot to pass: no arrangement leaves in doubt whether a goal can be reached. In a given share of the worlds the goal
-//! is inside a box or walled in; in a given share of the others a group stands across the straight line to the goal.
+//! Groups of boxes (one, several that touch, an L, a U; some of them against a wall) are placed at random. Groups that
+//! do not touch are far enough apart for the robot to pass, so there is never a doubt whether a goal can be reached. In
+//! a given share of the worlds the goal is inside a box or walled in; in a given share of the others a group blocks the
+//! straight line to the goal.
 //!
-//! All of it follows from the seed. What does not fit is drawn anew, so that the shares are those asked for. Derivation and figures:
-//! docs/theory/random_worlds.md.
+//! Everything follows from the seed. What does not fit is drawn again, so that the shares are as requested. Derivation
+//! and figures: docs/theory/random_worlds.md.
 
 mod arrangement;
 mod dice;
@@ -20,16 +22,16 @@ use rumbo_plant::world::{Block, Point, Wall, World};
 /// Arrangements tried for a seed.
 const ATTEMPTS: u32 = 1000;
 
-/// What a random world may hold, as `[random]` of a world file says it.
+/// Configuration of random worlds: `[random]` of a world file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RandomWorld {
-    /// Fewest and most groups of boxes; fewer where they find no room.
+    /// Minimum and maximum number of groups of boxes; fewer where they do not fit.
     pub groups: [f64; 2],
     /// Smallest and largest straight distance from the start to the goal [m].
     pub goal_away_m: [f64; 2],
     /// Share of the worlds with a goal that cannot be reached, half of them inside a box, half walled in.
     pub unreachable: f64,
-    /// Share of the other worlds in which something stands across the straight line to the goal.
+    /// Share of the other worlds in which something blocks the straight line to the goal.
     pub blocked: f64,
 }
 
@@ -44,7 +46,7 @@ impl Default for RandomWorld {
     }
 }
 
-/// The sizes of the robot that count.
+/// The relevant sizes of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Size {
     /// Half its width [m]: the least distance at which the middle of its axis can pass anything.
@@ -65,7 +67,8 @@ impl Size {
         }
     }
 
-    /// Radius of a disc that finds a way to everything that is called reachable [m]: it takes no passage that is hard to drive.
+    /// Radius of a disc that can reach every goal that counts as reachable [m]: it excludes passages that are hard to
+    /// drive.
     #[must_use]
     pub fn easy_m(&self) -> f64 {
         self.turning_m + 0.03
@@ -87,44 +90,44 @@ impl Size {
     }
 }
 
-/// Where a random world is put.
+/// The site of a random world.
 #[derive(Clone, Copy, Debug)]
 pub struct Site<'a> {
     /// Corner of smallest x and y of the part to fill [m].
     pub from_m: Point,
     /// Corner of largest x and y [m].
     pub to_m: Point,
-    /// Walls that stand there already.
+    /// Existing walls.
     pub walls: &'a [Wall],
-    /// Boxes that stand there already.
+    /// Existing boxes.
     pub boxes: &'a [Block],
     /// Where the robot starts.
     pub start_m: Point,
-    /// How large it is.
+    /// The robot's size.
     pub robot: Size,
 }
 
-/// A goal and the truth about the way there.
+/// A goal and the true shortest path to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Journey {
     /// The goal, in the world's frame.
     pub goal_m: Point,
-    /// Something stands across the straight line from the start to the goal, for a robot of this width.
+    /// Something blocks the straight line from the start to the goal, for a robot of this width.
     pub blocked: bool,
-    /// The shortest way that leaves half the robot's width on either side; `None` if the goal cannot be reached.
+    /// The shortest path that leaves half the robot's width on either side; `None` if the goal cannot be reached.
     pub shortest: Option<Path>,
 }
 
-/// The boxes that a seed put down, and where they let the robot go.
+/// The boxes of a seed, and its goal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
-    /// What was added to the site.
+    /// The boxes added to the site.
     pub boxes: Vec<Block>,
-    /// Where to go.
+    /// The goal.
     pub journey: Journey,
 }
 
-/// What kind of journey a seed asks for.
+/// The kind of task that a seed draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     InsideABox,
@@ -157,7 +160,7 @@ impl RandomWorld {
         }
     }
 
-    /// One arrangement, if it is of the kind wanted.
+    /// One arrangement, if it is of the drawn kind.
     fn attempt(
         &self,
         kind: Kind,
@@ -203,7 +206,7 @@ impl RandomWorld {
         })
     }
 
-    /// A place within the site and the distances allowed.
+    /// A position within the site and the distances allowed.
     fn goal(&self, site: &Site<'_>, dice: &mut Dice) -> Option<Point> {
         let [nearest_m, farthest_m] = self.goal_away_m;
         let room_m = site.robot.goal_room_m();
@@ -245,7 +248,8 @@ fn anywhere(dice: &mut Dice, site: &Site<'_>) -> (Vec<Block>, Option<usize>) {
     (layouts::placed(&group, at, dice.angle_rad()), wall)
 }
 
-/// The truth about the way from the start of a site to a goal; `None` where it would be in doubt: reachable for a slim robot only.
+/// The true shortest path from the start of a site to a goal; `None` where it is ambiguous: reachable only for a slim
+/// robot.
 fn survey(world: &World, site: &Site<'_>, goal_m: Point) -> Option<Journey> {
     let slim = Floor::grown(world, site.robot.half_width_m);
     let shortest = slim.shortest(site.start_m, goal_m);

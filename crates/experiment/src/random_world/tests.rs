@@ -1,4 +1,4 @@
-//! What the seeds give, taken together.
+//! Statistics of the seeds.
 
 use super::arrangement::apart_m;
 use super::*;

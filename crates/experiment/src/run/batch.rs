@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 
-/// Results that wait for their reader: a slow one holds the runs back, so that their traces do not fill the memory.
+/// Capacity of the result queue: a slow reader holds the runs back, so that their traces do not fill the memory.
 const WAITING: usize = 16;
 
 /// Runs all `jobs`, each a setup and a seed, on as many threads as the current pool has, and hands the results to `handle`
@@ -20,7 +20,7 @@ pub fn run_all<E: From<FileError>>(
 ) -> Result<(), E> {
     let next = AtomicUsize::new(0);
     let (done, results) = sync_channel(WAITING);
-    // Threads of their own: the caller may be one of the pool's, perhaps its only one, and waits for the results.
+    // Separate threads: the caller may be one of the pool's, perhaps its only one, and waits for the results.
     std::thread::scope(|scope| {
         for _ in 0..rayon::current_num_threads() {
             let (done, next) = (done.clone(), &next);
@@ -30,7 +30,7 @@ pub fn run_all<E: From<FileError>>(
                     let Some((setup, seed)) = jobs.get(index) else {
                         return;
                     };
-                    // Nobody listens any more: an error has ended it.
+                    // The receiver is gone: an error has ended the batch.
                     if done.send((index, run(setup, *seed))).is_err() {
                         return;
                     }

@@ -1,4 +1,4 @@
-//! What holds for every shortest path, and the cases that can be calculated by hand.
+//! Properties of every shortest path, and cases that can be calculated by hand.
 
 use super::*;
 use proptest::prelude::*;
@@ -18,7 +18,7 @@ fn floor(boxes: &[Block]) -> Floor {
     Floor::grown(&World::new(&[], boxes).unwrap(), RADIUS_M)
 }
 
-/// A path out of its straight line by less than this is straight [m].
+/// A path that deviates from the straight line by less than this is straight [m].
 const ROUNDING_M: f64 = 1e-6;
 
 #[test]

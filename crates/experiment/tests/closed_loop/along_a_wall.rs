@@ -1,4 +1,4 @@
-//! Modes 3 and 4: what they promise along a wall, at its end, before a corner, and with a sonar that fails.
+//! Modes 3 and 4: requirements along a wall, at its end, before a corner, and with a sonar that fails.
 
 use crate::{Person, seeds, setup, twenty, worst};
 use rumbo_control::mode::ModeId;
@@ -13,13 +13,16 @@ use rumbo_wire::{Command, EventKind, FromRobot};
 
 /// The fault that a run reported first.
 fn fault(run: &RunResult) -> Option<Fault> {
-    run.trace.heard.iter().find_map(|heard| match heard.what {
-        FromRobot::Event(event) => match event.kind {
-            EventKind::Faulted(fault) => Some(fault),
+    run.trace
+        .heard
+        .iter()
+        .find_map(|message| match message.what {
+            FromRobot::Event(event) => match event.kind {
+                EventKind::Faulted(fault) => Some(fault),
+                _ => None,
+            },
             _ => None,
-        },
-        _ => None,
-    })
+        })
 }
 
 /// A scenario in a world of these walls, each from one point to another.
@@ -36,7 +39,7 @@ fn between(scenario: &str, walls_m: &[[[f64; 2]; 2]]) -> Setup {
     setup
 }
 
-/// All runs stopped, touched nothing, and gave one of these faults as the cause.
+/// All runs stopped, touched nothing, and reported one of these faults as the cause.
 fn assert_stopped(runs: &[RunResult], causes: &[Fault]) {
     for run in runs {
         let (name, seed) = (&run.scenario, run.seed);
@@ -255,10 +258,10 @@ fn a_distance_out_of_range_is_refused_and_the_robot_keeps_its_last_one() {
     }
     for wrong in [-0.2, 0.05, f32::NAN, 3.0] {
         person.command(Command::Reference(wrong));
-        let heard = person.wait_s(0.3);
+        let received = person.wait_s(0.3);
         let refused =
             |message: &FromRobot| matches!(message, FromRobot::Ack(ack) if ack.result.is_err());
-        assert!(heard.iter().any(refused), "{wrong}");
+        assert!(received.iter().any(refused), "{wrong}");
     }
     person.wait_s(5.0);
     let left_m = person.sim.truth().range_m[0].unwrap();
@@ -284,7 +287,7 @@ fn without_a_wall_beside_it_or_on_a_rig_that_looks_ahead_only_it_does_not_start(
     }
 }
 
-/// The last whole line that the robot sent while it lived for so long.
+/// The last complete line that the robot sent during this time.
 fn last_line(sim: &mut Sim, seconds: f64) -> String {
     let mut bytes = Vec::new();
     sim.advance(sim.now_us() + (seconds * 1e6) as u64);

@@ -1,5 +1,5 @@
-//! The report's own program on the plant: it drives, and not far from what the report's robot did. Its recorded runs are one robot on
-//! one day; the medians of 20 drawn robots stand near them.
+//! The report's own program on the plant: it drives much like the report's robot. The recorded runs are one robot on
+//! one day; the medians of 20 drawn robots are near them.
 
 use super::{RPM, seeds};
 use rumbo_experiment::files::{Library, NativeProgram, Overrides, Setup};
@@ -27,7 +27,7 @@ fn turning_as_recorded(scenario: &str) -> Setup {
     Library::new().setup(scenario, &overrides).unwrap()
 }
 
-/// The median of a metric; what never happened counts as later than anything.
+/// The median of a metric; an event that never happened counts as infinitely late.
 fn median(runs: &[RunResult], metric: &str) -> f64 {
     let mut values: Vec<f64> = runs.iter().map(|run| run.metrics[metric]).collect();
     values.sort_by(f64::total_cmp);
@@ -104,12 +104,12 @@ fn the_baseline_s_loop_of_mode_8_stands_while_its_servo_steps() {
     let mut setup = baseline("mode8-random");
     setup.scenario.duration_s = 30.0;
     let result = run(&setup, 1).unwrap();
-    let told = result
+    let telemetry = result
         .trace
         .heard
         .iter()
-        .filter(|heard| matches!(heard.what, FromRobot::Telemetry(_)));
-    let times: Vec<f64> = told.map(|heard| heard.t_s).collect();
+        .filter(|message| matches!(message.what, FromRobot::Telemetry(_)));
+    let times: Vec<f64> = telemetry.map(|message| message.t_s).collect();
     let gaps: Vec<f64> = times.windows(2).map(|two| two[1] - two[0]).collect();
     // Recorded: 82 to 91 ms driving, 317 ms a step of a sweep.
     assert!(gaps.iter().any(|gap| (0.08..0.1).contains(gap)));
@@ -123,8 +123,8 @@ fn the_baseline_goes_to_a_goal_nothing_stands_before() {
     let reached = (1..21).filter(|&seed| {
         let result = run(&setup, seed).unwrap();
         result.metrics["blocked"] == 0.0
-            && result.trace.heard.iter().any(|heard| {
-                matches!(heard.what, FromRobot::Event(event) if event.kind == EventKind::Reached)
+            && result.trace.heard.iter().any(|message| {
+                matches!(message.what, FromRobot::Event(event) if event.kind == EventKind::Reached)
             })
     });
     assert!(reached.count() >= 2);

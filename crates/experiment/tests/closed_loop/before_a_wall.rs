@@ -1,4 +1,4 @@
-//! Modes 1 and 2: what they promise before a wall, on each rig, and with a sonar that fails.
+//! Modes 1 and 2: requirements before a wall, on each rig, and with a sonar that fails.
 
 use crate::{Person, seeds, setup, twenty, worst};
 use rumbo_control::mode::ModeId;
@@ -11,13 +11,16 @@ use rumbo_wire::{Command, EventKind, FromRobot, Message, ToRobot};
 
 /// The fault that a run reported first.
 fn fault(run: &RunResult) -> Option<Fault> {
-    run.trace.heard.iter().find_map(|heard| match heard.what {
-        FromRobot::Event(event) => match event.kind {
-            EventKind::Faulted(fault) => Some(fault),
+    run.trace
+        .heard
+        .iter()
+        .find_map(|message| match message.what {
+            FromRobot::Event(event) => match event.kind {
+                EventKind::Faulted(fault) => Some(fault),
+                _ => None,
+            },
             _ => None,
-        },
-        _ => None,
-    })
+        })
 }
 
 const TWO_DEGREES: f64 = 0.0349;
@@ -70,8 +73,8 @@ fn mode_1_does_the_same_on_the_final_rig() {
     assert_eq!(worst(&runs, "contacts"), 0.0);
 }
 
-/// Errors of the bearing that mode 2 reckons with [rad], from the heading reference on the link: on the way beyond and
-/// within 0.7 m of the wall, and at rest.
+/// Errors of mode 2's bearing estimate [rad], from the heading reference on the link: on the way beyond and within
+/// 0.7 m of the wall, and at rest.
 fn bearing_errors(scenario: &str, seed: u64) -> [Vec<f64>; 3] {
     let mut person = Person::at(scenario);
     person.sim = setup(scenario).sim(seed).unwrap();
@@ -84,7 +87,7 @@ fn bearing_errors(scenario: &str, seed: u64) -> [Vec<f64>; 3] {
             _ => {}
         }
         truth.push(person.sim.truth().pose);
-        for message in person.listen_until((tick + 1) * 10_000) {
+        for message in person.receive_until((tick + 1) * 10_000) {
             match message {
                 FromRobot::HeadingRef(heading_rad) => wanted_rad = Some(heading_rad),
                 FromRobot::Telemetry(frame) => {
@@ -219,7 +222,7 @@ fn something_that_stands_before_one_sonar_of_the_pair_is_not_touched() {
 }
 
 #[test]
-fn on_a_rig_without_its_sonars_a_mode_is_refused_and_told_why() {
+fn on_a_rig_without_its_sonars_a_mode_is_refused_with_the_reason() {
     for (scenario, rig) in [
         ("mode1", "front_pair"),
         ("mode2", "front_single"),
@@ -230,9 +233,10 @@ fn on_a_rig_without_its_sonars_a_mode_is_refused_and_told_why() {
         setup.rig = setup.robot.rigs[rig];
         setup.scenario.duration_s = 3.0;
         let run = &seeds(&setup, 1..2)[0];
-        let told = |failure: &String| failure.contains("refused") && failure.contains("rig");
+        let mentions_rig =
+            |failure: &String| failure.contains("refused") && failure.contains("rig");
         assert!(
-            run.failures.iter().any(told),
+            run.failures.iter().any(mentions_rig),
             "{scenario} on {rig}: {:?}",
             run.failures
         );

@@ -1,4 +1,4 @@
-//! What every mode may rely on when it asks for wheel speeds.
+//! Guarantees of the drive layer to every mode that requests wheel speeds.
 
 use super::{seeds, setup};
 use rumbo_experiment::run::RunResult;
@@ -6,7 +6,7 @@ use rumbo_experiment::run::RunResult;
 /// Wheel angle of one edge [rad].
 const EDGE_RAD: f64 = std::f64::consts::TAU / 384.0;
 
-/// What the wheels did in the second after a command that turns both the ways `signs`.
+/// Motion of the wheels in the second after a command that turns both in the directions `signs`.
 struct Start {
     /// Time between the first edges of both wheels [s].
     apart_s: f64,

@@ -1,4 +1,5 @@
-//! Encoders that lose edges or pick up noise are named before the robot meets anything; sound ones are believed, whatever the disc.
+//! Encoders that lose edges or pick up noise are reported before the robot touches anything; sound ones are trusted
+//! with any disc.
 
 use super::{seeds, setup};
 use rumbo_control::Fault;
@@ -10,13 +11,16 @@ use rumbo_wire::{EventKind, FromRobot};
 
 /// When the robot stopped [s], and why.
 fn fault(run: &RunResult) -> Option<(f64, Fault)> {
-    run.trace.heard.iter().find_map(|heard| match heard.what {
-        FromRobot::Event(event) => match event.kind {
-            EventKind::Faulted(fault) => Some((heard.t_s, fault)),
+    run.trace
+        .heard
+        .iter()
+        .find_map(|message| match message.what {
+            FromRobot::Event(event) => match event.kind {
+                EventKind::Faulted(fault) => Some((message.t_s, fault)),
+                _ => None,
+            },
             _ => None,
-        },
-        _ => None,
-    })
+        })
 }
 
 #[test]

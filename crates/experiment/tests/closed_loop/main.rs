@@ -1,4 +1,4 @@
-//! The real control core on the real plant: what each mode promises, seed by seed.
+//! The real control core on the real plant: requirements of each mode, seed by seed.
 
 #![cfg(test)]
 
@@ -121,12 +121,12 @@ fn the_same_seed_gives_the_same_bits_on_one_thread_and_on_four() {
     assert_ne!(one[0].trace, one[1].trace, "another seed is another run");
 }
 
-/// A person at the link: sends messages, hears the answers.
+/// A person at the link: sends messages, receives the answers.
 #[derive(Clone)]
 struct Person {
     sim: Sim,
     number: u16,
-    /// The newest robot time heard.
+    /// The newest robot time received.
     seen: Option<RobotTime>,
     decoder: Decoder<160>,
 }
@@ -153,30 +153,30 @@ impl Person {
         self.sim.send(message.frame(0).bytes());
     }
 
-    /// Lives for a while, with a heartbeat every 100 ms; gives the messages heard.
+    /// Runs for a while, with a heartbeat every 100 ms; returns the messages received.
     fn wait_s(&mut self, seconds: f64) -> Vec<FromRobot> {
-        let mut heard = Vec::new();
+        let mut received = Vec::new();
         let end_us = self.sim.now_us() + (seconds * 1e6) as u64;
         while self.sim.now_us() < end_us {
             self.sim.send(ToRobot::Heartbeat.frame(0).bytes());
-            heard.extend(self.listen_until((self.sim.now_us() + 100_000).min(end_us)));
+            received.extend(self.receive_until((self.sim.now_us() + 100_000).min(end_us)));
         }
-        heard
+        received
     }
 
-    fn listen_until(&mut self, until_us: u64) -> Vec<FromRobot> {
+    fn receive_until(&mut self, until_us: u64) -> Vec<FromRobot> {
         self.sim.advance(until_us);
         let mut bytes = Vec::new();
         self.sim.receive(&mut bytes);
-        let heard: Vec<_> = bytes
+        let received: Vec<_> = bytes
             .into_iter()
             .filter_map(|byte| match self.decoder.push(byte) {
                 Some(Received::Frame(body)) => FromRobot::from_body(&body).ok(),
                 _ => None,
             })
             .collect();
-        self.seen = heard.iter().fold(self.seen, RobotTime::after);
-        heard
+        self.seen = received.iter().fold(self.seen, RobotTime::after);
+        received
     }
 
     fn driving(scenario: &str) -> Self {
@@ -204,7 +204,7 @@ impl Person {
                 self.sim.now_us() < start_us + within_us,
                 "not released within {within_us} us"
             );
-            self.listen_until(self.sim.now_us() + 1_000);
+            self.receive_until(self.sim.now_us() + 1_000);
         }
         self.sim.now_us() - start_us
     }
@@ -227,7 +227,7 @@ fn stop_releases_the_wheels_within_30_ms_and_the_links_time() {
         let mut stopped = person.clone();
         stopped.command(Command::Stop);
         worst_us = worst_us.max(stopped.released_after_us(link_us + 30_000));
-        person.listen_until(person.sim.now_us() + 1_000);
+        person.receive_until(person.sim.now_us() + 1_000);
     }
     assert!(worst_us <= link_us + 30_000, "{worst_us}");
     println!("STOP to zero PWM: {worst_us} us, of which the link's {link_us} us");
@@ -238,9 +238,9 @@ fn a_silent_link_stops_the_robot_within_half_a_second() {
     let mut person = Person::driving("mode5");
     let silent_us = person.released_after_us(500_000);
     assert!(silent_us > 200_000, "it drives on for a while: {silent_us}");
-    let heard = person.wait_s(0.6);
+    let received = person.wait_s(0.6);
     let lost = |message: &FromRobot| matches!(message, FromRobot::Status(status) if status.fault == Some(rumbo_control::Fault::LinkLost));
-    assert!(heard.iter().any(lost), "and says why");
+    assert!(received.iter().any(lost), "and reports why");
     person.command(Command::Arm);
     person.wait_s(0.3);
     assert_eq!(
@@ -262,12 +262,12 @@ fn a_sonar_cut_on_the_way_stops_the_robot_before_the_wall_and_says_so() {
     person.wait_s(0.8);
     assert!(person.sim.truth().forward_m_s > 0.4, "at full speed");
     person.sim.cut_sonar(rumbo_control::SonarId::Front);
-    let heard = person.wait_s(2.0);
+    let received = person.wait_s(2.0);
     let truth = person.sim.truth();
     assert_eq!((truth.wheel_rad_s, truth.contacts), ([0.0; 2], 0));
     let fault = rumbo_wire::EventKind::Faulted(rumbo_control::Fault::SonarFaulty);
     assert!(
-        heard
+        received
             .iter()
             .any(|message| matches!(message, FromRobot::Event(event) if event.kind == fault))
     );
@@ -288,9 +288,9 @@ fn a_reference_beyond_the_sonar_is_refused_and_the_robot_keeps_its_last_one() {
     }
     for wrong in [-0.2, f32::NAN, 5.0] {
         person.command(Command::Reference(wrong));
-        let heard = person.wait_s(0.3);
+        let received = person.wait_s(0.3);
         assert!(
-            heard
+            received
                 .iter()
                 .any(|message| matches!(message, FromRobot::Ack(ack) if ack.result.is_err()))
         );

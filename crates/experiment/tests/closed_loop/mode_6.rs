@@ -1,4 +1,4 @@
-//! Mode 6 and the calibration that it lives on.
+//! Mode 6 and the calibration that it depends on.
 
 use super::{Person, seeds, setup, twenty, worst};
 use rumbo_control::SonarId;
@@ -91,7 +91,7 @@ fn without_a_wall_beside_it_the_robot_does_not_move() {
 }
 
 #[test]
-fn a_robot_without_the_sonars_it_takes_is_told_so() {
+fn a_calibration_refuses_a_rig_without_its_sonars() {
     let rig = Overrides {
         rig: Some("side_pair_right".into()),
         ..Overrides::default()

@@ -67,14 +67,14 @@ fn waypoint(x_m: f32, y_m: f32, heading_rad: Option<f32>) -> Command {
     })
 }
 
-/// How far the robot is from a place [m].
+/// Distance of the robot from a position [m].
 fn off_m(person: &Person, x_m: f64, y_m: f64) -> f64 {
     let pose = person.sim.truth().pose;
     (pose.x_m - x_m).hypot(pose.y_m - y_m)
 }
 
-fn says_reached(heard: &[FromRobot]) -> bool {
-    heard.iter().any(
+fn reports_reached(received: &[FromRobot]) -> bool {
+    received.iter().any(
         |message| matches!(message, FromRobot::Event(event) if event.kind == EventKind::Reached),
     )
 }
@@ -82,11 +82,11 @@ fn says_reached(heard: &[FromRobot]) -> bool {
 #[test]
 fn an_empty_route_waits_and_a_waypoint_starts_it() {
     let mut person = waiting();
-    let heard = person.wait_s(1.0);
-    assert!(off_m(&person, 0.0, 0.0) < 1e-3 && !says_reached(&heard));
+    let received = person.wait_s(1.0);
+    assert!(off_m(&person, 0.0, 0.0) < 1e-3 && !reports_reached(&received));
     person.command(waypoint(0.5, 0.0, Some(1.0)));
-    let heard = person.wait_s(5.0);
-    assert!(says_reached(&heard));
+    let received = person.wait_s(5.0);
+    assert!(reports_reached(&received));
     assert!(off_m(&person, 0.5, 0.0) < 0.03);
     let heading_rad = person.sim.truth().pose.heading_rad;
     assert!((heading_rad - 1.0).abs() < 0.08, "{heading_rad}");
@@ -99,8 +99,8 @@ fn a_goal_on_the_way_takes_the_place_of_the_route() {
     person.wait_s(2.5);
     assert!(person.sim.truth().forward_m_s > 0.3, "on its way");
     person.command(Command::Goal { x_m: 0.0, y_m: 0.5 });
-    let heard = person.wait_s(8.0);
-    assert!(says_reached(&heard));
+    let received = person.wait_s(8.0);
+    assert!(reports_reached(&received));
     let off_m = off_m(&person, 0.0, 0.5);
     assert!(off_m < 0.08, "{off_m}");
 }
@@ -134,9 +134,9 @@ fn a_waypoint_out_of_range_is_refused_and_the_route_goes_on() {
     person.wait_s(1.0);
     for wrong in [waypoint(f32::NAN, 0.0, None), waypoint(0.0, 50.0, None)] {
         person.command(wrong);
-        let heard = person.wait_s(0.3);
+        let received = person.wait_s(0.3);
         assert!(
-            heard
+            received
                 .iter()
                 .any(|message| matches!(message, FromRobot::Ack(ack) if ack.result.is_err()))
         );

@@ -1,4 +1,4 @@
-//! What mode 8 promises.
+//! Requirements of mode 8.
 
 use crate::{Person, seeds, setup, twenty, worst};
 use rumbo_control::mode::ModeId;
@@ -36,7 +36,7 @@ fn the_goal_behind_the_boxes_is_reached_in_36_s_and_3_75_m_without_a_touch() {
     assert_eq!(worst(&runs, "contacts"), 0.0);
 }
 
-/// How far the robot went to each side of the straight way, left and right [m].
+/// How far the robot went to each side of the straight line, left and right [m].
 fn aside_m(run: &RunResult) -> (f64, f64) {
     let (mut left_m, mut right_m) = (0.0f64, 0.0f64);
     for sample in &run.trace.samples {
@@ -46,8 +46,8 @@ fn aside_m(run: &RunResult) -> (f64, f64) {
     (left_m, right_m)
 }
 
-/// From where the robot first looks at the box its ends look alike, a little nearer on this side or that by when the sonar pings as the
-/// servo sweeps.
+/// From where the robot first looks at the box its ends look alike; which one reads a little nearer depends on when the
+/// sonar pings as the servo sweeps.
 #[test]
 fn of_two_ways_that_look_alike_the_side_with_more_room_is_taken_else_the_left_whenever_the_sonar_pings()
  {
@@ -83,18 +83,21 @@ fn failing(scenario: &str, sonar: SonarId, at_s: f64, fault: SonarFault) -> Setu
     setup
 }
 
-/// The fault that the robot has named.
+/// The fault that the robot has reported.
 fn named(run: &RunResult) -> Option<Fault> {
-    run.trace.heard.iter().find_map(|heard| match heard.what {
-        FromRobot::Event(event) => match event.kind {
-            EventKind::Faulted(fault) => Some(fault),
+    run.trace
+        .heard
+        .iter()
+        .find_map(|message| match message.what {
+            FromRobot::Event(event) => match event.kind {
+                EventKind::Faulted(fault) => Some(fault),
+                _ => None,
+            },
             _ => None,
-        },
-        _ => None,
-    })
+        })
 }
 
-/// Way after a time [m].
+/// Path length after a time [m].
 fn way_after_m(run: &RunResult, at_s: f64) -> f64 {
     let after = run.trace.between(at_s, f64::INFINITY);
     after
@@ -119,7 +122,8 @@ fn a_sonar_cut_on_the_way_around_a_box_or_in_a_lane_stops_the_robot_and_says_so(
     }
 }
 
-/// A front one that is stuck at "nothing in reach" is known only by what it denies; an echo that stays the same is known at once.
+/// A front sonar stuck at "nothing in range" is detected only where something must answer; a constant echo is detected
+/// at once.
 #[test]
 fn a_stuck_sonar_on_the_way_around_a_box_never_drives_the_robot_hard_against_it() {
     for sonar in SonarId::ALL {
@@ -136,11 +140,11 @@ fn a_stuck_sonar_on_the_way_around_a_box_never_drives_the_robot_hard_against_it(
                 let what = format!("{sonar:?} stuck at {at_s} s, seed {}", run.seed);
                 let speed_m_s = run.metrics["contact_speed_m_s"];
                 assert!(speed_m_s < 0.1, "{what}: {speed_m_s} m/s");
-                let told = named(&run) == Some(Fault::SonarFaulty);
-                // One that is stuck at "nothing in reach" may stay unknown: one at a side does no harm, and the front one is put to the
-                // proof only where something must answer.
+                let named = named(&run) == Some(Fault::SonarFaulty);
+                // One stuck at "nothing in range" may stay undetected: at a side it does no harm, and the front one is
+                // tested only where something must answer.
                 let gentle = run.metrics["contacts"] == 0.0 || sonar == SonarId::Front;
-                assert!(told || gentle, "{what}: not named");
+                assert!(named || gentle, "{what}: not named");
             }
         }
     }
@@ -175,9 +179,9 @@ fn a_goal_beyond_the_floor_is_refused_and_the_robot_keeps_its_last_one() {
     }
     for (x_m, y_m) in [(f32::NAN, 0.0), (25.0, 0.0), (0.0, f32::INFINITY)] {
         person.command(Command::Goal { x_m, y_m });
-        let heard = person.wait_s(0.2);
+        let received = person.wait_s(0.2);
         assert!(
-            heard
+            received
                 .iter()
                 .any(|message| matches!(message, FromRobot::Ack(ack) if ack.result.is_err()))
         );
@@ -201,8 +205,8 @@ fn a_new_goal_on_the_way_replaces_the_old_one() {
     }
     person.wait_s(1.0);
     person.command(Command::Goal { x_m: 0.5, y_m: 0.7 });
-    let heard = person.wait_s(6.0);
-    assert!(heard.iter().any(
+    let received = person.wait_s(6.0);
+    assert!(received.iter().any(
         |message| matches!(message, FromRobot::Event(event) if event.kind == EventKind::Reached)
     ));
     let truth = person.sim.truth();

@@ -1,4 +1,4 @@
-//! The odometry's own idea of how far it is off, against how far it truly is.
+//! The odometry's estimate of its error, against the true error.
 
 use super::setup;
 use rumbo_control::Pose;
@@ -8,7 +8,7 @@ use rumbo_experiment::files::Setup;
 use rumbo_experiment::run::{prepare, run};
 use rumbo_wire::FromRobot;
 
-/// What the last telemetry frame of a run says, how uncertain that is by the same theory as in the lab, and what is true.
+/// The pose in the last telemetry frame of a run, its covariance by the same theory as in the lab, and the true pose.
 fn end_of(setup: &Setup, seed: u64) -> (Pose, [[f64; 3]; 3], [f64; 3]) {
     let mut params = Params::default();
     for (id, value) in &setup.scenario.parameters {
@@ -17,8 +17,8 @@ fn end_of(setup: &Setup, seed: u64) -> (Pose, [[f64; 3]; 3], [f64; 3]) {
     let errors = params.odometry_errors();
     let result = run(setup, seed).unwrap();
     let (mut pose, mut uncertainty) = (Pose::default(), Uncertainty::default());
-    for heard in &result.trace.heard {
-        let FromRobot::Telemetry(telemetry) = heard.what else {
+    for message in &result.trace.heard {
+        let FromRobot::Telemetry(telemetry) = message.what else {
             continue;
         };
         let piece = Piece::between(&pose, &telemetry.pose, errors.base_m);
@@ -40,9 +40,9 @@ fn end_of(setup: &Setup, seed: u64) -> (Pose, [[f64; 3]; 3], [f64; 3]) {
     (pose, covariance, truth)
 }
 
-/// Square of an error in units of its covariance: 3 in the mean for three numbers that are as uncertain as they claim.
+/// Square of an error in units of its covariance: 3 in the mean for three numbers with a correct covariance.
 fn normalised(error: [f64; 3], covariance: [[f64; 3]; 3]) -> f64 {
-    // Cholesky, row by row: L z = error, and |z|^2 is what is asked for.
+    // Cholesky, row by row: L z = error; the result is |z|^2.
     let (mut l, mut z, mut sum) = ([[0.0; 3]; 3], [0.0; 3], 0.0);
     for i in 0..3 {
         for j in 0..=i {
@@ -95,8 +95,8 @@ fn a_calibrated_robot_knows_how_far_its_pose_is_off() {
 
 #[test]
 fn an_uncalibrated_one_does_as_far_as_small_angles_go() {
-    // Its heading is off by up to 25 degrees, where a covariance no longer describes how x, y and heading hang together; and mode 6's x by
-    // the arc's second order. Each of the others alone is as uncertain as it claims.
+    // Its heading is off by up to 25 degrees, where a covariance no longer describes the relation of x, y and heading;
+    // and mode 6's x by the arc's second order. Each of the others alone has the variance that it claims.
     for (scenario, judged) in [("mode6", 1..3), ("mode7", 0..3)] {
         let (each, _) = mean_squares(scenario, false, 200);
         println!("{scenario}: {each:.2?}");

@@ -1,4 +1,5 @@
-//! A front sonar that lies stops the robot before it meets anything, or lets it touch gently; a sound one is believed.
+//! A front sonar with false readings stops the robot before it touches anything, or lets it touch gently; a sound one
+//! is trusted.
 
 use rumbo_experiment::campaign::faults::{Verdict, drive_all};
 use rumbo_experiment::files::Overrides;

@@ -1,4 +1,4 @@
-//! The state machines in the modes' descriptions are what really happens.
+//! The state machines in the modes' descriptions match what happens.
 
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides};

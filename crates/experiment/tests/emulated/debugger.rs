@@ -1,10 +1,10 @@
-//! A debugger that comes to a simulation in progress and leaves it.
+//! A debugger that attaches to a running simulation and detaches.
 
 use crate::rig::Person;
 use rumbo_sim::debugging::Debugging;
 use std::process::{Command, Stdio};
 
-/// Steps of 5 ms, as the lab lives.
+/// Steps of 5 ms, as in the lab.
 const STEP_US: u64 = 5_000;
 
 #[test]
@@ -12,7 +12,7 @@ fn while_a_debugger_holds_the_program_robot_and_world_stand() {
     let Some(mut person) = Person::at_the_bench("free", None) else {
         return;
     };
-    person.say("DUTY 200");
+    person.send("DUTY 200");
     person.wait_s(1.0);
     let mut untouched = person.sim.clone();
     let mut debugging = Debugging::at(0).unwrap();
@@ -54,11 +54,11 @@ fn while_a_debugger_holds_the_program_robot_and_world_stand() {
         said.contains("$1 = 1") || said.contains("$1 = true"),
         "{said}"
     );
-    let told = |what: &str| news.iter().filter(|line| line.contains(what)).count();
-    assert_eq!(told("a debugger has come"), 1, "{news:?}");
-    assert!(told("the program stands at 0x") >= 1, "{news:?}");
+    let count = |what: &str| news.iter().filter(|line| line.contains(what)).count();
+    assert_eq!(count("a debugger has come"), 1, "{news:?}");
+    assert!(count("the program stands at 0x") >= 1, "{news:?}");
     assert!(stood > 50, "{stood}");
-    // Nobody was there, as far as robot and program can tell.
+    // Neither robot nor program noticed the debugger.
     let end_us = person.sim.now_us();
     untouched.advance(end_us);
     person.sim.advance(end_us + 500_000);

@@ -30,12 +30,12 @@ fn a_chip_at_another_rate_than_the_module_is_not_understood() {
     let Some(mut person) = Person::at_the_bench("free", None) else {
         return;
     };
-    // The answer comes at 38400 baud, the module hears 9600.
+    // The answer is sent at 38400 baud, the module receives at 9600.
     let answer = person.ask("BAUD 384");
     assert!(!answer.contains("rate"), "{answer}");
     let console = person.sim.mega_mut().unwrap().take_console(2);
     assert_eq!(console, b"at another rate\r\n");
-    // And what the module sends it does not understand.
+    // And the program cannot decode what the module sends.
     assert!(!person.ask("COUNT").contains("COUNT"));
 }
 
@@ -44,13 +44,13 @@ fn every_edge_of_both_encoders_reaches_its_interrupt() {
     let Some(mut person) = Person::at_the_bench("free", None) else {
         return;
     };
-    person.say("DUTY 200");
+    person.send("DUTY 200");
     person.wait_s(1.0);
     // Many outputs split many steps of the plant: no edge may be lost or doubled by that.
-    person.say("SERVO 40");
-    person.say("SOFT 60");
+    person.send("SERVO 40");
+    person.send("SOFT 60");
     person.wait_s(1.0);
-    person.say("COAST");
+    person.send("COAST");
     person.wait_s(1.5);
     let wheels = person.sim.truth().wheel_rad;
     let counts = person.ask_numbers("COUNT");
@@ -72,7 +72,7 @@ fn duty_direction_and_release_reach_the_motors() {
     let Some(mut person) = Person::at_the_bench("free", None) else {
         return;
     };
-    person.say("DUTY 150");
+    person.send("DUTY 150");
     person.wait_s(0.5);
     assert!(person.speed_rad_s() > 5.0);
     assert_eq!(
@@ -82,10 +82,10 @@ fn duty_direction_and_release_reach_the_motors() {
         ],
         [150; 2]
     );
-    person.say("COAST");
+    person.send("COAST");
     person.wait_s(1.5);
     assert_eq!(person.speed_rad_s(), 0.0);
-    person.say("DUTY -150");
+    person.send("DUTY -150");
     person.wait_s(0.5);
     assert!(person.speed_rad_s() < -5.0);
     assert_eq!(person.sim.duty().left.counts(), -150);
@@ -97,7 +97,7 @@ fn a_level_on_the_enable_pin_is_full_and_a_hand_made_pwm_is_its_share_of_time() 
         return;
     };
     let mut speed = |line: &str| {
-        person.say(line);
+        person.send(line);
         person.wait_s(0.7);
         person.speed_rad_s()
     };
@@ -115,7 +115,7 @@ fn a_pwm_of_31_khz_drives_less_than_one_of_490_hz_at_the_same_share() {
         return;
     };
     let mut speed = |line: &str| {
-        person.say(line);
+        person.send(line);
         person.wait_s(0.7);
         person.speed_rad_s()
     };
@@ -130,10 +130,10 @@ fn both_inputs_alike_brake_and_a_released_bridge_coasts() {
     };
     let way = |line: &str| {
         let mut person = person.clone();
-        person.say("FULL");
+        person.send("FULL");
         person.wait_s(1.0);
         let from = person.sim.truth().wheel_rad[0];
-        person.say(line);
+        person.send(line);
         person.wait_s(2.0);
         person.sim.truth().wheel_rad[0] - from
     };
@@ -147,14 +147,14 @@ fn the_servo_turns_where_the_library_points_it_and_stays_when_the_pulses_end() {
         return;
     };
     for (degrees, expected) in [(90, 0.0), (135, 45.0), (30, -60.0)] {
-        person.say(&format!("SERVO {degrees}"));
+        person.send(&format!("SERVO {degrees}"));
         person.wait_s(0.8);
         let angle = person.sim.truth().servo_rad.to_degrees();
         // The library counts in steps of 4 us.
         assert!((angle - expected).abs() < 1.0, "{degrees}: {angle}");
     }
     let before = person.sim.truth().servo_rad;
-    person.say("LIMP");
+    person.send("LIMP");
     person.wait_s(0.5);
     assert_eq!(person.sim.truth().servo_rad, before);
 }
@@ -166,10 +166,10 @@ fn pulse_in_reads_the_distance_to_the_wall() {
     };
     let range_m = person.sim.truth().range_m[2].unwrap();
     let width_us = person.ask_numbers("PING")[0];
-    let heard_m = 0.5 * 343.4 * width_us * 1e-6;
+    let measured_m = 0.5 * 343.4 * width_us * 1e-6;
     assert!(
-        (heard_m / range_m - 1.0).abs() < 0.02,
-        "{heard_m} {range_m}"
+        (measured_m / range_m - 1.0).abs() < 0.02,
+        "{measured_m} {range_m}"
     );
 }
 
@@ -201,9 +201,9 @@ fn a_failed_sonar_fails_on_its_line() {
     let mut stuck = person.clone();
     let before = stuck.ask_numbers("PING")[0];
     fail(&mut stuck, SonarFault::Stuck);
-    stuck.say("DUTY 200");
+    stuck.send("DUTY 200");
     stuck.wait_s(0.5);
-    stuck.say("COAST");
+    stuck.send("COAST");
     stuck.wait_s(1.5);
     let after = stuck.ask_numbers("PING")[0];
     assert!((after - before).abs() < 30.0, "{after} {before}");
@@ -230,11 +230,11 @@ fn the_same_program_gives_the_same_bytes_and_a_snapshot_goes_on_with_them() {
             "COAST",
             "PING",
         ] {
-            person.say(line);
+            person.send(line);
             person.wait_s(0.2);
         }
         let truth = person.sim.truth();
-        (std::mem::take(&mut person.heard), truth)
+        (std::mem::take(&mut person.received), truth)
     };
     let Some(mut first) = Person::at_the_bench("mode1", None) else {
         return;

@@ -36,7 +36,7 @@ pub(crate) fn setup(scenario: &str, sketch: &str, world: Option<&str>) -> Option
 #[derive(Clone)]
 pub(crate) struct Person {
     pub(crate) sim: Sim,
-    pub(crate) heard: Vec<u8>,
+    pub(crate) received: Vec<u8>,
 }
 
 impl Person {
@@ -45,15 +45,15 @@ impl Person {
         let setup = setup(scenario, "bench", world)?;
         let mut person = Person {
             sim: setup.sim(1).unwrap(),
-            heard: Vec::new(),
+            received: Vec::new(),
         };
         // The Arduino core is ready after a few milliseconds.
         person.wait_s(0.05);
         Some(person)
     }
 
-    /// Sends a line; it is with the robot when this returns.
-    pub(crate) fn say(&mut self, line: &str) {
+    /// Sends a line; the robot has received it when this returns.
+    pub(crate) fn send(&mut self, line: &str) {
         self.sim.send(line.as_bytes());
         self.sim.send(b"\n");
         self.wait_s(0.03 + 0.001_1 * line.len() as f64);
@@ -63,15 +63,15 @@ impl Person {
     pub(crate) fn wait_s(&mut self, s: f64) {
         let until_us = self.sim.now_us() + (s * 1e3).ceil() as u64 * 1_000;
         self.sim.advance(until_us);
-        self.sim.receive(&mut self.heard);
+        self.sim.receive(&mut self.received);
     }
 
-    /// What the robot answers to a line.
+    /// The robot's answer to a line.
     pub(crate) fn ask(&mut self, line: &str) -> String {
-        self.heard.clear();
-        self.say(line);
+        self.received.clear();
+        self.send(line);
         self.wait_s(0.15);
-        String::from_utf8_lossy(&self.heard).trim().to_owned()
+        String::from_utf8_lossy(&self.received).trim().to_owned()
     }
 
     /// The numbers in the answer.

@@ -62,7 +62,7 @@ fn a_program_that_runs_into_erased_flash_ends_the_run_with_that_verdict() {
     }];
     let result = run(&setup, 1).unwrap();
     assert!(!result.pass);
-    // The verdict alone: that a run cut short misses its limits is no news.
+    // Only the verdict: a run cut short misses its limits anyway.
     let [verdict] = &result.failures[..] else {
         panic!("{:?}", result.failures);
     };
@@ -125,7 +125,7 @@ fn without_a_wiring_the_report_s_build_is_taken_unless_the_program_uses_another_
 }
 
 #[test]
-fn a_program_that_is_not_for_this_robot_is_told_what_it_never_did() {
+fn a_program_that_is_not_for_this_robot_gets_a_list_of_what_it_never_did() {
     let Some(mut setup) = setup("mode1", "blink", None) else {
         return;
     };
