@@ -1,4 +1,4 @@
-//! Gives the linker the arithmetic of avr-libc and libgcc.
+//! Links the arithmetic of avr-libc and libgcc.
 //!
 //! The functions that come with Rust's library for the AVR are written for any processor and take four to seven times
 //! as long. Both are there under the same names; those here are strong symbols, which win over the weak ones of Rust's.
@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What a library is asked for, and the members of it that are taken.
+/// The functions taken from a library, and its members that contain them.
 const LIBRARIES: [(&str, &[&str]); 3] = [
     (
         "libm.a",
@@ -62,7 +62,7 @@ const RENAMED: [&str; 2] = [
 fn main() -> Result<(), String> {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=src/float.S");
-    // `cargo xtask firmware` mends the debugging information with the relocations.
+    // `cargo xtask firmware` corrects the debugging information with the relocations.
     println!("cargo::rustc-link-arg=-Wl,--emit-relocs");
     let out = PathBuf::from(std::env::var_os("OUT_DIR").ok_or("cargo gives no OUT_DIR")?);
     for (library, members) in LIBRARIES {

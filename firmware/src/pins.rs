@@ -1,4 +1,4 @@
-//! The pin table: the final wiring, as `[wiring.final]` of `robots/memoria.toml` has it.
+//! The pin table: the final wiring, equal to `[wiring.final]` of `robots/memoria.toml`.
 //!
 //! Pure data, so that `cargo xtask tidy` can read it on the PC and compare it with the robot file. Which port and bit
 //! an Arduino pin is: Arduino Mega 2560 schematic.

@@ -1,4 +1,4 @@
-//! The chip with our image, stopped at each tick where the image shows its inputs and its outputs.
+//! The chip with our image, stopped at each tick where the image exposes its inputs and its outputs.
 
 use crate::state::{State, Variable};
 use rumbo_control::{Echo, Inputs, Outputs};
@@ -10,7 +10,7 @@ use rumbo_emulator::image::Image;
 use rumbo_robot::latch::Stamp;
 use std::path::{Path, PathBuf};
 
-/// Where in one of the image's rings the count of bytes put in lies: behind its 64 bytes.
+/// Offset of the write count in one of the image's rings: behind its 64 bytes.
 const RING: usize = 64;
 
 /// Bytes of `RUMBO_INPUTS`.
@@ -39,7 +39,7 @@ pub(crate) fn image() -> Option<Image> {
     Some(Image::parse(&bytes).unwrap())
 }
 
-/// Its file, with all that does not go to the chip.
+/// Its file, debugging information included.
 pub(crate) fn elf() -> Option<Vec<u8>> {
     image_path().map(|path| std::fs::read(path).unwrap())
 }
@@ -155,7 +155,7 @@ impl Board {
         (counts.count(), count)
     }
 
-    /// The image's hash, as it tells it.
+    /// The image's hash, as it reports it.
     pub(crate) fn hash(&self) -> u32 {
         self.hash
     }
@@ -183,7 +183,7 @@ impl Board {
         }
     }
 
-    /// One tick with these inputs: what the image leaves, and the cycles it took.
+    /// One tick with these inputs: the image's outputs, and the cycles it took.
     pub(crate) fn tick(&mut self, inputs: &Inputs) -> ([u8; 9], u64) {
         let record = inputs_record(inputs);
         self.chip.cpu_mut().sram_mut()[self.inputs..self.inputs + record.len()]
@@ -236,7 +236,7 @@ impl Board {
     }
 }
 
-/// Inputs as the image has them in `RUMBO_INPUTS`.
+/// Inputs in the layout of `RUMBO_INPUTS`.
 pub(crate) fn inputs_record(inputs: &Inputs) -> Vec<u8> {
     let mut record = inputs.now.0.to_le_bytes().to_vec();
     for edges in [inputs.encoders.left, inputs.encoders.right] {
@@ -255,7 +255,7 @@ pub(crate) fn inputs_record(inputs: &Inputs) -> Vec<u8> {
     record
 }
 
-/// Outputs as the image has them in `RUMBO_OUTPUTS`.
+/// Outputs in the layout of `RUMBO_OUTPUTS`.
 pub(crate) fn outputs_record(outputs: &Outputs) -> [u8; 9] {
     let [a, b] = outputs.drive.left.counts().to_le_bytes();
     let [c, d] = outputs.drive.right.counts().to_le_bytes();

@@ -1,4 +1,4 @@
-//! A debugger attached to our own image, on its way to a wall: it stops at a line of the source and knows arguments,
+//! A debugger attached to our own image, on its way to a wall: it stops at a line of the source and shows arguments,
 //! variables and callers by name.
 
 use crate::board::image_path;
@@ -11,8 +11,8 @@ const SOURCE: &str = include_str!("../../crates/control/src/pid.rs");
 const LINE: &str = "let output = clamp(free";
 const STEP_US: u64 = 5_000;
 
-/// Attaches a debugger with these commands to a robot that drives; gives what it prints, and the true wheel speeds
-/// before [rad/s]. `None` where image or debugger is missing.
+/// Attaches a debugger with these commands to a driving robot; returns its output, and the true wheel speeds before
+/// [rad/s]. `None` where image or debugger is missing.
 fn debug(commands: &[&str]) -> Option<(String, [f64; 2])> {
     let mut drive = Drive::under_way(&setup("mode1", |_| {})?, 1.0);
     let truth = drive.sim.truth().wheel_rad_s;

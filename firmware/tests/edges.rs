@@ -1,11 +1,12 @@
-//! Encoders as the image sees them: at full speed two edges of a wheel come within one look ahead of the plant, and each is there once.
+//! Encoder edges in the image: at full speed two edges of a wheel come within one look-ahead of the plant, and each is
+//! counted once.
 
 use crate::faults::drive::setup;
 use rumbo_emulator::cpu::SRAM_START;
 use rumbo_experiment::files::FileError;
 use rumbo_experiment::run::run_by;
 
-/// What the image has latched of an encoder, in `RUMBO_INPUTS`.
+/// The image's latched encoder, in `RUMBO_INPUTS`.
 #[derive(Clone, Copy, Default)]
 struct Latched {
     count: u16,
@@ -23,7 +24,7 @@ impl Latched {
         }
     }
 
-    /// By how many edges these are not where the last turn of the motor leads to expect; `None` if the wheel is slow.
+    /// Deviation of these edges from the prediction by the motor's last turn [edges]; `None` if the wheel is slow.
     fn off_edges(self, before: Self) -> Option<f64> {
         let edges = f64::from(self.count.wrapping_sub(before.count));
         let span_us = f64::from(self.last_us.wrapping_sub(before.last_us));

@@ -1,13 +1,13 @@
-//! The experiments on the shipped image: what the native robot passes, the chip passes.
+//! The experiments on the shipped image: the chip passes wherever the native robot passes.
 //!
-//! One seed of each here; `cargo xtask campaign --only medians` takes twenty and compares what was measured.
+//! One seed of each here; `cargo xtask campaign --only medians` runs twenty and compares the metrics.
 
 use crate::board::image_path;
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup};
 use rumbo_experiment::run::{RunResult, run_all};
 
-/// The robot of each run. Which way round boxes it goes may hang on a few cycles, and now and then the longer one costs a limit
-/// (docs/firmware.md says how often): of those one whose way is clear.
+/// The robot of each run. Which way it takes around boxes may depend on a few cycles, and now and then the longer one
+/// misses a limit (docs/firmware.md says how often): for those scenarios a seed with an unambiguous way.
 fn seed(scenario: &str) -> u64 {
     match scenario {
         "mode8-obstacles" | "mode8-random" => 2,
@@ -32,7 +32,7 @@ const OF_EACH_MODE: [&str; 13] = [
     "mode8-lane",
 ];
 
-/// Runs each once, natively, then those that passed on the image; gives the names of these, with their rigs.
+/// Runs each once natively, then those that passed on the image; returns their names, with their rigs.
 fn what_passes_natively_passes(setups: Vec<Setup>) -> Vec<(String, String)> {
     let Some(image) = image_path() else {
         return Vec::new();

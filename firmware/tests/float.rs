@@ -1,5 +1,5 @@
-//! The image's arithmetic of floats, function by function, against the PC's: the sums and comparisons of `firmware/src/float.S`, and what it
-//! takes from avr-libc.
+//! The image's float arithmetic, function by function, against the PC's: the sums and comparisons of
+//! `firmware/src/float.S`, and the functions from avr-libc.
 
 use crate::board::image;
 use crate::world::Random;
@@ -9,7 +9,7 @@ use rumbo_emulator::cpu::{RAMEND, SRAM_START, Stopped};
 /// Rows of each kind and function.
 const ROWS: u32 = 3_000;
 
-/// Two floats that are hard in some way.
+/// Two floats of a difficult kind.
 fn row(kind: u32, random: &mut Random) -> [f32; 2] {
     let mut any = || (random.below(0x1_0000) << 16) | random.below(0x1_0000);
     let (a, b) = (any(), any());
@@ -34,7 +34,7 @@ fn row(kind: u32, random: &mut Random) -> [f32; 2] {
     [f32::from_bits(a), f32::from_bits(b)]
 }
 
-/// Calls a function of two floats as avr-gcc does, on a chip that runs nothing else; gives r22 to r25.
+/// Calls a function of two floats as avr-gcc does, on a chip that runs nothing else; returns r22 to r25.
 fn call(chip: &mut Chip, function: u32, a: f32, b: f32) -> [u8; 4] {
     let cpu = chip.cpu_mut();
     // It returns to address 0.

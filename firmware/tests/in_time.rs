@@ -1,6 +1,6 @@
-//! How long the ticks of real runs take: from the inputs to the outputs, which are due 3 ms after the tick, and to the end of the tick,
-//! which must come before the next one. The random inputs of `same_bits` do not reach what takes longest: a wall that is being
-//! followed, a memory full of echoes.
+//! Duration of the ticks of real runs: from the inputs to the outputs, which are due 3 ms after the tick, and to the
+//! end of the tick, which must come before the next one. The random inputs of `same_bits` do not reach the worst cases:
+//! a wall being followed, a map full of echoes.
 
 use crate::faults::drive::setup;
 use rumbo_experiment::files::FileError;
@@ -17,8 +17,8 @@ const MOST_TO_OUTPUTS: u64 = 45_000;
 /// Most cycles from the inputs to the end, of a period's 160,000.
 const MOST_TO_END: u64 = 150_000;
 
-/// Runs a scenario on the image and gives the most cycles of a tick from its inputs to its outputs and to its end; `None` where the image
-/// has not been built.
+/// Runs a scenario on the image and returns the most cycles of a tick from its inputs to its outputs and to its end;
+/// `None` where the image has not been built.
 fn longest(scenario: &str, seed: u64) -> Option<(u64, u64)> {
     let setup = setup(scenario, |_| {})?;
     let mut marks = Vec::new();
@@ -51,7 +51,7 @@ fn longest(scenario: &str, seed: u64) -> Option<(u64, u64)> {
     Some((to_outputs, to_end))
 }
 
-/// Runs them and holds them to what a tick may take.
+/// Runs them and checks the limits of a tick.
 fn are_in_time(runs: impl IntoIterator<Item = (&'static str, u64)>) {
     for (scenario, seed) in runs {
         let Some((to_outputs, to_end)) = longest(scenario, seed) else {

@@ -1,4 +1,4 @@
-//! How long the interrupt handlers take, and how long they let others wait, while everything happens at once.
+//! Duration of the interrupt handlers, and the delay that they cause to others, while everything happens at once.
 
 use crate::board::image;
 use crate::faults::drive::{self, setup};
@@ -121,23 +121,23 @@ fn it_introduces_itself_at_once_and_tells_25_times_a_second() {
     let mut chip = Chip::new(&image);
     chip.observers_mut().measure_stack();
     chip.run_until(2_000 * CYCLES_PER_MS);
-    let (mut decoder, mut told) = (Decoder::<48>::default(), Vec::new());
+    let (mut decoder, mut messages) = (Decoder::<48>::default(), Vec::new());
     for output in chip.take_outputs() {
         let Event::Byte { usart, byte, baud } = output.event else {
             continue;
         };
         assert_eq!((usart, baud.round()), (2, 9_615.0));
         if let Some(Received::Frame(body)) = decoder.push(byte as u8) {
-            told.push(FromRobot::from_body(&body).unwrap());
+            messages.push(FromRobot::from_body(&body).unwrap());
         }
     }
     assert!(
-        matches!(told.first(), Some(FromRobot::Hello(hello)) if hello.image != 0),
-        "{told:?}"
+        matches!(messages.first(), Some(FromRobot::Hello(hello)) if hello.image != 0),
+        "{messages:?}"
     );
-    let telemetry = told
+    let telemetry = messages
         .iter()
-        .filter(|told| matches!(told, FromRobot::Telemetry(_)))
+        .filter(|message| matches!(message, FromRobot::Telemetry(_)))
         .count();
     assert!((48..=50).contains(&telemetry), "{telemetry}");
     assert_eq!(decoder.crc_errors(), 0);
@@ -159,7 +159,7 @@ fn the_stack_keeps_its_margin_around_the_boxes() {
     drive.wait_s(0.3);
     drive.command(Command::Mode(setup.scenario.mode)).unwrap();
     drive.follow(&setup, 12.0);
-    // It may be looking around just then.
+    // It may be sweeping just then.
     let until_s = drive.now_s() + 3.0;
     while drive.speed_rad_s() <= 1.0 && drive.now_s() < until_s {
         drive.wait_s(0.1);

@@ -1,4 +1,5 @@
-//! The image and the native robot, given the same, give the same: every output, every byte on the link, and every field of their state.
+//! The image and the native robot agree on equal inputs: every output, every byte on the link, and every field of their
+//! state.
 
 use crate::board::{Board, elf, image, outputs_record};
 use crate::tape::Tape;
@@ -44,12 +45,12 @@ const NOISE: TimedWireFault = TimedWireFault {
     wire: Wire::Echo(SonarId::Left),
     fault: WireFault::Noisy(200.0),
 };
-/// Mode 4 has the states of mode 3, which measures first; mode 8 leaves *initialise* in the tick in which it comes to it.
+/// Mode 4 has the states of mode 3, which measures first; mode 8 leaves *initialise* in the tick in which it enters it.
 const NEVER_SEEN: [(ModeId, usize); 2] = [(ModeId::WallFollow, 0), (ModeId::Mission, 2)];
 /// Ticks of a run in text.
 const TICKS_IN_TEXT: u32 = 12_000;
 
-/// What both robots are given.
+/// The inputs of both robots.
 enum Given {
     Random(Box<World>, u32),
     Recorded(Tape),
@@ -93,7 +94,7 @@ impl Given {
     }
 }
 
-/// What the native robot was given in each of [`RECORDED`], and with [`NOISE`].
+/// The native robot's inputs in each of [`RECORDED`], and with [`NOISE`].
 fn recorded() -> impl Iterator<Item = (String, Given)> {
     let tapes = RECORDED
         .into_iter()
@@ -106,13 +107,13 @@ fn recorded() -> impl Iterator<Item = (String, Given)> {
         let tape = Tape::of(scenario, seed, fault.as_slice(), &[]);
         (format!("{scenario} {fault:?}"), Given::Recorded(tape))
     });
-    // Impatient: it calls its goal unreachable on the way.
+    // Impatient: it gives up its goal as unreachable on the way.
     let impatient = [(ParamId::MissionGiveUp, 5.0)];
     let tape = Tape::of("mode8-obstacles", 1, &[], &impatient);
     tapes.chain([("impatient".to_owned(), Given::Recorded(tape))])
 }
 
-/// The states of modes in which the native robot is, given this.
+/// The modes' states that the native robot visits with these inputs.
 fn visited(mut given: Given) -> BTreeSet<(u8, u8)> {
     let mut robot = Robot::new(Config {
         image: 0,
@@ -145,7 +146,7 @@ fn compare(what: &str, mut world: Given) {
         reset: ResetCause::PowerOn,
         start: 0,
     });
-    let (mut outputs, mut told) = (Outputs::default(), Vec::new());
+    let (mut outputs, mut transmitted) = (Outputs::default(), Vec::new());
     let [mut native, mut chip] = [String::new(), String::new()];
     let (mut worst, mut driven) = ([0; 9], 0);
     let (mut ticks, mut late) = ([0; 9], [0; 9]);
@@ -168,11 +169,11 @@ fn compare(what: &str, mut world: Given) {
             robot.receive(byte);
         }
         let handed_over = usize::from(board.handed_over());
-        told.extend(std::iter::from_fn(|| robot.transmit()).take(handed_over));
+        transmitted.extend(std::iter::from_fn(|| robot.transmit()).take(handed_over));
         let sent = board.sent();
         assert_eq!(
             sent,
-            &told[..sent.len().min(told.len())],
+            &transmitted[..sent.len().min(transmitted.len())],
             "{what}, tick {tick}"
         );
         native.clear();
@@ -195,7 +196,7 @@ fn compare(what: &str, mut world: Given) {
         "{in_state} of the robot's {of} bytes are compared, as {} characters",
         chip.len()
     );
-    // The rest belongs to variants that it is not in, such as bytes of a message that is not there.
+    // The rest belongs to inactive variants, such as bytes of an absent message.
     assert!(in_state > of / 2, "{in_state} of {of}");
     for (mode, worst) in worst.into_iter().enumerate() {
         assert!(worst <= MOST, "mode {mode}: {worst} cycles");
@@ -203,13 +204,13 @@ fn compare(what: &str, mut world: Given) {
     let is_random = matches!(world, Given::Random(..));
     // At least two bytes a tick.
     assert!(
-        (driven > count / 8 || !is_random) && told.len() > 2 * count as usize,
+        (driven > count / 8 || !is_random) && transmitted.len() > 2 * count as usize,
         "{driven} {}",
-        told.len()
+        transmitted.len()
     );
 }
 
-/// What two texts have around the place where they begin to differ.
+/// Two texts around the first difference.
 pub(crate) fn first_difference(native: &str, chip: &str) -> String {
     let alike = native.bytes().zip(chip.bytes());
     let at = alike.take_while(|(one, other)| one == other).count();

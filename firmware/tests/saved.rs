@@ -1,4 +1,4 @@
-//! Parameters saved in the chip's EEPROM: whatever cuts the power, and whatever decays, the robot starts with good ones.
+//! Parameters saved in the chip's EEPROM: the robot starts with valid ones after any loss of power or corruption.
 
 use crate::board::image;
 use crate::talk::Talk;
@@ -11,11 +11,11 @@ use rumbo_wire::{
     Command, Decoder, EventKind, FromRobot, Message, Recalled, Received, RobotTime, ToRobot,
 };
 
-/// A save takes at most so long: a byte a tick [ms].
+/// Longest duration of a save: a byte a tick [ms].
 const SAVE_MS: u64 = 4_500;
 
 fn recalled(talk: &Talk) -> Option<Recalled> {
-    talk.heard.iter().find_map(|heard| match heard {
+    talk.received.iter().find_map(|message| match message {
         FromRobot::Event(event) => match event.kind {
             EventKind::Recalled(recalled) => Some(recalled),
             _ => None,
@@ -25,9 +25,9 @@ fn recalled(talk: &Talk) -> Option<Recalled> {
 }
 
 fn is_saved(talk: &Talk) -> bool {
-    talk.heard
+    talk.received
         .iter()
-        .any(|heard| matches!(heard, FromRobot::Event(event) if event.kind == EventKind::Saved))
+        .any(|message| matches!(message, FromRobot::Event(event) if event.kind == EventKind::Saved))
 }
 
 /// A chip that has saved these bases one after the other.
@@ -36,7 +36,7 @@ fn saved(image: &Image, bases_m: &[f32]) -> Talk {
     talk.run_ms(100);
     for base_m in bases_m {
         talk.set(ParamId::Base, *base_m);
-        talk.heard.clear();
+        talk.received.clear();
         talk.command(Command::SaveParams);
         talk.run_ms(SAVE_MS);
         assert!(is_saved(&talk));
@@ -46,7 +46,7 @@ fn saved(image: &Image, bases_m: &[f32]) -> Talk {
 
 /// Every state of the EEPROM in the course of a save.
 fn cuts(talk: &mut Talk) -> Vec<Vec<u8>> {
-    talk.heard.clear();
+    talk.received.clear();
     let mut cuts = vec![talk.eeprom()];
     talk.command(Command::SaveParams);
     for _ in 0..SAVE_MS {
@@ -60,7 +60,7 @@ fn cuts(talk: &mut Talk) -> Vec<Vec<u8>> {
     cuts
 }
 
-/// What a chip starts with: the base, and what it says of where that came from.
+/// The base that a chip starts with, and the source that it reports.
 fn started(image: &Image, eeprom: &[u8]) -> (f32, Option<Recalled>) {
     let mut talk = Talk::new(image, eeprom);
     talk.run_ms(60);
@@ -96,7 +96,7 @@ fn a_power_cut_after_any_byte_of_a_save_loses_nothing() {
 }
 
 #[test]
-fn damaged_copies_are_not_used_and_that_is_told() {
+fn damaged_copies_are_rejected_and_reported() {
     let Some(image) = image() else {
         return;
     };
@@ -116,8 +116,8 @@ fn damaged_copies_are_not_used_and_that_is_told() {
     assert_eq!(started(&image, &[]), (default, None));
 }
 
-/// Sends a command to a simulated robot, lets it live for so long [us], and gives what it said.
-fn tell(sim: &mut Sim, number: u16, command: Command, us: u64) -> Vec<FromRobot> {
+/// Sends a command to a simulated robot, runs it for this time [us], and returns its messages.
+fn exchange(sim: &mut Sim, number: u16, command: Command, us: u64) -> Vec<FromRobot> {
     let start = sim.memory()[usize::from(START_AT)];
     let message = ToRobot::Command {
         session: 7,
@@ -130,14 +130,14 @@ fn tell(sim: &mut Sim, number: u16, command: Command, us: u64) -> Vec<FromRobot>
     };
     sim.send(message.frame(0).bytes());
     sim.advance(sim.now_us() + us);
-    let mut said = Vec::new();
-    sim.receive(&mut said);
+    let mut bytes = Vec::new();
+    sim.receive(&mut bytes);
     let mut decoder = Decoder::<128>::default();
-    let heard = said.iter().filter_map(|byte| match decoder.push(*byte) {
+    let messages = bytes.iter().filter_map(|byte| match decoder.push(*byte) {
         Some(Received::Frame(body)) => FromRobot::from_body(&body).ok(),
         _ => None,
     });
-    heard.collect()
+    messages.collect()
 }
 
 #[test]
@@ -150,8 +150,8 @@ fn the_simulated_robot_keeps_its_parameters_in_the_same_bytes() {
     let mut sim = setup.sim(1).unwrap();
     let id = ParamId::Base as u8;
     let set = Command::SetParam { id, value: 0.12 };
-    tell(&mut sim, 1, set, 100_000);
-    tell(&mut sim, 2, Command::SaveParams, SAVE_MS * 1_000);
+    exchange(&mut sim, 1, set, 100_000);
+    exchange(&mut sim, 2, Command::SaveParams, SAVE_MS * 1_000);
     let memory = sim.memory();
     assert_eq!(memory, saved(&image, &[0.12]).eeprom()[..memory.len()]);
     let mut again = Sim::new(Config {
@@ -159,8 +159,8 @@ fn the_simulated_robot_keeps_its_parameters_in_the_same_bytes() {
         ..setup.config(1).unwrap()
     })
     .unwrap();
-    let heard = tell(&mut again, 1, Command::GetParam { id }, 200_000);
-    let held = heard.into_iter().find_map(|heard| match heard {
+    let received = exchange(&mut again, 1, Command::GetParam { id }, 200_000);
+    let held = received.into_iter().find_map(|message| match message {
         FromRobot::Ack(ack) => Some(ack.result),
         _ => None,
     });

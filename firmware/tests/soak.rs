@@ -1,5 +1,6 @@
-//! A long drive with everything at once: telemetry at its full rate, as many bytes to the robot as the line carries, commands in between.
-//! `RUMBO_SOAK_MINUTES` makes it longer; `cargo xtask campaign --only image` takes 75, past the wrap of the microseconds at 71.6.
+//! A long drive with everything at once: telemetry at its full rate, as many bytes to the robot as the line carries,
+//! commands in between. `RUMBO_SOAK_MINUTES` makes it longer; `cargo xtask campaign --only image` runs 75, past the
+//! wrap of the microseconds at 71.6.
 
 use crate::board::image;
 use crate::faults::drive::{Drive, setup};
@@ -7,12 +8,12 @@ use rumbo_control::params::ParamId;
 use rumbo_emulator::observe::profile::Profile;
 use rumbo_wire::{Command, FromRobot, ToRobot};
 
-/// Without being asked for more [s].
+/// Default duration [s].
 const SHORT_S: f64 = 10.0;
 /// A heartbeat is 5 bytes; 9 of them in 10 steps of 5 ms are 900 of the 960 bytes/s.
 const STEP_US: u64 = 5_000;
 const PAUSE_STEPS: u64 = 10;
-/// A command every so many steps: its answer takes 13 bytes of the 78 bytes/s that telemetry, status and headings leave.
+/// Steps between two commands: an answer takes 13 bytes of the 78 bytes/s that telemetry, status and headings leave.
 const COMMAND_STEPS: u64 = 80;
 /// Bytes of a telemetry frame.
 const FRAME_BYTES: f64 = 30.0;
@@ -38,22 +39,22 @@ fn under_full_telemetry_and_a_flood_of_bytes_no_frame_is_lost_and_the_interrupts
     observers.profile(Profile::new(&image));
     observers.measure_stack();
     drive.heartbeats = false;
-    drive.heard.clear();
+    drive.received.clear();
     let (from_s, lost) = (drive.now_s(), drive.frames_lost());
     let until_s = from_s + duration_s();
     let (mut telemetry, mut steps, mut answers) = (0u64, 0u64, 0u64);
     while drive.now_s() < until_s {
         steps += 1;
         if !steps.is_multiple_of(PAUSE_STEPS) {
-            drive.say(&ToRobot::Heartbeat);
+            drive.send(&ToRobot::Heartbeat);
         } else if steps.is_multiple_of(COMMAND_STEPS) {
             let id = ParamId::Base as u8;
             let frame = drive.frame_of(Command::GetParam { id });
             drive.sim.send(&frame);
         }
         drive.wait_s(STEP_US as f64 * 1e-6);
-        for (_, heard) in std::mem::take(&mut drive.heard) {
-            match heard {
+        for (_, message) in std::mem::take(&mut drive.received) {
+            match message {
                 FromRobot::Telemetry(_) => telemetry += 1,
                 FromRobot::Ack(_) => answers += 1,
                 FromRobot::Status(status) => {

@@ -1,4 +1,4 @@
-//! The chip with our image and nothing at its pins but a station at the other end of its link.
+//! The chip with our image and nothing connected but a station at the other end of its link.
 
 use rumbo_control::params::ParamId;
 use rumbo_emulator::chip::Chip;
@@ -11,14 +11,14 @@ use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, RobotTime, ToRo
 pub(crate) const MS: u64 = 16_000;
 const LINK: u8 = 2;
 
-/// Who talks to the chip.
+/// A station connected to the chip.
 #[derive(Clone)]
 pub(crate) struct Talk {
     pub(crate) chip: Chip,
-    pub(crate) heard: Vec<FromRobot>,
+    pub(crate) received: Vec<FromRobot>,
     decoder: Decoder<128>,
     number: u16,
-    /// The newest robot time heard.
+    /// The newest robot time received.
     seen: Option<RobotTime>,
 }
 
@@ -26,19 +26,19 @@ impl Talk {
     /// A chip just switched on, whose EEPROM holds this.
     pub(crate) fn new(image: &Image, eeprom: &[u8]) -> Talk {
         let mut chip = Chip::new(image);
-        // The module's line rests high.
+        // The module's line idles high.
         chip.input(0, Input::Pin(Pin::new('H', 0).unwrap(), Some(true)));
         chip.devices_mut().eeprom_mut()[..eeprom.len()].copy_from_slice(eeprom);
         Talk {
             chip,
-            heard: Vec::new(),
+            received: Vec::new(),
             decoder: Decoder::default(),
             number: 0,
             seen: None,
         }
     }
 
-    /// Lets it live for so long.
+    /// Runs it for this time.
     pub(crate) fn run_ms(&mut self, ms: u64) {
         self.chip.run_until(self.chip.cycle() + ms * MS);
         for output in self.chip.take_outputs() {
@@ -51,7 +51,7 @@ impl Talk {
             if let Some(Received::Frame(body)) = self.decoder.push(byte as u8) {
                 let message = FromRobot::from_body(&body).unwrap();
                 self.seen = RobotTime::after(self.seen, &message);
-                self.heard.push(message);
+                self.received.push(message);
             }
         }
     }
@@ -69,7 +69,7 @@ impl Talk {
         self.send_bytes(message.frame(0).bytes());
     }
 
-    /// Sends a command and gives its answer.
+    /// Sends a command and returns its answer.
     pub(crate) fn command(&mut self, command: Command) -> f32 {
         self.number += 1;
         let number = self.number;
@@ -81,7 +81,7 @@ impl Talk {
         });
         for _ in 0..40 {
             self.run_ms(10);
-            let answer = self.heard.iter().find_map(|heard| match heard {
+            let answer = self.received.iter().find_map(|message| match message {
                 FromRobot::Ack(ack) if ack.number == number => Some(ack.result),
                 _ => None,
             });

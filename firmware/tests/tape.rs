@@ -1,4 +1,4 @@
-//! What the native robot was given in a scenario, to be given again to another one.
+//! The native robot's inputs in a scenario, for replay on another one.
 
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
@@ -9,13 +9,13 @@ use rumbo_sim::Latched;
 use rumbo_sim::wire_fault::TimedWireFault;
 use rumbo_wire::{Command, Message, RobotTime, ToRobot};
 
-/// Bytes that fit into a tick beside what else may come.
+/// Bytes that fit into a tick beside other traffic.
 const BYTES_PER_TICK: usize = 40;
 
 /// Ticks after which sonars that ping in turn, three, two or one of them, are back at the first.
 const ROUND: u32 = 36;
 
-/// A recorded run, with its parameters told over the link before it begins.
+/// A recorded run, with its parameters sent over the link before it begins.
 pub(crate) struct Tape {
     pub(crate) mode: ModeId,
     parameters: Vec<u8>,
@@ -63,7 +63,7 @@ impl Tape {
         (self.parameters.len().div_ceil(BYTES_PER_TICK) as u32 + 1).next_multiple_of(ROUND)
     }
 
-    /// How many ticks it has.
+    /// Its number of ticks.
     pub(crate) fn ticks(&self) -> u32 {
         self.before() + self.run.len() as u32
     }
@@ -73,7 +73,7 @@ impl Tape {
         self.run.get(index as usize)
     }
 
-    /// What latches at a tick, the first one being 1.
+    /// The latched inputs of a tick, the first one being 1.
     pub(crate) fn inputs(&self, tick: u32) -> Inputs {
         let before_us = (self.before() + 1) * TICK_US;
         let later = |at: Micros| at.after(before_us);
@@ -117,7 +117,7 @@ fn set(number: usize, id: ParamId, value: f32) -> Vec<u8> {
             id: id as u8,
             value,
         },
-        // They are through long before they are too old.
+        // They arrive long before they are too old.
         seen: RobotTime::default(),
     };
     command.frame(number as u8).bytes().to_vec()

@@ -1,4 +1,4 @@
-//! Something for the robot to sense, and someone who talks to it: random, and near enough to sense that modes go through their states.
+//! Random surroundings and a random operator for the robot, plausible enough that modes go through their states.
 
 use rumbo_control::mode::waypoints::Waypoint;
 use rumbo_control::mode::{Level, ModeId, Movement};
@@ -85,7 +85,7 @@ pub(crate) struct World {
     seq: u8,
     talk: VecDeque<u8>,
     tick: u32,
-    /// It is talked to in lines of text.
+    /// The link carries lines of text.
     in_text: bool,
 }
 
@@ -107,7 +107,7 @@ impl World {
         }
     }
 
-    /// The same, talked to in the original's lines of text.
+    /// The same, with the original text protocol.
     pub(crate) fn in_text(seed: u64) -> Self {
         Self {
             in_text: true,
@@ -115,12 +115,12 @@ impl World {
         }
     }
 
-    /// The mode that was asked for last.
+    /// The last mode requested.
     pub(crate) fn mode(&self) -> ModeId {
         self.mode
     }
 
-    /// What the robot senses at a tick, after its last outputs.
+    /// The sensors at a tick, after the last outputs.
     pub(crate) fn inputs(&mut self, tick: u32, last: &Outputs) -> Inputs {
         let now = self.start.after(tick * TICK_US);
         self.wheels
@@ -166,7 +166,7 @@ impl World {
                 7 => self.begin(),
                 300 | 600 | 900 => self.set_going(),
                 later if later > 300 && later.is_multiple_of(97) => self.arm(),
-                other if other % 20 == 10 && !self.in_text => self.say(&ToRobot::Heartbeat),
+                other if other % 20 == 10 && !self.in_text => self.send(&ToRobot::Heartbeat),
                 _ => {}
             }
         }
@@ -174,7 +174,7 @@ impl World {
         self.talk.drain(..count).collect()
     }
 
-    fn say(&mut self, message: &ToRobot) {
+    fn send(&mut self, message: &ToRobot) {
         self.talk.extend(message.frame(self.seq).bytes());
         self.seq = (self.seq + 1) & 0xF;
     }
@@ -187,7 +187,7 @@ impl World {
             start: u8::from(self.random.chance(200)),
             ms: (self.tick * (TICK_US / 1_000)).saturating_sub(100 + late_ms),
         };
-        self.say(&ToRobot::Command {
+        self.send(&ToRobot::Command {
             session: 1,
             number: self.number,
             command,
@@ -207,7 +207,7 @@ impl World {
         self.command(Command::Arm);
     }
 
-    /// Another mode, mostly with the sonars that it wants.
+    /// Another mode, mostly with the sonars that it needs.
     fn begin(&mut self) {
         self.mode = ModeId::ALL[self.random.below(9) as usize];
         if self.in_text {
@@ -289,7 +289,7 @@ impl World {
         self.arm();
     }
 
-    /// The same in a line, now and then one that is none.
+    /// The same as a line, now and then an invalid one.
     fn set_going_in_text(&mut self) {
         let (one, other) = (
             self.random.between(-1.0, 2.0),

@@ -9,11 +9,11 @@ const BEGIN: u8 = 0b1100_0111;
 const SUPPLY: u8 = 0b0100_0000;
 const NONE: u8 = 0xFF;
 
-/// The input that the conversion under way is of.
+/// The input of the conversion in progress.
 static INPUT: Byte = Byte::new(NONE);
 
-/// What the conversion of analogue input `input` (0..=15) begun by the last call gave, 0..=1023; begins the next one. `None`
-/// if that one was of another input, or there was none.
+/// Result of the conversion of analogue input `input` (0..=15) begun by the last call, 0..=1023; begins the next one.
+/// `None` if that one was of another input, or there was none.
 pub fn sample(input: u8) -> Option<u16> {
     let last = (INPUT.get() == input).then(|| get!(converter().adc()));
     INPUT.set(input);

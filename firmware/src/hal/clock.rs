@@ -1,6 +1,6 @@
 //! The clock: timer 1 at 2 MHz, never stopped, never set.
 //!
-//! Compare A is the tick: each one lies exactly 20,000 counts after the one before, whatever delayed the handler.
+//! Compare A is the tick: exactly 20,000 counts after the previous one, whatever delayed the handler.
 //! Compare B, set by the tick, lies 6,000 counts (3 ms) later and writes the outputs; compare C, at the same instant and
 //! so right after it, begins a ping, and ends it.
 
@@ -29,7 +29,7 @@ pub(super) fn now(_: CriticalSection<'_>) -> u16 {
     get!(timer_1().tcnt1())
 }
 
-/// Compare C interrupts again after `counts`, and not before: what it may have had to say until now is taken back.
+/// Makes compare C interrupt after `counts`, and not before: clears a pending interrupt.
 #[inline(always)]
 pub(super) fn trigger_again_in(counts: u16, section: CriticalSection<'_>) {
     put!(timer_1().ocr1c(), now(section).wrapping_add(counts));
@@ -42,7 +42,7 @@ pub fn ticks() -> u8 {
     TICKS.get()
 }
 
-/// The last tick: its number and its instant, of one moment.
+/// The last tick: its number and its instant, read consistently.
 pub fn last_tick() -> (u8, Stamp) {
     avr_device::interrupt::free(|section| (TICKS.get(), Stamp(TICK.get(section))))
 }

@@ -1,4 +1,4 @@
-//! The EEPROM: a byte read at once, a byte written while the program goes on (3.4 ms).
+//! The EEPROM: a byte is read at once, and written while the program runs on (3.4 ms).
 
 use super::registers::{eeprom, get, put};
 use rumbo_robot::Cell;
@@ -20,7 +20,7 @@ pub fn read(address: u16) -> u8 {
     get!(eeprom().eedr())
 }
 
-/// Begins to write a byte, while [`is_ready`]; one that is there already is left, cells wear out.
+/// Begins to write a byte, while [`is_ready`]; an equal byte is not rewritten, since cells wear out.
 pub fn write(cell: Cell) {
     if read(cell.address) == cell.value {
         return;

@@ -1,7 +1,8 @@
-//! Encoders: every edge leaves its stamp in a ring; at the tick [`rumbo_robot::latch`] makes counts and times of them.
+//! Encoders: every edge puts its stamp into a ring; at the tick [`rumbo_robot::latch`] turns them into counts and
+//! times.
 //!
-//! The handler does no more than that, so it is short. A ring holds 32 edges, 3,200 a second: five times what the
-//! wheels can make. Noise beyond that overwrites stamps, which the count survives.
+//! The handler does no more than that, so it is short. A ring holds 32 edges, 3,200 a second: five times the rate of
+//! the wheels. Noise beyond that overwrites stamps; the count stays right.
 
 use super::clock;
 use super::registers::{external, handler, put};
@@ -38,7 +39,7 @@ impl Ring {
 
     #[inline(always)]
     fn slot(&self, count: u8) -> &Word {
-        // Masked to the ring's length: the compiler leaves the check out.
+        // Masked to the ring's length: the compiler omits the check.
         &self.stamps[usize::from(count % RING)]
     }
 }
@@ -52,12 +53,12 @@ pub(super) fn start() {
     put!(external().eicra(), 0b0101_0101);
     // And on INT5 (front echo).
     put!(external().eicrb(), 0b0000_0100);
-    // Flags that setting this up has raised.
+    // Clears flags raised by this setup.
     put!(external().eifr(), 0b0010_1111);
     put!(external().eimsk(), 0b0010_1111);
 }
 
-/// At the tick: what comes later belongs to the next one.
+/// At the tick: later edges belong to the next one.
 #[inline(always)]
 pub(super) fn latch() {
     LEFT.latched.set(LEFT.count.get());
@@ -72,7 +73,7 @@ handler! { __vector_2, "INT1", |section| {
     RIGHT.edge(section);
 } }
 
-/// What the loop knows of one encoder.
+/// The loop's state of one encoder.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counter {
     latch: EdgeCounter,
@@ -80,7 +81,7 @@ struct Counter {
 }
 
 impl Counter {
-    fn take(&mut self, ring: &Ring, tick: Stamp, now: Micros) {
+    fn ingest(&mut self, ring: &Ring, tick: Stamp, now: Micros) {
         let latched = ring.latched.get();
         let new = latched.wrapping_sub(self.taken);
         if new > RING {
@@ -93,7 +94,7 @@ impl Counter {
             let slot = ring.slot(self.taken);
             let at = Stamp(avr_device::interrupt::free(|section| slot.get(section)));
             if at.is_after(tick) {
-                // Between the tick and its handler, which edges precede: it belongs to the next tick.
+                // Between the tick and its handler, since edges have priority: it belongs to the next tick.
                 return;
             }
             self.taken = self.taken.wrapping_add(1);
@@ -102,15 +103,15 @@ impl Counter {
     }
 }
 
-/// Both encoders, as the loop sees them.
+/// The loop's state of both encoders.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Encoders(Wheels<Counter>);
 
 impl Encoders {
-    /// What latched at the tick `tick`, which is at `now`.
+    /// The latched encoders of the tick `tick`, which is at `now`.
     pub fn read(&mut self, tick: Stamp, now: Micros) -> Wheels<Edges> {
-        self.0.left.take(&LEFT, tick, now);
-        self.0.right.take(&RIGHT, tick, now);
+        self.0.left.ingest(&LEFT, tick, now);
+        self.0.right.ingest(&RIGHT, tick, now);
         self.0.map(|counter| counter.latch.edges())
     }
 }

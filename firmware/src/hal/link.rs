@@ -85,7 +85,7 @@ pub fn send(byte: u8) {
 }
 
 handler! { __vector_51, "USART2_RX", |_section| {
-    // A frame error is a break or noise: no byte at all.
+    // A frame error is a break or noise, not a byte.
     let broken = get!(usart_2().ucsr2a()) & 1 << 4 != 0;
     let byte = get!(usart_2().udr2());
     if !broken && RECEIVED.len() < RING {

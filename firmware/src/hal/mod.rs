@@ -1,7 +1,7 @@
 //! The chip: everything that touches a register, and all the `unsafe` of the image.
 //!
-//! Interrupts and the main loop share nothing but bytes, and words that only go whole ([`shared`]). Timer 1 is the one clock: it
-//! runs at 2 MHz and wraps after 32.768 ms; every stamp is younger than that when it is used.
+//! Interrupts and the main loop share only bytes, and words that are accessed atomically ([`shared`]). Timer 1 is the
+//! only clock: it runs at 2 MHz and wraps after 32.768 ms; every stamp is younger than that when it is used.
 //!
 //! | resource | use |
 //! |---|---|
@@ -15,7 +15,7 @@
 //! | EEPROM | saved parameters ([`eeprom`]) |
 //! | watchdog, sleep | [`power`] |
 //!
-//! [`record`] shows tests what the loop takes and gives.
+//! [`record`] exposes the loop's inputs and outputs to tests.
 
 pub mod adc;
 pub mod clock;
@@ -43,7 +43,7 @@ pub fn start() {
 
 /// Interrupts on.
 pub fn enable_interrupts() {
-    // SAFETY: every interrupt that is enabled has its handler, and handlers share only bytes and whole words.
+    // SAFETY: every enabled interrupt has its handler, and handlers share only bytes and atomically accessed words.
     unsafe { avr_device::interrupt::enable() }
 }
 
@@ -55,6 +55,6 @@ static RUMBO_IMAGE_HASH: u32 = 0;
 
 /// What was written there.
 pub fn image_hash() -> u32 {
-    // SAFETY: a valid, aligned word that nobody writes; volatile, since the compiler would know it to be 0.
+    // SAFETY: a valid, aligned word that is never written; volatile, since the compiler would assume 0.
     unsafe { core::ptr::read_volatile(&raw const RUMBO_IMAGE_HASH) }
 }

@@ -1,4 +1,4 @@
-//! The L298N: two direction pins and a PWM for each motor, phase-correct, 8 bits, 490 Hz as Arduino has it.
+//! The L298N: two direction pins and a PWM for each motor, phase-correct, 8 bits, 490 Hz as on Arduino.
 
 use super::registers::{change, port_e, port_g, port_h, put, timer_3, timer_4};
 use crate::pins;
@@ -41,7 +41,7 @@ enable!(
     RightEnable, timer_3, ocr3a
 );
 
-/// What the pins are to be, ready to be written.
+/// The next state of the pins, ready to be written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Bridge {
     /// Bits of port H: the left motor's direction.

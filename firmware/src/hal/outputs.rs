@@ -1,4 +1,4 @@
-//! Outputs take effect exactly 3 ms after their tick: the loop leaves them here, compare B writes them.
+//! Outputs take effect exactly 3 ms after their tick: the loop stores them here, compare B writes them.
 
 use super::motors::Bridge;
 use super::shared::{Byte, CriticalSection, Word};
@@ -11,11 +11,11 @@ static RIGHT_G: Byte = Byte::new(0);
 static LEFT_PWM: Byte = Byte::new(0);
 static RIGHT_PWM: Byte = Byte::new(0);
 static SERVO: Word = Word::new(servo::AHEAD_COUNTS);
-/// The number of the tick whose outputs have had their time.
+/// The number of the last tick whose outputs were due.
 static APPLIED: Byte = Byte::new(0);
 
-/// Leaves the outputs of tick number `tick` for compare B; if they are late, writes them now. Says whether they were in
-/// time.
+/// Stores the outputs of tick number `tick` for compare B; if they are late, writes them now. Returns whether they were
+/// in time.
 pub fn leave(outputs: &Outputs, tick: u8) -> bool {
     let bridge = Bridge::of(outputs.drive);
     let servo = servo::counts(outputs.servo);
@@ -36,7 +36,7 @@ pub fn leave(outputs: &Outputs, tick: u8) -> bool {
     })
 }
 
-/// Writes what was left.
+/// Writes the stored outputs.
 #[inline(always)]
 pub(super) fn apply(tick: u8, section: CriticalSection<'_>) {
     Bridge {

@@ -8,7 +8,7 @@ use rumbo_wire::ResetCause;
 const CHANGE: u8 = 0b0001_1000;
 const ON: u8 = 0b0000_1011;
 
-/// Why the program runs, once: the flags are cleared.
+/// The reset cause; reading clears the flags.
 pub fn reset_cause() -> ResetCause {
     let flags = get!(cpu().mcusr());
     put!(cpu().mcusr(), 0);
@@ -32,7 +32,7 @@ pub fn start_watchdog() {
     put!(watchdog().wdtcsr(), ON);
 }
 
-/// The loop is alive.
+/// Resets the watchdog.
 #[inline(always)]
 pub fn feed_watchdog() {
     avr_device::asm::wdr();
@@ -48,7 +48,7 @@ pub fn sleep_after(tick: u8) {
             super::enable_interrupts();
             return;
         }
-        // The instruction after SEI is executed before any interrupt: none slips in between the look and the sleep.
+        // The instruction after SEI is executed before any interrupt: none can come between the check and the sleep.
         super::enable_interrupts();
         avr_device::asm::sleep();
     }

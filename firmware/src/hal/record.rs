@@ -1,7 +1,7 @@
-//! What the loop took at a tick and what it gave, at known places in SRAM.
+//! The loop's inputs and outputs of a tick, at known addresses in SRAM.
 //!
-//! A test that runs this very image stops at [`rumbo_inputs_latched`], reads the inputs or puts others there, and reads
-//! the outputs and the whole robot at [`rumbo_outputs_left`]: native robot and chip can so be given the same and compared.
+//! A test that runs this very image stops at [`rumbo_inputs_latched`], reads or replaces the inputs, and reads the
+//! outputs and the whole robot at [`rumbo_outputs_left`]: native robot and chip can thus be compared on equal inputs.
 
 use core::cell::UnsafeCell;
 
@@ -22,7 +22,7 @@ struct InputsRecord {
     pulse_us: u32,
 }
 
-/// What an encoder left, likewise.
+/// An encoder's record, likewise.
 #[derive(Clone, Copy)]
 #[repr(C)]
 struct EdgesRecord {
@@ -89,27 +89,27 @@ static RUMBO_OUTPUTS: Shown<OutputsRecord> = Shown(UnsafeCell::new(OutputsRecord
     ping: 255,
 }));
 
-/// Where the robot is; what lies there is told by the image's debugging information.
+/// Address of the robot; the image's debugging information describes its layout.
 #[unsafe(no_mangle)]
 static RUMBO_ROBOT: Shown<*const Robot> = Shown(UnsafeCell::new(core::ptr::null()));
 
-/// Does nothing; where a test stops to see the inputs of a tick.
+/// Does nothing; tests stop here for the inputs of a tick.
 #[unsafe(no_mangle)]
 #[inline(never)]
 extern "C" fn rumbo_inputs_latched() {
     avr_device::asm::nop();
 }
 
-/// Does nothing; where a test stops to see the outputs of a tick.
+/// Does nothing; tests stop here for the outputs of a tick.
 #[unsafe(no_mangle)]
 #[inline(never)]
 extern "C" fn rumbo_outputs_left() {
-    // Two of them: equal functions would become one.
+    // Two instructions: equal functions would be merged.
     avr_device::asm::nop();
     avr_device::asm::nop();
 }
 
-/// Shows the inputs of a tick, and takes those that are there then.
+/// Exposes the inputs of a tick, and reads them back in case a test has replaced them.
 pub fn inputs(inputs: &mut Inputs) {
     let (echo, sonar, pulse_us) = match inputs.echo {
         None => (0, 0, 0),
@@ -118,7 +118,7 @@ pub fn inputs(inputs: &mut Inputs) {
         Some((sonar, Echo::Silent)) => (3, sonar as u8, 0),
     };
     let record = RUMBO_INPUTS.0.get();
-    // SAFETY: only the loop touches it, and no reference to it is left; volatile, for whoever stops the program here.
+    // SAFETY: only the loop touches it, and no reference to it is left; volatile, since a test may change it here.
     unsafe {
         (&raw mut (*record).now_us).write_volatile(inputs.now.0);
         (&raw mut (*record).left).write_volatile(EdgesRecord::new(inputs.encoders.left));
@@ -142,13 +142,13 @@ pub fn inputs(inputs: &mut Inputs) {
     }
 }
 
-/// Shows where the robot is from now on.
+/// Exposes the robot's address.
 pub fn robot(robot: &Robot) {
-    // SAFETY: as above; nobody here follows the address.
+    // SAFETY: as above; the address is never dereferenced here.
     unsafe { RUMBO_ROBOT.0.get().write_volatile(robot) }
 }
 
-/// Shows the outputs of a tick.
+/// Exposes the outputs of a tick.
 pub fn outputs(outputs: &Outputs) {
     // SAFETY: as above.
     unsafe {

@@ -7,9 +7,9 @@ macro_rules! blocks {
         /// The registers of the peripheral.
         #[inline(always)]
         pub(super) fn $name() -> &'static pac::$module::RegisterBlock {
-            // SAFETY: the block lies at this address for ever, and its registers are cells with volatile access. What
-            // an access means is the business of the modules above, none of which shares a register with another one
-            // outside interrupt handlers and `start`.
+            // SAFETY: the block is always at this address, and its registers are cells with volatile access. The
+            // modules above are responsible for the meaning of an access; none of them shares a register with another
+            // one outside interrupt handlers and `start`.
             unsafe { &*pac::$Peripheral::PTR }
         }
     )+ };
@@ -37,7 +37,7 @@ blocks! {
 /// Writes a register whole.
 macro_rules! put {
     ($register:expr, $value:expr) => {
-        // SAFETY: the datasheet gives every value of this register a meaning, and none of them touches memory.
+        // SAFETY: the datasheet defines every value of this register, and none of them affects memory.
         $register.write(|to| unsafe { to.bits($value) })
     };
 }
@@ -57,12 +57,12 @@ macro_rules! change {
     };
 }
 
-/// An interrupt handler: its vector, its name in the datasheet, what it does. Without the call in between that
+/// An interrupt handler: its vector, its name in the datasheet, its body. Avoids the extra call that
 /// `avr_device::interrupt` makes, for which every register would have to be saved.
 macro_rules! handler {
     ($vector:ident, $name:literal, |$section:ident| $body:block) => {
         #[doc = $name]
-        // SAFETY: the vector's name is known to the startup code alone, and used once.
+        // SAFETY: only the startup code refers to the vector's name, and it is used once.
         #[unsafe(no_mangle)]
         extern "avr-interrupt" fn $vector() {
             // SAFETY: the chip enters a handler with interrupts off, and none turns them on.

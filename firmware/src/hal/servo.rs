@@ -58,8 +58,8 @@ pub(super) fn start() {
     put!(timer_2().tccr2b(), 0b100);
 }
 
-/// Half a wrap of the timer has passed. `odd` is 1 for the second half: which one it is does not depend on what came before, since
-/// of the interrupts that wait when the program starts only the last of each kind is left.
+/// Half a wrap of the timer has passed. `odd` is 1 for the second half; it is passed in rather than counted, since of
+/// the interrupts pending when the program starts only the last of each kind is left.
 #[inline(always)]
 fn half(odd: u8, section: CriticalSection<'_>) {
     let half = (HALF.get() & !1) | odd;

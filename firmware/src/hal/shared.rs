@@ -1,7 +1,7 @@
-//! What interrupt handlers and the loop share: values that cannot be read or written in halves.
+//! Data shared by interrupt handlers and the loop: values that cannot be read or written in halves.
 //!
-//! The chip moves a byte at a time. A [`Byte`] may therefore be touched from anywhere, what is [`Guarded`] only by who
-//! shows that no interrupt can come in between: a handler, or the loop within `avr_device::interrupt::free`.
+//! The chip moves a byte at a time. A [`Byte`] may therefore be accessed from anywhere, a [`Guarded`] value only where
+//! no interrupt can come in between: in a handler, or in the loop within `avr_device::interrupt::free`.
 
 use core::cell::UnsafeCell;
 
@@ -37,7 +37,7 @@ pub(super) struct Guarded<T>(UnsafeCell<T>);
 /// A shared word.
 pub(super) type Word = Guarded<u16>;
 
-// SAFETY: one core, and whoever has a `CriticalSection` is not interrupted.
+// SAFETY: one core, and the holder of a `CriticalSection` is not interrupted.
 unsafe impl<T: Copy> Sync for Guarded<T> {}
 
 impl<T: Copy> Guarded<T> {
@@ -47,17 +47,17 @@ impl<T: Copy> Guarded<T> {
 
     #[inline(always)]
     pub(super) fn get(&self, _: CriticalSection<'_>) -> T {
-        // SAFETY: nobody writes meanwhile.
+        // SAFETY: nothing writes meanwhile.
         unsafe { self.0.get().read_volatile() }
     }
 
     #[inline(always)]
     pub(super) fn set(&self, value: T, _: CriticalSection<'_>) {
-        // SAFETY: nobody reads or writes meanwhile.
+        // SAFETY: nothing reads or writes meanwhile.
         unsafe { self.0.get().write_volatile(value) }
     }
 
-    /// Changes a part of it. `change` must not come here again.
+    /// Changes a part of it. `change` must not call this again.
     #[inline(always)]
     pub(super) fn update(&self, change: impl FnOnce(&mut T), _: CriticalSection<'_>) {
         // SAFETY: as above, and no reference to it is left.

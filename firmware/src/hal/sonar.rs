@@ -1,7 +1,7 @@
 //! Sonars: a trigger pulse that compare C ends, and echoes by the level of their pin.
 //!
-//! The handler of an echo pin notes the instants of the first rise and the fall after it; what that means is decided
-//! at the tick, by [`rumbo_robot::latch`]. The level is read, never toggled: a lost edge costs one reading.
+//! The handler of an echo pin records the instants of the first rise and the fall after it; [`rumbo_robot::latch`]
+//! evaluates them at the tick. The level is read, never toggled: a lost edge costs one reading.
 
 use super::clock;
 use super::registers::{change, get, handler, port_b, port_d, port_e, port_j};
@@ -51,7 +51,7 @@ pub(super) fn start() {
     change!(port_b().ddrb(), set TRIGGERS_B, clear 0);
 }
 
-/// Asks for a ping when compare C comes; what that sonar said before is forgotten.
+/// Requests a ping at the next compare C; discards that sonar's previous answer.
 #[inline(always)]
 pub(super) fn ask(ping: Option<SonarId>, section: CriticalSection<'_>) {
     if let Some(sonar) = ping {
@@ -60,7 +60,7 @@ pub(super) fn ask(ping: Option<SonarId>, section: CriticalSection<'_>) {
     PING.set(ping.map_or(NONE, |sonar| sonar as u8));
 }
 
-/// A sonar's trigger pin as `embedded-hal` has it; only for handlers, since a port is changed in three steps.
+/// A sonar's trigger pin as an `embedded-hal` output; only for handlers, since a port is changed in three steps.
 struct Trigger<'a>(SonarId, CriticalSection<'a>);
 
 impl ErrorType for Trigger<'_> {
@@ -89,7 +89,7 @@ impl OutputPin for Trigger<'_> {
     }
 }
 
-/// Compare C: raises the trigger that was asked for, and lowers it the next time.
+/// Compare C: raises the requested trigger, and lowers it the next time.
 #[inline(always)]
 pub(super) fn trigger(section: CriticalSection<'_>) {
     let ping = PING.get();
@@ -128,17 +128,17 @@ handler! { __vector_6, "INT5", |section| {
 
 const _: () = assert!(ECHOES_D == 0b1100 && pins::FRONT_ECHO.bit == 5);
 
-/// The sonars as the loop sees them.
+/// The loop's state of the sonars.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Listener(EchoLatch);
 
 impl Listener {
-    /// A sonar has been asked for a ping.
+    /// A ping has been requested.
     pub fn asked(&mut self, sonar: SonarId) {
         self.0.asked(sonar);
     }
 
-    /// What became of a ping, once, at the tick `tick`, which is at `now`. It may have left late, or not yet.
+    /// The result of a ping, returned once, at the tick `tick`, which is at `now`. It may have left late, or not yet.
     pub fn read(&mut self, tick: Stamp, now: Micros) -> Option<(SonarId, Echo)> {
         self.0.read(now, |sonar| {
             let line = avr_device::interrupt::free(|section| line(sonar).get(section));

@@ -1,4 +1,4 @@
-//! The image on the emulated Mega at the pins of the simulated robot, and a station that drives it into trouble.
+//! The image on the emulated Mega at the pins of the simulated robot, and a station that drives it into failures.
 
 use crate::board::image_path;
 use rumbo_control::Fault;
@@ -10,7 +10,7 @@ use rumbo_wire::{
     ToRobot,
 };
 
-/// Time between two looks at the robot [us].
+/// Time between two polls of the robot [us].
 const STEP_US: u64 = 5_000;
 /// Time between heartbeats [us].
 const HEARTBEAT_US: u64 = 100_000;
@@ -25,20 +25,20 @@ const DRIVES: [(&str, f64); 4] = [
     ("mode8-obstacles", 2.0),
 ];
 
-/// The robot under way.
+/// The driving robot.
 pub(crate) struct Drive {
     pub(crate) sim: Sim,
-    /// What it said, and when [s].
-    pub(crate) heard: Vec<(f64, FromRobot)>,
+    /// Messages received from it, and when [s].
+    pub(crate) received: Vec<(f64, FromRobot)>,
     /// Whether the station is alive.
     pub(crate) heartbeats: bool,
-    /// For whoever takes `heard` away.
+    /// The last status, also after a test clears `received`.
     pub(crate) last_status: Option<Status>,
     decoder: Decoder<128>,
     number: u16,
     seq: u8,
     heartbeat_us: u64,
-    /// The newest robot time heard.
+    /// The newest robot time received.
     seen: Option<RobotTime>,
 }
 
@@ -85,7 +85,7 @@ impl Drive {
                 ..setup.config(1).unwrap()
             })
             .unwrap(),
-            heard: Vec::new(),
+            received: Vec::new(),
             heartbeats: true,
             last_status: None,
             decoder: Decoder::default(),
@@ -141,7 +141,7 @@ impl Drive {
 
     fn step(&mut self) {
         if self.heartbeats && self.sim.now_us() >= self.heartbeat_us {
-            self.say(&ToRobot::Heartbeat);
+            self.send(&ToRobot::Heartbeat);
             self.heartbeat_us = self.sim.now_us() + HEARTBEAT_US;
         }
         self.sim.advance(self.sim.now_us() + STEP_US);
@@ -149,15 +149,15 @@ impl Drive {
         self.sim.receive(&mut bytes);
         for byte in bytes {
             if let Some(Received::Frame(body)) = self.decoder.push(byte)
-                && let Ok(heard) = FromRobot::from_body(&body)
+                && let Ok(message) = FromRobot::from_body(&body)
             {
-                self.seen = RobotTime::after(self.seen, &heard);
-                self.heard.push((self.now_s(), heard));
+                self.seen = RobotTime::after(self.seen, &message);
+                self.received.push((self.now_s(), message));
             }
         }
     }
 
-    pub(crate) fn say(&mut self, message: &ToRobot) {
+    pub(crate) fn send(&mut self, message: &ToRobot) {
         self.sim.send(message.frame(self.seq).bytes());
         self.seq = self.seq.wrapping_add(1);
     }
@@ -176,7 +176,7 @@ impl Drive {
 
     /// The answer to the last command.
     pub(crate) fn answer(&self) -> Option<Result<f32, Refusal>> {
-        self.heard.iter().find_map(|(_, heard)| match heard {
+        self.received.iter().find_map(|(_, message)| match message {
             FromRobot::Ack(ack) if ack.number == self.number => Some(ack.result),
             _ => None,
         })
@@ -199,32 +199,34 @@ impl Drive {
         self.command(Command::GetParam { id: id as u8 }).unwrap()
     }
 
-    /// The last status heard.
+    /// The last status received.
     pub(crate) fn status(&self) -> Status {
-        let mut last = self.heard.iter().rev();
-        last.find_map(|(_, heard)| match heard {
+        let mut last = self.received.iter().rev();
+        last.find_map(|(_, message)| match message {
             FromRobot::Status(status) => Some(*status),
             _ => None,
         })
         .unwrap()
     }
 
-    /// The last HELLO heard.
+    /// The last HELLO received.
     pub(crate) fn hello(&self) -> Hello {
-        let mut last = self.heard.iter().rev();
-        last.find_map(|(_, heard)| match heard {
+        let mut last = self.received.iter().rev();
+        last.find_map(|(_, message)| match message {
             FromRobot::Hello(hello) => Some(*hello),
             _ => None,
         })
         .unwrap()
     }
 
-    /// When the robot said that this happened [s].
-    pub(crate) fn told(&self, kind: EventKind) -> Option<f64> {
-        self.heard.iter().find_map(|(t_s, heard)| match heard {
-            FromRobot::Event(event) if event.kind == kind => Some(*t_s),
-            _ => None,
-        })
+    /// When the robot reported this event [s].
+    pub(crate) fn event_s(&self, kind: EventKind) -> Option<f64> {
+        self.received
+            .iter()
+            .find_map(|(t_s, message)| match message {
+                FromRobot::Event(event) if event.kind == kind => Some(*t_s),
+                _ => None,
+            })
     }
 
     /// Frames that the station missed, modulo 65536.
@@ -242,8 +244,8 @@ impl Drive {
         self.sim.duty() == Default::default()
     }
 
-    /// Waits until the wheels are released for good; gives the time since `from_s` [s]. After that it stands, and has touched
-    /// nothing.
+    /// Waits until the wheels are permanently released; returns the time since `from_s` [s]. After that the robot
+    /// stands, and has touched nothing.
     pub(crate) fn released_after_s(&mut self, from_s: f64, at_most_s: f64) -> f64 {
         let mut driven_s = self.now_s();
         while self.now_s() < from_s + at_most_s + 2.0 {
@@ -263,13 +265,13 @@ impl Drive {
         assert_eq!(self.sim.worst_contact_m_s(), 0.0, "contact");
     }
 
-    /// The fault is latched and told: nothing arms before it is cleared.
+    /// The fault is latched and reported: nothing arms before it is cleared.
     pub(crate) fn latched(&mut self, fault: Fault) {
         self.heartbeats = true;
         self.wait_s(0.7);
         assert_eq!(self.status().fault, Some(fault));
         assert!(!self.status().armed);
         assert_eq!(self.command(Command::Arm), Err(Refusal::Faulted));
-        assert!(self.told(EventKind::Faulted(fault)).is_some());
+        assert!(self.event_s(EventKind::Faulted(fault)).is_some());
     }
 }

@@ -1,4 +1,4 @@
-//! The link falls silent, babbles, or flips bits.
+//! The link falls silent, is flooded, or flips bits.
 
 use super::drive::{Drive, setup, under_way_in_each};
 use crate::world::Random;
@@ -7,7 +7,7 @@ use rumbo_control::{Fault, Wheels};
 use rumbo_wire::message::Waypoint;
 use rumbo_wire::{Command, Refusal};
 
-/// Silence stops the robot within so long, the way of the last byte included [s].
+/// Silence stops the robot within this time, the transit of the last byte included [s].
 const STOP_S: f64 = 0.5;
 
 #[test]

@@ -1,5 +1,5 @@
-//! What fails, fails while the shipped image drives: each ends stopped or in the degraded mode that docs/faults.md names, with its
-//! cause told, and without touching anything.
+//! Failures while the shipped image drives: each ends stopped or in the degraded mode named in docs/faults.md, with its
+//! cause reported, and without touching anything.
 
 pub(crate) mod drive;
 mod link;

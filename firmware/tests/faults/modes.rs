@@ -1,4 +1,4 @@
-//! Wires that fail in the modes that see and plan more: along a wall (4), straight on (6), around boxes (8).
+//! Wires that fail in the more complex modes: along a wall (4), straight on (6), around boxes (8).
 
 use super::drive::{Drive, setup};
 use rayon::prelude::*;
@@ -14,12 +14,12 @@ const DRIVES: [(&str, f64); 4] = [
     ("mode8-obstacles", 2.0),
     ("mode8-obstacles", 6.0),
 ];
-/// Looked at for so long after that [s], longer where more is allowed.
+/// Observation time after the failure [s], longer where more is allowed.
 const AFTER_S: f64 = 6.0;
 /// Once released, it must stay so for this long [s].
 const FOR_GOOD_S: f64 = 2.0;
 
-/// What wires do: to a sonar,
+/// Failures of wires: of a sonar,
 const ECHO_FAULTS: [WireFault; 5] = [
     WireFault::Low,
     WireFault::High,
@@ -27,7 +27,7 @@ const ECHO_FAULTS: [WireFault; 5] = [
     WireFault::Noisy(2_000.0),
     WireFault::Losing(0.3),
 ];
-/// and to an encoder.
+/// and of an encoder.
 const ENCODER_FAULTS: [WireFault; 7] = [
     WireFault::Low,
     WireFault::High,
@@ -38,10 +38,10 @@ const ENCODER_FAULTS: [WireFault; 7] = [
     WireFault::Losing(0.5),
 ];
 
-/// What a sonar that is not to be trusted may be called.
+/// The faults that may be reported for an unreliable sonar.
 const SONAR: &[Fault] = &[Fault::SonarFaulty, Fault::SonarStale];
 
-/// How a drive goes on after a wire has failed.
+/// How a drive continues after a wire has failed.
 enum End {
     /// As if nothing were.
     AsBefore,
@@ -51,7 +51,7 @@ enum End {
     Either(&'static [Fault]),
 }
 
-/// What `docs/faults.md` says of a wire in a mode.
+/// The documented behaviour for a wire in a mode (`docs/faults.md`).
 fn documented(scenario: &str, wire: Wire, fault: WireFault) -> End {
     let stuck = matches!(fault, WireFault::Low | WireFault::High);
     match (scenario, wire) {
@@ -60,15 +60,17 @@ fn documented(scenario: &str, wire: Wire, fault: WireFault) -> End {
         (_, Wire::Encoder(Side::Right)) if stuck => {
             End::Released(2.0, &[Fault::RightEncoderSilent])
         }
-        // While it stands or turns slowly, nothing is missed. How long that is between the boxes hangs on where the way led it.
+        // While it stands or turns slowly, no edges are missed. How long that is between the boxes depends on its path.
         (_, Wire::Encoder(side)) => {
             let within_s = match scenario {
                 "mode8-obstacles" => 10.0,
                 _ => 2.0,
             };
-            // Echoes do not fit a way that is measured as half of what it is: in a crawl that may be noticed first.
+            // Echoes contradict a distance measured as half its true value: in a crawl that may be detected first.
             let misses = scenario == "mode8-obstacles" && fault == WireFault::Losing(0.5);
-            // Of half the edges some in a row are missing soon, and a pulse of noise makes a wheel look fast that owes edges then.
+            // With half the edges lost several in a row are soon missing, and a noise pulse makes a wheel look fast, so
+            // that edges
+            // become overdue.
             let cause: &[Fault] = match (side, misses) {
                 (Side::Left, false) => &[Fault::LeftEncoderImplausible, Fault::LeftEncoderSilent],
                 (Side::Right, false) => {
@@ -93,7 +95,7 @@ fn documented(scenario: &str, wire: Wire, fault: WireFault) -> End {
     }
 }
 
-/// Drives until a wire fails, and on; says what is not as documented.
+/// Drives until a wire fails, and on; returns a description of undocumented behaviour.
 fn judge(scenario: &str, at_s: f64, wire: Wire, fault: WireFault) -> Option<String> {
     let timed = TimedWireFault { at_s, wire, fault };
     let setup = setup(scenario, |setup| setup.scenario.wire_faults = vec![timed])?;
@@ -121,12 +123,12 @@ fn judge(scenario: &str, at_s: f64, wire: Wire, fault: WireFault) -> Option<Stri
         (End::Released(..), None) => false,
         (End::Either(_), None) => true,
     };
-    let told = format!(
+    let line = format!(
         "{scenario} at {at_s} s, {wire:?} {fault:?}: {:?}, driven for {took_s:.2} s, contact {contact_m_s} m/s",
         status.fault
     );
-    println!("{told}");
-    (!as_documented || contact_m_s > 0.0).then_some(told)
+    println!("{line}");
+    (!as_documented || contact_m_s > 0.0).then_some(line)
 }
 
 #[test]

@@ -9,13 +9,13 @@ use rumbo_wire::{Command, FromRobot, Refusal, ResetCause, ToRobot};
 /// A jump to itself.
 const FOR_EVER: u16 = 0xCFFF;
 
-/// The robot has started again for this reason: disarmed, and it does not go on by itself.
+/// The robot has restarted for this reason: disarmed, and it does not continue by itself.
 fn has_started_again(drive: &mut Drive, cause: ResetCause) {
-    drive.say(&ToRobot::Hello);
+    drive.send(&ToRobot::Hello);
     drive.wait_s(0.7);
     assert_eq!(drive.hello().reset, cause);
     assert!(!drive.status().armed);
-    // As it started it knows no wall yet, but it can be armed again.
+    // After the restart it has no wall estimate yet, but it can be armed again.
     let answer = drive.command(Command::Arm);
     assert!(
         matches!(answer, Ok(_) | Err(Refusal::SonarNotReady)),
@@ -24,18 +24,18 @@ fn has_started_again(drive: &mut Drive, cause: ResetCause) {
 }
 
 /// The chip is reset in the middle of each drive.
-fn starts_again_when_reset(how: Cause, told: ResetCause) {
+fn starts_again_when_reset(how: Cause, cause: ResetCause) {
     for mut drive in under_way_in_each() {
         let from_s = drive.now_s();
         let chip = drive.sim.mega_mut().unwrap().chip_mut();
         chip.input(chip.cycle(), Input::Reset(how));
         drive.released_after_s(from_s, 0.1);
-        has_started_again(&mut drive, told);
+        has_started_again(&mut drive, cause);
     }
 }
 
 #[test]
-fn a_brown_out_leaves_the_wheels_released_and_is_told() {
+fn a_brown_out_releases_the_wheels_and_is_reported() {
     starts_again_when_reset(Cause::BrownOut, ResetCause::BrownOut);
 }
 
@@ -55,7 +55,7 @@ fn a_supply_that_falls_while_it_drives_resets_it_and_it_stays_released() {
     };
     let mut drive = Drive::under_way(&setup, 1.0);
     // Full duty at once pulls the old battery down.
-    drive.heard.clear();
+    drive.received.clear();
     let command = Command::Move {
         movement: Movement::Forward,
         level: Level::Duty(1.0),
@@ -63,9 +63,9 @@ fn a_supply_that_falls_while_it_drives_resets_it_and_it_stays_released() {
     let frame = drive.frame_of(command);
     drive.sim.send(&frame);
     while !drive
-        .heard
+        .received
         .iter()
-        .any(|(_, heard)| matches!(heard, FromRobot::Hello(_)))
+        .any(|(_, message)| matches!(message, FromRobot::Hello(_)))
     {
         drive.wait_s(0.05);
         assert!(drive.now_s() < 20.0, "{:?}", drive.status());
@@ -95,7 +95,7 @@ fn a_tick_that_hangs_is_reset_by_the_watchdog_within_140_ms() {
         let from_s = drive.now_s();
         let chip = drive.sim.mega_mut().unwrap().chip_mut();
         chip.cpu_mut().write_flash(place, FOR_EVER);
-        // Whatever it does after the reset hangs too, until the program is put right.
+        // After the reset it hangs again, until the program is restored.
         let took_s = drive.released_after_s(from_s, 0.145);
         println!("released {took_s:.3} s after the tick began to hang");
         let chip = drive.sim.mega_mut().unwrap().chip_mut();
@@ -106,6 +106,6 @@ fn a_tick_that_hangs_is_reset_by_the_watchdog_within_140_ms() {
 }
 
 #[test]
-fn the_reset_button_leaves_the_wheels_released_and_is_told() {
+fn the_reset_button_releases_the_wheels_and_is_reported() {
     starts_again_when_reset(Cause::External, ResetCause::External);
 }

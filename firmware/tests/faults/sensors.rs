@@ -126,7 +126,10 @@ fn runs_down(setup: &Setup) {
     }
     drive.command(Command::Mode(setup.scenario.mode)).unwrap();
     drive.follow(setup, 6.0);
-    while drive.told(EventKind::Faulted(Fault::BatteryLow)).is_none() {
+    while drive
+        .event_s(EventKind::Faulted(Fault::BatteryLow))
+        .is_none()
+    {
         drive.wait_s(0.1);
         assert!(drive.now_s() < 30.0, "{:?}", drive.status());
     }

@@ -1,4 +1,4 @@
-//! Values that are none, and memory that has decayed.
+//! Non-finite values, and corrupted memory.
 
 use super::drive::{Drive, setup, under_way_in_each};
 use rumbo_control::mode::ModeId;
@@ -19,14 +19,14 @@ fn no_parameter_takes_a_value_that_is_not_a_number() {
             let refused = [Err(Refusal::NotFinite), Err(Refusal::Armed)];
             assert!(refused.contains(&answer), "{id} {answer:?}");
         }
-        let told = match drive.status().mode {
+        let command = match drive.status().mode {
             ModeId::Mission => Command::Goal {
                 x_m: f32::NAN,
                 y_m: 0.0,
             },
             _ => Command::Reference(f32::NAN),
         };
-        assert_eq!(drive.command(told), Err(Refusal::NotFinite));
+        assert_eq!(drive.command(command), Err(Refusal::NotFinite));
         let status = drive.status();
         assert!(status.armed && status.fault.is_none(), "{status:?}");
         assert_eq!(ids.map(|id| drive.param(id)), before);
@@ -41,8 +41,8 @@ fn with_both_saved_copies_corrupt_it_says_so_and_drives_by_the_defaults() {
     };
     let mut drive = Drive::with_eeprom(&setup, &[0x5A; 4_096]);
     drive.wait_s(0.3);
-    let told = EventKind::Recalled(Recalled::Neither);
-    assert!(drive.told(told).is_some());
+    let neither = EventKind::Recalled(Recalled::Neither);
+    assert!(drive.event_s(neither).is_some());
     drive.command(Command::Mode(setup.scenario.mode)).unwrap();
     drive.follow(&setup, 5.0);
     let distance_m = drive.sim.truth().range_m[2].unwrap();

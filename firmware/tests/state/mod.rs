@@ -1,8 +1,8 @@
-//! The whole state of the robot in the chip's SRAM, written as `{:?}` writes that of the native one.
+//! The whole state of the robot in the chip's SRAM, formatted as `{:?}` formats the native one.
 //!
-//! The image's debugging information tells what lies where ([`shape`]), and the names in it are those that `derive(Debug)` prints. So
-//! two texts can be compared that no one had to write by hand: a new field is in both. `{:?}` of a float tells all its bits, but for those of
-//! values that are not finite, which the core never has.
+//! The image's debugging information gives the layout ([`shape`]), with the names that `derive(Debug)` prints. So both
+//! texts are generated and can be compared: a new field is in both. `{:?}` of a float represents all its bits, except
+//! for non-finite values, which the core never has.
 
 mod shape;
 
@@ -11,10 +11,10 @@ use shape::{Number, Shape};
 use std::fmt::{self, Write};
 use std::ops::Range;
 
-/// What tells the robot from others of its name.
+/// Distinguishes the robot from other types of its name.
 const ROBOT: &str = "Robot";
 
-/// Where and what the robot is.
+/// Address and type of the robot.
 pub(crate) struct State {
     shape: Shape,
     bytes: usize,
@@ -97,7 +97,7 @@ impl fmt::Debug for Held<'_> {
                 let value = tag.map(|(at, bytes)| unsigned(&self.bytes[at..at + bytes]));
                 let is_it = |number: &Option<u64>| *number == value;
                 let it = variants.iter().find(|(number, _)| is_it(number));
-                // What no number stands for is the variant without one.
+                // A value without a number is the variant without one.
                 let it = it.or_else(|| variants.iter().find(|(number, _)| number.is_none()));
                 match it {
                     Some((_, shape)) => fmt::Debug::fmt(&held(shape, 0), to),

@@ -1,4 +1,4 @@
-//! Types, as the debugging information (DWARF) of an image has them.
+//! Types from the debugging information (DWARF) of an image.
 
 use gimli::{AttributeValue, EndianSlice, EntriesTreeNode, LittleEndian, Unit, UnitOffset};
 use object::{Object, ObjectSection};
@@ -21,7 +21,7 @@ pub(super) enum Number {
 #[derive(Debug)]
 pub(super) enum Shape {
     Number(Number),
-    /// An enum without fields: its bytes, and what each number is called.
+    /// An enum without fields: its bytes, and the name of each number.
     Names {
         bytes: usize,
         names: Vec<(u64, String)>,
@@ -37,7 +37,7 @@ pub(super) enum Shape {
         name: String,
         fields: Vec<(String, usize, Shape)>,
     },
-    /// An enum: place and bytes of what tells the variants apart; its value in each, and what the variant holds.
+    /// An enum: offset and size of the discriminant; its value in each variant, and the variant's content.
     Variants {
         tag: Option<(usize, usize)>,
         variants: Vec<(Option<u64>, Shape)>,
@@ -234,7 +234,7 @@ impl<'e, 'a> Within<'e, 'a> {
         Ok(bytes * count)
     }
 
-    /// A number of so many bytes, whatever its sign.
+    /// A number of this many bytes, signed or not.
     fn value(
         &self,
         entry: &Entry<'_, 'a>,
