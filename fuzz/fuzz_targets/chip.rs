@@ -1,4 +1,5 @@
-//! Any flash runs to its end or to a verdict, looked at or not: the first 32 bytes are the registers, the rest is the program.
+//! Any flash runs to its end or to a verdict, observed or not: the first 32 bytes are the registers, the rest is the
+//! program.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

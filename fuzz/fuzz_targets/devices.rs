@@ -1,5 +1,5 @@
-//! Whatever a program writes to registers and whatever comes in from outside: the chip goes on, and in the same way however its run is
-//! divided. Four bytes are a step.
+//! Any register writes and any inputs: the chip keeps running, and alike however its run is divided. Four bytes are a
+//! step.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,5 +1,5 @@
-//! Whatever is in a file: it is a scenario, a world, a robot, or the lines that say what is wrong. Of a whole scenario
-//! a seed can be drawn. The first byte says which.
+//! Any file is a scenario, a world, a robot, or a list of errors. For a valid scenario a seed can be drawn. The first
+//! byte selects the kind.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Any file is a program for the chip or gets one line that says why not.
+//! Any file is a program for the chip or gives an error of one line.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

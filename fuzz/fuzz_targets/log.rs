@@ -1,4 +1,4 @@
-//! Whatever a file holds: it is a log or one line says why not. The bytes are taken as they are, and as lines of
+//! Any file is a log or gives an error of one line. The bytes are taken as they are, and as lines of
 //! messages in a log that is whole: a topic, a letter for each, and the text of the message; or `m` and a piece of its
 //! manifest, `key=value`.
 #![no_main]

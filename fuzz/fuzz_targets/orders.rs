@@ -1,5 +1,5 @@
-//! Whatever a page sends is an order or one line says why not; what it has the station send, over a link without
-//! faults, the robot takes.
+//! Anything from a page is an order or gives an error of one line; what the station then sends, over a link without
+//! faults, the robot accepts.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

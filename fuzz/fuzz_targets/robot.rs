@@ -1,5 +1,5 @@
-//! Whatever comes over the link and from the sensors, at whatever times: the robot goes on, what it says is well
-//! formed, and it drives no wheel unless it is armed.
+//! Any input from the link and the sensors, at any times: the robot keeps running, its output is well formed, and it
+//! drives no wheel unless it is armed.
 #![no_main]
 
 use libfuzzer_sys::arbitrary::{self, Arbitrary};

@@ -1,4 +1,4 @@
-//! Whatever comes over the link is a message or is not, at both ends; a message sent on is the same message.
+//! Any bytes on the link decode to messages or are rejected, at both ends; a message that is encoded again is the same.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! What the tools have in common.
+//! Code shared by the tools.
 
 pub mod pages;
 

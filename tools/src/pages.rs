@@ -1,4 +1,4 @@
-//! What was built for the tools, and the pages of the project that hold a table made here.
+//! Build products that the tools use, and pages of the project with generated tables.
 
 use rumbo_experiment::files::FileError;
 use std::path::{Path, PathBuf};
@@ -10,20 +10,20 @@ pub fn built(file: &str) -> PathBuf {
     target.unwrap_or_default().join(file)
 }
 
-/// The text between `<!-- NAME -->` and `<!-- /NAME -->` of a page, seen from the root, is this from now on.
+/// Replaces the text between `<!-- NAME -->` and `<!-- /NAME -->` of a page; its path is relative to the root.
 ///
 /// # Errors
 /// The page cannot be read or written, or has no such markers.
 pub fn write(page: &str, name: &str, text: &str) -> Result<(), FileError> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join(page);
-    let told = |what: String| FileError::Setting(format!("{page}: {what}"));
-    let old = std::fs::read_to_string(&path).map_err(|error| told(error.to_string()))?;
+    let error = |what: String| FileError::Setting(format!("{page}: {what}"));
+    let old = std::fs::read_to_string(&path).map_err(|source| error(source.to_string()))?;
     let (begin, end) = (format!("<!-- {name} -->\n"), format!("<!-- /{name} -->"));
     let parts = old.split_once(&begin).and_then(|(before, rest)| {
         let (_, after) = rest.split_once(&end)?;
         Some((before, after))
     });
-    let (before, after) = parts.ok_or_else(|| told(format!("has no {begin}")))?;
+    let (before, after) = parts.ok_or_else(|| error(format!("has no {begin}")))?;
     let new = format!("{before}{begin}\n{}\n\n{end}{after}", text.trim_end());
-    std::fs::write(&path, new).map_err(|error| told(error.to_string()))
+    std::fs::write(&path, new).map_err(|source| error(source.to_string()))
 }

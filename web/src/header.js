@@ -30,7 +30,7 @@ export class Header {
   /** @type {State | null} */
   #state = null;
   #open = false;
-  #heard_ms = 0;
+  #received_ms = 0;
 
   /** @param {Send} send */
   constructor(send) {
@@ -65,7 +65,7 @@ export class Header {
 
   /** The server said something. */
   heard() {
-    this.#heard_ms = performance.now();
+    this.#received_ms = performance.now();
     this.#showConnection();
   }
 
@@ -101,7 +101,7 @@ export class Header {
     if (!state) return [t('connecting…'), 'bad'];
     if (state.replay) return state.speed === 0 ? [t('replay, paused'), 'warning'] : [t('replay × {}', state.speed), 'good'];
     if (state.speed === 0) return [t('simulation paused'), 'warning'];
-    if (performance.now() - this.#heard_ms > STALE_MS) return [t('the station is silent'), 'bad'];
+    if (performance.now() - this.#received_ms > STALE_MS) return [t('the station is silent'), 'bad'];
     if (!state.link.connected) return [t('no answer from the robot'), 'bad'];
     const slow = state.simulated && state.achieved_speed > 0 && state.achieved_speed < 0.9 * state.speed;
     const rate = t('live {} Hz', format(state.link.telemetry_hz, 0));

@@ -75,13 +75,13 @@ function send(order) {
 }
 
 /** When what is drawn next was heard; and how long things took from there to the frame after, while somebody measures. */
-const ages = { heard_ms: 0, session_ms: 0, drawn: false, measured: /** @type {number[] | null} */ (null) };
+const ages = { received_ms: 0, session_ms: 0, drawn: false, measured: /** @type {number[] | null} */ (null) };
 
 const redraw = onFrame(() => {
   if (ages.measured && !ages.drawn) {
-    const { heard_ms } = ages;
+    const { received_ms } = ages;
     ages.drawn = true;
-    requestAnimationFrame(() => ages.measured?.push(performance.timeOrigin + performance.now() - heard_ms));
+    requestAnimationFrame(() => ages.measured?.push(performance.timeOrigin + performance.now() - received_ms));
   }
   plots.draw();
   map.draw();
@@ -229,7 +229,7 @@ function receive(message) {
       break;
     case 'samples':
       store.setRun(message.run);
-      Object.assign(ages, { heard_ms: message.heard[0], session_ms: message.heard[1], drawn: false });
+      Object.assign(ages, { received_ms: message.heard[0], session_ms: message.heard[1], drawn: false });
       for (const row of message.rows) store.push(row);
       if (store.latest?.ghost) document.body.classList.add('haunted');
       redraw();

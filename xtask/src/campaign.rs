@@ -2,13 +2,13 @@
 //! fail in the middle of drives, a million frames over a link with faults, and the image for 75 minutes under a flood
 //! of bytes, and beside the native robot; the fuzz targets for ten minutes each.
 //!
-//! The runs and what is required of them are those of `rumbo_experiment::campaign`. Each program is built as users get
-//! theirs, optimised, and its output is printed as it comes.
+//! Runs and requirements are those of `rumbo_experiment::campaign`. Each program is built in release mode, and its
+//! output is printed as it comes.
 
 use crate::project::{Project, shown};
 use std::process::Stdio;
 
-/// The part that is no scenario.
+/// The part that is not a scenario.
 const LINK: &str = "link";
 
 /// The part that drives the image: a test, made longer.
@@ -33,7 +33,7 @@ const IMAGE_MINUTES: &str = "75";
 /// Seeds of each scenario.
 const SEEDS: u32 = 1000;
 
-/// Runs the scenarios named in `only` (all if empty); true if everything required was met.
+/// Runs the scenarios named in `only` (all if empty); true if all requirements were met.
 pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Result<bool, String> {
     let mut met = true;
     if only.is_empty() || only.iter().any(|name| name == LINK) {
@@ -86,7 +86,7 @@ fn faults(project: &Project, seeds: Option<u32>) -> Result<bool, String> {
     Ok(met)
 }
 
-/// Drives the image for long; true if it kept to all that its test asks.
+/// Runs the image for long; true if its test passed.
 fn soak(project: &Project) -> Result<bool, String> {
     crate::firmware::run(project)?;
     let mut command = project.cargo(&[
@@ -110,12 +110,12 @@ fn soak(project: &Project) -> Result<bool, String> {
     Ok(status.success())
 }
 
-/// Runs a program of `tools/`; true if it found everything met.
+/// Runs a program of `tools/`; true if it found all requirements met.
 fn tool(project: &Project, name: &str, args: &[String]) -> Result<bool, String> {
     program(project, ["rumbo-tools", "--bin", name], args)
 }
 
-/// Runs a program of a package, `--bin` or `--example`; true if it found everything met.
+/// Runs a program of a package, `--bin` or `--example`; true if it found all requirements met.
 fn program(
     project: &Project,
     [package, kind, name]: [&str; 3],

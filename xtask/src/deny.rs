@@ -1,7 +1,7 @@
 //! Licences, sources and bans of every dependency, as `deny.toml` has them: `cargo xtask test --only deny`.
 //!
-//! `cargo deny` checks the same and the advisories besides, in .github/workflows/ci.yml. To build it takes six minutes
-//! of a processor; what needs no list from the network is therefore read here, from `cargo metadata`.
+//! `cargo deny` checks the same plus the advisories, in .github/workflows/ci.yml. Building it takes six minutes of
+//! processor time; what needs no list from the network is therefore checked here, from `cargo metadata`.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::project::{Project, all_metadata};
 /// The workspaces.
 const MANIFESTS: [&str; 3] = ["Cargo.toml", "firmware/Cargo.toml", "fuzz/Cargo.toml"];
 
-/// As much of `deny.toml` as is read here.
+/// The part of `deny.toml` used here.
 #[derive(Deserialize)]
 struct Rules {
     licenses: Licenses,
@@ -82,7 +82,7 @@ fn text<'a>(package: &'a Value, key: &str) -> &'a str {
 }
 
 impl Rules {
-    /// What is wrong with a package of `cargo metadata`, and what to do.
+    /// The problem of a package of `cargo metadata`, and the remedy.
     fn problem(&self, package: &Value) -> Option<String> {
         let name = text(package, "name");
         if self.bans.deny.iter().any(|banned| banned.name == name) {

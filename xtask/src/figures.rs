@@ -12,7 +12,7 @@ pub(crate) fn check(project: &Project) -> Result<(), String> {
     draw(project, &["--check".to_owned()])
 }
 
-/// Built as the tests are: the bytes are the same with any optimisation, and CI has these crates built already.
+/// Built like the tests: the bytes are the same with any optimisation, and CI has already built these crates.
 fn draw(project: &Project, args: &[String]) -> Result<(), String> {
     let program = [
         "run",

@@ -1,15 +1,15 @@
 //! `cargo xtask fuzz`: builds the targets of `fuzz/` for libFuzzer and runs them.
 //!
-//! What cargo-fuzz does with a nightly compiler, the stable one does too as long as no sanitizer is wanted: LLVM's pass that counts
-//! which code was reached is switched on by codegen options. Without `unsafe` in the workspace there is nothing for a sanitizer to find.
-//! With `--target` the options stay away from build scripts.
+//! cargo-fuzz needs a nightly compiler only for sanitizers: LLVM's coverage pass is enabled by codegen options of the
+//! stable compiler. Without `unsafe` in the workspace there is nothing for a sanitizer to find. With `--target` the
+//! options do not apply to build scripts.
 
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
 use crate::project::{Project, metadata, output, run};
 
-/// Seconds for each target unless told otherwise.
+/// Seconds for each target by default.
 const SECONDS: u32 = 60;
 const FLAGS: [&str; 9] = [
     "-Cpasses=sancov-module",
@@ -58,7 +58,7 @@ fn targets(project: &Project) -> Result<Vec<String>, String> {
     Ok(names.map(str::to_owned).collect())
 }
 
-/// Builds all targets; gives the folder that has them.
+/// Builds all targets; returns their folder.
 fn build(project: &Project) -> Result<PathBuf, String> {
     let version = output(project.command("rustc").arg("-vV"))?;
     let host = version
@@ -85,7 +85,7 @@ fn fuzz(project: &Project, programs: &Path, target: &str, seconds: u32) -> Resul
     }
     let program = programs.join(format!("{target}{}", std::env::consts::EXE_SUFFIX));
     let prefix = format!("{}/{target}-", findings.display());
-    // What reaches new code goes to the first folder; the other one is only read.
+    // Inputs that reach new code go to the first folder; the other one is only read.
     let seeds = project.root.join("fuzz/seeds").join(target);
     let mut command = project.command(&program);
     command
@@ -98,10 +98,10 @@ fn fuzz(project: &Project, programs: &Path, target: &str, seconds: u32) -> Resul
     let output = command
         .output()
         .map_err(|error| format!("{}: {error}", program.display()))?;
-    let told = String::from_utf8_lossy(&output.stderr);
+    let stderr = String::from_utf8_lossy(&output.stderr);
     if output.status.success() {
         let stat = |name: &str| {
-            let line = told.lines().find_map(|line| line.strip_prefix(name));
+            let line = stderr.lines().find_map(|line| line.strip_prefix(name));
             line.unwrap_or("?").trim().to_owned()
         };
         println!(
@@ -110,7 +110,7 @@ fn fuzz(project: &Project, programs: &Path, target: &str, seconds: u32) -> Resul
             stat("stat::new_units_added:"),
         );
     } else {
-        let lines: Vec<&str> = told.lines().collect();
+        let lines: Vec<&str> = stderr.lines().collect();
         let last = lines.len().saturating_sub(40);
         println!("{}", lines[last..].join("\n"));
         println!(

@@ -1,4 +1,4 @@
-//! A running `rumbo lab`, seen from outside: its address, its page, its telemetry, and its end.
+//! A running `rumbo lab` as an external process: its address, its page, its telemetry, and its end.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-/// Longest wait for the lab to say where it listens, and for any answer of it.
+/// Longest wait for the lab to print its address, and for any of its answers.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A lab on a free port without a browser; stopped when dropped.
@@ -17,14 +17,14 @@ pub(crate) struct Lab {
     child: Child,
     /// The address it printed, with its one-time token.
     url: String,
-    /// What the token became, once the page was fetched.
+    /// The key that replaced the token when the page was fetched.
     key: Option<String>,
 }
 
 impl Lab {
     /// Starts `command` with `--no-browser --port 0` and a folder for logs added and waits for the address it prints.
     pub(crate) fn start(command: Command) -> Result<Self, String> {
-        // Not among the logs of whoever tests.
+        // Keeps it out of the developer's own logs.
         Self::start_in(command, &std::env::temp_dir().join("rumbo-xtask-logs"))
     }
 
@@ -176,7 +176,7 @@ pub(crate) struct Page(tungstenite::WebSocket<TcpStream>);
 
 impl Page {
     /// Sends an order.
-    pub(crate) fn say(&mut self, order: &Value) -> Result<(), String> {
+    pub(crate) fn send(&mut self, order: &Value) -> Result<(), String> {
         let message = tungstenite::Message::text(order.to_string());
         self.0
             .send(message)

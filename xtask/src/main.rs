@@ -1,9 +1,9 @@
 //! The project's chores, run as `cargo xtask <command>`.
 //!
-//! [`test`] is everything that must hold before a change is merged, [`tidy`] the rules no compiler checks,
-//! [`bench`] the measured figures of docs/figures.md, [`campaign`] what must hold over thousands of seeds, [`sketches`]
-//! the images that tests and examples run, [`figures`] the figures and tables of docs/theory, [`fuzz`] the fuzz targets.
-//! Each prints what it does; none needs anything but cargo to start.
+//! [`test`] is everything that must hold before a change is merged, [`tidy`] the rules that no compiler checks,
+//! [`bench`] the measured figures of docs/figures.md, [`campaign`] the requirements over thousands of seeds,
+//! [`sketches`] the images that tests and examples run, [`figures`] the figures and tables of docs/theory, [`fuzz`] the
+//! fuzz targets. Each prints what it does; none needs anything but cargo to start.
 
 use std::process::ExitCode;
 
@@ -66,7 +66,7 @@ Examples:
 With CI=true in the environment a check that cannot run is a failure, otherwise it is skipped with the remedy.
 Exit status: 0 all well, 1 something failed, 2 wrong usage.";
 
-/// What a command line asks for.
+/// The command line.
 #[derive(Debug, PartialEq)]
 enum Request {
     Help(Option<String>),

@@ -1,4 +1,4 @@
-//! What the chores need to know of a Markdown file: its links, headings, code blocks and tables, each with its line.
+//! The parts of a Markdown file that the chores need: links, headings, code blocks and tables, each with its line.
 
 use std::ops::Range;
 

@@ -37,7 +37,7 @@ impl Project {
         })
     }
 
-    /// A program started in the project's root; what a `rumbo` in it records is not among the logs of whoever tests.
+    /// A program started in the project's root; a `rumbo` in it records outside the developer's own logs.
     pub(crate) fn command(&self, program: impl AsRef<OsStr>) -> Command {
         let mut command = Command::new(program);
         command.current_dir(&self.root);
@@ -52,7 +52,7 @@ impl Project {
         command
     }
 
-    /// Builds the `rumbo` binary as users get it (does nothing when it is fresh) and says where it is.
+    /// Builds the release binary of `rumbo` (does nothing when it is fresh) and returns its path.
     pub(crate) fn release_binary(&self) -> Result<PathBuf, String> {
         run(&mut self.cargo(&["build", "--release", "--locked"]))?;
         Ok(self.release_binary_path())
@@ -104,7 +104,7 @@ fn metadata_with(manifest: &Path, options: &[&str]) -> Result<Value, String> {
     serde_json::from_str(&output(&mut command)?).map_err(|error| format!("cargo metadata: {error}"))
 }
 
-/// Runs a program to its end with its output shown; an error says which failed and how.
+/// Runs a program to its end with its output shown; an error names the program and its failure.
 pub(crate) fn run(command: &mut Command) -> Result<(), String> {
     let status = command
         .stdin(Stdio::null())
@@ -117,7 +117,7 @@ pub(crate) fn run(command: &mut Command) -> Result<(), String> {
     }
 }
 
-/// Runs a program to its end and gives what it wrote to its standard output.
+/// Runs a program to its end and returns its standard output.
 pub(crate) fn output(command: &mut Command) -> Result<String, String> {
     let output = command
         .stdin(Stdio::null())

@@ -1,7 +1,7 @@
-//! Runs every scenario, or those named, with many seeds and prints what is required beside what was measured.
+//! Runs every scenario, or those named, with many seeds and prints requirements beside measurements.
 //!
 //! `cargo xtask campaign` builds and starts it. Arguments: the number of seeds, then names of scenarios (none: all). Exit status 1 if
-//! something required was not met, 2 for wrong arguments.
+//! a requirement was not met, 2 for wrong arguments.
 
 use rumbo_experiment::campaign::{Finding, campaign};
 use std::process::ExitCode;

@@ -1,4 +1,4 @@
-//! Breaks sensors and wires in thousands of drives, and prints what was touched and what was named.
+//! Breaks sensors and wires in thousands of drives, and prints contacts and reported faults.
 //!
 //! `cargo xtask campaign --only faults` builds and starts it, natively and on the image. Arguments: `--seeds N` (50),
 //! `--from N` first seed (1), `--instants N` per drive (5), `--image` (the built one, on the emulated Mega), `--list`
@@ -12,7 +12,7 @@ use rumbo_experiment::files::{FileError, Overrides};
 use rumbo_tools::pages;
 use std::process::ExitCode;
 
-/// What the command line asks for.
+/// The command line.
 struct Args {
     seeds: u64,
     from: u64,
@@ -116,7 +116,7 @@ fn line(drive: &Drive) -> String {
     )
 }
 
-/// Rows of failures, columns of drives: of how many runs how many touched something, and the fastest touch.
+/// Rows of failures, columns of drives: runs, those with a contact, and the fastest contact.
 fn table(drives: &[Drive]) -> String {
     let columns: Vec<usize> = (0..DRIVES.len())
         .filter(|column| drives.iter().any(|drive| drive.drive == *column))

@@ -1,8 +1,8 @@
-//! What the limits of every scenario are about, natively and on the emulated Mega: medians of 20 seeds side by side.
+//! The metrics with limits of every scenario, natively and on the emulated Mega: medians of 20 seeds side by side.
 //!
 //! `cargo xtask campaign --only medians` builds the image and starts it. Arguments: the number of seeds, then names of scenarios (none:
-//! all). With 20 seeds of all, the table between the markers of docs/firmware.md is written anew. Exit status 1 if a median differs by
-//! more than 2 % and more than a quantum.
+//! all). With 20 seeds of all, the table between the markers of docs/firmware.md is rewritten. Exit status 1 if a
+//! median differs by more than 2 % and more than a quantum.
 
 #![allow(missing_docs)]
 
@@ -16,17 +16,17 @@ use std::fmt::Write as _;
 use std::process::ExitCode;
 
 const SEEDS: u64 = 20;
-/// Difference of the medians that is none.
+/// Negligible difference of the medians.
 const ALIKE: f64 = 0.02;
-/// The page, seen from the root, and where in it the table stands.
+/// The page, relative to the root, and the marker of its table.
 const PAGE: &str = "docs/firmware.md";
 const TABLE: &str = "medians";
 
 /// The tick in which a command is taken and the sample in which a signal is judged: 10 ms each.
 const TIME_S: f64 = 0.02;
-/// Way of a wheel between two edges: 384 a turn, 65 mm of wheel.
+/// Distance of a wheel between two edges: 384 a turn, 65 mm of wheel.
 const EDGE_M: f64 = TAU * 0.0325 / 384.0;
-/// A base of 0.12 m turns so far with an edge of one wheel.
+/// Turn of a base of 0.12 m with an edge of one wheel.
 const EDGE_RAD: f64 = EDGE_M / 0.12;
 /// A count of the timer that makes the servo's pulse: 232 for a quarter turn.
 const SERVO_RAD: f64 = FRAC_PI_2 / 232.0;
@@ -49,7 +49,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints the table, and writes it if it is the whole one; says whether all is alike.
+/// Prints the table, and writes it if it is complete; returns whether all medians agree.
 fn compare(seeds: u64, only: &[String]) -> Result<bool, String> {
     let library = Library::new();
     let names = match only {
@@ -146,7 +146,7 @@ impl Table {
     }
 }
 
-/// The middle one; of an even number, half way between the two. What a run does not have it never came to.
+/// The middle value; of an even number, half way between the two. A missing metric counts as infinite.
 fn median(runs: &[RunResult], metric: &str) -> f64 {
     let value = |run: &RunResult| run.metrics.get(metric).copied().unwrap_or(f64::INFINITY);
     let mut values: Vec<f64> = runs.iter().map(value).collect();
@@ -161,7 +161,7 @@ fn median(runs: &[RunResult], metric: &str) -> f64 {
     }
 }
 
-/// The smallest step in which a figure can be told; `None` for counts and ratios.
+/// The resolution of a figure; `None` for counts and ratios.
 fn quantum(setup: &Setup, metric: &str) -> Option<f64> {
     // A wheel's speed by a count of PWM, as the feedforward has it.
     let count_rad_s = 1.0 / PWM_COUNTS / f64::from(ParamId::Velocity.limits().default);

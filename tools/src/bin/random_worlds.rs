@@ -45,7 +45,7 @@ fn main() -> Result<(), FileError> {
     count(&setup)
 }
 
-/// Shares of the kinds of world, and how much farther a robot goes that keeps 3 cm more than its turning circle clear.
+/// Shares of the kinds of world, and the detour of a robot that keeps 3 cm more than its turning circle clear.
 fn count(setup: &Setup) -> Result<(), FileError> {
     let easy_m = Size::of(&setup.robot.plant.body).easy_m();
     let (mut blocked, mut unreachable, mut ratios) = (0, 0, Vec::new());

@@ -1,7 +1,7 @@
 //! How much faster than real time a firmware runs: the emulated Mega with the simulated robot around it, and simavr with the same
 //! image and nothing around it.
 //!
-//! Both by the processor's time that they take, which others who use the machine at the same time change little.
+//! Both are measured in processor time, which other load on the machine changes little.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ const SCENARIO_S: f64 = 10.0;
 /// Runs in one go, for the clock of `times` is coarse.
 const RUNS: u32 = 5;
 const IMAGE_S: f64 = 11.0;
-/// Of several measurements the shortest is the least disturbed one.
+/// The shortest of several measurements is the least disturbed one.
 const TIMES: usize = 5;
 
 /// Factors over real time of a firmware that waits in a loop, and of ones that sleep.
@@ -109,7 +109,7 @@ fn shortest(mut measure: impl FnMut() -> Result<f64, String>) -> Result<f64, Str
 /// The processor's time that a program takes; how it ends does not matter.
 fn cpu_s(project: &Project, program: &Path, arguments: &[&str]) -> Result<f64, String> {
     let mut shell = project.command("sh");
-    // The shell knows what its children took.
+    // The shell reports its children's times.
     shell
         .args(["-c", "\"$@\" >/dev/null 2>&1; times", "sh"])
         .arg(program)

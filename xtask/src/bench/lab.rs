@@ -1,4 +1,4 @@
-//! `rumbo lab` at real time: how soon it answers, and what it costs with nobody looking and with a page connected.
+//! `rumbo lab` at real time: its response times, and its CPU without and with a connected page.
 
 use std::time::{Duration, Instant};
 
@@ -6,7 +6,7 @@ use super::{Figure, process};
 use crate::lab::Lab;
 use crate::project::Project;
 
-/// How long CPU time is watched.
+/// Duration of the CPU measurement.
 const WATCH: Duration = Duration::from_secs(10);
 
 /// Start times, CPU and memory.

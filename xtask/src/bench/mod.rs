@@ -1,6 +1,6 @@
 //! `cargo xtask bench`: the measured figures of docs/figures.md, as a table of measurement and budget.
 //!
-//! The figures are of the machine at hand, whatever else it does at the time: they are printed, never asserted.
+//! The figures are of the machine at hand and its present load: they are printed, never asserted.
 
 mod emulator;
 mod headless;

@@ -1,4 +1,4 @@
-// Measures in an already running Chromium: "ready", then for each line read, a word and an address, what was asked.
+// Measures in an already running Chromium: prints "ready", then answers each line read, a word and an address.
 import { createInterface } from "node:readline";
 import { chromium } from "playwright-core";
 
@@ -17,7 +17,7 @@ async function open(url) {
   return "live";
 }
 
-/** From the last byte of a frame, heard by the station, to the frame after the one that drew it: 95 of 100 [ms]. */
+/** From the last byte of a frame, received by the station, to the frame after the one that drew it: 95 of 100 [ms]. */
 async function age() {
   await page.evaluate(() => { rumbo.ages.measured = []; });
   await page.waitForFunction(() => rumbo.ages.measured.length >= 200, null, { timeout: 60_000 });
@@ -32,14 +32,14 @@ async function stop() {
     await page.waitForFunction(() => rumbo.state().robot.armed);
     await page.waitForTimeout(300 + 37 * run % 100);
     took.push(await page.evaluate(async () => {
-      const { heard_ms, session_ms } = rumbo.ages;
-      const pressed_ms = performance.timeOrigin + performance.now() - (heard_ms - session_ms);
-      const told = () => [...document.querySelectorAll("#events li")].filter((each) => each.textContent.endsWith("disarmed"));
-      const before = told().length;
+      const { received_ms, session_ms } = rumbo.ages;
+      const pressed_ms = performance.timeOrigin + performance.now() - (received_ms - session_ms);
+      const disarmed = () => [...document.querySelectorAll("#events li")].filter((each) => each.textContent.endsWith("disarmed"));
+      const before = disarmed().length;
       document.querySelector("#stop").click();
       for (let waited_ms = 0; waited_ms < 10_000; waited_ms += 20) {
         await new Promise((done) => setTimeout(done, 20));
-        const lines = told();
+        const lines = disarmed();
         if (lines.length > before) return Number(lines[0].dataset.t) * 1e3 + 3 - pressed_ms;
       }
       throw new Error("STOP was not answered");

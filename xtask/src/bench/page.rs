@@ -7,7 +7,7 @@ use crate::lab::Lab;
 use crate::project::{Project, find_program};
 use crate::test::installed_chromium;
 
-/// How long CPU time is watched.
+/// Duration of the CPU measurement.
 const WATCH: Duration = Duration::from_secs(10);
 
 /// The link's own time for STOP: 9 bytes at 9600 baud, and 8 ms latency of the module.
@@ -15,7 +15,7 @@ const LINK_MS: u32 = 17;
 /// The browser is gone.
 const ENDED: &str = "the browser ended; are the packages of web/ installed (`npm ci`)?";
 
-/// Drives the browser: for each line that is asked of it, a word and an address, it answers one.
+/// Drives the browser: each request, a word and an address, gets one line as its answer.
 const SCRIPT: &str = include_str!("page.mjs");
 
 /// Time to live plots, and CPU with the page open.
@@ -90,7 +90,7 @@ impl Browser {
         Ok(browser)
     }
 
-    /// What the script answers.
+    /// The script's answer.
     fn ask(&mut self, what: &str) -> Result<String, String> {
         use std::io::Write;
         let stdin = self.child.stdin.as_mut().ok_or("node has no input")?;

@@ -14,7 +14,7 @@ use crate::project::{Project, run};
 const KILLED: u32 = 50;
 /// Length of the long log \[s\].
 const HOUR_S: f64 = 3_600.0;
-/// Places looked at in it.
+/// Seeks in it.
 const SEEKS: u32 = 40;
 
 /// All of it.
@@ -30,14 +30,14 @@ pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
     Ok(figures)
 }
 
-/// Kills sessions, and looks what is missing in their logs.
+/// Kills sessions, and measures what is missing in their logs.
 fn killed(project: &Project, folder: &Path) -> Result<Figure, String> {
     let (mut worst_s, mut unreadable) = (0.0_f64, 0);
     for number in 0..KILLED {
         let logs = folder.join(format!("killed-{number}"));
         let mut lab = Lab::start_in(rumbo(project, &["lab"]), &logs)?;
         let mut page = lab.open()?;
-        page.say(&json!({"type": "arm"}))?;
+        page.send(&json!({"type": "arm"}))?;
         // Scattered over 0.5 to 2.5 s.
         let lives = Duration::from_millis(500 + u64::from(number * 7_919 % 2_000));
         let until = Instant::now() + lives;
@@ -79,7 +79,7 @@ fn killed(project: &Project, folder: &Path) -> Result<Figure, String> {
     ))
 }
 
-/// Records an hour, as fast as it goes, and shows it.
+/// Records an hour, as fast as possible, and replays it.
 fn an_hour(project: &Project, folder: &Path) -> Result<Vec<Figure>, String> {
     let logs = folder.join("hour");
     let start = rumbo(
@@ -88,7 +88,7 @@ fn an_hour(project: &Project, folder: &Path) -> Result<Vec<Figure>, String> {
     );
     let mut lab = Lab::start_in(start, &logs)?;
     let mut page = lab.open()?;
-    page.say(&json!({"type": "arm"}))?;
+    page.send(&json!({"type": "arm"}))?;
     while page.read()?["state"]["t_s"].as_f64().unwrap_or(0.0) < HOUR_S {}
     let resident_mb = process::resident_mb(lab.pid())?;
     drop(page);
@@ -107,7 +107,7 @@ fn an_hour(project: &Project, folder: &Path) -> Result<Vec<Figure>, String> {
     for number in 0..SEEKS {
         let t_s = f64::from(number * 7_919 % 3_500) + 60.0;
         let begin = Instant::now();
-        page.say(&json!({"type": "seek", "t_s": t_s}))?;
+        page.send(&json!({"type": "seek", "t_s": t_s}))?;
         // The last row before that place.
         while last_row_s(&page.read()?).is_none_or(|row_s| (row_s - t_s).abs() > 0.1) {}
         took_ms.push(begin.elapsed().as_secs_f64() * 1e3);
@@ -161,7 +161,7 @@ fn pulled_out(project: &Project, folder: &Path) -> Result<Figure, String> {
     let mut armed = false;
     for _ in 0..5 {
         connected(&mut page, true)?;
-        page.say(&json!({"type": "arm"}))?;
+        page.send(&json!({"type": "arm"}))?;
         while page.read()?["state"]["robot"]["armed"] != true {}
         drop(robot);
         connected(&mut page, false)?;
@@ -183,7 +183,7 @@ fn pulled_out(project: &Project, folder: &Path) -> Result<Figure, String> {
         "never armed by that"
     };
     Ok(Figure::new(
-        "connect: port back to robot heard, worst of 5",
+        "connect: port back to first frame, worst of 5",
         format!("{} ms, {armed}", worst.as_millis()),
         "2 s",
     ))

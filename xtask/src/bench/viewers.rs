@@ -1,4 +1,4 @@
-//! Twenty pages at once: what they cost, and whether the session notices.
+//! Twenty pages at once: their cost, and their effect on the session.
 
 use std::time::{Duration, Instant};
 
@@ -78,7 +78,7 @@ fn stops(page: &mut Page) -> Result<f64, String> {
     let mut took_ms = Vec::new();
     for _ in 0..STOPS {
         let begin = Instant::now();
-        page.say(&json!({"type": "stop"}))?;
+        page.send(&json!({"type": "stop"}))?;
         let done = |message: &serde_json::Value| {
             let mut events = message["events"].as_array().into_iter().flatten();
             events.any(|event| event["text"] == "STOP: done")

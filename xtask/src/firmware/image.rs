@@ -1,10 +1,10 @@
-//! The linked image: looked through for what must not be in it, stamped with its hash.
+//! The linked image: checked for forbidden content, stamped with its hash.
 
 use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SymbolKind};
 
 /// Where the image keeps its hash.
 const HASH_SYMBOL: &str = "RUMBO_IMAGE_HASH";
-/// What says that a panic or formatted text is in the image.
+/// Symbols of panics and formatted text in the image.
 const FORBIDDEN: [&str; 3] = ["panic", "core3fmt", "unwrap_failed"];
 
 /// Refuses an image that can panic or format text.
@@ -39,7 +39,7 @@ pub(super) fn stamp(elf: &mut [u8]) -> Result<u32, String> {
     let hash = bytes.fold(0x811C_9DC5_u32, |hash, byte| {
         (hash ^ u32::from(*byte)).wrapping_mul(0x0100_0193)
     });
-    // Zero stands for an image that has none.
+    // Zero means an image without a hash.
     let hash = hash.max(1);
     if let Some(target) = elf.get_mut(place..place + 4) {
         target.copy_from_slice(&hash.to_le_bytes());

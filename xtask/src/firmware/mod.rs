@@ -1,7 +1,7 @@
 //! `cargo xtask firmware`: the image for the Mega, whole, with its sizes.
 //!
-//! cargo builds `firmware/` with a Rust for the AVR ([`toolchain`]). Then the image is checked for what must not be in
-//! it ([`image`], [`stack_arguments`]), its debugging information is mended ([`debugging`]) and its hash is written
+//! cargo builds `firmware/` with a Rust for the AVR ([`toolchain`]). Then the image is checked for forbidden content
+//! ([`image`], [`stack_arguments`]), its debugging information is corrected ([`debugging`]) and its hash is written
 //! into it. The product is `target/firmware/rumbo.elf` and `rumbo.hex`. More flash or SRAM than the robot file allows
 //! is an error ([`sizes`]).
 
@@ -21,7 +21,7 @@ use toolchain::Toolchain;
 /// The robot whose caps hold.
 const ROBOT: &str = "robots/memoria.toml";
 
-/// Builds the image; says which tool is missing otherwise.
+/// Builds the image, or reports the missing tool.
 pub(crate) fn run(project: &Project) -> Result<bool, String> {
     match build(project) {
         Ok(()) => Ok(true),
@@ -57,7 +57,7 @@ pub(crate) fn build(project: &Project) -> Result<(), Stop> {
     Ok(within_caps(project, &sizes)?)
 }
 
-/// Refuses what must not be in an image; measures it.
+/// Rejects forbidden content; measures the image.
 fn check(project: &Project, linked: &Path) -> Result<Sizes, String> {
     let disassembly = output(
         project
@@ -73,7 +73,7 @@ fn check(project: &Project, linked: &Path) -> Result<Sizes, String> {
     Sizes::of(&file).map_err(wrong)
 }
 
-/// Makes of the linked image the one that is used; gives its hash.
+/// Turns the linked image into the final one; returns its hash.
 fn finish(linked: &Path, elf: &Path) -> Result<u32, String> {
     let mut bytes = debugging::mend(&read(linked)?)?;
     let hash = image::stamp(&mut bytes)?;

@@ -1,4 +1,4 @@
-//! What each crate and each of its modules takes of flash and static SRAM.
+//! Flash and static SRAM of each crate and module.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -23,7 +23,7 @@ impl AddAssign for Bytes {
     }
 }
 
-/// What an image takes.
+/// Sizes of an image.
 #[derive(Debug, Default)]
 pub(super) struct Sizes {
     pub(super) whole: Bytes,

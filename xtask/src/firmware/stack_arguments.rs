@@ -4,7 +4,7 @@
 //! left on the stack one byte too low (rust-lang/rust#149223 shows one consequence). The disassembly shows such a
 //! function: behind `in r28, SPL` and `in r29, SPH` it moves Y down by its frame, and then uses Y+1 to Y+frame; only
 //! arguments lie above. Y also moves for a variable that is far away, with the flags kept in r0 meanwhile. Delete this
-//! when LLVM is mended.
+//! when LLVM is fixed.
 
 /// Checks the output of `avr-objdump -d --no-show-raw-insn`.
 pub(super) fn check(disassembly: &str) -> Result<(), String> {

@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::project::{Project, find_program, output};
 use crate::test::{Stop, tools};
 
-/// What pins the nightly; cargo in that folder obeys it too.
+/// The file that pins the nightly; cargo in that folder obeys it too.
 const PIN: &str = "firmware/rust-toolchain.toml";
 const DEBIAN: [&str; 6] = [
     "rustc-web",
@@ -42,7 +42,7 @@ impl Toolchain {
         tools::install(project, name, &DEBIAN, &nightly, find)
     }
 
-    /// Which compiler that is, in one line.
+    /// The compiler's description, in one line.
     pub(crate) fn describe(&self) -> Result<String, String> {
         let version = output(self.command("rustc").arg("-vV"))?;
         let mut lines = version.lines();
@@ -54,7 +54,7 @@ impl Toolchain {
         })
     }
 
-    /// A command of this toolchain, `cargo` or `rustc`, free of what the cargo around us has set.
+    /// A command of this toolchain, `cargo` or `rustc`, without the environment set by the outer cargo.
     pub(crate) fn command(&self, program: &str) -> Command {
         let mut command = match self {
             Self::Debian => {

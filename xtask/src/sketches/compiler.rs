@@ -7,7 +7,7 @@ use std::process::Command;
 use super::{files_of, preprocess, read};
 use crate::project::{output, run};
 
-/// What every call gets: the Mega and the version that the sketch may ask for.
+/// Options of every call: the Mega and the version that a sketch may test for.
 const CHIP: [&str; 6] = [
     "-mmcu=atmega2560",
     "-DF_CPU=16000000L",
@@ -48,7 +48,7 @@ pub(super) struct Compiler {
     core: PathBuf,
     libraries: Vec<PathBuf>,
     out: PathBuf,
-    /// What all products depend on.
+    /// Common inputs of all products.
     version: String,
 }
 
@@ -98,7 +98,7 @@ impl Compiler {
         note(&archive, &key)
     }
 
-    /// The image of a sketch; says whether it had to be built.
+    /// The image of a sketch; returns whether it had to be built.
     pub(super) fn build_sketch(
         &self,
         sketch: &Path,
@@ -173,7 +173,7 @@ impl Compiler {
             .find(|folder| folder.join(header).is_file())
     }
 
-    /// Compiles one file; gives its object.
+    /// Compiles one file; returns its object.
     fn compile(
         &self,
         file: &Path,

@@ -20,7 +20,7 @@ const FOLDERS: [&str; 3] = [
     "examples/arduino",
 ];
 
-/// One of the images of a sketch with a choice at build time: what its name ends in, and the macros.
+/// One of the images of a sketch with build-time options: the suffix of its name, and the macros.
 type Variant = (&'static str, &'static [&'static str]);
 
 /// Sketches that make several images.
@@ -39,7 +39,7 @@ const VARIANTS: [(&str, &[Variant]); 1] = [(
     ],
 )];
 
-/// Builds every sketch; says which tool is missing otherwise.
+/// Builds every sketch, or reports the missing tool.
 pub(crate) fn run(project: &Project) -> Result<bool, String> {
     match build(project) {
         Ok(()) => Ok(true),

@@ -1,4 +1,5 @@
-//! What the Arduino IDE does to `.ino` files: joins them, includes `Arduino.h`, declares every function before the first.
+//! Preprocesses `.ino` files as the Arduino IDE does: joins them, includes `Arduino.h`, declares every function before
+//! the first.
 
 use std::path::{Path, PathBuf};
 
@@ -40,7 +41,7 @@ fn with_declarations(text: &str) -> String {
         .map(|(_, head)| format!("{head};\n"))
         .collect();
     let (before, after) = text.split_at(functions.first().map_or(text.len(), |(at, _)| *at));
-    // What stands after goes on with the number of its line.
+    // The rest continues with its line number.
     let file = before.rfind("#line 1 ").unwrap_or(0);
     let name = before[file..]
         .lines()

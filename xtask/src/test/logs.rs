@@ -30,7 +30,7 @@ pub(super) fn check(project: &Project) -> Result<(), Stop> {
     for scenario in ["mode1", "mode8-lane"] {
         let mut command = project.command(&rumbo);
         command.args(["run", scenario, "--out"]).arg(&folder);
-        // Whether a limit is missed is not asked here.
+        // Missed limits do not matter here.
         let status = command.stdout(Stdio::null()).status();
         if !status.is_ok_and(|status| status.code().is_some_and(|code| code < 2)) {
             return Err(Stop::Failed(format!("`rumbo run {scenario}` failed")));

@@ -31,7 +31,7 @@ enum Outcome {
 pub(crate) enum Stop {
     /// The check ran, or should have run, and failed.
     Failed(String),
-    /// A tool is missing and cannot be installed from here; says which and how to get it.
+    /// A tool is missing and cannot be installed from here: its name and how to get it.
     Missing(String),
 }
 
@@ -229,7 +229,7 @@ fn found_nothing(nothing: bool) -> Result<(), Stop> {
     }
 }
 
-/// The robot's crates are checked a second time as the firmware sees them, without their host-only features.
+/// The robot's crates are checked a second time as the firmware uses them, without their host-only features.
 fn clippy(project: &Project) -> Result<(), Stop> {
     tools::component(project, "clippy", "clippy")?;
     const DENY: [&str; 3] = ["--", "-D", "warnings"];
@@ -255,7 +255,7 @@ fn doc(project: &Project) -> Result<(), Stop> {
     Ok(run_command(doc.env("RUSTDOCFLAGS", "-D warnings"))?)
 }
 
-/// Where simavr or avr-gdb is missing, the tests that need it skip themselves, and so this step is not whole.
+/// Where simavr or avr-gdb is missing, the tests that need it skip themselves, so this step is incomplete.
 fn tests(project: &Project) -> Result<(), Stop> {
     let tools = [tools::simavr(project), tools::avr_gdb(project)];
     run_command(&mut project.cargo(&["test", "--workspace", "--no-fail-fast", "--locked"]))?;
@@ -313,7 +313,7 @@ fn build(project: &Project) -> Result<(), Stop> {
     Ok(())
 }
 
-/// The same sources give the same bytes, so that a difference is a change of behaviour that the pages do not tell yet.
+/// The same sources give the same bytes, so a difference is a change of behaviour that the pages do not show yet.
 fn figures(project: &Project) -> Result<(), Stop> {
     Ok(crate::figures::check(project)?)
 }

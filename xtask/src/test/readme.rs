@@ -2,8 +2,9 @@
 //!
 //! Every line of its `sh` blocks is a command: `cargo run --release` and `rumbo lab` must serve the dashboard's page
 //! (on a free port, without opening a browser), other `rumbo` commands must succeed, `cargo xtask` commands must be
-//! known. A line of any other kind is an error: nobody would notice when it stops working. Blocks without `sh` are
-//! not run: they need a file or a robot of the reader's. README.es.md has the same blocks, so its commands are those.
+//! known. A line of any other kind is an error, since nothing would detect that it stops working. Blocks without `sh`
+//! are not run: they need a file or a robot of the reader's. README.es.md has the same blocks, so its commands are
+//! those.
 
 use std::path::Path;
 use std::process::Stdio;
@@ -85,7 +86,7 @@ fn difference(english: &str, spanish: &str) -> Option<String> {
     ))
 }
 
-/// What one line of the README is.
+/// The kind of a line of the README.
 #[derive(Debug, PartialEq)]
 enum Command {
     /// Serves the dashboard.
@@ -97,7 +98,7 @@ enum Command {
     Rumbo(Vec<String>),
     /// A chore, by its arguments.
     Xtask(Vec<String>),
-    /// Something that this check does not know.
+    /// Unknown to this check.
     Unknown(String),
 }
 

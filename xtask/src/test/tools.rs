@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::Stop;
 use crate::project::{Project, find_program, output, run};
 
-/// Another apt is looked for this often, and so many times.
+/// Interval and number of checks for another running apt.
 const AGAIN: Duration = Duration::from_secs(5);
 const PATIENCE: u32 = 120;
 

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Finding, Tree};
 
-/// The crates that keep to it.
+/// The crates to which the rule applies.
 const CRATES: [&str; 3] = ["crates/sim", "crates/experiment", "crates/station"];
 
 /// An import: the file and line that has it.
@@ -40,7 +40,7 @@ fn in_crate(tree: &Tree, folder: &str) -> Vec<Finding> {
     findings
 }
 
-/// A way from one module to another by imports.
+/// A path from one module to another by imports.
 fn way<'a>(imports: &Imports<'a>, from: &'a str, to: &str) -> Option<Vec<&'a str>> {
     let mut seen = BTreeSet::from([from]);
     let mut ways = vec![vec![from]];

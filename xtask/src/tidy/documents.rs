@@ -33,8 +33,8 @@ pub(crate) fn check(tree: &Tree) -> Vec<Finding> {
     findings
 }
 
-/// What is wrong with a link of the file `from`, if anything. Addresses with a scheme are not followed: other sites, and
-/// figures that the report's runs give (`run:`).
+/// The problem of a link in the file `from`, if any. Addresses with a scheme are not followed: other sites, and figures
+/// from the report's runs (`run:`).
 fn broken(tree: &Tree, from: &str, target: &str) -> Option<String> {
     let of_scheme = |name: &str| name.chars().all(|letter| letter.is_ascii_alphabetic());
     if target

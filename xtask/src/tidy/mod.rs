@@ -1,8 +1,8 @@
 //! `cargo xtask tidy`: the rules that no compiler checks, each with the place and the remedy.
 //!
 //! [`dependencies`] keeps the diagram of ARCHITECTURE.md true, [`circles`] that modules of a crate depend one way,
-//! [`source`] what the crates promise about their code, [`documents`] links and numbering, [`presence`] the files that
-//! others rely on. Rules are functions of a [`Tree`], so that they are tested on small made-up trees.
+//! [`source`] guarantees of the crates' code, [`documents`] links and numbering, [`presence`] required files. Rules are
+//! functions of a [`Tree`], so that they can be tested on small made-up trees.
 
 mod circles;
 mod dependencies;
@@ -76,7 +76,7 @@ impl Tree {
 pub(crate) struct Finding {
     path: String,
     line: usize,
-    /// What is wrong, and the remedy.
+    /// The problem, and the remedy.
     text: String,
     /// Does not fail the check.
     hint: bool,

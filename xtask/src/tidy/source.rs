@@ -1,4 +1,4 @@
-//! What the crates promise about their code: no std on the chip, the same bits everywhere, lints, no machine paths.
+//! Guarantees of the crates' code: no std on the chip, the same bits everywhere, lints, no machine paths.
 
 use super::{Finding, Tree};
 
@@ -136,7 +136,7 @@ fn machine_paths(path: &str, text: &str) -> Vec<Finding> {
     for (index, line) in text.lines().enumerate() {
         for folder in MACHINE_FOLDERS {
             let absolute = line.match_indices(&format!("/{folder}/")).any(|(at, _)| {
-                // Neither the rest of a longer path or address, nor a path made relative by what stands before it.
+                // Neither the rest of a longer path or address, nor a path made relative by the text before it.
                 !line[..at].ends_with(|c: char| c.is_alphanumeric() || "._-/*~:}>)".contains(c))
             });
             if absolute {

@@ -4,8 +4,8 @@
 //! pages ──► runs (20 seeds of each program) ──► chart (SVG in docs/img/theory/) and table (Markdown between markers)
 //! ```
 //!
-//! A page takes what lies between `<!-- figures:NAME -->` and `<!-- /figures -->`; what stood there is replaced. The same
-//! sources give the same bytes: `--check` writes nothing and says what is out of date.
+//! The text of a page between `<!-- figures:NAME -->` and `<!-- /figures -->` is replaced. The same sources give the
+//! same bytes: `--check` writes nothing and lists what is out of date.
 
 #![allow(missing_docs)]
 
@@ -23,13 +23,13 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Where the figures go, seen from the root and from a page.
+/// Folder of the figures, relative to the root and to a page.
 const FOLDER: &str = "docs/img/theory";
 const FROM_PAGE: &str = "../img/theory";
-/// The same from a page of docs/ itself, whose name begins with `../`.
+/// The same relative to a page of docs/ itself, whose name begins with `../`.
 const FROM_ABOVE: &str = "img/theory";
 
-/// What a file should hold.
+/// The expected content of a file.
 struct File {
     path: String,
     text: String,
@@ -98,7 +98,7 @@ fn files(root: &Path, only: &[&str]) -> Result<Vec<File>, String> {
     Ok(files)
 }
 
-/// The text with what stands between the page's markers replaced.
+/// The text with the section between the page's markers replaced.
 fn replace(text: &str, name: &str, section: &str) -> Option<String> {
     let begin = format!("<!-- figures:{name} -->\n");
     let start = text.find(&begin)? + begin.len();
@@ -115,7 +115,7 @@ fn read(root: &Path, path: &str) -> Result<String, String> {
     fs::read_to_string(root.join(path)).map_err(|error| format!("{path}: {error}"))
 }
 
-/// Writes what differs, or only names it. False if something differs and is not written.
+/// Writes what differs, or only lists it. False if something differs and is not written.
 fn settle(root: &Path, files: &[File], check: bool) -> Result<bool, String> {
     let mut up_to_date = true;
     for File { path, text } in files {

@@ -6,15 +6,15 @@ use rumbo_sim::trace::Sample;
 
 pub(crate) const SEEDS: u64 = 20;
 
-/// What differs from the scenario as it is.
+/// Changes to the scenario.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Change {
     pub(crate) program: NativeProgram,
     /// Longer than the scenario, for a program that needs it [s].
     pub(crate) duration_s: Option<f64>,
-    /// Commands from the third on come this many times later.
+    /// Factor on the times of commands from the third on.
     pub(crate) later: Option<f64>,
-    /// As the robot comes, whatever the scenario says.
+    /// Without a calibration, even if the scenario has one.
     pub(crate) uncalibrated: bool,
     /// Numbers of the plant.
     pub(crate) plant: &'static [(&'static str, f64)],
@@ -40,8 +40,8 @@ const YAW: &[(&str, f64)] = &[
 const YAW_AND_EARS: &[(&str, f64)] = &[YAW[0], YAW[1], ("sonar.disturbed_weakness", 1.0)];
 const YAW_AND_FLOOR: &[(&str, f64)] = &[YAW[0], YAW[1], ("floor.friction_scale", 0.64)];
 
-/// The same on robots like the report's: they turn as it did along its wall; in mode 2 their sonars disturb each other no
-/// more at a metre than its report tells; in modes 3 and 4 the floor is the one of its runs before walls. See
+/// The same on robots like the report's: they turn as it did along its wall; in mode 2 their sonars disturb each other
+/// at a metre no more than its report states; in modes 3 and 4 the floor is that of its runs before walls. See
 /// docs/theory/baseline.md.
 pub(crate) fn as_recorded(scenario: &str, change: Change) -> Change {
     let plant = match scenario {
@@ -52,11 +52,11 @@ pub(crate) fn as_recorded(scenario: &str, change: Change) -> Change {
     Change { plant, ..change }
 }
 
-/// The runs, and what is needed to read them.
+/// The runs, and what is needed to interpret them.
 pub(crate) struct Runs {
     pub(crate) setup: Setup,
     pub(crate) results: Vec<RunResult>,
-    /// For each run: distances times this are those of a robot that hears sound at 343.4 m/s.
+    /// For each run: factor that converts distances to a speed of sound of 343.4 m/s.
     scales: Vec<f64>,
 }
 
@@ -129,7 +129,7 @@ impl Runs {
             .collect()
     }
 
-    /// Median and worst of a metric; what never happened is the worst there is. `None` where no run has it.
+    /// Median and worst of a metric; an event that never happened is the worst. `None` where no run has it.
     pub(crate) fn median_and_worst(&self, metric: &str, least_is_worst: bool) -> Option<[f64; 2]> {
         let mut values: Vec<f64> = self
             .results

@@ -9,7 +9,7 @@ pub(crate) struct Row {
     /// From the metric's unit to the one shown.
     pub(crate) factor: f64,
     pub(crate) unit: &'static str,
-    /// What the report's robot did, as its report or its recorded run tells.
+    /// The report's robot, from its report or its recorded run.
     pub(crate) real: &'static str,
     /// Less is worse.
     pub(crate) least_is_worst: bool,
@@ -58,7 +58,7 @@ pub(crate) fn table(columns: &[(&str, &Runs)], rows: &[Row]) -> String {
     text
 }
 
-/// Median, and in parentheses least and most.
+/// Median, and in parentheses min and max.
 pub(crate) fn spread(row: &Row, runs: &Runs) -> String {
     let Some([median, most]) = runs.median_and_worst(row.metric, false) else {
         return "-".into();

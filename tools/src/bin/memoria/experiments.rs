@@ -1,4 +1,4 @@
-//! Which scenarios, for how long the report's program gets, and what is compared.
+//! The scenarios, the report's program's time in each, and the metrics compared.
 
 /// One row.
 pub(crate) struct Metric {
@@ -15,7 +15,7 @@ pub(crate) struct Experiment {
     /// Ending of the image's name.
     pub(crate) sketch: &'static str,
     pub(crate) duration_s: f64,
-    /// What is typed for the profile besides `ON`.
+    /// Lines sent for the profile besides `ON`.
     pub(crate) line: &'static str,
     pub(crate) metrics: &'static [Metric],
 }

@@ -1,5 +1,5 @@
 //! The report's program as an Arduino sketch (`examples/arduino/memoria`) on the emulated Mega, beside its native form and our
-//! core, natively and as the Mega's image: one table of what each scenario measures and where the chip's time goes.
+//! core, natively and as the Mega's image: one table of each scenario's metrics and of the chip's time.
 //! `cargo xtask bench --only memoria` or `cargo xtask memoria`.
 //!
 //! Arguments: how many seeds (default 5), and scenarios (default all). All of them with 5 seeds go into
@@ -38,7 +38,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints the tables, and writes the whole ones.
+/// Prints the tables, and writes the complete ones.
 fn print(seeds: u64, names: &[String]) -> Result<(), FileError> {
     let mut whole = String::from(
         "| scenario | | the sketch | on robots that turn as recorded | its native form | ours | ours on the Mega |\n\
@@ -131,7 +131,7 @@ fn rows(
     }
     let sketch = time::of_the_sketch(experiment)?;
     let mut ours = time::of_ours(experiment)?;
-    // Where no echo is asked for, the idle sonars' echoes say nothing.
+    // Without requested echoes, those of the idle sonars carry no information.
     ours.echo_to_pwm_ms = ours
         .echo_to_pwm_ms
         .filter(|_| sketch.echo_to_pwm_ms.is_some());
@@ -152,7 +152,7 @@ fn rows(
     Ok(())
 }
 
-/// What is told of a program's times, by name.
+/// A program's times as text, by name.
 type Figure = fn(&Times) -> String;
 const TIMES: [(&str, Figure); 7] = [
     ("period of the loop, median", |times| {
@@ -166,15 +166,15 @@ const TIMES: [(&str, Figure); 7] = [
         percent(times.waits[0])
     }),
     ("from an echo to the PWM, median", |times| {
-        let told = times.echo_to_pwm_ms.map(|ms| format!("{ms:.1} ms"));
-        told.unwrap_or_else(|| "-".to_owned())
+        let text = times.echo_to_pwm_ms.map(|ms| format!("{ms:.1} ms"));
+        text.unwrap_or_else(|| "-".to_owned())
     }),
     ("longest interrupt", |times| {
         format!("{:.1} us", times.interrupt_us)
     }),
     ("worst wait of an encoder's interrupt", |times| {
-        let told = times.encoder_us.map(|us| format!("{us:.1} us"));
-        told.unwrap_or_else(|| "-".to_owned())
+        let text = times.encoder_us.map(|us| format!("{us:.1} us"));
+        text.unwrap_or_else(|| "-".to_owned())
     }),
 ];
 
@@ -182,7 +182,7 @@ fn percent(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)
 }
 
-/// What the runs gave, in order.
+/// The results of the runs, in order.
 fn sorted(metric: &Metric, runs: &[RunResult]) -> Vec<f64> {
     let value = |run: &RunResult| run.metrics.get(metric.name).copied();
     let mut values: Vec<f64> = runs.iter().filter_map(value).collect();

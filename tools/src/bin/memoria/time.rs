@@ -1,5 +1,5 @@
-//! Where the chip's time goes in each mode: the loop's period, the share of time that waits, how soon the wheels follow an echo, the
-//! interrupts.
+//! Use of the chip's time in each mode: the loop's period, the share spent waiting, the latency from an echo to the
+//! wheels, the interrupts.
 
 use crate::experiments::Experiment;
 use crate::{our_setup, sketch_setup};
@@ -12,7 +12,7 @@ use rumbo_sim::Sim;
 /// From `ON` to the end of the profile [us].
 const START_US: u64 = 500_000;
 const END_US: u64 = 12_500_000;
-/// Time between two looks at the robot [us].
+/// Time between two samples of the robot [us].
 const STEP_US: u64 = 10_000;
 const CYCLES_PER_US: f64 = 16.0;
 /// Ours: nothing that is set sooner after an echo has seen it, for outputs follow the inputs by 3 ms.
@@ -30,7 +30,7 @@ const TICK: u8 = 17;
 pub(crate) struct Times {
     /// Of the loop: median, longest [ms].
     pub(crate) period_ms: [f64; 2],
-    /// Share of time that waits: for the serial line, in all.
+    /// Share of time spent waiting: for the serial line, in all.
     pub(crate) waits: [f64; 2],
     /// From the end of an echo to the next change of a motor's PWM, median [ms].
     pub(crate) echo_to_pwm_ms: Option<f64>,
@@ -40,7 +40,7 @@ pub(crate) struct Times {
     pub(crate) encoder_us: Option<f64>,
 }
 
-/// What is noted of a run besides the profile.
+/// What is recorded of a run besides the profile.
 #[derive(Default)]
 struct Notes {
     begun: bool,
@@ -51,7 +51,7 @@ struct Notes {
 }
 
 impl Notes {
-    /// Looks at the robot; begins the profile the first time.
+    /// Samples the robot; begins the profile the first time.
     fn look(&mut self, setup: &Setup, sim: &mut Sim) {
         let now_us = sim.now_us();
         let driven_us = sim.driven_us();
@@ -147,7 +147,7 @@ pub(crate) fn of_ours(experiment: &Experiment) -> Result<Times, FileError> {
     Ok(times)
 }
 
-/// The same with what the profile says.
+/// The same with the profile's figures.
 fn with_profile(times: Times, sim: &Sim) -> Times {
     let chip = sim.mega().map(rumbo_sim::mega::Mega::chip);
     let Some(profile) = chip.and_then(|chip| chip.observers().profiled()) else {
@@ -175,7 +175,7 @@ fn with_profile(times: Times, sim: &Sim) -> Times {
     Times {
         period_ms: match times.period_ms {
             [0.0, _] => ours.unwrap_or_default(),
-            told => told,
+            time => time,
         },
         waits: [serial, serial + others],
         interrupt_us: us(interrupts.iter().map(|it| it.longest).max().unwrap_or(0)),

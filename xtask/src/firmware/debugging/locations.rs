@@ -1,8 +1,8 @@
 //! Location lists (`.debug_loc`): where variables are.
 //!
 //! LLVM describes a variable in several registers by pieces of two registers, of which GDB 13 reads one; here each
-//! register has a piece of its own, as avr-gcc has it. And a variable of a frame is one byte above where LLVM puts it:
-//! Y points below the frame, as the stack pointer does. Delete this when LLVM is mended.
+//! register has a separate piece, as in avr-gcc's output. And a variable of a frame is one byte above LLVM's offset:
+//! Y points below the frame, as the stack pointer does. Delete this when LLVM is fixed.
 
 use std::collections::{HashMap, HashSet};
 use std::error::Error;
@@ -90,7 +90,7 @@ pub(super) fn rewrite<R: Reader<Offset = usize>>(
     })
 }
 
-/// The expression as avr-gcc would have it.
+/// The expression as avr-gcc would write it.
 fn expression<R: Reader<Offset = usize>>(
     old: Expression<R>,
     has_frame: bool,

@@ -1,8 +1,8 @@
-//! Mends the image's debugging information for GDB.
+//! Corrects the image's debugging information for GDB.
 //!
 //! LLVM writes addresses of 16 bits, which reach neither code above 64 KB nor, for GDB, any variable (0x800000 and up).
 //! The linker keeps its relocations (`firmware/build.rs`), and they hold the whole address. The information is read
-//! with them ([`relocated`]) and written with addresses of 32 bits, as avr-gcc has them, and with corrected locations
+//! with them ([`relocated`]) and written with addresses of 32 bits, as avr-gcc does, and with corrected locations
 //! of variables ([`locations`]). None of it goes to the chip.
 
 mod locations;
@@ -135,7 +135,7 @@ fn relocations<'a>(image: &'a Builder<'_>) -> impl Iterator<Item = (String, &'a 
     })
 }
 
-/// What relocations give.
+/// The values of relocations.
 fn values_of(image: &Builder<'_>, relocations: &[Relocation]) -> Values {
     let values = relocations.iter().filter_map(|relocation| {
         let bytes = match relocation.r_type {

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use gimli::{EndianSlice, Format, LittleEndian, Reader, ReaderOffsetId, Result as Read};
 
 type Slice<'a> = EndianSlice<'a, LittleEndian>;
-/// What a relocation gives, by its place in a section, and how many bytes it has there.
+/// Value and size of a relocation, by its offset in a section.
 pub(super) type Values = HashMap<usize, (u64, usize)>;
 
 /// A section whose addresses are relocated, and have 32 bits whatever they have in the file.

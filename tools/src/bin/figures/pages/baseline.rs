@@ -1,4 +1,4 @@
-//! How near the report's program comes to what its robot did.
+//! The report's program compared with its recorded robot.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! What each page of docs/theory shows, and docs/wiring.md.
+//! The sections of each page of docs/theory, and of docs/wiring.md.
 
 mod baseline;
 mod manual;
@@ -26,7 +26,7 @@ pub(crate) struct Page {
     pub(crate) make: fn() -> Result<Option<Made>, String>,
 }
 
-/// What is to stand in it: figures with name, alternative text and SVG, and the words below them.
+/// Its content: figures with name, alternative text and SVG, and the text below them.
 pub(crate) struct Made {
     pub(crate) figures: Vec<(&'static str, &'static str, String)>,
     pub(crate) words: String,
@@ -134,7 +134,7 @@ const AS_RECORDED: &str = "on robots as recorded";
 const EXPLAINED: &str = "\n*As recorded*: the same robots, made to turn (and, along or before a wall, to roll or to hear) as the report's own\n\
 did ([why](baseline.md)); the figure shows its program on these.";
 
-/// The words below a figure of both programs: the table, and what was run.
+/// The text below a figure of both programs: the table, and what was run.
 fn words(columns: &[(&str, &Runs)], scenario: &str, rows: &[Row]) -> String {
     let end = match columns {
         [(_, baseline), .., (_, ours)]
@@ -173,10 +173,10 @@ const SLOW_MISSION: Change = Change {
     ..runs::BASELINE
 };
 
-/// Every seed's way.
+/// Every seed's path.
 type Ways = Vec<Vec<(f64, f64)>>;
 
-/// Every seed's way as seen from the start.
+/// Every seed's path relative to the start.
 fn ways(runs: &Runs) -> Ways {
     let start = runs.setup.scenario.start;
     let (sin, cos) = start.heading_rad.sin_cos();

@@ -1,4 +1,4 @@
-//! Tables of the modes, and of their states and transitions, as their descriptions have them.
+//! Tables of the modes, and of their states and transitions, from their descriptions.
 
 use super::{Made, RPM};
 use rumbo_control::mode::{ModeId, Reference, ReferenceKind};

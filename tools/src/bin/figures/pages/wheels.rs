@@ -19,7 +19,7 @@ pub(super) fn mode5() -> Result<Option<Made>, String> {
     charts[1].legend = Legend::LowerRight;
     charts[1].x_range = Some([0.0, 10.5]);
     charts[1].y_range = Some([0.0, 75.0]);
-    // Only what is shown, or the few points of a curve would all lie outside.
+    // Only the visible part: otherwise the few points of a curve would all lie outside.
     for curve in &mut charts[1].curves {
         if let Curve::Seeds { runs, .. } = curve {
             for points in runs {

@@ -1,4 +1,4 @@
-//! docs/wiring.md: which pin of the Mega goes where, as a drawing and as a table, from the robot file.
+//! docs/wiring.md: the connections of the Mega's pins, as a drawing and as a table, from the robot file.
 
 use super::Made;
 use rumbo_experiment::files::Library;
@@ -114,7 +114,7 @@ const BOARD: (i32, i32) = (360, 580);
 const PART: i32 = 230;
 const MARGIN: i32 = 16;
 
-/// A wire's colour by what it carries.
+/// A wire's colour by its signal.
 fn colour(to: To) -> &'static str {
     match to {
         To::Rail("5 V" | "5 V, GND") => "#d55e00",
@@ -178,7 +178,7 @@ fn drawing(wiring: &Wiring) -> Result<String, String> {
     ))
 }
 
-/// Draws the parts of one side; gives where they end.
+/// Draws the parts of one side; returns where they end.
 fn column(
     body: &mut String,
     wiring: &Wiring,
