@@ -1,5 +1,5 @@
 // @ts-check
-/** The bar that says what a person has to see to at once: it stays as long as that is so. */
+/** The bar of alarms that need action at once; an alarm stays as long as its cause. */
 import { create, element } from './dom.js';
 import { said } from './text.js';
 

@@ -84,7 +84,7 @@ export class StateBand {
     ctx.restore();
   }
 
-  /** The state at a time, in words. @param {number} t_s */
+  /** The state at a time, as text. @param {number} t_s */
   nameAt(t_s) {
     const stretch = this.#store.stretches.find(({ to_s }) => t_s <= to_s);
     return stretch && t_s >= stretch.from_s - 0.1 ? this.#name(stretch) : '';

@@ -1,5 +1,5 @@
 // @ts-check
-/** The calibration as a guided page: where to put the robot, what it does meanwhile, what it found, and the parameters before and after. */
+/** The calibration as a guided page: where to put the robot, its progress, its results, and the parameters before and after. */
 import { dialog } from './dialog.js';
 import { create, setText } from './dom.js';
 import { numberAs, said, t } from './text.js';
@@ -24,7 +24,7 @@ export class CalibrationDialog {
   #before = new Map();
   /** What is shown now. */
   #shown = '';
-  /** When the calibration was asked for whose end has not been shown [s]. @type {number | null} */
+  /** When the calibration was started whose end has not been shown [s]. @type {number | null} */
   #asked_s = null;
   /** @type {State | null} */
   #state = null;
@@ -58,7 +58,7 @@ export class CalibrationDialog {
       this.#progress.value = passed_s;
       setText(this.#since, t('{} s of about {} s', format(passed_s, 0), ABOUT_S));
     } else if (calibration && (before === 'running' || (this.#asked_s !== null && calibration.at_s > this.#asked_s))) {
-      // One that ended at once was never seen running.
+      // One that ended at once was never shown as running.
       this.#asked_s = null;
       this.#layOut(calibration.phase);
     }

@@ -1,9 +1,9 @@
 // @ts-check
 /**
- * What a first check of a robot finds, from what was measured and what was seen: plain functions, tested one by one.
+ * Evaluation of a robot's first check, from measurements and a person's answers: plain functions, tested one by one.
  *
- * The encoders have one channel each: they count, but cannot tell the direction. So the page measures which of them count while one wheel
- * is driven, and a person says which wheel turned, and where to.
+ * The encoders have one channel each: they count, but do not measure the direction. So the page measures which of them
+ * count while one wheel is driven, and a person answers which wheel turned, and in which direction.
  */
 import { t } from './text.js';
 
@@ -24,7 +24,7 @@ const bad = (text) => ({ good: false, text });
 /**
  * Which encoders counted while one wheel was driven.
  * @param {Side} side
- * @param {number} left_rpm the most that the left encoder told, without sign
+ * @param {number} left_rpm the largest speed of the left encoder, without sign
  * @param {number} right_rpm
  * @returns {'own' | 'other' | 'both' | 'none'}
  */
@@ -61,7 +61,7 @@ export function judgeMotor(side, count, seen) {
 }
 
 /**
- * What a hand before a sonar shows; null: go on waiting.
+ * Result of a hand in front of a sonar; null: keep waiting.
  * @param {number} sonar 0 left, 1 right, 2 front
  * @param {(number | 'clear' | null)[]} ranges_cm of all, as they are now
  * @param {(number | 'clear' | null)[]} before_cm as they were before the hand
@@ -76,7 +76,7 @@ export function judgeSonar(sonar, ranges_cm, before_cm) {
   return null;
 }
 
-/** What is said when a sonar sees no hand. @param {number} sonar @param {number | 'clear' | null} range_cm @returns {Verdict} */
+/** Verdict on a sonar that does not detect the hand. @param {number} sonar @param {number | 'clear' | null} range_cm @returns {Verdict} */
 export function sonarInVain(sonar, range_cm) {
   const name = [t('left|sonar'), t('right|sonar'), t('front|sonar')][sonar] ?? '';
   return range_cm === null

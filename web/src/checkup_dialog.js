@@ -14,18 +14,18 @@ import { CM_PER_M, format } from './units.js';
 /** @typedef {import('./panel.js').Send} Send */
 /** @typedef {{title: string, run: () => void}} Step */
 
-/** A wheel is driven for so long, and told so again and again [ms]. */
+/** A wheel is driven for this long, with the command repeated [ms]. */
 const DRIVE_MS = 1_600;
 /** From then on it is measured [ms]. */
 const SPEED_UP_MS = 600;
-/** So long a wheel may take to stand before [ms]. */
+/** Time for a wheel to come to rest before [ms]. */
 const STAND_MS = 4_000;
 const REPEAT_MS = 200;
 /** Share of full PWM: beyond every dead zone. */
 const DUTY = 0.4;
 /** The movements that turn one wheel forward. @type {Record<Side, number>} */
 const ONE_WHEEL = { left: 7, right: 5 };
-/** So long a hand is waited for [ms]. */
+/** Time to wait for a hand [ms]. */
 const HAND_MS = 15_000;
 const LOOK_MS = 100;
 
@@ -57,7 +57,7 @@ export class CheckupDialog {
     this.#made.dialog.addEventListener('close', () => this.#leave());
   }
 
-  /** Opens by itself the first time that this browser meets a real robot. @param {number[]} sonars @param {boolean} servo */
+  /** Opens by itself the first time that this browser shows a real robot. @param {number[]} sonars @param {boolean} servo */
   meet(sonars, servo) {
     const state = this.#state();
     if (!state || state.simulated || state.replay || state.robot.foreign || state.robot.text || !state.link.connected || remembered()) return;
@@ -149,7 +149,7 @@ export class CheckupDialog {
     if (!this.#state()?.robot.armed) this.#send({ type: 'arm' });
     let [waited_ms, driven_ms, from_s] = [0, 0, 0];
     this.#timer = setInterval(() => {
-      // A wheel that still turns from before is not to be counted.
+      // A wheel still turning from before must not be counted.
       waited_ms += REPEAT_MS;
       const standing = Math.max(this.#most('left_rpm', this.#now_s() - 0.2), this.#most('right_rpm', this.#now_s() - 0.2)) < STANDING_RPM;
       if (driven_ms === 0 && !standing && waited_ms < STAND_MS) return;
@@ -205,7 +205,7 @@ export class CheckupDialog {
       reading.textContent = now.map((range, each) => `${[t('left'), t('right'), t('front')][each]} ${range === 'clear' ? t('clear|sonar') : typeof range === 'number' ? `${format(range, 0)} cm` : '–'}`).join('   ');
       const verdict = judgeSonar(sonar, now, before);
       agreed = verdict ? agreed + 1 : 0;
-      // Half a second, so that a hand that passes by is not taken for one that is held.
+      // Half a second, so that a passing hand is not mistaken for one that is held.
       if (verdict && agreed >= 5) this.#verdict(verdict);
       else if (passed_ms >= HAND_MS) this.#verdict(sonarInVain(sonar, now[sonar] ?? null));
     }, LOOK_MS);
@@ -234,7 +234,7 @@ export class CheckupDialog {
     this.#timer = null;
   }
 
-  /** Nothing goes on turning when the page is left. */
+  /** Nothing keeps turning when the page is left. */
   #leave() {
     this.#stopTimer();
     if (this.#state()?.robot.armed) this.#send({ type: 'disarm' });
@@ -243,7 +243,7 @@ export class CheckupDialog {
 
 const STORED = 'rumbo.checkup';
 
-/** Whether the check has been offered in this browser; where nothing can be remembered, it does not come by itself. */
+/** Whether the check has been offered in this browser; without storage, it does not open by itself. */
 function remembered() {
   try {
     return localStorage.getItem(STORED) !== null;

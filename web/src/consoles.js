@@ -1,5 +1,5 @@
 // @ts-check
-/** What the USARTs of an emulated chip say, or a robot that speaks text, and a line to type to them. */
+/** Output of the USARTs of an emulated chip, or of a robot with the text protocol, and an input line. */
 import { create, element } from './dom.js';
 
 /** @typedef {import('./types.js').ConsoleText} ConsoleText */
@@ -7,7 +7,7 @@ import { create, element } from './dom.js';
 /** Characters kept of each USART. */
 const KEPT = 40_000;
 
-/** In place of a USART: the link to a robot that speaks text. */
+/** In place of a USART: the link to a robot with the text protocol. */
 const LINK = 255;
 
 export class Consoles {
@@ -30,7 +30,7 @@ export class Consoles {
     });
   }
 
-  /** What was said before is over. */
+  /** Discards the previous output. */
   clear() {
     this.#said.clear();
     this.#shown = null;
@@ -48,7 +48,7 @@ export class Consoles {
     if (said.some(({ usart }) => usart === this.#shown)) this.#show();
   }
 
-  /** The USART has spoken for the first time. @param {number} usart */
+  /** The USART has sent something for the first time. @param {number} usart */
   #offer(usart) {
     const button = create('button', { type: 'button', value: String(usart) }, usart === LINK ? 'link' : `USART${usart}`);
     button.addEventListener('click', () => {

@@ -9,7 +9,7 @@ import { signal } from './signals.js';
 /** @typedef {import('./table.js').Lines} Lines */
 /** @typedef {import('./signals.js').Signal & {right: boolean}} Curve A signal in a plot; `right`: its axis is the one on the right. */
 
-/** From so many lines in sight on the coarse copy is drawn: more than a plot is wide. */
+/** Above this number of visible lines the coarse copy is drawn: more than a plot's width. */
 const MANY_LINES = 4_000;
 /** For curves of the right axis whose colour the left one has: the first that is free. @type {import('./theme.js').ColourName[]} */
 const OTHERS = ['goal', 'front', 'reference', 'right', 'left'];
@@ -27,12 +27,12 @@ export function curvesOf({ signals }) {
   })];
 }
 
-/** What a curve is told by. @param {{colour: string, kind: string}} curve */
+/** What distinguishes a curve. @param {{colour: string, kind: string}} curve */
 const look = ({ colour, kind }) => `${colour} ${kind}`;
 
 /**
- * The lines of the curves in sight: times, then a column for each curve. Those of one table as they are; of two in order of time, and where
- * only one has a line the curves of the other go on.
+ * The visible lines of the curves: times, then a column for each curve. Those of one table unchanged; those of two merged
+ * by time, and where only one has a line the curves of the other continue.
  * @param {Store} store
  * @param {Curve[]} curves
  * @param {[number, number]} range_s

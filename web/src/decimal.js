@@ -55,7 +55,7 @@ export function write(input, value) {
   check(input);
 }
 
-/** Tells the browser what is wrong with what a field holds, so that its form is not sent. @param {HTMLInputElement} input */
+/** Marks an invalid field for the browser, so that its form is not sent. @param {HTMLInputElement} input */
 export function check(input) {
   const { min, max, required } = limits.get(input) ?? { min: null, max: null, required: false };
   const value = read(input);

@@ -4,7 +4,8 @@ import { create } from './dom.js';
 import { t } from './text.js';
 
 /**
- * A dialog with a title and a button that closes it; Escape closes it too. The page around it stays alive: STOP is never covered or asleep.
+ * A dialog with a title and a button that closes it; Escape closes it too. The page around it stays active: STOP is never
+* covered or disabled.
  * @param {string} id
  * @param {string} title
  */
@@ -43,7 +44,7 @@ export function complaint() {
 }
 
 /**
- * Gives the reader a file.
+ * Offers a file for download.
  * @param {string} name
  * @param {Blob} content
  */
@@ -54,7 +55,7 @@ export function saveFile(name, content) {
 }
 
 /**
- * A button that takes a file from the reader.
+ * A button that opens a file of the reader's.
  * @param {string} text
  * @param {string} accept
  * @param {(name: string, text: string) => void} taken
@@ -66,7 +67,7 @@ export function fileButton(text, accept, taken) {
   input.addEventListener('change', async () => {
     const file = input.files?.[0];
     if (!file) return;
-    // The same file can be taken again.
+    // The same file can be opened again.
     input.value = '';
     taken(file.name, await file.text());
   });

@@ -7,7 +7,7 @@
  */
 
 const POLL_MS = 50;
-/** A stick that is less far from its middle is in the middle. */
+/** Dead band of a stick. */
 const SLACK = 0.35;
 const STOP_BUTTON = 1;
 const DEAD_MAN = [4, 5, 6, 7];
@@ -30,7 +30,7 @@ function read(pad) {
 
 /**
  * Polls the gamepads as long as the page lives.
- * @param {(stick: Stick | null) => void} onStick told at every poll
+ * @param {(stick: Stick | null) => void} onStick called at every poll
  * @param {() => void} onStop
  */
 export function watchGamepads(onStick, onStop) {
@@ -40,7 +40,7 @@ export function watchGamepads(onStick, onStop) {
     const stop = pads.some((pad) => pad?.buttons[STOP_BUTTON]?.pressed);
     if (stop && !stopping) onStop();
     stopping = stop;
-    // A page that is not looked at does not drive.
+    // A hidden page does not drive.
     const looked = document.visibilityState === 'visible' && document.hasFocus();
     onStick(looked && !stop ? pads.map((pad) => pad && read(pad)).find((stick) => stick !== null) ?? null : null);
   }, POLL_MS);

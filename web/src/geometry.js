@@ -65,7 +65,7 @@ export function near(angle_deg, other_deg) {
 }
 
 /**
- * The ellipse that a place with these deviations is in, with a share of 95 %: its half axes [m], and the direction of the first.
+ * The 95 % ellipse of a position with these deviations: its half axes [m], and the direction of the first.
  * @param {import('./types.js').Spread} spread
  */
 export function likelyArea({ x_m, y_m, correlation }) {

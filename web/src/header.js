@@ -1,5 +1,5 @@
 // @ts-check
-/** The top line: what runs, how fast, and how good the link is. */
+/** The top line: what runs, its speed, and the quality of the link. */
 import { create, element, setText } from './dom.js';
 import { format, formatShort } from './units.js';
 import { named, t } from './text.js';
@@ -11,7 +11,7 @@ import { named, t } from './text.js';
 const SPEEDS = [0, 0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
 /** The scenario's own world or rig. */
 const OWN = '';
-/** Without a word from the server for this long, what is shown is old [ms]. */
+/** Without a message from the server for this long, the display is stale [ms]. */
 const STALE_MS = 1_500;
 
 export class Header {
@@ -60,11 +60,11 @@ export class Header {
   /** @param {boolean} open */
   setOpen(open) {
     this.#open = open;
-    this.heard();
+    this.received();
   }
 
-  /** The server said something. */
-  heard() {
+  /** A message has arrived from the server. */
+  received() {
     this.#received_ms = performance.now();
     this.#showConnection();
   }

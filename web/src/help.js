@@ -1,5 +1,5 @@
 // @ts-check
-/** The help page: keys, what colours and lines mean, where to go on. */
+/** The help page: keys, meaning of colours and lines, further reading. */
 import { dialog } from './dialog.js';
 import { create } from './dom.js';
 import { t } from './text.js';
@@ -35,7 +35,7 @@ function list(title, lines) {
 /** A text with what stands between backticks as code. @param {string} text */
 const withCode = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? create('code', { textContent: part }) : part));
 
-/** Makes the help page; gives what opens it. */
+/** Makes the help page; returns the function that opens it. */
 export function makeHelp() {
   const made = dialog('help-dialog', t('Help'));
   made.body.append(

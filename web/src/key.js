@@ -1,16 +1,16 @@
 // @ts-check
 /**
- * The page's key to the station: given for the token in the address that the station printed, and kept in the browser's
+ * The page's key to the station: exchanged for the token in the printed address, and kept in the browser's
  * storage for this address and port. (A cookie would go to every other port of the computer as well.)
  */
 
 const STORED = 'rumbo.key';
-/** An answer that takes longer is none [ms]. */
+/** Time-out of an answer [ms]. */
 const ANSWER_MS = 5_000;
 
 /** The token in the address, until the station has answered. */
 let token = location.search;
-/** The station did not take it. */
+/** The station rejected it. */
 let refused = false;
 /** For a browser that stores nothing: until the page is left. @type {string | null} */
 let own = null;
@@ -37,7 +37,7 @@ function shown() {
 }
 
 /**
- * The key; or why there is none: no answer, no key to this station, or an address that opens no more.
+ * The key; or why there is none: no answer, no key to this station, or an expired address.
  * @returns {Promise<{key: string} | {key: null, why: 'closed' | 'locked' | 'used'}>}
  */
 export async function askForKey() {

@@ -1,14 +1,14 @@
 // @ts-check
 /**
- * Layouts: which plots there are, what is in each, the limits of its axis, and the window of time. One for each mode, which begins as its
- * description says and is kept by the browser as it was left; and others by name. A layout is also a file.
+ * Layouts: the plots, their signals, the limits of their axes, and the window of time. One for each mode, which starts from
+ * its description and is stored by the browser when changed; and others by name. A layout is also a file.
  */
 import { UNITS, signal } from './signals.js';
 import { t } from './text.js';
 
 /**
  * One plot. Its signals have one unit, or two: those of the second have the axis on the right. `min` and `max` are the limits of the axis on
- * the left if it is locked, `right` those of the other; null: as the values are.
+ * the left if it is locked, `right` those of the other; null: automatic.
  * @typedef {{title: string, signals: string[], min: number | null, max: number | null, right?: [number, number] | null, weight: number}} PlotSpec
  *
  * @typedef {{window_s: number, plots: PlotSpec[]}} Layout
@@ -25,7 +25,7 @@ const VERSION = 1;
 /** @param {string} title @param {number} weight @param {string[]} signals @returns {PlotSpec} */
 const plot = (title, weight, signals) => ({ title, signals, min: null, max: null, weight });
 
-/** The plots that a mode can begin with. */
+/** The default plots of modes. */
 export const PLOTS = [
   plot('distance', 5, ['true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'range_left_cm', 'range_right_cm', 'range_front_cm', 'reference_cm']),
   plot('wheels', 5, ['true_left_rpm', 'true_right_rpm', 'left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm']),
@@ -34,7 +34,7 @@ export const PLOTS = [
   plot('position', 4, ['ghost_x_m', 'ghost_y_m', 'true_x_m', 'true_y_m', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m']),
 ];
 
-/** What a mode begins with: the plots of these titles. @param {string[]} titles @returns {Layout} */
+/** A mode's default layout: the plots of these titles. @param {string[]} titles @returns {Layout} */
 function initial(titles) {
   return { window_s: WINDOW_S, plots: titles.flatMap((title) => PLOTS.filter((each) => each.title === title)).map((each) => ({ ...each })) };
 }
@@ -47,7 +47,7 @@ export function unitsOf(signals) {
 /** How many units a plot may have: one for each of its axes. */
 export const MOST_UNITS = 2;
 
-/** Why something is no layout. */
+/** Why something is not a layout. */
 export class BadLayout extends Error {}
 
 /** @param {boolean} right @param {string} why */
@@ -62,7 +62,7 @@ const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 const isSpan = (low, high) => isNumber(low) && isNumber(high) && low < high;
 
 /**
- * A layout from what a file or the browser kept.
+ * A layout from the content of a file or the browser's storage.
  * @param {any} from
  * @returns {Layout}
  */
@@ -109,13 +109,13 @@ export function fromText(text) {
 /** The first scale of a plot of this unit. @param {import('./signals.js').Unit} unit @returns {[number, number]} */
 export const firstScale = (unit) => [0, 10 * UNITS[unit].step];
 
-/** What the browser keeps: a layout for each mode as it was left, and those that were given names. */
+/** The stored layouts: the latest one of each mode, and the named ones. */
 export class Shelf {
   /** @type {Record<string, Layout>} */
   #modes = {};
   /** @type {Record<string, Layout>} */
   #named = {};
-  /** What there is to begin with. @type {import('./types.js').ModeEntry[]} */
+  /** The modes with their defaults. @type {import('./types.js').ModeEntry[]} */
   modes = [];
 
   constructor() {
@@ -124,7 +124,7 @@ export class Shelf {
       this.#modes = sound(kept.modes);
       this.#named = sound(kept.named);
     } catch {
-      // Nothing is kept, or nothing readable: the layouts are as they begin.
+      // Nothing is stored, or nothing readable: the defaults apply.
     }
   }
 
@@ -142,7 +142,7 @@ export class Shelf {
     return this.#named[name] ?? null;
   }
 
-  /** @param {number} mode @param {Layout | null} layout Null: as the mode begins. */
+  /** @param {number} mode @param {Layout | null} layout Null: the default. */
   keep(mode, layout) {
     if (layout) this.#modes[mode] = layout;
     else delete this.#modes[mode];

@@ -1,5 +1,5 @@
 // @ts-check
-/** The WebSocket to the server. It comes back by itself, and then gets the recent past again. */
+/** The WebSocket to the server. It reconnects by itself, and then receives the recent past again. */
 import { askForKey } from './key.js';
 
 /** @typedef {import('./types.js').FromServer} FromServer */
@@ -24,7 +24,8 @@ export class Link {
 
   /**
    * @param {(message: FromServer) => void} onMessage
-   * @param {(now: Connection, why: string | null) => void} onChange told when the connection opens or closes, and why the station closed it
+   * @param {(now: Connection, why: string | null) => void} onChange called when the connection opens or closes, with the
+*   station's reason for closing it
    */
   constructor(onMessage, onChange) {
     this.#onMessage = onMessage;
@@ -62,7 +63,7 @@ export class Link {
   }
 
   /**
-   * Sends an order; false if there is no connection. Orders are never kept for later: an old one is worse than none.
+   * Sends an order; false if there is no connection. Orders are never queued: a late one is worse than none.
    * @param {Order} order
    */
   send(order) {

@@ -1,5 +1,5 @@
 // @ts-check
-/** The link: how much of it is used, what was lost, and the bytes themselves, frame by frame. */
+/** The link: its load, its losses, and the bytes themselves, frame by frame. */
 import { create, element, setText } from './dom.js';
 import { t } from './text.js';
 import { format } from './units.js';
@@ -7,7 +7,7 @@ import { format } from './units.js';
 /** @typedef {import('./types.js').State} State */
 /** @typedef {import('./types.js').LinkBytes} LinkBytes */
 
-/** A clock that is more wrong than a ceramic resonator's [ppm]. */
+/** Clock error beyond that of a ceramic resonator [ppm]. */
 const WRONG_CLOCK_PPM = 10_000;
 /** Lines kept of the bytes. */
 const KEPT = 400;
@@ -24,13 +24,13 @@ export class LinkMeter {
   #values = new Map();
   /** @type {string[]} */
   #lines = [];
-  /** What has begun and not ended in each direction. @type {[number[], number[]]} */
+  /** The incomplete frame in each direction. @type {[number[], number[]]} */
   #open = [[], []];
   #seen = false;
   /** What stands there while there are no bytes. */
   #nothing = '';
 
-  /** It is looked at. @param {boolean} seen */
+  /** It is visible. @param {boolean} seen */
   show(seen) {
     this.#seen = seen;
     if (seen) this.#write();

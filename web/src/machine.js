@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The state machine of the mode: its states in a row, the ways on above them and the ways back below, the live state lit and the way that
- * led to it. States and ways come from the control core.
+ * The state machine of the mode: its states in a row, forward transitions above them and backward ones below, with the
+ * active state and the transition to it highlighted. States and transitions come from the control core.
  */
 import { element } from './dom.js';
 import { said, t } from './text.js';
@@ -65,7 +65,7 @@ export class Machine {
   #mode = null;
   /** @type {Element[]} */
   #boxes = [];
-  /** The ways, by from and to. @type {Map<string, Element>} */
+  /** The transitions, by from and to. @type {Map<string, Element>} */
   #ways = new Map();
   #lit = '';
 
@@ -126,7 +126,7 @@ export class Machine {
       draw('title', {}, `${state} ${name}`));
   }
 
-  /** Lights the state, and the way that led there. */
+  /** Highlights the state, and the transition that led there. */
   draw() {
     const { stretches } = this.#store;
     const last = stretches.at(-1);

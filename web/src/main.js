@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * The dashboard: joins the link, the store and what is seen of it. Nothing is drawn unless something arrived or was asked for.
+ * The dashboard: connects the link, the store and the views. Nothing is drawn unless data arrived or a view changed.
  *
  * For tests and for the browser's console, `window.rumbo` gives the signals as plotted.
  */
@@ -53,7 +53,7 @@ let sonars = [0, 1, 2];
 /** One of them sits on a servo, as far as is known. */
 let servo = true;
 
-/** The simulation knows the robot's body, or else the robot itself, if it tells. */
+/** The robot's body, from the simulation, or else from the robot's parameters. */
 function setBody() {
   const own = typeof state?.robot.rig === 'string' && table.length > 0 ? bodyOf(state.robot.rig, table) : null;
   map.body = own;
@@ -62,7 +62,7 @@ function setBody() {
   stateLine.sonars = sonars;
 }
 
-/** That nothing is sent is told so often at most: a key that is held would tell it five times a second [ms]. */
+/** Minimum time between two messages that nothing is sent: a held key would repeat it five times a second [ms]. */
 const UNSENT_MS = 1_000;
 let unsent_ms = -UNSENT_MS;
 
@@ -74,7 +74,7 @@ function send(order) {
   events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text: order.type === 'stop' ? 'STOP was not sent: there is no connection to the station' : 'not sent: there is no connection to the station' }]);
 }
 
-/** When what is drawn next was heard; and how long things took from there to the frame after, while somebody measures. */
+/** When the data drawn next was received; and times from there to the frame after, while a test measures. */
 const ages = { received_ms: 0, session_ms: 0, drawn: false, measured: /** @type {number[] | null} */ (null) };
 
 const redraw = onFrame(() => {
@@ -162,10 +162,10 @@ new ResizeObserver(() => document.documentElement.style.setProperty('--header', 
 
 /** @param {FromServer} message */
 function receive(message) {
-  header.heard();
+  header.received();
   switch (message.type) {
     case 'hello':
-      // A station of another version has another page.
+      // A station of another version serves another page.
       if (version !== null && message.version !== version) location.reload();
       version = message.version;
       store.begin(message.columns, message.modes);
@@ -206,7 +206,7 @@ function receive(message) {
       map.target = state.robot.armed && state.robot.errand.route && state.robot.errand.end === null ? state.robot.reference : null;
       map.setErrand(state.robot.errand);
       parameters.setMode(state.robot.mode, state.robot.text ? t('parameters are not available over the text protocol') : state.robot.foreign ? t('the robot has another table: not shown') : '');
-      // Check and calibration are made of commands that such a robot does not know.
+      // Check and calibration use commands that such a robot does not have.
       document.body.classList.toggle('foreign', state.robot.foreign || Boolean(state.robot.text));
       map.servo_rad = state.robot.servo_rad;
       break;
@@ -260,7 +260,7 @@ Object.assign(window, {
     plots: () => ({ layout: plots.layout, range_s: plots.range_s, mark_s: plots.mark_s, following: plots.following }),
     /** What is seen of a plot's axes. @param {string} title */
     scales: (title) => plots.scales(title),
-    /** For measurements: times from hearing to the frame after drawing [ms], the clocks of page and session, a frame at once. */
+    /** For measurements: times from reception to the frame after drawing [ms], the clocks of page and session, a frame at once. */
     ages,
     draw: () => plots.draw(),
     /** Texts shown that have no translation. */

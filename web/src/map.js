@@ -1,11 +1,11 @@
 // @ts-check
 /**
- * The map: world, robot as it is and as it believes to be, trails, sonars, and where it is to go. A click picks a place.
+ * The map: world, true and estimated pose of the robot, trails, sonars, goal and route. A click picks a position.
  *
- * Goals and routes are told to the robot from its own origin, which moves, and its odometry errs. A goal is drawn where the robot will
- * really get to when it believes to be there, as far as its error of now tells: in the frame in which the estimated pose is the true one.
- * What the robot itself takes for the place is drawn dashed, as its estimated pose is; so is a route, a plan that does not follow the
- * error. With a real robot the two frames are the same.
+ * Goals and routes are sent relative to the robot's origin, which moves, and its odometry errs. A goal is drawn where the
+ * robot will actually arrive with its present error: in the frame in which the estimated pose is the true one. The goal in
+ * the robot's own frame is drawn dashed, like its estimated pose; so is a route, a plan that does not follow the error.
+ * With a real robot the two frames are the same.
  */
 import { element } from './dom.js';
 import { IDENTITY, compose, inverse, place } from './geometry.js';
@@ -23,15 +23,15 @@ import { watchFingers } from './touch.js';
 
 /** Free space around what is to be seen [m]. */
 const MARGIN_M = 0.12;
-/** What is written over the map above and below leaves so much free [px]. */
+/** Margin for the texts above and below the map [px]. */
 const [ABOVE_PX, BELOW_PX] = [34, 18];
-/** What is to be seen grows by so much at a time [m]: the view does not creep. */
+/** The view grows in steps of this size [m], so that it does not creep. */
 const GROWTH_M = 0.5;
 const ZOOM_STEP = 1.25;
 const KEY_PAN_PX = 40;
 /** A press that moves no further than this is a click [px]. */
 const CLICK_PX = 4;
-/** The robot's idea of a goal is drawn beside the goal from this distance on [px]. */
+/** The goal in the robot's frame is drawn separately from this distance on [px]. */
 const APART_PX = 3;
 
 export class WorldMap {
@@ -79,7 +79,7 @@ export class WorldMap {
     this.fit();
   }
 
-  /** What the robot takes its body for. @param {import('./mounts.js').Body | null} body */
+  /** The body by the robot's parameters. @param {import('./mounts.js').Body | null} body */
   set body(body) {
     this.#sketch.body = body;
   }
@@ -195,7 +195,7 @@ export class WorldMap {
     this.#sketch.drawRoute(points, { from: draft ? null : [start.x_m, start.y_m], repeat: route.repeat, draft }, px);
   }
 
-  /** The robot in the world, as well as it is known. */
+  /** The robot in the world: its true pose if known, else the estimated one. */
   #robot() {
     const latest = this.#store.latest;
     return latest?.truth ?? (latest?.estimated ? compose(latest.origin, latest.estimated) : this.#start());
@@ -206,14 +206,14 @@ export class WorldMap {
     return this.#sketch.scene?.start ?? IDENTITY;
   }
 
-  /** The frame in which the robot's estimated pose is its true one: where it will get to when it believes to be somewhere. */
+  /** The frame in which the robot's estimated pose is its true one. */
   #drivenFrame() {
     const latest = this.#store.latest;
     if (!latest) return this.#start();
     return latest.truth && latest.estimated ? compose(latest.truth, inverse(latest.estimated)) : latest.origin;
   }
 
-  /** The robot's origin, as it takes it to be. */
+  /** The robot's origin, by its odometry. */
   #origin() {
     return this.#store.latest?.origin ?? this.#start();
   }

@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * What is known of a robot that is not simulated: where its sonars sit and how far its wheels are apart, from its own parameters. The same as
+ * Geometry of a real robot, from its parameters: positions of its sonars and distance of its wheels. The same as
  * `Params::view` of the control core.
  */
 
@@ -9,12 +9,12 @@
 /** @typedef {{base_m: number, wheel_radius_m: number, sonars: SonarMount[]}} Body */
 
 const [LEFT, RIGHT, FRONT] = [0, 1, 2];
-/** How far a sonar sees that tells nothing in its way [m]. */
+/** Length of the drawn beam of a sonar with a clear range [m]. */
 const REACH_M = 2.5;
 
 /**
  * @param {string} rig The rig's name.
- * @param {Parameter[]} parameters What a robot has not told yet is taken for its default.
+ * @param {Parameter[]} parameters Values not received yet count as their defaults.
  * @returns {Body | null} Null: there is no such rig.
  */
 export function bodyOf(rig, parameters) {

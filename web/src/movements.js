@@ -1,9 +1,9 @@
 // @ts-check
 /**
- * The basic movements of mode 0: buttons that go on until the next one, and arrow keys or a gamepad, which drive while they are held.
+ * The basic movements of mode 0: buttons that act until the next one, and arrow keys or a gamepad, which drive while held.
  *
- * A held key is told to the station again and again, and the station lets go when it hears nothing: a page that hangs or is gone stops
- * the robot too. Letting go, another window, another field: the wheels are released.
+ * The command of a held key is repeated, and the station releases the wheels when it receives none: a page that hangs or is
+ * gone also stops the robot. Releasing the key, another window, another field: the wheels are released.
  */
 import { number, read, setLimits, write } from './decimal.js';
 import { create, element } from './dom.js';
@@ -27,7 +27,7 @@ const RELEASE = 0;
 const BY_KEYS = {
   '1,0': 1, '-1,0': 2, '0,1': 3, '0,-1': 4, '1,1': 9, '1,-1': 10, '-1,1': 11, '-1,-1': 12,
 };
-/** A held key is told again after this long, a third of the station's patience [ms]. */
+/** Period of a held key's command, a third of the station's time-out [ms]. */
 const REPEAT_MS = 200;
 
 export class Movements {
@@ -97,7 +97,7 @@ export class Movements {
     this.#follow();
   }
 
-  /** Does what the keys that are down say, or the gamepad. */
+  /** Drives by the pressed keys, or the gamepad. */
   #follow() {
     const down = (/** @type {string} */ key) => Number(this.#keys.has(key));
     const { forward, left, depth } = this.#keys.size > 0 || !this.#stick

@@ -1,11 +1,11 @@
 // @ts-check
-/** The bar over the page that says that the station is not there, what that means, and when it is there again. */
+/** The bar over the page that reports a lost station, the consequences, and its return. */
 import { element, setText } from './dom.js';
 import { said, t } from './text.js';
 
 /** @typedef {import('./link.js').Connection} Connection */
 
-/** So long the good news stands [ms]. */
+/** How long the good news is shown [ms]. */
 const GOOD_NEWS_MS = 5_000;
 
 export class Notice {
@@ -26,7 +26,7 @@ export class Notice {
 
   /** @param {Connection} now @param {string | null} why */
   #words(now, why) {
-    // A log has no robot that could be stopped.
+    // A log has no robot to stop.
     const old = this.#known && !document.body.classList.contains('replay') ? ` ${t('What is shown is of {}, and STOP does not reach the robot.', this.#since ?? '')}` : '';
     if (now === 'used') return t('This address opens once, and was opened before. Go on in the browser in which it was opened, or start rumbo again and open the new address.');
     if (now === 'locked' && !this.#known) return t('This browser has no key to the station: open the address that rumbo printed when it started.');

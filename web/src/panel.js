@@ -41,7 +41,7 @@ export class CommandPanel {
       if (this.#scene) send({ type: 'reset', scenario: this.#experiment.value, world: null, rig: null, seed: this.#scene.choice.seed });
     });
     element('off', HTMLButtonElement).addEventListener('click', () => send({ type: 'disarm' }));
-    // Space stops, wherever the focus is: ahead of whatever else it would do there. Only in a line of text it is a blank.
+    // Space stops, wherever the focus is, before any other effect there. Only in a text field it is a space.
     for (const type of /** @type {const} */ (['keydown', 'keyup'])) {
       addEventListener(type, (event) => {
         const typing = event.target instanceof HTMLInputElement && event.target.type === 'text' && event.target.inputMode !== 'decimal';
@@ -98,7 +98,7 @@ export class CommandPanel {
     }
   }
 
-  /** The simulation is in another mode's experiment, whose world and sonars may be wrong for this one: this mode's first. @param {ModeEntry} mode */
+  /** The simulation runs another mode's experiment, whose world and sonars may not fit this one: offers this mode's first. @param {ModeEntry} mode */
   #scenarioOf(mode) {
     if (!this.#scene || mode.movements) return null;
     const own = (this.#scene.experiments ?? []).filter((each) => each.mode === mode.id).map(({ name }) => name);

@@ -1,5 +1,5 @@
 // @ts-check
-/** The parameter table: what each is, what the robot holds, and what may be written. */
+/** The parameter table: description, present value, and editing of each parameter. */
 import { create, element, setText } from './dom.js';
 import { said, t } from './text.js';
 import { rangeWords, valueField, valueWords } from './value_field.js';
@@ -36,7 +36,7 @@ class Line {
     const write = () => {
       const value = this.field.read();
       if (Number.isNaN(value)) return;
-      // A value out of range goes to the robot too: it refuses, and says why.
+      // A value out of range is sent too: the robot refuses it with a reason.
       this.edited = false;
       this.dismissed = null;
       send({ type: 'set_param', id: this.parameter.id, value });
@@ -140,7 +140,7 @@ export class ParameterTable {
     this.#filter();
   }
 
-  /** Says below the table what a parameter is, and marks its line. @param {Line} chosen */
+  /** Describes a parameter below the table, and marks its line. @param {Line} chosen */
   #explain(chosen) {
     for (const line of this.#lines.values()) line.row.classList.toggle('chosen', line === chosen);
     this.#about.replaceChildren(create('b', { textContent: chosen.parameter.name }), ` ${said(chosen.parameter.description)}`);

@@ -1,5 +1,5 @@
 // @ts-check
-/** A plot as a file: PNG as it is on the page, SVG drawn anew for paper, and its values as CSV. */
+/** A plot as a file: PNG as on the page, SVG redrawn for paper, and its values as CSV. */
 import { t } from './text.js';
 import { colours } from './theme.js';
 import { format } from './units.js';

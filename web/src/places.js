@@ -1,5 +1,5 @@
 // @ts-check
-/** The controls of modes 7 and 8: a route made by clicks on the map, a goal by click, by numbers or as the report has them, and the lane. */
+/** The controls of modes 7 and 8: a route by clicks on the map, a goal by click, by numbers or from the report, and the lane. */
 import { number, read, setLimits, write } from './decimal.js';
 import { create, element, setText } from './dom.js';
 import { format, pair } from './units.js';
@@ -46,12 +46,12 @@ export class Places {
   setScene(scene) {
     this.#scene = scene;
     const [goal] = scene?.goals ?? [];
-    // The form begins with the goal that the experiment begins with.
+    // The form starts with the experiment's first goal.
     for (const [index, input] of [this.#x, this.#y].entries()) if (goal) write(input, goal[index] ?? 0);
     if (this.#mode) this.layOut(this.#mode);
   }
 
-  /** Lays out what a mode takes. @param {ModeEntry | null} mode */
+  /** Lays out a mode's inputs. @param {ModeEntry | null} mode */
   layOut(mode) {
     const places = mode?.reference?.kind === 'goal';
     this.#mode = places ? mode : null;

@@ -1,5 +1,5 @@
 // @ts-check
-/** One plot: its curves, the numbers beside their names, its axis, and what the pointer does in it. */
+/** One plot: its curves, the numbers beside their names, its axis, and the pointer's actions. */
 import uPlot from '../vendor/uplot/uPlot.js';
 import { create, setText } from './dom.js';
 import { curvesOf, linesOf } from './curves.js';
@@ -92,7 +92,7 @@ export class PlotPanel {
     return typeof min === 'number' && typeof max === 'number' ? [min, max] : null;
   }
 
-  /** The axes are as they were before they were zoomed into. */
+  /** Resets zoomed axes. */
   resetAxis() {
     this.#zoomed = null;
   }
@@ -110,7 +110,7 @@ export class PlotPanel {
     if (zoomed) return zoomed;
     if (right && kept) return kept;
     if (!right && min !== null && max !== null) return [min, max];
-    // Whole steps, so that the axis does not tremble with the noise.
+    // Whole steps, so that the axis does not jitter with the noise.
     const { step } = UNITS[(right ? this.rightUnit : null) ?? this.unit];
     if (low === null || low === undefined || high === null) return [0, 10 * step];
     return [Math.floor(low / step - 0.05) * step, Math.ceil(high / step + 0.05) * step];
@@ -181,7 +181,7 @@ export class PlotPanel {
     return plot;
   }
 
-  /** What was dragged over becomes all that is seen. @param {uPlot} plot */
+  /** Zooms to the dragged box. @param {uPlot} plot */
   #zoom(plot) {
     const { left, top, width, height } = plot.select;
     if (width < 4) return;
@@ -252,7 +252,7 @@ function drawTransitions(plot, store, [from_s, to_s]) {
   ctx.restore();
 }
 
-/** Says that nothing is plotted, so that an empty plot is not taken for a broken one. @param {uPlot} plot */
+/** Shows that nothing is plotted, so that an empty plot is not mistaken for a broken one. @param {uPlot} plot */
 function drawNothing({ ctx, bbox }) {
   ctx.save();
   ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;

@@ -1,5 +1,5 @@
 // @ts-check
-/** The dialog of one plot: its title, its signals, the limits of its axis, and its picture as a file. */
+/** The dialog of one plot: its title, its signals, the limits of its axis, and its export as a picture. */
 import { check, decimal, read } from './decimal.js';
 import { complaint, dialog, saveFile } from './dialog.js';
 import { create } from './dom.js';

@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The plots: one time axis, cursors in step. The view follows the newest data, or holds still while data goes on arriving. Which plots there
- * are is a layout's matter, one for each mode.
+ * The plots: one time axis, synchronised cursors. The view follows the newest data, or holds while data keeps arriving.
+ * A layout, one for each mode, defines the plots.
  */
 import { BAND_PX, StateBand } from './band.js';
 import { create, element, setText } from './dom.js';
@@ -33,7 +33,7 @@ export class Plots {
   /** @type {Layout} */
   layout = { window_s: 20, plots: [] };
   #following = true;
-  /** What is seen of the time. @type {[number, number]} */
+  /** The visible time. @type {[number, number]} */
   range_s = [0, 20];
   /** Differences are counted from here. @type {number | null} */
   mark_s = null;
@@ -41,7 +41,7 @@ export class Plots {
   #redraw;
   /** A plot's title takes another line where its curves' names need one. */
   #heads = new ResizeObserver(() => this.#fit());
-  /** Opens what changes a plot. @type {(panel: PlotPanel | null) => void} */
+  /** Opens the dialog of a plot. @type {(panel: PlotPanel | null) => void} */
   edit = () => {};
 
   /**
@@ -101,7 +101,7 @@ export class Plots {
     this.follow(true);
   }
 
-  /** Shows this time, and holds still. @param {number} from_s @param {number} to_s */
+  /** Shows this time, and holds. @param {number} from_s @param {number} to_s */
   zoom(from_s, to_s) {
     if (to_s - from_s >= SHORTEST_S) this.range_s = [from_s, to_s];
     this.follow(false);

@@ -1,5 +1,5 @@
 // @ts-check
-/** The bar of a replay: play, pause, step by telemetry frame, speed, and where in the log the page is. */
+/** The bar of a replay: play, pause, step by telemetry frame, speed, and the position in the log. */
 import { create, element, setText } from './dom.js';
 import { format, formatShort } from './units.js';
 import { t } from './text.js';
@@ -8,7 +8,7 @@ import { t } from './text.js';
 /** @typedef {import('./panel.js').Send} Send */
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
-/** While the pointer drags, a place is asked for this often at most [ms]. */
+/** Minimum time between two seeks while the pointer drags [ms]. */
 const SCRUB_MS = 60;
 
 export class ReplayBar {
@@ -73,7 +73,7 @@ export class ReplayBar {
     const { replay } = state;
     this.#bar.hidden = !replay;
     document.body.classList.toggle('replay', Boolean(replay));
-    // Nothing is sent to a robot from here, nor from a page that may watch only.
+    // Nothing is sent to a robot from a replay, nor from a viewer's page.
     const watching = document.body.classList.contains('viewer');
     element('command-section', HTMLElement).inert = element('parameter-section', HTMLElement).inert = Boolean(replay) || watching;
     this.#bar.inert = element('simulation', HTMLFormElement).inert = watching;

@@ -1,5 +1,5 @@
 // @ts-check
-/** Who has control, told where it is not plain: to who watches, and where several pages are open. */
+/** Shows who has control where it is not obvious: to viewers, and where several pages are open. */
 import { element, setText } from './dom.js';
 import { t } from './text.js';
 

@@ -1,5 +1,5 @@
 // @ts-check
-/** What can be plotted: each signal of the store with its name for people, its unit and its colour. */
+/** The signals that can be plotted, each with its label, its unit and its colour. */
 
 /** @typedef {import('./theme.js').ColourName} ColourName */
 /** @typedef {'cm' | 'rpm' | 'of 255' | '°' | 'm'} Unit */

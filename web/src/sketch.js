@@ -14,7 +14,7 @@ import { formatShort } from './units.js';
 /** Outline of a robot of which nothing is known [m]. */
 const DEFAULT_FOOTPRINT = /** @type {[number, number][]} */ ([[0.1, 0.075], [-0.1, 0.075], [-0.1, -0.075], [0.1, -0.075]]);
 const SONAR_COLOURS = /** @type {ColourName[]} */ (['left', 'right', 'front']);
-/** How far the sector of the heading reaches [m]. */
+/** Radius of the heading's sector [m]. */
 const POINTER_M = 0.25;
 /** So many standard deviations to both sides are 95 %. */
 const DEVIATIONS_95 = 1.96;
@@ -25,7 +25,7 @@ const GOAL_PX = 9;
 export class Sketch {
   /** @type {Scene | null} */
   scene = null;
-  /** The robot's own idea of its body; what is simulated is known better. @type {import('./mounts.js').Body | null} */
+  /** The body by the robot's parameters; a simulated body takes precedence. @type {import('./mounts.js').Body | null} */
   body = null;
 
   /**
@@ -175,7 +175,7 @@ export class Sketch {
   }
 
   /**
-   * Where a robot that estimates its place probably is, and where it probably points to: with a share of 95 % each.
+   * The 95 % regions of the estimated position and heading.
    * @param {Pose} at
    * @param {Pose} origin
    * @param {Spread} spread
@@ -246,7 +246,7 @@ export class Sketch {
   }
 
   /**
-   * Where the robot is to go.
+   * The goal.
    * @param {Point} at
    * @param {Point | null} from
    * @param {number} px
@@ -290,7 +290,7 @@ export class Sketch {
   }
 
   /**
-   * Where the robot takes the goal to be.
+   * The goal in the robot's own frame.
    * @param {Point} at
    * @param {number} px
    */

@@ -1,5 +1,5 @@
 // @ts-check
-/** The line that says what the robot is doing: state, heading, goal and how far, reached or not; or the fault, and the rig if it is a wrong one. */
+/** The line with the robot's activity: state, heading, goal and distance, reached or not; or the fault, and a wrong rig. */
 import { create, element, setText } from './dom.js';
 import { near, wrapped } from './geometry.js';
 import { inWords } from './places.js';
@@ -31,7 +31,7 @@ export class StateLine {
   modes = [];
   /** Name of the simulated rig; null with a real robot. @type {string | null} */
   #carried = null;
-  /** The sonars to speak of, by number. */
+  /** The sonars to show, by number. */
   sonars = [0, 1, 2];
   /** @type {State | null} */
   #slow = null;
@@ -84,7 +84,7 @@ export class StateLine {
     this.#showPose(slow);
   }
 
-  /** What happened, and below it the cause and what to do. @param {string | null} fault */
+  /** Shows a fault, with the cause and the remedy below it. @param {string | null} fault */
   #showFault(fault) {
     const words = said(fault ?? '');
     if (words === this.#faultText.textContent) return;
@@ -142,7 +142,7 @@ export class StateLine {
   }
 }
 
-/** What a state is called. @param {ModeEntry | null | undefined} mode @param {number | null} state Null: the robot does not tell it. */
+/** The name of a state. @param {ModeEntry | null | undefined} mode @param {number | null} state Null: the robot does not report it. */
 export function stateWords(mode, state) {
   return state === null ? t('running') : said(mode?.states[state] ?? `state ${state}`);
 }

@@ -1,9 +1,9 @@
 // @ts-check
 /**
- * The signals received, in columns as uPlot takes them: a slow table with a line for each telemetry frame, and a fast one for the wheel
- * speeds, of which a frame brings two.
+ * The signals received, in columns for uPlot: a slow table with a line for each telemetry frame, and a fast one for the
+ * wheel speeds, of which a frame carries two samples.
  *
- * Places are in metres from the robot's origin, the true ones too, and headings go on through 180 degrees up to 315.
+ * Positions are in metres from the robot's origin, the true ones too, and headings continue through 180 degrees up to 315.
  */
 import { IDENTITY, compose, inverse, near, wrapped } from './geometry.js';
 import { Table } from './table.js';
@@ -45,7 +45,7 @@ const FAST = ['left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm', 'left_er
 const FARTHEST_DEG = 315;
 
 /**
- * A stretch of time in one state; null: the robot does not tell it.
+ * A stretch of time in one state; null: the robot does not report it.
  * @typedef {{from_s: number, to_s: number, mode: number, state: number | null, armed: boolean, faulted: boolean}} Stretch
  */
 
@@ -57,14 +57,14 @@ const FARTHEST_DEG = 315;
  * @typedef {object} Latest
  * @property {number} t_s
  * @property {number} mode
- * @property {number | null} state Of the mode's machine; null: not told.
+ * @property {number | null} state Of the mode's machine; null: not reported.
  * @property {boolean} armed
  * @property {Pose} origin The robot's origin in the world, as it was when it was last moved.
  * @property {Pose | null} estimated From the origin.
- * @property {Spread | null} spread How far `estimated` may be off.
+ * @property {Spread | null} spread Uncertainty of `estimated`.
  * @property {Pose | null} truth In the world.
- * @property {Pose | null} ghost In the world: a simulated robot that gets the same commands.
- * @property {number | null} heading_ref_rad What the mode wants; null where it wants none.
+ * @property {Pose | null} ghost In the world: a simulated robot that receives the same commands.
+ * @property {number | null} heading_ref_rad Heading setpoint of the mode; null where it has none.
  * @property {[Cell, Cell, Cell]} ranges_m Left, right, front.
  * @property {number | null} servo_rad
  * @property {boolean} contact
@@ -92,7 +92,7 @@ export class Store {
   #index = new Map();
 
   /**
-   * A new connection: everything comes again.
+   * A new connection: everything is sent again.
    * @param {string[]} columns
    * @param {import('./types.js').ModeEntry[]} modes
    */

@@ -1,9 +1,9 @@
 // @ts-check
 /**
- * Signals in columns, lines of increasing time, as uPlot takes them. Beside the lines a table keeps a coarse copy for long windows: of each
- * sixteen lines the smallest and the largest of each signal, which is all that a narrow plot can show of them.
+ * Signals in columns, lines of increasing time, in uPlot's form. Beside the lines a table keeps a coarse copy for long
+ * windows: min and max of each signal over sixteen lines, which is all that a narrow plot can show of them.
  *
- * In a column null is a gap, and undefined means that this line has no such value and the curve goes on.
+ * In a column null is a gap, and undefined means that this line has no such value and the curve continues.
  */
 
 /** @typedef {(number | null | undefined)[]} Column */
@@ -11,7 +11,7 @@
 /** Lines that become two in the coarse copy. */
 const BUCKET = 16;
 
-/** What a bucket has of a signal so far: smallest and largest, and which came first. */
+/** A signal in a bucket so far: min and max, and which came first. */
 class Extent {
   /** @type {number | null | undefined} */
   low = undefined;
@@ -54,7 +54,7 @@ export class Lines {
     this.columns = new Map(names.map((name) => [name, []]));
   }
 
-  /** Forgets the first lines. @param {number} count */
+  /** Drops the first lines. @param {number} count */
   drop(count) {
     this.t.splice(0, count);
     for (const column of this.columns.values()) column.splice(0, count);
@@ -71,7 +71,7 @@ export class Lines {
     return low;
   }
 
-  /** Forgets what is older. @param {number} t_s */
+  /** Drops older lines. @param {number} t_s */
   dropBefore(t_s) {
     this.drop(this.t.findIndex((each) => each >= t_s));
   }
@@ -109,7 +109,7 @@ export class Table extends Lines {
     }
     this.#inBucket += 1;
     if (this.#inBucket === BUCKET) this.#close(t_s);
-    // In large pieces, so that moving the rest is rare.
+    // In large blocks, so that moving the rest is rare.
     if (t_s - (this.t[0] ?? t_s) <= 1.2 * this.#kept_s) return;
     this.dropBefore(t_s - this.#kept_s);
     this.coarse.dropBefore(t_s - this.#kept_s);

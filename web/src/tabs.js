@@ -1,5 +1,5 @@
 // @ts-check
-/** Panels of which one is seen, chosen by tabs above them: click, or the arrow keys. */
+/** Panels of which one is visible, selected by tabs above them: click, or the arrow keys. */
 import { element } from './dom.js';
 
 export class Tabs {

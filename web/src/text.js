@@ -1,9 +1,9 @@
 // @ts-check
 /**
- * The page's words in the reader's language. The key of a text is its English; `spanish/` has the other language, for the page's own texts
- * and for the sentences of the station and the robot, which come in English and are recorded so.
+ * The page's texts in the reader's language. The key of a text is its English; `spanish/` has the translations, of the
+ * page's own texts and of the messages of station and robot, which are sent and recorded in English.
  *
- * `{}` in a text stands for a value. What follows a bar, as in `off|motor`, tells apart words that English has one of.
+ * `{}` in a text stands for a value. The part after a bar, as in `off|motor`, separates meanings of one English word.
  */
 import { GUIDE } from './spanish/guide.js';
 import { PAGE } from './spanish/page.js';
@@ -26,7 +26,7 @@ function choose() {
   return /** @type {Language} */ (wanted.find((each) => each !== null && known.includes(each)) ?? 'en');
 }
 
-/** Storage may be forbidden to the page; then nothing is remembered. */
+/** Storage may be forbidden to the page; then nothing is stored. */
 function stored() {
   try {
     return localStorage.getItem(STORED);
@@ -37,7 +37,7 @@ function stored() {
 
 export const language = choose();
 
-/** The page begins anew in this language, which is remembered. @param {string} wanted */
+/** Reloads the page in this language, and stores the choice. @param {string} wanted */
 export function speak(wanted) {
   try {
     localStorage.setItem(STORED, wanted);
@@ -93,7 +93,7 @@ function numbersAs(text) {
 /** A minus before a number is none of the hyphens. @param {string} text */
 const withMinus = (text) => text.replace(/(?<=^|[\s(])-(?=\d)/g, '−');
 
-/** The sentences with places for values, the most particular first. */
+/** The sentences with placeholders, the most specific first. */
 const PATTERNS = Object.keys(SPANISH).filter((english) => english.includes('{}')).map((english) => ({
   english,
   letters: english.replaceAll('{}', '').length,
@@ -130,7 +130,7 @@ export function named(name) {
 
 const ATTRIBUTES = ['title', 'aria-label', 'placeholder', 'alt'];
 
-/** Puts the texts that the page came with into its language. */
+/** Translates the static texts of the page. */
 export function translatePage() {
   document.documentElement.lang = language;
   if (language === 'en') return;

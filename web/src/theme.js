@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The colours that canvases draw with, from the style sheet, dark or light as the system is. Left, right and the states are told apart by
- * colour-blind people too (Okabe and Ito, 2008).
+ * The colours of canvases, from the style sheet, dark or light as the system is. Left, right and the states are
+ * distinguishable for colour-blind people too (Okabe and Ito, 2008).
  */
 const NAMES = /** @type {const} */ ([
   'text', 'dim', 'grid', 'line', 'panel', 'left', 'right', 'front', 'reference', 'bad', 'wall', 'robot', 'goal', 'state-0', 'state-1', 'state-2',

@@ -6,7 +6,7 @@
 /**
  * @param {HTMLElement} target
  * @param {(dx_px: number, dy_px: number) => void} onDrag
- * @param {(factor: number, about: Point) => void} onPinch `factor`: so much further apart the fingers are
+ * @param {(factor: number, about: Point) => void} onPinch `factor`: ratio of the fingers' distances
  */
 export function watchFingers(target, onDrag, onPinch) {
   /** @type {Map<number, Point>} */

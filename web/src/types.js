@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * What the server sends and takes; the other end is `socket.rs` and `orders.rs` of the station.
+ * The messages from and to the server; the other end is `socket.rs` and `orders.rs` of the station.
  *
  * @typedef {number | 'clear' | null} Cell A value of a row; 'clear': nothing within the sonar's reach; null: not known.
  *
@@ -10,22 +10,22 @@
  * @property {string} about What it does, in a few words.
  * @property {Reference | null} reference
  * @property {number | null} idle The state in which its reference is not in force.
- * @property {boolean} heading It wants a heading.
+ * @property {boolean} heading It has a heading setpoint.
  * @property {boolean} movements Takes basic movements.
  * @property {number | null} route Takes a route of at most so many places.
  * @property {boolean} lane Follows a lane on command.
  * @property {string[]} rigs The rigs it can drive with.
- * @property {[string, number[]][]} parameters Title and numbers of each group, those that matter most first.
- * @property {string[]} plots Titles of those it begins with.
+ * @property {[string, number[]][]} parameters Title and numbers of each group, the most important first.
+ * @property {string[]} plots Titles of the default plots.
  * @property {string[]} states
  * @property {[number, number, string][]} ways Between the states: from, to, when.
  *
- * @typedef {object} Reference What a mode regulates to [m or rad/s].
+ * @typedef {object} Reference The reference of a mode [m or rad/s].
  * @property {'distance' | 'wheel_speed' | 'speed' | 'goal'} kind
  * @property {number} min
  * @property {number} max
  * @property {number} offered The value to offer first.
- * @property {boolean} commanded A command sets it; otherwise the mode finds it.
+ * @property {boolean} commanded A command sets it; otherwise the mode determines it.
  *
  * @typedef {{x_m: number, y_m: number, heading_rad: number}} Pose World frame, counter-clockwise heading.
  * @typedef {{x_m: number, y_m: number, correlation: number, heading_rad: number}} Spread Standard deviations of a pose, from its origin.
@@ -68,7 +68,7 @@
  * @property {boolean} pending
  * @property {string | null} refused
  *
- * @typedef {object} Errand What the robot is asked to reach, from its origin.
+ * @typedef {object} Errand The robot's goal, from its origin.
  * @property {[number, number] | null} goal
  * @property {boolean} lane
  * @property {Route | null} route
@@ -82,8 +82,8 @@
  * @property {boolean} simulated
  * @property {number} speed
  * @property {number} achieved_speed
- * @property {string} [refused] The last order, if it was refused or given up, and why.
- * @property {string[]} [alarms] What a person has to see to at once.
+ * @property {string} [refused] The last order, if it was refused or dropped, and why.
+ * @property {string[]} [alarms] Alarms that need action at once.
  * @property {{phase: 'running', since_s: number} | {phase: 'done', findings: Findings, at_s: number} | {phase: 'failed', why: string, at_s: number}} [calibration]
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
@@ -96,7 +96,7 @@
  *
  * @typedef {{t_s: number, to_robot: boolean, hex: string}} LinkBytes Raw bytes that crossed the link together.
  *
- * @typedef {{usart: number, text: string}} ConsoleText What a USART of an emulated chip said.
+ * @typedef {{usart: number, text: string}} ConsoleText Output of a USART of an emulated chip.
  *
  * @typedef {{type: 'hello', version: string, columns: string[], modes: ModeEntry[]}
  *   | {type: 'scene', run: number, scene: Scene | null}

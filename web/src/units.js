@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * Units that people read: cm, rpm and degrees; everything on the way from the robot is SI. And numbers as the page's language writes them: a
- * comma before the decimals in Spanish.
+ * Units for people: cm, rpm and degrees; everything received from the robot is SI. And numbers in the page's language: a
+ * decimal comma in Spanish.
  */
 import { language, numberAs } from './text.js';
 
@@ -36,7 +36,7 @@ export function formatFloat(value) {
   return value === null ? '' : numberAs(String(Number(value.toPrecision(6))));
 }
 
-/** Two numbers as a place, which are told apart where a comma is in them. @param {string} x @param {string} y */
+/** Two numbers as a position, unambiguous even with decimal commas. @param {string} x @param {string} y */
 export function pair(x, y) {
   return `(${x}${language === 'es' ? ';' : ','} ${y})`;
 }

@@ -36,7 +36,7 @@ function numberField(id) {
       check(element);
     },
     read: () => read(element),
-    // What has not been read yet is not wrong.
+    // A value that has not been read yet is not wrong.
     limit: ({ min, max, value }) => setLimits(element, min, max, value !== null),
   };
 }
@@ -82,7 +82,7 @@ export function valueWords({ type, choices }, value) {
   return type === 'number' ? formatFloat(value) : named(choices[Math.round(value)] ?? '');
 }
 
-/** What is allowed, as people read it; of a choice, its field says it. @param {Parameter} parameter */
+/** What is allowed, for people; for a choice, the field shows it. @param {Parameter} parameter */
 export function rangeWords(parameter) {
   return parameter.type === 'number' ? `${formatFloat(parameter.min)} … ${formatFloat(parameter.max)}` : '';
 }

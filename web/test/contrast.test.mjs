@@ -1,5 +1,5 @@
 // @ts-check
-/** What is written can be read: contrast of the colours in both themes, as WCAG 2.2 reckons it (1.4.3: 4.5 to 1). No browser is needed. */
+/** Text is readable: contrast of the colours in both themes by WCAG 2.2 (1.4.3: 4.5 to 1). No browser is needed. */
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';

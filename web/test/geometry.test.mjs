@@ -48,10 +48,10 @@ function inFile(rig) {
 test('a robot that is not simulated has its sonars where its parameters say: as the robot\'s file has them', () => {
   for (const rig of ['front_single', 'front_pair', 'side_pair_left', 'side_pair_right', 'final']) {
     const { sonars, base_m } = bodyOf(rig, declared()) ?? assert.fail(rig);
-    const told = inFile(rig);
-    assert.deepEqual(sonars.map(({ id, on_servo }) => [id, on_servo]), told.map(({ id, on_servo }) => [id, on_servo]), rig);
+    const mounts = inFile(rig);
+    assert.deepEqual(sonars.map(({ id, on_servo }) => [id, on_servo]), mounts.map(({ id, on_servo }) => [id, on_servo]), rig);
     sonars.forEach(({ at, half_angle_rad }, index) => {
-      const { x_m = 0, y_m = 0, angle_deg = 0 } = told[index] ?? {};
+      const { x_m = 0, y_m = 0, angle_deg = 0 } = mounts[index] ?? {};
       near(at.x_m, x_m);
       near(at.y_m, y_m);
       near(at.heading_rad, angle_deg * Math.PI / 180);

@@ -25,8 +25,8 @@ async function driveThere(page) {
       const [ghost, robot] = [last('ghost_x_m'), last('x_m')];
       if (state().robot.errand.end === 'reached' && robot > 0.5 && Math.abs(ghost - robot) < 0.1) return 'there';
       if (state().robot.fault !== null) return 'robot';
-      const told = [...document.querySelectorAll('#events li')].filter((line) => line.textContent?.includes('the ghost has stopped: link lost'));
-      return told.length > seen ? 'ghost' : null;
+      const lines = [...document.querySelectorAll('#events li')].filter((line) => line.textContent?.includes('the ghost has stopped: link lost'));
+      return lines.length > seen ? 'ghost' : null;
     }, seen);
     const which = await what.jsonValue();
     if (which === 'there') return;
@@ -99,7 +99,7 @@ test('a ghost that is in another place is put beside the robot, and goes on from
   }
 });
 
-test('the ghost of a robot on a port does what the robot is told', { skip: process.platform === 'win32' }, async () => {
+test('the ghost of a robot on a port receives the same commands', { skip: process.platform === 'win32' }, async () => {
   const robot = spawn(program(), ['lab', '--scenario', 'mode1', '--pty'], { stdio: ['ignore', 'pipe', 'inherit'] });
   let port = '';
   for await (const line of createInterface({ input: robot.stdout })) {

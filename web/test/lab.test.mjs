@@ -319,8 +319,8 @@ test('a page of another origin gets no WebSocket', async () => {
   }
 });
 
-test('garbage is told why and closed, while the robot goes on and the page too', async () => {
-  const told = await page.evaluate(() => new Promise((resolve) => {
+test('garbage is refused with a reason and closed, while robot and page continue', async () => {
+  const result = await page.evaluate(() => new Promise((resolve) => {
     const socket = new WebSocket(`ws://${location.host}/ws`, ['rumbo', localStorage.getItem('rumbo.key') ?? '']);
     /** @type {string[]} */
     const errors = [];
@@ -331,7 +331,7 @@ test('garbage is told why and closed, while the robot goes on and the page too',
     };
     socket.onclose = (event) => resolve({ errors, code: event.code });
   }));
-  const { errors, code } = /** @type {{errors: string[], code: number}} */ (told);
+  const { errors, code } = /** @type {{errors: string[], code: number}} */ (result);
   assert.match(errors[0] ?? '', /not understood/);
   assert.equal(code, 1008);
   const [last] = await page.evaluate(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.slice(-1));

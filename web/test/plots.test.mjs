@@ -112,7 +112,7 @@ test('a click sets a mark, from which the numbers in all plots are counted', asy
   await band.hover({ position: { x: 200, y: 30 } });
   await page.locator('#cursor-time', { hasText: /^[\d.]+ s {2}Δ [\d.]+ s( {2}1: \w+)?$/ }).waitFor();
   await page.locator('.plot-head', { hasText: 'PWM' }).locator('output', { hasText: /Δ/ }).first().waitFor();
-  // The state at the pointer is told too: the band has room for the names of long ones only.
+  // The state at the pointer is shown too: the band has room for the names of long ones only.
   await band.hover({ position: { x: 100, y: 30 } });
   await page.locator('#cursor-time', { hasText: /1: (off|approach|settle|hold)$/ }).waitFor();
   await page.locator('#plots').focus();

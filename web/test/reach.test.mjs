@@ -29,7 +29,7 @@ const cutOff = () => page.evaluate(() => ['top', 'command-section', 'controls', 
   return part && (part.scrollHeight > part.clientHeight + 1 || part.scrollWidth > part.clientWidth + 1);
 }));
 
-/** Nothing is cut off, once all is laid out: what is asked again until it is so, and told where it never is. @param {string} where */
+/** Nothing is cut off, once all is laid out: polled until true, with an error otherwise. @param {string} where */
 async function fits(where) {
   const end = Date.now() + PATIENCE_MS;
   while ((await cutOff()).length > 0 && Date.now() < end) await page.evaluate(() => new Promise(requestAnimationFrame));
@@ -217,17 +217,17 @@ test('what a parameter is can be read with a finger and with the keyboard, on a 
     await about.getByText('link_timeout_s Time without a sign of life after which the wheels are released.').waitFor();
     const box = await about.boundingBox();
     assert.ok(box && box.x >= 0 && box.x + box.width <= 900, JSON.stringify(box));
-    // From one value to the next by Tab; what is told of each is also tied to it.
+    // From one value to the next by Tab; each has its description attached.
     const input = page.locator('#parameter-link_timeout_s');
     await input.focus();
     await page.keyboard.press('Tab');
     const next = await page.evaluate(() => {
       const input = document.activeElement;
       const [id = ''] = input?.getAttribute('aria-describedby')?.split(' ') ?? [];
-      return { name: input?.id.replace('parameter-', ''), told: document.getElementById(id)?.textContent };
+      return { name: input?.id.replace('parameter-', ''), text: document.getElementById(id)?.textContent };
     });
-    assert.ok(next.name && next.name !== 'link_timeout_s' && next.told, JSON.stringify(next));
-    await about.getByText(`${next.name} ${next.told}`).waitFor();
+    assert.ok(next.name && next.name !== 'link_timeout_s' && next.text, JSON.stringify(next));
+    await about.getByText(`${next.name} ${next.text}`).waitFor();
     await page.locator('#language').selectOption('es');
     await page.waitForFunction(() => document.documentElement.lang === 'es' && /** @type {any} */ (window).rumbo?.state());
     await page.locator('#parameter-link_timeout_s').tap();

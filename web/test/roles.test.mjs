@@ -27,7 +27,7 @@ before(async () => {
 after(() => dashboard?.close());
 
 /** @param {Page} page @param {string | RegExp} text */
-const told = (page, text) => page.locator('#seat-words', { hasText: text }).waitFor();
+const seatText = (page, text) => page.locator('#seat-words', { hasText: text }).waitFor();
 /** @param {Page} page @param {string} text */
 const event = (page, text) => page.locator('#events li', { hasText: text }).first().waitFor();
 /** @param {boolean} armed */
@@ -49,13 +49,13 @@ function answer(page, order) {
   }), order);
 }
 
-test('the first order takes control, and every page is told which one has it', async () => {
-  await told(first, 'this is page 1, nobody has control');
+test('the first order takes control, and every page shows which one has it', async () => {
+  await seatText(first, 'this is page 1, nobody has control');
   await first.locator('#on').click();
   await isArmed(true);
-  await told(first, 'this is page 1, it has control');
-  await told(second, 'page 1 has control, this is page 2; STOP works');
-  await told(viewer, 'you watch, page 1 has control; STOP works');
+  await seatText(first, 'this is page 1, it has control');
+  await seatText(second, 'page 1 has control, this is page 2; STOP works');
+  await seatText(viewer, 'you watch, page 1 has control; STOP works');
   // Telling it takes no room from what the robot does.
   for (const page of [second, viewer]) {
     const [panel, line] = await Promise.all(['#command-section', '#state-line'].map((part) => page.locator(part).boundingBox()));
@@ -68,22 +68,22 @@ test('a page without control is refused with the reason, and may stop the robot'
   await event(second, 'refused: another page has control; take it first');
   await second.locator('#stop').click();
   await isArmed(false);
-  await told(second, 'page 1 has control, this is page 2');
+  await seatText(second, 'page 1 has control, this is page 2');
 });
 
 test('control that is let go goes to the page that asks for it', async () => {
   await first.locator('#release-control').click();
-  await told(second, 'this is page 2, nobody has control');
+  await seatText(second, 'this is page 2, nobody has control');
   await second.locator('#take-control').click();
-  await told(second, 'this is page 2, it has control');
-  await told(first, 'page 2 has control, this is page 1');
-  await told(viewer, 'you watch, page 2 has control');
+  await seatText(second, 'this is page 2, it has control');
+  await seatText(first, 'page 2 has control, this is page 1');
+  await seatText(viewer, 'you watch, page 2 has control');
 });
 
 test('a page can take control from another on purpose', async () => {
   await first.locator('#take-control').click();
-  await told(first, 'this is page 1, it has control');
-  await told(second, 'page 1 has control, this is page 2');
+  await seatText(first, 'this is page 1, it has control');
+  await seatText(second, 'page 1 has control, this is page 2');
 });
 
 test('a viewer can command nothing, neither by the page nor around it, and may stop the robot', async () => {
@@ -101,11 +101,11 @@ test('a viewer can command nothing, neither by the page nor around it, and may s
 });
 
 test('control goes with the page that had it, and is free for another', async () => {
-  await told(second, 'page 1 has control');
+  await seatText(second, 'page 1 has control');
   await first.reload();
-  await told(second, 'this is page 2, nobody has control');
+  await seatText(second, 'this is page 2, nobody has control');
   await second.locator('#on').click();
-  await told(second, 'this is page 2, it has control');
+  await seatText(second, 'this is page 2, it has control');
   await second.locator('#stop').click();
   assert.deepEqual(dashboard.complaints, []);
 });

@@ -30,7 +30,7 @@ test('a Spanish browser gets the page, the modes and the events in Spanish', asy
   await event(/referencia alcanzada/);
 });
 
-test('what is refused and what fails is told in Spanish, with the remedy', async () => {
+test('refusals and failures are reported in Spanish, with the remedy', async () => {
   const input = page.locator('#parameter-front_kp');
   await input.fill('99');
   await input.press('Enter');
@@ -53,11 +53,11 @@ test('numbers have a decimal comma, and fields take a point too', async () => {
   await page.locator('#battery', { hasText: /^\d,\d V$/ }).waitFor();
   await page.locator('#pose', { hasText: /x −?\d+,\d cm/ }).waitFor();
   const input = page.locator('#parameter-link_timeout_s');
-  for (const [typed, told] of [['0,3', '0,3'], ['0.35', '0,35']]) {
+  for (const [typed, shown] of [['0,3', '0,3'], ['0.35', '0,35']]) {
     await input.fill(/** @type {string} */ (typed));
     await input.press('Enter');
-    await event(new RegExp(`link_timeout_s = ${told}: confirmado`));
-    await page.waitForFunction((told) => /** @type {HTMLInputElement} */ (document.querySelector('#parameter-link_timeout_s')).value === told, told);
+    await event(new RegExp(`link_timeout_s = ${shown}: confirmado`));
+    await page.waitForFunction((shown) => /** @type {HTMLInputElement} */ (document.querySelector('#parameter-link_timeout_s')).value === shown, shown);
   }
   await input.press('ArrowUp');
   assert.equal(await input.inputValue(), '0,36');

@@ -26,7 +26,7 @@ after(async () => {
 /** @param {string} text */
 const notice = (text) => page.locator('#notice', { hasText: text }).waitFor();
 
-test('a station that dies is missed, and a STOP that does not reach the robot is told', async () => {
+test('a station that dies is noticed, and a STOP that does not reach the robot is reported', async () => {
   assert.equal(await page.locator('#notice').isVisible(), false);
   await page.locator('#on').click();
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.armed);

@@ -97,7 +97,7 @@ enum Verdict {
     Differs(f64, String),
 }
 
-/// Runs the log's run again and says whether it is the same.
+/// Runs the log's run again and returns whether it is the same.
 pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
     let log = Log::read(&args.log).map_err(Failure::input)?;
     let shown = args.log.display();
