@@ -1,7 +1,7 @@
-//! The dashboard's way into the browser.
+//! Opens the dashboard in the browser.
 //!
-//! Everybody on the computer can read command lines, and the address has a token in it. So the browser is opened on a
-//! file that only this user can read, which leads it to the address.
+//! Everybody on the computer can read command lines, and the address contains a token. So the browser is opened on a
+//! file that only this user can read, which redirects it to the address.
 
 use crate::args::ServeArgs;
 use crate::failure::Failure;
@@ -37,7 +37,7 @@ pub(crate) fn show(lab: Lab, serve: ServeArgs) -> Result<(), Failure> {
     lab.wait().map_err(Failure::Input)
 }
 
-/// Opens the browser at an address; the file is needed until it is there.
+/// Opens the browser at an address; the file is needed until the page is loaded.
 fn open(url: &str) -> io::Result<NamedTempFile> {
     let mut file = tempfile::Builder::new()
         .prefix("rumbo-")

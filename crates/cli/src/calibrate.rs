@@ -1,4 +1,4 @@
-//! `rumbo calibrate`: the robot's own calibration, of a simulated robot, beside what that robot really is.
+//! `rumbo calibrate`: the calibration of a simulated robot, beside its true values.
 
 use crate::args::CalibrateArgs;
 use crate::failure::Failure;
@@ -47,7 +47,7 @@ impl calibrate::Linked for Guest<'_> {
     }
 }
 
-/// The calibration of the robot that the dashboard shows, for whoever presses the button there.
+/// The calibration of the robot in the dashboard, started by its button.
 pub(crate) fn in_dashboard() -> Extras {
     Extras {
         calibration: Some(|link| {
@@ -73,7 +73,7 @@ pub(crate) fn in_dashboard() -> Extras {
     }
 }
 
-/// Calibrates and prints what came of it.
+/// Calibrates and prints the result.
 pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     let overrides = Overrides {
         robot: Some(args.robot.clone()),

@@ -1,7 +1,7 @@
-//! `rumbo import` of what a terminal showed: rows of the original program and the commands typed to it, without a header.
+//! `rumbo import` of a terminal's capture: rows of the original program and the commands typed, without a header.
 //!
-//! The four kinds of rows and the six of commands of the original's text protocol. Rows tell how long after the one before they were made; a
-//! command is of the time of the row before it. The log is one like those of `rumbo connect`.
+//! The four kinds of rows and the six of commands of the original text protocol. A row carries the time since the
+//! previous one; a command has the time of the row before it. The log is like those of `rumbo connect`.
 
 use crate::args::ImportArgs;
 use crate::failure::Failure;
@@ -59,7 +59,7 @@ pub(crate) fn import(
     guard: &Guard,
 ) -> Result<(), Failure> {
     let (link, left_out) = parse(&args.file, text)?;
-    left_out.tell(&args.file);
+    left_out.report(&args.file);
     let manifest = Manifest {
         kind: Kind::Robot,
         program: "original".into(),
@@ -157,21 +157,21 @@ mod tests {
 
     #[test]
     fn a_damaged_line_is_left_out_and_named_unless_the_capture_was_cut_there() {
-        let told = |text: &str| {
+        let result = |text: &str| {
             let (link, left_out) = parse(Path::new("x"), text).unwrap();
             (link.len(), left_out.json())
         };
         let cut = format!("15, 115\n{TEN}60, 5");
-        assert_eq!(told(&cut), (10, json!([])));
+        assert_eq!(result(&cut), (10, json!([])));
         let damaged = TEN.replace("REF 40", "REF forty");
         assert!(is_one(&damaged));
-        let (lines, why) = told(&damaged);
+        let (lines, why) = result(&damaged);
         assert_eq!((lines, why.as_array().unwrap().len()), (9, 1));
         assert_eq!(why[0]["line"], 4);
-        // Also what a terminal caught while the cable was plugged in.
+        // Also noise from plugging in the cable.
         let noisy = format!("\u{fffd}\u{fffd}x7\n{TEN}");
         assert!(is_one(&noisy));
-        assert_eq!(told(&noisy).0, 10);
+        assert_eq!(result(&noisy).0, 10);
     }
 
     #[test]

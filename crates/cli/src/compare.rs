@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 type Metrics = BTreeMap<String, f64>;
 
-/// Prints metrics and differences, draws all over each other if asked, and fails where a tolerance is exceeded.
+/// Prints metrics and differences, draws all runs overlaid on request, and fails where a tolerance is exceeded.
 pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let names: Vec<String> = args.logs.iter().map(|path| output::shown(path)).collect();
     let stamp = Stamp::of("compare", &names);
@@ -65,12 +65,12 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     }
 }
 
-/// The parameters that are not the same in all logs that tell them, with their values in each.
+/// The parameters that are not the same in all logs that have them, with their values in each.
 fn differing(logs: &[Log]) -> BTreeMap<String, Vec<Option<f32>>> {
-    let told: Vec<BTreeMap<String, f32>> = logs.iter().map(Log::parameters).collect();
-    let names: BTreeSet<&String> = told.iter().flat_map(BTreeMap::keys).collect();
+    let known: Vec<BTreeMap<String, f32>> = logs.iter().map(Log::parameters).collect();
+    let names: BTreeSet<&String> = known.iter().flat_map(BTreeMap::keys).collect();
     let values = names.into_iter().map(|name| {
-        let values = told.iter().map(|values| values.get(name).copied());
+        let values = known.iter().map(|values| values.get(name).copied());
         (name.clone(), values.collect::<Vec<_>>())
     });
     values
@@ -95,7 +95,7 @@ fn print_parameters(parameters: &BTreeMap<String, Vec<Option<f32>>>) -> Result<(
     output::table(&parameters.iter().map(row).collect::<Vec<_>>())
 }
 
-/// JSON has no numbers that are none.
+/// JSON has no NaN.
 fn numbers(metrics: &Metrics) -> Map<String, Value> {
     metrics
         .iter()
@@ -103,7 +103,7 @@ fn numbers(metrics: &Metrics) -> Map<String, Value> {
         .collect()
 }
 
-/// What is worse than the tolerance allows, a line each.
+/// The differences beyond the tolerance, a line each.
 fn complaints(
     names: &[String],
     metrics: &[Metrics],
@@ -125,7 +125,7 @@ fn complaints(
         for (metric, value) in first {
             let now = other.get(metric).copied().unwrap_or(f64::NAN);
             let allowed = value.abs() * tolerance_percent / 100.0;
-            // Where what is measured never happened in either, they agree.
+            // Where the measured event never happened in either, they agree.
             let agree = (value.is_nan() && now.is_nan()) || (now - value).abs() <= allowed;
             if !agree {
                 complaints.push(format!(
@@ -186,7 +186,7 @@ impl std::fmt::Display for Rounded {
     }
 }
 
-/// The metrics of a log: those that its run was judged by, and those that any log has.
+/// The metrics of a log: those of its run, and those that any log has.
 fn metrics(log: &Log) -> Metrics {
     let mut metrics: Metrics = log
         .outcome
@@ -217,7 +217,7 @@ fn metrics(log: &Log) -> Metrics {
     metrics
 }
 
-/// Length of the way, the true one where it is known.
+/// Length of the path, the true one where it is known.
 fn way_m(log: &Log) -> Option<f64> {
     let way = |names: [&str; 2]| -> Vec<[f64; 2]> {
         log.rows

@@ -1,7 +1,7 @@
 //! The rows of a CSV of the original program: checked, in SI units, with their times.
 //!
-//! A row that is cut or damaged is left out and told, as long as more of them are sound; so is a header, where the rows tell what they are. What is
-//! mostly damaged is refused as a whole, with the first thing that is wrong.
+//! A truncated or damaged row is skipped and reported, as long as more of them are valid; so is a header, where the
+//! rows determine their kind. A file that is mostly damaged is rejected, with its first error.
 
 use crate::failure::Failure;
 use crate::left_out::LeftOut;
@@ -10,7 +10,7 @@ use rumbo_wire::text::{Row, RowKind};
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// What becomes of a column: its unit's factor, and what its values must lie within.
+/// Conversion of a column: its unit's factor, and the limits of its values.
 pub(crate) struct Column {
     original: &'static csv::Column,
     pub(crate) name: String,
@@ -26,14 +26,14 @@ pub(crate) struct Recording {
     /// Time since the first row, in s, and the row's values.
     pub(crate) rows: Vec<(f64, Vec<f64>)>,
     pub(crate) longest_gap_s: f64,
-    /// The sound rows under their header, as they were.
+    /// The valid rows under their header, unchanged.
     pub(crate) sound: String,
-    /// What is not among them.
+    /// The skipped lines.
     pub(crate) left_out: LeftOut,
 }
 
 impl Column {
-    /// What a column becomes: units to SI, motor A to the right wheel and B to the left one.
+    /// Converts a column: units to SI, motor A to the right wheel and B to the left one.
     fn of(original: &'static csv::Column) -> Self {
         let (unit, factor) = match original.unit {
             "cm" => ("_m", 0.01),
@@ -92,7 +92,7 @@ fn header_of(kind: RowKind) -> String {
         .join(",")
 }
 
-/// What a header lacks that is none of the original program's.
+/// The columns that an unknown header lacks.
 fn unknown(header: &str) -> String {
     let found: Vec<&str> = header.split(',').map(str::trim).collect();
     let matching = |kind: &RowKind| {
@@ -113,8 +113,8 @@ fn unknown(header: &str) -> String {
     }
 }
 
-/// The kind of the rows that most lines are, where a first line that is no header of theirs was meant to be one.
-fn told_by_rows(header: &str, text: &str) -> Option<RowKind> {
+/// The kind of most rows, where the first line is a damaged header.
+fn kind_by_rows(header: &str, text: &str) -> Option<RowKind> {
     let names = RowKind::ALL.iter().flat_map(|kind| kind.columns());
     let known = |name: &str| names.clone().any(|column| column.name == name);
     if header.split(',').filter(|name| known(name.trim())).count() < 3 {
@@ -182,7 +182,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
     let kind = match csv::recognise(header) {
         Some(kind) => kind,
         None => {
-            let kind = told_by_rows(header, text).ok_or_else(|| wrong(1, unknown(header)))?;
+            let kind = kind_by_rows(header, text).ok_or_else(|| wrong(1, unknown(header)))?;
             left_out.header(format!(
                 "`{header}` is no header; by its rows it is of {}",
                 modes(kind)
@@ -193,7 +193,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
     let columns: Vec<Column> = kind.columns().iter().map(Column::of).collect();
     let mut sound = header_of(kind) + "\n";
     let (mut rows, mut time_s, mut longest_gap_s) = (Vec::new(), 0.0, 0.0_f64);
-    // Since the last sound row, and a guess for rows that do not tell it.
+    // Since the last valid row, with an estimate for rows whose time is damaged.
     let (mut gap_s, mut usual_s) = (0.0, 0.0);
     for (line, row) in lines.filter(|(_, row)| !row.is_empty()) {
         let values = match values(&columns, row, kind) {

@@ -112,7 +112,7 @@ fn progress(args: &ExperimentsArgs, plan: &Plan) -> ProgressBar {
         plan.runs(),
         plan.simulated_s()
     );
-    // Who sees no bar is told once, where there is something to wait for.
+    // Without a progress bar, a single note if the wait is long.
     if !std::io::stderr().is_terminal() && expected_s > 3.0 {
         output::aside(&message);
     }

@@ -12,7 +12,7 @@ use rumbo_station::log::{Kind, Log, Manifest};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Writes what was asked for and prints the paths.
+/// Writes the requested files and prints the paths.
 pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     let folder = args.out.clone().unwrap_or_default();
     let stem = args.log.file_stem().unwrap_or(args.log.as_os_str());
@@ -61,7 +61,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The files of a format: how their names end, and what they are known by.
+/// The files of a format: suffix and mark.
 fn files(format: Format, stamp: &Stamp) -> Vec<(&'static str, Mark)> {
     let nothing = Log::default();
     match format {
@@ -74,7 +74,7 @@ fn files(format: Format, stamp: &Stamp) -> Vec<(&'static str, Mark)> {
     }
 }
 
-/// Says on stderr that a log ends early; one in which nothing had happened yet is of no use.
+/// Reports on stderr that a log ends early; an empty one is an error.
 pub(crate) fn warn_if_cut(path: &Path, log: &Log) -> Result<(), Failure> {
     let shown = path.display();
     if let Some(why) = log.cut.as_ref().filter(|_| log.holds_nothing()) {
@@ -101,7 +101,7 @@ pub(crate) fn warn_if_cut(path: &Path, log: &Log) -> Result<(), Failure> {
     Ok(())
 }
 
-/// How a run without a window comes again.
+/// How to repeat a headless run.
 fn once_more(manifest: &Manifest) -> Option<String> {
     let seed = manifest.seed?;
     let command = match manifest.kind {

@@ -1,4 +1,4 @@
-//! Why a command did not do what was asked, and the exit status for it.
+//! Why a command failed, and the exit status for it.
 
 use crate::interrupt;
 use crate::output;
@@ -17,17 +17,17 @@ pub(crate) enum Failure {
     Inputs(Vec<String>),
     /// Ctrl-C; what was done until then has been printed.
     Interrupted,
-    /// Whoever read our output has had enough.
+    /// The reader of our output has closed it.
     ReaderGone,
 }
 
 impl Failure {
-    /// A complaint about anything that can say what is wrong.
+    /// A wrong input, from any error.
     pub(crate) fn input(error: impl fmt::Display) -> Self {
         Self::Input(error.to_string())
     }
 
-    /// Prints the complaint to stderr and gives the exit status.
+    /// Prints the error to stderr and returns the exit status.
     pub(crate) fn report(self) -> ExitCode {
         match self {
             Self::LimitMissed => ExitCode::from(1),

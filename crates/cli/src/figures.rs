@@ -1,4 +1,4 @@
-//! Figures of logs: the signals of one, or those of several over each other.
+//! Figures of logs: the signals of one, or those of several overlaid.
 
 use rumbo_identify::chart::{Chart, Curve, Legend, PALETTE, Points, map, over_time};
 use rumbo_station::Row;
@@ -74,12 +74,12 @@ pub(crate) fn of_one(log: &Log) -> Vec<Chart<'static>> {
     }
     let mut ways = shapes(log);
     let truth = way(log, ["true_x_m", "true_y_m"]);
-    let told = told_way(log);
-    if told.len() > 1 {
+    let estimated = estimated_path(log);
+    if estimated.len() > 1 {
         ways.push(Curve::Line {
             name: "estimated",
             colour: PALETTE[0],
-            points: told,
+            points: estimated,
         });
     }
     if truth.len() > 1 {
@@ -93,7 +93,7 @@ pub(crate) fn of_one(log: &Log) -> Vec<Chart<'static>> {
     charts
 }
 
-/// The same charts with all logs over each other, each in its colour.
+/// The same charts with all logs overlaid, each in its colour.
 pub(crate) fn of_many<'a>(logs: &[(&'a str, &Log)]) -> Vec<Chart<'a>> {
     let coloured = || logs.iter().zip(PALETTE.into_iter().cycle());
     let mut charts = Vec::new();
@@ -120,7 +120,7 @@ pub(crate) fn of_many<'a>(logs: &[(&'a str, &Log)]) -> Vec<Chart<'a>> {
         let points = if truth.len() > 1 {
             truth
         } else {
-            told_way(log)
+            estimated_path(log)
         };
         if points.len() > 1 {
             ways.push(Curve::Line {
@@ -148,7 +148,7 @@ fn title_of(column: &str) -> &'static str {
     }
 }
 
-/// Nothing where no way is known, such as that of a robot that tells distances only.
+/// Nothing where no path is known, such as for a robot that reports distances only.
 fn map_chart(curves: Vec<Curve<'_>>) -> Option<Chart<'_>> {
     let is_way = |curve: &Curve<'_>| match curve {
         Curve::Line { points, .. } => points.len() > 1,
@@ -190,7 +190,7 @@ fn over(log: &Log, column: &str, factor: f64) -> Points {
         .collect()
 }
 
-/// What the robot was asked for, as far as it belongs into this chart.
+/// The references that belong to this chart.
 fn references(log: &Log, title: &str) -> Vec<Curve<'static>> {
     let given = |name, points: Points| has_values(&points).then_some(Curve::Given { name, points });
     match title {
@@ -246,8 +246,8 @@ fn way(log: &Log, columns: [&str; 2]) -> Points {
     log.rows.iter().filter_map(point).collect()
 }
 
-/// The estimated way in the world.
-fn told_way(log: &Log) -> Points {
+/// The estimated path in the world.
+fn estimated_path(log: &Log) -> Points {
     let point = |row: &Row| {
         let (x_m, y_m) = (row.signal("x_m")?, row.signal("y_m")?);
         let place = ["origin_x_m", "origin_y_m", "origin_heading_rad"]

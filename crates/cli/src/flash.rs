@@ -1,4 +1,4 @@
-//! `rumbo flash`: writes the image to an Arduino Mega with avrdude, after a look at what is on the port.
+//! `rumbo flash`: writes the image to an Arduino Mega with avrdude, after a check of the port.
 
 use crate::args::FlashArgs;
 use crate::failure::Failure;
@@ -10,9 +10,9 @@ use std::process::{Command, Stdio};
 
 /// Where `cargo xtask firmware` puts the image, in the folder of what is built.
 const BUILT: &str = "firmware/rumbo.hex";
-/// The Mega's boot loader speaks STK500v2 at this rate.
+/// Baud rate of the Mega's boot loader (STK500v2).
 const BOOT_BAUD: u32 = 115_200;
-/// What an ATmega2560 says it is (2549Q, section 29.3).
+/// Signature of an ATmega2560 (2549Q, section 29.3).
 const SIGNATURE: [u8; 3] = [0x1E, 0x98, 0x01];
 /// How an ELF file begins.
 const ELF: &[u8] = b"\x7fELF";
@@ -43,7 +43,7 @@ pub(crate) fn flash(args: &FlashArgs) -> Result<(), Failure> {
     output::line("done: the robot starts again, disarmed")
 }
 
-/// The image asked for, or the one built here; a program for this chip in any case.
+/// The requested image, or the one built here; in any case a program for this chip.
 fn image(args: &FlashArgs) -> Result<PathBuf, Failure> {
     let path = match &args.image {
         Some(path) => path.clone(),
@@ -103,7 +103,7 @@ fn missing(error: std::io::Error) -> Failure {
     ))
 }
 
-/// Opens the port for a moment: who may not, or has none there, is told what to do.
+/// Opens the port for a moment: an error names the remedy.
 fn check_port(port: &str) -> Result<(), Failure> {
     if port.starts_with("tcp:") {
         return Err(Failure::Input(format!(
@@ -115,13 +115,13 @@ fn check_port(port: &str) -> Result<(), Failure> {
         .map_err(Failure::input)
 }
 
-/// Asks the chip what it is.
+/// Reads and checks the chip's signature.
 fn check_signature(args: &FlashArgs, mut look: Command) -> Result<(), Failure> {
     let port = &args.port;
     let answer = look.stdin(Stdio::null()).output().map_err(missing)?;
     let said = String::from_utf8_lossy(&answer.stdout);
     let complaint = String::from_utf8_lossy(&answer.stderr);
-    let signature = bytes_of(&said).or_else(|| told(&complaint));
+    let signature = bytes_of(&said).or_else(|| signature_in(&complaint));
     let hex = |bytes: [u8; 3]| bytes.map(|byte| format!("{byte:02x}")).concat();
     match signature {
         Some(SIGNATURE) if answer.status.success() => Ok(()),
@@ -134,7 +134,7 @@ fn check_signature(args: &FlashArgs, mut look: Command) -> Result<(), Failure> {
             let last = complaint
                 .lines()
                 .rfind(|line| line.contains("avrdude"))
-                .unwrap_or("avrdude says nothing");
+                .unwrap_or("avrdude printed nothing");
             Err(Failure::Input(format!(
                 "no Arduino Mega answers on {port} ({}): is it on the USB cable, is the port the right one (`rumbo list ports`), \
                  does another program use it?",
@@ -156,8 +156,8 @@ fn bytes_of(text: &str) -> Option<[u8; 3]> {
     Some([bytes.next()??, bytes.next()??, bytes.next()??])
 }
 
-/// The one that avrdude complains of: `device signature = 0x1e950f`, also with blanks between the bytes.
-fn told(complaint: &str) -> Option<[u8; 3]> {
+/// The signature in an error of avrdude: `device signature = 0x1e950f`, also with blanks between the bytes.
+fn signature_in(complaint: &str) -> Option<[u8; 3]> {
     let (_, rest) = complaint.split_once("signature = ")?;
     let digits: String = rest
         .replace("0x", "")
@@ -183,12 +183,12 @@ mod tests {
         );
         assert_eq!(bytes_of(""), None);
         let old = "avrdude: Device signature = 0x1e950f (probably m328p)";
-        assert_eq!(told(old), Some([0x1E, 0x95, 0x0F]));
+        assert_eq!(signature_in(old), Some([0x1E, 0x95, 0x0F]));
         assert_eq!(
-            told("avrdude: device signature = 1E 98 01 (ATmega2560)"),
+            signature_in("avrdude: device signature = 1E 98 01 (ATmega2560)"),
             Some(SIGNATURE)
         );
-        assert_eq!(told("avrdude: stk500v2_getsync(): timeout"), None);
+        assert_eq!(signature_in("avrdude: stk500v2_getsync(): timeout"), None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
-//! The ghost: a simulated robot that gets the same bytes as the robot that is shown, so that one sees what it should have done.
+//! The ghost: a simulated robot that receives the same bytes as the shown robot, as the expected behaviour.
 //!
-//! Beside a real robot it lives in step with it. For a log it is run over the recorded bytes before the log is shown.
+//! Beside a real robot it runs in step with it. For a log it runs on the recorded bytes before the log is shown.
 
 use crate::failure::Failure;
 use crate::lab::SimulatedRobot;
@@ -16,7 +16,7 @@ use std::path::Path;
 const STEP_US: u64 = 5_000;
 /// Longest line of text that the decoder must pass over.
 const LINE: usize = 160;
-/// Session of what only the ghost is told.
+/// Session of commands to the ghost alone.
 const SESSION: u8 = 0x60;
 
 fn simulated(scenario: &str, seed: u64) -> Result<SimulatedRobot, Failure> {
@@ -42,30 +42,30 @@ fn surroundings(ghost: &SimulatedRobot) -> Scene {
 pub(crate) struct Haunted<T> {
     robot: T,
     ghost: SimulatedRobot,
-    heard: Vec<u8>,
+    received: Vec<u8>,
     decoder: Decoder<LINE>,
-    /// Faults of the ghost that nobody has been told yet.
+    /// Faults of the ghost not reported yet.
     faults: VecDeque<Fault>,
-    /// How often it was told something of its own.
-    told: u16,
+    /// Number of the last command to the ghost alone.
+    number: u16,
 }
 
 impl<T: Target> Haunted<T> {
-    /// The robot, with a ghost that stands where the scenario begins.
+    /// The robot, with a ghost at the start of the scenario.
     pub(crate) fn new(robot: T, scenario: &str) -> Result<Self, Failure> {
         Ok(Self {
             robot,
             ghost: simulated(scenario, 1)?,
-            heard: Vec::new(),
+            received: Vec::new(),
             decoder: Decoder::default(),
             faults: VecDeque::new(),
-            told: 0,
+            number: 0,
         })
     }
 
-    /// Notes the faults in what the ghost has said.
+    /// Collects the faults that the ghost has reported.
     fn listen(&mut self) {
-        for byte in &self.heard {
+        for byte in &self.received {
             if let Some(Received::Frame(body)) = self.decoder.push(*byte)
                 && let Ok(FromRobot::Event(event)) = FromRobot::from_body(&body)
                 && let EventKind::Faulted(fault) = event.kind
@@ -73,7 +73,7 @@ impl<T: Target> Haunted<T> {
                 self.faults.push_back(fault);
             }
         }
-        self.heard.clear();
+        self.received.clear();
     }
 }
 
@@ -84,7 +84,7 @@ impl<T: Target> Target for Haunted<T> {
 
     fn advance(&mut self, dt_us: u64) -> Result<(), String> {
         self.robot.advance(dt_us)?;
-        follow(&mut self.ghost, self.robot.now_us(), &mut self.heard)?;
+        follow(&mut self.ghost, self.robot.now_us(), &mut self.received)?;
         self.listen();
         Ok(())
     }
@@ -116,13 +116,13 @@ impl<T: Target> Target for Haunted<T> {
         Some(self.ghost.truth().pose)
     }
 
-    /// A fault of its own does not hold it there: the robot may have none to clear. ON starts it again.
+    /// Also clears the ghost's fault, since the robot may have none to clear. ON restarts it.
     fn restart_ghost(&mut self, at: Standing) -> Result<(), String> {
         self.ghost.place(at);
-        self.told = self.told.wrapping_add(1);
+        self.number = self.number.wrapping_add(1);
         let clear = ToRobot::Command {
             session: SESSION,
-            number: self.told,
+            number: self.number,
             command: Command::ClearFault,
             seen: RobotTime::default(),
         };
@@ -134,24 +134,24 @@ impl<T: Target> Target for Haunted<T> {
     }
 }
 
-/// The ghost lives up to this instant; what it says is put after what is there.
-fn follow(ghost: &mut SimulatedRobot, until_us: u64, heard: &mut Vec<u8>) -> Result<(), String> {
+/// Advances the ghost to this instant; appends the bytes it sends.
+fn follow(ghost: &mut SimulatedRobot, until_us: u64, received: &mut Vec<u8>) -> Result<(), String> {
     while ghost.now_us() + STEP_US <= until_us {
         ghost.advance(STEP_US)?;
-        ghost.receive(heard);
+        ghost.receive(received);
     }
     Ok(())
 }
 
-/// The ghost of a log, which gets the recorded bytes at their times.
+/// The ghost of a log, which receives the recorded bytes at their times.
 struct Recorded {
     scenario: String,
     seed: u64,
     to_robot: Vec<(u64, Vec<u8>)>,
-    /// The first that it has not got yet.
+    /// Index of the next bytes.
     next: usize,
     ghost: SimulatedRobot,
-    heard: Vec<u8>,
+    received: Vec<u8>,
 }
 
 impl Ghost for Recorded {
@@ -166,13 +166,13 @@ impl Ghost for Recorded {
         while let Some((at_us, bytes)) = self.to_robot.get(self.next)
             && *at_us <= until_us
         {
-            follow(&mut self.ghost, *at_us, &mut self.heard)?;
+            follow(&mut self.ghost, *at_us, &mut self.received)?;
             self.ghost.send(bytes)?;
             self.next += 1;
         }
-        follow(&mut self.ghost, until_us, &mut self.heard)?;
-        // Beside a log nobody listens to it.
-        self.heard.clear();
+        follow(&mut self.ghost, until_us, &mut self.received)?;
+        // Beside a log its messages are not used.
+        self.received.clear();
         Ok(self.ghost.truth().pose)
     }
 
@@ -181,7 +181,7 @@ impl Ghost for Recorded {
     }
 }
 
-/// Puts a ghost into a log that was read with its bytes, and gives it; `scenario` is where it lives, by default that of the log.
+/// Adds a ghost to a log that was read with its bytes, and returns it; `scenario` is its world, by default the log's.
 pub(crate) fn add_to(
     log: &mut Log,
     path: &Path,
@@ -210,7 +210,7 @@ pub(crate) fn add_to(
         scenario,
         seed,
         next: 0,
-        heard: Vec::new(),
+        received: Vec::new(),
     });
     let scene = surroundings(&ghost.ghost);
     log.haunt(scene, |t_us| ghost.live(t_us))
@@ -223,7 +223,7 @@ mod tests {
     use super::*;
     use rumbo_control::mode::ModeId;
 
-    /// A robot on a port that says nothing; its clock goes on by itself.
+    /// A silent robot on a port; its clock advances by itself.
     #[derive(Default)]
     struct Silent {
         now_us: u64,
@@ -254,12 +254,12 @@ mod tests {
         }
     }
 
-    fn tell(robot: &mut Haunted<Silent>, number: u16, command: Command) {
+    fn send(robot: &mut Haunted<Silent>, number: u16, command: Command) {
         let message = ToRobot::Command {
             session: 1,
             number,
             command,
-            // By the clock of the robot, of which the ghost knows nothing.
+            // By the clock of the robot, which the ghost does not have.
             seen: RobotTime {
                 start: 77,
                 ms: 1_000_000,
@@ -270,11 +270,11 @@ mod tests {
     }
 
     #[test]
-    fn a_ghost_that_heard_nothing_for_too_long_says_so_and_goes_on_after_it_was_put_elsewhere() {
+    fn a_ghost_that_received_nothing_for_too_long_reports_it_and_continues_after_it_was_moved() {
         let mut robot = Haunted::new(Silent::default(), "mode1").unwrap();
         robot.advance(1_000_000).unwrap();
-        tell(&mut robot, 1, Command::Mode(ModeId::FrontDistance));
-        tell(&mut robot, 2, Command::Arm);
+        send(&mut robot, 1, Command::Mode(ModeId::FrontDistance));
+        send(&mut robot, 2, Command::Arm);
         let begin_m = robot.ghost().unwrap().x_m;
         robot.advance(2_000_000).unwrap();
         let news = robot.news();
@@ -291,7 +291,7 @@ mod tests {
             told: MapPose::default(),
         };
         robot.restart_ghost(standing).unwrap();
-        tell(&mut robot, 3, Command::Arm);
+        send(&mut robot, 3, Command::Arm);
         let stood_m = robot.ghost().unwrap().x_m;
         for _ in 0..5 {
             robot.send(ToRobot::Heartbeat.frame(0).bytes()).unwrap();

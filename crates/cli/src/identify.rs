@@ -1,4 +1,4 @@
-//! `rumbo identify`: the plant's parameters from recorded runs, or how well a robot file repeats them.
+//! `rumbo identify`: the plant's parameters from recorded runs, or how well a robot file reproduces them.
 
 use crate::args::IdentifyArgs;
 use crate::failure::Failure;
@@ -41,17 +41,17 @@ struct Report<'a> {
     written: Option<String>,
 }
 
-/// What became of the drive's runs.
+/// The result for the drive's runs.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Drive {
     /// Parameters fitted.
     Identified(Box<Identification>),
-    /// Repeated with a robot file's parameters; no runs if none shows the drive.
+    /// Reproduced with a robot file's parameters; no runs if none shows the drive.
     Checked { runs: Vec<RunScore> },
 }
 
-/// Identifies, or checks, and prints what came of it.
+/// Identifies, or checks, and prints the result.
 pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     let name = args.check.as_ref().unwrap_or(&args.robot);
     let robot = Library::new().robot(name)?;
@@ -114,7 +114,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
 fn check(logs: &Logs, params: &Params) -> Result<Drive, Failure> {
     match rumbo_identify::check(&logs.drive, params) {
         Ok(check) => Ok(Drive::Checked { runs: check.runs }),
-        // Runs beside a wall tell nothing of the drive, and all of the sonars.
+        // Runs beside a wall contain no information on the drive, but all on the sonars.
         Err(IdentifyError::NothingToFit) if !logs.sonar.is_empty() => {
             Ok(Drive::Checked { runs: Vec::new() })
         }
@@ -131,7 +131,7 @@ fn read(paths: &[PathBuf]) -> Result<Logs, Failure> {
         if kind == Some(RowKind::Mission) && paths.len() > 1 {
             let path = path.display();
             output::note(&format!(
-                "{path} is left out: recordings of mode 8 tell no PWM"
+                "{path} is skipped: recordings of mode 8 have no PWM"
             ));
             continue;
         }
@@ -216,7 +216,7 @@ fn plot(
     Ok(plots)
 }
 
-/// Rewrites the `[plant]` table of a robot file, after a look whether the outcome is a valid robot.
+/// Rewrites the `[plant]` table of a robot file, after checking that the result is a valid robot.
 fn write<'a>(path: &'a Path, found: &Identification) -> Result<&'a Path, Failure> {
     let file = path.display().to_string();
     let wrong = |what: String| Failure::Input(format!("{file}: cannot be rewritten ({what})"));

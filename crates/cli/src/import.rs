@@ -1,8 +1,8 @@
 //! `rumbo import`: a CSV of the original program, checked and converted to an MCAP log.
 //!
 //! The log holds one JSON message per row in SI units, with its schema, on the topic `telemetry`, and the CSV itself
-//! as an attachment, so that nothing is lost. `rumbo identify` reads both. Of a damaged recording the sound rows are attached as a CSV, and beside
-//! them the file as it was.
+//! as an attachment, so that nothing is lost. `rumbo identify` reads both. For a damaged recording the valid rows are
+//! attached as a CSV, and the original file too.
 
 use crate::args::ImportArgs;
 use crate::capture;
@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// Media type of a recording of which something was left out.
+/// Media type of a recording with skipped lines.
 const AS_IT_WAS: &str = "application/octet-stream";
 
 /// Checks, converts, writes and sums up.
@@ -54,7 +54,7 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
         return capture::import(args, &text, &out, &guard);
     }
     let recording = csv_rows::parse(&args.file, &text)?;
-    recording.left_out.tell(&args.file);
+    recording.left_out.report(&args.file);
     let log = encode(&recording, &args.file, &bytes).map_err(Failure::input)?;
     guard.make_equal(&out, |place| {
         std::fs::write(place, &log).map_err(|error| place::unwritable(&out, &error))

@@ -52,7 +52,7 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
     browser::show(lab, args.session.serve)
 }
 
-/// The port at which a debugger may call, told on stderr.
+/// The port for a debugger, printed to stderr.
 fn debugging(port: u16, args: &LabArgs) -> Result<Debugging, Failure> {
     let refused = |error: std::io::Error| {
         Failure::Input(format!(
@@ -69,7 +69,7 @@ fn debugging(port: u16, args: &LabArgs) -> Result<Debugging, Failure> {
     Ok(debugging)
 }
 
-/// Starts the bridge, if it is wanted, and says where it is.
+/// Starts the bridge, if requested, and prints its address.
 #[cfg(feature = "foxglove")]
 pub(crate) fn bridge(
     args: crate::args::BridgeArgs,
@@ -82,16 +82,16 @@ pub(crate) fn bridge(
     Ok(Some(bridge))
 }
 
-/// The simulation as the station drives it.
+/// The simulation behind the station's interface.
 pub(crate) struct SimulatedRobot {
     library: Library,
-    /// What the command line says; the page chooses scenario, world and rig.
+    /// The overrides of the command line; the page chooses scenario, world and rig.
     overrides: Overrides,
     sim: Sim,
     debugging: Option<Debugging>,
     manifest: Manifest,
     mode: ModeId,
-    /// The emulated program's end has been told.
+    /// The emulated program's end has been reported.
     ended: bool,
     scene: Scene,
     first_commands: Vec<Command>,
@@ -144,7 +144,7 @@ fn offer(names: &mut Vec<String>, chosen: Option<&String>) {
     }
 }
 
-/// A simulation at time 0 and what surrounds it.
+/// A simulation at time 0 and its surroundings.
 struct Prepared {
     sim: Sim,
     mode: ModeId,
@@ -181,7 +181,8 @@ fn prepare(
     })
 }
 
-/// What the robot is told first. An image does not know its parameters yet, and one that speaks text has its own mode.
+/// The first commands to the robot. An image does not have its parameters yet, and one with the text protocol sets its
+/// own mode.
 fn first_words(setup: &Setup) -> Result<Vec<Command>, FileError> {
     let mut commands = first_commands(setup);
     if setup.firmware.is_none() {
@@ -200,24 +201,24 @@ fn first_words(setup: &Setup) -> Result<Vec<Command>, FileError> {
 }
 
 impl SimulatedRobot {
-    /// It gets what another robot is given, by that one's clock.
+    /// Makes it accept the bytes meant for another robot, timed by that one's clock.
     pub(crate) fn be_ghost(&mut self) {
         self.sim.be_ghost();
     }
 
-    /// Puts the robot elsewhere.
+    /// Moves the robot.
     pub(crate) fn place(&mut self, Standing { at, told }: Standing) {
         let at = rumbo_plant::contact::Pose {
             x_m: at.x_m,
             y_m: at.y_m,
             heading_rad: at.heading_rad,
         };
-        let told = rumbo_control::Pose {
+        let estimate = rumbo_control::Pose {
             x_m: told.x_m as f32,
             y_m: told.y_m as f32,
             heading_rad: told.heading_rad as f32,
         };
-        self.sim.place(at, told);
+        self.sim.place(at, estimate);
     }
 }
 
@@ -331,7 +332,7 @@ impl Simulation for SimulatedRobot {
             &self.library,
             &self.overrides,
             choice.clone(),
-            // Switched off and on again: what was saved is still there.
+            // Switched off and on again: saved parameters persist.
             &self.sim.memory(),
         );
         let fresh = fresh.map_err(|error| error.to_string())?;

@@ -1,13 +1,13 @@
-//! What an import leaves out of a damaged recording, and how it is told.
+//! Damaged lines of a recording that an import skips, and the notes about them.
 
 use crate::output;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// So many lines are told one by one.
-const TOLD: usize = 5;
+/// Lines listed one by one.
+const SHOWN: usize = 5;
 
-/// Lines that are not taken, with their reasons.
+/// Skipped lines, with their reasons.
 #[derive(Debug, Default)]
 pub(crate) struct LeftOut {
     header: Option<String>,
@@ -15,22 +15,22 @@ pub(crate) struct LeftOut {
 }
 
 impl LeftOut {
-    /// The first line, which is not what it should be.
+    /// Skips a damaged header.
     pub(crate) fn header(&mut self, why: String) {
         self.header = Some(why);
     }
 
-    /// A line, by its number.
+    /// Skips a line, by its number.
     pub(crate) fn row(&mut self, line: usize, why: String) {
         self.rows.push((line, why));
     }
 
-    /// Nothing is.
+    /// No line is skipped.
     pub(crate) fn is_empty(&self) -> bool {
         self.header.is_none() && self.rows.is_empty()
     }
 
-    /// The first thing wrong, if no more lines are sound than are not: then it is no such recording at all.
+    /// The first error, if at least half of the lines are damaged: then it is not such a recording at all.
     pub(crate) fn too_much(&self, sound: usize) -> Option<(usize, String)> {
         self.rows
             .first()
@@ -51,21 +51,21 @@ impl LeftOut {
         all.collect()
     }
 
-    /// Notes on stderr: which lines, and why; of many the first.
-    pub(crate) fn tell(&self, path: &Path) {
+    /// Prints notes to stderr: the lines and the reasons; of many the first.
+    pub(crate) fn report(&self, path: &Path) {
         let shown = path.display();
         let mut notes: Vec<String> = self
             .all()
-            .take(TOLD)
-            .map(|(line, why)| format!("{shown}:{line} is left out: {why}"))
+            .take(SHOWN)
+            .map(|(line, why)| format!("{shown}:{line} is skipped: {why}"))
             .collect();
-        let (all, sound) = (self.all().count(), "all the rest is taken");
+        let (all, sound) = (self.all().count(), "all the rest is used");
         match all {
             0 => return,
-            1..=TOLD => notes.push(sound.to_owned()),
+            1..=SHOWN => notes.push(sound.to_owned()),
             _ => notes.push(format!(
-                "{} more lines of {shown} are left out, the last is line {}; {sound}",
-                all - TOLD,
+                "{} more lines of {shown} are skipped, the last is line {}; {sound}",
+                all - SHOWN,
                 self.all().last().map_or(0, |(line, _)| line)
             )),
         }

@@ -1,4 +1,4 @@
-//! `rumbo list`: what there is to choose from.
+//! `rumbo list`: the available names and values.
 
 use crate::args::{ListArgs, Topic};
 use crate::failure::Failure;
@@ -154,7 +154,7 @@ fn mode_entry(mode: ModeId) -> Value {
             "states": states.collect::<Vec<_>>(), "parameters": groups.collect::<Vec<_>>() })
 }
 
-/// Where each sonar of a rig looks.
+/// Direction of each sonar of a rig.
 fn sonars(rig: &Mounts) -> Map<String, Value> {
     let mounts = [
         ("left", rig.left),
@@ -212,7 +212,7 @@ fn mode_row(entry: &Value) -> Vec<String> {
     ]
 }
 
-/// A rig as a row: name, robot, and where each sonar looks.
+/// A rig as a row: name, robot, and direction of each sonar.
 fn rig_row(entry: &Value) -> Vec<String> {
     let looks = |(name, mount): (&String, &Value)| {
         let direction = match mount["angle_deg"].as_f64() {
@@ -258,7 +258,7 @@ fn named_row(entry: &Value) -> Option<Vec<String>> {
     )
 }
 
-/// An entry as a row of a table: its name, then whatever it has of the rest.
+/// An entry as a row of a table: its name, then its other fields.
 fn row(entry: &Value) -> Vec<String> {
     if entry.get("states").is_some() {
         return mode_row(entry);

@@ -1,4 +1,4 @@
-//! Where logs are, and what there is.
+//! The folder of logs, and its content.
 
 use crate::args::PruneArgs;
 use crate::failure::Failure;
@@ -12,7 +12,7 @@ use std::time::Duration;
 /// The environment's variable that names another folder for logs.
 const FOLDER: &str = "RUMBO_LOGS";
 
-/// Where a session is recorded. One that cannot be is driven all the same: the page says so, and so does the terminal.
+/// The log of a session. If it cannot be written, the session runs all the same, and page and terminal report it.
 pub(crate) fn recording(given: Option<&Path>) -> Option<Recording> {
     let folder = folder(given)?;
     if let Err(why) = place::try_folder(&folder) {
@@ -61,14 +61,14 @@ fn paths() -> Result<Vec<PathBuf>, Failure> {
     Ok(paths)
 }
 
-/// How much there is, and how it becomes less.
+/// Total size, and how to reduce it.
 pub(crate) fn total(entries: &[Value]) -> String {
     let bytes = entries.iter().filter_map(|entry| entry["bytes"].as_u64());
     let (count, size) = (entries.len(), megabytes(bytes.sum()));
     format!("{count} logs, {size}; `rumbo prune --keep-days 30` removes those older than 30 days")
 }
 
-/// Removes the logs of the default folder that are older than asked for, and says which. What is no log of Rumbo stays.
+/// Removes the logs of the default folder beyond the given age, and lists them. Only logs of Rumbo are removed.
 pub(crate) fn prune(args: &PruneArgs) -> Result<(), Failure> {
     let days = Duration::from_secs(u64::from(args.keep_days) * 86_400);
     let (mut count, mut bytes) = (0, 0);
@@ -80,7 +80,7 @@ pub(crate) fn prune(args: &PruneArgs) -> Result<(), Failure> {
             ))
         };
         let about = std::fs::symlink_metadata(&path).map_err(unwritable)?;
-        // When it was written last: one that is being recorded is as young as can be.
+        // By the last write: a log being recorded is always recent.
         let age = about.modified().ok().and_then(|time| time.elapsed().ok());
         let is_old = about.is_file() && age.is_some_and(|age| age > days);
         if !is_old || Summary::read(&path).map_or(true, |log| log.manifest.is_none()) {

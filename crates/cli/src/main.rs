@@ -1,4 +1,4 @@
-//! The `rumbo` command: reads the arguments, calls the crate that does the work, prints what came of it.
+//! The `rumbo` command: reads the arguments, calls the crate that does the work, prints the result.
 //!
 //! Results go to stdout, progress and errors to stderr, one line per error. Exit status: 0 done, 1 a limit of a
 //! scenario was missed, 2 wrong input, 130 interrupted. Each file here is one subcommand.

@@ -1,4 +1,4 @@
-//! What a run was made of, as its log says it, and the same made into a run again.
+//! The manifest of a run in its log, and its conversion back into a run.
 
 use crate::failure::Failure;
 use crate::mark::crc32;
@@ -61,7 +61,7 @@ pub(crate) fn hash(path: &Path) -> Option<String> {
     Some(format!("{:08x}", crc32(&bytes)))
 }
 
-/// Refuses what no run that was recorded can have had.
+/// Rejects values that no recorded run can have had.
 fn check_ranges(log: &Path, manifest: &Manifest) -> Result<(), Failure> {
     let wrong = |key: &str, value: &dyn Display, range: &str| {
         let log = log.display();
@@ -124,7 +124,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         "baseline" | "original" => (NativeProgram::Baseline, None),
         image => (NativeProgram::default(), Some(PathBuf::from(image))),
     };
-    // A log may name any file: nothing is made of one that is not the program that it names.
+    // A log may name any file: one that is not the recorded program is rejected.
     if let Some(image) = &firmware
         && (manifest.image.is_none() || hash(image) != manifest.image)
     {

@@ -1,4 +1,4 @@
-//! What shows that Rumbo wrote a file for the same run or report, so that it may write it again.
+//! Marks that show that Rumbo wrote a file for the same run or report, so that it may be overwritten.
 //!
 //! | file | its mark |
 //! |---|---|
@@ -20,7 +20,7 @@ const BEGINNING: u64 = 4_096;
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 const PNG_HEADER: usize = 33;
 
-/// What a file of Rumbo is known by.
+/// The mark of a file of Rumbo.
 #[derive(Clone, Debug)]
 pub(crate) enum Mark {
     /// This text at its beginning.
@@ -55,7 +55,7 @@ impl Mark {
     }
 }
 
-/// The mark that is put on a file whose contents have none: what made it, and a checksum of what it is about.
+/// The mark added to a file whose contents have none: the command, and a checksum of its arguments.
 #[derive(Clone, Debug)]
 pub(crate) struct Stamp(pub(crate) String);
 
@@ -66,7 +66,7 @@ impl Stamp {
         Self(format!("rumbo {command} {sum:08x}"))
     }
 
-    /// What a file that has it is known by.
+    /// The mark of a file that has it.
     pub(crate) fn mark(&self) -> Mark {
         Mark::Text(self.0.clone())
     }
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_profile_is_told_from_any_other_text() {
+    fn a_profile_is_distinguished_from_any_other_text() {
         assert!(is_profile("(unknown) 12\nmain;tick 4\nmain;ti"));
         for text in ["", "main;tick 4", "t_s,x_m\n0,1\n", "all 12 of them\n"] {
             assert!(!is_profile(text), "{text}");

@@ -1,4 +1,4 @@
-//! `rumbo run` with `--profile`, `--vcd` or `--gdb`: one run whose program is looked at.
+//! `rumbo run` with `--profile`, `--vcd` or `--gdb`: one run with its program observed.
 
 use crate::args::RunArgs;
 use crate::failure::Failure;
@@ -13,12 +13,12 @@ use std::io::Write;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::path::Path;
 
-/// Something of the program is to be seen.
+/// Whether anything is to be observed.
 pub(crate) fn is_wanted(args: &RunArgs) -> bool {
     args.profile.is_some() || args.vcd.is_some() || args.gdb.is_some()
 }
 
-/// Whether what was asked for may be written where it was asked for.
+/// Checks that the requested files may be written.
 pub(crate) fn check_places(args: &RunArgs, guard: &Guard) -> Result<(), Failure> {
     let files = [
         (&args.vcd, "--vcd", stamp(args).mark()),
@@ -34,7 +34,7 @@ pub(crate) fn check_places(args: &RunArgs, guard: &Guard) -> Result<(), Failure>
     place::distinct(&results)
 }
 
-/// What the waveform of a run is known by.
+/// The mark of a run's waveform.
 fn stamp(args: &RunArgs) -> Stamp {
     Stamp::of(
         "run",
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &RunArgs, jobs: &[(&Setup, u64)]) -> Result<RunResult, F
     Ok(result)
 }
 
-/// Has the pins drawn into a file.
+/// Records the pins' waveforms to a file.
 fn drawn<T>(
     path: &Path,
     stamp: &Stamp,

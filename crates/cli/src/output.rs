@@ -1,7 +1,7 @@
-//! What goes to stdout and stderr: lines, JSON and aligned tables. A reader who stops reading ends the command quietly.
+//! Output to stdout and stderr: lines, JSON and aligned tables. A closed output ends the command quietly.
 //!
-//! Titles, names, contents of logs and words of a robot are printed here and nowhere else, so that none of them can
-//! control the terminal or forge a line ([`visible`]).
+//! Titles, names, contents of logs and texts from a robot are printed only here, so that none of them can control the
+//! terminal or forge a line ([`visible`]).
 
 use crate::failure::Failure;
 use serde::Serialize;
@@ -38,7 +38,7 @@ pub(crate) fn line(text: &str) -> Result<(), Failure> {
     Ok(stdout.flush()?)
 }
 
-/// Prints what is of several lines.
+/// Prints a text of several lines.
 pub(crate) fn lines(text: &str) -> Result<(), Failure> {
     text.lines().try_for_each(line)
 }
@@ -49,12 +49,12 @@ pub(crate) fn remark(text: &str) -> Result<(), Failure> {
     line(text)
 }
 
-/// Prints one line to stderr, where it is in no result's way. A closed stderr has no reader.
+/// Prints one line to stderr, apart from results. Ignores a closed stderr.
 pub(crate) fn aside(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", visible(text));
 }
 
-/// The same of what a person should know besides the result.
+/// The same for a note beside the result.
 pub(crate) fn note(text: &str) {
     aside(&format!("note: {text}"));
 }

@@ -1,8 +1,8 @@
-//! Where results go. A file is written whole or not at all: beside its place first, under a name that no other program
-//! has, and then moved there.
+//! Writing of results. A file is written completely or not at all: first beside its destination, under a unique name,
+//! and then moved there.
 //!
-//! Nothing is lost to a result: what a command reads it does not write, and a file that is there already is replaced
-//! only if it carries the [`Mark`] of the same run or report, or with `--force`. [`Guard`] looks before anything runs.
+//! No result destroys data: a command never writes to its inputs, and an existing file is replaced only if it carries
+//! the [`Mark`] of the same run or report, or with `--force`. [`Guard`] checks before anything runs.
 
 use crate::failure::Failure;
 use crate::mark::Mark;
@@ -10,12 +10,12 @@ use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
-/// Makes a folder, unless it is there.
+/// Makes a folder, unless it exists.
 pub(crate) fn folder(folder: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))
 }
 
-/// Whether something can be written into a folder: found before the work, not after it.
+/// Checks that a folder is writable, before the work instead of after it.
 pub(crate) fn try_folder(place: &Path) -> Result<(), Failure> {
     folder(place)?;
     let probe = place.join(format!(".rumbo-{}", std::process::id()));
@@ -24,7 +24,7 @@ pub(crate) fn try_folder(place: &Path) -> Result<(), Failure> {
         .map_err(|error| unwritable(place, &error))
 }
 
-/// What keeps a command from writing over something.
+/// Protection against overwriting.
 pub(crate) struct Guard {
     inputs: Vec<PathBuf>,
     force: bool,
@@ -86,7 +86,7 @@ fn is_another(path: &Path) -> Failure {
     ))
 }
 
-/// Refuses two results of one command in one place; `whose` says of what they are.
+/// Rejects two results of one command in one place; `whose` names them.
 pub(crate) fn distinct(results: &[(PathBuf, String)]) -> Result<(), Failure> {
     for (index, (path, whose)) in results.iter().enumerate() {
         let before = results
@@ -128,7 +128,7 @@ pub(crate) fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure>
     })
 }
 
-/// Has a file made, beside its place.
+/// Lets a file be made, beside its destination.
 pub(crate) fn make(
     path: &Path,
     make: impl FnOnce(&Path) -> Result<(), Failure>,
@@ -139,7 +139,7 @@ pub(crate) fn make(
     // A part that is not moved is removed.
     make(&part)?;
     if let Ok(before) = std::fs::metadata(&place) {
-        // A file that was rewritten belongs to whom it belonged.
+        // A rewritten file keeps its owner.
         let _ = std::fs::set_permissions(&part, before.permissions());
     }
     part.persist(&place)

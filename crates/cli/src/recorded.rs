@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// Media type of the CSV that an imported log carries.
 pub(crate) const CSV: &str = "text/csv";
-/// What stands for nothing in reach \[cm\]: the sonars' reach.
+/// The value for a clear range \[cm\]: the sonars' maximum.
 const CLEAR_CM: f64 = 250.0;
 
 /// The bytes of a CSV, or of the log that was made of it.
@@ -23,7 +23,7 @@ pub(crate) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     read_at_most(path, 4 * LONGEST_RECORDING)
 }
 
-/// What a log comes to, or why it is none of a real robot's run.
+/// The run in a log, or why it is not one of a real robot.
 pub(crate) fn from_log(path: &Path) -> Result<FromLog, NotShown> {
     let bytes = bytes(path).map_err(|_| NotShown::NoLog)?;
     if let Ok(csv) = attached(&bytes) {
@@ -59,7 +59,7 @@ pub(crate) fn attached(log: &[u8]) -> Result<Vec<u8>, String> {
         .into_owned())
 }
 
-/// The rows of a run: armed, in the mode in which it was armed first. A robot that does not tell whether it is counts as armed.
+/// The rows of a run: armed, in the mode in which it was armed first. A robot that does not report it counts as armed.
 fn csv(rows: &[Row]) -> Option<String> {
     let armed = |row: &&Row| row.signal("armed") != Some(0.0);
     let mode = |row: &Row| ModeId::from_number(row.signal("mode")? as u8);
@@ -108,7 +108,7 @@ fn value(row: &Row, name: &str, mode: ModeId) -> Option<f64> {
             CLEAR_CM
         })
     };
-    // A robot with one sonar tells it twice.
+    // A robot with one sonar sends it twice.
     let of_pair = |name| {
         cm(name)
             .filter(|_| mode != ModeId::FrontDistance)

@@ -1,7 +1,7 @@
-//! `rumbo rerun`: the run of a log once more, compared byte by byte with what the robot said then.
+//! `rumbo rerun`: reruns the run of a log, and compares every byte that the robot sends.
 //!
-//! A run without a window is run again as it was. A session of the lab is driven again by the recorded bytes to the robot, each at
-//! the simulated instant at which it was sent. What the USARTs of an emulated Mega sent is compared as well.
+//! A headless run is simply repeated. A session of the lab is driven by the recorded bytes to the robot, each at the
+//! simulated instant at which it was sent. The output of the USARTs of an emulated Mega is compared as well.
 
 use crate::args::RerunArgs;
 use crate::export::warn_if_cut;
@@ -73,7 +73,7 @@ impl Recorder {
 }
 
 impl Recorder {
-    /// What to say before a difference; empty where the model is the same.
+    /// Text before a difference; empty where the model is the same.
     fn model_words(&self) -> String {
         self.model
             .as_ref()
@@ -90,7 +90,7 @@ impl Recorder {
     }
 }
 
-/// What came of the comparison.
+/// The result of the comparison.
 enum Verdict {
     Equal,
     /// First difference: time \[s\], and what was and is there.
@@ -109,7 +109,7 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
     warn_if_cut(&args.log, &log)?;
     if log.has_holes {
         return Err(Failure::Input(format!(
-            "{shown}: something within is missing, so it cannot be told whether a run is the same"
+            "{shown}: parts of it are missing, so its run cannot be compared"
         )));
     }
     let recorder = Recorder::of(&log, recorded);
@@ -202,7 +202,7 @@ fn same(log: &Log, result: &RunResult, other_protocol: Option<u8>) -> Verdict {
     let Some(outcome) = &log.outcome else {
         return Verdict::Equal;
     };
-    // To the last digit: metrics are of the truth, of which the robot tells only a part.
+    // To the last digit: metrics are from ground truth, of which telemetry is only a part.
     let differs = |(name, value): (&String, &f64)| {
         let other = result.metrics.get(name).copied().unwrap_or(f64::NAN);
         (value.to_bits() != other.to_bits() && !(value.is_nan() && other.is_nan()))
@@ -267,7 +267,7 @@ fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<V
         .unwrap_or(Verdict::Equal))
 }
 
-/// What the USARTs of an emulated Mega have sent since they were last asked.
+/// Drains the output of the USARTs of an emulated Mega.
 fn consoles(sim: &mut Sim, t_us: u64) -> Vec<Said> {
     let Some(mega) = sim.mega_mut() else {
         return Vec::new();
@@ -281,7 +281,7 @@ fn consoles(sim: &mut Sim, t_us: u64) -> Vec<Said> {
     said.filter(|said| !said.bytes.is_empty()).collect()
 }
 
-/// Something recorded that can be told from something else.
+/// A recorded item that can be compared.
 trait Recorded: PartialEq {
     /// When \[us\].
     fn t_us(&self) -> u64;
@@ -310,7 +310,7 @@ impl Recorded for Said {
     }
 }
 
-/// Where two records of a link part; a record that was cut off may end first.
+/// The first difference of two records of a link; a truncated record may end first.
 fn first_difference<T: Recorded>(was: &[T], is: &[T], cut: bool) -> Option<Verdict> {
     let parted = was.iter().zip(is).find(|(was, is)| was != is);
     if let Some((was, is)) = parted {

@@ -1,5 +1,5 @@
-//! The files that a run leaves in a folder that was asked for: its result, the true signals, the log, and what an emulated
-//! chip's USARTs said.
+//! The files of a run in the requested folder: its result, the true signals, the log, and the output of an emulated
+//! chip's USARTs.
 
 use crate::failure::Failure;
 use crate::mark::Mark;
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// USARTs of the emulated chip.
 const USARTS: u8 = 4;
 
-/// Where the files of a run are.
+/// The paths of a run's files.
 pub(crate) struct Results {
     folder: PathBuf,
     stem: String,
@@ -29,7 +29,7 @@ impl Results {
         }
     }
 
-    /// The result: what the run is known by.
+    /// The mark of the result.
     pub(crate) fn json(&self) -> PathBuf {
         self.file(".json")
     }
@@ -60,7 +60,7 @@ impl Results {
             &self.file(".truth.csv"),
             &Mark::table(&Trace::default().csv()),
         )?;
-        // What a program says looks like anything: it belongs to the result beside it.
+        // A program's output can look like anything: it belongs to the result beside it.
         let beside = result.is_on(&self.json());
         (0..USARTS)
             .filter(|_| !beside)

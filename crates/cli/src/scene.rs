@@ -1,4 +1,4 @@
-//! What the dashboard draws around a simulated robot: world, footprint, sonars, and what could be chosen instead.
+//! The dashboard's scene of a simulated robot: world, footprint, sonars, and the alternatives to choose from.
 
 use rumbo_control::SonarId;
 use rumbo_experiment::files::TimedCommand;
@@ -87,8 +87,8 @@ fn experiments(library: &Library, scenario: &ScenarioFile, choice: &Choice) -> V
     own.flatten().into_iter().chain(known).collect()
 }
 
-/// The commands that tell a robot what to do without making it do so: the mode, and what the experiment sets up to where it arms the
-/// robot, or its first setpoint after that.
+/// The commands that prepare a robot without starting it: the mode, and the experiment's settings up to arming, or its
+/// first setpoint after that.
 pub(crate) fn first_commands(setup: &Setup) -> Vec<Command> {
     let commands = setup.scenario.commands.iter().map(|timed| timed.command);
     let armed = |command: &Command| *command == Command::Arm;
@@ -109,7 +109,7 @@ pub(crate) fn first_commands(setup: &Setup) -> Vec<Command> {
     first
 }
 
-/// Says what to do. A movement does not: that is for the operator to begin.
+/// Whether a command is such a setting. A movement is not: the operator starts it.
 fn is_setpoint(command: &Command) -> bool {
     matches!(
         command,

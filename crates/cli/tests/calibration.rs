@@ -51,7 +51,7 @@ fn a_calibration_is_recorded_and_its_log_is_read_like_any_other() {
         .find(|named| named[0] == "base_m")
         .unwrap();
     assert!((outcome.metrics["base_m"] - base[1].as_f64().unwrap()).abs() < 1e-6);
-    // It drove: along the wall, and its true pose is beside what it said.
+    // It drove along the wall, and its true pose is beside the reported one.
     let true_x_m = read.rows.iter().filter_map(|row| row.signal("true_x_m"));
     let (least_m, most_m) = true_x_m.fold((f32::MAX, f32::MIN), |(least, most), x_m| {
         (least.min(x_m as f32), most.max(x_m as f32))
@@ -80,7 +80,7 @@ fn a_calibration_of_another_robot_in_another_world_is_run_again_as_it_was() {
         "--param",
         "battery.open_circuit_v=7.1",
     ];
-    // There is no wall on its right: it does not move, and says so; what it saw is in the log.
+    // There is no wall on its right: it does not move, and reports it; its readings are in the log.
     let done = rumbo(logs, &[&["calibrate"], &options[..]].concat());
     assert_eq!(done.status.code(), Some(2));
     assert!(stderr(&done).contains("no wall beside the robot"));

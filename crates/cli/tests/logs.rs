@@ -1,4 +1,4 @@
-//! Logs, as a user meets them: what is recorded, what is left after a crash, and what is said of files that are no logs.
+//! Logs from the user's view: recordings, logs after a crash, and messages about files that are no logs.
 
 #![cfg(test)]
 
@@ -105,7 +105,7 @@ fn a_run_is_recorded_whole_and_the_same_run_is_the_same_file() {
         text(&again.stdout),
         text(&again.stderr)
     );
-    // The truth is there beside what was measured.
+    // Ground truth is there beside the measurements.
     let last = log.rows.last().unwrap();
     let (measured_m, true_m) = (
         last.signal("range_front_m").unwrap(),
@@ -262,10 +262,14 @@ fn a_log_made_with_another_table_of_parameters_says_so_and_a_log_cut_off_says_wh
         for command in ["rerun", "export", "compare", "replay"] {
             let log = ["head.mcap", "head.mcap"];
             let log = &log[..1 + usize::from(command == "compare")];
-            let told = rumbo(&[&[command], log].concat(), folder.path());
-            assert_eq!(told.status.code(), Some(2), "{command}, {bytes} bytes");
-            assert!(text(&told.stderr).contains(said), "{}", text(&told.stderr));
-            assert_eq!(text(&told.stderr).lines().count(), 1);
+            let output = rumbo(&[&[command], log].concat(), folder.path());
+            assert_eq!(output.status.code(), Some(2), "{command}, {bytes} bytes");
+            assert!(
+                text(&output.stderr).contains(said),
+                "{}",
+                text(&output.stderr)
+            );
+            assert_eq!(text(&output.stderr).lines().count(), 1);
         }
     }
 
@@ -288,7 +292,7 @@ fn a_log_made_with_another_table_of_parameters_says_so_and_a_log_cut_off_says_wh
     assert_eq!(rows("damaged.csv"), rows("mode5-1.csv"));
     let again = rumbo(&["rerun", "damaged.mcap"], folder.path());
     assert_eq!(again.status.code(), Some(0));
-    // Damaged within, it is read but for that; whether the run is the same cannot be told then.
+    // Damaged in the middle, the rest is read, but the run cannot be compared.
     let index = mcap::Summary::read(&whole).unwrap().unwrap();
     let chunk = &index.chunk_indexes[index.chunk_indexes.len() / 2];
     damaged(chunk.chunk_start_offset as usize + 1_000);
@@ -300,7 +304,7 @@ fn a_log_made_with_another_table_of_parameters_says_so_and_a_log_cut_off_says_wh
     assert!(count("damaged.csv") < count("mode5-1.csv"));
     let again = rumbo(&["rerun", "damaged.mcap"], folder.path());
     assert_eq!(again.status.code(), Some(2));
-    assert!(text(&again.stderr).contains("something within is missing"));
+    assert!(text(&again.stderr).contains("parts of it are missing"));
 
     let mut manifest = log.manifest.unwrap();
     manifest.version = "0.0.7".into();

@@ -47,15 +47,15 @@ fn a_full_disk_is_reported_once_driving_goes_on_and_the_log_is_readable_up_to_th
     let lab = Running::of(&mut command);
     let mut page = Page::open(&lab.said);
     page.wait_for_event("connected");
-    page.say(&json!({"type": "arm"}));
+    page.send(&json!({"type": "arm"}));
     page.wait_for_event("is the disk full?");
     // The robot is still driven: it takes orders, and telemetry comes.
-    page.say(&json!({"type": "reference", "value": 4.0}));
+    page.send(&json!({"type": "reference", "value": 4.0}));
     page.wait_for_event("acknowledged");
-    let (mut first_s, mut told) = (None, 0);
+    let (mut first_s, mut reported) = (None, 0);
     page.wait_for("samples", |message| {
         let events = message["events"].as_array().into_iter().flatten();
-        told += events
+        reported += events
             .filter(|event| {
                 event["text"]
                     .as_str()
@@ -65,8 +65,8 @@ fn a_full_disk_is_reported_once_driving_goes_on_and_the_log_is_readable_up_to_th
         let last_s = message["rows"].as_array()?.last()?[0].as_f64()?;
         (last_s > *first_s.get_or_insert(last_s) + 5.0).then_some(())
     });
-    assert_eq!(told, 0, "told again");
-    page.say(&json!({"type": "stop"}));
+    assert_eq!(reported, 0, "reported again");
+    page.send(&json!({"type": "stop"}));
     page.wait_for_event("STOP: acknowledged");
     drop(page);
     lab.end();

@@ -65,7 +65,7 @@ impl Bench {
         })
     }
 
-    /// Ends the station; gives its log.
+    /// Ends the station; returns its log.
     fn log(self) -> (tempfile::TempDir, PathBuf) {
         self.station.end();
         let mut files = std::fs::read_dir(self.folder.path()).unwrap();
@@ -80,18 +80,18 @@ fn the_original_program_is_recognised_commanded_watched_and_recorded() {
         return;
     };
     let mut bench = Bench::with("mode5", &image);
-    // It says nothing before its first ON.
-    bench.page.say(&json!({"type": "speed", "factor": 1}));
+    // It is silent before its first ON.
+    bench.page.send(&json!({"type": "speed", "factor": 1}));
     bench.page.wait_for_event("real robot");
     std::thread::sleep(std::time::Duration::from_secs(2));
-    bench.page.say(&json!({"type": "arm"}));
+    bench.page.send(&json!({"type": "arm"}));
     bench
         .page
         .wait_for_event("speaks the original program's text");
     assert_eq!(bench.wait_for("mode", |_| true), 5.0);
     bench
         .page
-        .say(&json!({"type": "reference", "value": 60.0 * std::f64::consts::TAU / 60.0}));
+        .send(&json!({"type": "reference", "value": 60.0 * std::f64::consts::TAU / 60.0}));
     bench.page.wait_for_event("setpoint 60 rpm: sent");
     bench.wait_for("right_ref_rad_s", |rad_s| {
         (rad_s - std::f64::consts::TAU).abs() < 0.01
@@ -100,9 +100,9 @@ fn the_original_program_is_recognised_commanded_watched_and_recorded() {
     // Its gains, as a person types them: without any, no controller's output is left.
     bench
         .page
-        .say(&json!({"type": "type", "usart": 255, "text": "PID A 0 0 0"}));
+        .send(&json!({"type": "type", "usart": 255, "text": "PID A 0 0 0"}));
     bench.wait_for("right_pwm", |pwm| pwm <= 60.0);
-    bench.page.say(&json!({"type": "stop"}));
+    bench.page.send(&json!({"type": "stop"}));
     bench.page.wait_for_event("STOP: sent");
     std::thread::sleep(std::time::Duration::from_millis(700));
     let (folder, path) = bench.log();
@@ -110,7 +110,7 @@ fn the_original_program_is_recognised_commanded_watched_and_recorded() {
     assert_eq!(log.cut, None);
     assert!(log.rows.len() > 10, "{}", log.rows.len());
     assert!(log.rows.is_sorted_by_key(|row| row.t_ms));
-    // What rows of mode 5 do not tell is not made up.
+    // Values that rows of mode 5 lack are not invented.
     assert!(log.rows.iter().all(|row| row.signal("x_m").is_none()));
     assert!(log.rows.iter().all(|row| row.signal("mode") == Some(5.0)));
     let sent: Vec<u8> = log
@@ -119,7 +119,7 @@ fn the_original_program_is_recognised_commanded_watched_and_recorded() {
         .filter(|burst| burst.to_robot)
         .flat_map(|burst| burst.bytes.clone())
         .collect();
-    // Until it is known what the robot speaks, frames go too, each ended by a zero.
+    // Until the robot's protocol is known, frames are sent too, each ended by a zero.
     let lines: Vec<String> = sent
         .split(|byte| matches!(byte, b'\n' | 0))
         .map(|line| String::from_utf8_lossy(line).into_owned())
@@ -146,7 +146,7 @@ fn the_original_program_is_recognised_commanded_watched_and_recorded() {
     }
 }
 
-/// Its log in the dashboard: what the robot told, and its lines in the console of the link, as far as the playhead is.
+/// Its log in the dashboard: the robot's telemetry, and its lines in the console of the link, up to the playhead.
 fn replayed(log: &Path, end_s: f64) {
     let replay = Running::start(&[
         "replay",
@@ -159,7 +159,7 @@ fn replayed(log: &Path, end_s: f64) {
     ]);
     let mut page = Page::open(&replay.said);
     let columns = columns(&mut page);
-    page.say(&json!({"type": "seek", "t_s": end_s}));
+    page.send(&json!({"type": "seek", "t_s": end_s}));
     let (mut lines, mut state, mut mode) = (String::new(), Value::Null, None);
     page.wait_for("the end of the log", |message| {
         for said in message["said"].as_array().into_iter().flatten() {
@@ -177,7 +177,7 @@ fn replayed(log: &Path, end_s: f64) {
     });
     assert_eq!(state["robot"]["text"], true);
     assert_eq!(state["robot"]["mode"], 5);
-    page.say(&json!({"type": "type", "usart": 255, "text": "REF 10"}));
+    page.send(&json!({"type": "type", "usart": 255, "text": "REF 10"}));
     page.wait_for_event("this is a replay: nothing is sent to a robot");
 }
 
@@ -188,11 +188,11 @@ fn goals_reach_the_original_program_and_its_pose_and_states_are_seen() {
     };
     let mut bench = Bench::with("mode8-goals", &image);
     std::thread::sleep(std::time::Duration::from_secs(2));
-    bench.page.say(&json!({"type": "arm"}));
-    // It speaks once it has a goal.
+    bench.page.send(&json!({"type": "arm"}));
+    // It sends once it has a goal.
     bench
         .page
-        .say(&json!({"type": "goal", "x_m": 1.0, "y_m": 0.0}));
+        .send(&json!({"type": "goal", "x_m": 1.0, "y_m": 0.0}));
     bench
         .page
         .wait_for_event("speaks the original program's text");
@@ -244,8 +244,8 @@ fn a_run_with_an_image_is_run_again_whole_with_what_its_usarts_said() {
         out.to_str().unwrap(),
     ]);
     let mut page = Page::open(&lab.said);
-    page.say(&json!({"type": "type", "usart": 1, "text": "ON"}));
-    page.say(&json!({"type": "type", "usart": 1, "text": "REF 50"}));
+    page.send(&json!({"type": "type", "usart": 1, "text": "ON"}));
+    page.send(&json!({"type": "type", "usart": 1, "text": "REF 50"}));
     page.wait_for("a row", |message| {
         let said = message["said"].as_array()?.iter();
         said.filter_map(|said| said["text"].as_str())

@@ -5,7 +5,7 @@ use clap::Args;
 use rumbo_experiment::files::Overrides;
 use std::path::PathBuf;
 
-/// What takes the place of the scenario's own.
+/// Options that replace values of the scenario.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SettingArgs {
     /// Robot: name or path [default: the scenario's]
@@ -31,7 +31,7 @@ pub(crate) struct ImageArgs {
 }
 
 impl ImageArgs {
-    /// What it changes of a scenario.
+    /// The resulting overrides of a scenario.
     pub(crate) fn overrides(&self) -> Overrides {
         Overrides {
             firmware: self.firmware.clone(),
@@ -44,7 +44,7 @@ impl ImageArgs {
 /// What may be overwritten.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct OverwriteArgs {
-    /// Replace files that are there already; without it only those that Rumbo wrote for the same run or report
+    /// Replace existing files; without it only those that Rumbo wrote for the same run or report
     #[arg(long)]
     pub(crate) force: bool,
 }

@@ -25,7 +25,7 @@ pub(crate) struct LabArgs {
     pub(crate) setting: SettingArgs,
     #[command(flatten)]
     pub(crate) image: ImageArgs,
-    /// Port on 127.0.0.1 where avr-gdb may come and go; 0 takes any free one. Robot and world stand while it holds the program
+    /// Port on 127.0.0.1 for avr-gdb; 0 takes any free one. Robot and world are frozen while the program is halted
     #[arg(long, value_name = "PORT", requires = "firmware")]
     pub(crate) gdb: Option<u16>,
     #[command(flatten)]
@@ -57,10 +57,10 @@ pub(crate) struct ConnectArgs {
     /// Serial port by its name, or tcp:host:port
     #[arg(value_name = "PORT", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     pub(crate) address: String,
-    /// Show a simulated robot in this scenario that gets the same commands: put the robot where it begins
+    /// Show a simulated robot in this scenario that receives the same commands; put the robot at its start
     #[arg(long, value_name = "SCENARIO")]
     pub(crate) ghost: Option<String>,
-    /// The robot runs the original program, which says nothing before its first ON: speak to it in text
+    /// The robot runs the original program, which is silent before its first ON: use its text protocol
     #[arg(long, conflicts_with = "ghost")]
     pub(crate) text: bool,
     /// Speed of the serial port; the robot's is 9600

@@ -19,10 +19,10 @@ A CSV begins with the names of its columns; as a spreadsheet has saved it (semic
   mode 7        dt_ms,speed_a_rpm,speed_b_rpm,reference_a_rpm,reference_b_rpm,x_m,y_m,heading_deg,pwm_a,pwm_b
   mode 8        dt_ms,reference_a_rpm,reference_b_rpm,heading_reference_deg,goal_x_m,goal_y_m,x_m,y_m,heading_deg,state,right_cm,
                 left_cm,front_cm
-A capture of a terminal has rows of telemetry and the commands typed, a line each. Damaged lines are left out and named, as long as more of them
+A capture of a terminal has rows of telemetry and the commands typed, a line each. Damaged lines are skipped and listed, as long as more of them
 are sound.")]
 pub(crate) struct ImportArgs {
-    /// CSV of the original program, or what a terminal showed of it
+    /// CSV of the original program, or the capture of a terminal
     #[arg(value_name = "FILE.csv")]
     pub(crate) file: PathBuf,
     /// The log to write [default: the same name with .mcap, in the current folder]
@@ -47,7 +47,7 @@ pub(crate) struct ReplayArgs {
     /// The log
     #[arg(value_name = "LOG")]
     pub(crate) log: PathBuf,
-    /// Show a simulated robot that gets the same commands, in this scenario [default: the log's]
+    /// Show a simulated robot that receives the same commands, in this scenario [default: the log's]
     #[arg(long, value_name = "SCENARIO", num_args = 0..=1)]
     pub(crate) ghost: Option<Option<String>>,
     #[command(flatten)]
@@ -108,7 +108,7 @@ pub(crate) struct CompareArgs {
     /// Largest allowed difference of a metric, in percent of the first log's value
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub(crate) tolerance: Option<f64>,
-    /// Figure with all runs over each other
+    /// Figure with all runs overlaid
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
@@ -145,10 +145,10 @@ Examples:
 Removes logs from the folder that `rumbo list logs` shows, by the time when they were written last. Logs in folders of
 --out stay, and so does what is no log of Rumbo. Nothing is ever removed without this command.")]
 pub(crate) struct PruneArgs {
-    /// Logs of so many days stay
+    /// Keep the logs of the last N days
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=36_500))]
     pub(crate) keep_days: u32,
-    /// Only say what would be removed
+    /// Only list what would be removed
     #[arg(long)]
     pub(crate) dry_run: bool,
 }

@@ -123,18 +123,18 @@ pub(crate) fn explain(error: &clap::Error) -> Result<(), Failure> {
     }
     let text = error.to_string();
     let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
-    let told: Vec<&str> = lines
+    let message: Vec<&str> = lines
         .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"))
         .collect();
-    let told = told.join("; ").replace(":; ", ": ");
+    let message = message.join("; ").replace(":; ", ": ");
     Err(Failure::Input(format!(
         "{}; see `{} --help`",
-        told.trim_start_matches("error: "),
+        message.trim_start_matches("error: "),
         command_asked()
     )))
 }
 
-/// The command whose help is wanted.
+/// The command whose help to suggest.
 fn command_asked() -> String {
     let first = std::env::args_os().nth(1).unwrap_or_default();
     let command = Cli::command();

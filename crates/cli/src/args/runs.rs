@@ -66,7 +66,7 @@ pub(crate) struct RunArgs {
     /// One JSON object per run on stdout
     #[arg(long)]
     pub(crate) json: bool,
-    /// File for the firmware's cycles by function, for flame graphs; what it comes to goes to stderr. One run
+    /// File for the firmware's cycles by function, for flame graphs; a summary goes to stderr. One run
     #[arg(long, value_name = "FILE", requires = "firmware")]
     pub(crate) profile: Option<PathBuf>,
     /// File for the Mega's pins over time, for a viewer of waveforms such as GTKWave. One run

@@ -1,4 +1,4 @@
-//! Values of options that need more than a look: numbers within bounds, pairs.
+//! Values of options that need checks: numbers within bounds, pairs.
 
 use crate::manifest::LONGEST_S;
 use rumbo_experiment::files::{TimedText, parameters};
@@ -11,7 +11,7 @@ pub(super) fn speed(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A line of text and when it is sent: `REF 40@6`.
+/// A line of text and its time: `REF 40@6`.
 pub(super) fn timed_text(text: &str) -> Result<TimedText, String> {
     let wrong = || "write it as TEXT@SECONDS, e.g. 'REF 40@6'".to_owned();
     let (line, at_s) = text.rsplit_once('@').ok_or_else(wrong)?;

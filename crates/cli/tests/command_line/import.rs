@@ -104,7 +104,7 @@ fn a_recording_and_the_log_made_of_it_are_checked_alike() {
 }
 
 #[test]
-fn a_damaged_row_near_the_start_costs_that_row_only_and_is_told() {
+fn a_damaged_row_near_the_start_costs_only_that_row_and_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let import = |damaged: &[u8]| {
         std::fs::write(folder.path().join("damaged.csv"), damaged).unwrap();
@@ -139,12 +139,12 @@ fn a_damaged_row_near_the_start_costs_that_row_only_and_is_told() {
         assert_eq!(summary["rows"], rows);
         assert!((summary["duration_s"].as_f64().unwrap() - duration_s).abs() < 1e-9);
         assert_eq!(summary["left_out"][0]["line"], line);
-        let told = stderr(&output);
+        let note = stderr(&output);
         assert!(
-            told.starts_with(&format!("note: damaged.csv:{line} is left out: ")),
-            "{told}"
+            note.starts_with(&format!("note: damaged.csv:{line} is skipped: ")),
+            "{note}"
         );
-        assert!(told.ends_with("note: all the rest is taken\n"), "{told}");
+        assert!(note.ends_with("note: all the rest is used\n"), "{note}");
         // What reads imported logs reads this one, and the file as it was is in it too.
         let mut check = program();
         check
@@ -159,14 +159,14 @@ fn a_damaged_row_near_the_start_costs_that_row_only_and_is_told() {
 }
 
 #[test]
-fn a_recording_that_tells_no_pwm_is_left_out_with_a_note() {
+fn a_recording_without_pwm_is_skipped_with_a_note() {
     let row = "60,10,10,0,1,0,0.1,0.1,0,3,50,50,50\n";
     let header = "dt_ms,reference_a_rpm,reference_b_rpm,heading_reference_deg,goal_x_m,goal_y_m,x_m,y_m,heading_deg,state,right_cm,left_cm,front_cm\n";
     file("goals.csv", &format!("{header}{row}{row}"));
     file("driven.csv", RECORDING);
     let output = rumbo(&["identify", "goals.csv", "driven.csv", "--check", "memoria"]);
     let said = stderr(&output);
-    assert!(said.starts_with("note: goals.csv is left out"), "{said}");
+    assert!(said.starts_with("note: goals.csv is skipped"), "{said}");
     let alone = rumbo(&["identify", "goals.csv", "--check", "memoria"]);
     assert_eq!(alone.status.code(), Some(2));
     assert!(stderr(&alone).contains("give a log of modes 1 to 7"));

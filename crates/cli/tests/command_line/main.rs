@@ -1,11 +1,11 @@
-//! What the command says, where it says it, and with which exit status.
+//! The command's output, its stream, and its exit status.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod import;
+mod information;
 mod observe;
 mod run;
 #[path = "../support/mod.rs"]
 mod support;
-mod told;
 mod wrong_input;

@@ -1,4 +1,4 @@
-//! Looking into a program: its profile, its pins, a debugger.
+//! Observing a program: its profile, its pins, a debugger.
 
 use crate::support::{file, folder, program, rumbo, stderr, stdout};
 use std::io::{BufRead, BufReader};

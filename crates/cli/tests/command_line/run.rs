@@ -148,13 +148,13 @@ fn each_run_leaves_its_result_and_its_trace_in_the_folder_asked_for() {
 
 #[cfg(unix)]
 #[test]
-fn a_campaign_that_is_interrupted_or_terminated_tells_what_it_had() {
-    tells_what_it_had("-INT");
-    tells_what_it_had("-TERM");
+fn a_campaign_that_is_interrupted_or_terminated_reports_its_results_so_far() {
+    reports_its_results_so_far("-INT");
+    reports_its_results_so_far("-TERM");
 }
 
 #[cfg(unix)]
-fn tells_what_it_had(signal: &str) {
+fn reports_its_results_so_far(signal: &str) {
     let mut campaign = program()
         .args(["run", "mode5", "--runs", "1000000", "--json", "--no-record"])
         .stdout(Stdio::piped())

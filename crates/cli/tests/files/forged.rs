@@ -1,4 +1,4 @@
-//! Nothing is forged: what files and robots say is shown, and neither a terminal nor a spreadsheet obeys it.
+//! Nothing is forged: texts of files and robots are shown, and neither a terminal nor a spreadsheet interprets them.
 
 use crate::support::{stderr, stdout};
 use crate::{rumbo_in, scenario, status};

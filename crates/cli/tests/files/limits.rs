@@ -1,4 +1,4 @@
-//! Readers have limits: of what is too long, too late or too much they say so, and read no more.
+//! Readers have limits: they report data that is too long, too late or too much, and stop reading.
 
 use crate::support::stderr;
 use crate::{rumbo_in, scenario, status};
@@ -158,7 +158,7 @@ fn times_and_steps_that_no_run_had_are_refused_by_name() {
         message.contains("eeprom = 5000 in its manifest: must be at most 4096 bytes"),
         "{message}"
     );
-    // A link that spoke for twelve days.
+    // A link with twelve days of traffic.
     session(&folder.join("x.mcap"), &manifest, 1_000_000 * 1_000_000);
     let output = rumbo_in(folder, &["rerun", "x.mcap"]);
     let message = stderr(&output);

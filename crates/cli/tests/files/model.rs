@@ -1,4 +1,4 @@
-//! A log names the model that it was made with, and `rerun` says first where that was another one.
+//! A log names the model that it was made with, and `rerun` reports a different one first.
 
 use crate::support::{stderr, stdout};
 use crate::{rumbo_in, scenario, status};

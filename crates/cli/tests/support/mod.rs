@@ -1,4 +1,4 @@
-//! Programs under test: started, listened to, and a page on their dashboard.
+//! Programs under test: started, their output read, and a page on their dashboard.
 #![allow(dead_code, reason = "not every test needs all of it")]
 
 use serde_json::Value;
@@ -24,7 +24,7 @@ pub(crate) fn file(name: &str, text: &str) -> PathBuf {
     path
 }
 
-/// `rumbo`, whose logs are not among those of whoever tests.
+/// `rumbo`, with its logs kept out of the developer's own.
 pub(crate) fn program() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rumbo"));
     command.env("RUMBO_LOGS", folder().join("logs"));
@@ -46,7 +46,7 @@ pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// A `rumbo` that goes on until it is dropped, and the first line that it printed.
+/// A `rumbo` that runs until it is dropped, and the first line that it printed.
 pub(crate) struct Running {
     child: Child,
     pub(crate) said: String,
@@ -114,7 +114,7 @@ impl Page {
         Self(tungstenite::client(request, stream).unwrap().0)
     }
 
-    pub(crate) fn say(&mut self, order: &Value) {
+    pub(crate) fn send(&mut self, order: &Value) {
         self.0.send(Message::text(order.to_string())).unwrap();
     }
 
@@ -134,13 +134,13 @@ impl Page {
             if let Some(found) = wanted(&message) {
                 return found;
             }
-            let told = message["events"].as_array().into_iter().flatten();
-            events.extend(told.map(|event| event["text"].to_string()));
+            let listed = message["events"].as_array().into_iter().flatten();
+            events.extend(listed.map(|event| event["text"].to_string()));
         }
         panic!("no {what}; events: {events:#?}");
     }
 
-    /// Reads on until an event says this.
+    /// Reads on until an event contains this.
     pub(crate) fn wait_for_event(&mut self, part: &str) {
         self.wait_for(part, |message| {
             let mut events = message["events"].as_array()?.iter();

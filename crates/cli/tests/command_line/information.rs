@@ -1,4 +1,4 @@
-//! What there is, as the command tells it: help, lists, the address of the lab.
+//! Information from the command: help, lists, the address of the lab.
 
 use crate::support::{Running, program, rumbo, stderr, stdout};
 use std::process::Stdio;
