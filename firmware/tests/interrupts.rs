@@ -114,7 +114,7 @@ fn the_servo_s_pulses_keep_their_length_while_everything_happens_at_once() {
 }
 
 #[test]
-fn it_introduces_itself_at_once_and_tells_25_times_a_second() {
+fn it_sends_hello_at_once_and_telemetry_25_times_a_second() {
     let Some(image) = image() else {
         return;
     };

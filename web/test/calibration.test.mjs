@@ -19,7 +19,7 @@ after(() => dashboard?.close());
 
 const step = () => page.locator('#calibration-step');
 
-test('where there is no wall, or the wrong rig, the calibration says so', async () => {
+test('where there is no wall, or the wrong rig, the calibration reports it', async () => {
   await page.locator('#calibrate').click();
   // It ends at once, mostly between two states that the page gets.
   for (let times = 0; times < 8; times += 1) {

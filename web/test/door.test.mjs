@@ -28,14 +28,14 @@ async function says(url, locale, text) {
   await context.close();
 }
 
-test('an address that was opened before says so and what to do, in the language of the page', async () => {
+test('an address that was opened before is reported with the remedy, in the language of the page', async () => {
   await says(dashboard.url, 'en-GB', 'This address opens once, and was opened before.');
   await says(dashboard.url, 'es-ES', 'Esta dirección solo se abre una vez, y ya se abrió.');
   // In the browser that opened it, it opens again.
   await (await showPage(dashboard.page.context(), dashboard.url)).close();
 });
 
-test('an address without a token says which one to open', async () => {
+test('without a token the page names the address to open', async () => {
   await says(new URL('/', dashboard.url).href, 'en-GB', 'open the address that rumbo printed');
 });
 

@@ -206,7 +206,7 @@ test('mode 8: a click on the map sets the goal, which stands where the click was
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.lane);
 });
 
-test('mode 7: a route made by clicks is driven place by place, and the state line tells', async () => {
+test('mode 7: a route made by clicks is driven point by point, and the state line follows', async () => {
   await startScenario('mode7');
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.route?.waypoints.length === 4);
   await clickMap([0.3, 0]);

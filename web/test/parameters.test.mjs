@@ -50,7 +50,7 @@ test('a mode that shares parameters with another shows them too', async () => {
   assert.deepEqual((await groups())[0], ['along the wall', 'wall_cruise_m_s', 'wall_stop_m']);
 });
 
-test('a mode that the rig cannot serve says so, and offers its experiment', async () => {
+test('a mode that the rig cannot serve is reported, and its experiment offered', async () => {
   await select(8);
   await page.locator('#about', { hasText: /^needs the sensor layout final$/ }).waitFor();
   await page.locator('#mode-scenario', { hasText: 'Scenario mode8-goals' }).waitFor();

@@ -120,7 +120,7 @@ test('a click sets a mark, from which the numbers in all plots are counted', asy
   assert.equal((await plots()).mark_s, null);
 });
 
-test('the view slides with the newest data, as wide as the window says', async () => {
+test('the view slides with the newest data, as wide as the chosen window', async () => {
   await page.locator('#window').selectOption('10');
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1) > 11);
   const { range_s: [from_s, to_s] } = await plots();

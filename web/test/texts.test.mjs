@@ -43,7 +43,7 @@ test('the texts of the page as it is served', () => {
   allSpanish([...texts, ...attributes].filter(hasWords));
 });
 
-test('what the robot says: faults, refusals, why it started, events, modes, states, parameters', () => {
+test('messages of the robot: faults, refusals, why it started, events, modes, states, parameters', () => {
   /** The literals of a function, or from a line on. @param {string} path @param {RegExp} where */
   const literals = (path, where) => [...read(path).matchAll(where)].flatMap(([part]) => [...part.matchAll(/"([^"]+)"/g)].map((found) => found[1] ?? ''));
   const explained = /fn (?:explanation|title|detail)\([^]*?\n {4}}/g;
@@ -65,7 +65,7 @@ test('what the robot says: faults, refusals, why it started, events, modes, stat
 /** Literals of the station's sources that no page shows as they are: parts of sentences, and what goes elsewhere. */
 const NO_SENTENCE = ['rig', ' in world {}', ' with rig {}', '{}: {}', '{}-{}-{}T{}:{}:{}Z', 'reset: {}{}{}, seed {}', 'a new route, {}', 'allowed is {}', 'parameter {}', 'once', 'again and again'];
 
-test('what the station says', () => {
+test('messages of the station', () => {
   const texts = ['words', 'oddity', 'observer', 'session', 'session/calibrating', 'session/commanding', 'replay', 'log/bound'].flatMap((name) => {
     const source = (read(`../../crates/station/src/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '');
     return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => (found[1] ?? '').replace(/\{[^}]*\}/g, '{}'));

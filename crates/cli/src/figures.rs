@@ -74,7 +74,7 @@ pub(crate) fn of_one(log: &Log) -> Vec<Chart<'static>> {
     }
     let mut ways = shapes(log);
     let truth = way(log, ["true_x_m", "true_y_m"]);
-    let estimated = estimated_path(log);
+    let estimated = estimated_trajectory(log);
     if estimated.len() > 1 {
         ways.push(Curve::Line {
             name: "estimated",
@@ -120,7 +120,7 @@ pub(crate) fn of_many<'a>(logs: &[(&'a str, &Log)]) -> Vec<Chart<'a>> {
         let points = if truth.len() > 1 {
             truth
         } else {
-            estimated_path(log)
+            estimated_trajectory(log)
         };
         if points.len() > 1 {
             ways.push(Curve::Line {
@@ -246,8 +246,8 @@ fn way(log: &Log, columns: [&str; 2]) -> Points {
     log.rows.iter().filter_map(point).collect()
 }
 
-/// The estimated path in the world.
-fn estimated_path(log: &Log) -> Points {
+/// The estimated trajectory in the world.
+fn estimated_trajectory(log: &Log) -> Points {
     let point = |row: &Row| {
         let (x_m, y_m) = (row.signal("x_m")?, row.signal("y_m")?);
         let place = ["origin_x_m", "origin_y_m", "origin_heading_rad"]

@@ -240,7 +240,7 @@ fn what_is_no_log_gets_one_line_and_status_2() {
 }
 
 #[test]
-fn a_log_made_with_another_table_of_parameters_says_so_and_a_log_cut_off_says_where() {
+fn another_table_of_parameters_and_the_end_of_a_truncated_log_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     rumbo(&["run", "mode5", "--out", "."], folder.path());
     let path = folder.path().join("mode5-1.mcap");

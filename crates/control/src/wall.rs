@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn two_sonars_side_by_side_tell_distance_and_bearing_while_standing() {
+    fn two_sonars_side_by_side_measure_distance_and_bearing_at_rest() {
         for askew in [-0.2, 0.0, 0.15] {
             let (distance_m, bearing_rad) = (0.5, FRAC_PI_2 + askew);
             let mut filter = WallFilter::default();
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn one_sonar_and_the_encoders_tell_them_over_some_way() {
+    fn one_sonar_and_the_encoders_measure_them_over_some_distance() {
         let (mut distance_m, bearing_rad) = (0.5, FRAC_PI_2 + 0.1);
         let (mut filter, view) = (WallFilter::default(), side(0.03));
         filter.start(&view, range(&view, distance_m, bearing_rad), FRAC_PI_2, 0.3);
@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sonar_that_looks_to_both_sides_tells_them_too() {
+    fn a_sonar_that_looks_to_both_sides_measures_them_too() {
         let (distance_m, bearing_rad) = (0.5, 0.2);
         let mut filter = WallFilter::default();
         let look = |axis_rad| View {

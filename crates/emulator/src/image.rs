@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_hex_file_is_told_with_its_line() {
+    fn an_error_in_a_hex_file_is_reported_with_its_line() {
         assert_eq!(error(":020000000C945E\n"), ImageError::Truncated);
         let overlap = ":020000000C945E\n:020001000C945D\n:00000001FF\n";
         assert_eq!(error(overlap), ImageError::Overlap(1));

@@ -76,7 +76,7 @@ fn an_elf_file_is_loaded_to_the_memories_it_names() {
 }
 
 #[test]
-fn a_program_for_another_machine_is_told_apart() {
+fn a_program_for_another_machine_is_recognised() {
     let elf = Elf {
         machine: 62,
         ..Elf::of(&[(0, &[1])])

@@ -67,7 +67,7 @@ fn a_watched_address_stops_the_program_after_the_access() {
 }
 
 #[test]
-fn a_trace_tells_each_instruction_of_its_window_and_what_it_changed() {
+fn a_trace_lists_each_instruction_of_its_window_and_its_effects() {
     let mut main = vec![ldi(16, 0x80), ldi(17, 0x80), 0x0F01];
     main.extend([0x930F, 0x911F, STAY]);
     let mut chip = chip_of(&words(&main));

@@ -128,7 +128,7 @@ fn a_run_pauses_after_the_instruction_that_drives_a_watched_pin() {
 }
 
 #[test]
-fn an_access_to_what_is_not_modelled_is_told_once_with_its_place() {
+fn an_access_that_is_not_modelled_is_reported_once_with_its_location() {
     let mut main = Vec::from(sts(0x62, 16));
     main.extend(sts(0x62, 17));
     main.extend([NOP; 4]);

@@ -143,7 +143,7 @@ fn fuses_lock_bits_and_signature_are_read_with_lpm() {
 }
 
 #[test]
-fn fuses_say_where_a_reset_leads() {
+fn fuses_select_the_reset_address() {
     for (high, start) in [(0xD8u8, 0x1_F000), (0xDA, 0x1_F800), (0xDE, 0x1_FE00)] {
         let fuses = Fuses {
             high,

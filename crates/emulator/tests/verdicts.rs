@@ -32,7 +32,7 @@ fn arrival_of(words: &[u16]) -> (Arrival, String) {
 }
 
 #[test]
-fn every_way_to_end_is_told_with_place_and_cycle() {
+fn every_verdict_has_location_and_cycle() {
     // RJMP into what was never written.
     let mut chip = chip_of(&[0xC0FF]);
     let Stopped::Ended(verdict) = chip.run_until(100) else {
@@ -143,7 +143,7 @@ fn an_end_that_is_run_over_names_the_last_instruction() {
 }
 
 #[test]
-fn an_interrupt_without_a_table_and_an_empty_image_are_told_as_such() {
+fn an_interrupt_without_a_table_and_an_empty_image_are_recognised() {
     // EICRA: INT0 on any edge; EIMSK; SEI.
     let words = [ldi(16, 1), 0x9300, 0x0069, out(0x1D, 16), SEI, 0xCFFF];
     let mut long = vec![NOP; 0x40];
@@ -160,7 +160,7 @@ fn an_interrupt_without_a_table_and_an_empty_image_are_told_as_such() {
 }
 
 #[test]
-fn a_stack_overflow_tells_its_depth_and_who_is_on_it() {
+fn a_stack_overflow_reports_its_depth_and_the_functions_on_it() {
     // Two functions that call each other, with a byte pushed in between: seven bytes a round.
     let mut chip = chip_of(&[0xD001, 0xCFFF, 0x930F, 0xD000, 0xDFFD]);
     let Verdict::StackOverflow { depth, returns, .. } = verdict_of(&mut chip) else {

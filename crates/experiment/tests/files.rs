@@ -429,7 +429,7 @@ fn a_random_world_is_checked_and_a_fixed_one_has_no_goal_to_give() {
 }
 
 #[test]
-fn a_random_world_without_room_says_so() {
+fn a_random_world_without_room_is_an_error() {
     let mut setup = Library::new()
         .setup("mode8-random", &Overrides::default())
         .unwrap();

@@ -33,8 +33,8 @@ impl Places {
         }
     }
 
-    /// What of a text these places show.
-    pub(crate) fn say(&self, text: Text) -> &'static str {
+    /// A text in the language of these places.
+    pub(crate) fn text(&self, text: Text) -> &'static str {
         text.of(self.language)
     }
 

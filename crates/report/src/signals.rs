@@ -248,8 +248,8 @@ impl Outcome {
         points
     }
 
-    /// The true path in the world [m].
-    pub(crate) fn true_path(&self) -> Points {
+    /// The true trajectory in the world [m].
+    pub(crate) fn true_trajectory(&self) -> Points {
         self.trace()
             .samples
             .iter()
@@ -280,7 +280,7 @@ impl Outcome {
 
     /// The estimated path in the world [m], from the start. A mission makes a reached goal its new origin: the path
     /// ends there.
-    pub(crate) fn estimated_path(&self) -> Points {
+    pub(crate) fn estimated_trajectory(&self) -> Points {
         let mission = self.setup.scenario.mode == ModeId::Mission;
         let end_s = self
             .reached_s()

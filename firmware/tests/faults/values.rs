@@ -35,7 +35,7 @@ fn no_parameter_takes_a_value_that_is_not_a_number() {
 }
 
 #[test]
-fn with_both_saved_copies_corrupt_it_says_so_and_drives_by_the_defaults() {
+fn with_both_saved_copies_corrupt_it_reports_it_and_uses_the_defaults() {
     let Some(setup) = setup("mode1-final", |_| {}) else {
         return;
     };

@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn a_crate_of_the_chip_says_no_std() {
+    fn a_crate_of_the_chip_declares_no_std() {
         assert!(found("crates/wire/src/lib.rs", "//! Wire.\n")[0].contains("#![no_std]"));
         assert_eq!(
             found("crates/station/src/lib.rs", "use std::io;\n"),

@@ -82,7 +82,7 @@ fn list_names_what_there_is() {
 }
 
 #[test]
-fn the_lab_says_when_its_port_is_taken_and_prints_its_address_when_not() {
+fn the_lab_reports_a_taken_port_and_prints_its_address_otherwise() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port().to_string();
     let output = rumbo(&["lab", "--no-browser", "--port", &port]);

@@ -47,7 +47,7 @@ fn a_title_neither_begins_a_line_nor_controls_the_terminal() {
 }
 
 #[test]
-fn what_a_log_says_is_shown_and_not_obeyed() {
+fn texts_of_a_log_are_shown_and_not_interpreted() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let hostile = "\u{1b}]0;owned\u{7}\n/tmp: removed\u{9b}2J";

@@ -7,7 +7,7 @@ use rumbo_station::headless::{Run, record_run};
 use rumbo_station::log::{Log, Manifest};
 
 #[test]
-fn a_run_of_another_model_that_differs_says_so_first() {
+fn a_run_of_another_model_that_differs_reports_the_model_first() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     std::fs::write(folder.join("task.toml"), scenario("t", 0.2)).unwrap();

@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn modes_without_such_a_reference_say_so() {
+    fn modes_without_such_a_reference_refuse_it() {
         for id in [
             ModeId::Manual,
             ModeId::WallHold,

@@ -390,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn it_turns_drives_turns_and_says_when_it_is_done() {
+    fn it_turns_drives_turns_and_reports_when_it_is_done() {
         let route = route(&[(0.0, 1.0, Some(0.0))], false, false);
         let mut state = State::default();
         let mut at =

@@ -187,7 +187,7 @@ fn tones_have_their_pitch() {
 }
 
 #[test]
-fn the_clock_tells_the_time() {
+fn the_clock_keeps_time() {
     let Some(mut board) = Board::with("clock") else {
         return;
     };

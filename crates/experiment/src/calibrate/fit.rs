@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_on_either_side_tells_the_curvature_forward_and_backward() {
+    fn a_wall_on_either_side_gives_the_curvature_forward_and_backward() {
         for side in [SonarId::Left, SonarId::Right] {
             for backward in [false, true] {
                 let found = leg(&drive(side, backward, 0.03, -0.05), side, 0.03).unwrap();

@@ -106,7 +106,7 @@ fn a_start_10_degrees_askew_is_straightened_without_touching_the_wall() {
 }
 
 #[test]
-fn where_the_wall_ends_it_stops_and_says_so() {
+fn where_the_wall_ends_it_stops_and_reports_it() {
     for scenario in ["mode3", "mode4", "mode3-final", "mode4-final"] {
         let end = between(scenario, &[[[-0.8, 0.65], [1.5, 0.65]]]);
         let runs = seeds(&end, 1..21);

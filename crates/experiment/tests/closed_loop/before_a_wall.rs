@@ -156,7 +156,7 @@ fn failing(scenario: &str, sonar: SonarId, at_s: f64, fault: SonarFault) -> Setu
 }
 
 #[test]
-fn a_sonar_cut_or_stuck_on_the_way_stops_the_robot_before_the_wall_and_says_so() {
+fn a_sonar_cut_or_stuck_on_the_way_stops_the_robot_before_the_wall_and_is_reported() {
     for (scenario, sonar) in CASES {
         for kind in [SonarFault::Cut, SonarFault::Stuck] {
             // At full speed, and half a second after that.

@@ -251,7 +251,7 @@ fn a_silent_link_stops_the_robot_within_half_a_second() {
 }
 
 #[test]
-fn a_sonar_cut_on_the_way_stops_the_robot_before_the_wall_and_says_so() {
+fn a_sonar_cut_on_the_way_stops_the_robot_before_the_wall_and_is_reported() {
     use rumbo_control::mode::ModeId;
     let mut person = Person::at("mode1");
     person.wait_s(0.5);

@@ -107,7 +107,7 @@ fn way_after_m(run: &RunResult, at_s: f64) -> f64 {
 }
 
 #[test]
-fn a_sonar_cut_on_the_way_around_a_box_or_in_a_lane_stops_the_robot_and_says_so() {
+fn a_sonar_cut_on_the_way_around_a_box_or_in_a_lane_stops_the_robot_and_is_reported() {
     for scenario in ["mode8-obstacles", "mode8-lane"] {
         for sonar in SonarId::ALL {
             let setup = failing(scenario, sonar, 6.0, SonarFault::Cut);

@@ -123,8 +123,11 @@ fn fill(places: &mut Places, data: &Data) {
     places.block("starts", manual_tables::starts(language, data));
     dead_zone(places, data);
     asymmetry(places, data);
-    places.figure("manual-ways", Some(paths(language, data, "")));
-    places.figure("manual-ways-speed", Some(paths(language, data, "-speed")));
+    places.figure("manual-ways", Some(trajectories(language, data, "")));
+    places.figure(
+        "manual-ways-speed",
+        Some(trajectories(language, data, "-speed")),
+    );
     places.block("movements", manual_tables::movements(language, data));
     let limits = judge::limits_together(language, &data.of(&EXPERIMENT));
     places.block("limits", limits);
@@ -232,7 +235,7 @@ const WAYS: [(&str, Text, Ink); 12] = [
 ];
 
 /// The paths of all movements, each from its own start.
-fn paths(language: Language, data: &Data, suffix: &str) -> String {
+fn trajectories(language: Language, data: &Data, suffix: &str) -> String {
     let curve = |(scenario, name, ink): &(&str, Text, Ink)| {
         let outcome = data.outcome(&format!("{scenario}{suffix}"))?;
         let start = outcome.setup.scenario.start;
@@ -241,7 +244,7 @@ fn paths(language: Language, data: &Data, suffix: &str) -> String {
             let (x, y) = (x - start.x_m, y - start.y_m);
             (cos * x + sin * y, cos * y - sin * x)
         };
-        let points: Points = outcome.true_path().into_iter().map(seen).collect();
+        let points: Points = outcome.true_trajectory().into_iter().map(seen).collect();
         Some(Curve::new(name.of(language), *ink, points))
     };
     Map {

@@ -1,4 +1,4 @@
-//! Maps that several chapters show: paths, walls and boxes, routes.
+//! Maps that several chapters show: trajectories, walls and boxes, routes.
 
 use crate::plot::{Curve, Ink, Map, Points, Shape};
 use crate::signals::Outcome;
@@ -9,7 +9,7 @@ const X_AXIS: Text = same("x (m)");
 const Y_AXIS: Text = same("y (m)");
 const IDEAL: Text = word("ideal");
 const BY_ODOMETRY: Text = word("by-odometry");
-const TRUE_PATH: Text = word("true");
+const TRUE_TRAJECTORY: Text = word("true");
 
 /// A map with nothing on it.
 pub(super) fn map(language: Language) -> Map {
@@ -20,17 +20,17 @@ pub(super) fn map(language: Language) -> Map {
     }
 }
 
-/// The ideal path, the path by odometry, and the true one.
-pub(super) fn paths(language: Language, outcome: &Outcome, ideal: Points) -> Vec<Curve> {
+/// The ideal path, the trajectory by odometry, and the true one.
+pub(super) fn trajectories(language: Language, outcome: &Outcome, ideal: Points) -> Vec<Curve> {
     let mut curves = vec![Curve::new(IDEAL.of(language), Ink::Reference, ideal)];
-    let estimated = outcome.estimated_path();
+    let estimated = outcome.estimated_trajectory();
     if !estimated.is_empty() {
         curves.push(Curve::new(BY_ODOMETRY.of(language), Ink::First, estimated));
     }
     curves.push(Curve::new(
-        TRUE_PATH.of(language),
+        TRUE_TRAJECTORY.of(language),
         Ink::True,
-        outcome.true_path(),
+        outcome.true_trajectory(),
     ));
     curves
 }

@@ -78,7 +78,7 @@ fn fill(places: &mut Places, data: &Data) {
     parts::timed(places, "mode1-distances", panels);
     let error = difference(&outcome.range_cm(Place::Front), &outcome.reference(CM));
     let panel = Panel::new(
-        places.say(ERROR_CM),
+        places.text(ERROR_CM),
         vec![Curve::new("", Ink::First, error)],
     )
     .at_least(-5.0, 5.0);

@@ -92,15 +92,15 @@ fn angle_panel(places: &Places, outcome: &Outcome) -> Panel {
     let angle = |(t_s, cm): (f64, f64)| (t_s, DEG * (cm / CM / gap_m).clamp(-1.0, 1.0).asin());
     let curves = vec![
         Curve::new(
-            places.say(BY_READINGS),
+            places.text(BY_READINGS),
             Ink::First,
             difference_cm.into_iter().map(angle).collect(),
         ),
         Curve::new(
-            places.say(TRUE),
+            places.text(TRUE),
             Ink::True,
             outcome.truth(|sample| DEG * sample.heading_rad),
         ),
     ];
-    Panel::new(places.say(ANGLE_AXIS), curves).exactly(-25.0, 35.0)
+    Panel::new(places.text(ANGLE_AXIS), curves).exactly(-25.0, 35.0)
 }

@@ -68,7 +68,7 @@ fn fill(places: &mut Places, data: &Data) {
             panels::pwm_panel(places.language, outcome),
         ];
         parts::timed(places, "mode5-speeds", panels);
-        let panel = Panel::new(places.say(ERROR_RPM), errors(places.language, outcome));
+        let panel = Panel::new(places.text(ERROR_RPM), errors(places.language, outcome));
         parts::timed(places, "mode5-error", vec![panel]);
     }
     if let Some(outcome) = data.outcome("mode5-reversal") {

@@ -88,12 +88,12 @@ fn results(places: &mut Places, outcome: &Outcome) {
         .collect();
     let panels = vec![
         Panel::new(
-            places.say(DIFFERENCE_AXIS),
+            places.text(DIFFERENCE_AXIS),
             vec![Curve::new("", Ink::First, angle)],
         )
         .at_least(-0.2, 0.2),
         Panel::new(
-            places.say(HEADING_AXIS),
+            places.text(HEADING_AXIS),
             vec![Curve::new(
                 "",
                 Ink::Third,
@@ -106,7 +106,7 @@ fn results(places: &mut Places, outcome: &Outcome) {
     let start = outcome.setup.scenario.start;
     let line = vec![(start.x_m, start.y_m), (start.x_m + 3.2, start.y_m)];
     let map = Map {
-        curves: maps::paths(language, outcome, line),
+        curves: maps::trajectories(language, outcome, line),
         range: Some([[start.x_m - 0.1, start.x_m + 3.4], [-0.3, 0.3]]),
         ..maps::map(language)
     };
@@ -140,7 +140,7 @@ fn beside(places: &mut Places, data: &Data) {
         _ => None,
     });
     let mut curves = vec![Curve::steps(
-        places.say(REFERENCE),
+        places.text(REFERENCE),
         Ink::Reference,
         ours.reference(RPM),
     )];
@@ -150,6 +150,6 @@ fn beside(places: &mut Places, data: &Data) {
         ours.speed_rpm(Place::Left),
         real,
     ));
-    let panel = Panel::new(places.say(SPEED), curves);
+    let panel = Panel::new(places.text(SPEED), curves);
     parts::timed(places, "mode6-real", vec![panel]);
 }

@@ -75,7 +75,7 @@ fn fill(places: &mut Places, data: &Data) {
     let panels = panels::wheel_panels(language, outcome);
     parts::timed(places, "mode7-wheels", panels);
     let map = Map {
-        curves: maps::paths(language, outcome, maps::route(outcome)),
+        curves: maps::trajectories(language, outcome, maps::route(outcome)),
         ..maps::map(language)
     };
     let svg = map.svg(language);
@@ -131,7 +131,7 @@ fn beside(places: &mut Places, data: &Data) {
     );
     let way =
         |[x, y]: &[Points; 2]| -> Points { x.iter().zip(y).map(|(x, y)| (x.1, y.1)).collect() };
-    let mut curves = maps::paths(language, ours, SQUARE.to_vec());
+    let mut curves = maps::trajectories(language, ours, SQUARE.to_vec());
     curves.truncate(1);
     curves.extend(beside::both(language, recording, way(&mine), way(&theirs)));
     let svg = Map {
@@ -150,7 +150,7 @@ fn beside(places: &mut Places, data: &Data) {
             beside::both(language, recording, mine[1].clone(), theirs[1].clone()),
         ),
         Panel::new(
-            places.say(HEADING_AXIS),
+            places.text(HEADING_AXIS),
             beside::both(
                 language,
                 recording,

@@ -100,7 +100,7 @@ fn goals(places: &mut Places, data: &Data) {
             .iter()
             .map(|t_s| outcome.true_position_at(*t_s)),
     );
-    let mut marks = vec![(start.x_m, start.y_m, places.say(START).to_owned())];
+    let mut marks = vec![(start.x_m, start.y_m, places.text(START).to_owned())];
     marks.extend(
         ideal
             .iter()
@@ -109,8 +109,8 @@ fn goals(places: &mut Places, data: &Data) {
             .map(|((x, y), number)| (*x, *y, format!("{number}"))),
     );
     let curves = vec![
-        Curve::new(places.say(STRAIGHT), Ink::Reference, ideal),
-        Curve::new(places.say(TRUE), Ink::Third, outcome.true_path()),
+        Curve::new(places.text(STRAIGHT), Ink::Reference, ideal),
+        Curve::new(places.text(TRUE), Ink::Third, outcome.true_trajectory()),
     ];
     let svg = Map {
         curves,
@@ -167,11 +167,11 @@ fn obstacles(places: &mut Places, data: &Data) {
 /// Paths between boxes, and where the robot started.
 pub(super) fn path_map(places: &Places, outcome: &Outcome, ideal: Points) -> Map {
     let language = places.language;
-    let mut curves = maps::paths(language, outcome, ideal);
+    let mut curves = maps::trajectories(language, outcome, ideal);
     if curves[0].points.is_empty() {
         curves.remove(0);
     } else {
-        curves[0].name = places.say(STRAIGHT).to_owned();
+        curves[0].name = places.text(STRAIGHT).to_owned();
     }
     let start = outcome.setup.scenario.start;
     let arena = &outcome.setup.world.arena;
@@ -183,7 +183,7 @@ pub(super) fn path_map(places: &Places, outcome: &Outcome, ideal: Points) -> Map
         ]),
         shapes: maps::shapes(outcome),
         curves,
-        marks: vec![(start.x_m, start.y_m, places.say(START).to_owned())],
+        marks: vec![(start.x_m, start.y_m, places.text(START).to_owned())],
         ..maps::map(language)
     }
 }

@@ -36,7 +36,7 @@ pub(super) fn fill(places: &mut Places, data: &Data, scenario: &str) {
         let curves = beside::both(
             language,
             recording,
-            ours.estimated_path(),
+            ours.estimated_trajectory(),
             path(&theirs[0], &theirs[1]),
         );
         let map = Map {
@@ -70,7 +70,7 @@ pub(super) fn fill(places: &mut Places, data: &Data, scenario: &str) {
             beside::both(language, recording, y, theirs[1].clone()),
         ),
         Panel::new(
-            places.say(mode8::HEADING),
+            places.text(mode8::HEADING),
             beside::both(
                 language,
                 recording,
@@ -84,7 +84,7 @@ pub(super) fn fill(places: &mut Places, data: &Data, scenario: &str) {
     let row = |name: Text, values: [f64; 2], unit| {
         let shown = judge::plain(unit);
         let [ours, real] = values.map(|value| judge::value(language, &shown, value));
-        (places.say(name).to_owned(), ours, real)
+        (places.text(name).to_owned(), ours, real)
     };
     let rows = [row(TIME, lasted, "s"), row(PATH, walked, "m")];
     let table = beside::values(language, recording, &rows);

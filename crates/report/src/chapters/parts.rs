@@ -75,7 +75,7 @@ pub(super) fn timed_within(
     x_range: Option<[f64; 2]>,
 ) {
     let plot = Plot {
-        x: places.say(TIME).to_owned(),
+        x: places.text(TIME).to_owned(),
         x_range,
         panels,
     };

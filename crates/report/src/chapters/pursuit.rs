@@ -45,18 +45,18 @@ fn fill(places: &mut Places, data: &Data) {
         };
         let route = maps::route(outcome);
         let map = Map {
-            curves: maps::paths(places.language, outcome, route.clone()),
+            curves: maps::trajectories(places.language, outcome, route.clone()),
             ..maps::map(places.language)
         };
         let svg = map.svg(places.language);
         places.figure(&format!("{scenario}-way"), Some(svg));
         off.push(Curve::new(
-            places.say(name),
+            places.text(name),
             ink,
             off_path_cm(outcome, &route),
         ));
     }
-    let panel = Panel::new(places.say(OFF_AXIS), off);
+    let panel = Panel::new(places.text(OFF_AXIS), off);
     parts::timed(places, "pursuit-off", vec![panel]);
     parts::limits(places, &data.of(&EXPERIMENT));
 }
@@ -65,7 +65,7 @@ fn off_path_cm(outcome: &Outcome, route: &Points) -> Points {
     let [x, ..] = outcome.pose();
     let times = x.iter().map(|(t_s, _)| *t_s).filter(|t_s| *t_s >= 0.0);
     times
-        .zip(outcome.estimated_path())
+        .zip(outcome.estimated_trajectory())
         .map(|(t_s, place)| (t_s, CM * maps::off_route(route, place)))
         .collect()
 }

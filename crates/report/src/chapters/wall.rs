@@ -118,7 +118,7 @@ fn fill_mode4(places: &mut Places, data: &Data) {
         &outcome.range_cm(Place::Right),
     );
     let panel = Panel::new(
-        places.say(DIFFERENCE_AXIS),
+        places.text(DIFFERENCE_AXIS),
         vec![Curve::new("", Ink::First, between)],
     )
     .at_least(-5.0, 5.0);
@@ -157,7 +157,7 @@ fn beside(places: &mut Places, data: &Data) {
         .collect();
     let real = difference(&beside::recorded_mean_cm(recording), &references);
     let panel = Panel::new(
-        places.say(ERROR_CM),
+        places.text(ERROR_CM),
         beside::both(language, recording, mine.clone(), real.clone()),
     )
     .at_least(-5.0, 5.0);
@@ -168,7 +168,7 @@ fn beside(places: &mut Places, data: &Data) {
         .zip(rms_and_worst(&mine).into_iter().zip(rms_and_worst(&real)))
         .map(|(name, (ours, real))| {
             (
-                judge::capital(places.say(name)),
+                judge::capital(places.text(name)),
                 judge::value(language, &cm, ours),
                 judge::value(language, &cm, real),
             )

@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_is_none_or_empty_says_what_is_needed() {
+    fn a_missing_or_empty_folder_is_an_error_with_the_remedy() {
         let empty = folder(&[]);
         for place in [empty.path(), Path::new("/no/such/folder")] {
             let error = read(place, no_log).unwrap_err().to_string();
