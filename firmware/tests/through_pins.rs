@@ -24,7 +24,7 @@ const MOST_OF_ENCODER: u64 = 240;
 const MOST_OF_ECHO: u64 = 400;
 /// Stamps in the ring of an encoder's interrupt.
 const RING: usize = 32;
-/// What the chip is told of a ping 3 ms after the tick, and its sonar half a millisecond later [cycles].
+/// Time of a ping after the tick, and of the rise of its echo line after that [cycles].
 const PING_CYCLES: u64 = 3_000 * CYCLES_PER_US;
 const RISE_CYCLES: u64 = 500 * CYCLES_PER_US;
 

@@ -24,8 +24,8 @@ struct Bench {
 impl Bench {
     fn tick(&mut self) {
         self.now_us += TICK_US;
-        let (now_us, mut bytes, mut heard) = (self.now_us.into(), Vec::new(), Vec::new());
-        self.client.poll(now_us, &mut bytes, &mut heard);
+        let (now_us, mut bytes, mut received) = (self.now_us.into(), Vec::new(), Vec::new());
+        self.client.poll(now_us, &mut bytes, &mut received);
         bytes.iter().for_each(|byte| self.robot.receive(*byte));
         self.robot.tick(&Inputs {
             now: Micros(self.now_us),
@@ -34,7 +34,7 @@ impl Bench {
         self.robot.report();
         bytes.clear();
         bytes.extend(std::iter::from_fn(|| self.robot.transmit()));
-        self.client.hear(&bytes, now_us, &mut heard);
+        self.client.hear(&bytes, now_us, &mut received);
     }
 }
 
