@@ -12,11 +12,11 @@ use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
 use rumbo_experiment::run;
+use rumbo_log::{Choice, Kind, Manifest, MapPose, Scene, Truth};
 use rumbo_sim::debugging::Debugging;
 use rumbo_sim::mega::firmware::Language;
 use rumbo_sim::{Config, Sim};
-use rumbo_station::log::{Kind, Manifest};
-use rumbo_station::{Choice, LabConfig, MapPose, Scene, Simulation, Standing, Target, Truth};
+use rumbo_station::{LabConfig, Simulation, Standing, Target};
 use rumbo_wire::Command;
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.

@@ -6,15 +6,12 @@
 
 mod ring;
 
-use crate::catalogue::ParameterState;
+use crate::console::ConsoleText;
 use crate::echo::Echo;
-use crate::event::{ConsoleText, LoggedEvent};
-use crate::log::Burst;
-use crate::log::recorder::{Entry, Recorder};
-use crate::scene::Scene;
-use crate::signals::Row;
-use crate::state::State;
+use crate::log_file::Problem;
+use crate::recorder::Recorder;
 use ring::{Ring, Versioned};
+use rumbo_log::{Burst, Entry, LoggedEvent, ParameterState, Row, Scene, State};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 
@@ -130,7 +127,7 @@ impl Board {
     }
 
     /// What has gone wrong with the recording since it was last asked.
-    pub(crate) fn recording_trouble(&self) -> Option<String> {
+    pub(crate) fn recording_trouble(&self) -> Option<Problem> {
         self.recorder().as_ref().and_then(Recorder::trouble)
     }
 
@@ -259,7 +256,7 @@ impl Board {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::Level;
+    use rumbo_log::Level;
 
     fn sample(t_ms: i64) -> Row {
         Row::unknown(t_ms)

@@ -1,68 +1,8 @@
-//! What there is to choose and to set: modes, movements and parameters, as the page gets them.
+//! The modes to choose from, as the page gets them.
 
 use rumbo_control::mode::{ModeId, StateDescription, Takes};
-use rumbo_control::params::{Limits, ParamId};
 use rumbo_control::rig::Rig;
 use serde::Serialize;
-
-/// A parameter of the table, with its value as far as it is known.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct ParameterState {
-    #[serde(flatten)]
-    pub(crate) entry: Entry,
-    /// The value the robot acknowledged.
-    pub(crate) value: Option<f32>,
-    /// A new value is on its way.
-    pub(crate) pending: bool,
-    /// Why the last write failed.
-    pub(crate) refused: Option<String>,
-}
-
-/// What the table says of a parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct Entry {
-    pub(crate) id: u8,
-    pub(crate) name: &'static str,
-    pub(crate) unit: &'static str,
-    pub(crate) min: f32,
-    pub(crate) max: f32,
-    pub(crate) default: f32,
-    /// `number`, `switch` or `choice`.
-    #[serde(rename = "type")]
-    pub(crate) kind: &'static str,
-    /// Names of the values 0, 1, ... of a switch or a choice.
-    pub(crate) choices: &'static [&'static str],
-    /// It belongs to the robot, whatever its mode; otherwise to modes, which list it.
-    pub(crate) of_robot: bool,
-    pub(crate) description: &'static str,
-}
-
-/// The whole table, in the order of the numbers.
-pub(crate) fn table() -> impl Iterator<Item = Entry> {
-    ParamId::ALL.into_iter().map(describe)
-}
-
-/// The parameter with this number.
-pub(crate) fn entry(id: u8) -> Option<Entry> {
-    ParamId::from_number(id).map(describe)
-}
-
-fn describe(id: ParamId) -> Entry {
-    let Limits { min, max, default } = id.limits();
-    Entry {
-        id: id as u8,
-        name: id.name(),
-        // People write a pure number without a unit.
-        unit: if id.unit() == "1" { "" } else { id.unit() },
-        min,
-        max,
-        default,
-        kind: id.kind().name(),
-        choices: id.kind().names(),
-        of_robot: id.modes().next().is_none(),
-        description: id.help(),
-    }
-}
 
 /// A mode to choose: its description, as the page gets it.
 #[derive(Clone, Debug, Serialize)]

@@ -1,5 +1,17 @@
 //! What a USART of an emulated chip, or a robot that speaks text, has said: as a person reads it.
 
+use serde::Serialize;
+
+/// In place of a USART's number: the link to a real robot that speaks text.
+pub(crate) const LINK_CONSOLE: u8 = 255;
+
+/// What a USART of an emulated chip said, or a robot that speaks text.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct ConsoleText {
+    pub(crate) usart: u8,
+    pub(crate) text: String,
+}
+
 /// Bytes as text: what cannot be printed is shown in hexadecimal.
 #[must_use]
 pub fn readable(bytes: &[u8]) -> String {

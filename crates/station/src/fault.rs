@@ -3,8 +3,8 @@
 //! A [`Faulty`] target stands between a session and its robot, for tests and experiments; a [`Line`] is one direction of it. Which bytes are hit
 //! follows from the seed alone. Order is kept, as a serial line keeps it.
 
-use crate::log::Manifest;
 use crate::target::{LinkNews, Simulation, Target};
+use rumbo_log::Manifest;
 use std::collections::VecDeque;
 use std::ops::Range;
 

@@ -4,7 +4,7 @@
 //! bytes that it sends, and goes on showing and recording. With each slice of time it gets its turn and the session waits for its answer,
 //! so that a fast simulation does not run away from it. When the session takes the link back, time ends for it at once.
 
-use crate::state::Findings;
+use rumbo_log::Findings;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;

@@ -2,15 +2,14 @@
 
 use crate::board::Board;
 use crate::client::{Heard, KnownTable, RobotClient};
-use crate::event::Level;
-use crate::log::recorder::{Entry, Recorder};
-use crate::log::{Burst, LogError, Manifest, Outcome, Said};
+use crate::log_file::LogError;
 use crate::observer::Observer;
 use crate::observer::describe::{Around, describe};
-use crate::scene::{Scene, Truth};
+use crate::recorder::Recorder;
 use crate::words;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::Params;
+use rumbo_log::{Burst, Entry, Level, Manifest, Outcome, Said, Scene, Truth};
 use rumbo_wire::{Ack, Command, Decoder, FromRobot, Message, Received, ToRobot};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

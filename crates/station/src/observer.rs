@@ -3,25 +3,22 @@
 pub(crate) mod describe;
 
 use crate::board::Board;
-use crate::catalogue::{self, ParameterState};
 use crate::client::{Heard, RobotClient};
 use crate::commands::{Fate, Outcome};
-use crate::console::readable;
-use crate::errand::Errand;
-use crate::event::{ConsoleText, LINK_CONSOLE, Level, LoggedEvent};
-use crate::log::recorder::Entry;
-use crate::log::{Burst, Said};
+use crate::console::{ConsoleText, LINK_CONSOLE, readable};
+use crate::errand;
 use crate::origin::Origin;
-use crate::scene::{MapPose, Scene, Truth};
-use crate::signals::Row;
-use crate::signals::{EARLIER_MS, Sample, TruthLog};
-use crate::state::State;
 use crate::target::Standing;
 use crate::terminal;
+use crate::truth_log::TruthLog;
 use crate::words;
 use rumbo_control::Pose;
 use rumbo_control::params::{ParamId, Params};
 use rumbo_control::rig::Rig;
+use rumbo_log::{
+    Burst, EARLIER_MS, Entry, Errand, Level, LoggedEvent, MapPose, ParameterState, Row, Said,
+    Sample, Scene, State, Truth, parameters,
+};
 use rumbo_wire::{Command, EventKind, Hello, Recalled, Status, Telemetry};
 use std::sync::Arc;
 
@@ -252,7 +249,7 @@ impl Observer {
                     self.status = status;
                 }
                 Heard::Event(t_ms, kind) => {
-                    self.errand.happened(kind, client.mode(), self.pose);
+                    errand::happened(&mut self.errand, kind, client.mode(), self.pose);
                     self.event(t_ms, kind);
                 }
                 Heard::Ended(outcome) => self.end_command(&outcome, client, now_ms),
@@ -367,7 +364,7 @@ impl Observer {
 
     fn end_command(&mut self, ended: &Outcome, client: &mut RobotClient, now_ms: i64) {
         if matches!(ended.fate, Fate::Applied(_)) {
-            self.errand.applied(&ended.command, client.mode());
+            errand::applied(&mut self.errand, &ended.command, client.mode());
         }
         match (ended.command, ended.fate) {
             (Command::ResetPose, Fate::Applied(_)) => self.origin.settle(),
@@ -408,7 +405,7 @@ impl Observer {
 }
 
 fn unread_parameters() -> Vec<ParameterState> {
-    catalogue::table()
+    parameters()
         .map(|entry| ParameterState {
             entry,
             value: None,

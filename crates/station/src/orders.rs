@@ -1,11 +1,11 @@
 //! What a page may ask: JSON text to a checked order.
 
-use crate::scene::Choice;
 use rumbo_control::Wheels;
 use rumbo_control::mode::waypoints::{MAX_WAYPOINTS, Waypoint};
 use rumbo_control::mode::{ModeId, Movement};
 use rumbo_control::params::ParamId;
 use rumbo_control::rig::Rig;
+use rumbo_log::Choice;
 use rumbo_wire::{Command, Level};
 use serde::Deserialize;
 use std::fmt;

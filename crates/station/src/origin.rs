@@ -8,9 +8,9 @@
 //! How far the pose may be off since is reckoned here too, from the poses told: the robot itself has no use for it. Derivation:
 //! docs/theory/odometry.md.
 
-use crate::scene::MapPose;
 use rumbo_control::Pose;
 use rumbo_control::odometry::{OdometryErrors, Piece, Uncertainty};
+use rumbo_log::{MapPose, Spread, compose};
 
 /// Faster than a robot drives [m/s].
 const TOO_FAST_M_S: f64 = 1.5;
@@ -26,19 +26,6 @@ pub(crate) struct Origin {
     /// The pose last told and its time [ms].
     last: Option<(i64, Pose)>,
     uncertainty: Uncertainty,
-}
-
-/// How far a pose may be off, as seen from its origin.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Spread {
-    /// Standard deviation of x [m].
-    pub(crate) x_m: f32,
-    /// Standard deviation of y [m].
-    pub(crate) y_m: f32,
-    /// How x and y hang together, -1..=1.
-    pub(crate) correlation: f32,
-    /// Standard deviation of the heading [rad].
-    pub(crate) heading_rad: f32,
 }
 
 impl Origin {
@@ -117,16 +104,6 @@ fn has_moved(dt_s: f64, before: MapPose, now: MapPose) -> bool {
 fn turn_rad(from_rad: f64, to_rad: f64) -> f64 {
     let difference = to_rad - from_rad;
     difference.sin().atan2(difference.cos()).abs()
-}
-
-/// A pose in `frame`, in the frame around it.
-pub(crate) fn compose(frame: MapPose, at: MapPose) -> MapPose {
-    let (sin, cos) = frame.heading_rad.sin_cos();
-    MapPose {
-        x_m: frame.x_m + cos * at.x_m - sin * at.y_m,
-        y_m: frame.y_m + sin * at.x_m + cos * at.y_m,
-        heading_rad: frame.heading_rad + at.heading_rad,
-    }
 }
 
 /// The frame around `at`, as seen from there.

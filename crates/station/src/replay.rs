@@ -7,14 +7,11 @@ mod haunting;
 mod speech;
 
 use crate::board::Board;
-use crate::catalogue::{self, ParameterState};
-use crate::event::{Level, LoggedEvent};
-use crate::log::Log;
 use crate::orders::Order;
 use crate::session::Orders;
-use crate::state::{ReplayState, State};
 use crate::target::Ghost;
 use haunting::Haunting;
+use rumbo_log::{Level, Log, LoggedEvent, ParameterState, ReplayState, State, parameters};
 use speech::Speech;
 use std::sync::Arc;
 use std::sync::mpsc::RecvTimeoutError;
@@ -282,7 +279,7 @@ impl Replay {
         let values = known
             .checked_sub(1)
             .and_then(|last| self.log.parameters.get(last));
-        catalogue::table()
+        parameters()
             .map(|entry| ParameterState {
                 entry,
                 value: values.and_then(|(_, values)| values.get(entry.name).copied()),

@@ -10,18 +10,16 @@ mod recording;
 
 use crate::board::Board;
 use crate::client::{Heard, KnownTable, RobotClient};
-use crate::event::Level;
 use crate::guest::{Calibration, Guest};
-use crate::log::Recording;
 use crate::observer::Observer;
 use crate::observer::describe::{Around, describe};
 use crate::orders::{self, MAX_SPEED, Order};
 use crate::pace::{Pace, SLICE_US};
-use crate::scene::Choice;
-use crate::state::{CalibrationState, State};
+use crate::recorder::Recording;
 use crate::target::{LinkNews, Target};
 use crate::watch::LinkWatch;
 use rumbo_control::mode::ModeId;
+use rumbo_log::{CalibrationState, Choice, Level, State};
 use rumbo_wire::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -318,7 +316,7 @@ impl Session {
             }
         }
         if let Some(trouble) = self.board.recording_trouble() {
-            self.note(Level::Warning, trouble);
+            self.note(Level::Warning, trouble.to_string());
         }
         self.watch_link();
         let urgent = self.observer.publish(now_ms);

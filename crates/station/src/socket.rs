@@ -6,19 +6,16 @@
 //! STOP is taken from every page, anything else from the page that has control ([`Lease`]).
 
 use crate::board::{Board, Cursor, Heard, News};
-use crate::catalogue::{self, ModeEntry, ParameterState};
-use crate::event::{ConsoleText, Level, LoggedEvent};
+use crate::catalogue::{self, ModeEntry};
+use crate::console::ConsoleText;
 use crate::guard::Role;
 use crate::lease::{Lease, Place, Seat, View};
-use crate::log::Burst;
 use crate::orders::{self, Order};
-use crate::scene::Scene;
-use crate::signals::{Cell, Row};
-use crate::state::State;
 use axum::body::Bytes;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use futures_util::stream::SplitSink;
 use futures_util::{Sink, SinkExt, Stream, StreamExt};
+use rumbo_log::{Burst, Cell, Level, LoggedEvent, ParameterState, Row, Scene, State};
 use rumbo_wire::Command;
 use serde::Serialize;
 use std::sync::Arc;

@@ -4,10 +4,9 @@
 //! bytes for the robot and takes the bytes that came back. Whatever is known of a simulated robot beyond those bytes comes
 //! through [`Simulation`], and goes to the eyes only: commands and measurements take the link, as with a real robot.
 
-use crate::log::Manifest;
-use crate::scene::{Choice, MapPose, Scene, Truth};
 use rumbo_control::Fault;
 use rumbo_control::mode::ModeId;
+use rumbo_log::{Choice, Manifest, MapPose, Scene, Truth};
 use rumbo_wire::Command;
 
 /// A robot at the other end of a byte link.

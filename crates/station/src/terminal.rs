@@ -212,7 +212,7 @@ pub(crate) fn untold(kind: RowKind) -> impl Iterator<Item = &'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signals::Row as Signals;
+    use rumbo_log::Row as Signals;
 
     fn hear(terminal: &mut Terminal, bytes: &[u8], now_ms: i64) -> Vec<Told> {
         let told = bytes.iter().map(|byte| terminal.hear(*byte, now_ms));

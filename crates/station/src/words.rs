@@ -1,11 +1,11 @@
 //! What commands and answers are called, for people: cm, rpm and % instead of SI.
 
-use crate::catalogue;
 use crate::client::NotTaken;
 use crate::commands::{Fate, Outcome};
 use crate::oddity::Oddity;
 use rumbo_control::mode::{ModeId, Movement, Reference, ReferenceKind};
 use rumbo_control::params::ParamId;
+use rumbo_log::parameter;
 
 use rumbo_control::mode::waypoints::{FARTHEST_M, MAX_WAYPOINTS};
 use rumbo_wire::message::Waypoint;
@@ -54,11 +54,11 @@ pub(crate) fn command(command: &Command, mode: ModeId) -> String {
         Command::SetParam { id, value } => {
             let kind = ParamId::from_number(*id).map(ParamId::kind);
             match kind.and_then(|kind| kind.name_of(*value)) {
-                Some(name) => format!("{} = {name}", parameter(*id)),
-                None => format!("{} = {value}", parameter(*id)),
+                Some(name) => format!("{} = {name}", parameter_name(*id)),
+                None => format!("{} = {value}", parameter_name(*id)),
             }
         }
-        Command::GetParam { id } => format!("read {}", parameter(*id)),
+        Command::GetParam { id } => format!("read {}", parameter_name(*id)),
         Command::ResetParams => "all parameters to their defaults".into(),
         Command::SaveParams => "save the parameters on the robot".into(),
         Command::ResetPose => "the current position is the origin".into(),
@@ -138,7 +138,7 @@ pub(crate) fn other_protocol(protocol: u8) -> String {
 /// Why the robot refused, with what is allowed where that is known here.
 pub(crate) fn refusal(why: Refusal, command: &Command, mode: ModeId) -> String {
     match (why, command) {
-        (Refusal::OutOfRange, Command::SetParam { id, .. }) => match catalogue::entry(*id) {
+        (Refusal::OutOfRange, Command::SetParam { id, .. }) => match parameter(*id) {
             Some(entry) if !entry.choices.is_empty() => {
                 format!("allowed is one of {}", entry.choices.join(", "))
             }
@@ -170,8 +170,8 @@ fn allowed(mode: ModeId) -> Option<String> {
     })
 }
 
-fn parameter(id: u8) -> String {
-    catalogue::entry(id).map_or_else(|| format!("parameter {id}"), |entry| entry.name.into())
+fn parameter_name(id: u8) -> String {
+    parameter(id).map_or_else(|| format!("parameter {id}"), |entry| entry.name.into())
 }
 
 #[cfg(test)]

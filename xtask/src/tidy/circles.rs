@@ -8,7 +8,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{Finding, Tree};
 
 /// The crates that keep to it.
-const CRATES: [&str; 3] = ["crates/sim", "crates/experiment", "crates/station"];
+const CRATES: [&str; 4] = [
+    "crates/sim",
+    "crates/experiment",
+    "crates/log",
+    "crates/station",
+];
 
 /// An import: the file and line that has it.
 type Place<'a> = (&'a str, usize);

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 15] = [
+const ARROWS: [(&str, &[&str]); 16] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
@@ -21,7 +21,8 @@ const ARROWS: [(&str, &[&str]); 15] = [
     ),
     ("rumbo-experiment", &["rumbo-sim"]),
     ("rumbo-identify", &["rumbo-plant"]),
-    ("rumbo-station", &["rumbo-wire"]),
+    ("rumbo-log", &["rumbo-wire"]),
+    ("rumbo-station", &["rumbo-log"]),
     ("rumbo-report", &["rumbo-experiment", "rumbo-identify"]),
     ("rumbo-cli", &["rumbo-station", "rumbo-report"]),
     ("rumbo-firmware", &["rumbo-robot"]),

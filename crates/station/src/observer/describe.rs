@@ -2,9 +2,9 @@
 
 use super::Observer;
 use crate::client::RobotClient;
-use crate::state::{LinkState, RobotState, State};
 use crate::words;
 use rumbo_control::rig::Rig;
+use rumbo_log::{LinkState, RobotState, State};
 
 /// What only the session knows.
 #[derive(Clone, Copy, Debug)]

@@ -12,8 +12,8 @@ pub use error::PortError;
 #[cfg(unix)]
 pub use pty::Pty;
 
-use crate::log::{Kind, Manifest};
 use crate::target::{LinkNews, Target};
+use rumbo_log::{Kind, Manifest};
 use std::io::{self, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,9 +1,8 @@
 //! What the USARTs of an emulated chip said in a log, or a robot that speaks text, told as the playhead passes it.
 
 use crate::board::Board;
-use crate::console::readable;
-use crate::event::{ConsoleText, LINK_CONSOLE};
-use crate::log::Log;
+use crate::console::{ConsoleText, LINK_CONSOLE, readable};
+use rumbo_log::Log;
 use std::collections::BTreeMap;
 
 /// What was said, and how much of it the pages have.

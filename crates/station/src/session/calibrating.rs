@@ -1,10 +1,9 @@
 //! The session while the robot calibrates itself: the guest has its turns, and any command of a person's ends it.
 
 use super::Session;
-use crate::event::Level;
 use crate::guest::Guest;
 use crate::orders::Order;
-use crate::state::CalibrationState;
+use rumbo_log::{CalibrationState, Level};
 use rumbo_wire::Command;
 
 impl Session {

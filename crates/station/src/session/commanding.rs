@@ -1,11 +1,10 @@
 //! What the session does with a command: in frames or in the original's words, held as long as a key is, or refused with the reason.
 
 use super::{Session, to_ms};
-use crate::catalogue;
 use crate::client::NotTaken;
-use crate::event;
 use crate::words;
 use rumbo_control::mode::Movement;
+use rumbo_log::parameter;
 use rumbo_wire::{Command, Level};
 use std::time::{Duration, Instant};
 
@@ -20,7 +19,7 @@ impl Session {
         }
         if let Command::SetParam { id, .. } = command
             && self.client.connected()
-            && !(self.client.table_matches() && catalogue::entry(id).is_some())
+            && !(self.client.table_matches() && parameter(id).is_some())
         {
             return self.refuse(&command, "the robot has another parameter table");
         }
@@ -81,7 +80,7 @@ impl Session {
         }
         let said = words::command(command, self.client.mode());
         self.note(
-            event::Level::Info,
+            rumbo_log::Level::Info,
             format!("{said}: sent, text is not acknowledged"),
         );
         self.send()
@@ -102,7 +101,10 @@ impl Session {
             None => Err("this robot takes no lines of text from here".to_owned()),
         };
         if let Err(why) = typed {
-            self.note(event::Level::Warning, format!("{line}: not sent, {why}"));
+            self.note(
+                rumbo_log::Level::Warning,
+                format!("{line}: not sent, {why}"),
+            );
         }
         Ok(())
     }
@@ -146,10 +148,13 @@ impl Session {
     pub(super) fn restart_ghost(&mut self) {
         match self.target.restart_ghost(self.observer.standing()) {
             Ok(()) => self.note(
-                event::Level::Info,
+                rumbo_log::Level::Info,
                 "the ghost starts again where the robot is".into(),
             ),
-            Err(why) => self.note(event::Level::Warning, format!("the ghost: refused, {why}")),
+            Err(why) => self.note(
+                rumbo_log::Level::Warning,
+                format!("the ghost: refused, {why}"),
+            ),
         }
     }
 

@@ -1,10 +1,9 @@
 //! What of a session goes into its log.
 
 use super::Session;
-use crate::event::Level;
-use crate::log::recorder::Recorder;
-use crate::log::{Burst, Manifest};
 use crate::pace::SLICE_US;
+use crate::recorder::{Recorder, now_utc};
+use rumbo_log::{Burst, Level, Manifest};
 
 impl Session {
     /// Begins the log of a run; what was recorded before is complete.
@@ -16,9 +15,9 @@ impl Session {
             version: env!("CARGO_PKG_VERSION").into(),
             baud: self.target.baud(),
             step_us: SLICE_US,
+            started: Some(now_utc()),
             ..self.target.manifest()
-        }
-        .begun_now();
+        };
         match Recorder::in_folder(&recording.folder, &manifest) {
             Ok(recorder) => {
                 let text = format!("recording to {}", recorder.path().display());

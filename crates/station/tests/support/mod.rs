@@ -5,7 +5,8 @@
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamError, ParamId, Params, SCHEMA};
 use rumbo_control::{AgedRange, Duty, Pose, Range, Wheels};
-use rumbo_station::{Choice, MapPose, Obstacle, Scene, Simulation, SonarMount, Target, Truth};
+use rumbo_log::{Choice, MapPose, Obstacle, Scene, SonarMount, Truth};
+use rumbo_station::{Simulation, Target};
 use rumbo_wire::{
     Ack, Command, Decoder, Event, EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received,
     Refusal, ResetCause, RobotTime, Status, Telemetry, ToRobot,

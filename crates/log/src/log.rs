@@ -1,29 +1,12 @@
-//! Reads a log, whole or cut off.
-//!
-//! A log without an end, of a writer that was killed, is read as far as it goes, and says so ([`Log::cut`]). One that is damaged within, and has its
-//! index, is read but for what is damaged. Logs that `rumbo import`
-//! made of the original program's CSV are read too, as far as their signals have a place in a [`Row`].
+//! A log in memory.
 
-use super::earlier;
-use super::intake::{Intake, Stop};
-use super::pieces::Pieces;
-use super::{Burst, LogError, Manifest, Outcome, Said, Sent};
+use crate::entry::{Burst, Said};
 use crate::event::LoggedEvent;
-use crate::origin::compose;
-use crate::scene::{MapPose, Scene};
+use crate::manifest::{Manifest, Outcome};
+use crate::scene::{MapPose, Scene, compose};
 use crate::signals::Row;
 use crate::state::State;
-use mcap::MAGIC;
-use rumbo_wire::Hello;
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{self, BufRead, BufReader};
-use std::path::Path;
-
-/// A log that is shorter has no whole manifest \[bytes\].
-const SHORTEST: u64 = 256;
-/// What a log is that its writer had no time to begin.
-const NOTHING_YET: &str = "ends before its first record: its writer was stopped at once, or it was cut off when it was copied; nothing of it can be read";
 
 /// A log in memory.
 #[derive(Clone, Debug, Default)]
@@ -35,19 +18,19 @@ pub struct Log {
     /// The signals, in order of time.
     pub rows: Vec<Row>,
     /// What happened, with its time \[s\].
-    pub(crate) events: Vec<LoggedEvent>,
+    pub events: Vec<LoggedEvent>,
     /// The slow state, in order of time.
-    pub(crate) states: Vec<State>,
+    pub states: Vec<State>,
     /// What surrounded the robot.
-    pub(crate) scene: Option<Scene>,
+    pub scene: Option<Scene>,
     /// The parameters' values, each with its time \[ms\].
-    pub(crate) parameters: Vec<(i64, BTreeMap<String, f32>)>,
+    pub parameters: Vec<(i64, BTreeMap<String, f32>)>,
     /// What crossed the link, in order.
     pub link: Vec<Burst>,
     /// What crossed the USARTs of an emulated chip, in order.
     pub said: Vec<Said>,
     /// What went to the robot, in the order in which it went, which times alone do not tell: places in `link` and `said`.
-    pub(super) order: Vec<Place>,
+    pub(crate) order: Vec<Place>,
     /// Why the log ends early, where it does; or why something within is missing.
     pub cut: Option<String>,
     /// Something within is missing, and what comes after it is there.
@@ -58,7 +41,7 @@ pub struct Log {
 
 /// Where something sent is.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Place {
+pub(crate) enum Place {
     Link(usize),
     Said(usize),
 }
@@ -93,73 +76,6 @@ impl Log {
             Place::Link(at) => self.link.get(at).map(Sent::Link),
             Place::Said(at) => self.said.get(at).map(Sent::Typed),
         })
-    }
-
-    /// Reads a log.
-    ///
-    /// # Errors
-    /// A file that cannot be read, is no log, or holds nothing known.
-    pub fn read(path: &Path) -> Result<Self, LogError> {
-        Self::read_parts(path, true)
-    }
-
-    /// Reads a log without the raw bytes of its link, for showing.
-    ///
-    /// # Errors
-    /// As [`Log::read`].
-    pub fn read_signals(path: &Path) -> Result<Self, LogError> {
-        Self::read_parts(path, false)
-    }
-
-    fn read_parts(path: &Path, with_link: bool) -> Result<Self, LogError> {
-        let wrong = |what: String| LogError::new(path, what);
-        let unreadable = |error: io::Error| {
-            wrong(format!(
-                "cannot be read ({error}); `rumbo list logs` shows what there is"
-            ))
-        };
-        let file = File::open(path).map_err(unreadable)?;
-        let length = file.metadata().map_err(unreadable)?.len();
-        let mut file = BufReader::new(file);
-        // A file of another kind may be too long for the memory.
-        let start = file.fill_buf().map_err(unreadable)?;
-        if !start.starts_with(MAGIC) {
-            return Err(wrong(match MAGIC.starts_with(start) {
-                true => NOTHING_YET.into(),
-                false => {
-                    "is no MCAP log; give a log of rumbo, or convert a CSV with `rumbo import`"
-                        .into()
-                }
-            }));
-        }
-        let mut log = Intake::new(with_link).read(file, length);
-        if let Some(stop @ (Stop::NoEnd | Stop::Damaged(_))) = &log.stop
-            && let Some(pieces) = Pieces::find(path)
-        {
-            log = pieces.take(stop.text(), with_link);
-        }
-        let mut log = log.into_log();
-        if log.manifest.is_none() && log.rows.is_empty() {
-            let what = match log.cut {
-                Some(_) if length < SHORTEST => NOTHING_YET,
-                Some(_) => {
-                    "ends before anything of rumbo in it; was it cut off when it was copied, or is it another program's log?"
-                }
-                None => {
-                    "holds neither a manifest nor signals of rumbo; is it another program's log?"
-                }
-            };
-            return Err(wrong(what.into()));
-        }
-        log.rows.sort_by_key(|row| row.t_ms);
-        earlier::renew(&mut log.link);
-        Ok(log)
-    }
-
-    /// How the robot first named itself in frames.
-    #[must_use]
-    pub fn hello(&self) -> Option<Hello> {
-        earlier::hello(&self.link)
     }
 
     /// Nothing of what happened is in it: it ends within its manifest and the files that ran.
@@ -208,11 +124,31 @@ impl Log {
     }
 
     /// Something of it is missing.
-    pub(super) fn lose(&mut self, what: &str) {
+    pub(crate) fn lose(&mut self, what: &str) {
         self.has_holes = true;
         self.cut = Some(match self.cut.take() {
             Some(why) => format!("{why}; {what}"),
             None => what.to_owned(),
         });
+    }
+}
+
+/// What somebody sent to the robot.
+#[derive(Clone, Copy, Debug)]
+pub enum Sent<'a> {
+    /// Bytes over the link.
+    Link(&'a Burst),
+    /// A line typed to a USART.
+    Typed(&'a Said),
+}
+
+impl Sent<'_> {
+    /// When, in the target's time \[us\].
+    #[must_use]
+    pub fn t_us(&self) -> u64 {
+        match self {
+            Self::Link(burst) => burst.t_us,
+            Self::Typed(said) => said.t_us,
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Logs of the protocol before this one: the frames in them become those of today, so that no reader of the bytes need
 //! know.
 
-use super::Burst;
+use crate::entry::Burst;
 use rumbo_wire::earlier::{EARLIER_VERSION, renewed};
 use rumbo_wire::{Decoder, FromRobot, Hello, Message, Received};
 

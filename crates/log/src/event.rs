@@ -1,21 +1,11 @@
-//! What happens and is said, as people read it.
+//! What happens, as people read it.
 
 use serde::Serialize;
-
-/// In place of a USART's number: the link to a real robot that speaks text.
-pub(crate) const LINK_CONSOLE: u8 = 255;
-
-/// What a USART of an emulated chip said, or a robot that speaks text.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct ConsoleText {
-    pub(crate) usart: u8,
-    pub(crate) text: String,
-}
 
 /// How an event is to be seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Level {
+pub enum Level {
     /// Something went on.
     Info,
     /// Something was achieved or applied.
@@ -28,7 +18,8 @@ pub(crate) enum Level {
 
 impl Level {
     /// Its name, as in logs.
-    pub(crate) fn name(self) -> &'static str {
+    #[must_use]
+    pub fn name(self) -> &'static str {
         match self {
             Self::Info => "info",
             Self::Good => "good",
@@ -40,10 +31,11 @@ impl Level {
 
 /// Something that happened, as people read it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct LoggedEvent {
+pub struct LoggedEvent {
     /// Session time \[s\].
-    pub(crate) t_s: f64,
-    pub(crate) level: Level,
+    pub t_s: f64,
+    /// How it is to be seen.
+    pub level: Level,
     /// What happened, with its cause.
-    pub(crate) text: String,
+    pub text: String,
 }

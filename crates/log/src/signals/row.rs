@@ -8,7 +8,8 @@ use std::sync::LazyLock;
 /// One value of a row as the page gets it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub(crate) enum Cell {
+pub enum Cell {
+    /// Its value.
     Number(f64),
     /// A range in which there is nothing: no gap in the measurement, but no number either.
     Word(&'static str),
@@ -38,7 +39,8 @@ static RANGES: LazyLock<usize> = LazyLock::new(|| {
 
 impl Row {
     /// A row in which nothing is known yet.
-    pub(crate) fn unknown(t_ms: i64) -> Self {
+    #[must_use]
+    pub fn unknown(t_ms: i64) -> Self {
         Self {
             t_ms,
             values: [f32::NAN; COLUMNS],
@@ -85,14 +87,16 @@ impl Row {
     }
 
     /// Sets a signal; a name that is none is not kept.
-    pub(crate) fn set(&mut self, name: &str, value: f64) {
+    pub fn set(&mut self, name: &str, value: f64) {
         if let Some(column) = Self::column(name) {
             self.values[column] = value as f32;
         }
     }
 
-    /// A pose among the signals: the robot's own estimate (`""`), or the one of this prefix (`origin_`, `true_`, `ghost_`).
-    pub(crate) fn pose(&self, whose: &str) -> Option<MapPose> {
+    /// A pose among the signals: the robot's own estimate (`""`), or the one of this prefix (`origin_`, `true_`,
+    /// `ghost_`).
+    #[must_use]
+    pub fn pose(&self, whose: &str) -> Option<MapPose> {
         let part = |name: &str| self.signal(&format!("{whose}{name}"));
         Some(MapPose {
             x_m: part("x_m")?,
@@ -102,7 +106,7 @@ impl Row {
     }
 
     /// Sets a pose; what is not a number is not known.
-    pub(crate) fn set_pose(&mut self, whose: &str, pose: MapPose) {
+    pub fn set_pose(&mut self, whose: &str, pose: MapPose) {
         let parts = [
             ("x_m", pose.x_m),
             ("y_m", pose.y_m),
@@ -114,13 +118,15 @@ impl Row {
     }
 
     /// Nothing is known.
-    pub(crate) fn is_empty(&self) -> bool {
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
         let mut signals = self.values.iter().skip(1);
         signals.all(|value| value.is_nan())
     }
 
     /// As the page gets it.
-    pub(crate) fn cells(&self) -> Vec<Cell> {
+    #[must_use]
+    pub fn cells(&self) -> Vec<Cell> {
         (0..COLUMNS)
             .map(|column| match self.get(column) {
                 Some(value) if value.is_finite() => Cell::Number(value),

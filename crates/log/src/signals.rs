@@ -2,19 +2,16 @@
 
 mod row;
 
-pub(crate) use row::Cell;
-pub use row::Row;
+pub use row::{Cell, Row};
 
-use crate::origin::Spread;
 use crate::scene::{MapPose, Truth};
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Range, Wheels};
 use rumbo_wire::Telemetry;
-use std::collections::VecDeque;
 
 /// The signals at one instant.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sample {
+pub struct Sample {
     /// Session time of the telemetry \[ms\].
     pub t_ms: i64,
     /// The active mode.
@@ -35,8 +32,21 @@ pub(crate) struct Sample {
     pub ghost: Option<MapPose>,
 }
 
+/// How far a pose may be off, as seen from its origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Standard deviation of x \[m\].
+    pub x_m: f32,
+    /// Standard deviation of y \[m\].
+    pub y_m: f32,
+    /// How x and y hang together, -1..=1.
+    pub correlation: f32,
+    /// Standard deviation of the heading \[rad\].
+    pub heading_rad: f32,
+}
+
 /// The first of the two wheel speeds in a telemetry frame is this much older \[ms\].
-pub(crate) const EARLIER_MS: i64 = 20;
+pub const EARLIER_MS: i64 = 20;
 
 /// Not known.
 const UNKNOWN: f32 = f32::NAN;
@@ -128,7 +138,8 @@ impl Sample {
     }
 
     /// The values of the row.
-    pub(crate) fn row(&self) -> Row {
+    #[must_use]
+    pub fn row(&self) -> Row {
         Row::new(self.t_ms, self.named_row().map(|(_, value)| value))
     }
 
@@ -145,39 +156,6 @@ impl Sample {
             truth: None,
             ghost: None,
         }
-    }
-}
-
-/// The truth of the last second: telemetry arrives later than it happened.
-#[derive(Debug, Default)]
-pub(crate) struct TruthLog {
-    entries: VecDeque<(i64, Truth)>,
-}
-
-/// Length of the log \[ms\].
-const LOG_MS: i64 = 1_000;
-
-impl TruthLog {
-    /// Notes what is the case at `t_ms`.
-    pub(crate) fn push(&mut self, t_ms: i64, truth: Truth) {
-        self.entries.push_back((t_ms, truth));
-        while self
-            .entries
-            .front()
-            .is_some_and(|(oldest_ms, _)| *oldest_ms < t_ms - LOG_MS)
-        {
-            self.entries.pop_front();
-        }
-    }
-
-    /// What was noted last at or before `t_ms`, or the oldest entry.
-    pub(crate) fn at(&self, t_ms: i64) -> Option<Truth> {
-        let after = self
-            .entries
-            .partition_point(|(noted_ms, _)| *noted_ms <= t_ms);
-        self.entries
-            .get(after.saturating_sub(1))
-            .map(|(_, truth)| *truth)
     }
 }
 
@@ -215,21 +193,5 @@ mod tests {
         assert!(json[column("range_right_m")].is_null());
         assert_eq!(json[column("range_front_m")], 0.3123);
         assert!(json[column("true_x_m")].is_null());
-    }
-
-    #[test]
-    fn the_truth_of_a_past_instant_is_found() {
-        let mut log = TruthLog::default();
-        for t_ms in (0..3_000).step_by(5) {
-            log.push(
-                t_ms,
-                Truth {
-                    battery_v: t_ms as f64,
-                    ..Truth::default()
-                },
-            );
-        }
-        assert_eq!(log.at(2_460).unwrap().battery_v, 2_460.0);
-        assert!(log.entries.len() <= 202);
     }
 }

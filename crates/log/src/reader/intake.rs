@@ -1,16 +1,18 @@
 //! Takes a log in, record by record, with its checksums verified.
 //!
-//! MCAP has checksums of chunks, of attachments, of the data section and of the index; [`super::digest`] adds one for
+//! MCAP has checksums of chunks, of attachments, of the data section and of the index; [`crate::digest`] adds one for
 //! metadata. What a flipped bit makes of a record that has none, such as another kind of record, is not passed over
 //! either: only what belongs into a log is taken.
 
-use super::digest::{Digest, Metadata};
-use super::reader::{Log, Place};
+use super::metadata::Metadata;
 use super::row_json::Signals;
-use super::schema::Topic;
-use super::{Burst, Said};
+use crate::digest::Digest;
+use crate::entry::{Burst, Said};
 use crate::event::{Level, LoggedEvent};
+use crate::log::{Log, Place};
+use crate::lz4::Lz4;
 use crate::scene::Scene;
+use crate::schema::Topic;
 use crate::signals::Row;
 use crate::state::State;
 use base64::Engine;
@@ -100,13 +102,13 @@ impl Intake {
         }
     }
 
-    /// Reads a log of this length.
-    pub(super) fn read(mut self, file: impl Read, length: u64) -> Self {
+    /// Reads a log.
+    pub(super) fn read(mut self, from: impl Read) -> Self {
         let options = LinearReaderOptions::default()
             .with_validate_data_section_crc(true)
             .with_validate_summary_section_crc(true)
             .with_check_finishes_after_end_magic(true);
-        self.stop = self.take_all(file, length, options).err();
+        self.stop = self.take_all(from, options).err();
         // Of a log whose data are whole, only the index can be what is wrong.
         if self.part == Part::Index && self.verified && self.stop.take().is_some() {
             let note = "its index is damaged or cut off; what it recorded is whole";
@@ -121,7 +123,7 @@ impl Intake {
         let options = LinearReaderOptions::default()
             .with_skip_start_magic(true)
             .with_skip_end_magic(true);
-        match self.take_all(piece, piece.len() as u64, options) {
+        match self.take_all(piece, options) {
             Err(Stop::NoEnd) => Ok(()),
             Err(stop) => Err(stop),
             Ok(()) => Err(Stop::Damaged("an end within".into())),
@@ -149,28 +151,24 @@ impl Intake {
         log
     }
 
-    fn take_all(
-        &mut self,
-        mut file: impl Read,
-        length: u64,
-        options: LinearReaderOptions,
-    ) -> Result<(), Stop> {
+    fn take_all(&mut self, mut from: impl Read, options: LinearReaderOptions) -> Result<(), Stop> {
         let damaged = |error: mcap::McapError| match error {
             mcap::McapError::UnexpectedEof => Stop::Damaged(NO_END.into()),
             other => Stop::Damaged(other.to_string()),
         };
-        // What a damaged length asks for is not there to be read.
-        let longest = usize::try_from(length).map_or(LONGEST, |length| length.min(LONGEST));
         let options = options
             // Nothing of a damaged chunk is taken, its lengths least of all.
             .with_prevalidate_chunk_crcs(true)
-            .with_record_length_limit(longest.max(LONGEST));
+            .with_record_length_limit(LONGEST);
         let mut reader = LinearReader::new_with_options(options);
+        reader
+            .add_decompressor(Lz4::new(LONGEST))
+            .map_err(damaged)?;
         while let Some(event) = reader.next_event() {
             match event.map_err(damaged)? {
                 LinearReadEvent::ReadRequest(count) => {
                     let into = reader.insert(count);
-                    let read = file.read(into).map_err(|error| damaged(error.into()))?;
+                    let read = from.read(into).map_err(|error| damaged(error.into()))?;
                     reader.notify_read(read);
                 }
                 LinearReadEvent::Record { opcode, data } => {

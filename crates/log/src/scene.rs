@@ -165,3 +165,14 @@ pub struct Choice {
     /// Seed of everything random.
     pub seed: u64,
 }
+
+/// A pose in `frame`, in the frame around it.
+#[must_use]
+pub fn compose(frame: MapPose, at: MapPose) -> MapPose {
+    let (sin, cos) = frame.heading_rad.sin_cos();
+    MapPose {
+        x_m: frame.x_m + cos * at.x_m - sin * at.y_m,
+        y_m: frame.y_m + sin * at.x_m + cos * at.y_m,
+        heading_rad: frame.heading_rad + at.heading_rad,
+    }
+}

@@ -1,90 +1,133 @@
 //! What changes slowly, for pages and logs: the state of the session, its link and its robot.
 
-use crate::errand::Errand;
+use crate::scene::RoutePlan;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// What changes slowly.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct State {
-    pub(crate) t_s: f64,
+pub struct State {
+    /// Session time \[s\].
+    pub t_s: f64,
     /// A simulation: its speed can be set and it can be reset.
-    pub(crate) simulated: bool,
+    pub simulated: bool,
     /// Seconds of the target asked for per second of the wall clock.
-    pub(crate) speed: f64,
+    pub speed: f64,
     /// Seconds of the target per second of the wall clock, measured.
-    pub(crate) achieved_speed: f64,
-    pub(crate) link: LinkState,
-    pub(crate) robot: RobotState,
+    pub achieved_speed: f64,
+    /// The link.
+    pub link: LinkState,
+    /// The robot.
+    pub robot: RobotState,
     /// The last order, if it was refused or given up, and why.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) refused: Option<String>,
+    pub refused: Option<String>,
     /// What a person has to see to at once.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(crate) alarms: Vec<String>,
+    pub alarms: Vec<String>,
     /// The calibration that runs, or ran last in this run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) calibration: Option<CalibrationState>,
+    pub calibration: Option<CalibrationState>,
     /// A log is being shown, of this length; `t_s` is where.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) replay: Option<ReplayState>,
+    pub replay: Option<ReplayState>,
 }
 
 /// A log being shown, for the page.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ReplayState {
-    pub(crate) name: String,
-    pub(crate) duration_s: f64,
+pub struct ReplayState {
+    /// Its name.
+    pub name: String,
+    /// Its length \[s\].
+    pub duration_s: f64,
 }
 
 /// The link, for the page.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct LinkState {
-    pub(crate) connected: bool,
-    pub(crate) telemetry_hz: f64,
+pub struct LinkState {
+    /// The robot answers.
+    pub connected: bool,
+    /// Telemetry frames a second.
+    pub telemetry_hz: f64,
     /// Share of the link's capacity from the robot, 0..=1.
-    pub(crate) down_load: f64,
+    pub down_load: f64,
     /// Share of the link's capacity to the robot, 0..=1.
-    pub(crate) up_load: f64,
-    pub(crate) baud: u32,
-    pub(crate) round_trip_ms: Option<u64>,
+    pub up_load: f64,
+    /// Its speed \[baud\].
+    pub baud: u32,
+    /// From a command to its acknowledgement, smoothed \[ms\].
+    pub round_trip_ms: Option<u64>,
     /// Frames from the robot that failed the CRC.
-    pub(crate) crc_errors_down: u16,
+    pub crc_errors_down: u16,
     /// Frames to the robot that failed the CRC.
-    pub(crate) crc_errors_up: u8,
-    pub(crate) frames_lost: u16,
+    pub crc_errors_up: u8,
+    /// Frames from the robot missing by their sequence numbers.
+    pub frames_lost: u16,
     /// Telemetry the robot dropped because the link was full.
-    pub(crate) dropped: u8,
+    pub dropped: u8,
     /// The operator's commands not acknowledged yet.
-    pub(crate) unacknowledged: usize,
+    pub unacknowledged: usize,
     /// Session time at the robot's time 0, where the clocks did not start together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) clock_offset_ms: Option<i64>,
+    pub clock_offset_ms: Option<i64>,
     /// By how much the robot's clock is fast, in millionths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) clock_fast_ppm: Option<i64>,
+    pub clock_fast_ppm: Option<i64>,
 }
 
 /// The robot's slow signals, for the page.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct RobotState {
-    pub(crate) mode: u8,
-    pub(crate) armed: bool,
+pub struct RobotState {
+    /// Number of the active mode.
+    pub mode: u8,
+    /// ON.
+    pub armed: bool,
     /// The latched fault and what to do about it.
-    pub(crate) fault: Option<Cow<'static, str>>,
-    pub(crate) battery_v: Option<f64>,
-    pub(crate) true_battery_v: Option<f64>,
-    pub(crate) reference: [f32; 2],
-    pub(crate) overruns: u8,
-    pub(crate) servo_rad: f32,
+    pub fault: Option<Cow<'static, str>>,
+    /// Battery as measured \[V\].
+    pub battery_v: Option<f64>,
+    /// Battery as it is, of a simulated robot \[V\].
+    pub true_battery_v: Option<f64>,
+    /// The mode's setpoints.
+    pub reference: [f32; 2],
+    /// Ticks that took too long.
+    pub overruns: u8,
+    /// Where the servo points \[rad\].
+    pub servo_rad: f32,
     /// Name of the rig that the robot believes to carry; `None` until it has said so.
-    pub(crate) rig: Option<Cow<'static, str>>,
-    pub(crate) errand: Errand,
+    pub rig: Option<Cow<'static, str>>,
+    /// What it is asked to reach.
+    pub errand: Errand,
     /// The robot has another parameter table, or another protocol: its parameters are neither shown nor written.
-    pub(crate) foreign: bool,
+    pub foreign: bool,
     /// The robot speaks the original's text.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub(crate) text: bool,
+    pub text: bool,
+}
+
+/// How it ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum End {
+    /// It is there.
+    Reached,
+    /// There is no way.
+    Unreachable,
+}
+
+/// What the robot is asked to reach. Places are from the robot's origin.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Errand {
+    /// The goal of mode 8 \[m\]; `None` once it is reached, since the origin may have moved there.
+    pub goal: Option<[f32; 2]>,
+    /// Mode 8 follows a lane.
+    pub lane: bool,
+    /// The route of mode 7.
+    pub route: Option<RoutePlan>,
+    /// Where the robot stood when a relative route began: x, y \[m\] and heading \[rad\].
+    pub from: Option<[f32; 3]>,
+    /// How it ended; `None` while it goes on.
+    pub end: Option<End>,
 }
 
 /// What a calibration found.
@@ -110,18 +153,25 @@ pub struct Finding {
 /// How a calibration stands, for the page.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "phase", rename_all = "snake_case")]
-pub(crate) enum CalibrationState {
+pub enum CalibrationState {
+    /// It goes on.
     Running {
+        /// Since then, in session time \[s\].
         since_s: f64,
     },
+    /// It has set the parameters.
     Done {
+        /// What it found.
         findings: Findings,
         /// When, by the session's time: one that ended at once was never seen running.
         #[serde(default)]
         at_s: f64,
     },
+    /// It was given up.
     Failed {
+        /// Why.
         why: String,
+        /// When \[s\].
         #[serde(default)]
         at_s: f64,
     },

@@ -1,12 +1,11 @@
-//! What is left of a log that is damaged within: its index, at its end, tells where each part begins, whatever became of the parts before.
+//! What is left of a log that is damaged within: its index, at its end, says where each part begins, whatever became of
+//! the parts before.
 
 use super::intake::{Intake, LONGEST, Stop};
 use mcap::MAGIC;
 use mcap::parse_record;
 use mcap::records::{Footer, Record, op};
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
-use std::path::Path;
 
 /// What a record is and how long \[bytes\].
 const HEAD: usize = 9;
@@ -22,19 +21,18 @@ struct Piece {
 }
 
 /// The parts of a log.
-pub(super) struct Pieces {
-    file: File,
+pub(super) struct Pieces<F> {
+    from: F,
     pieces: Vec<Piece>,
     channels: Vec<(u16, String)>,
 }
 
-impl Pieces {
+impl<F: Read + Seek> Pieces<F> {
     /// Of a log that has a sound index.
-    pub(super) fn find(path: &Path) -> Option<Self> {
-        let mut file = File::open(path).ok()?;
-        let end = file.seek(SeekFrom::End(0)).ok()?;
+    pub(super) fn find(mut from: F) -> Option<Self> {
+        let end = from.seek(SeekFrom::End(0)).ok()?;
         let footer_at = end.checked_sub(END)?;
-        let tail = read_at(&mut file, footer_at, END)?;
+        let tail = read_at(&mut from, footer_at, END)?;
         let (footer, magic) = tail.split_at(tail.len() - MAGIC.len());
         let Some((op::FOOTER, body, [])) = split(footer).filter(|_| magic == MAGIC) else {
             return None;
@@ -48,7 +46,7 @@ impl Pieces {
             return None;
         };
         let index = read_at(
-            &mut file,
+            &mut from,
             summary_start,
             footer_at.checked_sub(summary_start)?,
         )?;
@@ -59,7 +57,7 @@ impl Pieces {
             return None;
         }
         let mut pieces = Self {
-            file,
+            from,
             pieces: Vec::new(),
             channels: Vec::new(),
         };
@@ -91,7 +89,7 @@ impl Pieces {
         }
         let mut lost = 0;
         for Piece { at, kind, length } in &self.pieces {
-            let bytes = read_at(&mut self.file, *at, *length);
+            let bytes = read_at(&mut self.from, *at, *length);
             let is_there = |bytes: &&Vec<u8>| {
                 split(bytes).is_some_and(|(found, _, rest)| found == *kind && rest.is_empty())
             };
@@ -129,14 +127,14 @@ fn split(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     Some((*kind, body, rest))
 }
 
-fn read_at(file: &mut File, at: u64, length: u64) -> Option<Vec<u8>> {
+fn read_at(from: &mut (impl Read + Seek), at: u64, length: u64) -> Option<Vec<u8>> {
     let mut bytes = vec![
         0;
         usize::try_from(length)
             .ok()
             .filter(|length| *length <= LONGEST)?
     ];
-    file.seek(SeekFrom::Start(at)).ok()?;
-    file.read_exact(&mut bytes).ok()?;
+    from.seek(SeekFrom::Start(at)).ok()?;
+    from.read_exact(&mut bytes).ok()?;
     Some(bytes)
 }

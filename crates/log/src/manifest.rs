@@ -96,15 +96,6 @@ impl Manifest {
         serde_json::from_value(serde_json::Value::Object(fields.collect())).ok()
     }
 
-    /// The same of a run that begins now.
-    #[must_use]
-    pub fn begun_now(self) -> Self {
-        Self {
-            started: Some(now()),
-            ..self
-        }
-    }
-
     /// Notes what the robot's EEPROM holds at the start.
     pub fn remember(&mut self, memory: &[u8]) {
         let used = memory.iter().rposition(|byte| *byte != 0xFF);
@@ -126,7 +117,8 @@ impl Manifest {
     }
 
     /// The name of its log, without the ending: when, what, which seed.
-    pub(crate) fn stem(&self) -> String {
+    #[must_use]
+    pub fn stem(&self) -> String {
         let when = self.started.as_ref().map(|started| {
             started
                 .replace(['-', ':'], "")
@@ -142,21 +134,6 @@ impl Manifest {
         let parts: Vec<String> = [when, Some(what), seed].into_iter().flatten().collect();
         parts.join("-")
     }
-}
-
-/// The time of day, UTC.
-fn now() -> String {
-    let now = time::OffsetDateTime::now_utc();
-    let (date, clock) = (now.date(), now.time());
-    format!(
-        "{}-{:02}-{:02}T{:02}:{:02}:{:02}Z",
-        date.year(),
-        u8::from(date.month()),
-        date.day(),
-        clock.hour(),
-        clock.minute(),
-        clock.second()
-    )
 }
 
 /// How a run ended: its metrics against the scenario's limits.

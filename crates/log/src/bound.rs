@@ -1,6 +1,6 @@
-//! How much of a real robot is recorded: a link says some kilobytes in a second, whatever floods a port fills no disk.
+//! How much of a real robot is recorded: a link carries some kilobytes in a second, whatever floods a port fills no disk.
 
-use super::recorder::Entry;
+use crate::entry::Entry;
 use crate::event::{Level, LoggedEvent};
 use crate::signals::Row;
 
@@ -14,7 +14,7 @@ const ROW: usize = 1_000;
 
 /// What has been recorded of the second that passes, and what was left out of it.
 #[derive(Debug, Default)]
-pub(super) struct Bound {
+pub struct Bound {
     second: u64,
     filled: usize,
     events: usize,
@@ -24,7 +24,7 @@ pub(super) struct Bound {
 
 impl Bound {
     /// Whether an entry is recorded; and what is to be recorded before it of what was left out.
-    pub(super) fn judge(&mut self, entry: &Entry) -> (bool, Option<Entry>) {
+    pub fn judge(&mut self, entry: &Entry) -> (bool, Option<Entry>) {
         // The only ones whose time is ours and not the robot's.
         let second = match entry {
             Entry::Burst(burst) => burst.t_us / 1_000_000,
@@ -37,7 +37,7 @@ impl Bound {
     }
 
     /// The event that says what was left out, if something was.
-    pub(super) fn pass_to(&mut self, second: u64) -> Option<Entry> {
+    pub fn pass_to(&mut self, second: u64) -> Option<Entry> {
         let past = std::mem::replace(
             self,
             Self {
@@ -101,7 +101,7 @@ fn rows_of(entry: &Entry) -> &[Row] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::Burst;
+    use crate::entry::Burst;
 
     fn burst(t_us: u64, length: usize) -> Entry {
         Entry::Burst(Burst {

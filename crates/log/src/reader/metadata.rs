@@ -1,44 +1,9 @@
-//! Checksums of a log's metadata, for which MCAP has none: a message each, in a chunk, which has one.
-//!
-//! Metadata that is not what its checksum says is left out. In a log without such checksums, of a version before they
-//! were written, the checksum of the whole data section stands for them; a log that lacks that too, because it was cut
-//! off, says that its metadata cannot be verified.
+//! What a log says of itself, and whether that can be relied on.
 
-use super::{Log, Manifest, Outcome};
-use serde::{Deserialize, Serialize};
+use crate::digest::{Digest, Fields, MANIFEST, OUTCOME};
+use crate::log::Log;
+use crate::manifest::{Manifest, Outcome};
 use std::collections::BTreeMap;
-
-/// Name of the metadata that says what ran.
-pub(super) const MANIFEST: &str = "manifest";
-/// Name of the metadata that says how it ended.
-pub(super) const OUTCOME: &str = "outcome";
-
-type Fields = BTreeMap<String, String>;
-
-/// The checksum of a metadata record, as its message has it.
-#[derive(Debug, Deserialize, Serialize)]
-pub(super) struct Digest {
-    /// The record's name.
-    name: String,
-    /// CRC-32 of its name, keys and values, each ended by a zero byte.
-    crc32: u32,
-}
-
-impl Digest {
-    pub(super) fn of(name: &str, fields: &Fields) -> Self {
-        let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
-        let mut digest = crc.digest();
-        let pairs = fields.iter().flat_map(|(key, value)| [key, value]);
-        for text in std::iter::once(name).chain(pairs.map(String::as_str)) {
-            digest.update(text.as_bytes());
-            digest.update(&[0]);
-        }
-        Self {
-            name: name.to_owned(),
-            crc32: digest.finalize(),
-        }
-    }
-}
 
 /// What a log says of itself, until all of it has been read.
 #[derive(Debug, Default)]

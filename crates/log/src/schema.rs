@@ -5,23 +5,36 @@ use serde_json::{Map, Value, json};
 
 /// Where messages of one kind go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Topic {
+pub enum Topic {
+    /// The signals.
     Telemetry,
+    /// What changes slowly.
     State,
+    /// The parameters' values.
     Parameters,
+    /// What happened.
     Events,
+    /// The estimated pose.
     Estimated,
+    /// The true pose.
     True,
+    /// Walls and boxes.
     World,
+    /// What the dashboard draws around the robot.
     Scene,
+    /// Raw bytes from the robot.
     FromRobot,
+    /// Raw bytes to the robot.
     ToRobot,
+    /// What crossed the USARTs of an emulated chip.
     Console,
+    /// Checksums of the metadata.
     Digest,
 }
 
 impl Topic {
-    pub(crate) const ALL: [Self; 12] = [
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; 12] = [
         Self::Telemetry,
         Self::State,
         Self::Parameters,
@@ -37,7 +50,8 @@ impl Topic {
     ];
 
     /// Its name in the log.
-    pub(crate) fn name(self) -> &'static str {
+    #[must_use]
+    pub fn name(self) -> &'static str {
         match self {
             Self::Telemetry => "/telemetry",
             Self::State => "/state",
@@ -55,12 +69,14 @@ impl Topic {
     }
 
     /// The topic of this name.
-    pub(crate) fn find(name: &str) -> Option<Self> {
+    #[must_use]
+    pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|topic| topic.name() == name)
     }
 
     /// Name and text of its schema.
-    pub(crate) fn schema(self) -> (&'static str, Value) {
+    #[must_use]
+    pub fn schema(self) -> (&'static str, Value) {
         match self {
             Self::Telemetry => ("rumbo.Telemetry", telemetry()),
             Self::State => ("rumbo.State", state()),
@@ -127,7 +143,7 @@ fn state() -> Value {
 }
 
 fn parameters() -> Value {
-    let properties: Map<String, Value> = crate::catalogue::table()
+    let properties: Map<String, Value> = crate::parameters::parameters()
         .map(|entry| (entry.name.to_owned(), number()))
         .collect();
     object("rumbo.Parameters", Value::Object(properties))

@@ -1,11 +1,10 @@
-//! What is recorded, as the messages that it makes; where they go is a [`Sink`]'s business: a file, or a viewer that looks on.
+//! What is recorded, as the messages that it makes; where they go is a [`Sink`]'s business: a file, or a viewer.
 
-use super::recorder::Entry;
-use super::schema::Topic;
-use super::{Burst, Said};
-use crate::catalogue::ParameterState;
+use crate::entry::{Burst, Entry, Said};
 use crate::event::{Level, LoggedEvent};
-use crate::scene::{MapPose, Scene};
+use crate::parameters::ParameterState;
+use crate::scene::{MapPose, Scene, compose};
+use crate::schema::Topic;
 use crate::signals::Row;
 use crate::state::State;
 use base64::Engine;
@@ -13,15 +12,21 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
 
 /// Takes messages.
-pub(crate) trait Sink {
+pub trait Sink {
     /// Why it cannot.
     type Error;
 
     /// A message of this topic.
+    ///
+    /// # Errors
+    /// Why it cannot.
     fn put(&mut self, topic: Topic, t_us: u64, data: &[u8]) -> Result<(), Self::Error>;
 
-    /// The messages of an entry; an outcome makes none. Scene and parameters have no time of their own: they are of the time `now_us`
-    /// that came last, which a burst moves.
+    /// The messages of an entry; an outcome makes none. Scene and parameters have no time of their own: they are of
+    /// the time `now_us` that came last, which a burst moves.
+    ///
+    /// # Errors
+    /// Why it cannot.
     fn entry(&mut self, entry: &Entry, now_us: &mut u64) -> Result<(), Self::Error> {
         match entry {
             Entry::Burst(burst) => {
@@ -37,7 +42,10 @@ pub(crate) trait Sink {
             Entry::Outcome(_) => Ok(()),
         }
     }
+}
 
+/// The messages of one entry each.
+trait Messages: Sink {
     fn put_json(&mut self, topic: Topic, t_us: u64, message: &Value) -> Result<(), Self::Error> {
         self.put(topic, t_us, message.to_string().as_bytes())
     }
@@ -68,7 +76,7 @@ pub(crate) trait Sink {
         let t_us = to_us(row.t_ms);
         self.put(Topic::Telemetry, t_us, row_json(row).to_string().as_bytes())?;
         if let (Some(told), Some(origin)) = (row.pose(""), row.pose("origin_")) {
-            self.pose(Topic::Estimated, t_us, crate::origin::compose(origin, told))?;
+            self.pose(Topic::Estimated, t_us, compose(origin, told))?;
         }
         if let Some(truth) = row.pose("true_") {
             self.pose(Topic::True, t_us, truth)?;
@@ -131,6 +139,8 @@ pub(crate) trait Sink {
         }
     }
 }
+
+impl<S: Sink + ?Sized> Messages for S {}
 
 /// What is not known is left out, as in all messages: viewers take a field for what its schema says.
 fn leave_out_unknown(message: &mut Value) {

@@ -1,13 +1,13 @@
 //! What a log is, without reading it: from its index, or, where its writer was stopped, from the heads of its records.
 
-use super::digest::MANIFEST;
-use super::{LogError, Manifest};
+use crate::digest::MANIFEST;
+use crate::error::ReadError;
+use crate::manifest::Manifest;
+use crate::reader::is_log;
 use mcap::records::{MetadataIndex, Record, op};
 use mcap::sans_io::summary_reader::{SummaryReadEvent, SummaryReader};
 use mcap::{MAGIC, McapResult, parse_record};
-use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
-use std::path::Path;
 
 /// A record's head: what it is, and how long.
 const HEAD_BYTES: usize = 9;
@@ -29,28 +29,19 @@ impl Summary {
     /// Reads what is needed of a log, and no more.
     ///
     /// # Errors
-    /// A file that cannot be read, or is no log.
-    pub fn read(path: &Path) -> Result<Self, LogError> {
-        let unreadable =
-            |error: io::Error| LogError::new(path, format!("cannot be read ({error})"));
-        let mut file = File::open(path).map_err(unreadable)?;
-        let mut start = Vec::new();
-        let mut first = (&mut file).take(MAGIC.len() as u64);
-        first.read_to_end(&mut start).map_err(unreadable)?;
-        match start.as_slice() {
-            MAGIC => {}
-            // Its writer was stopped before it had begun.
-            start if MAGIC.starts_with(start) => return Ok(Self::default()),
-            _ => return Err(LogError::new(path, "is no MCAP log")),
+    /// Bytes that cannot be read, or are no log.
+    pub fn read(mut from: impl Read + Seek) -> Result<Self, ReadError> {
+        if !is_log(&mut from)? {
+            return Ok(Self::default());
         }
-        match Self::by_index(&mut file) {
+        match Self::by_index(&mut from) {
             Ok(Some(summary)) => Ok(summary),
             // No index, or a damaged one.
-            Ok(None) | Err(_) => Self::by_heads(file).map_err(unreadable),
+            Ok(None) | Err(_) => Ok(Self::by_heads(from)?),
         }
     }
 
-    fn by_index(file: &mut File) -> McapResult<Option<Self>> {
+    fn by_index(file: &mut (impl Read + Seek)) -> McapResult<Option<Self>> {
         let mut reader = SummaryReader::new();
         while let Some(event) = reader.next_event() {
             match event? {
@@ -85,7 +76,7 @@ impl Summary {
     }
 
     /// Goes from record to record up to the end, or to where the writer was stopped.
-    fn by_heads(mut file: File) -> io::Result<Self> {
+    fn by_heads(mut file: impl Read + Seek) -> io::Result<Self> {
         let end = file.seek(SeekFrom::End(0))?;
         let mut at = file.seek(SeekFrom::Start(MAGIC.len() as u64))?;
         let mut file = BufReader::new(file);
@@ -156,30 +147,30 @@ fn head(file: &mut impl Read) -> io::Result<Option<(u8, u64)>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::recorder::{Entry, Recorder};
-    use crate::log::{Burst, Log};
+    use crate::entry::{Burst, Entry};
+    use crate::log::Log;
+    use crate::writer::LogWriter;
+    use std::io::Cursor;
 
     #[test]
     fn a_log_is_summed_up_as_it_is_read_whole_or_cut() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("whole.mcap");
         let manifest = Manifest {
             scenario: Some("mode1".into()),
             seed: Some(7),
             ..Manifest::default()
         };
-        let mut recorder = Recorder::at(&path, &manifest).unwrap();
+        let mut writer = LogWriter::new(Cursor::new(Vec::new()), &manifest).unwrap();
         for number in 0..40_000 {
-            recorder.take(Entry::Burst(Burst {
+            let burst = Burst {
                 t_us: 1_000 * number,
                 to_robot: false,
                 bytes: number.to_le_bytes().repeat(8),
-            }));
+            };
+            writer.record(&Entry::Burst(burst)).unwrap();
         }
-        recorder.finish().unwrap();
-        let whole = std::fs::read(&path).unwrap();
-        let log = Log::read(&path).unwrap();
-        let summary = Summary::read(&path).unwrap();
+        let whole = writer.finish().unwrap().into_inner();
+        let log = Log::read(Cursor::new(&whole)).unwrap();
+        let summary = Summary::read(Cursor::new(&whole)).unwrap();
         assert_eq!(
             (summary.duration_s, summary.complete),
             (log.duration_s(), true)
@@ -187,12 +178,12 @@ mod tests {
         assert_eq!(summary.manifest, Some(manifest));
         let mut lasted = Vec::new();
         for part in 1..20 {
-            std::fs::write(&path, &whole[..whole.len() * part / 20]).unwrap();
-            let summary = Summary::read(&path).unwrap();
+            let cut = &whole[..whole.len() * part / 20];
+            let summary = Summary::read(Cursor::new(cut)).unwrap();
             // What is not in its index any more is still in it.
             assert!(!summary.complete || part == 19, "{part}");
             // Of a chunk that is cut a reader may still find some messages.
-            let found_s = Log::read(&path).unwrap().duration_s();
+            let found_s = Log::read(Cursor::new(cut)).unwrap().duration_s();
             assert!(
                 (0.0..12.0).contains(&(found_s - summary.duration_s)),
                 "{found_s}"
@@ -204,7 +195,6 @@ mod tests {
             lasted.is_sorted() && lasted[0] < 10.0 && lasted[10] > 10.0,
             "{lasted:?}"
         );
-        std::fs::write(&path, b"t_s\n0\n1\n2\n3\n").unwrap();
-        assert!(Summary::read(&path).is_err());
+        assert!(Summary::read(Cursor::new(b"t_s\n0\n1\n2\n3\n")).is_err());
     }
 }
