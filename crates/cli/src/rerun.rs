@@ -306,7 +306,7 @@ impl Recorded for Said {
     }
 
     fn words(&self) -> String {
-        let text = rumbo_station::readable(&self.bytes);
+        let text = rumbo_session::readable(&self.bytes);
         format!("USART{} `{}`", self.usart, text.replace('\n', "\\n"))
     }
 }

@@ -13,8 +13,9 @@ use rumbo_control::Wheels;
 use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_experiment::run::RunResult;
 use rumbo_log::{Burst, Choice, Kind, Manifest, MapPose, Outcome, Said, Truth};
+use rumbo_session::headless::Run;
 use rumbo_sim::trace::{SAMPLE_US, Sample, Trace};
-use rumbo_station::headless::{Run, record_run, record_run_in};
+use rumbo_station::headless::{record_run, record_run_in};
 use rumbo_wire::FromRobot;
 use std::path::{Path, PathBuf};
 

@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use rumbo_log::{Kind, Manifest, Outcome, Truth};
-use rumbo_station::headless::{Run, record_run};
+use rumbo_session::headless::Run;
+use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
 use std::path::Path;
 use std::process::{Command, Output};

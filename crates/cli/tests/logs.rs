@@ -3,7 +3,8 @@
 #![cfg(test)]
 
 use rumbo_log::{Burst, Outcome, Truth};
-use rumbo_station::headless::{Run, record_run};
+use rumbo_session::headless::Run;
+use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
 use rumbo_wire::message::Hello;
 use rumbo_wire::{Decoder, FromRobot, Message, Received, ToRobot};

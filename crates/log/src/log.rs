@@ -52,11 +52,11 @@ impl Log {
     ///
     /// # Errors
     /// What the ghost has to say.
-    pub fn haunt(
+    pub fn haunt<E>(
         &mut self,
         scene: Scene,
-        mut ghost: impl FnMut(u64) -> Result<MapPose, String>,
-    ) -> Result<(), String> {
+        mut ghost: impl FnMut(u64) -> Result<MapPose, E>,
+    ) -> Result<(), E> {
         let start = self.scene.is_none().then_some(scene.start);
         for row in &mut self.rows {
             let pose = ghost(u64::try_from(row.t_ms).unwrap_or(0) * 1_000)?;

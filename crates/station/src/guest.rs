@@ -66,8 +66,6 @@ pub(crate) struct Guest {
     slices: Sender<Slice>,
     answers: Receiver<Vec<u8>>,
     thread: JoinHandle<Result<Findings, String>>,
-    /// When it began \[us\].
-    pub(crate) since_us: u64,
 }
 
 impl Guest {
@@ -93,7 +91,6 @@ impl Guest {
             slices,
             answers,
             thread,
-            since_us: now_us,
         })
     }
 

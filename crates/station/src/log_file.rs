@@ -68,6 +68,10 @@ impl LogError {
         Self { path, problem }
     }
 
+    pub(crate) fn not_written(path: &Path, error: WriteError) -> Self {
+        Self::new(path, Problem::NotWritten(error))
+    }
+
     /// The same of another file: of the one that this was to become.
     #[must_use]
     pub fn of(self, path: &Path) -> Self {

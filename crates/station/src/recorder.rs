@@ -6,7 +6,7 @@
 use crate::log_file::{LogError, Problem};
 use rumbo_log::{Bound, Entry, Kind, LogWriter, Manifest, WriteError};
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -36,8 +36,6 @@ pub(crate) struct Recorder {
     entries: Option<SyncSender<Arc<Entry>>>,
     trouble: Trouble,
     thread: Option<JoinHandle<()>>,
-    /// Waits for the disk rather than drop anything.
-    patient: bool,
     dropped: u64,
     /// Of a real robot, so that a flood on its link does not fill the disk.
     bound: Option<Bound>,
@@ -46,43 +44,14 @@ pub(crate) struct Recorder {
 impl Recorder {
     /// A new log in a folder, named after its manifest.
     pub(crate) fn in_folder(folder: &Path, manifest: &Manifest) -> Result<Self, LogError> {
-        let failed = |path: &Path, error: std::io::Error| {
-            LogError::new(path, Problem::NotMade(error, "for logs with --out"))
-        };
-        std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
-        let stem = manifest.stem();
-        let mut number = 1;
-        let (path, file) = loop {
-            let name = match number {
-                1 => format!("{stem}.mcap"),
-                _ => format!("{stem}-{number}.mcap"),
-            };
-            let path = folder.join(name);
-            match File::create_new(&path) {
-                Ok(file) => break (path, file),
-                Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => number += 1,
-                Err(error) => return Err(failed(&path, error)),
-            }
-        };
-        Self::start(path, file, manifest, false)
+        let (path, file) = file_in(folder, manifest)?;
+        Self::start(path, file, manifest)
     }
 
-    /// A log of this name, in place of what was there; nothing of it is dropped, however slow the disk.
-    pub(crate) fn at(path: &Path, manifest: &Manifest) -> Result<Self, LogError> {
-        let file = File::create(path)
-            .map_err(|error| LogError::new(path, Problem::NotMade(error, "with --out")))?;
-        Self::start(path.into(), file, manifest, true)
-    }
-
-    fn start(
-        path: PathBuf,
-        file: File,
-        manifest: &Manifest,
-        patient: bool,
-    ) -> Result<Self, LogError> {
+    fn start(path: PathBuf, file: File, manifest: &Manifest) -> Result<Self, LogError> {
         let (sender, entries) = sync_channel(WAITING);
         let trouble = Trouble::default();
-        let bound = (manifest.kind == Kind::Robot && !patient).then(Bound::default);
+        let bound = (manifest.kind == Kind::Robot).then(Bound::default);
         let (manifest, reported) = (manifest.clone(), Arc::clone(&trouble));
         let thread = std::thread::Builder::new()
             .name("recorder".into())
@@ -97,16 +66,9 @@ impl Recorder {
             entries: Some(sender),
             trouble,
             thread: Some(thread),
-            patient,
             dropped: 0,
             bound,
         })
-    }
-
-    /// The same, but nothing is dropped, however slow the disk: for what can wait for it.
-    pub(crate) fn patient(mut self) -> Self {
-        self.patient = true;
-        self
     }
 
     /// The log's file.
@@ -133,11 +95,6 @@ impl Recorder {
         let Some(entries) = &self.entries else {
             return;
         };
-        if self.patient {
-            // A recording that has ended has said why.
-            let _ = entries.send(entry);
-            return;
-        }
         match entries.try_send(entry) {
             Ok(()) if self.dropped > 0 => {
                 let dropped = std::mem::take(&mut self.dropped);
@@ -154,15 +111,6 @@ impl Recorder {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .take()
-    }
-
-    /// Completes the log.
-    pub(crate) fn finish(mut self) -> Result<(), LogError> {
-        self.close();
-        match self.trouble() {
-            Some(what) => Err(LogError::new(&self.path, what)),
-            None => Ok(()),
-        }
     }
 
     fn close(&mut self) {
@@ -182,6 +130,33 @@ impl Drop for Recorder {
     fn drop(&mut self) {
         self.close();
     }
+}
+
+/// A new file in a folder, named after a manifest.
+pub(crate) fn file_in(folder: &Path, manifest: &Manifest) -> Result<(PathBuf, File), LogError> {
+    let failed = |path: &Path, error: io::Error| {
+        LogError::new(path, Problem::NotMade(error, "for logs with --out"))
+    };
+    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
+    let stem = manifest.stem();
+    let mut number = 1;
+    loop {
+        let name = match number {
+            1 => format!("{stem}.mcap"),
+            _ => format!("{stem}-{number}.mcap"),
+        };
+        let path = folder.join(name);
+        match File::create_new(&path) {
+            Ok(file) => return Ok((path, file)),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => number += 1,
+            Err(error) => return Err(failed(&path, error)),
+        }
+    }
+}
+
+/// A file of this name, in place of what was there.
+pub(crate) fn file_at(path: &Path) -> Result<File, LogError> {
+    File::create(path).map_err(|error| LogError::new(path, Problem::NotMade(error, "with --out")))
 }
 
 fn report(trouble: &Trouble, problem: Problem) {
@@ -251,10 +226,10 @@ mod tests {
     #[test]
     fn a_full_disk_is_reported_and_nobody_waits_for_it() {
         let file = File::options().write(true).open("/dev/full").unwrap();
-        let mut recorder =
-            Recorder::start("/dev/full".into(), file, &Manifest::default(), false).unwrap();
+        let mut recorder = Recorder::start("/dev/full".into(), file, &Manifest::default()).unwrap();
         (0..100).for_each(|number| recorder.take(burst(number)));
-        let error = recorder.finish().unwrap_err().to_string();
+        recorder.close();
+        let error = recorder.trouble().unwrap().to_string();
         assert!(error.contains("is the disk full?"), "{error}");
     }
 }

@@ -8,10 +8,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{Finding, Tree};
 
 /// The crates that keep to it.
-const CRATES: [&str; 4] = [
+const CRATES: [&str; 5] = [
     "crates/sim",
     "crates/experiment",
     "crates/log",
+    "crates/session",
     "crates/station",
 ];
 

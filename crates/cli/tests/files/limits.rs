@@ -3,7 +3,8 @@
 use crate::support::stderr;
 use crate::{rumbo_in, scenario, status};
 use rumbo_log::{Burst, Manifest, Outcome, Truth};
-use rumbo_station::headless::{Run, record_run};
+use rumbo_session::headless::Run;
+use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
 use std::path::Path;
 

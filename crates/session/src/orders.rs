@@ -9,9 +9,10 @@ use rumbo_log::Choice;
 use rumbo_wire::{Command, Level};
 use serde::Deserialize;
 use std::fmt;
+use std::str::FromStr;
 
 /// Largest speed factor: more than a core can simulate does not help.
-pub(crate) const MAX_SPEED: f64 = 100.0;
+pub const MAX_SPEED: f64 = 100.0;
 /// Longest name of a scenario or world.
 const MAX_NAME: usize = 100;
 /// Longest line typed.
@@ -19,7 +20,7 @@ const MAX_LINE: usize = 200;
 
 /// What the session is to do.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Order {
+pub enum Order {
     /// A command for the robot.
     Robot(Command),
     /// A movement that lasts while the page repeats it, as long as a key is held down.
@@ -50,7 +51,7 @@ pub(crate) enum Order {
 ///
 /// The flag is raised before STOP enters the queue, so a STOP that is not in `waiting` is newer than all that is.
 /// Of several resets only the last one counts: the others would be gone with it, and keep a STOP waiting.
-pub(crate) fn stop_first(mut waiting: Vec<Order>, stop: bool) -> Vec<Order> {
+pub fn stop_first(mut waiting: Vec<Order>, stop: bool) -> Vec<Order> {
     let is_reset = |order: &Order| matches!(order, Order::Reset(_));
     if let Some(last) = waiting.iter().rposition(is_reset) {
         let mut number = 0..;
@@ -70,7 +71,7 @@ pub(crate) fn stop_first(mut waiting: Vec<Order>, stop: bool) -> Vec<Order> {
 
 /// Why a text is no order.
 #[derive(Debug)]
-pub(crate) struct BadOrder(String);
+pub struct BadOrder(String);
 
 impl fmt::Display for BadOrder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -177,97 +178,104 @@ fn text_line(text: String) -> Result<String, BadOrder> {
     }
 }
 
-/// The order in a page's text.
-///
-/// # Errors
-/// [`BadOrder`] with what is wrong; such a page is not ours and its connection is to be closed.
-pub(crate) fn parse(text: &str) -> Result<Order, BadOrder> {
-    let message: Message =
-        serde_json::from_str(text).map_err(|error| BadOrder(error.to_string()))?;
-    let order = match message {
-        Message::Stop {} => Order::Robot(Command::Stop),
-        Message::TakeControl {} => Order::TakeControl,
-        Message::ReleaseControl {} => Order::ReleaseControl,
-        Message::RestartGhost {} => Order::RestartGhost,
-        Message::Arm {} => Order::Robot(Command::Arm),
-        Message::Disarm {} => Order::Robot(Command::Disarm),
-        Message::ClearFault {} => Order::Robot(Command::ClearFault),
-        Message::Mode { mode } => Order::Robot(Command::Mode(
-            ModeId::from_number(mode)
-                .ok_or_else(|| BadOrder(format!("there is no mode {mode}")))?,
-        )),
-        Message::Reference { value } => Order::Robot(Command::Reference(finite("value", value)?)),
-        Message::WheelReference { left, right } => Order::Robot(Command::WheelReference(Wheels {
-            left: finite("left", left)?,
-            right: finite("right", right)?,
-        })),
-        Message::MoveDuty {
-            movement,
-            duty,
-            held,
-        } => move_order(movement, Level::Duty(finite("duty", duty)?), held)?,
-        Message::MoveSpeed {
-            movement,
-            speed_rad_s,
-            held,
-        } => move_order(
-            movement,
-            Level::Speed(finite("speed_rad_s", speed_rad_s)?),
-            held,
-        )?,
-        Message::Goal { x_m, y_m } => Order::Robot(Command::Goal {
-            x_m: finite("x_m", x_m)?,
-            y_m: finite("y_m", y_m)?,
-        }),
-        Message::Lane {} => Order::Robot(Command::Lane),
-        Message::Route {
-            repeat,
-            relative,
-            waypoints,
-        } => route(Command::Route { repeat, relative }, waypoints)?,
-        Message::Waypoint(place) => Order::Robot(waypoint(place)?),
-        Message::Rig { rig } => Order::Robot(rig_command(&rig)?),
-        Message::SetParam { id, value } => Order::Robot(Command::SetParam {
-            id,
-            value: finite("value", value)?,
-        }),
-        Message::ResetParams {} => Order::Robot(Command::ResetParams),
-        Message::SaveParams {} => Order::Robot(Command::SaveParams),
-        Message::ResetPose {} => Order::Robot(Command::ResetPose),
-        Message::Calibrate {} => Order::Calibrate,
-        Message::Type { usart, text } => Order::Type(usart, text_line(text)?),
-        Message::Speed { factor } if (0.0..=MAX_SPEED).contains(&factor) => Order::Speed(factor),
-        Message::Speed { factor } => {
-            return Err(BadOrder(format!(
-                "factor {factor} is not within 0 to {MAX_SPEED}"
-            )));
-        }
-        Message::Seek { t_s } if t_s.is_finite() => Order::Seek(t_s),
-        Message::Seek { .. } => return Err(BadOrder("t_s is too large".into())),
-        Message::Step { frames } => Order::Step(frames),
-        Message::Reset {
-            scenario,
-            world,
-            rig,
-            seed,
-        } => {
-            let names = [Some(&scenario), world.as_ref(), rig.as_ref()];
-            if names
-                .into_iter()
-                .flatten()
-                .any(|name| name.len() > MAX_NAME)
-            {
-                return Err(BadOrder(format!("a name is longer than {MAX_NAME} bytes")));
+impl FromStr for Order {
+    type Err = BadOrder;
+
+    /// The order in a page's text. A page that sends another one is not ours, and its connection is to be closed.
+    fn from_str(text: &str) -> Result<Self, BadOrder> {
+        let message: Message =
+            serde_json::from_str(text).map_err(|error| BadOrder(error.to_string()))?;
+        let order = match message {
+            Message::Stop {} => Order::Robot(Command::Stop),
+            Message::TakeControl {} => Order::TakeControl,
+            Message::ReleaseControl {} => Order::ReleaseControl,
+            Message::RestartGhost {} => Order::RestartGhost,
+            Message::Arm {} => Order::Robot(Command::Arm),
+            Message::Disarm {} => Order::Robot(Command::Disarm),
+            Message::ClearFault {} => Order::Robot(Command::ClearFault),
+            Message::Mode { mode } => Order::Robot(Command::Mode(
+                ModeId::from_number(mode)
+                    .ok_or_else(|| BadOrder(format!("there is no mode {mode}")))?,
+            )),
+            Message::Reference { value } => {
+                Order::Robot(Command::Reference(finite("value", value)?))
             }
-            Order::Reset(Choice {
+            Message::WheelReference { left, right } => {
+                Order::Robot(Command::WheelReference(Wheels {
+                    left: finite("left", left)?,
+                    right: finite("right", right)?,
+                }))
+            }
+            Message::MoveDuty {
+                movement,
+                duty,
+                held,
+            } => move_order(movement, Level::Duty(finite("duty", duty)?), held)?,
+            Message::MoveSpeed {
+                movement,
+                speed_rad_s,
+                held,
+            } => move_order(
+                movement,
+                Level::Speed(finite("speed_rad_s", speed_rad_s)?),
+                held,
+            )?,
+            Message::Goal { x_m, y_m } => Order::Robot(Command::Goal {
+                x_m: finite("x_m", x_m)?,
+                y_m: finite("y_m", y_m)?,
+            }),
+            Message::Lane {} => Order::Robot(Command::Lane),
+            Message::Route {
+                repeat,
+                relative,
+                waypoints,
+            } => route(Command::Route { repeat, relative }, waypoints)?,
+            Message::Waypoint(place) => Order::Robot(waypoint(place)?),
+            Message::Rig { rig } => Order::Robot(rig_command(&rig)?),
+            Message::SetParam { id, value } => Order::Robot(Command::SetParam {
+                id,
+                value: finite("value", value)?,
+            }),
+            Message::ResetParams {} => Order::Robot(Command::ResetParams),
+            Message::SaveParams {} => Order::Robot(Command::SaveParams),
+            Message::ResetPose {} => Order::Robot(Command::ResetPose),
+            Message::Calibrate {} => Order::Calibrate,
+            Message::Type { usart, text } => Order::Type(usart, text_line(text)?),
+            Message::Speed { factor } if (0.0..=MAX_SPEED).contains(&factor) => {
+                Order::Speed(factor)
+            }
+            Message::Speed { factor } => {
+                return Err(BadOrder(format!(
+                    "factor {factor} is not within 0 to {MAX_SPEED}"
+                )));
+            }
+            Message::Seek { t_s } if t_s.is_finite() => Order::Seek(t_s),
+            Message::Seek { .. } => return Err(BadOrder("t_s is too large".into())),
+            Message::Step { frames } => Order::Step(frames),
+            Message::Reset {
                 scenario,
                 world,
                 rig,
                 seed,
-            })
-        }
-    };
-    Ok(order)
+            } => {
+                let names = [Some(&scenario), world.as_ref(), rig.as_ref()];
+                if names
+                    .into_iter()
+                    .flatten()
+                    .any(|name| name.len() > MAX_NAME)
+                {
+                    return Err(BadOrder(format!("a name is longer than {MAX_NAME} bytes")));
+                }
+                Order::Reset(Choice {
+                    scenario,
+                    world,
+                    rig,
+                    seed,
+                })
+            }
+        };
+        Ok(order)
+    }
 }
 
 /// A route in the commands that make it.
@@ -321,19 +329,6 @@ fn move_order(movement: u8, level: Level, held: bool) -> Result<Order, BadOrder>
 }
 
 /// A number too large for the robot's 32 bits has become infinite.
-/// The commands for the robot in a page's text, for the fuzz targets.
-///
-/// # Errors
-/// Why it is no order.
-#[cfg(feature = "fuzzing")]
-pub fn commands_of(text: &str) -> Result<Vec<Command>, String> {
-    match parse(text).map_err(|error| error.to_string())? {
-        Order::Robot(command) | Order::Hold(command) => Ok(vec![command]),
-        Order::Route(commands) => Ok(commands),
-        _ => Ok(Vec::new()),
-    }
-}
-
 fn finite(field: &str, value: f32) -> Result<f32, BadOrder> {
     if value.is_finite() {
         Ok(value)
@@ -345,6 +340,10 @@ fn finite(field: &str, value: f32) -> Result<f32, BadOrder> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn parse(text: &str) -> Result<Order, BadOrder> {
+        text.parse()
+    }
 
     #[test]
     fn each_order_of_the_page_is_understood() {

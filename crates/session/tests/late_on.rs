@@ -4,8 +4,8 @@
 
 mod support;
 
-use rumbo_station::Target;
-use rumbo_station::client::{Heard, KnownTable, RobotClient};
+use rumbo_session::Target;
+use rumbo_session::client::{Heard, KnownTable, RobotClient};
 use rumbo_wire::Command;
 use support::Toy;
 

@@ -4,10 +4,10 @@
 
 mod support;
 
-use rumbo_station::Target;
-use rumbo_station::client::{Heard, KnownTable, RobotClient};
-use rumbo_station::fault::{Faults, Faulty};
-use rumbo_station::oddity::Oddity;
+use rumbo_session::Target;
+use rumbo_session::client::{Heard, KnownTable, RobotClient};
+use rumbo_session::fault::{Faults, Faulty};
+use rumbo_session::oddity::Oddity;
 use rumbo_wire::{
     Ack, Command, Decoder, FromRobot, Hello, Message, PROTOCOL_VERSION, Received, ResetCause,
     RobotTime, Status, Telemetry, ToRobot,

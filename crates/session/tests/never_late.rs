@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use rumbo_control::mode::{Level, ModeId, Movement};
 use rumbo_control::{Inputs, Micros, TICK_US};
 use rumbo_robot::{Config, Robot};
-use rumbo_station::client::{Heard, KnownTable, RobotClient};
+use rumbo_session::client::{Heard, KnownTable, RobotClient};
 use rumbo_wire::{Command, Decoder, Message, Received, ResetCause, ToRobot};
 
 /// Oldest ON that may arm \[us\].

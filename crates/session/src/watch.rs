@@ -2,6 +2,8 @@
 
 use crate::client::LinkFigures;
 
+/// Speed of the robot's Bluetooth module \[baud\].
+pub const DEFAULT_BAUD: u32 = 9_600;
 /// The same thing is not said again within this time \[us\].
 const AGAIN_US: u64 = 30_000_000;
 /// Bytes that make no sense are told of after this many.
@@ -29,7 +31,7 @@ pub fn check_baud(baud: u32) -> Result<Option<String>, String> {
             "{baud} baud carry {bytes_s} bytes/s, too few for the heartbeats ({HEARTBEAT_BYTES_S} bytes/s) and answers that keep the robot going; \
              it needs at least {}, its own speed is {}",
             20 * HEARTBEAT_BYTES_S,
-            crate::port::DEFAULT_BAUD
+            DEFAULT_BAUD
         ));
     }
     Ok((bytes_s < TELEMETRY_BYTES_S).then(|| {

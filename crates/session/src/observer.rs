@@ -1,12 +1,12 @@
-//! Keeps the board up to date with what was heard: samples, events in words, the status, the parameters' values.
+//! Makes events of what was heard: samples, what happened in words, the status, the parameters' values.
 
 pub(crate) mod describe;
 
-use crate::board::Board;
 use crate::client::{Heard, RobotClient};
 use crate::commands::{Fate, Outcome};
 use crate::console::{ConsoleText, LINK_CONSOLE, readable};
 use crate::errand;
+use crate::event::Event;
 use crate::origin::Origin;
 use crate::target::Standing;
 use crate::terminal;
@@ -20,14 +20,14 @@ use rumbo_log::{
     Sample, Scene, State, Truth, parameters,
 };
 use rumbo_wire::{Command, EventKind, Hello, Recalled, Status, Telemetry};
-use std::sync::Arc;
 
 /// Restarts are reported at most this often \[ms\].
 const RESTARTS_MS: i64 = 2_000;
 
 /// What is known of the robot.
+#[derive(Debug)]
 pub(crate) struct Observer {
-    board: Arc<Board>,
+    events: Vec<Event>,
     status: Status,
     servo_rad: f32,
     pose: Pose,
@@ -51,9 +51,9 @@ pub(crate) struct Observer {
 
 impl Observer {
     /// An observer who knows nothing yet.
-    pub(crate) fn new(board: Arc<Board>) -> Self {
-        let observer = Self {
-            board,
+    pub(crate) fn new() -> Self {
+        let mut observer = Self {
+            events: Vec::new(),
             status: Status::default(),
             servo_rad: 0.0,
             pose: Pose::default(),
@@ -69,14 +69,17 @@ impl Observer {
             restart_ms: None,
             urgent: true,
         };
-        observer.board.set_parameters(&observer.parameters);
+        observer.show_parameters();
         observer
     }
 
     /// The simulation started again: what was known is over.
     pub(crate) fn start_run(&mut self) {
-        self.board.start_run();
-        *self = Self::new(Arc::clone(&self.board));
+        let mut events = std::mem::take(&mut self.events);
+        events.push(Event::Run);
+        let fresh = Self::new();
+        events.extend(fresh.events);
+        *self = Self { events, ..fresh };
     }
 
     /// Notes what is the case at `now_ms`.
@@ -126,7 +129,7 @@ impl Observer {
     pub(crate) fn parameter_pending(&mut self, id: u8) {
         if let Some(parameter) = self.parameters.get_mut(usize::from(id)) {
             parameter.pending = true;
-            self.board.set_parameters(&self.parameters);
+            self.show_parameters();
         }
     }
 
@@ -136,7 +139,7 @@ impl Observer {
         for (state, id) in self.parameters.iter_mut().zip(ParamId::ALL) {
             state.value = Some(parameters.get(id));
         }
-        self.board.set_parameters(&self.parameters);
+        self.show_parameters();
     }
 
     /// The robot has acknowledged this value of a parameter.
@@ -149,17 +152,17 @@ impl Observer {
             // What the robot accepted is in the range of the same table.
             let _ = self.believed.set(known, value);
         }
-        self.board.set_parameters(&self.parameters);
+        self.show_parameters();
     }
 
     /// Notes an event.
     pub(crate) fn note(&mut self, t_ms: i64, level: Level, text: String) {
         self.urgent = true;
-        self.board.push_event(LoggedEvent {
+        self.emit(Entry::Event(LoggedEvent {
             t_s: t_ms as f64 / 1e3,
             level,
             text,
-        });
+        }));
     }
 
     /// An order was given: what became of the one before is of no interest any more.
@@ -179,16 +182,14 @@ impl Observer {
     }
 
     /// Notes raw bytes of the link.
-    pub(crate) fn link(&self, burst: Burst) {
-        self.board.link(burst);
+    pub(crate) fn link(&mut self, burst: Burst) {
+        self.emit(Entry::Burst(burst));
     }
 
-    /// Puts what the USARTs of an emulated chip said on the board, and records it.
-    pub(crate) fn consoles(&self, t_us: u64, said: Vec<(u8, Vec<u8>)>) {
+    /// What the USARTs of an emulated chip said.
+    pub(crate) fn consoles(&mut self, t_us: u64, said: Vec<(u8, Vec<u8>)>) {
         for (usart, bytes) in said {
-            let text = readable(&bytes);
-            self.board.push_console(ConsoleText { usart, text });
-            self.board.take(Entry::Said(Said {
+            self.emit(Entry::Said(Said {
                 t_us,
                 usart,
                 to_chip: false,
@@ -198,8 +199,8 @@ impl Observer {
     }
 
     /// Records a line that a person typed to a USART.
-    pub(crate) fn typed(&self, t_us: u64, usart: u8, line: &str) {
-        self.board.take(Entry::Said(Said {
+    pub(crate) fn typed(&mut self, t_us: u64, usart: u8, line: &str) {
+        self.emit(Entry::Said(Said {
             t_us,
             usart,
             to_chip: true,
@@ -207,35 +208,49 @@ impl Observer {
         }));
     }
 
-    /// Puts the text of a robot on the board, as it came.
-    pub(crate) fn said_in_text(&self, bytes: &[u8]) {
+    /// The text of a robot, as it came.
+    pub(crate) fn said_in_text(&mut self, bytes: &[u8]) {
         let text = readable(bytes);
         if !text.is_empty() {
             let usart = LINK_CONSOLE;
-            self.board.push_console(ConsoleText { usart, text });
+            self.events
+                .push(Event::Console(ConsoleText { usart, text }));
         }
     }
 
-    /// Puts the samples on the board; whether the state is to follow at once.
+    /// Gives out the samples; whether the state is to follow at once.
     pub(crate) fn publish(&mut self, now_ms: i64) -> bool {
-        if !self.samples.is_empty() {
-            self.board.heard(now_ms);
+        let samples = std::mem::take(&mut self.samples);
+        if !samples.is_empty() {
+            self.events.push(Event::Heard(now_ms));
+            self.emit(Entry::Rows(samples));
         }
-        self.board.push_samples(&self.samples);
-        self.samples.clear();
         std::mem::take(&mut self.urgent)
     }
 
-    /// Puts the scene on the board; the robot's pose begins where it starts.
+    /// What there is to publish since the last call.
+    pub(crate) fn take_events(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.events)
+    }
+
+    fn emit(&mut self, entry: Entry) {
+        self.events.push(entry.into());
+    }
+
+    fn show_parameters(&mut self) {
+        self.emit(Entry::Parameters(self.parameters.clone()));
+    }
+
+    /// Shows the scene; the robot's pose begins where it starts.
     pub(crate) fn show_scene(&mut self, scene: Option<Scene>) {
         let start = scene.as_ref().map(|scene| scene.start);
         self.origin = Origin::new(start.unwrap_or_default());
-        self.board.set_scene(scene);
+        self.emit(Entry::Scene(scene.map(Box::new)));
     }
 
-    /// Puts the state on the board.
-    pub(crate) fn show_state(&self, state: State) {
-        self.board.set_state(state);
+    /// Shows the state.
+    pub(crate) fn show_state(&mut self, state: State) {
+        self.emit(Entry::State(Box::new(state)));
     }
 
     /// Takes in what was heard up to `now_ms`.
@@ -261,7 +276,7 @@ impl Observer {
                 Heard::Restarted(hello) => {
                     self.parameters = unread_parameters();
                     self.believed = Params::default();
-                    self.board.set_parameters(&self.parameters);
+                    self.show_parameters();
                     self.restarted(hello, now_ms);
                 }
                 Heard::OtherProtocol(hello) => {
@@ -383,7 +398,7 @@ impl Observer {
                     };
                     match fate {
                         Fate::Applied(value) => self.know_parameter(id, value),
-                        _ => self.board.set_parameters(&self.parameters),
+                        _ => self.show_parameters(),
                     }
                 }
             }

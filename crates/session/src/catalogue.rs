@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// A mode to choose: its description, as the page gets it.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct ModeEntry {
+pub struct ModeEntry {
     id: u8,
     name: &'static str,
     about: &'static str,

@@ -3,8 +3,9 @@
 //! A [`Faulty`] target stands between a session and its robot, for tests and experiments; a [`Line`] is one direction of it. Which bytes are hit
 //! follows from the seed alone. Order is kept, as a serial line keeps it.
 
-use crate::target::{LinkNews, Simulation, Target};
-use rumbo_log::Manifest;
+use crate::target::{Abilities, LinkNews, Target};
+use rumbo_log::{Choice, Manifest, Scene, Truth};
+use rumbo_wire::Command;
 use std::collections::VecDeque;
 use std::ops::Range;
 
@@ -171,8 +172,24 @@ impl<T: Target> Target for Faulty<T> {
         self.target.news()
     }
 
-    fn simulation(&mut self) -> Option<&mut dyn Simulation> {
-        self.target.simulation()
+    fn abilities(&self) -> Abilities {
+        self.target.abilities()
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        self.target.truth()
+    }
+
+    fn scene(&self) -> Option<Scene> {
+        self.target.scene()
+    }
+
+    fn first_commands(&self) -> Vec<Command> {
+        self.target.first_commands()
+    }
+
+    fn reset(&mut self, choice: &Choice) -> Result<(), String> {
+        self.target.reset(choice)
     }
 }
 

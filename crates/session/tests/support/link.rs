@@ -2,10 +2,10 @@
 
 use super::support::Toy;
 use rumbo_control::{AgedRange, Pose, Range};
-use rumbo_station::Target;
-use rumbo_station::client::{Heard, KnownTable, RobotClient};
-use rumbo_station::commands::Fate;
-use rumbo_station::fault::{Faults, Faulty, Line};
+use rumbo_session::Target;
+use rumbo_session::client::{Heard, KnownTable, RobotClient};
+use rumbo_session::commands::Fate;
+use rumbo_session::fault::{Faults, Faulty, Line};
 use rumbo_wire::{Body, Command, Decoder, FromRobot, Message, Received, Telemetry};
 use std::collections::VecDeque;
 use std::fmt;

@@ -4,9 +4,9 @@
 mod support;
 
 use proptest::prelude::*;
-use rumbo_station::Target;
-use rumbo_station::client::{Heard, KnownTable, RobotClient};
-use rumbo_station::commands::Fate;
+use rumbo_session::Target;
+use rumbo_session::client::{Heard, KnownTable, RobotClient};
+use rumbo_session::commands::Fate;
 use rumbo_wire::Command;
 use support::Toy;
 

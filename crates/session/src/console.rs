@@ -3,13 +3,15 @@
 use serde::Serialize;
 
 /// In place of a USART's number: the link to a real robot that speaks text.
-pub(crate) const LINK_CONSOLE: u8 = 255;
+pub const LINK_CONSOLE: u8 = 255;
 
 /// What a USART of an emulated chip said, or a robot that speaks text.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct ConsoleText {
-    pub(crate) usart: u8,
-    pub(crate) text: String,
+pub struct ConsoleText {
+    /// Its number, or [`LINK_CONSOLE`].
+    pub usart: u8,
+    /// What.
+    pub text: String,
 }
 
 /// Bytes as text: what cannot be printed is shown in hexadecimal.
