@@ -6,10 +6,9 @@
 use libfuzzer_sys::fuzz_target;
 use mcap::WriteOptions;
 use mcap::records::{MessageHeader, Metadata};
-use rumbo_station::log::{Log, Summary};
+use rumbo_log::{Log, Summary};
 use std::collections::BTreeMap;
-use std::io::{Cursor, Write};
-use std::path::Path;
+use std::io::Cursor;
 
 const TOPICS: [&str; 9] = [
     "/telemetry",
@@ -59,8 +58,8 @@ fn log_of(text: &[u8]) -> mcap::McapResult<Vec<u8>> {
     Ok(log.into_inner().into_inner())
 }
 
-fn read(path: &Path) {
-    match Log::read(path) {
+fn read(bytes: &[u8]) {
+    match Log::read(Cursor::new(bytes)) {
         Ok(log) => {
             assert!(!log.duration_s().is_nan());
             let counted = log.sent().count() + log.events().count() + log.parameters().len();
@@ -71,15 +70,11 @@ fn read(path: &Path) {
             assert!(!said.is_empty() && !said.contains('\n'), "{said}");
         }
     }
-    let _ = Summary::read(path);
-    let _ = Log::read_signals(path);
+    let _ = Summary::read(Cursor::new(bytes));
+    let _ = Log::read_signals(Cursor::new(bytes));
 }
 
 fuzz_target!(|bytes: &[u8]| {
-    let mut file = tempfile::NamedTempFile::new().expect("room for a file");
-    file.write_all(bytes).expect("room for a file");
-    read(file.path());
-    let log = log_of(bytes).expect("messages in memory");
-    std::fs::write(file.path(), log).expect("room for a file");
-    read(file.path());
+    read(bytes);
+    read(&log_of(bytes).expect("messages in memory"));
 });

@@ -5,9 +5,9 @@
 use libfuzzer_sys::fuzz_target;
 use rumbo_control::{Inputs, Micros};
 use rumbo_robot::{Config, Robot};
-use rumbo_station::client::{KnownTable, RobotClient};
-use rumbo_station::commands_of;
-use rumbo_wire::ResetCause;
+use rumbo_session::client::{KnownTable, RobotClient};
+use rumbo_session::{BadOrder, Order};
+use rumbo_wire::{Command, ResetCause};
 
 /// Orders of one run.
 const ORDERS: usize = 64;
@@ -38,6 +38,15 @@ impl Bench {
     }
 }
 
+/// The commands for the robot in a page's text.
+fn commands(text: &str) -> Result<Vec<Command>, BadOrder> {
+    Ok(match text.parse()? {
+        Order::Robot(command) | Order::Hold(command) => vec![command],
+        Order::Route(commands) => commands,
+        _ => Vec::new(),
+    })
+}
+
 fuzz_target!(|text: &str| {
     let mut bench = Bench {
         client: RobotClient::new(1, true, KnownTable::OURS),
@@ -50,14 +59,17 @@ fuzz_target!(|text: &str| {
     };
     (0..TICKS).for_each(|_| bench.tick());
     for line in text.lines().take(ORDERS) {
-        match commands_of(line) {
+        match commands(line) {
             Ok(commands) => {
                 for command in commands {
                     // It may be full.
                     let _ = bench.client.submit(command, bench.now_us.into());
                 }
             }
-            Err(why) => assert!(!why.is_empty() && !why.contains('\n'), "{why}"),
+            Err(why) => {
+                let why = why.to_string();
+                assert!(!why.is_empty() && !why.contains('\n'), "{why}");
+            }
         }
         (0..TICKS).for_each(|_| bench.tick());
     }

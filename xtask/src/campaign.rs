@@ -39,7 +39,7 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if only.is_empty() || only.iter().any(|name| name == LINK) {
         met &= program(
             project,
-            ["rumbo-station", "--example", "link_campaign"],
+            ["rumbo-session", "--example", "link_campaign"],
             &[],
         )?;
     }

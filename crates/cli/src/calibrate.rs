@@ -8,8 +8,8 @@ use crate::run_log::{Kept, Source};
 use rumbo_experiment::calibrate::{self, Calibration, Row};
 use rumbo_experiment::calibration_run;
 use rumbo_experiment::files::{Library, Overrides, RobotFile, Setup, bounded};
-use rumbo_station::log::Kind;
-use rumbo_station::{Extras, Finding, Findings, GuestLink};
+use rumbo_log::{Finding, Findings, Kind};
+use rumbo_station::{Extras, GuestLink};
 use serde::Serialize;
 use std::path::Path;
 

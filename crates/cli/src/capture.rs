@@ -8,8 +8,8 @@ use crate::failure::Failure;
 use crate::left_out::LeftOut;
 use crate::output;
 use crate::place::Guard;
+use rumbo_log::{Burst, Kind, Manifest};
 use rumbo_station::headless::record_text;
-use rumbo_station::log::{Burst, Kind, Manifest};
 use rumbo_wire::text::{Row, TextCommand, TextError};
 use serde_json::json;
 use std::path::Path;
@@ -69,7 +69,7 @@ pub(crate) fn import(
         ..Manifest::default()
     };
     guard.make_equal(out, |place| {
-        record_text(place, &manifest, &link).map_err(|error| Failure::Input(error.of(out)))
+        record_text(place, &manifest, &link).map_err(|error| Failure::input(error.of(out)))
     })?;
     let rows = link.iter().filter(|burst| !burst.to_robot).count();
     let (commands, duration_s) = (

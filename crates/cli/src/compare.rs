@@ -8,8 +8,8 @@ use crate::mark::Stamp;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
 use rumbo_identify::chart;
-use rumbo_station::Row;
-use rumbo_station::log::Log;
+use rumbo_log::{Log, Row};
+use rumbo_station::log_file;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,7 +23,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
         Guard::new(&args.logs, args.overwrite.force).check(path, &stamp.mark())?;
     }
     let logs = args.logs.iter().map(|path| {
-        let log = Log::read(path).map_err(Failure::input)?;
+        let log = log_file::read(path).map_err(Failure::input)?;
         warn_if_cut(path, &log)?;
         Ok(log)
     });

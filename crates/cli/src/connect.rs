@@ -7,13 +7,14 @@ use crate::failure::Failure;
 use crate::ghost::Haunted;
 use crate::logs;
 use crate::output;
+use rumbo_session::Target;
 use rumbo_station::port::{self, Port};
-use rumbo_station::{Extras, LabConfig, Target};
+use rumbo_station::{Extras, LabConfig};
 
 /// Opens the port and serves the dashboard.
 pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
     if !args.address.starts_with(port::TCP) {
-        let warning = rumbo_station::check_baud(args.baud)
+        let warning = rumbo_session::check_baud(args.baud)
             .map_err(|error| Failure::Input(format!("--baud: {error}")))?;
         if let Some(warning) = warning {
             output::note(&warning);

@@ -7,8 +7,8 @@ use crate::mark::{Mark, Stamp};
 use crate::output;
 use crate::place::{self, Guard};
 use rumbo_identify::chart;
-use rumbo_station::Row;
-use rumbo_station::log::{Kind, Log, Manifest};
+use rumbo_log::{Kind, Log, Manifest, Row};
+use rumbo_station::log_file;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -30,7 +30,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
             guard.check(&path(ending), &mark)?;
         }
     }
-    let log = Log::read(&args.log).map_err(Failure::input)?;
+    let log = log_file::read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log)?;
     if !folder.as_os_str().is_empty() {
         place::folder(&folder)?;

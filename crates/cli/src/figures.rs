@@ -1,8 +1,7 @@
 //! Figures of logs: the signals of one, or those of several overlaid.
 
 use rumbo_identify::chart::{Chart, Curve, Legend, PALETTE, Points, map, over_time};
-use rumbo_station::Row;
-use rumbo_station::log::Log;
+use rumbo_log::{Log, Row};
 use std::f64::consts::{PI, TAU};
 
 /// Size of one chart \[px\].

@@ -6,8 +6,8 @@ use crate::failure::Failure;
 use crate::lab::SimulatedRobot;
 use rumbo_control::Fault;
 use rumbo_experiment::files::Overrides;
-use rumbo_station::log::{Log, Manifest};
-use rumbo_station::{Choice, Ghost, LinkNews, MapPose, Scene, Simulation, Standing, Target};
+use rumbo_log::{Choice, Log, Manifest, MapPose, Scene};
+use rumbo_session::{Abilities, Ghost, LinkNews, Standing, Target};
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
 use std::collections::VecDeque;
 use std::path::Path;
@@ -34,8 +34,12 @@ fn simulated(scenario: &str, seed: u64) -> Result<SimulatedRobot, Failure> {
 fn surroundings(ghost: &SimulatedRobot) -> Scene {
     Scene {
         of_ghost: true,
-        ..ghost.scene()
+        ..ghost.scene().unwrap_or_default()
     }
+}
+
+fn pose(ghost: &SimulatedRobot) -> MapPose {
+    ghost.truth().unwrap_or_default().pose
 }
 
 /// A robot on a port with its ghost.
@@ -102,6 +106,10 @@ impl<T: Target> Target for Haunted<T> {
         self.robot.baud()
     }
 
+    fn abilities(&self) -> Abilities {
+        self.robot.abilities()
+    }
+
     fn manifest(&self) -> Manifest {
         self.robot.manifest()
     }
@@ -113,7 +121,7 @@ impl<T: Target> Target for Haunted<T> {
     }
 
     fn ghost(&self) -> Option<MapPose> {
-        Some(self.ghost.truth().pose)
+        Some(pose(&self.ghost))
     }
 
     /// Also clears the ghost's fault, since the robot may have none to clear. ON restarts it.
@@ -129,7 +137,7 @@ impl<T: Target> Target for Haunted<T> {
         self.ghost.send(clear.frame(0).bytes())
     }
 
-    fn surroundings(&mut self) -> Option<Scene> {
+    fn scene(&self) -> Option<Scene> {
         Some(surroundings(&self.ghost))
     }
 }
@@ -173,7 +181,7 @@ impl Ghost for Recorded {
         follow(&mut self.ghost, until_us, &mut self.received)?;
         // Beside a log its messages are not used.
         self.received.clear();
-        Ok(self.ghost.truth().pose)
+        Ok(pose(&self.ghost))
     }
 
     fn place(&mut self, standing: Standing) {

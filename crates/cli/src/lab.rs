@@ -12,12 +12,14 @@ use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
 use rumbo_experiment::run;
+use rumbo_log::{Choice, Kind, Manifest, MapPose, Scene, Truth};
+use rumbo_session::{Abilities, LinkNews, Standing, Target};
 use rumbo_sim::debugging::Debugging;
 use rumbo_sim::mega::firmware::Language;
 use rumbo_sim::{Config, Sim};
-use rumbo_station::log::{Kind, Manifest};
-use rumbo_station::{Choice, LabConfig, MapPose, Scene, Simulation, Standing, Target, Truth};
+use rumbo_station::LabConfig;
 use rumbo_wire::Command;
+use std::collections::VecDeque;
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.
 pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
@@ -93,6 +95,8 @@ pub(crate) struct SimulatedRobot {
     mode: ModeId,
     /// The emulated program's end has been reported.
     ended: bool,
+    /// What has happened to the program and is not reported yet.
+    news: VecDeque<LinkNews>,
     scene: Scene,
     first_commands: Vec<Command>,
 }
@@ -117,6 +121,7 @@ impl SimulatedRobot {
             manifest,
             mode,
             ended: false,
+            news: VecDeque::new(),
             scene,
             first_commands,
         })
@@ -254,16 +259,23 @@ impl Target for SimulatedRobot {
         self.manifest.clone()
     }
 
-    fn simulation(&mut self) -> Option<&mut dyn Simulation> {
-        Some(self)
+    fn abilities(&self) -> Abilities {
+        let firmware = self.sim.mega().map(|mega| mega.firmware());
+        let text = firmware.is_some_and(|firmware| firmware.language() == Language::Text);
+        Abilities {
+            pace: true,
+            reset: true,
+            clock: true,
+            port: false,
+            typing: true,
+            text: text.then_some(self.mode),
+        }
     }
-}
 
-impl Simulation for SimulatedRobot {
-    fn truth(&self) -> Truth {
+    fn truth(&self) -> Option<Truth> {
         let truth = self.sim.truth();
         let [left, right] = truth.wheel_rad_s;
-        Truth {
+        Some(Truth {
             pose: MapPose {
                 x_m: truth.pose.x_m,
                 y_m: truth.pose.y_m,
@@ -274,16 +286,11 @@ impl Simulation for SimulatedRobot {
             servo_rad: truth.servo_rad,
             contact: truth.touching,
             battery_v: truth.battery_v,
-        }
+        })
     }
 
-    fn scene(&self) -> Scene {
-        self.scene.clone()
-    }
-
-    fn speaks_text(&self) -> Option<ModeId> {
-        let firmware = self.sim.mega()?.firmware();
-        (firmware.language() == Language::Text).then_some(self.mode)
+    fn scene(&self) -> Option<Scene> {
+        Some(self.scene.clone())
     }
 
     fn consoles(&mut self) -> Vec<(u8, Vec<u8>)> {
@@ -294,17 +301,18 @@ impl Simulation for SimulatedRobot {
         said.filter(|(_, bytes)| !bytes.is_empty()).collect()
     }
 
-    fn ended(&mut self) -> Option<String> {
-        let verdict = self.sim.verdict().filter(|_| !self.ended)?;
-        self.ended = true;
-        Some(verdict)
-    }
-
-    fn news(&mut self) -> Vec<String> {
-        self.debugging
-            .as_mut()
-            .map(Debugging::take_news)
-            .unwrap_or_default()
+    fn news(&mut self) -> Option<LinkNews> {
+        if let Some(debugging) = &mut self.debugging {
+            let news = debugging.take_news().into_iter();
+            self.news.extend(news.map(LinkNews::Held));
+        }
+        if !self.ended
+            && let Some(verdict) = self.sim.verdict()
+        {
+            self.ended = true;
+            self.news.push_back(LinkNews::Ended(verdict));
+        }
+        self.news.pop_front()
     }
 
     fn type_in(&mut self, usart: u8, line: &str) -> Result<(), String> {

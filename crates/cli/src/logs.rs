@@ -4,7 +4,7 @@ use crate::args::PruneArgs;
 use crate::failure::Failure;
 use crate::output::{self, figure, shown};
 use crate::place;
-use rumbo_station::log::{Recording, Summary};
+use rumbo_station::{Recording, log_file};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -83,7 +83,7 @@ pub(crate) fn prune(args: &PruneArgs) -> Result<(), Failure> {
         // By the last write: a log being recorded is always recent.
         let age = about.modified().ok().and_then(|time| time.elapsed().ok());
         let is_old = about.is_file() && age.is_some_and(|age| age > days);
-        if !is_old || Summary::read(&path).map_or(true, |log| log.manifest.is_none()) {
+        if !is_old || log_file::summary(&path).map_or(true, |log| log.manifest.is_none()) {
             continue;
         }
         if !args.dry_run {
@@ -107,7 +107,7 @@ fn megabytes(bytes: u64) -> String {
 
 fn entry(path: &Path) -> Value {
     let bytes = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    match Summary::read(path) {
+    match log_file::summary(path) {
         Ok(log) => {
             let manifest = log.manifest.unwrap_or_default();
             json!({ "name": shown(path), "bytes": bytes, "duration_s": log.duration_s, "started": manifest.started,

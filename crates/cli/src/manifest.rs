@@ -5,7 +5,7 @@ use crate::mark::crc32;
 use rumbo_experiment::MODEL;
 use rumbo_experiment::files::firmware;
 use rumbo_experiment::files::{Kind as File, Library, NativeProgram, Overrides, Setup, TimedText};
-use rumbo_station::log::{Kind, Manifest};
+use rumbo_log::{Kind, Manifest};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 

@@ -9,7 +9,8 @@
 //! | PNG | the same as a text chunk |
 //! | profile | nothing but chains of functions with their cycles |
 
-use rumbo_station::log::{Kind, Summary};
+use rumbo_log::Kind;
+use rumbo_station::log_file;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -41,7 +42,7 @@ impl Mark {
     /// Whether a file carries it.
     pub(crate) fn is_on(&self, path: &Path) -> bool {
         match self {
-            Self::Log { scenario, seed } => Summary::read(path)
+            Self::Log { scenario, seed } => log_file::summary(path)
                 .ok()
                 .and_then(|log| log.manifest)
                 .is_some_and(|log| {

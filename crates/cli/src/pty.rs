@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::output;
-use rumbo_station::Target;
+use rumbo_session::Target;
 use rumbo_station::port::Pty;
 use std::time::Instant;
 

@@ -5,9 +5,9 @@
 
 use rumbo_control::mode::{Description, ModeId, ReferenceKind, Takes};
 use rumbo_experiment::files::bounded::{LONGEST_RECORDING, read_at_most};
+use rumbo_log::{Kind, Row};
 use rumbo_report::real::{FromLog, NotShown};
-use rumbo_station::Row;
-use rumbo_station::log::{Kind, Log};
+use rumbo_station::log_file;
 use rumbo_wire::text::RowKind;
 use std::f64::consts::PI;
 use std::io;
@@ -30,7 +30,7 @@ pub(crate) fn from_log(path: &Path) -> Result<FromLog, NotShown> {
         let csv = String::from_utf8_lossy(&csv).into_owned();
         return Ok(FromLog { csv, ours: false });
     }
-    let log = Log::read_signals(path).map_err(|_| NotShown::NoLog)?;
+    let log = log_file::read_signals(path).map_err(|_| NotShown::NoLog)?;
     let manifest = log.manifest.as_ref().ok_or(NotShown::NoLog)?;
     if manifest.kind != Kind::Robot {
         return Err(NotShown::Simulated);

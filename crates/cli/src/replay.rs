@@ -5,18 +5,18 @@ use crate::browser;
 use crate::export::warn_if_cut;
 use crate::failure::Failure;
 use crate::ghost;
-use rumbo_station::log::Log;
+use rumbo_station::log_file;
 
 /// Serves the dashboard with the log.
 pub(crate) fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     let read = match args.ghost {
-        Some(_) => Log::read,
-        None => Log::read_signals,
+        Some(_) => log_file::read,
+        None => log_file::read_signals,
     };
     let mut log = read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log)?;
     if log.speaks_text() {
-        log = Log::read(&args.log).map_err(Failure::input)?;
+        log = log_file::read(&args.log).map_err(Failure::input)?;
     }
     let ghost = match &args.ghost {
         Some(scenario) => Some(ghost::add_to(&mut log, &args.log, scenario.as_deref())?),

@@ -14,8 +14,9 @@ use rumbo_control::params::SCHEMA;
 use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_experiment::{MODEL, calibration_run};
+use rumbo_log::{Burst, Kind, Log, Manifest, Said, Sent};
 use rumbo_sim::{Config, Sim};
-use rumbo_station::log::{Burst, Kind, Log, Manifest, Said, Sent};
+use rumbo_station::log_file;
 use rumbo_wire::{Decoder, FromRobot, Message, PROTOCOL_VERSION, Received};
 use serde_json::json;
 
@@ -99,7 +100,7 @@ enum Verdict {
 
 /// Runs the log's run again and returns whether it is the same.
 pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
-    let log = Log::read(&args.log).map_err(Failure::input)?;
+    let log = log_file::read(&args.log).map_err(Failure::input)?;
     let shown = args.log.display();
     let Some(recorded) = &log.manifest else {
         return Err(Failure::Input(format!(
@@ -305,7 +306,7 @@ impl Recorded for Said {
     }
 
     fn words(&self) -> String {
-        let text = rumbo_station::readable(&self.bytes);
+        let text = rumbo_session::readable(&self.bytes);
         format!("USART{} `{}`", self.usart, text.replace('\n', "\\n"))
     }
 }

@@ -7,8 +7,8 @@ use crate::place::{self, Guard};
 use crate::run_log::Source;
 use rumbo_experiment::files::{ScenarioFile, Setup};
 use rumbo_experiment::run::RunResult;
+use rumbo_session::readable;
 use rumbo_sim::trace::Trace;
-use rumbo_station::readable;
 use std::path::{Path, PathBuf};
 
 /// USARTs of the emulated chip.

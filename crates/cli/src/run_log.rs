@@ -12,10 +12,10 @@ use crate::scene::scene;
 use rumbo_control::Wheels;
 use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_experiment::run::RunResult;
+use rumbo_log::{Burst, Choice, Kind, Manifest, MapPose, Outcome, Said, Truth};
+use rumbo_session::headless::Run;
 use rumbo_sim::trace::{SAMPLE_US, Sample, Trace};
-use rumbo_station::headless::{Run, record_run, record_run_in};
-use rumbo_station::log::{Burst, Kind, Manifest, Outcome, Said};
-use rumbo_station::{Choice, MapPose, Truth};
+use rumbo_station::headless::{record_run, record_run_in};
 use rumbo_wire::FromRobot;
 use std::path::{Path, PathBuf};
 
@@ -80,7 +80,7 @@ impl Source<'_> {
     ) -> Result<(), Failure> {
         self.hand_over(setup, result, |manifest, run| {
             place::make(path, |place| {
-                record_run(place, manifest, run).map_err(|error| Failure::Input(error.of(path)))
+                record_run(place, manifest, run).map_err(|error| Failure::input(error.of(path)))
             })
         })
     }
@@ -101,7 +101,7 @@ impl Kept {
     pub(crate) fn of(runs: usize, wanted: bool) -> Self {
         Self {
             folder: logs::folder(None).filter(|_| wanted),
-            begun: Manifest::default().begun_now().started,
+            begun: Some(rumbo_station::now_utc()),
             many: runs > KEPT,
             logs: Vec::new(),
         }

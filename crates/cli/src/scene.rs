@@ -3,9 +3,9 @@
 use rumbo_control::SonarId;
 use rumbo_experiment::files::TimedCommand;
 use rumbo_experiment::files::{FileError, Kind, Library, ScenarioFile, Setup};
+use rumbo_log::{Choice, Experiment, MapPose, Obstacle, RoutePlan, Scene, SonarMount};
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::plant::Mount;
-use rumbo_station::{Choice, Experiment, MapPose, Obstacle, RoutePlan, Scene, SonarMount};
 use rumbo_wire::Command;
 
 /// The scene of a setup.

@@ -4,7 +4,8 @@
 
 mod support;
 
-use rumbo_station::log::{Kind, Log};
+use rumbo_log::Kind;
+use rumbo_station::log_file;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 use support::{program, stderr, stdout};
@@ -32,7 +33,7 @@ fn a_calibration_is_recorded_and_its_log_is_read_like_any_other() {
     assert_eq!(stderr(&done), format!("recorded: {shown}\n"));
     assert!(shown.ends_with("-calibration-3.mcap"), "{shown}");
 
-    let read = Log::read(&log).unwrap();
+    let read = log_file::read(&log).unwrap();
     assert_eq!(read.cut, None);
     assert_eq!(read.manifest.as_ref().unwrap().kind, Kind::Calibration);
     let found: serde_json::Value = serde_json::from_str(&stdout(&done)).unwrap();
@@ -85,7 +86,7 @@ fn a_calibration_of_another_robot_in_another_world_is_run_again_as_it_was() {
     assert_eq!(done.status.code(), Some(2));
     assert!(stderr(&done).contains("no wall beside the robot"));
     let log = recorded(logs).pop().unwrap();
-    let outcome = Log::read(&log).unwrap().outcome.unwrap();
+    let outcome = log_file::read(&log).unwrap().outcome.unwrap();
     assert!(!outcome.pass && outcome.failures[0].starts_with("no wall beside the robot"));
     let again = rumbo(logs, &["rerun", &log.display().to_string()]);
     assert!(again.status.success(), "{}", stderr(&again));

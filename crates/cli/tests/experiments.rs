@@ -2,9 +2,10 @@
 
 #![allow(clippy::unwrap_used)]
 
-use rumbo_station::Truth;
-use rumbo_station::headless::{Run, record_run};
-use rumbo_station::log::{Kind, Log, Manifest, Outcome};
+use rumbo_log::{Kind, Manifest, Outcome, Truth};
+use rumbo_session::headless::Run;
+use rumbo_station::headless::record_run;
+use rumbo_station::log_file;
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -99,7 +100,7 @@ fn a_log_of_a_real_robot_stands_beside_ours_and_one_of_a_simulated_robot_does_no
         .unwrap();
     assert!(out.status.success());
     let simulated = folder.path().join("real/mode5-1.mcap");
-    let log = Log::read(&simulated).unwrap();
+    let log = log_file::read(&simulated).unwrap();
     // The same as a robot behind a port would have left it.
     let manifest = Manifest {
         kind: Kind::Robot,

@@ -2,9 +2,10 @@
 
 #![cfg(test)]
 
-use rumbo_station::Truth;
-use rumbo_station::headless::{Run, record_run};
-use rumbo_station::log::{Burst, Log, Outcome};
+use rumbo_log::{Burst, Outcome, Truth};
+use rumbo_session::headless::Run;
+use rumbo_station::headless::record_run;
+use rumbo_station::log_file;
 use rumbo_wire::message::Hello;
 use rumbo_wire::{Decoder, FromRobot, Message, Received, ToRobot};
 use std::io::{BufRead, BufReader};
@@ -77,7 +78,7 @@ fn a_run_is_recorded_whole_and_the_same_run_is_the_same_file() {
         std::fs::read(&path).unwrap(),
         std::fs::read(folder.path().join("two/mode1-7.mcap")).unwrap()
     );
-    let log = Log::read(&path).unwrap();
+    let log = log_file::read(&path).unwrap();
     assert_eq!(log.cut, None);
     let manifest = log.manifest.as_ref().unwrap();
     assert_eq!(
@@ -209,8 +210,8 @@ fn parameters_that_differ_are_shown_beside_the_metrics() {
     assert_eq!(parameters, "  kv  0.03  0.04\n");
     // A robot that calibrated itself before the run knows what it found.
     rumbo(&["run", "mode7", "--out", "."], folder.path());
-    let calibrated = Log::read(&folder.path().join("mode7-1.mcap")).unwrap();
-    let plain = Log::read(&folder.path().join("0.03/mode5-1.mcap")).unwrap();
+    let calibrated = log_file::read(&folder.path().join("mode7-1.mcap")).unwrap();
+    let plain = log_file::read(&folder.path().join("0.03/mode5-1.mcap")).unwrap();
     assert_ne!(
         calibrated.parameters()["base_m"],
         plain.parameters()["base_m"]
@@ -244,7 +245,7 @@ fn another_table_of_parameters_and_the_end_of_a_truncated_log_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     rumbo(&["run", "mode5", "--out", "."], folder.path());
     let path = folder.path().join("mode5-1.mcap");
-    let log = Log::read(&path).unwrap();
+    let log = log_file::read(&path).unwrap();
     let whole = std::fs::read(&path).unwrap();
     std::fs::write(folder.path().join("cut.mcap"), &whole[..whole.len() / 2]).unwrap();
     let cut = rumbo(&["rerun", "cut.mcap"], folder.path());
@@ -358,7 +359,7 @@ fn a_lab_that_is_killed_leaves_a_log_that_can_be_read() {
         std::thread::sleep(Duration::from_millis(lived_ms));
         lab.kill().unwrap();
         lab.wait().unwrap();
-        let log = Log::read(&only_log(folder.path())).unwrap();
+        let log = log_file::read(&only_log(folder.path())).unwrap();
         assert!(log.manifest.is_some());
         assert!(log.cut.is_some());
         assert!(lived_ms < 1_000 || !log.rows.is_empty());
@@ -389,7 +390,7 @@ fn completes_its_log(signal: &str) {
         .unwrap();
     assert!(asked.success());
     assert_eq!(lab.wait().unwrap().code(), Some(0));
-    let log = Log::read(&only_log(folder.path())).unwrap();
+    let log = log_file::read(&only_log(folder.path())).unwrap();
     assert_eq!(log.cut, None);
     assert!(log.rows.len() > 20, "{}", log.rows.len());
     let stop = log.link.iter().rev().find(|burst| burst.to_robot).unwrap();
@@ -456,7 +457,7 @@ fn a_simulated_robot_behind_a_pseudo_terminal_is_connected_to_and_recorded_like_
     assert_eq!(station.wait().unwrap().code(), Some(0));
     robot.kill().unwrap();
     robot.wait().unwrap();
-    let log = Log::read(&only_log(folder.path())).unwrap();
+    let log = log_file::read(&only_log(folder.path())).unwrap();
     assert!(log.rows.len() > 10, "{}", log.rows.len());
     assert!(log.rows.iter().all(|row| row.signal("armed") == Some(0.0)));
     assert_eq!(log.manifest.unwrap().port, Some(port));
@@ -489,7 +490,7 @@ fn a_log_of_the_protocol_before_is_exported_compared_and_run_again() {
         text(&done.stderr)
     );
     assert!(said.contains("protocol 2, now 3"), "{said}");
-    let log = Log::read(Path::new(EARLIER)).unwrap();
+    let log = log_file::read(Path::new(EARLIER)).unwrap();
     assert_eq!(log.hello().map(|hello| hello.protocol), Some(2));
     // Each frame of it is one of today.
     for to_robot in [false, true] {

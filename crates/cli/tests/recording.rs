@@ -4,7 +4,7 @@
 
 mod support;
 
-use rumbo_station::log::Log;
+use rumbo_station::log_file;
 use serde_json::json;
 use std::process::Command;
 use support::{Page, Running, stderr, stdout};
@@ -77,6 +77,6 @@ fn a_full_disk_is_reported_once_driving_goes_on_and_the_log_is_readable_up_to_th
         .unwrap()
         .path();
     assert!(path.metadata().unwrap().len() <= 40 * 512);
-    let log = Log::read(&path).unwrap();
+    let log = log_file::read(&path).unwrap();
     assert!(log.cut.is_some() && log.manifest.is_some());
 }

@@ -4,7 +4,7 @@
 
 mod support;
 
-use rumbo_station::log::Log;
+use rumbo_station::log_file;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -106,7 +106,7 @@ fn the_original_program_is_recognised_commanded_watched_and_recorded() {
     bench.page.wait_for_event("STOP: sent");
     std::thread::sleep(std::time::Duration::from_millis(700));
     let (folder, path) = bench.log();
-    let log = Log::read(&path).unwrap();
+    let log = log_file::read(&path).unwrap();
     assert_eq!(log.cut, None);
     assert!(log.rows.len() > 10, "{}", log.rows.len());
     assert!(log.rows.is_sorted_by_key(|row| row.t_ms));
@@ -223,7 +223,7 @@ fn a_run_with_an_image_is_run_again_whole_with_what_its_usarts_said() {
         "{done:?}"
     );
     let path = folder.path().join("mode5-1.mcap");
-    let log = Log::read(&path).unwrap();
+    let log = log_file::read(&path).unwrap();
     let said: usize = log.said.iter().map(|said| said.bytes.len()).sum();
     assert!(said > 1_000, "{said}");
     let again = rumbo(&["rerun", "mode5-1.mcap"]);
@@ -260,7 +260,7 @@ fn a_run_with_an_image_is_run_again_whole_with_what_its_usarts_said() {
         .unwrap()
         .unwrap()
         .path();
-    let log = Log::read(&path).unwrap();
+    let log = log_file::read(&path).unwrap();
     assert!(
         log.said
             .iter()

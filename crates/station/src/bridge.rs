@@ -3,11 +3,9 @@
 //! Read-only: nothing that a viewer sends is taken. Only this machine can connect. What is recorded passes by here on its way; a thread makes
 //! messages of it for the topics that somebody looks at. A viewer that is slow loses messages, nobody waits for it.
 
-use crate::log::messages::Sink;
-use crate::log::recorder::Entry;
-use crate::log::schema::Topic;
 use foxglove::{ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChannel, Schema};
 use foxglove::{WebSocketServer, WebSocketServerHandle};
+use rumbo_log::{Entry, Sink, Topic};
 use std::convert::Infallible;
 use std::fmt;
 use std::net::Ipv4Addr;

@@ -3,7 +3,7 @@
 //! A terminal can be stopped (Ctrl-S), and a pipe that nobody reads fills up: so a thread of its own prints, and what it
 //! cannot print in time is left out. The session never waits for it.
 
-use crate::event::{Level, LoggedEvent};
+use rumbo_log::{Level, LoggedEvent};
 use std::sync::mpsc::{SyncSender, sync_channel};
 
 /// Lines that wait for the terminal.

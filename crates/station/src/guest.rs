@@ -4,7 +4,7 @@
 //! bytes that it sends, and goes on showing and recording. With each slice of time it gets its turn and the session waits for its answer,
 //! so that a fast simulation does not run away from it. When the session takes the link back, time ends for it at once.
 
-use crate::state::Findings;
+use rumbo_log::Findings;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -66,8 +66,6 @@ pub(crate) struct Guest {
     slices: Sender<Slice>,
     answers: Receiver<Vec<u8>>,
     thread: JoinHandle<Result<Findings, String>>,
-    /// When it began \[us\].
-    pub(crate) since_us: u64,
 }
 
 impl Guest {
@@ -93,7 +91,6 @@ impl Guest {
             slices,
             answers,
             thread,
-            since_us: now_us,
         })
     }
 

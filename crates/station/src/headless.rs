@@ -1,53 +1,25 @@
-//! The log of a run without a window, made when the run is over: what crossed the link goes the way that it takes in a live session.
+//! Logs of runs without a window, in files.
 
-use crate::board::Board;
-use crate::client::{Heard, KnownTable, RobotClient};
-use crate::event::Level;
-use crate::log::recorder::{Entry, Recorder};
-use crate::log::{Burst, LogError, Manifest, Outcome, Said};
-use crate::observer::Observer;
-use crate::observer::describe::{Around, describe};
-use crate::scene::{Scene, Truth};
-use crate::words;
-use rumbo_control::mode::ModeId;
-use rumbo_control::params::Params;
-use rumbo_wire::{Ack, Command, Decoder, FromRobot, Message, Received, ToRobot};
+use crate::log_file::LogError;
+use crate::recorder;
+use rumbo_log::{Burst, Manifest, WriteError};
+use rumbo_session::headless::{self, Run};
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-/// The state is noted this often \[us\].
-const STATE_PERIOD_US: u64 = 200_000;
-/// Longest line of text that the decoder must pass over.
-const LINE: usize = 160;
-
-/// What a run left behind.
-#[derive(Debug)]
-pub struct Run<'a> {
-    /// What surrounds the robot.
-    pub scene: Option<Scene>,
-    /// The robot's parameters at the start; `None` where it has no table of them.
-    pub parameters: Option<Params>,
-    /// What was really the case, with its time \[us\], in order.
-    pub truths: &'a [(u64, Truth)],
-    /// What crossed the link, in order.
-    pub link: &'a [Burst],
-    /// What crossed the USARTs of an emulated chip, in order.
-    pub said: &'a [Said],
-    /// What a program without a link of ours has told, with its time \[us\], in order.
-    pub told: &'a [(u64, FromRobot)],
-    /// How it ended.
-    pub outcome: Outcome,
-}
-
-/// Writes the log of a run.
+/// Writes the log of a run, in place of what was there.
 ///
 /// # Errors
 /// If the file cannot be written.
 pub fn record_run(path: &Path, manifest: &Manifest, run: Run<'_>) -> Result<(), LogError> {
-    tell(Recorder::at(path, manifest)?, manifest.baud, run)
+    write(path, recorder::file_at(path)?, |file| {
+        headless::record_run(file, manifest, run)
+    })
 }
 
-/// Writes the log of a run into the folder of sessions, under a name like theirs, and says which. What could not be completed is not left there.
+/// Writes the log of a run into the folder of sessions, under a name like theirs, and says which. What could not be
+/// completed is not left there.
 ///
 /// # Errors
 /// If the file cannot be written.
@@ -56,65 +28,15 @@ pub fn record_run_in(
     manifest: &Manifest,
     run: Run<'_>,
 ) -> Result<PathBuf, LogError> {
-    let recorder = Recorder::in_folder(folder, manifest)?.patient();
-    let path = recorder.path().to_owned();
-    match tell(recorder, manifest.baud, run) {
-        Ok(()) => Ok(path),
-        Err(error) => {
-            // Its error is the one to tell.
-            let _ = std::fs::remove_file(&path);
-            Err(error)
-        }
+    let (path, file) = recorder::file_in(folder, manifest)?;
+    let written = write(&path, file, |file| {
+        headless::record_run(file, manifest, run)
+    });
+    if written.is_err() {
+        // That error is the one to report.
+        let _ = std::fs::remove_file(&path);
     }
-}
-
-fn tell(recorder: Recorder, baud: u32, run: Run<'_>) -> Result<(), LogError> {
-    let board = Arc::new(Board::new());
-    board.record(recorder);
-    let mut teller = Teller {
-        observer: Observer::new(Arc::clone(&board)),
-        client: RobotClient::new(0, true, KnownTable::OURS),
-        heard: Vec::new(),
-        decoder: Decoder::default(),
-        answers: Decoder::default(),
-        sent: None,
-        baud,
-        battery_v: None,
-    };
-    teller.observer.show_scene(run.scene.clone());
-    if let Some(parameters) = run.parameters {
-        teller.observer.know_parameters(&parameters);
-    }
-    let (mut link, mut told) = (run.link.iter().peekable(), run.told.iter().peekable());
-    let mut said = run.said.iter().peekable();
-    let mut state_due_us = 0;
-    for (t_us, truth) in run.truths {
-        while let Some(burst) = link.next_if(|burst| burst.t_us <= *t_us) {
-            teller.burst(burst);
-        }
-        while let Some(said) = said.next_if(|said| said.t_us <= *t_us) {
-            board.take(Entry::Said(said.clone()));
-        }
-        while let Some((at_us, message)) = told.next_if(|(at_us, _)| at_us <= t_us) {
-            teller
-                .client
-                .understand(*message, *at_us, &mut teller.heard);
-            teller.digest(*at_us);
-        }
-        teller.observer.truth(to_ms(*t_us), *truth);
-        teller.battery_v = Some(truth.battery_v);
-        teller.observer.publish(0);
-        if *t_us >= state_due_us {
-            teller.state(*t_us);
-            state_due_us = *t_us + STATE_PERIOD_US;
-        }
-    }
-    said.for_each(|said| board.take(Entry::Said(said.clone())));
-    board.take(Entry::Outcome(run.outcome));
-    match board.end_recording() {
-        Some(recorder) => recorder.finish(),
-        None => Ok(()),
-    }
+    written.map(|()| path)
 }
 
 /// Writes the log of what a robot of the original program and its terminal have said to each other.
@@ -122,157 +44,20 @@ fn tell(recorder: Recorder, baud: u32, run: Run<'_>) -> Result<(), LogError> {
 /// # Errors
 /// If the file cannot be written.
 pub fn record_text(path: &Path, manifest: &Manifest, link: &[Burst]) -> Result<(), LogError> {
-    let board = Arc::new(Board::new());
-    board.record(Recorder::at(path, manifest)?);
-    let mut observer = Observer::new(Arc::clone(&board));
-    let mut client = RobotClient::of_text(ModeId::default(), true);
-    let (mut heard, mut state_due_us) = (Vec::new(), 0);
-    for burst in link {
-        observer.link(burst.clone());
-        let t_ms = to_ms(burst.t_us);
-        if burst.to_robot {
-            let line = String::from_utf8_lossy(&burst.bytes);
-            client.type_in(line.trim_end());
-            observer.note(t_ms, Level::Info, format!("sent: {}", line.trim_end()));
-        } else {
-            client.hear(&burst.bytes, burst.t_us, &mut heard);
-            observer.digest(&mut heard, &mut client, t_ms);
-        }
-        observer.publish(t_ms);
-        if burst.t_us >= state_due_us {
-            let around = Around {
-                t_us: burst.t_us,
-                simulated: false,
-                speed: 1.0,
-                achieved_speed: 1.0,
-                baud: manifest.baud,
-                true_battery_v: None,
-            };
-            observer.show_state(describe(&around, &mut client, &observer));
-            state_due_us = burst.t_us + STATE_PERIOD_US;
-        }
-    }
-    match board.end_recording() {
-        Some(recorder) => recorder.finish(),
-        None => Ok(()),
-    }
+    write(path, recorder::file_at(path)?, |file| {
+        headless::record_text(file, manifest, link)
+    })
 }
 
-fn to_ms(us: u64) -> i64 {
-    (us / 1_000) as i64
-}
+type Buffered = BufWriter<File>;
 
-/// A command on its way.
-#[derive(Clone, Copy)]
-struct Sent {
-    session: u8,
-    number: u16,
-    command: Command,
-}
-
-struct Teller {
-    observer: Observer,
-    client: RobotClient,
-    heard: Vec<Heard>,
-    decoder: Decoder<LINE>,
-    /// The same for the other direction.
-    answers: Decoder<LINE>,
-    /// The command sent last: a repetition is no news.
-    sent: Option<Sent>,
-    baud: u32,
-    battery_v: Option<f64>,
-}
-
-impl Teller {
-    fn burst(&mut self, burst: &Burst) {
-        self.observer.link(burst.clone());
-        if burst.to_robot {
-            self.client.said(burst.bytes.len(), burst.t_us);
-            return self.sent(burst);
-        }
-        self.client.hear(&burst.bytes, burst.t_us, &mut self.heard);
-        self.digest(burst.t_us);
-        self.answered(burst);
-    }
-
-    fn digest(&mut self, t_us: u64) {
-        self.observer
-            .digest(&mut self.heard, &mut self.client, to_ms(t_us));
-    }
-
-    /// Notes the commands in what was sent.
-    fn sent(&mut self, burst: &Burst) {
-        for byte in &burst.bytes {
-            let message = match self.decoder.push(*byte) {
-                Some(Received::Frame(body)) => ToRobot::from_body(&body),
-                Some(Received::Line(_)) | None => continue,
-            };
-            let Ok(ToRobot::Command {
-                session,
-                number,
-                command,
-                ..
-            }) = message
-            else {
-                continue;
-            };
-            let sent = Sent {
-                session,
-                number,
-                command,
-            };
-            let before = self.sent.replace(sent);
-            if before.map(|sent| (sent.session, sent.number)) != Some((session, number)) {
-                let mode = self.mode(&command);
-                self.observer.note(
-                    to_ms(burst.t_us),
-                    Level::Info,
-                    format!("sent: {}", words::command(&command, mode)),
-                );
-            }
-        }
-    }
-
-    /// Notes the values of parameters that the robot acknowledges.
-    fn answered(&mut self, burst: &Burst) {
-        for byte in &burst.bytes {
-            let Some(Received::Frame(body)) = self.answers.push(*byte) else {
-                continue;
-            };
-            let Ok(FromRobot::Ack(Ack {
-                session,
-                number,
-                result: Ok(value),
-            })) = FromRobot::from_body(&body)
-            else {
-                continue;
-            };
-            let sent = self
-                .sent
-                .filter(|sent| (sent.session, sent.number) == (session, number));
-            if let Some(Command::SetParam { id, .. }) = sent.map(|sent| sent.command) {
-                self.observer.know_parameter(id, value);
-            }
-        }
-    }
-
-    fn mode(&self, command: &Command) -> ModeId {
-        match command {
-            Command::Mode(mode) => *mode,
-            _ => self.client.mode(),
-        }
-    }
-
-    fn state(&mut self, t_us: u64) {
-        let around = Around {
-            t_us,
-            simulated: true,
-            speed: 1.0,
-            achieved_speed: 1.0,
-            baud: self.baud,
-            true_battery_v: self.battery_v,
-        };
-        let state = describe(&around, &mut self.client, &self.observer);
-        self.observer.show_state(state);
+fn write(
+    path: &Path,
+    file: File,
+    record: impl FnOnce(Buffered) -> Result<Buffered, WriteError>,
+) -> Result<(), LogError> {
+    match record(BufWriter::new(file)) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(LogError::not_written(path, error)),
     }
 }

@@ -7,15 +7,12 @@ mod haunting;
 mod speech;
 
 use crate::board::Board;
-use crate::catalogue::{self, ParameterState};
-use crate::event::{Level, LoggedEvent};
-use crate::log::Log;
-use crate::orders::Order;
 use crate::session::Orders;
-use crate::state::{ReplayState, State};
-use crate::target::Ghost;
 use haunting::Haunting;
+use rumbo_log::{Entry, Level, Log, LoggedEvent, ParameterState, ReplayState, State, parameters};
+use rumbo_session::{Event, Ghost, Order};
 use speech::Speech;
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
@@ -76,9 +73,9 @@ impl Replay {
 
     /// Runs until the sender of orders is gone.
     pub(crate) fn run(mut self) {
-        self.board.set_scene(self.log.scene.clone());
-        for event in &self.log.events {
-            self.board.push_event(event.clone());
+        self.put(Entry::Scene(self.log.scene.clone().map(Box::new)));
+        for event in self.log.events.clone() {
+            self.put(Entry::Event(event));
         }
         for note in self.log.notes.clone() {
             self.note(format!("about the log: {note}"));
@@ -149,11 +146,11 @@ impl Replay {
         };
         match started {
             Ok(()) => {
-                self.board.push_event(LoggedEvent {
+                self.put(Entry::Event(LoggedEvent {
                     t_s: self.at_ms / 1e3,
                     level: Level::Info,
                     text: "the ghost starts again where the robot is".into(),
-                });
+                }));
                 self.seek(self.at_ms);
             }
             Err(why) => self.note(format!("the ghost: refused, {why}")),
@@ -175,11 +172,22 @@ impl Replay {
     }
 
     fn note(&self, text: String) {
-        self.board.push_event(LoggedEvent {
+        self.put(Entry::Event(LoggedEvent {
             t_s: self.at_ms / 1e3,
             level: Level::Warning,
             text,
-        });
+        }));
+    }
+
+    fn put(&self, entry: Entry) {
+        self.board.take(&entry.into());
+    }
+
+    fn put_rows(&self, rows: Range<usize>) {
+        let rows = self.log.rows.get(rows).unwrap_or_default();
+        if !rows.is_empty() {
+            self.put(Entry::Rows(rows.to_vec()));
+        }
     }
 
     /// The first row after a time.
@@ -190,11 +198,10 @@ impl Replay {
     fn seek(&mut self, t_ms: f64) {
         self.at_ms = t_ms.clamp(0.0, self.end_ms);
         self.last = None;
-        self.board.start_run();
+        self.board.take(&Event::Run);
         let from = self.row_after(self.at_ms - BEFORE_MS as f64);
         self.next_row = self.row_after(self.at_ms);
-        self.board
-            .push_samples(self.log.rows.get(from..self.next_row).unwrap_or_default());
+        self.put_rows(from..self.next_row);
         let from_ms = self.at_ms - BEFORE_MS as f64;
         self.speech.seek(from_ms, self.at_ms, &self.board);
     }
@@ -229,8 +236,7 @@ impl Replay {
     fn advance(&mut self, t_ms: f64) {
         self.at_ms = t_ms.min(self.end_ms);
         let until = self.row_after(self.at_ms);
-        self.board
-            .push_samples(self.log.rows.get(self.next_row..until).unwrap_or_default());
+        self.put_rows(self.next_row..until);
         self.next_row = until.max(self.next_row);
         self.speech.advance(self.at_ms, &self.board);
     }
@@ -253,14 +259,14 @@ impl Replay {
             name: self.name.clone(),
             duration_s: self.end_ms / 1e3,
         });
-        self.board.set_state(state);
+        self.put(Entry::State(Box::new(state)));
         let known = self
             .log
             .parameters
             .partition_point(|(t_ms, _)| *t_ms as f64 <= self.at_ms);
         if self.shown != Some((known, self.log.parameters.len())) {
             self.shown = Some((known, self.log.parameters.len()));
-            self.board.set_parameters(&self.parameters(known));
+            self.put(Entry::Parameters(self.parameters(known)));
         }
     }
 
@@ -282,7 +288,7 @@ impl Replay {
         let values = known
             .checked_sub(1)
             .and_then(|last| self.log.parameters.get(last));
-        catalogue::table()
+        parameters()
             .map(|entry| ParameterState {
                 entry,
                 value: values.and_then(|(_, values)| values.get(entry.name).copied()),

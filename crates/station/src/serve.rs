@@ -6,13 +6,14 @@ use crate::echo::{Echo, Print};
 use crate::ending::asked_to_end;
 use crate::guard::{self, Guard};
 use crate::lease::Lease;
-use crate::log::{Log, Recording};
-use crate::orders::Order;
+use crate::recorder::Recording;
 use crate::replay::Replay;
-use crate::session::{Extras, Orders, Session};
+use crate::session::{Driver, Extras, Orders};
 use crate::socket::Hub;
-use crate::target::{Ghost, Target};
+use crate::subscribers::Subscribers;
 use crate::web;
+use rumbo_log::Log;
+use rumbo_session::{Ghost, Order, Target};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -203,11 +204,15 @@ pub fn serve_with(
         echo,
         ..
     } = config;
-    let board = Board::new().echoed(echo.and_then(Echo::start));
-    #[cfg(feature = "foxglove")]
-    let board = board.bridged(config.bridge);
-    start(at, board, move |board, orders| {
-        Session::new(target, board, orders, speed, recording, extras).run()
+    start(at, move |board, orders| {
+        let subscribers = Subscribers {
+            board,
+            echo: echo.and_then(Echo::start),
+            #[cfg(feature = "foxglove")]
+            bridge: config.bridge,
+            recorder: None,
+        };
+        Driver::new(target, subscribers, orders, speed, recording, extras).run()
     })
 }
 
@@ -222,7 +227,7 @@ pub fn serve_log(
     log: Log,
     ghost: Option<Box<dyn Ghost>>,
 ) -> Result<Lab, ServeError> {
-    start(at, Board::new(), move |board, orders| {
+    start(at, move |board, orders| {
         Replay::new(name, log, board, orders, speed, ghost).run();
         Ok(())
     })
@@ -231,7 +236,6 @@ pub fn serve_log(
 /// Serves a board that `session` writes, in a thread of its own, until there are no more orders.
 fn start(
     at: ServeAt,
-    board: Board,
     session: impl FnOnce(Arc<Board>, Orders) -> Result<(), String> + Send + 'static,
 ) -> Result<Lab, ServeError> {
     guard::check_listen(at.address).map_err(ServeError::Address)?;
@@ -240,12 +244,11 @@ fn start(
         io::ErrorKind::AddrInUse => ServeError::PortInUse(at),
         _ => ServeError::Io(at, error),
     })?;
-    start_on(listener, board, session).map_err(|error| ServeError::Io(at, error))
+    start_on(listener, session).map_err(|error| ServeError::Io(at, error))
 }
 
 fn start_on(
     listener: TcpListener,
-    board: Board,
     session: impl FnOnce(Arc<Board>, Orders) -> Result<(), String> + Send + 'static,
 ) -> io::Result<Lab> {
     listener.set_nonblocking(true)?;
@@ -253,7 +256,7 @@ fn start_on(
     let guard = Guard::new(listener.local_addr()?, opens.clone()).map_err(io::Error::other)?;
     let (url, viewers_url) = (guard.url(), guard.viewers_url());
 
-    let board = Arc::new(board);
+    let board = Arc::new(Board::default());
     let stop = Arc::new(AtomicBool::new(false));
     let (orders, queue) = mpsc::sync_channel(ORDERS_WAITING);
     let (shown, waiting) = (
@@ -278,7 +281,7 @@ fn start_on(
             board,
             orders: orders.clone(),
             stop,
-            lease: Lease::new(),
+            lease: Lease::default(),
         },
     );
     let runtime = tokio::runtime::Builder::new_current_thread()

@@ -1,27 +1,17 @@
-//! The session: lets the target live, paced by the wall clock, and passes on what it says and what is asked of it.
+//! The session's thread: lets the target live, paced by the wall clock, and hands between it, the pages and the session.
 //!
-//! Its thread wakes every [`WAKE`], or at once for an order; advances the target in slices for the time that passed times the
-//! speed factor ([`Pace`]); feeds what arrived to the [`RobotClient`] and what that heard to the [`Observer`], who
-//! keeps the board up to date. Nothing waits for a page.
+//! It wakes every [`WAKE`], or at once for an order; advances the target in slices for the time that passed times the
+//! speed factor ([`Pace`]), and gives what came of it to the [`Session`], which says what is to be sent and what is to
+//! be published. Nothing waits for a page.
 
-mod calibrating;
-mod commanding;
-mod recording;
-
-use crate::board::Board;
-use crate::client::{Heard, KnownTable, RobotClient};
-use crate::event::Level;
 use crate::guest::{Calibration, Guest};
-use crate::log::Recording;
-use crate::observer::Observer;
-use crate::observer::describe::{Around, describe};
-use crate::orders::{self, MAX_SPEED, Order};
-use crate::pace::{Pace, SLICE_US};
-use crate::scene::Choice;
-use crate::state::{CalibrationState, State};
-use crate::target::{LinkNews, Target};
-use crate::watch::LinkWatch;
-use rumbo_control::mode::ModeId;
+use crate::log_file::LogError;
+use crate::recorder::{Recorder, Recording, now_utc};
+use crate::subscribers::Subscribers;
+use rumbo_log::{Level, Manifest};
+use rumbo_session::{
+    About, Ask, Going, MAX_SPEED, Now, Order, Pace, SLICE_US, Session, Sight, Target, stop_first,
+};
 use rumbo_wire::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,8 +24,6 @@ const WAKE: Duration = Duration::from_millis(5);
 const WAKE_PAUSED: Duration = Duration::from_millis(250);
 /// Longest time spent on one round of slices: orders wait no longer, however high the speed factor.
 const ROUND: Duration = Duration::from_millis(20);
-/// The slow state is noted this often, and at once when it matters.
-const STATE_PERIOD: Duration = Duration::from_millis(200);
 
 /// What a session can do besides, if whoever starts it gives it the means.
 #[derive(Clone, Copy, Debug, Default)]
@@ -55,67 +43,48 @@ pub(crate) struct Orders {
     pub(crate) stop: Arc<AtomicBool>,
 }
 
-/// A session with one target.
-pub(crate) struct Session {
+/// The session, its target and who listens.
+pub(crate) struct Driver {
     target: Box<dyn Target>,
-    client: RobotClient,
-    observer: Observer,
-    board: Arc<Board>,
+    session: Session,
+    subscribers: Subscribers,
     /// Where to record; nowhere in tests.
     recording: Option<Recording>,
-    extras: Extras,
-    /// The calibration that drives the robot now, and how the last one stands.
+    calibration: Option<Calibration>,
+    /// The calibration that drives the robot now.
     guest: Option<Guest>,
-    calibration: Option<CalibrationState>,
     orders: Orders,
     pace: Pace,
-    simulated: bool,
-    state_noted: Option<Instant>,
-    /// The movement that a key holds, and until when without a word from the page.
-    held: Option<(Command, Instant)>,
-    /// The robot has been told what to begin with.
-    briefed: bool,
-    /// The port is waited for.
-    port_gone: bool,
-    link_watch: LinkWatch,
+    began: Instant,
     /// Kept to spare allocations.
-    heard: Vec<Heard>,
     bytes: Vec<u8>,
 }
 
-impl Session {
+impl Driver {
     /// A session that has not begun yet.
     pub(crate) fn new(
-        mut target: Box<dyn Target>,
-        board: Arc<Board>,
+        target: Box<dyn Target>,
+        subscribers: Subscribers,
         orders: Orders,
         speed: f64,
         recording: Option<Recording>,
         extras: Extras,
     ) -> Self {
-        let simulated = target.simulation().is_some();
+        let about = About::of(target.as_ref());
+        let speed = match about.abilities.pace {
+            true => speed.clamp(0.0, MAX_SPEED),
+            false => 1.0,
+        };
         Self {
-            client: new_client(target.as_mut(), extras),
+            session: Session::new(about, random_id(), extras.text),
             target,
-            observer: Observer::new(Arc::clone(&board)),
-            board,
+            subscribers,
             recording,
-            extras,
+            calibration: extras.calibration,
             guest: None,
-            calibration: None,
             orders,
-            pace: Pace::new(if simulated {
-                speed.clamp(0.0, MAX_SPEED)
-            } else {
-                1.0
-            }),
-            simulated,
-            state_noted: None,
-            held: None,
-            briefed: false,
-            port_gone: false,
-            link_watch: LinkWatch::default(),
-            heard: Vec::new(),
+            pace: Pace::new(speed),
+            began: Instant::now(),
             bytes: Vec::new(),
         }
     }
@@ -125,16 +94,16 @@ impl Session {
     /// # Errors
     /// What the target said when it was gone for good.
     pub(crate) fn run(mut self) -> Result<(), String> {
+        self.record();
         let ended = self.run_until_ended();
         if let Err(why) = &ended {
             self.note(Level::Fault, format!("the robot is gone: {why}"));
         }
+        self.publish();
         ended
     }
 
     fn run_until_ended(&mut self) -> Result<(), String> {
-        self.record();
-        self.show_scene();
         loop {
             let wait = if self.pace.speed > 0.0 {
                 WAKE
@@ -145,244 +114,192 @@ impl Session {
                 Ok(order) => Some(order),
                 Err(RecvTimeoutError::Timeout) => None,
                 // The robot is not left driving. Should this be lost, the missing heartbeat stops it.
-                Err(RecvTimeoutError::Disconnected) => return self.command(Command::Stop),
+                Err(RecvTimeoutError::Disconnected) => {
+                    return self.obey(Order::Robot(Command::Stop));
+                }
             };
             let waiting = first
                 .into_iter()
                 .chain(self.orders.queue.try_iter())
                 .collect();
             let stop = self.orders.stop.swap(false, Ordering::SeqCst);
-            for order in orders::stop_first(waiting, stop) {
-                if !self.is_taken(&order) {
-                    self.obey(order)?;
-                }
+            for order in stop_first(waiting, stop) {
+                self.obey(order)?;
             }
-            self.let_go()?;
+            self.session.let_go(self.now());
+            self.send()?;
             self.live()?;
-            self.publish();
+            self.update();
+        }
+    }
+
+    fn now(&self) -> Now {
+        let wall = self.began.elapsed().as_micros();
+        Now {
+            target_us: self.target.now_us(),
+            wall_us: u64::try_from(wall).unwrap_or(u64::MAX),
         }
     }
 
     fn obey(&mut self, order: Order) -> Result<(), String> {
-        match order {
-            Order::Robot(command) => {
-                self.held = None;
-                return self.command(command);
-            }
-            Order::Hold(command) => return self.hold(command),
-            Order::Route(commands) => {
-                self.held = None;
-                return self.commands(commands);
-            }
-            Order::Type(usart, line) => return self.type_in(usart, &line),
-            Order::Speed(factor) if self.simulated => {
-                self.pace = Pace::new(factor);
-                self.state_noted = None;
-            }
-            Order::Speed(_) => self.note(
-                Level::Warning,
-                "speed: refused, a real robot lives at its own".into(),
-            ),
-            Order::Reset(choice) => self.reset(&choice),
-            Order::Calibrate => self.calibrate(),
-            Order::TakeControl | Order::ReleaseControl => {}
-            Order::RestartGhost => self.restart_ghost(),
-            Order::Seek(_) | Order::Step(_) => {
-                self.note(Level::Warning, "refused, this is no replay of a log".into())
-            }
+        let ask = self.session.order(order, self.now());
+        if !self.session.calibrating() {
+            self.guest = None;
         }
-        Ok(())
+        if let Some(ask) = ask {
+            self.act(ask);
+        }
+        // At once: STOP does not wait for the next slice.
+        self.send()
     }
 
-    fn send(&mut self) -> Result<(), String> {
-        self.bytes.clear();
-        self.client
-            .poll(self.target.now_us(), &mut self.bytes, &mut self.heard);
-        if self.bytes.is_empty() {
-            return Ok(());
+    fn act(&mut self, ask: Ask) {
+        let now = self.now();
+        match ask {
+            Ask::Pace(factor) => self.pace = Pace::new(factor),
+            Ask::Type(usart, line) => {
+                let sent = self.target.type_in(usart, &line);
+                self.session.typed(usart, &line, sent, now);
+            }
+            Ask::Ghost(standing) => {
+                let done = self.target.restart_ghost(standing);
+                self.session.ghost_restarted(done, now);
+            }
+            Ask::Calibrate => {
+                let invite = |calibration| Guest::invite(calibration, now.target_us);
+                let none = Err("this program has none".to_owned());
+                let begun = self.calibration.map_or(none, invite);
+                let begun = begun.map(|guest| self.guest = Some(guest));
+                self.session.calibration_begun(begun, now);
+            }
+            Ask::Reset(choice) => {
+                let done = self.target.reset(&choice);
+                if done.is_ok() {
+                    // What happened before is of the run before.
+                    self.publish();
+                    self.pace = Pace::new(self.pace.speed);
+                    self.record();
+                }
+                let done = done.map(|()| About::of(self.target.as_ref()));
+                self.session.restart(&choice, done, random_id(), self.now());
+            }
         }
-        self.note_bytes(true);
-        self.target.send(&self.bytes)
-    }
-
-    fn reset(&mut self, choice: &Choice) {
-        let Some(simulation) = self.target.simulation() else {
-            return self.note(
-                Level::Warning,
-                "reset: refused, this is a real robot".into(),
-            );
-        };
-        if let Err(why) = simulation.reset(choice) {
-            return self.note(Level::Warning, format!("reset: refused, {why}"));
-        }
-        self.client = new_client(self.target.as_mut(), self.extras);
-        self.heard.clear();
-        self.held = None;
-        self.calibration = None;
-        self.briefed = false;
-        self.record();
-        self.observer.start_run();
-        self.pace = Pace::new(self.pace.speed);
-        self.state_noted = None;
-        self.show_scene();
-        let world = choice
-            .world
-            .as_ref()
-            .map(|world| format!(" in world {world}"))
-            .unwrap_or_default();
-        let rig = choice.rig.as_ref();
-        let rig = rig
-            .map(|rig| format!(" with rig {rig}"))
-            .unwrap_or_default();
-        self.note(
-            Level::Info,
-            format!(
-                "reset: {}{world}{rig}, seed {}",
-                choice.scenario, choice.seed
-            ),
-        );
-    }
-
-    fn show_scene(&mut self) {
-        let scene = self
-            .target
-            .simulation()
-            .map(|simulation| simulation.scene());
-        let scene = scene.or_else(|| self.target.surroundings());
-        self.observer.show_scene(scene);
     }
 
     /// Lets the target live for the time due.
     fn live(&mut self) -> Result<(), String> {
-        let now = Instant::now();
-        self.pace.wall_passed(now);
+        let began = Instant::now();
+        self.pace.wall_passed(self.now().wall_us);
         while self.pace.slice_due() {
             self.target.advance(SLICE_US)?;
             self.pace.slice_lived();
-            let now_us = self.target.now_us();
-            if let Some(pose) = self.target.ghost() {
-                self.observer.ghost(to_ms(now_us), pose);
-            }
-            if let Some(simulation) = self.target.simulation() {
-                self.observer.truth(to_ms(now_us), simulation.truth());
-                self.observer.consoles(now_us, simulation.consoles());
-                for news in simulation.news() {
-                    self.observer.note(to_ms(now_us), Level::Warning, news);
-                }
-                if let Some(why) = simulation.ended() {
-                    self.observer.note(to_ms(now_us), Level::Fault, why);
-                }
-            }
+            let now = self.now();
+            let sight = Sight {
+                truth: self.target.truth(),
+                ghost: self.target.ghost(),
+                consoles: self.target.consoles(),
+            };
+            self.session.observe(sight, now);
             self.bytes.clear();
             self.target.receive(&mut self.bytes);
-            self.note_bytes(false);
-            if !self.simulated && self.client.speaks_text() {
-                self.observer.said_in_text(&self.bytes);
-            }
-            self.client.hear(&self.bytes, now_us, &mut self.heard);
-            self.take_turns(now_us)?;
+            self.session.receive(&self.bytes, now);
+            self.take_turns(now);
+            self.session.advance(now);
             self.send()?;
-            self.observer
-                .digest(&mut self.heard, &mut self.client, to_ms(now_us));
-            self.brief()?;
-            if now.elapsed() >= ROUND {
+            self.news();
+            if began.elapsed() >= ROUND {
                 break;
             }
         }
         Ok(())
     }
 
+    /// The guest's turn, with the bytes at hand.
+    fn take_turns(&mut self, now: Now) {
+        let Some(guest) = self.guest.take() else {
+            return;
+        };
+        match guest.turn(now.target_us, &self.bytes) {
+            Some(said) => {
+                self.session.lend(&said, now);
+                self.guest = Some(guest);
+            }
+            None => self.session.calibration_ended(guest.findings(), now),
+        }
+    }
+
+    fn news(&mut self) {
+        while let Some(news) = self.target.news() {
+            self.session.news(news, self.now());
+        }
+        if !self.session.calibrating() {
+            self.guest = None;
+        }
+    }
+
+    fn update(&mut self) {
+        self.news();
+        if let Some(trouble) = self.subscribers.recording_trouble() {
+            self.note(Level::Warning, trouble.to_string());
+        }
+        let going = Going {
+            speed: self.pace.speed,
+            achieved_speed: self.pace.achieved(),
+            true_battery_v: self.target.truth().map(|truth| truth.battery_v),
+        };
+        self.session.update(going, self.now());
+        self.publish();
+    }
+
     fn note(&mut self, level: Level, text: String) {
-        self.observer.note(to_ms(self.target.now_us()), level, text);
+        self.session.note(level, text, self.now());
+    }
+
+    fn send(&mut self) -> Result<(), String> {
+        let bytes = self.session.take_bytes();
+        match bytes.is_empty() {
+            true => Ok(()),
+            false => self.target.send(&bytes),
+        }
     }
 
     fn publish(&mut self) {
-        let now_ms = to_ms(self.target.now_us());
-        self.observer
-            .digest(&mut self.heard, &mut self.client, now_ms);
-        while let Some(news) = self.target.news() {
-            let (level, text) = match news {
-                LinkNews::Lost(text) => (Level::Fault, text),
-                LinkNews::Back(text) => (Level::Good, text),
-                LinkNews::GhostFault(fault) => {
-                    let why = format!("the ghost has stopped: {}", fault.explanation());
-                    self.note(Level::Warning, why);
-                    continue;
-                }
-            };
-            self.port_gone = level == Level::Fault;
-            self.note(level, text);
-            if self.port_gone {
-                self.give_up_calibration("the port is gone");
-                self.client.port_is_gone();
-            }
-        }
-        if let Some(trouble) = self.board.recording_trouble() {
-            self.note(Level::Warning, trouble);
-        }
-        self.watch_link();
-        let urgent = self.observer.publish(now_ms);
-        let now = Instant::now();
-        if urgent
-            || self
-                .state_noted
-                .is_none_or(|noted| now >= noted + STATE_PERIOD)
-        {
-            self.state_noted = Some(now);
-            let state = self.state();
-            self.observer.show_state(state);
+        for event in self.session.take_events() {
+            self.subscribers.take(event);
         }
     }
 
-    /// Says what is wrong with a real link.
-    fn watch_link(&mut self) {
-        if self.simulated || self.client.other_protocol().is_some() {
+    /// Begins the log of a run; what was recorded before is complete.
+    fn record(&mut self) {
+        let Some(recording) = &self.recording else {
             return;
-        }
-        let (now_us, connected) = (self.target.now_us(), self.client.connected());
-        let (figures, dropped) = (self.client.link(now_us), self.observer.status().dropped);
-        let baud = self.target.baud();
-        let trouble = self
-            .link_watch
-            .look(now_us, &figures, connected, dropped, baud);
-        if let Some(trouble) = trouble {
-            self.note(Level::Warning, trouble);
-        }
-    }
-
-    fn state(&mut self) -> State {
-        let simulation = self.target.simulation();
-        let around = Around {
-            true_battery_v: simulation.map(|simulation| simulation.truth().battery_v),
-            t_us: self.target.now_us(),
-            simulated: self.simulated,
-            speed: self.pace.speed,
-            achieved_speed: self.pace.achieved(),
-            baud: self.target.baud(),
         };
-        State {
-            calibration: self.calibration.clone(),
-            ..describe(&around, &mut self.client, &self.observer)
-        }
+        let (level, text) = match self.recorder(recording) {
+            Ok(recorder) => {
+                let text = format!("recording to {}", recorder.path().display());
+                self.subscribers.record(recorder);
+                (Level::Info, text)
+            }
+            Err(error) => (Level::Warning, format!("not recording: {error}")),
+        };
+        self.note(level, text);
+        self.publish();
+    }
+
+    fn recorder(&self, recording: &Recording) -> Result<Recorder, LogError> {
+        let manifest = Manifest {
+            version: env!("CARGO_PKG_VERSION").into(),
+            baud: self.target.baud(),
+            step_us: SLICE_US,
+            started: Some(now_utc()),
+            ..self.target.manifest()
+        };
+        Recorder::in_folder(&recording.folder, &manifest)
     }
 }
 
-fn to_ms(us: u64) -> i64 {
-    (us / 1_000) as i64
-}
-
-fn new_client(target: &mut dyn Target, extras: Extras) -> RobotClient {
-    let simulation = target.simulation();
-    let clock_known = simulation.is_some();
-    match simulation.and_then(|simulation| simulation.speaks_text()) {
-        Some(mode) => RobotClient::of_text(mode, clock_known),
-        None if extras.text => RobotClient::of_text(ModeId::default(), clock_known),
-        None => RobotClient::new(random_session(), clock_known, KnownTable::OURS),
-    }
-}
-
-/// A session id; from the clock where there is no randomness to be had.
-fn random_session() -> u8 {
+/// A random number that tells sessions apart; from the clock where there is no randomness to be had.
+fn random_id() -> u8 {
     let clock = std::time::SystemTime::UNIX_EPOCH
         .elapsed()
         .map_or(0, |elapsed| elapsed.subsec_micros());

@@ -5,22 +5,16 @@
 //!
 //! STOP is taken from every page, anything else from the page that has control ([`Lease`]).
 
-use crate::board::{Board, Cursor, Heard, News};
-use crate::catalogue::{self, ModeEntry, ParameterState};
-use crate::event::{ConsoleText, Level, LoggedEvent};
+use crate::board::Board;
 use crate::guard::Role;
-use crate::lease::{Lease, Place, Seat, View};
-use crate::log::Burst;
-use crate::orders::{self, Order};
-use crate::scene::Scene;
-use crate::signals::{Cell, Row};
-use crate::state::State;
+use crate::lease::{Lease, Place};
 use axum::body::Bytes;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use futures_util::stream::SplitSink;
 use futures_util::{Sink, SinkExt, Stream, StreamExt};
+use rumbo_log::{Level, LoggedEvent};
+use rumbo_session::{Cursor, News, Order, ToPage};
 use rumbo_wire::Command;
-use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::SyncSender;
@@ -30,8 +24,6 @@ use tokio::time::{interval, sleep, timeout};
 
 /// Longest message of a page [bytes].
 pub(crate) const MAX_MESSAGE: usize = 4_096;
-/// Rows of samples in one message.
-const ROWS_PER_MESSAGE: usize = 250;
 /// Rows that a page gets at once while it keeps up; of more it gets the newest.
 const ROWS_AT_ONCE: usize = 500;
 /// Refusals that wait for a page.
@@ -52,62 +44,6 @@ pub(crate) struct Hub {
     pub(crate) orders: SyncSender<Order>,
     pub(crate) stop: Arc<AtomicBool>,
     pub(crate) lease: Lease,
-}
-
-/// To a page.
-#[derive(Debug, Serialize)]
-#[serde(tag = "type", rename_all = "snake_case")]
-enum ToPage<'a> {
-    /// First of all: what the rest is made of.
-    Hello {
-        version: &'static str,
-        columns: &'a [&'static str],
-        modes: Vec<ModeEntry>,
-    },
-    /// What surrounds the robot; `None` with a real one.
-    Scene { run: u32, scene: &'a Option<Scene> },
-    /// The parameter table with its values.
-    Parameters { parameters: &'a [ParameterState] },
-    /// What changes slowly.
-    State { state: &'a State },
-    /// Rows of signals; what the page has of another run is over.
-    Samples {
-        run: u32,
-        heard: Heard,
-        rows: Vec<Vec<Cell>>,
-    },
-    /// What happened.
-    Events { events: &'a [LoggedEvent] },
-    /// What the USARTs of an emulated chip said.
-    Consoles { run: u32, said: &'a [ConsoleText] },
-    /// Raw bytes of the link.
-    Bytes { bytes: Vec<LinkBytes> },
-    /// Who has control.
-    Control(View),
-    /// Why the connection is closed now.
-    Error { text: &'a str },
-}
-
-/// Bytes that crossed the link together, as the page gets them.
-#[derive(Debug, Serialize)]
-struct LinkBytes {
-    t_s: f64,
-    to_robot: bool,
-    hex: String,
-}
-
-impl LinkBytes {
-    fn of(burst: &Burst) -> Self {
-        Self {
-            t_s: burst.t_us as f64 / 1e6,
-            to_robot: burst.to_robot,
-            hex: burst
-                .bytes
-                .iter()
-                .map(|byte| format!("{byte:02x}"))
-                .collect(),
-        }
-    }
 }
 
 /// Why a connection ends.
@@ -145,31 +81,12 @@ pub(crate) async fn talk(socket: WebSocket, hub: Hub, role: Role) {
     }
 }
 
-/// Whether the page may have this order done; why not otherwise.
-fn admit(order: &Order, place: &Place) -> Result<(), &'static str> {
-    let may = match order {
-        Order::Robot(Command::Stop) => true,
-        Order::TakeControl => place.take(),
-        Order::ReleaseControl => {
-            place.release();
-            true
-        }
-        _ => place.ask(),
-    };
-    match (may, place.seat()) {
-        (true, _) => Ok(()),
-        (false, Seat::Viewer) => Err("refused: this page may watch, and stop the robot"),
-        (false, _) => Err("refused: another page has control; take it first"),
-    }
-}
-
 async fn say_goodbye(
     out: &mut SplitSink<WebSocket, Message>,
     goodbye: Goodbye,
 ) -> Result<(), axum::Error> {
-    if let Ok(text) = serde_json::to_string(&ToPage::Error {
-        text: &goodbye.text,
-    }) {
+    let text = &goodbye.text;
+    if let Some(text) = (ToPage::Error { text }).json() {
         out.send(Message::Text(text.into())).await?;
     }
     // A close frame has room for 123 bytes.
@@ -206,7 +123,7 @@ async fn take_orders(
             Message::Close(_) => return None,
             Message::Ping(_) | Message::Pong(_) => continue,
         };
-        let order = match orders::parse(&text) {
+        let order = match text.parse::<Order>() {
             Ok(order) => order,
             Err(error) => {
                 return Some(Goodbye {
@@ -215,7 +132,7 @@ async fn take_orders(
                 });
             }
         };
-        if let Err(why) = admit(&order, place) {
+        if let Err(why) = place.admit(&order) {
             // Of many refusals a page need not read each.
             let _ = refuse.try_send(why);
             continue;
@@ -243,13 +160,7 @@ async fn tell_news(
 ) -> Option<Goodbye> {
     let (mut changed, mut moved) = (hub.board.subscribe(), hub.lease.subscribe());
     let mut cursor = Cursor::default();
-    let columns: Vec<_> = Row::names().collect();
-    let hello = ToPage::Hello {
-        version: env!("CARGO_PKG_VERSION"),
-        columns: &columns,
-        modes: catalogue::modes(),
-    };
-    send(out, &hello).await?;
+    send(out, &ToPage::hello()).await?;
     let (mut told, mut run, mut t_s) = (None, 0, 0.0);
     let mut pings = interval(PING);
     loop {
@@ -292,49 +203,14 @@ async fn tell_news(
 }
 
 async fn send_news(out: &mut (impl Sink<Message> + Unpin), news: News) -> Option<()> {
-    let run = news.run;
-    if let Some(scene) = &news.scene {
-        send(out, &ToPage::Scene { run, scene }).await?;
-    }
-    if let Some(state) = &news.state {
-        send(out, &ToPage::State { state }).await?;
-    }
-    if let Some(parameters) = &news.parameters {
-        send(out, &ToPage::Parameters { parameters }).await?;
-    }
-    if !news.events.is_empty() {
-        send(
-            out,
-            &ToPage::Events {
-                events: &news.events,
-            },
-        )
-        .await?;
-    }
-    if !news.consoles.is_empty() {
-        let said = &news.consoles;
-        send(out, &ToPage::Consoles { run, said }).await?;
-    }
-    if !news.bytes.is_empty() {
-        let bytes = news.bytes.iter().map(LinkBytes::of).collect();
-        send(out, &ToPage::Bytes { bytes }).await?;
-    }
-    for chunk in news.samples.chunks(ROWS_PER_MESSAGE) {
-        send(
-            out,
-            &ToPage::Samples {
-                run,
-                heard: news.heard,
-                rows: chunk.iter().map(Row::cells).collect(),
-            },
-        )
-        .await?;
+    for message in news.messages() {
+        send(out, &message).await?;
     }
     Some(())
 }
 
 async fn send(out: &mut (impl Sink<Message> + Unpin), message: &ToPage<'_>) -> Option<()> {
-    let text = serde_json::to_string(message).ok()?;
+    let text = message.json()?;
     put(out, Message::Text(text.into())).await
 }
 
@@ -347,14 +223,15 @@ mod tests {
     use super::*;
     use futures_util::sink::unfold;
     use futures_util::stream::poll_fn;
+    use rumbo_log::{Entry, Row};
     use std::future::ready;
 
     fn hub() -> Hub {
         Hub {
-            board: Arc::new(Board::new()),
+            board: Arc::new(Board::default()),
             orders: std::sync::mpsc::sync_channel(1).0,
             stop: Arc::default(),
-            lease: Lease::new(),
+            lease: Lease::default(),
         }
     }
 
@@ -365,32 +242,6 @@ mod tests {
             to_page.send(message).await.map(|()| to_page)
         };
         (Box::pin(unfold(to_page, send)), page)
-    }
-
-    #[test]
-    fn a_viewer_may_stop_and_nothing_else_and_so_may_a_page_without_control() {
-        let hub = hub();
-        let (driver, other, viewer) = (
-            hub.lease.sit_down(true).unwrap(),
-            hub.lease.sit_down(true).unwrap(),
-            hub.lease.sit_down(false).unwrap(),
-        );
-        let (stop, arm) = (Order::Robot(Command::Stop), Order::Robot(Command::Arm));
-        // STOP takes no control.
-        assert!(admit(&stop, &other).is_ok() && other.seat() == Seat::Free);
-        assert!(admit(&arm, &viewer).unwrap_err().contains("watch"));
-        assert!(admit(&arm, &driver).is_ok());
-        assert!(admit(&arm, &other).unwrap_err().contains("another page"));
-        for order in [Order::Speed(2.0), Order::Seek(1.0), Order::TakeControl] {
-            assert!(admit(&order, &viewer).is_err(), "{order:?}");
-        }
-        assert!(
-            [&driver, &other, &viewer]
-                .iter()
-                .all(|page| admit(&stop, page).is_ok())
-        );
-        assert!(admit(&Order::TakeControl, &other).is_ok());
-        assert!(admit(&arm, &driver).is_err());
     }
 
     #[tokio::test(start_paused = true)]
@@ -430,12 +281,13 @@ mod tests {
                 let rows: Vec<Row> = (0..100)
                     .map(|row| Row::unknown((100 * round + row) as i64))
                     .collect();
-                board.push_samples(&rows);
-                board.push_event(LoggedEvent {
+                board.take(&Entry::Rows(rows).into());
+                let event = LoggedEvent {
                     t_s: 0.0,
                     level: Level::Info,
                     text: round.to_string(),
-                });
+                };
+                board.take(&Entry::Event(event).into());
                 tokio::task::yield_now().await;
             }
             let (mut events, mut rows, mut last_s) = (Vec::new(), 0, 0.0);

@@ -4,8 +4,8 @@
 
 mod support;
 
-use rumbo_station::Target;
-use rumbo_station::client::{Heard, KnownTable, NotTaken, RobotClient};
+use rumbo_session::Target;
+use rumbo_session::client::{Heard, KnownTable, NotTaken, RobotClient};
 use rumbo_station::port::{DEFAULT_BAUD, Port, Pty};
 use rumbo_wire::Command;
 use std::path::Path;
@@ -110,7 +110,7 @@ fn a_port_that_is_pulled_out_and_put_back_is_found_again_and_nothing_is_armed_by
     station.live_until(|station| !station.client.connected());
     assert!(matches!(
         station.port.news(),
-        Some(rumbo_station::LinkNews::Lost(_))
+        Some(rumbo_session::LinkNews::Lost(_))
     ));
     // Asked of a robot that is not there.
     let now_us = station.port.now_us();
@@ -125,7 +125,7 @@ fn a_port_that_is_pulled_out_and_put_back_is_found_again_and_nothing_is_armed_by
     });
     assert!(matches!(
         station.port.news(),
-        Some(rumbo_station::LinkNews::Back(_))
+        Some(rumbo_session::LinkNews::Back(_))
     ));
     let applied = robot.pull(&name);
     assert!(!applied.contains(&Command::Arm), "{applied:?}");

@@ -6,7 +6,8 @@ mod page;
 mod support;
 
 use page::*;
-use rumbo_station::{Lab, LabConfig, LinkNews, ServeAt, Target, serve};
+use rumbo_session::{LinkNews, Target};
+use rumbo_station::{Lab, LabConfig, ServeAt, serve};
 use rumbo_wire::Command;
 use serde_json::{Value, json};
 use std::sync::atomic::{AtomicBool, Ordering};

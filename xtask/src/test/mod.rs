@@ -85,7 +85,7 @@ const STEPS: [Step; 17] = [
     },
     Step {
         name: "wasm",
-        what: "simulator, experiments and report compile for a browser",
+        what: "simulator, experiments, report, session and logs compile for a browser",
         check: wasm,
     },
     Step {
@@ -300,7 +300,12 @@ fn wasm(project: &Project) -> Result<(), Stop> {
         "--target=wasm32-unknown-unknown",
         "--no-default-features",
     ]);
-    for package in ["rumbo-sim", "rumbo-experiment", "rumbo-report"] {
+    for package in [
+        "rumbo-sim",
+        "rumbo-experiment",
+        "rumbo-report",
+        "rumbo-session",
+    ] {
         check.args(["--package", package]);
     }
     // Apart, so that this compiler and the usual one do not build each other's crates again.

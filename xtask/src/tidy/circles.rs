@@ -8,7 +8,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{Finding, Tree};
 
 /// The crates to which the rule applies.
-const CRATES: [&str; 3] = ["crates/sim", "crates/experiment", "crates/station"];
+const CRATES: [&str; 5] = [
+    "crates/sim",
+    "crates/experiment",
+    "crates/log",
+    "crates/session",
+    "crates/station",
+];
 
 /// An import: the file and line that has it.
 type Place<'a> = (&'a str, usize);

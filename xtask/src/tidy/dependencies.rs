@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 15] = [
+const ARROWS: [(&str, &[&str]); 17] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
@@ -21,7 +21,9 @@ const ARROWS: [(&str, &[&str]); 15] = [
     ),
     ("rumbo-experiment", &["rumbo-sim"]),
     ("rumbo-identify", &["rumbo-plant"]),
-    ("rumbo-station", &["rumbo-wire"]),
+    ("rumbo-log", &["rumbo-wire"]),
+    ("rumbo-session", &["rumbo-log"]),
+    ("rumbo-station", &["rumbo-session"]),
     ("rumbo-report", &["rumbo-experiment", "rumbo-identify"]),
     ("rumbo-cli", &["rumbo-station", "rumbo-report"]),
     ("rumbo-firmware", &["rumbo-robot"]),
@@ -32,8 +34,8 @@ const ARROWS: [(&str, &[&str]); 15] = [
 
 /// What tests may use besides, and why.
 const FOR_TESTS: [(&str, &str); 1] = [
-    // The station's session is tested against the real robot's side of the link.
-    ("rumbo-station", "rumbo-robot"),
+    // The session is tested against the real robot's side of the link.
+    ("rumbo-session", "rumbo-robot"),
 ];
 
 /// Crates that run on the chip, and the libraries they may use: each must work without std, allocation and panics.
@@ -154,12 +156,12 @@ mod tests {
     }
 
     #[test]
-    fn the_station_may_meet_the_robot_in_its_tests_only() {
+    fn the_session_may_meet_the_robot_in_its_tests_only() {
         assert_eq!(
-            findings("rumbo-station", "rumbo-robot", Some("dev")),
+            findings("rumbo-session", "rumbo-robot", Some("dev")),
             [""; 0]
         );
-        assert_eq!(findings("rumbo-station", "rumbo-robot", None).len(), 1);
+        assert_eq!(findings("rumbo-session", "rumbo-robot", None).len(), 1);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::observe::SPIN;
 use crate::support::{file, folder, program, rumbo, stderr, stdout};
 use rumbo_experiment::files::Library;
-use rumbo_station::log::Log;
+use rumbo_station::log_file;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -201,7 +201,7 @@ fn every_run_is_recorded_among_the_sessions_with_the_values_of_its_parameters() 
     };
     assert_eq!(stderr(&output), format!("recorded: {}\n", log.display()));
     assert!(log.to_str().unwrap().ends_with("-mode5-1.mcap"));
-    let read = Log::read(log).unwrap();
+    let read = log_file::read(log).unwrap();
     let values = read.parameters();
     assert_eq!((values["kv"], values["base_m"]), (0.03, 0.1));
     assert!(read.manifest.unwrap().started.is_some());

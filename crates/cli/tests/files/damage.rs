@@ -1,13 +1,13 @@
 //! A flipped bit is found: reported, or without any consequence for what is said of the log.
 
 use crate::{rumbo_in, scenario, status, support};
-use rumbo_station::log::Log;
+use rumbo_station::log_file;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// What a log says, and what it says of itself: damage is in the second, or nowhere.
 fn read(path: &Path) -> (String, String) {
-    match Log::read(path) {
+    match log_file::read(path) {
         Err(error) => (String::new(), error.to_string()),
         Ok(mut log) => {
             let (cut, holes) = (log.cut.take(), std::mem::take(&mut log.has_holes));
@@ -106,7 +106,7 @@ fn metadata_that_is_damaged_is_left_out_and_the_rest_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = log(folder.path());
     let bytes = std::fs::read(&path).unwrap();
-    let sound = Log::read(&path).unwrap();
+    let sound = log_file::read(&path).unwrap();
     let metadata = records(&bytes)
         .into_iter()
         .filter(|(kind, _)| *kind == mcap::records::op::METADATA);
@@ -121,7 +121,7 @@ fn metadata_that_is_damaged_is_left_out_and_the_rest_is_read() {
         let mut damaged = bytes.clone();
         damaged[at] ^= 1 << (at % 8);
         std::fs::write(&path, &damaged).unwrap();
-        let log = Log::read(&path).unwrap();
+        let log = log_file::read(&path).unwrap();
         tried += 1;
         assert_eq!(
             (log.rows.len(), log.link.len()),

@@ -2,8 +2,10 @@
 
 use crate::support::{stderr, stdout};
 use crate::{rumbo_in, scenario, status};
-use rumbo_station::headless::{Run, record_run};
-use rumbo_station::log::{Burst, Log, Manifest, Outcome};
+use rumbo_log::{Burst, Manifest, Outcome};
+use rumbo_session::headless::Run;
+use rumbo_station::headless::record_run;
+use rumbo_station::log_file;
 
 /// Whether a terminal would obey something in a text.
 fn obeyed(text: &str) -> bool {
@@ -73,7 +75,7 @@ fn texts_of_a_log_are_shown_and_not_interpreted() {
     let run = Run {
         scene: None,
         parameters: None,
-        truths: &[(10_000, rumbo_station::Truth::default())],
+        truths: &[(10_000, rumbo_log::Truth::default())],
         link: &link,
         said: &[],
         told: &[],
@@ -86,7 +88,7 @@ fn texts_of_a_log_are_shown_and_not_interpreted() {
     let logs = folder.join("logs");
     std::fs::create_dir(&logs).unwrap();
     record_run(&logs.join("x.mcap"), &manifest, run).unwrap();
-    assert!(Log::read(&logs.join("x.mcap")).is_ok());
+    assert!(log_file::read(&logs.join("x.mcap")).is_ok());
     for command in [
         &["list", "logs"][..],
         &["list", "logs", "--json"],

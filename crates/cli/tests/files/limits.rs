@@ -2,9 +2,10 @@
 
 use crate::support::stderr;
 use crate::{rumbo_in, scenario, status};
-use rumbo_station::Truth;
-use rumbo_station::headless::{Run, record_run};
-use rumbo_station::log::{Burst, Log, Manifest, Outcome};
+use rumbo_log::{Burst, Manifest, Outcome, Truth};
+use rumbo_session::headless::Run;
+use rumbo_station::headless::record_run;
+use rumbo_station::log_file;
 use std::path::Path;
 
 /// A log of a session in the lab with this manifest, and something sent at a time \[us\].
@@ -30,9 +31,9 @@ fn session(path: &Path, manifest: &Manifest, t_us: u64) {
 fn manifest(folder: &Path) -> Manifest {
     std::fs::write(folder.join("task.toml"), scenario("t", 0.2)).unwrap();
     rumbo_in(folder, &["run", "task.toml", "--out", "o"]);
-    let log = Log::read(&folder.join("o/task-1.mcap")).unwrap();
+    let log = log_file::read(&folder.join("o/task-1.mcap")).unwrap();
     Manifest {
-        kind: rumbo_station::log::Kind::Lab,
+        kind: rumbo_log::Kind::Lab,
         ..log.manifest.unwrap()
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::support::{stderr, stdout};
 use crate::{rumbo_in, scenario, status};
-use rumbo_station::Truth;
-use rumbo_station::headless::{Run, record_run};
-use rumbo_station::log::{Log, Manifest};
+use rumbo_log::{Manifest, Truth};
+use rumbo_session::headless::Run;
+use rumbo_station::headless::record_run;
+use rumbo_station::log_file;
 
 #[test]
 fn a_run_of_another_model_that_differs_reports_the_model_first() {
@@ -12,7 +13,7 @@ fn a_run_of_another_model_that_differs_reports_the_model_first() {
     let folder = folder.path();
     std::fs::write(folder.join("task.toml"), scenario("t", 0.2)).unwrap();
     rumbo_in(folder, &["run", "task.toml", "--out", "o"]);
-    let log = Log::read(&folder.join("o/task-1.mcap")).unwrap();
+    let log = log_file::read(&folder.join("o/task-1.mcap")).unwrap();
     let recorded = log.manifest.clone().unwrap();
     let here = rumbo_experiment::MODEL;
     assert_eq!(recorded.model, Some(here));

@@ -12,8 +12,9 @@ pub use error::PortError;
 #[cfg(unix)]
 pub use pty::Pty;
 
-use crate::log::{Kind, Manifest};
-use crate::target::{LinkNews, Target};
+use rumbo_log::{Kind, Manifest};
+pub use rumbo_session::DEFAULT_BAUD;
+use rumbo_session::{LinkNews, Target};
 use std::io::{self, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,8 +23,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Speed of the robot's Bluetooth module \[baud\].
-pub const DEFAULT_BAUD: u32 = 9_600;
 /// A port that is gone is tried again this often.
 const AGAIN: Duration = Duration::from_millis(250);
 /// A thread that waits for the port looks this often whether it is still needed.

@@ -1,11 +1,8 @@
 //! The ghost of a log, started again in the middle: it lives from the beginning up to there, is put where the robot stood, and goes on. That takes
 //! a while for a long log, and is done a little at a time: what is not known yet is not shown, and nothing waits.
 
-use crate::log::Log;
-use crate::origin::compose;
-use crate::scene::MapPose;
-use crate::signals::Row;
-use crate::target::{Ghost, Standing};
+use rumbo_log::{Log, MapPose, Row, compose};
+use rumbo_session::{Ghost, Standing};
 use std::time::{Duration, Instant};
 
 /// Time spent on the ghost at once.

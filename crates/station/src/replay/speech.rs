@@ -1,9 +1,8 @@
 //! What the USARTs of an emulated chip said in a log, or a robot that speaks text, told as the playhead passes it.
 
 use crate::board::Board;
-use crate::console::readable;
-use crate::event::{ConsoleText, LINK_CONSOLE};
-use crate::log::Log;
+use rumbo_log::Log;
+use rumbo_session::{ConsoleText, Event, LINK_CONSOLE, readable};
 use std::collections::BTreeMap;
 
 /// What was said, and how much of it the pages have.
@@ -53,7 +52,7 @@ impl Speech {
         self.next = end;
         for (usart, bytes) in by_usart {
             let text = readable(&bytes);
-            board.push_console(ConsoleText { usart, text });
+            board.take(&Event::Console(ConsoleText { usart, text }));
         }
     }
 }

@@ -1,0 +1,41 @@
+//! Checksums of a log's metadata, for which MCAP has none: a message each, in a chunk, which has one.
+//!
+//! Metadata that is not what its checksum says is left out. In a log without such checksums, of a version before they
+//! were written, the checksum of the whole data section stands for them; a log that lacks that too, because it was cut
+//! off, says that its metadata cannot be verified.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Name of the metadata that says what ran.
+pub(crate) const MANIFEST: &str = "manifest";
+/// Name of the metadata that says how it ended.
+pub(crate) const OUTCOME: &str = "outcome";
+
+/// Keys and values of a metadata record.
+pub(crate) type Fields = BTreeMap<String, String>;
+
+/// The checksum of a metadata record, as its message has it.
+#[derive(Debug, Deserialize, Serialize)]
+pub(crate) struct Digest {
+    /// The record's name.
+    pub(crate) name: String,
+    /// CRC-32 of its name, keys and values, each ended by a zero byte.
+    pub(crate) crc32: u32,
+}
+
+impl Digest {
+    pub(crate) fn of(name: &str, fields: &Fields) -> Self {
+        let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
+        let mut digest = crc.digest();
+        let pairs = fields.iter().flat_map(|(key, value)| [key, value]);
+        for text in std::iter::once(name).chain(pairs.map(String::as_str)) {
+            digest.update(text.as_bytes());
+            digest.update(&[0]);
+        }
+        Self {
+            name: name.to_owned(),
+            crc32: digest.finalize(),
+        }
+    }
+}

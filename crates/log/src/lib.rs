@@ -1,0 +1,57 @@
+//! Logs: every run as an MCAP file, from which it can be shown, exported, compared and run again.
+//!
+//! | topic | schema | what |
+//! |---|---|---|
+//! | `/telemetry` | `rumbo.Telemetry` | the signals of the dashboard, one message per telemetry frame |
+//! | `/state` | `rumbo.State` | what changes slowly: mode, faults, battery, figures of the link |
+//! | `/parameters` | `rumbo.Parameters` | the values the robot acknowledged, or began the run with, by name |
+//! | `/events` | `foxglove.Log` | what happened, in words |
+//! | `/pose/estimated`, `/pose/true` | `foxglove.PoseInFrame` | the two poses in the world |
+//! | `/world` | `foxglove.SceneUpdate` | walls and boxes |
+//! | `/scene` | `rumbo.Scene` | what the dashboard draws around the robot |
+//! | `/link/from_robot`, `/link/to_robot` | `rumbo.Bytes` | the raw bytes of the link, base64 |
+//! | `/console` | `rumbo.Console` | what the USARTs of an emulated chip sent, and what a person typed to them, base64 |
+//! | `/digest` | `rumbo.Digest` | the checksum of each metadata record |
+//!
+//! Messages are JSON with JSON schemas, times are the run's own, from 0. A metadata record `manifest` says what ran
+//! ([`Manifest`]); the files it was made of are attached. A log whose writer was killed is readable up to the last
+//! chunk that was closed ([`LogWriter::flush`]).
+//!
+//! Works on bytes: which file they are in, when they are flushed and who waits for the disk is the caller's business.
+
+mod bound;
+mod digest;
+mod entry;
+mod error;
+mod event;
+mod log;
+mod lz4;
+mod manifest;
+mod messages;
+mod parameters;
+mod reader;
+mod scene;
+mod schema;
+mod signals;
+mod state;
+mod summary;
+mod writer;
+
+pub use bound::Bound;
+pub use entry::{Burst, Entry, Said};
+pub use error::ReadError;
+pub use event::{Level, LoggedEvent};
+pub use log::{Log, Sent};
+pub use manifest::{Kind, Manifest, Outcome};
+pub use messages::Sink;
+pub use parameters::{Parameter, ParameterState, parameter, parameters};
+pub use scene::{
+    Choice, Experiment, MapPose, Obstacle, Place, RoutePlan, Scene, SonarMount, Truth, compose,
+};
+pub use schema::Topic;
+pub use signals::{Cell, EARLIER_MS, Row, Sample, Spread};
+pub use state::{
+    CalibrationState, End, Errand, Finding, Findings, LinkState, ReplayState, RobotState, State,
+};
+pub use summary::Summary;
+pub use writer::{LogWriter, WriteError};

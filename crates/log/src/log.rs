@@ -1,0 +1,154 @@
+//! A log in memory.
+
+use crate::entry::{Burst, Said};
+use crate::event::LoggedEvent;
+use crate::manifest::{Manifest, Outcome};
+use crate::scene::{MapPose, Scene, compose};
+use crate::signals::Row;
+use crate::state::State;
+use std::collections::BTreeMap;
+
+/// A log in memory.
+#[derive(Clone, Debug, Default)]
+pub struct Log {
+    /// What ran, where the log says so.
+    pub manifest: Option<Manifest>,
+    /// How it ended, where somebody judged.
+    pub outcome: Option<Outcome>,
+    /// The signals, in order of time.
+    pub rows: Vec<Row>,
+    /// What happened, with its time \[s\].
+    pub events: Vec<LoggedEvent>,
+    /// The slow state, in order of time.
+    pub states: Vec<State>,
+    /// What surrounded the robot.
+    pub scene: Option<Scene>,
+    /// The parameters' values, each with its time \[ms\].
+    pub parameters: Vec<(i64, BTreeMap<String, f32>)>,
+    /// What crossed the link, in order.
+    pub link: Vec<Burst>,
+    /// What crossed the USARTs of an emulated chip, in order.
+    pub said: Vec<Said>,
+    /// What went to the robot, in the order in which it went, which times alone do not tell: places in `link` and `said`.
+    pub(crate) order: Vec<Place>,
+    /// Why the log ends early, where it does; or why something within is missing.
+    pub cut: Option<String>,
+    /// Something within is missing, and what comes after it is there.
+    pub has_holes: bool,
+    /// What else a reader should know, a line each; nothing is missing for these.
+    pub notes: Vec<String>,
+}
+
+/// Where something sent is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Place {
+    Link(usize),
+    Said(usize),
+}
+
+impl Log {
+    /// Puts a ghost beside the robot: where it is at each row, by its time \[us\], in the world of `scene`. A robot of which no world is known
+    /// is put there too, its origin where the ghost begins.
+    ///
+    /// # Errors
+    /// What the ghost has to say.
+    pub fn haunt<E>(
+        &mut self,
+        scene: Scene,
+        mut ghost: impl FnMut(u64) -> Result<MapPose, E>,
+    ) -> Result<(), E> {
+        let start = self.scene.is_none().then_some(scene.start);
+        for row in &mut self.rows {
+            let pose = ghost(u64::try_from(row.t_ms).unwrap_or(0) * 1_000)?;
+            row.set_pose("ghost_", pose);
+            if let Some(start) = start {
+                let at = row.pose("origin_").unwrap_or_default();
+                row.set_pose("origin_", compose(start, at));
+            }
+        }
+        self.scene.get_or_insert(scene);
+        Ok(())
+    }
+
+    /// What went to the robot, in the order in which it went.
+    pub fn sent(&self) -> impl Iterator<Item = Sent<'_>> {
+        self.order.iter().filter_map(|place| match *place {
+            Place::Link(at) => self.link.get(at).map(Sent::Link),
+            Place::Said(at) => self.said.get(at).map(Sent::Typed),
+        })
+    }
+
+    /// Nothing of what happened is in it: it ends within its manifest and the files that ran.
+    #[must_use]
+    pub fn holds_nothing(&self) -> bool {
+        let heard = self.rows.is_empty() && self.states.is_empty() && self.events.is_empty();
+        heard && self.link.is_empty() && self.said.is_empty()
+    }
+
+    /// The robot spoke the original's text: what it said is for people, too.
+    #[must_use]
+    pub fn speaks_text(&self) -> bool {
+        self.states.iter().any(|state| state.robot.text)
+    }
+
+    /// Events as lines: time \[s\], level, text.
+    pub fn events(&self) -> impl Iterator<Item = (f64, &'static str, &str)> {
+        self.events
+            .iter()
+            .map(|event| (event.t_s, event.level.name(), event.text.as_str()))
+    }
+
+    /// The parameters' values by name, as they were known at the end; empty where the robot told none.
+    #[must_use]
+    pub fn parameters(&self) -> BTreeMap<String, f32> {
+        let last = self.parameters.last();
+        last.map(|(_, values)| values.clone()).unwrap_or_default()
+    }
+
+    /// What surrounded the robot, if it was simulated.
+    #[must_use]
+    pub fn scene(&self) -> Option<&Scene> {
+        self.scene.as_ref()
+    }
+
+    /// Length of the log \[s\].
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        let row_s = self.rows.last().map_or(0.0, |row| row.t_ms as f64 / 1e3);
+        let state_s = self.states.last().map_or(0.0, |state| state.t_s);
+        let link_s = self
+            .link
+            .last()
+            .map_or(0.0, |burst| burst.t_us as f64 / 1e6);
+        row_s.max(state_s).max(link_s)
+    }
+
+    /// Something of it is missing.
+    pub(crate) fn lose(&mut self, what: &str) {
+        self.has_holes = true;
+        self.cut = Some(match self.cut.take() {
+            Some(why) => format!("{why}; {what}"),
+            None => what.to_owned(),
+        });
+    }
+}
+
+/// What somebody sent to the robot.
+#[derive(Clone, Copy, Debug)]
+pub enum Sent<'a> {
+    /// Bytes over the link.
+    Link(&'a Burst),
+    /// A line typed to a USART.
+    Typed(&'a Said),
+}
+
+impl Sent<'_> {
+    /// When, in the target's time \[us\].
+    #[must_use]
+    pub fn t_us(&self) -> u64 {
+        match self {
+            Self::Link(burst) => burst.t_us,
+            Self::Typed(said) => said.t_us,
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! What is recorded, as the messages that it makes; where they go is a [`Sink`]'s business: a file, or a viewer.
+
+use crate::entry::{Burst, Entry, Said};
+use crate::event::{Level, LoggedEvent};
+use crate::parameters::ParameterState;
+use crate::scene::{MapPose, Scene, compose};
+use crate::schema::Topic;
+use crate::signals::Row;
+use crate::state::State;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Map, Value, json};
+
+/// Takes messages.
+pub trait Sink {
+    /// Why it cannot.
+    type Error;
+
+    /// A message of this topic.
+    ///
+    /// # Errors
+    /// Why it cannot.
+    fn put(&mut self, topic: Topic, t_us: u64, data: &[u8]) -> Result<(), Self::Error>;
+
+    /// The messages of an entry; an outcome makes none. Scene and parameters have no time of their own: they are of
+    /// the time `now_us` that came last, which a burst moves.
+    ///
+    /// # Errors
+    /// Why it cannot.
+    fn entry(&mut self, entry: &Entry, now_us: &mut u64) -> Result<(), Self::Error> {
+        match entry {
+            Entry::Burst(burst) => {
+                *now_us = burst.t_us;
+                self.burst(burst)
+            }
+            Entry::Said(said) => self.said(said),
+            Entry::Rows(rows) => rows.iter().try_for_each(|row| self.row(row)),
+            Entry::Event(event) => self.event(event),
+            Entry::State(state) => self.state(state),
+            Entry::Scene(scene) => self.scene(*now_us, scene.as_deref()),
+            Entry::Parameters(parameters) => self.parameters(*now_us, parameters),
+            Entry::Outcome(_) => Ok(()),
+        }
+    }
+}
+
+/// The messages of one entry each.
+trait Messages: Sink {
+    fn put_json(&mut self, topic: Topic, t_us: u64, message: &Value) -> Result<(), Self::Error> {
+        self.put(topic, t_us, message.to_string().as_bytes())
+    }
+
+    /// Raw bytes of the link.
+    fn burst(&mut self, burst: &Burst) -> Result<(), Self::Error> {
+        let topic = if burst.to_robot {
+            Topic::ToRobot
+        } else {
+            Topic::FromRobot
+        };
+        self.put_json(
+            topic,
+            burst.t_us,
+            &json!({ "data": STANDARD.encode(&burst.bytes) }),
+        )
+    }
+
+    /// What a USART sent, or was sent.
+    fn said(&mut self, said: &Said) -> Result<(), Self::Error> {
+        let data = STANDARD.encode(&said.bytes);
+        let message = json!({ "usart": said.usart, "to_chip": said.to_chip, "data": data });
+        self.put_json(Topic::Console, said.t_us, &message)
+    }
+
+    /// The signals of one instant, and the poses in them.
+    fn row(&mut self, row: &Row) -> Result<(), Self::Error> {
+        let t_us = to_us(row.t_ms);
+        self.put(Topic::Telemetry, t_us, row_json(row).to_string().as_bytes())?;
+        if let (Some(told), Some(origin)) = (row.pose(""), row.pose("origin_")) {
+            self.pose(Topic::Estimated, t_us, compose(origin, told))?;
+        }
+        if let Some(truth) = row.pose("true_") {
+            self.pose(Topic::True, t_us, truth)?;
+        }
+        Ok(())
+    }
+
+    fn pose(&mut self, topic: Topic, t_us: u64, at: MapPose) -> Result<(), Self::Error> {
+        let message =
+            json!({ "timestamp": timestamp(t_us), "frame_id": "world", "pose": pose_json(at) });
+        self.put_json(topic, t_us, &message)
+    }
+
+    /// Something that happened.
+    fn event(&mut self, event: &LoggedEvent) -> Result<(), Self::Error> {
+        let t_us = to_us((event.t_s * 1e3).round() as i64);
+        // The numbers of `foxglove.Log`; what was achieved is news like any other there, and keeps its name.
+        let (level, name) = match event.level {
+            Level::Info => (2, "info"),
+            Level::Good => (2, "good"),
+            Level::Warning => (3, "warning"),
+            Level::Fault => (4, "fault"),
+        };
+        let message = json!({ "timestamp": timestamp(t_us), "level": level, "message": event.text, "name": name, "file": "", "line": 0 });
+        self.put_json(Topic::Events, t_us, &message)
+    }
+
+    /// The slow state.
+    fn state(&mut self, state: &State) -> Result<(), Self::Error> {
+        match serde_json::to_value(state) {
+            Ok(mut message) => {
+                leave_out_unknown(&mut message);
+                let t_us = to_us((state.t_s * 1e3).round() as i64);
+                self.put_json(Topic::State, t_us, &message)
+            }
+            Err(_) => Ok(()),
+        }
+    }
+
+    /// The parameters' values, as far as they are known.
+    fn parameters(&mut self, t_us: u64, parameters: &[ParameterState]) -> Result<(), Self::Error> {
+        let known = parameters.iter().filter_map(|parameter| {
+            Some((parameter.entry.name.to_owned(), json!(parameter.value?)))
+        });
+        let known: Map<String, Value> = known.collect();
+        if known.is_empty() {
+            return Ok(());
+        }
+        self.put_json(Topic::Parameters, t_us, &Value::Object(known))
+    }
+
+    /// What surrounds the robot.
+    fn scene(&mut self, t_us: u64, scene: Option<&Scene>) -> Result<(), Self::Error> {
+        if let Some(scene) = scene {
+            self.put_json(Topic::World, t_us, &world_json(t_us, scene))?;
+        }
+        match serde_json::to_vec(&json!({ "scene": scene })) {
+            Ok(message) => self.put(Topic::Scene, t_us, &message),
+            Err(_) => Ok(()),
+        }
+    }
+}
+
+impl<S: Sink + ?Sized> Messages for S {}
+
+/// What is not known is left out, as in all messages: viewers take a field for what its schema says.
+fn leave_out_unknown(message: &mut Value) {
+    if let Value::Object(fields) = message {
+        fields.retain(|_, value| !value.is_null());
+        fields.values_mut().for_each(leave_out_unknown);
+    }
+}
+
+fn to_us(t_ms: i64) -> u64 {
+    // Telemetry of before the run began is none.
+    u64::try_from(t_ms).unwrap_or_default() * 1_000
+}
+
+fn timestamp(t_us: u64) -> Value {
+    json!({ "sec": t_us / 1_000_000, "nsec": t_us % 1_000_000 * 1_000 })
+}
+
+fn pose_json(at: MapPose) -> Value {
+    let (sin, cos) = (0.5 * at.heading_rad).sin_cos();
+    json!({ "position": { "x": at.x_m, "y": at.y_m, "z": 0.0 }, "orientation": { "x": 0.0, "y": 0.0, "z": sin, "w": cos } })
+}
+
+/// What is unknown is left out; a clear range is told by a field of its own, since viewers plot numbers.
+fn row_json(row: &Row) -> Value {
+    let mut message = Map::new();
+    for (column, name) in Row::names().enumerate() {
+        match row.get(column) {
+            Some(value) if value.is_finite() => drop(message.insert(name.to_owned(), json!(value))),
+            Some(_) => drop(message.insert(format!("{name}_clear"), json!(true))),
+            None => {}
+        }
+    }
+    Value::Object(message)
+}
+
+fn world_json(t_us: u64, scene: &Scene) -> Value {
+    /// Connects the points; the second also connects the last with the first.
+    const LINE_STRIP: u8 = 0;
+    const LINE_LOOP: u8 = 1;
+    let lines: Vec<Value> = scene
+        .obstacles
+        .iter()
+        .map(|obstacle| {
+            let points: Vec<Value> =
+                obstacle.corners_m.iter().map(|[x, y]| json!({ "x": x, "y": y, "z": 0.0 })).collect();
+            json!({ "type": if obstacle.closed { LINE_LOOP } else { LINE_STRIP }, "pose": pose_json(MapPose::default()),
+                "thickness": 0.01, "scale_invariant": false, "points": points,
+                "color": { "r": 0.5, "g": 0.5, "b": 0.5, "a": 1.0 }, "colors": [], "indices": [] })
+        })
+        .collect();
+    let entity = json!({ "timestamp": timestamp(t_us), "frame_id": "world", "id": "world", "lifetime": { "sec": 0, "nsec": 0 },
+        "frame_locked": false, "metadata": [], "arrows": [], "cubes": [], "spheres": [], "cylinders": [], "lines": lines,
+        "triangles": [], "texts": [], "models": [] });
+    json!({ "deletions": [], "entities": [entity] })
+}

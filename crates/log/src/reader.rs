@@ -1,0 +1,85 @@
+//! Reads a log, whole or cut off.
+//!
+//! A log without an end, of a writer that was killed, is read as far as it goes, and says so ([`Log::cut`]). One that
+//! is damaged within, and has its index, is read but for what is damaged. Logs that `rumbo import` made of the original
+//! program's CSV are read too, as far as their signals have a place in a [`Row`](crate::signals::Row).
+
+mod earlier;
+mod intake;
+mod metadata;
+mod pieces;
+mod row_json;
+
+use crate::error::ReadError;
+use crate::log::Log;
+use intake::{Intake, Stop};
+use mcap::MAGIC;
+use pieces::Pieces;
+use rumbo_wire::Hello;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+
+/// A log that is shorter has no whole manifest \[bytes\].
+const SHORTEST: u64 = 256;
+
+impl Log {
+    /// Reads a log.
+    ///
+    /// # Errors
+    /// Bytes that cannot be read, are no log, or hold nothing known.
+    pub fn read(from: impl Read + Seek) -> Result<Self, ReadError> {
+        read(from, true)
+    }
+
+    /// Reads a log without the raw bytes of its link, for showing.
+    ///
+    /// # Errors
+    /// As [`Log::read`].
+    pub fn read_signals(from: impl Read + Seek) -> Result<Self, ReadError> {
+        read(from, false)
+    }
+
+    /// How the robot first named itself in frames.
+    #[must_use]
+    pub fn hello(&self) -> Option<Hello> {
+        earlier::hello(&self.link)
+    }
+}
+
+fn read(mut from: impl Read + Seek, with_link: bool) -> Result<Log, ReadError> {
+    // What is of another kind may be too long for the memory.
+    if !is_log(&mut from)? {
+        return Err(ReadError::NothingYet);
+    }
+    let mut log = Intake::new(with_link).read(MAGIC.chain(BufReader::new(&mut from)));
+    if let Some(stop @ (Stop::NoEnd | Stop::Damaged(_))) = &log.stop
+        && let Some(pieces) = Pieces::find(&mut from)
+    {
+        log = pieces.take(stop.text(), with_link);
+    }
+    let mut log = log.into_log();
+    if log.manifest.is_none() && log.rows.is_empty() {
+        let length = from.seek(SeekFrom::End(0));
+        return Err(match log.cut {
+            Some(_) if length.is_ok_and(|length| length < SHORTEST) => ReadError::NothingYet,
+            Some(_) => ReadError::CutOff,
+            None => ReadError::Foreign,
+        });
+    }
+    log.rows.sort_by_key(|row| row.t_ms);
+    earlier::renew(&mut log.link);
+    Ok(log)
+}
+
+/// Reads how it begins: false for a log whose writer was stopped before it had begun.
+///
+/// # Errors
+/// Bytes that cannot be read, or are no log.
+pub(crate) fn is_log(from: &mut impl Read) -> Result<bool, ReadError> {
+    let mut start = Vec::new();
+    from.take(MAGIC.len() as u64).read_to_end(&mut start)?;
+    match start.as_slice() {
+        MAGIC => Ok(true),
+        start if MAGIC.starts_with(start) => Ok(false),
+        _ => Err(ReadError::NoLog),
+    }
+}

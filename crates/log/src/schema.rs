@@ -1,0 +1,228 @@
+//! The JSON schemas of the log's messages. Those named `foxglove.*` are well known to viewers; of them, what is used here.
+
+use crate::signals::Row;
+use serde_json::{Map, Value, json};
+
+/// Where messages of one kind go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Topic {
+    /// The signals.
+    Telemetry,
+    /// What changes slowly.
+    State,
+    /// The parameters' values.
+    Parameters,
+    /// What happened.
+    Events,
+    /// The estimated pose.
+    Estimated,
+    /// The true pose.
+    True,
+    /// Walls and boxes.
+    World,
+    /// What the dashboard draws around the robot.
+    Scene,
+    /// Raw bytes from the robot.
+    FromRobot,
+    /// Raw bytes to the robot.
+    ToRobot,
+    /// What crossed the USARTs of an emulated chip.
+    Console,
+    /// Checksums of the metadata.
+    Digest,
+}
+
+impl Topic {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; 12] = [
+        Self::Telemetry,
+        Self::State,
+        Self::Parameters,
+        Self::Events,
+        Self::Estimated,
+        Self::True,
+        Self::World,
+        Self::Scene,
+        Self::FromRobot,
+        Self::ToRobot,
+        Self::Console,
+        Self::Digest,
+    ];
+
+    /// Its name in the log.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Telemetry => "/telemetry",
+            Self::State => "/state",
+            Self::Parameters => "/parameters",
+            Self::Events => "/events",
+            Self::Estimated => "/pose/estimated",
+            Self::True => "/pose/true",
+            Self::World => "/world",
+            Self::Scene => "/scene",
+            Self::FromRobot => "/link/from_robot",
+            Self::ToRobot => "/link/to_robot",
+            Self::Console => "/console",
+            Self::Digest => "/digest",
+        }
+    }
+
+    /// The topic of this name.
+    #[must_use]
+    pub fn find(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|topic| topic.name() == name)
+    }
+
+    /// Name and text of its schema.
+    #[must_use]
+    pub fn schema(self) -> (&'static str, Value) {
+        match self {
+            Self::Telemetry => ("rumbo.Telemetry", telemetry()),
+            Self::State => ("rumbo.State", state()),
+            Self::Parameters => ("rumbo.Parameters", parameters()),
+            Self::Events => ("foxglove.Log", log()),
+            Self::Estimated | Self::True => ("foxglove.PoseInFrame", pose_in_frame()),
+            Self::World => ("foxglove.SceneUpdate", scene_update()),
+            // What it holds is for the dashboard.
+            Self::Scene => ("rumbo.Scene", object("rumbo.Scene", json!({}))),
+            Self::FromRobot | Self::ToRobot => ("rumbo.Bytes", bytes()),
+            Self::Console => ("rumbo.Console", console()),
+            Self::Digest => ("rumbo.Digest", digest()),
+        }
+    }
+}
+
+fn object(title: &str, properties: Value) -> Value {
+    json!({ "title": title, "type": "object", "properties": properties })
+}
+
+fn number() -> Value {
+    json!({ "type": "number" })
+}
+
+fn text() -> Value {
+    json!({ "type": "string" })
+}
+
+fn telemetry() -> Value {
+    let signals = Row::names().map(|name| (name.to_owned(), number()));
+    let nothing = Row::ranges().map(|name| (format!("{name}_clear"), json!({ "type": "boolean" })));
+    let properties: Map<String, Value> = signals.chain(nothing).collect();
+    object("rumbo.Telemetry", Value::Object(properties))
+}
+
+fn state() -> Value {
+    let flag = || json!({ "type": "boolean" });
+    let link = [
+        "telemetry_hz",
+        "down_load",
+        "up_load",
+        "baud",
+        "round_trip_ms",
+        "crc_errors_down",
+        "crc_errors_up",
+        "frames_lost",
+        "dropped",
+        "unacknowledged",
+        "clock_offset_ms",
+        "clock_fast_ppm",
+    ];
+    let mut link: Map<String, Value> = link
+        .map(|name| (name.to_owned(), number()))
+        .into_iter()
+        .collect();
+    link.insert("connected".into(), flag());
+    let robot = json!({ "mode": number(), "armed": flag(), "fault": text(), "battery_v": number(), "true_battery_v": number(),
+        "servo_rad": number(), "rig": text() });
+    object(
+        "rumbo.State",
+        json!({ "t_s": number(), "speed": number(), "achieved_speed": number(), "link": object("link", Value::Object(link)),
+            "robot": object("robot", robot) }),
+    )
+}
+
+fn parameters() -> Value {
+    let properties: Map<String, Value> = crate::parameters::parameters()
+        .map(|entry| (entry.name.to_owned(), number()))
+        .collect();
+    object("rumbo.Parameters", Value::Object(properties))
+}
+
+fn time() -> Value {
+    object(
+        "time",
+        json!({ "sec": { "type": "integer" }, "nsec": { "type": "integer" } }),
+    )
+}
+
+fn log() -> Value {
+    object(
+        "foxglove.Log",
+        json!({ "timestamp": time(), "level": { "type": "integer" }, "message": text(), "name": text(), "file": text(),
+            "line": { "type": "integer" } }),
+    )
+}
+
+fn vector(title: &str) -> Value {
+    object(
+        title,
+        json!({ "x": number(), "y": number(), "z": number() }),
+    )
+}
+
+fn pose() -> Value {
+    let orientation = json!({ "x": number(), "y": number(), "z": number(), "w": number() });
+    object(
+        "foxglove.Pose",
+        json!({ "position": vector("foxglove.Vector3"), "orientation": object("foxglove.Quaternion", orientation) }),
+    )
+}
+
+fn pose_in_frame() -> Value {
+    object(
+        "foxglove.PoseInFrame",
+        json!({ "timestamp": time(), "frame_id": text(), "pose": pose() }),
+    )
+}
+
+fn scene_update() -> Value {
+    let color = object(
+        "foxglove.Color",
+        json!({ "r": number(), "g": number(), "b": number(), "a": number() }),
+    );
+    let line = json!({ "type": { "type": "integer" }, "pose": pose(), "thickness": number(), "scale_invariant": { "type": "boolean" },
+        "points": { "type": "array", "items": vector("foxglove.Point3") }, "color": color,
+        "colors": { "type": "array", "items": color }, "indices": { "type": "array", "items": { "type": "integer" } } });
+    let nothing = || json!({ "type": "array", "items": object("nothing", json!({})) });
+    let entity = json!({ "timestamp": time(), "frame_id": text(), "id": text(), "lifetime": time(),
+        "frame_locked": { "type": "boolean" }, "metadata": nothing(), "arrows": nothing(), "cubes": nothing(), "spheres": nothing(),
+        "cylinders": nothing(), "lines": { "type": "array", "items": object("foxglove.LinePrimitive", line) }, "triangles": nothing(),
+        "texts": nothing(), "models": nothing() });
+    object(
+        "foxglove.SceneUpdate",
+        json!({ "deletions": nothing(), "entities": { "type": "array", "items": object("foxglove.SceneEntity", entity) } }),
+    )
+}
+
+fn bytes() -> Value {
+    object(
+        "rumbo.Bytes",
+        json!({ "data": { "type": "string", "contentEncoding": "base64" } }),
+    )
+}
+
+fn digest() -> Value {
+    object(
+        "rumbo.Digest",
+        json!({ "name": text(), "crc32": { "type": "integer" } }),
+    )
+}
+
+fn console() -> Value {
+    object(
+        "rumbo.Console",
+        json!({ "usart": { "type": "integer" }, "to_chip": { "type": "boolean" },
+            "data": { "type": "string", "contentEncoding": "base64" } }),
+    )
+}

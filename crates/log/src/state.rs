@@ -1,0 +1,178 @@
+//! What changes slowly, for pages and logs: the state of the session, its link and its robot.
+
+use crate::scene::RoutePlan;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// What changes slowly.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Session time \[s\].
+    pub t_s: f64,
+    /// A simulation: its speed can be set and it can be reset.
+    pub simulated: bool,
+    /// Seconds of the target asked for per second of the wall clock.
+    pub speed: f64,
+    /// Seconds of the target per second of the wall clock, measured.
+    pub achieved_speed: f64,
+    /// The link.
+    pub link: LinkState,
+    /// The robot.
+    pub robot: RobotState,
+    /// The last order, if it was refused or given up, and why.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refused: Option<String>,
+    /// What a person has to see to at once.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub alarms: Vec<String>,
+    /// The calibration that runs, or ran last in this run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<CalibrationState>,
+    /// A log is being shown, of this length; `t_s` is where.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub replay: Option<ReplayState>,
+}
+
+/// A log being shown, for the page.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ReplayState {
+    /// Its name.
+    pub name: String,
+    /// Its length \[s\].
+    pub duration_s: f64,
+}
+
+/// The link, for the page.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LinkState {
+    /// The robot answers.
+    pub connected: bool,
+    /// Telemetry frames a second.
+    pub telemetry_hz: f64,
+    /// Share of the link's capacity from the robot, 0..=1.
+    pub down_load: f64,
+    /// Share of the link's capacity to the robot, 0..=1.
+    pub up_load: f64,
+    /// Its speed \[baud\].
+    pub baud: u32,
+    /// From a command to its acknowledgement, smoothed \[ms\].
+    pub round_trip_ms: Option<u64>,
+    /// Frames from the robot that failed the CRC.
+    pub crc_errors_down: u16,
+    /// Frames to the robot that failed the CRC.
+    pub crc_errors_up: u8,
+    /// Frames from the robot missing by their sequence numbers.
+    pub frames_lost: u16,
+    /// Telemetry the robot dropped because the link was full.
+    pub dropped: u8,
+    /// The operator's commands not acknowledged yet.
+    pub unacknowledged: usize,
+    /// Session time at the robot's time 0, where the clocks did not start together.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clock_offset_ms: Option<i64>,
+    /// By how much the robot's clock is fast, in millionths.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clock_fast_ppm: Option<i64>,
+}
+
+/// The robot's slow signals, for the page.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RobotState {
+    /// Number of the active mode.
+    pub mode: u8,
+    /// ON.
+    pub armed: bool,
+    /// The latched fault and what to do about it.
+    pub fault: Option<Cow<'static, str>>,
+    /// Battery as measured \[V\].
+    pub battery_v: Option<f64>,
+    /// Battery as it is, of a simulated robot \[V\].
+    pub true_battery_v: Option<f64>,
+    /// The mode's setpoints.
+    pub reference: [f32; 2],
+    /// Ticks that took too long.
+    pub overruns: u8,
+    /// Where the servo points \[rad\].
+    pub servo_rad: f32,
+    /// Name of the rig that the robot believes to carry; `None` until it has said so.
+    pub rig: Option<Cow<'static, str>>,
+    /// What it is asked to reach.
+    pub errand: Errand,
+    /// The robot has another parameter table, or another protocol: its parameters are neither shown nor written.
+    pub foreign: bool,
+    /// The robot speaks the original's text.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub text: bool,
+}
+
+/// How it ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum End {
+    /// It is there.
+    Reached,
+    /// There is no way.
+    Unreachable,
+}
+
+/// What the robot is asked to reach. Places are from the robot's origin.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Errand {
+    /// The goal of mode 8 \[m\]; `None` once it is reached, since the origin may have moved there.
+    pub goal: Option<[f32; 2]>,
+    /// Mode 8 follows a lane.
+    pub lane: bool,
+    /// The route of mode 7.
+    pub route: Option<RoutePlan>,
+    /// Where the robot stood when a relative route began: x, y \[m\] and heading \[rad\].
+    pub from: Option<[f32; 3]>,
+    /// How it ended; `None` while it goes on.
+    pub end: Option<End>,
+}
+
+/// What a calibration found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Findings {
+    /// The quantities.
+    pub rows: Vec<Finding>,
+    /// The parameters set, by number.
+    pub parameters: Vec<(u8, f32)>,
+}
+
+/// A quantity that was found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Finding {
+    /// What it is, with its unit.
+    pub name: String,
+    /// Its value.
+    pub found: f64,
+    /// Standard deviation of its error.
+    pub standard_error: Option<f64>,
+}
+
+/// How a calibration stands, for the page.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "phase", rename_all = "snake_case")]
+pub enum CalibrationState {
+    /// It goes on.
+    Running {
+        /// Since then, in session time \[s\].
+        since_s: f64,
+    },
+    /// It has set the parameters.
+    Done {
+        /// What it found.
+        findings: Findings,
+        /// When, by the session's time: one that ended at once was never seen running.
+        #[serde(default)]
+        at_s: f64,
+    },
+    /// It was given up.
+    Failed {
+        /// Why.
+        why: String,
+        /// When \[s\].
+        #[serde(default)]
+        at_s: f64,
+    },
+}

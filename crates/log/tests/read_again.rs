@@ -1,0 +1,155 @@
+//! What was recorded is read again: whole, cut anywhere, damaged anywhere.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use rumbo_log::{Burst, Entry, Log, LogWriter, Manifest, ReadError, Said, Sent};
+use std::io::Cursor;
+
+type Writer = LogWriter<Cursor<Vec<u8>>>;
+
+fn writer(manifest: &Manifest) -> Writer {
+    LogWriter::new(Cursor::new(Vec::new()), manifest).unwrap()
+}
+
+fn finish(writer: Writer) -> Vec<u8> {
+    writer.finish().unwrap().into_inner()
+}
+
+fn read(bytes: &[u8]) -> Result<Log, ReadError> {
+    Log::read(Cursor::new(bytes))
+}
+
+fn burst(t_us: u64) -> Entry {
+    Entry::Burst(Burst {
+        t_us,
+        to_robot: false,
+        bytes: vec![7; 100],
+    })
+}
+
+#[test]
+fn a_log_cut_anywhere_is_read_up_to_there_and_a_complete_one_is_not_called_cut() {
+    let mut writer = self::writer(&Manifest::default());
+    for number in 0..6 {
+        (0..50).for_each(|each| writer.record(&burst(1_000 * (50 * number + each))).unwrap());
+        writer.flush().unwrap();
+    }
+    let whole = finish(writer);
+    let log = read(&whole).unwrap();
+    assert_eq!((log.cut.as_deref(), log.link.len()), (None, 300));
+    let mut lengths = Vec::new();
+    for part in 1..40 {
+        match read(&whole[..whole.len() * part / 40]) {
+            Ok(log) => lengths.push(log.link.len()),
+            // Not even the manifest is whole.
+            Err(error) => assert!(lengths.is_empty(), "{error}"),
+        }
+    }
+    assert!(
+        lengths.is_sorted() && lengths.last() == Some(&300),
+        "{lengths:?}"
+    );
+    assert!(
+        lengths.iter().any(|length| (1..300).contains(length)),
+        "{lengths:?}"
+    );
+}
+
+#[test]
+fn what_was_sent_at_one_time_is_read_in_the_order_in_which_it_was_sent() {
+    let mut writer = self::writer(&Manifest::default());
+    for number in 0..6 {
+        let (t_us, bytes) = (5_000 * (number / 3), vec![number as u8]);
+        let sent = match number % 2 {
+            0 => Entry::Burst(Burst {
+                t_us,
+                to_robot: true,
+                bytes,
+            }),
+            _ => Entry::Said(Said {
+                t_us,
+                usart: 1,
+                to_chip: true,
+                bytes,
+            }),
+        };
+        writer.record(&sent).unwrap();
+        writer.record(&burst(t_us)).unwrap();
+    }
+    let log = read(&finish(writer)).unwrap();
+    let sent = log.sent().map(|sent| match sent {
+        Sent::Link(burst) => burst.bytes[0],
+        Sent::Typed(said) => said.bytes[0],
+    });
+    assert_eq!(sent.collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
+}
+
+#[test]
+fn a_log_with_damaged_bytes_is_read_as_far_as_it_goes_or_refused() {
+    let mut writer = self::writer(&Manifest::default());
+    (0..300).for_each(|number| writer.record(&burst(1_000 * number)).unwrap());
+    let whole = finish(writer);
+    let mut cut = 0;
+    for at in (mcap::MAGIC.len()..whole.len() - 8).step_by(61) {
+        let mut damaged = whole.clone();
+        // A length that no memory holds, if a length was there.
+        damaged[at..at + 8].fill(0x7f);
+        match read(&damaged) {
+            Ok(log) => cut += usize::from(log.cut.is_some()),
+            Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
+        }
+    }
+    assert!(cut > 0);
+}
+
+#[test]
+fn what_comes_after_damage_near_the_start_is_read_all_the_same() {
+    let manifest = Manifest {
+        seed: Some(7),
+        ..Manifest::default()
+    };
+    let mut writer = self::writer(&manifest);
+    (0..3_000).for_each(|number| writer.record(&burst(1_000 * number)).unwrap());
+    let whole = finish(writer);
+    let index = mcap::Summary::read(&whole).unwrap().unwrap();
+    assert!(index.chunk_indexes.len() > 3);
+    let middle = |chunk: &mcap::records::ChunkIndex| {
+        (chunk.chunk_start_offset + chunk.chunk_length / 2) as usize
+    };
+    let [topics, first] = [0, 1].map(|at| middle(&index.chunk_indexes[at]));
+    // The length of the very first record; the chunk that says which channels there are; the first one with messages.
+    for (at, has_holes, least, most) in [
+        (mcap::MAGIC.len() + 1, false, 3_000, 3_000),
+        (topics, true, 3_000, 3_000),
+        (first, true, 1_000, 2_999),
+    ] {
+        let mut damaged = whole.clone();
+        damaged[at..at + 8].fill(0x7f);
+        let log = read(&damaged).unwrap();
+        assert_eq!((log.has_holes, log.cut.is_some()), (has_holes, has_holes));
+        assert!(has_holes || !log.notes.is_empty());
+        assert_eq!(log.manifest.as_ref().unwrap().seed, Some(7));
+        assert!(
+            (least..=most).contains(&log.link.len()),
+            "{}",
+            log.link.len()
+        );
+        assert_eq!(log.link.last().unwrap().t_us, 2_999_000);
+    }
+}
+
+#[test]
+fn what_is_no_log_gets_one_line() {
+    let mut foreign = mcap::Writer::new(Cursor::new(Vec::new())).unwrap();
+    foreign.finish().unwrap();
+    let foreign = foreign.into_inner().into_inner();
+    for (bytes, said) in [
+        (&b""[..], "ends before its first record"),
+        (&foreign, "neither a manifest"),
+        (b"t_s,x_m\n0,0\n", "is no MCAP log"),
+        (&mcap::MAGIC[..3], "ends before its first record"),
+        (mcap::MAGIC, "ends before its first record"),
+    ] {
+        let error = read(bytes).unwrap_err().to_string();
+        assert!(error.contains(said) && !error.contains('\n'), "{error}");
+    }
+}

@@ -1,0 +1,247 @@
+//! The board: what is known of the robot, for pages that read on from where they were.
+//!
+//! Everything on it is bounded. Samples and events sit in rings with running numbers, so that a page that is slow, was
+//! away or is new gets the recent past; the rest is one current value each, with a version. Nobody reads, nothing is
+//! made: rows become JSON when a page takes them.
+
+mod ring;
+
+use crate::console::{ConsoleText, readable};
+use crate::event::Event;
+use ring::{Ring, Versioned};
+use rumbo_log::{Burst, Entry, LoggedEvent, ParameterState, Row, Scene, State};
+
+/// Samples kept: ten minutes of telemetry at 25 Hz.
+pub const SAMPLES_KEPT: usize = 15_000;
+/// Events kept.
+pub const EVENTS_KEPT: usize = 1_000;
+/// Pieces of console text kept: of each slice of time in which a USART spoke, one.
+const CONSOLES_KEPT: usize = 2_000;
+/// Pieces of the link's raw bytes kept: some seconds of both directions.
+const BURSTS_KEPT: usize = 600;
+
+/// When the newest samples were put here: the time of day \[ms since 1970\], and the target's \[ms\]. Says how old a
+/// picture is.
+pub type Heard = (f64, i64);
+
+/// What is to be shown.
+#[derive(Debug)]
+pub struct Board {
+    run: u32,
+    heard: Heard,
+    samples: Ring<Row>,
+    events: Ring<LoggedEvent>,
+    consoles: Ring<ConsoleText>,
+    bytes: Ring<Burst>,
+    scene: Versioned<Option<Scene>>,
+    parameters: Versioned<Vec<ParameterState>>,
+    state: Versioned<State>,
+}
+
+/// How far a page has read.
+#[derive(Clone, Debug, Default)]
+pub struct Cursor {
+    run: u32,
+    samples: u64,
+    events: u64,
+    consoles: u64,
+    bytes: u64,
+    scene: u64,
+    parameters: u64,
+    state: u64,
+}
+
+/// What is new to a page.
+#[derive(Debug, Default)]
+pub struct News {
+    /// Number of the run, which changes with a reset: what the page has of earlier runs is over.
+    pub run: u32,
+    /// What surrounds the robot.
+    pub scene: Option<Option<Scene>>,
+    /// The parameters.
+    pub parameters: Option<Vec<ParameterState>>,
+    /// What changes slowly.
+    pub state: Option<State>,
+    /// Signals.
+    pub samples: Vec<Row>,
+    /// When the newest of them arrived.
+    pub heard: Heard,
+    /// What happened.
+    pub events: Vec<LoggedEvent>,
+    /// What was said in text.
+    pub consoles: Vec<ConsoleText>,
+    /// Raw bytes of the link.
+    pub bytes: Vec<Burst>,
+    /// Events that left the ring before the page took them.
+    pub events_gone: u64,
+}
+
+impl Default for Board {
+    fn default() -> Self {
+        Self {
+            run: 1,
+            heard: (0.0, 0),
+            samples: Ring::new(SAMPLES_KEPT),
+            events: Ring::new(EVENTS_KEPT),
+            consoles: Ring::new(CONSOLES_KEPT),
+            bytes: Ring::new(BURSTS_KEPT),
+            scene: Versioned::default(),
+            parameters: Versioned::default(),
+            state: Versioned::default(),
+        }
+    }
+}
+
+impl Board {
+    /// Takes an event at this time of day \[ms since 1970\]; whether pages are to be woken for it.
+    pub fn take(&mut self, event: &Event, wall_ms: f64) -> bool {
+        match event {
+            Event::Run => {
+                self.run += 1;
+                self.samples.clear();
+                self.consoles.clear();
+                self.bytes.clear();
+                false
+            }
+            Event::Heard(now_ms) => {
+                self.heard = (wall_ms, *now_ms);
+                false
+            }
+            Event::Console(said) => {
+                self.consoles.push(said.clone());
+                true
+            }
+            Event::Entry(entry) => self.show(entry),
+        }
+    }
+
+    fn show(&mut self, entry: &Entry) -> bool {
+        match entry {
+            // Pages get them with the next news: nobody is woken for them.
+            Entry::Burst(burst) => {
+                self.bytes.push(burst.clone());
+                false
+            }
+            Entry::Said(said) if said.to_chip => false,
+            Entry::Said(said) => {
+                let (usart, text) = (said.usart, readable(&said.bytes));
+                self.consoles.push(ConsoleText { usart, text });
+                true
+            }
+            Entry::Rows(rows) => {
+                rows.iter().for_each(|row| self.samples.push(*row));
+                true
+            }
+            Entry::Event(event) => {
+                self.events.push(event.clone());
+                true
+            }
+            Entry::Scene(scene) => self.scene.set(scene.as_deref().cloned()),
+            Entry::State(state) => self.state.set((**state).clone()),
+            Entry::Parameters(parameters) => self.parameters.set(parameters.clone()),
+            Entry::Outcome(_) => false,
+        }
+    }
+
+    /// What is new since `cursor`, which moves on.
+    pub fn news(&self, cursor: &mut Cursor) -> News {
+        let (samples, _) = self.samples.read(&mut cursor.samples);
+        let (events, gone) = self.events.read(&mut cursor.events);
+        let (consoles, _) = self.consoles.read(&mut cursor.consoles);
+        let (bytes, _) = self.bytes.read(&mut cursor.bytes);
+        let first_time = cursor.run == 0;
+        cursor.run = self.run;
+        News {
+            run: self.run,
+            scene: self.scene.newer(&mut cursor.scene),
+            parameters: self.parameters.newer(&mut cursor.parameters),
+            state: self.state.newer(&mut cursor.state),
+            samples,
+            heard: self.heard,
+            events,
+            consoles,
+            bytes,
+            // What left the ring before the page came was not its to take.
+            events_gone: if first_time { 0 } else { gone },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rumbo_log::Level;
+
+    fn push(board: &mut Board, entry: Entry) {
+        board.take(&entry.into(), 0.0);
+    }
+
+    fn samples(times_ms: &[i64]) -> Entry {
+        Entry::Rows(times_ms.iter().map(|t_ms| Row::unknown(*t_ms)).collect())
+    }
+
+    fn event(number: usize) -> Entry {
+        Entry::Event(LoggedEvent {
+            t_s: 0.0,
+            level: Level::Info,
+            text: number.to_string(),
+        })
+    }
+
+    #[test]
+    fn a_new_page_gets_the_recent_past_and_then_only_what_is_new() {
+        let mut board = Board::default();
+        push(&mut board, samples(&[0, 40]));
+        push(&mut board, event(0));
+        let mut cursor = Cursor::default();
+        let news = board.news(&mut cursor);
+        assert_eq!((news.samples.len(), news.events.len()), (2, 1));
+        push(&mut board, samples(&[80]));
+        let news = board.news(&mut cursor);
+        assert_eq!(
+            news.samples
+                .iter()
+                .map(|sample| sample.t_ms)
+                .collect::<Vec<_>>(),
+            [80]
+        );
+        assert!(news.events.is_empty());
+    }
+
+    #[test]
+    fn what_is_kept_is_bounded_and_a_slow_page_knows_what_it_missed() {
+        let mut board = Board::default();
+        let mut cursor = Cursor::default();
+        board.news(&mut cursor);
+        (0..3 * SAMPLES_KEPT as i64).for_each(|t_ms| push(&mut board, samples(&[t_ms])));
+        (0..EVENTS_KEPT + 5).for_each(|number| push(&mut board, event(number)));
+        let news = board.news(&mut cursor);
+        assert_eq!(news.samples.len(), SAMPLES_KEPT);
+        assert_eq!(news.events.len(), EVENTS_KEPT);
+        assert_eq!(news.events_gone, 5);
+    }
+
+    #[test]
+    fn a_reset_ends_the_samples_of_the_old_run() {
+        let mut board = Board::default();
+        let mut cursor = Cursor::default();
+        push(&mut board, samples(&[0, 40]));
+        let before = board.news(&mut cursor).run;
+        board.take(&Event::Run, 0.0);
+        push(&mut board, samples(&[0]));
+        let news = board.news(&mut cursor);
+        assert_ne!(news.run, before);
+        assert_eq!(news.samples.len(), 1);
+    }
+
+    #[test]
+    fn a_value_that_did_not_change_is_not_news() {
+        let mut board = Board::default();
+        let mut cursor = Cursor::default();
+        let state = || Entry::State(Box::default());
+        push(&mut board, state());
+        assert!(board.news(&mut cursor).state.is_some());
+        push(&mut board, state());
+        assert!(board.news(&mut cursor).state.is_none());
+    }
+}

@@ -1,0 +1,89 @@
+//! The modes to choose from, as the page gets them.
+
+use rumbo_control::mode::{ModeId, StateDescription, Takes};
+use rumbo_control::rig::Rig;
+use serde::Serialize;
+
+/// A mode to choose: its description, as the page gets it.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModeEntry {
+    id: u8,
+    name: &'static str,
+    about: &'static str,
+    /// Names of its states, by the number in telemetry.
+    states: Vec<&'static str>,
+    /// The ways between them: from, to, when.
+    ways: Vec<(u8, u8, &'static str)>,
+    /// The state in which its reference is not in force.
+    idle: Option<u8>,
+    reference: Option<ReferenceEntry>,
+    /// It wants a heading.
+    heading: bool,
+    /// Takes basic movements.
+    movements: bool,
+    /// Takes a route of at most so many waypoints.
+    route: Option<usize>,
+    /// Follows a lane on command.
+    lane: bool,
+    /// Names of the rigs it can drive with.
+    rigs: Vec<&'static str>,
+    /// Its parameters by number, those that matter most first: title and numbers.
+    parameters: Vec<(&'static str, Vec<u8>)>,
+    /// Names of the plots to begin with.
+    plots: Vec<&'static str>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+struct ReferenceEntry {
+    kind: &'static str,
+    min: f32,
+    max: f32,
+    offered: f32,
+    commanded: bool,
+}
+
+/// The modes to choose from.
+pub(crate) fn modes() -> Vec<ModeEntry> {
+    ModeId::ALL.into_iter().map(mode_entry).collect()
+}
+
+fn mode_entry(mode: ModeId) -> ModeEntry {
+    let about = mode.description();
+    let ways = |(from, state): (u8, &'static StateDescription)| {
+        state.ways.iter().map(move |way| (from, way.to, way.when))
+    };
+    ModeEntry {
+        id: about.number,
+        name: about.name,
+        about: about.about,
+        states: about.states.iter().map(|state| state.name).collect(),
+        ways: (0..).zip(about.states).flat_map(ways).collect(),
+        idle: about.idle,
+        reference: about.reference.map(|reference| ReferenceEntry {
+            kind: reference.kind.name(),
+            min: reference.min,
+            max: reference.max,
+            offered: reference.offered,
+            commanded: reference.commanded,
+        }),
+        heading: about.heading,
+        movements: about.takes == Some(Takes::Movements),
+        route: match about.takes {
+            Some(Takes::Route(most)) => Some(most),
+            _ => None,
+        },
+        lane: about.takes == Some(Takes::Lane),
+        rigs: about.rigs.iter().map(Rig::name).collect(),
+        parameters: about
+            .parameters
+            .iter()
+            .map(|group| {
+                (
+                    group.title,
+                    group.parameters.iter().map(|id| *id as u8).collect(),
+                )
+            })
+            .collect(),
+        plots: about.plots.iter().map(|plot| plot.name()).collect(),
+    }
+}

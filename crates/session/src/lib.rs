@@ -1,0 +1,43 @@
+//! Rumbo's session with a robot: time and bytes come in, events and bytes to send go out.
+//!
+//! A [`Session`] knows no port, thread, clock or socket. Whoever drives it lets its [`Target`] live, hands over what
+//! arrived, sends what there is to send, and publishes the [`Event`]s: to the page's [`Board`], to a log, to a bridge,
+//! each of which takes what it needs.
+
+mod board;
+mod catalogue;
+pub mod client;
+pub mod commands;
+mod console;
+mod errand;
+mod event;
+pub mod fault;
+pub mod headless;
+mod lease;
+mod meter;
+mod observer;
+pub mod oddity;
+mod orders;
+mod origin;
+mod pace;
+mod page;
+mod robot_clock;
+mod round_trip;
+mod session;
+mod target;
+mod terminal;
+mod truth_log;
+mod watch;
+mod words;
+
+pub use board::{Board, Cursor, EVENTS_KEPT, Heard, News, SAMPLES_KEPT};
+pub use catalogue::ModeEntry;
+pub use console::{ConsoleText, LINK_CONSOLE, readable};
+pub use event::Event;
+pub use lease::{Lease, PageId, Seat, View};
+pub use orders::{BadOrder, MAX_SPEED, Order, stop_first};
+pub use pace::{Pace, SLICE_US};
+pub use page::{LinkBytes, ToPage};
+pub use session::{Ask, Going, Now, Session, Sight};
+pub use target::{Abilities, About, Ghost, LinkNews, Standing, Target};
+pub use watch::{DEFAULT_BAUD, check_baud};

@@ -1,0 +1,431 @@
+//! Makes events of what was heard: samples, what happened in words, the status, the parameters' values.
+
+pub(crate) mod describe;
+
+use crate::client::{Heard, RobotClient};
+use crate::commands::{Fate, Outcome};
+use crate::console::{ConsoleText, LINK_CONSOLE, readable};
+use crate::errand;
+use crate::event::Event;
+use crate::origin::Origin;
+use crate::target::Standing;
+use crate::terminal;
+use crate::truth_log::TruthLog;
+use crate::words;
+use rumbo_control::Pose;
+use rumbo_control::params::{ParamId, Params};
+use rumbo_control::rig::Rig;
+use rumbo_log::{
+    Burst, EARLIER_MS, Entry, Errand, Level, LoggedEvent, MapPose, ParameterState, Row, Said,
+    Sample, Scene, State, Truth, parameters,
+};
+use rumbo_wire::{Command, EventKind, Hello, Recalled, Status, Telemetry};
+
+/// Restarts are reported at most this often \[ms\].
+const RESTARTS_MS: i64 = 2_000;
+
+/// What is known of the robot.
+#[derive(Debug)]
+pub(crate) struct Observer {
+    events: Vec<Event>,
+    status: Status,
+    servo_rad: f32,
+    pose: Pose,
+    origin: Origin,
+    errand: Errand,
+    /// The rig that the robot says to carry.
+    rig: Option<Rig>,
+    parameters: Vec<ParameterState>,
+    /// The robot's parameters as far as they are known, else the table's defaults.
+    believed: Params,
+    truths: TruthLog,
+    ghosts: TruthLog,
+    samples: Vec<Row>,
+    /// The last order, if it was refused or given up, and why.
+    refused: Option<String>,
+    /// When the last restart was reported \[ms\].
+    restart_ms: Option<i64>,
+    /// The state changed in a way that the operator waits for.
+    urgent: bool,
+}
+
+impl Observer {
+    /// An observer who knows nothing yet.
+    pub(crate) fn new() -> Self {
+        let mut observer = Self {
+            events: Vec::new(),
+            status: Status::default(),
+            servo_rad: 0.0,
+            pose: Pose::default(),
+            origin: Origin::default(),
+            errand: Errand::default(),
+            rig: None,
+            parameters: unread_parameters(),
+            believed: Params::default(),
+            truths: TruthLog::default(),
+            ghosts: TruthLog::default(),
+            samples: Vec::new(),
+            refused: None,
+            restart_ms: None,
+            urgent: true,
+        };
+        observer.show_parameters();
+        observer
+    }
+
+    /// The simulation started again: what was known is over.
+    pub(crate) fn start_run(&mut self) {
+        let mut events = std::mem::take(&mut self.events);
+        events.push(Event::Run);
+        let fresh = Self::new();
+        events.extend(fresh.events);
+        *self = Self { events, ..fresh };
+    }
+
+    /// Notes what is the case at `now_ms`.
+    pub(crate) fn truth(&mut self, now_ms: i64, truth: Truth) {
+        self.truths.push(now_ms, truth);
+    }
+
+    /// Where the robot stands, as well as is known.
+    pub(crate) fn standing(&self) -> Standing {
+        let told = MapPose::from(self.pose);
+        Standing {
+            at: self.origin.place(told),
+            told,
+        }
+    }
+
+    /// Notes where the ghost is at `now_ms`.
+    pub(crate) fn ghost(&mut self, now_ms: i64, pose: MapPose) {
+        let truth = Truth {
+            pose,
+            ..Truth::default()
+        };
+        self.ghosts.push(now_ms, truth);
+    }
+
+    /// The slow signals, as far as they are known; what telemetry and events tell sooner is in it.
+    pub(crate) fn status(&self) -> Status {
+        self.status
+    }
+
+    /// Where the servo points, as last told [rad].
+    pub(crate) fn servo_rad(&self) -> f32 {
+        self.servo_rad
+    }
+
+    /// What the robot is asked to reach, and what came of it.
+    pub(crate) fn errand(&self) -> &Errand {
+        &self.errand
+    }
+
+    /// The rig that the robot says to carry, once it has.
+    pub(crate) fn rig(&self) -> Option<Rig> {
+        self.rig
+    }
+
+    /// A new value is on its way.
+    pub(crate) fn parameter_pending(&mut self, id: u8) {
+        if let Some(parameter) = self.parameters.get_mut(usize::from(id)) {
+            parameter.pending = true;
+            self.show_parameters();
+        }
+    }
+
+    /// The robot's parameters are these.
+    pub(crate) fn know_parameters(&mut self, parameters: &Params) {
+        self.believed = *parameters;
+        for (state, id) in self.parameters.iter_mut().zip(ParamId::ALL) {
+            state.value = Some(parameters.get(id));
+        }
+        self.show_parameters();
+    }
+
+    /// The robot has acknowledged this value of a parameter.
+    pub(crate) fn know_parameter(&mut self, id: u8, value: f32) {
+        let Some(parameter) = self.parameters.get_mut(usize::from(id)) else {
+            return;
+        };
+        parameter.value = Some(value);
+        if let Some(known) = ParamId::from_number(id) {
+            // What the robot accepted is in the range of the same table.
+            let _ = self.believed.set(known, value);
+        }
+        self.show_parameters();
+    }
+
+    /// Notes an event.
+    pub(crate) fn note(&mut self, t_ms: i64, level: Level, text: String) {
+        self.urgent = true;
+        self.emit(Entry::Event(LoggedEvent {
+            t_s: t_ms as f64 / 1e3,
+            level,
+            text,
+        }));
+    }
+
+    /// An order was given: what became of the one before is of no interest any more.
+    pub(crate) fn order_given(&mut self) {
+        self.urgent |= self.refused.take().is_some();
+    }
+
+    /// Notes that an order was refused or given up.
+    pub(crate) fn refuse(&mut self, t_ms: i64, text: String) {
+        self.refused = Some(text.clone());
+        self.note(t_ms, Level::Warning, text);
+    }
+
+    /// The last order, if it was refused or given up, and why.
+    pub(crate) fn refused(&self) -> Option<&str> {
+        self.refused.as_deref()
+    }
+
+    /// Notes raw bytes of the link.
+    pub(crate) fn link(&mut self, burst: Burst) {
+        self.emit(Entry::Burst(burst));
+    }
+
+    /// What the USARTs of an emulated chip said.
+    pub(crate) fn consoles(&mut self, t_us: u64, said: Vec<(u8, Vec<u8>)>) {
+        for (usart, bytes) in said {
+            self.emit(Entry::Said(Said {
+                t_us,
+                usart,
+                to_chip: false,
+                bytes,
+            }));
+        }
+    }
+
+    /// Records a line that a person typed to a USART.
+    pub(crate) fn typed(&mut self, t_us: u64, usart: u8, line: &str) {
+        self.emit(Entry::Said(Said {
+            t_us,
+            usart,
+            to_chip: true,
+            bytes: line.into(),
+        }));
+    }
+
+    /// The text of a robot, as it came.
+    pub(crate) fn said_in_text(&mut self, bytes: &[u8]) {
+        let text = readable(bytes);
+        if !text.is_empty() {
+            let usart = LINK_CONSOLE;
+            self.events
+                .push(Event::Console(ConsoleText { usart, text }));
+        }
+    }
+
+    /// Gives out the samples; whether the state is to follow at once.
+    pub(crate) fn publish(&mut self, now_ms: i64) -> bool {
+        let samples = std::mem::take(&mut self.samples);
+        if !samples.is_empty() {
+            self.events.push(Event::Heard(now_ms));
+            self.emit(Entry::Rows(samples));
+        }
+        std::mem::take(&mut self.urgent)
+    }
+
+    /// What there is to publish since the last call.
+    pub(crate) fn take_events(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.events)
+    }
+
+    fn emit(&mut self, entry: Entry) {
+        self.events.push(entry.into());
+    }
+
+    fn show_parameters(&mut self) {
+        self.emit(Entry::Parameters(self.parameters.clone()));
+    }
+
+    /// Shows the scene; the robot's pose begins where it starts.
+    pub(crate) fn show_scene(&mut self, scene: Option<Scene>) {
+        let start = scene.as_ref().map(|scene| scene.start);
+        self.origin = Origin::new(start.unwrap_or_default());
+        self.emit(Entry::Scene(scene.map(Box::new)));
+    }
+
+    /// Shows the state.
+    pub(crate) fn show_state(&mut self, state: State) {
+        self.emit(Entry::State(Box::new(state)));
+    }
+
+    /// Takes in what was heard up to `now_ms`.
+    pub(crate) fn digest(&mut self, heard: &mut Vec<Heard>, client: &mut RobotClient, now_ms: i64) {
+        for item in heard.drain(..) {
+            match item {
+                Heard::Telemetry(t_ms, telemetry) => self.sample(t_ms, telemetry, client),
+                Heard::Status(status) => {
+                    self.urgent |= self.rig != Some(status.rig);
+                    self.rig = Some(status.rig);
+                    self.status = status;
+                }
+                Heard::Event(t_ms, kind) => {
+                    errand::happened(&mut self.errand, kind, client.mode(), self.pose);
+                    self.event(t_ms, kind);
+                }
+                Heard::Ended(outcome) => self.end_command(&outcome, client, now_ms),
+                Heard::Connected(hello) => self.connected(hello, client.table_matches(), now_ms),
+                Heard::Text => {
+                    let text = "connected; the robot speaks the original program's text: nothing is acknowledged, and it goes on by itself when the link is lost";
+                    self.note(now_ms, Level::Good, text.into());
+                }
+                Heard::Restarted(hello) => {
+                    self.parameters = unread_parameters();
+                    self.believed = Params::default();
+                    self.show_parameters();
+                    self.restarted(hello, now_ms);
+                }
+                Heard::OtherProtocol(hello) => {
+                    self.note(now_ms, Level::Fault, words::other_protocol(hello.protocol));
+                }
+                Heard::StopUnconfirmed => {
+                    self.note(now_ms, Level::Fault, words::STOP_UNCONFIRMED.into());
+                }
+                Heard::Odd(oddity) => self.note(now_ms, Level::Fault, words::alarm(oddity)),
+                Heard::Lost if client.speaks_text() => {
+                    let text = "nothing received from the robot for some seconds, though it is on";
+                    self.note(now_ms, Level::Warning, text.into());
+                }
+                Heard::Lost => {
+                    let text =
+                        "link lost: nothing received from the robot for a second; trying again";
+                    self.note(now_ms, Level::Fault, text.into());
+                }
+            }
+        }
+    }
+
+    fn sample(&mut self, t_ms: i64, telemetry: Telemetry, client: &RobotClient) {
+        // Known long before the next status.
+        self.urgent |= self.status.armed != telemetry.armed;
+        self.status.armed = telemetry.armed;
+        self.servo_rad = telemetry.servo_rad;
+        self.pose = telemetry.pose;
+        let truth = self.truths.at(t_ms - EARLIER_MS).zip(self.truths.at(t_ms));
+        let true_pose = truth.map(|(_, at)| at.pose);
+        let errors = self.believed.odometry_errors();
+        let origin = self.origin.follow(t_ms, telemetry.pose, true_pose, &errors);
+        let sample = Sample {
+            t_ms,
+            mode: client.mode(),
+            reference: client.reference(),
+            heading_ref_rad: client.heading_ref_rad(),
+            telemetry,
+            origin,
+            spread: self.origin.spread(&errors),
+            truth: truth.map(|(before, at)| [before, at]),
+            ghost: self.ghosts.at(t_ms).map(|truth| truth.pose),
+        };
+        let mut row = sample.row();
+        let untold = client.row_kind().into_iter().flat_map(terminal::untold);
+        untold.for_each(|name| row.set(name, f64::NAN));
+        self.samples.push(row);
+    }
+
+    fn event(&mut self, t_ms: i64, kind: EventKind) {
+        let level = match kind {
+            EventKind::Armed | EventKind::Reached | EventKind::Saved => Level::Good,
+            EventKind::Recalled(Recalled::First | Recalled::Second) => Level::Info,
+            EventKind::Recalled(_) => Level::Warning,
+            EventKind::Disarmed | EventKind::ModeChanged(_) => Level::Info,
+            EventKind::Faulted(fault) => {
+                self.status.fault = Some(fault);
+                Level::Fault
+            }
+            EventKind::Unreachable => Level::Warning,
+            EventKind::Cleared(_) => {
+                self.status.fault = None;
+                Level::Info
+            }
+        };
+        let text = match kind.detail() {
+            Some(detail) => format!("{}: {detail}", kind.title()),
+            None => kind.title().into(),
+        };
+        self.note(t_ms, level, text);
+    }
+
+    /// Of a robot that starts again and again, a restart is reported once in a while.
+    fn restarted(&mut self, hello: Hello, now_ms: i64) {
+        if self
+            .restart_ms
+            .is_some_and(|at_ms| now_ms < at_ms + RESTARTS_MS)
+        {
+            return;
+        }
+        self.restart_ms = Some(now_ms);
+        let why = hello.reset.explanation();
+        let text = format!("the robot's program started again: {why}; it needs a new ON");
+        self.note(now_ms, Level::Fault, text);
+    }
+
+    fn connected(&mut self, hello: Hello, table_matches: bool, now_ms: i64) {
+        let why = hello.reset.explanation();
+        self.note(
+            now_ms,
+            Level::Good,
+            format!("connected; the robot's program started after: {why}"),
+        );
+        if !table_matches {
+            let text =
+                "the robot has another parameter table: parameters are neither shown nor written";
+            self.note(now_ms, Level::Warning, text.into());
+        }
+    }
+
+    fn end_command(&mut self, ended: &Outcome, client: &mut RobotClient, now_ms: i64) {
+        if matches!(ended.fate, Fate::Applied(_)) {
+            errand::applied(&mut self.errand, &ended.command, client.mode());
+        }
+        match (ended.command, ended.fate) {
+            (Command::ResetPose, Fate::Applied(_)) => self.origin.settle(),
+            (Command::SetParam { id, .. } | Command::GetParam { id }, fate) => {
+                if let Some(parameter) = self.parameters.get_mut(usize::from(id)) {
+                    parameter.pending = false;
+                    parameter.refused = match fate {
+                        Fate::Applied(_) => None,
+                        Fate::Refused(why) => {
+                            Some(words::refusal(why, &ended.command, client.mode()))
+                        }
+                        Fate::Superseded
+                        | Fate::Expired
+                        | Fate::RobotRestarted
+                        | Fate::LinkLost => Some("not confirmed".into()),
+                    };
+                    match fate {
+                        Fate::Applied(value) => self.know_parameter(id, value),
+                        _ => self.show_parameters(),
+                    }
+                }
+            }
+            (Command::ResetParams, Fate::Applied(_)) => client.read_parameters(),
+            _ => {}
+        }
+        let text = words::outcome(ended, client.mode());
+        match (ended.command, ended.fate) {
+            // That a value was read is no event, nor each place of a route.
+            (Command::GetParam { .. } | Command::Waypoint(_), Fate::Applied(_)) => {}
+            (_, Fate::Applied(_)) => self.note(now_ms, Level::Info, text),
+            // Said beside the parameter.
+            (Command::GetParam { .. } | Command::SetParam { .. }, _) => {
+                self.note(now_ms, Level::Warning, text);
+            }
+            _ => self.refuse(now_ms, text),
+        }
+    }
+}
+
+fn unread_parameters() -> Vec<ParameterState> {
+    parameters()
+        .map(|entry| ParameterState {
+            entry,
+            value: None,
+            pending: false,
+            refused: None,
+        })
+        .collect()
+}

@@ -1,0 +1,493 @@
+//! What a page may ask: JSON text to a checked order.
+
+use rumbo_control::Wheels;
+use rumbo_control::mode::waypoints::{MAX_WAYPOINTS, Waypoint};
+use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::params::ParamId;
+use rumbo_control::rig::Rig;
+use rumbo_log::Choice;
+use rumbo_wire::{Command, Level};
+use serde::Deserialize;
+use std::fmt;
+use std::str::FromStr;
+
+/// Largest speed factor: more than a core can simulate does not help.
+pub const MAX_SPEED: f64 = 100.0;
+/// Longest name of a scenario or world.
+const MAX_NAME: usize = 100;
+/// Longest line typed.
+const MAX_LINE: usize = 200;
+
+/// What the session is to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Order {
+    /// A command for the robot.
+    Robot(Command),
+    /// A movement that lasts while the page repeats it, as long as a key is held down.
+    Hold(Command),
+    /// A route for the robot: the command that begins it and its places.
+    Route(Vec<Command>),
+    /// A line for a USART of an emulated chip.
+    Type(u8, String),
+    /// Seconds of the target per second of the wall clock; 0 pauses.
+    Speed(f64),
+    /// Start the simulation again.
+    Reset(Choice),
+    /// Let the robot calibrate itself.
+    Calibrate,
+    /// Show a log from this time on \[s\].
+    Seek(f64),
+    /// Show a log so many telemetry frames further on, or back.
+    Step(i32),
+    /// Control for the page, whoever has it; the session need not know.
+    TakeControl,
+    /// The page lets go of control; the session need not know.
+    ReleaseControl,
+    /// Start the ghost again where the robot is.
+    RestartGhost,
+}
+
+/// The orders as they are to be obeyed when STOP was pressed (`stop`): no older command to the robot comes after it.
+///
+/// The flag is raised before STOP enters the queue, so a STOP that is not in `waiting` is newer than all that is.
+/// Of several resets only the last one counts: the others would be gone with it, and keep a STOP waiting.
+pub fn stop_first(mut waiting: Vec<Order>, stop: bool) -> Vec<Order> {
+    let is_reset = |order: &Order| matches!(order, Order::Reset(_));
+    if let Some(last) = waiting.iter().rposition(is_reset) {
+        let mut number = 0..;
+        waiting.retain(|order| number.next() == Some(last) || !is_reset(order));
+    }
+    if !stop {
+        return waiting;
+    }
+    let is_stop = |order: &Order| *order == Order::Robot(Command::Stop);
+    let newer = match waiting.iter().rposition(is_stop) {
+        Some(last) => waiting.split_off(last + 1),
+        None => Vec::new(),
+    };
+    waiting.retain(|order| matches!(order, Order::Speed(_) | Order::Reset(_)));
+    [vec![Order::Robot(Command::Stop)], waiting, newer].concat()
+}
+
+/// Why a text is no order.
+#[derive(Debug)]
+pub struct BadOrder(String);
+
+impl fmt::Display for BadOrder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "not understood: {}", self.0)
+    }
+}
+
+/// The messages of a page, as they are written.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+enum Message {
+    Stop {},
+    TakeControl {},
+    ReleaseControl {},
+    RestartGhost {},
+    Arm {},
+    Disarm {},
+    ClearFault {},
+    Mode {
+        mode: u8,
+    },
+    Reference {
+        value: f32,
+    },
+    WheelReference {
+        left: f32,
+        right: f32,
+    },
+    MoveDuty {
+        movement: u8,
+        duty: f32,
+        #[serde(default)]
+        held: bool,
+    },
+    MoveSpeed {
+        movement: u8,
+        speed_rad_s: f32,
+        #[serde(default)]
+        held: bool,
+    },
+    Goal {
+        x_m: f32,
+        y_m: f32,
+    },
+    Lane {},
+    Route {
+        repeat: bool,
+        relative: bool,
+        waypoints: Vec<Place>,
+    },
+    Waypoint(Place),
+    Rig {
+        rig: String,
+    },
+    SetParam {
+        id: u8,
+        value: f32,
+    },
+    ResetParams {},
+    SaveParams {},
+    ResetPose {},
+    Calibrate {},
+    Type {
+        usart: u8,
+        text: String,
+    },
+    Speed {
+        factor: f64,
+    },
+    Seek {
+        t_s: f64,
+    },
+    Step {
+        frames: i32,
+    },
+    Reset {
+        scenario: String,
+        world: Option<String>,
+        #[serde(default)]
+        rig: Option<String>,
+        seed: u64,
+    },
+}
+
+/// A place of a route, as it is written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Place {
+    x_m: f32,
+    y_m: f32,
+    #[serde(default)]
+    heading_rad: Option<f32>,
+}
+
+/// A line as a person types it.
+fn text_line(text: String) -> Result<String, BadOrder> {
+    let printable = text.bytes().all(|byte| (b' '..=b'~').contains(&byte));
+    if printable && text.len() <= MAX_LINE {
+        Ok(text)
+    } else {
+        Err(BadOrder(format!(
+            "a line is at most {MAX_LINE} characters of ASCII"
+        )))
+    }
+}
+
+impl FromStr for Order {
+    type Err = BadOrder;
+
+    /// The order in a page's text. A page that sends another one is not ours, and its connection is to be closed.
+    fn from_str(text: &str) -> Result<Self, BadOrder> {
+        let message: Message =
+            serde_json::from_str(text).map_err(|error| BadOrder(error.to_string()))?;
+        let order = match message {
+            Message::Stop {} => Order::Robot(Command::Stop),
+            Message::TakeControl {} => Order::TakeControl,
+            Message::ReleaseControl {} => Order::ReleaseControl,
+            Message::RestartGhost {} => Order::RestartGhost,
+            Message::Arm {} => Order::Robot(Command::Arm),
+            Message::Disarm {} => Order::Robot(Command::Disarm),
+            Message::ClearFault {} => Order::Robot(Command::ClearFault),
+            Message::Mode { mode } => Order::Robot(Command::Mode(
+                ModeId::from_number(mode)
+                    .ok_or_else(|| BadOrder(format!("there is no mode {mode}")))?,
+            )),
+            Message::Reference { value } => {
+                Order::Robot(Command::Reference(finite("value", value)?))
+            }
+            Message::WheelReference { left, right } => {
+                Order::Robot(Command::WheelReference(Wheels {
+                    left: finite("left", left)?,
+                    right: finite("right", right)?,
+                }))
+            }
+            Message::MoveDuty {
+                movement,
+                duty,
+                held,
+            } => move_order(movement, Level::Duty(finite("duty", duty)?), held)?,
+            Message::MoveSpeed {
+                movement,
+                speed_rad_s,
+                held,
+            } => move_order(
+                movement,
+                Level::Speed(finite("speed_rad_s", speed_rad_s)?),
+                held,
+            )?,
+            Message::Goal { x_m, y_m } => Order::Robot(Command::Goal {
+                x_m: finite("x_m", x_m)?,
+                y_m: finite("y_m", y_m)?,
+            }),
+            Message::Lane {} => Order::Robot(Command::Lane),
+            Message::Route {
+                repeat,
+                relative,
+                waypoints,
+            } => route(Command::Route { repeat, relative }, waypoints)?,
+            Message::Waypoint(place) => Order::Robot(waypoint(place)?),
+            Message::Rig { rig } => Order::Robot(rig_command(&rig)?),
+            Message::SetParam { id, value } => Order::Robot(Command::SetParam {
+                id,
+                value: finite("value", value)?,
+            }),
+            Message::ResetParams {} => Order::Robot(Command::ResetParams),
+            Message::SaveParams {} => Order::Robot(Command::SaveParams),
+            Message::ResetPose {} => Order::Robot(Command::ResetPose),
+            Message::Calibrate {} => Order::Calibrate,
+            Message::Type { usart, text } => Order::Type(usart, text_line(text)?),
+            Message::Speed { factor } if (0.0..=MAX_SPEED).contains(&factor) => {
+                Order::Speed(factor)
+            }
+            Message::Speed { factor } => {
+                return Err(BadOrder(format!(
+                    "factor {factor} is not within 0 to {MAX_SPEED}"
+                )));
+            }
+            Message::Seek { t_s } if t_s.is_finite() => Order::Seek(t_s),
+            Message::Seek { .. } => return Err(BadOrder("t_s is too large".into())),
+            Message::Step { frames } => Order::Step(frames),
+            Message::Reset {
+                scenario,
+                world,
+                rig,
+                seed,
+            } => {
+                let names = [Some(&scenario), world.as_ref(), rig.as_ref()];
+                if names
+                    .into_iter()
+                    .flatten()
+                    .any(|name| name.len() > MAX_NAME)
+                {
+                    return Err(BadOrder(format!("a name is longer than {MAX_NAME} bytes")));
+                }
+                Order::Reset(Choice {
+                    scenario,
+                    world,
+                    rig,
+                    seed,
+                })
+            }
+        };
+        Ok(order)
+    }
+}
+
+/// A route in the commands that make it.
+fn route(begin: Command, places: Vec<Place>) -> Result<Order, BadOrder> {
+    if places.is_empty() || places.len() > MAX_WAYPOINTS {
+        let count = places.len();
+        return Err(BadOrder(format!(
+            "a route has 1 to {MAX_WAYPOINTS} waypoints, not {count}"
+        )));
+    }
+    let waypoints = places.into_iter().map(waypoint);
+    let commands = std::iter::once(Ok(begin)).chain(waypoints);
+    Ok(Order::Route(commands.collect::<Result<_, _>>()?))
+}
+
+fn waypoint(place: Place) -> Result<Command, BadOrder> {
+    Ok(Command::Waypoint(Waypoint {
+        x_m: finite("x_m", place.x_m)?,
+        y_m: finite("y_m", place.y_m)?,
+        heading_rad: match place.heading_rad {
+            Some(heading_rad) => Some(finite("heading_rad", heading_rad)?),
+            None => None,
+        },
+    }))
+}
+
+/// Tells the robot which sonars it carries.
+fn rig_command(name: &str) -> Result<Command, BadOrder> {
+    let rig = Rig::ALL.into_iter().find(|rig| rig.name() == name);
+    let rig = rig.ok_or_else(|| {
+        let known = Rig::ALL.map(Rig::name).join(", ");
+        BadOrder(format!("there is no rig `{name}`; known are {known}"))
+    })?;
+    Ok(Command::SetParam {
+        id: ParamId::Rig as u8,
+        value: f32::from(rig as u8),
+    })
+}
+
+fn move_order(movement: u8, level: Level, held: bool) -> Result<Order, BadOrder> {
+    let movement = Movement::ALL
+        .into_iter()
+        .find(|each| *each as u8 == movement)
+        .ok_or_else(|| BadOrder(format!("there is no movement {movement}")))?;
+    let command = Command::Move { movement, level };
+    Ok(if held {
+        Order::Hold(command)
+    } else {
+        Order::Robot(command)
+    })
+}
+
+/// A number too large for the robot's 32 bits has become infinite.
+fn finite(field: &str, value: f32) -> Result<f32, BadOrder> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(BadOrder(format!("{field} is too large")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Order, BadOrder> {
+        text.parse()
+    }
+
+    #[test]
+    fn each_order_of_the_page_is_understood() {
+        let reference = parse(r#"{"type":"reference","value":0.5}"#).unwrap();
+        assert_eq!(reference, Order::Robot(Command::Reference(0.5)));
+        assert_eq!(
+            parse(r#"{"type":"stop"}"#).unwrap(),
+            Order::Robot(Command::Stop)
+        );
+        assert_eq!(
+            parse(r#"{"type":"mode","mode":1}"#).unwrap(),
+            Order::Robot(Command::Mode(ModeId::FrontDistance))
+        );
+        let reset = parse(r#"{"type":"reset","scenario":"mode1","world":null,"seed":3}"#).unwrap();
+        assert_eq!(
+            reset,
+            Order::Reset(Choice {
+                scenario: "mode1".into(),
+                world: None,
+                rig: None,
+                seed: 3
+            })
+        );
+    }
+
+    #[test]
+    fn a_goal_a_lane_and_a_rig_are_commands_and_a_route_is_several() {
+        let robot = |text| match parse(text).unwrap() {
+            Order::Robot(command) => command,
+            other => panic!("{other:?}"),
+        };
+        let goal = Command::Goal {
+            x_m: 1.0,
+            y_m: -0.5,
+        };
+        assert_eq!(robot(r#"{"type":"goal","x_m":1,"y_m":-0.5}"#), goal);
+        assert_eq!(robot(r#"{"type":"lane"}"#), Command::Lane);
+        let rig = Command::SetParam {
+            id: ParamId::Rig as u8,
+            value: 1.0,
+        };
+        assert_eq!(robot(r#"{"type":"rig","rig":"front_pair"}"#), rig);
+        let turned = Waypoint {
+            x_m: 1.0,
+            y_m: 2.0,
+            heading_rad: Some(1.5),
+        };
+        let appended = robot(r#"{"type":"waypoint","x_m":1,"y_m":2,"heading_rad":1.5}"#);
+        assert_eq!(appended, Command::Waypoint(turned));
+        let route = r#"{"type":"route","repeat":true,"relative":false,
+            "waypoints":[{"x_m":1,"y_m":2,"heading_rad":1.5},{"x_m":0,"y_m":0}]}"#;
+        let begin = Command::Route {
+            repeat: true,
+            relative: false,
+        };
+        let last = Command::Waypoint(Waypoint::default());
+        let expected = vec![begin, Command::Waypoint(turned), last];
+        assert_eq!(parse(route).unwrap(), Order::Route(expected));
+    }
+
+    #[test]
+    fn a_movement_is_held_only_when_the_page_says_so() {
+        let text = r#"{"type":"move_duty","movement":1,"duty":0.3}"#;
+        assert!(matches!(parse(text).unwrap(), Order::Robot(_)));
+        let text = r#"{"type":"move_duty","movement":1,"duty":0.3,"held":true}"#;
+        assert!(matches!(parse(text).unwrap(), Order::Hold(_)));
+    }
+
+    #[test]
+    fn nothing_asked_before_stop_is_done_after_it() {
+        let robot = Order::Robot;
+        let waiting = vec![
+            robot(Command::Arm),
+            Order::Hold(Command::Arm),
+            Order::Route(vec![Command::Lane]),
+            Order::Speed(2.0),
+            robot(Command::Stop),
+            robot(Command::ClearFault),
+        ];
+        let obeyed = [
+            robot(Command::Stop),
+            Order::Speed(2.0),
+            robot(Command::ClearFault),
+        ];
+        assert_eq!(stop_first(waiting, true), obeyed);
+        assert_eq!(
+            stop_first(vec![robot(Command::Arm)], true),
+            [robot(Command::Stop)]
+        );
+        assert_eq!(
+            stop_first(vec![robot(Command::Arm)], false),
+            [robot(Command::Arm)]
+        );
+    }
+
+    #[test]
+    fn of_resets_that_wait_only_the_last_one_counts() {
+        let reset = |seed| {
+            Order::Reset(Choice {
+                scenario: "mode1".into(),
+                world: None,
+                rig: None,
+                seed,
+            })
+        };
+        let waiting: Vec<Order> = (0..250).map(reset).chain([Order::Speed(2.0)]).collect();
+        let stopped = [Order::Robot(Command::Stop), reset(249), Order::Speed(2.0)];
+        assert_eq!(stop_first(waiting.clone(), true), stopped);
+        assert_eq!(stop_first(waiting, false), stopped[1..]);
+    }
+
+    #[test]
+    fn what_is_no_order_says_why() {
+        for (text, why) in [
+            ("\u{0}\u{1}", "expected value"),
+            ("{}", "missing field `type`"),
+            (r#"{"type":"fly"}"#, "unknown variant `fly`"),
+            (r#"{"type":"stop","now":true}"#, "unknown field `now`"),
+            (r#"{"type":"mode","mode":9}"#, "no mode 9"),
+            (r#"{"type":"mode","mode":-1}"#, "invalid value"),
+            (r#"{"type":"reference","value":"NaN"}"#, "invalid type"),
+            (r#"{"type":"reference","value":1e300}"#, "too large"),
+            (r#"{"type":"speed","factor":-1}"#, "not within"),
+            (
+                r#"{"type":"move_duty","movement":99,"duty":0.1}"#,
+                "no movement 99",
+            ),
+            (r#"{"type":"goal","x_m":1}"#, "missing field `y_m`"),
+            (r#"{"type":"goal","x_m":1,"y_m":1e300}"#, "y_m is too large"),
+            (
+                r#"{"type":"route","repeat":true,"relative":true,"waypoints":[]}"#,
+                "1 to 16 waypoints, not 0",
+            ),
+            (
+                r#"{"type":"waypoint","x_m":1,"y_m":1,"z_m":1}"#,
+                "unknown field `z_m`",
+            ),
+            (
+                r#"{"type":"rig","rig":"front"}"#,
+                "no rig `front`; known are front_single",
+            ),
+        ] {
+            let said = parse(text).unwrap_err().to_string();
+            assert!(said.contains(why), "{text}: {said}");
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! What a page is sent: messages of JSON, over a WebSocket or to a page that runs beside the session.
+
+use crate::board::{Heard, News};
+use crate::catalogue::{self, ModeEntry};
+use crate::console::ConsoleText;
+use crate::lease::View;
+use rumbo_log::{Burst, Cell, LoggedEvent, ParameterState, Row, Scene, State};
+use serde::Serialize;
+
+/// Rows of samples in one message.
+const ROWS_PER_MESSAGE: usize = 250;
+
+/// To a page.
+#[derive(Debug, Serialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum ToPage<'a> {
+    /// First of all: what the rest is made of.
+    Hello {
+        /// Of Rumbo.
+        version: &'static str,
+        /// The names of the signals in a row.
+        columns: Vec<&'static str>,
+        /// The modes to choose from.
+        modes: Vec<ModeEntry>,
+    },
+    /// What surrounds the robot.
+    Scene {
+        /// Number of the run.
+        run: u32,
+        /// `None` where that is not known.
+        scene: &'a Option<Scene>,
+    },
+    /// The parameter table with its values.
+    Parameters {
+        /// In the order of their numbers.
+        parameters: &'a [ParameterState],
+    },
+    /// What changes slowly.
+    State {
+        /// All of it.
+        state: &'a State,
+    },
+    /// Rows of signals; what the page has of another run is over.
+    Samples {
+        /// Number of the run.
+        run: u32,
+        /// When the newest arrived.
+        heard: Heard,
+        /// In order of time.
+        rows: Vec<Vec<Cell>>,
+    },
+    /// What happened.
+    Events {
+        /// In order of time.
+        events: &'a [LoggedEvent],
+    },
+    /// What the USARTs of an emulated chip said.
+    Consoles {
+        /// Number of the run.
+        run: u32,
+        /// In order of time.
+        said: &'a [ConsoleText],
+    },
+    /// Raw bytes of the link.
+    Bytes {
+        /// In order of time.
+        bytes: Vec<LinkBytes>,
+    },
+    /// Who has control.
+    Control(View),
+    /// Why the connection is closed now.
+    Error {
+        /// For a person.
+        text: &'a str,
+    },
+}
+
+impl ToPage<'_> {
+    /// The first message.
+    #[must_use]
+    pub fn hello() -> Self {
+        Self::Hello {
+            version: env!("CARGO_PKG_VERSION"),
+            columns: Row::names().collect(),
+            modes: catalogue::modes(),
+        }
+    }
+
+    /// As it is sent; `None` never happens, since all of it can be written as JSON.
+    #[must_use]
+    pub fn json(&self) -> Option<String> {
+        serde_json::to_string(self).ok()
+    }
+}
+
+/// Bytes that crossed the link together, as the page gets them.
+#[derive(Debug, Serialize)]
+pub struct LinkBytes {
+    t_s: f64,
+    to_robot: bool,
+    hex: String,
+}
+
+impl From<&Burst> for LinkBytes {
+    fn from(burst: &Burst) -> Self {
+        let digits = burst.bytes.iter().map(|byte| format!("{byte:02x}"));
+        Self {
+            t_s: burst.t_us as f64 / 1e6,
+            to_robot: burst.to_robot,
+            hex: digits.collect(),
+        }
+    }
+}
+
+impl News {
+    /// The messages of these news, each made when it is asked for.
+    pub fn messages(&self) -> impl Iterator<Item = ToPage<'_>> {
+        let run = self.run;
+        let scene = self.scene.iter();
+        let scene = scene.map(move |scene| ToPage::Scene { run, scene });
+        let state = self.state.iter().map(|state| ToPage::State { state });
+        let parameters = self.parameters.iter();
+        let parameters = parameters.map(|parameters| ToPage::Parameters { parameters });
+        let events = some(&self.events).map(|events| ToPage::Events { events });
+        let said = some(&self.consoles).map(move |said| ToPage::Consoles { run, said });
+        let bytes = some(&self.bytes).map(|bytes| ToPage::Bytes {
+            bytes: bytes.iter().map(LinkBytes::from).collect(),
+        });
+        let rows = self.samples.chunks(ROWS_PER_MESSAGE);
+        let samples = rows.map(move |rows| ToPage::Samples {
+            run,
+            heard: self.heard,
+            rows: rows.iter().map(Row::cells).collect(),
+        });
+        scene
+            .chain(state)
+            .chain(parameters)
+            .chain(events)
+            .chain(said)
+            .chain(bytes)
+            .chain(samples)
+    }
+}
+
+/// All of them at once, if there are any.
+fn some<T>(items: &[T]) -> impl Iterator<Item = &[T]> {
+    (!items.is_empty()).then_some(items).into_iter()
+}

@@ -1,0 +1,346 @@
+//! The session: makes events of what arrives, and bytes of what is asked for.
+//!
+//! Whoever drives it calls, in this order and with both clocks: [`Session::order`] for each order, [`Session::let_go`];
+//! for each slice of the target's time [`Session::observe`], [`Session::receive`] and [`Session::advance`]; then
+//! [`Session::update`]. After each call there may be bytes to send ([`Session::take_bytes`]) and events to publish
+//! ([`Session::take_events`]). Nothing waits for anything.
+
+mod calibrating;
+mod commanding;
+
+use crate::client::{Heard, KnownTable, RobotClient};
+use crate::event::Event;
+use crate::observer::Observer;
+use crate::observer::describe::{Around, describe};
+use crate::orders::Order;
+use crate::target::{About, LinkNews, Standing};
+use crate::watch::LinkWatch;
+use rumbo_control::mode::ModeId;
+use rumbo_log::{Burst, CalibrationState, Choice, Level, MapPose, State, Truth};
+use rumbo_wire::Command;
+
+/// The slow state is noted this often, and at once when it matters \[us\].
+const STATE_PERIOD_US: u64 = 200_000;
+
+/// The time now.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Now {
+    /// The target's: since its start or last reset \[us\].
+    pub target_us: u64,
+    /// That of a person at the page, which also goes on while the target is paused: since any instant \[us\].
+    pub wall_us: u64,
+}
+
+impl Now {
+    fn target_ms(self) -> i64 {
+        to_ms(self.target_us)
+    }
+}
+
+/// What is to be done with the target; what comes of it is reported to the session.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ask {
+    /// Let it live so many seconds per second of the wall clock.
+    Pace(f64),
+    /// Start it again; then [`Session::restart`].
+    Reset(Choice),
+    /// Send a line to a USART; then [`Session::typed`].
+    Type(u8, String),
+    /// Put the ghost there; then [`Session::ghost_restarted`].
+    Ghost(Standing),
+    /// Calibrate the robot; then [`Session::calibration_begun`].
+    Calibrate,
+}
+
+/// What is seen of a target besides the bytes of its robot.
+#[derive(Clone, Debug, Default)]
+pub struct Sight {
+    /// What is really the case.
+    pub truth: Option<Truth>,
+    /// Where the ghost is.
+    pub ghost: Option<MapPose>,
+    /// What the USARTs of an emulated chip have sent.
+    pub consoles: Vec<(u8, Vec<u8>)>,
+}
+
+/// How the target goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Going {
+    /// Seconds of its time asked for per second of the wall clock.
+    pub speed: f64,
+    /// The same, measured.
+    pub achieved_speed: f64,
+    /// The voltage of its battery, where that is known \[V\].
+    pub true_battery_v: Option<f64>,
+}
+
+/// A session with one target.
+#[derive(Debug)]
+pub struct Session {
+    about: About,
+    /// The robot runs the original program, which is silent until its first ON.
+    text: bool,
+    client: RobotClient,
+    observer: Observer,
+    /// When the calibration that drives the robot now began \[us\], and how the last one stands.
+    calibrating: Option<u64>,
+    calibration: Option<CalibrationState>,
+    state_noted_us: Option<u64>,
+    /// The movement that a key holds, and until when without a word from the page \[us\].
+    held: Option<(Command, u64)>,
+    /// The robot has been sent what it begins with.
+    briefed: bool,
+    /// The port is waited for.
+    port_gone: bool,
+    link_watch: LinkWatch,
+    heard: Vec<Heard>,
+    to_robot: Vec<u8>,
+}
+
+impl Session {
+    /// A session that has not begun yet. `id` is to be random; with `text` the robot is spoken to in the original's
+    /// text from the beginning.
+    #[must_use]
+    pub fn new(about: About, id: u8, text: bool) -> Self {
+        let mut session = Self {
+            client: new_client(&about, id, text),
+            about,
+            text,
+            observer: Observer::new(),
+            calibrating: None,
+            calibration: None,
+            state_noted_us: None,
+            held: None,
+            briefed: false,
+            port_gone: false,
+            link_watch: LinkWatch::default(),
+            heard: Vec::new(),
+            to_robot: Vec::new(),
+        };
+        session.show_scene();
+        session
+    }
+
+    /// The target was reset, or refused to be: a new run begins, with another random `id`, or nothing has changed.
+    pub fn restart(&mut self, choice: &Choice, done: Result<About, String>, id: u8, now: Now) {
+        let about = match done {
+            Ok(about) => about,
+            Err(why) => return self.note(Level::Warning, format!("reset: refused, {why}"), now),
+        };
+        self.client = new_client(&about, id, self.text);
+        self.about = about;
+        self.heard.clear();
+        self.to_robot.clear();
+        self.held = None;
+        self.calibration = None;
+        self.briefed = false;
+        self.state_noted_us = None;
+        self.observer.start_run();
+        self.show_scene();
+        let part = |what: &str, name: &Option<String>| {
+            let name = name.as_ref();
+            name.map_or_else(String::new, |name| format!(" {what} {name}"))
+        };
+        let text = format!(
+            "reset: {}{}{}, seed {}",
+            choice.scenario,
+            part("in world", &choice.world),
+            part("with rig", &choice.rig),
+            choice.seed
+        );
+        self.note(Level::Info, text, now);
+    }
+
+    /// Obeys an order of the page; gives what is to be done with the target for it.
+    pub fn order(&mut self, order: Order, now: Now) -> Option<Ask> {
+        if self.is_taken(&order, now) {
+            return None;
+        }
+        let abilities = self.about.abilities;
+        match order {
+            Order::Robot(command) => {
+                self.held = None;
+                self.command(command, now);
+            }
+            Order::Hold(command) => self.hold(command, now),
+            Order::Route(commands) => {
+                self.held = None;
+                self.commands(commands, now);
+            }
+            Order::Type(usart, line) => return self.type_in(usart, line, now),
+            Order::Speed(factor) if abilities.pace => {
+                self.state_noted_us = None;
+                return Some(Ask::Pace(factor));
+            }
+            Order::Speed(_) => {
+                let text = "speed: refused, a real robot lives at its own";
+                self.note(Level::Warning, text.into(), now);
+            }
+            Order::Reset(choice) if abilities.reset => return Some(Ask::Reset(choice)),
+            Order::Reset(_) => {
+                let text = "reset: refused, this is a real robot";
+                self.note(Level::Warning, text.into(), now);
+            }
+            Order::Calibrate => return self.may_calibrate(now),
+            Order::TakeControl | Order::ReleaseControl => {}
+            Order::RestartGhost => return Some(Ask::Ghost(self.observer.standing())),
+            Order::Seek(_) | Order::Step(_) => {
+                let text = "refused, this is no replay of a log";
+                self.note(Level::Warning, text.into(), now);
+            }
+        }
+        None
+    }
+
+    /// Takes in what is seen of the target now.
+    pub fn observe(&mut self, sight: Sight, now: Now) {
+        if let Some(pose) = sight.ghost {
+            self.observer.ghost(now.target_ms(), pose);
+        }
+        if let Some(truth) = sight.truth {
+            self.observer.truth(now.target_ms(), truth);
+        }
+        self.observer.consoles(now.target_us, sight.consoles);
+    }
+
+    /// Takes in what arrived from the robot.
+    pub fn receive(&mut self, bytes: &[u8], now: Now) {
+        self.note_bytes(bytes, false, now);
+        if self.about.abilities.port && self.client.speaks_text() {
+            self.observer.said_in_text(bytes);
+        }
+        self.client.hear(bytes, now.target_us, &mut self.heard);
+    }
+
+    /// Time has passed: says what is due, and makes events of what was heard.
+    pub fn advance(&mut self, now: Now) {
+        self.say(now);
+        self.digest(now);
+        self.brief(now);
+    }
+
+    /// Something happened to the target.
+    pub fn news(&mut self, news: LinkNews, now: Now) {
+        let (level, text) = match news {
+            LinkNews::Lost(text) => {
+                self.port_gone = true;
+                self.note(Level::Fault, text, now);
+                self.give_up_calibration("the port is gone", now);
+                return self.client.port_is_gone();
+            }
+            LinkNews::Back(text) => {
+                self.port_gone = false;
+                (Level::Good, text)
+            }
+            LinkNews::GhostFault(fault) => {
+                let why = fault.explanation();
+                (Level::Warning, format!("the ghost has stopped: {why}"))
+            }
+            LinkNews::Held(text) => (Level::Warning, text),
+            LinkNews::Ended(why) => (Level::Fault, why),
+        };
+        self.note(level, text, now);
+    }
+
+    /// Gives out the samples, and the state if it is due.
+    pub fn update(&mut self, going: Going, now: Now) {
+        self.digest(now);
+        self.watch_link(now);
+        let urgent = self.observer.publish(now.target_ms());
+        let due = |noted_us: u64| now.wall_us >= noted_us + STATE_PERIOD_US;
+        if urgent || self.state_noted_us.is_none_or(due) {
+            self.state_noted_us = Some(now.wall_us);
+            let state = self.state(going, now);
+            self.observer.show_state(state);
+        }
+    }
+
+    /// Says something to the person at the page.
+    pub fn note(&mut self, level: Level, text: String, now: Now) {
+        self.observer.note(now.target_ms(), level, text);
+    }
+
+    /// The bytes to be sent to the robot now.
+    pub fn take_bytes(&mut self) -> Vec<u8> {
+        std::mem::take(&mut self.to_robot)
+    }
+
+    /// The events since the last call.
+    pub fn take_events(&mut self) -> Vec<Event> {
+        self.observer.take_events()
+    }
+
+    fn say(&mut self, now: Now) {
+        let mut bytes = Vec::new();
+        self.client.poll(now.target_us, &mut bytes, &mut self.heard);
+        self.send(&bytes, now);
+    }
+
+    fn send(&mut self, bytes: &[u8], now: Now) {
+        self.note_bytes(bytes, true, now);
+        self.to_robot.extend_from_slice(bytes);
+    }
+
+    fn note_bytes(&mut self, bytes: &[u8], to_robot: bool, now: Now) {
+        if !bytes.is_empty() {
+            self.observer.link(Burst {
+                t_us: now.target_us,
+                to_robot,
+                bytes: bytes.to_vec(),
+            });
+        }
+    }
+
+    fn digest(&mut self, now: Now) {
+        self.observer
+            .digest(&mut self.heard, &mut self.client, now.target_ms());
+    }
+
+    fn show_scene(&mut self) {
+        self.observer.show_scene(self.about.scene.clone());
+    }
+
+    /// Says what is wrong with a port's link.
+    fn watch_link(&mut self, now: Now) {
+        if !self.about.abilities.port || self.client.other_protocol().is_some() {
+            return;
+        }
+        let (now_us, connected) = (now.target_us, self.client.connected());
+        let (figures, dropped) = (self.client.link(now_us), self.observer.status().dropped);
+        let baud = self.about.baud;
+        let trouble = self
+            .link_watch
+            .look(now_us, &figures, connected, dropped, baud);
+        if let Some(trouble) = trouble {
+            self.note(Level::Warning, trouble, now);
+        }
+    }
+
+    fn state(&mut self, going: Going, now: Now) -> State {
+        let around = Around {
+            true_battery_v: going.true_battery_v,
+            t_us: now.target_us,
+            simulated: self.about.abilities.pace,
+            speed: going.speed,
+            achieved_speed: going.achieved_speed,
+            baud: self.about.baud,
+        };
+        State {
+            calibration: self.calibration.clone(),
+            ..describe(&around, &mut self.client, &self.observer)
+        }
+    }
+}
+
+fn to_ms(us: u64) -> i64 {
+    (us / 1_000) as i64
+}
+
+fn new_client(about: &About, id: u8, text: bool) -> RobotClient {
+    let clock_known = about.abilities.clock;
+    match about.abilities.text {
+        Some(mode) => RobotClient::of_text(mode, clock_known),
+        None if text => RobotClient::of_text(ModeId::default(), clock_known),
+        None => RobotClient::new(id, clock_known, KnownTable::OURS),
+    }
+}

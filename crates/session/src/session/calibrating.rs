@@ -1,0 +1,93 @@
+//! The session while the robot is calibrated by a guest on its link: any command of a person's ends it.
+
+use super::{Ask, Now, Session};
+use crate::orders::Order;
+use rumbo_log::{CalibrationState, Findings, Level};
+use rumbo_wire::Command;
+
+impl Session {
+    /// A calibration drives the robot: it gets what arrives, and what it says is sent by [`Session::lend`].
+    #[must_use]
+    pub fn calibrating(&self) -> bool {
+        self.calibrating.is_some()
+    }
+
+    /// Whether a calibration can begin.
+    pub(super) fn may_calibrate(&mut self, now: Now) -> Option<Ask> {
+        let trouble = if self.calibrating() {
+            "one is running already"
+        } else if !self.client.connected() {
+            "no robot answers"
+        } else if self.client.speaks_text() || !self.client.table_matches() {
+            "this robot has other parameters"
+        } else if self.observer.status().armed {
+            "the robot is armed: switch OFF first"
+        } else {
+            return Some(Ask::Calibrate);
+        };
+        self.calibration_begun(Err(trouble.into()), now);
+        None
+    }
+
+    /// A calibration has begun, or why not.
+    pub fn calibration_begun(&mut self, begun: Result<(), String>, now: Now) {
+        if let Err(why) = begun {
+            return self.note(Level::Warning, format!("calibration: refused, {why}"), now);
+        }
+        self.calibrating = Some(now.target_us);
+        let since_s = now.target_us as f64 / 1e6;
+        self.calibration = Some(CalibrationState::Running { since_s });
+        let text = "calibration: the robot drives by itself";
+        self.note(Level::Info, text.into(), now);
+    }
+
+    /// The guest says this to the robot.
+    pub fn lend(&mut self, bytes: &[u8], now: Now) {
+        self.send(bytes, now);
+    }
+
+    /// The guest has left: what it found, and the parameters that the robot has now.
+    pub fn calibration_ended(&mut self, found: Result<Findings, String>, now: Now) {
+        let Some(since_us) = self.calibrating.take() else {
+            return;
+        };
+        let at_s = now.target_us as f64 / 1e6;
+        self.calibration = Some(match found {
+            Ok(findings) => {
+                let passed_s = (now.target_us - since_us) as f64 / 1e6;
+                let text = format!("calibration: done in {passed_s:.0} s, the parameters are set");
+                self.note(Level::Good, text, now);
+                CalibrationState::Done { findings, at_s }
+            }
+            Err(why) => {
+                self.note(Level::Warning, format!("calibration: given up, {why}"), now);
+                CalibrationState::Failed { why, at_s }
+            }
+        });
+        self.client.read_parameters();
+    }
+
+    /// Ends a calibration that runs.
+    pub(super) fn give_up_calibration(&mut self, why: &str, now: Now) {
+        self.calibration_ended(Err(why.to_owned()), now);
+    }
+
+    /// Whether an order is for the robot, and a calibration in its way. One that stops the robot ends the calibration.
+    pub(super) fn is_taken(&mut self, order: &Order, now: Now) -> bool {
+        if !self.calibrating() {
+            return false;
+        }
+        match order {
+            Order::Robot(Command::Stop | Command::Disarm) | Order::Reset(_) => {
+                self.give_up_calibration("it was stopped", now);
+                false
+            }
+            Order::Robot(_) | Order::Hold(_) | Order::Route(_) => {
+                let text = "refused, the robot calibrates itself; STOP ends that";
+                self.note(Level::Warning, text.into(), now);
+                true
+            }
+            _ => false,
+        }
+    }
+}

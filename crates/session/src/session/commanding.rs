@@ -1,0 +1,166 @@
+//! What the session does with a command: in frames or in the original's words, held as long as a key is, or refused with
+//! the reason.
+
+use super::{Ask, Now, Session};
+use crate::client::NotTaken;
+use crate::words;
+use rumbo_control::mode::Movement;
+use rumbo_log::parameter;
+use rumbo_wire::{Command, Level};
+
+/// A movement that a key holds ends this long after the page last said that it is held: a page that is gone lets go
+/// \[us\].
+const HOLD_US: u64 = 600_000;
+
+impl Session {
+    pub(super) fn command(&mut self, command: Command, now: Now) {
+        self.observer.order_given();
+        if self.client.speaks_text() {
+            return self.command_in_text(&command, now);
+        }
+        if let Command::SetParam { id, .. } = command
+            && self.client.connected()
+            && !(self.client.table_matches() && parameter(id).is_some())
+        {
+            return self.refuse(&command, "the robot has another parameter table", now);
+        }
+        if let Err(why) = self.client.submit(command, now.target_us) {
+            return self.refuse(&command, &self.why_not(why), now);
+        }
+        self.await_parameter(&command);
+        // At once: STOP does not wait for the next slice.
+        self.say(now);
+    }
+
+    /// Commands that belong together: one after the other, all or none of them taken.
+    pub(super) fn commands(&mut self, commands: Vec<Command>, now: Now) {
+        if self.client.speaks_text() {
+            return commands
+                .into_iter()
+                .for_each(|command| self.command(command, now));
+        }
+        self.observer.order_given();
+        let Some(first) = commands.first().copied() else {
+            return;
+        };
+        if let Err(why) = self.client.submit_in_turn(commands.iter().copied()) {
+            return self.refuse(&first, &self.why_not(why), now);
+        }
+        commands
+            .iter()
+            .for_each(|command| self.await_parameter(command));
+        self.say(now);
+    }
+
+    fn await_parameter(&mut self, command: &Command) {
+        if let Command::SetParam { id, .. } = command {
+            self.observer.parameter_pending(*id);
+        }
+    }
+
+    fn why_not(&self, why: NotTaken) -> String {
+        match (why, self.client.other_protocol()) {
+            (NotTaken::NotConnected, _) if self.port_gone => {
+                "the port is gone; give the order again when it is back".into()
+            }
+            (NotTaken::NotConnected, Some(protocol)) => words::other_protocol(protocol),
+            _ => words::not_taken(why).into(),
+        }
+    }
+
+    /// Sends a command in the original's words.
+    fn command_in_text(&mut self, command: &Command, now: Now) {
+        if self.port_gone {
+            return self.refuse(command, &self.why_not(NotTaken::NotConnected), now);
+        }
+        if !self.client.submit_text(command) {
+            let why = "this robot speaks the original's text, which has no words for it";
+            return self.refuse(command, why, now);
+        }
+        let said = words::command(command, self.client.mode());
+        let text = format!("{said}: sent, text is not acknowledged");
+        self.note(rumbo_log::Level::Info, text, now);
+        self.say(now);
+    }
+
+    /// A line that a person typed: for a USART of an emulated chip, or for a robot that speaks text.
+    pub(super) fn type_in(&mut self, usart: u8, line: String, now: Now) -> Option<Ask> {
+        if self.about.abilities.typing {
+            return Some(Ask::Type(usart, line));
+        }
+        let why = if self.port_gone {
+            "the port is gone"
+        } else if self.client.speaks_text() {
+            self.client.type_in(&line);
+            self.say(now);
+            return None;
+        } else {
+            "this robot takes no lines of text from here"
+        };
+        self.typed(usart, &line, Err(why.into()), now);
+        None
+    }
+
+    /// A line was sent to a USART, or why not.
+    pub fn typed(&mut self, usart: u8, line: &str, sent: Result<(), String>, now: Now) {
+        match sent {
+            Ok(()) => self.observer.typed(now.target_us, usart, line),
+            Err(why) => {
+                let text = format!("{line}: not sent, {why}");
+                self.note(rumbo_log::Level::Warning, text, now);
+            }
+        }
+    }
+
+    /// Begins a movement, or goes on with the same one.
+    pub(super) fn hold(&mut self, command: Command, now: Now) {
+        let same = self.held.is_some_and(|(held, _)| held == command);
+        self.held = Some((command, now.wall_us + HOLD_US));
+        if !same {
+            self.command(command, now);
+        }
+    }
+
+    /// Ends a movement that nobody holds any more.
+    pub fn let_go(&mut self, now: Now) {
+        let over = |(_, until_us): &mut (Command, u64)| now.wall_us >= *until_us;
+        if self.held.take_if(over).is_some() {
+            let stop = Command::Move {
+                movement: Movement::Stop,
+                level: Level::Duty(0.0),
+            };
+            self.command(stop, now);
+        }
+    }
+
+    /// Sends a robot that has just been found what it begins with.
+    pub(super) fn brief(&mut self, now: Now) {
+        if self.briefed || !self.client.connected() {
+            return;
+        }
+        self.briefed = true;
+        let mut commands = self.about.first_commands.clone();
+        commands.retain(|command| *command != Command::Arm);
+        self.commands(commands, now);
+    }
+
+    /// The ghost was put where the robot is, or why not.
+    pub fn ghost_restarted(&mut self, done: Result<(), String>, now: Now) {
+        match done {
+            Ok(()) => {
+                let text = "the ghost starts again where the robot is";
+                self.note(rumbo_log::Level::Info, text.into(), now);
+            }
+            Err(why) => {
+                let text = format!("the ghost: refused, {why}");
+                self.note(rumbo_log::Level::Warning, text, now);
+            }
+        }
+    }
+
+    fn refuse(&mut self, command: &Command, why: &str, now: Now) {
+        let asked = words::command(command, self.client.mode());
+        self.observer
+            .refuse(now.target_ms(), format!("{asked}: refused, {why}"));
+    }
+}

@@ -1,0 +1,289 @@
+//! The link to a robot that speaks the original's text: commands become lines, rows of telemetry become frames.
+//!
+//! Lines are sent once and not acknowledged; what the robot makes of them its rows tell. Whether it is armed no row says: it is what
+//! was last ordered. A robot of that program is silent until its first ON, and takes bytes of frames for the beginning of a line: a line
+//! that follows frames is sent after a line's end.
+
+use rumbo_control::Wheels;
+use rumbo_control::mode::ModeId;
+use rumbo_wire::text::{self, RAD_PER_DEG, RAD_S_PER_RPM, Row, RowKind, TextCommand};
+use rumbo_wire::{Command, Telemetry};
+
+/// A line longer than this is none.
+const LONGEST: usize = 256;
+/// A row that its own clock puts this much before its arrival was not late, the clock was stopped \[ms\].
+const LATEST_MS: i64 = 300;
+
+/// What a row told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Told {
+    /// When the row was made, in the session's time \[ms\].
+    pub(crate) t_ms: i64,
+    pub(crate) telemetry: Telemetry,
+    pub(crate) mode: Option<ModeId>,
+    /// The mode's reference, where the row has it; units as in [`rumbo_wire::Status::reference`].
+    pub(crate) reference: Option<Wheels<f32>>,
+    /// The heading that the mode wants, where the row has it \[rad\].
+    pub(crate) heading_ref_rad: Option<f32>,
+    pub(crate) kind: RowKind,
+}
+
+/// The station's end of a link of text.
+#[derive(Debug)]
+pub(crate) struct Terminal {
+    armed: bool,
+    line: Vec<u8>,
+    /// Session time of the last row \[ms\].
+    last_ms: Option<i64>,
+    /// Lines not sent yet.
+    waiting: Vec<u8>,
+    /// Frames were sent since the last line.
+    frames_sent: bool,
+    /// Each wheel was given a reference of its own, of which rows tell one.
+    apart: bool,
+}
+
+impl Terminal {
+    pub(crate) fn new() -> Self {
+        Self {
+            armed: false,
+            line: Vec::new(),
+            last_ms: None,
+            waiting: Vec::new(),
+            frames_sent: false,
+            apart: false,
+        }
+    }
+
+    /// Frames went out on this link.
+    pub(crate) fn frames_sent(&mut self) {
+        self.frames_sent = true;
+    }
+
+    /// ON was the last order.
+    pub(crate) fn armed(&self) -> bool {
+        self.armed
+    }
+
+    /// The command in words, to be sent; false if there are none.
+    pub(crate) fn submit(&mut self, command: &Command, mode: ModeId) -> bool {
+        let lines = text::lines_of(command, mode);
+        for line in lines.iter().flatten() {
+            self.obey(line);
+            self.push(&line.to_string());
+        }
+        lines != [None; 2]
+    }
+
+    /// A line that a person typed, to be sent as it is.
+    pub(crate) fn type_in(&mut self, line: &str) {
+        if let Ok(command) = TextCommand::parse(line) {
+            self.obey(&command);
+        }
+        self.push(line);
+    }
+
+    /// Notes what the robot will be like.
+    fn obey(&mut self, command: &TextCommand) {
+        match command {
+            TextCommand::On => self.armed = true,
+            TextCommand::Off => {
+                self.armed = false;
+                self.waiting.clear();
+            }
+            TextCommand::Reference(_) => self.apart = false,
+            TextCommand::WheelReference(..) => self.apart = true,
+            _ => {}
+        }
+    }
+
+    fn push(&mut self, line: &str) {
+        if std::mem::take(&mut self.frames_sent) {
+            self.waiting.push(b'\n');
+        }
+        self.waiting.extend(line.bytes());
+        self.waiting.push(b'\n');
+    }
+
+    /// Nothing that waits is sent any more.
+    pub(crate) fn forget(&mut self) {
+        self.waiting.clear();
+    }
+
+    /// Appends what is to be sent now.
+    pub(crate) fn poll(&mut self, to_robot: &mut Vec<u8>) {
+        to_robot.append(&mut self.waiting);
+    }
+
+    /// Takes a byte from the robot; gives the row that it ends.
+    pub(crate) fn hear(&mut self, byte: u8, now_ms: i64) -> Option<Told> {
+        if byte != b'\n' {
+            if self.line.len() < LONGEST {
+                self.line.push(byte);
+            }
+            return None;
+        }
+        let line = std::mem::take(&mut self.line);
+        let row = Row::parse(str::from_utf8(&line).ok()?.trim()).ok()?;
+        let t_ms = self.made_ms(row.dt_ms(), now_ms);
+        let (reference, heading_ref_rad) = self.wanted(&row);
+        Some(Told {
+            t_ms,
+            telemetry: row.telemetry((t_ms & 0xffff) as u16, self.armed),
+            mode: row.mode().and_then(ModeId::from_number).or(match row {
+                Row::Waypoints(_) => Some(ModeId::Waypoints),
+                Row::Mission(_) => Some(ModeId::Mission),
+                Row::Distance(_) | Row::Speed(_) => None,
+            }),
+            reference,
+            heading_ref_rad,
+            kind: row.kind(),
+        })
+    }
+
+    /// A row says how long after the one before it was made. The row that was on its way for the shortest time sets the clock.
+    fn made_ms(&mut self, dt_ms: u32, now_ms: i64) -> i64 {
+        let told_ms = self.last_ms.map(|last_ms| last_ms + i64::from(dt_ms));
+        let t_ms = told_ms
+            .filter(|t_ms| (now_ms - LATEST_MS..=now_ms).contains(t_ms))
+            .unwrap_or(now_ms);
+        self.last_ms = Some(t_ms);
+        t_ms
+    }
+
+    /// The mode's reference and heading that the row tells.
+    fn wanted(&self, row: &Row) -> (Option<Wheels<f32>>, Option<f32>) {
+        match row {
+            Row::Distance(row) => (Some(Wheels::both(row.reference_cm / text::CM_PER_M)), None),
+            Row::Speed(_) if self.apart => (None, None),
+            Row::Speed(row) => (Some(Wheels::both(row.reference_rpm * RAD_S_PER_RPM)), None),
+            Row::Waypoints(_) => (None, None),
+            Row::Mission(row) => (
+                Some(Wheels {
+                    left: row.goal_x_m,
+                    right: row.goal_y_m,
+                }),
+                Some(row.heading_reference_deg * RAD_PER_DEG),
+            ),
+        }
+    }
+}
+
+/// Signals of which a row of this kind says nothing.
+pub(crate) fn untold(kind: RowKind) -> impl Iterator<Item = &'static str> {
+    const POSE: &[&str] = &[
+        "x_m",
+        "y_m",
+        "heading_rad",
+        "x_deviation_m",
+        "y_deviation_m",
+        "xy_correlation",
+        "heading_deviation_rad",
+    ];
+    const ORIGIN: &[&str] = &["origin_x_m", "origin_y_m", "origin_heading_rad"];
+    const SPEEDS: &[&str] = &[
+        "left_before_rad_s",
+        "right_before_rad_s",
+        "left_rad_s",
+        "right_rad_s",
+    ];
+    const SPEED_REFERENCES: &[&str] = &["left_ref_rad_s", "right_ref_rad_s"];
+    const STATE: &[&str] = &["state"];
+    const HEADING: &[&str] = &["heading_ref_rad"];
+    const PWM: &[&str] = &["left_pwm", "right_pwm"];
+    const ALWAYS: &[&str] = &["servo_rad", "faulted"];
+    let untold: &[&[&str]] = match kind {
+        RowKind::Distance => &[
+            POSE,
+            ORIGIN,
+            SPEEDS,
+            SPEED_REFERENCES,
+            STATE,
+            HEADING,
+            ALWAYS,
+        ],
+        RowKind::Speed => &[POSE, ORIGIN, STATE, HEADING, ALWAYS],
+        RowKind::Waypoints => &[STATE, HEADING, ALWAYS],
+        RowKind::Mission => &[SPEEDS, PWM, ALWAYS],
+    };
+    untold.iter().copied().flatten().copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rumbo_log::Row as Signals;
+
+    fn hear(terminal: &mut Terminal, bytes: &[u8], now_ms: i64) -> Vec<Told> {
+        let told = bytes.iter().map(|byte| terminal.hear(*byte, now_ms));
+        told.flatten().collect()
+    }
+
+    #[test]
+    fn a_row_becomes_a_frame_and_names_its_mode_and_reference() {
+        let mut terminal = Terminal::new();
+        let bytes = b"garbage\r\n68, 106.16, 88.00, 30, 1, 115, -20\r\n";
+        let [told] = hear(&mut terminal, bytes, 68)[..] else {
+            panic!("not one row")
+        };
+        assert_eq!(told.mode, Some(ModeId::FrontDistance));
+        assert_eq!(told.reference, Some(Wheels::both(0.3)));
+        assert_eq!(told.telemetry.duty.left.counts(), -20);
+        let mission = b"90, 50, 50, -45, 1.5, 0.5, 0.2, 0, 3, 3, 88, 90, 106\n";
+        let [told] = hear(&mut terminal, mission, 200)[..] else {
+            panic!("not one row")
+        };
+        assert_eq!(told.mode, Some(ModeId::Mission));
+        let goal = Wheels {
+            left: 1.5,
+            right: 0.5,
+        };
+        assert_eq!(told.reference, Some(goal));
+    }
+
+    #[test]
+    fn rows_that_arrive_together_keep_the_time_between_them() {
+        let mut terminal = Terminal::new();
+        let row = b"50, 20, 20, 40, 5, 115, 120\n";
+        assert_eq!(hear(&mut terminal, row, 1_000)[0].t_ms, 1_000);
+        let two = [&row[..], row].concat();
+        let times: Vec<i64> = hear(&mut terminal, &two, 1_110)
+            .iter()
+            .map(|told| told.t_ms)
+            .collect();
+        assert_eq!(times, [1_050, 1_100]);
+        // One that would be of the future, and one after a pause that its period does not tell.
+        assert_eq!(hear(&mut terminal, row, 1_120)[0].t_ms, 1_120);
+        assert_eq!(hear(&mut terminal, row, 9_000)[0].t_ms, 9_000);
+    }
+
+    #[test]
+    fn off_goes_out_before_anything_that_waits() {
+        let mut terminal = Terminal::new();
+        assert!(terminal.submit(&Command::Arm, ModeId::WheelSpeed));
+        assert!(terminal.submit(&Command::Stop, ModeId::WheelSpeed));
+        assert!(!terminal.submit(&Command::Lane, ModeId::Mission));
+        let mut bytes = Vec::new();
+        terminal.poll(&mut bytes);
+        assert_eq!(bytes, b"OFF\n");
+    }
+
+    #[test]
+    fn frames_that_the_robot_took_for_a_line_are_ended_before_the_first_command() {
+        let mut terminal = Terminal::new();
+        terminal.frames_sent();
+        terminal.type_in("PID A 1 0.001 0");
+        terminal.type_in("on");
+        assert!(terminal.armed());
+        let mut bytes = Vec::new();
+        terminal.poll(&mut bytes);
+        assert_eq!(bytes, b"\nPID A 1 0.001 0\non\n");
+    }
+
+    #[test]
+    fn every_signal_that_is_called_untold_is_one() {
+        for kind in RowKind::ALL {
+            assert!(untold(kind).all(|name| Signals::column(name).is_some()));
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Watches the link for what a person should know, and says it once in a while: bytes that make no sense, a link that is full, a noisy one.
+
+use crate::client::LinkFigures;
+
+/// Speed of the robot's Bluetooth module \[baud\].
+pub const DEFAULT_BAUD: u32 = 9_600;
+/// The same thing is not said again within this time \[us\].
+const AGAIN_US: u64 = 30_000_000;
+/// Bytes that make no sense are told of after this many.
+const NONSENSE_BYTES: u64 = 100;
+/// More damaged frames within [`NOISE_US`] are told of.
+const NOISE_FRAMES: u16 = 10;
+/// \[us\].
+const NOISE_US: u64 = 10_000_000;
+/// Bytes a second that the robot needs for full telemetry: 25 frames of at most 30 bytes.
+const TELEMETRY_BYTES_S: u32 = 25 * 30;
+/// Telemetry frames a second of a link that carries them all.
+const TELEMETRY_HZ: u32 = 25;
+/// Bytes a second that go to the robot for the heartbeat alone: at most 7 bytes, every 150 ms.
+const HEARTBEAT_BYTES_S: u32 = 47;
+
+/// What a link of this speed cannot do.
+///
+/// # Errors
+/// If not even heartbeats fit, so that the robot would stop again and again; what to do.
+pub fn check_baud(baud: u32) -> Result<Option<String>, String> {
+    // Ten bits to a byte.
+    let bytes_s = baud / 10;
+    if bytes_s < 2 * HEARTBEAT_BYTES_S {
+        return Err(format!(
+            "{baud} baud carry {bytes_s} bytes/s, too few for the heartbeats ({HEARTBEAT_BYTES_S} bytes/s) and answers that keep the robot going; \
+             it needs at least {}, its own speed is {}",
+            20 * HEARTBEAT_BYTES_S,
+            DEFAULT_BAUD
+        ));
+    }
+    Ok((bytes_s < TELEMETRY_BYTES_S).then(|| {
+        let hz = TELEMETRY_HZ * bytes_s / TELEMETRY_BYTES_S;
+        format!(
+            "{baud} baud carry {bytes_s} bytes/s, full telemetry needs {TELEMETRY_BYTES_S}: expect {hz} Hz at most, not {TELEMETRY_HZ}"
+        )
+    }))
+}
+
+/// What is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cause {
+    Nonsense,
+    Full,
+    Noise,
+}
+
+/// Remembers what was told, and what the figures were.
+#[derive(Debug, Default)]
+pub(crate) struct LinkWatch {
+    told: [Option<u64>; 3],
+    noise_from: Option<(u64, u16)>,
+    dropped: Option<u8>,
+    nonsense_from: Option<u64>,
+}
+
+impl LinkWatch {
+    /// Takes in the figures; gives what is to be told. `dropped` telemetry frames were left out by the robot so far, wrapping.
+    pub(crate) fn look(
+        &mut self,
+        now_us: u64,
+        link: &LinkFigures,
+        connected: bool,
+        dropped: u8,
+        baud: u32,
+    ) -> Option<String> {
+        let nonsense = self.nonsense(connected, link.heard_bytes);
+        let left_out = self.left_out(dropped);
+        let noise = self.noise(now_us, link.crc_errors);
+        if nonsense && self.may_tell(Cause::Nonsense, now_us) {
+            return Some(format!(
+                "bytes arrive that are neither frames nor rows of text: is {baud} baud the robot's speed? --baud sets it"
+            ));
+        }
+        if left_out > 0 && self.may_tell(Cause::Full, now_us) {
+            return Some(format!(
+                "the link is full: the robot left out {left_out} telemetry frames"
+            ));
+        }
+        if noise > NOISE_FRAMES && connected && self.may_tell(Cause::Noise, now_us) {
+            return Some(format!(
+                "the link is disturbed: {noise} damaged frames within 10 s; come nearer, or check the cable"
+            ));
+        }
+        None
+    }
+
+    /// Many bytes came since the robot was last understood.
+    fn nonsense(&mut self, connected: bool, heard_bytes: u64) -> bool {
+        if connected {
+            self.nonsense_from = None;
+            return false;
+        }
+        let from = *self.nonsense_from.get_or_insert(heard_bytes);
+        heard_bytes.saturating_sub(from) > NONSENSE_BYTES
+    }
+
+    /// Telemetry frames that the robot has left out since the last look.
+    fn left_out(&mut self, dropped: u8) -> u8 {
+        let before = self.dropped.replace(dropped).unwrap_or(dropped);
+        dropped.wrapping_sub(before)
+    }
+
+    /// Damaged frames since some seconds ago.
+    fn noise(&mut self, now_us: u64, crc_errors: u16) -> u16 {
+        let (from_us, from) = *self.noise_from.get_or_insert((now_us, crc_errors));
+        if now_us >= from_us + NOISE_US {
+            self.noise_from = Some((now_us, crc_errors));
+        }
+        crc_errors.wrapping_sub(from)
+    }
+
+    fn may_tell(&mut self, cause: Cause, now_us: u64) -> bool {
+        let told = &mut self.told[cause as usize];
+        let may = told.is_none_or(|told_us| now_us >= told_us + AGAIN_US);
+        if may {
+            *told = Some(now_us);
+        }
+        may
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_speed_that_carries_too_little_is_warned_of_and_one_that_carries_nothing_refused() {
+        assert_eq!(check_baud(9_600), Ok(None));
+        let slow = check_baud(2_400).unwrap().unwrap();
+        assert!(
+            slow.contains("240 bytes/s") && slow.contains("8 Hz"),
+            "{slow}"
+        );
+        assert!(check_baud(300).unwrap_err().contains("heartbeats"));
+    }
+
+    #[test]
+    fn the_heartbeat_is_as_long_as_is_reckoned() {
+        use rumbo_wire::{Message, ToRobot};
+        let longest = (0..16)
+            .map(|seq| ToRobot::Heartbeat.frame(seq).bytes().len())
+            .max();
+        assert!(
+            longest.unwrap() * 1_000 / 150 <= HEARTBEAT_BYTES_S as usize,
+            "{longest:?}"
+        );
+    }
+
+    #[test]
+    fn each_trouble_is_told_once_in_a_while() {
+        let mut watch = LinkWatch::default();
+        let figures = |heard_bytes, crc_errors| LinkFigures {
+            heard_bytes,
+            crc_errors,
+            ..LinkFigures::default()
+        };
+        let mut look = |t_s: u64, figures: LinkFigures, connected, dropped| {
+            watch.look(t_s * 1_000_000, &figures, connected, dropped, 9_600)
+        };
+        assert_eq!(look(0, figures(0, 0), false, 250), None);
+        let said = look(1, figures(150, 0), false, 250).unwrap();
+        assert!(said.contains("9600 baud"), "{said}");
+        assert_eq!(look(2, figures(900, 0), false, 250), None);
+        let said = look(3, figures(900, 0), true, 2).unwrap();
+        assert!(said.contains("left out 8"), "{said}");
+        let said = look(4, figures(900, 11), true, 2).unwrap();
+        assert!(said.contains("11 damaged"), "{said}");
+        assert_eq!(look(5, figures(900, 40), true, 2), None);
+        assert_eq!(look(20, figures(900, 40), true, 2), None);
+        assert_eq!(look(40, figures(900, 45), true, 2), None);
+        assert!(look(41, figures(900, 64), true, 2).is_some());
+    }
+}

@@ -1,0 +1,244 @@
+//! A session without threads, clocks and sockets: time and bytes in, events and bytes out.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod support;
+
+use proptest::prelude::*;
+use rumbo_log::{Entry, Log, LogWriter, Manifest, Row};
+use rumbo_session::{
+    About, Ask, Board, Cursor, Event, Going, LinkNews, Now, Order, SLICE_US, Session, Sight, Target,
+};
+use rumbo_wire::Command;
+use std::io::Cursor as Bytes;
+use support::Toy;
+
+const ON: Order = Order::Robot(Command::Arm);
+const STOP: Order = Order::Robot(Command::Stop);
+
+struct Bench {
+    toy: Toy,
+    session: Session,
+    wall_us: u64,
+    cut: bool,
+    sent: Vec<u8>,
+    events: Vec<Event>,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let toy = Toy::default();
+        Self {
+            session: Session::new(About::of(&toy), 7, false),
+            toy,
+            wall_us: 0,
+            cut: false,
+            sent: Vec::new(),
+            events: Vec::new(),
+        }
+    }
+
+    fn now(&self) -> Now {
+        Now {
+            target_us: self.toy.now_us(),
+            wall_us: self.wall_us,
+        }
+    }
+
+    fn send(&mut self) {
+        let bytes = self.session.take_bytes();
+        if !self.cut {
+            self.toy.send(&bytes).unwrap();
+        }
+        self.sent.extend(bytes);
+    }
+
+    fn order(&mut self, order: Order) -> Option<Ask> {
+        let ask = self.session.order(order, self.now());
+        self.send();
+        ask
+    }
+
+    fn pass(&mut self, ms: u64) {
+        for _ in 0..ms * 1_000 / SLICE_US {
+            self.toy.advance(SLICE_US).unwrap();
+            self.wall_us += SLICE_US;
+            let now = self.now();
+            let sight = Sight {
+                truth: self.toy.truth(),
+                ..Sight::default()
+            };
+            self.session.let_go(now);
+            self.session.observe(sight, now);
+            let mut bytes = Vec::new();
+            self.toy.receive(&mut bytes);
+            if self.cut {
+                bytes.clear();
+            }
+            self.session.receive(&bytes, now);
+            self.session.advance(now);
+            self.send();
+            self.session.update(Going::default(), now);
+            self.events.extend(self.session.take_events());
+        }
+    }
+
+    fn armed(&self) -> usize {
+        let applied = self.toy.applied.iter();
+        applied.filter(|each| **each == Command::Arm).count()
+    }
+}
+
+#[test]
+fn page_and_log_take_from_the_same_events_what_each_needs() {
+    let mut bench = Bench::new();
+    bench.pass(2_000);
+    assert!(bench.order(ON).is_none());
+    bench.pass(2_000);
+    assert_eq!(bench.armed(), 1);
+
+    let (mut board, mut cursor) = (Board::default(), Cursor::default());
+    let mut log = LogWriter::new(Bytes::new(Vec::new()), &Manifest::default()).unwrap();
+    for event in &bench.events {
+        board.take(event, 0.0);
+        if let Event::Entry(entry) = event {
+            log.record(entry).unwrap();
+        }
+    }
+    let log = Log::read(Bytes::new(log.finish().unwrap().into_inner())).unwrap();
+    let news = board.news(&mut cursor);
+    let kinds = news.messages().map(|message| {
+        let message: serde_json::Value = serde_json::from_str(&message.json().unwrap()).unwrap();
+        message["type"].as_str().unwrap().to_owned()
+    });
+    let kinds: Vec<_> = kinds.collect();
+    for kind in ["scene", "state", "parameters", "events", "bytes", "samples"] {
+        assert!(kinds.iter().any(|each| each == kind), "{kind}: {kinds:?}");
+    }
+    assert_eq!(news.samples.len(), log.rows.len());
+    let last = |rows: &[Row]| rows.last().map(Row::cells);
+    assert_eq!(last(&news.samples), last(&log.rows));
+    assert!(news.samples.len() > 80 && news.state.unwrap().robot.armed);
+    // The page has the newest bytes, the log all.
+    assert!(log.link.ends_with(&news.bytes));
+    assert_eq!(log.events, news.events);
+}
+
+#[test]
+fn stop_leaves_with_the_call_that_orders_it_whatever_waits() {
+    let mut bench = Bench::new();
+    bench.pass(2_000);
+    bench.cut = true;
+    (0..20).for_each(|_| drop(bench.order(ON)));
+    bench.sent.clear();
+    bench.order(STOP);
+    let is_stop = |event: &Event| matches!(event, Event::Entry(entry) if matches!(&**entry, Entry::Burst(burst) if burst.to_robot));
+    assert!(!bench.sent.is_empty());
+    assert!(bench.session.take_events().iter().any(is_stop));
+    bench.pass(500);
+    bench.cut = false;
+    bench.pass(3_000);
+    assert_eq!(bench.armed(), 0);
+    assert!(bench.toy.applied.contains(&Command::Stop));
+}
+
+#[test]
+fn what_a_target_cannot_do_is_refused_and_what_it_can_is_asked_of_it() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.order(Order::Speed(2.0)), Some(Ask::Pace(2.0)));
+    let mut real = Session::new(About::default(), 7, false);
+    assert_eq!(real.order(Order::Speed(2.0), Now::default()), None);
+    let refused = real
+        .take_events()
+        .into_iter()
+        .filter_map(|event| match event {
+            Event::Entry(entry) => match &*entry {
+                Entry::Event(event) => Some(event.text.clone()),
+                _ => None,
+            },
+            _ => None,
+        });
+    let refused: Vec<_> = refused.collect();
+    assert!(refused[0].contains("refused"), "{refused:?}");
+}
+
+#[derive(Clone, Debug)]
+enum Action {
+    Pass(u64),
+    Cut(bool),
+    On,
+    Lost,
+    Back,
+    Restart,
+}
+
+fn action() -> impl Strategy<Value = Action> {
+    prop_oneof![
+        4 => (0u64..3_000).prop_map(Action::Pass),
+        2 => any::<bool>().prop_map(Action::Cut),
+        3 => Just(Action::On),
+        1 => Just(Action::Lost),
+        1 => Just(Action::Back),
+        1 => Just(Action::Restart),
+    ]
+}
+
+fn obey(bench: &mut Bench, action: &Action) {
+    let now = bench.now();
+    match action {
+        Action::Pass(ms) => bench.pass(*ms),
+        Action::Cut(cut) => bench.cut = *cut,
+        Action::On => drop(bench.order(ON)),
+        Action::Lost => bench.session.news(LinkNews::Lost("gone".into()), now),
+        Action::Back => bench.session.news(LinkNews::Back("back".into()), now),
+        Action::Restart => bench.toy.restart(),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    /// The toy takes what arrives, however old: this is the session's part alone.
+    #[test]
+    fn no_on_is_sent_later_than_two_seconds_after_it_was_ordered_nor_after_a_loss(
+        script in prop::collection::vec(action(), 1..30),
+    ) {
+        let mut bench = Bench::new();
+        bench.pass(1_000);
+        let (mut ordered_us, mut armed) = (None, 0);
+        for action in &script {
+            let steps = match action {
+                Action::Pass(ms) => vec![Action::Pass(10); (*ms / 10) as usize],
+                // What was on its way arrives.
+                Action::Lost => [vec![Action::Lost], vec![Action::Pass(10); 10]].concat(),
+                other => vec![other.clone()],
+            };
+            if matches!(action, Action::On) {
+                ordered_us = Some(bench.toy.now_us());
+            }
+            for step in &steps {
+                obey(&mut bench, step);
+                if bench.armed() > armed {
+                    armed = bench.armed();
+                    let age_us = ordered_us.map(|at_us| bench.toy.now_us() - at_us);
+                    // The link's queue and the frame's own way are at most 0.1 s.
+                    prop_assert!(age_us.is_some_and(|age_us| age_us <= 2_100_000), "{:?}", age_us);
+                }
+            }
+            if matches!(action, Action::Lost) {
+                ordered_us = None;
+            }
+        }
+    }
+
+    #[test]
+    fn the_same_times_and_bytes_give_the_same_events_and_bytes(
+        script in prop::collection::vec(action(), 1..15),
+    ) {
+        let run = || {
+            let mut bench = Bench::new();
+            script.iter().for_each(|action| obey(&mut bench, action));
+            (bench.sent, format!("{:?}", bench.events))
+        };
+        prop_assert!(run() == run());
+    }
+}

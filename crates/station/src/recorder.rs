@@ -1,0 +1,235 @@
+//! Records while things happen: what is to be recorded goes to a thread, and nobody waits for the disk.
+//!
+//! What a slow disk cannot take is dropped and counted; a disk that fails ends the recording. Both are reported
+//! ([`Recorder::trouble`]), and the robot goes on.
+
+use crate::log_file::{LogError, Problem};
+use rumbo_log::{Bound, Entry, Kind, LogWriter, Manifest, WriteError};
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// What has been recorded reaches the file within this time: half of what may be missing after a crash.
+pub(crate) const FLUSH: Duration = Duration::from_millis(400);
+/// Entries that wait for the disk: several seconds of a session in real time.
+const WAITING: usize = 4_096;
+
+/// Where runs are recorded.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// The folder for their logs; made if need be.
+    pub folder: PathBuf,
+}
+
+/// What went wrong so far, reported once.
+type Trouble = Arc<Mutex<Option<Problem>>>;
+
+/// Records one run. Dropping it completes the log.
+#[derive(Debug)]
+pub(crate) struct Recorder {
+    path: PathBuf,
+    /// `None` only while it is dropped.
+    entries: Option<SyncSender<Arc<Entry>>>,
+    trouble: Trouble,
+    thread: Option<JoinHandle<()>>,
+    dropped: u64,
+    /// Of a real robot, so that a flood on its link does not fill the disk.
+    bound: Option<Bound>,
+}
+
+impl Recorder {
+    /// A new log in a folder, named after its manifest.
+    pub(crate) fn in_folder(folder: &Path, manifest: &Manifest) -> Result<Self, LogError> {
+        let (path, file) = file_in(folder, manifest)?;
+        Self::start(path, file, manifest)
+    }
+
+    fn start(path: PathBuf, file: File, manifest: &Manifest) -> Result<Self, LogError> {
+        let (sender, entries) = sync_channel(WAITING);
+        let trouble = Trouble::default();
+        let bound = (manifest.kind == Kind::Robot).then(Bound::default);
+        let (manifest, reported) = (manifest.clone(), Arc::clone(&trouble));
+        let thread = std::thread::Builder::new()
+            .name("recorder".into())
+            .spawn(move || {
+                if let Err(error) = write(file, &manifest, &entries) {
+                    report(&reported, Problem::NotWritten(error));
+                }
+            })
+            .map_err(|error| LogError::new(&path, Problem::NoThread(error)))?;
+        Ok(Self {
+            path,
+            entries: Some(sender),
+            trouble,
+            thread: Some(thread),
+            dropped: 0,
+            bound,
+        })
+    }
+
+    /// The log's file.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Takes something to record.
+    pub(crate) fn take(&mut self, entry: impl Into<Arc<Entry>>) {
+        let entry = entry.into();
+        if let Some(bound) = &mut self.bound {
+            let (admitted, note) = bound.judge(&entry);
+            if let Some(note) = note {
+                self.pass_on(Arc::new(note));
+            }
+            if !admitted {
+                return;
+            }
+        }
+        self.pass_on(entry);
+    }
+
+    fn pass_on(&mut self, entry: Arc<Entry>) {
+        let Some(entries) = &self.entries else {
+            return;
+        };
+        match entries.try_send(entry) {
+            Ok(()) if self.dropped > 0 => {
+                let dropped = std::mem::take(&mut self.dropped);
+                report(&self.trouble, Problem::Dropped(dropped));
+            }
+            Ok(()) | Err(TrySendError::Disconnected(_)) => {}
+            Err(TrySendError::Full(_)) => self.dropped += 1,
+        }
+    }
+
+    /// What has gone wrong since it was last asked.
+    pub(crate) fn trouble(&self) -> Option<Problem> {
+        self.trouble
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take()
+    }
+
+    fn close(&mut self) {
+        if let Some(note) = self.bound.as_mut().and_then(|bound| bound.pass_to(0)) {
+            self.pass_on(Arc::new(note));
+        }
+        drop(self.entries.take());
+        if let Some(thread) = self.thread.take()
+            && thread.join().is_err()
+        {
+            report(&self.trouble, Problem::Broken);
+        }
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        self.close();
+    }
+}
+
+/// A new file in a folder, named after a manifest.
+pub(crate) fn file_in(folder: &Path, manifest: &Manifest) -> Result<(PathBuf, File), LogError> {
+    let failed = |path: &Path, error: io::Error| {
+        LogError::new(path, Problem::NotMade(error, "for logs with --out"))
+    };
+    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
+    let stem = manifest.stem();
+    let mut number = 1;
+    loop {
+        let name = match number {
+            1 => format!("{stem}.mcap"),
+            _ => format!("{stem}-{number}.mcap"),
+        };
+        let path = folder.join(name);
+        match File::create_new(&path) {
+            Ok(file) => return Ok((path, file)),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => number += 1,
+            Err(error) => return Err(failed(&path, error)),
+        }
+    }
+}
+
+/// A file of this name, in place of what was there.
+pub(crate) fn file_at(path: &Path) -> Result<File, LogError> {
+    File::create(path).map_err(|error| LogError::new(path, Problem::NotMade(error, "with --out")))
+}
+
+fn report(trouble: &Trouble, problem: Problem) {
+    *trouble.lock().unwrap_or_else(PoisonError::into_inner) = Some(problem);
+}
+
+/// Writes what comes until the sender is gone.
+fn write(
+    file: File,
+    manifest: &Manifest,
+    entries: &Receiver<Arc<Entry>>,
+) -> Result<(), WriteError> {
+    let mut log = LogWriter::new(BufWriter::new(file), manifest)?;
+    let (mut dirty, mut due) = (false, Instant::now() + FLUSH);
+    loop {
+        let entry = match dirty {
+            true => entries.recv_timeout(due.saturating_duration_since(Instant::now())),
+            false => entries.recv().map_err(|_| RecvTimeoutError::Disconnected),
+        };
+        match entry {
+            Ok(entry) => {
+                if !dirty {
+                    (dirty, due) = (true, Instant::now() + FLUSH);
+                }
+                log.record(&entry)?;
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return log.finish().map(drop),
+        }
+        if dirty && Instant::now() >= due {
+            log.flush()?;
+            dirty = false;
+        }
+    }
+}
+
+/// The time of day, UTC, as a manifest has it.
+#[must_use]
+pub fn now_utc() -> String {
+    let now = time::OffsetDateTime::now_utc();
+    let (date, clock) = (now.date(), now.time());
+    format!(
+        "{}-{:02}-{:02}T{:02}:{:02}:{:02}Z",
+        date.year(),
+        u8::from(date.month()),
+        date.day(),
+        clock.hour(),
+        clock.minute(),
+        clock.second()
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rumbo_log::Burst;
+
+    fn burst(t_us: u64) -> Entry {
+        Entry::Burst(Burst {
+            t_us,
+            to_robot: false,
+            bytes: vec![7; 100],
+        })
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_reported_and_nobody_waits_for_it() {
+        let file = File::options().write(true).open("/dev/full").unwrap();
+        let mut recorder = Recorder::start("/dev/full".into(), file, &Manifest::default()).unwrap();
+        (0..100).for_each(|number| recorder.take(burst(number)));
+        recorder.close();
+        let error = recorder.trouble().unwrap().to_string();
+        assert!(error.contains("is the disk full?"), "{error}");
+    }
+}
