@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 15] = [
+const ARROWS: [(&str, &[&str]); 16] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
@@ -21,13 +21,20 @@ const ARROWS: [(&str, &[&str]); 15] = [
     ),
     ("rumbo-experiment", &["rumbo-sim"]),
     ("rumbo-identify", &["rumbo-plant"]),
+    ("rumbo-sketch", &[]),
     ("rumbo-station", &["rumbo-wire"]),
     ("rumbo-report", &["rumbo-experiment", "rumbo-identify"]),
-    ("rumbo-cli", &["rumbo-station", "rumbo-report"]),
+    (
+        "rumbo-cli",
+        &["rumbo-station", "rumbo-report", "rumbo-sketch"],
+    ),
     ("rumbo-firmware", &["rumbo-robot"]),
     ("rumbo-firmware-tests", &["rumbo-experiment"]),
-    ("rumbo-tools", &["rumbo-experiment", "rumbo-identify"]),
-    ("xtask", &[]),
+    (
+        "rumbo-tools",
+        &["rumbo-experiment", "rumbo-identify", "rumbo-sketch"],
+    ),
+    ("xtask", &["rumbo-sketch"]),
 ];
 
 /// What tests may use besides, and why.
