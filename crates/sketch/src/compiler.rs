@@ -119,7 +119,7 @@ impl Compiler {
         for file in libraries.iter().flat_map(|library| &library.files) {
             part(&mut key, &read(file)?);
         }
-        let image = self.cache.join(hex(key)).join("sketch.elf");
+        let image = self.cache.join(hex(key)).join(file_name(&source.name));
         if image.is_file() {
             return Ok(Image {
                 path: image,
@@ -390,6 +390,13 @@ fn hex(key: Sha256) -> String {
         .iter()
         .map(|byte| format!("{byte:02x}"))
         .collect()
+}
+
+/// What the image of a sketch is called: its name as far as every system takes it.
+fn file_name(name: &str) -> String {
+    let is_plain = |c: &char| c.is_ascii_alphanumeric() || "-_".contains(*c);
+    let plain: String = name.chars().filter(is_plain).take(60).collect();
+    format!("{}.elf", if plain.is_empty() { "sketch" } else { &plain })
 }
 
 fn is_source(file: &Path) -> bool {

@@ -12,13 +12,31 @@ struct Examples;
 /// The example that a new sketch starts as.
 const STARTER: &str = "wall";
 
-/// Names of the examples, in order.
+/// Names of the examples, in order, with the first line of each.
 #[must_use]
-pub fn example_names() -> Vec<String> {
+pub fn examples() -> Vec<(String, String)> {
+    let first_line = |name: &str| {
+        let text = Examples::get(&format!("{name}/{name}.ino"))?;
+        let text = String::from_utf8_lossy(&text.data).into_owned();
+        Some(
+            text.lines()
+                .next()?
+                .trim_start_matches(['/', ' '])
+                .to_owned(),
+        )
+    };
     let names: BTreeSet<String> = Examples::iter()
         .filter_map(|file| Some(file.split_once('/')?.0.to_owned()))
         .collect();
-    names.into_iter().collect()
+    let named = names.into_iter();
+    named
+        .filter_map(|name| Some((name.clone(), first_line(&name)?)))
+        .collect()
+}
+
+fn unknown(name: &str) -> SketchError {
+    let known = examples().into_iter().map(|(name, _)| name);
+    SketchError::NoExample(name.to_owned(), known.collect())
 }
 
 /// An example by its name.
@@ -39,7 +57,7 @@ pub fn example(name: &str) -> Result<Source, SketchError> {
         files: files.collect(),
     };
     match source.files.is_empty() {
-        true => Err(SketchError::NoExample(name.to_owned(), example_names())),
+        true => Err(unknown(name)),
         false => Ok(source),
     }
 }
@@ -50,7 +68,6 @@ pub fn example(name: &str) -> Result<Source, SketchError> {
 /// None: it is part of the program.
 pub fn starter() -> Result<String, SketchError> {
     let file = format!("{STARTER}/{STARTER}.ino");
-    let embedded = Examples::get(&file)
-        .ok_or_else(|| SketchError::NoExample(STARTER.into(), example_names()))?;
+    let embedded = Examples::get(&file).ok_or_else(|| unknown(STARTER))?;
     Ok(String::from_utf8_lossy(&embedded.data).into_owned())
 }

@@ -22,6 +22,6 @@ mod toolchain;
 pub use compiler::{Compiler, Image};
 pub use diagnostics::{Diagnostic, Severity};
 pub use error::SketchError;
-pub use examples::{example, example_names, starter};
+pub use examples::{example, examples, starter};
 pub use source::{Given, Source, given};
 pub use toolchain::Toolchain;

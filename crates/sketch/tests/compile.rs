@@ -2,7 +2,7 @@
 #![cfg(test)]
 
 use rumbo_sketch::sandbox::{Limits, Sandbox};
-use rumbo_sketch::{Compiler, SketchError, Source, Toolchain, example, example_names};
+use rumbo_sketch::{Compiler, SketchError, Source, Toolchain, example, examples};
 use tempfile::TempDir;
 
 /// A compiler with a cache of its own; `None` where none is installed.
@@ -39,7 +39,7 @@ fn every_example_compiles_and_is_fresh_the_second_time() {
     let Some((compiler, _cache)) = compiler() else {
         return;
     };
-    for name in example_names() {
+    for (name, _) in examples() {
         let source = example(&name).unwrap();
         let image = compiler.compile(&source, &[]).unwrap();
         assert!(!image.fresh && image.path.is_file(), "{name}");

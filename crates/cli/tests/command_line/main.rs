@@ -5,6 +5,7 @@
 mod import;
 mod observe;
 mod run;
+mod sketch;
 #[path = "../support/mod.rs"]
 mod support;
 mod told;

@@ -27,5 +27,5 @@ pub use library::{Kind, Library};
 pub use names::{MOVEMENTS, find_mode, find_movement};
 pub use robot::{FirmwareCaps, RobotFile};
 pub use scenario::{Bounds, ScenarioFile, Spread, Start, TimedCommand};
-pub use setup::{NativeProgram, Overrides, Setup, TimedText};
+pub use setup::{NativeProgram, Overrides, Port, Setup, TimedText};
 pub use world::{Arena, WorldFile};

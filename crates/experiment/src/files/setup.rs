@@ -28,6 +28,16 @@ pub enum NativeProgram {
     Baseline,
 }
 
+/// Where a line of text goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Port {
+    /// Over the robot's link.
+    #[default]
+    Link,
+    /// To an emulated Mega, over its USB cable.
+    Usb,
+}
+
 /// A line of text and when it is sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedText {
@@ -35,6 +45,8 @@ pub struct TimedText {
     pub at_s: f64,
     /// The line, without its end.
     pub text: String,
+    /// Where it goes.
+    pub port: Port,
 }
 
 /// What the command line sets in place of the scenario's own.
