@@ -16,6 +16,7 @@ mod failure;
 mod figures;
 mod flash;
 mod ghost;
+mod grade;
 mod identify;
 mod import;
 mod interrupt;
@@ -74,6 +75,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
             args.image.compile()?;
             experiments::experiments(&args)
         }
+        Some(Command::Grade(args)) => grade::grade(&args),
         Some(Command::Replay(args)) => replay::replay(&args),
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Compare(args)) => compare::compare(&args),

@@ -170,6 +170,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
             .iter()
             .map(|(at_s, line)| typed(*at_s, line))
             .collect(),
+        ground_truth: false,
     };
     Ok((library.setup(scenario, &overrides)?, seed))
 }

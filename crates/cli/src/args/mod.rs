@@ -14,7 +14,7 @@ pub(crate) use logs::{
     CompareArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
 };
 pub(crate) use runs::{
-    CalibrateArgs, ExperimentsArgs, IdentifyArgs, LanguageName, ProgramName, RunArgs,
+    CalibrateArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, ProgramName, RunArgs,
 };
 
 use crate::failure::Failure;
@@ -55,6 +55,8 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Run every experiment of the report and write it: one page with all figures
     Experiments(ExperimentsArgs),
+    /// Grade a class: compile each hand-in in a sandbox, drive it with every seed, write pages and marks
+    Grade(GradeArgs),
     /// Find the plant's parameters from recorded runs
     Identify(IdentifyArgs),
     /// Let the robot calibrate itself: dead zones, feedforward, wheels, base

@@ -143,6 +143,43 @@ pub(crate) enum LanguageName {
     Es,
 }
 
+/// Options of `rumbo grade`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo grade examples/assignments/wall/assignment.toml handed_in
+  rumbo grade assignment.toml handed_in --language es --out marks
+  rumbo grade assignment.toml my_sketch
+
+Each folder or file in FOLDER is a hand-in: a sketch, an .ino, an .elf or a .hex. FOLDER may itself be the only one. Sketches are
+compiled in a sandbox (bwrap): no network, no files but their own, bounded time and memory.
+
+In DIR: index.html, the class; students/NAME.html; marks.csv; junit.xml; gradescope/NAME.json. The same hand-ins give the same bytes.
+
+Exit status 0: every hand-in passes; 1: one does not; 2: wrong input. More: docs/grading.md")]
+pub(crate) struct GradeArgs {
+    /// The assignment's file
+    #[arg(value_name = "ASSIGNMENT.toml")]
+    pub(crate) assignment: PathBuf,
+    /// Folder with the hand-ins, or one hand-in
+    #[arg(value_name = "FOLDER")]
+    pub(crate) folder: PathBuf,
+    /// Folder for pages and marks; made if need be
+    #[arg(long, value_name = "DIR", default_value = "rumbo-marks")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
+    /// Language of the pages [default: that of the locale]
+    #[arg(long, value_enum, value_name = "LANGUAGE")]
+    pub(crate) language: Option<LanguageName>,
+    /// Compile without the sandbox: every hand-in can then read your files. For sources that you know
+    #[arg(long)]
+    pub(crate) trust: bool,
+    /// Threads [default: one per core]; the marks do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
 /// Options of `rumbo identify`.
 #[derive(Args, Debug)]
 #[command(after_help = "\

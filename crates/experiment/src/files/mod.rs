@@ -14,7 +14,7 @@ mod library;
 mod names;
 pub(crate) mod near;
 pub mod parameters;
-mod read;
+pub(crate) mod read;
 mod robot;
 mod route;
 mod scenario;

@@ -68,6 +68,8 @@ pub struct Overrides {
     pub wiring: Option<String>,
     /// Lines of text sent over the link besides the scenario's commands.
     pub texts: Vec<TimedText>,
+    /// What the program says is not believed.
+    pub ground_truth: bool,
 }
 
 /// A scenario ready to be run.
@@ -87,6 +89,8 @@ pub struct Setup {
     pub firmware: Option<Arc<Firmware>>,
     /// Lines of text sent over the link besides its commands, in order of time.
     pub texts: Vec<TimedText>,
+    /// What an image says is not believed: it is spoken to in text, and nothing that it says reaches a metric.
+    pub ground_truth: bool,
 }
 
 impl Library {
@@ -138,6 +142,7 @@ impl Library {
             program: overrides.program,
             firmware,
             texts,
+            ground_truth: overrides.ground_truth,
         })
     }
 }
@@ -246,7 +251,7 @@ impl Setup {
     /// Whether the program takes the control core's parameters: our own does, and an image that speaks its frames.
     pub fn takes_parameters(&self) -> bool {
         match &self.firmware {
-            Some(firmware) => firmware.language() == Language::Frames,
+            Some(firmware) => !self.ground_truth && firmware.language() == Language::Frames,
             None => self.program == NativeProgram::Rumbo,
         }
     }
