@@ -10,6 +10,9 @@ const KEPT = 40_000;
 /** In place of a USART: the link to a robot with the text protocol. */
 const LINK = 255;
 
+/** A port as the student's program calls it. @param {number} usart */
+const name = (usart) => (usart === LINK ? 'link' : usart === 0 ? 'Serial (USB)' : `Serial${usart}`);
+
 export class Consoles {
   #section = element('console-section', HTMLElement);
   #choice = element('console-choice', HTMLDivElement);
@@ -50,7 +53,7 @@ export class Consoles {
 
   /** The USART has sent something for the first time. @param {number} usart */
   #offer(usart) {
-    const button = create('button', { type: 'button', value: String(usart) }, usart === LINK ? 'link' : `USART${usart}`);
+    const button = create('button', { type: 'button', value: String(usart) }, name(usart));
     button.addEventListener('click', () => {
       this.#shown = usart;
       this.#show();

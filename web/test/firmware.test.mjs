@@ -30,7 +30,7 @@ after(() => dashboard?.close());
 test('ON reaches a robot that speaks text, its rows are drawn and stand in the console of its USART', { skip }, async () => {
   await page.locator('#on').click();
   await page.locator('#console').filter({ hasText: /\d+, ?-?\d/ }).waitFor();
-  assert.equal(await page.locator('#console-choice button[aria-pressed="true"]').textContent(), 'USART1');
+  assert.equal(await page.locator('#console-choice button[aria-pressed="true"]').textContent(), 'Serial1');
   await page.waitForFunction(() => {
     const rumbo = /** @type {any} */ (window).rumbo;
     return rumbo.series('left_rpm').y.some((/** @type {number} */ rpm) => rpm > 40);
@@ -74,7 +74,7 @@ test('a log of it shows what the USART said, as far as the playhead is', { skip 
     assert.equal(await replay.page.locator('#console-section').isVisible(), false, 'nothing was said yet');
     await scrub(3);
     await replay.page.locator('#console').filter({ hasText: /\d+, ?-?\d/ }).waitFor();
-    assert.equal(await replay.page.locator('#console-choice button[aria-pressed="true"]').textContent(), 'USART1');
+    assert.equal(await replay.page.locator('#console-choice button[aria-pressed="true"]').textContent(), 'Serial1');
     assert.equal(await replay.page.locator('#console-line').isVisible(), false, 'nothing is sent to a chip of the past');
     const early = await rows();
     await scrub(5);

@@ -6,6 +6,7 @@
 //! output is printed as it comes.
 
 use crate::project::{Project, shown};
+use crate::test::{Stop, tools};
 use std::process::Stdio;
 
 /// The part that is not a scenario.
@@ -25,6 +26,8 @@ const FAULTS_SEEDS_IMAGE: u32 = 5;
 const FAULTS_INSTANTS_IMAGE: u32 = 2;
 /// The fuzz targets.
 const FUZZ: &str = "fuzz";
+/// A class of a hundred hand-ins, thirty of them hostile.
+const GRADE: &str = "grade";
 /// Seconds of each.
 const FUZZ_SECONDS: u32 = 600;
 /// Minutes of [`IMAGE`]: past the wrap of the microseconds at 71.6.
@@ -54,19 +57,52 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if only.is_empty() || only.iter().any(|name| name == FUZZ) {
         met &= crate::fuzz::campaign(project, Some(FUZZ_SECONDS), &[])?;
     }
+    if only.is_empty() || only.iter().any(|name| name == GRADE) {
+        tools::arduino_core(project).map_err(said)?;
+        tools::bubblewrap(project).map_err(said)?;
+        met &= mistakes(project)?;
+        met &= tool(project, GRADE, &[])?;
+    }
     if only.is_empty() || only.iter().any(|name| name == FAULTS) {
         met &= faults(project, seeds)?;
     }
     let mut scenarios = vec![seeds.unwrap_or(SEEDS).to_string()];
     scenarios.extend(
         only.iter()
-            .filter(|name| ![LINK, IMAGE, MEDIANS, FUZZ, FAULTS].contains(&name.as_str()))
+            .filter(|name| ![LINK, IMAGE, MEDIANS, FUZZ, GRADE, FAULTS].contains(&name.as_str()))
             .cloned(),
     );
     if only.is_empty() || scenarios.len() > 1 {
         met &= tool(project, "campaign", &scenarios)?;
     }
     Ok(met)
+}
+
+/// Grades every mistake of the assignments; true if they lose points where they should.
+fn mistakes(project: &Project) -> Result<bool, String> {
+    let mut command = project.cargo(&[
+        "test",
+        "--quiet",
+        "--release",
+        "--locked",
+        "--package",
+        "rumbo-cli",
+        "--test",
+        "grade",
+    ]);
+    command.env("RUMBO_MISTAKES", "all");
+    let status = command
+        .stdin(Stdio::null())
+        .status()
+        .map_err(|error| format!("{}: {error}", shown(&command)))?;
+    Ok(status.success())
+}
+
+/// Why a tool is not there.
+fn said(stop: Stop) -> String {
+    match stop {
+        Stop::Failed(error) | Stop::Missing(error) => error,
+    }
 }
 
 /// Breaks everything, natively and on the image; with all seeds the tables of the docs are made.

@@ -42,8 +42,8 @@ Commands:
                            every scenario with 1,000 seeds or N, mode 8 in as many random worlds; `link`, a million
                            frames over a link with faults; `faults`, every sensor and wire broken in every drive
                            (50 seeds or N); `image`, 75 minutes of the image; `medians`, the image beside the native
-                           robot; `fuzz`, the fuzz targets, ten minutes each: what is required beside what was
-                           measured
+                           robot; `fuzz`, the fuzz targets, ten minutes each; `grade`, a class of 100, 30 of them
+                           hostile: what is required beside what was measured
   fuzz [--seconds N] [--only TARGET]...
                            the fuzz targets of fuzz/, a minute each or N seconds
   figures [--only NAME]... the figures and tables of docs/theory, from runs of both programs

@@ -53,7 +53,7 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
     let mut data = plan.run(|simulated_s| progress.inc((10.0 * simulated_s) as u64))?;
     progress.finish_and_clear();
     data.firmware = args.image.firmware.as_deref().map(named);
-    let (page, _) = html(&data, language(args)).map_err(Failure::input)?;
+    let (page, _) = html(&data, language(args.language)).map_err(Failure::input)?;
     let place = args.out.join(REPORT);
     place::write(&place, stamp.put_on(page))?;
     if args.data {
@@ -70,7 +70,7 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
 /// Refuses, before anything runs, what would write over something else than an older report of the same. Gives what the
 /// report is known by.
 fn check_places(args: &ExperimentsArgs, plan: &Plan) -> Result<Stamp, Failure> {
-    let language = match language(args) {
+    let language = match language(args.language) {
         Language::English => "en",
         Language::Spanish => "es",
     };
@@ -124,8 +124,8 @@ fn progress(args: &ExperimentsArgs, plan: &Plan) -> ProgressBar {
 }
 
 /// The language that was asked for, else the locale's.
-fn language(args: &ExperimentsArgs) -> Language {
-    match args.language {
+pub(crate) fn language(asked: Option<LanguageName>) -> Language {
+    match asked {
         Some(LanguageName::En) => Language::English,
         Some(LanguageName::Es) => Language::Spanish,
         None => {

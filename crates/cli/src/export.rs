@@ -146,7 +146,7 @@ fn events(log: &Log) -> String {
 }
 
 /// A text as a cell of a table: in quotes, in one line, and none that a spreadsheet would compute.
-fn text_cell(text: &str) -> String {
+pub(crate) fn text_cell(text: &str) -> String {
     let computes = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
     let apostrophe = if computes { "'" } else { "" };
     let shown = output::visible(text);

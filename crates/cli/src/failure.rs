@@ -15,6 +15,8 @@ pub(crate) enum Failure {
     Input(String),
     /// The same of several things, a line each.
     Inputs(Vec<String>),
+    /// The compiler refused a sketch: its complaints, a line each.
+    Rejected(Vec<String>),
     /// Ctrl-C; what was done until then has been printed.
     Interrupted,
     /// The reader of our output has closed it.
@@ -39,6 +41,10 @@ impl Failure {
                 }
                 ExitCode::from(2)
             }
+            Self::Rejected(lines) => {
+                lines.iter().for_each(|line| output::aside(line));
+                ExitCode::from(2)
+            }
             Self::ReaderGone => ExitCode::SUCCESS,
         }
     }
@@ -49,7 +55,7 @@ impl fmt::Display for Failure {
         match self {
             Self::LimitMissed => f.write_str("a limit is missed"),
             Self::Input(text) => f.write_str(text),
-            Self::Inputs(lines) => f.write_str(&lines.join("; ")),
+            Self::Inputs(lines) | Self::Rejected(lines) => f.write_str(&lines.join("; ")),
             Self::Interrupted => f.write_str("interrupted"),
             Self::ReaderGone => f.write_str("nobody reads the output"),
         }

@@ -58,6 +58,7 @@ fn name(topic: Topic) -> &'static str {
         Topic::Plant => "plant",
         Topic::Logs => "logs",
         Topic::Ports => "ports",
+        Topic::Sketches => "sketches",
     }
 }
 
@@ -114,6 +115,10 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
             entries.extend(ports.into_iter().map(entry));
         }
         Topic::Logs => entries = logs::entries()?,
+        Topic::Sketches => {
+            let entry = |(name, title): (String, String)| json!({ "name": name, "title": title });
+            entries.extend(rumbo_sketch::examples().into_iter().map(entry));
+        }
         Topic::Plant => entries.extend(Params::limits().iter().map(|limit| {
             json!({ "name": limit.key, "min": limit.min, "max": limit.max, "default": limit.nominal,
                     "unit": limit.unit, "help": limit.help })

@@ -16,6 +16,7 @@ mod failure;
 mod figures;
 mod flash;
 mod ghost;
+mod grade;
 mod identify;
 mod import;
 mod interrupt;
@@ -37,6 +38,7 @@ mod results;
 mod run;
 mod run_log;
 mod scene;
+mod sketch;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -58,11 +60,22 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         Some(Command::Import(args)) => import::import(&args),
         Some(Command::List(args)) => list::list(&args),
-        Some(Command::Lab(args)) => lab::lab(&args),
+        Some(Command::New(args)) => sketch::begin(&args),
+        Some(Command::Lab(mut args)) => {
+            args.image.compile()?;
+            lab::lab(&args)
+        }
         Some(Command::Connect(args)) => connect::connect(&args),
         Some(Command::Flash(args)) => flash::flash(&args),
-        Some(Command::Run(args)) => run::run(&args),
-        Some(Command::Experiments(args)) => experiments::experiments(&args),
+        Some(Command::Run(mut args)) => {
+            args.image.compile()?;
+            run::run(&args)
+        }
+        Some(Command::Experiments(mut args)) => {
+            args.image.compile()?;
+            experiments::experiments(&args)
+        }
+        Some(Command::Grade(args)) => grade::grade(&args),
         Some(Command::Replay(args)) => replay::replay(&args),
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
@@ -70,6 +83,10 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Identify(args)) => identify::identify(&args),
         Some(Command::Calibrate(args)) => calibrate::calibrate(&args),
         Some(Command::Prune(args)) => logs::prune(&args),
-        None => lab::lab(&cli.lab),
+        None => {
+            let mut args = cli.lab;
+            args.image.compile()?;
+            lab::lab(&args)
+        }
     }
 }

@@ -4,7 +4,9 @@ use crate::failure::Failure;
 use crate::mark::crc32;
 use rumbo_experiment::MODEL;
 use rumbo_experiment::files::firmware;
-use rumbo_experiment::files::{Kind as File, Library, NativeProgram, Overrides, Setup, TimedText};
+use rumbo_experiment::files::{
+    Kind as File, Library, NativeProgram, Overrides, Port, Setup, TimedText,
+};
 use rumbo_log::{Kind, Manifest};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -46,12 +48,34 @@ pub(crate) fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) ->
         texts: overrides
             .texts
             .iter()
-            .map(|timed| (timed.at_s, timed.text.clone()))
+            .map(|timed| (timed.at_s, line_of(timed)))
             .collect(),
         files: files
             .map(|(name, text)| (name.to_owned(), text.clone()))
             .into(),
         ..Manifest::default()
+    }
+}
+
+/// What a line for the USB cable begins with in a manifest: no line has it.
+const TO_USB: char = '\t';
+
+fn line_of(timed: &TimedText) -> String {
+    match timed.port {
+        Port::Link => timed.text.clone(),
+        Port::Usb => format!("{TO_USB}{}", timed.text),
+    }
+}
+
+fn typed(at_s: f64, line: &str) -> TimedText {
+    let (text, port) = match line.strip_prefix(TO_USB) {
+        Some(text) => (text, Port::Usb),
+        None => (line, Port::Link),
+    };
+    TimedText {
+        at_s,
+        text: text.to_owned(),
+        port,
     }
 }
 
@@ -144,11 +168,9 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         texts: manifest
             .texts
             .iter()
-            .map(|(at_s, text)| TimedText {
-                at_s: *at_s,
-                text: text.clone(),
-            })
+            .map(|(at_s, line)| typed(*at_s, line))
             .collect(),
+        ground_truth: false,
     };
     Ok((library.setup(scenario, &overrides)?, seed))
 }

@@ -307,7 +307,7 @@ impl Recorded for Said {
 
     fn words(&self) -> String {
         let text = rumbo_session::readable(&self.bytes);
-        format!("USART{} `{}`", self.usart, text.replace('\n', "\\n"))
+        format!("serial port {} `{}`", self.usart, text.replace('\n', "\\n"))
     }
 }
 

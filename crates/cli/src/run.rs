@@ -28,7 +28,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
             ProgramName::Rumbo => NativeProgram::Rumbo,
             ProgramName::Baseline => NativeProgram::Baseline,
         },
-        texts: args.commands.clone(),
+        texts: [&args.commands[..], &args.usb].concat(),
         ..args.image.overrides()
     };
     let library = Library::new();

@@ -61,6 +61,7 @@ pub fn run_calibration(setup: &Setup, seed: u64) -> Result<CalibrationRun, FileE
             .into_iter()
             .collect(),
         notes: Vec::new(),
+        ended: None,
         trace,
     };
     Ok(CalibrationRun { found, sim, result })

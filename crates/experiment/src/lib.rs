@@ -9,6 +9,8 @@ pub mod calibration_run;
 #[cfg(feature = "host")]
 pub mod campaign;
 pub mod files;
+#[cfg(feature = "host")]
+pub mod grade;
 pub mod metrics;
 pub mod observe;
 mod operator;

@@ -26,7 +26,7 @@ use std::io::{self, BufWriter};
 pub(crate) type Waves = Waveform<BufWriter<File>>;
 
 /// The result of a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RunResult {
     /// Name of the scenario.
     pub scenario: String,
@@ -45,6 +45,9 @@ pub struct RunResult {
     /// Notes for the reader, a line each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
+    /// How the program ended, if it could not go on.
+    #[serde(skip)]
+    pub ended: Option<String>,
     /// Ground truth.
     #[serde(skip)]
     pub trace: Trace,
@@ -164,7 +167,7 @@ impl<'a> Run<'a> {
         let mut failures = self.operator.complaints;
         let verdict = self.sim.verdict();
         let ended = verdict.is_some();
-        failures.extend(verdict);
+        failures.extend(verdict.clone());
         let mut notes = self.operator.notes;
         notes.extend(self.sim.mega().map(Mega::notes).into_iter().flatten());
         // What its program could no longer do is not judged: the verdict suffices.
@@ -194,6 +197,7 @@ impl<'a> Run<'a> {
             metrics,
             failures,
             notes,
+            ended: verdict,
             trace: self.trace,
         }
     }

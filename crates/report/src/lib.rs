@@ -13,6 +13,8 @@ mod complaints;
 mod content;
 mod data;
 mod drawing;
+#[cfg(feature = "host")]
+pub mod grade;
 mod judge;
 mod markdown;
 mod metric_names;

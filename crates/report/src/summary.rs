@@ -49,15 +49,21 @@ pub fn html(data: &Data, language: Language) -> Result<(String, Vec<String>), Co
         chapters += &page.chapter(experiment.number, experiment.name, &places)?;
     }
     let front = page.front(&front(data, language, page.contents()))?;
-    let title = escape(TITLE.of(language));
-    let html = format!(
+    let body = front + &chapters;
+    let html = shell(language, TITLE.of(language), SUBTITLE.of(language), &body);
+    Ok((html, page.figure_ids().to_vec()))
+}
+
+/// A whole page around a body in HTML.
+pub(crate) fn shell(language: Language, title: &str, subtitle: &str, body: &str) -> String {
+    let title = escape(title);
+    format!(
         "<!doctype html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, \
          initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <header><h1>{title}</h1><p class=\"subtitle\">{}</p></header>\n<main>\n{front}{chapters}</main>\n</body>\n</html>\n",
+         <header><h1>{title}</h1><p class=\"subtitle\">{}</p></header>\n<main>\n{body}</main>\n</body>\n</html>\n",
         language.tag(),
-        escape(SUBTITLE.of(language)),
-    );
-    Ok((html, page.figure_ids().to_vec()))
+        escape(subtitle),
+    )
 }
 
 /// What stands before the chapters.

@@ -77,6 +77,11 @@ pub(crate) fn arduino_core(project: &Project) -> Result<PathBuf, Stop> {
     )
 }
 
+/// The sandbox for sketches that are not trusted.
+pub(crate) fn bubblewrap(project: &Project) -> Result<PathBuf, Stop> {
+    program(project, "bwrap", &["bubblewrap"], "Linux only")
+}
+
 /// The debugger that the tests attach to the emulated chip.
 pub(crate) fn avr_gdb(project: &Project) -> Result<PathBuf, Stop> {
     program(project, "avr-gdb", &["gdb-avr"], "GDB for the AVR")

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 17] = [
+const ARROWS: [(&str, &[&str]); 18] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
@@ -23,13 +23,20 @@ const ARROWS: [(&str, &[&str]); 17] = [
     ("rumbo-identify", &["rumbo-plant"]),
     ("rumbo-log", &["rumbo-wire"]),
     ("rumbo-session", &["rumbo-log"]),
+    ("rumbo-sketch", &[]),
     ("rumbo-station", &["rumbo-session"]),
     ("rumbo-report", &["rumbo-experiment", "rumbo-identify"]),
-    ("rumbo-cli", &["rumbo-station", "rumbo-report"]),
+    (
+        "rumbo-cli",
+        &["rumbo-station", "rumbo-report", "rumbo-sketch"],
+    ),
     ("rumbo-firmware", &["rumbo-robot"]),
     ("rumbo-firmware-tests", &["rumbo-experiment"]),
-    ("rumbo-tools", &["rumbo-experiment", "rumbo-identify"]),
-    ("xtask", &[]),
+    (
+        "rumbo-tools",
+        &["rumbo-experiment", "rumbo-identify", "rumbo-sketch"],
+    ),
+    ("xtask", &["rumbo-sketch"]),
 ];
 
 /// What tests may use besides, and why.

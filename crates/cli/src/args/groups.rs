@@ -1,6 +1,8 @@
 //! Options that several commands have.
 
 use super::values::parameter;
+use crate::failure::Failure;
+use crate::sketch;
 use clap::Args;
 use rumbo_experiment::files::Overrides;
 use std::path::PathBuf;
@@ -23,14 +25,28 @@ pub(crate) struct SettingArgs {
 #[derive(Args, Clone, Debug)]
 pub(crate) struct ImageArgs {
     /// Firmware for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
-    #[arg(long, value_name = "IMAGE")]
+    #[arg(long, value_name = "IMAGE", group = "image")]
     pub(crate) firmware: Option<PathBuf>,
+    /// Arduino sketch, compiled and then run as firmware: its folder or .ino, or example:NAME (`rumbo list sketches`)
+    #[arg(long, value_name = "FOLDER", group = "image")]
+    pub(crate) sketch: Option<String>,
     /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own firmware]
-    #[arg(long, value_name = "NAME", requires = "firmware")]
+    #[arg(long, value_name = "NAME", requires = "image")]
     pub(crate) wiring: Option<String>,
 }
 
 impl ImageArgs {
+    /// Compiles the sketch, if one is given: from here on it is the firmware.
+    ///
+    /// # Errors
+    /// It is not there, or the compiler refuses it.
+    pub(crate) fn compile(&mut self) -> Result<(), Failure> {
+        if let Some(given) = &self.sketch {
+            self.firmware = Some(sketch::image(given)?);
+        }
+        Ok(())
+    }
+
     /// The resulting overrides of a scenario.
     pub(crate) fn overrides(&self) -> Overrides {
         Overrides {

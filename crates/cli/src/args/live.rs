@@ -12,6 +12,7 @@ Examples:
   rumbo lab
   rumbo lab --scenario mode5 --speed 4
   rumbo lab --scenario mode1 --rig final --world room
+  rumbo lab --scenario mode1 --sketch my_sketch
   rumbo lab --scenario mode1 --firmware my_sketch.elf --wiring final
   rumbo lab --scenario mode5 --firmware my_sketch.elf --gdb 1234
   rumbo lab --port 9000 --no-browser
@@ -26,7 +27,7 @@ pub(crate) struct LabArgs {
     #[command(flatten)]
     pub(crate) image: ImageArgs,
     /// Port on 127.0.0.1 for avr-gdb; 0 takes any free one. Robot and world are frozen while the program is halted
-    #[arg(long, value_name = "PORT", requires = "firmware")]
+    #[arg(long, value_name = "PORT", requires = "image")]
     pub(crate) gdb: Option<u16>,
     #[command(flatten)]
     pub(crate) session: SessionArgs,

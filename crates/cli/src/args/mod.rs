@@ -14,11 +14,12 @@ pub(crate) use logs::{
     CompareArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
 };
 pub(crate) use runs::{
-    CalibrateArgs, ExperimentsArgs, IdentifyArgs, LanguageName, ProgramName, RunArgs,
+    CalibrateArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, ProgramName, RunArgs,
 };
 
 use crate::failure::Failure;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
 
 /// Rumbo: the lab of a small robot. Without a subcommand, `lab`.
 #[derive(Debug, Parser)]
@@ -54,6 +55,8 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Run every experiment of the report and write it: one page with all figures
     Experiments(ExperimentsArgs),
+    /// Grade a class: compile each hand-in in a sandbox, drive it with every seed, write pages and marks
+    Grade(GradeArgs),
     /// Find the plant's parameters from recorded runs
     Identify(IdentifyArgs),
     /// Let the robot calibrate itself: dead zones, feedforward, wheels, base
@@ -70,8 +73,32 @@ pub(crate) enum Command {
     Rerun(RerunArgs),
     /// Remove old logs of sessions and runs
     Prune(PruneArgs),
+    /// Begin a sketch for the Mega that drives to a wall
+    New(NewArgs),
     /// List modes, scenarios, worlds, rigs, robots and parameters
     List(ListArgs),
+}
+
+/// Options of `rumbo new`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo new sketch my_sketch
+  rumbo run mode1 --sketch my_sketch  drive it")]
+pub(crate) struct NewArgs {
+    /// What to begin
+    #[arg(value_enum)]
+    pub(crate) what: NewKind,
+    /// Folder to make; its sketch has the same name, as the Arduino IDE wants it
+    #[arg(value_name = "NAME")]
+    pub(crate) folder: PathBuf,
+}
+
+/// What can be begun.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum NewKind {
+    /// An Arduino sketch
+    Sketch,
 }
 
 /// Options of `rumbo list`.
@@ -110,6 +137,8 @@ pub(crate) enum Topic {
     Parameters,
     /// Numbers of the plant
     Plant,
+    /// Example sketches, for `--sketch example:NAME`
+    Sketches,
     /// Serial ports of this computer
     Ports,
     /// Recorded sessions and runs, newest last

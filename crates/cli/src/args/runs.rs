@@ -1,7 +1,7 @@
 //! Options of the commands that run experiments and fit numbers: `run`, `experiments`, `identify`, `calibrate`.
 
 use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, SeedArgs, SettingArgs};
-use super::values::timed_text;
+use super::values::{timed_text, usb_text};
 use clap::{Args, ValueEnum};
 use rumbo_experiment::files::TimedText;
 use std::path::PathBuf;
@@ -14,6 +14,8 @@ Examples:
   rumbo run mode5 --runs 20 --json --no-record
   rumbo run mode5 --runs 20 --program baseline
   rumbo run mode1 --rig final --world room
+  rumbo run mode1 --sketch my_sketch
+  rumbo run mode1 --sketch example:wall --usb 'go@2'
   rumbo run mode5 --firmware my_sketch.elf --command 'REF 40@20'
   rumbo run mode5 --firmware my_sketch.elf --profile cycles.folded --vcd pins.vcd
   rumbo run mode5 --firmware my_sketch.elf --gdb 1234   # then: avr-gdb my_sketch.elf -ex 'target remote :1234'
@@ -23,7 +25,7 @@ Every run is recorded, among the logs of sessions (`rumbo list logs`); of more t
 first 20 of them. With --out all are recorded, there; with --no-record none. A log that cannot be written is a note on
 stderr, and the run goes on.
 
-In DIR a run leaves NAME-SEED.json, .truth.csv and .mcap, and with --firmware what the USARTs said. Files of the same
+In DIR a run leaves NAME-SEED.json, .truth.csv and .mcap, and with --sketch or --firmware what the USARTs said. Files of the same
 scenario and seed are written again; any other file is kept, and nothing is run, unless --force is given.
 
 Exit status 0: all limits are met; 1: one is missed; 2: wrong input; 130: Ctrl-C, and what was done until then has been printed.")]
@@ -45,7 +47,7 @@ pub(crate) struct RunArgs {
         value_enum,
         value_name = "NAME",
         default_value_t,
-        conflicts_with = "firmware"
+        conflicts_with = "image"
     )]
     pub(crate) program: ProgramName,
     #[command(flatten)]
@@ -53,6 +55,9 @@ pub(crate) struct RunArgs {
     /// Line of text sent over the link at a time, e.g. 'REF 40@6'; may be repeated
     #[arg(long = "command", value_name = "TEXT@SECONDS", value_parser = timed_text, conflicts_with = "program")]
     pub(crate) commands: Vec<TimedText>,
+    /// Line of text typed on the Mega's USB port (Serial) at a time, e.g. 'go@2'; may be repeated
+    #[arg(long, value_name = "TEXT@SECONDS", value_parser = usb_text, requires = "image")]
+    pub(crate) usb: Vec<TimedText>,
     #[command(flatten)]
     pub(crate) parameters: ParameterArgs,
     /// Folder for the log, the result and the true signals of each run; made if need be
@@ -67,13 +72,13 @@ pub(crate) struct RunArgs {
     #[arg(long)]
     pub(crate) json: bool,
     /// File for the firmware's cycles by function, for flame graphs; a summary goes to stderr. One run
-    #[arg(long, value_name = "FILE", requires = "firmware")]
+    #[arg(long, value_name = "FILE", requires = "image")]
     pub(crate) profile: Option<PathBuf>,
     /// File for the Mega's pins over time, for a viewer of waveforms such as GTKWave. One run
-    #[arg(long, value_name = "FILE", requires = "firmware")]
+    #[arg(long, value_name = "FILE", requires = "image")]
     pub(crate) vcd: Option<PathBuf>,
     /// Port on 127.0.0.1 where the run waits for avr-gdb; 0 takes any free one. One run
-    #[arg(long, value_name = "PORT", requires = "firmware")]
+    #[arg(long, value_name = "PORT", requires = "image")]
     pub(crate) gdb: Option<u16>,
     /// Threads [default: one per core]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -136,6 +141,43 @@ pub(crate) enum LanguageName {
     En,
     /// Spanish
     Es,
+}
+
+/// Options of `rumbo grade`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo grade examples/assignments/wall/assignment.toml handed_in
+  rumbo grade assignment.toml handed_in --language es --out marks
+  rumbo grade assignment.toml my_sketch
+
+Each folder or file in FOLDER is a hand-in: a sketch, an .ino, an .elf or a .hex. FOLDER may itself be the only one. Sketches are
+compiled in a sandbox (bwrap): no network, no files but their own, bounded time and memory.
+
+In DIR: index.html, the class; students/NAME.html; marks.csv; junit.xml; gradescope/NAME.json. The same hand-ins give the same bytes.
+
+Exit status 0: every hand-in passes; 1: one does not; 2: wrong input. More: docs/grading.md")]
+pub(crate) struct GradeArgs {
+    /// The assignment's file
+    #[arg(value_name = "ASSIGNMENT.toml")]
+    pub(crate) assignment: PathBuf,
+    /// Folder with the hand-ins, or one hand-in
+    #[arg(value_name = "FOLDER")]
+    pub(crate) folder: PathBuf,
+    /// Folder for pages and marks; made if need be
+    #[arg(long, value_name = "DIR", default_value = "rumbo-marks")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
+    /// Language of the pages [default: that of the locale]
+    #[arg(long, value_enum, value_name = "LANGUAGE")]
+    pub(crate) language: Option<LanguageName>,
+    /// Compile without the sandbox: every hand-in can then read your files. For sources that you know
+    #[arg(long)]
+    pub(crate) trust: bool,
+    /// Threads [default: one per core]; the marks do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
 }
 
 /// Options of `rumbo identify`.

@@ -1,7 +1,7 @@
 //! Values of options that need checks: numbers within bounds, pairs.
 
 use crate::manifest::LONGEST_S;
-use rumbo_experiment::files::{TimedText, parameters};
+use rumbo_experiment::files::{Port, TimedText, parameters};
 
 /// Seconds of simulation or of a log per second.
 pub(super) fn speed(text: &str) -> Result<f64, String> {
@@ -25,7 +25,14 @@ pub(super) fn timed_text(text: &str) -> Result<TimedText, String> {
     Ok(TimedText {
         at_s,
         text: line.to_owned(),
+        port: Port::Link,
     })
+}
+
+/// The same for the USB cable.
+pub(super) fn usb_text(text: &str) -> Result<TimedText, String> {
+    let port = Port::Usb;
+    timed_text(text).map(|timed| TimedText { port, ..timed })
 }
 
 /// A tolerance.

@@ -6,6 +6,7 @@ mod import;
 mod information;
 mod observe;
 mod run;
+mod sketch;
 #[path = "../support/mod.rs"]
 mod support;
 mod wrong_input;

@@ -24,11 +24,24 @@ pub fn load(
     robot: &RobotFile,
     scenario: &ScenarioFile,
 ) -> Result<Firmware, FileError> {
-    let image = read(path)?;
     let name = path.file_name().map_or_else(
         || path.display().to_string(),
         |name| name.to_string_lossy().into_owned(),
     );
+    wired(&name, read(path)?, wiring, robot, scenario)
+}
+
+/// The same of an image that has been read, by the name that messages use.
+///
+/// # Errors
+/// The robot has no such wiring.
+pub fn wired(
+    name: &str,
+    image: Image,
+    wiring: Option<&str>,
+    robot: &RobotFile,
+    scenario: &ScenarioFile,
+) -> Result<Firmware, FileError> {
     let opening = opening(&image);
     let wiring = match wiring {
         Some(wiring) => wiring.to_owned(),
@@ -36,7 +49,7 @@ pub fn load(
     };
     let pins = find(robot, &wiring)?;
     Ok(Firmware::new(
-        &name,
+        name,
         image,
         opening.language,
         (&wiring, pins),

@@ -28,6 +28,16 @@ pub enum NativeProgram {
     Baseline,
 }
 
+/// Where a line of text goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Port {
+    /// Over the robot's link.
+    #[default]
+    Link,
+    /// To an emulated Mega, over its USB cable.
+    Usb,
+}
+
 /// A line of text and its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedText {
@@ -35,6 +45,8 @@ pub struct TimedText {
     pub at_s: f64,
     /// The line, without its end.
     pub text: String,
+    /// Where it goes.
+    pub port: Port,
 }
 
 /// Values of the command line that replace the scenario's.
@@ -56,6 +68,8 @@ pub struct Overrides {
     pub wiring: Option<String>,
     /// Lines of text sent over the link besides the scenario's commands.
     pub texts: Vec<TimedText>,
+    /// What the program says is not believed.
+    pub ground_truth: bool,
 }
 
 /// A scenario ready to run.
@@ -75,6 +89,8 @@ pub struct Setup {
     pub firmware: Option<Arc<Firmware>>,
     /// Lines of text sent over the link besides its commands, in order of time.
     pub texts: Vec<TimedText>,
+    /// What an image says is not believed: it is spoken to in text, and nothing that it says reaches a metric.
+    pub ground_truth: bool,
 }
 
 impl Library {
@@ -126,6 +142,7 @@ impl Library {
             program: overrides.program,
             firmware,
             texts,
+            ground_truth: overrides.ground_truth,
         })
     }
 }
@@ -234,7 +251,7 @@ impl Setup {
     /// Whether the program takes the control core's parameters: our own does, and an image that speaks its frames.
     pub fn takes_parameters(&self) -> bool {
         match &self.firmware {
-            Some(firmware) => firmware.language() == Language::Frames,
+            Some(firmware) => !self.ground_truth && firmware.language() == Language::Frames,
             None => self.program == NativeProgram::Rumbo,
         }
     }

@@ -100,7 +100,9 @@ impl Response {
     };
 }
 
-/// Measures `signal` over the samples of a step, from `start` to `reference`. `NaN` where it never gets there.
+/// Measures `signal` over the samples of a step, from `start` to `reference`. `NaN` where it never gets there: what stands
+/// still elsewhere has neither settled nor overshot, nor is it steady. A signal that is there when the step begins does not
+/// respond to it.
 fn response(
     samples: &[Sample],
     from_s: f64,
@@ -122,6 +124,11 @@ fn response(
             .map(|sample| sample.t_s)
     };
     let within = |sample: &Sample| (signal(sample) - reference).abs() <= band;
+    let responds = (start - reference).abs() > band;
+    let arrives = samples
+        .iter()
+        .any(|sample| within(sample) || progress(sample) >= span);
+    let if_so = |so: bool, value: f64| if so { value } else { f64::NAN };
     let last_outside = samples.iter().rev().find(|sample| !within(sample));
     let settled = samples.last().is_some_and(within);
     let steady = &samples[(samples.len() as f64 * (1.0 - STEADY_SHARE)) as usize..];
@@ -138,22 +145,25 @@ fn response(
         .sum::<f64>()
         / samples.len() as f64;
     Response {
-        settling_s: if settled {
+        settling_s: if settled && responds {
             last_outside.map_or(0.0, |sample| sample.t_s - from_s)
         } else {
             f64::NAN
         },
         rise_s: match (first(0.1), first(0.9)) {
-            (Some(low), Some(high)) => high - low,
+            (Some(low), Some(high)) if responds => high - low,
             _ => f64::NAN,
         },
-        overshoot: samples
-            .iter()
-            .map(|sample| progress(sample) - span)
-            .fold(0.0, f64::max),
+        overshoot: if_so(
+            arrives,
+            samples
+                .iter()
+                .map(|sample| progress(sample) - span)
+                .fold(0.0, f64::max),
+        ),
         steady_error: (mean - reference).abs(),
         rms: square.sqrt(),
-        ripple: variance.sqrt(),
+        ripple: if_so(arrives, variance.sqrt()),
     }
 }
 
@@ -295,6 +305,28 @@ mod tests {
             response.ripple,
         ];
         assert!(figures.iter().all(|figure| figure.is_nan()), "{figures:?}");
+    }
+
+    #[test]
+    fn what_stands_still_far_away_has_no_overshoot_and_no_ripple() {
+        let samples = samples(|_| 1.0);
+        let response = response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| sample.range_m[2]);
+        let figures = [
+            response.settling_s,
+            response.rise_s,
+            response.overshoot,
+            response.ripple,
+        ];
+        assert!(figures.iter().all(|figure| figure.is_nan()), "{figures:?}");
+        assert!((response.steady_error - 0.7).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_at_the_reference_when_the_step_begins_has_not_settled_in_no_time() {
+        let samples = samples(|_| 0.3);
+        let response = response(&samples, 0.0, 0.3, 0.3, 0.035, |sample| sample.range_m[2]);
+        assert!(response.settling_s.is_nan() && response.rise_s.is_nan());
+        assert!(response.steady_error < 1e-9);
     }
 
     #[test]

@@ -12,7 +12,7 @@
 mod goal;
 mod text;
 
-use crate::files::{FileError, Setup, TimedCommand, TimedText};
+use crate::files::{FileError, Port, Setup, TimedCommand, TimedText};
 use rumbo_control::mode::ModeId;
 use rumbo_sim::Sim;
 use rumbo_sim::trace::Heard;
@@ -28,6 +28,8 @@ const REPEAT_US: u64 = 200_000;
 const PATIENCE_US: u64 = 3_000_000;
 /// Time between two polls of the link before the run [us].
 const BRIEF_STEP_US: u64 = 10_000;
+/// The USART behind the board's USB socket.
+const USB: u8 = 0;
 /// Longest line of the original's telemetry.
 const LINE: usize = 160;
 
@@ -197,16 +199,20 @@ impl<'a> Operator<'a> {
             && timed.at_s * 1e6 <= sim.now_us() as f64
         {
             self.texts = later;
+            let line = format!("{}\n", timed.text);
+            if let (Port::Usb, Some(mega)) = (timed.port, sim.mega_mut()) {
+                mega.type_in(USB, line.as_bytes());
+                continue;
+            }
             // An image may have commands of its own.
             if let (true, Err(error)) = (
                 self.setup.firmware.is_none(),
                 TextCommand::parse(&timed.text),
             ) {
-                let TimedText { at_s, text } = timed;
+                let TimedText { at_s, text, .. } = timed;
                 self.notes.push(format!("at {at_s} s `{text}`: {error}"));
             }
-            sim.send(timed.text.as_bytes());
-            sim.send(b"\n");
+            sim.send(line.as_bytes());
         }
     }
 

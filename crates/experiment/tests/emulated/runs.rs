@@ -1,7 +1,7 @@
 //! Scenarios run with an image: commands in its language, metrics whatever it is, verdicts.
 
 use crate::rig::{image, setup};
-use rumbo_experiment::files::{FileError, Library, Overrides, TimedText};
+use rumbo_experiment::files::{FileError, Library, Overrides, Port, TimedText};
 use rumbo_experiment::run::run;
 use std::path::PathBuf;
 
@@ -37,6 +37,7 @@ fn lines_of_the_command_line_go_out_at_their_time() {
     let at = |at_s, text: &str| TimedText {
         at_s,
         text: text.into(),
+        port: Port::Link,
     };
     setup.texts = vec![at(0.5, "DUTY 120"), at(1.5, "COAST")];
     let result = run(&setup, 1).unwrap();
@@ -52,6 +53,23 @@ fn lines_of_the_command_line_go_out_at_their_time() {
 }
 
 #[test]
+fn a_line_typed_on_usb_reaches_serial_and_nothing_else() {
+    let Some(mut setup) = setup("free", "serial_echo", None) else {
+        return;
+    };
+    setup.scenario.duration_s = 2.0;
+    setup.texts = vec![TimedText {
+        at_s: 1.0,
+        text: "who is there".into(),
+        port: Port::Usb,
+    }];
+    let result = run(&setup, 1).unwrap();
+    let said = |usart| String::from_utf8(result.trace.console(usart)).unwrap();
+    assert!(said(0).ends_with("who is there\n"), "{}", said(0));
+    assert!(!said(2).contains("there"), "{}", said(2));
+}
+
+#[test]
 fn a_program_that_runs_into_erased_flash_ends_the_run_with_that_verdict() {
     let Some(mut setup) = setup("mode1", "bench", None) else {
         return;
@@ -59,6 +77,7 @@ fn a_program_that_runs_into_erased_flash_ends_the_run_with_that_verdict() {
     setup.texts = vec![TimedText {
         at_s: 1.0,
         text: "CRASH".into(),
+        port: Port::Link,
     }];
     let result = run(&setup, 1).unwrap();
     assert!(!result.pass);

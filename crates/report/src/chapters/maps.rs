@@ -12,7 +12,7 @@ const BY_ODOMETRY: Text = word("by-odometry");
 const TRUE_TRAJECTORY: Text = word("true");
 
 /// A map with nothing on it.
-pub(super) fn map(language: Language) -> Map {
+pub(crate) fn map(language: Language) -> Map {
     Map {
         x: X_AXIS.of(language).to_owned(),
         y: Y_AXIS.of(language).to_owned(),
@@ -36,7 +36,7 @@ pub(super) fn trajectories(language: Language, outcome: &Outcome, ideal: Points)
 }
 
 /// The walls and boxes of a run's world.
-pub(super) fn shapes(outcome: &Outcome) -> Vec<Shape> {
+pub(crate) fn shapes(outcome: &Outcome) -> Vec<Shape> {
     let Ok(world) = outcome.setup.world.world() else {
         return Vec::new();
     };

@@ -3,7 +3,7 @@
 mod beside;
 mod manual;
 mod manual_tables;
-mod maps;
+pub(crate) mod maps;
 mod mode1;
 mod mode2;
 mod mode5;
@@ -12,8 +12,8 @@ mod mode7;
 mod mode8;
 mod mode8_beside;
 mod mode8_machines;
-mod panels;
-mod parts;
+pub(crate) mod panels;
+pub(crate) mod parts;
 mod pursuit;
 mod wall;
 

@@ -7,7 +7,7 @@ use crate::signals::{Outcome, Place, difference};
 use crate::text::{Language, Text, word};
 
 /// PWM of both wheels.
-pub(super) fn pwm_panel(language: Language, outcome: &Outcome) -> Panel {
+pub(crate) fn pwm_panel(language: Language, outcome: &Outcome) -> Panel {
     let curve = |name: Text, ink, wheel| Curve::steps(name.of(language), ink, outcome.pwm(wheel));
     Panel::new(
         PWM.of(language),

@@ -9,15 +9,15 @@ use crate::plot::{Panel, Plot};
 use crate::signals::Outcome;
 use crate::text::{Text, word};
 
-pub(super) const TIME: Text = word("time-since-arming-s");
-pub(super) const DISTANCE: Text = word("distance-cm");
+pub(crate) const TIME: Text = word("time-since-arming-s");
+pub(crate) const DISTANCE: Text = word("distance-cm");
 pub(super) const ERROR_CM: Text = word("error-cm");
 pub(super) const ERROR_RPM: Text = word("error-rpm");
-pub(super) const SPEED: Text = word("speed-rpm");
+pub(crate) const SPEED: Text = word("speed-rpm");
 pub(super) const PWM: Text = word("pwm-of-255");
-pub(super) const LEFT: Text = word("left");
-pub(super) const RIGHT: Text = word("right");
-pub(super) const REFERENCE: Text = word("reference");
+pub(crate) const LEFT: Text = word("left");
+pub(crate) const RIGHT: Text = word("right");
+pub(crate) const REFERENCE: Text = word("reference");
 pub(super) const MEASURED: Text = word("measured");
 
 /// The drawing of a scenario's rig.

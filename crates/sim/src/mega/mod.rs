@@ -58,6 +58,8 @@ use std::sync::Arc;
 pub const CYCLES_PER_US: u64 = 16;
 /// Battery at which the chip's brown-out detector, set to 2.7 V by the Mega's fuses, resets it: the regulator drops 1.1 V.
 const BROWN_OUT_V: f64 = 3.8;
+/// Cost of an output that the robot feels: the plant follows to its instant.
+pub const ACT: u64 = 10;
 /// A sonar needs its trigger high for 10 us (HC-SR04 user's manual); what is shorter it may ignore.
 const TRIGGER_CYCLES: u64 = 10 * CYCLES_PER_US;
 /// An input goes into the chip's queue this long before its cycle: until then nothing the chip does can change it.
@@ -108,6 +110,8 @@ pub struct Mega {
     marks: Marks,
     /// A motor was driven.
     has_driven: bool,
+    /// What its outputs have cost so far.
+    toil: u64,
     /// The program does one instruction and halts.
     stepping: bool,
     /// Why the program stands, until a debugger lets it go on.
@@ -135,6 +139,7 @@ impl Mega {
             verdict: None,
             marks: Marks::default(),
             has_driven: false,
+            toil: 0,
             stepping: false,
             halt: None,
             firmware,
@@ -200,6 +205,12 @@ impl Mega {
     /// Why the program is halted; it continues at the next advance.
     pub fn take_halt(&mut self) -> Option<Stopped> {
         self.halt.take()
+    }
+
+    /// What the chip's outputs have cost so far: one for each, and as much as [`ACT`] for each time that the robot felt one.
+    /// The same program has the same cost on every machine.
+    pub fn toil(&self) -> u64 {
+        self.toil
     }
 
     /// How the program ended, if it could not go on: what, where, when.

@@ -6,7 +6,7 @@ use super::firmware::Language;
 use rumbo_emulator::devices::Unmodelled;
 
 /// The USARTs as a sketch calls them.
-const NAMES: [&str; 4] = ["Serial", "Serial1", "Serial2", "Serial3"];
+const NAMES: [&str; 4] = ["Serial (USB)", "Serial1", "Serial2", "Serial3"];
 
 impl Mega {
     /// Registers that the emulator does not model, and what a program for this robot would have done.

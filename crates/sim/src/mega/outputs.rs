@@ -1,7 +1,7 @@
 //! Outputs of the chip's pins and USARTs, as actions on the robot.
 
 use super::bridge::{self, HalfBridge};
-use super::{Action, CYCLES_PER_US, Mega, TRIGGER_CYCLES, firmware, module};
+use super::{ACT, Action, CYCLES_PER_US, Mega, TRIGGER_CYCLES, firmware, module};
 use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_emulator::devices::{Event, Output, Pwm};
 use rumbo_plant::drivetrain::{Bridge, Side};
@@ -12,6 +12,7 @@ impl Mega {
     pub(super) fn listen(&mut self) -> Option<u64> {
         let mut acted = None;
         let outputs = self.chip.take_outputs();
+        self.toil += outputs.len() as u64;
         for Output { cycle, event } in outputs {
             let before = self.actions.len();
             match event {
@@ -36,6 +37,9 @@ impl Mega {
         self.drive();
         if self.actions.len() > before {
             acted = acted.or(Some(cycle));
+        }
+        if acted.is_some() {
+            self.toil += ACT;
         }
         acted
     }

@@ -1,17 +1,11 @@
-//! `cargo xtask sketches`: Arduino sketches compiled as the Arduino IDE does, without it.
-//!
-//! Debian's `arduino-core-avr`, `gcc-avr` and `avr-libc`, with the options of the core's `platform.txt` for the Mega:
-//! core -> archive; libraries that a sketch includes and its own files -> objects; all of it -> `target/sketches/NAME.elf`.
-//! A product carries the hash of all that went into it, and is built again only when that changes.
-
-mod compiler;
-mod preprocess;
+//! `cargo xtask sketches`: every Arduino sketch of the project, compiled to `target/sketches/NAME.elf` by `rumbo-sketch`.
 
 use std::path::{Path, PathBuf};
 
 use crate::project::Project;
 use crate::test::{Stop, tools};
-use compiler::Compiler;
+use rumbo_sketch::sandbox::{Limits, Sandbox};
+use rumbo_sketch::{Compiler, Given, SketchError, Toolchain, given};
 
 /// Folders of sketches: each sketch is a folder with a file of its name.
 const FOLDERS: [&str; 3] = [
@@ -49,23 +43,35 @@ pub(crate) fn run(project: &Project) -> Result<bool, String> {
 
 /// Builds every sketch that has changed.
 pub(crate) fn build(project: &Project) -> Result<(), Stop> {
-    let core = tools::arduino_core(project)?;
+    tools::arduino_core(project)?;
+    tools::bubblewrap(project)?;
     let out = project.target.join("sketches");
-    let libraries = [
-        core.join("libraries"),
-        project.root.join(FOLDERS[0]).join("libraries"),
-    ];
-    let compiler = Compiler::new(&core, libraries.into(), out.clone())?;
-    compiler.build_core()?;
+    let failed = |error: SketchError| Stop::Failed(error.to_string());
+    let toolchain = Toolchain::find().map_err(failed)?;
+    println!("{}", toolchain.in_words());
+    let sandbox = Sandbox::trusting(Limits::default());
+    let compiler = Compiler::new(toolchain, sandbox, out.join("cache")).map_err(failed)?;
     let (mut built, mut fresh) = (0, 0);
     for sketch in sketches(project)? {
+        let Given::Sketch(source) = given(&sketch, true).map_err(failed)? else {
+            continue;
+        };
         for (ending, macros) in variants(&sketch) {
-            let name = format!("{}{ending}", name_of(&sketch));
-            if compiler.build_sketch(&sketch, &name, macros)? {
-                println!("built {name}.elf");
-                built += 1;
-            } else {
-                fresh += 1;
+            let name = format!("{}{ending}", source.name);
+            let image = compiler.compile(&source, macros).map_err(failed)?;
+            image
+                .warnings
+                .iter()
+                .for_each(|warning| println!("{warning}"));
+            let product = out.join(format!("{name}.elf"));
+            std::fs::copy(&image.path, &product)
+                .map_err(|error| format!("{}: {error}", product.display()))?;
+            match image.fresh {
+                true => fresh += 1,
+                false => {
+                    println!("built {name}.elf");
+                    built += 1;
+                }
             }
         }
     }
@@ -109,8 +115,4 @@ fn files_of(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     paths.sort();
     Ok(paths)
-}
-
-fn read(path: &Path) -> Result<String, String> {
-    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
 }

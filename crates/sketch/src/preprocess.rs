@@ -1,27 +1,33 @@
 //! Preprocesses `.ino` files as the Arduino IDE does: joins them, includes `Arduino.h`, declares every function before
 //! the first.
 
-use std::path::{Path, PathBuf};
+use crate::source::Source;
 
-use super::{name_of, read};
-
-/// The C++ file of a sketch: the file of its name first, the others after it.
-pub(super) fn join(sketch: &Path, files: &[PathBuf]) -> Result<String, String> {
-    let mut parts: Vec<&PathBuf> = files
+/// The C++ file of a sketch: the `.ino` of its name first, the others after it; `None` if there is none.
+pub(crate) fn join(source: &Source) -> Option<String> {
+    let mut parts: Vec<(&String, &Vec<u8>)> = source
+        .files
         .iter()
-        .filter(|file| file.extension().is_some_and(|ending| ending == "ino"))
+        .filter(|(name, _)| {
+            !name.contains('/') && (name.ends_with(".ino") || name.ends_with(".pde"))
+        })
         .collect();
-    let main = sketch.join(format!("{}.ino", name_of(sketch)));
-    parts.sort_by_key(|file| **file != main);
+    let main = format!("{}.ino", source.name);
+    parts.sort_by_key(|(name, _)| **name != main);
     let mut text = String::new();
-    for part in parts {
-        text += &format!("#line 1 \"{}\"\n{}\n", part.display(), read(part)?);
+    for (name, bytes) in &parts {
+        let name = name.replace(['"', '\\', '\n', '\r'], "_");
+        let bytes = String::from_utf8_lossy(bytes);
+        text += &format!(
+            "#line 1 \"{name}\"\n{}\n",
+            bytes.trim_start_matches('\u{feff}')
+        );
     }
-    Ok(with_declarations(&text))
+    (!parts.is_empty()).then(|| with_declarations(&text))
 }
 
 /// Headers that a source includes.
-pub(super) fn includes(text: &str) -> Vec<String> {
+pub(crate) fn includes(text: &str) -> Vec<String> {
     text.lines()
         .filter_map(|line| line.trim().strip_prefix("#include"))
         .filter_map(|rest| {

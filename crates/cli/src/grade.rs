@@ -1,0 +1,203 @@
+//! `rumbo grade`: each hand-in compiled in the sandbox, driven with every seed, and marked.
+//!
+//! Nothing in what is written depends on time, place or number of threads: the same hand-in gets the same bytes.
+
+mod exports;
+mod hand_ins;
+
+use crate::args::GradeArgs;
+use crate::experiments::language;
+use crate::failure::Failure;
+use crate::mark::Stamp;
+use crate::output;
+use crate::place::{self, Guard};
+use indicatif::{ProgressBar, ProgressStyle};
+use rumbo_experiment::grade::{Assignment, Mark, grade as grade_all};
+use rumbo_report::grade::{class, student};
+use rumbo_sketch::sandbox::{Limits, Sandbox};
+use rumbo_sketch::{Compiler, SketchError, Toolchain};
+use std::io::IsTerminal;
+use std::path::Path;
+use std::time::Duration;
+
+/// The class page, and the folders of the students' pages and of Gradescope's files.
+const PAGE: &str = "index.html";
+const STUDENTS: &str = "students";
+const GRADESCOPE: &str = "gradescope";
+
+/// Compiles, drives, marks, writes, and prints a line for each hand-in.
+pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
+    let assignment = Assignment::read(&output::shown(&args.assignment))?;
+    let stamp = check_places(args, &assignment)?;
+    if let Some(threads) = args.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.into())
+            .build_global()
+            .map_err(Failure::input)?;
+    }
+    let found = hand_ins::find(&args.folder)?;
+    let sketches = found.iter().filter(|one| one.is_sketch()).count();
+    // Images need no compiler.
+    let compiler = match sketches {
+        0 => None,
+        _ => Some(compiler(args, &assignment)?),
+    };
+    let notes = class_notes(&assignment, compiler.as_ref());
+    let progress = progress_bar(sketches, "{bar:40} {pos}/{len} compiled, {eta} left");
+    let hand_ins = hand_ins::compile(&found, compiler.as_ref(), || progress.inc(1));
+    progress.finish_and_clear();
+    let runs = assignment.runs() * hand_ins.iter().filter(|one| one.program.is_ok()).count();
+    if !std::io::stderr().is_terminal() {
+        let count = hand_ins.len();
+        output::aside(&format!("hand-ins: {count}, runs: {runs}"));
+    }
+    let progress = progress_bar(runs, "{bar:40} {pos}/{len} runs, {eta} left");
+    let marks = grade_all(&assignment, &hand_ins, || progress.inc(1));
+    progress.finish_and_clear();
+    write(args, &assignment, &marks, &notes, &stamp)?;
+    report(args, &marks, &notes)
+}
+
+/// The compiler, in the sandbox unless the source is trusted.
+fn compiler(args: &GradeArgs, assignment: &Assignment) -> Result<Compiler, SketchError> {
+    let toolchain = Toolchain::find()?;
+    let limits = Limits {
+        time: Duration::from_secs_f64(assignment.compile_s),
+        ..Limits::default()
+    };
+    let sandbox = match args.trust {
+        true => Sandbox::trusting(limits),
+        false => Sandbox::walled(&toolchain, limits)?,
+    };
+    Compiler::new(toolchain, sandbox, crate::sketch::cache())
+}
+
+/// What is not as the assignment wants it.
+fn class_notes(assignment: &Assignment, compiler: Option<&Compiler>) -> Vec<String> {
+    let Some(toolchain) = compiler.map(Compiler::toolchain) else {
+        return Vec::new();
+    };
+    let differs = |what: &str, wanted: &Option<String>, is: &str| {
+        let wanted = wanted.as_ref().filter(|wanted| *wanted != is)?;
+        Some(format!(
+            "compiled with {what} {is}; the assignment's marks are for {wanted}"
+        ))
+    };
+    [
+        differs("avr-gcc", &assignment.compiler, &toolchain.compiler),
+        differs("Arduino core", &assignment.core, &toolchain.core_version),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// Refuses, before anything runs, to write among other people's files.
+fn check_places(args: &GradeArgs, assignment: &Assignment) -> Result<Stamp, Failure> {
+    let stamp = Stamp::of("grade", &[assignment.name.clone()]);
+    let guard = Guard::new([args.assignment.clone()], args.overwrite.force);
+    let page = args.out.join(PAGE);
+    guard.check(&page, &stamp.mark())?;
+    let is_filled = std::fs::read_dir(&args.out).is_ok_and(|mut inside| inside.next().is_some());
+    if is_filled && !page.is_file() && !args.overwrite.force {
+        let out = args.out.display();
+        return Err(Failure::Input(format!(
+            "{out}: other files are there; choose another folder with --out, or write among them with --force"
+        )));
+    }
+    place::try_folder(&args.out)?;
+    Ok(stamp)
+}
+
+/// On stderr, and only where that is a terminal.
+fn progress_bar(count: usize, template: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(template);
+    ProgressBar::new(count as u64)
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+fn write(
+    args: &GradeArgs,
+    assignment: &Assignment,
+    marks: &[Mark],
+    notes: &[String],
+    stamp: &Stamp,
+) -> Result<(), Failure> {
+    let language = language(args.language);
+    let out = |name: &str| args.out.join(name);
+    for folder in [STUDENTS, GRADESCOPE] {
+        let folder = out(folder);
+        // Pages of hand-ins that are gone are none of this class.
+        if let Err(error) = std::fs::remove_dir_all(&folder)
+            && error.kind() != std::io::ErrorKind::NotFound
+        {
+            return Err(place::unwritable(&folder, &error));
+        }
+        place::folder(&folder)?;
+    }
+    for (mark, file) in marks.iter().zip(file_names(marks)) {
+        let page = out(STUDENTS).join(format!("{file}.html"));
+        place::write(
+            &page,
+            stamp.put_on(student(assignment, mark, notes, language)),
+        )?;
+        let json = exports::gradescope(assignment, mark, notes, language)?;
+        place::write(&out(GRADESCOPE).join(format!("{file}.json")), json)?;
+    }
+    let links: Vec<String> = file_names(marks)
+        .map(|file| format!("{STUDENTS}/{file}.html"))
+        .collect();
+    let page = class(assignment, marks, notes, language, &links);
+    place::write(&out("marks.csv"), exports::csv(assignment, marks))?;
+    place::write(&out("junit.xml"), exports::junit(assignment, marks))?;
+    place::write(&out(PAGE), stamp.put_on(page))
+}
+
+/// What the files of each hand-in are called: its name as far as every system and address takes it, and its number.
+fn file_names(marks: &[Mark]) -> impl Iterator<Item = String> + '_ {
+    let plain = |name: &str| -> String {
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+        let name = name.chars().take(80);
+        name.map(|c| if is_plain(c) { c } else { '_' }).collect()
+    };
+    marks.iter().enumerate().map(move |(index, mark)| {
+        let name = plain(&mark.name);
+        let is_taken = marks
+            .iter()
+            .take(index)
+            .any(|other| plain(&other.name).eq_ignore_ascii_case(&name));
+        match is_taken {
+            true => format!("{name}-{index}"),
+            false => name,
+        }
+    })
+}
+
+fn report(args: &GradeArgs, marks: &[Mark], notes: &[String]) -> Result<(), Failure> {
+    let rows: Vec<Vec<String>> = marks
+        .iter()
+        .map(|mark| {
+            let mut row = vec![
+                mark.name.clone(),
+                format!("{:.2} / {}", mark.points, output::figure(mark.of)),
+                if mark.pass { "ok" } else { "MISSED" }.to_owned(),
+            ];
+            row.extend(mark.refused.iter().chain(&mark.ended).next().cloned());
+            row
+        })
+        .collect();
+    output::table(&rows)?;
+    notes.iter().for_each(|note| output::note(note));
+    output::line(&output::shown(&args.out.join(PAGE)))?;
+    match marks.iter().all(|mark| mark.pass) {
+        true => Ok(()),
+        false => Err(Failure::LimitMissed),
+    }
+}
+
+/// The name of a file or folder, as text.
+fn name_of(path: &Path) -> String {
+    path.file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default()
+}

@@ -1,0 +1,157 @@
+//! Marks for other programs: a gradebook's CSV, JUnit XML for continuous integration, Gradescope's `results.json`.
+
+use crate::export::text_cell;
+use crate::failure::Failure;
+use rumbo_experiment::grade::{Assignment, Line, Mark};
+use rumbo_report::grade::of;
+use rumbo_report::text::Language;
+use serde_json::json;
+use std::fmt::Write;
+
+/// A row for each hand-in: points, and those of each criterion.
+pub(super) fn csv(assignment: &Assignment, marks: &[Mark]) -> String {
+    let mut header: Vec<String> = ["name", "points", "of", "pass"].map(str::to_owned).into();
+    header.extend(assignment.criteria.iter().map(|one| one.title.text.clone()));
+    header.extend(["contact_penalty", "note"].map(str::to_owned));
+    let mut rows = vec![header];
+    for mark in marks {
+        let mut row = vec![
+            mark.name.clone(),
+            format!("{:.2}", mark.points),
+            format!("{}", mark.of),
+            mark.pass.to_string(),
+        ];
+        row.extend((0..assignment.criteria.len()).map(|number| {
+            let own = mark.lines.iter().filter(|line| line.criterion == number);
+            format!("{:.2}", own.map(|line| line.points).sum::<f64>())
+        }));
+        row.push(format!("{:.2}", mark.penalty));
+        let note = mark.refused.iter().chain(&mark.ended).next();
+        row.push(note.cloned().unwrap_or_default());
+        rows.push(row);
+    }
+    let line = |row: &Vec<String>| {
+        row.iter()
+            .map(|text| text_cell(text))
+            .collect::<Vec<_>>()
+            .join(",")
+    };
+    rows.iter().map(|row| line(row) + "\r\n").collect()
+}
+
+/// A suite for each hand-in, a case for each line of the rubric; one without all its points has failed.
+pub(super) fn junit(assignment: &Assignment, marks: &[Mark]) -> String {
+    let failed = |mark: &Mark| match mark.refused.is_empty() {
+        true => mark.lines.iter().filter(|line| !line.is_full()).count(),
+        false => mark.lines.len(),
+    };
+    let cases: usize = marks.iter().map(|mark| mark.lines.len()).sum();
+    let failures: usize = marks.iter().map(failed).sum();
+    let mut xml = format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"{}\" tests=\"{cases}\" failures=\"{failures}\">\n",
+        attribute(&assignment.title.text)
+    );
+    for mark in marks {
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            xml,
+            "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\">",
+            attribute(&mark.name),
+            mark.lines.len(),
+            failed(mark)
+        );
+        for line in &mark.lines {
+            let criterion = &assignment.criteria[line.criterion];
+            let _ = write!(
+                xml,
+                "    <testcase classname=\"{}\" name=\"{}\"",
+                attribute(&assignment.tests[line.test].name),
+                attribute(&criterion.title.text)
+            );
+            let why = match mark.refused.first() {
+                Some(why) => why.clone(),
+                None => said(assignment, line),
+            };
+            let _ = match line.is_full() {
+                true => writeln!(xml, "/>"),
+                false => writeln!(
+                    xml,
+                    "><failure message=\"{}\"/></testcase>",
+                    attribute(&why)
+                ),
+            };
+        }
+        xml += "  </testsuite>\n";
+    }
+    xml + "</testsuites>\n"
+}
+
+/// What a line measured and earned.
+fn said(assignment: &Assignment, line: &Line) -> String {
+    let criterion = &assignment.criteria[line.criterion];
+    let value = match line.median(assignment) {
+        Some(value) => crate::output::figure(value),
+        None => "never".into(),
+    };
+    format!(
+        "{:.2} of {:.2} points: {} = {value} in the median run; all points at {}, none at {}",
+        line.points, line.of, criterion.metric, criterion.full, criterion.none
+    )
+}
+
+/// A hand-in's `results.json`.
+pub(super) fn gradescope(
+    assignment: &Assignment,
+    mark: &Mark,
+    notes: &[String],
+    language: Language,
+) -> Result<String, Failure> {
+    let tests: Vec<_> = mark
+        .lines
+        .iter()
+        .map(|line| {
+            let criterion = &assignment.criteria[line.criterion];
+            let advice = match line.is_full() {
+                true => "",
+                false => of(language, &criterion.advice),
+            };
+            json!({
+                "name": of(language, &criterion.title),
+                "score": cents(line.points),
+                "max_score": cents(line.of),
+                "status": if line.is_full() { "passed" } else { "failed" },
+                "output": format!("{}\n{advice}", said(assignment, line)).trim_end(),
+            })
+        })
+        .collect();
+    let text = [notes, &mark.notes, &mark.refused, &mark.ended].concat();
+    let results = json!({
+        "score": mark.points,
+        "output": text.join("\n"),
+        "tests": tests,
+    });
+    let mut text = serde_json::to_string_pretty(&results).map_err(Failure::input)?;
+    text.push('\n');
+    Ok(text)
+}
+
+fn cents(points: f64) -> f64 {
+    (100.0 * points).round() / 100.0
+}
+
+/// A text as the value of an attribute; what XML cannot hold is left out.
+fn attribute(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped += "&amp;",
+            '<' => escaped += "&lt;",
+            '>' => escaped += "&gt;",
+            '"' => escaped += "&quot;",
+            '\n' | '\t' => escaped.push(' '),
+            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => {}
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}

@@ -1,0 +1,90 @@
+//! `--sketch` and `rumbo new sketch`: Arduino sketches as programs of the robot.
+
+use crate::args::{NewArgs, NewKind};
+use crate::failure::Failure;
+use crate::output;
+use rumbo_sketch::sandbox::{Limits, Sandbox};
+use rumbo_sketch::{Compiler, Given, SketchError, Toolchain, example, given, starter};
+use std::path::{Path, PathBuf};
+
+/// What an example's name is written after.
+const EXAMPLE: &str = "example:";
+/// The environment's variable that names another folder for what is compiled.
+const CACHE: &str = "RUMBO_CACHE";
+
+impl From<SketchError> for Failure {
+    fn from(error: SketchError) -> Self {
+        match error {
+            SketchError::Rejected(diagnostics) => {
+                let lines = diagnostics.iter().flat_map(|one| {
+                    let text = one.to_string();
+                    text.lines().map(str::to_owned).collect::<Vec<_>>()
+                });
+                Self::Rejected(lines.collect())
+            }
+            other => Self::input(other),
+        }
+    }
+}
+
+/// The image of one's own sketch, compiled if need be: a folder, an `.ino`, or an example by name.
+pub(crate) fn image(name: &str) -> Result<PathBuf, Failure> {
+    let source = match name.strip_prefix(EXAMPLE) {
+        Some(name) => example(name)?,
+        None => match given(Path::new(name), true)? {
+            Given::Image(path) => return Ok(path),
+            Given::Sketch(source) => source,
+        },
+    };
+    let sandbox = Sandbox::trusting(Limits::default());
+    let compiler = Compiler::new(Toolchain::find()?, sandbox, cache())?;
+    let image = compiler.compile(&source, &[])?;
+    for warning in &image.warnings {
+        warning.to_string().lines().for_each(output::aside);
+    }
+    Ok(image.path)
+}
+
+/// Where compiled cores and sketches are kept.
+pub(crate) fn cache() -> PathBuf {
+    let named = std::env::var_os(CACHE).filter(|folder| !folder.is_empty());
+    named.map(PathBuf::from).unwrap_or_else(|| {
+        let usual = dirs::cache_dir().unwrap_or_else(std::env::temp_dir);
+        usual.join("rumbo").join("sketches")
+    })
+}
+
+/// Makes a folder with a sketch to start from.
+pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
+    let NewKind::Sketch = args.what;
+    let folder = &args.folder;
+    let name = folder.file_name().map(|name| name.to_string_lossy());
+    let Some(name) = name.filter(|name| is_name(name)) else {
+        return Err(Failure::Input(format!(
+            "{}: a sketch's name has letters, digits, _ and - only",
+            folder.display()
+        )));
+    };
+    let wrong = |error: std::io::Error| {
+        Failure::Input(format!(
+            "{}: {error}; choose another name",
+            folder.display()
+        ))
+    };
+    if let Some(parent) = folder.parent() {
+        std::fs::create_dir_all(parent).map_err(wrong)?;
+    }
+    // One that is there is somebody's work.
+    std::fs::create_dir(folder).map_err(wrong)?;
+    let file = folder.join(format!("{name}.ino"));
+    std::fs::write(&file, starter()?).map_err(wrong)?;
+    let (file, folder) = (output::shown(&file), output::shown(folder));
+    output::line(&format!(
+        "{file}: edit it, then `rumbo run mode1 --sketch {folder}`"
+    ))
+}
+
+fn is_name(name: &str) -> bool {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    !name.is_empty() && name.chars().all(is_plain)
+}

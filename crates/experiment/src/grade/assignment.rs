@@ -1,0 +1,360 @@
+//! An assignment's file: what is asked, in which scenarios and with which seeds it is tried, and what earns points.
+//!
+//! ```toml
+//! title = "Drive to a wall"
+//! statement = "Stop 30 cm before the wall."
+//! points = 10                  # the full mark
+//! pass = 5                     # the least that passes
+//! contact_penalty = 2          # points lost if every run touches something
+//! compiler = "5.4.0"
+//! core = "1.8.7"
+//! [es]                         # the same in Spanish, if wanted
+//! title = "Avanzar hasta una pared"
+//! [[scenario]]
+//! scenario = "mode1"           # built in, or the path of a file beside this one
+//! public_seeds = [1, 2]
+//! hidden_seeds = [101, 102]
+//! [[criterion]]
+//! title = "Stops at 30 cm"
+//! metric = "step1.steady_error_m"
+//! points = 4
+//! full = 0.01                  # all points up to here ...
+//! none = 0.05                  # ... none from here on, and in between in proportion
+//! advice = "Look at the dead zone of the motors."
+//! ```
+
+use crate::files::read::{Allowed, Placed, Source, Table};
+use crate::files::{FileError, Library, Overrides, Setup, bounded, near};
+use crate::metrics::Metrics;
+use crate::run::run;
+use std::path::Path;
+
+/// A text in both languages.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Words {
+    /// As it stands in the file.
+    pub text: String,
+    /// In Spanish, if the file has it.
+    pub spanish: Option<String>,
+}
+
+/// What a class was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assignment {
+    /// The file's name without `.toml`.
+    pub name: String,
+    /// One line.
+    pub title: Words,
+    /// What the students read, in Markdown.
+    pub statement: Words,
+    /// The full mark.
+    pub points: f64,
+    /// The least that passes.
+    pub pass: f64,
+    /// Points lost if every run touches something.
+    pub contact_penalty: f64,
+    /// Version of the compiler that marks are given with.
+    pub compiler: Option<String>,
+    /// Version of the Arduino core that marks are given with.
+    pub core: Option<String>,
+    /// How long a hand-in may take to compile [s].
+    pub compile_s: f64,
+    /// What is driven.
+    pub tests: Vec<Test>,
+    /// What earns points.
+    pub criteria: Vec<Criterion>,
+}
+
+/// A scenario with its seeds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Test {
+    /// Its name.
+    pub name: String,
+    /// One line.
+    pub title: Words,
+    /// What is driven, without a program.
+    pub setup: Setup,
+    /// Wiring of the Mega; without it, the scenario's own.
+    pub wiring: Option<String>,
+    /// How much it counts beside the others.
+    pub weight: f64,
+    /// Seeds that students know.
+    pub public: Vec<u64>,
+    /// Seeds that they do not.
+    pub hidden: Vec<u64>,
+}
+
+impl Test {
+    /// All its seeds, those that students know first.
+    pub fn seeds(&self) -> impl Iterator<Item = u64> {
+        self.public.iter().chain(&self.hidden).copied()
+    }
+}
+
+/// A line of the rubric.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Criterion {
+    /// What is asked.
+    pub title: Words,
+    /// What to look at where it is missed.
+    pub advice: Words,
+    /// What is measured.
+    pub metric: String,
+    /// The test it is measured in, by its place; all of them if none is named.
+    pub test: Option<usize>,
+    /// What it is worth.
+    pub points: f64,
+    /// The value that earns all of them.
+    pub full: f64,
+    /// The value that earns none.
+    pub none: f64,
+}
+
+impl Criterion {
+    /// The share of the points that a value earns; a value that is none, none.
+    pub fn share(&self, value: Option<f64>) -> f64 {
+        match value {
+            Some(value) if value.is_finite() => {
+                ((value - self.none) / (self.full - self.none)).clamp(0.0, 1.0)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Whether it is about this test.
+    pub fn is_of(&self, test: usize) -> bool {
+        self.test.is_none_or(|own| own == test)
+    }
+}
+
+const POINTS: Allowed = Allowed::new(0.01, 10_000.0, "");
+const PENALTY: Allowed = Allowed::new(0.0, 10_000.0, "");
+const VALUE: Allowed = Allowed::new(-1e9, 1e9, "");
+const WEIGHT: Allowed = Allowed::new(0.01, 1_000.0, "");
+const SECONDS: Allowed = Allowed::new(1.0, 600.0, "s");
+const MOST_TESTS: usize = 50;
+const MOST_CRITERIA: usize = 100;
+const MOST_SEEDS: usize = 1_000;
+
+impl Assignment {
+    /// Reads an assignment and all that it names, and drives each of its scenarios once to see what can be measured.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, by line.
+    pub fn read(path: &str) -> Result<Self, FileError> {
+        let unreadable = |error: std::io::Error| FileError::Unreadable {
+            path: path.to_owned(),
+            reason: error.to_string(),
+        };
+        let text = bounded::read_text(Path::new(path)).map_err(unreadable)?;
+        Self::parse(path, &text)
+    }
+
+    fn parse(path: &str, text: &str) -> Result<Self, FileError> {
+        let source = Source::new(path, text);
+        let parsed = source.parse()?;
+        let root = source.root(&parsed);
+        let spanish = root.table("es");
+        let library = Library::new().beside(path);
+        let tests: Vec<Test> = root
+            .tables("scenario", MOST_TESTS)
+            .into_iter()
+            .filter_map(|table| read_test(&table, &library))
+            .collect();
+        if tests.is_empty() {
+            root.complain_here("nothing is driven: write a [[scenario]] with public_seeds");
+        }
+        let known: Vec<Metrics> = tests.iter().map(measurable).collect();
+        let criteria: Vec<Criterion> = root
+            .tables("criterion", MOST_CRITERIA)
+            .into_iter()
+            .map(|table| read_criterion(&table, &tests, &known))
+            .collect();
+        if criteria.is_empty() {
+            root.complain_here("nothing earns points: write a [[criterion]]");
+        }
+        let points = root.number("points", POINTS).unwrap_or(100.0);
+        let assignment = Self {
+            name: Path::new(path)
+                .file_stem()
+                .map(|stem| stem.to_string_lossy().into_owned())
+                .unwrap_or_default(),
+            title: words(&root, &spanish, "title", true),
+            statement: words(&root, &spanish, "statement", true),
+            points,
+            pass: root.number("pass", PENALTY).unwrap_or(0.5 * points),
+            contact_penalty: root.number("contact_penalty", PENALTY).unwrap_or(0.0),
+            compiler: root.text("compiler").map(|placed| placed.value),
+            core: root.text("core").map(|placed| placed.value),
+            compile_s: root.number("compile_s", SECONDS).unwrap_or(30.0),
+            tests,
+            criteria,
+        };
+        if let Some(board) = root.text("board")
+            && board.value != "mega2560"
+        {
+            root.complain("board", board.line, &board.value, "must be \"mega2560\"");
+        }
+        spanish.finish();
+        root.finish();
+        source.verdict()?;
+        Ok(assignment)
+    }
+
+    /// Runs of each hand-in.
+    pub fn runs(&self) -> usize {
+        self.tests.iter().map(|test| test.seeds().count()).sum()
+    }
+}
+
+/// A text and its Spanish.
+fn words(table: &Table<'_, '_>, spanish: &Table<'_, '_>, key: &str, needed: bool) -> Words {
+    let text = match needed {
+        true => table.required_text(key, "text in quotes").value,
+        false => table
+            .text(key)
+            .map(|placed| placed.value)
+            .unwrap_or_default(),
+    };
+    Words {
+        text,
+        spanish: spanish.text(key).map(|placed| placed.value),
+    }
+}
+
+fn read_test(table: &Table<'_, '_>, library: &Library) -> Option<Test> {
+    let spanish = table.table("es");
+    let named = table.required_text("scenario", "name of a scenario, or the path of its file");
+    let title = words(table, &spanish, "title", false);
+    let weight = table.number("weight", WEIGHT).unwrap_or(1.0);
+    let wiring = table.text("wiring");
+    let public = seeds(table, "public_seeds");
+    let hidden = seeds(table, "hidden_seeds");
+    if public.is_empty() && table.has("public_seeds") {
+        table.complain_here("has no public seed: students need one to try");
+    }
+    table.require("public_seeds", "a list of whole numbers, e.g. [1, 2]");
+    spanish.finish();
+    table.finish();
+    if named.value.is_empty() {
+        return None;
+    }
+    let overrides = Overrides {
+        ground_truth: true,
+        ..Overrides::default()
+    };
+    let setup = match library.setup(&named.value, &overrides) {
+        Ok(setup) => setup,
+        Err(error) => {
+            for line in error.to_string().lines() {
+                table.complain("scenario", named.line, &named.value, line);
+            }
+            return None;
+        }
+    };
+    if let Some(Placed { value, line }) = &wiring
+        && !setup.robot.wirings.contains_key(value)
+    {
+        let known: Vec<String> = setup.robot.wirings.keys().cloned().collect();
+        table.complain("wiring", *line, value, &near::did_you_mean(&known));
+    }
+    Some(Test {
+        name: setup.scenario.name.clone(),
+        title: match title.text.is_empty() {
+            true => Words {
+                text: setup.scenario.title.clone(),
+                ..title
+            },
+            false => title,
+        },
+        setup,
+        wiring: wiring.map(|placed| placed.value),
+        weight,
+        public,
+        hidden,
+    })
+}
+
+fn seeds(table: &Table<'_, '_>, key: &str) -> Vec<u64> {
+    let Some((line, items)) = table.items(key, "a list of whole numbers, e.g. [1, 2]") else {
+        return Vec::new();
+    };
+    if items.len() > MOST_SEEDS {
+        let remedy = format!("at most {MOST_SEEDS} of them are driven");
+        table.complain(key, line, &format!("{} seeds", items.len()), &remedy);
+        return Vec::new();
+    }
+    let allowed = Allowed::new(0.0, 4_294_967_295.0, "");
+    let mut seeds = Vec::new();
+    for item in items {
+        match table.judge_number(key, item.line, item.value, allowed) {
+            Some(seed) if seed.fract() == 0.0 => seeds.push(seed as u64),
+            Some(seed) => table.complain(key, item.line, &seed.to_string(), "must be whole"),
+            None => {}
+        }
+    }
+    seeds
+}
+
+/// What a run of a test measures; nothing if it cannot be run, which its hand-ins will say.
+fn measurable(test: &Test) -> Metrics {
+    let seed = test.seeds().next().unwrap_or(1);
+    run(&test.setup, seed)
+        .map(|result| result.metrics)
+        .unwrap_or_default()
+}
+
+fn read_criterion(table: &Table<'_, '_>, tests: &[Test], known: &[Metrics]) -> Criterion {
+    let spanish = table.table("es");
+    let metric = table.required_text("metric", "name of a metric, e.g. \"step1.settling_s\"");
+    let of = table.text("scenario");
+    let test = of.as_ref().and_then(|of| {
+        let found = tests.iter().position(|test| test.name == of.value);
+        if found.is_none() {
+            let names = tests.iter().map(|test| test.name.as_str());
+            let near: Vec<String> = near::near_or_all(&of.value, names);
+            let remedy = format!(
+                "no [[scenario]] of this name; {}",
+                near::did_you_mean(&near)
+            );
+            table.complain("scenario", of.line, &of.value, &remedy);
+        }
+        found
+    });
+    let criterion = Criterion {
+        title: words(table, &spanish, "title", true),
+        advice: words(table, &spanish, "advice", false),
+        metric: metric.value.clone(),
+        test,
+        points: table.required_number("points", POINTS),
+        full: table.required_number("full", VALUE),
+        none: table.required_number("none", VALUE),
+    };
+    if criterion.full == criterion.none && table.has("full") && table.has("none") {
+        table.complain_here("full and none are the same: nothing lies between");
+    }
+    if let Some(remedy) = not_measured(&criterion, known) {
+        table.complain("metric", metric.line, &metric.value, &remedy);
+    }
+    spanish.finish();
+    table.finish();
+    criterion
+}
+
+/// What to write instead of a metric that some test does not have, or that is the program's own word.
+fn not_measured(criterion: &Criterion, known: &[Metrics]) -> Option<String> {
+    let metric = criterion.metric.as_str();
+    if metric == "telemetry_hz" || metric.contains("odometry") {
+        return Some("is what the program says of itself; marks come from ground truth".into());
+    }
+    let tests = known.iter().enumerate();
+    let lacking = tests
+        .filter(|(test, metrics)| criterion.is_of(*test) && !metrics.is_empty())
+        .find(|(_, metrics)| !metric.is_empty() && !metrics.contains_key(metric));
+    let (_, metrics) = lacking?;
+    let names = near::near_or_all(metric, metrics.keys().map(String::as_str));
+    Some(format!(
+        "no such metric in its scenario; {}",
+        near::did_you_mean(&names)
+    ))
+}

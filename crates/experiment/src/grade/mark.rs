@@ -1,0 +1,208 @@
+//! What a hand-in earned, and for what.
+
+use super::assignment::Assignment;
+use crate::run::RunResult;
+use serde::Serialize;
+
+/// A hand-in's mark.
+#[derive(Clone, Debug, Serialize)]
+pub struct Mark {
+    /// The hand-in's name.
+    pub name: String,
+    /// What it earned.
+    pub points: f64,
+    /// The full mark.
+    pub of: f64,
+    /// It passes.
+    pub pass: bool,
+    /// Why nothing of it was driven, a line each.
+    pub refused: Vec<String>,
+    /// The rubric's lines, for each test that they are about.
+    pub lines: Vec<Line>,
+    /// Points lost for contact.
+    pub penalty: f64,
+    /// Runs that touched something.
+    pub touching: usize,
+    /// Runs in all.
+    pub runs: usize,
+    /// How the program ended where it could not go on, each once.
+    pub ended: Vec<String>,
+    /// What a reader should know besides.
+    pub notes: Vec<String>,
+    /// Of each test the run with its first public seed, to be drawn.
+    #[serde(skip)]
+    pub drawn: Vec<Option<RunResult>>,
+}
+
+/// A line of the rubric in one test.
+#[derive(Clone, Debug, Serialize)]
+pub struct Line {
+    /// The criterion, by its place.
+    pub criterion: usize,
+    /// The test, by its place.
+    pub test: usize,
+    /// What was measured, for each seed in order; none where it never happened.
+    pub values: Vec<Option<f64>>,
+    /// What was earned.
+    pub points: f64,
+    /// What could be.
+    pub of: f64,
+}
+
+impl Line {
+    /// The value in the middle, `None` where most seeds have none. What never happened is worse than any value.
+    pub fn median(&self, assignment: &Assignment) -> Option<f64> {
+        let criterion = &assignment.criteria[self.criterion];
+        let mut values = self.values.clone();
+        values.sort_by(|one, other| {
+            let rank = |value: &Option<f64>| value.map_or(-1.0, |_| criterion.share(*value));
+            rank(other)
+                .total_cmp(&rank(one))
+                .then(one.unwrap_or(0.0).total_cmp(&other.unwrap_or(0.0)))
+        });
+        values.get(values.len() / 2).copied().flatten()
+    }
+
+    /// All points.
+    pub fn is_full(&self) -> bool {
+        self.points >= self.of - 1e-9
+    }
+}
+
+/// What one run gave.
+#[derive(Debug)]
+pub(super) struct Run {
+    pub(super) test: usize,
+    /// `Err`: it could not be begun.
+    pub(super) result: Result<RunResult, String>,
+}
+
+impl Mark {
+    /// Of a hand-in that could not be driven.
+    pub(super) fn refused(assignment: &Assignment, name: &str, why: Vec<String>) -> Self {
+        Self {
+            refused: why,
+            ..Self::of(assignment, name, Vec::new())
+        }
+    }
+
+    /// Of a hand-in's runs, in order of tests and seeds.
+    pub(super) fn of(assignment: &Assignment, name: &str, runs: Vec<Run>) -> Self {
+        let worth = |test: usize| {
+            let tests = assignment.tests.iter();
+            let all: f64 = tests.map(|test| test.weight).sum();
+            assignment.tests[test].weight / all
+        };
+        let mut lines = Vec::new();
+        for (number, criterion) in assignment.criteria.iter().enumerate() {
+            for (test, about) in assignment.tests.iter().enumerate() {
+                if !criterion.is_of(test) {
+                    continue;
+                }
+                let of = match criterion.test {
+                    Some(_) => criterion.points,
+                    None => criterion.points * worth(test),
+                };
+                let own = runs.iter().filter(|run| run.test == test);
+                let mut values: Vec<Option<f64>> =
+                    own.map(|run| value(run, &criterion.metric)).collect();
+                values.resize(about.seeds().count(), None);
+                let shares: f64 = values.iter().map(|value| criterion.share(*value)).sum();
+                let points = of * shares / values.len().max(1) as f64;
+                lines.push(Line {
+                    criterion: number,
+                    test,
+                    values,
+                    points,
+                    of,
+                });
+            }
+        }
+        // The rubric's points are scaled to the full mark.
+        let all: f64 = lines.iter().map(|line| line.of).sum();
+        let scale = if all > 0.0 {
+            assignment.points / all
+        } else {
+            0.0
+        };
+        for line in &mut lines {
+            line.points *= scale;
+            line.of *= scale;
+        }
+        let touching = runs.iter().filter(|run| touches(run)).count();
+        let share = touching as f64 / runs.len().max(1) as f64;
+        let penalty = cents(assignment.contact_penalty * share);
+        let earned: f64 = lines.iter().map(|line| line.points).sum();
+        let points = cents((earned - penalty).max(0.0));
+        let mut mark = Self {
+            name: name.to_owned(),
+            points,
+            of: assignment.points,
+            pass: points >= assignment.pass,
+            refused: Vec::new(),
+            lines,
+            penalty,
+            touching,
+            runs: runs.len(),
+            ended: Vec::new(),
+            notes: Vec::new(),
+            drawn: assignment.tests.iter().map(|_| None).collect(),
+        };
+        for Run { test, result } in runs {
+            match result {
+                Ok(result) => {
+                    once(&mut mark.ended, result.ended.iter());
+                    // What is odd about a program that drives is its own affair.
+                    if !result.trace.drove() {
+                        once(&mut mark.notes, result.notes.iter());
+                    }
+                    let seed = assignment.tests[test].public.first();
+                    if seed == Some(&result.seed) && mark.drawn[test].is_none() {
+                        mark.drawn[test] = Some(result);
+                    }
+                }
+                Err(why) => once(&mut mark.ended, [why].iter()),
+            }
+        }
+        mark
+    }
+}
+
+/// Texts kept of one kind.
+const MOST_TEXTS: usize = 5;
+
+fn once<'a>(texts: &mut Vec<String>, more: impl Iterator<Item = &'a String>) {
+    for text in more {
+        if texts.len() < MOST_TEXTS && !texts.contains(text) {
+            texts.push(text.clone());
+        }
+    }
+}
+
+/// What a run measured. A program that ended before its time, or that never drove, has done nothing that could be measured.
+fn value(run: &Run, metric: &str) -> Option<f64> {
+    let result = run.result.as_ref().ok()?;
+    if result.ended.is_some() || !result.trace.drove() {
+        return None;
+    }
+    result
+        .metrics
+        .get(metric)
+        .copied()
+        .filter(|value| value.is_finite())
+}
+
+fn touches(run: &Run) -> bool {
+    let touched = |result: &RunResult| {
+        result
+            .metrics
+            .get("contacts")
+            .is_some_and(|count| *count > 0.0)
+    };
+    run.result.as_ref().is_ok_and(touched)
+}
+
+/// Hundredths of a point.
+fn cents(points: f64) -> f64 {
+    (100.0 * points).round() / 100.0
+}

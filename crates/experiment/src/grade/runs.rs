@@ -1,0 +1,139 @@
+//! All runs of all hand-ins, on all cores.
+
+use super::assignment::Assignment;
+use super::mark::{Mark, Run};
+use crate::files::{FileError, Setup, firmware};
+use crate::run::{Run as Running, RunResult, run_by};
+use rayon::prelude::*;
+use rumbo_emulator::image::Image;
+use rumbo_sim::mega::{ACT, Mega};
+use rumbo_sim::trace::Trace;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+/// What a program is called in every message, whoever handed it in.
+const NAME: &str = "sketch";
+
+/// What somebody handed in.
+#[derive(Debug)]
+pub struct HandIn {
+    /// The hand-in's name.
+    pub name: String,
+    /// The program, or why there is none, a line each.
+    pub program: Result<Vec<u8>, Vec<String>>,
+    /// What a reader should know besides.
+    pub notes: Vec<String>,
+}
+
+/// A hand-in whose program can be driven: the setup of each test with it.
+type Ready = Result<Vec<Setup>, Vec<String>>;
+
+/// The mark of each hand-in, in their order; `done` is called after each run.
+pub fn grade(assignment: &Assignment, hand_ins: &[HandIn], done: impl Fn() + Sync) -> Vec<Mark> {
+    let ready: Vec<Ready> = hand_ins
+        .par_iter()
+        .map(|hand_in| ready(assignment, hand_in))
+        .collect();
+    let mut jobs = Vec::new();
+    for (index, setups) in ready.iter().enumerate() {
+        for (test, setup) in setups.iter().flatten().enumerate() {
+            let seeds = assignment.tests[test].seeds();
+            jobs.extend(seeds.map(|seed| (index, test, setup, seed)));
+        }
+    }
+    let results: Vec<(usize, Run)> = jobs
+        .par_iter()
+        .map(|(index, test, setup, seed)| {
+            let drawn = assignment.tests[*test].public.first() == Some(seed);
+            let result = one(setup, *seed, drawn);
+            done();
+            (
+                *index,
+                Run {
+                    test: *test,
+                    result,
+                },
+            )
+        })
+        .collect();
+    let mut runs: Vec<Vec<Run>> = hand_ins.iter().map(|_| Vec::new()).collect();
+    for (index, run) in results {
+        runs[index].push(run);
+    }
+    let all = hand_ins.iter().zip(ready).zip(runs);
+    all.map(|((hand_in, ready), runs)| {
+        let mut mark = match ready {
+            Ok(_) => Mark::of(assignment, &hand_in.name, runs),
+            Err(why) => Mark::refused(assignment, &hand_in.name, why),
+        };
+        mark.notes.splice(..0, hand_in.notes.iter().cloned());
+        mark
+    })
+    .collect()
+}
+
+fn ready(assignment: &Assignment, hand_in: &HandIn) -> Ready {
+    let bytes = hand_in.program.as_ref().map_err(Clone::clone)?;
+    let image = Image::parse(bytes).map_err(|error| vec![error.to_string()])?;
+    let setups = assignment.tests.iter().map(|test| {
+        let Setup {
+            robot, scenario, ..
+        } = &test.setup;
+        let wiring = test.wiring.as_deref();
+        let firmware = firmware::wired(NAME, image.clone(), wiring, robot, scenario)?;
+        Ok(Setup {
+            firmware: Some(Arc::new(firmware)),
+            ..test.setup.clone()
+        })
+    });
+    let setups: Result<_, FileError> = setups.collect();
+    setups.map_err(|error| vec![error.to_string()])
+}
+
+/// What a program's outputs may cost in a second ([`Mega::toil`]): a pin that is switched 25,000 times.
+const TOIL_PER_S: f64 = 250_000.0;
+
+/// Goes on to the end, or to where the program has cost more than it may. The same program ends at the same instant on
+/// every machine. Says whether it did.
+fn go_on(run: &mut Running<'_>) -> bool {
+    while !run.is_over() {
+        run.advance();
+        let now_s = run.sim().now_us() as f64 * 1e-6;
+        let toil = run.sim().mega().map_or(0, Mega::toil);
+        if toil as f64 > TOIL_PER_S * (now_s + 1.0) {
+            return true;
+        }
+    }
+    false
+}
+
+/// One run; what went wrong with it concerns no other. Only the samples of a run that is drawn are kept.
+fn one(setup: &Setup, seed: u64, drawn: bool) -> Result<RunResult, String> {
+    let mut is_too_much = false;
+    let result = catch_unwind(AssertUnwindSafe(|| {
+        run_by(setup, seed, |run| {
+            is_too_much = go_on(run);
+            Ok::<(), FileError>(())
+        })
+    }));
+    let mut result = result
+        .map_err(|_| "the simulator failed on this program; please report it".to_owned())?
+        .map_err(|error| error.to_string())?;
+    if is_too_much {
+        let most = TOIL_PER_S / ACT as f64;
+        result.ended = Some(format!(
+            "it switches the robot's pins more than {most} times a second, which no motor follows; the run was ended"
+        ));
+    }
+    let samples = std::mem::take(&mut result.trace.samples);
+    let drove = samples.iter().find(|sample| sample.duty != [0; 2]).copied();
+    result.trace = Trace {
+        samples: match drawn {
+            true => samples,
+            // One says whether it drove.
+            false => drove.into_iter().collect(),
+        },
+        ..Trace::default()
+    };
+    Ok(result)
+}

@@ -1,0 +1,479 @@
+//! Pages of a graded class: one for each hand-in, and one for the teacher.
+//!
+//! A student's page says what was asked, what was measured, what it earned and what to look at, and draws a run with a seed
+//! that students know. How another controller does it is nobody's affair there.
+
+use crate::chapters::maps;
+use crate::chapters::panels::pwm_panel;
+use crate::chapters::parts::{DISTANCE, LEFT, REFERENCE, RIGHT, SPEED, TIME};
+use crate::judge;
+use crate::metric_names::{Shown, shown};
+use crate::plot::{Curve, Ink, Panel, Plot, Points};
+use crate::signals::{CM, Outcome, Place, RPM};
+use crate::summary::shell;
+use crate::table::{Cell, Tone, table};
+use crate::text::{Language, Text, escape, put, word};
+use pulldown_cmark::{Event, Options, Parser, html};
+use rumbo_control::mode::ModeId;
+use rumbo_experiment::grade::{Assignment, Line, Mark, Test, Words};
+use rumbo_wire::Command;
+
+const POINTS_OF: Text = word("points-of");
+const NOT_DRIVEN: Text = word("could-not-be-driven");
+const ENDED: Text = word("program-ended");
+const NOTES: Text = word("notes");
+const POINTS: Text = word("points");
+const ASKED: Text = word("asked");
+const MEASURED_HERE: Text = word("measured-median");
+const RUNS: Text = word("runs-with-all-points");
+const CONTACT: Text = word("contact-in-runs");
+const LOOK_AT: Text = word("what-to-look-at");
+const YOUR_ROBOT: Text = word("your-robot");
+const SEED_SHOWN: Text = word("seed-shown");
+const STATEMENT: Text = word("assignment-statement");
+const CLASS: Text = word("class");
+const MARKS: Text = word("marks");
+const DISTRIBUTION: Text = word("distribution");
+const HAND_INS: Text = word("hand-ins");
+const HAND_IN: Text = word("hand-in");
+const RUBRIC: Text = word("rubric-of-the-class");
+const CLASS_FACTS: Text = word("class-facts");
+const MEAN_SHARE: Text = word("mean-share");
+const FULL: Text = word("full-marks");
+const NONE: Text = word("no-points");
+const AT_MOST: Text = word("at-most-value");
+const AT_LEAST: Text = word("at-least-value");
+const LEFT_SONAR: Text = word("left-sonar");
+const RIGHT_SONAR: Text = word("right-sonar");
+const FRONT: Text = word("front-sonar");
+const DRIVEN: Text = word("driven");
+
+/// A text of an assignment in a language, if it has it.
+#[must_use]
+pub fn of(language: Language, words: &Words) -> &str {
+    match (language, &words.spanish) {
+        (Language::Spanish, Some(spanish)) => spanish,
+        _ => &words.text,
+    }
+}
+
+/// The page of one hand-in.
+#[must_use]
+pub fn student(
+    assignment: &Assignment,
+    mark: &Mark,
+    notes: &[String],
+    language: Language,
+) -> String {
+    let mut body = verdict(mark, language);
+    let notes = [notes, &mark.notes].concat();
+    body += &list(NOTES.of(language), &notes, "note");
+    if mark.refused.is_empty() {
+        body += &list(ENDED.of(language), &mark.ended, "note");
+        body += &points(assignment, mark, language);
+        body += &advice(assignment, mark, language);
+        body += &curves(assignment, mark, language);
+    } else {
+        body += &heading(NOT_DRIVEN.of(language));
+        let lines = mark.refused.iter();
+        let lines: String = lines.map(|line| escape(line) + "\n").collect();
+        put(
+            &mut body,
+            format_args!("<div class=\"wide\"><pre>{lines}</pre></div>\n"),
+        );
+    }
+    body += &heading(STATEMENT.of(language));
+    body += &markdown(of(language, &assignment.statement));
+    shell(language, of(language, &assignment.title), &mark.name, &body)
+}
+
+/// The page of the class. `links` are the addresses of the hand-ins' pages.
+#[must_use]
+pub fn class(
+    assignment: &Assignment,
+    marks: &[Mark],
+    notes: &[String],
+    language: Language,
+    links: &[String],
+) -> String {
+    let mut body = list(NOTES.of(language), notes, "note");
+    body += &heading(DISTRIBUTION.of(language));
+    body += &distribution(assignment, marks, language);
+    body += &heading(MARKS.of(language));
+    let mut header = vec![HAND_IN.of(language), POINTS.of(language)];
+    header.extend(
+        assignment
+            .criteria
+            .iter()
+            .map(|one| of(language, &one.title)),
+    );
+    let rows: Vec<Vec<Cell>> = marks
+        .iter()
+        .zip(links)
+        .map(|(mark, link)| {
+            let name = format!("<a href=\"{}\">{}</a>", escape(link), escape(&mark.name));
+            let tone = if mark.pass { Tone::Good } else { Tone::Bad };
+            let mut row = vec![
+                Cell::html(name),
+                Cell::text(&language.number(mark.points, 2)).tone(tone),
+            ];
+            for number in 0..assignment.criteria.len() {
+                let own = mark.lines.iter().filter(|line| line.criterion == number);
+                let points: f64 = own.map(|line| line.points).sum();
+                row.push(match mark.refused.is_empty() {
+                    true => Cell::text(&language.number(points, 2)),
+                    false => Cell::text("–"),
+                });
+            }
+            row
+        })
+        .collect();
+    body += &table(&header, &rows);
+    body += &heading(RUBRIC.of(language));
+    body += &rubric(assignment, marks, language);
+    shell(
+        language,
+        of(language, &assignment.title),
+        CLASS.of(language),
+        &body,
+    )
+}
+
+fn heading(text: &str) -> String {
+    format!("<h2 class=\"on\">{}</h2>\n", escape(text))
+}
+
+fn list(title: &str, lines: &[String], class: &str) -> String {
+    if lines.is_empty() {
+        return String::new();
+    }
+    let items = lines
+        .iter()
+        .map(|line| format!("<li>{}</li>\n", escape(line)));
+    let items: String = items.collect();
+    format!(
+        "<div class=\"{class}\"><p>{}</p><ul>\n{items}</ul></div>\n",
+        escape(title)
+    )
+}
+
+fn verdict(mark: &Mark, language: Language) -> String {
+    let class = if mark.pass { "good" } else { "bad" };
+    let text = POINTS_OF.with(
+        language,
+        &[
+            ("points", &language.short(mark.points, 2)),
+            ("of", &language.short(mark.of, 2)),
+        ],
+    );
+    format!("<p class=\"verdict {class}\">{}</p>\n", escape(&text))
+}
+
+/// A metric as it is shown, of a run that is drawn or would be.
+fn metric(assignment: &Assignment, line: &Line, language: Language) -> Shown {
+    let criterion = &assignment.criteria[line.criterion];
+    let outcome = Outcome {
+        setup: assignment.tests[line.test].setup.clone(),
+        result: Default::default(),
+    };
+    shown(language, &outcome, &criterion.metric).unwrap_or(Shown {
+        name: criterion.metric.clone(),
+        ..judge::plain("")
+    })
+}
+
+/// What was asked, measured and earned, a row for each line of the rubric.
+fn points(assignment: &Assignment, mark: &Mark, language: Language) -> String {
+    let header = [
+        ASKED.of(language),
+        POINTS.of(language),
+        MEASURED_HERE.of(language),
+        FULL.of(language),
+        NONE.of(language),
+        RUNS.of(language),
+    ];
+    let several = assignment.tests.len() > 1;
+    let mut rows = Vec::new();
+    for line in &mark.lines {
+        let criterion = &assignment.criteria[line.criterion];
+        let shown = metric(assignment, line, language);
+        let mut asked = escape(of(language, &criterion.title));
+        let mut below = escape(&shown.name);
+        if several {
+            let test = &assignment.tests[line.test];
+            below = format!("{}. {below}", escape(of(language, &test.title)));
+        }
+        put(&mut asked, format_args!("<br><small>{below}</small>"));
+        let in_words = |value| judge::value(language, &shown, value);
+        let bound = match criterion.full < criterion.none {
+            true => AT_MOST,
+            false => AT_LEAST,
+        };
+        let median = line.median(assignment).unwrap_or(f64::NAN);
+        let full = line
+            .values
+            .iter()
+            .filter(|value| criterion.share(**value) >= 1.0);
+        rows.push(vec![
+            Cell::html(asked),
+            earned(language, line.points, line.of),
+            Cell::text(&in_words(median)),
+            Cell::text(&bound.with(language, &[("value", &in_words(criterion.full))])),
+            Cell::text(&in_words(criterion.none)),
+            Cell::text(&format!("{} / {}", full.count(), line.values.len())),
+        ]);
+    }
+    if mark.penalty > 0.0 {
+        let runs = [
+            ("count", mark.touching.to_string()),
+            ("of", mark.runs.to_string()),
+        ];
+        let runs = runs.each_ref().map(|(name, value)| (*name, value.as_str()));
+        let lost = language.number(-mark.penalty, 2);
+        let mut row = vec![
+            Cell::text(&CONTACT.with(language, &runs)),
+            Cell::text(&lost).tone(Tone::Bad),
+        ];
+        row.extend((0..4).map(|_| Cell::text("")));
+        rows.push(row);
+    }
+    heading(POINTS.of(language)) + &table(&header, &rows)
+}
+
+fn earned(language: Language, points: f64, of: f64) -> Cell {
+    let tone = if points >= of - 1e-9 {
+        Tone::Good
+    } else {
+        Tone::Bad
+    };
+    let text = format!("{} / {}", language.number(points, 2), language.short(of, 2));
+    Cell::text(&text).tone(tone)
+}
+
+/// What to look at, for each criterion that lost points.
+fn advice(assignment: &Assignment, mark: &Mark, language: Language) -> String {
+    let lost = assignment
+        .criteria
+        .iter()
+        .enumerate()
+        .filter(|(number, one)| {
+            let mut own = mark.lines.iter().filter(|line| line.criterion == *number);
+            !of(language, &one.advice).is_empty() && own.any(|line| !line.is_full())
+        });
+    let items: String = lost
+        .map(|(_, one)| {
+            let (title, advice) = (of(language, &one.title), of(language, &one.advice));
+            format!("<li><b>{}.</b> {}</li>\n", escape(title), escape(advice))
+        })
+        .collect();
+    match items.is_empty() {
+        true => items,
+        false => format!("{}<ul>\n{items}</ul>\n", heading(LOOK_AT.of(language))),
+    }
+}
+
+/// A figure for each test.
+fn curves(assignment: &Assignment, mark: &Mark, language: Language) -> String {
+    let mut html = String::new();
+    for (test, result) in assignment.tests.iter().zip(&mark.drawn) {
+        let Some(result) = result else {
+            continue;
+        };
+        let outcome = Outcome {
+            setup: test.setup.clone(),
+            result: result.clone(),
+        };
+        let seed = SEED_SHOWN.with(language, &[("seed", &result.seed.to_string())]);
+        let title = of(language, &test.title);
+        for svg in figures(language, test, &outcome) {
+            let label = format!("<svg role=\"img\" aria-label=\"{}\"", escape(title));
+            let svg = svg.replacen("<svg", &label, 1);
+            put(
+                &mut html,
+                format_args!(
+                    "<figure><div class=\"wide\">{svg}</div><figcaption>{}. {}</figcaption></figure>\n",
+                    escape(title),
+                    escape(&seed)
+                ),
+            );
+        }
+    }
+    match html.is_empty() {
+        true => html,
+        false => heading(YOUR_ROBOT.of(language)) + &html,
+    }
+}
+
+/// What a run of this mode is looked at for, from ground truth.
+fn figures(language: Language, test: &Test, outcome: &Outcome) -> Vec<String> {
+    let truth = |name: Text, ink, signal: &dyn Fn(&rumbo_sim::trace::Sample) -> f64| {
+        Curve::new(name.of(language), ink, outcome.truth(signal))
+    };
+    let range = |name, ink, sonar: Place| truth(name, ink, &|s| CM * s.range_m[sonar as usize]);
+    let speed =
+        |name, ink, wheel: Place| truth(name, ink, &|s| RPM * s.wheel_rad_s[wheel as usize]);
+    let speeds = || {
+        vec![
+            speed(LEFT, Ink::First, Place::Left),
+            speed(RIGHT, Ink::Second, Place::Right),
+        ]
+    };
+    let asked = |factor| {
+        Curve::steps(
+            REFERENCE.of(language),
+            Ink::Reference,
+            outcome.reference(factor),
+        )
+    };
+    let pwm = pwm_panel(language, outcome);
+    let timed = |panels| {
+        Plot {
+            x: TIME.of(language).to_owned(),
+            x_range: None,
+            panels,
+        }
+        .svg(language)
+    };
+    let with = |text: Text, mut curves: Vec<Curve>, more: Curve| {
+        curves.insert(0, more);
+        Panel::new(text.of(language), curves)
+    };
+    match test.setup.scenario.mode {
+        ModeId::FrontDistance => {
+            let front = vec![range(FRONT, Ink::First, Place::Front)];
+            vec![timed(vec![
+                with(DISTANCE, front, asked(CM)).at_least(0.0, 100.0),
+                pwm,
+            ])]
+        }
+        ModeId::FrontAlign | ModeId::WallHold | ModeId::WallFollow => {
+            let both = vec![
+                range(LEFT_SONAR, Ink::First, Place::Left),
+                range(RIGHT_SONAR, Ink::Second, Place::Right),
+            ];
+            vec![timed(vec![with(DISTANCE, both, asked(CM)), pwm])]
+        }
+        ModeId::WheelSpeed | ModeId::StraightLine => {
+            vec![timed(vec![with(SPEED, speeds(), asked(RPM)), pwm])]
+        }
+        ModeId::Manual => vec![timed(vec![Panel::new(SPEED.of(language), speeds()), pwm])],
+        ModeId::Mission | ModeId::Waypoints => {
+            let mut map = maps::map(language);
+            map.shapes = maps::shapes(outcome);
+            map.curves = vec![Curve::new(
+                DRIVEN.of(language),
+                Ink::First,
+                outcome.true_trajectory(),
+            )];
+            map.marks = goals(outcome);
+            let speeds = Panel::new(SPEED.of(language), speeds());
+            vec![map.svg(language), timed(vec![speeds, pwm])]
+        }
+    }
+}
+
+/// Where the robot is sent, in the world.
+fn goals(outcome: &Outcome) -> Vec<(f64, f64, String)> {
+    let start = outcome.setup.scenario.start;
+    let (sin, cos) = start.heading_rad.sin_cos();
+    let commands = outcome.setup.scenario.commands.iter();
+    let places = commands.filter_map(|timed| match timed.command {
+        Command::Goal { x_m, y_m } => Some((f64::from(x_m), f64::from(y_m))),
+        Command::Waypoint(place) => Some((f64::from(place.x_m), f64::from(place.y_m))),
+        _ => None,
+    });
+    places
+        .enumerate()
+        .map(|(number, (x, y))| {
+            let (x, y) = (start.x_m + cos * x - sin * y, start.y_m + sin * x + cos * y);
+            (x, y, (number + 1).to_string())
+        })
+        .collect()
+}
+
+/// How many hand-ins have how many points, in tenths of the full mark.
+fn distribution(assignment: &Assignment, marks: &[Mark], language: Language) -> String {
+    const BINS: usize = 10;
+    let mut counts = [0usize; BINS];
+    for mark in marks {
+        let bin = (BINS as f64 * mark.points / assignment.points) as usize;
+        counts[bin.min(BINS - 1)] += 1;
+    }
+    let width = assignment.points / BINS as f64;
+    let mut bars = Points::new();
+    for (bin, count) in counts.iter().enumerate() {
+        let (from, to) = (bin as f64 * width, (bin + 1) as f64 * width);
+        let count = *count as f64;
+        bars.extend([(from, 0.0), (from, count), (to, count), (to, 0.0)]);
+    }
+    let highest = counts.iter().max().copied().unwrap_or(0).max(1) as f64;
+    let panel = Panel::new(
+        HAND_INS.of(language),
+        vec![Curve::new("", Ink::First, bars)],
+    );
+    let svg = Plot {
+        x: POINTS.of(language).to_owned(),
+        x_range: Some([0.0, assignment.points]),
+        panels: vec![panel.exactly(0.0, 1.08 * highest)],
+    }
+    .svg(language);
+    let mut points: Vec<f64> = marks.iter().map(|mark| mark.points).collect();
+    points.sort_by(f64::total_cmp);
+    let count = points.len().max(1);
+    let mean = points.iter().sum::<f64>() / count as f64;
+    let median =
+        0.5 * (points.get((count - 1) / 2).unwrap_or(&0.0) + points.get(count / 2).unwrap_or(&0.0));
+    let pass = marks.iter().filter(|mark| mark.pass).count();
+    let facts = [
+        ("count", marks.len().to_string()),
+        ("mean", language.number(mean, 2)),
+        ("median", language.number(median, 2)),
+        ("pass", pass.to_string()),
+    ];
+    let facts = facts
+        .each_ref()
+        .map(|(name, value)| (*name, value.as_str()));
+    let facts = CLASS_FACTS.with(language, &facts);
+    let label = format!("<svg role=\"img\" aria-label=\"{}\"", escape(&facts));
+    let svg = svg.replacen("<svg", &label, 1);
+    format!(
+        "<p>{}</p>\n<figure><div class=\"wide\">{svg}</div></figure>\n",
+        escape(&facts)
+    )
+}
+
+/// What share of its points the class has of each criterion, the most lost first.
+fn rubric(assignment: &Assignment, marks: &[Mark], language: Language) -> String {
+    let share = |number: usize| {
+        let lines = marks.iter().flat_map(|mark| &mark.lines);
+        let own = lines.filter(|line| line.criterion == number);
+        let (points, of) = own.fold((0.0, 0.0), |(points, of), line| {
+            (points + line.points, of + line.of)
+        });
+        if of > 0.0 { points / of } else { 0.0 }
+    };
+    let mut shares: Vec<(usize, f64)> = (0..assignment.criteria.len())
+        .map(|number| (number, share(number)))
+        .collect();
+    shares.sort_by(|one, other| one.1.total_cmp(&other.1));
+    let rows: Vec<Vec<Cell>> = shares
+        .into_iter()
+        .map(|(number, share)| {
+            let title = of(language, &assignment.criteria[number].title);
+            let share = format!("{} %", language.number(100.0 * share, 0));
+            vec![Cell::text(title), Cell::text(&share)]
+        })
+        .collect();
+    table(&[ASKED.of(language), MEAN_SHARE.of(language)], &rows)
+}
+
+/// A teacher's text as HTML; what is HTML in it is shown as it stands there.
+fn markdown(text: &str) -> String {
+    let events = Parser::new_ext(text, Options::ENABLE_TABLES).map(|event| match event {
+        Event::Html(html) | Event::InlineHtml(html) => Event::Text(html),
+        other => other,
+    });
+    let mut written = String::new();
+    html::push_html(&mut written, events);
+    written
+}

@@ -1,0 +1,202 @@
+//! What a compiler complains about, taken from the text that GCC prints.
+//!
+//! ```text
+//! wall.ino:12:3: error: 'speed' was not declared in this scope      a place, how bad, what
+//! wall.ino:4:5: note: suggested alternative: 'sped'                 a note on it
+//! wall.ino:12: undefined reference to `drive(int)'                  the linker's
+//! ```
+
+use serde::Serialize;
+use std::fmt;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// There is an image all the same.
+    Warning,
+    /// There is no image.
+    Error,
+}
+
+/// One complaint.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// The student's file, relative to the sketch's folder; `None` where the tool names none.
+    pub file: Option<String>,
+    /// Line, from 1.
+    pub line: Option<u32>,
+    /// Column, from 1.
+    pub column: Option<u32>,
+    /// What is wrong.
+    pub text: String,
+    /// What the compiler adds, a line each.
+    pub notes: Vec<String>,
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(file) = &self.file {
+            f.write_str(file)?;
+            for number in [self.line, self.column].into_iter().flatten() {
+                write!(f, ":{number}")?;
+            }
+            f.write_str(": ")?;
+        }
+        let severity = match self.severity {
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+        };
+        write!(f, "{severity}: {}", self.text)?;
+        self.notes
+            .iter()
+            .try_for_each(|note| write!(f, "\n  {note}"))
+    }
+}
+
+/// Complaints kept of one compilation; the first ones matter.
+const MOST: usize = 50;
+/// Notes kept of one complaint.
+const MOST_NOTES: usize = 8;
+
+/// All complaints in a compiler's output.
+pub(crate) fn parse(output: &str) -> Vec<Diagnostic> {
+    let mut found: Vec<Diagnostic> = Vec::new();
+    for line in output.lines().map(str::trim_end) {
+        if let Some(diagnostic) = complaint(line) {
+            if found.len() == MOST {
+                break;
+            }
+            if !found.contains(&diagnostic) {
+                found.push(diagnostic);
+            }
+        } else if let Some((place, note)) = line.split_once(": note: ")
+            && let Some(last) = found.last_mut()
+            && last.notes.len() < MOST_NOTES
+        {
+            last.notes.push(format!("{}: {note}", cleaned(place)));
+        }
+    }
+    found
+}
+
+/// The complaint that a line begins, if it begins one.
+fn complaint(line: &str) -> Option<Diagnostic> {
+    for (mark, severity) in [
+        (": fatal error: ", Severity::Error),
+        (": error: ", Severity::Error),
+        (": warning: ", Severity::Warning),
+    ] {
+        if let Some((place, text)) = line.split_once(mark) {
+            return Some(at(place, severity, text.to_owned()));
+        }
+    }
+    let (place, name) = line.split_once(": undefined reference to ")?;
+    let name = name.trim_matches(['`', '\'']);
+    let text = match name {
+        "setup" | "loop" => format!("the sketch has no function `void {name}()`"),
+        _ => format!("`{name}` is declared and used, but defined nowhere"),
+    };
+    Some(at(place, Severity::Error, text))
+}
+
+fn at(place: &str, severity: Severity, text: String) -> Diagnostic {
+    let mut parts = place.rsplitn(3, ':');
+    let numbers: Vec<Option<u32>> = parts
+        .by_ref()
+        .take(2)
+        .map(|part| part.trim().parse().ok())
+        .collect();
+    let (file, line, column) = match numbers[..] {
+        [Some(column), Some(line)] => (parts.next().unwrap_or_default(), Some(line), Some(column)),
+        [Some(line), None] => (
+            place.rsplit_once(':').map_or(place, |(file, _)| file),
+            Some(line),
+            None,
+        ),
+        _ => (place, None, None),
+    };
+    let file = cleaned(file);
+    // The driver and the linker speak for themselves; objects of a link by the compiler are no files of the student.
+    let is_tool = [
+        "avr-gcc",
+        "avr-g++",
+        "collect2",
+        "lto1",
+        "cc1",
+        "lto-wrapper",
+    ]
+    .iter()
+    .any(|tool| file.starts_with(tool))
+        || file.contains(".ltrans")
+        || file.ends_with("/ld")
+        || file.ends_with(".o");
+    Diagnostic {
+        severity,
+        file: (!is_tool && !file.is_empty()).then_some(file),
+        line,
+        column,
+        text,
+        notes: Vec::new(),
+    }
+}
+
+/// The name of a file without the folder of the build; of the core and of libraries without theirs.
+fn cleaned(path: &str) -> String {
+    let path = path.trim().trim_start_matches("./");
+    match path.starts_with('/') {
+        true => path.rsplit('/').next().unwrap_or(path).to_owned(),
+        false => path.trim_start_matches("../out/").to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_has_its_place_and_its_notes() {
+        let found = parse(
+            "wall.ino: In function 'void loop()':\n\
+             wall.ino:12:3: error: 'speed' was not declared in this scope\n   speed = 3;\n   ^\n\
+             /usr/share/arduino/cores/Arduino.h:4:5: note: suggested alternative: 'sped'\n\
+             pid.h:2:10: fatal error: pad.h: No such file or directory\n compilation terminated.\n",
+        );
+        let shown: Vec<String> = found.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            shown,
+            [
+                "wall.ino:12:3: error: 'speed' was not declared in this scope\n  \
+                 Arduino.h:4:5: suggested alternative: 'sped'",
+                "pid.h:2:10: error: pad.h: No such file or directory",
+            ]
+        );
+    }
+
+    #[test]
+    fn a_function_that_is_missing_is_named_by_the_linker() {
+        let found = parse(
+            "/tmp/ccA.ltrans0.ltrans.o: In function `main':\n\
+             /usr/share/arduino/cores/arduino/main.cpp:46: undefined reference to `loop'\n\
+             <artificial>:(.text.startup+0x1e): undefined reference to `drive(int)'\n\
+             collect2: error: ld returned 1 exit status\n",
+        );
+        assert_eq!(found[0].text, "the sketch has no function `void loop()`");
+        assert_eq!(found[0].line, Some(46));
+        assert_eq!(
+            found[1].text,
+            "`drive(int)` is declared and used, but defined nowhere"
+        );
+        assert_eq!(found[2].file, None);
+    }
+
+    #[test]
+    fn a_flood_of_errors_is_cut() {
+        let flood: String = (1..1000)
+            .map(|line| format!("a.ino:{line}:1: error: no\n"))
+            .collect();
+        assert_eq!(parse(&flood).len(), MOST);
+    }
+}

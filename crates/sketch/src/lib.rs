@@ -1,0 +1,27 @@
+//! Arduino sketches compiled for the Mega as the Arduino IDE does, without the IDE.
+//!
+//! ```text
+//! folder or .ino ─► Source (files in memory, bounded) ─► one C++ file with prototypes ─► objects ─► image.elf
+//! core, libraries ─────────────────────────────────────────────────────────────► core.a ─┘
+//! ```
+//!
+//! [`Toolchain`] is a compiler and an Arduino core: those that arduino-cli has installed, else Debian's. [`Compiler`] runs it
+//! on a [`Source`], in a [`sandbox`] if the source is not trusted. Products are cached by the hash of all that went into them.
+//! The options are those of the core's `platform.txt`.
+
+mod compiler;
+mod diagnostics;
+mod error;
+mod examples;
+mod libraries;
+mod preprocess;
+pub mod sandbox;
+mod source;
+mod toolchain;
+
+pub use compiler::{Compiler, Image};
+pub use diagnostics::{Diagnostic, Severity};
+pub use error::SketchError;
+pub use examples::{example, examples, starter};
+pub use source::{Given, Source, given};
+pub use toolchain::Toolchain;

@@ -1,0 +1,249 @@
+//! The files of a sketch, read into memory with bounds on all of them.
+//!
+//! What is compiled is a copy: links are followed by nobody, so that a sketch cannot make us read what is not its own.
+
+use crate::error::SketchError;
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Largest sketch [bytes].
+const MOST_BYTES: u64 = 8 << 20;
+/// Files and folders looked at.
+const MOST_FILES: usize = 2_000;
+/// Depth of folders below the sketch's own.
+const DEEPEST: usize = 6;
+/// What a compiler reads, and what else may be included.
+const KINDS: [&str; 14] = [
+    "ino", "pde", "c", "cpp", "cc", "cxx", "h", "hpp", "hh", "hxx", "inc", "ipp", "tpp", "S",
+];
+
+/// What somebody gave as their program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Given {
+    /// A sketch, to be compiled.
+    Sketch(Source),
+    /// An image that is compiled already.
+    Image(PathBuf),
+}
+
+/// The files of a sketch by their path in its folder, with `/` between folders.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// The sketch's name.
+    pub name: String,
+    /// What is in its files.
+    pub files: BTreeMap<String, Vec<u8>>,
+}
+
+/// What is at a path: a folder with a sketch or an image, an `.ino`, an `.elf` or a `.hex`. The `.ino` of a folder of the
+/// same name stands for the folder if `folder_of_ino`, as in the Arduino IDE; else it is a sketch by itself.
+///
+/// # Errors
+/// Nothing of the kind is there, or more than a sketch can be.
+pub fn given(path: &Path, folder_of_ino: bool) -> Result<Given, SketchError> {
+    let about = fs::metadata(path).map_err(|error| SketchError::file(path, error))?;
+    let stem = |path: &Path| {
+        path.file_stem()
+            .map(|stem| stem.to_string_lossy().into_owned())
+            .unwrap_or_default()
+    };
+    if about.is_dir() {
+        return of_folder(path);
+    }
+    match ending(path) {
+        Some("elf" | "hex") if about.is_file() => Ok(Given::Image(path.to_owned())),
+        Some("ino" | "pde") if about.is_file() => {
+            let own = path.canonicalize().ok();
+            let parent = own.as_deref().and_then(Path::parent);
+            match parent.filter(|parent| folder_of_ino && stem(parent) == stem(path)) {
+                Some(folder) => of_folder(folder),
+                None => {
+                    let name = path.file_name().unwrap_or_default().to_string_lossy();
+                    let mut left = MOST_BYTES;
+                    Ok(Given::Sketch(Source {
+                        name: stem(path),
+                        files: [(name.into_owned(), read(path, &mut left)?)].into(),
+                    }))
+                }
+            }
+        }
+        _ => Err(SketchError::NoSketch(path.display().to_string())),
+    }
+}
+
+/// The sketch or the image in a folder, or in the one folder in it that has any.
+fn of_folder(folder: &Path) -> Result<Given, SketchError> {
+    if let Some(found) = directly_in(folder)? {
+        return Ok(found);
+    }
+    let mut found = Vec::new();
+    for inner in entries(folder)? {
+        if fs::symlink_metadata(&inner).is_ok_and(|about| about.is_dir()) {
+            found.extend(directly_in(&inner)?);
+        }
+    }
+    match found.len() {
+        1 => Ok(found.remove(0)),
+        _ => Err(SketchError::NoSketch(folder.display().to_string())),
+    }
+}
+
+fn directly_in(folder: &Path) -> Result<Option<Given>, SketchError> {
+    let inside = entries(folder)?;
+    let is = |path: &Path, kinds: &[&str]| {
+        ending(path).is_some_and(|own| kinds.contains(&own))
+            && fs::symlink_metadata(path).is_ok_and(|about| about.is_file())
+    };
+    if !inside.iter().any(|path| is(path, &["ino", "pde"])) {
+        let mut images = inside.iter().filter(|path| is(path, &["elf", "hex"]));
+        return Ok(match (images.next(), images.next()) {
+            (Some(only), None) => Some(Given::Image(only.clone())),
+            _ => None,
+        });
+    }
+    let mut source = Source {
+        name: name_of(folder),
+        files: BTreeMap::new(),
+    };
+    let (mut left, mut seen) = (MOST_BYTES, 0);
+    collect(folder, "", 0, &mut source, &mut left, &mut seen)?;
+    Ok(Some(Given::Sketch(source)))
+}
+
+/// The name of a folder, whatever way it was written.
+fn name_of(folder: &Path) -> String {
+    let own = folder.canonicalize();
+    let own = own.as_deref().unwrap_or(folder);
+    own.file_name().map_or_else(
+        || "sketch".into(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}
+
+fn collect(
+    folder: &Path,
+    prefix: &str,
+    depth: usize,
+    source: &mut Source,
+    left: &mut u64,
+    seen: &mut usize,
+) -> Result<(), SketchError> {
+    for path in entries(folder)? {
+        *seen += 1;
+        if *seen > MOST_FILES || depth > DEEPEST {
+            return Err(SketchError::Refused(format!(
+                "{}: more than {MOST_FILES} files, or folders more than {DEEPEST} deep",
+                folder.display()
+            )));
+        }
+        // A name that is no text is included by nobody.
+        let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
+            continue;
+        };
+        let Ok(about) = fs::symlink_metadata(&path) else {
+            continue;
+        };
+        let inner = format!("{prefix}{name}");
+        if about.is_dir() && !name.starts_with('.') {
+            collect(&path, &format!("{inner}/"), depth + 1, source, left, seen)?;
+        } else if about.is_file() && ending(&path).is_some_and(|own| KINDS.contains(&own)) {
+            source.files.insert(inner, read(&path, left)?);
+        }
+    }
+    Ok(())
+}
+
+fn entries(folder: &Path) -> Result<Vec<PathBuf>, SketchError> {
+    let entries = fs::read_dir(folder).map_err(|error| SketchError::file(folder, error))?;
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.sort();
+    Ok(paths)
+}
+
+fn read(path: &Path, left: &mut u64) -> Result<Vec<u8>, SketchError> {
+    let wrong = |error| SketchError::file(path, error);
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(wrong)?;
+    file.take(*left + 1)
+        .read_to_end(&mut bytes)
+        .map_err(wrong)?;
+    *left = left.checked_sub(bytes.len() as u64).ok_or_else(|| {
+        SketchError::Refused(format!(
+            "{}: the sketch has more than {} MB",
+            path.display(),
+            MOST_BYTES >> 20
+        ))
+    })?;
+    Ok(bytes)
+}
+
+pub(crate) fn ending(path: &Path) -> Option<&str> {
+    path.extension().and_then(|ending| ending.to_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in files {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        }
+        folder
+    }
+
+    fn names(given: &Given) -> Vec<&str> {
+        match given {
+            Given::Sketch(source) => source.files.keys().map(String::as_str).collect(),
+            Given::Image(path) => vec![path.file_name().unwrap().to_str().unwrap()],
+        }
+    }
+
+    #[test]
+    fn a_folder_is_read_with_what_is_below_it_and_an_archive_s_extra_folder_is_seen_through() {
+        let files = [
+            ("wall/wall.ino", "a"),
+            ("wall/pid.h", "b"),
+            ("wall/src/x/y.cpp", "c"),
+            ("wall/notes.pdf", "d"),
+        ];
+        let folder = folder(&files);
+        let expected = ["pid.h", "src/x/y.cpp", "wall.ino"];
+        assert_eq!(names(&given(folder.path(), true).unwrap()), expected);
+        let inner = folder.path().join("wall");
+        assert_eq!(names(&given(&inner, true).unwrap()), expected);
+        let ino = inner.join("wall.ino");
+        assert_eq!(names(&given(&ino, true).unwrap()), expected);
+        assert_eq!(names(&given(&ino, false).unwrap()), ["wall.ino"]);
+    }
+
+    #[test]
+    fn an_image_is_taken_where_there_is_no_sketch() {
+        let folder = folder(&[("a.elf", "x"), ("readme.txt", "")]);
+        assert_eq!(names(&given(folder.path(), true).unwrap()), ["a.elf"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_not_followed() {
+        let folder = folder(&[("a.ino", "x")]);
+        for name in ["secret.h", "b.ino"] {
+            std::os::unix::fs::symlink("/etc/passwd", folder.path().join(name)).unwrap();
+        }
+        std::os::unix::fs::symlink("/etc", folder.path().join("etc")).unwrap();
+        assert_eq!(names(&given(folder.path(), true).unwrap()), ["a.ino"]);
+    }
+
+    #[test]
+    fn more_than_a_sketch_can_be_is_refused() {
+        let folder = folder(&[("a.ino", "x")]);
+        fs::write(folder.path().join("b.h"), vec![b' '; MOST_BYTES as usize]).unwrap();
+        let error = given(folder.path(), true).unwrap_err().to_string();
+        assert!(error.contains("more than 8 MB"), "{error}");
+    }
+}

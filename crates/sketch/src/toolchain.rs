@@ -1,0 +1,216 @@
+//! The compiler and the Arduino core: those that arduino-cli has installed, else the system's.
+
+use crate::error::SketchError;
+use crate::libraries;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Where Debian's `arduino-core-avr` puts it.
+const SYSTEM_CORE: &str = "/usr/share/arduino/hardware/arduino/avr";
+
+/// A compiler with an Arduino core.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Toolchain {
+    /// `avr-gcc`.
+    pub(crate) gcc: PathBuf,
+    /// The core's folder, with `cores`, `variants` and `libraries`.
+    pub(crate) core: PathBuf,
+    /// Folders of libraries besides the core's, first come first served.
+    pub(crate) libraries: Vec<PathBuf>,
+    /// What a sandbox must show for the compiler to run.
+    pub(crate) visible: Vec<PathBuf>,
+    /// Version of the compiler: `5.4.0`.
+    pub compiler: String,
+    /// Version of the core: `1.8.7`.
+    pub core_version: String,
+}
+
+impl Toolchain {
+    /// The one that arduino-cli has installed, else the system's.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn find() -> Result<Self, SketchError> {
+        arduino_cli()
+            .and_then(|folders| Self::of_arduino_cli(&folders))
+            .or_else(|| Self::of_system(Path::new(SYSTEM_CORE)))
+            .ok_or(SketchError::NoCompiler)
+    }
+
+    /// Compiler and core in words: `avr-gcc 5.4.0, Arduino AVR core 1.8.7`.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        format!(
+            "avr-gcc {}, Arduino AVR core {}",
+            self.compiler, self.core_version
+        )
+    }
+
+    fn of_system(core: &Path) -> Option<Self> {
+        let gcc = on_path("avr-gcc")?;
+        // Its parts: cc1plus and the like, and the assembler with the headers of the chip.
+        let install = line_of(&gcc, &["-print-search-dirs"])?;
+        let install = install.strip_prefix("install: ")?;
+        let assembler = line_of(&gcc, &["-print-prog-name=as"])?;
+        let parts = [
+            Path::new(install).canonicalize().ok()?.parent()?.to_owned(),
+            Path::new(&assembler)
+                .canonicalize()
+                .ok()?
+                .parent()?
+                .parent()?
+                .to_owned(),
+        ];
+        let visible = std::iter::once(gcc.clone()).chain(parts).collect();
+        Self::new(gcc, core.to_owned(), Vec::new(), visible)
+    }
+
+    /// The newest core and compiler below arduino-cli's folder of data; libraries that its user has installed come first.
+    fn of_arduino_cli(folders: &Folders) -> Option<Self> {
+        let packages = folders.data.join("packages/arduino");
+        let core = newest(&packages.join("hardware/avr"))?;
+        let tools = newest(&packages.join("tools/avr-gcc"))?;
+        let gcc = tools.join("bin/avr-gcc");
+        let user = folders.user.iter().map(|user| user.join("libraries"));
+        Self::new(gcc, core, user.collect(), vec![tools])
+    }
+
+    fn new(
+        gcc: PathBuf,
+        core: PathBuf,
+        libraries: Vec<PathBuf>,
+        visible: Vec<PathBuf>,
+    ) -> Option<Self> {
+        let platform = fs::read_to_string(core.join("platform.txt")).ok()?;
+        let core_version = platform
+            .lines()
+            .find_map(|line| line.strip_prefix("version="))?
+            .trim()
+            .to_owned();
+        Some(Self {
+            compiler: line_of(&gcc, &["-dumpversion"])?,
+            gcc,
+            libraries: libraries
+                .into_iter()
+                .chain([core.join("libraries")])
+                .collect(),
+            core,
+            visible,
+            core_version,
+        })
+    }
+
+    /// The archiver that knows the compiler's objects.
+    pub(crate) fn archiver(&self) -> PathBuf {
+        self.gcc.with_file_name("avr-gcc-ar")
+    }
+
+    /// Folder of the library that has a header: one that is installed, else one of ours, put below `ours`.
+    pub(crate) fn library(
+        &self,
+        header: &str,
+        ours: &Path,
+    ) -> Result<Option<PathBuf>, SketchError> {
+        let Some(name) = header
+            .strip_suffix(".h")
+            .filter(|name| !name.contains(['/', '.']))
+        else {
+            return Ok(None);
+        };
+        let found = self
+            .libraries
+            .iter()
+            .flat_map(|folder| [folder.join(name).join("src"), folder.join(name)])
+            .find(|folder| folder.join(header).is_file());
+        match found {
+            Some(folder) => Ok(Some(folder)),
+            None => libraries::unpack(name, ours),
+        }
+    }
+}
+
+/// Where arduino-cli keeps what it has installed.
+struct Folders {
+    data: PathBuf,
+    user: Option<PathBuf>,
+}
+
+fn arduino_cli() -> Option<Folders> {
+    let cli = on_path("arduino-cli")?;
+    let folder = |key: &str| line_of(&cli, &["config", "get", key]).map(PathBuf::from);
+    Some(Folders {
+        data: folder("directories.data")?,
+        user: folder("directories.user"),
+    })
+}
+
+/// The folder with the highest version for its name.
+fn newest(folder: &Path) -> Option<PathBuf> {
+    let version = |path: &PathBuf| -> Vec<u32> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.split(|c: char| !c.is_ascii_digit())
+            .filter_map(|part| part.parse().ok())
+            .collect()
+    };
+    let inside = fs::read_dir(folder).ok()?.flatten();
+    inside
+        .map(|entry| entry.path())
+        .filter(|path| path.is_dir())
+        .max_by_key(version)
+}
+
+/// A program on the search path.
+pub(crate) fn on_path(name: &str) -> Option<PathBuf> {
+    let path = std::env::var_os("PATH")?;
+    let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
+    std::env::split_paths(&path)
+        .map(|folder| folder.join(&name))
+        .find(|file| file.is_file())
+}
+
+/// The first line that a program prints.
+fn line_of(program: &Path, args: &[impl AsRef<OsStr>]) -> Option<String> {
+    let output = Command::new(program)
+        .args(args)
+        .env("LC_ALL", "C")
+        .stdin(Stdio::null())
+        .stderr(Stdio::null())
+        .output()
+        .ok()
+        .filter(|output| output.status.success())?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    Some(text.lines().next()?.trim().to_owned()).filter(|line| !line.is_empty())
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    #[test]
+    fn what_arduino_cli_has_installed_is_found_with_the_newest_versions() {
+        let Some(system) = Toolchain::of_system(Path::new(SYSTEM_CORE)) else {
+            return;
+        };
+        let data = tempfile::tempdir().unwrap();
+        let packages = data.path().join("packages/arduino");
+        for version in ["1.8.6", "1.8.10"] {
+            let core = packages.join("hardware/avr").join(version);
+            fs::create_dir_all(&core).unwrap();
+            fs::write(core.join("platform.txt"), format!("version={version}\n")).unwrap();
+        }
+        let bin = packages.join("tools/avr-gcc/7.3.0-atmel3.6.1-arduino7/bin");
+        fs::create_dir_all(&bin).unwrap();
+        symlink(&system.gcc, bin.join("avr-gcc")).unwrap();
+        let folders = Folders {
+            data: data.path().to_owned(),
+            user: Some("ana/Arduino".into()),
+        };
+        let found = Toolchain::of_arduino_cli(&folders).unwrap();
+        assert_eq!(found.core_version, "1.8.10");
+        assert_eq!(found.compiler, system.compiler);
+        assert!(found.libraries[0].ends_with("Arduino/libraries"));
+    }
+}

@@ -1,0 +1,147 @@
+//! Sketches become images as with the Arduino IDE, and what is wrong with them is said with its place.
+#![cfg(test)]
+
+use rumbo_sketch::sandbox::{Limits, Sandbox};
+use rumbo_sketch::{Compiler, SketchError, Source, Toolchain, example, examples};
+use tempfile::TempDir;
+
+/// A compiler with a cache of its own; `None` where none is installed.
+fn compiler() -> Option<(Compiler, TempDir)> {
+    let Ok(toolchain) = Toolchain::find() else {
+        assert!(std::env::var_os("CI").is_none(), "no avr-gcc");
+        return None;
+    };
+    let cache = tempfile::tempdir().unwrap();
+    let sandbox = Sandbox::trusting(Limits::default());
+    let compiler = Compiler::new(toolchain, sandbox, cache.path().to_owned()).unwrap();
+    Some((compiler, cache))
+}
+
+fn source(name: &str, files: &[(&str, &str)]) -> Source {
+    let files = files.iter();
+    Source {
+        name: name.into(),
+        files: files
+            .map(|(name, text)| ((*name).into(), (*text).into()))
+            .collect(),
+    }
+}
+
+fn refused(compiler: &Compiler, source: &Source) -> String {
+    match compiler.compile(source, &[]) {
+        Err(error @ SketchError::Rejected(_)) => error.to_string(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn every_example_compiles_and_is_fresh_the_second_time() {
+    let Some((compiler, _cache)) = compiler() else {
+        return;
+    };
+    for (name, _) in examples() {
+        let source = example(&name).unwrap();
+        let image = compiler.compile(&source, &[]).unwrap();
+        assert!(!image.fresh && image.path.is_file(), "{name}");
+        assert_eq!(image.warnings, [], "{name}");
+        assert!(compiler.compile(&source, &[]).unwrap().fresh);
+    }
+}
+
+#[test]
+fn files_are_joined_functions_declared_and_libraries_found() {
+    let Some((compiler, _cache)) = compiler() else {
+        return;
+    };
+    let sketch = source(
+        "all",
+        &[
+            (
+                "all.ino",
+                "#include <Servo.h>\n#include <EEPROM.h>\nServo servo;\nvoid setup() { servo.attach(9); twice(later()); }\n",
+            ),
+            (
+                "b.ino",
+                "int later() { return EEPROM.read(0); }\nvoid loop() { helper(); }\n",
+            ),
+            ("help.h", "#pragma once\nvoid helper();\n"),
+            (
+                "src/deep/help.cpp",
+                "#include \"../../help.h\"\nvoid helper() { asm volatile(\"nop\"); }\n",
+            ),
+            (
+                "z.ino",
+                "#include \"help.h\"\nint twice(int n) { return 2 * n; }\n",
+            ),
+            ("notes/old.cpp", "#error not compiled\n"),
+        ],
+    );
+    // As in the IDE, what the last file includes is not known to the one before.
+    let error = refused(&compiler, &sketch);
+    assert!(
+        error.starts_with("b.ino:2:22: error: 'helper' was not declared"),
+        "{error}"
+    );
+    let mut mended = sketch;
+    mended.files.insert(
+        "b.ino".into(),
+        "#include \"help.h\"\nint later() { return EEPROM.read(0); }\nvoid loop() { helper(); }\n"
+            .into(),
+    );
+    compiler.compile(&mended, &[]).unwrap();
+}
+
+#[test]
+fn an_error_names_the_students_file_and_line() {
+    let Some((compiler, _cache)) = compiler() else {
+        return;
+    };
+    let main = "void setup() { }\n\nvoid loop() {\n  sped = 3;\n}\n";
+    let sketch = source(
+        "wall",
+        &[("wall.ino", main), ("pid.cpp", "int f() { return\n}\n")],
+    );
+    assert_eq!(
+        refused(&compiler, &sketch),
+        "wall.ino:4:3: error: 'sped' was not declared in this scope\n\
+         pid.cpp:2:1: error: expected primary-expression before '}' token\n\
+         pid.cpp:2:1: error: expected ';' before '}' token"
+    );
+    let nothing = source(
+        "wall",
+        &[(
+            "wall.ino",
+            "void setup() { }\nvoid drive(int);\nvoid f() { drive(1); }\nvoid loop2() { f(); }\n",
+        )],
+    );
+    let error = refused(&compiler, &nothing);
+    assert!(
+        error.contains("the sketch has no function `void loop()`"),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_same_sketch_gives_the_same_program_wherever_it_is_compiled() {
+    let (Some((one, _a)), Some((two, _b))) = (compiler(), compiler()) else {
+        return;
+    };
+    let sketch = source(
+        "where",
+        &[(
+            "where.ino",
+            "void setup() { Serial.begin(9600); Serial.print(F(__FILE__)); }\nvoid loop() { }\n",
+        )],
+    );
+    let loaded = |compiler: &Compiler| {
+        let image = compiler.compile(&sketch, &[]).unwrap();
+        let hex = image.path.with_extension("hex");
+        let done = std::process::Command::new("avr-objcopy")
+            .args(["-O", "ihex"])
+            .args([&image.path, &hex])
+            .status();
+        assert!(done.unwrap().success());
+        std::fs::read(hex).unwrap()
+    };
+    assert_eq!(loaded(&one), loaded(&two));
+}
