@@ -17,7 +17,7 @@ use super::pid::{Gains, Pid};
 use rumbo_control::{SonarId, Wheels};
 
 /// `delay()` at the end of a pass, and what the pass itself takes [us].
-pub(super) const PAUSE_US: u64 = 62_300;
+pub(super) const PAUSE_US: u64 = 61_100;
 /// What a reading takes besides its echo [us].
 const CALL_US: u64 = 1_100;
 /// `pulseIn` gives up after this [us] and returns 0.
