@@ -27,3 +27,14 @@ pub fn write(page: &str, name: &str, text: &str) -> Result<(), FileError> {
     let new = format!("{before}{begin}\n{}\n\n{end}{after}", text.trim_end());
     std::fs::write(&path, new).map_err(|source| error(source.to_string()))
 }
+
+/// Writes a figure of docs/theory.
+///
+/// # Errors
+/// It cannot be written.
+pub fn write_figure(name: &str, svg: &str) -> Result<(), FileError> {
+    let path = format!("docs/img/theory/{name}.svg");
+    let whole = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join(&path);
+    std::fs::write(whole, svg)
+        .map_err(|error| FileError::Setting(format!("{path}: cannot be written ({error})")))
+}

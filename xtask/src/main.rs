@@ -10,6 +10,7 @@ use std::process::ExitCode;
 mod bench;
 mod campaign;
 mod deny;
+mod fidelity;
 mod figures;
 mod firmware;
 mod fuzz;
@@ -38,6 +39,9 @@ Commands:
   memoria [--seeds N] [--only SCENARIO]...
                            the report's program as an Arduino sketch on the emulated Mega, beside its native form,
                            our core and our image: a table of 5 robots or N, and where the chip's time goes
+  fidelity [--seeds N] [--only SCENARIO]...
+                           where the report's robot lies among 200 simulated ones or N, driven by its own program; needs
+                           its recorded runs, RUMBO_DATA=FOLDER
   campaign [--seeds N] [--only SCENARIO]...
                            every scenario with 1,000 seeds or N, mode 8 in as many random worlds; `link`, a million
                            frames over a link with faults; `faults`, every sensor and wire broken in every drive
@@ -58,6 +62,7 @@ Examples:
   cargo xtask firmware
   cargo xtask sketches
   cargo xtask memoria --seeds 1 --only mode5
+  RUMBO_DATA=recordings cargo xtask fidelity --seeds 40 --only mode3
   cargo xtask bench --only headless
   cargo xtask campaign --seeds 100 --only mode8-random
   cargo xtask figures --only mode1
@@ -99,8 +104,8 @@ fn main() -> ExitCode {
         Ok(project) => project,
         Err(error) => return failure(&error),
     };
-    if seeds.is_some() && !matches!(command.as_str(), "campaign" | "memoria") {
-        return usage("--seeds is for campaign and memoria");
+    if seeds.is_some() && !matches!(command.as_str(), "campaign" | "fidelity" | "memoria") {
+        return usage("--seeds is for campaign, fidelity and memoria");
     }
     if seconds.is_some() && command != "fuzz" {
         return usage("--seconds is for fuzz");
@@ -112,6 +117,7 @@ fn main() -> ExitCode {
         "campaign" => campaign::run(&project, seeds, &only),
         "fuzz" => fuzz::campaign(&project, seconds, &only),
         "figures" => figures::run(&project, &only),
+        "fidelity" => fidelity::run(&project, seeds, &only),
         "memoria" => memoria::run(&project, seeds, &only),
         "firmware" if only.is_empty() => firmware::run(&project),
         "firmware" => return usage("firmware takes no options"),

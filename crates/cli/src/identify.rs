@@ -6,7 +6,7 @@ use crate::mark::Stamp;
 use crate::output;
 use crate::place::{self, Guard};
 use crate::recorded::{self, attached};
-use indicatif::ProgressBar;
+use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::files::{Library, RobotFile, bounded};
 use rumbo_identify::sonar_stats::{self, Comparison, SonarLog};
 use rumbo_identify::{
@@ -60,16 +60,21 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
         check_plots(args, &logs, folder)?;
         place::try_folder(folder)?;
     }
-    let doing = match args.check {
-        Some(_) => "comparing with the plant",
-        None => "searching for the plant that repeats the runs; two cores take some two minutes",
-    };
-    let spinner = ProgressBar::new_spinner().with_message(doing);
-    spinner.enable_steady_tick(Duration::from_millis(100));
+    let bar = bar(args);
+    let progress = |share: f64| bar.set_position((100.0 * share) as u64);
     let (drive, params) = match args.check {
+        Some(_) if args.leave_one_out => {
+            let runs = rumbo_identify::leave_one_out(&logs.drive, &robot.plant, &progress);
+            (
+                Drive::Checked {
+                    runs: runs.map_err(Failure::input)?,
+                },
+                robot.plant,
+            )
+        }
         Some(_) => (check(&logs, &robot.plant)?, robot.plant),
         None => {
-            let found = rumbo_identify::identify(&logs.drive, &robot.plant, GENERATIONS)
+            let found = rumbo_identify::identify(&logs.drive, &robot.plant, GENERATIONS, &progress)
                 .map_err(Failure::input)?;
             let params = found.params;
             (Drive::Identified(Box::new(found)), params)
@@ -84,7 +89,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
         Some(folder) => plot(&logs, &drive, &params, folder)?,
         None => Vec::new(),
     };
-    spinner.finish_and_clear();
+    bar.finish_and_clear();
     let written = match &drive {
         Drive::Identified(found) if name.ends_with(".toml") => Some(write(Path::new(name), found)?),
         _ => None,
@@ -98,7 +103,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
             written: written.map(output::shown),
         });
     }
-    report(&drive, &sonars, &plots)?;
+    report(&logs, &drive, &sonars, &plots)?;
     match written {
         Some(path) => output::remark(&format!(
             "{}: its [plant] table is rewritten",
@@ -108,6 +113,24 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
             "nothing is written: give --robot as the path of a file to have its [plant] table rewritten",
         ),
         None => Ok(()),
+    }
+}
+
+/// What is being done, and how much of it is.
+fn bar(args: &IdentifyArgs) -> ProgressBar {
+    let doing = match (&args.check, args.leave_one_out) {
+        (Some(_), false) => "comparing with the plant",
+        (Some(_), true) => "fitting without each run in turn",
+        (None, _) => {
+            "searching for the plant that repeats the runs; two cores take some three minutes"
+        }
+    };
+    let style = ProgressStyle::with_template("{bar:20} {percent:>3} % {elapsed} {msg}");
+    let bar = ProgressBar::new(100).with_message(doing);
+    bar.enable_steady_tick(Duration::from_millis(100));
+    match style {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
     }
 }
 
@@ -229,13 +252,23 @@ fn write<'a>(path: &'a Path, found: &Identification) -> Result<&'a Path, Failure
     Ok(path)
 }
 
-fn report(drive: &Drive, sonars: &[Comparison], plots: &[PathBuf]) -> Result<(), Failure> {
+fn report(
+    logs: &Logs,
+    drive: &Drive,
+    sonars: &[Comparison],
+    plots: &[PathBuf],
+) -> Result<(), Failure> {
     let text = match drive {
         Drive::Identified(found) => found.to_string(),
         Drive::Checked { runs } => runs.iter().map(ToString::to_string).collect(),
     };
     if !text.is_empty() {
         output::lines(text.trim())?;
+    }
+    for log in &logs.drive {
+        if let Some(pair) = &log.pair {
+            output::line(&format!("{}: {pair}", log.name))?;
+        }
     }
     if !sonars.is_empty() {
         output::line("")?;

@@ -8,12 +8,12 @@ use crate::log::{DriveLog, Seen};
 use crate::problem::{Problem, UNKNOWNS, dead_zone_pwm};
 use crate::score::{RunScore, score};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rumbo_plant::params::Params;
 use serde::Serialize;
 
 /// Generations of the global search that suffice for runs of half a minute.
-pub const GENERATIONS: usize = 200;
+pub const GENERATIONS: usize = 100;
 const POPULATION: usize = 24;
 /// First spread of the search, in standard deviations of what is believed beforehand.
 const SPREAD: f64 = 0.7;
@@ -47,6 +47,26 @@ pub struct Identification {
     pub dead_zone_floor_pwm: f64,
     /// How well each run is repeated.
     pub runs: Vec<RunScore>,
+    /// How sure the identified parameters are, together.
+    #[serde(skip)]
+    pub posterior: Posterior,
+}
+
+/// What the runs leave possible: a normal distribution of the normalised unknowns about the fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Posterior {
+    pub(crate) params: Params,
+    pub(crate) z: DVector<f64>,
+    /// Cholesky factor of the covariance.
+    pub(crate) factor: DMatrix<f64>,
+}
+
+impl Posterior {
+    /// A plant that the runs leave possible, for independent standard normal numbers; with all of them 0 the fit itself.
+    pub fn plant(&self, mut normal: impl FnMut() -> f64) -> Params {
+        let normals = DVector::from_fn(self.z.len(), |_, _| normal());
+        Problem::new(&UNKNOWNS, &[], &self.params).plant(&(&self.z + &self.factor * normals))
+    }
 }
 
 /// The outcome of a check: nothing fitted but two nuisance values per run.
@@ -57,7 +77,8 @@ pub struct Check {
 }
 
 /// Fits the plant to all runs together, from the values in `start` and, unless `generations` is 0, from the best point of a global
-/// search of so many generations ([`GENERATIONS`] suffice); the better fit wins.
+/// search of so many generations ([`GENERATIONS`] suffice); the better fit wins. `progress` is given the share of the
+/// search that is done.
 ///
 /// # Errors
 /// No run with speeds or a distance ahead; a fit that breaks down.
@@ -65,6 +86,7 @@ pub fn identify(
     logs: &[DriveLog],
     start: &Params,
     generations: usize,
+    progress: &dyn Fn(f64),
 ) -> Result<Identification, IdentifyError> {
     let logs = useful(logs)?;
     let problem = Problem::new(&UNKNOWNS, &logs, start);
@@ -72,13 +94,14 @@ pub fn identify(
     let nuisances: Vec<_> = nuisances.collect::<Result<_, IdentifyError>>()?;
     let mut best = descend(problem.clone(), &problem.point(start, &nuisances))?;
     if generations > 0 {
-        let found = descend(problem.clone(), &search(&problem, generations)?)?;
+        let found = descend(problem.clone(), &search(&problem, generations, progress)?)?;
         if problem.cost(&found.1) < problem.cost(&best.1) {
             best = found;
         }
     }
     let (problem, z) = best;
-    let sd = standard_deviations(&problem, &z)?;
+    let factor = covariance_factor(&problem, &z)?;
+    let sd = |i: usize| factor.row(i).norm();
 
     let params = problem.plant(&z);
     let parameters = UNKNOWNS.iter().enumerate().map(|(i, unknown)| {
@@ -86,9 +109,9 @@ pub fn identify(
         Identified {
             keys: unknown.keys.iter().map(|&key| key.to_owned()).collect(),
             value,
-            uncertainty: problem.slope(i, z[i]) * sd[i],
+            uncertainty: problem.slope(i, z[i]) * sd(i),
             unit: problem.unit(i).to_owned(),
-            told_by_runs: (1.0 - sd[i] * sd[i]).max(0.0),
+            told_by_runs: (1.0 - sd(i) * sd(i)).max(0.0),
         }
     });
     Ok(Identification {
@@ -100,6 +123,14 @@ pub fn identify(
             .enumerate()
             .map(|(i, log)| score(log, &params, problem.nuisance(i, &z)))
             .collect(),
+        posterior: Posterior {
+            params,
+            z: z.rows(0, UNKNOWNS.len()).into_owned(),
+            factor: factor
+                .rows(0, UNKNOWNS.len())
+                .columns(0, UNKNOWNS.len())
+                .into_owned(),
+        },
         params,
     })
 }
@@ -117,6 +148,27 @@ pub fn check(logs: &[DriveLog], params: &Params) -> Result<Check, IdentifyError>
     })
 }
 
+/// Fits the plant to all runs but one, from `start`, and repeats that one on it: for each run in turn. What a plant
+/// predicts of a run that it has not seen.
+///
+/// # Errors
+/// As [`identify`].
+pub fn leave_one_out(
+    logs: &[DriveLog],
+    start: &Params,
+    progress: &dyn Fn(f64),
+) -> Result<Vec<RunScore>, IdentifyError> {
+    let logs = useful(logs)?;
+    let without = |left_out: usize| {
+        progress(left_out as f64 / logs.len() as f64);
+        let mut others = logs.clone();
+        let log = others.remove(left_out);
+        let found = identify(&others, start, 0, &|_| {})?;
+        check_one(&log, &found.params)
+    };
+    (0..logs.len()).map(without).collect()
+}
+
 fn check_one(log: &DriveLog, params: &Params) -> Result<RunScore, IdentifyError> {
     let run = std::slice::from_ref(log);
     let problem = Problem::new(&[], run, params);
@@ -131,11 +183,11 @@ fn check_one(log: &DriveLog, params: &Params) -> Result<RunScore, IdentifyError>
 }
 
 fn useful(logs: &[DriveLog]) -> Result<Vec<DriveLog>, IdentifyError> {
-    let useful: Vec<DriveLog> = logs
-        .iter()
-        .filter(|log| log.seen != Seen::Nothing)
-        .cloned()
-        .collect();
+    let shows_drive = |log: &&DriveLog| match log.seen {
+        Seen::Speeds | Seen::FrontRange => true,
+        Seen::SidePair => log.pair.is_some_and(|pair| pair.beside_wall().is_some()),
+    };
+    let useful: Vec<DriveLog> = logs.iter().filter(shows_drive).cloned().collect();
     if useful.is_empty() {
         Err(IdentifyError::NothingToFit)
     } else {
@@ -143,16 +195,26 @@ fn useful(logs: &[DriveLog]) -> Result<Vec<DriveLog>, IdentifyError> {
     }
 }
 
-fn search(problem: &Problem<'_>, generations: usize) -> Result<DVector<f64>, IdentifyError> {
+fn search(
+    problem: &Problem<'_>,
+    generations: usize,
+    progress: &dyn Fn(f64),
+) -> Result<DVector<f64>, IdentifyError> {
+    let nothing = || IdentifyError::Optimiser("the search found no finite error".into());
     let mut search = cmaes::CMAESOptions::new(DVector::zeros(problem.dimension()), SPREAD)
         .seed(1)
         .population_size(POPULATION)
-        .max_generations(generations)
         .build(|z: &DVector<f64>| problem.cost(z))
         .map_err(|error| IdentifyError::Optimiser(format!("{error:?}")))?;
-    let best = search.run_parallel().overall_best;
-    best.map(|best| best.point)
-        .ok_or_else(|| IdentifyError::Optimiser("the search found no finite error".into()))
+    for generation in 0..generations {
+        progress(generation as f64 / generations as f64);
+        // It has converged, or cannot go on.
+        if search.next_parallel().is_some() {
+            break;
+        }
+    }
+    let best = search.overall_best_individual().ok_or_else(nothing)?;
+    Ok(best.point.clone())
 }
 
 fn descend<'a>(
@@ -176,11 +238,11 @@ fn descend<'a>(
     }
 }
 
-/// Standard deviations of the normalised unknowns: the inverse of the curvature, scaled by the residuals' size.
-fn standard_deviations(
+/// Cholesky factor of the normalised unknowns' covariance: the inverse of the curvature, scaled by the residuals' size.
+fn covariance_factor(
     problem: &Problem<'_>,
     z: &DVector<f64>,
-) -> Result<DVector<f64>, IdentifyError> {
+) -> Result<DMatrix<f64>, IdentifyError> {
     let jacobian = problem
         .jacobian()
         .ok_or_else(|| IdentifyError::Optimiser("no Jacobian".into()))?;
@@ -188,11 +250,16 @@ fn standard_deviations(
     let freedom = residuals.len().saturating_sub(z.len()).max(1) as f64;
     let size = (residuals.norm_squared() / freedom).max(1.0);
     let inverse = (jacobian.transpose() * &jacobian).try_inverse();
-    let covariance = inverse.ok_or_else(|| {
-        IdentifyError::Optimiser("the runs leave a parameter undetermined".into())
-    })?;
+    let factor = inverse.and_then(|inverse| (inverse * size).cholesky());
+    let mut factor = factor
+        .ok_or_else(|| IdentifyError::Optimiser("the runs leave a parameter undetermined".into()))?
+        .unpack();
     // What is believed beforehand bounds the uncertainty, whatever the residuals' size.
-    Ok(covariance
-        .diagonal()
-        .map(|variance| (variance * size).max(0.0).sqrt().min(1.0)))
+    for mut row in factor.row_iter_mut() {
+        let sd = row.norm();
+        if sd > 1.0 {
+            row /= sd;
+        }
+    }
+    Ok(factor)
 }

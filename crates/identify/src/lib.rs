@@ -3,7 +3,7 @@
 //! ```text
 //! CSV ─► dialect: as one program writes it
 //!            ├─► log ─► replay: the recorded duty on a plant ─► residuals (problem) ─► search and fit
-//!            │                                                       │
+//!            │     └─► pair: which sonar is which ─► wall: distances      │
 //!            │            score: RMSE, R^2 per run ◄─────────────────┤ parameters, uncertainties
 //!            │            plot: charts, measured and simulated ◄─────┤
 //!            │            rewrite: [plant] of a robot file ◄─────────┘
@@ -23,18 +23,23 @@ pub mod sonar_stats;
 mod error;
 mod fit;
 mod log;
+mod pair;
 mod plot;
 mod replay;
 mod report;
 mod rewrite;
 mod score;
+mod wall;
 
 #[cfg(test)]
 mod tests;
 
 pub use error::IdentifyError;
-pub use fit::{Check, GENERATIONS, Identification, Identified, check, identify};
+pub use fit::{
+    Check, GENERATIONS, Identification, Identified, Posterior, check, identify, leave_one_out,
+};
 pub use log::DriveLog;
+pub use pair::{Correlation, Pair};
 pub use plot::plot;
 pub use replay::Nuisance;
 pub use rewrite::rewrite;

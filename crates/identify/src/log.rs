@@ -5,6 +5,7 @@
 //! reference is zero (modes 5 to 7), the bridge was released whatever the PWM column says.
 
 use crate::error::IdentifyError;
+use crate::pair::Pair;
 use std::path::Path;
 
 /// Length of the windows in which the original counts encoder edges, ms.
@@ -20,8 +21,8 @@ pub enum Seen {
     Speeds,
     /// The distance to a wall straight ahead (modes 1 and 2).
     FrontRange,
-    /// Nothing of use here (modes 3 and 4: the wall is beside the robot).
-    Nothing,
+    /// Two distances to a wall beside the robot (modes 3 and 4).
+    SidePair,
 }
 
 /// One row of a log.
@@ -35,8 +36,8 @@ pub struct Row {
     pub reference_rad_s: [f64; 2],
     /// Measured speed of the left and right wheel, rad/s; zero in modes without.
     pub speed_rad_s: [f64; 2],
-    /// Measured distance ahead, m; zero in modes without.
-    pub range_m: f64,
+    /// Measured distances, columns `left_cm` and `right_cm`, m; zero in modes without.
+    pub range_m: [f64; 2],
 }
 
 impl Row {
@@ -44,6 +45,12 @@ impl Row {
     #[must_use]
     pub fn is_turning(&self) -> bool {
         self.reference_rad_s[0] * self.reference_rad_s[1] < 0.0
+    }
+
+    /// Mean of both distances, m.
+    #[must_use]
+    pub fn mean_m(&self) -> f64 {
+        0.5 * (self.range_m[0] + self.range_m[1])
     }
 }
 
@@ -58,6 +65,8 @@ pub struct DriveLog {
     pub rows: Vec<Row>,
     /// When counting windows end, modulo their length, if the log shows it.
     pub window_phase_ms: Option<usize>,
+    /// What the run says about its two sonars, if it has two.
+    pub pair: Option<Pair>,
 }
 
 impl DriveLog {
@@ -122,7 +131,7 @@ impl DriveLog {
         let seen = match columns.signals {
             Signals::Speeds { .. } => Seen::Speeds,
             Signals::Ranges { .. } if is_front => Seen::FrontRange,
-            Signals::Ranges { .. } => Seen::Nothing,
+            Signals::Ranges { .. } => Seen::SidePair,
         };
         let name = path
             .file_name()
@@ -132,11 +141,15 @@ impl DriveLog {
         } else {
             None
         };
+        // Mode 1 has one sonar and writes its reading twice.
+        let is_pair = rows.iter().any(|row| row.range_m[0] != row.range_m[1]);
+        let pair = is_pair.then(|| Pair::of(&rows, seen == Seen::SidePair));
         Ok(Self {
             name,
             seen,
             rows,
             window_phase_ms,
+            pair,
         })
     }
 
@@ -248,7 +261,7 @@ impl Columns {
             duty: pwm.map(|pwm| (pwm / 255.0).clamp(-1.0, 1.0)),
             reference_rad_s: [0.0; 2],
             speed_rad_s: [0.0; 2],
-            range_m: 0.0,
+            range_m: [0.0; 2],
         };
         match self.signals {
             Signals::Speeds { speed, reference } => {
@@ -261,10 +274,10 @@ impl Columns {
                 }
             }
             Signals::Ranges { range, reference } => {
-                row.range_m = pair(range)?.iter().sum::<f64>() / 200.0;
+                row.range_m = pair(range)?.map(|cm| cm / 100.0);
                 // These modes log the PWM without its sign: too near a wall ahead is backward. Beside a wall they only
                 // go forward.
-                if is_front && row.range_m < fields.number(reference)? / 100.0 {
+                if is_front && row.mean_m() < fields.number(reference)? / 100.0 {
                     row.duty = row.duty.map(|duty| -duty);
                 }
             }

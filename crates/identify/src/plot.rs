@@ -1,9 +1,11 @@
-//! Measured against simulated: speeds of both wheels or the distance ahead, and the PWM below.
+//! Measured against simulated: speeds of both wheels or the distances to a wall, and the PWM below.
 
 use crate::chart::{Chart, Curve, PALETTE, over_time};
 use crate::log::{DriveLog, Seen};
+use crate::problem::RANGE_SD_M;
 use crate::replay::{Nuisance, Replay};
-use crate::score::{RPM_PER_RAD_S, start_range_m};
+use crate::score::RPM_PER_RAD_S;
+use crate::wall;
 use rumbo_plant::params::Params;
 
 /// Names of the curves, in the order of the palette.
@@ -17,12 +19,27 @@ pub fn plot<'a>(log: &'a DriveLog, params: &Params, nuisance: Nuisance) -> Vec<C
     let trace = replay.whole();
     let rows = || log.rows.iter();
     let mut charts = Vec::new();
-    if log.seen == Seen::FrontRange {
-        let start_m = start_range_m(log, &trace);
-        let measured = rows().map(|row| 100.0 * row.range_m).collect();
-        let simulated = rows().map(|row| 100.0 * (start_m - trace.way_m[row.at_ms]));
-        let values = [measured, simulated.collect()];
-        charts.push(compared(log, "distance to the wall, cm", values));
+    if log.seen != Seen::Speeds {
+        let errors_m = wall::errors_m(log, &trace, RANGE_SD_M);
+        let per_row = errors_m.len() / log.rows.len();
+        let labels = ["front sonar to the wall, cm", "rear sonar to the wall, cm"];
+        for (index, of_pair) in labels.into_iter().enumerate().take(per_row) {
+            let measured: Vec<f64> = rows()
+                .map(|row| 100.0 * wall::reading_m(log, row, index))
+                .collect();
+            let simulated = measured
+                .iter()
+                .zip(errors_m.iter().skip(index).step_by(per_row));
+            let simulated = simulated
+                .map(|(cm, error_m)| cm - 100.0 * error_m)
+                .collect();
+            let label = if per_row == 1 {
+                "distance to the wall, cm"
+            } else {
+                of_pair
+            };
+            charts.push(compared(log, label, [measured, simulated]));
+        }
     } else {
         let speeds = replay.speeds(&trace);
         for (i, label) in ["left wheel, rpm", "right wheel, rpm"]

@@ -9,6 +9,7 @@
 
 use crate::log::{DriveLog, Seen};
 use crate::replay::{Correct, Nuisance, Replay};
+use crate::wall;
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use rayon::prelude::*;
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side};
@@ -22,14 +23,20 @@ pub struct Unknown {
     pub keys: &'static [&'static str],
     /// Standard deviation of what is believed beforehand, in the logarithm.
     pub prior_sd: f64,
+    /// What is believed, where that is not the nominal value.
+    pub believed: Option<f64>,
 }
 
 const fn unknown(keys: &'static [&'static str], prior_sd: f64) -> Unknown {
-    Unknown { keys, prior_sd }
+    Unknown {
+        keys,
+        prior_sd,
+        believed: None,
+    }
 }
 
 /// What the runs can tell. Resistance, gear efficiency and mass scale all torques together and stay nominal.
-pub const UNKNOWNS: [Unknown; 16] = [
+pub const UNKNOWNS: [Unknown; 17] = [
     unknown(&["motor.back_emf_v_s"], 0.3),
     unknown(&["motor.inductance_h"], 0.5),
     unknown(&["motor.inertia_kg_m2"], 0.5),
@@ -62,8 +69,15 @@ pub const UNKNOWNS: [Unknown; 16] = [
     unknown(&["wheels.right.strength"], 0.2),
     unknown(&["floor.rolling_n_m"], 0.5),
     unknown(&["floor.scrub_n_m"], 0.7),
+    // Nominal floors have none.
+    Unknown {
+        believed: Some(0.01),
+        ..unknown(&["floor.yaw_damping_n_m_s"], 1.0)
+    },
 ];
 
+/// Standard deviations from what is believed at which a fit begins at most.
+const FARTHEST: f64 = 5.0;
 /// Battery voltage believed beforehand and its standard deviation, V; floor scale: standard deviation of its logarithm.
 const BATTERY_V: (f64, f64) = (7.4, 0.4);
 const FLOOR_SD: f64 = 0.2;
@@ -72,8 +86,8 @@ const FLOOR_SD: f64 = 0.2;
 /// the prediction tells more, since the floor's disturbances have less time to add up.
 const WHOLE_SD_RAD_S: f64 = 1.0;
 const AHEAD_SD_RAD_S: f64 = 0.18;
-/// The same for the distance ahead, m.
-const RANGE_SD_M: f64 = 0.03;
+/// The same for a distance to a wall, over a stretch of some seconds, m.
+pub(crate) const RANGE_SD_M: f64 = 0.006;
 /// Errors in turns on the spot count as this much smaller: the castor and the tyres scrub in ways not modelled.
 const TURNING: f64 = 3.0;
 /// Errors closer in time than this say the same thing once, s.
@@ -99,9 +113,12 @@ impl<'a> Problem<'a> {
     pub fn new(unknowns: &'a [Unknown], logs: &'a [DriveLog], start: &Params) -> Self {
         let all = Params::limits();
         let limits = unknowns.iter().filter_map(|unknown| {
-            all.iter()
-                .find(|limit| limit.key == unknown.keys[0])
-                .cloned()
+            let mut limit = all
+                .iter()
+                .find(|limit| limit.key == unknown.keys[0])?
+                .clone();
+            limit.nominal = unknown.believed.unwrap_or(limit.nominal);
+            Some(limit)
         });
         let z = DVector::zeros(unknowns.len() + 2 * logs.len());
         Self {
@@ -150,7 +167,9 @@ impl<'a> Problem<'a> {
             .map(|(unknown, limit)| {
                 let above = |value: f64| (value - limit.min).max(1e-9);
                 let value = params.get(&limit.key).unwrap_or(limit.nominal);
-                (above(value) / above(limit.nominal)).ln() / unknown.prior_sd
+                let z = (above(value) / above(limit.nominal)).ln() / unknown.prior_sd;
+                // A value at its limit is infinitely far.
+                z.clamp(-FARTHEST, FARTHEST)
             });
         let nuisances = nuisances.iter().flat_map(|nuisance| {
             let battery = (nuisance.battery_v - BATTERY_V.0) / BATTERY_V.1;
@@ -240,19 +259,17 @@ impl levenberg_marquardt::LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 }
 
 fn run_residuals(log: &DriveLog, replay: &Replay<'_>, residuals: &mut Vec<f64>) {
-    let trace = match log.seen {
-        Seen::Nothing => return,
-        Seen::Speeds | Seen::FrontRange => replay.whole(),
-    };
+    let trace = replay.whole();
     let weight = (log.duration_ms() as f64 / log.rows.len() as f64 / 1000.0 / CORRELATION_S)
         .min(1.0)
         .sqrt();
-    if log.seen == Seen::FrontRange {
-        let start_m = super::score::start_range_m(log, &trace);
-        residuals.extend(log.rows.iter().map(|row| {
-            let expected_m = start_m - trace.way_m[row.at_ms];
-            weight * robust((expected_m - row.range_m) / RANGE_SD_M)
-        }));
+    if log.seen != Seen::Speeds {
+        let errors_m = wall::errors_m(log, &trace, RANGE_SD_M);
+        residuals.extend(
+            errors_m
+                .iter()
+                .map(|error_m| weight * robust(error_m / RANGE_SD_M)),
+        );
         return;
     }
     for (simulated, row) in replay.speeds(&trace).iter().zip(&log.rows) {

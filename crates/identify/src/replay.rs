@@ -64,6 +64,8 @@ pub(crate) struct Trace {
     pub angle_rad: Vec<[f64; 2]>,
     /// Way of the body at each millisecond, m.
     pub way_m: Vec<f64>,
+    /// Its heading at each millisecond, counter-clockwise from the start, rad.
+    pub heading_rad: Vec<f64>,
 }
 
 impl<'a> Replay<'a> {
@@ -90,8 +92,9 @@ impl<'a> Replay<'a> {
         let mut trace = Trace {
             angle_rad: Vec::new(),
             way_m: Vec::new(),
+            heading_rad: Vec::new(),
         };
-        let (mut state, mut way_m) = (self.drivetrain.start(), 0.0);
+        let (mut state, mut way_m, mut heading_rad) = (self.drivetrain.start(), 0.0, 0.0);
         // The first row reports the time since a pass that is not in the log and had applied nearly the same: wheels
         // already turn in first rows.
         self.apply(&mut state, &self.log.rows[0]);
@@ -99,10 +102,13 @@ impl<'a> Replay<'a> {
         for now_ms in 0..=self.log.duration_ms() {
             trace.angle_rad.push(angles(&state));
             trace.way_m.push(way_m);
+            trace.heading_rad.push(heading_rad);
             while let Some(row) = rows.next_if(|row| row.at_ms <= now_ms) {
                 self.apply(&mut state, row);
             }
-            way_m += self.drivetrain.step(&mut state, STEP_S, [0.0; 2]).forward_m;
+            let motion = self.drivetrain.step(&mut state, STEP_S, [0.0; 2]);
+            way_m += motion.forward_m;
+            heading_rad += motion.yaw_rad;
         }
         trace
     }

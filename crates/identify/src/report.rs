@@ -4,6 +4,9 @@ use crate::fit::{Check, Identification};
 use crate::score::{RunScore, WheelError};
 use std::fmt;
 
+/// Share of the knowledge from the runs below which a parameter does not count as identified.
+const SHOWN: f64 = 0.5;
+
 impl fmt::Display for Identification {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
@@ -28,6 +31,19 @@ impl fmt::Display for Identification {
                     "{key:<42}{value:>10}  {uncertainty:>10}  {unit:<12}{share:.0} %"
                 )?;
             }
+        }
+        let untold = self
+            .parameters
+            .iter()
+            .filter(|parameter| parameter.told_by_runs < SHOWN)
+            .filter_map(|parameter| parameter.keys.first());
+        let untold: Vec<&str> = untold.map(String::as_str).collect();
+        if !untold.is_empty() {
+            writeln!(
+                f,
+                "these runs hardly show {}: a run with turns on the spot, fast stretches, stops and starts would",
+                untold.join(", ")
+            )?;
         }
         writeln!(
             f,
@@ -54,7 +70,7 @@ impl fmt::Display for RunScore {
         if let Some(range_rmse_m) = self.range_rmse_m {
             writeln!(
                 f,
-                "  distance to the wall: RMSE {:.1} cm",
+                "  distance to the wall, over 3 s: RMSE {:.1} cm",
                 100.0 * range_rmse_m
             )?;
         }

@@ -1,7 +1,9 @@
 //! How well a plant repeats a run: RMSE and R^2 per wheel, whole run and half a second ahead.
 
 use crate::log::{DriveLog, Row, Seen};
-use crate::replay::{Correct, Nuisance, Replay, Trace};
+use crate::problem::RANGE_SD_M;
+use crate::replay::{Correct, Nuisance, Replay};
+use crate::wall;
 use rumbo_plant::params::Params;
 use serde::Serialize;
 
@@ -37,7 +39,7 @@ pub struct RunScore {
     pub ahead_straight: Option<[WheelError; 2]>,
     /// Half a second ahead, rows as in `whole_turning`.
     pub ahead_turning: Option<[WheelError; 2]>,
-    /// Distance to the wall ahead, RMS over the rows, m. `None` for runs without it.
+    /// Distances to a wall over stretches of some seconds, RMS, m. `None` for runs without one.
     pub range_rmse_m: Option<f64>,
 }
 
@@ -57,15 +59,10 @@ pub(crate) fn score(log: &DriveLog, params: &Params, nuisance: Nuisance) -> RunS
         range_rmse_m: None,
     };
     match log.seen {
-        Seen::Nothing => {}
-        Seen::FrontRange => {
-            let trace = replay.whole();
-            let start_m = start_range_m(log, &trace);
-            let squares = log
-                .rows
-                .iter()
-                .map(|row| (start_m - trace.way_m[row.at_ms] - row.range_m).powi(2));
-            score.range_rmse_m = Some((squares.sum::<f64>() / log.rows.len() as f64).sqrt());
+        Seen::FrontRange | Seen::SidePair => {
+            let errors_m = wall::errors_m(log, &replay.whole(), RANGE_SD_M);
+            let squares: f64 = errors_m.iter().map(|error_m| error_m * error_m).sum();
+            score.range_rmse_m = Some((squares / errors_m.len().max(1) as f64).sqrt());
         }
         Seen::Speeds => {
             let simulated = replay.speeds(&replay.whole());
@@ -126,16 +123,4 @@ fn errors(pairs: &[Pair<'_>], choose: impl Fn(&Row) -> bool) -> Option<[WheelErr
     } else {
         Some([wheel(0), wheel(1)])
     }
-}
-
-/// The distance at the start that fits a trace best: the median of distance plus way.
-#[must_use]
-pub(crate) fn start_range_m(log: &DriveLog, trace: &Trace) -> f64 {
-    let mut starts: Vec<f64> = log
-        .rows
-        .iter()
-        .map(|row| row.range_m + trace.way_m[row.at_ms])
-        .collect();
-    starts.sort_by(f64::total_cmp);
-    starts[starts.len() / 2]
 }

@@ -96,7 +96,7 @@ fn mode_1_logs_no_sign_and_too_near_is_backward() {
     );
     assert_eq!(log.rows[0].duty, [0.4, 0.4]);
     assert_eq!(log.rows[1].duty, [-0.2, -0.2]);
-    assert_eq!(log.rows[0].range_m, 1.07);
+    assert_eq!(log.rows[0].range_m, [1.07; 2]);
 }
 
 #[test]
@@ -200,7 +200,7 @@ fn a_plant_with_other_parameters_is_found_from_its_run() {
     other.motor.inertia_kg_m2 *= 1.4;
     let run = [log(&recorded(&other, exercise, 9.0))];
     let before = check(&run, &Params::default()).unwrap();
-    let found = identify(&run, &Params::default(), 0).unwrap();
+    let found = identify(&run, &Params::default(), 0, &|_| {}).unwrap();
     let (before, after) = (before.runs[0].whole.unwrap(), found.runs[0].whole.unwrap());
     for i in 0..2 {
         assert!(
@@ -232,7 +232,14 @@ fn a_log_that_tells_nothing_about_driving_is_refused() {
 }
 
 fn identification() -> Identification {
+    let params = Params::default();
+    let posterior = Posterior {
+        params,
+        z: nalgebra::DVector::zeros(0),
+        factor: nalgebra::DMatrix::zeros(0, 0),
+    };
     Identification {
+        posterior,
         params: Params::default(),
         parameters: vec![
             Identified {
@@ -365,5 +372,123 @@ fn the_identified_robot_repeats_the_real_runs() {
             check.runs[1].whole_straight.unwrap()[i].rmse_rpm < 12.0,
             "{check}"
         );
+    }
+}
+
+/// With the recorded runs at hand (`RUMBO_DATA`): the wiring `modes_3_and_4` has the first sonar in front.
+#[test]
+fn the_first_sonar_of_the_recorded_side_pair_is_in_front_and_the_wall_on_the_left() {
+    let Some(folder) = std::env::var_os("RUMBO_DATA") else {
+        return;
+    };
+    let pair = |file: &str| {
+        let log = DriveLog::read(&Path::new(&folder).join(file)).unwrap();
+        let pair = log.pair.unwrap();
+        println!("{file}: {pair} {pair:?}");
+        pair
+    };
+    pair("mode2_square_to_wall.csv");
+    assert_eq!(pair("mode3_follow_wall.csv").beside_wall(), Some((0, 1.0)));
+}
+
+#[test]
+fn a_plant_drawn_from_the_posterior_is_the_fit_within_its_uncertainty() {
+    let run = [log(&recorded(&Params::default(), exercise, 9.0))];
+    let found = identify(&run, &Params::default(), 0, &|_| {}).unwrap();
+    let fit = found.posterior.plant(|| 0.0);
+    let of = |plant: &Params| plant.motor.back_emf_v_s;
+    assert!((of(&fit) - of(&found.params)).abs() < 1e-9);
+    let noise = Noise::new(5, 0);
+    let drawn: Vec<f64> = (0..200)
+        .map(|robot| {
+            let mut step = 0;
+            let plant = found.posterior.plant(|| {
+                step += 1;
+                noise.normal(robot, step)
+            });
+            assert_eq!(plant.check(), Ok(()));
+            of(&plant)
+        })
+        .collect();
+    let mean = drawn.iter().sum::<f64>() / 200.0;
+    let sd = (drawn
+        .iter()
+        .map(|value| (value - mean).powi(2))
+        .sum::<f64>()
+        / 200.0)
+        .sqrt();
+    let claimed = found.parameters[0].uncertainty;
+    assert!((mean - of(&fit)).abs() < 0.4 * claimed, "{mean} {claimed}");
+    assert!((sd / claimed - 1.0).abs() < 0.3, "{sd} {claimed}");
+}
+
+/// A run along a wall on the left in the original's format: this plant weaves, its sonars read without noise.
+fn along_a_wall(params: &Params, front_first: bool) -> String {
+    let mut params = *params;
+    params.floor.roughness = 0.0;
+    params.floor.slip = 0.0;
+    let drivetrain = Drivetrain::new(&params, Noise::new(3, 0), true);
+    let mut state = drivetrain.start();
+    let mut text = String::from("dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n");
+    let (mut from_wall_m, mut heading_rad) = (0.575, 0.0_f64);
+    let mut pwm = [0.0; 2];
+    for ms in 0..27_000 {
+        if ms % 70 == 0 {
+            let [front_cm, rear_cm] =
+                [0.10, -0.04].map(|x_m| 100.0 * (from_wall_m - x_m * heading_rad));
+            let [left_cm, right_cm] = if front_first {
+                [front_cm, rear_cm]
+            } else {
+                [rear_cm, front_cm]
+            };
+            let [left, right] = pwm;
+            if ms > 0 {
+                writeln!(text, "70,{left_cm:.2},{right_cm:.2},57,3,{right},{left}").unwrap();
+            }
+            // Steers back to the wall's direction, and a little from side to side.
+            let weave = 12.0 * (ms as f64 / 700.0).sin() - 60.0 * heading_rad;
+            pwm = [95.0 - weave.min(0.0).round(), 95.0 + weave.max(0.0).round()];
+            // The row says what is applied from its time on.
+            for (side, pwm) in [(Side::Left, pwm[0]), (Side::Right, pwm[1])] {
+                drivetrain.set_bridge(&mut state, side, Bridge::Forward(pwm / 255.0));
+            }
+        }
+        let motion = drivetrain.step(&mut state, 0.001, [0.0; 2]);
+        from_wall_m -= motion.forward_m * heading_rad.sin();
+        heading_rad += motion.yaw_rad;
+    }
+    text
+}
+
+#[test]
+fn a_run_along_a_wall_says_which_sonar_is_in_front() {
+    let mut params = Params::default();
+    params.floor.yaw_damping_n_m_s = 0.02;
+    for (front_first, front) in [(true, 0), (false, 1)] {
+        let log = log(&along_a_wall(&params, front_first));
+        let pair = log.pair.unwrap();
+        assert_eq!(pair.beside_wall(), Some((front, 1.0)), "{pair:?}");
+    }
+}
+
+#[test]
+fn a_run_along_a_wall_tells_the_damping_of_the_yaw() {
+    let damping = |true_n_m_s| {
+        let mut params = Params::default();
+        params.floor.yaw_damping_n_m_s = true_n_m_s;
+        let run = [log(&along_a_wall(&params, true))];
+        let found = identify(&run, &Params::default(), 0, &|_| {}).unwrap();
+        let key = "floor.yaw_damping_n_m_s".to_owned();
+        let found = found
+            .parameters
+            .iter()
+            .find(|one| one.keys == [key.clone()]);
+        found.unwrap().clone()
+    };
+    for true_n_m_s in [0.008, 0.03] {
+        let found = damping(true_n_m_s);
+        let off = (found.value - true_n_m_s) / found.uncertainty;
+        assert!(off.abs() < 2.0, "{true_n_m_s}: {found:?}");
+        assert!(found.told_by_runs > 0.5, "{found:?}");
     }
 }

@@ -295,6 +295,8 @@ section! {
         crosstalk = 0.5, 0.0 => 1.0, "1";
         /// The same for the other's second echo: obstacle, body, obstacle.
         crosstalk_bounce = 0.08, 0.0 => 1.0, "1";
+        /// Longest range from which that second echo is strong enough to disturb or to be taken.
+        bounce_reach_m = 2.5, 0.0 => 6.0, "m";
         /// How far behind the transducers the body reflects that second echo.
         bounce_behind_m = 0.055, 0.0 => 0.3, "m";
         /// How long the echo line stays high without an echo.

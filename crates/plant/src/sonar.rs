@@ -273,6 +273,7 @@ impl Sonar {
     ) -> Burst {
         let arrival_us = |range_m: f64| rise_us + self.round_trip_us(range_m);
         let second = heard_m
+            .filter(|&range_m| range_m <= self.params.bounce_reach_m)
             .map(|range_m| 2.0 * range_m + self.params.bounce_behind_m)
             .filter(|&range_m| range_m <= self.params.reach_m)
             .map(|range_m| {

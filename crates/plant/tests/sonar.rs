@@ -255,6 +255,19 @@ fn two_pings_in_the_air_are_mistaken_for_each_other() {
 }
 
 #[test]
+fn a_second_echo_from_beyond_its_reach_shortens_and_disturbs_no_reading() {
+    let params = params::Sonar {
+        crosstalk_bounce: 0.1,
+        disturbed_weakness: 10.0,
+        noise_m: 0.0005,
+        bounce_reach_m: 0.49,
+        ..clean()
+    };
+    let ranges = second_of_a_pair(&params, 3_800, 0.0);
+    assert!(ranges.iter().all(|range_m| (range_m - 0.5).abs() < 0.001));
+}
+
+#[test]
 fn right_after_a_ping_its_second_echo_shortens_the_next_reading() {
     let params = params::Sonar {
         crosstalk_bounce: 0.1,

@@ -23,6 +23,7 @@ mod names;
 mod quantise;
 pub mod text;
 mod text_line;
+mod text_published;
 mod text_row;
 mod text_telemetry;
 

@@ -5,6 +5,7 @@ use rumbo_control::math::round;
 
 use crate::decimal;
 use crate::text::TextError;
+use crate::text_published;
 
 /// The row of modes 1 to 4.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -113,11 +114,15 @@ pub enum RowKind {
 }
 
 impl Row {
-    /// The row in a line, given without its end; its columns determine the kind.
+    /// The row in a line, given without its end; its columns determine the kind. A row of the published sketches has no
+    /// time: its `dt_ms` is 0.
     ///
     /// # Errors
     /// If the line has other columns than any row, or a value is no number.
     pub fn parse(line: &str) -> Result<Row, TextError> {
+        if let Some(row) = text_published::row(line) {
+            return Ok(row);
+        }
         let kind = match line.split(',').count() {
             // The mode is the fifth column of both.
             7 => match Fields::new(line).nth_number(4)? {

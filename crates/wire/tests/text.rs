@@ -356,3 +356,83 @@ fn every_row_of_the_real_recordings_is_read() {
     }
     assert!(rows > 0);
 }
+
+/// Rows of the report's sketches as they are published: no time, a blank after each comma.
+#[test]
+fn rows_of_the_published_sketches_are_known_by_their_columns() {
+    let Ok(Row::Distance(row)) = Row::parse("30, 106.40, -76.40, 115") else {
+        panic!("mode 1");
+    };
+    assert_eq!(
+        (row.mode, row.dt_ms, row.left_cm, row.reference_cm),
+        (1, 0, 106.4, 30.0)
+    );
+    assert_eq!(row.pwm, Wheels::both(115));
+
+    let Ok(Row::Distance(row)) =
+        Row::parse("30, 118.49, 120.38, 0, 119.20, 8.95, -89.20, 115, 124")
+    else {
+        panic!("mode 2");
+    };
+    // The first sonar is the right one there.
+    assert_eq!((row.mode, row.left_cm, row.right_cm), (2, 120.38, 118.49));
+    assert_eq!(
+        row.pwm,
+        Wheels {
+            left: 124,
+            right: 115
+        }
+    );
+
+    let Ok(Row::Distance(row)) = Row::parse("58.58, 57.52, 57.49, 57.85, 0.00, 4.33, 74, 70")
+    else {
+        panic!("mode 3");
+    };
+    // And the front one here, `left` of the rig.
+    assert_eq!((row.mode, row.left_cm, row.right_cm), (3, 58.58, 57.52));
+
+    let Ok(Row::Speed(row)) = Row::parse("15.63, 12.50, 60.00, 60.00, 100, 103") else {
+        panic!("mode 5");
+    };
+    assert_eq!(
+        (row.wheel_rpm, row.reference_rpm),
+        (
+            Wheels {
+                left: 12.5,
+                right: 15.63
+            },
+            60.0
+        )
+    );
+
+    let Ok(Row::Waypoints(row)) =
+        Row::parse("78.00, 86.00, 0.98, 1.20, 0.98, 0.02, 0.01, -0.02, 0.91, 1")
+    else {
+        panic!("mode 7");
+    };
+    assert_eq!(
+        row.reference_rpm,
+        Wheels {
+            left: 86.0,
+            right: 78.0
+        }
+    );
+    assert_eq!((row.x_m, row.y_m, row.heading_deg), (0.01, -0.02, 0.91));
+}
+
+#[test]
+fn numbers_that_only_look_like_a_published_row_are_none() {
+    for line in [
+        "1,2,3,4",
+        "30, 106.40, 76.40, 115",
+        "30, 106.40, -76.40, 400",
+        "30, 1, 2, 3, 4, 5, 6, 7, 8",
+    ] {
+        assert!(Row::parse(line).is_err(), "{line}");
+    }
+    // A row with a time has as many columns as the published one of mode 7.
+    let Ok(Row::Waypoints(row)) = Row::parse("64,28.12,25,78,86,0.01,0,0.91,122,134") else {
+        panic!("mode 7");
+    };
+    assert_eq!(row.dt_ms, 64);
+}

@@ -23,7 +23,7 @@ const int PIN_IN3 = 8;  // B backward
 const int PIN_IN4 = 7;  // B forward
 
 #if MODE <= 4
-// One sonar (A) in front for mode 1; a pair in front for mode 2, on the left for modes 3 and 4, A behind B.
+// One sonar (A) in front for mode 1; a pair in front for mode 2 (A right, B left), on the left for modes 3 and 4 (B behind A).
 const int PIN_TRIGGER_A = 12;
 const int PIN_ECHO_A = 13;
 const int PIN_TRIGGER_B = 15;

@@ -2,8 +2,8 @@
 
 #include <Arduino.h>
 
-Controller::Controller(float kp, float ki, float kd, int least, int most)
-    : kp(kp), ki(ki), kd(kd), least(least), most(most) {
+Controller::Controller(float kp, float ki, float kd, int least, int most, bool antiWindup)
+    : kp(kp), ki(ki), kd(kd), least(least), most(most), antiWindup(antiWindup) {
   reset();
 }
 
@@ -35,8 +35,9 @@ int Controller::output(float error) {
   sum += added;
   float result = round(kp * error + ki * sum + kd * slope);
   if (result > most || result < least) {
-    // Anti-windup: an error that cannot be answered is not summed.
-    sum -= added;
+    if (antiWindup) {
+      sum -= added;
+    }
     result = constrain(result, least, most);
   }
   lastError = error;

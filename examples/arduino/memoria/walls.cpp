@@ -25,12 +25,13 @@ const int PAUSE_MS = 60;  // the maker's advice between two shots
 #if MODE <= 2
 const float SWITCH_CM = 5;
 const float GAP_CM = 12;  // between the two sonars
-Controller distanceFar(1.5, 0, 0, -50, 50);
-Controller orientation(1, 0.001, 0, -10, 10);
+// Weak: these controllers sum errors on while their output is at its limit.
+Controller distanceFar(1.5, 0, 0, -50, 50, false);
+Controller orientation(1, 0.001, 0, -10, 10, false);
 #if MODE == 1
-Controller distanceNear(1, 0.0001, 0, -50, 50);
+Controller distanceNear(1, 0.0001, 0, -50, 50, false);
 #else
-Controller distanceNear(3, 0.0001, 0, -50, 50);
+Controller distanceNear(3, 0.0001, 0, -50, 50, false);
 #endif
 #else
 const int CRUISE = 25;  // PWM above the equilibrium
@@ -41,7 +42,7 @@ Controller orientation(1, 0.0005, 0, -40, 40);
 
 float cmA, cmB;     // readings
 float distanceCm;   // of the middle between the sonars
-float thetaDeg;     // angle to the wall, positive if B is farther away
+float thetaDeg;     // angle to the wall, positive if the left (2) or the front (3, 4) sonar is farther away
 
 // Weak: pulseIn() waits, up to 0.7 s if no echo comes, and then says 0: a wall that touches the robot. No reading is
 // too absurd to be believed.
@@ -63,17 +64,23 @@ void measure() {
     return;
   }
   cmB = readSonar(PIN_TRIGGER_B, PIN_ECHO_B);
+#if MODE == 2
   const float theta = atan((cmB - cmA) / GAP_CM);
-  // Weak: in mode 2 equal readings leave the old distance.
-  if (MODE != 2 || cmA != cmB) {
-    distanceCm = (cmA + cmB) / 2 * cos(theta);
+  // Weak: equal readings leave the old distance, and at negative angles the half gap counts with the wrong sign.
+  if (cmA != cmB) {
+    distanceCm = max(cmA, cmB) * cos(theta) - GAP_CM / 2 * sin(theta);
   }
+#else
+  const float theta = atan((cmA - cmB) / GAP_CM);
+  distanceCm = (cmA + cmB) / 2 * cos(theta);
+#endif
   thetaDeg = theta * 180 / PI;
 }
 
 // A signal around the equilibrium on a motor; the PWM that it got. `ahead` says where a positive signal drives to.
 int apply(Motor &motor, int signal, int ahead) {
-  const int pwm = signal == 0 ? 0 : abs(signal) + EQUILIBRIUM;
+  const int QUIET = MODE == 2 ? 2 : 0;  // no larger, and the motor is released
+  const int pwm = abs(signal) <= QUIET ? 0 : abs(signal) + EQUILIBRIUM;
   motor.drive(signal > 0 ? ahead * pwm : -ahead * pwm);
   return pwm;
 }
@@ -165,8 +172,13 @@ void modeLoop() {
   measure();
   control(pwmA, pwmB);
   tellPeriod();
+#if MODE == 2
   tell(cmB);
   tell(cmA);
+#else
+  tell(cmA);
+  tell(cmB);
+#endif
   if (MODE == 3) {
     tell(referenceA);
   } else {

@@ -92,10 +92,16 @@ fn find<'a>(robot: &'a RobotFile, wiring: &str) -> Result<&'a Wiring, FileError>
 /// For our program the final build; for another one, the report's build for this experiment, unless the program has
 /// switched on the transmitter of another build's link: then that build.
 fn default_wiring(opening: Opening, robot: &RobotFile, scenario: &ScenarioFile) -> String {
+    // Files of earlier versions have one wiring for both places of the pair.
+    let of_pair = |name| match robot.wirings.contains_key(name) {
+        true => name,
+        false => "modes_2_to_4",
+    };
     let name = match (opening.language, scenario.rig.as_str(), scenario.mode) {
         (Language::Frames, ..) => "final",
         (_, "front_single", ModeId::FrontDistance) => "mode_1",
-        (_, "front_pair" | "side_pair_left" | "side_pair_right", _) => "modes_2_to_4",
+        (_, "front_pair", _) => of_pair("mode_2"),
+        (_, "side_pair_left" | "side_pair_right", _) => of_pair("modes_3_and_4"),
         (_, _, ModeId::WheelSpeed | ModeId::StraightLine | ModeId::Waypoints | ModeId::Manual) => {
             "modes_5_to_7"
         }
@@ -125,7 +131,7 @@ mod tests {
         let robot = Library::new().robot("memoria").unwrap();
         let link = |name: &str| link_usart(name, &robot.wirings[name]).unwrap();
         assert_eq!(link("final"), Some(2));
-        for name in ["mode_1", "modes_2_to_4", "modes_5_to_7"] {
+        for name in ["mode_1", "mode_2", "modes_3_and_4", "modes_5_to_7"] {
             assert_eq!(link(name), Some(1), "{name}");
         }
     }

@@ -137,17 +137,21 @@ impl Terminal {
                     Row::Waypoints(row) => self.reported |= self.route.passes(row.x_m, row.y_m),
                     _ => {}
                 }
+                let telemetry = self.telemetry(&row, now_us);
                 received.push(Heard {
                     t_s: now_us as f64 * 1e-6,
-                    what: FromRobot::Telemetry(self.telemetry(&row)),
+                    what: FromRobot::Telemetry(telemetry),
                 });
             }
         }
     }
 
-    /// The content of a row as a telemetry frame.
-    fn telemetry(&mut self, row: &Row) -> Telemetry {
-        self.clock_ms = self.clock_ms.wrapping_add(row.dt_ms());
+    /// A row as a telemetry frame; one without a time was made now.
+    fn telemetry(&mut self, row: &Row, now_us: u64) -> Telemetry {
+        self.clock_ms = match row.dt_ms() {
+            0 => (now_us / 1_000) as u32,
+            dt_ms => self.clock_ms.wrapping_add(dt_ms),
+        };
         row.telemetry((self.clock_ms & 0xffff) as u16, true)
     }
 }

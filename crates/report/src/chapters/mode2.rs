@@ -63,7 +63,7 @@ const CONTROL: Scheme = Scheme {
 };
 
 fn fill(places: &mut Places, data: &Data) {
-    parts::opening(places, data, "mode2", "modes_2_to_4", &CONTROL);
+    parts::opening(places, data, "mode2", "mode_2", &CONTROL);
     let Some(outcome) = data.outcome("mode2") else {
         return;
     };

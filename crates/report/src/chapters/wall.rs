@@ -88,7 +88,7 @@ const CONTROL4: Scheme = Scheme {
 };
 
 fn fill_mode3(places: &mut Places, data: &Data) {
-    parts::opening(places, data, "mode3", "modes_2_to_4", &CONTROL3);
+    parts::opening(places, data, "mode3", "modes_3_and_4", &CONTROL3);
     let Some(outcome) = data.outcome("mode3") else {
         return;
     };
@@ -103,7 +103,7 @@ fn fill_mode3(places: &mut Places, data: &Data) {
 }
 
 fn fill_mode4(places: &mut Places, data: &Data) {
-    parts::opening(places, data, "mode4", "modes_2_to_4", &CONTROL4);
+    parts::opening(places, data, "mode4", "modes_3_and_4", &CONTROL4);
     let Some(outcome) = data.outcome("mode4") else {
         return;
     };

@@ -240,7 +240,7 @@ impl Baseline {
                     angle_deg,
                 } = square.pose;
                 let speeds = floats(&both(square.speeds.speed_rpm()));
-                12 + whole
+                15 + whole
                     + speeds
                     + floats(&both(square.speeds.applied_rpm()))
                     + floats(&[x_m, y_m, angle_deg])

@@ -1,4 +1,5 @@
-//! The report's controller (section 2.1.5): integer output, sums per millisecond, an error is taken back when it saturates.
+//! The report's controller (section 2.1.5): integer output, sums per millisecond. From mode 3 on an error is taken back when
+//! the output saturates; in modes 1 and 2 it stays in the sum.
 
 /// Gains and limits of a [`Pid`]; the integral gain is per millisecond.
 #[derive(Clone, Copy, Debug)]
@@ -13,6 +14,7 @@ pub(super) struct Pid {
     last_error: f64,
     sum: f64,
     first: bool,
+    winds_up: bool,
 }
 
 impl Pid {
@@ -24,12 +26,24 @@ impl Pid {
             last_error: 0.0,
             sum: 0.0,
             first: true,
+            winds_up: false,
+        }
+    }
+
+    /// One that sums errors on while its output is at the limit.
+    pub(super) fn winding_up(gains: Gains, limit: f64) -> Self {
+        Self {
+            winds_up: true,
+            ..Self::new(gains, limit)
         }
     }
 
     /// Forgets everything but the gains.
     pub(super) fn reset(&mut self) {
-        *self = Self::new(self.gains, self.limit);
+        *self = Self {
+            winds_up: self.winds_up,
+            ..Self::new(self.gains, self.limit)
+        };
     }
 
     /// The output for an error, a whole number; `now_ms` is the program's clock. The time since the last call counts,
@@ -50,7 +64,7 @@ impl Pid {
         self.first = false;
         let Gains(kp, ki, kd) = self.gains;
         let output = (kp * error + ki * self.sum + kd * slope).round();
-        if output.abs() > self.limit {
+        if output.abs() > self.limit && !self.winds_up {
             self.sum -= added;
         }
         self.last_error = error;
@@ -78,5 +92,13 @@ mod tests {
         assert_eq!(pid.step(80.0, 100), 50.0);
         assert_eq!(pid.sum, 0.0);
         assert_eq!(pid.step(10.0, 200), 11.0);
+    }
+
+    #[test]
+    fn the_controller_of_modes_1_and_2_sums_on_at_its_limit() {
+        let mut pid = Pid::winding_up(Gains(1.0, 0.001, 0.0), 50.0);
+        pid.step(80.0, 0);
+        assert_eq!(pid.step(80.0, 100), 50.0);
+        assert_eq!(pid.sum, 8000.0);
     }
 }

@@ -6,15 +6,18 @@
 //! | 2 | | orientation [deg] to PWM: 1 + 0.001 per ms, +-10, added to one wheel |
 //! | 3, 4 | 45, cruise + 25 | distance [cm] to angle [deg]: 1 + 0.00005 per ms, +-10; angle to PWM: 1 + 0.0005 per ms, +-40, added to one wheel |
 //!
-//! Signs: a positive signal drives away from the wall ahead in modes 1 and 2, forward in 3 and 4. The angle is positive
-//! when the second reading (left one of the front pair, front one of the side pair) is the longer one.
+//! The first sonar is the right one of the front pair and the front one of the side pair. Signs: a positive signal drives
+//! away from the wall ahead in modes 1 and 2, forward in 3 and 4. The angle is positive when the left one of the front
+//! pair, or the front one of the side pair, reads more.
+//!
+//! Modes 1 and 2 sum errors on while an output is at its limit; in mode 2 a signal of at most 2 stands for 0.
 
 use super::chip::Chip;
 use super::pid::{Gains, Pid};
 use rumbo_control::{SonarId, Wheels};
 
 /// `delay()` at the end of a pass, and what the pass itself takes [us].
-pub(super) const PAUSE_US: u64 = 62_300;
+pub(super) const PAUSE_US: u64 = 61_100;
 /// What a reading takes besides its echo [us].
 const CALL_US: u64 = 1_100;
 /// `pulseIn` gives up after this [us] and returns 0.
@@ -24,6 +27,8 @@ const US_PER_CM: f64 = 58.4;
 /// Errors beyond this are the far controller's [cm].
 const SWITCH_CM: f64 = 5.0;
 const CRUISE_PWM: f64 = 25.0;
+/// Mode 2 releases a wheel whose signal is no larger.
+const QUIET_PWM: f64 = 2.0;
 /// Readings whose median is the distance to hold (mode 3).
 const FIRST: usize = 5;
 
@@ -64,8 +69,8 @@ impl Walls {
     pub(super) fn new(task: Task, mirrored: bool) -> Self {
         let ahead = matches!(task, Task::Distance | Task::Align);
         let near = match task {
-            Task::Distance => Pid::new(Gains(1.0, 0.0001, 0.0), 50.0),
-            Task::Align => Pid::new(Gains(3.0, 0.0001, 0.0), 50.0),
+            Task::Distance => Pid::winding_up(Gains(1.0, 0.0001, 0.0), 50.0),
+            Task::Align => Pid::winding_up(Gains(3.0, 0.0001, 0.0), 50.0),
             Task::Hold | Task::Follow => Pid::new(Gains(1.0, 0.000_05, 0.0), 10.0),
         };
         Self {
@@ -74,9 +79,9 @@ impl Walls {
             gap_cm: if ahead { 12.0 } else { 14.0 },
             equilibrium: if ahead { 65.0 } else { 45.0 },
             near,
-            far: Pid::new(Gains(1.5, 0.0, 0.0), 50.0),
+            far: Pid::winding_up(Gains(1.5, 0.0, 0.0), 50.0),
             orientation: if ahead {
-                Pid::new(Gains(1.0, 0.001, 0.0), 10.0)
+                Pid::winding_up(Gains(1.0, 0.001, 0.0), 10.0)
             } else {
                 Pid::new(Gains(1.0, 0.0005, 0.0), 40.0)
             },
@@ -93,7 +98,8 @@ impl Walls {
     pub(super) fn pass(&mut self, chip: &mut Chip) -> Option<u64> {
         let (first, last) = match self.task {
             Task::Distance => (SonarId::Front, SonarId::Front),
-            Task::Align | Task::Hold | Task::Follow => (SonarId::Right, SonarId::Left),
+            Task::Align => (SonarId::Right, SonarId::Left),
+            Task::Hold | Task::Follow => (SonarId::Left, SonarId::Right),
         };
         let Some((sonar, since_us)) = self.waiting else {
             return Some(self.fire(chip, first));
@@ -168,27 +174,38 @@ impl Walls {
         }
     }
 
-    /// Distance and angle from the readings. The report's listing counts the half gap with the wrong sign at negative
-    /// angles; the PWM of its recorded run along a wall follows from the readings with the right one only. Mode 2 keeps
-    /// its distance when both readings agree.
+    /// Distance and angle from the readings. The listing counts the half gap with the wrong sign at negative angles: the
+    /// recorded run of mode 2 has it so, that of mode 3 has it right. Mode 2 keeps its distance when both readings agree.
     fn locate(&mut self) {
         let [d1, d2] = self.readings_cm;
-        if self.task == Task::Distance {
-            self.distance_cm = d2;
-            return;
+        match self.task {
+            Task::Distance => self.distance_cm = d2,
+            Task::Align => {
+                let angle_rad = ((d2 - d1) / self.gap_cm).atan();
+                let (sin, cos) = angle_rad.sin_cos();
+                if d1 != d2 {
+                    self.distance_cm = d1.max(d2) * cos - 0.5 * self.gap_cm * sin;
+                }
+                self.angle_deg = angle_rad.to_degrees();
+            }
+            Task::Hold | Task::Follow => {
+                let angle_rad = ((d1 - d2) / self.gap_cm).atan();
+                self.distance_cm = 0.5 * (d1 + d2) * angle_rad.cos();
+                self.angle_deg = angle_rad.to_degrees();
+            }
         }
-        let angle_rad = ((d2 - d1) / self.gap_cm).atan();
-        if d1 != d2 || self.task != Task::Align {
-            self.distance_cm = 0.5 * (d1 + d2) * angle_rad.cos();
-        }
-        self.angle_deg = angle_rad.to_degrees();
     }
 
     /// A signal with the equilibrium; what it means for the wheel.
     fn pwm(&self, signal: f64) -> f64 {
         let away = matches!(self.task, Task::Distance | Task::Align);
         let forward = if away { -signal } else { signal };
-        if forward == 0.0 {
+        let quiet = if self.task == Task::Align {
+            QUIET_PWM
+        } else {
+            0.0
+        };
+        if forward.abs() <= quiet {
             return 0.0;
         }
         forward + self.equilibrium.copysign(forward)
@@ -208,7 +225,7 @@ fn shared(signal: f64, more: f64, positive: bool) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    /// Distance [cm] after two pairs of readings [cm], rear and front of a side pair, or right and left of a front one.
+    /// Distance [cm] after these pairs of readings [cm], first sonar and second.
     fn distance_cm(task: Task, readings_cm: [[f64; 2]; 2]) -> f64 {
         let mut walls = Walls::new(task, false);
         for readings_cm in readings_cm {
@@ -219,10 +236,18 @@ mod tests {
     }
 
     #[test]
-    fn the_distance_is_that_of_the_middle_at_either_sign_of_the_angle() {
-        let away = distance_cm(Task::Hold, [[50.0; 2], [50.0, 52.0]]);
-        let towards = distance_cm(Task::Hold, [[50.0; 2], [52.0, 50.0]]);
+    fn beside_a_wall_the_distance_is_that_of_the_middle_at_either_sign_of_the_angle() {
+        let away = distance_cm(Task::Hold, [[50.0; 2], [52.0, 50.0]]);
+        let towards = distance_cm(Task::Hold, [[50.0; 2], [50.0, 52.0]]);
         assert!((away - 50.49).abs() < 0.01 && (away - towards).abs() < 1e-9);
+    }
+
+    #[test]
+    fn before_a_wall_the_distance_depends_on_the_sign_of_the_angle() {
+        let left_longer = distance_cm(Task::Align, [[50.0; 2], [50.0, 52.0]]);
+        let right_longer = distance_cm(Task::Align, [[50.0; 2], [52.0, 50.0]]);
+        assert!((left_longer - 50.30).abs() < 0.01, "{left_longer}");
+        assert!((right_longer - 52.28).abs() < 0.02, "{right_longer}");
     }
 
     #[test]
@@ -230,5 +255,15 @@ mod tests {
         let readings_cm = [[50.0, 51.0], [40.0; 2]];
         assert_eq!(distance_cm(Task::Follow, readings_cm), 40.0);
         assert!(distance_cm(Task::Align, readings_cm) > 50.0);
+    }
+
+    #[test]
+    fn mode_2_alone_releases_a_wheel_whose_signal_is_small() {
+        let pwm = |task, signal| Walls::new(task, false).pwm(signal);
+        assert_eq!(
+            [2.0, -3.0].map(|signal| pwm(Task::Align, signal)),
+            [0.0, 68.0]
+        );
+        assert_eq!(pwm(Task::Distance, -1.0), 66.0);
     }
 }
