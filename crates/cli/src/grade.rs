@@ -94,7 +94,7 @@ fn class_notes(assignment: &Assignment, compiler: Option<&Compiler>) -> Vec<Stri
 
 /// Refuses, before anything runs, to write among other people's files.
 fn check_places(args: &GradeArgs, assignment: &Assignment) -> Result<Stamp, Failure> {
-    let stamp = Stamp::of("grade", &[assignment.name.clone()]);
+    let stamp = Stamp::of("grade", std::slice::from_ref(&assignment.name));
     let guard = Guard::new([args.assignment.clone()], args.overwrite.force);
     let page = args.out.join(PAGE);
     guard.check(&page, &stamp.mark())?;

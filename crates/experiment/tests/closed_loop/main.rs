@@ -95,14 +95,16 @@ fn a_reversal_at_speed_never_drives_against_a_turning_wheel() {
 }
 
 #[test]
-fn of_fifty_seeds_at_most_one_misses_a_limit_in_every_scenario() {
+fn of_fifty_seeds_at_most_one_misses_a_limit_and_three_around_boxes() {
     for name in Library::new().list(rumbo_experiment::files::Kind::Scenario) {
         let missed: Vec<_> = seeds(&setup(&name), 1..51)
             .into_iter()
             .filter(|run| !run.pass)
             .map(|run| (run.seed, run.failures))
             .collect();
-        assert!(missed.len() <= 1, "{name}: {missed:?}");
+        // Around boxes 982 of 1,000 seeds meet their limits: more than three of 50 is no chance (1 %).
+        let most = if name == "mode8-obstacles" { 3 } else { 1 };
+        assert!(missed.len() <= most, "{name}: {missed:?}");
     }
 }
 
