@@ -358,3 +358,30 @@ fn not_measured(criterion: &Criterion, known: &[Metrics]) -> Option<String> {
         near::did_you_mean(&names)
     ))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_fall_from_full_to_none_whichever_is_larger_and_never_earns_none() {
+        let criterion = |full, none| Criterion {
+            title: Words::default(),
+            advice: Words::default(),
+            metric: "m".into(),
+            test: None,
+            points: 1.0,
+            full,
+            none,
+        };
+        let less_is_better = criterion(1.0, 3.0);
+        let shares = [0.0, 1.0, 1.5, 3.0, 9.0].map(|value| less_is_better.share(Some(value)));
+        assert_eq!(shares, [1.0, 1.0, 0.75, 0.0, 0.0]);
+        let more_is_better = criterion(1.0, 0.0);
+        let shares = [0.0, 0.5, 1.0, 2.0].map(|value| more_is_better.share(Some(value)));
+        assert_eq!(shares, [0.0, 0.5, 1.0, 1.0]);
+        for never in [None, Some(f64::NAN), Some(f64::INFINITY)] {
+            assert_eq!(more_is_better.share(never), 0.0);
+        }
+    }
+}
