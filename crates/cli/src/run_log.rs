@@ -155,8 +155,10 @@ fn told(trace: &Trace) -> Vec<(u64, FromRobot)> {
     if !trace.link.is_empty() {
         return Vec::new();
     }
-    let heard = trace.heard.iter();
-    heard.map(|heard| (micros(heard.t_s), heard.what)).collect()
+    let messages = trace.messages.iter();
+    messages
+        .map(|message| (micros(message.t_s), message.what))
+        .collect()
 }
 
 fn micros(t_s: f64) -> u64 {

@@ -16,7 +16,7 @@ use rumbo_control::params::Params;
 use rumbo_emulator::observe::waveform::Waveform;
 use rumbo_sim::Sim;
 use rumbo_sim::mega::Mega;
-use rumbo_sim::trace::{Heard, SAMPLE_US, Trace};
+use rumbo_sim::trace::{SAMPLE_US, TimedMessage, Trace};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::fs::File;
@@ -103,7 +103,7 @@ impl<'a> Run<'a> {
     }
 
     /// The messages received from the robot so far.
-    pub(crate) fn received(&self) -> &[Heard] {
+    pub(crate) fn received(&self) -> &[TimedMessage] {
         &self.operator.received
     }
 
@@ -161,7 +161,7 @@ impl<'a> Run<'a> {
 
     fn judge(mut self) -> RunResult {
         let (setup, scenario) = (self.setup, &self.setup.scenario);
-        self.trace.heard = self.operator.received;
+        self.trace.messages = self.operator.received;
         self.trace.link = self.sim.take_tapped();
         let metrics = metrics::compute(setup, &self.sim, &self.trace);
         let mut failures = self.operator.complaints;

@@ -7,7 +7,7 @@ use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::Setup;
 use rumbo_experiment::run::RunResult;
-use rumbo_sim::trace::{Heard, Sample, Trace};
+use rumbo_sim::trace::{Sample, TimedMessage, Trace};
 use rumbo_wire::text::Row;
 use rumbo_wire::{Command, EventKind, FromRobot, Telemetry};
 use std::f64::consts::{PI, TAU};
@@ -68,7 +68,7 @@ impl Outcome {
     pub(crate) fn telemetry(&self) -> impl Iterator<Item = (f64, &Telemetry)> {
         let armed_s = self.armed_s();
         self.trace()
-            .heard
+            .messages
             .iter()
             .filter_map(move |received| match &received.what {
                 FromRobot::Telemetry(frame) => Some((received.t_s - armed_s, frame)),
@@ -193,7 +193,7 @@ impl Outcome {
         let armed_s = self.armed_s();
         let received = self
             .trace()
-            .heard
+            .messages
             .iter()
             .filter_map(|received| match received.what {
                 FromRobot::HeadingRef(heading_rad) => {
@@ -215,7 +215,7 @@ impl Outcome {
         let armed_s = self.armed_s();
         let status = || {
             self.trace()
-                .heard
+                .messages
                 .iter()
                 .filter_map(move |received| match &received.what {
                     FromRobot::Status(status) => Some((received.t_s - armed_s, status.reference)),
@@ -260,9 +260,9 @@ impl Outcome {
     /// When the robot reported its goals reached, since arming [s].
     pub(crate) fn reached_s(&self) -> Vec<f64> {
         let armed_s = self.armed_s();
-        let reached = |received: &Heard| matches!(&received.what, FromRobot::Event(event) if event.kind == EventKind::Reached);
+        let reached = |received: &TimedMessage| matches!(&received.what, FromRobot::Event(event) if event.kind == EventKind::Reached);
         self.trace()
-            .heard
+            .messages
             .iter()
             .filter(|received| reached(received))
             .map(|received| received.t_s - armed_s)

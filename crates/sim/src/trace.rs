@@ -35,10 +35,10 @@ pub struct Sample {
 
 /// A message from the robot that metrics need.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Heard {
+pub struct TimedMessage {
     /// Time of arrival at the station since the start [s].
     pub t_s: f64,
-    /// What.
+    /// The message.
     pub what: FromRobot,
 }
 
@@ -48,7 +48,7 @@ pub struct Trace {
     /// The robot's parameters at the start; `None` where its program has no table of ours.
     pub parameters: Option<Params>,
     /// Telemetry, status, events and heading references as they arrived at the station.
-    pub heard: Vec<Heard>,
+    pub messages: Vec<TimedMessage>,
     /// The samples, in order of time.
     pub samples: Vec<Sample>,
     /// What crossed the link, in order.

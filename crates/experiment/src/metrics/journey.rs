@@ -12,7 +12,7 @@ use rumbo_wire::{Command, EventKind, FromRobot};
 const GOAL_ERROR_M: f64 = 0.04;
 const GOAL_ERROR_OF_WAY: f64 = 0.02;
 
-/// What the robot said about its goal, and when the station heard it.
+/// Events about the goal, with the time of their arrival at the station.
 struct Verdict {
     t_s: f64,
     reached: bool,
@@ -20,12 +20,15 @@ struct Verdict {
 
 /// The first word of the robot about a goal commanded at `from_s`.
 fn verdict(trace: &Trace, from_s: f64) -> Option<Verdict> {
-    let heard = trace.heard.iter().filter(|heard| heard.t_s >= from_s);
-    heard
-        .filter_map(|heard| match heard.what {
+    let messages = trace
+        .messages
+        .iter()
+        .filter(|message| message.t_s >= from_s);
+    messages
+        .filter_map(|message| match message.what {
             FromRobot::Event(event) => match event.kind {
-                EventKind::Reached => Some((heard.t_s, true)),
-                EventKind::Unreachable => Some((heard.t_s, false)),
+                EventKind::Reached => Some((message.t_s, true)),
+                EventKind::Unreachable => Some((message.t_s, false)),
                 _ => None,
             },
             _ => None,
@@ -94,8 +97,8 @@ pub(super) fn journey(setup: &Setup, worst_contact_m_s: f64, trace: &Trace, metr
 mod tests {
     use super::*;
     use crate::files::{Library, Overrides};
-    use rumbo_sim::trace::Heard;
     use rumbo_sim::trace::Sample;
+    use rumbo_sim::trace::TimedMessage;
     use rumbo_wire::Event;
 
     /// Metrics of a robot that drives straight from the start to a point of a world, in 10 s, and then says something.
@@ -120,7 +123,7 @@ mod tests {
             kind: says,
         };
         let trace = Trace {
-            heard: vec![Heard {
+            messages: vec![TimedMessage {
                 t_s: 10.6,
                 what: FromRobot::Event(event),
             }],

@@ -13,10 +13,12 @@ const ALLOWED_OF_WAY: f64 = 0.02;
 /// When the robot said something.
 fn said(trace: &Trace, what: EventKind) -> impl Iterator<Item = f64> + '_ {
     trace
-        .heard
+        .messages
         .iter()
-        .filter(move |heard| matches!(heard.what, FromRobot::Event(event) if event.kind == what))
-        .map(|heard| heard.t_s)
+        .filter(
+            move |message| matches!(message.what, FromRobot::Event(event) if event.kind == what),
+        )
+        .map(|message| message.t_s)
 }
 
 pub(super) fn way_m(samples: &[Sample]) -> f64 {

@@ -33,9 +33,9 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
     metrics.insert("contacts".into(), f64::from(sim.truth().contacts));
     metrics.insert("reverse_drive_rad_s".into(), sim.worst_reverse_rad_s());
     let frames = trace
-        .heard
+        .messages
         .iter()
-        .filter(|heard| matches!(heard.what, FromRobot::Telemetry(_)));
+        .filter(|message| matches!(message.what, FromRobot::Telemetry(_)));
     metrics.insert("telemetry_hz".into(), frames.count() as f64 / duration_s);
     metrics.insert("control_period_s".into(), sim.control_period_s());
     if trace.drove() {

@@ -116,18 +116,23 @@ pub(super) fn route(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
     let Some(asked) = Asked::last(setup) else {
         return;
     };
-    let reached_s = trace.heard.iter().find_map(|heard| match heard.what {
-        FromRobot::Event(event) if event.kind == EventKind::Reached && heard.t_s > asked.from_s => {
-            Some(heard.t_s)
-        }
-        _ => None,
-    });
-    let poses: Vec<(f64, Frame)> = trace
-        .heard
+    let reached_s = trace
+        .messages
         .iter()
-        .filter_map(|heard| match heard.what {
+        .find_map(|message| match message.what {
+            FromRobot::Event(event)
+                if event.kind == EventKind::Reached && message.t_s > asked.from_s =>
+            {
+                Some(message.t_s)
+            }
+            _ => None,
+        });
+    let poses: Vec<(f64, Frame)> = trace
+        .messages
+        .iter()
+        .filter_map(|message| match message.what {
             FromRobot::Telemetry(telemetry) => Some((
-                heard.t_s,
+                message.t_s,
                 Frame {
                     x_m: f64::from(telemetry.pose.x_m),
                     y_m: f64::from(telemetry.pose.y_m),

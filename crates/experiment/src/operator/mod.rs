@@ -15,7 +15,7 @@ mod text;
 use crate::files::{FileError, Port, Setup, TimedCommand, TimedText};
 use rumbo_control::mode::ModeId;
 use rumbo_sim::Sim;
-use rumbo_sim::trace::Heard;
+use rumbo_sim::trace::TimedMessage;
 use rumbo_wire::text::TextCommand;
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
 use text::Terminal;
@@ -65,7 +65,7 @@ pub(crate) struct Operator<'a> {
     /// Notes for readers of the result.
     pub(crate) notes: Vec<String>,
     /// Telemetry, status, events and heading references received.
-    pub(crate) received: Vec<Heard>,
+    pub(crate) received: Vec<TimedMessage>,
 }
 
 impl<'a> Operator<'a> {
@@ -250,7 +250,7 @@ impl<'a> Operator<'a> {
         let messages = sim.drain_messages();
         self.reached |= messages.iter().any(has_reached);
         self.received
-            .extend(messages.into_iter().map(|what| Heard { t_s, what }));
+            .extend(messages.into_iter().map(|what| TimedMessage { t_s, what }));
         while let Some(command) = self.due(sim.now_us()) {
             sim.order(command);
         }
@@ -293,7 +293,7 @@ impl<'a> Operator<'a> {
             {
                 let t_s = sim.now_us() as f64 * 1e-6;
                 self.reached |= has_reached(&what);
-                self.received.push(Heard { t_s, what });
+                self.received.push(TimedMessage { t_s, what });
             }
             match message {
                 Ok(FromRobot::Ack(ack)) if ack.number == self.number => {

@@ -5,7 +5,7 @@ use crate::files::Setup;
 use rumbo_control::mode::ModeId;
 use rumbo_plant::contact;
 use rumbo_sim::Sim;
-use rumbo_sim::trace::Heard;
+use rumbo_sim::trace::TimedMessage;
 use rumbo_wire::message::Event;
 use rumbo_wire::text::{self, Row};
 use rumbo_wire::{Command, EventKind, FromRobot, Telemetry};
@@ -91,7 +91,7 @@ impl Terminal {
     }
 
     /// Records a goal reached: in mode 8 from the state, in mode 7 from the pose, otherwise from ground truth.
-    pub(super) fn watch(&mut self, sim: &Sim, received: &mut Vec<Heard>) -> bool {
+    pub(super) fn watch(&mut self, sim: &Sim, received: &mut Vec<TimedMessage>) -> bool {
         if !matches!(self.mode, ModeId::Mission | ModeId::Waypoints) {
             return false;
         }
@@ -107,7 +107,7 @@ impl Terminal {
         }
         let t_ms = ((at_us / 1_000) & 0xffff) as u16;
         let kind = EventKind::Reached;
-        received.push(Heard {
+        received.push(TimedMessage {
             t_s: at_us as f64 * 1e-6,
             what: FromRobot::Event(Event { t_ms, kind }),
         });
@@ -115,7 +115,7 @@ impl Terminal {
     }
 
     /// Ingests what has arrived; only rows of telemetry matter to metrics.
-    pub(super) fn read(&mut self, bytes: &[u8], now_us: u64, received: &mut Vec<Heard>) {
+    pub(super) fn read(&mut self, bytes: &[u8], now_us: u64, received: &mut Vec<TimedMessage>) {
         if self.ground_truth {
             return;
         }
@@ -138,7 +138,7 @@ impl Terminal {
                     _ => {}
                 }
                 let telemetry = self.telemetry(&row, now_us);
-                received.push(Heard {
+                received.push(TimedMessage {
                     t_s: now_us as f64 * 1e-6,
                     what: FromRobot::Telemetry(telemetry),
                 });

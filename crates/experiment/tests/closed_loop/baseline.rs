@@ -106,7 +106,7 @@ fn the_baseline_s_loop_of_mode_8_stands_while_its_servo_steps() {
     let result = run(&setup, 1).unwrap();
     let telemetry = result
         .trace
-        .heard
+        .messages
         .iter()
         .filter(|message| matches!(message.what, FromRobot::Telemetry(_)));
     let times: Vec<f64> = telemetry.map(|message| message.t_s).collect();
@@ -123,7 +123,7 @@ fn the_baseline_goes_to_a_goal_nothing_stands_before() {
     let reached = (1..21).filter(|&seed| {
         let result = run(&setup, seed).unwrap();
         result.metrics["blocked"] == 0.0
-            && result.trace.heard.iter().any(|message| {
+            && result.trace.messages.iter().any(|message| {
                 matches!(message.what, FromRobot::Event(event) if event.kind == EventKind::Reached)
             })
     });

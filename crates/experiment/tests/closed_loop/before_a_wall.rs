@@ -12,7 +12,7 @@ use rumbo_wire::{Command, EventKind, FromRobot, Message, ToRobot};
 /// The fault that a run reported first.
 fn fault(run: &RunResult) -> Option<Fault> {
     run.trace
-        .heard
+        .messages
         .iter()
         .find_map(|message| match message.what {
             FromRobot::Event(event) => match event.kind {

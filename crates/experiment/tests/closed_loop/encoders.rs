@@ -12,7 +12,7 @@ use rumbo_wire::{EventKind, FromRobot};
 /// When the robot stopped [s], and why.
 fn fault(run: &RunResult) -> Option<(f64, Fault)> {
     run.trace
-        .heard
+        .messages
         .iter()
         .find_map(|message| match message.what {
             FromRobot::Event(event) => match event.kind {

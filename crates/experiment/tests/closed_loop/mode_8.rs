@@ -86,7 +86,7 @@ fn failing(scenario: &str, sonar: SonarId, at_s: f64, fault: SonarFault) -> Setu
 /// The fault that the robot has reported.
 fn named(run: &RunResult) -> Option<Fault> {
     run.trace
-        .heard
+        .messages
         .iter()
         .find_map(|message| match message.what {
             FromRobot::Event(event) => match event.kind {

@@ -17,7 +17,7 @@ fn end_of(setup: &Setup, seed: u64) -> (Pose, [[f64; 3]; 3], [f64; 3]) {
     let errors = params.odometry_errors();
     let result = run(setup, seed).unwrap();
     let (mut pose, mut uncertainty) = (Pose::default(), Uncertainty::default());
-    for message in &result.trace.heard {
+    for message in &result.trace.messages {
         let FromRobot::Telemetry(telemetry) = message.what else {
             continue;
         };

@@ -59,7 +59,7 @@ fn way_m(result: &RunResult) -> f64 {
 
 /// Mean period of the lines of telemetry [s], without those of standing still.
 fn period_s(result: &RunResult) -> f64 {
-    let times = result.trace.heard.iter();
+    let times = result.trace.messages.iter();
     let times: Vec<f64> = times.map(|message| message.t_s).collect();
     let steps = times.windows(2).map(|two| two[1] - two[0]);
     let steps: Vec<f64> = steps.filter(|step| *step < 0.2).collect();
@@ -68,7 +68,7 @@ fn period_s(result: &RunResult) -> f64 {
 
 /// States in the telemetry, each change once.
 fn states(result: &RunResult) -> Vec<u8> {
-    let messages = result.trace.heard.iter();
+    let messages = result.trace.messages.iter();
     let mut states: Vec<u8> = messages
         .filter_map(|message| match message.what {
             FromRobot::Telemetry(telemetry) => Some(telemetry.state),

@@ -88,13 +88,13 @@ impl Recorded {
     pub(crate) fn simulated_settling_s(&self, result: &RunResult) -> Vec<f64> {
         let rows = result
             .trace
-            .heard
+            .messages
             .iter()
-            .filter_map(|heard| match heard.what {
+            .filter_map(|message| match message.what {
                 FromRobot::Telemetry(telemetry) => {
                     let rpm =
                         telemetry.wheel_rad_s[0].map(|rad_s| f64::from(rad_s / RAD_S_PER_RPM));
-                    Some((heard.t_s, rpm))
+                    Some((message.t_s, rpm))
                 }
                 _ => None,
             });
