@@ -34,7 +34,7 @@ impl Bench {
         self.robot.report();
         bytes.clear();
         bytes.extend(std::iter::from_fn(|| self.robot.transmit()));
-        self.client.hear(&bytes, now_us, &mut received);
+        self.client.receive(&bytes, now_us, &mut received);
     }
 }
 

@@ -94,7 +94,7 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     };
     let mut kept = Kept::of(1, !args.no_record);
     kept.take(&source, &setup, &run.result);
-    kept.tell();
+    kept.report();
     let found = run.found.map_err(Failure::input)?;
     let rows = calibrate::rows(&found, Some(run.sim.params()));
     let contacts = run.sim.truth().contacts;

@@ -4,7 +4,7 @@ use crate::args::ConnectArgs;
 use crate::browser;
 use crate::calibrate;
 use crate::failure::Failure;
-use crate::ghost::Haunted;
+use crate::ghost::WithGhost;
 use crate::logs;
 use crate::output;
 use rumbo_session::Target;
@@ -30,7 +30,7 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
         bridge: crate::lab::bridge(args.session.bridge)?,
     };
     let robot: Box<dyn Target> = match &args.ghost {
-        Some(scenario) => Box::new(Haunted::new(robot, scenario)?),
+        Some(scenario) => Box::new(WithGhost::new(robot, scenario)?),
         None => Box::new(robot),
     };
     let extras = Extras {

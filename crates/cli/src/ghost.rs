@@ -43,7 +43,7 @@ fn pose(ghost: &SimulatedRobot) -> MapPose {
 }
 
 /// A robot on a port with its ghost.
-pub(crate) struct Haunted<T> {
+pub(crate) struct WithGhost<T> {
     robot: T,
     ghost: SimulatedRobot,
     received: Vec<u8>,
@@ -54,7 +54,7 @@ pub(crate) struct Haunted<T> {
     number: u16,
 }
 
-impl<T: Target> Haunted<T> {
+impl<T: Target> WithGhost<T> {
     /// The robot, with a ghost at the start of the scenario.
     pub(crate) fn new(robot: T, scenario: &str) -> Result<Self, Failure> {
         Ok(Self {
@@ -81,7 +81,7 @@ impl<T: Target> Haunted<T> {
     }
 }
 
-impl<T: Target> Target for Haunted<T> {
+impl<T: Target> Target for WithGhost<T> {
     fn now_us(&self) -> u64 {
         self.robot.now_us()
     }
@@ -170,7 +170,7 @@ impl Ghost for Recorded {
         Ok(())
     }
 
-    fn live(&mut self, until_us: u64) -> Result<MapPose, String> {
+    fn advance_to(&mut self, until_us: u64) -> Result<MapPose, String> {
         while let Some((at_us, bytes)) = self.to_robot.get(self.next)
             && *at_us <= until_us
         {
@@ -221,7 +221,7 @@ pub(crate) fn add_to(
         received: Vec::new(),
     });
     let scene = surroundings(&ghost.ghost);
-    log.haunt(scene, |t_us| ghost.live(t_us))
+    log.add_ghost(scene, |t_us| ghost.advance_to(t_us))
         .map_err(Failure::Input)?;
     Ok(ghost)
 }
@@ -262,7 +262,7 @@ mod tests {
         }
     }
 
-    fn send(robot: &mut Haunted<Silent>, number: u16, command: Command) {
+    fn send(robot: &mut WithGhost<Silent>, number: u16, command: Command) {
         let message = ToRobot::Command {
             session: 1,
             number,
@@ -279,7 +279,7 @@ mod tests {
 
     #[test]
     fn a_ghost_that_received_nothing_for_too_long_reports_it_and_continues_after_it_was_moved() {
-        let mut robot = Haunted::new(Silent::default(), "mode1").unwrap();
+        let mut robot = WithGhost::new(Silent::default(), "mode1").unwrap();
         robot.advance(1_000_000).unwrap();
         send(&mut robot, 1, Command::Mode(ModeId::FrontDistance));
         send(&mut robot, 2, Command::Arm);
@@ -296,7 +296,7 @@ mod tests {
 
         let standing = Standing {
             at: robot.ghost().unwrap(),
-            told: MapPose::default(),
+            estimated: MapPose::default(),
         };
         robot.restart_ghost(standing).unwrap();
         send(&mut robot, 3, Command::Arm);

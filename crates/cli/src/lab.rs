@@ -212,16 +212,16 @@ impl SimulatedRobot {
     }
 
     /// Moves the robot.
-    pub(crate) fn place(&mut self, Standing { at, told }: Standing) {
+    pub(crate) fn place(&mut self, Standing { at, estimated }: Standing) {
         let at = rumbo_plant::contact::Pose {
             x_m: at.x_m,
             y_m: at.y_m,
             heading_rad: at.heading_rad,
         };
         let estimate = rumbo_control::Pose {
-            x_m: told.x_m as f32,
-            y_m: told.y_m as f32,
-            heading_rad: told.heading_rad as f32,
+            x_m: estimated.x_m as f32,
+            y_m: estimated.y_m as f32,
+            heading_rad: estimated.heading_rad as f32,
         };
         self.sim.place(at, estimate);
     }

@@ -98,7 +98,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let ended = run_jobs(args, &jobs, handle);
     let done = progress.position();
     progress.finish_and_clear();
-    kept.tell();
+    kept.report();
     if matches!(ended, Err(Failure::Interrupted)) {
         output::note(&format!("interrupted after {done} of {} runs", jobs.len()));
     }

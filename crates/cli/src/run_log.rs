@@ -1,7 +1,8 @@
-//! The logs of runs without a window.
+//! The logs of headless runs.
 //!
-//! With `--out` each run has one in that folder, and it depends on nothing but its inputs. Without, they are among the logs of sessions, with the
-//! time of day; there a command of many runs leaves only some, since each can be had again from its seed.
+//! With `--out` each run writes one to that folder, and it depends only on the run's inputs. Without, they are stored
+//! among the logs of sessions, with the time of day; a command of many runs keeps only some there, since each can be
+//! reproduced from its seed.
 
 use crate::failure::Failure;
 use crate::logs;
@@ -19,12 +20,12 @@ use rumbo_station::headless::{record_run, record_run_in};
 use rumbo_wire::FromRobot;
 use std::path::{Path, PathBuf};
 
-/// So many runs of a command are recorded without being asked for: all of them, or the first that miss a limit.
+/// Most runs of a command that are recorded by default: all of them, or the first that miss a limit.
 const KEPT: usize = 20;
 
 /// How the runs were set up.
 pub(crate) struct Source<'a> {
-    /// What kind of runs they are.
+    /// The kind of runs.
     pub(crate) kind: Kind,
     pub(crate) library: &'a Library,
     pub(crate) overrides: &'a Overrides,
@@ -39,8 +40,8 @@ impl Source<'_> {
         }
     }
 
-    /// Hands what the log of a run is made of to `write`.
-    fn hand_over<T>(
+    /// Passes the contents of a run's log to `write`.
+    fn with_run<T>(
         &self,
         setup: &Setup,
         result: &RunResult,
@@ -59,7 +60,7 @@ impl Source<'_> {
             scene: Some(scene(self.library, of_seed, choice)?),
             parameters: trace.parameters,
             truths: &trace.samples.iter().map(truth).collect::<Vec<_>>(),
-            told: &told(trace),
+            messages: &messages(trace),
             said: &trace.consoles.iter().map(said).collect::<Vec<_>>(),
             link: &link,
             outcome: Outcome {
@@ -71,14 +72,14 @@ impl Source<'_> {
         write(&self.manifest(setup, result.seed), run)
     }
 
-    /// Writes the log of a run to a place that was asked for.
+    /// Writes the log of a run to the requested path.
     pub(crate) fn write(
         &self,
         path: &Path,
         setup: &Setup,
         result: &RunResult,
     ) -> Result<(), Failure> {
-        self.hand_over(setup, result, |manifest, run| {
+        self.with_run(setup, result, |manifest, run| {
             place::make(path, |place| {
                 record_run(place, manifest, run).map_err(|error| Failure::input(error.of(path)))
             })
@@ -86,18 +87,18 @@ impl Source<'_> {
     }
 }
 
-/// What a command leaves among the logs of sessions.
+/// The logs that a command adds to those of sessions.
 pub(crate) struct Kept {
     /// `None` where nothing is recorded, or no longer.
     folder: Option<PathBuf>,
     begun: Option<String>,
-    /// More runs than are kept: of these only those that miss a limit.
+    /// There are more runs than are kept: only those that miss a limit are recorded.
     many: bool,
     logs: Vec<PathBuf>,
 }
 
 impl Kept {
-    /// Of a command of so many runs; `wanted`: it records at all.
+    /// For a command of so many runs; `wanted`: whether it records at all.
     pub(crate) fn of(runs: usize, wanted: bool) -> Self {
         Self {
             folder: logs::folder(None).filter(|_| wanted),
@@ -107,7 +108,7 @@ impl Kept {
         }
     }
 
-    /// Records a run, if it is one to keep. One that cannot be recorded is a run all the same: why is said once.
+    /// Records a run, if it is one to keep. A failure to record does not fail the run; it is reported once.
     pub(crate) fn take(&mut self, source: &Source<'_>, setup: &Setup, result: &RunResult) {
         let Some(folder) = &self.folder else {
             return;
@@ -115,7 +116,7 @@ impl Kept {
         if self.logs.len() == KEPT || (self.many && result.pass) {
             return;
         }
-        let written = source.hand_over(setup, result, |manifest, run| {
+        let written = source.with_run(setup, result, |manifest, run| {
             let manifest = Manifest {
                 started: self.begun.clone(),
                 ..manifest.clone()
@@ -131,8 +132,8 @@ impl Kept {
         }
     }
 
-    /// Says where they are.
-    pub(crate) fn tell(&self) {
+    /// Prints where they are.
+    pub(crate) fn report(&self) {
         let which = if self.many {
             " of runs that miss a limit"
         } else {
@@ -150,13 +151,14 @@ impl Kept {
     }
 }
 
-/// What a program without a link of ours has told; what came over the link is in its bytes.
-fn told(trace: &Trace) -> Vec<(u64, FromRobot)> {
+/// Messages of a program that does not use our link; those over the link are in its bytes.
+fn messages(trace: &Trace) -> Vec<(u64, FromRobot)> {
     if !trace.link.is_empty() {
         return Vec::new();
     }
-    let messages = trace.messages.iter();
-    messages
+    trace
+        .messages
+        .iter()
         .map(|message| (micros(message.t_s), message.what))
         .collect()
 }

@@ -116,7 +116,7 @@ fn a_log_of_a_real_robot_stands_beside_ours_and_one_of_a_simulated_robot_does_no
         truths: &truths,
         link: &log.link,
         said: &[],
-        told: &[],
+        messages: &[],
         outcome: Outcome::default(),
     };
     record_run(&folder.path().join("real/robot.mcap"), &manifest, run).unwrap();

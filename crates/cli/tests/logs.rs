@@ -322,7 +322,7 @@ fn another_table_of_parameters_and_the_end_of_a_truncated_log_are_reported() {
         truths: &[(60_000_000, Truth::default())],
         link: &link,
         said: &[],
-        told: &[],
+        messages: &[],
         outcome: Outcome::default(),
     };
     record_run(&path, &manifest, run).unwrap();

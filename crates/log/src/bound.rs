@@ -1,4 +1,5 @@
-//! How much of a real robot is recorded: a link carries some kilobytes in a second, whatever floods a port fills no disk.
+//! How much of a real robot is recorded: a link carries some kilobytes in a second, whatever floods a port fills no
+//! disk.
 
 use crate::entry::Entry;
 use crate::event::{Level, LoggedEvent};

@@ -51,7 +51,7 @@ pub use scene::{
 pub use schema::Topic;
 pub use signals::{Cell, EARLIER_MS, Row, Sample, Spread};
 pub use state::{
-    CalibrationState, End, Errand, Finding, Findings, LinkState, ReplayState, RobotState, State,
+    CalibrationState, End, Finding, Findings, LinkState, ReplayState, RobotState, State, Task,
 };
 pub use summary::Summary;
 pub use writer::{LogWriter, WriteError};

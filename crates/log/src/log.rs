@@ -11,9 +11,9 @@ use std::collections::BTreeMap;
 /// A log in memory.
 #[derive(Clone, Debug, Default)]
 pub struct Log {
-    /// What ran, where the log says so.
+    /// What ran, where recorded.
     pub manifest: Option<Manifest>,
-    /// How it ended, where somebody judged.
+    /// The outcome, where it was judged.
     pub outcome: Option<Outcome>,
     /// The signals, in order of time.
     pub rows: Vec<Row>,
@@ -29,17 +29,17 @@ pub struct Log {
     pub link: Vec<Burst>,
     /// What crossed the USARTs of an emulated chip, in order.
     pub said: Vec<Said>,
-    /// What went to the robot, in the order in which it went, which times alone do not tell: places in `link` and `said`.
+    /// What was sent to the robot, in order, which times alone do not give: indices in `link` and `said`.
     pub(crate) order: Vec<Place>,
     /// Why the log ends early, where it does; or why something within is missing.
     pub cut: Option<String>,
-    /// Something within is missing, and what comes after it is there.
+    /// Something within is missing, while what follows is present.
     pub has_holes: bool,
-    /// What else a reader should know, a line each; nothing is missing for these.
+    /// Other notes for the reader, a line each; they do not mean that anything is missing.
     pub notes: Vec<String>,
 }
 
-/// Where something sent is.
+/// Index of something sent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Place {
     Link(usize),
@@ -47,12 +47,12 @@ pub(crate) enum Place {
 }
 
 impl Log {
-    /// Puts a ghost beside the robot: where it is at each row, by its time \[us\], in the world of `scene`. A robot of which no world is known
-    /// is put there too, its origin where the ghost begins.
+    /// Adds a ghost: its pose at the time of each row \[us\], in the world of `scene`. A robot without a known world is
+    /// placed there too, with its origin at the ghost's start.
     ///
     /// # Errors
-    /// What the ghost has to say.
-    pub fn haunt<E>(
+    /// Those of the ghost.
+    pub fn add_ghost<E>(
         &mut self,
         scene: Scene,
         mut ghost: impl FnMut(u64) -> Result<MapPose, E>,
@@ -70,7 +70,7 @@ impl Log {
         Ok(())
     }
 
-    /// What went to the robot, in the order in which it went.
+    /// What was sent to the robot, in order.
     pub fn sent(&self) -> impl Iterator<Item = Sent<'_>> {
         self.order.iter().filter_map(|place| match *place {
             Place::Link(at) => self.link.get(at).map(Sent::Link),
@@ -78,14 +78,14 @@ impl Log {
         })
     }
 
-    /// Nothing of what happened is in it: it ends within its manifest and the files that ran.
+    /// Whether it holds no data: it ends within its manifest and attached files.
     #[must_use]
     pub fn holds_nothing(&self) -> bool {
-        let heard = self.rows.is_empty() && self.states.is_empty() && self.events.is_empty();
-        heard && self.link.is_empty() && self.said.is_empty()
+        let silent = self.rows.is_empty() && self.states.is_empty() && self.events.is_empty();
+        silent && self.link.is_empty() && self.said.is_empty()
     }
 
-    /// The robot spoke the original's text: what it said is for people, too.
+    /// The robot spoke the original's text, which people can read, too.
     #[must_use]
     pub fn speaks_text(&self) -> bool {
         self.states.iter().any(|state| state.robot.text)
@@ -98,7 +98,7 @@ impl Log {
             .map(|event| (event.t_s, event.level.name(), event.text.as_str()))
     }
 
-    /// The parameters' values by name, as they were known at the end; empty where the robot told none.
+    /// The parameters' values by name, as known at the end; empty where the robot reported none.
     #[must_use]
     pub fn parameters(&self) -> BTreeMap<String, f32> {
         let last = self.parameters.last();
@@ -123,7 +123,7 @@ impl Log {
         row_s.max(state_s).max(link_s)
     }
 
-    /// Something of it is missing.
+    /// Whether part of it is missing.
     pub(crate) fn lose(&mut self, what: &str) {
         self.has_holes = true;
         self.cut = Some(match self.cut.take() {
@@ -133,7 +133,7 @@ impl Log {
     }
 }
 
-/// What somebody sent to the robot.
+/// Something sent to the robot.
 #[derive(Clone, Copy, Debug)]
 pub enum Sent<'a> {
     /// Bytes over the link.

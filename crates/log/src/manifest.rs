@@ -29,7 +29,8 @@ pub struct Manifest {
     /// Number of the model of robot and world that a simulated run was made with; `None` of a real robot, and of logs
     /// before models had numbers.
     pub model: Option<u32>,
-    /// When it began, UTC; `None` for runs without a window that go to a folder of one's own: those logs depend on nothing but their inputs.
+    /// When it began, UTC; `None` for runs without a window that go to a folder of one's own: those logs depend on
+    /// nothing but their inputs.
     pub started: Option<String>,
     /// Name of the scenario.
     pub scenario: Option<String>,

@@ -1,4 +1,4 @@
-//! What is recorded, as the messages that it makes; where they go is a [`Sink`]'s business: a file, or a viewer.
+//! Turns entries into messages; a [`Sink`] takes them: a file, or a viewer.
 
 use crate::entry::{Burst, Entry, Said};
 use crate::event::{Level, LoggedEvent};
@@ -22,8 +22,8 @@ pub trait Sink {
     /// Why it cannot.
     fn put(&mut self, topic: Topic, t_us: u64, data: &[u8]) -> Result<(), Self::Error>;
 
-    /// The messages of an entry; an outcome makes none. Scene and parameters have no time of their own: they are of
-    /// the time `now_us` that came last, which a burst moves.
+    /// The messages of an entry; an outcome has none. Scene and parameters have no time of their own: they get the last
+    /// time `now_us`, which a burst updates.
     ///
     /// # Errors
     /// Why it cannot.
@@ -75,8 +75,8 @@ trait Messages: Sink {
     fn row(&mut self, row: &Row) -> Result<(), Self::Error> {
         let t_us = to_us(row.t_ms);
         self.put(Topic::Telemetry, t_us, row_json(row).to_string().as_bytes())?;
-        if let (Some(told), Some(origin)) = (row.pose(""), row.pose("origin_")) {
-            self.pose(Topic::Estimated, t_us, compose(origin, told))?;
+        if let (Some(estimated), Some(origin)) = (row.pose(""), row.pose("origin_")) {
+            self.pose(Topic::Estimated, t_us, compose(origin, estimated))?;
         }
         if let Some(truth) = row.pose("true_") {
             self.pose(Topic::True, t_us, truth)?;
@@ -93,7 +93,7 @@ trait Messages: Sink {
     /// Something that happened.
     fn event(&mut self, event: &LoggedEvent) -> Result<(), Self::Error> {
         let t_us = to_us((event.t_s * 1e3).round() as i64);
-        // The numbers of `foxglove.Log`; what was achieved is news like any other there, and keeps its name.
+        // The numbers of `foxglove.Log`; success has no level of its own there, and keeps its name.
         let (level, name) = match event.level {
             Level::Info => (2, "info"),
             Level::Good => (2, "good"),
@@ -142,7 +142,7 @@ trait Messages: Sink {
 
 impl<S: Sink + ?Sized> Messages for S {}
 
-/// What is not known is left out, as in all messages: viewers take a field for what its schema says.
+/// Unknown values are left out, as in all messages: viewers expect the type in the schema.
 fn leave_out_unknown(message: &mut Value) {
     if let Value::Object(fields) = message {
         fields.retain(|_, value| !value.is_null());
@@ -151,7 +151,7 @@ fn leave_out_unknown(message: &mut Value) {
 }
 
 fn to_us(t_ms: i64) -> u64 {
-    // Telemetry of before the run began is none.
+    // Telemetry from before the run is skipped.
     u64::try_from(t_ms).unwrap_or_default() * 1_000
 }
 
@@ -164,7 +164,7 @@ fn pose_json(at: MapPose) -> Value {
     json!({ "position": { "x": at.x_m, "y": at.y_m, "z": 0.0 }, "orientation": { "x": 0.0, "y": 0.0, "z": sin, "w": cos } })
 }
 
-/// What is unknown is left out; a clear range is told by a field of its own, since viewers plot numbers.
+/// Unknown values are left out; a clear range has a field of its own, since viewers plot numbers.
 fn row_json(row: &Row) -> Value {
     let mut message = Map::new();
     for (column, name) in Row::names().enumerate() {

@@ -1,4 +1,5 @@
-//! The JSON schemas of the log's messages. Those named `foxglove.*` are well known to viewers; of them, what is used here.
+//! The JSON schemas of the log's messages. Those named `foxglove.*` are well known to viewers; of them, what is used
+//! here.
 
 use crate::signals::Row;
 use serde_json::{Map, Value, json};

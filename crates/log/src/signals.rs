@@ -1,4 +1,4 @@
-//! Samples of the signals: what the robot said of one instant, beside what was really the case.
+//! Samples of the signals: the robot's telemetry of one instant, beside the ground truth.
 
 mod row;
 
@@ -18,28 +18,28 @@ pub struct Sample {
     pub mode: ModeId,
     /// The mode's reference; units as in [`rumbo_wire::Status::reference`].
     pub reference: Wheels<f32>,
-    /// The heading that the mode wants \[rad\]; 0 where it wants none.
+    /// The heading setpoint \[rad\]; 0 where the mode has none.
     pub heading_ref_rad: f32,
-    /// What the robot said.
+    /// The robot's telemetry.
     pub telemetry: Telemetry,
-    /// Place in the world of the origin of its pose.
+    /// Origin of its pose, in the world.
     pub origin: MapPose,
-    /// How far the pose may be off, as seen from there.
+    /// Uncertainty of the pose, in the origin's frame.
     pub spread: Spread,
-    /// What was the case [`EARLIER_MS`] before and at `t_ms`; `None` with a real robot.
+    /// Ground truth [`EARLIER_MS`] before and at `t_ms`; `None` with a real robot.
     pub truth: Option<[Truth; 2]>,
-    /// Where the ghost was; `None` without one.
+    /// The ghost's pose; `None` without one.
     pub ghost: Option<MapPose>,
 }
 
-/// How far a pose may be off, as seen from its origin.
+/// Uncertainty of a pose, in its origin's frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
     /// Standard deviation of x \[m\].
     pub x_m: f32,
     /// Standard deviation of y \[m\].
     pub y_m: f32,
-    /// How x and y hang together, -1..=1.
+    /// Correlation of x and y, -1..=1.
     pub correlation: f32,
     /// Standard deviation of the heading \[rad\].
     pub heading_rad: f32,
@@ -55,7 +55,7 @@ fn optional(value: Option<f64>) -> f32 {
     value.map_or(UNKNOWN, |value| value as f32)
 }
 
-/// Infinite where there is nothing in reach.
+/// Infinite where nothing is in range.
 fn measured(range: Range) -> f32 {
     match range {
         Range::Valid(range_m) => range_m,
@@ -143,7 +143,7 @@ impl Sample {
         Row::new(self.t_ms, self.named_row().map(|(_, value)| value))
     }
 
-    /// A sample of a robot of which nothing is known.
+    /// A sample without known values.
     pub(crate) fn empty() -> Self {
         Self {
             t_ms: 0,

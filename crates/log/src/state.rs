@@ -11,7 +11,7 @@ pub struct State {
     pub t_s: f64,
     /// A simulation: its speed can be set and it can be reset.
     pub simulated: bool,
-    /// Seconds of the target asked for per second of the wall clock.
+    /// Requested seconds of the target per second of the wall clock.
     pub speed: f64,
     /// Seconds of the target per second of the wall clock, measured.
     pub achieved_speed: f64,
@@ -19,10 +19,10 @@ pub struct State {
     pub link: LinkState,
     /// The robot.
     pub robot: RobotState,
-    /// The last order, if it was refused or given up, and why.
+    /// Why the last order was refused or given up, if it was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refused: Option<String>,
-    /// What a person has to see to at once.
+    /// What needs the operator's attention at once.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub alarms: Vec<String>,
     /// The calibration that runs, or ran last in this run.
@@ -86,18 +86,19 @@ pub struct RobotState {
     pub fault: Option<Cow<'static, str>>,
     /// Battery as measured \[V\].
     pub battery_v: Option<f64>,
-    /// Battery as it is, of a simulated robot \[V\].
+    /// True battery voltage of a simulated robot \[V\].
     pub true_battery_v: Option<f64>,
     /// The mode's setpoints.
     pub reference: [f32; 2],
     /// Ticks that took too long.
     pub overruns: u8,
-    /// Where the servo points \[rad\].
+    /// The servo's angle \[rad\].
     pub servo_rad: f32,
-    /// Name of the rig that the robot believes to carry; `None` until it has said so.
+    /// Name of the rig set in the robot; `None` until it is reported.
     pub rig: Option<Cow<'static, str>>,
-    /// What it is asked to reach.
-    pub errand: Errand,
+    /// Its task.
+    #[serde(rename = "errand")]
+    pub task: Task,
     /// The robot has another parameter table, or another protocol: its parameters are neither shown nor written.
     pub foreign: bool,
     /// The robot speaks the original's text.
@@ -105,28 +106,28 @@ pub struct RobotState {
     pub text: bool,
 }
 
-/// How it ended.
+/// Outcome of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum End {
-    /// It is there.
+    /// The goal is reached.
     Reached,
-    /// There is no way.
+    /// There is no path to the goal.
     Unreachable,
 }
 
-/// What the robot is asked to reach. Places are from the robot's origin.
+/// The robot's task: goal, lane or route, and its outcome. Positions are relative to the robot's origin.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Errand {
+pub struct Task {
     /// The goal of mode 8 \[m\]; `None` once it is reached, since the origin may have moved there.
     pub goal: Option<[f32; 2]>,
     /// Mode 8 follows a lane.
     pub lane: bool,
     /// The route of mode 7.
     pub route: Option<RoutePlan>,
-    /// Where the robot stood when a relative route began: x, y \[m\] and heading \[rad\].
+    /// Pose of the robot at the start of a relative route: x, y \[m\] and heading \[rad\].
     pub from: Option<[f32; 3]>,
-    /// How it ended; `None` while it goes on.
+    /// Its outcome; `None` while it lasts.
     pub end: Option<End>,
 }
 
@@ -150,7 +151,7 @@ pub struct Finding {
     pub standard_error: Option<f64>,
 }
 
-/// How a calibration stands, for the page.
+/// State of a calibration, for the page.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "phase", rename_all = "snake_case")]
 pub enum CalibrationState {

@@ -1,4 +1,5 @@
-//! A million frames, or as many as asked for, over a link that loses, flips, repeats, cuts and delays. Exit status 1 if one was taken wrongly.
+//! A million frames, or as many as requested, over a link that loses, flips, repeats, cuts and delays. Exit status 1 if
+//! one was wrongly accepted.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 #[path = "../tests/support/link.rs"]

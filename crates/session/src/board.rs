@@ -1,8 +1,8 @@
-//! The board: what is known of the robot, for pages that read on from where they were.
+//! The board: what is known of the robot, for pages that read on from their cursors.
 //!
-//! Everything on it is bounded. Samples and events sit in rings with running numbers, so that a page that is slow, was
-//! away or is new gets the recent past; the rest is one current value each, with a version. Nobody reads, nothing is
-//! made: rows become JSON when a page takes them.
+//! Everything on it is bounded. Samples and events sit in rings with running numbers, so that a slow, returning or new
+//! page gets the recent past; the rest is one current value each, with a version. Rows become JSON only when a page
+//! takes them.
 
 mod ring;
 
@@ -15,20 +15,20 @@ use rumbo_log::{Burst, Entry, LoggedEvent, ParameterState, Row, Scene, State};
 pub const SAMPLES_KEPT: usize = 15_000;
 /// Events kept.
 pub const EVENTS_KEPT: usize = 1_000;
-/// Pieces of console text kept: of each slice of time in which a USART spoke, one.
+/// Pieces of console text kept: one for each time slice in which a USART sent.
 const CONSOLES_KEPT: usize = 2_000;
 /// Pieces of the link's raw bytes kept: some seconds of both directions.
 const BURSTS_KEPT: usize = 600;
 
-/// When the newest samples were put here: the time of day \[ms since 1970\], and the target's \[ms\]. Says how old a
-/// picture is.
-pub type Heard = (f64, i64);
+/// Arrival of the newest samples: time of day \[ms since 1970\] and the target's time \[ms\]. Gives the age of what a
+/// page shows.
+pub type Arrival = (f64, i64);
 
 /// What is to be shown.
 #[derive(Debug)]
 pub struct Board {
     run: u32,
-    heard: Heard,
+    received: Arrival,
     samples: Ring<Row>,
     events: Ring<LoggedEvent>,
     consoles: Ring<ConsoleText>,
@@ -54,7 +54,7 @@ pub struct Cursor {
 /// What is new to a page.
 #[derive(Debug, Default)]
 pub struct News {
-    /// Number of the run, which changes with a reset: what the page has of earlier runs is over.
+    /// Number of the run, which changes with a reset: the page discards earlier runs.
     pub run: u32,
     /// What surrounds the robot.
     pub scene: Option<Option<Scene>>,
@@ -65,7 +65,7 @@ pub struct News {
     /// Signals.
     pub samples: Vec<Row>,
     /// When the newest of them arrived.
-    pub heard: Heard,
+    pub received: Arrival,
     /// What happened.
     pub events: Vec<LoggedEvent>,
     /// What was said in text.
@@ -80,7 +80,7 @@ impl Default for Board {
     fn default() -> Self {
         Self {
             run: 1,
-            heard: (0.0, 0),
+            received: (0.0, 0),
             samples: Ring::new(SAMPLES_KEPT),
             events: Ring::new(EVENTS_KEPT),
             consoles: Ring::new(CONSOLES_KEPT),
@@ -93,7 +93,7 @@ impl Default for Board {
 }
 
 impl Board {
-    /// Takes an event at this time of day \[ms since 1970\]; whether pages are to be woken for it.
+    /// Takes an event at this time of day \[ms since 1970\]; returns whether to wake the pages.
     pub fn take(&mut self, event: &Event, wall_ms: f64) -> bool {
         match event {
             Event::Run => {
@@ -103,8 +103,8 @@ impl Board {
                 self.bytes.clear();
                 false
             }
-            Event::Heard(now_ms) => {
-                self.heard = (wall_ms, *now_ms);
+            Event::Received(now_ms) => {
+                self.received = (wall_ms, *now_ms);
                 false
             }
             Event::Console(said) => {
@@ -117,7 +117,7 @@ impl Board {
 
     fn show(&mut self, entry: &Entry) -> bool {
         match entry {
-            // Pages get them with the next news: nobody is woken for them.
+            // Pages get them with the next news: no page is woken for them.
             Entry::Burst(burst) => {
                 self.bytes.push(burst.clone());
                 false
@@ -157,11 +157,11 @@ impl Board {
             parameters: self.parameters.newer(&mut cursor.parameters),
             state: self.state.newer(&mut cursor.state),
             samples,
-            heard: self.heard,
+            received: self.received,
             events,
             consoles,
             bytes,
-            // What left the ring before the page came was not its to take.
+            // A new page has not missed what left the ring before it came.
             events_gone: if first_time { 0 } else { gone },
         }
     }

@@ -1,16 +1,16 @@
-//! The station's end of the link: bytes from the robot become what was heard, commands become bytes.
+//! The station's end of the link: bytes from the robot become events, commands become bytes.
 //!
 //! Knows the protocol and nothing of browsers, threads or wall clocks: time is an argument, in the target's time. It
-//! asks for HELLO until the robot answers, then reads the parameters, sends heartbeats, and notices silence and
-//! restarts. It never arms, and takes no order for a robot that is not there. A robot that leaves HELLO unanswered and
-//! sends rows of the original's text is talked to in text.
+//! asks for HELLO until the robot answers, then reads the parameters, sends heartbeats, and detects silence and
+//! restarts. It never arms, and accepts no order while no robot is connected. A robot that leaves HELLO unanswered and
+//! sends rows of the original's text is addressed in text.
 
-mod heard;
-mod hearing;
+mod events;
 mod meeting;
+mod receiving;
 mod text;
 
-pub use heard::{Heard, KnownTable, LinkFigures, NotTaken};
+pub use events::{KnownTable, LinkEvent, LinkFigures, NotTaken};
 
 use crate::commands::{CommandManager, Fate};
 use crate::meter::Meter;
@@ -39,25 +39,25 @@ const STOP_PATIENCE_US: u64 = 1_000_000;
 /// The alarm is repeated this often \[us\].
 const STOP_AGAIN_US: u64 = 10_000_000;
 
-/// Speaks with one robot.
+/// The connection to one robot.
 #[derive(Debug)]
 pub struct RobotClient {
     table: KnownTable,
     clock: RobotClock,
     decoder: Decoder<LINE_BYTES>,
-    /// What is heard and said in text.
+    /// The text protocol.
     terminal: Terminal,
     /// The robot speaks text.
     text: bool,
-    /// It may turn out to speak the other language.
+    /// It may turn out to speak the other protocol.
     undecided: bool,
     /// HELLOs since the robot last answered one, or was last lost.
     hellos: u32,
-    /// Bytes heard at this port.
-    heard_bytes: u64,
-    /// Words of the other language heard in a row.
+    /// Bytes received at this port.
+    received_bytes: u64,
+    /// Consecutive rows or frames of the other protocol.
     words: u32,
-    /// Columns of the row heard last.
+    /// Columns of the last row.
     row_kind: Option<RowKind>,
     manager: CommandManager,
     sequence: u8,
@@ -72,12 +72,12 @@ pub struct RobotClient {
     stop_reported_us: Option<u64>,
     hello_sent_us: Option<u64>,
     last_sent_us: Option<u64>,
-    last_heard_us: u64,
+    last_received_us: u64,
     mode: ModeId,
     reference: Wheels<f32>,
     heading_ref_rad: f32,
     malformed: u32,
-    /// Errors before the first good frame, one at most: who begins to listen in the middle of a frame cannot read its rest.
+    /// Errors before the first good frame, at most one: a receiver that joins within a frame cannot read its rest.
     cut_off: Option<u16>,
     up: Meter,
     down: Meter,
@@ -85,7 +85,8 @@ pub struct RobotClient {
 }
 
 impl RobotClient {
-    /// A client for a robot not heard yet. `session` is to be random. `clock_known`: the robot's clock started with the session's.
+    /// A client for a robot not connected yet. `session` is to be random. `clock_known`: the robot's clock started with
+    /// the session's.
     pub fn new(session: u8, clock_known: bool, table: KnownTable) -> Self {
         let clock = if clock_known {
             RobotClock::STARTED_WITH_SESSION
@@ -100,7 +101,7 @@ impl RobotClient {
             text: false,
             undecided: true,
             hellos: 0,
-            heard_bytes: 0,
+            received_bytes: 0,
             words: 0,
             row_kind: None,
             manager: CommandManager::new(session),
@@ -113,7 +114,7 @@ impl RobotClient {
             stop_reported_us: None,
             hello_sent_us: None,
             last_sent_us: None,
-            last_heard_us: 0,
+            last_received_us: 0,
             mode: ModeId::default(),
             reference: Wheels::both(0.0),
             heading_ref_rad: 0.0,
@@ -126,7 +127,7 @@ impl RobotClient {
     }
 
     /// A client for a robot that speaks the original's text and is in this mode: it needs no greeting. `clock_known`:
-    /// as above; such a robot is there from the beginning, another one once it is heard.
+    /// as above; such a robot counts as connected at once, any other with its first row.
     pub fn of_text(mode: ModeId, clock_known: bool) -> Self {
         Self {
             text: true,
@@ -153,7 +154,7 @@ impl RobotClient {
         taken.map_err(|_| NotTaken::QueueFull)
     }
 
-    /// Takes commands that belong together, a route for instance. Each has its time from when it is its turn.
+    /// Takes commands that belong together, such as a route. Each expires by the time since its turn.
     ///
     /// # Errors
     /// [`NotTaken`].
@@ -169,25 +170,25 @@ impl RobotClient {
     }
 
     /// Appends the bytes to be sent now. To be called after every step of time.
-    pub fn poll(&mut self, now_us: u64, to_robot: &mut Vec<u8>, heard: &mut Vec<Heard>) {
+    pub fn poll(&mut self, now_us: u64, to_robot: &mut Vec<u8>, events: &mut Vec<LinkEvent>) {
         let before = to_robot.len();
         self.terminal.poll(to_robot);
         self.up.add(to_robot.len() - before, now_us);
         if self.text {
-            let quiet_us = now_us.saturating_sub(self.last_heard_us);
+            let quiet_us = now_us.saturating_sub(self.last_received_us);
             if self.undecided
                 && self.connected
                 && self.terminal.armed()
                 && quiet_us > TEXT_SILENCE_US
             {
                 self.connected = false;
-                heard.push(Heard::Lost);
+                events.push(LinkEvent::Lost);
             }
             return;
         }
-        if self.connected && now_us.saturating_sub(self.last_heard_us) > SILENCE_US {
+        if self.connected && now_us.saturating_sub(self.last_received_us) > SILENCE_US {
             self.lose();
-            heard.push(Heard::Lost);
+            events.push(LinkEvent::Lost);
         }
         let hello_due = self
             .hello_sent_us
@@ -197,25 +198,25 @@ impl RobotClient {
             self.hellos = self.hellos.saturating_add(1);
             self.say(ToRobot::Hello, now_us, to_robot);
         }
-        // Reads too: their answers would count for the robot that was there before.
+        // Reads included: their answers would be taken for the previous robot's.
         let stops = self.manager.stop_since_us().is_some();
         if (self.connected || stops)
             && let Some(command) = self.manager.poll(self.meeting.newest(), now_us)
         {
             self.say(command, now_us, to_robot);
         }
-        self.watch_stop(now_us, heard);
+        self.watch_stop(now_us, events);
         if self
             .last_sent_us
             .is_none_or(|sent_us| now_us >= sent_us + HEARTBEAT_PERIOD_US)
         {
             self.say(ToRobot::Heartbeat, now_us, to_robot);
         }
-        self.report_outcomes(heard);
+        self.report_outcomes(events);
     }
 
     /// STOP that is not confirmed is reported, and again from time to time.
-    fn watch_stop(&mut self, now_us: u64, heard: &mut Vec<Heard>) {
+    fn watch_stop(&mut self, now_us: u64, events: &mut Vec<LinkEvent>) {
         if !self.stop_unconfirmed(now_us) {
             self.stop_reported_us = None;
         } else if self
@@ -223,7 +224,7 @@ impl RobotClient {
             .is_none_or(|at_us| now_us >= at_us + STOP_AGAIN_US)
         {
             self.stop_reported_us = Some(now_us);
-            heard.push(Heard::StopUnconfirmed);
+            events.push(LinkEvent::StopUnconfirmed);
         }
     }
 
@@ -233,7 +234,7 @@ impl RobotClient {
         since_us.is_some_and(|since_us| now_us >= since_us + STOP_PATIENCE_US)
     }
 
-    /// What no sound robot does, and this one did lately.
+    /// The oddities seen lately.
     pub fn oddities(&self, now_us: u64) -> impl Iterator<Item = Oddity> {
         self.oddities.present(now_us)
     }
@@ -247,7 +248,7 @@ impl RobotClient {
         to_robot.extend_from_slice(frame.bytes());
     }
 
-    /// Notes that somebody else sent bytes to the robot.
+    /// Counts bytes that another sender sent to the robot.
     pub(crate) fn said(&mut self, bytes: usize, now_us: u64) {
         self.up.add(bytes, now_us);
     }
@@ -261,7 +262,7 @@ impl RobotClient {
         }
     }
 
-    /// The parameters of the robot's mode are read first, group by group, then those of the robot: they are what people look at.
+    /// Reads the parameters of the robot's mode first, group by group, then those of the robot: people look at these.
     fn read_own_first(&mut self) {
         let mode = self.mode;
         self.manager.read_first(|command| {
@@ -281,9 +282,9 @@ impl RobotClient {
         });
     }
 
-    fn report_outcomes(&mut self, heard: &mut Vec<Heard>) {
+    fn report_outcomes(&mut self, events: &mut Vec<LinkEvent>) {
         for outcome in self.manager.take_outcomes() {
-            // The acknowledgement knows before the next status does.
+            // The acknowledgement arrives before the next status.
             if let Fate::Applied(value) = outcome.fate {
                 match outcome.command {
                     Command::Reference(_) => self.reference = Wheels::both(value),
@@ -298,21 +299,21 @@ impl RobotClient {
                     _ => {}
                 }
             }
-            heard.push(Heard::Ended(outcome));
+            events.push(LinkEvent::Ended(outcome));
         }
     }
 
-    /// The robot is heard.
+    /// The robot is connected.
     pub fn connected(&self) -> bool {
         self.connected
     }
 
-    /// Who the robot says it is.
+    /// The robot's HELLO.
     pub fn hello(&self) -> Option<Hello> {
         self.meeting.hello()
     }
 
-    /// The version of the protocol that the robot speaks, if it is another one.
+    /// The robot's protocol version, if it differs from ours.
     pub fn other_protocol(&self) -> Option<u8> {
         let protocol = self.hello()?.protocol;
         (protocol != PROTOCOL_VERSION).then_some(protocol)
@@ -335,7 +336,7 @@ impl RobotClient {
         self.reference
     }
 
-    /// The heading that the mode wants, last reported [rad]; 0 where it wants none.
+    /// The heading setpoint last reported [rad]; 0 where the mode has none.
     pub fn heading_ref_rad(&self) -> f32 {
         self.heading_ref_rad
     }
@@ -346,7 +347,7 @@ impl RobotClient {
             up_bytes_s: self.up.per_second(now_us),
             down_bytes_s: self.down.per_second(now_us),
             telemetry_hz: self.frames.per_second(now_us),
-            heard_bytes: self.heard_bytes,
+            received_bytes: self.received_bytes,
             crc_errors: self
                 .decoder
                 .crc_errors()
@@ -367,19 +368,19 @@ mod tests {
     use rumbo_wire::FromRobot;
 
     #[test]
-    fn who_joins_in_the_middle_of_a_frame_sees_no_error_and_each_damaged_frame_after() {
+    fn a_client_that_joins_in_the_middle_of_a_frame_counts_no_error_but_each_damaged_frame_after() {
         let mut client = RobotClient::new(7, false, KnownTable::OURS);
-        let (mut heard, mut now_us) = (Vec::new(), 0);
-        let mut hear = |client: &mut RobotClient, bytes: &[u8]| {
+        let (mut events, mut now_us) = (Vec::new(), 0);
+        let mut receive = |client: &mut RobotClient, bytes: &[u8]| {
             now_us += 40_000;
-            client.hear(bytes, now_us, &mut heard);
+            client.receive(bytes, now_us, &mut events);
             client.link(now_us).crc_errors
         };
         let frame = |sequence| FromRobot::HeadingRef(0.5).frame(sequence).bytes().to_vec();
-        assert_eq!(hear(&mut client, &frame(0)[2..]), 1);
-        assert_eq!(hear(&mut client, &frame(1)), 0);
+        assert_eq!(receive(&mut client, &frame(0)[2..]), 1);
+        assert_eq!(receive(&mut client, &frame(1)), 0);
         let mut damaged = frame(2);
         damaged[2] ^= 0x10;
-        assert_eq!(hear(&mut client, &damaged), 1);
+        assert_eq!(receive(&mut client, &damaged), 1);
     }
 }

@@ -7,7 +7,8 @@
 //! that comes back does not bring an old start with it. What buffers of the link hold back, the robot refuses by the
 //! time in it ([`Command::is_timed`]).
 //!
-//! The time-out follows the measured round trip as TCP's does (RFC 6298), without samples from repeated commands (Karn).
+//! The time-out follows the measured round trip as TCP's does (RFC 6298), without samples from repeated commands
+//! (Karn).
 
 use crate::round_trip::{self, RoundTrip};
 use rumbo_wire::{Ack, COMMAND_LIFE_MS, Command, Refusal, RobotTime, ToRobot};
@@ -47,7 +48,7 @@ pub enum Fate {
     LinkLost,
 }
 
-/// As many commands wait as may.
+/// The queue is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct QueueFull;
 
@@ -58,7 +59,8 @@ enum Given {
     At(u64, RobotTime),
     /// As a part of something longer, a route for instance: its time begins with its turn.
     InTurn,
-    /// By nobody, to show what the robot has: it can wait, gives way to all others, and is repeated without end.
+    /// By the station itself, to show the robot's values: it can wait, gives way to all others, and is repeated
+    /// without end.
     Background,
 }
 
@@ -141,7 +143,7 @@ impl CommandManager {
         Ok(())
     }
 
-    /// Takes commands that belong together, each of which has its time from when it is its turn.
+    /// Takes commands that belong together; each expires by the time since its turn.
     pub fn submit_in_turn(&mut self, commands: impl IntoIterator<Item = Command>) {
         let given = Given::InTurn;
         let waiting = commands
@@ -175,7 +177,7 @@ impl CommandManager {
         }
     }
 
-    /// The robot is not there any more as it was: nothing asked of it then is asked of it later, except STOP.
+    /// The robot is gone or restarted: no pending request is sent later, except STOP.
     pub fn give_up(&mut self, fate: Fate) {
         self.give_up_waiting(fate);
         if !self.stops() {
@@ -184,7 +186,7 @@ impl CommandManager {
         self.background.clear();
     }
 
-    /// The robot speaks another language: nothing is asked of it in this one any more.
+    /// The robot speaks another protocol: discards all pending commands.
     pub(crate) fn forget(&mut self) {
         self.waiting.clear();
         self.background.clear();
@@ -199,7 +201,7 @@ impl CommandManager {
         self.outcomes.extend(given_up);
     }
 
-    /// A read waits again, anything else is over.
+    /// A read is queued again, anything else ends.
     fn give_up_flying(&mut self, fate: Fate) {
         let Some(old) = self.in_flight.take() else {
             return;
@@ -257,7 +259,7 @@ impl CommandManager {
         if now_us < flying.next_send_us {
             return None;
         }
-        // To read twice does no harm, so a read may find out that an earlier station had the same session: the robot takes
+        // A read can be repeated safely, so it may detect that an earlier station had the same session: the robot takes
         // our numbers for old ones and is silent.
         if flying.is_background()
             && flying.sends > 0
@@ -278,7 +280,7 @@ impl CommandManager {
             session: self.session,
             number: flying.number,
             command: flying.order.command,
-            // Of when it was given, however often it is repeated.
+            // As of when it was given, however often it is repeated.
             seen: flying.seen,
         })
     }

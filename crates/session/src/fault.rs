@@ -1,7 +1,7 @@
-//! Faults of a link, on purpose: bytes lost, flipped, repeated, cut off, late, or none at all for a while.
+//! Injected link faults: bytes lost, flipped, repeated, cut off, late, or none at all for a while.
 //!
-//! A [`Faulty`] target stands between a session and its robot, for tests and experiments; a [`Line`] is one direction of it. Which bytes are hit
-//! follows from the seed alone. Order is kept, as a serial line keeps it.
+//! A [`Faulty`] target stands between a session and its robot, for tests and experiments; a [`Line`] is one direction
+//! of it. Which bytes are hit follows from the seed alone. Order is preserved, as on a serial line.
 
 use crate::target::{Abilities, LinkNews, Target};
 use rumbo_log::{Choice, Manifest, Scene, Truth};
@@ -9,7 +9,7 @@ use rumbo_wire::Command;
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// What happens to bytes. A piece is what is sent, or arrives, at once.
+/// The faults. A piece is what is sent, or arrives, at once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Faults {
     /// Share of bytes that get lost, 0..=1.
@@ -31,7 +31,7 @@ pub struct Faults {
 pub struct Line {
     faults: Faults,
     random: u64,
-    /// What is on its way, with the time of its arrival.
+    /// Pieces in flight, with their arrival times.
     waiting: VecDeque<(u64, Vec<u8>)>,
 }
 
@@ -46,7 +46,7 @@ impl Line {
         }
     }
 
-    /// Takes a piece; whether it will arrive as it is, once.
+    /// Takes a piece; returns whether it will arrive once and intact.
     pub fn send(&mut self, bytes: &[u8], now_us: u64) -> bool {
         if bytes.is_empty() {
             return true;
@@ -124,7 +124,7 @@ pub struct Faulty<T> {
 }
 
 impl<T: Target> Faulty<T> {
-    /// Puts the faults before a target.
+    /// Wraps a target with these faults.
     pub fn new(target: T, faults: Faults, seed: u64) -> Self {
         Self {
             target,

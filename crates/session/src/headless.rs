@@ -1,7 +1,6 @@
-//! The log of a run without a window, made when the run is over: what crossed the link goes the way that it takes in a
-//! live session.
+//! The log of a headless run, written when the run is over: the link's bytes take the same path as in a live session.
 
-use crate::client::{Heard, KnownTable, RobotClient};
+use crate::client::{KnownTable, LinkEvent, RobotClient};
 use crate::event::Event;
 use crate::observer::Observer;
 use crate::observer::describe::{Around, describe};
@@ -16,24 +15,24 @@ use std::io::{Seek, Write};
 
 /// The state is noted this often \[us\].
 const STATE_PERIOD_US: u64 = 200_000;
-/// Longest line of text that the decoder must pass over.
+/// Longest line of text that the decoder must skip.
 const LINE: usize = 160;
 
-/// What a run left behind.
+/// The records of a run.
 #[derive(Debug)]
 pub struct Run<'a> {
     /// What surrounds the robot.
     pub scene: Option<Scene>,
     /// The robot's parameters at the start; `None` where it has no table of them.
     pub parameters: Option<Params>,
-    /// What was really the case, with its time \[us\], in order.
+    /// Ground truth with its time \[us\], in order.
     pub truths: &'a [(u64, Truth)],
     /// What crossed the link, in order.
     pub link: &'a [Burst],
     /// What crossed the USARTs of an emulated chip, in order.
     pub said: &'a [Said],
-    /// What a program without a link of ours has told, with its time \[us\], in order.
-    pub told: &'a [(u64, FromRobot)],
+    /// Messages of a program that does not use our link, with their time \[us\], in order.
+    pub messages: &'a [(u64, FromRobot)],
     /// How it ended.
     pub outcome: Outcome,
 }
@@ -49,47 +48,47 @@ pub fn record_run<W: Write + Seek>(
 ) -> Result<W, WriteError> {
     let mut log = LogWriter::new(into, manifest)?;
     let baud = manifest.baud;
-    let mut teller = Teller {
+    let mut recorder = RunRecorder {
         observer: Observer::new(),
         client: RobotClient::new(0, true, KnownTable::OURS),
-        heard: Vec::new(),
+        link_events: Vec::new(),
         decoder: Decoder::default(),
         answers: Decoder::default(),
         sent: None,
         baud,
         battery_v: None,
     };
-    teller.observer.show_scene(run.scene.clone());
+    recorder.observer.show_scene(run.scene.clone());
     if let Some(parameters) = run.parameters {
-        teller.observer.know_parameters(&parameters);
+        recorder.observer.know_parameters(&parameters);
     }
-    let (mut link, mut told) = (run.link.iter().peekable(), run.told.iter().peekable());
+    let (mut link, mut messages) = (run.link.iter().peekable(), run.messages.iter().peekable());
     let mut said = run.said.iter().peekable();
     let mut state_due_us = 0;
     for (t_us, truth) in run.truths {
         while let Some(burst) = link.next_if(|burst| burst.t_us <= *t_us) {
-            teller.burst(burst);
+            recorder.burst(burst);
         }
         while let Some(said) = said.next_if(|said| said.t_us <= *t_us) {
-            teller.keep(&mut log)?;
+            recorder.keep(&mut log)?;
             log.record(&Entry::Said(said.clone()))?;
         }
-        while let Some((at_us, message)) = told.next_if(|(at_us, _)| at_us <= t_us) {
-            teller
+        while let Some((at_us, message)) = messages.next_if(|(at_us, _)| at_us <= t_us) {
+            recorder
                 .client
-                .understand(*message, *at_us, &mut teller.heard);
-            teller.digest(*at_us);
+                .handle(*message, *at_us, &mut recorder.link_events);
+            recorder.digest(*at_us);
         }
-        teller.observer.truth(to_ms(*t_us), *truth);
-        teller.battery_v = Some(truth.battery_v);
-        teller.observer.publish(0);
+        recorder.observer.truth(to_ms(*t_us), *truth);
+        recorder.battery_v = Some(truth.battery_v);
+        recorder.observer.publish(0);
         if *t_us >= state_due_us {
-            teller.state(*t_us);
+            recorder.state(*t_us);
             state_due_us = *t_us + STATE_PERIOD_US;
         }
-        teller.keep(&mut log)?;
+        recorder.keep(&mut log)?;
     }
-    teller.keep(&mut log)?;
+    recorder.keep(&mut log)?;
     for said in said {
         log.record(&Entry::Said(said.clone()))?;
     }
@@ -97,7 +96,7 @@ pub fn record_run<W: Write + Seek>(
     log.finish()
 }
 
-/// Writes the log of what a robot of the original program and its terminal have said to each other.
+/// Writes the log of the traffic between a robot with the original program and its terminal.
 ///
 /// # Errors
 /// If it cannot be written.
@@ -109,7 +108,7 @@ pub fn record_text<W: Write + Seek>(
     let mut log = LogWriter::new(into, manifest)?;
     let mut observer = Observer::new();
     let mut client = RobotClient::of_text(ModeId::default(), true);
-    let (mut heard, mut state_due_us) = (Vec::new(), 0);
+    let (mut events, mut state_due_us) = (Vec::new(), 0);
     for burst in link {
         observer.link(burst.clone());
         let t_ms = to_ms(burst.t_us);
@@ -118,8 +117,8 @@ pub fn record_text<W: Write + Seek>(
             client.type_in(line.trim_end());
             observer.note(t_ms, Level::Info, format!("sent: {}", line.trim_end()));
         } else {
-            client.hear(&burst.bytes, burst.t_us, &mut heard);
-            observer.digest(&mut heard, &mut client, t_ms);
+            client.receive(&burst.bytes, burst.t_us, &mut events);
+            observer.digest(&mut events, &mut client, t_ms);
         }
         observer.publish(t_ms);
         if burst.t_us >= state_due_us {
@@ -139,7 +138,7 @@ pub fn record_text<W: Write + Seek>(
     log.finish()
 }
 
-/// Records what the observer has to tell.
+/// Records the observer's entries.
 fn keep<W: Write + Seek>(
     observer: &mut Observer,
     log: &mut LogWriter<W>,
@@ -156,7 +155,7 @@ fn to_ms(us: u64) -> i64 {
     (us / 1_000) as i64
 }
 
-/// A command on its way.
+/// A command in flight.
 #[derive(Clone, Copy)]
 struct Sent {
     session: u8,
@@ -164,20 +163,20 @@ struct Sent {
     command: Command,
 }
 
-struct Teller {
+struct RunRecorder {
     observer: Observer,
     client: RobotClient,
-    heard: Vec<Heard>,
+    link_events: Vec<LinkEvent>,
     decoder: Decoder<LINE>,
     /// The same for the other direction.
     answers: Decoder<LINE>,
-    /// The command sent last: a repetition is no news.
+    /// The command sent last: a repetition is not noted.
     sent: Option<Sent>,
     baud: u32,
     battery_v: Option<f64>,
 }
 
-impl Teller {
+impl RunRecorder {
     fn keep<W: Write + Seek>(&mut self, log: &mut LogWriter<W>) -> Result<(), WriteError> {
         keep(&mut self.observer, log)
     }
@@ -188,14 +187,15 @@ impl Teller {
             self.client.said(burst.bytes.len(), burst.t_us);
             return self.sent(burst);
         }
-        self.client.hear(&burst.bytes, burst.t_us, &mut self.heard);
+        self.client
+            .receive(&burst.bytes, burst.t_us, &mut self.link_events);
         self.digest(burst.t_us);
         self.answered(burst);
     }
 
     fn digest(&mut self, t_us: u64) {
         self.observer
-            .digest(&mut self.heard, &mut self.client, to_ms(t_us));
+            .digest(&mut self.link_events, &mut self.client, to_ms(t_us));
     }
 
     /// Notes the commands in what was sent.

@@ -1,19 +1,19 @@
 //! Who has control: one page at a time, of those that may have it.
 //!
-//! A controller's page gets control with its first order while nobody has it, and keeps it until it lets go, is closed,
-//! or another controller takes it on purpose. STOP needs no control. What a page is shown of it is [`View`].
+//! A controller's page gets control with its first order while no page has it, and keeps it until it releases it, is
+//! closed, or another controller takes it on purpose. STOP needs no control. A page is shown a [`View`] of it.
 
 use crate::orders::Order;
 use rumbo_wire::Command;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Pages at once.
+/// Most pages at once.
 const PAGES: usize = 100;
-/// Places besides for pages that may have control: viewers leave them free.
+/// Further places, reserved for pages that may have control.
 const FOR_CONTROLLERS: usize = 28;
 
-/// The number of a page, in the order in which they came.
+/// The number of a page, in order of arrival.
 pub type PageId = u64;
 
 /// Where a page sits, as it is shown.
@@ -22,7 +22,7 @@ pub type PageId = u64;
 pub enum Seat {
     /// It may watch and stop.
     Viewer,
-    /// Nobody has control: its first order takes it.
+    /// No page has control: its first order takes it.
     Free,
     /// It has control.
     Driver,
@@ -53,7 +53,7 @@ pub struct Lease {
 }
 
 impl Lease {
-    /// A page has come; `None`: there is no place for it.
+    /// Admits a page; `None`: there is no place for it.
     pub fn sit_down(&mut self, may_control: bool) -> Option<PageId> {
         let places = PAGES + if may_control { FOR_CONTROLLERS } else { 0 };
         if self.pages.len() >= places {
@@ -64,13 +64,13 @@ impl Lease {
         Some(self.last)
     }
 
-    /// A page goes; with it goes control, if it had it.
+    /// Removes a page, and releases its control.
     pub fn leave(&mut self, page: PageId) {
         self.release(page);
         self.pages.remove(&page);
     }
 
-    /// Whether a page may have this order done; why not otherwise.
+    /// Whether a page may give this order; why not otherwise.
     ///
     /// # Errors
     /// The reason, for a person.
@@ -124,7 +124,7 @@ mod tests {
     const STOP: Order = Order::Robot(Command::Stop);
 
     #[test]
-    fn one_page_has_control_until_it_goes_or_another_takes_it() {
+    fn one_page_has_control_until_it_leaves_or_another_takes_it() {
         let mut lease = Lease::default();
         let [first, second, viewer] = [true, true, false].map(|may| lease.sit_down(may).unwrap());
         let seats = |lease: &Lease| [first, second, viewer].map(|page| lease.view(page).seat);
@@ -136,12 +136,12 @@ mod tests {
         assert!(lease.admit(&Order::TakeControl, second).is_ok());
         assert_eq!(lease.view(first).seat, Seat::Passenger);
         assert!(lease.admit(&ARM, first).is_err());
-        // Who has no control takes none away by going.
+        // A page without control releases none by leaving.
         lease.leave(first);
         assert!(lease.admit(&ARM, second).is_ok());
         let watching = lease.view(viewer);
         assert_eq!((watching.holder, watching.pages), (Some(second), 2));
-        // Who has it may let go, and stay.
+        // A page may release control and stay.
         assert!(lease.admit(&Order::ReleaseControl, viewer).is_ok());
         assert_eq!(lease.view(second).seat, Seat::Driver);
         assert!(lease.admit(&Order::ReleaseControl, second).is_ok());
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn many_viewers_leave_places_for_who_may_drive() {
+    fn many_viewers_leave_places_for_controllers() {
         let mut lease = Lease::default();
         let viewers: Vec<_> = std::iter::from_fn(|| lease.sit_down(false)).collect();
         let driver = lease.sit_down(true).unwrap();

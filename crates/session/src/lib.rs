@@ -1,7 +1,7 @@
 //! Rumbo's session with a robot: time and bytes come in, events and bytes to send go out.
 //!
-//! A [`Session`] knows no port, thread, clock or socket. Whoever drives it lets its [`Target`] live, hands over what
-//! arrived, sends what there is to send, and publishes the [`Event`]s: to the page's [`Board`], to a log, to a bridge,
+//! A [`Session`] knows no port, thread, clock or socket. Its driver advances the [`Target`], hands over the bytes
+//! received, sends the outgoing ones, and publishes the [`Event`]s: to the page's [`Board`], to a log, to a bridge,
 //! each of which takes what it needs.
 
 mod board;
@@ -9,7 +9,6 @@ mod catalogue;
 pub mod client;
 pub mod commands;
 mod console;
-mod errand;
 mod event;
 pub mod fault;
 pub mod headless;
@@ -25,12 +24,13 @@ mod robot_clock;
 mod round_trip;
 mod session;
 mod target;
+mod task;
 mod terminal;
 mod truth_log;
 mod watch;
 mod words;
 
-pub use board::{Board, Cursor, EVENTS_KEPT, Heard, News, SAMPLES_KEPT};
+pub use board::{Arrival, Board, Cursor, EVENTS_KEPT, News, SAMPLES_KEPT};
 pub use catalogue::ModeEntry;
 pub use console::{ConsoleText, LINK_CONSOLE, readable};
 pub use event::Event;

@@ -1,14 +1,14 @@
-//! Makes events of what was heard: samples, what happened in words, the status, the parameters' values.
+//! Turns link events into session events: samples, messages in words, the status, the parameters' values.
 
 pub(crate) mod describe;
 
-use crate::client::{Heard, RobotClient};
+use crate::client::{LinkEvent, RobotClient};
 use crate::commands::{Fate, Outcome};
 use crate::console::{ConsoleText, LINK_CONSOLE, readable};
-use crate::errand;
 use crate::event::Event;
 use crate::origin::Origin;
 use crate::target::Standing;
+use crate::task;
 use crate::terminal;
 use crate::truth_log::TruthLog;
 use crate::words;
@@ -16,8 +16,8 @@ use rumbo_control::Pose;
 use rumbo_control::params::{ParamId, Params};
 use rumbo_control::rig::Rig;
 use rumbo_log::{
-    Burst, EARLIER_MS, Entry, Errand, Level, LoggedEvent, MapPose, ParameterState, Row, Said,
-    Sample, Scene, State, Truth, parameters,
+    Burst, EARLIER_MS, Entry, Level, LoggedEvent, MapPose, ParameterState, Row, Said, Sample,
+    Scene, State, Task, Truth, parameters,
 };
 use rumbo_wire::{Command, EventKind, Hello, Recalled, Status, Telemetry};
 
@@ -32,8 +32,8 @@ pub(crate) struct Observer {
     servo_rad: f32,
     pose: Pose,
     origin: Origin,
-    errand: Errand,
-    /// The rig that the robot says to carry.
+    task: Task,
+    /// The rig the robot reports.
     rig: Option<Rig>,
     parameters: Vec<ParameterState>,
     /// The robot's parameters as far as they are known, else the table's defaults.
@@ -41,16 +41,16 @@ pub(crate) struct Observer {
     truths: TruthLog,
     ghosts: TruthLog,
     samples: Vec<Row>,
-    /// The last order, if it was refused or given up, and why.
+    /// Why the last order was refused or given up, if it was.
     refused: Option<String>,
     /// When the last restart was reported \[ms\].
     restart_ms: Option<i64>,
-    /// The state changed in a way that the operator waits for.
+    /// The state changed in a way that must be shown at once.
     urgent: bool,
 }
 
 impl Observer {
-    /// An observer who knows nothing yet.
+    /// An observer without any data yet.
     pub(crate) fn new() -> Self {
         let mut observer = Self {
             events: Vec::new(),
@@ -58,7 +58,7 @@ impl Observer {
             servo_rad: 0.0,
             pose: Pose::default(),
             origin: Origin::default(),
-            errand: Errand::default(),
+            task: Task::default(),
             rig: None,
             parameters: unread_parameters(),
             believed: Params::default(),
@@ -73,7 +73,7 @@ impl Observer {
         observer
     }
 
-    /// The simulation started again: what was known is over.
+    /// The simulation restarted: what was known is discarded.
     pub(crate) fn start_run(&mut self) {
         let mut events = std::mem::take(&mut self.events);
         events.push(Event::Run);
@@ -82,21 +82,21 @@ impl Observer {
         *self = Self { events, ..fresh };
     }
 
-    /// Notes what is the case at `now_ms`.
+    /// Notes the ground truth at `now_ms`.
     pub(crate) fn truth(&mut self, now_ms: i64, truth: Truth) {
         self.truths.push(now_ms, truth);
     }
 
-    /// Where the robot stands, as well as is known.
+    /// The robot's pose, as well as it is known.
     pub(crate) fn standing(&self) -> Standing {
-        let told = MapPose::from(self.pose);
+        let estimated = MapPose::from(self.pose);
         Standing {
-            at: self.origin.place(told),
-            told,
+            at: self.origin.place(estimated),
+            estimated,
         }
     }
 
-    /// Notes where the ghost is at `now_ms`.
+    /// Notes the ghost's pose at `now_ms`.
     pub(crate) fn ghost(&mut self, now_ms: i64, pose: MapPose) {
         let truth = Truth {
             pose,
@@ -105,27 +105,27 @@ impl Observer {
         self.ghosts.push(now_ms, truth);
     }
 
-    /// The slow signals, as far as they are known; what telemetry and events tell sooner is in it.
+    /// The slow signals, as far as they are known, updated by telemetry and events between statuses.
     pub(crate) fn status(&self) -> Status {
         self.status
     }
 
-    /// Where the servo points, as last told [rad].
+    /// The servo's angle last reported [rad].
     pub(crate) fn servo_rad(&self) -> f32 {
         self.servo_rad
     }
 
-    /// What the robot is asked to reach, and what came of it.
-    pub(crate) fn errand(&self) -> &Errand {
-        &self.errand
+    /// The robot's task and its outcome.
+    pub(crate) fn task(&self) -> &Task {
+        &self.task
     }
 
-    /// The rig that the robot says to carry, once it has.
+    /// The rig the robot reports, once it has.
     pub(crate) fn rig(&self) -> Option<Rig> {
         self.rig
     }
 
-    /// A new value is on its way.
+    /// A new value is in flight.
     pub(crate) fn parameter_pending(&mut self, id: u8) {
         if let Some(parameter) = self.parameters.get_mut(usize::from(id)) {
             parameter.pending = true;
@@ -133,7 +133,7 @@ impl Observer {
         }
     }
 
-    /// The robot's parameters are these.
+    /// Sets the robot's parameters.
     pub(crate) fn know_parameters(&mut self, parameters: &Params) {
         self.believed = *parameters;
         for (state, id) in self.parameters.iter_mut().zip(ParamId::ALL) {
@@ -149,7 +149,7 @@ impl Observer {
         };
         parameter.value = Some(value);
         if let Some(known) = ParamId::from_number(id) {
-            // What the robot accepted is in the range of the same table.
+            // A value that the robot accepted is within the range of the same table.
             let _ = self.believed.set(known, value);
         }
         self.show_parameters();
@@ -165,7 +165,7 @@ impl Observer {
         }));
     }
 
-    /// An order was given: what became of the one before is of no interest any more.
+    /// An order was given: the refusal of the one before is cleared.
     pub(crate) fn order_given(&mut self) {
         self.urgent |= self.refused.take().is_some();
     }
@@ -176,7 +176,7 @@ impl Observer {
         self.note(t_ms, Level::Warning, text);
     }
 
-    /// The last order, if it was refused or given up, and why.
+    /// Why the last order was refused or given up, if it was.
     pub(crate) fn refused(&self) -> Option<&str> {
         self.refused.as_deref()
     }
@@ -186,7 +186,7 @@ impl Observer {
         self.emit(Entry::Burst(burst));
     }
 
-    /// What the USARTs of an emulated chip said.
+    /// Records what the USARTs of an emulated chip sent.
     pub(crate) fn consoles(&mut self, t_us: u64, said: Vec<(u8, Vec<u8>)>) {
         for (usart, bytes) in said {
             self.emit(Entry::Said(Said {
@@ -208,7 +208,7 @@ impl Observer {
         }));
     }
 
-    /// The text of a robot, as it came.
+    /// Shows the text of a robot as received.
     pub(crate) fn said_in_text(&mut self, bytes: &[u8]) {
         let text = readable(bytes);
         if !text.is_empty() {
@@ -218,17 +218,17 @@ impl Observer {
         }
     }
 
-    /// Gives out the samples; whether the state is to follow at once.
+    /// Publishes the samples; returns whether the state must follow at once.
     pub(crate) fn publish(&mut self, now_ms: i64) -> bool {
         let samples = std::mem::take(&mut self.samples);
         if !samples.is_empty() {
-            self.events.push(Event::Heard(now_ms));
+            self.events.push(Event::Received(now_ms));
             self.emit(Entry::Rows(samples));
         }
         std::mem::take(&mut self.urgent)
     }
 
-    /// What there is to publish since the last call.
+    /// The events since the last call.
     pub(crate) fn take_events(&mut self) -> Vec<Event> {
         std::mem::take(&mut self.events)
     }
@@ -253,44 +253,51 @@ impl Observer {
         self.emit(Entry::State(Box::new(state)));
     }
 
-    /// Takes in what was heard up to `now_ms`.
-    pub(crate) fn digest(&mut self, heard: &mut Vec<Heard>, client: &mut RobotClient, now_ms: i64) {
-        for item in heard.drain(..) {
+    /// Processes the link events up to `now_ms`.
+    pub(crate) fn digest(
+        &mut self,
+        events: &mut Vec<LinkEvent>,
+        client: &mut RobotClient,
+        now_ms: i64,
+    ) {
+        for item in events.drain(..) {
             match item {
-                Heard::Telemetry(t_ms, telemetry) => self.sample(t_ms, telemetry, client),
-                Heard::Status(status) => {
+                LinkEvent::Telemetry(t_ms, telemetry) => self.sample(t_ms, telemetry, client),
+                LinkEvent::Status(status) => {
                     self.urgent |= self.rig != Some(status.rig);
                     self.rig = Some(status.rig);
                     self.status = status;
                 }
-                Heard::Event(t_ms, kind) => {
-                    errand::happened(&mut self.errand, kind, client.mode(), self.pose);
+                LinkEvent::Event(t_ms, kind) => {
+                    task::happened(&mut self.task, kind, client.mode(), self.pose);
                     self.event(t_ms, kind);
                 }
-                Heard::Ended(outcome) => self.end_command(&outcome, client, now_ms),
-                Heard::Connected(hello) => self.connected(hello, client.table_matches(), now_ms),
-                Heard::Text => {
+                LinkEvent::Ended(outcome) => self.end_command(&outcome, client, now_ms),
+                LinkEvent::Connected(hello) => {
+                    self.connected(hello, client.table_matches(), now_ms)
+                }
+                LinkEvent::Text => {
                     let text = "connected; the robot speaks the original program's text: nothing is acknowledged, and it goes on by itself when the link is lost";
                     self.note(now_ms, Level::Good, text.into());
                 }
-                Heard::Restarted(hello) => {
+                LinkEvent::Restarted(hello) => {
                     self.parameters = unread_parameters();
                     self.believed = Params::default();
                     self.show_parameters();
                     self.restarted(hello, now_ms);
                 }
-                Heard::OtherProtocol(hello) => {
+                LinkEvent::OtherProtocol(hello) => {
                     self.note(now_ms, Level::Fault, words::other_protocol(hello.protocol));
                 }
-                Heard::StopUnconfirmed => {
+                LinkEvent::StopUnconfirmed => {
                     self.note(now_ms, Level::Fault, words::STOP_UNCONFIRMED.into());
                 }
-                Heard::Odd(oddity) => self.note(now_ms, Level::Fault, words::alarm(oddity)),
-                Heard::Lost if client.speaks_text() => {
+                LinkEvent::Odd(oddity) => self.note(now_ms, Level::Fault, words::alarm(oddity)),
+                LinkEvent::Lost if client.speaks_text() => {
                     let text = "nothing received from the robot for some seconds, though it is on";
                     self.note(now_ms, Level::Warning, text.into());
                 }
-                Heard::Lost => {
+                LinkEvent::Lost => {
                     let text =
                         "link lost: nothing received from the robot for a second; trying again";
                     self.note(now_ms, Level::Fault, text.into());
@@ -300,7 +307,7 @@ impl Observer {
     }
 
     fn sample(&mut self, t_ms: i64, telemetry: Telemetry, client: &RobotClient) {
-        // Known long before the next status.
+        // Arrives long before the next status.
         self.urgent |= self.status.armed != telemetry.armed;
         self.status.armed = telemetry.armed;
         self.servo_rad = telemetry.servo_rad;
@@ -321,8 +328,11 @@ impl Observer {
             ghost: self.ghosts.at(t_ms).map(|truth| truth.pose),
         };
         let mut row = sample.row();
-        let untold = client.row_kind().into_iter().flat_map(terminal::untold);
-        untold.for_each(|name| row.set(name, f64::NAN));
+        let absent_signals = client
+            .row_kind()
+            .into_iter()
+            .flat_map(terminal::absent_signals);
+        absent_signals.for_each(|name| row.set(name, f64::NAN));
         self.samples.push(row);
     }
 
@@ -349,7 +359,7 @@ impl Observer {
         self.note(t_ms, level, text);
     }
 
-    /// Of a robot that starts again and again, a restart is reported once in a while.
+    /// Reports a restart, at most once in `RESTARTS_MS`.
     fn restarted(&mut self, hello: Hello, now_ms: i64) {
         if self
             .restart_ms
@@ -379,7 +389,7 @@ impl Observer {
 
     fn end_command(&mut self, ended: &Outcome, client: &mut RobotClient, now_ms: i64) {
         if matches!(ended.fate, Fate::Applied(_)) {
-            errand::applied(&mut self.errand, &ended.command, client.mode());
+            task::applied(&mut self.task, &ended.command, client.mode());
         }
         match (ended.command, ended.fate) {
             (Command::ResetPose, Fate::Applied(_)) => self.origin.settle(),
@@ -407,10 +417,10 @@ impl Observer {
         }
         let text = words::outcome(ended, client.mode());
         match (ended.command, ended.fate) {
-            // That a value was read is no event, nor each place of a route.
+            // Neither the reading of a value nor each waypoint of a route is an event.
             (Command::GetParam { .. } | Command::Waypoint(_), Fate::Applied(_)) => {}
             (_, Fate::Applied(_)) => self.note(now_ms, Level::Info, text),
-            // Said beside the parameter.
+            // Shown beside the parameter.
             (Command::GetParam { .. } | Command::SetParam { .. }, _) => {
                 self.note(now_ms, Level::Warning, text);
             }

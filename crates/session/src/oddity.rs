@@ -1,5 +1,5 @@
-//! Watches what the robot says for what no sound robot does, whatever the link loses or delays: a clock that runs
-//! back, jumps or runs at another speed, far too many frames, the same frames again.
+//! Watches the robot's messages for what no healthy robot does, whatever the link loses or delays: a clock that runs
+//! back, jumps or runs at another speed, far too many frames, repeated frames.
 //!
 //! A link only delays: two frames may arrive closer together than they were made, never with more of the robot's time
 //! between them than the wait for the first one explains, and a link that is silent for a second is lost, with which
@@ -28,7 +28,7 @@ const FRAMES_S: i64 = 100;
 /// Suspicions are judged after this long without a status \[us\].
 const PATIENCE_US: u64 = 3_000_000;
 
-/// What no sound robot does.
+/// What no healthy robot does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Oddity {
     /// Its clock ran back without a restart.
@@ -37,9 +37,9 @@ pub enum Oddity {
     ClockJump,
     /// Its clock runs much faster or slower than the station's.
     ClockSpeed,
-    /// It sends far more than it has to say.
+    /// It sends far too many frames.
     Flood,
-    /// It says again what it said before.
+    /// It repeats earlier frames.
     Repeats,
 }
 
@@ -84,7 +84,7 @@ struct Window {
     frames: i64,
 }
 
-/// Remembers what was said.
+/// Keeps what is needed to judge the next frames.
 #[derive(Debug, Default)]
 pub(crate) struct OddityWatch {
     /// The robot's time in milliseconds, going on where telemetry wraps, and when it arrived \[ms\].
@@ -101,7 +101,7 @@ pub(crate) struct OddityWatch {
 }
 
 impl OddityWatch {
-    /// The robot started again, or was lost: what it says from now on does not follow from what it said before.
+    /// The robot restarted, or was lost: its messages from now on do not follow from earlier ones.
     pub(crate) fn begin(&mut self) {
         *self = Self {
             seen_us: self.seen_us,
@@ -111,7 +111,7 @@ impl OddityWatch {
         };
     }
 
-    /// A frame arrived that answers nothing.
+    /// A frame arrived that is not an answer.
     pub(crate) fn frame(&mut self, now_us: u64) {
         if let Some(window) = &mut self.window {
             window.frames += 1;
@@ -204,7 +204,7 @@ impl OddityWatch {
         });
         let passed_ms = now_ms - window.began_ms;
         let lived_ms = robot_ms - window.robot_ms;
-        // What a delay held back comes at once: by the robot's time it is no more than usual.
+        // Frames held back by a delay arrive at once: by the robot's time they are no more than usual.
         let longer_ms = passed_ms.max(lived_ms);
         if window.frames > FRAMES_S
             && window.frames * 1_000 > FRAMES_S * longer_ms + 5_000 * FRAMES_S

@@ -1,4 +1,4 @@
-//! What a page may ask: JSON text to a checked order.
+//! Orders of a page: parses JSON text into a checked order.
 
 use rumbo_control::Wheels;
 use rumbo_control::mode::waypoints::{MAX_WAYPOINTS, Waypoint};
@@ -25,7 +25,7 @@ pub enum Order {
     Robot(Command),
     /// A movement that lasts while the page repeats it, as long as a key is held down.
     Hold(Command),
-    /// A route for the robot: the command that begins it and its places.
+    /// A route for the robot: the command that begins it and its waypoints.
     Route(Vec<Command>),
     /// A line for a USART of an emulated chip.
     Type(u8, String),
@@ -39,18 +39,18 @@ pub enum Order {
     Seek(f64),
     /// Show a log so many telemetry frames further on, or back.
     Step(i32),
-    /// Control for the page, whoever has it; the session need not know.
+    /// Take control for the page, even from another one; the session need not know.
     TakeControl,
-    /// The page lets go of control; the session need not know.
+    /// Release the page's control; the session need not know.
     ReleaseControl,
     /// Start the ghost again where the robot is.
     RestartGhost,
 }
 
-/// The orders as they are to be obeyed when STOP was pressed (`stop`): no older command to the robot comes after it.
+/// The orders to execute when STOP was pressed (`stop`): no older command to the robot comes after it.
 ///
 /// The flag is raised before STOP enters the queue, so a STOP that is not in `waiting` is newer than all that is.
-/// Of several resets only the last one counts: the others would be gone with it, and keep a STOP waiting.
+/// Of several resets only the last one counts: the others would only delay a STOP.
 pub fn stop_first(mut waiting: Vec<Order>, stop: bool) -> Vec<Order> {
     let is_reset = |order: &Order| matches!(order, Order::Reset(_));
     if let Some(last) = waiting.iter().rposition(is_reset) {
@@ -69,7 +69,7 @@ pub fn stop_first(mut waiting: Vec<Order>, stop: bool) -> Vec<Order> {
     [vec![Order::Robot(Command::Stop)], waiting, newer].concat()
 }
 
-/// Why a text is no order.
+/// Why a text is not an order.
 #[derive(Debug)]
 pub struct BadOrder(String);
 
@@ -156,7 +156,7 @@ enum Message {
     },
 }
 
-/// A place of a route, as it is written.
+/// A waypoint of a route, as it is written.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Place {
@@ -181,7 +181,7 @@ fn text_line(text: String) -> Result<String, BadOrder> {
 impl FromStr for Order {
     type Err = BadOrder;
 
-    /// The order in a page's text. A page that sends another one is not ours, and its connection is to be closed.
+    /// The order in a page's text. A page that sends anything else is not ours, and its connection is to be closed.
     fn from_str(text: &str) -> Result<Self, BadOrder> {
         let message: Message =
             serde_json::from_str(text).map_err(|error| BadOrder(error.to_string()))?;
@@ -302,7 +302,7 @@ fn waypoint(place: Place) -> Result<Command, BadOrder> {
     }))
 }
 
-/// Tells the robot which sonars it carries.
+/// The commands that set the robot's rig.
 fn rig_command(name: &str) -> Result<Command, BadOrder> {
     let rig = Rig::ALL.into_iter().find(|rig| rig.name() == name);
     let rig = rig.ok_or_else(|| {

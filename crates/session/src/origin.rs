@@ -1,12 +1,12 @@
-//! Where in the world the origin of the robot's pose lies, as well as can be known.
+//! The origin of the robot's odometry in the world, as well as it can be known.
 //!
-//! The origin moves: on command, and in mode 8 to each goal that is reached. Telemetry does not say so, but a pose that falls to
-//! zero faster than any robot drives does. With a simulated robot the truth then tells where the origin is; with a real one,
-//! it is where the robot believed to be just before. Between two moves, what the odometry gets wrong shows as the distance
-//! between the pose drawn from this origin and the robot.
+//! The origin moves on command, and in mode 8 to each goal reached. Telemetry does not report this; it shows as a pose
+//! that drops to zero faster than any robot drives. With a simulated robot the ground truth then gives the origin; with
+//! a real one it is the pose estimated just before. Between two moves, odometry error shows as the distance between the
+//! pose drawn from this origin and the robot.
 //!
-//! How far the pose may be off since is reckoned here too, from the poses told: the robot itself has no use for it. Derivation:
-//! docs/theory/odometry.md.
+//! The pose's uncertainty since then is also computed here, from the reported poses: the robot has no use for it.
+//! Derivation: docs/theory/odometry.md.
 
 use rumbo_control::Pose;
 use rumbo_control::odometry::{OdometryErrors, Piece, Uncertainty};
@@ -16,14 +16,14 @@ use rumbo_log::{MapPose, Spread, compose};
 const TOO_FAST_M_S: f64 = 1.5;
 /// Faster than it turns [rad/s].
 const TOO_FAST_RAD_S: f64 = 15.0;
-/// What telemetry's steps may add to a difference [m] or [rad].
+/// Largest quantisation of telemetry in a difference [m] or [rad].
 const STEP: f64 = 0.003;
 
 /// The origin, followed from pose to pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Origin {
     at: MapPose,
-    /// The pose last told and its time [ms].
+    /// The pose last reported and its time [ms].
     last: Option<(i64, Pose)>,
     uncertainty: Uncertainty,
 }
@@ -38,44 +38,48 @@ impl Origin {
     }
 
     /// A pose from the origin, in the world.
-    pub(crate) fn place(&self, told: MapPose) -> MapPose {
-        compose(self.at, told)
+    pub(crate) fn place(&self, estimated: MapPose) -> MapPose {
+        compose(self.at, estimated)
     }
 
-    /// Takes the pose told for `t_ms` by a robot whose lengths are known so well, and the true one if there is one; gives the origin's place
-    /// in the world.
+    /// Takes the pose reported for `t_ms`, the true pose where it is known, and the errors of the robot's dimensions;
+    /// returns the origin in the world.
     pub(crate) fn follow(
         &mut self,
         t_ms: i64,
-        told: Pose,
+        reported: Pose,
         truth: Option<MapPose>,
         errors: &OdometryErrors,
     ) -> MapPose {
-        if !(told.x_m + told.y_m + told.heading_rad).is_finite() {
+        if !(reported.x_m + reported.y_m + reported.heading_rad).is_finite() {
             return self.at;
         }
         if let Some((before_ms, before)) = self.last {
-            if has_moved((t_ms - before_ms) as f64 / 1e3, before.into(), told.into()) {
+            if has_moved(
+                (t_ms - before_ms) as f64 / 1e3,
+                before.into(),
+                reported.into(),
+            ) {
                 self.at = match truth {
-                    Some(truth) => compose(truth, inverse(told.into())),
+                    Some(truth) => compose(truth, inverse(reported.into())),
                     None => compose(self.at, before.into()),
                 };
                 self.settle();
             } else {
-                let piece = Piece::between(&before, &told, errors.base_m);
+                let piece = Piece::between(&before, &reported, errors.base_m);
                 self.uncertainty.advance(errors, &piece);
             }
         }
-        self.last = Some((t_ms, told));
+        self.last = Some((t_ms, reported));
         self.at
     }
 
-    /// The present place is the origin: for one that moves too little to be noticed.
+    /// Makes the present pose the origin, for moves too small to be detected.
     pub(crate) fn settle(&mut self) {
         self.uncertainty = Uncertainty::default();
     }
 
-    /// How far the pose told last may be off.
+    /// Uncertainty of the pose last reported.
     pub(crate) fn spread(&self, errors: &OdometryErrors) -> Spread {
         let [[xx, xy, _], [_, yy, _], [_, _, hh]] = self.uncertainty.covariance(errors);
         let [x_m, y_m, heading_rad] = [xx, yy, hh].map(|variance| variance.max(0.0).sqrt());
@@ -106,7 +110,7 @@ fn turn_rad(from_rad: f64, to_rad: f64) -> f64 {
     difference.sin().atan2(difference.cos()).abs()
 }
 
-/// The frame around `at`, as seen from there.
+/// The inverse transform of `at`.
 fn inverse(at: MapPose) -> MapPose {
     let (sin, cos) = at.heading_rad.sin_cos();
     MapPose {

@@ -8,7 +8,7 @@ const CATCH_UP_S: f64 = 0.1;
 /// How fast the target's time goes.
 #[derive(Debug)]
 pub struct Pace {
-    /// Seconds of the target asked for per second of the wall clock.
+    /// Requested seconds of the target per second of the wall clock.
     pub speed: f64,
     due_us: f64,
     last_us: Option<u64>,
@@ -46,13 +46,13 @@ impl Pace {
         }
     }
 
-    /// The target is to live for one more slice.
+    /// Whether the target is to advance by one more slice.
     #[must_use]
     pub fn slice_due(&self) -> bool {
         self.due_us >= SLICE_US as f64
     }
 
-    /// The target lived for a slice.
+    /// The target advanced by a slice.
     pub fn slice_lived(&mut self) {
         self.due_us -= SLICE_US as f64;
         self.lived_us += SLICE_US;

@@ -1,6 +1,6 @@
-//! What a page is sent: messages of JSON, over a WebSocket or to a page that runs beside the session.
+//! Messages to a page, in JSON, over a WebSocket or to a page that runs beside the session.
 
-use crate::board::{Heard, News};
+use crate::board::{Arrival, News};
 use crate::catalogue::{self, ModeEntry};
 use crate::console::ConsoleText;
 use crate::lease::View;
@@ -14,7 +14,7 @@ const ROWS_PER_MESSAGE: usize = 250;
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum ToPage<'a> {
-    /// First of all: what the rest is made of.
+    /// The first message: what the others refer to.
     Hello {
         /// Of Rumbo.
         version: &'static str,
@@ -40,12 +40,12 @@ pub enum ToPage<'a> {
         /// All of it.
         state: &'a State,
     },
-    /// Rows of signals; what the page has of another run is over.
+    /// Rows of signals; the page discards those of another run.
     Samples {
         /// Number of the run.
         run: u32,
         /// When the newest arrived.
-        heard: Heard,
+        heard: Arrival,
         /// In order of time.
         rows: Vec<Vec<Cell>>,
     },
@@ -129,7 +129,7 @@ impl News {
         let rows = self.samples.chunks(ROWS_PER_MESSAGE);
         let samples = rows.map(move |rows| ToPage::Samples {
             run,
-            heard: self.heard,
+            heard: self.received,
             rows: rows.iter().map(Row::cells).collect(),
         });
         scene

@@ -1,22 +1,23 @@
-//! The robot's clock in the station's time: `t_ms` wraps after 65.5 s, may start anywhere, and goes by a resonator of its own.
+//! The robot's clock in the station's time: `t_ms` wraps after 65.5 s, may start anywhere, and has its own resonator.
 //!
-//! Every frame says how far the two clocks are apart, plus its own way over the link. The frame that was on its way for the shortest time says it
-//! best, so the smallest difference within the last seconds counts; from it half the shortest round trip is taken off, which is about the way of
-//! that frame. The resonator of an Arduino may be wrong by 0.5 %: the difference drifts by up to 5 ms in a second, and is followed.
+//! Every frame gives the difference of the two clocks plus its delay on the link. The frame with the least delay is
+//! the most accurate, so the smallest difference of the last seconds counts, less half the shortest round trip, which
+//! is about the delay of that frame. The resonator of an Arduino may be off by 0.5 %: the difference drifts by up to 5
+//! ms per second, and is tracked.
 
 /// The smallest difference is of the last one to two windows of this length \[ms\].
 const WINDOW_MS: i64 = 2_000;
 /// The offset moves by so much with a frame at most, so that frames 40 ms apart keep their order \[ms\].
 const STEP_MS: i64 = 10;
-/// Drift is told after this long \[ms\].
+/// Drift is reported after this long \[ms\].
 const DRIFT_AFTER_MS: i64 = 10_000;
 
-/// How far the clocks are apart.
+/// The difference of the clocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Difference {
     /// Session time at the robot's time 0, as used now \[ms\].
     offset_ms: i64,
-    /// The smallest difference of the window before and of this one, the way included \[ms\].
+    /// The smallest difference of the window before and of this one, delay included \[ms\].
     before_ms: i64,
     now_ms: i64,
     window_began_ms: i64,
@@ -27,7 +28,7 @@ struct Difference {
 /// Turns the robot's wrapping milliseconds into the session's time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RobotClock {
-    /// The robot's clock started with the session: there is nothing to find out.
+    /// The robot's clock started with the session: there is nothing to estimate.
     known: bool,
     difference: Option<Difference>,
 }
@@ -69,7 +70,7 @@ impl RobotClock {
         self.difference.map(|difference| difference.offset_ms)
     }
 
-    /// By how much the robot's clock is fast, in millionths; `None` before that can be told.
+    /// By how much the robot's clock is fast, in millionths; `None` before that is known.
     pub(crate) fn fast_ppm(&self, now_ms: i64) -> Option<i64> {
         let difference = self.difference?;
         let (since_ms, smallest_ms) = difference.first?;
@@ -84,7 +85,7 @@ impl Difference {
         self.before_ms.min(self.now_ms)
     }
 
-    /// Takes in what a frame says.
+    /// Updates with the difference that a frame gives.
     fn measured(&mut self, difference_ms: i64, now_ms: i64, way_ms: i64) {
         if now_ms >= self.window_began_ms + WINDOW_MS {
             if self.now_ms != i64::MAX {
@@ -127,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_runs_already_is_placed_at_its_first_frame() {
+    fn a_robot_that_runs_already_is_synchronised_at_its_first_frame() {
         let mut clock = RobotClock::UNKNOWN;
         assert_eq!(clock.session_ms(65_530, 1_000, 0), 1_000);
         assert_eq!(clock.session_ms(34, 1_040, 0), 1_040);
@@ -135,8 +136,9 @@ mod tests {
         assert_eq!(clock.session_ms(10, 1_051, 0), 1_016);
     }
 
-    /// Frames of a robot whose clock is fast by some millionths and began 3,210 ms before the session, each 30 ms and up to 90 ms more on its way.
-    /// The worst error of its times after the first seconds \[ms\], the offset and the drift in the end.
+    /// Frames of a robot whose clock is fast by some millionths and started 3,210 ms before the session, each delayed
+    /// by 30 to 120 ms. Returns the worst error of the times after the first seconds \[ms\], the final offset and
+    /// drift.
     fn followed(fast_ppm: i64, minutes: i64) -> (i64, i64, i64) {
         let mut clock = RobotClock::UNKNOWN;
         let mut worst_ms = 0;
@@ -145,11 +147,11 @@ mod tests {
         for sent_ms in (0..end_ms).step_by(40) {
             let robot_ms = 3_210 + sent_ms + sent_ms * fast_ppm / 1_000_000;
             let late_ms = (sent_ms / 40 * 7_919) % 91;
-            let told_ms = clock.session_ms(low_word(robot_ms), sent_ms + 30 + late_ms, 30);
-            assert!(told_ms > last_ms, "{told_ms} after {last_ms}");
-            last_ms = told_ms;
+            let session_ms = clock.session_ms(low_word(robot_ms), sent_ms + 30 + late_ms, 30);
+            assert!(session_ms > last_ms, "{session_ms} after {last_ms}");
+            last_ms = session_ms;
             if sent_ms > 5_000 {
-                worst_ms = worst_ms.max((told_ms - sent_ms).abs());
+                worst_ms = worst_ms.max((session_ms - sent_ms).abs());
             }
         }
         let offset_ms = clock.offset_ms().unwrap();
@@ -159,9 +161,12 @@ mod tests {
     #[test]
     fn a_clock_that_is_wrong_by_half_a_percent_is_followed_within_25_ms() {
         for fast_ppm in [-5_000, -200, 0, 5_000] {
-            let (worst_ms, _, told_ppm) = followed(fast_ppm, 4);
+            let (worst_ms, _, measured_ppm) = followed(fast_ppm, 4);
             assert!(worst_ms <= 25, "{fast_ppm}: {worst_ms} ms");
-            assert!((told_ppm - fast_ppm).abs() <= 100, "{fast_ppm}: {told_ppm}");
+            assert!(
+                (measured_ppm - fast_ppm).abs() <= 100,
+                "{fast_ppm}: {measured_ppm}"
+            );
         }
         let (_, offset_ms, _) = followed(0, 1);
         assert!(

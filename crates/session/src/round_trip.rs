@@ -2,7 +2,7 @@
 
 /// Time-out before a round trip was measured \[us\]: two telemetry frames and the command at 9600 baud, doubled.
 pub(crate) const FIRST_TIMEOUT_US: u64 = 200_000;
-/// Shortest time-out \[us\]: a telemetry frame at 9600 baud lasts 31 ms and may be under way both before and in the answer.
+/// Shortest time-out \[us\]: a telemetry frame at 9600 baud lasts 31 ms, and one may precede both command and answer.
 const SHORTEST_TIMEOUT_US: u64 = 80_000;
 /// Longest time-out \[us\].
 pub(crate) const LONGEST_TIMEOUT_US: u64 = 1_000_000;

@@ -1,14 +1,14 @@
-//! The session: makes events of what arrives, and bytes of what is asked for.
+//! The session: turns received bytes into events, and orders into bytes.
 //!
-//! Whoever drives it calls, in this order and with both clocks: [`Session::order`] for each order, [`Session::let_go`];
+//! Its driver calls, in this order and with both clocks: [`Session::order`] for each order, [`Session::let_go`];
 //! for each slice of the target's time [`Session::observe`], [`Session::receive`] and [`Session::advance`]; then
 //! [`Session::update`]. After each call there may be bytes to send ([`Session::take_bytes`]) and events to publish
-//! ([`Session::take_events`]). Nothing waits for anything.
+//! ([`Session::take_events`]). Nothing blocks.
 
 mod calibrating;
 mod commanding;
 
-use crate::client::{Heard, KnownTable, RobotClient};
+use crate::client::{KnownTable, LinkEvent, RobotClient};
 use crate::event::Event;
 use crate::observer::Observer;
 use crate::observer::describe::{Around, describe};
@@ -19,7 +19,7 @@ use rumbo_control::mode::ModeId;
 use rumbo_log::{Burst, CalibrationState, Choice, Level, MapPose, State, Truth};
 use rumbo_wire::Command;
 
-/// The slow state is noted this often, and at once when it matters \[us\].
+/// The slow state is published this often, and at once when it matters \[us\].
 const STATE_PERIOD_US: u64 = 200_000;
 
 /// The time now.
@@ -27,7 +27,7 @@ const STATE_PERIOD_US: u64 = 200_000;
 pub struct Now {
     /// The target's: since its start or last reset \[us\].
     pub target_us: u64,
-    /// That of a person at the page, which also goes on while the target is paused: since any instant \[us\].
+    /// That of the operator, which also runs while the target is paused: since an arbitrary instant \[us\].
     pub wall_us: u64,
 }
 
@@ -37,10 +37,10 @@ impl Now {
     }
 }
 
-/// What is to be done with the target; what comes of it is reported to the session.
+/// A request to the target's driver; its result is reported to the session.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ask {
-    /// Let it live so many seconds per second of the wall clock.
+    /// Run it at so many seconds per second of the wall clock.
     Pace(f64),
     /// Start it again; then [`Session::restart`].
     Reset(Choice),
@@ -52,21 +52,21 @@ pub enum Ask {
     Calibrate,
 }
 
-/// What is seen of a target besides the bytes of its robot.
+/// What is known of a target besides the bytes of its robot.
 #[derive(Clone, Debug, Default)]
 pub struct Sight {
-    /// What is really the case.
+    /// Ground truth.
     pub truth: Option<Truth>,
-    /// Where the ghost is.
+    /// The ghost's pose.
     pub ghost: Option<MapPose>,
     /// What the USARTs of an emulated chip have sent.
     pub consoles: Vec<(u8, Vec<u8>)>,
 }
 
-/// How the target goes.
+/// The target's progress.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Going {
-    /// Seconds of its time asked for per second of the wall clock.
+    /// Requested seconds of its time per second of the wall clock.
     pub speed: f64,
     /// The same, measured.
     pub achieved_speed: f64,
@@ -82,24 +82,24 @@ pub struct Session {
     text: bool,
     client: RobotClient,
     observer: Observer,
-    /// When the calibration that drives the robot now began \[us\], and how the last one stands.
+    /// Start of the running calibration \[us\], and the state of the last one.
     calibrating: Option<u64>,
     calibration: Option<CalibrationState>,
     state_noted_us: Option<u64>,
-    /// The movement that a key holds, and until when without a word from the page \[us\].
+    /// The movement held by a key, and when it expires unless the page repeats it \[us\].
     held: Option<(Command, u64)>,
-    /// The robot has been sent what it begins with.
+    /// The robot has been sent its first commands.
     briefed: bool,
-    /// The port is waited for.
+    /// The port is gone and not back yet.
     port_gone: bool,
     link_watch: LinkWatch,
-    heard: Vec<Heard>,
+    link_events: Vec<LinkEvent>,
     to_robot: Vec<u8>,
 }
 
 impl Session {
-    /// A session that has not begun yet. `id` is to be random; with `text` the robot is spoken to in the original's
-    /// text from the beginning.
+    /// A session that has not begun yet. `id` is to be random; with `text` the robot is addressed in text from the
+    /// beginning.
     #[must_use]
     pub fn new(about: About, id: u8, text: bool) -> Self {
         let mut session = Self {
@@ -114,14 +114,14 @@ impl Session {
             briefed: false,
             port_gone: false,
             link_watch: LinkWatch::default(),
-            heard: Vec::new(),
+            link_events: Vec::new(),
             to_robot: Vec::new(),
         };
         session.show_scene();
         session
     }
 
-    /// The target was reset, or refused to be: a new run begins, with another random `id`, or nothing has changed.
+    /// The target was reset, or refused it: a new run begins, with another random `id`, or nothing has changed.
     pub fn restart(&mut self, choice: &Choice, done: Result<About, String>, id: u8, now: Now) {
         let about = match done {
             Ok(about) => about,
@@ -129,7 +129,7 @@ impl Session {
         };
         self.client = new_client(&about, id, self.text);
         self.about = about;
-        self.heard.clear();
+        self.link_events.clear();
         self.to_robot.clear();
         self.held = None;
         self.calibration = None;
@@ -151,7 +151,7 @@ impl Session {
         self.note(Level::Info, text, now);
     }
 
-    /// Obeys an order of the page; gives what is to be done with the target for it.
+    /// Executes an order of the page; returns the request to the target, if any.
     pub fn order(&mut self, order: Order, now: Now) -> Option<Ask> {
         if self.is_taken(&order, now) {
             return None;
@@ -192,7 +192,7 @@ impl Session {
         None
     }
 
-    /// Takes in what is seen of the target now.
+    /// Takes what is known of the target now.
     pub fn observe(&mut self, sight: Sight, now: Now) {
         if let Some(pose) = sight.ghost {
             self.observer.ghost(now.target_ms(), pose);
@@ -203,16 +203,17 @@ impl Session {
         self.observer.consoles(now.target_us, sight.consoles);
     }
 
-    /// Takes in what arrived from the robot.
+    /// Takes the bytes received from the robot.
     pub fn receive(&mut self, bytes: &[u8], now: Now) {
         self.note_bytes(bytes, false, now);
         if self.about.abilities.port && self.client.speaks_text() {
             self.observer.said_in_text(bytes);
         }
-        self.client.hear(bytes, now.target_us, &mut self.heard);
+        self.client
+            .receive(bytes, now.target_us, &mut self.link_events);
     }
 
-    /// Time has passed: says what is due, and makes events of what was heard.
+    /// Time has passed: queues the bytes due, and turns link events into events.
     pub fn advance(&mut self, now: Now) {
         self.say(now);
         self.digest(now);
@@ -242,7 +243,7 @@ impl Session {
         self.note(level, text, now);
     }
 
-    /// Gives out the samples, and the state if it is due.
+    /// Publishes the samples, and the state if it is due.
     pub fn update(&mut self, going: Going, now: Now) {
         self.digest(now);
         self.watch_link(now);
@@ -255,7 +256,7 @@ impl Session {
         }
     }
 
-    /// Says something to the person at the page.
+    /// Shows a message on the page.
     pub fn note(&mut self, level: Level, text: String, now: Now) {
         self.observer.note(now.target_ms(), level, text);
     }
@@ -272,7 +273,8 @@ impl Session {
 
     fn say(&mut self, now: Now) {
         let mut bytes = Vec::new();
-        self.client.poll(now.target_us, &mut bytes, &mut self.heard);
+        self.client
+            .poll(now.target_us, &mut bytes, &mut self.link_events);
         self.send(&bytes, now);
     }
 
@@ -293,14 +295,14 @@ impl Session {
 
     fn digest(&mut self, now: Now) {
         self.observer
-            .digest(&mut self.heard, &mut self.client, now.target_ms());
+            .digest(&mut self.link_events, &mut self.client, now.target_ms());
     }
 
     fn show_scene(&mut self) {
         self.observer.show_scene(self.about.scene.clone());
     }
 
-    /// Says what is wrong with a port's link.
+    /// Reports trouble on a port's link.
     fn watch_link(&mut self, now: Now) {
         if !self.about.abilities.port || self.client.other_protocol().is_some() {
             return;

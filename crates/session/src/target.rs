@@ -1,9 +1,8 @@
-//! What a session is with: a robot behind a byte link, simulated, emulated or real, or a log of one.
+//! The other end of a session: a robot behind a byte link, simulated, emulated or real, or a log of one.
 //!
-//! A [`Target`] lives in its own time. Whoever drives the session lets it live for a while ([`Target::advance`]), hands
-//! it the bytes for the robot and takes the bytes that came back. What it can do besides it says itself
-//! ([`Target::abilities`]); what is known of a robot beyond those bytes goes to the eyes only: commands and
-//! measurements take the link.
+//! A [`Target`] has its own time. The driver of the session advances it ([`Target::advance`]), hands it the bytes for
+//! the robot and takes the bytes that came back. It reports its other abilities itself ([`Target::abilities`]). What is
+//! known of a robot beyond those bytes is only displayed: commands and measurements take the link.
 
 use rumbo_control::Fault;
 use rumbo_control::mode::ModeId;
@@ -13,13 +12,13 @@ use rumbo_wire::Command;
 /// What can be done with a target besides speaking to its robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Abilities {
-    /// Its time goes as fast as is asked for, or not at all; otherwise it is that of the wall clock.
+    /// Its time runs at the requested speed, or is paused; otherwise it is that of the wall clock.
     pub pace: bool,
-    /// It starts again with another scenario, world, rig or seed ([`Target::reset`]).
+    /// It can restart with another scenario, world, rig or seed ([`Target::reset`]).
     pub reset: bool,
     /// The robot's clock starts with the target's.
     pub clock: bool,
-    /// The robot is at a port, where bytes are lost, make no sense or are too many: that is watched.
+    /// The robot is at a port, where bytes may be lost, undecodable or too many: that is watched.
     pub port: bool,
     /// Lines can be typed to its USARTs ([`Target::type_in`]).
     pub typing: bool,
@@ -41,21 +40,21 @@ impl Default for Abilities {
     }
 }
 
-/// What a session is to know of its target, from its start or reset on.
+/// The properties of a target, constant from its start or reset.
 #[derive(Clone, Debug, Default)]
 pub struct About {
     /// What can be done with it.
     pub abilities: Abilities,
     /// Speed of the link \[baud\].
     pub baud: u32,
-    /// What a robot that has just started is sent first.
+    /// Commands sent first to a robot that has just started.
     pub first_commands: Vec<Command>,
     /// What surrounds the robot, or the ghost.
     pub scene: Option<Scene>,
 }
 
 impl About {
-    /// What a target says of itself.
+    /// The properties of this target.
     pub fn of(target: &dyn Target) -> Self {
         Self {
             abilities: target.abilities(),
@@ -68,16 +67,16 @@ impl About {
 
 /// A robot at the other end of a byte link.
 pub trait Target: Send {
-    /// Time the target has lived since its start or last reset \[us\].
+    /// The target's time since its start or last reset \[us\].
     fn now_us(&self) -> u64;
 
-    /// Lets the target live for `dt_us` more. A real port has lived by itself and only updates its clock.
+    /// Advances the target by `dt_us`. A real port runs by itself and only updates its clock.
     ///
     /// # Errors
     /// When the target is gone for good; the message says what, where and the remedy.
     fn advance(&mut self, dt_us: u64) -> Result<(), String>;
 
-    /// Hands over bytes for the robot. They are queued at the sending end of the link, in order.
+    /// Queues bytes for the robot at the sending end of the link, in order.
     ///
     /// # Errors
     /// When the target is gone for good; the message says what, where and the remedy.
@@ -94,28 +93,28 @@ pub trait Target: Send {
         Abilities::default()
     }
 
-    /// What runs, for the log. When it began is put in by whoever records.
+    /// What runs, for the log. The recorder adds the start time.
     fn manifest(&self) -> Manifest {
         Manifest::default()
     }
 
-    /// What has happened to it since it was last asked, oldest first.
+    /// What has happened to it since the last call, oldest first.
     fn news(&mut self) -> Option<LinkNews> {
         None
     }
 
-    /// What is really the case now, where that is known.
+    /// The ground truth now, where it is known.
     fn truth(&self) -> Option<Truth> {
         None
     }
 
-    /// What surrounds the robot, or the ghost and so should surround the robot, and what could be chosen instead;
-    /// constant between resets.
+    /// The robot's surroundings (or those of its ghost, in which the robot should be), and the alternatives to choose
+    /// from; constant between resets.
     fn scene(&self) -> Option<Scene> {
         None
     }
 
-    /// What a robot that has just started is sent first: the mode and the setpoints of the experiment. Never to arm.
+    /// Commands sent first to a robot that has just started: the mode and the setpoints of the experiment, never ON.
     fn first_commands(&self) -> Vec<Command> {
         Vec::new()
     }
@@ -128,7 +127,7 @@ pub trait Target: Send {
     /// Sends a line that a person typed to a USART.
     ///
     /// # Errors
-    /// There is no such chip.
+    /// If there is no such chip.
     fn type_in(&mut self, _usart: u8, _line: &str) -> Result<(), String> {
         Err("this robot takes no lines of text from here".into())
     }
@@ -141,15 +140,15 @@ pub trait Target: Send {
         Err("this is a real robot".into())
     }
 
-    /// Where a simulated robot is that got the same bytes, in the world of [`Target::scene`].
+    /// Pose of a simulated robot that received the same bytes, in the world of [`Target::scene`].
     fn ghost(&self) -> Option<MapPose> {
         None
     }
 
-    /// Puts the ghost where the robot is, from where it goes on by itself.
+    /// Moves the ghost to the robot's pose, from where it continues by itself.
     ///
     /// # Errors
-    /// There is no ghost.
+    /// If there is no ghost.
     fn restart_ghost(&mut self, _at: Standing) -> Result<(), String> {
         Err("there is none; start with --ghost".into())
     }
@@ -158,41 +157,41 @@ pub trait Target: Send {
 /// What happens to a target, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkNews {
-    /// The port is gone; it is waited for.
+    /// The port is gone; it is reopened when it is back.
     Lost(String),
     /// The port is back.
     Back(String),
     /// The ghost beside the robot has stopped by itself, and why.
     GhostFault(Fault),
-    /// A program was held or let go from outside: by a debugger.
+    /// A debugger halted or resumed a program.
     Held(String),
     /// A program cannot go on, and why.
     Ended(String),
 }
 
-/// Where a robot stands.
+/// A robot's pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Standing {
     /// In the world, as well as it is known.
     pub at: MapPose,
-    /// From its origin, as it believes.
-    pub told: MapPose,
+    /// Relative to its origin, as it estimates.
+    pub estimated: MapPose,
 }
 
-/// The ghost of a log: a simulated robot that gets the bytes that went to the robot then.
+/// The ghost of a log: a simulated robot that receives the bytes recorded for the robot.
 pub trait Ghost: Send {
-    /// A new one, at time 0.
+    /// Restarts at time 0.
     ///
     /// # Errors
-    /// What keeps it from beginning.
+    /// Why it cannot start.
     fn begin(&mut self) -> Result<(), String>;
 
-    /// Lives on to this instant \[us\]; where it is then.
+    /// Advances to this instant \[us\]; returns the pose there.
     ///
     /// # Errors
-    /// What keeps it from living.
-    fn live(&mut self, until_us: u64) -> Result<MapPose, String>;
+    /// Why it cannot go on.
+    fn advance_to(&mut self, until_us: u64) -> Result<MapPose, String>;
 
-    /// Stands here now.
+    /// Moves it to this pose.
     fn place(&mut self, standing: Standing);
 }

@@ -1,29 +1,29 @@
 //! The link to a robot that speaks the original's text: commands become lines, rows of telemetry become frames.
 //!
-//! Lines are sent once and not acknowledged; what the robot makes of them its rows tell. Whether it is armed no row says: it is what
-//! was last ordered. A robot of that program is silent until its first ON, and takes bytes of frames for the beginning of a line: a line
-//! that follows frames is sent after a line's end.
+//! Lines are sent once and not acknowledged; their effect shows in the rows. No row says whether the robot is armed:
+//! the last order is assumed. A robot with that program is silent until its first ON, and takes bytes of frames for the
+//! beginning of a line, so a line that follows frames is sent after a line end.
 
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_wire::text::{self, RAD_PER_DEG, RAD_S_PER_RPM, Row, RowKind, TextCommand};
 use rumbo_wire::{Command, Telemetry};
 
-/// A line longer than this is none.
+/// Longest line.
 const LONGEST: usize = 256;
-/// A row that its own clock puts this much before its arrival was not late, the clock was stopped \[ms\].
+/// A row that its own clock dates more than this before its arrival was not late: the clock was stopped \[ms\].
 const LATEST_MS: i64 = 300;
 
-/// What a row told.
+/// The contents of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Told {
-    /// When the row was made, in the session's time \[ms\].
+pub(crate) struct ParsedRow {
+    /// Time of the row, in the session's time \[ms\].
     pub(crate) t_ms: i64,
     pub(crate) telemetry: Telemetry,
     pub(crate) mode: Option<ModeId>,
     /// The mode's reference, where the row has it; units as in [`rumbo_wire::Status::reference`].
     pub(crate) reference: Option<Wheels<f32>>,
-    /// The heading that the mode wants, where the row has it \[rad\].
+    /// The mode's heading setpoint, where the row has it \[rad\].
     pub(crate) heading_ref_rad: Option<f32>,
     pub(crate) kind: RowKind,
 }
@@ -39,7 +39,7 @@ pub(crate) struct Terminal {
     waiting: Vec<u8>,
     /// Frames were sent since the last line.
     frames_sent: bool,
-    /// Each wheel was given a reference of its own, of which rows tell one.
+    /// The wheels were given separate references, of which rows carry only one.
     apart: bool,
 }
 
@@ -65,7 +65,7 @@ impl Terminal {
         self.armed
     }
 
-    /// The command in words, to be sent; false if there are none.
+    /// Queues the command as text; false if text has no words for it.
     pub(crate) fn submit(&mut self, command: &Command, mode: ModeId) -> bool {
         let lines = text::lines_of(command, mode);
         for line in lines.iter().flatten() {
@@ -105,18 +105,18 @@ impl Terminal {
         self.waiting.push(b'\n');
     }
 
-    /// Nothing that waits is sent any more.
+    /// Discards the lines not sent yet.
     pub(crate) fn forget(&mut self) {
         self.waiting.clear();
     }
 
-    /// Appends what is to be sent now.
+    /// Appends the bytes to be sent now.
     pub(crate) fn poll(&mut self, to_robot: &mut Vec<u8>) {
         to_robot.append(&mut self.waiting);
     }
 
-    /// Takes a byte from the robot; gives the row that it ends.
-    pub(crate) fn hear(&mut self, byte: u8, now_ms: i64) -> Option<Told> {
+    /// Takes a byte from the robot; returns the row that it completes.
+    pub(crate) fn receive(&mut self, byte: u8, now_ms: i64) -> Option<ParsedRow> {
         if byte != b'\n' {
             if self.line.len() < LONGEST {
                 self.line.push(byte);
@@ -126,8 +126,8 @@ impl Terminal {
         let line = std::mem::take(&mut self.line);
         let row = Row::parse(str::from_utf8(&line).ok()?.trim()).ok()?;
         let t_ms = self.made_ms(row.dt_ms(), now_ms);
-        let (reference, heading_ref_rad) = self.wanted(&row);
-        Some(Told {
+        let (reference, heading_ref_rad) = self.setpoints(&row);
+        Some(ParsedRow {
             t_ms,
             telemetry: row.telemetry((t_ms & 0xffff) as u16, self.armed),
             mode: row.mode().and_then(ModeId::from_number).or(match row {
@@ -141,18 +141,18 @@ impl Terminal {
         })
     }
 
-    /// A row says how long after the one before it was made. The row that was on its way for the shortest time sets the clock.
+    /// Time of a row, from its interval to the one before. The row with the shortest delay on the link sets the clock.
     fn made_ms(&mut self, dt_ms: u32, now_ms: i64) -> i64 {
-        let told_ms = self.last_ms.map(|last_ms| last_ms + i64::from(dt_ms));
-        let t_ms = told_ms
+        let row_ms = self.last_ms.map(|last_ms| last_ms + i64::from(dt_ms));
+        let t_ms = row_ms
             .filter(|t_ms| (now_ms - LATEST_MS..=now_ms).contains(t_ms))
             .unwrap_or(now_ms);
         self.last_ms = Some(t_ms);
         t_ms
     }
 
-    /// The mode's reference and heading that the row tells.
-    fn wanted(&self, row: &Row) -> (Option<Wheels<f32>>, Option<f32>) {
+    /// The mode's reference and heading setpoint in the row.
+    fn setpoints(&self, row: &Row) -> (Option<Wheels<f32>>, Option<f32>) {
         match row {
             Row::Distance(row) => (Some(Wheels::both(row.reference_cm / text::CM_PER_M)), None),
             Row::Speed(_) if self.apart => (None, None),
@@ -169,8 +169,8 @@ impl Terminal {
     }
 }
 
-/// Signals of which a row of this kind says nothing.
-pub(crate) fn untold(kind: RowKind) -> impl Iterator<Item = &'static str> {
+/// Signals absent from a row of this kind.
+pub(crate) fn absent_signals(kind: RowKind) -> impl Iterator<Item = &'static str> {
     const POSE: &[&str] = &[
         "x_m",
         "y_m",
@@ -192,7 +192,7 @@ pub(crate) fn untold(kind: RowKind) -> impl Iterator<Item = &'static str> {
     const HEADING: &[&str] = &["heading_ref_rad"];
     const PWM: &[&str] = &["left_pwm", "right_pwm"];
     const ALWAYS: &[&str] = &["servo_rad", "faulted"];
-    let untold: &[&[&str]] = match kind {
+    let groups: &[&[&str]] = match kind {
         RowKind::Distance => &[
             POSE,
             ORIGIN,
@@ -206,7 +206,7 @@ pub(crate) fn untold(kind: RowKind) -> impl Iterator<Item = &'static str> {
         RowKind::Waypoints => &[STATE, HEADING, ALWAYS],
         RowKind::Mission => &[SPEEDS, PWM, ALWAYS],
     };
-    untold.iter().copied().flatten().copied()
+    groups.iter().copied().flatten().copied()
 }
 
 #[cfg(test)]
@@ -214,47 +214,47 @@ mod tests {
     use super::*;
     use rumbo_log::Row as Signals;
 
-    fn hear(terminal: &mut Terminal, bytes: &[u8], now_ms: i64) -> Vec<Told> {
-        let told = bytes.iter().map(|byte| terminal.hear(*byte, now_ms));
-        told.flatten().collect()
+    fn rows_in(terminal: &mut Terminal, bytes: &[u8], now_ms: i64) -> Vec<ParsedRow> {
+        let rows = bytes.iter().map(|byte| terminal.receive(*byte, now_ms));
+        rows.flatten().collect()
     }
 
     #[test]
-    fn a_row_becomes_a_frame_and_names_its_mode_and_reference() {
+    fn a_row_becomes_a_frame_with_its_mode_and_reference() {
         let mut terminal = Terminal::new();
         let bytes = b"garbage\r\n68, 106.16, 88.00, 30, 1, 115, -20\r\n";
-        let [told] = hear(&mut terminal, bytes, 68)[..] else {
+        let [row] = rows_in(&mut terminal, bytes, 68)[..] else {
             panic!("not one row")
         };
-        assert_eq!(told.mode, Some(ModeId::FrontDistance));
-        assert_eq!(told.reference, Some(Wheels::both(0.3)));
-        assert_eq!(told.telemetry.duty.left.counts(), -20);
+        assert_eq!(row.mode, Some(ModeId::FrontDistance));
+        assert_eq!(row.reference, Some(Wheels::both(0.3)));
+        assert_eq!(row.telemetry.duty.left.counts(), -20);
         let mission = b"90, 50, 50, -45, 1.5, 0.5, 0.2, 0, 3, 3, 88, 90, 106\n";
-        let [told] = hear(&mut terminal, mission, 200)[..] else {
+        let [row] = rows_in(&mut terminal, mission, 200)[..] else {
             panic!("not one row")
         };
-        assert_eq!(told.mode, Some(ModeId::Mission));
+        assert_eq!(row.mode, Some(ModeId::Mission));
         let goal = Wheels {
             left: 1.5,
             right: 0.5,
         };
-        assert_eq!(told.reference, Some(goal));
+        assert_eq!(row.reference, Some(goal));
     }
 
     #[test]
     fn rows_that_arrive_together_keep_the_time_between_them() {
         let mut terminal = Terminal::new();
         let row = b"50, 20, 20, 40, 5, 115, 120\n";
-        assert_eq!(hear(&mut terminal, row, 1_000)[0].t_ms, 1_000);
+        assert_eq!(rows_in(&mut terminal, row, 1_000)[0].t_ms, 1_000);
         let two = [&row[..], row].concat();
-        let times: Vec<i64> = hear(&mut terminal, &two, 1_110)
+        let times: Vec<i64> = rows_in(&mut terminal, &two, 1_110)
             .iter()
-            .map(|told| told.t_ms)
+            .map(|row| row.t_ms)
             .collect();
         assert_eq!(times, [1_050, 1_100]);
-        // One that would be of the future, and one after a pause that its period does not tell.
-        assert_eq!(hear(&mut terminal, row, 1_120)[0].t_ms, 1_120);
-        assert_eq!(hear(&mut terminal, row, 9_000)[0].t_ms, 9_000);
+        // One that would lie in the future, and one after a pause that its interval does not include.
+        assert_eq!(rows_in(&mut terminal, row, 1_120)[0].t_ms, 1_120);
+        assert_eq!(rows_in(&mut terminal, row, 9_000)[0].t_ms, 9_000);
     }
 
     #[test]
@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_that_the_robot_took_for_a_line_are_ended_before_the_first_command() {
+    fn a_line_begun_by_frames_is_ended_before_the_first_command() {
         let mut terminal = Terminal::new();
         terminal.frames_sent();
         terminal.type_in("PID A 1 0.001 0");
@@ -281,9 +281,9 @@ mod tests {
     }
 
     #[test]
-    fn every_signal_that_is_called_untold_is_one() {
+    fn every_absent_signal_has_a_column() {
         for kind in RowKind::ALL {
-            assert!(untold(kind).all(|name| Signals::column(name).is_some()));
+            assert!(absent_signals(kind).all(|name| Signals::column(name).is_some()));
         }
     }
 }

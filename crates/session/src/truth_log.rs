@@ -1,9 +1,9 @@
-//! What was the case lately: telemetry arrives later than it happened.
+//! Recent ground truth: telemetry arrives later than its time.
 
 use rumbo_log::Truth;
 use std::collections::VecDeque;
 
-/// The truth of the last second: telemetry arrives later than it happened.
+/// Ground truth of the last second.
 #[derive(Debug, Default)]
 pub(crate) struct TruthLog {
     entries: VecDeque<(i64, Truth)>,
@@ -13,7 +13,7 @@ pub(crate) struct TruthLog {
 const LOG_MS: i64 = 1_000;
 
 impl TruthLog {
-    /// Notes what is the case at `t_ms`.
+    /// Notes the ground truth at `t_ms`.
     pub(crate) fn push(&mut self, t_ms: i64, truth: Truth) {
         self.entries.push_back((t_ms, truth));
         while self
@@ -25,7 +25,7 @@ impl TruthLog {
         }
     }
 
-    /// What was noted last at or before `t_ms`, or the oldest entry.
+    /// The last entry at or before `t_ms`, or the oldest.
     pub(crate) fn at(&self, t_ms: i64) -> Option<Truth> {
         let after = self
             .entries

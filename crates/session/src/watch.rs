@@ -1,16 +1,16 @@
-//! Watches the link for what a person should know, and says it once in a while: bytes that make no sense, a link that is full, a noisy one.
+//! Watches the link and reports trouble, at limited intervals: undecodable bytes, a full link, a noisy one.
 
 use crate::client::LinkFigures;
 
 /// Speed of the robot's Bluetooth module \[baud\].
 pub const DEFAULT_BAUD: u32 = 9_600;
-/// The same thing is not said again within this time \[us\].
+/// The same trouble is not reported again within this time \[us\].
 const AGAIN_US: u64 = 30_000_000;
-/// Bytes that make no sense are told of after this many.
+/// Undecodable bytes are reported after this many.
 const NONSENSE_BYTES: u64 = 100;
-/// More damaged frames within [`NOISE_US`] are told of.
+/// More damaged frames than this within [`NOISE_US`] are reported.
 const NOISE_FRAMES: u16 = 10;
-/// \[us\].
+/// Window in which damaged frames are counted \[us\].
 const NOISE_US: u64 = 10_000_000;
 /// Bytes a second that the robot needs for full telemetry: 25 frames of at most 30 bytes.
 const TELEMETRY_BYTES_S: u32 = 25 * 30;
@@ -19,10 +19,10 @@ const TELEMETRY_HZ: u32 = 25;
 /// Bytes a second that go to the robot for the heartbeat alone: at most 7 bytes, every 150 ms.
 const HEARTBEAT_BYTES_S: u32 = 47;
 
-/// What a link of this speed cannot do.
+/// The limitation of a link of this speed, if any.
 ///
 /// # Errors
-/// If not even heartbeats fit, so that the robot would stop again and again; what to do.
+/// If not even heartbeats fit, so that the robot would stop again and again; the message says what to do.
 pub fn check_baud(baud: u32) -> Result<Option<String>, String> {
     // Ten bits to a byte.
     let bytes_s = baud / 10;
@@ -42,7 +42,7 @@ pub fn check_baud(baud: u32) -> Result<Option<String>, String> {
     }))
 }
 
-/// What is told.
+/// The kinds of trouble.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cause {
     Nonsense,
@@ -50,17 +50,18 @@ enum Cause {
     Noise,
 }
 
-/// Remembers what was told, and what the figures were.
+/// Keeps the times of the reports and the earlier figures.
 #[derive(Debug, Default)]
 pub(crate) struct LinkWatch {
-    told: [Option<u64>; 3],
+    reported: [Option<u64>; 3],
     noise_from: Option<(u64, u16)>,
     dropped: Option<u8>,
     nonsense_from: Option<u64>,
 }
 
 impl LinkWatch {
-    /// Takes in the figures; gives what is to be told. `dropped` telemetry frames were left out by the robot so far, wrapping.
+    /// Takes the figures; returns the trouble to report. `dropped`: telemetry frames left out by the robot so far,
+    /// wrapping.
     pub(crate) fn look(
         &mut self,
         now_us: u64,
@@ -69,20 +70,20 @@ impl LinkWatch {
         dropped: u8,
         baud: u32,
     ) -> Option<String> {
-        let nonsense = self.nonsense(connected, link.heard_bytes);
+        let nonsense = self.nonsense(connected, link.received_bytes);
         let left_out = self.left_out(dropped);
         let noise = self.noise(now_us, link.crc_errors);
-        if nonsense && self.may_tell(Cause::Nonsense, now_us) {
+        if nonsense && self.is_due(Cause::Nonsense, now_us) {
             return Some(format!(
                 "bytes arrive that are neither frames nor rows of text: is {baud} baud the robot's speed? --baud sets it"
             ));
         }
-        if left_out > 0 && self.may_tell(Cause::Full, now_us) {
+        if left_out > 0 && self.is_due(Cause::Full, now_us) {
             return Some(format!(
                 "the link is full: the robot left out {left_out} telemetry frames"
             ));
         }
-        if noise > NOISE_FRAMES && connected && self.may_tell(Cause::Noise, now_us) {
+        if noise > NOISE_FRAMES && connected && self.is_due(Cause::Noise, now_us) {
             return Some(format!(
                 "the link is disturbed: {noise} damaged frames within 10 s; come nearer, or check the cable"
             ));
@@ -90,23 +91,23 @@ impl LinkWatch {
         None
     }
 
-    /// Many bytes came since the robot was last understood.
-    fn nonsense(&mut self, connected: bool, heard_bytes: u64) -> bool {
+    /// Whether many bytes arrived since the robot was last connected.
+    fn nonsense(&mut self, connected: bool, received_bytes: u64) -> bool {
         if connected {
             self.nonsense_from = None;
             return false;
         }
-        let from = *self.nonsense_from.get_or_insert(heard_bytes);
-        heard_bytes.saturating_sub(from) > NONSENSE_BYTES
+        let from = *self.nonsense_from.get_or_insert(received_bytes);
+        received_bytes.saturating_sub(from) > NONSENSE_BYTES
     }
 
-    /// Telemetry frames that the robot has left out since the last look.
+    /// Telemetry frames that the robot has left out since the last call.
     fn left_out(&mut self, dropped: u8) -> u8 {
         let before = self.dropped.replace(dropped).unwrap_or(dropped);
         dropped.wrapping_sub(before)
     }
 
-    /// Damaged frames since some seconds ago.
+    /// Damaged frames in the present window.
     fn noise(&mut self, now_us: u64, crc_errors: u16) -> u16 {
         let (from_us, from) = *self.noise_from.get_or_insert((now_us, crc_errors));
         if now_us >= from_us + NOISE_US {
@@ -115,13 +116,13 @@ impl LinkWatch {
         crc_errors.wrapping_sub(from)
     }
 
-    fn may_tell(&mut self, cause: Cause, now_us: u64) -> bool {
-        let told = &mut self.told[cause as usize];
-        let may = told.is_none_or(|told_us| now_us >= told_us + AGAIN_US);
-        if may {
-            *told = Some(now_us);
+    fn is_due(&mut self, cause: Cause, now_us: u64) -> bool {
+        let reported = &mut self.reported[cause as usize];
+        let due = reported.is_none_or(|reported_us| now_us >= reported_us + AGAIN_US);
+        if due {
+            *reported = Some(now_us);
         }
-        may
+        due
     }
 }
 
@@ -141,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn the_heartbeat_is_as_long_as_is_reckoned() {
+    fn the_heartbeat_is_no_longer_than_assumed() {
         use rumbo_wire::{Message, ToRobot};
         let longest = (0..16)
             .map(|seq| ToRobot::Heartbeat.frame(seq).bytes().len())
@@ -153,10 +154,10 @@ mod tests {
     }
 
     #[test]
-    fn each_trouble_is_told_once_in_a_while() {
+    fn each_trouble_is_reported_at_limited_intervals() {
         let mut watch = LinkWatch::default();
-        let figures = |heard_bytes, crc_errors| LinkFigures {
-            heard_bytes,
+        let figures = |received_bytes, crc_errors| LinkFigures {
+            received_bytes,
             crc_errors,
             ..LinkFigures::default()
         };

@@ -113,7 +113,7 @@ pub(crate) fn outcome(outcome: &Outcome, mode: ModeId) -> String {
 pub(crate) const STOP_UNCONFIRMED: &str =
     "ALARM: the robot does not confirm STOP; switch off its battery";
 
-/// What no sound robot does.
+/// An alarm about an oddity.
 pub(crate) fn alarm(oddity: Oddity) -> String {
     format!("ALARM: {}", oddity.explanation())
 }

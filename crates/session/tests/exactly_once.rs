@@ -5,7 +5,7 @@ mod support;
 
 use proptest::prelude::*;
 use rumbo_session::Target;
-use rumbo_session::client::{Heard, KnownTable, RobotClient};
+use rumbo_session::client::{KnownTable, LinkEvent, RobotClient};
 use rumbo_session::commands::Fate;
 use rumbo_wire::Command;
 use support::Toy;
@@ -15,20 +15,20 @@ const STEP_US: u64 = 5_000;
 /// No parameters are read, so that every command is the test's.
 const NO_TABLE: KnownTable = KnownTable { schema: 0, len: 0 };
 
-/// Lets both live for one step; `lose` says which bytes of each direction are lost.
+/// Advances both by one step; `lose` says which bytes of each direction are lost.
 fn step(
     client: &mut RobotClient,
     toy: &mut Toy,
     lose: &mut impl FnMut() -> bool,
-    heard: &mut Vec<Heard>,
+    events: &mut Vec<LinkEvent>,
 ) {
     toy.advance(STEP_US).unwrap();
     let mut from_robot = Vec::new();
     toy.receive(&mut from_robot);
     from_robot.retain(|_| !lose());
-    client.hear(&from_robot, toy.now_us(), heard);
+    client.receive(&from_robot, toy.now_us(), events);
     let mut to_robot = Vec::new();
-    client.poll(toy.now_us(), &mut to_robot, heard);
+    client.poll(toy.now_us(), &mut to_robot, events);
     to_robot.retain(|_| !lose());
     toy.send(&to_robot).unwrap();
 }
@@ -45,9 +45,9 @@ proptest! {
         };
         let mut toy = Toy::default();
         let mut client = RobotClient::new(3, true, NO_TABLE);
-        let (mut heard, mut asked) = (Vec::new(), Vec::new());
+        let (mut events, mut asked) = (Vec::new(), Vec::new());
         while asked.len() < 20 && toy.now_us() < 200_000_000 {
-            step(&mut client, &mut toy, &mut lose, &mut heard);
+            step(&mut client, &mut toy, &mut lose, &mut events);
             if client.connected() && client.link(toy.now_us()).unacknowledged == 0 {
                 let command = Command::Reference(asked.len() as f32);
                 client.submit(command, toy.now_us()).unwrap();
@@ -57,8 +57,8 @@ proptest! {
         // One that is given up may have been applied.
         let mut left = asked.iter();
         prop_assert!(toy.applied.iter().all(|applied| left.any(|asked| asked == applied)), "{:?}", toy.applied);
-        let done = heard.iter().filter_map(|item| match item {
-            Heard::Ended(ended) if matches!(ended.fate, Fate::Applied(_)) => Some(ended.command),
+        let done = events.iter().filter_map(|item| match item {
+            LinkEvent::Ended(ended) if matches!(ended.fate, Fate::Applied(_)) => Some(ended.command),
             _ => None,
         });
         let done: Vec<Command> = done.collect();
@@ -71,25 +71,25 @@ proptest! {
 fn silence_is_noticed_and_the_answer_after_it_too() {
     let mut toy = Toy::default();
     let mut client = RobotClient::new(3, true, NO_TABLE);
-    let mut heard = Vec::new();
+    let mut events = Vec::new();
     let mut run = |client: &mut RobotClient, toy: &mut Toy, cut: bool| {
-        heard.clear();
-        (0..400).for_each(|_| step(client, toy, &mut || cut, &mut heard));
-        heard
+        events.clear();
+        (0..400).for_each(|_| step(client, toy, &mut || cut, &mut events));
+        events
             .iter()
-            .filter(|item| matches!(item, Heard::Connected(_) | Heard::Lost))
+            .filter(|item| matches!(item, LinkEvent::Connected(_) | LinkEvent::Lost))
             .copied()
             .collect::<Vec<_>>()
     };
     assert!(matches!(
         run(&mut client, &mut toy, false)[..],
-        [Heard::Connected(_)]
+        [LinkEvent::Connected(_)]
     ));
-    assert_eq!(run(&mut client, &mut toy, true), [Heard::Lost]);
+    assert_eq!(run(&mut client, &mut toy, true), [LinkEvent::Lost]);
     assert!(!client.connected());
     assert!(matches!(
         run(&mut client, &mut toy, false)[..],
-        [Heard::Connected(_)]
+        [LinkEvent::Connected(_)]
     ));
 }
 
@@ -97,13 +97,13 @@ fn silence_is_noticed_and_the_answer_after_it_too() {
 fn telemetry_keeps_its_time_over_the_link() {
     let mut toy = Toy::default();
     let mut client = RobotClient::new(3, true, NO_TABLE);
-    let mut heard = Vec::new();
+    let mut events = Vec::new();
     // Longer than a wrap of the robot's 16 bits.
-    (0..70_000_000 / STEP_US).for_each(|_| step(&mut client, &mut toy, &mut || false, &mut heard));
-    let times: Vec<i64> = heard
+    (0..70_000_000 / STEP_US).for_each(|_| step(&mut client, &mut toy, &mut || false, &mut events));
+    let times: Vec<i64> = events
         .iter()
         .filter_map(|item| {
-            if let Heard::Telemetry(t_ms, _) = item {
+            if let LinkEvent::Telemetry(t_ms, _) = item {
                 Some(*t_ms)
             } else {
                 None

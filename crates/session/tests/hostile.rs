@@ -1,11 +1,11 @@
-//! Robots that no robot should be: they ignore STOP, their clocks lie, they flood the link, they repeat themselves.
-//! Each is named, and not more often than a person can read; a sound robot behind a bad link never is.
+//! Misbehaving robots: they ignore STOP, their clocks are wrong, they flood the link, they repeat themselves.
+//! Each is reported, no more often than a person can read; a healthy robot behind a bad link never is.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod support;
 
 use rumbo_session::Target;
-use rumbo_session::client::{Heard, KnownTable, RobotClient};
+use rumbo_session::client::{KnownTable, LinkEvent, RobotClient};
 use rumbo_session::fault::{Faults, Faulty};
 use rumbo_session::oddity::Oddity;
 use rumbo_wire::{
@@ -17,7 +17,7 @@ use support::Toy;
 const STEP_US: u64 = 5_000;
 const NO_TABLE: KnownTable = KnownTable { schema: 0, len: 0 };
 
-/// What a robot says in a step of 5 ms, its number and whether it is asked for HELLO given.
+/// What a robot sends in a step of 5 ms, given the step's number and whether HELLO was requested.
 type Says = fn(u64, bool) -> Vec<FromRobot>;
 
 fn hello() -> FromRobot {
@@ -48,7 +48,7 @@ fn telemetry(ms: u64) -> FromRobot {
     })
 }
 
-/// Frames as a sound robot sends them, at the times that `clock` makes of the true ones \[ms\].
+/// Frames as a healthy robot sends them, with times distorted by `clock` \[ms\].
 fn by_clock(step: u64, asked: bool, clock: impl Fn(u64) -> u64) -> Vec<FromRobot> {
     let ms = step * STEP_US / 1_000;
     let mut said = Vec::new();
@@ -65,9 +65,9 @@ fn by_clock(step: u64, asked: bool, clock: impl Fn(u64) -> u64) -> Vec<FromRobot
 }
 
 /// What is reported of such a robot within so many seconds.
-fn reports(seconds: u64, says: Says, order: Option<Command>) -> Vec<Heard> {
+fn reports(seconds: u64, says: Says, order: Option<Command>) -> Vec<LinkEvent> {
     let mut client = RobotClient::new(3, false, NO_TABLE);
-    let (mut heard, mut sequence) = (Vec::new(), 0);
+    let (mut events, mut sequence) = (Vec::new(), 0);
     let mut decoder = Decoder::<64>::default();
     let mut asked = false;
     for step in 1..=seconds * 1_000_000 / STEP_US {
@@ -77,47 +77,52 @@ fn reports(seconds: u64, says: Says, order: Option<Command>) -> Vec<Heard> {
             bytes.extend_from_slice(message.frame(sequence).bytes());
             sequence = (sequence + 1) % 16;
         }
-        client.hear(&bytes, now_us, &mut heard);
+        client.receive(&bytes, now_us, &mut events);
         if let Some(order) = order
             && step == 400
         {
             client.submit(order, now_us).unwrap();
         }
         bytes.clear();
-        client.poll(now_us, &mut bytes, &mut heard);
+        client.poll(now_us, &mut bytes, &mut events);
         for byte in bytes {
             if let Some(Received::Frame(body)) = decoder.push(byte) {
                 asked |= ToRobot::from_body(&body) == Ok(ToRobot::Hello);
             }
         }
     }
-    heard
+    events
 }
 
-fn count(heard: &[Heard], wanted: impl Fn(&Heard) -> bool) -> usize {
-    heard.iter().filter(|item| wanted(item)).count()
+fn count(events: &[LinkEvent], wanted: impl Fn(&LinkEvent) -> bool) -> usize {
+    events.iter().filter(|item| wanted(item)).count()
 }
 
-fn odd(heard: &[Heard], oddity: Oddity) -> usize {
-    count(heard, |item| *item == Heard::Odd(oddity))
+fn odd(events: &[LinkEvent], oddity: Oddity) -> usize {
+    count(events, |item| *item == LinkEvent::Odd(oddity))
 }
 
 #[test]
 fn a_robot_that_ignores_stop_is_an_alarm_within_a_second_and_every_ten() {
-    let heard = reports(
+    let events = reports(
         32,
         |step, asked| by_clock(step, asked, |ms| ms),
         Some(Command::Stop),
     );
     // STOP after 2 s; reported after 3, 13 and 23 s.
-    assert_eq!(count(&heard, |item| *item == Heard::StopUnconfirmed), 3);
-    let others = count(&heard, |item| matches!(item, Heard::Odd(_) | Heard::Lost));
+    assert_eq!(
+        count(&events, |item| *item == LinkEvent::StopUnconfirmed),
+        3
+    );
+    let others = count(&events, |item| {
+        matches!(item, LinkEvent::Odd(_) | LinkEvent::Lost)
+    });
     assert_eq!(others, 0);
 }
 
 #[test]
 fn a_robot_that_acknowledges_stop_and_goes_on_is_an_alarm_too() {
-    let heard = reports(
+    let events = reports(
         16,
         |step, asked| {
             let mut said = by_clock(step, asked, |ms| ms);
@@ -133,7 +138,10 @@ fn a_robot_that_acknowledges_stop_and_goes_on_is_an_alarm_too() {
         },
         Some(Command::Stop),
     );
-    assert_eq!(count(&heard, |item| *item == Heard::StopUnconfirmed), 2);
+    assert_eq!(
+        count(&events, |item| *item == LinkEvent::StopUnconfirmed),
+        2
+    );
 }
 
 #[test]
@@ -169,8 +177,8 @@ fn a_clock_that_lies_is_named_once_in_a_while() {
         ),
     ];
     for (number, (says, oddity)) in liars.into_iter().enumerate() {
-        let heard = reports(60, says, None);
-        let named = odd(&heard, oddity);
+        let events = reports(60, says, None);
+        let named = odd(&events, oddity);
         assert!((1..=2).contains(&named), "{number} {oddity:?}: {named}");
     }
 }
@@ -183,9 +191,9 @@ fn ten_times_the_telemetry_is_a_flood_and_the_same_frames_again_a_repetition() {
         said.push(telemetry(5 * step));
         said
     };
-    let heard = reports(60, flood, None);
-    assert!((1..=2).contains(&odd(&heard, Oddity::Flood)));
-    assert_eq!(odd(&heard, Oddity::Repeats), 0);
+    let events = reports(60, flood, None);
+    assert!((1..=2).contains(&odd(&events, Oddity::Flood)));
+    assert_eq!(odd(&events, Oddity::Repeats), 0);
     // The telemetry of the first second, over and over; and each frame twice.
     let stuck: Says = |step, asked| {
         let mut said = by_clock(step, asked, |ms| ms);
@@ -201,8 +209,8 @@ fn ten_times_the_telemetry_is_a_flood_and_the_same_frames_again_a_repetition() {
         said.iter().flat_map(|message| [*message; 2]).collect()
     };
     for says in [stuck, twice] {
-        let heard = reports(60, says, None);
-        let named = odd(&heard, Oddity::Repeats);
+        let events = reports(60, says, None);
+        let named = odd(&events, Oddity::Repeats);
         assert!((1..=3).contains(&named), "{named}");
     }
 }
@@ -218,10 +226,10 @@ fn a_robot_of_another_protocol_is_named_once_and_gets_no_order() {
         })],
         false => Vec::new(),
     };
-    let heard = reports(20, other, None);
-    assert_eq!(heard.len(), 1, "{heard:?}");
+    let events = reports(20, other, None);
+    assert_eq!(events.len(), 1, "{events:?}");
     assert!(
-        matches!(heard[0], Heard::OtherProtocol(hello) if hello.protocol == PROTOCOL_VERSION - 1)
+        matches!(events[0], LinkEvent::OtherProtocol(hello) if hello.protocol == PROTOCOL_VERSION - 1)
     );
 }
 
@@ -261,7 +269,7 @@ fn a_sound_robot_behind_a_bad_link_is_never_accused() {
         for seed in 0..4 {
             let mut robot = Faulty::new(Toy::default(), faults.clone(), seed);
             let mut client = RobotClient::new(3, false, NO_TABLE);
-            let (mut heard, mut bytes) = (Vec::new(), Vec::new());
+            let (mut events, mut bytes) = (Vec::new(), Vec::new());
             while robot.now_us() < 150_000_000 {
                 robot.advance(STEP_US).unwrap();
                 let now_us = robot.now_us();
@@ -271,18 +279,18 @@ fn a_sound_robot_behind_a_bad_link_is_never_accused() {
                 }
                 bytes.clear();
                 robot.receive(&mut bytes);
-                client.hear(&bytes, now_us, &mut heard);
+                client.receive(&bytes, now_us, &mut events);
                 bytes.clear();
-                client.poll(now_us, &mut bytes, &mut heard);
+                client.poll(now_us, &mut bytes, &mut events);
                 robot.send(&bytes).unwrap();
             }
-            let accused = count(&heard, |item| matches!(item, Heard::Odd(_)));
-            let odd: Vec<_> = heard
+            let accused = count(&events, |item| matches!(item, LinkEvent::Odd(_)));
+            let odd: Vec<_> = events
                 .iter()
-                .filter(|item| matches!(item, Heard::Odd(_)))
+                .filter(|item| matches!(item, LinkEvent::Odd(_)))
                 .collect();
             assert_eq!(accused, 0, "link {number}, seed {seed}: {odd:?}");
-            assert!(count(&heard, |item| matches!(item, Heard::Telemetry(..))) > 500);
+            assert!(count(&events, |item| matches!(item, LinkEvent::Telemetry(..))) > 500);
         }
     }
 }

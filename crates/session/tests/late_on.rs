@@ -5,7 +5,7 @@
 mod support;
 
 use rumbo_session::Target;
-use rumbo_session::client::{Heard, KnownTable, RobotClient};
+use rumbo_session::client::{KnownTable, LinkEvent, RobotClient};
 use rumbo_wire::Command;
 use support::Toy;
 
@@ -15,7 +15,7 @@ const STEP_US: u64 = 5_000;
 struct Bench {
     client: RobotClient,
     toy: Toy,
-    heard: Vec<Heard>,
+    events: Vec<LinkEvent>,
 }
 
 impl Bench {
@@ -23,7 +23,7 @@ impl Bench {
         Self {
             client: RobotClient::new(3, false, table),
             toy: Toy::default(),
-            heard: Vec::new(),
+            events: Vec::new(),
         }
     }
 
@@ -37,10 +37,10 @@ impl Bench {
             bytes.clear();
             self.toy.receive(&mut bytes);
             if !cut {
-                self.client.hear(&bytes, now_us, &mut self.heard);
+                self.client.receive(&bytes, now_us, &mut self.events);
             }
             bytes.clear();
-            self.client.poll(now_us, &mut bytes, &mut self.heard);
+            self.client.poll(now_us, &mut bytes, &mut self.events);
             if !cut {
                 self.toy.send(&bytes).unwrap();
             }

@@ -2,21 +2,20 @@
 //! of the last two seconds, given since its last start, or not at all.
 //!
 //! The station's end of the link and the robot's program, and between them a link that a script cuts, holds and lets
-//! flow, while the robot starts again, the port goes, and orders are given. Each protection is looked at by itself,
-//! since each hides what another one lets through: what the station sends, what it takes, and what the robot does with
-//! it.
+//! flow, while the robot restarts, the port disappears, and orders are given. Each protection is tested by itself,
+//! since each hides what another one lets through: what the station sends, what it accepts, and how the robot reacts.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use proptest::prelude::*;
 use rumbo_control::mode::{Level, ModeId, Movement};
 use rumbo_control::{Inputs, Micros, TICK_US};
 use rumbo_robot::{Config, Robot};
-use rumbo_session::client::{Heard, KnownTable, RobotClient};
+use rumbo_session::client::{KnownTable, LinkEvent, RobotClient};
 use rumbo_wire::{Command, Decoder, Message, Received, ResetCause, ToRobot};
 
 /// Oldest ON that may arm \[us\].
 const LIFE_US: u64 = 2_000_000;
-/// The robot's clock shows its last tick, and the order was given after the last time heard.
+/// The robot's clock shows its last tick, and the order was given after the last time received.
 const SLACK_US: u64 = 2 * TICK_US as u64;
 
 /// What the link does with bytes of one direction.
@@ -35,7 +34,7 @@ enum Action {
     Pass(u32),
     Link(Way, Way),
     Order(Command),
-    /// Through the reset button; whether what it says then gets lost.
+    /// By the reset button; whether its messages then get lost.
     Restart,
     PortGone,
 }
@@ -180,12 +179,12 @@ impl Bench {
         self.now_us += u64::from(TICK_US);
         let said = std::iter::from_fn(|| self.robot.transmit()).collect();
         let arrived = self.carry(1, said);
-        let mut heard = Vec::new();
-        self.client.hear(&arrived, self.now_us, &mut heard);
+        let mut events = Vec::new();
+        self.client.receive(&arrived, self.now_us, &mut events);
         let mut bytes = Vec::new();
-        self.client.poll(self.now_us, &mut bytes, &mut heard);
-        let lost = |item: &&Heard| matches!(item, Heard::Lost | Heard::Restarted(_));
-        self.losses += heard.iter().filter(lost).count() as u32;
+        self.client.poll(self.now_us, &mut bytes, &mut events);
+        let lost = |item: &&LinkEvent| matches!(item, LinkEvent::Lost | LinkEvent::Restarted(_));
+        self.losses += events.iter().filter(lost).count() as u32;
         self.judge_sent(&bytes)?;
         for byte in self.carry(0, bytes) {
             self.robot.receive(byte);

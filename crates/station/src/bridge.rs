@@ -1,7 +1,8 @@
 //! A live session for viewers of Foxglove's protocol (Foxglove, Lichtblick): the messages of the log, as they are made.
 //!
-//! Read-only: nothing that a viewer sends is taken. Only this machine can connect. What is recorded passes by here on its way; a thread makes
-//! messages of it for the topics that somebody looks at. A viewer that is slow loses messages, nobody waits for it.
+//! Read-only: nothing that a viewer sends is taken. Only this machine can connect. What is recorded passes by here on
+//! its way; a thread makes messages of it for the topics that somebody looks at. A viewer that is slow loses messages,
+//! nobody waits for it.
 
 use foxglove::{ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChannel, Schema};
 use foxglove::{WebSocketServer, WebSocketServerHandle};

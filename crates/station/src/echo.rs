@@ -1,7 +1,7 @@
 //! Warnings and faults on the terminal in which the station was started, for those who look there.
 //!
-//! A terminal can be stopped (Ctrl-S), and a pipe that nobody reads fills up: so a thread of its own prints, and what it
-//! cannot print in time is left out. The session never waits for it.
+//! A terminal can be stopped (Ctrl-S), and a pipe that nobody reads fills up: so a thread of its own prints, and what
+//! it cannot print in time is left out. The session never waits for it.
 
 use rumbo_log::{Level, LoggedEvent};
 use std::sync::mpsc::{SyncSender, sync_channel};

@@ -1,21 +1,21 @@
-//! A procedure that drives the robot by itself for a while, a calibration, as a guest on the session's link.
+//! A procedure that drives the robot for a while, such as a calibration, as a guest on the session's link.
 //!
-//! It runs in a thread of its own and speaks to the robot with its own commands; the session lends it the bytes that arrive, passes on the
-//! bytes that it sends, and goes on showing and recording. With each slice of time it gets its turn and the session waits for its answer,
-//! so that a fast simulation does not run away from it. When the session takes the link back, time ends for it at once.
+//! It runs in its own thread and sends its own commands; the session forwards the received bytes to it and its bytes to
+//! the robot, and goes on displaying and recording. In each time slice it gets a turn and the session waits for its
+//! answer, so that a fast simulation does not outrun it. When the session takes the link back, its waits end at once.
 
 use rumbo_log::Findings;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Longest wait for a guest's answer: computing at its end takes no longer, and STOP waits this long at most.
+/// Longest wait for a guest's answer: its final computation takes no longer, and STOP waits at most this long.
 const PATIENCE: Duration = Duration::from_millis(20);
 
-/// Calibrates the robot at the other end of the link, which is left with the parameters found; or says why not.
+/// Calibrates the robot at the other end of the link and sets the parameters found; or returns why not.
 pub type Calibration = fn(&mut GuestLink) -> Result<Findings, String>;
 
-/// A slice of time: when it ended \[us\], and what arrived.
+/// A time slice: its end \[us\] and the bytes received.
 type Slice = (u64, Vec<u8>);
 
 /// The guest's end of the link.
@@ -24,8 +24,8 @@ pub struct GuestLink {
     now_us: u64,
     slices: Receiver<Slice>,
     answers: Sender<Vec<u8>>,
-    heard: Vec<u8>,
-    to_say: Vec<u8>,
+    received: Vec<u8>,
+    to_send: Vec<u8>,
 }
 
 impl GuestLink {
@@ -35,24 +35,24 @@ impl GuestLink {
         self.now_us
     }
 
-    /// Puts bytes for the robot on the line.
+    /// Queues bytes for the robot.
     pub fn send(&mut self, bytes: &[u8]) {
-        self.to_say.extend_from_slice(bytes);
+        self.to_send.extend_from_slice(bytes);
     }
 
-    /// Appends the bytes that have arrived from the robot.
+    /// Appends the bytes received from the robot.
     pub fn receive(&mut self, into: &mut Vec<u8>) {
-        into.append(&mut self.heard);
+        into.append(&mut self.received);
     }
 
-    /// Lets time go by until this instant \[us\]; at once when the session has taken the link back.
+    /// Waits until this instant \[us\]; returns at once when the session has taken the link back.
     pub fn wait_until(&mut self, us: u64) {
         while self.now_us < us {
-            let answered = self.answers.send(std::mem::take(&mut self.to_say));
+            let answered = self.answers.send(std::mem::take(&mut self.to_send));
             match answered.ok().and_then(|()| self.slices.recv().ok()) {
                 Some((now_us, bytes)) => {
                     self.now_us = now_us;
-                    self.heard.extend(bytes);
+                    self.received.extend(bytes);
                 }
                 None => self.now_us = us,
             }
@@ -69,19 +69,19 @@ pub(crate) struct Guest {
 }
 
 impl Guest {
-    /// Invites a guest.
+    /// Starts a guest.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// If no thread can be started.
     pub(crate) fn invite(calibration: Calibration, now_us: u64) -> Result<Self, String> {
-        let (slices, heard) = channel();
-        let (say, answers) = channel();
+        let (slices, arriving) = channel();
+        let (send, answers) = channel();
         let mut link = GuestLink {
             now_us,
-            slices: heard,
-            answers: say,
-            heard: Vec::new(),
-            to_say: Vec::new(),
+            slices: arriving,
+            answers: send,
+            received: Vec::new(),
+            to_send: Vec::new(),
         };
         let thread = std::thread::Builder::new()
             .name("calibration".into())
@@ -94,19 +94,19 @@ impl Guest {
         })
     }
 
-    /// The guest's turn: it gets what arrived, and gives what it has to say. `None`: it has left.
+    /// The guest's turn: passes it the received bytes and returns those it sends. `None`: it has left.
     pub(crate) fn turn(&self, now_us: u64, arrived: &[u8]) -> Option<Vec<u8>> {
         let said = match self.answers.recv_timeout(PATIENCE) {
             Ok(said) => said,
             Err(RecvTimeoutError::Timeout) => Vec::new(),
             Err(RecvTimeoutError::Disconnected) => return None,
         };
-        // One that has left in between is found out at its next turn.
+        // A guest that has left in between is detected at its next turn.
         let _ = self.slices.send((now_us, arrived.to_vec()));
         Some(said)
     }
 
-    /// What it found, when it has left by itself.
+    /// Its findings, once it has left by itself.
     pub(crate) fn findings(self) -> Result<Findings, String> {
         let fault = || Err("it ended by a fault of its own; please report it".into());
         self.thread.join().unwrap_or_else(|_| fault())
@@ -118,16 +118,16 @@ mod tests {
     use super::*;
 
     fn echo(link: &mut GuestLink) -> Result<Findings, String> {
-        let mut heard = Vec::new();
-        while heard.len() < 3 {
+        let mut received = Vec::new();
+        while received.len() < 3 {
             let next = link.now_us() + 1_000;
             link.wait_until(next);
-            let before = heard.len();
-            link.receive(&mut heard);
-            link.send(&heard[before..]);
+            let before = received.len();
+            link.receive(&mut received);
+            link.send(&received[before..]);
         }
         link.wait_until(link.now_us() + 1);
-        let parameters = heard.iter().map(|byte| (*byte, 0.0)).collect();
+        let parameters = received.iter().map(|byte| (*byte, 0.0)).collect();
         Ok(Findings {
             rows: Vec::new(),
             parameters,
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_guest_hears_and_speaks_in_turn_and_tells_what_it_found() {
+    fn a_guest_receives_and_sends_in_turn_and_returns_its_findings() {
         let guest = Guest::invite(echo, 0).unwrap();
         let mut said = Vec::new();
         for slice in 1_u64.. {
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn time_ends_for_a_guest_whose_link_is_taken_back() {
+    fn waits_end_for_a_guest_whose_link_is_taken_back() {
         let guest = Guest::invite(endless, 0).unwrap();
         guest.turn(5_000, &[]);
         let Guest {

@@ -1,4 +1,4 @@
-//! Logs of runs without a window, in files.
+//! Logs of headless runs, in files.
 
 use crate::log_file::LogError;
 use crate::recorder;

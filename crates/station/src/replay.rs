@@ -1,14 +1,14 @@
-//! Shows a log as if it happened now: the same board and the same page as a live session, with a playhead that can be moved.
+//! Replays a log: the same board and page as a live session, with a playhead that can be moved.
 //!
-//! Nothing is sent to any robot: orders to one are answered with a note. Moving the playhead begins a new run on the board, so that pages
-//! forget what they had, and fills it with the [`BEFORE_MS`] before the new place.
+//! Nothing is sent to any robot: commands to one are answered with a note. Moving the playhead begins a new run on the
+//! board, so that pages discard what they had, and fills it with the [`BEFORE_MS`] before the new position.
 
-mod haunting;
+mod ghost;
 mod speech;
 
 use crate::board::Board;
 use crate::session::Orders;
-use haunting::Haunting;
+use ghost::GhostReplay;
 use rumbo_log::{Entry, Level, Log, LoggedEvent, ParameterState, ReplayState, State, parameters};
 use rumbo_session::{Event, Ghost, Order};
 use speech::Speech;
@@ -21,18 +21,18 @@ use std::time::{Duration, Instant};
 const BEFORE_MS: i64 = 60_000;
 /// Time between two moves of the playhead.
 const WAKE: Duration = Duration::from_millis(20);
-/// The same while it stands.
+/// The same while paused.
 const WAKE_PAUSED: Duration = Duration::from_millis(250);
 
-/// A log being shown.
+/// A log being replayed.
 pub(crate) struct Replay {
     name: String,
     log: Log,
     speech: Speech,
-    haunting: Option<Haunting>,
+    ghost: Option<GhostReplay>,
     board: Arc<Board>,
     orders: Orders,
-    /// Where the playhead is \[ms\].
+    /// Position of the playhead \[ms\].
     at_ms: f64,
     end_ms: f64,
     /// The first row that is not on the board yet.
@@ -57,7 +57,7 @@ impl Replay {
         Self {
             name,
             speech: Speech::of(&log),
-            haunting: ghost.map(Haunting::new),
+            ghost: ghost.map(GhostReplay::new),
             log,
             board,
             orders,
@@ -88,7 +88,7 @@ impl Replay {
         }
         self.seek(0.0);
         loop {
-            let busy = self.haunting.as_ref().is_some_and(Haunting::at_work);
+            let busy = self.ghost.as_ref().is_some_and(GhostReplay::at_work);
             let wait = match self.speed > 0.0 || busy {
                 true => WAKE,
                 false => WAKE_PAUSED,
@@ -102,7 +102,7 @@ impl Replay {
                 self.obey(&order);
             }
             self.play(Instant::now());
-            self.haunt();
+            self.update_ghost();
             self.show();
         }
     }
@@ -137,11 +137,11 @@ impl Replay {
         }
     }
 
-    /// The ghost starts again beside the robot that is seen now.
+    /// Restarts the ghost at the robot's pose shown now.
     fn restart_ghost(&mut self) {
         let row = self.row_after(self.at_ms).saturating_sub(1);
-        let started = match &mut self.haunting {
-            Some(haunting) => haunting.restart(&mut self.log, row),
+        let started = match &mut self.ghost {
+            Some(ghost) => ghost.restart(&mut self.log, row),
             None => Err("there is none; start with --ghost".into()),
         };
         match started {
@@ -157,16 +157,16 @@ impl Replay {
         }
     }
 
-    /// The ghost goes on; pages that were shown rows without it get them anew.
-    fn haunt(&mut self) {
-        let Some(haunting) = &mut self.haunting else {
+    /// Advances the ghost; pages that were shown rows without it get them again.
+    fn update_ghost(&mut self) {
+        let Some(ghost) = &mut self.ghost else {
             return;
         };
-        let behind = haunting.is_behind(self.next_row);
-        if let Err(why) = haunting.work(&mut self.log) {
-            haunting.give_up();
+        let behind = ghost.is_behind(self.next_row);
+        if let Err(why) = ghost.work(&mut self.log) {
+            ghost.give_up();
             self.note(format!("the ghost: refused, {why}"));
-        } else if behind && !haunting.is_behind(self.next_row) {
+        } else if behind && !ghost.is_behind(self.next_row) {
             self.seek(self.at_ms);
         }
     }

@@ -216,7 +216,8 @@ pub fn serve_with(
     })
 }
 
-/// Serves the same dashboard for a log, which it shows under this name; with `ghost`, the log's ghost can be started again.
+/// Serves the same dashboard for a log, which it shows under this name; with `ghost`, the log's ghost can be started
+/// again.
 ///
 /// # Errors
 /// [`ServeError`], when the port cannot be opened.

@@ -1,8 +1,8 @@
-//! The session's thread: lets the target live, paced by the wall clock, and hands between it, the pages and the session.
+//! The session's thread: advances the target, paced by the wall clock, and connects it, the pages and the session.
 //!
-//! It wakes every [`WAKE`], or at once for an order; advances the target in slices for the time that passed times the
-//! speed factor ([`Pace`]), and gives what came of it to the [`Session`], which says what is to be sent and what is to
-//! be published. Nothing waits for a page.
+//! It wakes every [`WAKE`], or at once for an order; advances the target in slices by the elapsed time times the speed
+//! factor ([`Pace`]), and passes the results to the [`Session`], which returns the bytes to send and the events to
+//! publish. Nothing waits for a page.
 
 use crate::guest::{Calibration, Guest};
 use crate::log_file::LogError;
@@ -18,24 +18,24 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-/// Time between two looks at the link while time passes.
+/// Time between two polls of the link while time passes.
 const WAKE: Duration = Duration::from_millis(5);
 /// The same while paused: an order wakes the session anyway.
 const WAKE_PAUSED: Duration = Duration::from_millis(250);
 /// Longest time spent on one round of slices: orders wait no longer, however high the speed factor.
 const ROUND: Duration = Duration::from_millis(20);
 
-/// What a session can do besides, if whoever starts it gives it the means.
+/// Options of a session.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extras {
-    /// The robot runs the original program, which is silent until its first ON: it is spoken to in text from the
+    /// The robot runs the original program, which is silent until its first ON: it is addressed in text from the
     /// beginning.
     pub text: bool,
     /// How the robot calibrates itself.
     pub calibration: Option<Calibration>,
 }
 
-/// Where orders come from.
+/// The source of orders.
 pub(crate) struct Orders {
     /// The orders, in order. The session ends when the sending side is gone.
     pub(crate) queue: Receiver<Order>,
@@ -43,7 +43,7 @@ pub(crate) struct Orders {
     pub(crate) stop: Arc<AtomicBool>,
 }
 
-/// The session, its target and who listens.
+/// The session, its target and its subscribers.
 pub(crate) struct Driver {
     target: Box<dyn Target>,
     session: Session,
@@ -92,7 +92,7 @@ impl Driver {
     /// Runs until the sender of orders is gone.
     ///
     /// # Errors
-    /// What the target said when it was gone for good.
+    /// The target's error when it is gone for good.
     pub(crate) fn run(mut self) -> Result<(), String> {
         self.record();
         let ended = self.run_until_ended();
@@ -113,7 +113,7 @@ impl Driver {
             let first = match self.orders.queue.recv_timeout(wait) {
                 Ok(order) => Some(order),
                 Err(RecvTimeoutError::Timeout) => None,
-                // The robot is not left driving. Should this be lost, the missing heartbeat stops it.
+                // Do not leave the robot driving. Should this STOP be lost, the missing heartbeat stops it.
                 Err(RecvTimeoutError::Disconnected) => {
                     return self.obey(Order::Robot(Command::Stop));
                 }
@@ -128,7 +128,7 @@ impl Driver {
             }
             self.session.let_go(self.now());
             self.send()?;
-            self.live()?;
+            self.advance()?;
             self.update();
         }
     }
@@ -175,7 +175,7 @@ impl Driver {
             Ask::Reset(choice) => {
                 let done = self.target.reset(&choice);
                 if done.is_ok() {
-                    // What happened before is of the run before.
+                    // Earlier events belong to the previous run.
                     self.publish();
                     self.pace = Pace::new(self.pace.speed);
                     self.record();
@@ -186,8 +186,8 @@ impl Driver {
         }
     }
 
-    /// Lets the target live for the time due.
-    fn live(&mut self) -> Result<(), String> {
+    /// Advances the target by the time due.
+    fn advance(&mut self) -> Result<(), String> {
         let began = Instant::now();
         self.pace.wall_passed(self.now().wall_us);
         while self.pace.slice_due() {
@@ -214,7 +214,7 @@ impl Driver {
         Ok(())
     }
 
-    /// The guest's turn, with the bytes at hand.
+    /// The guest's turn, with the bytes just received.
     fn take_turns(&mut self, now: Now) {
         let Some(guest) = self.guest.take() else {
             return;
@@ -269,7 +269,7 @@ impl Driver {
         }
     }
 
-    /// Begins the log of a run; what was recorded before is complete.
+    /// Begins the log of a run; the one before is complete.
     fn record(&mut self) {
         let Some(recording) = &self.recording else {
             return;

@@ -1,9 +1,10 @@
 //! One page's WebSocket: news from the board out, orders in.
 //!
 //! The two directions do not wait for each other: a page that is slow to read can still stop the robot. A page that
-//! sends what is no order is told why and closed; the robot goes on. A page that is slow loses samples of plots and gets every event.
+//! sends anything but an order gets the reason and is closed; the robot goes on. A slow page loses samples of plots but
+//! gets every event.
 //!
-//! STOP is taken from every page, anything else from the page that has control ([`Lease`]).
+//! STOP is accepted from every page, anything else from the page that has control ([`Lease`]).
 
 use crate::board::Board;
 use crate::guard::Role;
@@ -24,20 +25,20 @@ use tokio::time::{interval, sleep, timeout};
 
 /// Longest message of a page [bytes].
 pub(crate) const MAX_MESSAGE: usize = 4_096;
-/// Rows that a page gets at once while it keeps up; of more it gets the newest.
+/// Most rows sent to a page at once; of more it gets the newest.
 const ROWS_AT_ONCE: usize = 500;
 /// Refusals that wait for a page.
 const REFUSALS_WAITING: usize = 8;
-/// News within this time go out together: a page draws 60 times a second at most.
+/// News within this time are sent together: a page draws at most 60 times a second.
 const GATHER: Duration = Duration::from_millis(15);
-/// A page that takes nothing for this long is closed; it comes back by itself and gets the recent past.
+/// A page that reads nothing for this long is closed; it reconnects by itself and gets the recent past.
 const SEND_TIMEOUT: Duration = Duration::from_secs(5);
-/// A page is asked this often whether it is there; browsers answer by themselves.
+/// Interval of the pings, which browsers answer by themselves.
 const PING: Duration = Duration::from_secs(5);
-/// A page that says nothing for this long, no answer either, is gone: its computer sleeps, or the network is cut.
+/// A page that sends nothing for this long, not even a pong, is gone: its computer sleeps, or the network is cut.
 const SILENCE: Duration = Duration::from_secs(15);
 
-/// What every connection shares.
+/// State shared by all connections.
 #[derive(Clone, Debug)]
 pub(crate) struct Hub {
     pub(crate) board: Arc<Board>,
@@ -60,7 +61,7 @@ pub(crate) async fn talk(socket: WebSocket, hub: Hub, role: Role) {
             let (refuse, refusals) = mpsc::channel(REFUSALS_WAITING);
             // Control goes with the page's place, however long it takes to say goodbye.
             tokio::select! {
-                goodbye = tell_news(&mut out, &hub, &place, refusals) => goodbye,
+                goodbye = publish_news(&mut out, &hub, &place, refusals) => goodbye,
                 goodbye = take_orders(&mut from_page, &hub, &place, &refuse) => goodbye,
             }
         }
@@ -103,14 +104,14 @@ async fn say_goodbye(
     .await
 }
 
-/// Ends when the page does, or says what is no order, or nothing any more.
+/// Ends when the page closes, sends anything but an order, or falls silent.
 async fn take_orders(
     mut from_page: impl Stream<Item = Result<Message, axum::Error>> + Unpin,
     hub: &Hub,
     place: &Place,
     refuse: &mpsc::Sender<&'static str>,
 ) -> Option<Goodbye> {
-    // After silence nobody is left to hear why.
+    // After a silence nobody is left to read the reason.
     while let Ok(Some(Ok(message))) = timeout(SILENCE, from_page.next()).await {
         let text = match message {
             Message::Text(text) => text,
@@ -133,14 +134,14 @@ async fn take_orders(
             }
         };
         if let Err(why) = place.admit(&order) {
-            // Of many refusals a page need not read each.
+            // A page need not read each of many refusals.
             let _ = refuse.try_send(why);
             continue;
         }
         if order == Order::Robot(Command::Stop) {
             hub.stop.store(true, Ordering::SeqCst);
         }
-        // A full queue holds many orders that wake the session all the same, and STOP has its own way.
+        // A full queue wakes the session anyway, and STOP has its own flag.
         if hub.orders.try_send(order).is_err() {
             return Some(Goodbye {
                 code: close_code::AGAIN,
@@ -151,8 +152,8 @@ async fn take_orders(
     None
 }
 
-/// Ends when the page cannot be told any more.
-async fn tell_news(
+/// Ends when nothing can be sent to the page any more.
+async fn publish_news(
     out: &mut (impl Sink<Message> + Unpin),
     hub: &Hub,
     place: &Place,
@@ -161,11 +162,11 @@ async fn tell_news(
     let (mut changed, mut moved) = (hub.board.subscribe(), hub.lease.subscribe());
     let mut cursor = Cursor::default();
     send(out, &ToPage::hello()).await?;
-    let (mut told, mut run, mut t_s) = (None, 0, 0.0);
+    let (mut shown, mut run, mut t_s) = (None, 0, 0.0);
     let mut pings = interval(PING);
     loop {
         let view = place.view();
-        if told.replace(view) != Some(view) {
+        if shown.replace(view) != Some(view) {
             send(out, &ToPage::Control(view)).await?;
         }
         let mut news = hub.board.news(&mut cursor);
@@ -175,7 +176,7 @@ async fn tell_news(
                 text: "too slow: events were missed".into(),
             });
         }
-        // Behind within a run, it goes on with the newest.
+        // A page behind within a run continues with the newest.
         let behind = news.samples.len().saturating_sub(ROWS_AT_ONCE);
         if std::mem::replace(&mut run, news.run) == news.run {
             news.samples.drain(..behind);
@@ -235,7 +236,7 @@ mod tests {
         }
     }
 
-    /// To a page, with room for one message on the way, as in full buffers of a connection.
+    /// A connection to a page with room for one message, like one with full buffers.
     fn connection() -> (impl Sink<Message> + Unpin, mpsc::Receiver<Message>) {
         let (to_page, page) = mpsc::channel(1);
         let send = |to_page: mpsc::Sender<Message>, message| async move {
@@ -251,13 +252,13 @@ mod tests {
         let (refuse, refusals) = mpsc::channel(1);
         let (mut out, mut page) = connection();
         let begun = tokio::time::Instant::now();
-        // It answers ten pings, and then none.
+        // It answers ten pings, then none.
         let answers = poll_fn(|context| page.poll_recv(context))
             .filter(|message| ready(matches!(message, Message::Ping(_))))
             .enumerate()
             .filter_map(|(ping, _)| ready((ping < 10).then(|| Ok(Message::Pong(Bytes::new())))));
         let goodbye = tokio::select! {
-            _ = tell_news(&mut out, &hub, &place, refusals) => panic!("the page takes all"),
+            _ = publish_news(&mut out, &hub, &place, refusals) => panic!("the page takes all"),
             goodbye = take_orders(Box::pin(answers), &hub, &place, &refuse) => goodbye,
         };
         assert!(goodbye.is_none());
@@ -269,7 +270,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_page_that_takes_nothing_for_a_while_loses_samples_and_no_event() {
+    async fn a_page_that_reads_nothing_for_a_while_loses_samples_but_no_event() {
         const ROUNDS: usize = 300;
         let hub = hub();
         let board = Arc::clone(&hub.board);
@@ -309,7 +310,7 @@ mod tests {
             (events, rows)
         };
         let (events, rows) = tokio::select! {
-            _ = tell_news(&mut out, &hub, &place, refusals) => panic!("the page was given up"),
+            _ = publish_news(&mut out, &hub, &place, refusals) => panic!("the page was given up"),
             read = reader => read,
         };
         assert!(

@@ -1,11 +1,11 @@
-//! A robot behind a serial port that is pulled out and put back.
+//! A robot behind a serial port that is unplugged and plugged in again.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod support;
 
 use rumbo_session::Target;
-use rumbo_session::client::{Heard, KnownTable, NotTaken, RobotClient};
+use rumbo_session::client::{KnownTable, LinkEvent, NotTaken, RobotClient};
 use rumbo_station::port::{DEFAULT_BAUD, Port, Pty};
 use rumbo_wire::Command;
 use std::path::Path;
@@ -15,7 +15,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use support::Toy;
 
-/// Long enough for any machine; nothing is judged by it.
+/// Long enough for any machine; no result depends on it.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A toy robot behind a pseudo terminal, plugged in under a name.
@@ -48,7 +48,7 @@ impl Plugged {
         Self { out, thread }
     }
 
-    /// Pulls it out; gives the commands that it has applied.
+    /// Unplugs it; returns the commands it has applied.
     fn pull(self, name: &Path) -> Vec<Command> {
         std::fs::remove_file(name).unwrap();
         self.out.store(true, Ordering::SeqCst);
@@ -56,72 +56,74 @@ impl Plugged {
     }
 }
 
-/// A station's side of it.
+/// The station's side.
 struct Station {
     port: Port,
     client: RobotClient,
-    heard: Vec<Heard>,
+    events: Vec<LinkEvent>,
 }
 
 impl Station {
-    fn live_until(&mut self, wanted: impl Fn(&Self) -> bool) {
+    fn run_until(&mut self, wanted: impl Fn(&Self) -> bool) {
         let until = Instant::now() + PATIENCE;
         let mut bytes = Vec::new();
         while !wanted(self) {
             assert!(
                 Instant::now() < until,
-                "in vain, heard {:?}",
-                self.heard.last()
+                "timed out, last event {:?}",
+                self.events.last()
             );
             bytes.clear();
             self.port.receive(&mut bytes);
             let now_us = self.port.now_us();
-            self.client.hear(&bytes, now_us, &mut self.heard);
+            self.client.receive(&bytes, now_us, &mut self.events);
             bytes.clear();
-            self.client.poll(now_us, &mut bytes, &mut self.heard);
+            self.client.poll(now_us, &mut bytes, &mut self.events);
             self.port.send(&bytes).unwrap();
             std::thread::sleep(Duration::from_millis(2));
         }
     }
 
-    fn count(&self, wanted: impl Fn(&Heard) -> bool) -> usize {
-        self.heard.iter().filter(|heard| wanted(heard)).count()
+    fn count(&self, wanted: impl Fn(&LinkEvent) -> bool) -> usize {
+        self.events.iter().filter(|event| wanted(event)).count()
     }
 }
 
 #[test]
-fn a_port_that_is_pulled_out_and_put_back_is_found_again_and_nothing_is_armed_by_that() {
+fn a_port_that_is_unplugged_and_plugged_in_again_is_reopened_and_arms_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let name = folder.path().join("port");
     let robot = Plugged::new(&name);
     let mut station = Station {
         port: Port::open(name.to_str().unwrap(), DEFAULT_BAUD).unwrap(),
         client: RobotClient::new(7, false, KnownTable::OURS),
-        heard: Vec::new(),
+        events: Vec::new(),
     };
-    station.live_until(|station| station.count(|heard| matches!(heard, Heard::Telemetry(..))) > 3);
+    station
+        .run_until(|station| station.count(|event| matches!(event, LinkEvent::Telemetry(..))) > 3);
     let now_us = station.port.now_us();
     station.client.submit(Command::Arm, now_us).unwrap();
-    station.live_until(|station| {
-        station.count(|heard| matches!(heard, Heard::Telemetry(_, telemetry) if telemetry.armed))
+    station.run_until(|station| {
+        station
+            .count(|event| matches!(event, LinkEvent::Telemetry(_, telemetry) if telemetry.armed))
             > 0
     });
     assert!(robot.pull(&name).contains(&Command::Arm));
-    station.live_until(|station| !station.client.connected());
+    station.run_until(|station| !station.client.connected());
     assert!(matches!(
         station.port.news(),
         Some(rumbo_session::LinkNews::Lost(_))
     ));
-    // Asked of a robot that is not there.
+    // A command for a robot that is not connected.
     let now_us = station.port.now_us();
     let refused = station.client.submit(Command::Arm, now_us);
     assert_eq!(refused, Err(NotTaken::NotConnected));
 
     let robot = Plugged::new(&name);
-    let before = station.count(|heard| matches!(heard, Heard::Telemetry(..)));
-    station.live_until(|station| {
+    let before = station.count(|event| matches!(event, LinkEvent::Telemetry(..)));
+    station.run_until(|station| {
         station.client.connected()
-            && station.count(|heard| matches!(heard, Heard::Telemetry(..))) > before + 3
+            && station.count(|event| matches!(event, LinkEvent::Telemetry(..))) > before + 3
     });
     assert!(matches!(
         station.port.news(),
@@ -156,7 +158,7 @@ fn a_port_that_cannot_be_opened_says_what_there_is_and_what_to_do() {
 }
 
 #[test]
-fn a_robot_behind_tcp_is_talked_to_like_one_behind_a_wire() {
+fn a_robot_behind_tcp_is_used_like_one_behind_a_wire() {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let address = format!("tcp:{}", listener.local_addr().unwrap());
     let mut port = Port::open(&address, DEFAULT_BAUD).unwrap();
@@ -166,11 +168,11 @@ fn a_robot_behind_tcp_is_talked_to_like_one_behind_a_wire() {
     std::io::Read::read_exact(&mut robot, &mut bytes).unwrap();
     assert_eq!(&bytes, b"to it");
     std::io::Write::write_all(&mut robot, b"from it").unwrap();
-    let (mut heard, until) = (Vec::new(), Instant::now() + PATIENCE);
-    while heard.len() < 7 && Instant::now() < until {
-        port.receive(&mut heard);
+    let (mut received, until) = (Vec::new(), Instant::now() + PATIENCE);
+    while received.len() < 7 && Instant::now() < until {
+        port.receive(&mut received);
     }
-    assert_eq!(heard, b"from it");
+    assert_eq!(received, b"from it");
 }
 
 #[test]

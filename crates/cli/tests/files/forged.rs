@@ -78,7 +78,7 @@ fn texts_of_a_log_are_shown_and_not_interpreted() {
         truths: &[(10_000, rumbo_log::Truth::default())],
         link: &link,
         said: &[],
-        told: &[],
+        messages: &[],
         outcome: Outcome {
             metrics: [(hostile.to_owned(), 1.0)].into(),
             failures: vec![hostile.into()],

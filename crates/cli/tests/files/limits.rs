@@ -21,7 +21,7 @@ fn session(path: &Path, manifest: &Manifest, t_us: u64) {
         truths: &[(t_us, Truth::default())],
         link: &link,
         said: &[],
-        told: &[],
+        messages: &[],
         outcome: Outcome::default(),
     };
     record_run(path, manifest, run).unwrap();

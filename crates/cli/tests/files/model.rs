@@ -30,7 +30,7 @@ fn a_run_of_another_model_that_differs_reports_the_model_first() {
             truths: &[(200_000, Truth::default())],
             link: &log.link,
             said: &log.said,
-            told: &[],
+            messages: &[],
             outcome,
         };
         record_run(&folder.join("x.mcap"), &manifest, run).unwrap();

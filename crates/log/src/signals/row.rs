@@ -22,7 +22,8 @@ pub enum Cell {
 pub struct Row {
     /// Session time \[ms\].
     pub t_ms: i64,
-    /// In the order of [`Row::names`]: not a number where unknown, infinite where a range is clear. The first is for `t_ms`.
+    /// In the order of [`Row::names`]: not a number where unknown, infinite where a range is clear. The first is for
+    /// `t_ms`.
     values: [f32; COLUMNS],
 }
 

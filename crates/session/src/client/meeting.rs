@@ -1,12 +1,12 @@
-//! How a robot is met, lost and met again: who it is, what its clock shows, and whether it started again in between.
+//! Connecting, losing and reconnecting: the robot's identity, its clock, and whether it restarted in between.
 //!
-//! HELLO says who it is, and comes both as an answer and after a start. The status that follows it tells the number of
-//! the start and the time since then: another number, or a time that ran back, is another start, which knows nothing
-//! of what was asked before. Only with both is the robot connected.
+//! HELLO identifies the robot; it comes both as an answer and after a start. The status that follows carries the number
+//! of the start and the time since then: another number, or a time that ran back, is another start, which knows
+//! nothing of earlier requests. The robot is connected once both are known.
 
 use rumbo_wire::{Hello, RobotTime};
 
-/// What a status says of the robot's clock.
+/// The robot's clock by its latest status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Clock {
     /// It went on.
@@ -21,26 +21,26 @@ pub(super) enum Clock {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Meeting {
     hello: Option<Hello>,
-    /// It was greeted since it was last lost, and since its last status.
+    /// Its HELLO arrived since it was last lost, and since its last status.
     greeted: bool,
     just_greeted: bool,
-    /// The newest time heard; kept when it is lost, to tell then whether it started again.
+    /// The newest time received; kept when it is lost, to detect a restart.
     newest: Option<RobotTime>,
-    /// That is of this meeting.
+    /// That time is from this connection.
     timed: bool,
     /// It started again since it was last connected.
     restarted: bool,
 }
 
 impl Meeting {
-    /// It says who it is; gives what it said before.
+    /// Takes its HELLO; returns the one before.
     pub(super) fn greet(&mut self, hello: Hello) -> Option<Hello> {
         (self.greeted, self.just_greeted) = (true, true);
         self.hello.replace(hello)
     }
 
-    /// It tells its time.
-    pub(super) fn tell(&mut self, at: RobotTime) -> Clock {
+    /// Takes the time in its status.
+    pub(super) fn update(&mut self, at: RobotTime) -> Clock {
         let before = self.newest.replace(at);
         let clock = match before {
             Some(before) if before.start != at.start => Clock::Restarted,
@@ -56,8 +56,8 @@ impl Meeting {
         clock
     }
 
-    /// Telemetry tells the lower half of the milliseconds.
-    pub(super) fn tell_low(&mut self, t_ms: u16) {
+    /// Takes the lower half of the milliseconds, from telemetry.
+    pub(super) fn update_low(&mut self, t_ms: u16) {
         if let Some(newest) = self.newest.as_mut().filter(|_| self.timed) {
             *newest = newest.at_low(t_ms);
         }
@@ -68,18 +68,18 @@ impl Meeting {
         (self.greeted, self.just_greeted, self.timed) = (false, false, false);
     }
 
-    /// Who it is, and whether it started again, as soon as both are known; said once.
+    /// Its HELLO, and whether it restarted, as soon as both are known; returned once.
     pub(super) fn complete(&mut self) -> Option<(Hello, bool)> {
         let hello = self.hello.filter(|_| self.greeted && self.timed)?;
         Some((hello, std::mem::take(&mut self.restarted)))
     }
 
-    /// Who it said it is.
+    /// Its HELLO.
     pub(super) fn hello(&self) -> Option<Hello> {
         self.hello
     }
 
-    /// The newest time heard.
+    /// The newest time received.
     pub(super) fn newest(&self) -> RobotTime {
         self.newest.unwrap_or_default()
     }
@@ -102,25 +102,25 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_is_connected_once_it_said_who_it_is_and_what_time_it_has() {
+    fn a_robot_is_connected_once_its_hello_and_its_time_are_known() {
         let mut meeting = Meeting::default();
-        assert_eq!(meeting.tell(at(3, 100)), Clock::On);
+        assert_eq!(meeting.update(at(3, 100)), Clock::On);
         assert_eq!(meeting.complete(), None);
         meeting.greet(HELLO);
         assert_eq!(meeting.complete(), Some((HELLO, false)));
         meeting.lose();
         meeting.greet(HELLO);
         assert_eq!(meeting.complete(), None);
-        assert_eq!(meeting.tell(at(3, 9_000)), Clock::On);
+        assert_eq!(meeting.update(at(3, 9_000)), Clock::On);
         assert_eq!(meeting.complete(), Some((HELLO, false)));
     }
 
     #[test]
-    fn a_start_is_noticed_with_its_hello_without_it_and_after_a_silence() {
+    fn a_start_is_detected_with_its_hello_without_it_and_after_a_silence() {
         for (hello, silent) in [(true, false), (false, false), (true, true)] {
             let mut meeting = Meeting::default();
             meeting.greet(HELLO);
-            meeting.tell(at(255, 50_000));
+            meeting.update(at(255, 50_000));
             meeting.complete();
             if silent {
                 meeting.lose();
@@ -128,7 +128,7 @@ mod tests {
             if hello {
                 meeting.greet(HELLO);
             }
-            assert_eq!(meeting.tell(at(0, 60_000)), Clock::Restarted);
+            assert_eq!(meeting.update(at(0, 60_000)), Clock::Restarted);
             if !hello {
                 assert_eq!(meeting.complete(), None);
                 meeting.greet(HELLO);
@@ -138,16 +138,16 @@ mod tests {
     }
 
     #[test]
-    fn the_time_goes_on_where_telemetry_wraps_and_a_time_that_runs_back_is_noticed() {
+    fn the_time_goes_on_where_telemetry_wraps_and_a_time_that_runs_back_is_detected() {
         let mut meeting = Meeting::default();
-        meeting.tell(at(1, 65_500));
-        meeting.tell_low(4);
+        meeting.update(at(1, 65_500));
+        meeting.update_low(4);
         assert_eq!(meeting.newest(), at(1, 65_540));
-        assert_eq!(meeting.tell(at(1, 65_540)), Clock::On);
-        assert_eq!(meeting.tell(at(1, 65_539)), Clock::Back);
-        assert_eq!(meeting.tell(at(1, u32::MAX)), Clock::Back);
+        assert_eq!(meeting.update(at(1, 65_540)), Clock::On);
+        assert_eq!(meeting.update(at(1, 65_539)), Clock::Back);
+        assert_eq!(meeting.update(at(1, u32::MAX)), Clock::Back);
         assert_eq!(
-            meeting.tell(at(1, 5)),
+            meeting.update(at(1, 5)),
             Clock::On,
             "the wrap after 49.7 days"
         );

@@ -1,13 +1,13 @@
-//! The client of a robot that speaks the original's text: how it is recognised, and what is asked of it.
+//! The client of a robot that speaks the original's text: how it is recognised, and how commands reach it.
 
-use super::{Heard, RobotClient};
-use crate::terminal::Told;
+use super::{LinkEvent, RobotClient};
+use crate::terminal::ParsedRow;
 use rumbo_wire::Command;
 use rumbo_wire::text::RowKind;
 
-/// So many HELLOs without an answer, and the robot does not speak frames.
+/// After so many unanswered HELLOs the robot does not speak frames.
 const HELLOS_UNANSWERED: u32 = 4;
-/// So many rows of text, and it speaks text. As many frames, and it speaks frames after all.
+/// After so many rows of text it speaks text. After as many frames it speaks frames after all.
 const WORDS_KNOWN: u32 = 2;
 
 impl RobotClient {
@@ -16,7 +16,7 @@ impl RobotClient {
         self.text
     }
 
-    /// Which columns the row heard last had, where the robot speaks text.
+    /// The columns of the last row, where the robot speaks text.
     pub(crate) fn row_kind(&self) -> Option<RowKind> {
         self.row_kind.filter(|_| self.text)
     }
@@ -35,10 +35,10 @@ impl RobotClient {
         self.terminal.type_in(line);
     }
 
-    /// The port is gone, and the robot with it. Another one may be there when it is back: which language that speaks
-    /// is to be found out, unless it is known from elsewhere.
+    /// The port is gone, and the robot with it. Another one may be there when it is back: its protocol is detected
+    /// then, unless it was given.
     pub fn port_is_gone(&mut self) {
-        self.heard_bytes = 0;
+        self.received_bytes = 0;
         self.terminal.forget();
         if self.undecided {
             self.text = false;
@@ -48,8 +48,8 @@ impl RobotClient {
         }
     }
 
-    /// Takes a row of text, which may tell that the robot speaks no frames.
-    pub(super) fn hear_row(&mut self, told: Told, now_us: u64, heard: &mut Vec<Heard>) {
+    /// Takes a row of text, which may show that the robot does not speak frames.
+    pub(super) fn receive_row(&mut self, row: ParsedRow, now_us: u64, events: &mut Vec<LinkEvent>) {
         if !self.text {
             self.words = self.words.saturating_add(1);
             let no_frames = !self.connected && self.hellos >= HELLOS_UNANSWERED;
@@ -60,20 +60,20 @@ impl RobotClient {
             self.manager.forget();
         }
         self.words = 0;
-        self.last_heard_us = now_us;
+        self.last_received_us = now_us;
         if !std::mem::replace(&mut self.connected, true) {
-            heard.push(Heard::Text);
+            events.push(LinkEvent::Text);
         }
-        self.mode = told.mode.unwrap_or(self.mode);
-        self.reference = told.reference.unwrap_or(self.reference);
-        self.heading_ref_rad = told.heading_ref_rad.unwrap_or_default();
-        self.row_kind = Some(told.kind);
+        self.mode = row.mode.unwrap_or(self.mode);
+        self.reference = row.reference.unwrap_or(self.reference);
+        self.heading_ref_rad = row.heading_ref_rad.unwrap_or_default();
+        self.row_kind = Some(row.kind);
         self.frames.add(1, now_us);
-        heard.push(Heard::Telemetry(told.t_ms, told.telemetry));
+        events.push(LinkEvent::Telemetry(row.t_ms, row.telemetry));
     }
 
-    /// A robot that was taken for one of text, and speaks frames.
-    pub(super) fn hear_frame_in_text(&mut self) {
+    /// A frame from a robot that was taken for one that speaks text.
+    pub(super) fn receive_frame_in_text(&mut self) {
         self.words += 1;
         if self.undecided && self.words >= WORDS_KNOWN {
             self.text = false;

@@ -1,4 +1,4 @@
-//! The slow state as pages and logs get it, made of what the session, its client and its observer know.
+//! The slow state for pages and logs, from the session, its client and its observer.
 
 use super::Observer;
 use crate::client::RobotClient;
@@ -12,7 +12,7 @@ pub(crate) struct Around {
     /// The target's time \[us\].
     pub(crate) t_us: u64,
     pub(crate) simulated: bool,
-    /// Seconds of the target asked for per second of the wall clock.
+    /// Requested seconds of the target per second of the wall clock.
     pub(crate) speed: f64,
     /// The same, measured.
     pub(crate) achieved_speed: f64,
@@ -59,7 +59,7 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
             overruns: status.overruns,
             servo_rad: observer.servo_rad(),
             rig: observer.rig().map(|rig| Rig::name(rig).into()),
-            errand: observer.errand().clone(),
+            task: observer.task().clone(),
             foreign: client.hello().is_some() && !client.table_matches(),
             text: client.speaks_text(),
         },
@@ -70,7 +70,7 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
     }
 }
 
-/// What a person has to see to at once.
+/// What needs the operator's attention at once.
 fn alarms(now_us: u64, client: &RobotClient) -> Vec<String> {
     let stop = client.stop_unconfirmed(now_us);
     let stop = stop.then(|| words::STOP_UNCONFIRMED.to_owned());
@@ -78,7 +78,7 @@ fn alarms(now_us: u64, client: &RobotClient) -> Vec<String> {
     stop.into_iter().chain(odd).collect()
 }
 
-/// To `1 / per_unit`: more digits would only be more to send.
+/// Rounds to `1 / per_unit`: further digits would only add bytes.
 fn rounded(value: f64, per_unit: f64) -> f64 {
     (value * per_unit).round() / per_unit
 }

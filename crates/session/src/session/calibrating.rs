@@ -1,4 +1,4 @@
-//! The session while the robot is calibrated by a guest on its link: any command of a person's ends it.
+//! The session while a guest on its link calibrates the robot: any command of the operator ends it.
 
 use super::{Ask, Now, Session};
 use crate::orders::Order;
@@ -6,7 +6,7 @@ use rumbo_log::{CalibrationState, Findings, Level};
 use rumbo_wire::Command;
 
 impl Session {
-    /// A calibration drives the robot: it gets what arrives, and what it says is sent by [`Session::lend`].
+    /// Whether a calibration drives the robot: it gets the received bytes, and its own are sent by [`Session::lend`].
     #[must_use]
     pub fn calibrating(&self) -> bool {
         self.calibrating.is_some()
@@ -29,7 +29,7 @@ impl Session {
         None
     }
 
-    /// A calibration has begun, or why not.
+    /// A calibration has started, or why not.
     pub fn calibration_begun(&mut self, begun: Result<(), String>, now: Now) {
         if let Err(why) = begun {
             return self.note(Level::Warning, format!("calibration: refused, {why}"), now);
@@ -41,12 +41,12 @@ impl Session {
         self.note(Level::Info, text.into(), now);
     }
 
-    /// The guest says this to the robot.
+    /// Sends the guest's bytes to the robot.
     pub fn lend(&mut self, bytes: &[u8], now: Now) {
         self.send(bytes, now);
     }
 
-    /// The guest has left: what it found, and the parameters that the robot has now.
+    /// The guest has left: notes its findings and reads the robot's parameters.
     pub fn calibration_ended(&mut self, found: Result<Findings, String>, now: Now) {
         let Some(since_us) = self.calibrating.take() else {
             return;

@@ -1,5 +1,5 @@
-//! What the session does with a command: in frames or in the original's words, held as long as a key is, or refused with
-//! the reason.
+//! How the session handles a command: sent in frames or as the original's text, held as long as a key is, or refused
+//! with the reason.
 
 use super::{Ask, Now, Session};
 use crate::client::NotTaken;
@@ -8,8 +8,7 @@ use rumbo_control::mode::Movement;
 use rumbo_log::parameter;
 use rumbo_wire::{Command, Level};
 
-/// A movement that a key holds ends this long after the page last said that it is held: a page that is gone lets go
-/// \[us\].
+/// A movement that a key holds ends this long after the page last repeated it: a page that is gone releases it \[us\].
 const HOLD_US: u64 = 600_000;
 
 impl Session {
@@ -32,7 +31,7 @@ impl Session {
         self.say(now);
     }
 
-    /// Commands that belong together: one after the other, all or none of them taken.
+    /// Commands that belong together: sent one after the other, all accepted or none.
     pub(super) fn commands(&mut self, commands: Vec<Command>, now: Now) {
         if self.client.speaks_text() {
             return commands
@@ -68,7 +67,7 @@ impl Session {
         }
     }
 
-    /// Sends a command in the original's words.
+    /// Sends a command as the original's text.
     fn command_in_text(&mut self, command: &Command, now: Now) {
         if self.port_gone {
             return self.refuse(command, &self.why_not(NotTaken::NotConnected), now);
@@ -112,7 +111,7 @@ impl Session {
         }
     }
 
-    /// Begins a movement, or goes on with the same one.
+    /// Starts a movement, or prolongs the same one.
     pub(super) fn hold(&mut self, command: Command, now: Now) {
         let same = self.held.is_some_and(|(held, _)| held == command);
         self.held = Some((command, now.wall_us + HOLD_US));
@@ -121,7 +120,7 @@ impl Session {
         }
     }
 
-    /// Ends a movement that nobody holds any more.
+    /// Ends a movement that is no longer held.
     pub fn let_go(&mut self, now: Now) {
         let over = |(_, until_us): &mut (Command, u64)| now.wall_us >= *until_us;
         if self.held.take_if(over).is_some() {
@@ -133,7 +132,7 @@ impl Session {
         }
     }
 
-    /// Sends a robot that has just been found what it begins with.
+    /// Sends the first commands to a robot that has just connected.
     pub(super) fn brief(&mut self, now: Now) {
         if self.briefed || !self.client.connected() {
             return;
@@ -144,7 +143,7 @@ impl Session {
         self.commands(commands, now);
     }
 
-    /// The ghost was put where the robot is, or why not.
+    /// The ghost was moved to the robot, or why not.
     pub fn ghost_restarted(&mut self, done: Result<(), String>, now: Now) {
         match done {
             Ok(()) => {

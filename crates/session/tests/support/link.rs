@@ -3,14 +3,14 @@
 use super::support::Toy;
 use rumbo_control::{AgedRange, Pose, Range};
 use rumbo_session::Target;
-use rumbo_session::client::{Heard, KnownTable, RobotClient};
+use rumbo_session::client::{KnownTable, LinkEvent, RobotClient};
 use rumbo_session::commands::Fate;
 use rumbo_session::fault::{Faults, Faulty, Line};
 use rumbo_wire::{Body, Command, Decoder, FromRobot, Message, Received, Telemetry};
 use std::collections::VecDeque;
 use std::fmt;
 
-/// What became of many frames.
+/// Outcome of many frames.
 #[derive(Debug, Default)]
 pub(crate) struct Frames {
     /// Sent.
@@ -24,7 +24,8 @@ pub(crate) struct Frames {
 }
 
 impl Frames {
-    /// Wrong frames that the CRC's 16 bits let through: with four times the expectation and three more, one in a million campaigns fails by chance.
+    /// Wrong frames that the CRC's 16 bits let through: with four times the expectation and three more, one in a
+    /// million campaigns fails by chance.
     pub(crate) fn odds(&self) -> u64 {
         3 + 4 * self.hit / 65_536
     }
@@ -84,8 +85,8 @@ fn telemetry(number: u64) -> Telemetry {
 pub(crate) fn frames(count: u64, seed: u64) -> Frames {
     let mut line = Line::new(faults(), seed);
     let mut decoder = Decoder::<128>::default();
-    let mut told = Frames::default();
-    // Of a frame and the one before it parts may make up what is accepted; no more.
+    let mut outcome = Frames::default();
+    // What is accepted may combine parts of a frame and the one before it; no more.
     let mut recent: VecDeque<Body> = VecDeque::new();
     let (mut bytes, mut whole_before) = (Vec::new(), true);
     for number in 0..count {
@@ -109,18 +110,18 @@ pub(crate) fn frames(count: u64, seed: u64) -> Frames {
         for byte in &bytes {
             if let Some(Received::Frame(body)) = decoder.push(*byte) {
                 found |= Some(body) == recent.back().copied();
-                told.wrong += u64::from(!recent.contains(&body));
+                outcome.wrong += u64::from(!recent.contains(&body));
             }
         }
-        told.sent += 1;
-        told.hit += u64::from(!whole);
-        told.missed += u64::from(whole && whole_before && !found);
+        outcome.sent += 1;
+        outcome.hit += u64::from(!whole);
+        outcome.missed += u64::from(whole && whole_before && !found);
         whole_before = whole;
     }
-    told
+    outcome
 }
 
-/// What became of many commands.
+/// Outcome of many commands.
 #[derive(Debug, Default)]
 pub(crate) struct Commands {
     /// Frames from the robot, telemetry and answers.
@@ -134,7 +135,7 @@ pub(crate) struct Commands {
     pub(crate) acknowledged: usize,
     /// Given up; they may or may not have been applied.
     pub(crate) given_up: usize,
-    /// What the robot was accused of, and never did.
+    /// False alarms about the robot.
     pub(crate) alarms: usize,
 }
 
@@ -171,10 +172,10 @@ impl fmt::Display for Commands {
     }
 }
 
-/// Gives the robot commands, one after the other, while so many frames come from it.
+/// Gives the robot commands, one after the other, until it has sent so many frames.
 pub(crate) fn commands(frames: u64, seed: u64) -> Commands {
     const STEP_US: u64 = 5_000;
-    // Twice in a minute there is nothing for a second and a half.
+    // Twice a minute the link is silent for a second and a half.
     let silent_us = (0..frames / 25 / 30 + 1)
         .map(|each| (30 * each + 20) * 1_000_000)
         .map(|from_us| from_us..from_us + 1_500_000)
@@ -187,13 +188,13 @@ pub(crate) fn commands(frames: u64, seed: u64) -> Commands {
     let mut robot = Faulty::new(Toy::default(), faults, seed);
     let table = KnownTable { schema: 0, len: 0 };
     let mut client = RobotClient::new(3, true, table);
-    let (mut heard, mut bytes, mut asked) = (Vec::new(), Vec::new(), Vec::new());
-    let mut told = Commands {
+    let (mut events, mut bytes, mut asked) = (Vec::new(), Vec::new(), Vec::new());
+    let mut outcome = Commands {
         in_order: true,
         ..Commands::default()
     };
     let (mut matched, mut next) = (0, 0);
-    while told.frames < frames {
+    while outcome.frames < frames {
         if client.link(robot.now_us()).unacknowledged == 0 && client.connected() {
             let command = Command::Reference(asked.len() as f32 * 0.001);
             client.submit(command, robot.now_us()).unwrap();
@@ -202,26 +203,26 @@ pub(crate) fn commands(frames: u64, seed: u64) -> Commands {
         robot.advance(STEP_US).unwrap();
         bytes.clear();
         robot.receive(&mut bytes);
-        client.hear(&bytes, robot.now_us(), &mut heard);
+        client.receive(&bytes, robot.now_us(), &mut events);
         bytes.clear();
-        client.poll(robot.now_us(), &mut bytes, &mut heard);
+        client.poll(robot.now_us(), &mut bytes, &mut events);
         robot.send(&bytes).unwrap();
-        for item in heard.drain(..) {
+        for item in events.drain(..) {
             match item {
-                Heard::Telemetry(..) | Heard::Status(_) => told.frames += 1,
-                Heard::Ended(outcome) => {
-                    told.frames += 1;
-                    let done = matches!(outcome.fate, Fate::Applied(_));
-                    told.acknowledged += usize::from(done);
-                    told.given_up += usize::from(!done);
+                LinkEvent::Telemetry(..) | LinkEvent::Status(_) => outcome.frames += 1,
+                LinkEvent::Ended(ended) => {
+                    outcome.frames += 1;
+                    let done = matches!(ended.fate, Fate::Applied(_));
+                    outcome.acknowledged += usize::from(done);
+                    outcome.given_up += usize::from(!done);
                 }
-                Heard::Odd(_) | Heard::StopUnconfirmed => told.alarms += 1,
+                LinkEvent::Odd(_) | LinkEvent::StopUnconfirmed => outcome.alarms += 1,
                 _ => {}
             }
         }
         for applied in robot.target.applied.drain(..) {
             let place = asked.iter().skip(next).position(|asked| *asked == applied);
-            told.in_order &= place.is_some();
+            outcome.in_order &= place.is_some();
             next += place.map_or(0, |place| place + 1);
             matched += 1;
         }
@@ -229,6 +230,6 @@ pub(crate) fn commands(frames: u64, seed: u64) -> Commands {
     Commands {
         asked: asked.len(),
         applied: matched,
-        ..told
+        ..outcome
     }
 }

@@ -1,8 +1,8 @@
 //! A robot behind a real port: serial (USB, rfcomm, a PTY) or TCP.
 //!
-//! Two threads read and write, so that the session never waits for the port. When it goes, it is opened again and again until it is
-//! back; what was to be sent meanwhile is dropped, since nothing old is to happen afterwards. The robot has stopped by then, for lack
-//! of a heartbeat, and nothing here arms it.
+//! Two threads read and write, so that the session never waits for the port. When the port disappears, opening it is
+//! retried until it is back; bytes to be sent meanwhile are dropped, so that no old command takes effect afterwards.
+//! The robot has stopped by then, for lack of a heartbeat, and nothing here arms it.
 
 mod error;
 #[cfg(unix)]
@@ -23,24 +23,24 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// A port that is gone is tried again this often.
+/// Opening a port that is gone is retried this often.
 const AGAIN: Duration = Duration::from_millis(250);
-/// A thread that waits for the port looks this often whether it is still needed.
+/// A thread that waits for the port checks this often whether it is still needed.
 const LOOK: Duration = Duration::from_millis(100);
 /// Longest wait for a computer to answer.
 const TCP_PATIENCE: Duration = Duration::from_secs(2);
-/// Pieces that wait for the session.
+/// Most pieces queued for the session.
 const WAITING: usize = 1_024;
-/// A serial port that is ready to be read and holds nothing, this often in turn, is gone.
+/// After so many consecutive empty reads a serial port is gone.
 const EMPTY_READS: u32 = 3;
 
-/// What is written before the address of a TCP port.
+/// Prefix of a TCP address.
 pub const TCP: &str = "tcp:";
 
 type Reader = Box<dyn Read + Send>;
 type Writer = Box<dyn Write + Send>;
 
-/// What the threads share with the target.
+/// State shared by the threads and the target.
 #[derive(Clone, Debug, Default)]
 struct Shared {
     news: Arc<Mutex<Vec<LinkNews>>>,
@@ -48,7 +48,7 @@ struct Shared {
 }
 
 impl Shared {
-    fn tell(&self, news: LinkNews) {
+    fn report(&self, news: LinkNews) {
         self.news
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
@@ -73,7 +73,7 @@ impl Port {
     /// Opens a serial port by its name, or `tcp:host:port`.
     ///
     /// # Errors
-    /// [`PortError`], if it cannot be opened now. Later it is waited for.
+    /// [`PortError`], if it cannot be opened now. A port lost later is reopened.
     pub fn open(address: &str, baud: u32) -> Result<Self, PortError> {
         let opened = open(address, baud).map_err(|error| PortError::new(address, &error))?;
         let (bytes, incoming) = sync_channel(WAITING);
@@ -104,9 +104,9 @@ impl Port {
 
 impl Drop for Port {
     fn drop(&mut self) {
-        // What was given to be sent, such as the last STOP, is sent before the thread ends.
+        // Bytes queued for sending, such as the last STOP, are sent before the thread ends.
         drop(self.outgoing.take());
-        // A reader with more than anybody takes does not wait for us.
+        // Unblocks a reader that waits for room in the channel.
         self.incoming = std::sync::mpsc::channel().1;
         self.shared.ended.store(true, Ordering::SeqCst);
         let ended = self.thread.take().map(JoinHandle::join);
@@ -140,7 +140,7 @@ impl Target for Port {
     fn receive(&mut self, into: &mut Vec<u8>) {
         self.incoming
             .try_iter()
-            // A flood is taken in parts, so that orders are obeyed in between.
+            // A flood is read in parts, so that orders are handled in between.
             .take(WAITING)
             .for_each(|bytes| into.extend(bytes));
     }
@@ -187,10 +187,10 @@ fn open(address: &str, baud: u32) -> io::Result<(Reader, Writer)> {
     Ok((Box::new(port.try_clone()?), Box::new(port)))
 }
 
-/// Names of the serial ports of this computer, and what is behind them as far as the system knows.
+/// Names of the serial ports of this computer, and the devices behind them as far as the system knows.
 ///
 /// # Errors
-/// If the system does not tell.
+/// If the system does not list them.
 pub fn serial_ports() -> Result<Vec<(String, String)>, String> {
     use serialport::SerialPortType;
     let ports = serialport::available_ports().map_err(|error| error.to_string())?;
@@ -208,7 +208,7 @@ pub fn serial_ports() -> Result<Vec<(String, String)>, String> {
         .collect())
 }
 
-/// Keeps the port open.
+/// Keeps the port open, and reopens it.
 struct Keeper {
     address: String,
     baud: u32,
@@ -222,15 +222,15 @@ impl Keeper {
         let mut opened = Some(opened);
         loop {
             if let Some((reader, writer)) = opened.take() {
-                match self.talk(reader, writer) {
+                match self.transfer(reader, writer) {
                     Ok(()) => return,
-                    Err(error) => self.shared.tell(LinkNews::Lost(format!(
+                    Err(error) => self.shared.report(LinkNews::Lost(format!(
                         "port {} is gone ({error}); waiting for it",
                         self.address
                     ))),
                 }
             }
-            // What is asked of a robot that is not there is asked of nobody.
+            // Bytes for a robot that is not connected are dropped.
             match self.commands.recv_timeout(AGAIN) {
                 Err(RecvTimeoutError::Disconnected) => return,
                 Ok(_) => {
@@ -242,14 +242,14 @@ impl Keeper {
             if let Ok(again) = open(&self.address, self.baud) {
                 while self.commands.try_recv().is_ok() {}
                 self.shared
-                    .tell(LinkNews::Back(format!("port {} is back", self.address)));
+                    .report(LinkNews::Back(format!("port {} is back", self.address)));
                 opened = Some(again);
             }
         }
     }
 
-    /// Talks until nobody wants to any more, or the port is gone.
-    fn talk(&self, reader: Reader, mut writer: Writer) -> io::Result<()> {
+    /// Transfers bytes until the target is dropped or the port is gone.
+    fn transfer(&self, reader: Reader, mut writer: Writer) -> io::Result<()> {
         let (lost, gone) = channel();
         let (bytes, ended) = (self.bytes.clone(), Arc::new(AtomicBool::new(false)));
         let over = Arc::clone(&ended);
@@ -257,7 +257,7 @@ impl Keeper {
             .name("port reader".into())
             .spawn(move || {
                 if let Err(error) = listen(reader, &bytes, &over) {
-                    // Whoever asked has noticed by himself.
+                    // Without a receiver the writer has already ended.
                     let _ = lost.send(error);
                 }
             })?;
@@ -267,7 +267,7 @@ impl Keeper {
             }
             match self.commands.recv_timeout(LOOK) {
                 Ok(bytes) => match writer.write_all(&bytes).and_then(|()| writer.flush()) {
-                    // A port that takes nothing now: the bytes are repeated by whoever needs an answer.
+                    // The port accepts nothing now: a sender that needs an answer repeats its bytes.
                     Err(error) if error.kind() == io::ErrorKind::TimedOut => {}
                     Err(error) => break Err(error),
                     Ok(()) => {}
@@ -277,13 +277,13 @@ impl Keeper {
             }
         };
         ended.store(true, Ordering::SeqCst);
-        // A reader that failed has told.
+        // A reader that failed has reported its error.
         drop(listening.join());
         outcome
     }
 }
 
-/// Hands on what arrives.
+/// Forwards received bytes.
 fn listen(mut reader: Reader, bytes: &SyncSender<Vec<u8>>, ended: &AtomicBool) -> io::Result<()> {
     let (mut buffer, mut empty) = ([0; 4_096], 0);
     while !ended.load(Ordering::SeqCst) {
@@ -308,7 +308,7 @@ fn listen(mut reader: Reader, bytes: &SyncSender<Vec<u8>>, ended: &AtomicBool) -
     Ok(())
 }
 
-/// Nothing arrived for a while.
+/// Whether the error means only that nothing arrived for a while.
 fn is_patience(kind: io::ErrorKind) -> bool {
     matches!(
         kind,

@@ -4,7 +4,7 @@ use serialport::{SerialPort, TTYPort};
 use std::io::{self, Read, Write};
 use std::time::Duration;
 
-/// Longest wait for the other side to take what is written.
+/// Longest wait for the other side to read or write.
 const PATIENCE: Duration = Duration::from_millis(5);
 
 /// The robot's side of a pseudo terminal.
@@ -12,12 +12,12 @@ const PATIENCE: Duration = Duration::from_millis(5);
 pub struct Pty {
     master: TTYPort,
     path: String,
-    /// Somebody has the other side open.
-    heard: bool,
+    /// A program has the other side open.
+    open: bool,
 }
 
 impl Pty {
-    /// A new one.
+    /// Opens a new one.
     ///
     /// # Errors
     /// If the system has none left.
@@ -30,11 +30,11 @@ impl Pty {
         Ok(Self {
             master,
             path,
-            heard: false,
+            open: false,
         })
     }
 
-    /// What other programs open.
+    /// The path that other programs open.
     #[must_use]
     pub fn path(&self) -> &str {
         &self.path
@@ -45,20 +45,20 @@ impl Pty {
         let mut buffer = [0; 1_024];
         match self.master.read(&mut buffer) {
             Ok(count) => {
-                self.heard = true;
+                self.open = true;
                 into.extend_from_slice(&buffer[..count]);
             }
-            Err(error) if error.kind() == io::ErrorKind::TimedOut => self.heard = true,
+            Err(error) if error.kind() == io::ErrorKind::TimedOut => self.open = true,
             Err(_) => {
-                self.heard = false;
+                self.open = false;
                 std::thread::sleep(PATIENCE);
             }
         }
     }
 
-    /// Writes to the other side. What nobody listens to is lost, as on a real line.
+    /// Writes to the other side. Bytes without a reader are lost, as on a real line.
     pub fn write(&mut self, bytes: &[u8]) {
-        if self.heard {
+        if self.open {
             // Lost, as on a real line.
             let _ = self.master.write_all(bytes);
         }

@@ -1,21 +1,21 @@
-//! What the USARTs of an emulated chip said in a log, or a robot that speaks text, told as the playhead passes it.
+//! Text in a log, from the USARTs of an emulated chip or a robot that speaks text, shown as the playhead passes it.
 
 use crate::board::Board;
 use rumbo_log::Log;
 use rumbo_session::{ConsoleText, Event, LINK_CONSOLE, readable};
 use std::collections::BTreeMap;
 
-/// What was said, and how much of it the pages have.
+/// The text, and how much of it the pages have.
 #[derive(Debug)]
 pub(super) struct Speech {
-    /// When \[ms\], at which USART, and what, in order.
+    /// Time \[ms\], USART and bytes, in order.
     said: Vec<(f64, u8, Vec<u8>)>,
-    /// The first that the pages do not have.
+    /// The first entry that the pages do not have.
     next: usize,
 }
 
 impl Speech {
-    /// What stands in the log; of a chip's link, what its USART said.
+    /// The text in the log; for an emulated chip, that of its USARTs.
     pub(super) fn of(log: &Log) -> Self {
         let from_chip = log.said.iter().filter(|said| !said.to_chip);
         let mut said: Vec<_> = from_chip
@@ -36,13 +36,13 @@ impl Speech {
         self.said.partition_point(|(at_ms, ..)| *at_ms <= t_ms)
     }
 
-    /// The playhead is elsewhere: the pages, which have nothing, get what was said between these times.
+    /// The playhead was moved: the pages, now empty, get the text between these times.
     pub(super) fn seek(&mut self, from_ms: f64, to_ms: f64, board: &Board) {
         self.next = self.after(from_ms);
         self.advance(to_ms, board);
     }
 
-    /// The playhead has moved on to this time.
+    /// The playhead has advanced to this time.
     pub(super) fn advance(&mut self, to_ms: f64, board: &Board) {
         let end = self.after(to_ms).max(self.next);
         let mut by_usart: BTreeMap<u8, Vec<u8>> = BTreeMap::new();

@@ -1,41 +1,40 @@
-//! What the robot says, taken in: who it is, what time it has, what became of commands; and that it says nothing any
-//! more.
+//! Messages from the robot: its identity, its time, acknowledgements; and the loss of the link.
 
 use super::meeting::Clock;
-use super::{Heard, RobotClient};
+use super::{LinkEvent, RobotClient};
 use crate::commands::Fate;
 use crate::robot_clock::RobotClock;
 use rumbo_control::mode::ModeId;
 use rumbo_wire::{EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received, RobotTime};
 
 impl RobotClient {
-    /// Takes bytes that arrived from the robot and appends what they say.
-    pub fn hear(&mut self, bytes: &[u8], now_us: u64, heard: &mut Vec<Heard>) {
+    /// Decodes bytes from the robot and appends the events.
+    pub fn receive(&mut self, bytes: &[u8], now_us: u64, events: &mut Vec<LinkEvent>) {
         self.down.add(bytes.len(), now_us);
-        self.heard_bytes += bytes.len() as u64;
+        self.received_bytes += bytes.len() as u64;
         for byte in bytes {
-            if let Some(told) = self.terminal.hear(*byte, (now_us / 1_000) as i64) {
-                self.hear_row(told, now_us, heard);
+            if let Some(row) = self.terminal.receive(*byte, (now_us / 1_000) as i64) {
+                self.receive_row(row, now_us, events);
             }
             let body = match self.decoder.push(*byte) {
                 Some(Received::Frame(body)) => body,
-                // A robot addressed in binary answers so; a line is left from before.
+                // A robot addressed in binary answers in binary; a line is left from before.
                 Some(Received::Line(_)) | None => continue,
             };
             let errors = self.decoder.crc_errors();
             self.cut_off.get_or_insert(errors.min(1));
             match FromRobot::from_body(&body) {
-                Ok(_) if self.text => self.hear_frame_in_text(),
-                Ok(message) => self.understand(message, now_us, heard),
+                Ok(_) if self.text => self.receive_frame_in_text(),
+                Ok(message) => self.handle(message, now_us, events),
                 Err(_) => self.malformed = self.malformed.wrapping_add(1),
             }
         }
-        self.report_outcomes(heard);
+        self.report_outcomes(events);
     }
 
-    /// Takes a message from the robot and appends what it says.
-    pub(crate) fn understand(&mut self, message: FromRobot, now_us: u64, heard: &mut Vec<Heard>) {
-        self.last_heard_us = now_us;
+    /// Handles a message from the robot and appends the events.
+    pub(crate) fn handle(&mut self, message: FromRobot, now_us: u64, events: &mut Vec<LinkEvent>) {
+        self.last_received_us = now_us;
         self.frames.add(
             usize::from(matches!(message, FromRobot::Telemetry(_))),
             now_us,
@@ -46,9 +45,9 @@ impl RobotClient {
             self.oddities.frame(now_us);
         }
         match message {
-            FromRobot::Hello(hello) => self.greet(hello, heard),
+            FromRobot::Hello(hello) => self.greet(hello, events),
             FromRobot::Telemetry(telemetry) => {
-                self.meeting.tell_low(telemetry.t_ms);
+                self.meeting.update_low(telemetry.t_ms);
                 if !telemetry.armed {
                     (self.stopping, self.still_armed_us) = (false, None);
                 } else if self.stopping {
@@ -58,19 +57,19 @@ impl RobotClient {
                     self.oddities.telemetry(telemetry.t_ms, now_us);
                 }
                 let t_ms = self.clock.session_ms(telemetry.t_ms, now_ms, way_ms);
-                heard.push(Heard::Telemetry(t_ms, telemetry));
+                events.push(LinkEvent::Telemetry(t_ms, telemetry));
             }
             FromRobot::Status(status) => {
-                self.tell_time(status.at, now_us, heard);
+                self.time_reported(status.at, now_us, events);
                 self.enter(status.mode);
                 self.reference = status.reference;
-                heard.push(Heard::Status(status));
+                events.push(LinkEvent::Status(status));
             }
             FromRobot::Event(event) => {
                 if let EventKind::ModeChanged(mode) = event.kind {
                     self.enter(mode);
                 }
-                heard.push(Heard::Event(
+                events.push(LinkEvent::Event(
                     self.clock.session_ms(event.t_ms, now_ms, way_ms),
                     event.kind,
                 ));
@@ -82,26 +81,26 @@ impl RobotClient {
             }
             FromRobot::HeadingRef(heading_rad) => self.heading_ref_rad = heading_rad,
         }
-        heard.extend(self.oddities.take().map(Heard::Odd));
+        events.extend(self.oddities.take().map(LinkEvent::Odd));
     }
 
-    fn greet(&mut self, hello: Hello, heard: &mut Vec<Heard>) {
+    fn greet(&mut self, hello: Hello, events: &mut Vec<LinkEvent>) {
         (self.hellos, self.words) = (0, 0);
         let before = self.meeting.greet(hello);
         if hello.protocol == PROTOCOL_VERSION {
-            return self.meet(heard);
+            return self.meet(events);
         }
-        // Nothing but this is understood of it: nothing is guessed, nothing is asked.
+        // Nothing else of it can be decoded: nothing is guessed or requested.
         self.lose();
         if before != Some(hello) {
-            heard.push(Heard::OtherProtocol(hello));
+            events.push(LinkEvent::OtherProtocol(hello));
         }
     }
 
-    fn tell_time(&mut self, at: RobotTime, now_us: u64, heard: &mut Vec<Heard>) {
-        let clock = self.meeting.tell(at);
+    fn time_reported(&mut self, at: RobotTime, now_us: u64, events: &mut Vec<LinkEvent>) {
+        let clock = self.meeting.update(at);
         if clock != Clock::On {
-            // What was asked of it is over, and its clock says nothing about the one before.
+            // Pending requests are void, and the new clock is unrelated to the old one.
             self.connected = false;
             self.hello_sent_us = None;
             self.manager.give_up(Fate::RobotRestarted);
@@ -111,11 +110,11 @@ impl RobotClient {
             Clock::Restarted => self.oddities.begin(),
             Clock::On | Clock::Back => self.oddities.status(at, now_us),
         }
-        self.meet(heard);
+        self.meet(events);
     }
 
-    /// The robot is connected, once it is known well enough.
-    fn meet(&mut self, heard: &mut Vec<Heard>) {
+    /// Connects the robot once its HELLO and its time are known.
+    fn meet(&mut self, events: &mut Vec<LinkEvent>) {
         if self.connected {
             return;
         }
@@ -123,14 +122,14 @@ impl RobotClient {
             return;
         };
         self.connected = true;
-        heard.push(match restarted {
-            true => Heard::Restarted(hello),
-            false => Heard::Connected(hello),
+        events.push(match restarted {
+            true => LinkEvent::Restarted(hello),
+            false => LinkEvent::Connected(hello),
         });
         self.read_parameters();
     }
 
-    /// The robot is not there any more: nothing that was asked of it is asked of it when it is back, except STOP.
+    /// The robot is gone: no pending request is sent when it is back, except STOP.
     pub(super) fn lose(&mut self) {
         self.connected = false;
         self.meeting.lose();
@@ -141,7 +140,7 @@ impl RobotClient {
         (self.hellos, self.words) = (0, 0);
     }
 
-    /// The robot is in this mode.
+    /// Notes the robot's mode.
     pub(super) fn enter(&mut self, mode: ModeId) {
         if self.mode != mode {
             self.mode = mode;

@@ -1,16 +1,17 @@
-//! The ghost of a log, started again in the middle: it lives from the beginning up to there, is put where the robot stood, and goes on. That takes
-//! a while for a long log, and is done a little at a time: what is not known yet is not shown, and nothing waits.
+//! The ghost of a log, restarted in the middle: it is advanced from the beginning up to there, moved to the robot's
+//! pose, and continues. That takes a while for a long log and is done in slices: what is not known yet is not shown,
+//! and nothing blocks.
 
 use rumbo_log::{Log, MapPose, Row, compose};
 use rumbo_session::{Ghost, Standing};
 use std::time::{Duration, Instant};
 
-/// Time spent on the ghost at once.
+/// Time spent on the ghost per call.
 const SLICE: Duration = Duration::from_millis(12);
-/// It lives on by so much between two looks at the time \[us\].
+/// It is advanced by this much between two checks of the time \[us\].
 const STEP_US: u64 = 500_000;
 
-/// Whose pose it is, among the signals.
+/// Prefix of its pose among the signals.
 const GHOST: &str = "ghost_";
 const UNKNOWN: MapPose = MapPose {
     x_m: f64::NAN,
@@ -18,37 +19,37 @@ const UNKNOWN: MapPose = MapPose {
     heading_rad: f64::NAN,
 };
 
-/// A ghost on its way.
+/// A restart in progress.
 struct Work {
-    /// Where it is put, and when \[us\]; taken when it is there.
+    /// When \[us\] and where to put it; taken once done.
     put: Option<(u64, Standing)>,
-    lived_us: u64,
+    reached_us: u64,
     /// The first row whose ghost is not known yet.
     next_row: usize,
 }
 
-/// A log's ghost, and how far it is.
-pub(super) struct Haunting {
+/// A log's ghost and its progress.
+pub(super) struct GhostReplay {
     ghost: Box<dyn Ghost>,
     work: Option<Work>,
 }
 
-impl Haunting {
+impl GhostReplay {
     pub(super) fn new(ghost: Box<dyn Ghost>) -> Self {
         Self { ghost, work: None }
     }
 
-    /// Something is left to do.
+    /// Whether there is work left.
     pub(super) fn at_work(&self) -> bool {
         self.work.is_some()
     }
 
-    /// The rows before this one lack their ghost.
+    /// Whether rows before this one still lack their ghost.
     pub(super) fn is_behind(&self, row: usize) -> bool {
         self.work.as_ref().is_some_and(|work| work.next_row < row)
     }
 
-    /// The ghost begins again beside the robot of this row; what later rows know of it is over.
+    /// Restarts the ghost at the robot's pose in this row; its poses in later rows are discarded.
     pub(super) fn restart(&mut self, log: &mut Log, row: usize) -> Result<(), String> {
         let until = (row + 1).min(log.rows.len());
         let (before, later) = log.rows.split_at_mut(until);
@@ -62,22 +63,22 @@ impl Haunting {
         }
         self.work = Some(Work {
             put: Some((to_us(last.t_ms), standing)),
-            lived_us: 0,
+            reached_us: 0,
             next_row: row,
         });
         Ok(())
     }
 
-    /// Goes on for a while.
+    /// Works for one slice of time.
     pub(super) fn work(&mut self, log: &mut Log) -> Result<(), String> {
         let until = Instant::now() + SLICE;
         while let Some(work) = &mut self.work
             && Instant::now() < until
         {
             if let Some((at_us, standing)) = work.put {
-                work.lived_us = (work.lived_us + STEP_US).min(at_us);
-                self.ghost.live(work.lived_us)?;
-                if work.lived_us == at_us {
+                work.reached_us = (work.reached_us + STEP_US).min(at_us);
+                self.ghost.advance_to(work.reached_us)?;
+                if work.reached_us == at_us {
                     self.ghost.place(standing);
                     work.put = None;
                 }
@@ -85,7 +86,7 @@ impl Haunting {
             }
             match log.rows.get_mut(work.next_row) {
                 Some(row) => {
-                    let at = self.ghost.live(to_us(row.t_ms))?;
+                    let at = self.ghost.advance_to(to_us(row.t_ms))?;
                     row.set_pose(GHOST, at);
                     work.next_row += 1;
                 }
@@ -95,7 +96,7 @@ impl Haunting {
         Ok(())
     }
 
-    /// The ghost cannot go on.
+    /// Stops after an error.
     pub(super) fn give_up(&mut self) {
         self.work = None;
     }
@@ -105,12 +106,14 @@ fn to_us(t_ms: i64) -> u64 {
     u64::try_from(t_ms).unwrap_or(0) * 1_000
 }
 
-/// Where the robot stood: as it was where that is known, else as it believed.
+/// The robot's pose: ground truth where it is known, else its estimate.
 fn standing(row: &Row) -> Option<Standing> {
-    let told = row.pose("")?;
+    let estimated = row.pose("")?;
     let origin = row.pose("origin_").unwrap_or_default();
     Some(Standing {
-        at: row.pose("true_").unwrap_or_else(|| compose(origin, told)),
-        told,
+        at: row
+            .pose("true_")
+            .unwrap_or_else(|| compose(origin, estimated)),
+        estimated,
     })
 }

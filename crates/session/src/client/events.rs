@@ -1,22 +1,22 @@
-//! What the station's end of a link tells: what was heard, and how the link does.
+//! What a client reports: events of the robot and the state of the link.
 
 use crate::commands::Outcome;
 use crate::oddity::Oddity;
 use rumbo_control::params;
 use rumbo_wire::{EventKind, Hello, Status, Telemetry};
 
-/// What was heard from the robot, in the session's time.
+/// An event of the link, in the session's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Heard {
+pub enum LinkEvent {
     /// The robot answered for the first time, or after silence.
     Connected(Hello),
     /// The robot sends rows of the original's text, for the first time or after silence.
     Text,
-    /// The robot speaks another version of the protocol: nothing is understood but that.
+    /// The robot speaks another version of the protocol, so nothing else of it can be decoded.
     OtherProtocol(Hello),
     /// The robot's program started again since it was last connected.
     Restarted(Hello),
-    /// Nothing came for a second.
+    /// Nothing was received for a second.
     Lost,
     /// The fast signals, as of this time \[ms\].
     Telemetry(i64, Telemetry),
@@ -28,7 +28,7 @@ pub enum Heard {
     Ended(Outcome),
     /// STOP is not acknowledged, or the robot goes on saying that it is armed.
     StopUnconfirmed,
-    /// The robot does what no sound robot does.
+    /// The robot does what no healthy robot does.
     Odd(Oddity),
 }
 
@@ -37,7 +37,7 @@ pub enum Heard {
 pub enum NotTaken {
     /// No robot is connected.
     NotConnected,
-    /// As many commands wait as may.
+    /// The queue is full.
     QueueFull,
 }
 
@@ -69,16 +69,16 @@ pub struct LinkFigures {
     /// Telemetry frames from the robot [1/s].
     pub telemetry_hz: f64,
     /// Bytes from the robot since the port was opened.
-    pub heard_bytes: u64,
+    pub received_bytes: u64,
     /// Frames from the robot that failed the CRC, wrapping.
     pub crc_errors: u16,
     /// Frames from the robot missing by their sequence numbers, wrapping.
     pub frames_lost: u16,
-    /// Frames that passed the CRC and mean nothing here, wrapping.
+    /// Frames that passed the CRC but cannot be decoded, wrapping.
     pub malformed: u32,
     /// Smoothed time from a command to its acknowledgement \[us\].
     pub round_trip_us: Option<u64>,
-    /// The operator's commands that wait for their acknowledgement.
+    /// The operator's commands not acknowledged yet.
     pub unacknowledged: usize,
     /// Session time at the robot's time 0, where the clocks did not start together \[ms\].
     pub clock_offset_ms: Option<i64>,
