@@ -404,7 +404,7 @@ mod tests {
     }
 
     #[test]
-    fn a_relative_route_is_reckoned_from_where_it_starts() {
+    fn a_relative_route_is_measured_from_its_start() {
         let route = route(&[(1.0, 0.0, None)], false, true);
         let mut state = State::default();
         rest(&route, &mut state, &standing(2.0, 1.0, 1.570_796_4));

@@ -12,11 +12,12 @@ use core::f32::consts::FRAC_PI_2;
 
 /// Back where the obstacle was met: within this, having been farther away than twice as much [mm].
 const BACK_MM: u32 = 200;
-/// After so little way the side of the last obstacle is the next one's too, unless the other way is this much shorter [m].
+/// After so little way the side of the last obstacle is the next one's too, unless the other way is this much shorter
+/// [m].
 const SOON_M: f32 = 0.8;
 const STAY_M: f32 = 0.5;
-/// Ways whose lengths differ by less are alike: where an obstacle ends is known no better. The one with more room beside the robot is taken,
-/// the left one where that is alike, too [m].
+/// Ways whose lengths differ by less are alike: where an obstacle ends is known no better. The one with more room
+/// beside the robot is taken, the left one where that is alike, too [m].
 const ALIKE_M: f32 = 0.1;
 const ROOM_M: f32 = 0.1;
 /// A side is changed for another whose way is this much shorter [m].

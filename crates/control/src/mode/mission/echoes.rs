@@ -1,9 +1,9 @@
-//! What the sonars have seen lately: points of obstacles in the frame of the odometry, as many as fit.
+//! Recent echoes of the sonars: a bounded set of obstacle points in the odometry frame.
 //!
-//! A reading says two things. *Something is on this arc*: up to three points across the beam are put down. *Nothing is
-//! nearer in this beam*: points in it that are nearer and that were seen from about the same direction lose belief, and
-//! go when they have none left. From another direction silence says nothing: a face gives no echo when it is turned
-//! away by more than the beam's half angle and the incidence limit, 0.31 + 0.55 rad (docs/theory/mission.md).
+//! A reading says two things. *Something is on this arc*: up to three points across the beam are stored. *Nothing is
+//! nearer in this beam*: points in it that are nearer and were seen from about the same direction lose belief, and are
+//! removed when they have none left. From another direction silence says nothing: a face gives no echo when it is
+//! turned away by more than the beam's half angle plus the incidence limit, 0.31 + 0.55 rad (docs/theory/mission.md).
 //!
 //! Millimetres in 16 bits and a direction in 8 keep a point in 6 bytes and its arithmetic in integers: the memory is
 //! read some ten times as often as it is written.
@@ -12,23 +12,23 @@ use super::place::{Bounds, Place, fractions};
 use crate::math::{round, sin_cos};
 use crate::types::{Pose, Range, Reading, SonarId, Transform};
 
-/// How many points are remembered.
+/// Most points stored.
 pub(super) const CAPACITY: usize = 48;
-/// How many silences of the front sonar wait for its next echo: those of two sweeps.
+/// Most silences of the front sonar that wait for its next echo: those of two sweeps.
 const SILENCES: usize = 12;
-/// Points nearer to each other than this are one [mm].
+/// Points closer together than this are merged [mm].
 const MERGE_MM: u16 = 50;
-/// Belief in a point heard once, in one heard again, and the most.
+/// Belief in a point detected once, in one detected again, and the maximum.
 const FRESH: u8 = 2;
 const FIRM: u8 = 3;
 const MOST_BELIEF: u8 = 6;
-/// What is nearer to the robot than this counts even if it was heard once [mm].
+/// Points nearer to the robot than this count even if detected only once [mm].
 const CLOSE_MM: u16 = 350;
-/// Farthest point put down, of the front sonar and of one at a side [mm].
+/// Farthest point stored, of the front sonar and of a side sonar [mm].
 const HORIZON_MM: [i32; 2] = [1_300, 700];
-/// What silence denies is nearer than this [mm].
+/// Silence contradicts only points nearer than this [mm].
 const REACH_MM: i32 = 2_500;
-/// Half width of the part of a beam in which a point would surely be heard, as a tangent in 256ths: 0.21 rad.
+/// Half width of the part of a beam in which a point would surely be detected, as a tangent in 256ths: 0.21 rad.
 const SURE_TANGENT: i32 = 54;
 /// A reading this much beyond a point contradicts it: [mm] and 256ths of the range.
 const BEYOND_MM: i32 = 50;
@@ -45,9 +45,9 @@ const ACROSS: [(f32, f32); 3] = {
     let (sin, cos) = sin_cos(0.2);
     [(0.0, 1.0), (sin, cos), (-sin, cos)]
 };
-/// Echoes nearer than this always leave a point: what is near must not be missed [mm].
+/// Echoes nearer than this always store a point: nothing near may be missed [mm].
 const NEAR_MM: i32 = 300;
-/// What a sonar at the side sees within this goes on ahead of it, for so much [mm, m].
+/// A wall that a side sonar sees within this is extended ahead, by this much [mm, m].
 const BESIDE_MM: i32 = 200;
 const GOES_ON_M: f32 = 0.1;
 /// Arcs shorter than this get one point [m].
@@ -57,9 +57,9 @@ const SHORT_M: f32 = 0.18;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Echo {
     at: Place,
-    /// The beam's axis when it was last heard, in 256ths of a turn.
+    /// The beam's axis at its last echo, in 256ths of a turn.
     axis: i8,
-    /// How often it was heard of late; 0: no point.
+    /// Recent detections; 0: no point.
     belief: u8,
 }
 
@@ -70,7 +70,7 @@ impl Echo {
         belief: 0,
     };
 
-    /// Where it is, if there is a point.
+    /// Its position, if there is a point.
     #[inline]
     pub(super) fn place(&self) -> Option<Place> {
         (self.belief > 0).then_some(self.at)
@@ -79,7 +79,7 @@ impl Echo {
 
 /// A beam of a sonar.
 pub(super) struct Beam {
-    /// Where it begins.
+    /// Its origin.
     pub apex: Place,
     /// Sine and cosine of its axis, as [`fractions`].
     pub facing: (i32, i32),
@@ -88,7 +88,7 @@ pub(super) struct Beam {
 }
 
 impl Beam {
-    /// That of a reading, with the robot at `robot`; and the place on its axis from which the echo came, if there was one.
+    /// The beam of a reading, with the robot at `robot`; and the position of the echo on its axis, if there was one.
     pub(super) fn of(robot: &Transform, reading: &Reading) -> (Self, Option<Place>) {
         let (x_m, y_m) = robot.to_world(reading.view.x_m, reading.view.y_m);
         let axis_rad = robot.pose.heading_rad + reading.view.axis_rad;
@@ -105,7 +105,7 @@ impl Beam {
         (beam, at)
     }
 
-    /// From a place in a direction of the world.
+    /// A beam from a position in a direction of the world.
     pub(super) fn along(apex: Place, axis_rad: f32) -> Self {
         Self {
             apex,
@@ -115,15 +115,15 @@ impl Beam {
     }
 }
 
-/// Most points that a reading puts down: those across the beam, and one that goes on ahead.
+/// Most points stored per reading: those across the beam, and one ahead.
 const MOST_PUT: usize = ACROSS.len() + 1;
 
-/// Slots for a reading's points: free ones, then those of the farthest. Found in one look at all points for up to four of them.
+/// Slots for a reading's points: free ones, then those of the farthest points. Up to four are found in one pass.
 struct Room {
     robot: Place,
-    /// How far away what is in a slot is [mm], and the slot's number; the farthest first.
+    /// Distance of the point in a slot [mm], and the slot's number; the farthest first.
     slots: [(u16, u8); MOST_PUT],
-    /// The first that has not been taken.
+    /// The first not taken yet.
     next: usize,
 }
 
@@ -144,7 +144,7 @@ impl Room {
         }
     }
 
-    /// A slot for a point; none where all that is remembered is nearer.
+    /// A slot for a point; none where all stored points are nearer.
     fn take(&mut self, at: Place) -> Option<u8> {
         let (away_mm, number) = *self.slots.get(self.next)?;
         if away_mm <= at.about_mm(self.robot) {
@@ -155,7 +155,7 @@ impl Room {
     }
 }
 
-/// A silence that waits for the echo after it.
+/// A silence that waits for the next echo.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Silence {
     apex: Place,
@@ -166,10 +166,10 @@ struct Silence {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Echoes {
     points: [Echo; CAPACITY],
-    /// Silences of the front sonar, the oldest first: how many there are, and how many of them are believed.
+    /// Silences of the front sonar, the oldest first: their number, and how many of them are confirmed.
     silences: [Silence; SILENCES],
     silent: u8,
-    believed: u8,
+    confirmed: u8,
 }
 
 impl Default for Echoes {
@@ -179,26 +179,26 @@ impl Default for Echoes {
             points: [Echo::NONE; CAPACITY],
             silences: [Silence::default(); SILENCES],
             silent: 0,
-            believed: 0,
+            confirmed: 0,
         }
     }
 }
 
 impl Echoes {
-    /// All points by their numbers, and free places.
+    /// All points by their numbers, free slots included.
     #[inline]
     pub(super) fn points(&self) -> &[Echo; CAPACITY] {
         &self.points
     }
 
-    /// Whether a point has been heard more than once, or is near the robot, which is `here`.
+    /// Whether a point was detected more than once, or is near the robot, which is `here`.
     pub(super) fn is_firm(&self, number: usize, here: Place) -> bool {
         self.points.get(number).is_some_and(|point| {
             point.belief >= FIRM || (point.belief > 0 && point.at.is_within(CLOSE_MM, here))
         })
     }
 
-    /// Forgets what was heard once, some time ago. To be called now and then.
+    /// Fades points detected only once. To be called at intervals.
     pub(super) fn fade(&mut self) {
         for point in self.points.iter_mut().filter(|point| point.belief < FIRM) {
             point.belief = point.belief.saturating_sub(1);
@@ -211,7 +211,7 @@ impl Echoes {
         (point.belief > 0).then_some(point.at)
     }
 
-    /// Takes in a reading. Unless it is `sure` it takes no belief from what it denies.
+    /// Ingests a reading. Unless it is `sure`, points that it contradicts keep their belief.
     pub(super) fn ingest(&mut self, robot: &Transform, reading: &Reading, sure: bool) {
         let (pose, view) = (&robot.pose, &reading.view);
         let (x_m, y_m) = robot.to_world(view.x_m, view.y_m);
@@ -224,7 +224,7 @@ impl Echoes {
             axis: direction(axis_rad),
         };
         let [front_mm, side_mm] = HORIZON_MM;
-        let (range_mm, heard) = match reading.range {
+        let (range_mm, echo) = match reading.range {
             Range::Valid(range_m) => (round(1_000.0 * range_m), true),
             Range::Clear => (REACH_MM, false),
             Range::Faulty => return,
@@ -237,7 +237,7 @@ impl Echoes {
         } else {
             side_mm
         };
-        if !heard || range_mm > horizon_mm {
+        if !echo || range_mm > horizon_mm {
             return;
         }
         let range_m = 1e-3 * crate::math::from_u32(range_mm.unsigned_abs());
@@ -257,7 +257,7 @@ impl Echoes {
             self.put(at, beam.axis, &mut room);
         }
         if reading.sonar != SonarId::Front && range_mm < BESIDE_MM {
-            // A wall beside the robot is taken to go on as far as the robot's front, until the sonar has been there.
+            // A wall beside the robot is assumed to reach as far as the robot's front, until the sonar has been there.
             let at = Place::new(
                 x_m + range_m * cos + GOES_ON_M * robot.cos,
                 y_m + range_m * sin + GOES_ON_M * robot.sin,
@@ -266,13 +266,13 @@ impl Echoes {
         }
     }
 
-    /// The front sonar answered that nothing is in reach. That takes no belief from anything until it has had an echo again:
-    /// a sonar that is silent for ever denies nothing.
+    /// The front sonar reported that nothing is in reach. That lowers no belief until the next echo: a sonar that is
+    /// always silent contradicts nothing.
     pub(super) fn silence(&mut self, robot: &Transform, reading: &Reading) {
         if usize::from(self.silent) == SILENCES {
             self.silences.rotate_left(1);
             self.silent -= 1;
-            self.believed = self.believed.saturating_sub(1);
+            self.confirmed = self.confirmed.saturating_sub(1);
         }
         let (beam, _) = Beam::of(robot, reading);
         if let Some(next) = self.silences.get_mut(usize::from(self.silent)) {
@@ -285,24 +285,24 @@ impl Echoes {
     }
 
     /// The front sonar has had an echo: it worked during the silences before.
-    pub(super) fn hears(&mut self) {
-        self.believed = self.silent;
+    pub(super) fn confirm_silences(&mut self) {
+        self.confirmed = self.silent;
     }
 
-    /// Takes in one of the silences that are believed. To be called in ticks without a reading.
+    /// Ingests one of the confirmed silences. To be called in ticks without a reading.
     pub(super) fn settle(&mut self) {
-        if self.believed == 0 {
+        if self.confirmed == 0 {
             return;
         }
         let [Silence { apex, axis }, ..] = self.silences;
         self.silences.rotate_left(1);
         self.silent -= 1;
-        self.believed -= 1;
+        self.confirmed -= 1;
         let axis_rad = f32::from(axis) * (core::f32::consts::PI / 128.0);
         self.clear(&Beam::along(apex, axis_rad), REACH_MM);
     }
 
-    /// Takes belief from the points that a beam as far as `range_mm` would have heard.
+    /// Lowers the belief in points that a beam as far as `range_mm` would have detected.
     fn clear(&mut self, beam: &Beam, range_mm: i32) {
         let axis = beam.axis;
         let until_mm = range_mm - BEYOND_MM - ((range_mm * BEYOND_SHARE) >> 8);
@@ -324,7 +324,7 @@ impl Echoes {
         }
     }
 
-    /// Whether a point that is known already can have given this echo: it is believed more then, and the echo says nothing new.
+    /// Whether a known point explains this echo: its belief is then raised, and the echo adds nothing new.
     fn explain(&mut self, beam: &Beam, range_mm: i32) -> bool {
         let within_mm = ALIKE_MM + ((range_mm * ALIKE_SHARE) >> 8);
         let (near_mm, far_mm) = (range_mm - within_mm, range_mm + within_mm);
@@ -365,7 +365,7 @@ impl Echoes {
         true
     }
 
-    /// Where a reading's points may go.
+    /// The slots for a reading's points.
     fn room(&self, robot: Place) -> Room {
         let mut room = Room {
             robot,
@@ -384,7 +384,7 @@ impl Echoes {
         room
     }
 
-    /// Puts a point down: into one that is there already, into a free slot, or into that of one far away.
+    /// Stores a point: merged with an existing one, in a free slot, or in place of a farther one.
     fn put(&mut self, at: Place, axis: i8, room: &mut Room) {
         let around = Bounds::around(at, MERGE_MM);
         for point in &mut self.points {

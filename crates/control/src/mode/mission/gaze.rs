@@ -1,7 +1,7 @@
-//! Where the servo points: from direction to direction, two looks in each, and more to where something is near.
+//! The servo's scan: from direction to direction, two readings in each, and more where something is near.
 //!
-//! Two looks in the same direction tell a sonar that lies from one that hears ([`super::watch`]). A sonar that has been silent for a
-//! while is turned to a face that must answer ([`super::landmarks`]).
+//! Two readings in the same direction distinguish a faulty sonar from a working one ([`super::watch`]). A sonar that
+//! has been silent for a while is turned to a face that must answer ([`super::landmarks`]).
 
 use super::detour::following;
 use super::watch::{Watch, Worth};
@@ -16,14 +16,15 @@ pub(super) const SWEEP_RAD: f32 = 1.5;
 /// To the side where something is near, and to the other [rad].
 const WIDE_RAD: f32 = 1.0;
 const NARROW_RAD: f32 = 0.35;
-/// From direction to direction [rad]: what the servo turns in the 60 ms between two pings, and little more than half of a beam.
+/// From direction to direction [rad]: as far as the servo turns in the 60 ms between two pings, a little more than half
+/// a beam.
 const STEP_RAD: f32 = 0.38;
 /// Looks in each direction, one in a sweep, and the most where they contradict each other.
 pub(super) const LOOKS: u8 = 2;
 const MOST_LOOKS: u8 = 8;
-/// Directions between two that are to prove that the sonar hears: the way ahead is looked at in between.
+/// Directions between two proofs that the sonar works: the way ahead is scanned in between.
 const BETWEEN_PROOFS: u8 = 3;
-/// The servo points where it was told to within this [rad].
+/// The servo is on target within this [rad].
 const THERE_RAD: f32 = 0.03;
 /// Near is what a sonar at the side sees within this [m].
 const NEAR_M: f32 = 0.3;
@@ -52,7 +53,7 @@ pub(super) struct Gaze {
     /// The last look contradicted the one before.
     wild: bool,
     to_left: bool,
-    /// Directions since the last one that was to prove that the sonar hears.
+    /// Directions since the last proof that the sonar works.
     since_proof: u8,
 }
 
@@ -80,7 +81,8 @@ impl Gaze {
         beyond && self.looks > 0
     }
 
-    /// On to the next direction, if there were so many looks at this one; after two looks the sonar may be put to the proof.
+    /// On to the next direction, if there were so many looks at this one; after two looks the sonar may be put to the
+    /// proof.
     pub(super) fn step(&mut self, watch: &Watch, estimate: &Estimate, swing: &Swing) {
         if !self.is_done(swing.looks) {
             return;
@@ -101,7 +103,7 @@ impl Gaze {
         ServoAngle(self.target_rad)
     }
 
-    /// To a direction in which the sonar must hear something.
+    /// To a direction in which the sonar must have an echo.
     pub(super) fn turn_to(&mut self, servo_rad: f32) {
         (self.target_rad, self.looks, self.since_proof) = (servo_rad, 0, 0);
     }
@@ -120,7 +122,8 @@ impl Gaze {
     }
 }
 
-/// How far to the right and to the left the servo swings: mostly to where something is near, or where the robot turns to.
+/// How far to the right and to the left the servo swings: mostly to where something is near, or where the robot turns
+/// to.
 fn swing(state: &State, estimate: &Estimate) -> (f32, f32) {
     let near =
         |sonar| matches!(estimate.range(sonar).range, Range::Valid(range_m) if range_m < NEAR_M);

@@ -1,12 +1,13 @@
-//! Faces that the front sonar must hear again: the proof that it still hears.
+//! Faces that the front sonar must detect again: the proof that it still works.
 //!
-//! A sonar that answers "nothing in reach" for ever looks like free floor. So faces that have answered are remembered apart from
-//! the obstacles, and when the sonar has been silent for a while the servo turns to one that must answer: near enough, and seen from
-//! about the direction from which it answered. Its silence raises doubt and slows the robot; too much silence is a deaf sonar.
+//! A sonar that always reports "nothing in reach" looks like free floor. So faces that have answered are stored apart
+//! from the obstacles, and when the sonar has been silent for a while the servo turns to one that must answer: near
+//! enough, and seen from about the same direction as before. Its silence raises doubt and slows the robot; too much
+//! silence means a deaf sonar.
 //!
 //! | event | effect |
 //! |---|---|
-//! | two equal echoes in a row from a place | the landmark there is renewed, or the one unheard for longest gives way; all silence is forgiven |
+//! | two equal echoes in a row from a place | the landmark there is renewed, or the one silent for longest gives way; all silences are cleared |
 //! | two silences in a row at a landmark | one more silence of that landmark; with [`SILENCES`] of them it is given up |
 //! | [`DOUBT_AFTER`] silences at landmarks since the last echo | doubt: the robot is slow for the next [`DOUBT_M`] |
 //! | [`LASTING`] | doubt until the next echo |
@@ -17,7 +18,7 @@ use super::place::{Place, fractions};
 use crate::math::{abs, atan2, wrap_angle};
 use crate::types::{Pose, TICK_S, Transform};
 
-/// How many are remembered.
+/// Most landmarks stored.
 const CAPACITY: usize = 4;
 /// Landmarks nearer to each other than this are one [mm].
 const APART_MM: u16 = 250;
@@ -25,13 +26,14 @@ const APART_MM: u16 = 250;
 const REACH_MM: i32 = 2_000;
 /// A landmark must answer a beam whose axis passes it within this tangent, in 256ths: 0.15 rad, half a beam.
 const BESIDE: i32 = 39;
-/// It must answer from the directions between those from which it did, and from a little beyond, in 256ths of a turn: 0.05 rad.
+/// It must answer from the directions between those from which it did, and from a little beyond, in 256ths of a turn:
+/// 0.05 rad.
 const BEYOND: i8 = 2;
-/// Directions farther from the first than this begin anew, in 256ths of a turn: 1 rad.
+/// Directions farther from the first than this start a new range, in 256ths of a turn: 1 rad.
 const WIDEST: u8 = 40;
-/// A silence says something only of a sonar that had an echo within this time; after it the sonar is put to the proof [s].
+/// A silence counts only if the sonar had an echo within this time; after that the sonar must be tested [s].
 const ALIVE_S: f32 = 0.6;
-/// A sonar that has passed a proof is believed for so long: time for a sweep [s].
+/// A sonar that has passed a proof is trusted for this long: time for a sweep [s].
 const TRUST_S: f32 = 4.0;
 /// A face nearer than this must answer a robot that turns to it [mm].
 const NEAR_MM: u16 = 800;
@@ -66,13 +68,13 @@ struct Landmark {
 /// A landmark counts once it has answered so often.
 const SURE: u8 = 2;
 
-/// What the front sonar must hear, and whether it does.
+/// The landmarks that the front sonar must detect, and whether it does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Landmarks {
     seen: [Landmark; CAPACITY],
     /// Time since the last echo [s].
     silent_s: f32,
-    /// How long its silence is still believed after it has passed a proof [s].
+    /// How long its silence is still trusted after a passed proof [s].
     trusted_s: f32,
     /// Way since the last silence at a landmark [m].
     doubt_m: f32,
@@ -143,7 +145,7 @@ impl Landmarks {
         self.trusted_s = TRUST_S;
     }
 
-    /// Its silence cannot be put to the proof here: it stays in doubt until its next echo.
+    /// It cannot be tested here: it stays in doubt until its next echo.
     pub(super) fn postpone(&mut self) {
         self.silences = core::cmp::min(self.silences, LASTING);
     }
@@ -165,7 +167,7 @@ impl Landmarks {
         (ahead && newest.at.is_within(NEAR_MM, here)).then_some(bearing_rad)
     }
 
-    /// Whether the sonar has proven within the last moments that it hears: its silence says something.
+    /// Whether the sonar has proven recently that it works, so that its silence counts.
     pub(super) fn is_alive(&self) -> bool {
         self.silent_s < ALIVE_S || self.trusted_s > 0.0
     }

@@ -8,12 +8,12 @@
 //! | decide | a quarter turn to the side whose opening is at the smaller angle; half a turn where there is none | at once | avoidance turn |
 //! | avoidance turn | turns on the spot | stands and faces the heading | straight on |
 //!
-//! Nothing within the sonar's reach: straight on, for ever. Headings are multiples of a quarter turn from the one at the start,
-//! so that errors of the turns do not add up. Positive is to the left.
+//! Nothing within the sonar's reach: straight on, for ever. Headings are multiples of a quarter turn from the one at
+//! the start, so that errors of the turns do not add up. Positive is to the left.
 //!
-//! The report's robot drives at 50 rpm until it sees the face at 25 cm and sleeps 300 ms per 3 degrees of the sweep; its sonars at the sides
-//! are not used. Here the stop is planned, the servo never blocks a tick, and walls at the sides push the robot to the middle:
-//! docs/theory/lane.md.
+//! The report's robot drives at 50 rpm until it sees the face at 25 cm and sleeps 300 ms per 3 degrees of the sweep;
+//! its sonars at the sides are not used. Here the stop is planned, the servo never blocks a tick, and walls at the
+//! sides push the robot to the middle: docs/theory/lane.md.
 
 use super::gaze::{LOOKS, Swing};
 use super::goal::DOUBT_M_S;
@@ -58,8 +58,8 @@ enum Stage {
     Straight = Phase::StraightOn as u8,
 }
 
-/// What is ahead: the second nearest of the last five looks, moved along with the robot. One wild look brings nothing nearer, and
-/// what was near is only gone when four looks say so.
+/// What is ahead: the second nearest of the last five looks, moved along with the robot. One wild look brings nothing
+/// nearer, and what was near is only gone when four looks say so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ahead {
     last_m: [f32; 5],
@@ -329,8 +329,8 @@ impl Lane {
     }
 
     fn decide(&mut self, estimate: &Estimate) {
-        // A gap between two boxes at a corner looks like an opening to the sweep, and corners that echo far around hide one: the
-        // sonars at the sides look where the robot would go.
+        // A gap between two boxes at a corner looks like an opening to the sweep, and corners that echo far around hide
+        // one: the sonars at the sides look where the robot would go.
         let room_m = self.face_m + JUMP_M;
         let right = side_m(estimate, SonarId::Right) > room_m;
         let left = side_m(estimate, SonarId::Left) > room_m;

@@ -1,13 +1,15 @@
 //! Mode 8: a goal around obstacles, or a lane of boxes (memoria 6).
 //!
 //! ```text
-//! echoes -> remembered points -> the obstacle that blocks the way, with two ends -> a side -> the direction that just passes that end
+//! echoes -> remembered points -> the obstacle that blocks the way, with two ends -> a side -> the direction that just
+//! passes that end
 //!        -> forward speed and yaw rate -> wheel-speed loops                  angles count counter-clockwise, left is positive
 //! ```
 //!
-//! The report turns by 90 degrees to the side on which the obstacle's edge appears at the smaller angle, follows its faces by turns of
-//! 90 degrees, and leaves when the bearing to the goal is the line's again. Ours needs no right angles, looks while it drives, goes straight
-//! past what it remembers, leaves early, and knows when to give up. Derivation, proof of termination and figures: docs/theory/mission.md.
+//! The report turns by 90 degrees to the side on which the obstacle's edge appears at the smaller angle, follows its
+//! faces by turns of 90 degrees, and leaves when the bearing to the goal is that of the line again. Ours needs no right
+//! angles, scans while it drives, goes straight past stored points, leaves early, and detects when to give up.
+//! Derivation, proof of termination and figures: docs/theory/mission.md.
 
 mod detour;
 mod echoes;
@@ -39,7 +41,7 @@ use plan::Plan;
 use proof::Proof;
 use watch::{Watch, Worth};
 
-/// Time between two fadings of the memory [s].
+/// Time between two fades of the memory [s].
 const FADE_S: f32 = 1.0;
 
 /// What mode 8 is.
@@ -224,7 +226,7 @@ struct Detour {
 /// Memory of mode 8.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
-    /// There is a task that has not been begun.
+    /// A task has not been started yet.
     fresh: bool,
     phase: Phase,
     age_s: f32,
@@ -236,7 +238,7 @@ pub struct State {
     turn: TurnState,
     lane: lane::Lane,
 
-    /// What is remembered of the surroundings, and the time since it last faded [s].
+    /// Stored points of the surroundings, and the time since they last faded [s].
     echoes: Echoes,
     fade_s: f32,
     /// The gap ahead was measured at this tick, not the distance to what is nearest.
@@ -266,7 +268,7 @@ impl State {
         self.fresh = true;
     }
 
-    /// The state as it is shown.
+    /// The state for display.
     fn shown(&self, state: u8) -> u8 {
         match self.proof {
             Some(_) => Phase::Prove as u8,
@@ -274,7 +276,7 @@ impl State {
         }
     }
 
-    /// Remembers what an answer says, as far as it can be believed.
+    /// Stores a reading, as far as it can be trusted.
     fn ingest(&mut self, estimate: &Estimate, reading: &Reading) {
         let driving =
             !matches!(self.phase, Phase::Wait | Phase::Unreachable) || self.lane.is_driving();
@@ -290,7 +292,7 @@ impl State {
             Range::Valid(_) => {
                 self.echoes.ingest(&robot, reading, sure);
                 if sure && front {
-                    self.echoes.hears();
+                    self.echoes.confirm_silences();
                 }
             }
             Range::Clear | Range::Faulty => {}

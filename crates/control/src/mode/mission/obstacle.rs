@@ -1,6 +1,6 @@
-//! The obstacle in the way: the remembered points that hang together, and the directions that just pass them.
+//! The obstacle in the way: connected stored points, and the directions that just pass them.
 //!
-//! Two points hang together when the robot does not fit between them. From one that blocks the way the search spreads,
+//! Two points are connected when the robot does not fit between them. From one that blocks the way the search spreads,
 //! a few points per tick, and carries each point's bearing along without a wrap: an obstacle that reaches around the
 //! robot has its left end beyond +180 degrees or its right end beyond -180.
 //!
@@ -15,7 +15,7 @@ use super::place::{Bounds, Place, fractions};
 use crate::math::{atan2, from_u32, min, round, sqrt, wrap_angle};
 use core::f32::consts::{FRAC_PI_2, PI, TAU};
 
-/// Two points nearer than this hang together [mm].
+/// Two points nearer than this are connected [mm].
 pub(super) const LINK_MM: u16 = 290;
 /// Half of the width that the robot takes for itself when it passes a point [m].
 pub(super) const PASS_M: f32 = 0.17;
@@ -106,7 +106,7 @@ impl Default for Search {
     }
 }
 
-/// From where and for what is looked.
+/// A query along a way.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Way {
     /// Where the robot is [m].
@@ -204,7 +204,7 @@ impl Among<'_> {
 }
 
 impl Search {
-    /// Begins anew at a point that blocks the way in direction `about_rad`: bearings are counted on from there.
+    /// Restarts at a point that blocks the way in direction `about_rad`, from which bearings are unwrapped.
     pub(super) fn begin(
         &mut self,
         echoes: &Echoes,
@@ -273,7 +273,7 @@ impl Search {
         self.so_far.nearest_m = min(self.so_far.nearest_m, distance_m);
     }
 
-    /// Goes on; gives the obstacle when it is whole.
+    /// Continues the search; returns the obstacle when it is complete.
     pub(super) fn step(&mut self, echoes: &Echoes, x_m: f32, y_m: f32) -> Option<Obstacle> {
         let here = Place::new(x_m, y_m);
         let mut joined = 0;

@@ -1,8 +1,8 @@
 //! Places on the floor in integers: millimetres in 16 bits, directions in 16,384ths.
 //!
-//! The memory's points are asked for far more often than they are put down, and most of the time the answer is no. So the first question is
-//! always one of comparisons of 16 bits, which the AVR does in a twentieth of the time of a product of floats: does the point lie within
-//! [`Bounds`]?
+//! The memory's points are asked for far more often than they are put down, and most of the time the answer is no. So
+//! the first question is always one of comparisons of 16 bits, which the AVR does in a twentieth of the time of a
+//! product of floats: does the point lie within [`Bounds`]?
 
 use crate::math::round;
 

@@ -1,7 +1,8 @@
-//! What the remembered points mean for the way to the goal: clear, or an obstacle with two ends.
+//! Plans the way to the goal from the stored points: clear, or an obstacle with two ends.
 //!
-//! One round takes a few ticks: look along the way, find the obstacle that blocks it, publish. While the robot goes around an obstacle
-//! the round starts from the point nearest to the side that it keeps to it, so that it follows that one and not the next.
+//! One round takes a few ticks: check the way, find the obstacle that blocks it, publish. While the robot goes around
+//! an obstacle, the round starts from the point nearest to the side facing it, so that it follows that one and not the
+//! next.
 
 use super::echoes::Echoes;
 use super::obstacle::{Among, Obstacle, Search, WAY_M, Way, half_angle};
@@ -37,7 +38,8 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// One tick; says whether a round has ended. `way` leads to the goal, `around` is the side on which the obstacle is passed.
+    /// One tick; says whether a round has ended. `way` leads to the goal, `around` is the side on which the obstacle is
+    /// passed.
     pub(super) fn step(
         &mut self,
         echoes: &Echoes,
@@ -77,8 +79,8 @@ impl Plan {
         true
     }
 
-    /// The direction that passes the obstacle on a side, in the middle of what others leave [rad]; or another leaves nothing,
-    /// and is part of the obstacle from now on.
+    /// The direction that passes the obstacle on a side, in the middle of what others leave [rad]; or another leaves
+    /// nothing, and is part of the obstacle from now on.
     fn past(
         &mut self,
         echoes: &Echoes,
@@ -115,7 +117,8 @@ impl Plan {
         (wrap_angle(way.heading_rad + aside_rad), false)
     }
 
-    /// The point of the last round's obstacle that is nearest to the side on which it is kept, and about where it lies [rad].
+    /// The point of the last round's obstacle that is nearest to the side on which it is kept, and about where it lies
+    /// [rad].
     fn beside(&self, echoes: &Echoes, pose: &Pose, side: Side) -> Option<(usize, f32)> {
         // What is passed on the left is on the right.
         let sign = match side {
@@ -141,7 +144,7 @@ mod tests {
     use crate::rig::View;
     use crate::types::{Range, Reading, SonarId, Transform};
 
-    /// A memory of points, each heard twice by a sonar close to it.
+    /// A memory of points, each detected twice by a sonar close to it.
     fn remembered(points_m: &[(f32, f32)]) -> Echoes {
         let mut echoes = Echoes::default();
         for (x_m, y_m) in points_m.iter().chain(points_m) {

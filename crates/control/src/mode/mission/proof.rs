@@ -1,9 +1,9 @@
-//! A front sonar in doubt is put to the proof: the robot stands, and turns it to what must answer.
+//! The proof of a front sonar in doubt: the robot stops and turns it to a face that must answer.
 //!
-//! A sonar that answers "nothing in reach" for ever looks like free floor. So the robot doubts it where faces that it knows do not
-//! answer ([`super::landmarks`]), where something has been near beside the robot for a while without an echo, and after a long
-//! way without one ([`super::watch`]). It looks there from where it stands, and if nothing answers, turns to face it. An echo ends the doubt at any
-//! moment.
+//! A sonar that always reports "nothing in reach" looks like free floor. So it is in doubt where known faces do not
+//! answer ([`super::landmarks`]), where something has been near beside the robot for a while without an echo, and after
+//! a long way without one ([`super::watch`]). The servo looks there first, and if nothing answers, the robot turns to
+//! face it. Any echo ends the doubt.
 //!
 //! | stage | does | leaves when | to |
 //! |---|---|---|---|
@@ -57,7 +57,7 @@ impl Proof {
         }
     }
 
-    /// What a sonar at a side hears nearer than before is what must answer.
+    /// A nearer echo of a side sonar becomes the face that must answer.
     fn ingest(&mut self, estimate: &Estimate) {
         let Some(reading) = &estimate.reading else {
             return;
@@ -73,7 +73,7 @@ impl Proof {
 }
 
 impl Mission<'_> {
-    /// Goes on with a proof, or begins one where the sonar is in doubt; none if the robot may drive.
+    /// Continues a proof, or starts one where the sonar is in doubt; none if the robot may drive.
     ///
     /// # Errors
     /// The front sonar is deaf.
@@ -101,14 +101,14 @@ impl Mission<'_> {
             Stage::Look if silent => {
                 state.turn = TurnState::default();
                 proof.stage = Stage::Turn;
-                // The robot has rolled on: where it is now, the sonars at the sides say while it turns.
+                // The robot has rolled on: the side sonars update the direction while it turns.
                 proof.range_m = f32::MAX;
             }
             Stage::Turn => {
                 let step = self.turn_on_the_spot(state, estimate, proof.towards_rad);
                 drive = step.drive;
                 if step.done {
-                    // What must answer may have come out elsewhere meanwhile.
+                    // The face may meanwhile be located elsewhere.
                     state.turn = TurnState::default();
                     if abs(wrap_angle(proof.towards_rad - estimate.pose.heading_rad)) < FACING_RAD {
                         state.gaze.turn_to(0.0);
@@ -125,7 +125,8 @@ impl Mission<'_> {
     }
 }
 
-/// A proof by what is beside the robot, or else by the face that answered last or what is remembered; none where there is nothing.
+/// A proof by what is beside the robot, or else by the face that answered last or what is remembered; none where there
+/// is nothing.
 fn begin(state: &mut State, estimate: &Estimate) -> Option<Proof> {
     let known = state.watch.towards(estimate);
     let (towards_rad, range_m) = known.or_else(|| remembered(state, estimate))?;

@@ -1,8 +1,9 @@
-//! Whether the sonars can be believed: answers that are missing, never change, contradict each other, or deny what must answer.
+//! Whether the sonars can be trusted: detects readings that are missing, never change, contradict each other, or miss a
+//! face that must answer.
 //!
-//! Two answers in a row along the same beam are a pair. A sound sonar says the same twice, but for the way that the robot has rolled;
-//! one that says two things is wild. Wild pairs slow the robot first, then stop it, as in mode 1 ([`crate::unrest`]). What is not
-//! wild is an echo or a silence: [`Landmarks`] judge the silences of the front sonar.
+//! Two consecutive readings along the same beam are a pair. A healthy sonar repeats its range, corrected for the way
+//! rolled; a pair that differs is wild. Wild pairs slow the robot first, then stop it, as in mode 1
+//! ([`crate::unrest`]). Any other reading is an echo or a silence: [`Landmarks`] judge the silences of the front sonar.
 
 use super::echoes::Beam;
 use super::gaze::SWEEP_RAD;
@@ -14,12 +15,12 @@ use core::f32::consts::FRAC_PI_2;
 
 /// Impossible answers in a row that make a sonar faulty.
 const FAULTY_AFTER: u8 = 3;
-/// Equal answers in a row that make it stuck. A sound one repeats itself to the microsecond in one of ten answers at most, beside a
-/// parallel wall: seven in a row are one in ten million.
+/// Consecutive equal readings that make it stuck. A healthy one repeats to the microsecond in at most one of ten
+/// readings, beside a parallel wall: seven in a row are one in ten million.
 const STUCK_AFTER: u8 = 7;
 /// Answers this near to each other are equal: a microsecond is 0.17 mm [m].
 const SAME_M: f32 = 0.000_05;
-/// Way or turn from answer to answer below which a robot may well get the same [m, rad].
+/// Motion between readings below which equal ones are plausible [m, rad].
 const MOVED_M: f32 = 0.002;
 const MOVED_RAD: f32 = 0.02;
 /// Two answers along beams whose axes differ by less are a pair [rad].
@@ -27,7 +28,7 @@ const BESIDE_RAD: f32 = 0.12;
 /// Ranges of a pair differ by at most this and a share of the range [m].
 const ALIKE_M: f32 = 0.05;
 const ALIKE_SHARE: f32 = 0.1;
-/// What a wild range adds to a sonar's outlier score, and what one that is known takes off.
+/// Added to a sonar's outlier score by a wild range, and subtracted by a repeated one.
 const WILD: u8 = 10;
 const CALM: u8 = 2;
 /// An outlier score that slows the robot.
@@ -46,32 +47,32 @@ const WALL_M: f32 = 0.5;
 
 /// Something beside the robot is near within this [m].
 const NEAR_M: f32 = 0.35;
-/// Way with something near beside the robot and no echo of the front sonar, which looks there now and then, after which it is put to
-/// the proof [m].
+/// Way with something near beside the robot and no echo of the front sonar, which looks there now and then, after which
+/// it must be tested [m].
 const BLIND_M: f32 = 0.35;
 
-/// Way since the front sonar's last echo after which it is put to the proof. In the worlds of docs/theory/mission.md a sound one
-/// is silent for 0.8 m at most between two echoes [m].
+/// Way since the front sonar's last echo after which it must be tested. In the worlds of docs/theory/mission.md a
+/// healthy one is silent for at most 0.8 m between two echoes [m].
 const SILENT_M: f32 = 1.3;
 
-/// What an answer is worth.
+/// The verdict on a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Worth {
     /// The first along its beam.
     First,
-    /// The same as the one before.
+    /// It repeats the one before.
     Sure,
-    /// Another than the one before.
+    /// It differs from the one before.
     Wild,
 }
 
-/// What is remembered of one sonar.
+/// State of one sonar.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Ear {
+struct SonarState {
     faulty: u8,
     same: u8,
     outliers: u8,
-    /// The last answer was that nothing is in reach.
+    /// The last reading was that nothing is in reach.
     silent: bool,
     /// Answers so far along about the same beam.
     looks: u8,
@@ -87,7 +88,7 @@ struct Ear {
     turned_rad: f32,
 }
 
-impl Ear {
+impl SonarState {
     fn ingest(&mut self, reading: &Reading) -> Worth {
         let (rolled_m, turned_rad) = (self.rolled_m, self.turned_rad);
         (self.age_s, self.rolled_m, self.turned_rad) = (0.0, 0.0, 0.0);
@@ -163,32 +164,32 @@ impl Ear {
 /// Memory of the watch, by `SonarId` number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Watch {
-    ears: [Ear; 3],
-    /// What the front sonar must hear.
+    sonars: [SonarState; 3],
+    /// Faces that the front sonar must detect.
     pub landmarks: Landmarks,
-    /// Directions since it was asked, in which it heard nothing; none after an echo.
+    /// Directions without an echo since the last call of `ask`; none after an echo.
     unanswered: u8,
     /// Way since the last look aside [m].
     aside_m: f32,
     /// Way with something near beside the robot since the front sonar's last echo [m].
     blind_m: f32,
-    /// Way since the front sonar's last echo; none before the first, and where nothing is known that must answer [m].
+    /// Way since the front sonar's last echo; none before the first, and where no known face must answer [m].
     silent_m: Option<f32>,
 }
 
 impl Watch {
-    /// Takes in an answer; says what it is worth. Unless it is `driving` the robot waits, and silence harms nobody.
+    /// Ingests a reading and judges it. Unless `driving`, the robot waits, and silence does no harm.
     pub(super) fn ingest(
         &mut self,
         estimate: &Estimate,
         reading: &Reading,
         driving: bool,
     ) -> Worth {
-        let Some(ear) = self.ears.get_mut(reading.sonar as usize) else {
+        let Some(sonar) = self.sonars.get_mut(reading.sonar as usize) else {
             return Worth::Wild;
         };
-        let worth = ear.ingest(reading);
-        let second = ear.looks.is_multiple_of(2);
+        let worth = sonar.ingest(reading);
+        let second = sonar.looks.is_multiple_of(2);
         if worth != Worth::Sure {
             return worth;
         }
@@ -211,7 +212,7 @@ impl Watch {
         worth
     }
 
-    /// Where the servo is to point to put the front sonar to the proof [rad]; none while it hears, or where nothing must answer.
+    /// The servo angle that tests the front sonar [rad]; none while it works, or where nothing must answer.
     pub(super) fn look(&self, estimate: &Estimate, front_m: f32) -> Option<f32> {
         if self.landmarks.is_alive() {
             return None;
@@ -230,7 +231,7 @@ impl Watch {
     /// One tick, `beside` something that is known; an answer may be `stale_s` old.
     ///
     /// # Errors
-    /// What is wrong with a sonar.
+    /// The fault of a sonar.
     pub(super) fn step(
         &mut self,
         estimate: &Estimate,
@@ -246,39 +247,42 @@ impl Watch {
         if beside || walls_m(estimate, NEAR_M) != [None, None] {
             self.blind_m += rolled_m;
         }
-        for ear in &mut self.ears {
-            ear.age_s += TICK_S;
-            ear.rolled_m += estimate.rolled_m;
-            ear.turned_rad += estimate.turned_rad;
-            if ear.faulty >= FAULTY_AFTER || ear.same >= STUCK_AFTER || ear.outliers >= WILD_LIMIT {
+        for sonar in &mut self.sonars {
+            sonar.age_s += TICK_S;
+            sonar.rolled_m += estimate.rolled_m;
+            sonar.turned_rad += estimate.turned_rad;
+            if sonar.faulty >= FAULTY_AFTER
+                || sonar.same >= STUCK_AFTER
+                || sonar.outliers >= WILD_LIMIT
+            {
                 return Err(Fault::SonarFaulty);
             }
-            if ear.age_s > stale_s {
+            if sonar.age_s > stale_s {
                 return Err(Fault::SonarStale);
             }
         }
         Ok(())
     }
 
-    /// The front sonar should have heard something: it is to be put to the proof.
+    /// Whether the front sonar should have had an echo by now: it must be tested.
     pub(super) fn suspects(&self) -> bool {
         let silent = self.silent_m.is_some_and(|silent_m| silent_m > SILENT_M);
         silent || self.landmarks.is_deaf() || self.blind_m > BLIND_M
     }
 
-    /// A sweep before an obstacle is over: whoever hears has heard it.
+    /// A sweep before an obstacle is over: a working sonar has detected it.
     pub(super) fn has_swept(&mut self) {
         self.landmarks.has_swept();
     }
 
-    /// Nothing is known near the robot that the front sonar could be put to the proof with.
+    /// No known face near the robot can test the front sonar.
     pub(super) fn postpone(&mut self) {
         self.landmarks.postpone();
         self.blind_m = 0.0;
         self.silent_m = None;
     }
 
-    /// The directions in which nothing answers count from here.
+    /// Restarts the count of directions in which nothing answers.
     pub(super) fn ask(&mut self) {
         self.unanswered = 0;
     }
@@ -288,8 +292,8 @@ impl Watch {
         self.unanswered
     }
 
-    /// Where something is that must answer: the nearer wall beside the robot, and how near it is; or the face that answered last
-    /// [rad, m].
+    /// Where something is that must answer: the nearer wall beside the robot, and how near it is; or the face that
+    /// answered last [rad, m].
     pub(super) fn towards(&self, estimate: &Estimate) -> Option<(f32, f32)> {
         let heading_rad = estimate.pose.heading_rad;
         let left = |range_m| Some((heading_rad + FRAC_PI_2, range_m));
@@ -305,9 +309,9 @@ impl Watch {
         }
     }
 
-    /// Some sonar may be lying: the robot should be slow.
+    /// Whether some sonar may be wrong: the robot should be slow.
     pub(super) fn doubts(&self) -> bool {
-        self.landmarks.doubts() || self.ears.iter().any(|ear| ear.outliers >= UNEASY)
+        self.landmarks.doubts() || self.sonars.iter().any(|sonar| sonar.outliers >= UNEASY)
     }
 }
 
@@ -365,7 +369,7 @@ mod tests {
         Ok(watch)
     }
 
-    /// A wall that the robot comes nearer to by 2 mm a tick, heard with some noise.
+    /// A wall that the robot approaches by 2 mm per tick, measured with some noise.
     fn near(_: SonarId, tick: u16) -> Range {
         let noise_m = 1e-3 * f32::from(tick * 7 % 5);
         Range::Valid(1.1 - 2e-3 * f32::from(tick) + noise_m)
@@ -458,14 +462,14 @@ mod tests {
 
     #[test]
     fn a_long_way_without_an_echo_is_to_be_proven_unless_there_never_was_one() {
-        let until = |heard: u16| {
+        let until = |last: u16| {
             move |sonar, tick: u16| match sonar {
                 SonarId::Left => Range::Valid(0.45 + 1e-3 * f32::from(tick * 7 % 5)),
-                SonarId::Front if tick < heard => near(sonar, tick),
+                SonarId::Front if tick < last => near(sonar, tick),
                 _ => Range::Clear,
             }
         };
-        let after = |ticks, heard| watched(until(heard), ticks, 0.02).unwrap();
+        let after = |ticks, last| watched(until(last), ticks, 0.02).unwrap();
         assert!(
             !after(60, 20)
                 .silent_m

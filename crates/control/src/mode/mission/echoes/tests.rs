@@ -1,10 +1,10 @@
-//! The memory of echoes: what counts, what fades, what gives way.
+//! The memory of echoes: which points count, fade and give way.
 
 use super::*;
 use crate::rig::View;
 use crate::types::Transform;
 
-/// An answer of the front sonar, which looks in a direction from the origin.
+/// A reading of the front sonar, pointing in a direction from the origin.
 fn answer(range: Range, axis_rad: f32) -> Reading {
     Reading {
         sonar: SonarId::Front,
@@ -17,7 +17,7 @@ fn answer(range: Range, axis_rad: f32) -> Reading {
     }
 }
 
-fn heard(answers: &[(Range, f32)]) -> Echoes {
+fn after(answers: &[(Range, f32)]) -> Echoes {
     let mut echoes = Echoes::default();
     for (range, axis_rad) in answers {
         echoes.ingest(&Transform::default(), &answer(*range, *axis_rad), true);
@@ -35,7 +35,7 @@ fn count(echoes: &Echoes) -> usize {
 }
 
 fn firm(echoes: &Echoes) -> usize {
-    // Far from everything: nothing counts for being near.
+    // Far from everything, so that no point counts for being near.
     let far = Place::new(20.0, 20.0);
     (0..CAPACITY)
         .filter(|number| echoes.is_firm(*number, far))
@@ -44,15 +44,15 @@ fn firm(echoes: &Echoes) -> usize {
 
 #[test]
 fn an_echo_leaves_points_across_the_beam_and_the_next_one_makes_one_firm() {
-    let once = heard(&[(Range::Valid(0.8), 0.0)]);
+    let once = after(&[(Range::Valid(0.8), 0.0)]);
     assert_eq!((count(&once), firm(&once)), (3, 0));
-    let twice = heard(&[(Range::Valid(0.8), 0.0), (Range::Valid(0.805), 0.05)]);
+    let twice = after(&[(Range::Valid(0.8), 0.0), (Range::Valid(0.805), 0.05)]);
     assert_eq!((count(&twice), firm(&twice)), (3, 1));
 }
 
 #[test]
-fn a_beam_that_goes_on_farther_takes_what_was_heard_once() {
-    let mut echoes = heard(&[(Range::Valid(0.8), 0.0), (Range::Clear, -0.2)]);
+fn a_beam_that_reaches_farther_removes_points_detected_once() {
+    let mut echoes = after(&[(Range::Valid(0.8), 0.0), (Range::Clear, -0.2)]);
     // Of -0.2, 0 and 0.2 rad the beam about -0.2 covers the first two.
     assert_eq!(count(&echoes), 1);
     echoes.ingest(&Transform::default(), &answer(Range::Faulty, 0.2), true);
@@ -67,7 +67,7 @@ fn a_beam_that_goes_on_farther_takes_what_was_heard_once() {
 
 #[test]
 fn silence_from_another_direction_says_nothing() {
-    let mut echoes = heard(&[(Range::Valid(0.5), 0.0), (Range::Valid(0.5), 0.0)]);
+    let mut echoes = after(&[(Range::Valid(0.5), 0.0), (Range::Valid(0.5), 0.0)]);
     let beside = Pose {
         x_m: 0.5,
         y_m: -0.6,
@@ -81,8 +81,8 @@ fn silence_from_another_direction_says_nothing() {
 }
 
 #[test]
-fn what_is_heard_once_fades_and_what_is_firm_stays() {
-    let mut echoes = heard(&[(Range::Valid(0.8), 0.0), (Range::Valid(0.8), 0.0)]);
+fn points_detected_once_fade_and_firm_ones_stay() {
+    let mut echoes = after(&[(Range::Valid(0.8), 0.0), (Range::Valid(0.8), 0.0)]);
     for _ in 0..10 {
         echoes.fade();
     }
@@ -110,7 +110,7 @@ fn a_full_memory_gives_up_the_farthest_point_and_keeps_its_size() {
 
 #[test]
 fn a_moved_origin_leaves_the_points_where_they_are() {
-    let mut echoes = heard(&[(Range::Valid(0.8), 0.0)]);
+    let mut echoes = after(&[(Range::Valid(0.8), 0.0)]);
     let origin = Transform::of(Pose {
         x_m: 0.8,
         y_m: 0.1,
@@ -123,19 +123,19 @@ fn a_moved_origin_leaves_the_points_where_they_are() {
 }
 
 #[test]
-fn a_silence_denies_nothing_before_an_echo_has_come_after_it() {
+fn a_silence_contradicts_nothing_before_the_next_echo() {
     let robot = Transform::default();
-    let mut echoes = heard(&[(Range::Valid(0.8), 0.0)]);
+    let mut echoes = after(&[(Range::Valid(0.8), 0.0)]);
     let settle = |echoes: &mut Echoes| (0..2 * SILENCES).for_each(|_| echoes.settle());
     for _ in 0..2 * SILENCES {
         echoes.silence(&robot, &answer(Range::Clear, 0.0));
         settle(&mut echoes);
     }
     assert_eq!(count(&echoes), 3);
-    echoes.hears();
+    echoes.confirm_silences();
     echoes.silence(&robot, &answer(Range::Clear, 0.4));
     settle(&mut echoes);
-    assert_eq!(count(&echoes), 0, "ahead they are believed");
+    assert_eq!(count(&echoes), 0, "the silences ahead are confirmed");
     let before = echoes;
     settle(&mut echoes);
     assert_eq!(echoes, before, "the one after the echo waits");
