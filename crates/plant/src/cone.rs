@@ -1,13 +1,13 @@
-//! What a sonar's beam meets: the exact nearest echo in a cone, not a fan of sampled rays.
+//! The echo in a sonar's beam: the exact nearest echo in a cone, not a fan of sampled rays.
 //!
 //! For a convex obstacle the nearest point inside the cone is its closest point to the apex if that lies inside the
 //! cone, and otherwise the nearer hit of the cone's two edge rays: the distance is convex, so an optimum that the cone
 //! cuts off moves to the cone's boundary.
 //!
 //! Sound comes back from a point if one of the faces there is turned to the apex by no more than the incidence limit.
-//! A face turned further mirrors the burst away, but its corners still scatter a little: they are heard up to a shorter
-//! reach. A point counts only if no other obstacle stands between it and the apex, so a slanted face that gives no
-//! echo hides what is behind it.
+//! A face turned further mirrors the burst away, but its corners still scatter a little: they return an echo up to a
+//! shorter reach. A point counts only if no other obstacle stands between it and the apex, so a slanted face that gives
+//! no echo hides what is behind it.
 
 use libm::{acos, cos, sin, sqrt};
 
@@ -16,27 +16,27 @@ use crate::world::{Obstacle, Point, World, add, cross, dot, scale, sub};
 /// A cone on the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
-    /// Where the transducer is.
+    /// Position of the transducer.
     pub apex: Point,
-    /// Where it looks, counter-clockwise from the world's x axis.
+    /// Its direction, counter-clockwise from the world's x axis.
     pub axis_rad: f64,
     /// Half of the opening, in (0, pi/2).
     pub half_angle_rad: f64,
 }
 
-/// What a sonar can hear.
+/// What a sonar can detect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hearing {
-    /// Farthest face heard.
+    /// Longest range of a face.
     pub reach_m: f64,
     /// Largest angle between a face's normal and the direction to the apex that still returns sound.
     pub incidence_limit_rad: f64,
-    /// Farthest corner heard when its faces are turned away.
+    /// Longest range of a corner whose faces are turned away.
     pub corner_reach_m: f64,
 }
 
 impl Hearing {
-    /// Hears everything up to a distance, whatever its angle: pure geometry.
+    /// Detects everything up to a distance, whatever its angle: pure geometry.
     #[must_use]
     pub const fn geometric(reach_m: f64) -> Self {
         Self {
@@ -58,7 +58,7 @@ pub struct Return {
     pub corner: bool,
 }
 
-/// A cone with its edge rays worked out, and what it can hear.
+/// A cone with its edge rays precomputed, and what it can detect.
 struct Query {
     apex: Point,
     right: Point,
@@ -78,7 +78,7 @@ struct Candidate {
     corner: bool,
 }
 
-/// The nearest echo in the cone, `None` if nothing is heard.
+/// The nearest echo in the cone, `None` without one.
 #[must_use]
 pub fn nearest(world: &World, cone: &Cone, hearing: &Hearing) -> Option<Return> {
     let edge = |angle: f64| [cos(angle), sin(angle)];
@@ -92,7 +92,7 @@ pub fn nearest(world: &World, cone: &Cone, hearing: &Hearing) -> Option<Return> 
     let mut best: Option<Candidate> = None;
     let mut limit_m = hearing.reach_m;
     for (index, obstacle) in world.obstacles().iter().enumerate() {
-        if !query.may_hear(obstacle, limit_m) {
+        if !query.may_detect(obstacle, limit_m) {
             continue;
         }
         if obstacle.contains(cone.apex) {
@@ -127,7 +127,7 @@ pub fn nearest(world: &World, cone: &Cone, hearing: &Hearing) -> Option<Return> 
 
 impl Query {
     /// Bounding-circle test against the cone's two edges and the range to beat.
-    fn may_hear(&self, obstacle: &Obstacle, limit_m: f64) -> bool {
+    fn may_detect(&self, obstacle: &Obstacle, limit_m: f64) -> bool {
         let d = sub(obstacle.center, self.apex);
         let r = obstacle.radius_m;
         let far = limit_m + r;

@@ -17,11 +17,11 @@ use crate::world::{Obstacle, Point, World, cross, dot, rectangle, sub};
 const TRACTION: f64 = 0.6;
 /// m/s^2.
 const GRAVITY: f64 = 9.81;
-/// Only a body that has been this far away touches anew.
+/// Only a body that has been this far away counts as touching again.
 const LEAVE_M: f64 = 0.003;
 /// Corners within this of the deepest share the push, so that a face that lands flat does not turn.
 const FLAT_M: f64 = 2e-4;
-/// Rounds of pushing out; each handles the deepest overlap.
+/// Iterations that resolve overlaps, the deepest in each.
 const ROUNDS: usize = 8;
 
 /// Position and heading of the middle of the wheels' axis in the world.
@@ -49,7 +49,7 @@ pub struct Footprint {
     drag_n_m: [f64; 2],
 }
 
-/// What contact remembers from step to step.
+/// State of the contact, kept from step to step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     /// At least this far from any obstacle.

@@ -65,7 +65,7 @@ pub struct WheelState {
     pub speed_rad_s: f64,
     /// Mean current through the motor over a PWM period, positive for forward torque, A.
     pub current_a: f64,
-    /// Recent speed as the friction remembers it, rad/s, never negative: see [`params::Wheel::friction_memory_s`].
+    /// Low-passed speed on which the friction depends, rad/s, never negative: see [`params::Wheel::friction_memory_s`].
     pub remembered_rad_s: f64,
     /// Share of the rolled distance lost to slip at this place.
     pub slip: f64,
@@ -252,7 +252,7 @@ impl Drivetrain {
         self.floor.friction_scale * here * (self.floor.rolling_n_m + self.floor.scrub_n_m * turning)
     }
 
-    /// Moves one wheel on, with the floor and slip at its new place.
+    /// Advances one wheel, with the floor and slip at its new position.
     fn roll(&self, i: usize, wheel: &mut WheelState, speed_rad_s: f64, rolled_rad: f64, dt_s: f64) {
         let model = &self.wheels[i];
         wheel.speed_rad_s = speed_rad_s;

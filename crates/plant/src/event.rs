@@ -3,7 +3,7 @@
 use crate::drivetrain::Side;
 use crate::sonar::SonarId;
 
-/// What the robot's pins, or an observer, would notice.
+/// What the robot's pins, or an observer, would see.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// An edge of a wheel's Hall sensor.

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 
 use crate::noise::{Noise, source};
 
-/// What a link does to the bytes.
+/// The properties of a link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkParams {
     /// Bits per second; a byte takes ten.
@@ -80,7 +80,7 @@ impl Link {
         }
     }
 
-    /// Puts bytes on the line behind those that still wait; the line takes as long as its baud rate says.
+    /// Queues bytes behind those that still wait; the line takes as long as its baud rate says.
     pub fn send(&mut self, now_us: u64, bytes: &[u8]) {
         self.line_free_ns = self.line_free_ns.max(now_us * 1000);
         for &byte in bytes {
@@ -151,7 +151,8 @@ impl Link {
         &self.params
     }
 
-    /// Changes the faults, for instance to cut the link while it runs. Bytes under way are not touched; the baud rate stays.
+    /// Changes the faults, for instance to cut the link while it runs. Bytes under way are not touched; the baud rate
+    /// stays.
     pub fn set_faults(&mut self, params: LinkParams) {
         self.params = LinkParams {
             baud: self.params.baud,

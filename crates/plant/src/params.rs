@@ -5,8 +5,8 @@
 //! use [`Params::check`] to report key, value and allowed range; identification and `--param` use [`Params::get`]
 //! and [`Params::set`] with dotted keys such as `wheels.left.viscous_n_m_s`.
 //!
-//! The nominal values describe the robot of the report by its parts' data sheets. What a robot's recorded runs can
-//! tell is identified and kept in its robot file; what they cannot (mass, resistance, inductance) stays nominal.
+//! The nominal values describe the robot of the report by its parts' data sheets. What a robot's recorded runs
+//! determine is identified and kept in its robot file; the rest (mass, resistance, inductance) stays nominal.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;

@@ -22,14 +22,14 @@ use crate::world::World;
 /// Longest physical step, and the grid it keeps to.
 const STEP_US: u64 = 1000;
 
-/// What a plant is made of.
+/// The parts of a plant.
 #[derive(Clone, Debug, Default)]
 pub struct Setup {
     /// Physical numbers, already drawn for the seed if they are to be.
     pub params: Params,
     /// Sonars.
     pub rig: Rig,
-    /// What stands around.
+    /// The world.
     pub world: World,
     /// Seed of all noise.
     pub seed: u64,
@@ -66,7 +66,7 @@ pub struct State {
     sonars: [sonar::State; 3],
 }
 
-/// What is so, without any sensor in between.
+/// Ground truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Truth {
     /// Time since the start.
@@ -81,17 +81,17 @@ pub struct Truth {
     pub forward_m_s: f64,
     /// Turn rate of the body, counter-clockwise.
     pub yaw_rad_s: f64,
-    /// Noise-free range of each sonar by [`SonarId::index`]; `None` where it hears nothing or does not exist.
+    /// Noise-free range of each sonar by [`SonarId::index`]; `None` where it has no echo or does not exist.
     pub range_m: [Option<f64>; 3],
     /// Terminal voltage of the battery.
     pub battery_v: f64,
     /// Current drawn from it.
     pub battery_a: f64,
-    /// Where the servo points: 0 ahead, positive to the left.
+    /// The servo's angle: 0 ahead, positive to the left.
     pub servo_rad: f64,
     /// Touches so far.
     pub contacts: u32,
-    /// True while the body touches something.
+    /// Whether the body touches something.
     pub touching: bool,
 }
 
@@ -137,7 +137,7 @@ impl Plant {
         }
     }
 
-    /// What stands around.
+    /// The world.
     #[must_use]
     pub const fn world(&self) -> &World {
         &self.world
@@ -167,12 +167,13 @@ impl Plant {
             .set_bridge_at(&mut state.drivetrain, side, bridge, pwm_hz);
     }
 
-    /// Tells the servo where to point from now on: 0 ahead, positive to the left.
+    /// Commands the servo's angle: 0 ahead, positive to the left.
     pub fn set_servo(&self, state: &mut State, angle_rad: f64) {
         state.servo.command(&self.servo, angle_rad);
     }
 
-    /// Ends a trigger pulse now. False if the robot has no such sonar or its echo line is not low: nothing happens then.
+    /// Ends a trigger pulse now. False if the robot has no such sonar or its echo line is not low: nothing happens
+    /// then.
     pub fn trigger(&self, state: &mut State, sonar: SonarId) -> bool {
         self.view(state, sonar).is_some_and(|view| {
             self.sonar
@@ -304,7 +305,7 @@ impl Plant {
         })
     }
 
-    /// Time, pose and speeds as they are now. Costs one exact cone query per sonar.
+    /// The present time, pose and speeds. Costs one exact cone query per sonar.
     #[must_use]
     pub fn truth(&self, state: &State) -> Truth {
         let range_m = SonarId::ALL.map(|sonar| {
@@ -355,7 +356,7 @@ impl State {
         self.now_us
     }
 
-    /// Puts the robot elsewhere, as a hand would: speeds and everything else stay.
+    /// Moves the robot, as a hand would: speeds and everything else stay.
     pub fn place(&mut self, pose: Pose) {
         self.pose = pose;
         self.contact.clearance_m = 0.0;

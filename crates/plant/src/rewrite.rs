@@ -1,4 +1,4 @@
-//! Numbers of a robot file changed in its text: comments, and all that is not changed, stay as they are.
+//! Changes numbers in the text of a robot file: comments and everything else stay as they are.
 //!
 //! What finds numbers of a robot by measurement writes them so: identification into `[plant]`, the robot's own
 //! calibration into `[parameters]`.
@@ -13,9 +13,9 @@ pub struct RobotText(DocumentMut);
 /// Why a robot file cannot be rewritten.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RewriteError {
-    /// It is no TOML; the cause in the words of the TOML reader.
+    /// It is not TOML; the cause as the TOML reader states it.
     Syntax(String),
-    /// What this dotted key names is no table.
+    /// This dotted key does not name a table.
     NoTable(String),
 }
 
@@ -34,7 +34,7 @@ impl RobotText {
     /// Reads a robot file.
     ///
     /// # Errors
-    /// A text that is no TOML.
+    /// If the text is not TOML.
     pub fn parse(text: &str) -> Result<Self, RewriteError> {
         let document = text.parse();
         let wrong = |error: toml_edit::TomlError| RewriteError::Syntax(error.to_string());
@@ -44,7 +44,7 @@ impl RobotText {
     /// Sets a number of a table such as `plant.motor`, made if absent. A comment beside the number stays.
     ///
     /// # Errors
-    /// What `table` names is no table.
+    /// If `table` does not name a table.
     pub fn set(&mut self, table: &str, name: &str, value: f64) -> Result<(), RewriteError> {
         let table = self.table(table)?;
         if let Some(Item::Value(old)) = table.get_mut(name) {
@@ -60,7 +60,7 @@ impl RobotText {
     /// Puts the comment `mark` and `text` above a table's header, in place of earlier comments with this mark.
     ///
     /// # Errors
-    /// What `table` names is no table.
+    /// If `table` does not name a table.
     pub fn annotate(&mut self, table: &str, mark: &str, text: &str) -> Result<(), RewriteError> {
         let decor = self.table(table)?.decor_mut();
         let before = decor.prefix().and_then(|prefix| prefix.as_str());

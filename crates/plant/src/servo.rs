@@ -5,9 +5,9 @@ use crate::params;
 /// State of a servo.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
-    /// Where it points: 0 straight ahead, positive to the left.
+    /// Its angle: 0 straight ahead, positive to the left.
     pub angle_rad: f64,
-    /// Where it was told to point.
+    /// The commanded angle.
     pub target_rad: f64,
 }
 

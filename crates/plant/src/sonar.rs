@@ -1,11 +1,11 @@
 //! HC-SR04 rangers: from a trigger to the two edges of the echo line.
 //!
 //! ```text
-//! trigger ──450 us──► line rises, burst leaves ──round trip──► line falls          (38 ms if nothing is heard)
+//! trigger ──450 us──► line rises, burst leaves ──round trip──► line falls          (38 ms without an echo)
 //! ```
 //!
 //! While the line is high, or about to rise, a trigger is ignored: a sonar without an echo blocks itself, and only
-//! itself. What is heard in the cone is decided by [`crate::cone`]. Errors, as the recorded runs show them:
+//! itself. The echo in the cone comes from [`crate::cone`]. Errors, as the recorded runs show them:
 //! - *Cycles*: the receiver times a zero crossing of the 40 kHz burst. A weak echo is timed whole cycles (4.3 mm)
 //!   early or late.
 //! - *Jitter*: a fraction of a millimetre in every reading.
@@ -77,7 +77,7 @@ enum Line {
     },
 }
 
-/// When other sonars can hear this one's burst: its first and its second echo.
+/// When other sonars can receive this one's burst: its first and its second echo.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Burst {
     echo_us: [u64; 2],
@@ -143,7 +143,7 @@ impl Sonar {
             incidence_limit_rad,
             corner_reach_m: self.params.corner_reach_m,
         };
-        cone::nearest(world, &cone, &hearing).map(|heard| heard.range_m)
+        cone::nearest(world, &cone, &hearing).map(|echo| echo.range_m)
     }
 
     /// Triggers sonar `id` now. False if its line is not low: the trigger is then ignored.
@@ -209,7 +209,7 @@ impl Sonar {
         }
     }
 
-    /// What the receiver makes of an echo from `range_m`; `None` if it misses it.
+    /// The reading of an echo from `range_m`; `None` if it is missed.
     fn reading_m(&self, own: usize, ping: u64, range_m: f64, weakness: f64) -> Option<f64> {
         let p = &self.params;
         let growth = pow(weakness, p.fault_growth);
@@ -285,7 +285,7 @@ impl Sonar {
         }
     }
 
-    /// Lets `listener` take an echo of `speaker` for its own if it comes first.
+    /// Lets an echo of `speaker` end the pulse of `listener` if it comes first.
     fn overhear(&self, states: &mut [State; 3], listener: usize, speaker: usize) {
         let burst = states[speaker].burst;
         let alike = cos(burst.axis_rad - states[listener].burst.axis_rad).max(0.0);
@@ -299,11 +299,11 @@ impl Sonar {
         let chances = [self.params.crosstalk, self.params.crosstalk_bounce];
         let mut earliest_us = fall_us;
         for (index, (&at_us, chance)) in burst.echo_us.iter().zip(chances).enumerate() {
-            let heard = || {
+            let received = || {
                 self.draw(listener, 7 + index as u32)
                     .chance(key ^ ((speaker as u64) << 62), chance * alike)
             };
-            if at_us > rise_us && at_us < earliest_us && heard() {
+            if at_us > rise_us && at_us < earliest_us && received() {
                 earliest_us = at_us;
             }
         }

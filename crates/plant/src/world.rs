@@ -58,7 +58,8 @@ impl core::fmt::Display for ShapeError {
 
 impl core::error::Error for ShapeError {}
 
-/// One face of an outline, from `start` along `along` for `length_m`; `normal` points outwards (to the right of `along`).
+/// One face of an outline, from `start` along `along` for `length_m`; `normal` points outwards (to the right of
+/// `along`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
     /// First corner, counter-clockwise.
@@ -273,7 +274,8 @@ impl World {
     }
 }
 
-/// Corners, counter-clockwise, of a rectangle with the given half sides; its middle is at `offset` in the frame of `center` and `heading_rad`.
+/// Corners, counter-clockwise, of a rectangle with the given half sides; its middle is at `offset` in the frame of
+/// `center` and `heading_rad`.
 #[must_use]
 pub fn rectangle(half_m: [f64; 2], offset: Point, center: Point, heading_rad: f64) -> [Point; 4] {
     let (s, c) = (sin(heading_rad), cos(heading_rad));

@@ -1,4 +1,4 @@
-//! The exact cone against dense ray sampling, and what sounds and what hides.
+//! The exact cone against dense ray sampling; which faces answer and which hide others.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
@@ -74,7 +74,7 @@ proptest! {
         let apex = [0.0, 0.0];
         prop_assume!(world.obstacles().iter().all(|obstacle| obstacle.distance_m(apex) > 0.01));
         let cone = Cone { apex, axis_rad, half_angle_rad };
-        let exact = nearest(&world, &cone, &Hearing::geometric(4.0)).map(|heard| heard.range_m);
+        let exact = nearest(&world, &cone, &Hearing::geometric(4.0)).map(|echo| echo.range_m);
         let dense = sampled(&world, &cone, 4.0, 2_000);
         match (exact, dense) {
             (Some(exact), Some(dense)) => {
@@ -130,18 +130,18 @@ fn slanted(angle_rad: f64) -> World {
 #[test]
 fn a_wall_turned_within_the_beam_reads_its_perpendicular_distance() {
     for angle_rad in [0.0, 0.1, -0.29] {
-        let heard = nearest(&slanted(angle_rad), &ahead(0.3), &HEARING).unwrap();
-        assert!((heard.range_m - 1.0).abs() < 1e-12);
-        assert!(heard.incidence_rad < 1e-6);
-        assert!(!heard.corner);
+        let echo = nearest(&slanted(angle_rad), &ahead(0.3), &HEARING).unwrap();
+        assert!((echo.range_m - 1.0).abs() < 1e-12);
+        assert!(echo.incidence_rad < 1e-6);
+        assert!(!echo.corner);
     }
 }
 
 #[test]
 fn a_wall_turned_further_reads_along_the_beams_edge_until_it_mirrors_the_sound_away() {
-    let heard = nearest(&slanted(0.7), &ahead(0.3), &HEARING).unwrap();
-    assert!((heard.incidence_rad - 0.4).abs() < 1e-9);
-    assert!((heard.range_m - 1.0 / 0.4_f64.cos()).abs() < 1e-9);
+    let echo = nearest(&slanted(0.7), &ahead(0.3), &HEARING).unwrap();
+    assert!((echo.incidence_rad - 0.4).abs() < 1e-9);
+    assert!((echo.range_m - 1.0 / 0.4_f64.cos()).abs() < 1e-9);
     assert_eq!(nearest(&slanted(0.81), &ahead(0.3), &HEARING), None);
     assert_eq!(nearest(&slanted(-0.81), &ahead(0.3), &HEARING), None);
 }
@@ -156,7 +156,7 @@ fn a_silent_wall_hides_what_is_behind_it() {
 }
 
 #[test]
-fn a_box_seen_corner_on_is_heard_only_from_near() {
+fn a_box_seen_corner_on_echoes_only_from_near() {
     let corner_at = |x_m: f64| {
         let block = Block {
             center_m: [x_m + 0.2 * 2.0_f64.sqrt(), 0.0],
@@ -171,7 +171,7 @@ fn a_box_seen_corner_on_is_heard_only_from_near() {
 }
 
 #[test]
-fn the_nearer_of_two_boxes_is_heard() {
+fn the_nearer_of_two_boxes_echoes() {
     let block = |x_m: f64, y_m: f64| Block {
         center_m: [x_m, y_m],
         size_m: [0.2, 0.2],
@@ -192,7 +192,7 @@ fn the_nearer_of_two_boxes_is_heard() {
 }
 
 #[test]
-fn nothing_beyond_the_reach_or_behind_the_transducer_is_heard() {
+fn nothing_beyond_the_reach_or_behind_the_transducer_echoes() {
     let world = World::new(
         &[
             screen([2.6, -5.0], [2.6, 5.0]),

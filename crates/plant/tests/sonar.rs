@@ -19,7 +19,7 @@ fn wall_at(x_m: f64) -> World {
     .unwrap()
 }
 
-/// Clean rangers, for a test to spoil in one respect.
+/// Noise-free rangers, for a test to change in one respect.
 fn clean() -> params::Sonar {
     params::Sonar {
         jitter_m: 0.0,
@@ -162,14 +162,14 @@ fn outliers_and_losses_come_at_their_rates() {
     let pulses = pulses_us(&params, 1.0, 0.0, 20_000);
     let lost = pulses.iter().filter(|pulse| pulse.is_none()).count() as f64 / 20_000.0;
     assert!((lost / 0.02 - 1.0).abs() < 0.15, "{lost}");
-    let heard: Vec<f64> = pulses.into_iter().flatten().map(range_m).collect();
+    let ranges: Vec<f64> = pulses.into_iter().flatten().map(range_m).collect();
     assert!(
-        heard
+        ranges
             .iter()
             .all(|range_m| (1.0 - params.outlier_span..1.0001).contains(range_m))
     );
     let short =
-        heard.iter().filter(|&&range_m| range_m < 0.999).count() as f64 / heard.len() as f64;
+        ranges.iter().filter(|&&range_m| range_m < 0.999).count() as f64 / ranges.len() as f64;
     assert!((short / 0.05 - 1.0).abs() < 0.1, "{short}");
 }
 
@@ -214,12 +214,12 @@ fn outliers_are_rare_until_the_echo_is_weak() {
         ..clean()
     };
     let share = |at_m: f64| {
-        let heard = readings_m(&params, at_m, 0.3);
-        heard
+        let ranges = readings_m(&params, at_m, 0.3);
+        ranges
             .iter()
             .filter(|&&range_m| range_m < at_m - 1e-3)
             .count() as f64
-            / heard.len() as f64
+            / ranges.len() as f64
     };
     assert!((share(params.noise_range_m) / 0.01 - 1.0).abs() < 0.4);
     assert!(share(0.3) < 0.001);
@@ -273,7 +273,8 @@ fn right_after_a_ping_its_second_echo_shortens_the_next_reading() {
         crosstalk_bounce: 0.1,
         ..clean()
     };
-    // The second echo arrives at 450 + 6,058 us and the way to the body and back; the next sonar's own at 3,800 + 450 + 2,913.
+    // The second echo arrives at 450 + 6,058 us and the way to the body and back; the next sonar's own at 3,800 + 450 +
+    // 2,913.
     let ranges = second_of_a_pair(&params, 3_800, 0.0);
     let short: Vec<f64> = ranges
         .iter()

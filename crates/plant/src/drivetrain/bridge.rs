@@ -7,7 +7,8 @@
 
 use crate::params::Params;
 
-/// What the pins of one half of the L298N ask for. Duties are 0 to 1; outside they are clipped, NaN counts as 0.
+/// The drive state set by the pins of one half of the L298N. Duties are 0 to 1; outside they are clipped, NaN counts as
+/// 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bridge {
     /// Enable low, or both inputs low with the enable low: the motor coasts.
@@ -28,7 +29,7 @@ pub(super) struct Winding {
     loop_ohm: f64,
     /// Electrical time constant.
     time_constant_s: f64,
-    /// The frequency of the PWM where nobody says otherwise.
+    /// The default frequency of the PWM.
     pwm_hz: f64,
 }
 

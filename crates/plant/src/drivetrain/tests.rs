@@ -112,7 +112,8 @@ fn a_faster_pwm_leaves_no_time_for_the_current_to_die() {
     };
     let hz = Params::default().bridge.pwm_hz;
     assert_eq!(speed(None), speed(Some(hz)));
-    // Twenty periods in a time constant: the mean voltage decides, and while the enable is low that is the supply's, reversed.
+    // Twenty periods in a time constant: the mean voltage decides, and while the enable is low that is the supply's,
+    // reversed.
     assert!(speed(Some(60_000.0)) < 0.9 * speed(None));
 }
 
