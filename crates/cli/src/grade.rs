@@ -1,6 +1,6 @@
 //! `rumbo grade`: each hand-in compiled in the sandbox, driven with every seed, and marked.
 //!
-//! Nothing in what is written depends on time, place or number of threads: the same hand-in gets the same bytes.
+//! The output does not depend on time, path or number of threads: the same hand-in gets the same bytes.
 
 mod exports;
 mod hand_ins;
@@ -72,7 +72,7 @@ fn compiler(args: &GradeArgs, assignment: &Assignment) -> Result<Compiler, Sketc
     Compiler::new(toolchain, sandbox, crate::sketch::cache())
 }
 
-/// What is not as the assignment wants it.
+/// Deviations from the assignment's compiler and core.
 fn class_notes(assignment: &Assignment, compiler: Option<&Compiler>) -> Vec<String> {
     let Some(toolchain) = compiler.map(Compiler::toolchain) else {
         return Vec::new();
@@ -92,7 +92,7 @@ fn class_notes(assignment: &Assignment, compiler: Option<&Compiler>) -> Vec<Stri
     .collect()
 }
 
-/// Refuses, before anything runs, to write among other people's files.
+/// Refuses, before anything runs, to write among files that are not its own.
 fn check_places(args: &GradeArgs, assignment: &Assignment) -> Result<Stamp, Failure> {
     let stamp = Stamp::of("grade", std::slice::from_ref(&assignment.name));
     let guard = Guard::new([args.assignment.clone()], args.overwrite.force);
@@ -127,7 +127,7 @@ fn write(
     let out = |name: &str| args.out.join(name);
     for folder in [STUDENTS, GRADESCOPE] {
         let folder = out(folder);
-        // Pages of hand-ins that are gone are none of this class.
+        // Pages of hand-ins that are gone are removed.
         if let Err(error) = std::fs::remove_dir_all(&folder)
             && error.kind() != std::io::ErrorKind::NotFound
         {
@@ -153,7 +153,7 @@ fn write(
     place::write(&out(PAGE), stamp.put_on(page))
 }
 
-/// What the files of each hand-in are called: its name as far as every system and address takes it, and its number.
+/// File names of each hand-in: its name, restricted to portable characters, and its number.
 fn file_names(marks: &[Mark]) -> impl Iterator<Item = String> + '_ {
     let plain = |name: &str| -> String {
         let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';

@@ -1,7 +1,7 @@
 //! Pages of a graded class: one for each hand-in, and one for the teacher.
 //!
-//! A student's page says what was asked, what was measured, what it earned and what to look at, and draws a run with a seed
-//! that students know. How another controller does it is nobody's affair there.
+//! A student's page shows the task, the measurements, the points and the advice, and plots a run with a public seed. It
+//! shows no other controller's results.
 
 use crate::chapters::maps;
 use crate::chapters::panels::pwm_panel;
@@ -169,7 +169,7 @@ fn verdict(mark: &Mark, language: Language) -> String {
     format!("<p class=\"verdict {class}\">{}</p>\n", escape(&text))
 }
 
-/// A metric as it is shown, of a run that is drawn or would be.
+/// A metric as displayed, for the plotted run or any other.
 fn metric(assignment: &Assignment, line: &Line, language: Language) -> Shown {
     let criterion = &assignment.criteria[line.criterion];
     let outcome = Outcome {
@@ -182,7 +182,7 @@ fn metric(assignment: &Assignment, line: &Line, language: Language) -> Shown {
     })
 }
 
-/// What was asked, measured and earned, a row for each line of the rubric.
+/// Criterion, measurement and points, a row for each line of the rubric.
 fn points(assignment: &Assignment, mark: &Mark, language: Language) -> String {
     let header = [
         ASKED.of(language),
@@ -250,7 +250,7 @@ fn earned(language: Language, points: f64, of: f64) -> Cell {
     Cell::text(&text).tone(tone)
 }
 
-/// What to look at, for each criterion that lost points.
+/// Advice for each criterion that lost points.
 fn advice(assignment: &Assignment, mark: &Mark, language: Language) -> String {
     let lost = assignment
         .criteria
@@ -304,7 +304,7 @@ fn curves(assignment: &Assignment, mark: &Mark, language: Language) -> String {
     }
 }
 
-/// What a run of this mode is looked at for, from ground truth.
+/// The quantity plotted for a run of this mode, from ground truth.
 fn figures(language: Language, test: &Test, outcome: &Outcome) -> Vec<String> {
     let truth = |name: Text, ink, signal: &dyn Fn(&rumbo_sim::trace::Sample) -> f64| {
         Curve::new(name.of(language), ink, outcome.truth(signal))
@@ -372,7 +372,7 @@ fn figures(language: Language, test: &Test, outcome: &Outcome) -> Vec<String> {
     }
 }
 
-/// Where the robot is sent, in the world.
+/// The robot's goals, in the world.
 fn goals(outcome: &Outcome) -> Vec<(f64, f64, String)> {
     let start = outcome.setup.scenario.start;
     let (sin, cos) = start.heading_rad.sin_cos();
@@ -391,7 +391,7 @@ fn goals(outcome: &Outcome) -> Vec<(f64, f64, String)> {
         .collect()
 }
 
-/// How many hand-ins have how many points, in tenths of the full mark.
+/// Distribution of the hand-ins over the points, in tenths of the full mark.
 fn distribution(assignment: &Assignment, marks: &[Mark], language: Language) -> String {
     const BINS: usize = 10;
     let mut counts = [0usize; BINS];
@@ -442,7 +442,7 @@ fn distribution(assignment: &Assignment, marks: &[Mark], language: Language) -> 
     )
 }
 
-/// What share of its points the class has of each criterion, the most lost first.
+/// The class's share of the points of each criterion, the most lost first.
 fn rubric(assignment: &Assignment, marks: &[Mark], language: Language) -> String {
     let share = |number: usize| {
         let lines = marks.iter().flat_map(|mark| &mark.lines);
@@ -467,7 +467,7 @@ fn rubric(assignment: &Assignment, marks: &[Mark], language: Language) -> String
     table(&[ASKED.of(language), MEAN_SHARE.of(language)], &rows)
 }
 
-/// A teacher's text as HTML; what is HTML in it is shown as it stands there.
+/// A teacher's text as HTML; HTML in it is escaped.
 fn markdown(text: &str) -> String {
     let events = Parser::new_ext(text, Options::ENABLE_TABLES).map(|event| match event {
         Event::Html(html) | Event::InlineHtml(html) => Event::Text(html),

@@ -86,7 +86,7 @@ pub(super) fn junit(assignment: &Assignment, marks: &[Mark]) -> String {
     xml + "</testsuites>\n"
 }
 
-/// What a line measured and earned.
+/// Measurements and points of a line.
 fn said(assignment: &Assignment, line: &Line) -> String {
     let criterion = &assignment.criteria[line.criterion];
     let value = match line.median(assignment) {

@@ -1,4 +1,4 @@
-//! What was handed in: found, and compiled.
+//! Finds and compiles the hand-ins.
 
 use crate::failure::Failure;
 use rayon::prelude::*;
@@ -8,12 +8,12 @@ use rumbo_sketch::{Compiler, Given, SketchError, given};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Lines kept of what a compiler says.
+/// Most lines kept of a compiler's output.
 const MOST_LINES: usize = 60;
-/// Hand-ins of a class.
+/// Most hand-ins of a class.
 const MOST: usize = 10_000;
 
-/// One of them, as it lies there.
+/// A hand-in as found.
 pub(super) struct Found {
     name: String,
     given: Result<Given, SketchError>,
@@ -63,7 +63,7 @@ pub(super) fn find(folder: &Path) -> Result<Vec<Found>, Failure> {
     }
 }
 
-/// A folder or a file that may be one; not a link, which leads who knows where.
+/// A folder or a file that may be one; not a link, which may lead anywhere.
 fn is_hand_in(path: &Path) -> bool {
     let hidden = super::name_of(path).starts_with('.');
     let ending = path.extension().and_then(|ending| ending.to_str());
@@ -130,7 +130,7 @@ fn lines(error: &SketchError) -> Vec<String> {
     text.lines().take(MOST_LINES).map(str::to_owned).collect()
 }
 
-/// What is wrong, without where the teacher keeps it.
+/// The error without the teacher's path.
 fn nameless(error: &SketchError) -> String {
     match error {
         SketchError::NoSketch(_) => {

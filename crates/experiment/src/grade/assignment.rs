@@ -1,4 +1,4 @@
-//! An assignment's file: what is asked, in which scenarios and with which seeds it is tried, and what earns points.
+//! An assignment's file: the task, its scenarios and seeds, and the rubric.
 //!
 //! ```toml
 //! title = "Drive to a wall"
@@ -32,13 +32,13 @@ use std::path::Path;
 /// A text in both languages.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Words {
-    /// As it stands in the file.
+    /// As written in the file.
     pub text: String,
     /// In Spanish, if the file has it.
     pub spanish: Option<String>,
 }
 
-/// What a class was asked for.
+/// An assignment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assignment {
     /// The file's name without `.toml`.
@@ -59,9 +59,9 @@ pub struct Assignment {
     pub core: Option<String>,
     /// How long a hand-in may take to compile [s].
     pub compile_s: f64,
-    /// What is driven.
+    /// The tests.
     pub tests: Vec<Test>,
-    /// What earns points.
+    /// The rubric.
     pub criteria: Vec<Criterion>,
 }
 
@@ -78,14 +78,14 @@ pub struct Test {
     pub wiring: Option<String>,
     /// How much it counts beside the others.
     pub weight: f64,
-    /// Seeds that students know.
+    /// Public seeds.
     pub public: Vec<u64>,
-    /// Seeds that they do not.
+    /// Hidden seeds.
     pub hidden: Vec<u64>,
 }
 
 impl Test {
-    /// All its seeds, those that students know first.
+    /// All its seeds, the public ones first.
     pub fn seeds(&self) -> impl Iterator<Item = u64> {
         self.public.iter().chain(&self.hidden).copied()
     }
@@ -96,13 +96,13 @@ impl Test {
 pub struct Criterion {
     /// What is asked.
     pub title: Words,
-    /// What to look at where it is missed.
+    /// Advice where it is missed.
     pub advice: Words,
     /// What is measured.
     pub metric: String,
     /// The test it is measured in, by its place; all of them if none is named.
     pub test: Option<usize>,
-    /// What it is worth.
+    /// Its points.
     pub points: f64,
     /// The value that earns all of them.
     pub full: f64,
@@ -296,7 +296,7 @@ fn seeds(table: &Table<'_, '_>, key: &str) -> Vec<u64> {
     seeds
 }
 
-/// What a run of a test measures; nothing if it cannot be run, which its hand-ins will say.
+/// The metrics that a run of a test yields; none if it cannot be run, which its hand-ins will report.
 fn measurable(test: &Test) -> Metrics {
     let seed = test.seeds().next().unwrap_or(1);
     run(&test.setup, seed)
@@ -341,7 +341,7 @@ fn read_criterion(table: &Table<'_, '_>, tests: &[Test], known: &[Metrics]) -> C
     criterion
 }
 
-/// What to write instead of a metric that some test does not have, or that is the program's own word.
+/// Suggestion for a metric that some test lacks, or that the program reports itself.
 fn not_measured(criterion: &Criterion, known: &[Metrics]) -> Option<String> {
     let metric = criterion.metric.as_str();
     if metric == "telemetry_hz" || metric.contains("odometry") {

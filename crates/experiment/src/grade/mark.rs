@@ -1,4 +1,4 @@
-//! What a hand-in earned, and for what.
+//! The marks of a hand-in, line by line.
 
 use super::assignment::Assignment;
 use crate::run::RunResult;
@@ -25,11 +25,11 @@ pub struct Mark {
     pub touching: usize,
     /// Runs in all.
     pub runs: usize,
-    /// How the program ended where it could not go on, each once.
+    /// Why the program stopped early, each reason once.
     pub ended: Vec<String>,
-    /// What a reader should know besides.
+    /// Further notes for the reader.
     pub notes: Vec<String>,
-    /// Of each test the run with its first public seed, to be drawn.
+    /// For each test the run with its first public seed, for the plot.
     #[serde(skip)]
     pub drawn: Vec<Option<RunResult>>,
 }
@@ -43,9 +43,9 @@ pub struct Line {
     pub test: usize,
     /// What was measured, for each seed in order; none where it never happened.
     pub values: Vec<Option<f64>>,
-    /// What was earned.
+    /// The points earned.
     pub points: f64,
-    /// What could be.
+    /// The possible points.
     pub of: f64,
 }
 
@@ -69,16 +69,16 @@ impl Line {
     }
 }
 
-/// What one run gave.
+/// The result of one run.
 #[derive(Debug)]
 pub(super) struct Run {
     pub(super) test: usize,
-    /// `Err`: it could not be begun.
+    /// `Err`: it could not be started.
     pub(super) result: Result<RunResult, String>,
 }
 
 impl Mark {
-    /// Of a hand-in that could not be driven.
+    /// The mark of a hand-in that could not be driven.
     pub(super) fn refused(assignment: &Assignment, name: &str, why: Vec<String>) -> Self {
         Self {
             refused: why,
@@ -86,7 +86,7 @@ impl Mark {
         }
     }
 
-    /// Of a hand-in's runs, in order of tests and seeds.
+    /// The mark from a hand-in's runs, in order of tests and seeds.
     pub(super) fn of(assignment: &Assignment, name: &str, runs: Vec<Run>) -> Self {
         let worth = |test: usize| {
             let tests = assignment.tests.iter();
@@ -152,7 +152,7 @@ impl Mark {
             match result {
                 Ok(result) => {
                     once(&mut mark.ended, result.ended.iter());
-                    // What is odd about a program that drives is its own affair.
+                    // Oddities of a program that drives are not reported.
                     if !result.trace.drove() {
                         once(&mut mark.notes, result.notes.iter());
                     }
@@ -179,7 +179,7 @@ fn once<'a>(texts: &mut Vec<String>, more: impl Iterator<Item = &'a String>) {
     }
 }
 
-/// What a run measured. A program that ended before its time, or that never drove, has done nothing that could be measured.
+/// The metrics of a run; none if the program ended early or never drove.
 fn value(run: &Run, metric: &str) -> Option<f64> {
     let result = run.result.as_ref().ok()?;
     if result.ended.is_some() || !result.trace.drove() {

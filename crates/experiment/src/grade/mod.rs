@@ -1,4 +1,4 @@
-//! Grading: an assignment's scenarios and seeds driven by each hand-in's program, and points for what truly happened.
+//! Grading: drives an assignment's scenarios and seeds with each hand-in's program, and gives points by ground truth.
 //!
 //! ```text
 //! assignment.toml ─► Assignment (tests, rubric)     HandIn (an image, or why there is none)
@@ -6,8 +6,8 @@
 //!                     a run for each test and seed ─► metrics ─► Mark
 //! ```
 //!
-//! Metrics come from ground truth and from the pins; what a program says counts for nothing. What never happened earns
-//! nothing. The same image gets the same mark.
+//! Metrics come from ground truth and from the pins; a program's own output is ignored. A value that never came
+//! about earns nothing. The same image gets the same mark.
 
 mod assignment;
 mod mark;

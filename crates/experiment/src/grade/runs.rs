@@ -11,17 +11,17 @@ use rumbo_sim::trace::Trace;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-/// What a program is called in every message, whoever handed it in.
+/// Name of every hand-in's program in messages.
 const NAME: &str = "sketch";
 
-/// What somebody handed in.
+/// A hand-in.
 #[derive(Debug)]
 pub struct HandIn {
     /// The hand-in's name.
     pub name: String,
     /// The program, or why there is none, a line each.
     pub program: Result<Vec<u8>, Vec<String>>,
-    /// What a reader should know besides.
+    /// Further notes for the reader.
     pub notes: Vec<String>,
 }
 
@@ -90,11 +90,11 @@ fn ready(assignment: &Assignment, hand_in: &HandIn) -> Ready {
     setups.map_err(|error| vec![error.to_string()])
 }
 
-/// What a program's outputs may cost in a second ([`Mega::toil`]): a pin that is switched 25,000 times.
+/// Budget of a program's outputs per second ([`Mega::toil`]): a pin that is switched 25,000 times.
 const TOIL_PER_S: f64 = 250_000.0;
 
-/// Goes on to the end, or to where the program has cost more than it may. The same program ends at the same instant on
-/// every machine. Says whether it did.
+/// Runs to the end, or until the program exceeds its budget; the same program is ended at the same instant on every
+/// machine. Returns whether it was.
 fn go_on(run: &mut Running<'_>) -> bool {
     while !run.is_over() {
         run.advance();
@@ -107,7 +107,7 @@ fn go_on(run: &mut Running<'_>) -> bool {
     false
 }
 
-/// One run; what went wrong with it concerns no other. Only the samples of a run that is drawn are kept.
+/// One run; a failure affects no other. Samples are kept only for runs that are plotted.
 fn one(setup: &Setup, seed: u64, drawn: bool) -> Result<RunResult, String> {
     let mut is_too_much = false;
     let result = catch_unwind(AssertUnwindSafe(|| {

@@ -1,7 +1,8 @@
-//! Metrics of coming to a distance from a wall, square to it: the perpendicular distance from the middle of the sonars that look ahead to
-//! the nearest thing, and the angle between the robot's way ahead and the direction to it.
+//! Metrics of approaching a wall, square to it: the perpendicular distance from the middle of the forward sonars to the
+//! nearest obstacle, and the angle between the robot's heading and the direction to it.
 //!
-//! The distance is that of the true pose in the world, times the run's scale of the speed of sound: the robot cannot know that scale.
+//! The distance is that of the true pose in the world, times the run's scale of the speed of sound: the robot cannot
+//! know that scale.
 
 use super::Metrics;
 use super::step::{DISTANCE_BAND, STEADY_SHARE, sound_scale, steps};
@@ -15,7 +16,7 @@ const BAND_M: f64 = 0.02;
 /// Step with which the direction to the nearest point is found [m].
 const PROBE_M: f64 = 1e-6;
 
-/// The nearest thing, from the middle of the sonars that look ahead.
+/// The nearest obstacle, from the middle of the forward sonars.
 struct Ahead {
     world: World,
     ahead_m: f64,

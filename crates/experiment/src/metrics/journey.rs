@@ -1,5 +1,5 @@
-//! Metrics of a way to the goal of a random world: whether the robot got there, how long its way was beside the shortest one, and whether
-//! it was right about a goal that cannot be reached.
+//! Metrics of a way to the goal of a random world: whether the robot reached it, its way relative to the shortest one,
+//! and whether it was right about an unreachable goal.
 
 use super::Metrics;
 use super::mission::way_m;
@@ -8,7 +8,7 @@ use crate::random_world::Journey;
 use rumbo_sim::trace::Trace;
 use rumbo_wire::{Command, EventKind, FromRobot};
 
-/// How far from the goal the robot may think that it is there: 4 cm, and what odometry loses on the way.
+/// Distance from the goal at which *reached* is right: 4 cm, plus the odometry error of the way.
 const GOAL_ERROR_M: f64 = 0.04;
 const GOAL_ERROR_OF_WAY: f64 = 0.02;
 
@@ -18,7 +18,7 @@ struct Verdict {
     reached: bool,
 }
 
-/// The first word of the robot about a goal commanded at `from_s`.
+/// The robot's first event about a goal commanded at `from_s`.
 fn verdict(trace: &Trace, from_s: f64) -> Option<Verdict> {
     let messages = trace
         .messages
@@ -87,7 +87,7 @@ pub(super) fn journey(setup: &Setup, worst_contact_m_s: f64, trace: &Trace, metr
     if let Some(shortest) = shortest {
         put("shortest_m", shortest.length_m);
         if reached {
-            // What is left to the goal counts as driven: who stops short gains nothing.
+            // The rest to the goal counts as driven: stopping short gains nothing.
             put("path_ratio", (path_m + left_m) / shortest.length_m);
         }
     }

@@ -1,4 +1,4 @@
-//! Metrics of a lane: when its four straights were done, how the turns between them came out, and how near the boxes were.
+//! Metrics of a lane: completion times of its four straights, errors of the turns, and the clearance to the boxes.
 
 use super::Metrics;
 use crate::files::Setup;
@@ -18,7 +18,8 @@ const STANDS_RAD_S: f64 = 0.05;
 /// Points along the outline of the body are this far apart [m].
 const OUTLINE_M: f64 = 0.005;
 
-/// One straight: the headings at its beginning, counted in quarter turns from the start, and the times of its begin and its end.
+/// One straight: the headings at its beginning, counted in quarter turns from the start, and the times of its begin and
+/// its end.
 struct Straight {
     quarter: f64,
     begin: Sample,
@@ -151,7 +152,8 @@ mod tests {
     use super::*;
     use rumbo_plant::world::Block;
 
-    /// A robot that drives each piece, a way [m] along its heading or a turn on the spot [rad], and stands for a moment after it.
+    /// A robot that drives each piece, a way [m] along its heading or a turn on the spot [rad], and stands for a moment
+    /// after it.
     fn driven(pieces: &[(f64, f64)]) -> Vec<Sample> {
         const STEPS: i32 = 50;
         let mut sample = Sample {

@@ -1,4 +1,4 @@
-//! Metrics of mode 8: each goal's time and true error, the way of all, what was reached; and how a lane was followed.
+//! Metrics of mode 8: each goal's time and true error, the total way, the goals reached; and how a lane was followed.
 
 use super::Metrics;
 use crate::files::Setup;
@@ -10,7 +10,7 @@ use rumbo_wire::{Command, EventKind, FromRobot};
 const ALLOWED_M: f64 = 0.04;
 const ALLOWED_OF_WAY: f64 = 0.02;
 
-/// When the robot said something.
+/// Time of an event of the robot.
 fn said(trace: &Trace, what: EventKind) -> impl Iterator<Item = f64> + '_ {
     trace
         .messages

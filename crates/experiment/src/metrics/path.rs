@@ -1,4 +1,4 @@
-//! Metrics of a basic movement: where it led, how it turned, and what the wheels made of it.
+//! Metrics of a basic movement: its end point, its turn, and the wheels' response.
 
 use super::Metrics;
 use crate::files::Setup;

@@ -1,6 +1,7 @@
-//! Metrics of a route: how far the robot strayed from it, by its own odometry and in truth, where it ended, how long it took.
+//! Metrics of a route: how far the robot strayed from it, by its own odometry and in truth, where it ended, how long it
+//! took.
 //!
-//! The route is a polyline from where the robot stands when it starts. What the odometry says is what the telemetry brought.
+//! The route is a polyline from where the robot stands when it starts. The odometry is that of the telemetry.
 
 use super::Metrics;
 use crate::files::{Setup, Start};

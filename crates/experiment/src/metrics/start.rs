@@ -5,7 +5,7 @@ use rumbo_sim::trace::{SAMPLE_US, Trace};
 
 /// A wheel turns when it is faster than this [rad/s]: 5 rpm.
 const TURNING_RAD_S: f64 = 0.52;
-/// Only a wheel that stood against some duty for this long tells its dead zone [s]; a step of the duty jumps over it.
+/// Only a wheel that stood against some duty for this long shows its dead zone [s]; a step of the duty skips it.
 const STOOD_S: f64 = 0.5;
 
 /// For each wheel that stood against a duty and then started, the duty at which it did.

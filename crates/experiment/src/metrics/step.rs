@@ -1,7 +1,8 @@
 //! Metrics of a response to a step of the reference.
 //!
-//! A step lasts from the command that sets the reference (or arms the robot) until the next one. *Settling* is the time after which the
-//! signal stays within the band; the band is 5 % of the step for distances, 3.2 rpm (the resolution of the original) for speeds.
+//! A step lasts from the command that sets the reference (or arms the robot) until the next one. *Settling* is the time
+//! after which the signal stays within the band; the band is 5 % of the step for distances, 3.2 rpm (the resolution of
+//! the original) for speeds.
 
 use super::Metrics;
 use crate::files::{Setup, TimedCommand};
@@ -15,7 +16,7 @@ const SPEED_BAND_RAD_S: f64 = 3.2 * std::f64::consts::TAU / 60.0;
 pub(super) const DISTANCE_BAND: f64 = 0.05;
 /// Share of a step, at its end, over which steady error and ripple are taken.
 pub(super) const STEADY_SHARE: f64 = 0.4;
-/// Speed of sound that the robot reckons with [m/s]: 20 degrees.
+/// Speed of sound assumed by the robot [m/s]: 20 degrees.
 const SOUND_M_S: f64 = 331.3 + 0.606 * 20.0;
 
 /// A step of a reference.
@@ -89,7 +90,7 @@ pub(super) struct Response {
 }
 
 impl Response {
-    /// Of a signal that is none where the step begins, such as the distance to a wall that is not there.
+    /// The response of a signal without a value at the start, such as the distance to a missing wall.
     const NONE: Self = Self {
         settling_s: f64::NAN,
         rise_s: f64::NAN,
@@ -100,9 +101,9 @@ impl Response {
     };
 }
 
-/// Measures `signal` over the samples of a step, from `start` to `reference`. `NaN` where it never gets there: what stands
-/// still elsewhere has neither settled nor overshot, nor is it steady. A signal that is there when the step begins does not
-/// respond to it.
+/// Measures `signal` over the samples of a step, from `start` to `reference`. `NaN` where it never arrives: a signal
+/// that rests elsewhere has neither settled nor overshot, nor is it steady. A signal at its reference from the start
+/// does not respond.
 fn response(
     samples: &[Sample],
     from_s: f64,
@@ -167,12 +168,13 @@ fn response(
     }
 }
 
-/// What the robot of this run reads for a metre: it reckons with another speed of sound than the air's.
+/// The robot's reading of one metre in this run: it assumes another speed of sound than the air's.
 pub(super) fn sound_scale(sim: &Sim) -> f64 {
     SOUND_M_S / (331.3 + 0.606 * sim.params().sonar.temperature_c)
 }
 
-/// Steps of the distance to the wall in front. The run's scale of the speed of sound is removed: the robot cannot know it.
+/// Steps of the distance to the wall in front. The run's scale of the speed of sound is removed: the robot cannot know
+/// it.
 pub(super) fn distance_steps(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut Metrics) {
     let scale = sound_scale(sim);
     let distance = |sample: &Sample| sample.range_m[2] * scale;

@@ -1,6 +1,8 @@
-//! Metrics of following a wall: the distance from the middle of the side sonars to what is nearest beside it, and the speed along it.
+//! Metrics of following a wall: the distance from the middle of the side sonars to the nearest obstacle, and the speed
+//! along it.
 //!
-//! The distance is that of the true pose in the world, times the run's scale of the speed of sound: the robot cannot know that scale.
+//! The distance is that of the true pose in the world, times the run's scale of the speed of sound: the robot cannot
+//! know that scale.
 
 use super::Metrics;
 use super::step::{sound_scale, steps};
