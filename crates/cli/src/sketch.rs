@@ -7,9 +7,9 @@ use rumbo_sketch::sandbox::{Limits, Sandbox};
 use rumbo_sketch::{Compiler, Given, SketchError, Toolchain, example, given, starter};
 use std::path::{Path, PathBuf};
 
-/// What an example's name is written after.
+/// Prefix of an example's name.
 const EXAMPLE: &str = "example:";
-/// The environment's variable that names another folder for what is compiled.
+/// Environment variable that names another folder for compiled files.
 const CACHE: &str = "RUMBO_CACHE";
 
 impl From<SketchError> for Failure {
@@ -27,7 +27,7 @@ impl From<SketchError> for Failure {
     }
 }
 
-/// The image of one's own sketch, compiled if need be: a folder, an `.ino`, or an example by name.
+/// The image of a user's sketch, compiled if need be: a folder, an `.ino`, or an example by name.
 pub(crate) fn image(name: &str) -> Result<PathBuf, Failure> {
     let source = match name.strip_prefix(EXAMPLE) {
         Some(name) => example(name)?,
@@ -45,7 +45,7 @@ pub(crate) fn image(name: &str) -> Result<PathBuf, Failure> {
     Ok(image.path)
 }
 
-/// Where compiled cores and sketches are kept.
+/// Folder of compiled cores and sketches.
 pub(crate) fn cache() -> PathBuf {
     let named = std::env::var_os(CACHE).filter(|folder| !folder.is_empty());
     named.map(PathBuf::from).unwrap_or_else(|| {
@@ -74,7 +74,7 @@ pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
     if let Some(parent) = folder.parent() {
         std::fs::create_dir_all(parent).map_err(wrong)?;
     }
-    // One that is there is somebody's work.
+    // An existing folder may hold somebody's work.
     std::fs::create_dir(folder).map_err(wrong)?;
     let file = folder.join(format!("{name}.ino"));
     std::fs::write(&file, starter()?).map_err(wrong)?;

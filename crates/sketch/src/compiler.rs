@@ -1,4 +1,4 @@
-//! The compiler on core, libraries and a sketch; what it made is kept by the hash of all that went into it.
+//! Compiles core, libraries and a sketch; products are cached by the hash of all inputs.
 
 use crate::diagnostics::{Diagnostic, Severity, parse};
 use crate::error::SketchError;
@@ -13,7 +13,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// What every call gets: the Mega and the version that the sketch may ask for.
+/// Options of every call: the Mega and the version macros for the sketch.
 const CHIP: [&str; 6] = [
     "-mmcu=atmega2560",
     "-DF_CPU=16000000L",
@@ -61,14 +61,14 @@ pub struct Compiler {
     core: PathBuf,
 }
 
-/// What became of a sketch.
+/// A compiled sketch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     /// The ELF file, in the cache.
     pub path: PathBuf,
-    /// It was there already.
+    /// It was cached.
     pub fresh: bool,
-    /// What the compiler warns of; nothing if it did not run.
+    /// The compiler's warnings; none if it did not run.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -76,7 +76,7 @@ impl Compiler {
     /// With the folder where products are kept. Compiles the core if need be.
     ///
     /// # Errors
-    /// The folder cannot be written, or the core does not compile.
+    /// If the folder cannot be written, or the core does not compile.
     pub fn new(
         toolchain: Toolchain,
         sandbox: Sandbox,
@@ -105,7 +105,7 @@ impl Compiler {
     /// The image of a sketch, with macros such as `-DMODE=1`.
     ///
     /// # Errors
-    /// The compiler refuses it, or it takes more than it may.
+    /// If the compiler rejects it, or it exceeds a limit.
     pub fn compile(&self, source: &Source, macros: &[&str]) -> Result<Image, SketchError> {
         let main =
             preprocess::join(source).ok_or_else(|| SketchError::NoSketch(source.name.clone()))?;
@@ -167,7 +167,7 @@ impl Compiler {
         if archive.is_file() {
             return Ok(archive);
         }
-        // It is nobody's hand-in: no walls, and time enough.
+        // Trusted source: no isolation, and a generous time limit.
         let trusting = Self {
             sandbox: Sandbox::trusting(Limits::default()),
             ..self.clone()
@@ -185,7 +185,7 @@ impl Compiler {
         Ok(archive)
     }
 
-    /// What all products depend on.
+    /// The inputs common to all products.
     fn key(&self, flags: &[&str]) -> Sha256 {
         let mut key = Sha256::new();
         let fixed = [&CHIP[..], &OBJECT, &C, &CPP, &LINK, flags].concat();
@@ -236,7 +236,7 @@ struct Library {
     files: Vec<PathBuf>,
 }
 
-/// One compilation, in a folder of its own: the sketch beside what is made of it.
+/// One compilation, in its own folder: the sketch beside its products.
 struct Build<'a> {
     compiler: &'a Compiler,
     folder: tempfile::TempDir,
@@ -320,7 +320,7 @@ impl<'a> Build<'a> {
         self.finish()
     }
 
-    /// Runs a tool; what it complains about is kept.
+    /// Runs a tool and keeps its diagnostics.
     fn run(&mut self, program: &Path, args: &[OsString]) -> Result<(), SketchError> {
         let done = self.compiler.sandbox.run(
             (self.folder.path(), Path::new(SKETCH)),
@@ -345,7 +345,7 @@ impl<'a> Build<'a> {
                 notes: Vec::new(),
             });
         }
-        // That the linker failed is said by what it failed of.
+        // The linker's cause is reported, not that it failed.
         if complaints.iter().filter(|one| is_error(one)).count() > 1 {
             complaints.retain(|one| !one.text.contains("ld returned"));
         }
@@ -353,7 +353,7 @@ impl<'a> Build<'a> {
         Ok(())
     }
 
-    /// Whether all went well so far.
+    /// Whether there was no error so far.
     fn finish(&mut self) -> Result<(), SketchError> {
         if let Some(error) = self.failed.take() {
             return Err(error);
@@ -392,7 +392,7 @@ fn hex(key: Sha256) -> String {
         .collect()
 }
 
-/// What the image of a sketch is called: its name as far as every system takes it.
+/// The file name of a sketch's image, restricted to portable characters.
 fn file_name(name: &str) -> String {
     let is_plain = |c: &char| c.is_ascii_alphanumeric() || "-_".contains(*c);
     let plain: String = name.chars().filter(is_plain).take(60).collect();

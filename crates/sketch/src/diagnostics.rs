@@ -1,4 +1,4 @@
-//! What a compiler complains about, taken from the text that GCC prints.
+//! A compiler's diagnostics, parsed from GCC's output.
 //!
 //! ```text
 //! wall.ino:12:3: error: 'speed' was not declared in this scope      a place, how bad, what
@@ -9,20 +9,20 @@
 use serde::Serialize;
 use std::fmt;
 
-/// How bad it is.
+/// Its severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// There is an image all the same.
+    /// The image is still built.
     Warning,
     /// There is no image.
     Error,
 }
 
-/// One complaint.
+/// One diagnostic.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// Its severity.
     pub severity: Severity,
     /// The student's file, relative to the sketch's folder; `None` where the tool names none.
     pub file: Option<String>,
@@ -32,7 +32,7 @@ pub struct Diagnostic {
     pub column: Option<u32>,
     /// What is wrong.
     pub text: String,
-    /// What the compiler adds, a line each.
+    /// The compiler's notes on it, a line each.
     pub notes: Vec<String>,
 }
 
@@ -56,12 +56,12 @@ impl fmt::Display for Diagnostic {
     }
 }
 
-/// Complaints kept of one compilation; the first ones matter.
+/// Most diagnostics kept of one compilation; the first ones matter.
 const MOST: usize = 50;
-/// Notes kept of one complaint.
+/// Most notes kept of one diagnostic.
 const MOST_NOTES: usize = 8;
 
-/// All complaints in a compiler's output.
+/// All diagnostics in a compiler's output.
 pub(crate) fn parse(output: &str) -> Vec<Diagnostic> {
     let mut found: Vec<Diagnostic> = Vec::new();
     for line in output.lines().map(str::trim_end) {
@@ -82,7 +82,7 @@ pub(crate) fn parse(output: &str) -> Vec<Diagnostic> {
     found
 }
 
-/// The complaint that a line begins, if it begins one.
+/// The diagnostic that a line begins, if any.
 fn complaint(line: &str) -> Option<Diagnostic> {
     for (mark, severity) in [
         (": fatal error: ", Severity::Error),

@@ -10,22 +10,22 @@ use std::time::Duration;
 pub enum SketchError {
     /// No compiler with an Arduino core is installed.
     NoCompiler,
-    /// The source is not trusted and cannot be locked up: why.
+    /// The source is not trusted and cannot be isolated: why.
     NoSandbox(String),
     /// A file or folder cannot be read or written.
     File {
         /// Its path.
         path: String,
-        /// What the system says.
+        /// The system's error.
         reason: String,
     },
-    /// There is no sketch here.
+    /// There is no sketch at this path.
     NoSketch(String),
-    /// The source is larger than a sketch can be, or holds what no sketch holds: what.
+    /// The source is larger than a sketch can be, or holds something that no sketch holds: what.
     Refused(String),
-    /// The compiler or the linker refused it; at least one error.
+    /// The compiler or the linker rejected it; at least one error.
     Rejected(Vec<Diagnostic>),
-    /// The compiler took more than it may: what.
+    /// The compiler exceeded a limit: which.
     Exceeded(String),
     /// No example has this name; those there are.
     NoExample(String, Vec<String>),

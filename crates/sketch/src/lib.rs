@@ -5,9 +5,9 @@
 //! core, libraries ─────────────────────────────────────────────────────────────► core.a ─┘
 //! ```
 //!
-//! [`Toolchain`] is a compiler and an Arduino core: those that arduino-cli has installed, else Debian's. [`Compiler`] runs it
-//! on a [`Source`], in a [`sandbox`] if the source is not trusted. Products are cached by the hash of all that went into them.
-//! The options are those of the core's `platform.txt`.
+//! [`Toolchain`] is a compiler and an Arduino core: those that arduino-cli has installed, else Debian's. [`Compiler`]
+//! runs it on a [`Source`], in a [`sandbox`] if the source is not trusted. Products are cached by the hash of all that
+//! went into them. The options are those of the core's `platform.txt`.
 
 mod compiler;
 mod diagnostics;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 #[folder = "libraries"]
 struct Libraries;
 
-/// Puts a library of ours below a folder, where it is not yet; `None` if we have none of this name.
+/// Writes a library of ours below a folder unless it is there; `None` if we have none of this name.
 pub(crate) fn unpack(name: &str, below: &Path) -> Result<Option<PathBuf>, SketchError> {
     let prefix = format!("{name}/");
     let folder = below.join(name);

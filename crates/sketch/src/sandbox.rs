@@ -1,8 +1,9 @@
-//! Runs a compiler on source that somebody else wrote.
+//! Runs a compiler on untrusted source.
 //!
-//! Whoever writes the source steers the compiler: `#include`, `.incbin` and templates read files, fill disks and never end.
-//! Every run is bounded in time, memory, size of files and output, and is ended with all its children. For source that is
-//! not trusted, `bwrap` also takes away network, processes, and every file but the compiler, the core and the sketch.
+//! Its author controls the compiler: `#include`, `.incbin` and templates can read files, fill disks and never end.
+//! Every run is bounded in time, memory, size of files and output, and is ended with all its children. For source that
+//! is not trusted, `bwrap` also takes away network, processes, and every file but the compiler, the core and the
+//! sketch.
 
 use crate::error::SketchError;
 use crate::toolchain::{Toolchain, on_path};
@@ -12,12 +13,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// Time between two looks at whether a compiler is done.
+/// Interval at which a compiler is polled.
 const LOOK: Duration = Duration::from_millis(4);
-/// Where the build is in the sandbox.
+/// Path of the build in the sandbox.
 const INSIDE: &str = "/build";
 
-/// What compiling a sketch may take.
+/// Limits of a compilation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// For all of a sketch.
@@ -57,7 +58,7 @@ pub(crate) struct Done {
 }
 
 impl Sandbox {
-    /// Without walls, for one's own source.
+    /// Without isolation, for trusted source.
     #[must_use]
     pub fn trusting(limits: Limits) -> Self {
         Self {
@@ -66,10 +67,10 @@ impl Sandbox {
         }
     }
 
-    /// Behind walls.
+    /// Isolated with `bwrap`.
     ///
     /// # Errors
-    /// There is no `bwrap`, or it does not work here.
+    /// If there is no `bwrap`, or it does not work here.
     pub fn walled(toolchain: &Toolchain, limits: Limits) -> Result<Self, SketchError> {
         let no = |why: &str| SketchError::NoSandbox(why.to_owned());
         let bwrap = on_path("bwrap").ok_or_else(|| no("bwrap is not installed"))?;
@@ -91,12 +92,13 @@ impl Sandbox {
         }
     }
 
-    /// What compiling a sketch may take.
+    /// Limits of a compilation.
     pub(crate) fn limits(&self) -> Limits {
         self.limits
     }
 
-    /// Runs a program in `inner` of the folder `build`, the only one that it may write; it sees the folders of `libraries` too.
+    /// Runs a program in `inner` of the folder `build`, the only one that it may write; it sees the folders of
+    /// `libraries` too.
     pub(crate) fn run(
         &self,
         (build, inner): (&Path, &Path),
@@ -161,14 +163,14 @@ impl Sandbox {
         command
     }
 
-    /// Waits for the end, and makes one where it is late or prints too much.
+    /// Waits for the end, and kills it where it is late or prints too much.
     fn watch(&self, mut child: Child, deadline: Instant) -> Result<Done, SketchError> {
         let most = self.limits.output;
         let reader = |pipe: Option<Box<dyn Read + Send>>| {
             std::thread::spawn(move || {
                 let (mut text, mut full) = (Vec::new(), false);
                 if let Some(mut pipe) = pipe {
-                    // What cannot be read is not shown; what is too much is read all the same, so that nobody waits.
+                    // Unreadable output is skipped; excess output is still read, so that the child does not block.
                     let _ = (&mut pipe).take(most as u64).read_to_end(&mut text);
                     full =
                         std::io::copy(&mut pipe, &mut std::io::sink()).is_ok_and(|more| more > 0);
@@ -185,7 +187,7 @@ impl Sandbox {
                 Ok(None) | Err(_) => break None,
             }
         };
-        // Also of a child that has ended: what it started does not go on.
+        // Also after the child has ended: its own children do not go on.
         end(&mut child);
         let pieces = [out.join(), err.join()].map(Result::unwrap_or_default);
         let Some(status) = status else {
@@ -201,7 +203,7 @@ impl Sandbox {
     }
 }
 
-/// Ends a process with all that it has started.
+/// Kills a process and its children.
 fn end(child: &mut Child) {
     #[cfg(unix)]
     {
@@ -229,7 +231,7 @@ fn walls(bwrap: PathBuf, toolchain: &Toolchain) -> Result<Vec<OsString>, SketchE
     }
     line.extend(["--size", "134217728", "--tmpfs", "/tmp"].map(OsString::from));
     line.extend(["--dev", "/dev"].map(OsString::from));
-    // Not the user's own libraries: they may hold what is nobody else's.
+    // Not the user's own libraries: they may hold private files.
     let shown = [toolchain.core.clone()];
     let shown = toolchain.visible.iter().chain(&shown).cloned();
     for path in shown.chain(shared_libraries(toolchain)?) {

@@ -37,8 +37,8 @@ pub struct Source {
     pub files: BTreeMap<String, Vec<u8>>,
 }
 
-/// What is at a path: a folder with a sketch or an image, an `.ino`, an `.elf` or a `.hex`. The `.ino` of a folder of the
-/// same name stands for the folder if `folder_of_ino`, as in the Arduino IDE; else it is a sketch by itself.
+/// What is at a path: a folder with a sketch or an image, an `.ino`, an `.elf` or a `.hex`. The `.ino` of a folder of
+/// the same name stands for the folder if `folder_of_ino`, as in the Arduino IDE; else it is a sketch by itself.
 ///
 /// # Errors
 /// Nothing of the kind is there, or more than a sketch can be.

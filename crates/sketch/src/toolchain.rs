@@ -67,7 +67,8 @@ impl Toolchain {
         Self::new(gcc, core.to_owned(), Vec::new(), visible)
     }
 
-    /// The newest core and compiler below arduino-cli's folder of data; libraries that its user has installed come first.
+    /// The newest core and compiler below arduino-cli's folder of data; libraries that its user has installed come
+    /// first.
     fn of_arduino_cli(folders: &Folders) -> Option<Self> {
         let packages = folders.data.join("packages/arduino");
         let core = newest(&packages.join("hardware/avr"))?;
