@@ -146,7 +146,7 @@ mod tests {
         60, 1, 2, 3, 4, 0.1, 0.2, 45, 100, 101\nPID B 1 0.001 0\n90, 50, 50, -45, 1.5, 0.5, 0.2, 0, 3, 3, 88, 90, 106\n";
 
     #[test]
-    fn all_ten_kinds_of_lines_are_taken_with_the_times_that_rows_tell() {
+    fn all_ten_kinds_of_lines_are_read_with_the_times_in_the_rows() {
         let table = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n60,50,51,30,1,115,115\n";
         assert!(is_one(TEN) && !is_one(table));
         let (link, _) = parse(Path::new("x"), TEN).unwrap();

@@ -32,17 +32,17 @@ impl fmt::Display for Identification {
                 )?;
             }
         }
-        let untold = self
+        let unidentified = self
             .parameters
             .iter()
             .filter(|parameter| parameter.told_by_runs < SHOWN)
             .filter_map(|parameter| parameter.keys.first());
-        let untold: Vec<&str> = untold.map(String::as_str).collect();
-        if !untold.is_empty() {
+        let unidentified: Vec<&str> = unidentified.map(String::as_str).collect();
+        if !unidentified.is_empty() {
             writeln!(
                 f,
                 "these runs hardly show {}: a run with turns on the spot, fast stretches, stops and starts would",
-                untold.join(", ")
+                unidentified.join(", ")
             )?;
         }
         writeln!(

@@ -117,7 +117,7 @@ fn a_bad_cell_names_file_line_column_and_value() {
 }
 
 #[test]
-fn the_rows_tell_when_the_counting_windows_end() {
+fn the_rows_show_when_the_counting_windows_end() {
     let log = log(&recorded(&Params::default(), exercise, 9.0));
     assert_eq!(log.window_phase_ms, Some(7));
 }
@@ -179,7 +179,7 @@ fn a_floor_harder_than_the_parameters_is_observed() {
 }
 
 #[test]
-fn an_empty_battery_is_told_from_a_full_one() {
+fn an_empty_battery_is_distinguished_from_a_full_one() {
     let mut params = Params::default();
     let volts = [6.9, 8.2].map(|volts| {
         params.battery.open_circuit_v = volts;
@@ -223,7 +223,7 @@ fn a_plant_with_other_parameters_is_found_from_its_run() {
 }
 
 #[test]
-fn a_log_that_tells_nothing_about_driving_is_refused() {
+fn a_log_without_driving_is_refused() {
     let side = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n70,58,57,57,3,74,70\n70,58,57,57,3,74,70\n";
     assert_eq!(
         check(&[log(side)], &Params::default()).unwrap_err(),
@@ -472,7 +472,7 @@ fn a_run_along_a_wall_says_which_sonar_is_in_front() {
 }
 
 #[test]
-fn a_run_along_a_wall_tells_the_damping_of_the_yaw() {
+fn a_run_along_a_wall_identifies_the_yaw_damping() {
     let damping = |true_n_m_s| {
         let mut params = Params::default();
         params.floor.yaw_damping_n_m_s = true_n_m_s;

@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn another_session_starts_anew() {
+    fn another_session_starts_afresh() {
         assert_eq!(
             after(1, 7, Command::Arm).judge(2, 7, &Command::Arm),
             Verdict::New

@@ -186,7 +186,7 @@ impl Robot {
     }
 
     /// Takes the parameters that were saved, before the robot starts; `read` gives a byte of the EEPROM, 0..4096. Without a
-    /// good copy the defaults stay; which copy it was is told after each HELLO.
+    /// good copy the defaults stay; which copy it was is reported after each HELLO.
     pub fn recall(&mut self, read: impl FnMut(u16) -> u8) {
         let recalled = self.store.recall(self.pilot.params_mut(), read);
         self.reporter.recalled(recalled);

@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_with_any_byte_flipped_is_not_used_and_that_is_told() {
+    fn a_copy_with_any_byte_flipped_is_not_used_and_that_is_reported() {
         let (memory, _) = saved(&[0.11, 0.12]);
         for at in 0..LEN {
             let mut memory = memory.clone();
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn two_bad_copies_give_the_defaults_and_that_is_told() {
+    fn two_bad_copies_give_the_defaults_and_that_is_reported() {
         let (mut memory, _) = saved(&[0.11, 0.12]);
         memory[100] ^= 1;
         memory[2_148] ^= 1;
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_changes_during_a_save_begins_it_anew() {
+    fn a_value_that_changes_during_a_save_restarts_it() {
         let (mut memory, mut store) = saved(&[0.11]);
         store.save();
         for _ in 0..200 {

@@ -17,11 +17,11 @@ use std::time::{Duration, Instant};
 
 /// Where viewers look first.
 pub const BRIDGE_PORT: u16 = 8_765;
-/// Entries that wait.
+/// Most entries queued.
 const WAITING: usize = 1_024;
-/// Messages that wait for one viewer.
+/// Most messages queued for one viewer.
 const BACKLOG: usize = 1_024;
-/// What seldom changes is said again this often, for viewers that came later.
+/// What seldom changes is republished this often, for viewers that connect later.
 const AGAIN: Duration = Duration::from_secs(1);
 
 /// The bridge; dropping it ends it.
@@ -61,7 +61,7 @@ impl Bridge {
         let (entries, taken) = sync_channel(WAITING);
         let thread = std::thread::Builder::new()
             .name("bridge".into())
-            .spawn(move || tell(&Channels(channels), &taken))
+            .spawn(move || publish(&Channels(channels), &taken))
             .map_err(|error| error.to_string())?;
         Ok(Self {
             _context: context,
@@ -78,7 +78,7 @@ impl Bridge {
         format!("ws://127.0.0.1:{}", self.port)
     }
 
-    /// Takes what is recorded; what does not fit is lost.
+    /// Takes an entry; it is dropped if the queue is full.
     pub(crate) fn take(&self, entry: &Arc<Entry>) {
         if let Some(entries) = &self.entries {
             // Full: viewers are slow.
@@ -132,8 +132,8 @@ impl Sink for &Channels {
     }
 }
 
-/// Tells viewers until there is nothing more to tell.
-fn tell(channels: &Channels, entries: &Receiver<Arc<Entry>>) {
+/// Publishes entries to the viewers until the bridge is dropped.
+fn publish(channels: &Channels, entries: &Receiver<Arc<Entry>>) {
     let (mut scene, mut parameters) = (None, None);
     let (mut now_us, mut again) = (0, Instant::now() + AGAIN);
     let mut sink = channels;

@@ -1,6 +1,6 @@
 //! Rumbo's station: ports, threads and the web dashboard around a session.
 //!
-//! A thread lets a [`Target`](rumbo_session::Target) live and drives the session with it; the web side shows its events
+//! A thread advances a [`Target`](rumbo_session::Target) and drives the session with it; the web side shows its events
 //! in a browser on this machine and passes on what is asked there. [`serve`] joins the two.
 
 mod assets;

@@ -126,7 +126,7 @@ pub struct Lab {
     url: String,
     viewers_url: String,
     opened: Receiver<()>,
-    /// `None` once ended. The session lives while there are senders.
+    /// `None` once ended. The session runs while there are senders.
     orders: Option<SyncSender<Order>>,
     web_ends: Option<oneshot::Sender<()>>,
     session: Option<JoinHandle<Result<(), String>>>,
@@ -172,7 +172,7 @@ impl Drop for Lab {
         let web = self.web.take().map(JoinHandle::join);
         drop(self.orders.take());
         let session = self.session.take().map(JoinHandle::join);
-        // Nobody is left to hear of a fault.
+        // Nobody is left to read of a fault.
         drop((web, session));
     }
 }

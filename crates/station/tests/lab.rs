@@ -50,7 +50,7 @@ fn ending_the_lab_frees_its_port() {
 }
 
 #[tokio::test]
-async fn garbage_is_told_why_and_closed_while_the_robot_goes_on() {
+async fn garbage_gets_a_reason_and_is_closed_while_the_robot_goes_on() {
     let lab = start(4.0);
     let key = open(&lab);
     let mut driver = connect_own(&lab, &key).await;
@@ -111,7 +111,7 @@ async fn a_page_that_comes_back_gets_the_recent_past_and_does_not_arm() {
 }
 
 #[tokio::test]
-async fn commands_are_acknowledged_stop_disarms_and_a_reset_starts_anew() {
+async fn commands_are_acknowledged_stop_disarms_and_a_reset_starts_a_new_run() {
     let lab = start(4.0);
     let key = open(&lab);
     let mut page = connect_own(&lab, &key).await;

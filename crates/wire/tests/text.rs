@@ -255,7 +255,7 @@ fn commands_of_the_original_are_understood() {
 }
 
 #[test]
-fn what_is_wrong_with_a_line_is_told() {
+fn what_is_wrong_with_a_line_is_reported() {
     for (line, error) in [
         ("", TextError::UnknownCommand),
         ("ONE", TextError::UnknownCommand),

@@ -69,7 +69,7 @@ fn what_the_compiler_refuses_is_said_with_file_and_line_and_status_2() {
 }
 
 #[test]
-fn an_example_runs_by_name_and_hears_what_is_typed_on_usb() {
+fn an_example_runs_by_name_and_receives_lines_typed_on_usb() {
     let Some(bench) = bench("example") else {
         return;
     };

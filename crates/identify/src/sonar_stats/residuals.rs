@@ -56,14 +56,14 @@ fn one_sonar(log: &SonarLog, range_m: &[f64]) -> SonarStats {
     }
     let [(rest_sd_m, rest_outliers), (motion_sd_m, motion_outliers)] =
         [&rest, &motion].map(|class| spread(class));
-    let heard = (rest.len() + motion.len()) as f64;
+    let readings = (rest.len() + motion.len()) as f64;
     SonarStats {
         rest_n: rest.len() as f64,
         rest_sd_m,
         motion_n: motion.len() as f64,
         motion_sd_m,
-        outlier_rate: if heard > 0.0 {
-            (rest_outliers + motion_outliers) / heard
+        outlier_rate: if readings > 0.0 {
+            (rest_outliers + motion_outliers) / readings
         } else {
             0.0
         },

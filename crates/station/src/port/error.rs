@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_may_not_open_a_port_is_told_what_to_do_on_this_system() {
+    fn a_user_who_may_not_open_a_port_gets_advice_for_this_system() {
         for (system, group, part) in [
             ("linux", Some("dialout"), "usermod -aG dialout $USER"),
             ("linux", None, "chmod a+rw /dev/x"),
