@@ -34,7 +34,7 @@ pub(crate) fn show(lab: Lab, serve: ServeArgs) -> Result<(), Failure> {
         lab.until_opened();
         drop(file);
     }
-    lab.wait().map_err(Failure::Input)
+    lab.wait().map_err(Failure::input)
 }
 
 /// Opens the browser at an address; the file is needed until the page is loaded.

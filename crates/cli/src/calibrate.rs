@@ -9,6 +9,7 @@ use rumbo_experiment::calibrate::{self, Calibration, Row};
 use rumbo_experiment::calibration_run;
 use rumbo_experiment::files::{Library, Overrides, RobotFile, Setup, bounded};
 use rumbo_log::{Finding, Findings, Kind};
+use rumbo_session::CalibrationError;
 use rumbo_station::{Extras, GuestLink};
 use serde::Serialize;
 use std::path::Path;
@@ -51,8 +52,8 @@ impl calibrate::Linked for Guest<'_> {
 pub(crate) fn in_dashboard() -> Extras {
     Extras {
         calibration: Some(|link| {
-            let found =
-                calibrate::calibrate(&mut Guest(link)).map_err(|error| error.to_string())?;
+            let found = calibrate::calibrate(&mut Guest(link))
+                .map_err(|error| CalibrationError::GivenUp(error.to_string()))?;
             let rows = calibrate::rows(&found, None).into_iter();
             Ok(Findings {
                 rows: rows

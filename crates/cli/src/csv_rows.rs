@@ -134,14 +134,14 @@ fn kind_by_rows(header: &str, text: &str) -> Option<RowKind> {
 }
 
 /// A row's values in their own units; if it is no sound row, what is wrong with it.
-fn values(columns: &[Column], row: &str, kind: RowKind) -> Result<Vec<f64>, String> {
+fn values(columns: &[Column], row: &str, kind: RowKind) -> Result<Vec<f64>, Failure> {
     let fields: Vec<&str> = row.split(',').map(str::trim).collect();
     if fields.len() != columns.len() {
         let (found, due) = (fields.len(), columns.len());
         let header = header_of(kind);
-        return Err(format!(
+        return Err(Failure::Input(format!(
             "{found} values in a row of {due} columns; expected {header}"
-        ));
+        )));
     }
     let value = |(column, field): (&Column, &str)| {
         let Column {
@@ -152,10 +152,10 @@ fn values(columns: &[Column], row: &str, kind: RowKind) -> Result<Vec<f64>, Stri
             .ok()
             .filter(|value| (*min..=*max).contains(value));
         value.ok_or_else(|| {
-            format!(
+            Failure::Input(format!(
                 "{} = `{field}`: must be a number within {min}..{max}",
                 original.name
-            )
+            ))
         })
     };
     columns.iter().zip(fields).map(value).collect()
@@ -200,7 +200,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
             Ok(values) => values,
             Err(what) => {
                 gap_s += period_ms(row, &columns).map_or(usual_s, |ms| ms / 1000.0);
-                left_out.row(line, what);
+                left_out.row(line, what.to_string());
                 continue;
             }
         };

@@ -62,6 +62,8 @@ impl fmt::Display for Failure {
     }
 }
 
+impl std::error::Error for Failure {}
+
 impl From<FileError> for Failure {
     fn from(error: FileError) -> Self {
         match error {

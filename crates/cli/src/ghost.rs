@@ -7,7 +7,7 @@ use crate::lab::SimulatedRobot;
 use rumbo_control::Fault;
 use rumbo_experiment::files::Overrides;
 use rumbo_log::{Choice, Log, Manifest, MapPose, Scene};
-use rumbo_session::{Abilities, Ghost, LinkNews, Standing, Target};
+use rumbo_session::{Abilities, Ghost, LinkNews, Standing, Target, TargetError};
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
 use std::collections::VecDeque;
 use std::path::Path;
@@ -86,14 +86,14 @@ impl<T: Target> Target for WithGhost<T> {
         self.robot.now_us()
     }
 
-    fn advance(&mut self, dt_us: u64) -> Result<(), String> {
+    fn advance(&mut self, dt_us: u64) -> Result<(), TargetError> {
         self.robot.advance(dt_us)?;
         follow(&mut self.ghost, self.robot.now_us(), &mut self.received)?;
         self.listen();
         Ok(())
     }
 
-    fn send(&mut self, bytes: &[u8]) -> Result<(), String> {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TargetError> {
         self.ghost.send(bytes)?;
         self.robot.send(bytes)
     }
@@ -125,7 +125,7 @@ impl<T: Target> Target for WithGhost<T> {
     }
 
     /// Also clears the ghost's fault, since the robot may have none to clear. ON restarts it.
-    fn restart_ghost(&mut self, at: Standing) -> Result<(), String> {
+    fn restart_ghost(&mut self, at: Standing) -> Result<(), TargetError> {
         self.ghost.place(at);
         self.number = self.number.wrapping_add(1);
         let clear = ToRobot::Command {
@@ -143,7 +143,11 @@ impl<T: Target> Target for WithGhost<T> {
 }
 
 /// Advances the ghost to this instant; appends the bytes it sends.
-fn follow(ghost: &mut SimulatedRobot, until_us: u64, received: &mut Vec<u8>) -> Result<(), String> {
+fn follow(
+    ghost: &mut SimulatedRobot,
+    until_us: u64,
+    received: &mut Vec<u8>,
+) -> Result<(), TargetError> {
     while ghost.now_us() + STEP_US <= until_us {
         ghost.advance(STEP_US)?;
         ghost.receive(received);
@@ -163,14 +167,14 @@ struct Recorded {
 }
 
 impl Ghost for Recorded {
-    fn begin(&mut self) -> Result<(), String> {
+    fn begin(&mut self) -> Result<(), TargetError> {
         self.ghost = simulated(&self.scenario, self.seed)
-            .map_err(|_| format!("the scenario {} is gone", self.scenario))?;
+            .map_err(|_| TargetError::Setup(format!("the scenario {} is gone", self.scenario)))?;
         self.next = 0;
         Ok(())
     }
 
-    fn advance_to(&mut self, until_us: u64) -> Result<MapPose, String> {
+    fn advance_to(&mut self, until_us: u64) -> Result<MapPose, TargetError> {
         while let Some((at_us, bytes)) = self.to_robot.get(self.next)
             && *at_us <= until_us
         {
@@ -222,7 +226,7 @@ pub(crate) fn add_to(
     });
     let scene = surroundings(&ghost.ghost);
     log.add_ghost(scene, |t_us| ghost.advance_to(t_us))
-        .map_err(Failure::Input)?;
+        .map_err(Failure::input)?;
     Ok(ghost)
 }
 
@@ -242,12 +246,12 @@ mod tests {
             self.now_us
         }
 
-        fn advance(&mut self, dt_us: u64) -> Result<(), String> {
+        fn advance(&mut self, dt_us: u64) -> Result<(), TargetError> {
             self.now_us += dt_us;
             Ok(())
         }
 
-        fn send(&mut self, _bytes: &[u8]) -> Result<(), String> {
+        fn send(&mut self, _bytes: &[u8]) -> Result<(), TargetError> {
             Ok(())
         }
 

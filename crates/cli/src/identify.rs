@@ -180,7 +180,7 @@ fn text_of(path: &Path) -> Result<String, Failure> {
         .extension()
         .is_some_and(|extension| extension == "mcap");
     let bytes = if is_log {
-        attached(&bytes).map_err(wrong)?
+        attached(&bytes).map_err(|error| wrong(error.to_string()))?
     } else {
         bytes
     };

@@ -13,7 +13,7 @@ use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
 use rumbo_experiment::run;
 use rumbo_log::{Choice, Kind, Manifest, MapPose, Scene, Truth};
-use rumbo_session::{Abilities, LinkNews, Standing, Target};
+use rumbo_session::{Abilities, LinkNews, Standing, Target, TargetError};
 use rumbo_sim::debugging::Debugging;
 use rumbo_sim::mega::firmware::Language;
 use rumbo_sim::{Config, Sim};
@@ -79,7 +79,7 @@ pub(crate) fn bridge(
     let Some(port) = args.foxglove else {
         return Ok(None);
     };
-    let bridge = rumbo_station::Bridge::start(port).map_err(Failure::Input)?;
+    let bridge = rumbo_station::Bridge::start(port).map_err(Failure::input)?;
     output::aside(&format!("for Foxglove or Lichtblick: {}", bridge.address()));
     Ok(Some(bridge))
 }
@@ -232,7 +232,7 @@ impl Target for SimulatedRobot {
         self.sim.now_us()
     }
 
-    fn advance(&mut self, dt_us: u64) -> Result<(), String> {
+    fn advance(&mut self, dt_us: u64) -> Result<(), TargetError> {
         // After a breakpoint, back to the multiples of the step.
         let until_us = (self.sim.now_us() / dt_us.max(1) + 1) * dt_us;
         match &mut self.debugging {
@@ -242,7 +242,7 @@ impl Target for SimulatedRobot {
         Ok(())
     }
 
-    fn send(&mut self, bytes: &[u8]) -> Result<(), String> {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TargetError> {
         self.sim.send(bytes);
         Ok(())
     }
@@ -315,10 +315,10 @@ impl Target for SimulatedRobot {
         self.news.pop_front()
     }
 
-    fn type_in(&mut self, usart: u8, line: &str) -> Result<(), String> {
+    fn type_in(&mut self, usart: u8, line: &str) -> Result<(), TargetError> {
         match type_to(&mut self.sim, usart, line) {
             true => Ok(()),
-            false => Err("there is no emulated chip; start the lab with --firmware".into()),
+            false => Err(TargetError::NoChip),
         }
     }
 
@@ -326,7 +326,7 @@ impl Target for SimulatedRobot {
         self.first_commands.clone()
     }
 
-    fn reset(&mut self, choice: &Choice) -> Result<(), String> {
+    fn reset(&mut self, choice: &Choice) -> Result<(), TargetError> {
         // The page chooses among names it was given; it opens no files.
         let Scene {
             scenarios, worlds, ..
@@ -334,7 +334,7 @@ impl Target for SimulatedRobot {
         let offered = scenarios.contains(&choice.scenario)
             && choice.world.iter().all(|world| worlds.contains(world));
         if !offered {
-            return Err("no such scenario or world here; choose one of the list".into());
+            return Err(TargetError::NotOffered);
         }
         let fresh = prepare(
             &self.library,
@@ -343,7 +343,7 @@ impl Target for SimulatedRobot {
             // Switched off and on again: saved parameters persist.
             &self.sim.memory(),
         );
-        let fresh = fresh.map_err(|error| error.to_string())?;
+        let fresh = fresh.map_err(|error| TargetError::Setup(error.to_string()))?;
         // What the command line added to the lists stays there.
         let Scene {
             scenarios, worlds, ..

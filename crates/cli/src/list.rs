@@ -110,7 +110,7 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
                     "modes": id.modes().map(ModeId::name).collect::<Vec<_>>() })
         })),
         Topic::Ports => {
-            let ports = rumbo_station::port::serial_ports().map_err(Failure::Input)?;
+            let ports = rumbo_station::port::serial_ports().map_err(Failure::input)?;
             let entry = |(name, what): (String, String)| json!({ "name": name, "title": what });
             entries.extend(ports.into_iter().map(entry));
         }

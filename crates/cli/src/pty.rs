@@ -25,14 +25,14 @@ pub(crate) fn offer(mut robot: impl Target, speed: f64) -> Result<(), Failure> {
         bytes.clear();
         // This waits a little, so that the loop does not spin.
         pty.read(&mut bytes);
-        robot.send(&bytes).map_err(Failure::Input)?;
+        robot.send(&bytes).map_err(Failure::input)?;
         let passed_us = last.elapsed().as_secs_f64() * 1e6;
         last = Instant::now();
         due_us =
             (due_us + (passed_us * speed) as u64).min((CATCH_UP_US as f64 * speed.max(1.0)) as u64);
         while due_us >= STEP_US {
             due_us -= STEP_US;
-            robot.advance(STEP_US).map_err(Failure::Input)?;
+            robot.advance(STEP_US).map_err(Failure::input)?;
         }
         bytes.clear();
         robot.receive(&mut bytes);

@@ -3,6 +3,7 @@
 //! A log that `rumbo import` made of a CSV carries it. Any other one has the signals of its telemetry: what was recorded from the first
 //! armed instant to the last becomes rows of the kind that the original program writes in that mode.
 
+use crate::failure::Failure;
 use rumbo_control::mode::{Description, ModeId, ReferenceKind, Takes};
 use rumbo_experiment::files::bounded::{LONGEST_RECORDING, read_at_most};
 use rumbo_log::{Kind, Row};
@@ -41,9 +42,12 @@ pub(crate) fn from_log(path: &Path) -> Result<FromLog, NotShown> {
 }
 
 /// The CSV that a log carries.
-pub(crate) fn attached(log: &[u8]) -> Result<Vec<u8>, String> {
-    let damaged =
-        |error: mcap::McapError| format!("is no intact MCAP log ({error}); import the CSV again");
+pub(crate) fn attached(log: &[u8]) -> Result<Vec<u8>, Failure> {
+    let damaged = |error: mcap::McapError| {
+        Failure::Input(format!(
+            "is no intact MCAP log ({error}); import the CSV again"
+        ))
+    };
     let summary = mcap::Summary::read(log)
         .map_err(damaged)?
         .unwrap_or_default();
@@ -51,8 +55,8 @@ pub(crate) fn attached(log: &[u8]) -> Result<Vec<u8>, String> {
         .attachment_indexes
         .iter()
         .find(|index| index.media_type == CSV);
-    let index = index
-        .ok_or("carries no recording of the original program; give one made by `rumbo import`")?;
+    let none = "carries no recording of the original program; give one made by `rumbo import`";
+    let index = index.ok_or_else(|| Failure::input(none))?;
     Ok(mcap::read::attachment(log, index)
         .map_err(damaged)?
         .data

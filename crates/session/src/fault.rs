@@ -3,6 +3,7 @@
 //! A [`Faulty`] target stands between a session and its robot, for tests and experiments; a [`Line`] is one direction
 //! of it. Which bytes are hit follows from the seed alone. Order is preserved, as on a serial line.
 
+use crate::error::TargetError;
 use crate::target::{Abilities, LinkNews, Target};
 use rumbo_log::{Choice, Manifest, Scene, Truth};
 use rumbo_wire::Command;
@@ -140,14 +141,14 @@ impl<T: Target> Target for Faulty<T> {
         self.target.now_us()
     }
 
-    fn advance(&mut self, dt_us: u64) -> Result<(), String> {
+    fn advance(&mut self, dt_us: u64) -> Result<(), TargetError> {
         self.target.advance(dt_us)?;
         self.bytes.clear();
         self.to_robot.receive(self.target.now_us(), &mut self.bytes);
         self.target.send(&self.bytes)
     }
 
-    fn send(&mut self, bytes: &[u8]) -> Result<(), String> {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TargetError> {
         self.to_robot.send(bytes, self.target.now_us());
         Ok(())
     }
@@ -188,7 +189,7 @@ impl<T: Target> Target for Faulty<T> {
         self.target.first_commands()
     }
 
-    fn reset(&mut self, choice: &Choice) -> Result<(), String> {
+    fn reset(&mut self, choice: &Choice) -> Result<(), TargetError> {
         self.target.reset(choice)
     }
 }

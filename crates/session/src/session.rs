@@ -9,6 +9,7 @@ mod calibrating;
 mod commanding;
 
 use crate::client::{KnownTable, LinkEvent, RobotClient};
+use crate::error::{CalibrationError, TargetError};
 use crate::event::Event;
 use crate::observer::Observer;
 use crate::observer::describe::{Around, describe};
@@ -122,7 +123,7 @@ impl Session {
     }
 
     /// The target was reset, or refused it: a new run begins, with another random `id`, or nothing has changed.
-    pub fn restart(&mut self, choice: &Choice, done: Result<About, String>, id: u8, now: Now) {
+    pub fn restart(&mut self, choice: &Choice, done: Result<About, TargetError>, id: u8, now: Now) {
         let about = match done {
             Ok(about) => about,
             Err(why) => return self.note(Level::Warning, format!("reset: refused, {why}"), now),
@@ -173,7 +174,7 @@ impl Session {
                 return Some(Ask::Pace(factor));
             }
             Order::Speed(_) => {
-                let text = "speed: refused, a real robot lives at its own";
+                let text = "speed: refused, a real robot runs in real time";
                 self.note(Level::Warning, text.into(), now);
             }
             Order::Reset(choice) if abilities.reset => return Some(Ask::Reset(choice)),
@@ -226,7 +227,7 @@ impl Session {
             LinkNews::Lost(text) => {
                 self.port_gone = true;
                 self.note(Level::Fault, text, now);
-                self.give_up_calibration("the port is gone", now);
+                self.calibration_ended(Err(CalibrationError::PortGone), now);
                 return self.client.port_is_gone();
             }
             LinkNews::Back(text) => {

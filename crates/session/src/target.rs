@@ -4,6 +4,7 @@
 //! the robot and takes the bytes that came back. It reports its other abilities itself ([`Target::abilities`]). What is
 //! known of a robot beyond those bytes is only displayed: commands and measurements take the link.
 
+use crate::error::TargetError;
 use rumbo_control::Fault;
 use rumbo_control::mode::ModeId;
 use rumbo_log::{Choice, Manifest, MapPose, Scene, Truth};
@@ -73,14 +74,14 @@ pub trait Target: Send {
     /// Advances the target by `dt_us`. A real port runs by itself and only updates its clock.
     ///
     /// # Errors
-    /// When the target is gone for good; the message says what, where and the remedy.
-    fn advance(&mut self, dt_us: u64) -> Result<(), String>;
+    /// When the target is gone for good.
+    fn advance(&mut self, dt_us: u64) -> Result<(), TargetError>;
 
     /// Queues bytes for the robot at the sending end of the link, in order.
     ///
     /// # Errors
-    /// When the target is gone for good; the message says what, where and the remedy.
-    fn send(&mut self, bytes: &[u8]) -> Result<(), String>;
+    /// When the target is gone for good.
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TargetError>;
 
     /// Appends the bytes that arrived from the robot since the last call.
     fn receive(&mut self, into: &mut Vec<u8>);
@@ -128,16 +129,16 @@ pub trait Target: Send {
     ///
     /// # Errors
     /// If there is no such chip.
-    fn type_in(&mut self, _usart: u8, _line: &str) -> Result<(), String> {
-        Err("this robot takes no lines of text from here".into())
+    fn type_in(&mut self, _usart: u8, _line: &str) -> Result<(), TargetError> {
+        Err(TargetError::NoTyping)
     }
 
     /// Starts again from time 0 with the choice given.
     ///
     /// # Errors
     /// When the choice names something unknown or unreadable; the target then goes on as before.
-    fn reset(&mut self, _choice: &Choice) -> Result<(), String> {
-        Err("this is a real robot".into())
+    fn reset(&mut self, _choice: &Choice) -> Result<(), TargetError> {
+        Err(TargetError::NoReset)
     }
 
     /// Pose of a simulated robot that received the same bytes, in the world of [`Target::scene`].
@@ -149,8 +150,8 @@ pub trait Target: Send {
     ///
     /// # Errors
     /// If there is no ghost.
-    fn restart_ghost(&mut self, _at: Standing) -> Result<(), String> {
-        Err("there is none; start with --ghost".into())
+    fn restart_ghost(&mut self, _at: Standing) -> Result<(), TargetError> {
+        Err(TargetError::NoGhost)
     }
 }
 
@@ -184,13 +185,13 @@ pub trait Ghost: Send {
     ///
     /// # Errors
     /// Why it cannot start.
-    fn begin(&mut self) -> Result<(), String>;
+    fn begin(&mut self) -> Result<(), TargetError>;
 
     /// Advances to this instant \[us\]; returns the pose there.
     ///
     /// # Errors
     /// Why it cannot go on.
-    fn advance_to(&mut self, until_us: u64) -> Result<MapPose, String>;
+    fn advance_to(&mut self, until_us: u64) -> Result<MapPose, TargetError>;
 
     /// Moves it to this pose.
     fn place(&mut self, standing: Standing);

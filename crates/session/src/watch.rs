@@ -1,6 +1,7 @@
 //! Watches the link and reports trouble, at limited intervals: undecodable bytes, a full link, a noisy one.
 
 use crate::client::LinkFigures;
+use std::fmt;
 
 /// Speed of the robot's Bluetooth module \[baud\].
 pub const DEFAULT_BAUD: u32 = 9_600;
@@ -19,20 +20,34 @@ const TELEMETRY_HZ: u32 = 25;
 /// Bytes a second that go to the robot for the heartbeat alone: at most 7 bytes, every 150 ms.
 const HEARTBEAT_BYTES_S: u32 = 47;
 
+/// A link of this speed carries too few heartbeats: the robot would stop again and again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BaudTooLow(u32);
+
+impl fmt::Display for BaudTooLow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(baud) = self;
+        write!(
+            f,
+            "{baud} baud carry {} bytes/s, too few for the heartbeats ({HEARTBEAT_BYTES_S} bytes/s) and answers that keep the robot going; \
+             it needs at least {}, its own speed is {DEFAULT_BAUD}",
+            baud / 10,
+            20 * HEARTBEAT_BYTES_S
+        )
+    }
+}
+
+impl std::error::Error for BaudTooLow {}
+
 /// The limitation of a link of this speed, if any.
 ///
 /// # Errors
-/// If not even heartbeats fit, so that the robot would stop again and again; the message says what to do.
-pub fn check_baud(baud: u32) -> Result<Option<String>, String> {
+/// If not even heartbeats fit.
+pub fn check_baud(baud: u32) -> Result<Option<String>, BaudTooLow> {
     // Ten bits to a byte.
     let bytes_s = baud / 10;
     if bytes_s < 2 * HEARTBEAT_BYTES_S {
-        return Err(format!(
-            "{baud} baud carry {bytes_s} bytes/s, too few for the heartbeats ({HEARTBEAT_BYTES_S} bytes/s) and answers that keep the robot going; \
-             it needs at least {}, its own speed is {}",
-            20 * HEARTBEAT_BYTES_S,
-            DEFAULT_BAUD
-        ));
+        return Err(BaudTooLow(baud));
     }
     Ok((bytes_s < TELEMETRY_BYTES_S).then(|| {
         let hz = TELEMETRY_HZ * bytes_s / TELEMETRY_BYTES_S;
@@ -138,7 +153,12 @@ mod tests {
             slow.contains("240 bytes/s") && slow.contains("8 Hz"),
             "{slow}"
         );
-        assert!(check_baud(300).unwrap_err().contains("heartbeats"));
+        assert!(
+            check_baud(300)
+                .unwrap_err()
+                .to_string()
+                .contains("heartbeats")
+        );
     }
 
     #[test]

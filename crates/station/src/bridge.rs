@@ -8,12 +8,12 @@ use foxglove::{ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChann
 use foxglove::{WebSocketServer, WebSocketServerHandle};
 use rumbo_log::{Entry, Sink, Topic};
 use std::convert::Infallible;
-use std::fmt;
 use std::net::Ipv4Addr;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
+use std::{fmt, io};
 
 /// Where viewers look first.
 pub const BRIDGE_PORT: u16 = 8_765;
@@ -23,6 +23,29 @@ const WAITING: usize = 1_024;
 const BACKLOG: usize = 1_024;
 /// What seldom changes is republished this often, for viewers that connect later.
 const AGAIN: Duration = Duration::from_secs(1);
+
+/// Why the bridge cannot be started.
+#[derive(Debug)]
+pub enum BridgeError {
+    /// It cannot be served on this port.
+    Port(u16, FoxgloveError),
+    /// No thread can be started for it.
+    Thread(io::Error),
+}
+
+impl fmt::Display for BridgeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Port(port, error) => write!(
+                f,
+                "the bridge cannot be served on 127.0.0.1:{port} ({error}); choose another port with --foxglove"
+            ),
+            Self::Thread(error) => write!(f, "the bridge cannot be started: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for BridgeError {}
 
 /// The bridge; dropping it ends it.
 pub struct Bridge {
@@ -38,13 +61,9 @@ impl Bridge {
     /// Serves on this port of 127.0.0.1; 0 takes any free one. Not to be called where asynchronous tasks run: it waits.
     ///
     /// # Errors
-    /// If the port cannot be had.
-    pub fn start(port: u16) -> Result<Self, String> {
-        let failed = |error: FoxgloveError| {
-            format!(
-                "the bridge cannot be served on 127.0.0.1:{port} ({error}); choose another port with --foxglove"
-            )
-        };
+    /// If the port is not available, or no thread can be started.
+    pub fn start(port: u16) -> Result<Self, BridgeError> {
+        let failed = |error| BridgeError::Port(port, error);
         let context = Context::new();
         let channels = Topic::ALL.map(|topic| channel(&context, topic));
         let channels = channels
@@ -62,7 +81,7 @@ impl Bridge {
         let thread = std::thread::Builder::new()
             .name("bridge".into())
             .spawn(move || publish(&Channels(channels), &taken))
-            .map_err(|error| error.to_string())?;
+            .map_err(BridgeError::Thread)?;
         Ok(Self {
             _context: context,
             port: server.port(),

@@ -10,6 +10,7 @@
 //! The key is no cookie: a browser sends cookies to every port of a host, and other people on this computer may serve
 //! something there. The page keeps it in its storage, which belongs to this port alone.
 
+use crate::error::ServeError;
 use axum::http::{HeaderMap, header};
 use std::net::{IpAddr, SocketAddr};
 use std::sync::OnceLock;
@@ -227,15 +228,12 @@ impl Guard {
 /// Whether an address can be served: requests must name it, so it must be one of this machine's own.
 ///
 /// # Errors
-/// What to give instead.
-pub(crate) fn check_listen(at: IpAddr) -> Result<(), String> {
-    if !at.is_unspecified() {
-        return Ok(());
+/// [`ServeError::Unspecified`].
+pub(crate) fn check_listen(at: IpAddr) -> Result<(), ServeError> {
+    match at.is_unspecified() {
+        true => Err(ServeError::Unspecified(at, own_address())),
+        false => Ok(()),
     }
-    let own = own_address().map_or_else(String::new, |own| format!(", such as {own}"));
-    Err(format!(
-        "{at} is no address that a browser can ask for: give this computer's own{own}"
-    ))
 }
 
 /// The address with which this machine goes out; nothing is sent to find it.
@@ -376,6 +374,7 @@ mod tests {
         assert_eq!(host("192.168.1.7:8360"), Ok(()));
         assert_eq!(host("localhost:8360"), Err(Denied::Host));
         let wildcard = check_listen("0.0.0.0".parse().unwrap()).unwrap_err();
+        let wildcard = wildcard.to_string();
         assert!(wildcard.contains("this computer's own"), "{wildcard}");
         assert!(check_listen("::".parse().unwrap()).is_err());
         assert!(check_listen("192.168.1.7".parse().unwrap()).is_ok());

@@ -5,6 +5,7 @@
 //! answer, so that a fast simulation does not outrun it. When the session takes the link back, its waits end at once.
 
 use rumbo_log::Findings;
+use rumbo_session::CalibrationError;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -13,7 +14,7 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_millis(20);
 
 /// Calibrates the robot at the other end of the link and sets the parameters found; or returns why not.
-pub type Calibration = fn(&mut GuestLink) -> Result<Findings, String>;
+pub type Calibration = fn(&mut GuestLink) -> Result<Findings, CalibrationError>;
 
 /// A time slice: its end \[us\] and the bytes received.
 type Slice = (u64, Vec<u8>);
@@ -65,7 +66,7 @@ impl GuestLink {
 pub(crate) struct Guest {
     slices: Sender<Slice>,
     answers: Receiver<Vec<u8>>,
-    thread: JoinHandle<Result<Findings, String>>,
+    thread: JoinHandle<Result<Findings, CalibrationError>>,
 }
 
 impl Guest {
@@ -73,7 +74,7 @@ impl Guest {
     ///
     /// # Errors
     /// If no thread can be started.
-    pub(crate) fn invite(calibration: Calibration, now_us: u64) -> Result<Self, String> {
+    pub(crate) fn invite(calibration: Calibration, now_us: u64) -> Result<Self, CalibrationError> {
         let (slices, arriving) = channel();
         let (send, answers) = channel();
         let mut link = GuestLink {
@@ -86,7 +87,7 @@ impl Guest {
         let thread = std::thread::Builder::new()
             .name("calibration".into())
             .spawn(move || calibration(&mut link))
-            .map_err(|error| format!("no thread for it ({error})"))?;
+            .map_err(|error| CalibrationError::NoThread(error.to_string()))?;
         Ok(Self {
             slices,
             answers,
@@ -107,9 +108,9 @@ impl Guest {
     }
 
     /// Its findings, once it has left by itself.
-    pub(crate) fn findings(self) -> Result<Findings, String> {
-        let fault = || Err("it ended by a fault of its own; please report it".into());
-        self.thread.join().unwrap_or_else(|_| fault())
+    pub(crate) fn findings(self) -> Result<Findings, CalibrationError> {
+        let joined = self.thread.join();
+        joined.unwrap_or(Err(CalibrationError::Panicked))
     }
 }
 
@@ -117,7 +118,7 @@ impl Guest {
 mod tests {
     use super::*;
 
-    fn echo(link: &mut GuestLink) -> Result<Findings, String> {
+    fn echo(link: &mut GuestLink) -> Result<Findings, CalibrationError> {
         let mut received = Vec::new();
         while received.len() < 3 {
             let next = link.now_us() + 1_000;
@@ -134,11 +135,11 @@ mod tests {
         })
     }
 
-    fn endless(link: &mut GuestLink) -> Result<Findings, String> {
+    fn endless(link: &mut GuestLink) -> Result<Findings, CalibrationError> {
         for _ in 0..1_000 {
             link.wait_until(link.now_us() + 1_000_000);
         }
-        Err("given up".into())
+        Err(CalibrationError::Stopped)
     }
 
     #[test]
@@ -167,6 +168,6 @@ mod tests {
             ..
         } = guest;
         drop((slices, answers));
-        assert_eq!(thread.join().unwrap(), Err("given up".into()));
+        assert_eq!(thread.join().unwrap(), Err(CalibrationError::Stopped));
     }
 }

@@ -10,6 +10,7 @@ mod bridge;
 mod door;
 mod echo;
 mod ending;
+mod error;
 mod guard;
 mod guest;
 pub mod headless;
@@ -25,10 +26,11 @@ mod subscribers;
 mod web;
 
 #[cfg(feature = "foxglove")]
-pub use bridge::{BRIDGE_PORT, Bridge};
+pub use bridge::{BRIDGE_PORT, Bridge, BridgeError};
 pub use echo::Print;
 pub use ending::asked_to_end;
+pub use error::{ServeError, SessionError};
 pub use guest::{Calibration, GuestLink};
 pub use recorder::{Recording, now_utc};
-pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, ServeError, serve, serve_log, serve_with};
+pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, serve, serve_log, serve_with};
 pub use session::Extras;

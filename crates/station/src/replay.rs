@@ -10,6 +10,7 @@ use crate::board::Board;
 use crate::session::Orders;
 use ghost::GhostReplay;
 use rumbo_log::{Entry, Level, Log, LoggedEvent, ParameterState, ReplayState, State, parameters};
+use rumbo_session::TargetError;
 use rumbo_session::{Event, Ghost, Order};
 use speech::Speech;
 use std::ops::Range;
@@ -142,7 +143,7 @@ impl Replay {
         let row = self.row_after(self.at_ms).saturating_sub(1);
         let started = match &mut self.ghost {
             Some(ghost) => ghost.restart(&mut self.log, row),
-            None => Err("there is none; start with --ghost".into()),
+            None => Err(TargetError::NoGhost),
         };
         match started {
             Ok(()) => {

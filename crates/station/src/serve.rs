@@ -4,6 +4,7 @@ use crate::board::Board;
 use crate::door;
 use crate::echo::{Echo, Print};
 use crate::ending::asked_to_end;
+use crate::error::{ServeError, SessionError};
 use crate::guard::{self, Guard};
 use crate::lease::Lease;
 use crate::recorder::Recording;
@@ -13,13 +14,13 @@ use crate::socket::Hub;
 use crate::subscribers::Subscribers;
 use crate::web;
 use rumbo_log::Log;
-use rumbo_session::{Ghost, Order, Target};
+use rumbo_session::{Ghost, Order, Target, TargetError};
+use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::thread::JoinHandle;
-use std::{fmt, io};
 use tokio::sync::oneshot;
 
 /// The port of the dashboard unless another is asked for.
@@ -80,46 +81,6 @@ impl Default for LabConfig {
     }
 }
 
-/// Why the lab could not be served.
-#[derive(Debug)]
-pub enum ServeError {
-    /// Another program listens there.
-    PortInUse(SocketAddr),
-    /// It is no address to be served at; what to give instead.
-    Address(String),
-    /// The port could not be opened, or a thread not be started, for another reason.
-    Io(SocketAddr, io::Error),
-}
-
-impl fmt::Display for ServeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::PortInUse(at) => write!(
-                f,
-                "port {} on {} is in use: is the lab already running? Close it, or choose another port with --port N (0 takes any free one)",
-                at.port(),
-                at.ip()
-            ),
-            Self::Address(what) => write!(f, "--listen: {what}"),
-            Self::Io(at, error) if error.kind() == io::ErrorKind::AddrNotAvailable => write!(
-                f,
-                "--listen {0}: this computer has no such address; `ip address` (Windows: `ipconfig`) shows which it has",
-                at.ip()
-            ),
-            Self::Io(at, error) if error.kind() == io::ErrorKind::PermissionDenied => write!(
-                f,
-                "port {} is for administrators ({error}): choose one above 1023 with --port N (0 takes any free one)",
-                at.port()
-            ),
-            Self::Io(at, error) => {
-                write!(f, "the dashboard could not be served on {at}: {error}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for ServeError {}
-
 /// A lab being served; dropping it ends it, and stops the robot.
 #[derive(Debug)]
 pub struct Lab {
@@ -129,7 +90,7 @@ pub struct Lab {
     /// `None` once ended. The session runs while there are senders.
     orders: Option<SyncSender<Order>>,
     web_ends: Option<oneshot::Sender<()>>,
-    session: Option<JoinHandle<Result<(), String>>>,
+    session: Option<JoinHandle<Result<(), TargetError>>>,
     web: Option<JoinHandle<()>>,
 }
 
@@ -153,13 +114,13 @@ impl Lab {
     /// Returns when the session has ended: the target is gone, or the process was asked to end.
     ///
     /// # Errors
-    /// What the target said when it went.
-    pub fn wait(mut self) -> Result<(), String> {
+    /// [`SessionError`].
+    pub fn wait(mut self) -> Result<(), SessionError> {
         // Asked to end, the web side lets go of the session, which stops the robot and completes the log.
         drop(self.orders.take());
         match self.session.take().map(JoinHandle::join) {
-            Some(Ok(ended)) => ended,
-            Some(Err(_)) => Err("the session ended by a fault of its own; please report it".into()),
+            Some(Ok(ended)) => ended.map_err(SessionError::Target),
+            Some(Err(_)) => Err(SessionError::Panicked),
             None => Ok(()),
         }
     }
@@ -237,9 +198,9 @@ pub fn serve_log(
 /// Serves a board that `session` writes, in a thread of its own, until there are no more orders.
 fn start(
     at: ServeAt,
-    session: impl FnOnce(Arc<Board>, Orders) -> Result<(), String> + Send + 'static,
+    session: impl FnOnce(Arc<Board>, Orders) -> Result<(), TargetError> + Send + 'static,
 ) -> Result<Lab, ServeError> {
-    guard::check_listen(at.address).map_err(ServeError::Address)?;
+    guard::check_listen(at.address)?;
     let at = SocketAddr::new(at.address, at.port);
     let listener = TcpListener::bind(at).map_err(|error| match error.kind() {
         io::ErrorKind::AddrInUse => ServeError::PortInUse(at),
@@ -250,7 +211,7 @@ fn start(
 
 fn start_on(
     listener: TcpListener,
-    session: impl FnOnce(Arc<Board>, Orders) -> Result<(), String> + Send + 'static,
+    session: impl FnOnce(Arc<Board>, Orders) -> Result<(), TargetError> + Send + 'static,
 ) -> io::Result<Lab> {
     listener.set_nonblocking(true)?;
     let (opens, opened) = mpsc::channel();

@@ -10,7 +10,8 @@ use crate::recorder::{Recorder, Recording, now_utc};
 use crate::subscribers::Subscribers;
 use rumbo_log::{Level, Manifest};
 use rumbo_session::{
-    About, Ask, Going, MAX_SPEED, Now, Order, Pace, SLICE_US, Session, Sight, Target, stop_first,
+    About, Ask, CalibrationError, Going, MAX_SPEED, Now, Order, Pace, SLICE_US, Session, Sight,
+    Target, TargetError, stop_first,
 };
 use rumbo_wire::Command;
 use std::sync::Arc;
@@ -93,7 +94,7 @@ impl Driver {
     ///
     /// # Errors
     /// The target's error when it is gone for good.
-    pub(crate) fn run(mut self) -> Result<(), String> {
+    pub(crate) fn run(mut self) -> Result<(), TargetError> {
         self.record();
         let ended = self.run_until_ended();
         if let Err(why) = &ended {
@@ -103,7 +104,7 @@ impl Driver {
         ended
     }
 
-    fn run_until_ended(&mut self) -> Result<(), String> {
+    fn run_until_ended(&mut self) -> Result<(), TargetError> {
         loop {
             let wait = if self.pace.speed > 0.0 {
                 WAKE
@@ -141,7 +142,7 @@ impl Driver {
         }
     }
 
-    fn obey(&mut self, order: Order) -> Result<(), String> {
+    fn obey(&mut self, order: Order) -> Result<(), TargetError> {
         let ask = self.session.order(order, self.now());
         if !self.session.calibrating() {
             self.guest = None;
@@ -167,7 +168,7 @@ impl Driver {
             }
             Ask::Calibrate => {
                 let invite = |calibration| Guest::invite(calibration, now.target_us);
-                let none = Err("this program has none".to_owned());
+                let none = Err(CalibrationError::Missing);
                 let begun = self.calibration.map_or(none, invite);
                 let begun = begun.map(|guest| self.guest = Some(guest));
                 self.session.calibration_begun(begun, now);
@@ -187,7 +188,7 @@ impl Driver {
     }
 
     /// Advances the target by the time due.
-    fn advance(&mut self) -> Result<(), String> {
+    fn advance(&mut self) -> Result<(), TargetError> {
         let began = Instant::now();
         self.pace.wall_passed(self.now().wall_us);
         while self.pace.slice_due() {
@@ -255,7 +256,7 @@ impl Driver {
         self.session.note(level, text, self.now());
     }
 
-    fn send(&mut self) -> Result<(), String> {
+    fn send(&mut self) -> Result<(), TargetError> {
         let bytes = self.session.take_bytes();
         match bytes.is_empty() {
             true => Ok(()),

@@ -6,7 +6,7 @@ mod page;
 mod support;
 
 use page::*;
-use rumbo_session::{LinkNews, Target};
+use rumbo_session::{LinkNews, Target, TargetError};
 use rumbo_station::{Lab, LabConfig, ServeAt, serve};
 use rumbo_wire::Command;
 use serde_json::{Value, json};
@@ -36,13 +36,13 @@ impl Target for Cable {
         self.toy.now_us()
     }
 
-    fn advance(&mut self, dt_us: u64) -> Result<(), String> {
+    fn advance(&mut self, dt_us: u64) -> Result<(), TargetError> {
         self.toy.advance(dt_us)?;
         self.applied.lock().unwrap().append(&mut self.toy.applied);
         Ok(())
     }
 
-    fn send(&mut self, bytes: &[u8]) -> Result<(), String> {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TargetError> {
         if self.carries() {
             self.toy.send(bytes)?;
         }

@@ -1,26 +1,29 @@
 //! Values of options that need checks: numbers within bounds, pairs.
 
+use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
 use rumbo_experiment::files::{Port, TimedText, parameters};
 
 /// Seconds of simulation or of a log per second.
-pub(super) fn speed(text: &str) -> Result<f64, String> {
+pub(super) fn speed(text: &str) -> Result<f64, Failure> {
     match text.parse() {
         Ok(speed) if (0.0..=100.0).contains(&speed) => Ok(speed),
-        _ => Err("must be a number within 0..100".into()),
+        _ => Err(Failure::input("must be a number within 0..100")),
     }
 }
 
 /// A line of text and its time: `REF 40@6`.
-pub(super) fn timed_text(text: &str) -> Result<TimedText, String> {
-    let wrong = || "write it as TEXT@SECONDS, e.g. 'REF 40@6'".to_owned();
+pub(super) fn timed_text(text: &str) -> Result<TimedText, Failure> {
+    let wrong = || Failure::input("write it as TEXT@SECONDS, e.g. 'REF 40@6'");
     let (line, at_s) = text.rsplit_once('@').ok_or_else(wrong)?;
     let at_s: f64 = at_s.trim().parse().map_err(|_| wrong())?;
     if !(0.0..=LONGEST_S).contains(&at_s) {
-        return Err(format!("the time must be within 0..{LONGEST_S} s"));
+        return Err(Failure::Input(format!(
+            "the time must be within 0..{LONGEST_S} s"
+        )));
     }
     if line.is_empty() || !line.bytes().all(|byte| (b' '..=b'~').contains(&byte)) {
-        return Err("the text must be one line of ASCII".into());
+        return Err(Failure::input("the text must be one line of ASCII"));
     }
     Ok(TimedText {
         at_s,
@@ -30,24 +33,24 @@ pub(super) fn timed_text(text: &str) -> Result<TimedText, String> {
 }
 
 /// The same for the USB cable.
-pub(super) fn usb_text(text: &str) -> Result<TimedText, String> {
+pub(super) fn usb_text(text: &str) -> Result<TimedText, Failure> {
     let port = Port::Usb;
     timed_text(text).map(|timed| TimedText { port, ..timed })
 }
 
 /// A tolerance.
-pub(super) fn percent(text: &str) -> Result<f64, String> {
+pub(super) fn percent(text: &str) -> Result<f64, Failure> {
     match text.parse() {
         Ok(percent) if (0.0..=1000.0).contains(&percent) => Ok(percent),
-        _ => Err("must be a number within 0..1000".into()),
+        _ => Err(Failure::input("must be a number within 0..1000")),
     }
 }
 
 /// A parameter and its value: `kv=0.03`, `rig=final`.
-pub(super) fn parameter(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text
-        .split_once('=')
-        .ok_or("write it as name=value, e.g. battery.open_circuit_v=6.9")?;
+pub(super) fn parameter(text: &str) -> Result<(String, f64), Failure> {
+    let wrong = || Failure::input("write it as name=value, e.g. battery.open_circuit_v=6.9");
+    let (name, value) = text.split_once('=').ok_or_else(wrong)?;
     let name = name.trim();
-    Ok((name.to_owned(), parameters::parse(name, value.trim())?))
+    let value = parameters::parse(name, value.trim()).map_err(Failure::input)?;
+    Ok((name.to_owned(), value))
 }

@@ -190,7 +190,7 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut Option<ModeId>) -> O
         "mode" => {
             let word = table.word(key)?;
             *mode = find_mode(&word.value)
-                .map_err(|remedy| table.complain(key, word.line, &word.value, &remedy))
+                .map_err(|remedy| table.complain(key, word.line, &word.value, &remedy.to_string()))
                 .ok();
             mode.map(Command::Mode)
         }
@@ -223,7 +223,12 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut Option<ModeId>) -> O
             let name = table.text(key)?;
             let id = parameters::find(&name.value)
                 .map_err(|remedy| {
-                    table.complain(key, name.line, &format!("{:?}", name.value), &remedy)
+                    table.complain(
+                        key,
+                        name.line,
+                        &format!("{:?}", name.value),
+                        &remedy.to_string(),
+                    )
                 })
                 .ok()?;
             let value = parameters::required(table, "value", id)?;
@@ -256,7 +261,12 @@ fn read_move(table: &Table<'_, '_>, at_s: f64, duration_s: f64) -> Vec<TimedComm
     let movement = table.text("move").and_then(|name| {
         find_movement(&name.value)
             .map_err(|remedy| {
-                table.complain("move", name.line, &format!("{:?}", name.value), &remedy)
+                table.complain(
+                    "move",
+                    name.line,
+                    &format!("{:?}", name.value),
+                    &remedy.to_string(),
+                )
             })
             .ok()
     });

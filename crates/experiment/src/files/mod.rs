@@ -20,6 +20,7 @@ mod route;
 mod scenario;
 mod setup;
 mod value;
+mod word;
 mod world;
 
 pub use error::{FileError, Problem};
@@ -28,4 +29,5 @@ pub use names::{MOVEMENTS, find_mode, find_movement};
 pub use robot::{FirmwareCaps, RobotFile};
 pub use scenario::{Bounds, ScenarioFile, Spread, Start, TimedCommand};
 pub use setup::{NativeProgram, Overrides, Port, Setup, TimedText};
+pub use word::WordError;
 pub use world::{Arena, WorldFile};

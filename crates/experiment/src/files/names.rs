@@ -1,6 +1,7 @@
 //! The names in files and commands for the control core's numbers.
 
 use super::near;
+use super::word::WordError;
 use rumbo_control::mode::{ModeId, Movement};
 
 /// The basic movements and their names in files.
@@ -23,36 +24,27 @@ pub const MOVEMENTS: [(Movement, &str); 13] = [
 /// A mode by name or number.
 ///
 /// # Errors
-/// What to write instead.
-pub fn find_mode(word: &str) -> Result<ModeId, String> {
+/// [`WordError`].
+pub fn find_mode(word: &str) -> Result<ModeId, WordError> {
     let by_number = word.parse().ok().and_then(ModeId::from_number);
     by_number
         .or_else(|| ModeId::ALL.into_iter().find(|mode| mode.name() == word))
         .ok_or_else(|| {
             let names = near::near(word, ModeId::ALL.iter().map(|mode| mode.name()));
-            let offered: Vec<String> = ModeId::ALL
-                .iter()
-                .filter(|mode| names.is_empty() || names.contains(&mode.name()))
-                .map(|mode| format!("`{}` ({})", mode.name(), *mode as u8))
-                .collect();
-            format!("unknown mode; did you mean {}?", offered.join(" or "))
+            let offered = |mode: &ModeId| names.is_empty() || names.contains(&mode.name());
+            WordError::Mode(ModeId::ALL.into_iter().filter(offered).collect())
         })
 }
 
 /// A basic movement by name.
 ///
 /// # Errors
-/// What to write instead.
-pub fn find_movement(name: &str) -> Result<Movement, String> {
+/// [`WordError`].
+pub fn find_movement(name: &str) -> Result<Movement, WordError> {
     let names = MOVEMENTS.iter().map(|(_, name)| *name);
     MOVEMENTS
         .iter()
         .find(|(_, own)| *own == name)
         .map(|(movement, _)| *movement)
-        .ok_or_else(|| {
-            format!(
-                "unknown movement; {}",
-                near::did_you_mean(&near::near_or_all(name, names))
-            )
-        })
+        .ok_or_else(|| WordError::Movement(near::near_or_all(name, names)))
 }

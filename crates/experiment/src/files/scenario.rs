@@ -210,7 +210,7 @@ fn read_mode(root: &Table<'_, '_>) -> Option<ModeId> {
         .and_then(|word| match find_mode(&word.value) {
             Ok(mode) => Some(mode),
             Err(remedy) => {
-                root.complain("mode", word.line, &word.value, &remedy);
+                root.complain("mode", word.line, &word.value, &remedy.to_string());
                 None
             }
         })

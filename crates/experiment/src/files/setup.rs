@@ -407,7 +407,7 @@ fn apply(scenario: &mut ScenarioFile, name: &str, value: f64) -> Result<(), File
             near: near(name, known).into_iter().map(str::to_owned).collect(),
         });
     };
-    parameters::check(id, value).map_err(|remedy| wrong(&remedy))?;
+    parameters::check(id, value).map_err(|remedy| wrong(&remedy.to_string()))?;
     scenario.parameters.push((id, value as f32));
     Ok(())
 }

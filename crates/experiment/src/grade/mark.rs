@@ -1,8 +1,10 @@
 //! The marks of a hand-in, line by line.
 
 use super::assignment::Assignment;
+use crate::files::FileError;
 use crate::run::RunResult;
 use serde::Serialize;
+use std::fmt;
 
 /// A hand-in's mark.
 #[derive(Clone, Debug, Serialize)]
@@ -69,12 +71,30 @@ impl Line {
     }
 }
 
+/// Why a run could not be made.
+#[derive(Debug)]
+pub(super) enum RunError {
+    /// The program cannot be driven in this setup.
+    Setup(FileError),
+    /// The simulator panicked.
+    Panicked,
+}
+
+impl fmt::Display for RunError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Setup(error) => error.fmt(f),
+            Self::Panicked => f.write_str("the simulator failed on this program; please report it"),
+        }
+    }
+}
+
 /// The result of one run.
 #[derive(Debug)]
 pub(super) struct Run {
     pub(super) test: usize,
     /// `Err`: it could not be started.
-    pub(super) result: Result<RunResult, String>,
+    pub(super) result: Result<RunResult, RunError>,
 }
 
 impl Mark {
@@ -161,7 +181,7 @@ impl Mark {
                         mark.drawn[test] = Some(result);
                     }
                 }
-                Err(why) => once(&mut mark.ended, [why].iter()),
+                Err(why) => once(&mut mark.ended, [why.to_string()].iter()),
             }
         }
         mark

@@ -1,7 +1,7 @@
 //! All runs of all hand-ins, on all cores.
 
 use super::assignment::Assignment;
-use super::mark::{Mark, Run};
+use super::mark::{Mark, Run, RunError};
 use crate::files::{FileError, Setup, firmware};
 use crate::run::{Run as Running, RunResult, run_by};
 use rayon::prelude::*;
@@ -108,7 +108,7 @@ fn go_on(run: &mut Running<'_>) -> bool {
 }
 
 /// One run; a failure affects no other. Samples are kept only for runs that are plotted.
-fn one(setup: &Setup, seed: u64, drawn: bool) -> Result<RunResult, String> {
+fn one(setup: &Setup, seed: u64, drawn: bool) -> Result<RunResult, RunError> {
     let mut is_too_much = false;
     let result = catch_unwind(AssertUnwindSafe(|| {
         run_by(setup, seed, |run| {
@@ -117,8 +117,8 @@ fn one(setup: &Setup, seed: u64, drawn: bool) -> Result<RunResult, String> {
         })
     }));
     let mut result = result
-        .map_err(|_| "the simulator failed on this program; please report it".to_owned())?
-        .map_err(|error| error.to_string())?;
+        .map_err(|_| RunError::Panicked)?
+        .map_err(RunError::Setup)?;
     if is_too_much {
         let most = TOIL_PER_S / ACT as f64;
         result.ended = Some(format!(

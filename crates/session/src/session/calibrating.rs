@@ -1,6 +1,7 @@
 //! The session while a guest on its link calibrates the robot: any command of the operator ends it.
 
 use super::{Ask, Now, Session};
+use crate::error::CalibrationError;
 use crate::orders::Order;
 use rumbo_log::{CalibrationState, Findings, Level};
 use rumbo_wire::Command;
@@ -15,22 +16,22 @@ impl Session {
     /// Whether a calibration can begin.
     pub(super) fn may_calibrate(&mut self, now: Now) -> Option<Ask> {
         let trouble = if self.calibrating() {
-            "one is running already"
+            CalibrationError::Running
         } else if !self.client.connected() {
-            "no robot answers"
+            CalibrationError::NoAnswer
         } else if self.client.speaks_text() || !self.client.table_matches() {
-            "this robot has other parameters"
+            CalibrationError::OtherParameters
         } else if self.observer.status().armed {
-            "the robot is armed: switch OFF first"
+            CalibrationError::Armed
         } else {
             return Some(Ask::Calibrate);
         };
-        self.calibration_begun(Err(trouble.into()), now);
+        self.calibration_begun(Err(trouble), now);
         None
     }
 
     /// A calibration has started, or why not.
-    pub fn calibration_begun(&mut self, begun: Result<(), String>, now: Now) {
+    pub fn calibration_begun(&mut self, begun: Result<(), CalibrationError>, now: Now) {
         if let Err(why) = begun {
             return self.note(Level::Warning, format!("calibration: refused, {why}"), now);
         }
@@ -46,8 +47,8 @@ impl Session {
         self.send(bytes, now);
     }
 
-    /// The guest has left: notes its findings and reads the robot's parameters.
-    pub fn calibration_ended(&mut self, found: Result<Findings, String>, now: Now) {
+    /// Ends a calibration that runs: notes its findings, or why there are none, and reads the robot's parameters.
+    pub fn calibration_ended(&mut self, found: Result<Findings, CalibrationError>, now: Now) {
         let Some(since_us) = self.calibrating.take() else {
             return;
         };
@@ -60,16 +61,12 @@ impl Session {
                 CalibrationState::Done { findings, at_s }
             }
             Err(why) => {
+                let why = why.to_string();
                 self.note(Level::Warning, format!("calibration: given up, {why}"), now);
                 CalibrationState::Failed { why, at_s }
             }
         });
         self.client.read_parameters();
-    }
-
-    /// Ends a calibration that runs.
-    pub(super) fn give_up_calibration(&mut self, why: &str, now: Now) {
-        self.calibration_ended(Err(why.to_owned()), now);
     }
 
     /// Whether an order is for the robot, and a calibration in its way. One that stops the robot ends the calibration.
@@ -79,7 +76,7 @@ impl Session {
         }
         match order {
             Order::Robot(Command::Stop | Command::Disarm) | Order::Reset(_) => {
-                self.give_up_calibration("it was stopped", now);
+                self.calibration_ended(Err(CalibrationError::Stopped), now);
                 false
             }
             Order::Robot(_) | Order::Hold(_) | Order::Route(_) => {

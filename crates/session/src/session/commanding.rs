@@ -3,6 +3,7 @@
 
 use super::{Ask, Now, Session};
 use crate::client::NotTaken;
+use crate::error::TargetError;
 use crate::words;
 use rumbo_control::mode::Movement;
 use rumbo_log::parameter;
@@ -88,20 +89,20 @@ impl Session {
             return Some(Ask::Type(usart, line));
         }
         let why = if self.port_gone {
-            "the port is gone"
+            TargetError::PortGone
         } else if self.client.speaks_text() {
             self.client.type_in(&line);
             self.say(now);
             return None;
         } else {
-            "this robot takes no lines of text from here"
+            TargetError::NoTyping
         };
-        self.typed(usart, &line, Err(why.into()), now);
+        self.typed(usart, &line, Err(why), now);
         None
     }
 
     /// A line was sent to a USART, or why not.
-    pub fn typed(&mut self, usart: u8, line: &str, sent: Result<(), String>, now: Now) {
+    pub fn typed(&mut self, usart: u8, line: &str, sent: Result<(), TargetError>, now: Now) {
         match sent {
             Ok(()) => self.observer.typed(now.target_us, usart, line),
             Err(why) => {
@@ -144,7 +145,7 @@ impl Session {
     }
 
     /// The ghost was moved to the robot, or why not.
-    pub fn ghost_restarted(&mut self, done: Result<(), String>, now: Now) {
+    pub fn ghost_restarted(&mut self, done: Result<(), TargetError>, now: Now) {
         match done {
             Ok(()) => {
                 let text = "the ghost starts again where the robot is";

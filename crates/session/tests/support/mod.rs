@@ -7,7 +7,7 @@ use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamError, ParamId, Params, SCHEMA};
 use rumbo_control::{AgedRange, Duty, Pose, Range, Wheels};
 use rumbo_log::{Choice, MapPose, Obstacle, Scene, SonarMount, Truth};
-use rumbo_session::{Abilities, Target};
+use rumbo_session::{Abilities, Target, TargetError};
 use rumbo_wire::{
     Ack, Command, Decoder, Event, EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received,
     Refusal, ResetCause, RobotTime, Status, Telemetry, ToRobot,
@@ -269,7 +269,7 @@ impl Target for Toy {
         self.now_us
     }
 
-    fn advance(&mut self, dt_us: u64) -> Result<(), String> {
+    fn advance(&mut self, dt_us: u64) -> Result<(), TargetError> {
         let until_us = self.now_us + dt_us;
         while self.now_us < until_us {
             self.now_us += 1_000;
@@ -283,7 +283,7 @@ impl Target for Toy {
         Ok(())
     }
 
-    fn send(&mut self, bytes: &[u8]) -> Result<(), String> {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TargetError> {
         queue(&mut self.up, bytes, self.now_us);
         Ok(())
     }
@@ -358,12 +358,10 @@ impl Target for Toy {
         })
     }
 
-    fn reset(&mut self, choice: &Choice) -> Result<(), String> {
+    fn reset(&mut self, choice: &Choice) -> Result<(), TargetError> {
         if choice.scenario != "toy" {
-            return Err(format!(
-                "there is no scenario {}; there is: toy",
-                choice.scenario
-            ));
+            let why = format!("there is no scenario {}; there is: toy", choice.scenario);
+            return Err(TargetError::Setup(why));
         }
         *self = Toy {
             choice: choice.clone(),

@@ -14,7 +14,7 @@ pub use pty::Pty;
 
 use rumbo_log::{Kind, Manifest};
 pub use rumbo_session::DEFAULT_BAUD;
-use rumbo_session::{LinkNews, Target};
+use rumbo_session::{LinkNews, Target, TargetError};
 use std::io::{self, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -119,21 +119,18 @@ impl Target for Port {
         u64::try_from(self.began.elapsed().as_micros()).unwrap_or(u64::MAX)
     }
 
-    fn advance(&mut self, _dt_us: u64) -> Result<(), String> {
+    fn advance(&mut self, _dt_us: u64) -> Result<(), TargetError> {
         Ok(())
     }
 
-    fn send(&mut self, bytes: &[u8]) -> Result<(), String> {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TargetError> {
         let sent = self
             .outgoing
             .as_ref()
             .map(|outgoing| outgoing.send(bytes.to_vec()));
         match sent {
             Some(Ok(())) => Ok(()),
-            _ => Err(format!(
-                "{}: the thread of the port has ended; please report it",
-                self.address
-            )),
+            _ => Err(TargetError::PortEnded(self.address.clone())),
         }
     }
 
@@ -191,9 +188,9 @@ fn open(address: &str, baud: u32) -> io::Result<(Reader, Writer)> {
 ///
 /// # Errors
 /// If the system does not list them.
-pub fn serial_ports() -> Result<Vec<(String, String)>, String> {
+pub fn serial_ports() -> io::Result<Vec<(String, String)>> {
     use serialport::SerialPortType;
-    let ports = serialport::available_ports().map_err(|error| error.to_string())?;
+    let ports = serialport::available_ports()?;
     let what = |kind: SerialPortType| match kind {
         SerialPortType::UsbPort(usb) => usb
             .product

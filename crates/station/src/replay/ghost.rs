@@ -3,7 +3,7 @@
 //! and nothing blocks.
 
 use rumbo_log::{Log, MapPose, Row, compose};
-use rumbo_session::{Ghost, Standing};
+use rumbo_session::{Ghost, Standing, TargetError};
 use std::time::{Duration, Instant};
 
 /// Time spent on the ghost per call.
@@ -50,13 +50,13 @@ impl GhostReplay {
     }
 
     /// Restarts the ghost at the robot's pose in this row; its poses in later rows are discarded.
-    pub(super) fn restart(&mut self, log: &mut Log, row: usize) -> Result<(), String> {
+    pub(super) fn restart(&mut self, log: &mut Log, row: usize) -> Result<(), TargetError> {
         let until = (row + 1).min(log.rows.len());
         let (before, later) = log.rows.split_at_mut(until);
         let Some(last) = before.last() else {
-            return Err("the log has no signals".into());
+            return Err(TargetError::NoSignals);
         };
-        let standing = standing(last).ok_or("the robot did not tell its pose then")?;
+        let standing = standing(last).ok_or(TargetError::NoPose)?;
         self.ghost.begin()?;
         for row in later {
             row.set_pose(GHOST, UNKNOWN);
@@ -70,7 +70,7 @@ impl GhostReplay {
     }
 
     /// Works for one slice of time.
-    pub(super) fn work(&mut self, log: &mut Log) -> Result<(), String> {
+    pub(super) fn work(&mut self, log: &mut Log) -> Result<(), TargetError> {
         let until = Instant::now() + SLICE;
         while let Some(work) = &mut self.work
             && Instant::now() < until
