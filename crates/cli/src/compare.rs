@@ -7,7 +7,6 @@ use crate::figures;
 use crate::mark::Stamp;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
-use rumbo_identify::chart;
 use rumbo_log::{Log, Row};
 use rumbo_station::log_file;
 use serde_json::{Map, Value, json};
@@ -37,14 +36,14 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let parameters = differing(&logs);
     if let Some(path) = &args.out {
         let pairs: Vec<_> = names.iter().map(String::as_str).zip(&logs).collect();
-        let charts = figures::of_many(&pairs);
-        if charts.is_empty() {
+        let figures = figures::of_many(&pairs);
+        if figures.is_empty() {
             return Err(Failure::Input(format!(
                 "{}: not drawn, the logs hold no signals; leave --out away",
                 path.display()
             )));
         }
-        let text = chart::svg(&charts, 1, figures::SIZE).map_err(Failure::Input)?;
+        let text = figures.svg();
         place::write(path, stamp.put_on(text))?;
     }
     if args.json {

@@ -6,7 +6,6 @@ use crate::figures;
 use crate::mark::{Mark, Stamp};
 use crate::output;
 use crate::place::{self, Guard};
-use rumbo_identify::chart;
 use rumbo_log::{Kind, Log, Manifest, Row};
 use rumbo_station::log_file;
 use std::fmt::Write;
@@ -35,10 +34,10 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     if !folder.as_os_str().is_empty() {
         place::folder(&folder)?;
     }
-    let charts = figures::of_one(&log);
+    let figures = figures::of_one(&log);
     for format in formats {
         match format {
-            Format::Svg | Format::Png if charts.is_empty() => {
+            Format::Svg | Format::Png if figures.is_empty() => {
                 return Err(Failure::Input(format!(
                     "{}: holds no signals to draw; --format csv writes what there is",
                     args.log.display()
@@ -49,11 +48,10 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
                 write(&path("events.csv"), events(&log))?;
             }
             Format::Svg => {
-                let text = chart::svg(&charts, 1, figures::SIZE).map_err(Failure::Input)?;
-                write(&path("svg"), stamp.put_on(text))?;
+                write(&path("svg"), stamp.put_on(figures.svg()))?;
             }
             Format::Png => {
-                let image = chart::png(&charts, 1, figures::SIZE).map_err(Failure::Input)?;
+                let image = rumbo_plot::png(&figures.svg()).map_err(Failure::input)?;
                 write(&path("png"), stamp.put_on(image))?;
             }
         }

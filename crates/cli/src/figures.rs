@@ -1,11 +1,9 @@
 //! Figures of logs: the signals of one, or those of several overlaid.
 
-use rumbo_identify::chart::{Chart, Curve, Legend, PALETTE, Points, map, over_time};
 use rumbo_log::{Log, Row};
+use rumbo_plot::{Curve, Ink, Map, Panel, Plot, Points, Shape, Sheet, WIDTH, Words};
 use std::f64::consts::{PI, TAU};
 
-/// Size of one chart \[px\].
-pub(crate) const SIZE: (u32, u32) = (900, 320);
 const RPM_PER_RAD_S: f64 = 30.0 / PI;
 const CM_PER_M: f64 = 100.0;
 const DEG_PER_RAD: f64 = 180.0 / PI;
@@ -15,7 +13,7 @@ const DISTANCE_MODES: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
 /// A signal of a figure: its column, its name for people, and what it is multiplied with.
 type Signal = (&'static str, &'static str, f64);
 
-/// Charts that show signals over time: title, unit, signals.
+/// Panels that show signals over time: title, unit, signals.
 const OVER_TIME: [(&str, &str, &[Signal]); 4] = [
     (
         "Distances",
@@ -49,88 +47,73 @@ const OVER_TIME: [(&str, &str, &[Signal]); 4] = [
     ),
 ];
 
-/// The charts of one log: what it has of distances, speeds, PWM and heading over time, and the map.
-pub(crate) fn of_one(log: &Log) -> Vec<Chart<'static>> {
-    let mut charts = Vec::new();
+/// One log: what it has of distances, speeds, PWM and heading over time, and the map.
+pub(crate) fn of_one(log: &Log) -> Sheet {
+    let mut panels = Vec::new();
     for (title, unit, signals) in OVER_TIME {
-        let mut curves: Vec<Curve<'static>> = signals
-            .iter()
-            .zip(PALETTE)
-            .filter_map(|((column, name, factor), colour)| {
+        let curves = signals.iter().zip(Ink::PALETTE);
+        let mut curves: Vec<Curve> = curves
+            .filter_map(|((column, name, factor), ink)| {
                 let points = over(log, column, *factor);
-                has_values(&points).then_some(Curve::Line {
-                    name,
-                    colour,
-                    points,
-                })
+                let ink = if *name == "true" { Ink::True } else { ink };
+                has_values(&points).then(|| Curve::new(name, ink, points))
             })
             .collect();
         if curves.is_empty() {
             continue;
         }
         curves.extend(references(log, title));
-        charts.push(over_time(title, unit, curves));
+        panels.push(Panel::new(&format!("{title}, {unit}"), curves));
     }
-    let mut ways = shapes(log);
-    let truth = way(log, ["true_x_m", "true_y_m"]);
-    let estimated = estimated_trajectory(log);
-    if estimated.len() > 1 {
-        ways.push(Curve::Line {
-            name: "estimated",
-            colour: PALETTE[0],
-            points: estimated,
-        });
-    }
-    if truth.len() > 1 {
-        ways.push(Curve::Line {
-            name: "true",
-            colour: PALETTE[1],
-            points: truth,
-        });
-    }
-    charts.extend(map_chart(ways));
-    charts
+    let ways = [
+        ("estimated", Ink::First, estimated_trajectory(log)),
+        ("true", Ink::True, way(log, ["true_x_m", "true_y_m"])),
+    ];
+    let ways = ways.map(|(name, ink, points)| Curve::new(name, ink, points));
+    sheet(panels, shapes(log), ways.into())
 }
 
-/// The same charts with all logs overlaid, each in its colour.
-pub(crate) fn of_many<'a>(logs: &[(&'a str, &Log)]) -> Vec<Chart<'a>> {
-    let coloured = || logs.iter().zip(PALETTE.into_iter().cycle());
-    let mut charts = Vec::new();
+/// The same signals with all logs overlaid, each in its colour.
+pub(crate) fn of_many(logs: &[(&str, &Log)]) -> Sheet {
+    let coloured = || logs.iter().zip(Ink::PALETTE.into_iter().cycle());
+    let mut panels = Vec::new();
     for (_, unit, signals) in OVER_TIME {
         for (column, _, factor) in signals {
-            let curves: Vec<Curve<'a>> = coloured()
-                .filter_map(|((name, log), colour)| {
+            let curves: Vec<Curve> = coloured()
+                .filter_map(|((name, log), ink)| {
                     let points = over(log, column, *factor);
-                    has_values(&points).then_some(Curve::Line {
-                        name,
-                        colour,
-                        points,
-                    })
+                    has_values(&points).then(|| Curve::new(name, ink, points))
                 })
                 .collect();
             if !curves.is_empty() {
-                charts.push(over_time(title_of(column), unit, curves));
+                let label = format!("{}, {unit}", title_of(column));
+                panels.push(Panel::new(&label, curves));
             }
         }
     }
-    let mut ways = logs.first().map_or_else(Vec::new, |(_, log)| shapes(log));
-    for ((name, log), colour) in coloured() {
+    let ways = coloured().map(|((name, log), ink)| {
         let truth = way(log, ["true_x_m", "true_y_m"]);
-        let points = if truth.len() > 1 {
-            truth
-        } else {
-            estimated_trajectory(log)
+        let points = match truth.len() > 1 {
+            true => truth,
+            false => estimated_trajectory(log),
         };
-        if points.len() > 1 {
-            ways.push(Curve::Line {
-                name,
-                colour,
-                points,
-            });
-        }
+        Curve::new(name, ink, points)
+    });
+    let shapes = logs.first().map_or_else(Vec::new, |(_, log)| shapes(log));
+    sheet(panels, shapes, ways.collect())
+}
+
+/// The panels and, where a path is known, the map. A robot that reports distances only has none.
+fn sheet(panels: Vec<Panel>, shapes: Vec<Shape>, mut ways: Vec<Curve>) -> Sheet {
+    let (words, mut sheet) = (Words::default(), Sheet::new(1));
+    if !panels.is_empty() {
+        sheet = sheet.with("", Plot::over_time(panels).picture(words, WIDTH));
     }
-    charts.extend(map_chart(ways));
-    charts
+    ways.retain(|way| way.points.len() > 1);
+    match ways.is_empty() {
+        true => sheet,
+        false => sheet.with("Trajectory", Map::of(shapes, ways).picture(words, WIDTH)),
+    }
 }
 
 fn title_of(column: &str) -> &'static str {
@@ -145,18 +128,6 @@ fn title_of(column: &str) -> &'static str {
         "heading_rad" => "Heading, estimated",
         _ => "Heading, true",
     }
-}
-
-/// Nothing where no path is known, such as for a robot that reports distances only.
-fn map_chart(curves: Vec<Curve<'_>>) -> Option<Chart<'_>> {
-    let is_way = |curve: &Curve<'_>| match curve {
-        Curve::Line { points, .. } => points.len() > 1,
-        _ => false,
-    };
-    curves.iter().any(is_way).then(|| Chart {
-        legend: Legend::UpperLeft,
-        ..map("Trajectory", curves)
-    })
 }
 
 fn has_values(points: &Points) -> bool {
@@ -189,9 +160,11 @@ fn over(log: &Log, column: &str, factor: f64) -> Points {
         .collect()
 }
 
-/// The references that belong to this chart.
-fn references(log: &Log, title: &str) -> Vec<Curve<'static>> {
-    let given = |name, points: Points| has_values(&points).then_some(Curve::Given { name, points });
+/// The references that belong to this panel.
+fn references(log: &Log, title: &str) -> Vec<Curve> {
+    let given = |name, points: Points| {
+        has_values(&points).then(|| Curve::new(name, Ink::Reference, points))
+    };
     match title {
         "Distances" => {
             let points = log.rows.iter().map(|row| {
@@ -219,7 +192,7 @@ fn references(log: &Log, title: &str) -> Vec<Curve<'static>> {
 }
 
 /// Walls and boxes.
-fn shapes(log: &Log) -> Vec<Curve<'static>> {
+fn shapes(log: &Log) -> Vec<Shape> {
     let obstacles = log
         .scene()
         .map(|scene| scene.obstacles.as_slice())
@@ -229,13 +202,9 @@ fn shapes(log: &Log) -> Vec<Curve<'static>> {
     };
     obstacles
         .iter()
-        .map(|obstacle| match obstacle.closed {
-            true => Curve::Shape(corners(&obstacle.corners_m)),
-            false => Curve::Line {
-                name: "",
-                colour: PALETTE[6],
-                points: corners(&obstacle.corners_m),
-            },
+        .map(|obstacle| Shape {
+            corners: corners(&obstacle.corners_m),
+            filled: obstacle.closed,
         })
         .collect()
 }

@@ -9,18 +9,14 @@ use crate::recorded::{self, attached};
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::files::{Library, RobotFile, bounded};
 use rumbo_identify::sonar_stats::{self, Comparison, SonarLog};
-use rumbo_identify::{
-    DriveLog, GENERATIONS, Identification, IdentifyError, RunScore, chart, dialect,
-};
+use rumbo_identify::{DriveLog, GENERATIONS, Identification, IdentifyError, RunScore, dialect};
 use rumbo_plant::params::Params;
+use rumbo_plot::{Sheet, WIDTH, Words};
 use rumbo_wire::csv;
 use rumbo_wire::text::RowKind;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-
-/// Size of one chart of a plot [px].
-const PLOT_SIZE: (u32, u32) = (1200, 300);
 
 /// What the runs recorded: the drive, and the sonars where there are any.
 #[derive(Default)]
@@ -223,10 +219,11 @@ fn plot(
     let mut plots = Vec::new();
     for run in runs {
         for log in logs.drive.iter().filter(|log| log.name == run.name) {
-            let charts = rumbo_identify::plot(log, params, run.nuisance);
+            let plot = rumbo_identify::plot(log, params, run.nuisance);
+            let picture = plot.picture(Words::default(), WIDTH);
+            let svg = Sheet::new(1).with(&log.name, picture).svg();
             let stamp = stamp(&log.name);
-            let svg = chart::svg(&charts, 1, PLOT_SIZE).map_err(Failure::Input)?;
-            let png = chart::png(&charts, 1, PLOT_SIZE).map_err(Failure::Input)?;
+            let png = rumbo_plot::png(&svg).map_err(Failure::input)?;
             for (path, drawn) in places(folder, &log.name)
                 .into_iter()
                 .zip([svg.into_bytes(), png])

@@ -127,19 +127,17 @@ pub(crate) fn crc32(bytes: &[u8]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rumbo_plot::{Curve, Ink, Panel, Plot, Sheet, Words};
 
     #[test]
     fn a_stamped_file_is_known_again_and_stays_what_it_is() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x");
-        let line = rumbo_identify::chart::Curve::Given {
-            name: "a",
-            points: vec![(0.0, 0.0), (1.0, 1.0)],
-        };
-        let chart = rumbo_identify::chart::over_time("t", "cm", vec![line]);
-        let charts = [chart];
-        let png = rumbo_identify::chart::png(&charts, 1, (300, 200)).unwrap();
-        let svg = rumbo_identify::chart::svg(&charts, 1, (300, 200)).unwrap();
+        let line = Curve::new("a", Ink::First, vec![(0.0, 0.0), (1.0, 1.0)]);
+        let plot = Plot::over_time(vec![Panel::new("cm", vec![line])]);
+        let sheet = Sheet::new(1).with("t", plot.picture(Words::default(), 300.0));
+        let svg = sheet.svg();
+        let png = rumbo_plot::png(&svg).unwrap();
         let html = b"<!doctype html>\n<html lang=\"en\">\n".to_vec();
         for file in [png.clone(), svg.into_bytes(), html] {
             let stamp = |about: &str| Stamp::of("compare", &["a".into(), about.into()]);

@@ -5,7 +5,7 @@
 //!            ├─► log ─► replay: the recorded duty on a plant ─► residuals (problem) ─► search and fit
 //!            │     └─► pair: which sonar is which ─► wall: distances      │
 //!            │            score: RMSE, R^2 per run ◄─────────────────┤ parameters, uncertainties
-//!            │            plot: charts, measured and simulated ◄─────┤
+//!            │            plot: measured and simulated ◄─────────────┤
 //!            │            rewrite: [plant] of a robot file ◄─────────┘
 //!            └─► sonar_stats: noise, outliers and losses, beside those of the plant's sonars
 //! ```
@@ -15,7 +15,6 @@
 //!
 //! It knows the plant, and the texts it is given: no scenario, no simulator, no files of the project.
 
-pub mod chart;
 pub mod dialect;
 pub mod problem;
 pub mod sonar_stats;

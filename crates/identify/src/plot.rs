@@ -1,24 +1,23 @@
 //! Measured against simulated: speeds of both wheels or the distances to a wall, and the PWM below.
 
-use crate::chart::{Chart, Curve, PALETTE, over_time};
 use crate::log::{DriveLog, Seen};
 use crate::problem::RANGE_SD_M;
 use crate::replay::{Nuisance, Replay};
 use crate::score::RPM_PER_RAD_S;
 use crate::wall;
 use rumbo_plant::params::Params;
+use rumbo_plot::{Curve, Ink, Panel, Plot};
 
-/// Names of the curves, in the order of the palette.
-const MEASURED_AND_SIMULATED: [&str; 2] = ["measured", "simulated"];
+/// The curves of a panel.
+const CURVES: [(&str, Ink); 2] = [("measured", Ink::First), ("simulated", Ink::Second)];
 
-/// The charts of a recorded run beside its simulation with these parameters; the first one is titled with the run's
-/// name.
+/// A recorded run beside its simulation with these parameters.
 #[must_use]
-pub fn plot<'a>(log: &'a DriveLog, params: &Params, nuisance: Nuisance) -> Vec<Chart<'a>> {
+pub fn plot(log: &DriveLog, params: &Params, nuisance: Nuisance) -> Plot {
     let replay = Replay::new(log, params, nuisance);
     let trace = replay.whole();
     let rows = || log.rows.iter();
-    let mut charts = Vec::new();
+    let mut panels = Vec::new();
     if log.seen != Seen::Speeds {
         let errors_m = wall::errors_m(log, &trace, RANGE_SD_M);
         let per_row = errors_m.len() / log.rows.len();
@@ -38,7 +37,7 @@ pub fn plot<'a>(log: &'a DriveLog, params: &Params, nuisance: Nuisance) -> Vec<C
             } else {
                 of_pair
             };
-            charts.push(compared(log, label, [measured, simulated]));
+            panels.push(compared(log, label, [measured, simulated]));
         }
     } else {
         let speeds = replay.speeds(&trace);
@@ -48,7 +47,7 @@ pub fn plot<'a>(log: &'a DriveLog, params: &Params, nuisance: Nuisance) -> Vec<C
         {
             let measured = rows().map(|row| RPM_PER_RAD_S * row.speed_rad_s[i]);
             let simulated = speeds.iter().map(|speed| RPM_PER_RAD_S * speed[i]);
-            charts.push(compared(
+            panels.push(compared(
                 log,
                 label,
                 [measured.collect(), simulated.collect()],
@@ -56,26 +55,19 @@ pub fn plot<'a>(log: &'a DriveLog, params: &Params, nuisance: Nuisance) -> Vec<C
         }
     }
     let pwm = rows().map(|row| 127.5 * (row.duty[0] + row.duty[1]));
-    let pwm = line(log, 0, "", pwm.collect());
-    charts.push(over_time("", "PWM of 255, mean of both wheels", vec![pwm]));
-    if let Some(first) = charts.first_mut() {
-        first.title = &log.name;
-    }
-    charts
+    let pwm = line(log, ("", Ink::First), pwm.collect());
+    panels.push(Panel::new("PWM of 255, both wheels", vec![pwm]));
+    Plot::over_time(panels)
 }
 
-fn compared(log: &DriveLog, label: &'static str, values: [Vec<f64>; 2]) -> Chart<'static> {
-    let curves = MEASURED_AND_SIMULATED.into_iter().zip(values).enumerate();
-    let curves = curves.map(|(i, (name, values))| line(log, i, name, values));
-    over_time("", label, curves.collect())
+fn compared(log: &DriveLog, label: &str, values: [Vec<f64>; 2]) -> Panel {
+    let curves = CURVES.into_iter().zip(values);
+    let curves = curves.map(|(look, values)| line(log, look, values));
+    Panel::new(label, curves.collect())
 }
 
 /// A value of each row over time.
-fn line(log: &DriveLog, colour: usize, name: &'static str, values: Vec<f64>) -> Curve<'static> {
+fn line(log: &DriveLog, (name, ink): (&str, Ink), values: Vec<f64>) -> Curve {
     let times_s = log.rows.iter().map(|row| row.at_ms as f64 / 1000.0);
-    Curve::Line {
-        name,
-        colour: PALETTE[colour],
-        points: times_s.zip(values).collect(),
-    }
+    Curve::new(name, ink, times_s.zip(values).collect())
 }

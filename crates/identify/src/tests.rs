@@ -4,6 +4,7 @@ use super::*;
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
+use rumbo_plot::Words;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -294,33 +295,19 @@ fn a_robot_file_whose_plant_is_no_table_is_refused() {
 }
 
 #[test]
-fn a_plot_names_the_run_and_shows_it_beside_the_simulation() {
+fn a_plot_shows_the_run_beside_its_simulation() {
     let log = log(&recorded(&Params::default(), exercise, 3.0));
-    let charts = plot(&log, &Params::default(), NOMINAL);
-    let text = chart::svg(&charts, 1, (1200, 300)).unwrap();
-    for word in [
-        "test.csv",
-        "measured",
-        "simulated",
-        "left wheel",
-        "right wheel",
-        "PWM",
-    ] {
+    let text = plot(&log, &Params::default(), NOMINAL).svg(Words::default());
+    for word in ["measured", "simulated", "left wheel", "right wheel", "PWM"] {
         assert!(text.contains(word), "{word}");
     }
-    let image = chart::png(&charts, 1, (1200, 300)).unwrap();
-    assert!(image.starts_with(b"\x89PNG") && image.len() > 10_000);
 }
 
 #[test]
 fn the_simulated_curve_of_a_known_plant_lies_on_the_measured_one() {
     let log = log(&recorded(&Params::default(), exercise, 3.0));
-    let charts = plot(&log, &Params::default(), NOMINAL);
-    let points = |curve: &chart::Curve<'_>| match curve {
-        chart::Curve::Line { points, .. } => points.clone(),
-        _ => panic!("no line"),
-    };
-    let [measured, simulated] = [0, 1].map(|i| points(&charts[0].curves[i]));
+    let drawn = plot(&log, &Params::default(), NOMINAL);
+    let [measured, simulated] = [0, 1].map(|i| drawn.panels[0].curves[i].points.clone());
     assert_eq!(measured.len(), log.rows.len());
     let apart = |(one, other): (&(f64, f64), &(f64, f64))| {
         (one.0 - other.0).abs() + (one.1 - other.1).abs()

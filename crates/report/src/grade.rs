@@ -8,14 +8,15 @@ use crate::chapters::panels::pwm_panel;
 use crate::chapters::parts::{DISTANCE, LEFT, REFERENCE, RIGHT, SPEED, TIME};
 use crate::judge;
 use crate::metric_names::{Shown, shown};
-use crate::plot::{Curve, Ink, Panel, Plot, Points};
 use crate::signals::{CM, Outcome, Place, RPM};
 use crate::summary::shell;
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, escape, put, word};
 use pulldown_cmark::{Event, Options, Parser, html};
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::ReferenceKind;
+use rumbo_control::rig::Rig;
 use rumbo_experiment::grade::{Assignment, Line, Mark, Test, Words};
+use rumbo_plot::{Curve, Ink, Panel, Plot, Points};
 use rumbo_wire::Command;
 
 const POINTS_OF: Text = word("points-of");
@@ -338,26 +339,27 @@ fn figures(language: Language, test: &Test, outcome: &Outcome) -> Vec<String> {
         curves.insert(0, more);
         Panel::new(text.of(language), curves)
     };
-    match test.setup.scenario.mode {
-        ModeId::FrontDistance => {
+    let mode = test.setup.scenario.mode.description();
+    match mode.reference.map(|reference| reference.kind) {
+        Some(ReferenceKind::Distance) if mode.rigs.contains(Rig::FrontSingle) => {
             let front = vec![range(FRONT, Ink::First, Place::Front)];
             vec![timed(vec![
                 with(DISTANCE, front, asked(CM)).at_least(0.0, 100.0),
                 pwm,
             ])]
         }
-        ModeId::FrontAlign | ModeId::WallHold | ModeId::WallFollow => {
+        Some(ReferenceKind::Distance) => {
             let both = vec![
                 range(LEFT_SONAR, Ink::First, Place::Left),
                 range(RIGHT_SONAR, Ink::Second, Place::Right),
             ];
             vec![timed(vec![with(DISTANCE, both, asked(CM)), pwm])]
         }
-        ModeId::WheelSpeed | ModeId::StraightLine => {
+        Some(ReferenceKind::WheelSpeed | ReferenceKind::Speed) => {
             vec![timed(vec![with(SPEED, speeds(), asked(RPM)), pwm])]
         }
-        ModeId::Manual => vec![timed(vec![Panel::new(SPEED.of(language), speeds()), pwm])],
-        ModeId::Mission | ModeId::Waypoints => {
+        None => vec![timed(vec![Panel::new(SPEED.of(language), speeds()), pwm])],
+        Some(ReferenceKind::Goal) => {
             let mut map = maps::map(language);
             map.shapes = maps::shapes(outcome);
             map.curves = vec![Curve::new(

@@ -203,7 +203,7 @@ mod tests {
         for experiment in crate::EXPERIMENTS {
             for name in experiment.scenarios {
                 let mut setup = library.setup(name, &Overrides::default()).unwrap();
-                // Names depend on the commands, not on what comes of them.
+                // Names depend on the commands, not on their outcome.
                 setup.scenario.calibrated = false;
                 setup.scenario.duration_s = 0.1;
                 let limits: Vec<String> = setup.scenario.limits.keys().cloned().collect();

@@ -4,9 +4,10 @@
 //! EXPERIMENTS ─► Plan (setups; those beside a recorded run once more with its references) ─► run on all threads ─► Data ─► html
 //! ```
 //!
-//! A chapter (`chapters/`) is one experiment. Its text is Markdown in English and Spanish, a file of `content/` with places
-//! for values, tables and figures; Rust computes what fills them. Figures are SVG inside the page: `plot` draws values,
-//! `drawing` what depends on the robot; the other drawings are files. The same version, seed and files give the same bytes.
+//! A chapter (`chapters/`) is one experiment. Its text is Markdown in English and Spanish, a file of `content/` with
+//! places for values, tables and figures; Rust computes what fills them. Figures are SVG inside the page: `rumbo-plot`
+//! draws values, `drawing` what depends on the robot; the other drawings are files. The same version, seed and files give
+//! the same bytes.
 
 mod chapters;
 mod complaints;
@@ -21,7 +22,6 @@ mod metric_names;
 mod page;
 mod places;
 mod plan;
-mod plot;
 pub mod real;
 mod respond;
 mod signals;

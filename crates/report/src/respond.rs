@@ -1,6 +1,6 @@
 //! Response of a measured signal to each step of its reference, computed alike for our runs and recorded ones.
 
-use crate::plot::Points;
+use rumbo_plot::Points;
 
 /// Band of a settled speed [rpm]: the resolution of the original's measurement.
 const SPEED_BAND_RPM: f64 = 3.2;

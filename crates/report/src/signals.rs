@@ -1,12 +1,12 @@
 //! Signals of a run over the time since arming: the robot's telemetry where there is any, otherwise ground truth.
 
-use crate::plot::Points;
 use crate::text_rows;
 use rumbo_control::Range;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::Setup;
 use rumbo_experiment::run::RunResult;
+use rumbo_plot::Points;
 use rumbo_sim::trace::{Sample, TimedMessage, Trace};
 use rumbo_wire::text::Row;
 use rumbo_wire::{Command, EventKind, FromRobot, Telemetry};

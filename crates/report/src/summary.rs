@@ -11,6 +11,7 @@ use crate::real::Skipped;
 use crate::signals::Outcome;
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, escape, word};
+use rumbo_plot::STYLE as PLOTS;
 
 const STYLE: &str = include_str!("style.css");
 
@@ -59,7 +60,7 @@ pub(crate) fn shell(language: Language, title: &str, subtitle: &str, body: &str)
     let title = escape(title);
     format!(
         "<!doctype html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, \
-         initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n<title>{title}</title>\n<style>\n{PLOTS}{STYLE}</style>\n</head>\n<body>\n\
          <header><h1>{title}</h1><p class=\"subtitle\">{}</p></header>\n<main>\n{body}</main>\n</body>\n</html>\n",
         language.tag(),
         escape(subtitle),

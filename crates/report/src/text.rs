@@ -1,7 +1,11 @@
 //! The two languages of the report: words by their names, and numbers as each of them writes them.
 
 use crate::words::words;
-use std::fmt::Write;
+use rumbo_plot::Words;
+pub(crate) use rumbo_plot::{escape, put};
+
+/// Label of a panel without values: nothing was in range, or the program does not report it.
+const NO_VALUE: Text = word("no-value");
 
 /// Language of a report.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,19 +44,7 @@ impl Language {
     /// A number with this many decimals, with a true minus sign and the language's decimal mark.
     #[must_use]
     pub fn number(self, value: f64, decimals: usize) -> String {
-        if !value.is_finite() {
-            return "–".into();
-        }
-        let mut digits = format!("{value:.decimals$}");
-        if digits.trim_start_matches(['-', '0', '.']).is_empty() {
-            // A value rounded to zero has no sign.
-            digits = digits.trim_start_matches('-').to_owned();
-        }
-        let digits = digits.replace('-', "\u{2212}");
-        match self {
-            Self::English => digits,
-            Self::Spanish => digits.replace('.', ","),
-        }
+        rumbo_plot::number(value, decimals, self == Self::Spanish)
     }
 
     /// A number in its shortest form with at most this many decimals.
@@ -129,22 +121,7 @@ pub(crate) fn with(text: &str, values: &[(&str, &str)]) -> String {
     text
 }
 
-/// The text with what HTML takes for markup escaped.
-pub(crate) fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '"' => escaped += "&quot;",
-            _ => escaped.push(letter),
-        }
-    }
-    escaped
-}
-
-/// The same, with names of the program, which stand between backquotes, as such.
+/// The text as HTML, with names of the program, which stand between backquotes, as such.
 pub(crate) fn quoted(text: &str) -> String {
     let pieces = text.split('`').enumerate();
     let html = pieces.map(|(index, piece)| match index % 2 {
@@ -154,9 +131,13 @@ pub(crate) fn quoted(text: &str) -> String {
     html.collect()
 }
 
-/// Appends formatted text; writing to a string cannot fail.
-pub(crate) fn put(into: &mut String, arguments: std::fmt::Arguments<'_>) {
-    let _ = into.write_fmt(arguments);
+impl From<Language> for Words<'static> {
+    fn from(language: Language) -> Self {
+        Self {
+            comma: language == Language::Spanish,
+            no_value: NO_VALUE.of(language),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 18] = [
+const ARROWS: [(&str, &[&str]); 19] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
@@ -20,7 +20,8 @@ const ARROWS: [(&str, &[&str]); 18] = [
         &["rumbo-robot", "rumbo-plant", "rumbo-emulator"],
     ),
     ("rumbo-experiment", &["rumbo-sim"]),
-    ("rumbo-identify", &["rumbo-plant"]),
+    ("rumbo-plot", &[]),
+    ("rumbo-identify", &["rumbo-plant", "rumbo-plot"]),
     ("rumbo-log", &["rumbo-wire"]),
     ("rumbo-session", &["rumbo-log"]),
     ("rumbo-sketch", &[]),

@@ -5,12 +5,12 @@ use super::parts::{self, DISTANCE, REFERENCE};
 use crate::data::Data;
 use crate::judge;
 use crate::places::Places;
-use crate::plot::{Curve, Ink, Panel, Points};
 use crate::real::Recording;
 use crate::respond::{Kind, Response, responses};
 use crate::signals::{CM, Outcome};
 use crate::table::{Cell, table};
 use crate::text::{Language, Text, word};
+use rumbo_plot::{Curve, Ink, Panel, Points};
 use rumbo_wire::text::Row;
 
 const OURS: Text = word("rumbo-simulated-robot");

@@ -9,9 +9,9 @@ use crate::data::Data;
 use crate::drawing::scheme::{Part, Scheme};
 use crate::judge;
 use crate::places::Places;
-use crate::plot::{Curve, Ink, Map, Panel, Plot, Points};
 use crate::signals::{Outcome, Place, RPM};
 use crate::text::{Language, Text, same, word};
+use rumbo_plot::{Curve, Ink, Map, Panel, Plot, Points};
 
 pub(super) const FLOOR: Text = word("on-the-floor-forward");
 

@@ -1,8 +1,8 @@
 //! Maps that several chapters show: trajectories, walls and boxes, routes.
 
-use crate::plot::{Curve, Ink, Map, Points, Shape};
 use crate::signals::Outcome;
 use crate::text::{Language, Text, same, word};
+use rumbo_plot::{Curve, Ink, Map, Points, Shape};
 use rumbo_wire::Command;
 
 const X_AXIS: Text = same("x (m)");

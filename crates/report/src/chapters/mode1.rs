@@ -7,9 +7,9 @@ use super::{Experiment, highlight};
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
-use crate::plot::{Curve, Ink, Panel, Plot};
 use crate::signals::{CM, Outcome, Place, difference};
 use crate::text::{Language, Text, same, word};
+use rumbo_plot::{Curve, Ink, Panel, Plot};
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
     name: "mode1",

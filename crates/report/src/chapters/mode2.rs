@@ -7,9 +7,9 @@ use super::{Experiment, highlight};
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
-use crate::plot::{Curve, Ink, Panel};
 use crate::signals::{CM, DEG, Outcome, Place, difference};
 use crate::text::{Text, same, word};
+use rumbo_plot::{Curve, Ink, Panel};
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
     name: "mode2",

@@ -7,10 +7,10 @@ use super::{Experiment, highlight};
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
-use crate::plot::{Curve, Ink, Panel};
 use crate::respond::{self, Kind};
 use crate::signals::{Outcome, Place, RPM, difference};
 use crate::text::{Language, Text, same, word};
+use rumbo_plot::{Curve, Ink, Panel};
 use rumbo_wire::text::Row;
 
 pub(super) const EXPERIMENT: Experiment = Experiment {

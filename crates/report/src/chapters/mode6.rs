@@ -9,9 +9,9 @@ use super::{Experiment, highlight};
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
-use crate::plot::{Curve, Ink, Map, Panel};
 use crate::signals::{CM, DEG, Outcome, Place, RPM};
 use crate::text::{Language, Text, same, word};
+use rumbo_plot::{Curve, Ink, Map, Panel};
 use rumbo_wire::text::Row;
 
 pub(super) const EXPERIMENT: Experiment = Experiment {

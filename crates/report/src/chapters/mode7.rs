@@ -9,10 +9,10 @@ use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::judge;
 use crate::places::Places;
-use crate::plot::{Curve, Ink, Map, Panel, Points};
 use crate::respond::rms_and_worst;
 use crate::signals::{CM, Outcome, unwrapped};
 use crate::text::{Language, Text, same, word};
+use rumbo_plot::{Curve, Ink, Map, Panel, Points};
 use rumbo_wire::text::Row;
 
 pub(super) const EXPERIMENT: Experiment = Experiment {

@@ -8,9 +8,9 @@ use super::parts;
 use super::{Experiment, Highlight};
 use crate::data::Data;
 use crate::places::Places;
-use crate::plot::{Curve, Ink, Map, Panel, Points};
 use crate::signals::{Outcome, unwrapped};
 use crate::text::{Language, Text, word};
+use rumbo_plot::{Curve, Ink, Map, Panel, Points};
 
 const GOALS: Text = word("goals");
 const LANE: Text = word("lane");

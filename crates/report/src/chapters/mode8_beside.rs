@@ -6,10 +6,10 @@ use super::parts;
 use crate::data::Data;
 use crate::judge;
 use crate::places::Places;
-use crate::plot::{Map, Panel, Points};
 use crate::real::Recording;
 use crate::signals::unwrapped;
 use crate::text::{Text, word};
+use rumbo_plot::{Map, Panel, Points};
 use rumbo_wire::text::{MissionRow, Row};
 
 const TIME: Text = word("duration");

@@ -2,9 +2,9 @@
 
 use super::parts::{self, DISTANCE, ERROR_CM, LEFT, MEASURED, PWM, REFERENCE, RIGHT};
 use crate::places::Places;
-use crate::plot::{Curve, Ink, Panel, Points};
 use crate::signals::{Outcome, Place, difference};
 use crate::text::{Language, Text, word};
+use rumbo_plot::{Curve, Ink, Panel, Points};
 
 /// PWM of both wheels.
 pub(crate) fn pwm_panel(language: Language, outcome: &Outcome) -> Panel {

@@ -5,9 +5,9 @@ use crate::drawing::scheme::Scheme;
 use crate::drawing::{rig, wiring};
 use crate::judge;
 use crate::places::Places;
-use crate::plot::{Panel, Plot};
 use crate::signals::Outcome;
 use crate::text::{Text, word};
+use rumbo_plot::{Panel, Plot};
 
 pub(crate) const TIME: Text = word("time-since-arming-s");
 pub(crate) const DISTANCE: Text = word("distance-cm");

@@ -5,9 +5,9 @@ use super::parts;
 use super::{Experiment, Highlight};
 use crate::data::Data;
 use crate::places::Places;
-use crate::plot::{Curve, Ink, Map, Panel, Points};
 use crate::signals::{CM, Outcome};
 use crate::text::{Text, word};
+use rumbo_plot::{Curve, Ink, Map, Panel, Points};
 
 const LINE: Text = word("line");
 const CURVE: Text = word("curve");

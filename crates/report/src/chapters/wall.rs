@@ -8,10 +8,10 @@ use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::judge;
 use crate::places::Places;
-use crate::plot::{Curve, Ink, Panel, Points};
 use crate::respond::rms_and_worst;
 use crate::signals::{CM, Outcome, Place, between, difference};
 use crate::text::{Text, same, word};
+use rumbo_plot::{Curve, Ink, Panel, Points};
 
 pub(super) const MODE3: Experiment = Experiment {
     name: "mode3",

@@ -163,7 +163,7 @@ pub(super) fn width_of(lines: &[&str]) -> f64 {
     LETTER * longest as f64
 }
 
-/// Height of a box with so many lines [px].
+/// Height of a box with this many lines [px].
 pub(super) fn height_of(lines: usize) -> f64 {
     LINE * lines as f64 + 14.0
 }

@@ -82,7 +82,7 @@ fn is_a(path: &Path, ending: &str) -> bool {
         .is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
-/// A CSV as it is; what is no text has no header of the original program.
+/// A CSV, unchanged; one that is no text has no header of the original program.
 fn csv_of(path: &Path) -> Result<FromLog, RealError> {
     let bytes = read_at_most(path, LONGEST_RECORDING).map_err(|error| {
         RealError(format!(

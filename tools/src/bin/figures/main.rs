@@ -1,7 +1,7 @@
 //! Writes the figures and tables of docs/theory: `cargo xtask figures`.
 //!
 //! ```text
-//! pages ──► runs (20 seeds of each program) ──► chart (SVG in docs/img/theory/) and table (Markdown between markers)
+//! pages ──► runs (20 seeds of each program) ──► plot (SVG in docs/img/theory/) and table (Markdown between markers)
 //! ```
 //!
 //! The text of a page between `<!-- figures:NAME -->` and `<!-- /figures -->` is replaced. The same sources give the
@@ -9,12 +9,6 @@
 
 #![allow(missing_docs)]
 
-/// The library's charts, with names that are known beforehand.
-mod chart {
-    pub(crate) use rumbo_identify::chart::{BASELINE, Legend, OURS, THIRD, map, over_time, svg};
-    pub(crate) type Chart = rumbo_identify::chart::Chart<'static>;
-    pub(crate) type Curve = rumbo_identify::chart::Curve<'static>;
-}
 mod pages;
 mod runs;
 mod table;

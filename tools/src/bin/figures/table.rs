@@ -3,6 +3,7 @@
 use crate::runs::Runs;
 
 /// One metric.
+#[derive(Clone)]
 pub(crate) struct Row {
     pub(crate) what: &'static str,
     pub(crate) metric: &'static str,

@@ -2,14 +2,19 @@
 
 use super::*;
 
+/// The period of the control loop.
+const fn period(real: &'static str) -> Row {
+    row("period of the loop", "control_period_s", 1000.0, "ms", real)
+}
+
 /// Medians of its runs beside the recorded ones.
 pub(super) fn beside() -> Result<Option<Made>, String> {
-    let experiments: [(&str, &str, Change, &[Row]); 9] = [
+    let experiments: [(&str, &str, Change, Vec<Row>); 9] = [
         (
             "mode 1",
             "mode1",
             runs::BASELINE,
-            &[
+            vec![
                 row(
                     "107 -> 30 cm, within 5 %",
                     "step1.settling_s",
@@ -25,20 +30,14 @@ pub(super) fn beside() -> Result<Option<Made>, String> {
                     "1.2 s",
                 ),
                 row("overshoot", "step1.overshoot_m", 100.0, "cm", "0.6 cm"),
-                row(
-                    "period of the loop",
-                    "control_period_s",
-                    1000.0,
-                    "ms",
-                    "65 ms",
-                ),
+                period("65 ms"),
             ],
         ),
         (
             "mode 2",
             "mode2",
             runs::BASELINE,
-            &[row(
+            vec![row(
                 "119 -> 30 cm, within 5 %",
                 "step1.settling_s",
                 1.0,
@@ -50,7 +49,7 @@ pub(super) fn beside() -> Result<Option<Made>, String> {
             "mode 3",
             "mode3",
             runs::BASELINE,
-            &[
+            vec![
                 row(
                     "distance error, rms",
                     "distance_rms_m",
@@ -67,58 +66,18 @@ pub(super) fn beside() -> Result<Option<Made>, String> {
                 ),
             ],
         ),
-        (
-            "mode 4",
-            "mode4",
-            SLOW_STEPS,
-            &[
-                row(
-                    "59 -> 50 cm, within 2 cm",
-                    "step1.within_2cm_s",
-                    1.0,
-                    "s",
-                    "7.1 s",
-                ),
-                row("50 -> 30 cm", "step2.within_2cm_s", 1.0, "s", "6.3 s"),
-                row("30 -> 40 cm", "step3.within_2cm_s", 1.0, "s", "9.0 s"),
-            ],
-        ),
+        ("mode 4", "mode4", SLOW_STEPS, walls::MODE_4.to_vec()),
         (
             "mode 5",
             "mode5",
             runs::BASELINE,
-            &[
-                row(
-                    "0 -> 60 rpm, within 3.2 rpm",
-                    "step1.settling_s",
-                    1.0,
-                    "s",
-                    "3.7 s",
-                ),
-                row("50 -> 100 rpm", "step3.settling_s", 1.0, "s", "1.8 s"),
-                row("0 -> -100 rpm", "step6.settling_s", 1.0, "s", "5.3 s"),
-                row("0 -> 40 rpm", "step9.settling_s", 1.0, "s", "5.5 s"),
-                row(
-                    "ripple at 60 rpm",
-                    "step1.ripple_rad_s",
-                    RPM,
-                    "rpm",
-                    "0.9 to 2.1 rpm",
-                ),
-                row(
-                    "period of the loop",
-                    "control_period_s",
-                    1000.0,
-                    "ms",
-                    "41 ms",
-                ),
-            ],
+            [&wheels::MODE_5[..], &[period("41 ms")]].concat(),
         ),
         (
             "mode 7",
             "mode7",
             SLOW_SQUARE,
-            &[
+            vec![
                 row("once round", "finish_s", 1.0, "s", "30 s"),
                 row(
                     "off the square by odometry, worst",
@@ -128,29 +87,23 @@ pub(super) fn beside() -> Result<Option<Made>, String> {
                     "6 cm",
                 ),
                 row("the same, rms", "odometry_rms_m", 100.0, "cm", "2.4 cm"),
-                row(
-                    "period of the loop",
-                    "control_period_s",
-                    1000.0,
-                    "ms",
-                    "67 ms",
-                ),
+                period("67 ms"),
             ],
         ),
         (
             "mode 8, goals",
             "mode8-goals",
             SLOW_MISSION,
-            &[
+            vec![
                 row("all four", "total_time_s", 1.0, "s", "32 s"),
-                row("way", "path_m", 1.0, "m", "4.3 m"),
+                row("path", "path_m", 1.0, "m", "4.3 m"),
             ],
         ),
         (
             "mode 8, lane",
             "mode8-lane",
             SLOW_MISSION,
-            &[
+            vec![
                 row("time", "finish_s", 1.0, "s", "57.8 s"),
                 Row {
                     least_is_worst: true,
@@ -162,9 +115,9 @@ pub(super) fn beside() -> Result<Option<Made>, String> {
             "mode 8, obstacles",
             "mode8-obstacles",
             SLOW_MISSION,
-            &[
+            vec![
                 row("time", "total_time_s", 1.0, "s", "73.6 s"),
-                row("way", "path_m", 1.0, "m", "4.16 m"),
+                row("path", "path_m", 1.0, "m", "4.16 m"),
             ],
         ),
     ];
@@ -182,8 +135,8 @@ pub(super) fn beside() -> Result<Option<Made>, String> {
                 "| {name} | {} | {} | {} | {} |\n",
                 row.what,
                 row.real,
-                spread(row, &here),
-                spread(row, &recorded),
+                spread(&row, &here),
+                spread(&row, &recorded),
             );
         }
     }

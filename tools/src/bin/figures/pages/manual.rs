@@ -3,39 +3,28 @@
 use super::*;
 
 /// Speed of a wheel over the PWM, up and down again, on the floor and in the air.
-fn curves(title: &'static str, side: usize, floor: &[Runs; 2], air: &[Runs; 2]) -> Chart {
+fn panel(wheel: &str, side: usize, floor: &[Runs; 2], air: &[Runs; 2]) -> Panel {
     let mut curves = vec![
         threshold("the report's thresholds", 35.0),
         threshold("", -35.0),
         threshold("", 65.0),
         threshold("", -65.0),
     ];
-    for (names, colour, both) in [
-        (["in the air", ""], THIRD, air),
+    for (names, ink, both) in [
+        (["in the air", ""], Ink::Third, air),
         (["on the floor", ""], OURS, floor),
     ] {
         for (name, runs) in names.into_iter().zip(both) {
-            curves.push(Curve::Seeds {
-                name,
-                colour,
-                runs: runs.each(|sample, _| {
-                    (f64::from(sample.duty[side]), RPM * sample.wheel_rad_s[side])
-                }),
-            });
+            let speeds = runs
+                .each(|sample, _| (f64::from(sample.duty[side]), RPM * sample.wheel_rad_s[side]));
+            curves.push(Curve::median(name, ink, &speeds));
         }
     }
-    Chart {
-        x: "PWM, of 255",
-        legend: Legend::LowerRight,
-        ..over_time(title, "rpm", curves)
-    }
+    Panel::new(&format!("{wheel}, rpm"), curves)
 }
 
 fn threshold(name: &'static str, pwm: f64) -> Curve {
-    Curve::Given {
-        name,
-        points: vec![(pwm, -170.0), (pwm, 170.0)],
-    }
+    Curve::new(name, Ink::Reference, vec![(pwm, -170.0), (pwm, 170.0)])
 }
 
 fn forward_and_backward(scenario: &str) -> Result<Option<[Runs; 2]>, String> {
@@ -52,10 +41,14 @@ pub(super) fn manual() -> Result<Option<Made>, String> {
     ) else {
         return Ok(None);
     };
-    let charts = [
-        curves("Left wheel: speed over PWM", 0, &floor, &air),
-        curves("Right wheel", 1, &floor, &air),
-    ];
+    let plot = Plot {
+        x: "PWM, of 255".into(),
+        x_range: None,
+        panels: vec![
+            panel("left wheel", 0, &floor, &air),
+            panel("right wheel", 1, &floor, &air),
+        ],
+    };
     let Some(movements) = movements()? else {
         return Ok(None);
     };
@@ -63,7 +56,7 @@ pub(super) fn manual() -> Result<Option<Made>, String> {
         figures: vec![(
             "manual",
             "Wheel speed over PWM: a dead zone, left at less PWM than it was entered with",
-            svg(&charts, 2, (430, 360))?,
+            figure("Speed over PWM", &plot),
         )],
         words: format!("{}\n{movements}", starts(&floor, &air)),
     }))
@@ -108,7 +101,7 @@ fn movements() -> Result<Option<String>, String> {
         (
             "manual-turn-left",
             row(
-                "turn on the spot: way of its middle",
+                "turn on the spot: path of its centre",
                 "path_m",
                 100.0,
                 "cm",

@@ -8,16 +8,18 @@ mod ways;
 mod wheels;
 mod wiring;
 
-use crate::chart::{BASELINE, Chart, Curve, Legend, OURS, THIRD, map, over_time, svg};
 use crate::runs::{self, Change, Runs, runs};
 use crate::table::{Row, row, spread, table};
 use rumbo_experiment::files::Setup;
+use rumbo_plot::{Curve, Ink, Map, Panel, Plot, Points, Shape, Sheet, WIDTH, Words};
 use rumbo_sim::trace::Sample;
 use rumbo_wire::Command;
 
 const RPM: f64 = 30.0 / std::f64::consts::PI;
 const DEG: f64 = 180.0 / std::f64::consts::PI;
-const WIDE: (u32, u32) = (860, 290);
+/// How the programs look.
+const OURS: Ink = Ink::First;
+const BASELINE: Ink = Ink::Second;
 
 /// A section of a page.
 pub(crate) struct Page {
@@ -85,17 +87,15 @@ fn three(scenario: &str, baseline: Change) -> Result<Option<[Runs; 3]>, String> 
 /// A signal over time, of both programs.
 fn signal(baseline: &Runs, ours: &Runs, signal: impl Fn(&Sample, f64) -> f64) -> Vec<Curve> {
     vec![
-        Curve::Seeds {
-            name: REPORT,
-            colour: BASELINE,
-            runs: baseline.over_time(&signal),
-        },
-        Curve::Seeds {
-            name: "ours",
-            colour: OURS,
-            runs: ours.over_time(&signal),
-        },
+        Curve::median(REPORT, BASELINE, &baseline.over_time(&signal)),
+        Curve::median("ours", OURS, &ours.over_time(&signal)),
     ]
+}
+
+/// A figure of panels.
+fn figure(title: &str, plot: &Plot) -> String {
+    let picture = plot.picture(Words::default(), WIDTH);
+    Sheet::new(1).with(title, picture).svg()
 }
 
 /// The reference over time, in its unit times `factor`.
@@ -115,18 +115,12 @@ fn reference(setup: &Setup, factor: f64) -> Curve {
     if let Some(&(_, last)) = points.last() {
         points.push((setup.scenario.duration_s, last));
     }
-    Curve::Given {
-        name: "reference",
-        points,
-    }
+    Curve::new("reference", Ink::Reference, points)
 }
 
-fn pwm(baseline: &Runs, ours: &Runs) -> Chart {
-    over_time(
-        "PWM of the left wheel",
-        "of 255",
-        signal(baseline, ours, |sample, _| f64::from(sample.duty[0])),
-    )
+fn pwm(baseline: &Runs, ours: &Runs) -> Panel {
+    let pwm = signal(baseline, ours, |sample, _| f64::from(sample.duty[0]));
+    Panel::new("PWM of the left wheel, of 255", pwm)
 }
 
 const REPORT: &str = "the report's program";
@@ -174,7 +168,7 @@ const SLOW_MISSION: Change = Change {
 };
 
 /// Every seed's path.
-type Ways = Vec<Vec<(f64, f64)>>;
+type Ways = Vec<Points>;
 
 /// Every seed's path relative to the start.
 fn ways(runs: &Runs) -> Ways {

@@ -10,10 +10,8 @@ pub(super) fn mode1() -> Result<Option<Made>, String> {
         100.0 * sample.range_m[2] * scale
     });
     distance.insert(0, reference(&ours.setup, 100.0));
-    let charts = [
-        over_time("Mode 1: distance to the wall", "cm", distance),
-        pwm(&baseline, &ours),
-    ];
+    let distance = Panel::new("distance to the wall, cm", distance);
+    let plot = Plot::over_time(vec![distance, pwm(&baseline, &ours)]);
     let rows = [
         row(
             "107 -> 30 cm, within 5 %",
@@ -57,7 +55,7 @@ pub(super) fn mode1() -> Result<Option<Made>, String> {
         figures: vec![(
             "mode1",
             "Distance to the wall and PWM over time: ours reaches each setpoint sooner, without overshoot",
-            svg(&charts, 1, WIDE)?,
+            figure("Mode 1", &plot),
         )],
         words: words(&[(REPORT, &baseline), ("ours", &ours)], "mode1", &rows),
     }))
@@ -77,16 +75,11 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
     };
     let mut distance = signal(&recorded, &ours, |sample, _| 100.0 * ahead_m(sample));
     distance.insert(0, reference(&ours.setup, 100.0));
-    let mut charts = [
-        over_time("Mode 2: distance to the wall", "cm", distance),
-        over_time(
-            "Angle to the wall's normal",
-            "deg",
-            signal(&recorded, &ours, |sample, _| DEG * sample.heading_rad),
-        ),
-    ];
-    charts[0].y_range = Some([0.0, 125.0]);
-    charts[1].y_range = Some([-20.0, 40.0]);
+    let angle = signal(&recorded, &ours, |sample, _| DEG * sample.heading_rad);
+    let plot = Plot::over_time(vec![
+        Panel::new("distance to the wall, cm", distance).exactly(0.0, 125.0),
+        Panel::new("angle to its normal, deg", angle).exactly(-20.0, 40.0),
+    ]);
     let rows = [
         row(
             "119 -> 30 cm, within 5 %",
@@ -123,7 +116,7 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
         figures: vec![(
             "mode2",
             "Distance and angle to the wall over time: ours stands square at every reference",
-            svg(&charts, 1, WIDE)?,
+            figure("Mode 2", &plot),
         )],
         words: words(
             &[
@@ -151,8 +144,7 @@ pub(super) fn mode3() -> Result<Option<Made>, String> {
     let curves = signal(&recorded, &ours, |sample, _| {
         100.0 * (beside_m(sample) - 0.575)
     });
-    let mut chart = over_time("Mode 3: error of the distance to the wall", "cm", curves);
-    chart.legend = Legend::UpperLeft;
+    let plot = Plot::over_time(vec![Panel::new("error of the distance, cm", curves)]);
     let rows = [
         row(
             "distance error, rms",
@@ -172,7 +164,7 @@ pub(super) fn mode3() -> Result<Option<Made>, String> {
         figures: vec![(
             "mode3",
             "Error of the distance to the wall over time: ours stays within half a centimetre",
-            svg(&[chart], 1, WIDE)?,
+            figure("Mode 3: distance to the wall", &plot),
         )],
         words: words(
             &[
@@ -186,41 +178,37 @@ pub(super) fn mode3() -> Result<Option<Made>, String> {
     }))
 }
 
+/// Times of mode 4's steps.
+pub(super) const MODE_4: [Row; 3] = [
+    row(
+        "59 -> 50 cm, within 2 cm",
+        "step1.within_2cm_s",
+        1.0,
+        "s",
+        "7.1 s",
+    ),
+    row("50 -> 30 cm", "step2.within_2cm_s", 1.0, "s", "6.3 s"),
+    row("30 -> 40 cm", "step3.within_2cm_s", 1.0, "s", "9.0 s"),
+];
+
 pub(super) fn mode4() -> Result<Option<Made>, String> {
     let Some([baseline, recorded, ours]) = three("mode4", SLOW_STEPS)? else {
         return Ok(None);
     };
-    let chart = |title, name, colour, runs: &Runs| {
-        let distance = Curve::Seeds {
-            name,
-            colour,
-            runs: runs.over_time(|sample, _| 100.0 * beside_m(sample)),
-        };
-        Chart {
-            x_range: Some([-1.0, 31.0]),
-            y_range: Some([20.0, 70.0]),
-            ..over_time(title, "cm", vec![reference(&runs.setup, 100.0), distance])
-        }
+    let panel = |name, ink, runs: &Runs| {
+        let distance = runs.over_time(|sample, _| 100.0 * beside_m(sample));
+        let distance = Curve::median(name, ink, &distance);
+        let curves = vec![reference(&runs.setup, 100.0), distance];
+        Panel::new("distance, cm", curves).exactly(20.0, 70.0)
     };
-    let charts = [
-        chart(
-            "Mode 4: distance to the wall, the report's program",
-            REPORT,
-            BASELINE,
-            &recorded,
-        ),
-        chart("ours, its references sooner", "ours", OURS, &ours),
-    ];
-    let rows = [
-        row(
-            "59 -> 50 cm, within 2 cm",
-            "step1.within_2cm_s",
-            1.0,
-            "s",
-            "7.1 s",
-        ),
-        row("50 -> 30 cm", "step2.within_2cm_s", 1.0, "s", "6.3 s"),
-        row("30 -> 40 cm", "step3.within_2cm_s", 1.0, "s", "9.0 s"),
+    let plot = Plot {
+        x_range: Some([-1.0, 31.0]),
+        ..Plot::over_time(vec![
+            panel(REPORT, BASELINE, &recorded),
+            panel("ours, its references sooner", OURS, &ours),
+        ])
+    };
+    let ripple = [
         row(
             "swing at 50 cm, standard deviation",
             "step1.ripple_m",
@@ -242,7 +230,7 @@ pub(super) fn mode4() -> Result<Option<Made>, String> {
         figures: vec![(
             "mode4",
             "Distance to the wall over time: ours takes each step without swinging",
-            svg(&charts, 1, WIDE)?,
+            figure("Mode 4: distance to the wall", &plot),
         )],
         words: words(
             &[
@@ -251,7 +239,7 @@ pub(super) fn mode4() -> Result<Option<Made>, String> {
                 ("ours", &ours),
             ],
             "mode4",
-            &rows,
+            &[&MODE_4[..], &ripple].concat(),
         ),
     }))
 }

@@ -2,45 +2,33 @@
 
 use super::*;
 
-/// Maps of both programs beside each other, in the frame of the world or of the start.
-fn maps(
-    of: [&Runs; 2],
-    titles: [&'static str; 2],
-    around: impl Fn() -> Vec<Curve>,
-    way: fn(&Runs) -> Ways,
-    x_range: Option<[f64; 2]>,
-    y_range: Option<[f64; 2]>,
-) -> Result<String, String> {
-    let charts: Vec<Chart> = of
-        .into_iter()
-        .zip(titles)
-        .zip([BASELINE, OURS])
-        .map(|((runs, title), colour)| {
-            let mut curves = around();
-            curves.push(Curve::Ways {
-                name: "",
-                colour,
-                runs: way(runs),
-            });
-            Chart {
-                x_range,
-                y_range,
-                ..map(title, curves)
-            }
-        })
-        .collect();
-    svg(&charts, 2, (430, 430))
+/// Width of a map beside another one [px].
+const HALF: f64 = 0.5 * WIDTH;
+
+/// Maps of both programs beside each other, with the same surroundings.
+fn maps(of: [&Runs; 2], titles: [&str; 2], around: &Map, way: fn(&Runs) -> Ways) -> String {
+    let of = of.into_iter().zip(titles).zip([BASELINE, OURS]);
+    let sheet = of.fold(Sheet::new(2), |sheet, ((runs, title), ink)| {
+        let mut map = around.clone();
+        map.curves.push(Curve::each("", ink, &way(runs)));
+        sheet.with(title, map.picture(Words::default(), HALF))
+    });
+    sheet.svg()
+}
+
+/// An ideal path.
+fn ideal(points: Points) -> Curve {
+    Curve::new("", Ink::Reference, points)
 }
 
 pub(super) fn mode7() -> Result<Option<Made>, String> {
     let Some([baseline, recorded, ours]) = three("mode7", SLOW_SQUARE)? else {
         return Ok(None);
     };
-    let square = || {
-        vec![Curve::Given {
-            name: "",
-            points: vec![(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)],
-        }]
+    let square = vec![(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
+    let square = Map {
+        range: Some([[-0.3, 1.3]; 2]),
+        ..Map::of(Vec::new(), vec![ideal(square)])
     };
     let rows = [
         row(
@@ -68,12 +56,11 @@ pub(super) fn mode7() -> Result<Option<Made>, String> {
         row("once round", "finish_s", 1.0, "s", "30 s"),
     ];
     let titles = ["Mode 7: the report's program", "ours, calibrated"];
-    let range = Some([-0.3, 1.3]);
     Ok(Some(Made {
         figures: vec![(
             "mode7",
-            "True ways of 20 robots around a square of 1 m: ours all but on it",
-            maps([&recorded, &ours], titles, square, ways, range, range)?,
+            "True paths of 20 robots around a square of 1 m: ours almost on it",
+            maps([&recorded, &ours], titles, &square, ways),
         )],
         words: words(
             &[
@@ -94,7 +81,7 @@ pub(super) fn pursuit() -> Result<Option<Made>, String> {
     ) else {
         return Ok(None);
     };
-    let charts: Vec<Chart> = [
+    let pictures = [
         (&line, "Pure pursuit of a line from 18 degrees off it"),
         (&curve, "and of a sine"),
     ]
@@ -106,22 +93,13 @@ pub(super) fn pursuit() -> Result<Option<Made>, String> {
                 path.push((f64::from(point.x_m), f64::from(point.y_m)));
             }
         }
-        map(
-            title,
-            vec![
-                Curve::Given {
-                    name: "",
-                    points: path,
-                },
-                Curve::Ways {
-                    name: "",
-                    colour: OURS,
-                    runs: ways(runs),
-                },
-            ],
-        )
-    })
-    .collect();
+        let curves = vec![ideal(path), Curve::each("", OURS, &ways(runs))];
+        let map = Map::of(Vec::new(), curves);
+        (title, map.picture(Words::default(), WIDTH))
+    });
+    let sheet = pictures.fold(Sheet::new(1), |sheet, (title, picture)| {
+        sheet.with(title, picture)
+    });
     let rows = [
         row(
             "off the path by odometry, worst",
@@ -138,18 +116,18 @@ pub(super) fn pursuit() -> Result<Option<Made>, String> {
     Ok(Some(Made {
         figures: vec![(
             "pursuit",
-            "True ways of 20 robots along a line and along a sine",
-            svg(&charts, 1, (860, 330))?,
+            "True paths of 20 robots along a line and along a sine",
+            sheet.svg(),
         )],
         words: format!(
-            "{}\nTrue ways of 20 robots, calibrated; limits are the curve's. `rumbo run pursuit-line pursuit-curve --runs 20`.\n",
+            "{}\nTrue paths of 20 robots, calibrated; limits are the curve's. `rumbo run pursuit-line pursuit-curve --runs 20`.\n",
             table(&columns, &rows)
         ),
     }))
 }
 
 /// Walls and boxes of the world.
-fn shapes(setup: &Setup) -> Vec<Curve> {
+fn shapes(setup: &Setup) -> Vec<Shape> {
     let Ok(world) = setup.world.world() else {
         return Vec::new();
     };
@@ -157,8 +135,11 @@ fn shapes(setup: &Setup) -> Vec<Curve> {
         .obstacles()
         .iter()
         .map(|obstacle| {
-            let corners = obstacle.corners().map(|[x_m, y_m]| (x_m, y_m));
-            Curve::Shape(corners.collect())
+            let corners: Points = obstacle.corners().map(|[x_m, y_m]| (x_m, y_m)).collect();
+            Shape {
+                filled: corners.len() > 2,
+                corners,
+            }
         })
         .collect()
 }
@@ -171,21 +152,18 @@ fn in_the_world(runs: &Runs) -> Ways {
 fn mission(
     scenario: &'static str,
     alt: &'static str,
-    range: [Option<[f64; 2]>; 2],
+    range: Option<[[f64; 2]; 2]>,
     rows: &[Row],
 ) -> Result<Option<Made>, String> {
     let Some([baseline, recorded, ours]) = three(scenario, SLOW_MISSION)? else {
         return Ok(None);
     };
     let titles = ["Mode 8: the report's program", "ours"];
-    let figure = maps(
-        [&recorded, &ours],
-        titles,
-        || shapes(&ours.setup),
-        in_the_world,
-        range[0],
-        range[1],
-    )?;
+    let world = Map {
+        range,
+        ..Map::of(shapes(&ours.setup), Vec::new())
+    };
+    let figure = maps([&recorded, &ours], titles, &world, in_the_world);
     Ok(Some(Made {
         figures: vec![(scenario, alt, figure)],
         words: words(
@@ -210,8 +188,8 @@ pub(super) fn mode8_goals() -> Result<Option<Made>, String> {
     ];
     mission(
         "mode8-goals",
-        "True ways of 20 robots to four goals",
-        [None, None],
+        "True paths of 20 robots to four goals",
+        None,
         &rows,
     )
 }
@@ -219,7 +197,7 @@ pub(super) fn mode8_goals() -> Result<Option<Made>, String> {
 pub(super) fn mode8_obstacles() -> Result<Option<Made>, String> {
     let rows = [
         row("time", "total_time_s", 1.0, "s", "73.6 s"),
-        row("way", "path_m", 1.0, "m", "4.16 m"),
+        row("path", "path_m", 1.0, "m", "4.16 m"),
         row("contacts", "contacts", 1.0, "", "0"),
         Row {
             least_is_worst: true,
@@ -228,8 +206,8 @@ pub(super) fn mode8_obstacles() -> Result<Option<Made>, String> {
     ];
     mission(
         "mode8-obstacles",
-        "True ways of 20 robots around a box and a block of two",
-        [Some([-0.4, 3.0]), Some([-1.6, 1.6])],
+        "True paths of 20 robots around a box and a block of two",
+        Some([[-0.4, 3.0], [-1.6, 1.6]]),
         &rows,
     )
 }
@@ -249,8 +227,8 @@ pub(super) fn mode8_lane() -> Result<Option<Made>, String> {
     ];
     mission(
         "mode8-lane",
-        "True ways of 20 robots along a lane of boxes",
-        [Some([-0.6, 2.8]), Some([-1.0, 1.4])],
+        "True paths of 20 robots along a lane of boxes",
+        Some([[-0.6, 2.8], [-1.0, 1.4]]),
         &rows,
     )
 }

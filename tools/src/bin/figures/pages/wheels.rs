@@ -2,52 +2,59 @@
 
 use super::*;
 
+/// Settling times of mode 5's steps, and its ripple.
+pub(super) const MODE_5: [Row; 5] = [
+    row(
+        "0 -> 60 rpm, within 3.2 rpm",
+        "step1.settling_s",
+        1.0,
+        "s",
+        "3.7 s",
+    ),
+    row("50 -> 100 rpm", "step3.settling_s", 1.0, "s", "1.8 s"),
+    row("0 -> -100 rpm", "step6.settling_s", 1.0, "s", "5.3 s"),
+    row("0 -> 40 rpm", "step9.settling_s", 1.0, "s", "5.5 s"),
+    row(
+        "ripple at 60 rpm",
+        "step1.ripple_rad_s",
+        RPM,
+        "rpm",
+        "0.9 to 2.1 rpm",
+    ),
+];
+
 pub(super) fn mode5() -> Result<Option<Made>, String> {
     let Some([baseline, ours]) = both("mode5", runs::BASELINE)? else {
         return Ok(None);
     };
-    let speed = || {
-        let mut curves = signal(&baseline, &ours, |sample, _| RPM * sample.wheel_rad_s[0]);
-        curves.insert(0, reference(&ours.setup, RPM));
-        curves
-    };
-    let mut charts = [
-        over_time("Mode 5: speed of the left wheel", "rpm", speed()),
-        over_time("The steps 0 -> 60 -> 50 rpm", "rpm", speed()),
-    ];
-    charts[0].legend = Legend::LowerLeft;
-    charts[1].legend = Legend::LowerRight;
-    charts[1].x_range = Some([0.0, 10.5]);
-    charts[1].y_range = Some([0.0, 75.0]);
-    // Only the visible part: otherwise the few points of a curve would all lie outside.
-    for curve in &mut charts[1].curves {
-        if let Curve::Seeds { runs, .. } = curve {
-            for points in runs {
-                points.retain(|(t_s, _)| *t_s < 10.5);
+    // Of a part only its own points are drawn: of all, too few would lie in it.
+    let speed = |until_s: f64| {
+        let median = |name, ink, runs: &Runs| {
+            let mut speeds = runs.over_time(|sample, _| RPM * sample.wheel_rad_s[0]);
+            for points in &mut speeds {
+                points.retain(|(t_s, _)| *t_s < until_s);
             }
-        }
-        if let Curve::Given { points, .. } = curve {
-            points.retain(|(t_s, _)| *t_s < 10.5);
-        }
-    }
-    let rows = [
-        row(
-            "0 -> 60 rpm, within 3.2 rpm",
-            "step1.settling_s",
-            1.0,
-            "s",
-            "3.7 s",
-        ),
-        row("50 -> 100 rpm", "step3.settling_s", 1.0, "s", "1.8 s"),
-        row("0 -> -100 rpm", "step6.settling_s", 1.0, "s", "5.3 s"),
-        row("0 -> 40 rpm", "step9.settling_s", 1.0, "s", "5.5 s"),
-        row(
-            "ripple at 60 rpm",
-            "step1.ripple_rad_s",
-            RPM,
-            "rpm",
-            "0.9 to 2.1 rpm",
-        ),
+            Curve::median(name, ink, &speeds)
+        };
+        let curves = vec![
+            reference(&ours.setup, RPM),
+            median(REPORT, BASELINE, &baseline),
+            median("ours", OURS, &ours),
+        ];
+        Panel::new("left wheel, rpm", curves)
+    };
+    let steps = Plot {
+        x_range: Some([0.0, 10.5]),
+        ..Plot::over_time(vec![speed(10.5).exactly(0.0, 75.0)])
+    };
+    let sheet = [
+        ("Mode 5", Plot::over_time(vec![speed(f64::INFINITY)])),
+        ("The steps 0 -> 60 -> 50 rpm", steps),
+    ];
+    let sheet = sheet.iter().fold(Sheet::new(1), |sheet, (title, plot)| {
+        sheet.with(title, plot.picture(Words::default(), WIDTH))
+    });
+    let more = [
         row("ripple at 100 rpm", "step3.ripple_rad_s", RPM, "rpm", ""),
         row(
             "time between two settings of the PWM",
@@ -61,9 +68,13 @@ pub(super) fn mode5() -> Result<Option<Made>, String> {
         figures: vec![(
             "mode5",
             "Speed of the left wheel over time: ours is there within a third of a second",
-            svg(&charts, 1, WIDE)?,
+            sheet.svg(),
         )],
-        words: words(&[(REPORT, &baseline), ("ours", &ours)], "mode5", &rows),
+        words: words(
+            &[(REPORT, &baseline), ("ours", &ours)],
+            "mode5",
+            &[&MODE_5[..], &more].concat(),
+        ),
     }))
 }
 
@@ -84,25 +95,14 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
             .map(|way| way.into_iter().map(in_cm).collect())
             .collect()
     };
-    let chart = Chart {
-        x: "way ahead, m",
-        legend: Legend::UpperLeft,
-        ..over_time(
-            "Mode 6: drift to the left of a straight line",
-            "cm",
-            vec![
-                Curve::Ways {
-                    name: REPORT,
-                    colour: BASELINE,
-                    runs: drift(&recorded),
-                },
-                Curve::Ways {
-                    name: "ours, calibrated",
-                    colour: OURS,
-                    runs: drift(&ours),
-                },
-            ],
-        )
+    let curves = vec![
+        Curve::each(REPORT, BASELINE, &drift(&recorded)),
+        Curve::each("ours, calibrated", OURS, &drift(&ours)),
+    ];
+    let plot = Plot {
+        x: "way ahead, m".into(),
+        x_range: None,
+        panels: vec![Panel::new("drift to the left, cm", curves)],
     };
     let rows = [
         row(
@@ -124,7 +124,7 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
         figures: vec![(
             "mode6",
             "Sideways drift over the way ahead: ours stays within four centimetres",
-            svg(&[chart], 1, WIDE)?,
+            figure("Mode 6: drift from a straight line", &plot),
         )],
         words: words(
             &[

@@ -1,34 +1,62 @@
 //! Maps: paths, walls and boxes in metres, both axes to the same scale.
 
-use super::{Curve, Frame, LEFT, Points, RIGHT, WIDTH, legend, wrap};
-use crate::text::{Language, escape, put};
+use crate::WIDTH;
+use crate::curve::{Curve, Points};
+use crate::frame::{Frame, LEFT, RIGHT, legend};
+use crate::sheet::Picture;
+use crate::text::{Words, escape, put};
 
 /// Something that stands on the floor of a map.
 #[derive(Clone, Debug)]
-pub(crate) struct Shape {
-    pub(crate) corners: Points,
+pub struct Shape {
+    /// In order \[m\].
+    pub corners: Points,
     /// A body, not a line.
-    pub(crate) filled: bool,
+    pub filled: bool,
 }
 
 /// A map in metres: a metre is as long in x as in y.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Map {
-    pub(crate) x: String,
-    pub(crate) y: String,
-    pub(crate) shapes: Vec<Shape>,
-    pub(crate) curves: Vec<Curve>,
+pub struct Map {
+    /// What the axis shows, with its unit.
+    pub x: String,
+    /// The same of the other axis.
+    pub y: String,
+    /// What stands there, below the curves.
+    pub shapes: Vec<Shape>,
+    /// The trajectories.
+    pub curves: Vec<Curve>,
     /// Places with a name.
-    pub(crate) marks: Vec<(f64, f64, String)>,
+    pub marks: Vec<(f64, f64, String)>,
     /// What must be visible; by default everything.
-    pub(crate) range: Option<[[f64; 2]; 2]>,
+    pub range: Option<[[f64; 2]; 2]>,
 }
 
 impl Map {
-    /// The picture.
-    pub(crate) fn svg(&self, language: Language) -> String {
+    /// Walls, boxes and trajectories in the world.
+    #[must_use]
+    pub fn of(shapes: Vec<Shape>, curves: Vec<Curve>) -> Self {
+        Self {
+            x: "x, m".into(),
+            y: "y, m".into(),
+            shapes,
+            curves,
+            ..Self::default()
+        }
+    }
+
+    /// The picture, inline in a page.
+    #[must_use]
+    pub fn svg<'a>(&self, words: impl Into<Words<'a>>) -> String {
+        self.picture(words, WIDTH).inline()
+    }
+
+    /// The same in a width \[px\], for a sheet.
+    #[must_use]
+    pub fn picture<'a>(&self, words: impl Into<Words<'a>>, width: f64) -> Picture {
+        let (words, whole) = (words.into(), width);
         let [x_all, y_all] = self.range.unwrap_or_else(|| self.all());
-        let width = WIDTH - LEFT - RIGHT;
+        let width = whole - LEFT - RIGHT;
         // As large as the page is wide, unless that is higher than a screen.
         let height = (width * (y_all[1] - y_all[0]) / (x_all[1] - x_all[0])).clamp(150.0, 430.0);
         let metre = (width / (x_all[1] - x_all[0])).min(height / (y_all[1] - y_all[0]));
@@ -37,7 +65,7 @@ impl Map {
             [from - more, to + more]
         };
         let mut body = String::new();
-        let top = 4.0 + legend(&mut body, &self.curves, LEFT, 4.0);
+        let top = 4.0 + legend(&mut body, &self.curves, [LEFT, whole], 4.0);
         let frame = Frame {
             x: LEFT,
             y: top,
@@ -46,7 +74,7 @@ impl Map {
             x_range: widen(x_all, width),
             y_range: widen(y_all, height),
         };
-        frame.axes(&mut body, language, &[], true);
+        frame.axes(&mut body, words, &[], true);
         frame.inside(&mut body, |svg| {
             for shape in &self.shapes {
                 let corners = shape.corners.iter().map(|corner| frame.place(*corner));
@@ -78,18 +106,18 @@ impl Map {
                 escape(&self.x)
             ),
         );
-        wrap(&body, bottom + 42.0)
+        Picture::new(body, whole, bottom + 42.0)
     }
 
     fn all(&self) -> [[f64; 2]; 2] {
-        let curves = self.curves.iter().flat_map(|curve| &curve.points);
-        let shapes = self.shapes.iter().flat_map(|shape| &shape.corners);
+        let curves = self.curves.iter().flat_map(Curve::extent);
+        let shapes = self.shapes.iter().flat_map(|shape| &shape.corners).copied();
         let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for (x, y) in curves
             .chain(shapes)
             .filter(|(x, y)| x.is_finite() && y.is_finite())
         {
-            for (axis, value) in range.iter_mut().zip([*x, *y]) {
+            for (axis, value) in range.iter_mut().zip([x, y]) {
                 *axis = [axis[0].min(value), axis[1].max(value)];
             }
         }
