@@ -105,32 +105,11 @@ impl<'a> Beside<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::params::ParamId;
-    use crate::types::AgedRange;
-
-    fn params(rig: Rig) -> Params {
-        let mut params = Params::default();
-        params.set(ParamId::Rig, f32::from(rig as u8)).unwrap();
-        params
-    }
-
-    /// Ranges of the sonars left, right and front; 0 is nothing in sight.
-    fn seeing(ranges_m: [f32; 3]) -> Estimate {
-        let mut estimate = Estimate::default();
-        for (slot, range_m) in estimate.ranges.iter_mut().zip(ranges_m) {
-            let range = if range_m > 0.0 {
-                Range::Valid(range_m)
-            } else {
-                Range::Clear
-            };
-            *slot = AgedRange::fresh(range);
-        }
-        estimate
-    }
+    use crate::fixtures::{params, ranges_m};
 
     #[test]
     fn a_pair_looks_to_its_own_side_and_the_final_rig_to_the_nearer_wall() {
-        let side = |rig, ranges_m| Beside::new(&params(rig)).side(&seeing(ranges_m), 0.5);
+        let side = |rig, ranges_m| Beside::new(&params(rig)).side(&ranges_m(ranges_m), 0.5);
         assert_eq!(side(Rig::SidePairLeft, [0.5, 0.5, 0.0]), Some(Side::Left));
         assert_eq!(side(Rig::SidePairRight, [0.5, 0.5, 0.0]), Some(Side::Right));
         assert_eq!(side(Rig::SidePairRight, [0.5, 0.0, 0.0]), None);
@@ -155,13 +134,14 @@ mod tests {
 
     #[test]
     fn it_is_ready_with_a_wall_in_reach_and_on_the_final_rig_with_eyes_ahead() {
-        let ready =
-            |rig, ranges_m| Beside::new(&params(rig)).is_ready(&seeing(ranges_m), 0.5, (0.1, 1.5));
+        let ready = |rig, ranges_m| {
+            Beside::new(&params(rig)).is_ready(&ranges_m(ranges_m), 0.5, (0.1, 1.5))
+        };
         assert!(ready(Rig::SidePairLeft, [0.5, 0.5, 0.0]));
         assert!(!ready(Rig::SidePairLeft, [0.5, 0.05, 0.0]));
         assert!(!ready(Rig::SidePairLeft, [1.7, 1.7, 0.0]));
         assert!(ready(Rig::Final, [0.5, 0.0, 0.0]));
-        let mut blind = seeing([0.5, 0.0, 0.0]);
+        let mut blind = ranges_m([0.5, 0.0, 0.0]);
         blind.ranges[2].range = Range::Faulty;
         assert!(!Beside::new(&params(Rig::Final)).is_ready(&blind, 0.5, (0.1, 1.5)));
     }

@@ -13,6 +13,8 @@ pub mod ahead;
 pub mod beside;
 pub mod drive;
 pub mod estimate;
+#[cfg(test)]
+mod fixtures;
 pub mod math;
 pub mod mode;
 pub mod motion;

@@ -33,6 +33,8 @@ pub struct Description {
     pub parameters: &'static [Group],
     /// The plots to show, in this order.
     pub plots: &'static [Plot],
+    /// The metrics of its runs, besides those of every run.
+    pub metrics: &'static [MetricGroup],
 }
 
 /// A state of a mode.
@@ -172,6 +174,35 @@ impl Plot {
             Plot::Position => "position",
         }
     }
+}
+
+/// Metrics that belong together; `rumbo-experiment` computes them from ground truth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MetricGroup {
+    /// Each step of a distance to a wall ahead.
+    DistanceSteps,
+    /// Each step of the wheels' speed.
+    SpeedSteps,
+    /// Distance and angle to a wall ahead.
+    Alignment,
+    /// Distance to a wall on one side.
+    Wall,
+    /// The path of a basic movement.
+    Movement,
+    /// The duty at which each wheel starts to turn.
+    DeadZones,
+    /// Speed over duty.
+    StaticCurve,
+    /// Drift from a straight line.
+    Drift,
+    /// Errors along a route.
+    Route,
+    /// Goals reached, time and path length.
+    Goals,
+    /// The way through a random world, beside the shortest.
+    Journey,
+    /// The straights of a lane.
+    Lane,
 }
 
 /// The PID of each wheel.

@@ -20,7 +20,7 @@
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
 use super::front_distance::{self, FrontDistance};
-use super::{Action, Description, Group, Mode, Plot, SetpointError};
+use super::{Action, Description, Group, MetricGroup, Mode, Plot, SetpointError};
 use crate::ahead::{Ahead, AheadState};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
@@ -58,6 +58,7 @@ pub const DESCRIPTION: Description = Description {
         WHEEL_RAMPS,
     ],
     plots: &[Plot::Distance, Plot::Heading, Plot::Wheels],
+    metrics: &[MetricGroup::Alignment],
 };
 
 states! {
@@ -249,42 +250,12 @@ impl<'a> Mode<'a> for FrontAlign<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::types::{AgedRange, Range};
-
-    fn params(rig: Rig) -> Params {
-        let mut params = Params::default();
-        params.set(ParamId::Rig, f32::from(rig as u8)).unwrap();
-        params
-    }
-
-    /// Ranges of the sonars left, right and front; 0 is nothing in sight.
-    fn seeing(ranges_m: [f32; 3]) -> Estimate {
-        let mut estimate = Estimate::default();
-        for (slot, range_m) in estimate.ranges.iter_mut().zip(ranges_m) {
-            let range = if range_m > 0.0 {
-                Range::Valid(range_m)
-            } else {
-                Range::Clear
-            };
-            *slot = AgedRange::fresh(range);
-        }
-        estimate
-    }
+    use crate::fixtures::{params, ranges_m, twist};
 
     /// A tick of the pair.
     fn step(state: &mut State, left_m: f32, right_m: f32) -> Result<Action, Fault> {
-        let estimate = &seeing([left_m, right_m, 0.0]);
+        let estimate = &ranges_m([left_m, right_m, 0.0]);
         FrontAlign::new(&params(Rig::FrontPair), &0.3).step(state, estimate)
-    }
-
-    fn twist(action: &Action) -> (f32, f32) {
-        match action.drive {
-            Drive::Twist {
-                forward_m_s,
-                yaw_rad_s,
-            } => (forward_m_s, yaw_rad_s),
-            _ => (0.0, 0.0),
-        }
     }
 
     #[test]
@@ -292,13 +263,13 @@ mod tests {
         for (middle_m, sign) in [(1.0, 1.0), (0.2, -1.0)] {
             let left_nearer =
                 step(&mut State::default(), middle_m - 0.01, middle_m + 0.01).unwrap();
-            let (forward_m_s, yaw_rad_s) = twist(&left_nearer);
+            let (forward_m_s, yaw_rad_s) = twist(left_nearer.drive);
             assert!(
                 sign * forward_m_s > 0.1 && yaw_rad_s > 0.1,
                 "{left_nearer:?}"
             );
             let square = step(&mut State::default(), middle_m, middle_m).unwrap();
-            assert_eq!(twist(&square).1, 0.0);
+            assert_eq!(twist(square.drive).1, 0.0);
         }
     }
 
@@ -313,7 +284,7 @@ mod tests {
         let turning = step(&mut state, askew.0 - askew.1, askew.0 + askew.1).unwrap();
         assert_eq!(turning.state, Phase::Turn as u8);
         let turning = step(&mut state, askew.0 - askew.1, askew.0 + askew.1).unwrap();
-        let (forward_m_s, yaw_rad_s) = twist(&turning);
+        let (forward_m_s, yaw_rad_s) = twist(turning.drive);
         assert!(forward_m_s == 0.0 && yaw_rad_s > 0.3, "{turning:?}");
         let mut square = State {
             phase: Phase::Settle,
@@ -326,9 +297,9 @@ mod tests {
     #[test]
     fn what_stands_nearer_than_the_wall_is_not_driven_at() {
         let mut state = State::default();
-        assert!(twist(&step(&mut state, 1.0, 1.0).unwrap()).0 > 0.3);
+        assert!(twist(step(&mut state, 1.0, 1.0).unwrap().drive).0 > 0.3);
         for left_m in [0.28, 0.2, 0.05] {
-            let (forward_m_s, _) = twist(&step(&mut state, left_m, 1.0).unwrap());
+            let (forward_m_s, _) = twist(step(&mut state, left_m, 1.0).unwrap().drive);
             assert!(forward_m_s <= 0.1, "{forward_m_s} at {left_m}");
         }
         assert_eq!(step(&mut state, 0.2, 1.0).unwrap().drive, Drive::Release);
@@ -336,7 +307,7 @@ mod tests {
 
     #[test]
     fn it_is_ready_only_when_every_sonar_it_needs_sees_the_wall() {
-        let ready = |rig, ranges_m| Ahead::new(&params(rig)).is_ready(&seeing(ranges_m));
+        let ready = |rig, ranges_m| Ahead::new(&params(rig)).is_ready(&ranges_m(ranges_m));
         assert!(ready(Rig::FrontPair, [1.0, 1.0, 0.0]));
         assert!(!ready(Rig::FrontPair, [1.0, 0.0, 1.0]));
         assert!(ready(Rig::Final, [0.0, 0.0, 1.0]));
@@ -345,13 +316,13 @@ mod tests {
 
     #[test]
     fn it_never_drives_on_a_stale_lost_or_silent_sonar() {
-        let mut old = seeing([1.0, 1.0, 0.0]);
+        let mut old = ranges_m([1.0, 1.0, 0.0]);
         old.ranges[1].age_ticks = 60;
-        let mut silent = seeing([1.0, 1.0, 0.0]);
+        let mut silent = ranges_m([1.0, 1.0, 0.0]);
         silent.ranges[0].range = Range::Faulty;
         for (estimate, fault) in [
             (old, Fault::SonarStale),
-            (seeing([1.0, 0.0, 0.0]), Fault::WallLost),
+            (ranges_m([1.0, 0.0, 0.0]), Fault::WallLost),
             (silent, Fault::SonarFaulty),
         ] {
             let stopped = FrontAlign::new(&params(Rig::FrontPair), &0.3)
@@ -364,7 +335,7 @@ mod tests {
     fn with_one_sonar_on_the_servo_it_first_stands_and_looks_aside() {
         let params = params(Rig::Final);
         let (mut state, mode) = (State::default(), FrontAlign::new(&params, &0.3));
-        let estimate = &seeing([0.0, 0.0, 1.0]);
+        let estimate = &ranges_m([0.0, 0.0, 1.0]);
         let first = mode.step(&mut state, estimate).unwrap();
         assert_eq!((first.drive, first.state), (Drive::Release, 0));
         assert!(first.look.servo.0.abs() > 0.5, "{:?}", first.look);

@@ -20,8 +20,8 @@
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
-    Action, Description, Group, Look, MAX_DISTANCE_M, MIN_DISTANCE_M, Mode, Plot, Reference,
-    ReferenceKind, SetpointError,
+    Action, Description, Group, Look, MAX_DISTANCE_M, MIN_DISTANCE_M, MetricGroup, Mode, Plot,
+    Reference, ReferenceKind, SetpointError,
 };
 use crate::ahead::drivable_m;
 use crate::estimate::Estimate;
@@ -50,6 +50,7 @@ pub const DESCRIPTION: Description = Description {
         WHEEL_RAMPS,
     ],
     plots: &[Plot::Distance, Plot::Wheels, Plot::Pwm],
+    metrics: &[MetricGroup::DistanceSteps],
 };
 
 /// Of the distance, in mode 2 too.

@@ -7,7 +7,7 @@
 //! The report moves open loop only; by speed the two wheels keep their ratio on any floor.
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
-use super::{Action, Description, Group, Level, Mode, Movement, Plot, Takes};
+use super::{Action, Description, Group, Level, MetricGroup, Mode, Movement, Plot, Takes};
 use crate::estimate::Estimate;
 use crate::params::{ParamId, Params};
 use crate::rig::Rigs;
@@ -31,6 +31,11 @@ pub const DESCRIPTION: Description = Description {
         WHEEL_RAMPS,
     ],
     plots: &[Plot::Wheels, Plot::Pwm, Plot::Heading],
+    metrics: &[
+        MetricGroup::Movement,
+        MetricGroup::DeadZones,
+        MetricGroup::StaticCurve,
+    ],
 };
 
 states! {

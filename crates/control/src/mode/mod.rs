@@ -22,7 +22,7 @@ mod movement;
 
 pub use active::{ActiveMode, ModeId};
 pub use description::{
-    Description, Group, Plot, Reference, ReferenceKind, StateDescription, Takes, Way,
+    Description, Group, MetricGroup, Plot, Reference, ReferenceKind, StateDescription, Takes, Way,
 };
 pub use movement::{Level, Movement};
 

@@ -17,7 +17,7 @@
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
-    Action, Description, Group, MAX_WHEEL_RAD_S, Mode, Plot, Reference, ReferenceKind,
+    Action, Description, Group, MAX_WHEEL_RAD_S, MetricGroup, Mode, Plot, Reference, ReferenceKind,
     SetpointError,
 };
 use crate::estimate::Estimate;
@@ -49,6 +49,7 @@ pub const DESCRIPTION: Description = Description {
         WHEEL_RAMPS,
     ],
     plots: &[Plot::Wheels, Plot::Heading, Plot::Position],
+    metrics: &[MetricGroup::Drift],
 };
 
 /// Of both wheels; 40 rpm by default.

@@ -24,8 +24,8 @@
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
-    Action, DEFAULT_WALL_M, Description, Group, MAX_WALL_M, MIN_WALL_M, Mode, Plot, Reference,
-    ReferenceKind, SetpointError,
+    Action, DEFAULT_WALL_M, Description, Group, MAX_WALL_M, MIN_WALL_M, MetricGroup, Mode, Plot,
+    Reference, ReferenceKind, SetpointError,
 };
 use crate::beside::Beside;
 use crate::estimate::Estimate;
@@ -68,6 +68,7 @@ pub const DESCRIPTION: Description = Description {
         WHEEL_RAMPS,
     ],
     plots: &[Plot::Distance, Plot::Heading, Plot::Wheels],
+    metrics: &[MetricGroup::Wall],
 };
 
 /// Of the distance.
@@ -374,24 +375,14 @@ impl<'a> Mode<'a> for WallFollow<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::{params, ranges};
     use crate::types::AgedRange;
 
     const PAIRS: [Rig; 2] = [Rig::SidePairLeft, Rig::SidePairRight];
 
-    fn params(rig: Rig) -> Params {
-        let mut params = Params::default();
-        params.set(ParamId::Rig, f32::from(rig as u8)).unwrap();
-        params
-    }
-
     /// Ranges of the sonars left, right and front to walls this far away.
     fn seeing(left_m: f32, right_m: f32, ahead: Range) -> Estimate {
-        let mut estimate = Estimate::default();
-        let ranges = [Range::Valid(left_m), Range::Valid(right_m), ahead];
-        for (slot, range) in estimate.ranges.iter_mut().zip(ranges) {
-            *slot = AgedRange::fresh(range);
-        }
-        estimate
+        ranges([Range::Valid(left_m), Range::Valid(right_m), ahead])
     }
 
     fn first(mode: &WallFollow, estimate: &Estimate) -> Result<(f32, f32), Fault> {

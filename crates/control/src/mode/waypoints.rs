@@ -18,7 +18,7 @@
 mod route;
 
 use super::description::{FEEDFORWARD, LINES, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
-use super::{Action, Description, Group, Mode, Plot, Reference, ReferenceKind, Takes};
+use super::{Action, Description, Group, MetricGroup, Mode, Plot, Reference, ReferenceKind, Takes};
 use crate::estimate::Estimate;
 use crate::math::wrap_angle;
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
@@ -58,6 +58,7 @@ pub const DESCRIPTION: Description = Description {
         WHEEL_RAMPS,
     ],
     plots: &[Plot::Position, Plot::Heading, Plot::Wheels],
+    metrics: &[MetricGroup::Route],
 };
 
 /// Each coordinate of a waypoint or a goal, in mode 8 too.

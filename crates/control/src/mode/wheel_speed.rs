@@ -10,7 +10,8 @@
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
-    Action, Description, MAX_WHEEL_RAD_S, Mode, Plot, Reference, ReferenceKind, SetpointError,
+    Action, Description, MAX_WHEEL_RAD_S, MetricGroup, Mode, Plot, Reference, ReferenceKind,
+    SetpointError,
 };
 use crate::estimate::Estimate;
 use crate::params::Params;
@@ -31,6 +32,7 @@ pub const DESCRIPTION: Description = Description {
     rigs: Rigs::ANY,
     parameters: &[SPEED_LOOPS, FEEDFORWARD, WHEEL_RAMPS],
     plots: &[Plot::Wheels, Plot::Pwm],
+    metrics: &[MetricGroup::SpeedSteps],
 };
 
 /// Of each wheel; 60 rpm by default.

@@ -181,22 +181,8 @@ impl<'a> Line<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::{at, twist};
     use core::f32::consts::FRAC_PI_2;
-
-    fn at(x_m: f32, y_m: f32, heading_rad: f32, forward_m_s: f32) -> Estimate {
-        let mut estimate = Estimate {
-            pose: Pose {
-                x_m,
-                y_m,
-                heading_rad,
-            },
-            forward_m_s,
-            ..Estimate::default()
-        };
-        estimate.motion.left.standing = forward_m_s == 0.0;
-        estimate.motion.right.standing = forward_m_s == 0.0;
-        estimate
-    }
 
     const NORTH: ((f32, f32), (f32, f32)) = ((1.0, 0.0), (1.0, 1.0));
 
@@ -205,24 +191,14 @@ mod tests {
         Line::new(&Params::default()).step(state, estimate, &segment, f32::MAX)
     }
 
-    fn twist(step: LineStep) -> (f32, f32) {
-        match step.drive {
-            Drive::Twist {
-                forward_m_s,
-                yaw_rad_s,
-            } => (forward_m_s, yaw_rad_s),
-            _ => (0.0, 0.0),
-        }
-    }
-
     #[test]
     fn left_of_the_line_it_steers_right() {
         let place = Segment::between(NORTH.0, NORTH.1).place(0.95, 0.4);
         assert!((place.0 - 0.4).abs() < 1e-6 && (place.1 - 0.05).abs() < 1e-6);
         let mut state = LineState::default();
-        let (forward, yaw) = twist(step(&mut state, &at(0.95, 0.4, FRAC_PI_2, 0.4)));
+        let (forward, yaw) = twist(step(&mut state, &at(0.95, 0.4, FRAC_PI_2, 0.4)).drive);
         assert!(forward > 0.0 && yaw < 0.0, "{forward} {yaw}");
-        let (_, yaw) = twist(step(&mut state, &at(1.05, 0.4, FRAC_PI_2, 0.4)));
+        let (_, yaw) = twist(step(&mut state, &at(1.05, 0.4, FRAC_PI_2, 0.4)).drive);
         assert!(yaw > 0.0, "{yaw}");
     }
 
@@ -233,7 +209,7 @@ mod tests {
         let mut state = LineState::default();
         let mut last_m_s = 0.0;
         for _ in 0..100 {
-            let (forward, yaw) = twist(step(&mut state, &at(0.8, 0.1, 0.5, last_m_s)));
+            let (forward, yaw) = twist(step(&mut state, &at(0.8, 0.1, 0.5, last_m_s)).drive);
             assert!(forward - last_m_s <= CREEP_M_S + 1e-6);
             assert!(abs(yaw) < forward * line.per_half_base());
             last_m_s = forward;
@@ -248,7 +224,7 @@ mod tests {
         assert_eq!((coasting.drive, coasting.done), (Drive::Release, false));
         assert!(step(&mut state.clone(), &at(1.0, 0.999, FRAC_PI_2, 0.0)).done);
         assert!(step(&mut state.clone(), &at(1.0, 1.02, FRAC_PI_2, 0.0)).done);
-        let (forward, _) = twist(step(&mut state, &at(1.0, 0.98, FRAC_PI_2, 0.0)));
+        let (forward, _) = twist(step(&mut state, &at(1.0, 0.98, FRAC_PI_2, 0.0)).drive);
         assert!(forward > 0.0);
     }
 
@@ -261,7 +237,7 @@ mod tests {
         let estimate = at(1.0, 0.2, FRAC_PI_2, 0.1);
         for _ in 0..100 {
             let slow = line.step(&mut state, &estimate, &segment, 0.1);
-            assert!(twist(slow).0 <= 0.1);
+            assert!(twist(slow.drive).0 <= 0.1);
         }
         let stopped = line.step(&mut state, &estimate, &segment, 0.0);
         assert_eq!(stopped.drive, Drive::Release);

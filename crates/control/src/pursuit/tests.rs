@@ -1,19 +1,5 @@
 use super::*;
-
-fn at(x_m: f32, y_m: f32, heading_rad: f32, forward_m_s: f32) -> Estimate {
-    let mut estimate = Estimate {
-        pose: Pose {
-            x_m,
-            y_m,
-            heading_rad,
-        },
-        forward_m_s,
-        ..Estimate::default()
-    };
-    estimate.motion.left.standing = forward_m_s == 0.0;
-    estimate.motion.right.standing = forward_m_s == 0.0;
-    estimate
-}
+use crate::fixtures::{at, twist};
 
 fn step(start: Point, points: &[Point], estimate: &Estimate) -> PursuitStep {
     let mut state = PursuitState::from(start);
@@ -26,23 +12,13 @@ fn step_on(state: &mut PursuitState, points: &[Point], estimate: &Estimate) -> P
     })
 }
 
-fn twist(step: PursuitStep) -> (f32, f32) {
-    match step.drive {
-        Drive::Twist {
-            forward_m_s,
-            yaw_rad_s,
-        } => (forward_m_s, yaw_rad_s),
-        _ => (0.0, 0.0),
-    }
-}
-
 #[test]
 fn left_of_the_line_it_steers_right_and_on_it_straight() {
     let path = [(2.0, 0.0)];
     let beside = step((0.0, 0.0), &path, &at(1.0, 0.05, 0.0, 0.3));
     assert!((beside.cross_m - 0.05).abs() < 1e-6);
-    assert!(twist(beside).1 < 0.0 && beside.heading_ref_rad < 0.0);
-    let (_, yaw) = twist(step((0.0, 0.0), &path, &at(1.0, 0.0, 0.0, 0.3)));
+    assert!(twist(beside.drive).1 < 0.0 && beside.heading_ref_rad < 0.0);
+    let (_, yaw) = twist(step((0.0, 0.0), &path, &at(1.0, 0.0, 0.0, 0.3)).drive);
     assert!(yaw.abs() < 1e-6);
 }
 
@@ -53,14 +29,14 @@ fn on_a_circle_it_steers_with_the_circles_curvature() {
         let (sin, cos) = crate::math::sin_cos(f32::from(i as u8 + 1) * 0.105);
         (0.5 * sin, 0.5 - 0.5 * cos)
     });
-    let (forward, yaw) = twist(step((0.0, 0.0), &points, &at(0.0, 0.0, 0.0, 0.3)));
+    let (forward, yaw) = twist(step((0.0, 0.0), &points, &at(0.0, 0.0, 0.0, 0.3)).drive);
     assert!((yaw / forward - 2.0).abs() < 0.1, "{}", yaw / forward);
 }
 
 #[test]
 fn the_last_piece_is_prolonged_so_the_end_pulls_to_no_side() {
     let close = step((0.0, 0.0), &[(1.0, 0.0)], &at(0.97, 0.01, 0.0, 0.05));
-    let (forward, yaw) = twist(close);
+    let (forward, yaw) = twist(close.drive);
     assert!(forward > 0.0 && yaw.abs() < 0.2, "{yaw}");
 }
 
@@ -78,7 +54,7 @@ fn it_slows_down_in_bends_and_before_the_end_whatever_the_lookahead() {
     let fast = |estimate, points: &[Point]| {
         let mut state = PursuitState::from((0.0, 0.0));
         (0..200)
-            .map(|_| twist(step_on(&mut state, points, &estimate)).0)
+            .map(|_| twist(step_on(&mut state, points, &estimate).drive).0)
             .last()
             .unwrap_or_default()
     };

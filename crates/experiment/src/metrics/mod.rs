@@ -1,6 +1,6 @@
 //! Metrics of a run: from ground truth and the signals at the pins, never from the robot's own estimates.
 //!
-//! Some are given for every run, some depend on the mode; each step of a reference has its own group, numbered in the
+//! Some are given for every run, some by the mode's description; each step of a reference has its own group, numbered in the
 //! order of the scenario: `step1.settling_s`. Names end in their unit; docs/scenarios.md lists them all.
 
 mod align;
@@ -16,7 +16,7 @@ mod straight;
 mod wall;
 
 use crate::files::Setup;
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::MetricGroup;
 use rumbo_sim::Sim;
 use rumbo_sim::trace::Trace;
 use rumbo_wire::FromRobot;
@@ -53,22 +53,21 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
 }
 
 fn of_mode(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut Metrics) {
-    match setup.scenario.mode {
-        ModeId::FrontDistance => step::distance_steps(setup, sim, trace, metrics),
-        ModeId::WheelSpeed => step::speed_steps(setup, trace, metrics),
-        ModeId::Manual => {
-            path::movement(setup, trace, metrics);
-            start::dead_zones(trace, metrics);
-            curve::curve(setup, trace, metrics);
+    let contact_m_s = sim.worst_contact_m_s();
+    for group in setup.scenario.mode.description().metrics {
+        match group {
+            MetricGroup::DistanceSteps => step::distance_steps(setup, sim, trace, metrics),
+            MetricGroup::SpeedSteps => step::speed_steps(setup, trace, metrics),
+            MetricGroup::Alignment => align::aligning(setup, sim, trace, metrics),
+            MetricGroup::Wall => wall::following(setup, sim, trace, metrics),
+            MetricGroup::Movement => path::movement(setup, trace, metrics),
+            MetricGroup::DeadZones => start::dead_zones(trace, metrics),
+            MetricGroup::StaticCurve => curve::curve(setup, trace, metrics),
+            MetricGroup::Drift => straight::drift(trace, metrics),
+            MetricGroup::Route => route::route(setup, trace, metrics),
+            MetricGroup::Goals => mission::mission(setup, contact_m_s, trace, metrics),
+            MetricGroup::Journey => journey::journey(setup, contact_m_s, trace, metrics),
+            MetricGroup::Lane => lane::lane(setup, trace, metrics),
         }
-        ModeId::WallHold | ModeId::WallFollow => wall::following(setup, sim, trace, metrics),
-        ModeId::FrontAlign => align::aligning(setup, sim, trace, metrics),
-        ModeId::Mission => {
-            journey::journey(setup, sim.worst_contact_m_s(), trace, metrics);
-            mission::mission(setup, sim.worst_contact_m_s(), trace, metrics);
-            lane::lane(setup, trace, metrics);
-        }
-        ModeId::Waypoints => route::route(setup, trace, metrics),
-        ModeId::StraightLine => straight::drift(trace, metrics),
     }
 }

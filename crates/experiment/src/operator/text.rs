@@ -2,7 +2,7 @@
 
 use super::goal::{GoalWatch, RouteWatch};
 use crate::files::Setup;
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::{ModeId, ReferenceKind};
 use rumbo_plant::contact;
 use rumbo_sim::Sim;
 use rumbo_sim::trace::TimedMessage;
@@ -92,7 +92,8 @@ impl Terminal {
 
     /// Records a goal reached: in mode 8 from the state, in mode 7 from the pose, otherwise from ground truth.
     pub(super) fn watch(&mut self, sim: &Sim, received: &mut Vec<TimedMessage>) -> bool {
-        if !matches!(self.mode, ModeId::Mission | ModeId::Waypoints) {
+        let reference = self.mode.description().reference;
+        if reference.is_none_or(|reference| reference.kind != ReferenceKind::Goal) {
             return false;
         }
         let truth = sim.truth();

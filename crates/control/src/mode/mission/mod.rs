@@ -24,7 +24,7 @@ mod proof;
 mod watch;
 
 use super::description::{FEEDFORWARD, LINES, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
-use super::{Action, Description, Group, Look, Mode, Plot, Takes, waypoints};
+use super::{Action, Description, Group, Look, MetricGroup, Mode, Plot, Takes, waypoints};
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sqrt};
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
@@ -73,6 +73,7 @@ pub const DESCRIPTION: Description = Description {
         WHEEL_RAMPS,
     ],
     plots: &[Plot::Position, Plot::Heading, Plot::Distance, Plot::Wheels],
+    metrics: &[MetricGroup::Journey, MetricGroup::Goals, MetricGroup::Lane],
 };
 
 states! {
