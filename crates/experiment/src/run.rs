@@ -229,7 +229,7 @@ pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
     })
 }
 
-/// Runs a scenario once, driven by the caller; the run is judged as it is when the caller returns.
+/// Runs a scenario once, driven by the caller; the run is judged when the caller returns.
 ///
 /// # Errors
 /// As [`run`], or the caller's.

@@ -9,7 +9,7 @@ pub const LONGEST_TEXT: u64 = 1 << 20;
 /// Longest CSV: half a day of one robot \[bytes\].
 pub const LONGEST_RECORDING: u64 = 64 << 20;
 
-/// Reads a file of at most so many bytes.
+/// Reads a file of at most this many bytes.
 ///
 /// # Errors
 /// What the system says, or that it is longer.
@@ -23,10 +23,10 @@ pub fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The same of a text.
+/// The same for a text.
 ///
 /// # Errors
-/// As [`read_at_most`], or that it is no text.
+/// As [`read_at_most`], or that it is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String> {
     let bytes = read_at_most(path, LONGEST_TEXT)?;
     String::from_utf8(bytes).map_err(|_| Error::new(ErrorKind::InvalidData, "no text in UTF-8"))

@@ -172,7 +172,7 @@ impl Mark {
             match result {
                 Ok(result) => {
                     once(&mut mark.ended, result.ended.iter());
-                    // Oddities of a program that drives are not reported.
+                    // Notes about a program that drives are not reported.
                     if !result.trace.drove() {
                         once(&mut mark.notes, result.notes.iter());
                     }

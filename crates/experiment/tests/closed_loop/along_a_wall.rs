@@ -1,6 +1,6 @@
 //! Modes 3 and 4: requirements along a wall, at its end, before a corner, and with a sonar that fails.
 
-use crate::{Person, seeds, setup, twenty, worst};
+use crate::{Person, fault, seeds, setup, twenty, worst};
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Fault, SonarId};
 use rumbo_experiment::files::Setup;
@@ -9,21 +9,7 @@ use rumbo_plant::world::Wall;
 use rumbo_sim::Sim;
 use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
 use rumbo_wire::text::Row;
-use rumbo_wire::{Command, EventKind, FromRobot};
-
-/// The fault that a run reported first.
-fn fault(run: &RunResult) -> Option<Fault> {
-    run.trace
-        .messages
-        .iter()
-        .find_map(|message| match message.what {
-            FromRobot::Event(event) => match event.kind {
-                EventKind::Faulted(fault) => Some(fault),
-                _ => None,
-            },
-            _ => None,
-        })
-}
+use rumbo_wire::{Command, FromRobot};
 
 /// A scenario in a world of these walls, each from one point to another.
 fn between(scenario: &str, walls_m: &[[[f64; 2]; 2]]) -> Setup {

@@ -1,27 +1,12 @@
 //! Modes 1 and 2: requirements before a wall, on each rig, and with a sonar that fails.
 
-use crate::{Person, seeds, setup, twenty, worst};
+use crate::{Person, fault, seeds, setup, twenty, worst};
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Fault, SonarId};
 use rumbo_experiment::files::Setup;
-use rumbo_experiment::run::RunResult;
 use rumbo_plant::world::Block;
 use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
-use rumbo_wire::{Command, EventKind, FromRobot, Message, ToRobot};
-
-/// The fault that a run reported first.
-fn fault(run: &RunResult) -> Option<Fault> {
-    run.trace
-        .messages
-        .iter()
-        .find_map(|message| match message.what {
-            FromRobot::Event(event) => match event.kind {
-                EventKind::Faulted(fault) => Some(fault),
-                _ => None,
-            },
-            _ => None,
-        })
-}
+use rumbo_wire::{Command, FromRobot, Message, ToRobot};
 
 const TWO_DEGREES: f64 = 0.0349;
 

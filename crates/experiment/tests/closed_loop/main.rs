@@ -15,12 +15,13 @@ mod odometry;
 mod sonars;
 mod states;
 
+use rumbo_control::Fault;
 use rumbo_experiment::files::FileError;
 use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_experiment::run::{RunResult, run, run_all};
 use rumbo_sim::Sim;
 use rumbo_sim::trace::Trace;
-use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, RobotTime, ToRobot};
+use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
 
 /// A revolution per minute in rad/s.
 const RPM: f64 = std::f64::consts::TAU / 60.0;
@@ -53,6 +54,20 @@ fn seeds(setup: &Setup, seeds: std::ops::Range<u64>) -> Vec<RunResult> {
     };
     run_all(&jobs, collect).unwrap();
     results
+}
+
+/// The fault that a run reported first.
+fn fault(run: &RunResult) -> Option<Fault> {
+    let messages = run.trace.messages.iter();
+    messages
+        .filter_map(|message| match message.what {
+            FromRobot::Event(event) => Some(event.kind),
+            _ => None,
+        })
+        .find_map(|kind| match kind {
+            EventKind::Faulted(fault) => Some(fault),
+            _ => None,
+        })
 }
 
 fn twenty(scenario: &str) -> Vec<RunResult> {

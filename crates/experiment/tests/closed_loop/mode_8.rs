@@ -1,6 +1,6 @@
 //! Requirements of mode 8.
 
-use crate::{Person, seeds, setup, twenty, worst};
+use crate::{Person, fault, seeds, setup, twenty, worst};
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Fault, SonarId};
 use rumbo_experiment::campaign::judge;
@@ -83,20 +83,6 @@ fn failing(scenario: &str, sonar: SonarId, at_s: f64, fault: SonarFault) -> Setu
     setup
 }
 
-/// The fault that the robot has reported.
-fn named(run: &RunResult) -> Option<Fault> {
-    run.trace
-        .messages
-        .iter()
-        .find_map(|message| match message.what {
-            FromRobot::Event(event) => match event.kind {
-                EventKind::Faulted(fault) => Some(fault),
-                _ => None,
-            },
-            _ => None,
-        })
-}
-
 /// Path length after a time [m].
 fn way_after_m(run: &RunResult, at_s: f64) -> f64 {
     let after = run.trace.between(at_s, f64::INFINITY);
@@ -114,7 +100,7 @@ fn a_sonar_cut_on_the_way_around_a_box_or_in_a_lane_stops_the_robot_and_is_repor
             for run in seeds(&setup, 1..6) {
                 let what = format!("{scenario}, {sonar:?}, seed {}", run.seed);
                 assert_eq!(run.metrics["contacts"], 0.0, "{what}");
-                assert_eq!(named(&run), Some(Fault::SonarFaulty), "{what}");
+                assert_eq!(fault(&run), Some(Fault::SonarFaulty), "{what}");
                 let way_m = way_after_m(&run, 6.0);
                 assert!(way_m < 0.2, "{what}: {way_m} m");
             }
@@ -140,7 +126,7 @@ fn a_stuck_sonar_on_the_way_around_a_box_never_drives_the_robot_hard_against_it(
                 let what = format!("{sonar:?} stuck at {at_s} s, seed {}", run.seed);
                 let speed_m_s = run.metrics["contact_speed_m_s"];
                 assert!(speed_m_s < 0.1, "{what}: {speed_m_s} m/s");
-                let named = named(&run) == Some(Fault::SonarFaulty);
+                let named = fault(&run) == Some(Fault::SonarFaulty);
                 // One stuck at "nothing in range" may stay undetected: at a side it does no harm, and the front one is
                 // tested only where something must answer.
                 let gentle = run.metrics["contacts"] == 0.0 || sonar == SonarId::Front;

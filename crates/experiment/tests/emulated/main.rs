@@ -96,11 +96,7 @@ fn a_level_on_the_enable_pin_is_full_and_a_hand_made_pwm_is_its_share_of_time() 
     let Some(mut person) = Person::at_the_bench("free", None) else {
         return;
     };
-    let mut speed = |line: &str| {
-        person.send(line);
-        person.wait_s(0.7);
-        person.speed_rad_s()
-    };
+    let mut speed = |line: &str| person.speed_after(line);
     let (level, pwm) = (speed("FULL"), speed("DUTY 255"));
     assert!((level / pwm - 1.0).abs() < 0.03, "{level} {pwm}");
     let soft = speed("SOFT 50");
@@ -114,11 +110,7 @@ fn a_pwm_of_31_khz_drives_less_than_one_of_490_hz_at_the_same_share() {
     let Some(mut person) = Person::at_the_bench("free", None) else {
         return;
     };
-    let mut speed = |line: &str| {
-        person.send(line);
-        person.wait_s(0.7);
-        person.speed_rad_s()
-    };
+    let mut speed = |line: &str| person.speed_after(line);
     let (slow, fast) = (speed("DUTY 160"), speed("FAST 160"));
     assert!(fast < 0.9 * slow, "{fast} {slow}");
 }

@@ -88,4 +88,11 @@ impl Person {
         let after = self.sim.truth().wheel_rad;
         (after[0] - before[0] + after[1] - before[1]) / (2.0 * 0.5)
     }
+
+    /// The same, some time after a line was sent.
+    pub(crate) fn speed_after(&mut self, line: &str) -> f64 {
+        self.send(line);
+        self.wait_s(0.7);
+        self.speed_rad_s()
+    }
 }
