@@ -1,11 +1,11 @@
-//! How much of a real robot is recorded: a link carries some kilobytes in a second, whatever floods a port fills no
-//! disk.
+//! Limits what is recorded of a real robot: a link carries some kilobytes per second, and a flood on the port must not
+//! fill the disk.
 
 use crate::entry::Entry;
 use crate::event::{Level, LoggedEvent};
 use crate::signals::Row;
 
-/// So much of link, signals and consoles is recorded in a second, as it is in the log before compression \[bytes\].
+/// Most of link, signals and consoles recorded per second, before compression \[bytes\].
 const ROOM: usize = 128 << 10;
 /// So many events are recorded in a second.
 const EVENTS: usize = 50;

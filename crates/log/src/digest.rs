@@ -1,8 +1,8 @@
 //! Checksums of a log's metadata, for which MCAP has none: a message each, in a chunk, which has one.
 //!
-//! Metadata that is not what its checksum says is left out. In a log without such checksums, of a version before they
-//! were written, the checksum of the whole data section stands for them; a log that lacks that too, because it was cut
-//! off, says that its metadata cannot be verified.
+//! Metadata that does not match its checksum is dropped. Logs of earlier versions have no such checksums: there the
+//! checksum of the whole data section is verified instead. A log that lacks that too, because it was truncated, reports
+//! that its metadata cannot be verified.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

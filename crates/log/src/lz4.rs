@@ -5,7 +5,7 @@ use mcap::sans_io::decompressor::{DecompressResult, Decompressor};
 use mcap::{McapError, McapResult};
 use std::io::{self, Read};
 
-/// The first try has so much input, and each further one twice as much \[bytes\]: whole chunks of ours.
+/// Input of the first attempt, doubled for each further one \[bytes\]: a whole chunk of ours.
 const FIRST: usize = 64 << 10;
 
 /// Decompresses chunks, each frame as a whole.
@@ -20,7 +20,7 @@ pub(crate) struct Lz4 {
 }
 
 impl Lz4 {
-    /// For frames that hold at most so many bytes.
+    /// For frames of at most this many bytes.
     pub(crate) fn new(longest: usize) -> Self {
         Self {
             longest,

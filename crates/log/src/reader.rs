@@ -1,7 +1,7 @@
 //! Reads a log, whole or cut off.
 //!
-//! A log without an end, of a writer that was killed, is read as far as it goes, and says so ([`Log::cut`]). One that
-//! is damaged within, and has its index, is read but for what is damaged. Logs that `rumbo import` made of the original
+//! A truncated log, such as that of a killed writer, is read as far as it goes, and [`Log::cut`] says so. Of a log that
+//! is damaged in the middle but has its index, everything intact is read. Logs that `rumbo import` made of the original
 //! program's CSV are read too, as far as their signals have a place in a [`Row`](crate::signals::Row).
 
 mod earlier;

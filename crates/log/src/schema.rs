@@ -1,4 +1,4 @@
-//! The JSON schemas of the log's messages. Those named `foxglove.*` are well known to viewers; of them, what is used
+//! The JSON schemas of the log's messages. Viewers know those named `foxglove.*`; of these only the fields in use are
 //! here.
 
 use crate::signals::Row;

@@ -73,7 +73,7 @@ impl<W: Write + Seek> LogWriter<W> {
             now_us: 0,
         };
         log.digest(0, &digest)?;
-        // A chunk of its own: whatever becomes of the next one, what the log is and has is known.
+        // A chunk of its own: if the next one is lost, the log's description is not.
         log.flush()?;
         Ok(log)
     }
@@ -108,7 +108,7 @@ impl<W: Write + Seek> LogWriter<W> {
         }
     }
 
-    /// Closes the chunk and flushes: what was recorded so far can be read whatever happens next.
+    /// Closes the chunk and flushes: everything recorded so far survives a crash.
     ///
     /// # Errors
     /// What `into` does not take.

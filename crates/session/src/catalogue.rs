@@ -21,7 +21,7 @@ pub struct ModeEntry {
     heading: bool,
     /// Takes basic movements.
     movements: bool,
-    /// Takes a route of at most so many waypoints.
+    /// Takes a route of at most this many waypoints.
     route: Option<usize>,
     /// Follows a lane on command.
     lane: bool,

@@ -6,18 +6,18 @@
 //! sends rows of the original's text is addressed in text.
 
 mod events;
-mod meeting;
+mod handshake;
 mod receiving;
 mod text;
 
 pub use events::{KnownTable, LinkEvent, LinkFigures, NotTaken};
 
+use crate::anomaly::{Anomaly, AnomalyDetector};
 use crate::commands::{CommandManager, Fate};
 use crate::meter::Meter;
-use crate::oddity::{Oddity, OddityWatch};
 use crate::robot_clock::RobotClock;
 use crate::terminal::Terminal;
-use meeting::Meeting;
+use handshake::Handshake;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
@@ -61,8 +61,8 @@ pub struct RobotClient {
     row_kind: Option<RowKind>,
     manager: CommandManager,
     sequence: u8,
-    meeting: Meeting,
-    oddities: OddityWatch,
+    handshake: Handshake,
+    anomalies: AnomalyDetector,
     connected: bool,
     /// The robot has acknowledged STOP, and not said since that it is disarmed; since when it has said that it is
     /// armed \[us\].
@@ -106,8 +106,8 @@ impl RobotClient {
             row_kind: None,
             manager: CommandManager::new(session),
             sequence: 0,
-            meeting: Meeting::default(),
-            oddities: OddityWatch::default(),
+            handshake: Handshake::default(),
+            anomalies: AnomalyDetector::default(),
             connected: false,
             stopping: false,
             still_armed_us: None,
@@ -149,7 +149,7 @@ impl RobotClient {
         if command == Command::Arm {
             (self.stopping, self.still_armed_us) = (false, None);
         }
-        let seen = self.meeting.newest();
+        let seen = self.handshake.newest();
         let taken = self.manager.submit(command, seen, now_us);
         taken.map_err(|_| NotTaken::QueueFull)
     }
@@ -201,7 +201,7 @@ impl RobotClient {
         // Reads included: their answers would be taken for the previous robot's.
         let stops = self.manager.stop_since_us().is_some();
         if (self.connected || stops)
-            && let Some(command) = self.manager.poll(self.meeting.newest(), now_us)
+            && let Some(command) = self.manager.poll(self.handshake.newest(), now_us)
         {
             self.say(command, now_us, to_robot);
         }
@@ -234,9 +234,9 @@ impl RobotClient {
         since_us.is_some_and(|since_us| now_us >= since_us + STOP_PATIENCE_US)
     }
 
-    /// The oddities seen lately.
-    pub fn oddities(&self, now_us: u64) -> impl Iterator<Item = Oddity> {
-        self.oddities.present(now_us)
+    /// The anomalies seen recently.
+    pub fn anomalies(&self, now_us: u64) -> impl Iterator<Item = Anomaly> {
+        self.anomalies.present(now_us)
     }
 
     fn say(&mut self, message: ToRobot, now_us: u64, to_robot: &mut Vec<u8>) {
@@ -310,7 +310,7 @@ impl RobotClient {
 
     /// The robot's HELLO.
     pub fn hello(&self) -> Option<Hello> {
-        self.meeting.hello()
+        self.handshake.hello()
     }
 
     /// The robot's protocol version, if it differs from ours.

@@ -1,8 +1,8 @@
 //! Commands to the robot, one at a time: sent, repeated until acknowledged, applied exactly once, and never late.
 //!
 //! Stop-and-wait: a command leaves only when the one before it was acknowledged, so the robot recognises a repetition
-//! by its session and number alone. STOP and OFF wait for nobody: they take the place of whatever is under way and
-//! empty the queue, since an operator who stops the robot wants nothing older to happen afterwards. Every other order
+//! by its session and number alone. STOP and OFF do not queue: they replace the pending command and empty the queue,
+//! since an operator who stops the robot wants no earlier order executed afterwards. Every other order
 //! is given up [`EXPIRY_US`] after it was given, whether it waits or is under way, and when the link is lost: a link
 //! that comes back does not bring an old start with it. What buffers of the link hold back, the robot refuses by the
 //! time in it ([`Command::is_timed`]).

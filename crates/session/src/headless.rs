@@ -23,7 +23,7 @@ const LINE: usize = 160;
 pub struct Run<'a> {
     /// What surrounds the robot.
     pub scene: Option<Scene>,
-    /// The robot's parameters at the start; `None` where it has no table of them.
+    /// The robot's parameters at the start; `None` if it has no table of them.
     pub parameters: Option<Params>,
     /// Ground truth with its time \[us\], in order.
     pub truths: &'a [(u64, Truth)],

@@ -16,7 +16,7 @@ const FOR_CONTROLLERS: usize = 28;
 /// The number of a page, in order of arrival.
 pub type PageId = u64;
 
-/// Where a page sits, as it is shown.
+/// A page's relation to control, as the page shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Seat {
@@ -33,7 +33,7 @@ pub enum Seat {
 /// What a page is shown of control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct View {
-    /// Where it sits.
+    /// Its relation to control.
     pub seat: Seat,
     /// The page itself.
     pub page: PageId,
@@ -53,8 +53,8 @@ pub struct Lease {
 }
 
 impl Lease {
-    /// Admits a page; `None`: there is no place for it.
-    pub fn sit_down(&mut self, may_control: bool) -> Option<PageId> {
+    /// Admits a page; `None`: too many are open.
+    pub fn join(&mut self, may_control: bool) -> Option<PageId> {
         let places = PAGES + if may_control { FOR_CONTROLLERS } else { 0 };
         if self.pages.len() >= places {
             return None;
@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn one_page_has_control_until_it_leaves_or_another_takes_it() {
         let mut lease = Lease::default();
-        let [first, second, viewer] = [true, true, false].map(|may| lease.sit_down(may).unwrap());
+        let [first, second, viewer] = [true, true, false].map(|may| lease.join(may).unwrap());
         let seats = |lease: &Lease| [first, second, viewer].map(|page| lease.view(page).seat);
         assert_eq!(lease.view(second).seat, Seat::Free);
         let asked = [first, second, viewer].map(|page| lease.admit(&ARM, page).is_ok());
@@ -149,14 +149,14 @@ mod tests {
         assert_eq!(lease.view(viewer).holder, None);
         assert!(lease.admit(&ARM, second).is_ok());
         lease.leave(second);
-        let third = lease.sit_down(true).unwrap();
+        let third = lease.join(true).unwrap();
         assert_eq!(lease.view(third).seat, Seat::Free);
     }
 
     #[test]
     fn a_viewer_may_stop_and_nothing_else_and_so_may_a_page_without_control() {
         let mut lease = Lease::default();
-        let [driver, other, viewer] = [true, true, false].map(|may| lease.sit_down(may).unwrap());
+        let [driver, other, viewer] = [true, true, false].map(|may| lease.join(may).unwrap());
         // STOP takes no control.
         assert!(lease.admit(&STOP, other).is_ok());
         assert_eq!(lease.view(other).seat, Seat::Free);
@@ -178,13 +178,13 @@ mod tests {
     #[test]
     fn many_viewers_leave_places_for_controllers() {
         let mut lease = Lease::default();
-        let viewers: Vec<_> = std::iter::from_fn(|| lease.sit_down(false)).collect();
-        let driver = lease.sit_down(true).unwrap();
+        let viewers: Vec<_> = std::iter::from_fn(|| lease.join(false)).collect();
+        let driver = lease.join(true).unwrap();
         assert!(lease.admit(&ARM, driver).is_ok());
-        let others: Vec<_> = std::iter::from_fn(|| lease.sit_down(true)).collect();
+        let others: Vec<_> = std::iter::from_fn(|| lease.join(true)).collect();
         let there = viewers.len() + 1 + others.len();
         assert_eq!((there, viewers.len()), (PAGES + FOR_CONTROLLERS, PAGES));
         viewers.into_iter().for_each(|page| lease.leave(page));
-        assert!(lease.sit_down(false).is_some());
+        assert!(lease.join(false).is_some());
     }
 }

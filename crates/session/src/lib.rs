@@ -4,6 +4,7 @@
 //! received, sends the outgoing ones, and publishes the [`Event`]s: to the page's [`Board`], to a log, to a bridge,
 //! each of which takes what it needs.
 
+pub mod anomaly;
 mod board;
 mod catalogue;
 pub mod client;
@@ -16,7 +17,6 @@ pub mod headless;
 mod lease;
 mod meter;
 mod observer;
-pub mod oddity;
 mod orders;
 mod origin;
 mod pace;

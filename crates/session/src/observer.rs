@@ -292,7 +292,9 @@ impl Observer {
                 LinkEvent::StopUnconfirmed => {
                     self.note(now_ms, Level::Fault, words::STOP_UNCONFIRMED.into());
                 }
-                LinkEvent::Odd(oddity) => self.note(now_ms, Level::Fault, words::alarm(oddity)),
+                LinkEvent::Anomaly(anomaly) => {
+                    self.note(now_ms, Level::Fault, words::alarm(anomaly))
+                }
                 LinkEvent::Lost if client.speaks_text() => {
                     let text = "nothing received from the robot for some seconds, though it is on";
                     self.note(now_ms, Level::Warning, text.into());

@@ -37,7 +37,7 @@ pub enum Order {
     Calibrate,
     /// Show a log from this time on \[s\].
     Seek(f64),
-    /// Show a log so many telemetry frames further on, or back.
+    /// Show a log this many telemetry frames further on, or back.
     Step(i32),
     /// Take control for the page, even from another one; the session need not know.
     TakeControl,

@@ -2,7 +2,7 @@
 
 /// Step of the target's time \[us\]; instants at which the truth is noted are multiples of it.
 pub const SLICE_US: u64 = 5_000;
-/// Target time that a late session still catches up with, in seconds of the wall clock; more is let go.
+/// The most that a late session catches up, in seconds of the wall clock; the rest is dropped.
 const CATCH_UP_S: f64 = 0.1;
 
 /// How fast the target's time goes.

@@ -7,7 +7,7 @@
 
 /// The smallest difference is of the last one to two windows of this length \[ms\].
 const WINDOW_MS: i64 = 2_000;
-/// The offset moves by so much with a frame at most, so that frames 40 ms apart keep their order \[ms\].
+/// Largest change of the offset per frame, so that frames 40 ms apart keep their order \[ms\].
 const STEP_MS: i64 = 10;
 /// Drift is reported after this long \[ms\].
 const DRIFT_AFTER_MS: i64 = 10_000;

@@ -1,6 +1,6 @@
 //! The session: turns received bytes into events, and orders into bytes.
 //!
-//! Its driver calls, in this order and with both clocks: [`Session::order`] for each order, [`Session::let_go`];
+//! Its driver calls, in this order and with both clocks: [`Session::order`] for each order, [`Session::expire_hold`];
 //! for each slice of the target's time [`Session::observe`], [`Session::receive`] and [`Session::advance`]; then
 //! [`Session::update`]. After each call there may be bytes to send ([`Session::take_bytes`]) and events to publish
 //! ([`Session::take_events`]). Nothing blocks.
@@ -41,7 +41,7 @@ impl Now {
 /// A request to the target's driver; its result is reported to the session.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ask {
-    /// Run it at so many seconds per second of the wall clock.
+    /// Run it at this many seconds per second of the wall clock.
     Pace(f64),
     /// Start it again; then [`Session::restart`].
     Reset(Choice),

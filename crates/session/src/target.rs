@@ -136,7 +136,7 @@ pub trait Target: Send {
     /// Starts again from time 0 with the choice given.
     ///
     /// # Errors
-    /// When the choice names something unknown or unreadable; the target then goes on as before.
+    /// When the choice names something unknown or unreadable; the target then continues as before.
     fn reset(&mut self, _choice: &Choice) -> Result<(), TargetError> {
         Err(TargetError::NoReset)
     }
@@ -173,7 +173,7 @@ pub enum LinkNews {
 /// A robot's pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Standing {
-    /// In the world, as well as it is known.
+    /// In the world, as far as it is known.
     pub at: MapPose,
     /// Relative to its origin, as it estimates.
     pub estimated: MapPose,

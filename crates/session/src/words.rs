@@ -1,8 +1,8 @@
 //! What commands and answers are called, for people: cm, rpm and % instead of SI.
 
+use crate::anomaly::Anomaly;
 use crate::client::NotTaken;
 use crate::commands::{Fate, Outcome};
-use crate::oddity::Oddity;
 use rumbo_control::mode::{ModeId, Movement, Reference, ReferenceKind};
 use rumbo_control::params::ParamId;
 use rumbo_log::parameter;
@@ -113,9 +113,9 @@ pub(crate) fn outcome(outcome: &Outcome, mode: ModeId) -> String {
 pub(crate) const STOP_UNCONFIRMED: &str =
     "ALARM: the robot does not confirm STOP; switch off its battery";
 
-/// An alarm about an oddity.
-pub(crate) fn alarm(oddity: Oddity) -> String {
-    format!("ALARM: {}", oddity.explanation())
+/// An alarm about an anomaly.
+pub(crate) fn alarm(anomaly: Anomaly) -> String {
+    format!("ALARM: {}", anomaly.explanation())
 }
 
 /// Why the station did not take a command.

@@ -68,7 +68,7 @@ impl Bench {
                 truth: self.toy.truth(),
                 ..Sight::default()
             };
-            self.session.let_go(now);
+            self.session.expire_hold(now);
             self.session.observe(sight, now);
             let mut bytes = Vec::new();
             self.toy.receive(&mut bytes);

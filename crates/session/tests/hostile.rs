@@ -5,9 +5,9 @@
 mod support;
 
 use rumbo_session::Target;
+use rumbo_session::anomaly::Anomaly;
 use rumbo_session::client::{KnownTable, LinkEvent, RobotClient};
 use rumbo_session::fault::{Faults, Faulty};
-use rumbo_session::oddity::Oddity;
 use rumbo_wire::{
     Ack, Command, Decoder, FromRobot, Hello, Message, PROTOCOL_VERSION, Received, ResetCause,
     RobotTime, Status, Telemetry, ToRobot,
@@ -98,8 +98,8 @@ fn count(events: &[LinkEvent], wanted: impl Fn(&LinkEvent) -> bool) -> usize {
     events.iter().filter(|item| wanted(item)).count()
 }
 
-fn odd(events: &[LinkEvent], oddity: Oddity) -> usize {
-    count(events, |item| *item == LinkEvent::Odd(oddity))
+fn odd(events: &[LinkEvent], anomaly: Anomaly) -> usize {
+    count(events, |item| *item == LinkEvent::Anomaly(anomaly))
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn a_robot_that_ignores_stop_is_an_alarm_within_a_second_and_every_ten() {
         3
     );
     let others = count(&events, |item| {
-        matches!(item, LinkEvent::Odd(_) | LinkEvent::Lost)
+        matches!(item, LinkEvent::Anomaly(_) | LinkEvent::Lost)
     });
     assert_eq!(others, 0);
 }
@@ -146,10 +146,10 @@ fn a_robot_that_acknowledges_stop_and_goes_on_is_an_alarm_too() {
 
 #[test]
 fn a_clock_that_lies_is_named_once_in_a_while() {
-    let liars: [(Says, Oddity); 6] = [
+    let liars: [(Says, Anomaly); 6] = [
         (
             |step, asked| by_clock(step, asked, |ms| 10_000_000 - ms),
-            Oddity::ClockBack,
+            Anomaly::ClockBack,
         ),
         (
             |step, asked| {
@@ -157,29 +157,29 @@ fn a_clock_that_lies_is_named_once_in_a_while() {
                     ms.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40
                 })
             },
-            Oddity::ClockBack,
+            Anomaly::ClockBack,
         ),
         (
             |step, asked| by_clock(step, asked, |ms| ms + ms / 5_000 * 7_000),
-            Oddity::ClockJump,
+            Anomaly::ClockJump,
         ),
         (
             |step, asked| by_clock(step, asked, |ms| 2 * ms),
-            Oddity::ClockSpeed,
+            Anomaly::ClockSpeed,
         ),
         (
             |step, asked| by_clock(step, asked, |ms| ms / 2),
-            Oddity::ClockSpeed,
+            Anomaly::ClockSpeed,
         ),
         (
             |step, asked| by_clock(step, asked, |ms| ms - ms / 10_000 * 3_000),
-            Oddity::ClockBack,
+            Anomaly::ClockBack,
         ),
     ];
-    for (number, (says, oddity)) in liars.into_iter().enumerate() {
+    for (number, (says, anomaly)) in liars.into_iter().enumerate() {
         let events = reports(60, says, None);
-        let named = odd(&events, oddity);
-        assert!((1..=2).contains(&named), "{number} {oddity:?}: {named}");
+        let named = odd(&events, anomaly);
+        assert!((1..=2).contains(&named), "{number} {anomaly:?}: {named}");
     }
 }
 
@@ -192,8 +192,8 @@ fn ten_times_the_telemetry_is_a_flood_and_the_same_frames_again_a_repetition() {
         said
     };
     let events = reports(60, flood, None);
-    assert!((1..=2).contains(&odd(&events, Oddity::Flood)));
-    assert_eq!(odd(&events, Oddity::Repeats), 0);
+    assert!((1..=2).contains(&odd(&events, Anomaly::Flood)));
+    assert_eq!(odd(&events, Anomaly::Repeats), 0);
     // The telemetry of the first second, over and over; and each frame twice.
     let stuck: Says = |step, asked| {
         let mut said = by_clock(step, asked, |ms| ms);
@@ -210,7 +210,7 @@ fn ten_times_the_telemetry_is_a_flood_and_the_same_frames_again_a_repetition() {
     };
     for says in [stuck, twice] {
         let events = reports(60, says, None);
-        let named = odd(&events, Oddity::Repeats);
+        let named = odd(&events, Anomaly::Repeats);
         assert!((1..=3).contains(&named), "{named}");
     }
 }
@@ -284,10 +284,10 @@ fn a_sound_robot_behind_a_bad_link_is_never_accused() {
                 client.poll(now_us, &mut bytes, &mut events);
                 robot.send(&bytes).unwrap();
             }
-            let accused = count(&events, |item| matches!(item, LinkEvent::Odd(_)));
+            let accused = count(&events, |item| matches!(item, LinkEvent::Anomaly(_)));
             let odd: Vec<_> = events
                 .iter()
-                .filter(|item| matches!(item, LinkEvent::Odd(_)))
+                .filter(|item| matches!(item, LinkEvent::Anomaly(_)))
                 .collect();
             assert_eq!(accused, 0, "link {number}, seed {seed}: {odd:?}");
             assert!(count(&events, |item| matches!(item, LinkEvent::Telemetry(..))) > 500);

@@ -1,8 +1,8 @@
 //! A live session for viewers of Foxglove's protocol (Foxglove, Lichtblick): the messages of the log, as they are made.
 //!
-//! Read-only: nothing that a viewer sends is taken. Only this machine can connect. What is recorded passes by here on
-//! its way; a thread makes messages of it for the topics that somebody looks at. A viewer that is slow loses messages,
-//! nobody waits for it.
+//! Read-only: messages from viewers are ignored. Only this machine can connect. The bridge gets the entries that are
+//! recorded; a thread encodes them for the topics that have subscribers. A slow viewer loses messages and delays
+//! nobody.
 
 use foxglove::{ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChannel, Schema};
 use foxglove::{WebSocketServer, WebSocketServerHandle};
@@ -15,14 +15,14 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use std::{fmt, io};
 
-/// Where viewers look first.
+/// The port that viewers try first.
 pub const BRIDGE_PORT: u16 = 8_765;
-/// Most entries queued.
-const WAITING: usize = 1_024;
-/// Most messages queued for one viewer.
+/// Longest queue of entries.
+const QUEUE: usize = 1_024;
+/// Longest queue of messages for one viewer.
 const BACKLOG: usize = 1_024;
-/// What seldom changes is republished this often, for viewers that connect later.
-const AGAIN: Duration = Duration::from_secs(1);
+/// Scene and parameters are republished this often, for viewers that connect later.
+const REPUBLISH: Duration = Duration::from_secs(1);
 
 /// Why the bridge cannot be started.
 #[derive(Debug)]
@@ -49,7 +49,7 @@ impl std::error::Error for BridgeError {}
 
 /// The bridge; dropping it ends it.
 pub struct Bridge {
-    /// What joins channels and server; they do not keep it.
+    /// Joins channels and server, which do not keep it alive.
     _context: Arc<Context>,
     server: Option<WebSocketServerHandle>,
     entries: Option<SyncSender<Arc<Entry>>>,
@@ -58,7 +58,7 @@ pub struct Bridge {
 }
 
 impl Bridge {
-    /// Serves on this port of 127.0.0.1; 0 takes any free one. Not to be called where asynchronous tasks run: it waits.
+    /// Serves on this port of 127.0.0.1; 0 takes any free one. It blocks: do not call it in an asynchronous task.
     ///
     /// # Errors
     /// If the port is not available, or no thread can be started.
@@ -77,7 +77,7 @@ impl Bridge {
             .bind(Ipv4Addr::LOCALHOST.to_string(), port)
             .start_blocking()
             .map_err(failed)?;
-        let (entries, taken) = sync_channel(WAITING);
+        let (entries, taken) = sync_channel(QUEUE);
         let thread = std::thread::Builder::new()
             .name("bridge".into())
             .spawn(move || publish(&Channels(channels), &taken))
@@ -91,16 +91,15 @@ impl Bridge {
         })
     }
 
-    /// What to give a viewer.
+    /// The address for viewers.
     #[must_use]
     pub fn address(&self) -> String {
         format!("ws://127.0.0.1:{}", self.port)
     }
 
-    /// Takes an entry; it is dropped if the queue is full.
-    pub(crate) fn take(&self, entry: &Arc<Entry>) {
+    /// Queues an entry; it is dropped if the queue is full.
+    pub(crate) fn queue(&self, entry: &Arc<Entry>) {
         if let Some(entries) = &self.entries {
-            // Full: viewers are slow.
             let _ = entries.try_send(Arc::clone(entry));
         }
     }
@@ -154,7 +153,7 @@ impl Sink for &Channels {
 /// Publishes entries to the viewers until the bridge is dropped.
 fn publish(channels: &Channels, entries: &Receiver<Arc<Entry>>) {
     let (mut scene, mut parameters) = (None, None);
-    let (mut now_us, mut again) = (0, Instant::now() + AGAIN);
+    let (mut now_us, mut again) = (0, Instant::now() + REPUBLISH);
     let mut sink = channels;
     while let Ok(entry) = entries.recv() {
         match &*entry {
@@ -167,7 +166,7 @@ fn publish(channels: &Channels, entries: &Receiver<Arc<Entry>>) {
         }
         let Ok(()) = sink.entry(&entry, &mut now_us);
         if Instant::now() >= again {
-            again = Instant::now() + AGAIN;
+            again = Instant::now() + REPUBLISH;
             for entry in [&scene, &parameters].into_iter().flatten() {
                 let Ok(()) = sink.entry(entry, &mut now_us);
             }

@@ -1,9 +1,9 @@
-//! The connections of the web server: for how long one may ask for nothing, and how many there are.
+//! The connections of the web server: time-outs, and a limit on their number.
 //!
 //! Anyone who reaches the port can open connections. Each takes a descriptor, and the logs need some too. So a
-//! connection ends when the head of a request does not come, when it is old, and when many newer ones have come: the
-//! oldest make room, and a new page always finds a place. A connection that became a page's WebSocket has shown a key
-//! and is none of these any more; how many pages there may be is up to the [lease](crate::lease).
+//! connection is closed when the head of a request is late, when it is old, and when many newer ones have come: the
+//! oldest make room, and a new page can always connect. A connection that became a page's WebSocket has presented a key
+//! and is exempt; the [lease](crate::lease) limits the number of pages.
 
 use axum::Router;
 use hyper::server::conn::http1;
@@ -14,34 +14,34 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
 use tokio::time::{sleep, timeout};
 
-/// The head of a request comes within this time, the first one and each next one on the same connection.
+/// The head of each request must arrive within this time.
 const HEAD: Duration = Duration::from_secs(5);
-/// A connection without a WebSocket is over by then, whatever it does: also one that does not read its answer.
+/// Lifetime of a connection without a WebSocket, even of one that does not read its answer.
 const LIFE: Duration = Duration::from_secs(60);
-/// With so many newer ones a connection ends. A page has six; the usual limit is 1,024 descriptors.
+/// A connection is closed after this many newer ones. A page has six; the usual limit is 1,024 descriptors.
 const NEWER: u64 = 400;
-/// The longest head of a request \[bytes\].
+/// Longest head of a request \[bytes\].
 const LONGEST_HEAD: usize = 16 << 10;
-/// Pause after one that could not be accepted, for want of descriptors for instance.
-const AGAIN: Duration = Duration::from_millis(50);
+/// Pause after a failed accept, for lack of descriptors for instance.
+const RETRY: Duration = Duration::from_millis(50);
 
 /// Accepts connections for ever.
-pub(crate) async fn keep(listener: TcpListener, router: Router) {
+pub(crate) async fn accept(listener: TcpListener, router: Router) {
     let newest = watch::Sender::new(0);
     loop {
         match listener.accept().await {
             Ok((stream, _)) => {
                 newest.send_modify(|number| *number += 1);
-                tokio::spawn(converse(stream, router.clone(), newest.subscribe()));
+                tokio::spawn(serve(stream, router.clone(), newest.subscribe()));
             }
-            Err(_) => sleep(AGAIN).await,
+            Err(_) => sleep(RETRY).await,
         }
     }
 }
 
-/// Answers the requests of a connection, the last one that has come.
-async fn converse(stream: TcpStream, router: Router, mut newest: watch::Receiver<u64>) {
-    // News are small and must not wait to be gathered. Should that fail, they are late and nothing worse.
+/// Answers the requests of the newest connection.
+async fn serve(stream: TcpStream, router: Router, mut newest: watch::Receiver<u64>) {
+    // Messages are small and must not be delayed to be joined; if this fails, they are only late.
     let _ = stream.set_nodelay(true);
     let own = *newest.borrow_and_update();
     let connection = http1::Builder::new()
@@ -51,7 +51,7 @@ async fn converse(stream: TcpStream, router: Router, mut newest: watch::Receiver
         .serve_connection(TokioIo::new(stream), TowerToHyperService::new(router))
         .with_upgrades();
     tokio::select! {
-        // Its end, by whichever side, or its WebSocket, which is served elsewhere.
+        // Closed by either side, or upgraded to a WebSocket, which is served elsewhere.
         _ = timeout(LIFE, connection) => {}
         _ = newest.wait_for(|newest| newest - own >= NEWER) => {}
     }

@@ -1,36 +1,36 @@
-//! Warnings and faults on the terminal in which the station was started, for those who look there.
+//! Prints warnings and faults on the terminal in which the station was started.
 //!
-//! A terminal can be stopped (Ctrl-S), and a pipe that nobody reads fills up: so a thread of its own prints, and what
-//! it cannot print in time is left out. The session never waits for it.
+//! A terminal can be stopped (Ctrl-S), and a pipe that nobody reads fills up: so a separate thread prints, and drops
+//! what does not fit its queue. The session never waits for it.
 
 use rumbo_log::{Level, LoggedEvent};
 use std::sync::mpsc::{SyncSender, sync_channel};
 
-/// Lines that wait for the terminal.
-const WAITING: usize = 64;
+/// Longest queue of lines.
+const QUEUE: usize = 64;
 
-/// Prints a line for people, such that nothing in it commands the terminal.
+/// Prints a line for people, without terminal control sequences.
 pub type Print = fn(&str);
 
-/// The way to the terminal.
+/// The queue of lines to print.
 #[derive(Clone, Debug)]
 pub(crate) struct Echo(SyncSender<String>);
 
 impl Echo {
-    /// Begins to print; `None` if the system gives no thread.
+    /// Starts the thread; `None` if the system has none.
     pub(crate) fn start(print: Print) -> Option<Self> {
-        let (lines, waiting) = sync_channel::<String>(WAITING);
+        let (lines, waiting) = sync_channel::<String>(QUEUE);
         let thread = std::thread::Builder::new().name("echo".into());
         let thread = thread.spawn(move || waiting.iter().for_each(|line| print(&line)));
         thread.ok().map(|_| Self(lines))
     }
 
-    /// Prints what went wrong.
+    /// Prints a warning or a fault.
     pub(crate) fn event(&self, event: &LoggedEvent) {
         if matches!(event.level, Level::Warning | Level::Fault) {
             let LoggedEvent { t_s, level, text } = event;
             let line = format!("{t_s:.2} s {}: {text}", level.name());
-            // One that does not fit is on the page and in the log.
+            // A dropped line is on the page and in the log.
             let _ = self.0.try_send(line);
         }
     }

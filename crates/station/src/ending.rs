@@ -1,4 +1,4 @@
-//! When a session is to end: somebody asks for it, or the terminal that it was started from has gone.
+//! When a session is to end: the process is asked to, or its terminal has gone.
 
 /// Ends when the process is interrupted or terminated by the system.
 pub async fn asked_to_end() {

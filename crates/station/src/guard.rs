@@ -1,14 +1,14 @@
-//! Who may use the dashboard: those who have the address that was printed, and no page of the internet.
+//! Who may use the dashboard: anyone who has the printed address, and no website.
 //!
-//! A web page anywhere can make the browser send requests to 127.0.0.1, and with a name of its own that resolves there
-//! it can read the answers (DNS rebinding). So every request must name exactly this host, and must come from this
-//! origin if it comes from a page. The page itself is no secret. Its WebSocket shows and drives the robot, and needs a
-//! key, which is given for a token in an address that was printed. There are two: the controller's opens once, so that
-//! an address seen over a shoulder is worth nothing; the viewers' opens for all who have it, and lets them watch and
-//! stop the robot.
+//! Any website can make the browser send requests to 127.0.0.1, and with a DNS name that resolves there it can read the
+//! answers (DNS rebinding). So every request must name exactly this host, and must come from this origin if it comes
+//! from a page. The page itself is no secret. Its WebSocket shows and drives the robot, and requires a key, which the
+//! page gets in exchange for the token in a printed address. There are two addresses: the controller's works once, so
+//! that one seen over a shoulder is worthless; the viewers' works for everyone who has it, to watch and to stop the
+//! robot.
 //!
-//! The key is no cookie: a browser sends cookies to every port of a host, and other people on this computer may serve
-//! something there. The page keeps it in its storage, which belongs to this port alone.
+//! The key is no cookie: a browser sends cookies to every port of a host, and other users of this computer may run
+//! servers there. The page keeps it in its storage, which belongs to this port alone.
 
 use crate::error::ServeError;
 use axum::http::{HeaderMap, header};
@@ -30,13 +30,13 @@ impl Secret {
         ))
     }
 
-    /// Compares in a time that tells nothing about the secret.
+    /// Compares in constant time.
     fn matches(&self, offered: &str) -> bool {
         self.0.as_bytes().ct_eq(offered.as_bytes()).into()
     }
 }
 
-/// What who has a key may do.
+/// What the owner of a key may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Role {
     /// Watch, and stop the robot.
@@ -45,7 +45,7 @@ pub(crate) enum Role {
     Controller,
 }
 
-/// What opens the dashboard for a role.
+/// Token and key of a role.
 #[derive(Debug)]
 struct Access {
     role: Role,
@@ -79,9 +79,9 @@ pub(crate) struct Guard {
     origins: Vec<String>,
     controller: Access,
     viewer: Access,
-    /// What the page showed that used the controller's token: should it not get the answer, it asks again.
+    /// What the page that used the controller's token presented: it asks again if the answer is lost.
     used_by: OnceLock<String>,
-    /// Gets a word then.
+    /// Notified then.
     opened: Sender<()>,
 }
 
@@ -99,7 +99,7 @@ pub(crate) enum Denied {
 }
 
 impl Denied {
-    /// What the person reads.
+    /// The text for the person.
     pub(crate) fn explanation(self) -> &'static str {
         match self {
             Self::Host => {
@@ -117,7 +117,7 @@ impl Denied {
 }
 
 impl Guard {
-    /// A guard for the dashboard at this address, which says when the controller's address has been opened.
+    /// A guard for the dashboard at this address; it reports when the controller's address has been opened.
     ///
     /// # Errors
     /// When the system gives no randomness.
@@ -142,7 +142,7 @@ impl Guard {
         self.address_of(&self.controller)
     }
 
-    /// The address for those who watch.
+    /// The address for viewers.
     pub(crate) fn viewers_url(&self) -> String {
         self.address_of(&self.viewer)
     }
@@ -169,7 +169,7 @@ impl Guard {
         }
     }
 
-    /// The request comes from our page; for the WebSocket, where browsers always say.
+    /// The request comes from our page; for the WebSocket, where browsers always send the origin.
     pub(crate) fn check_origin(&self, headers: &HeaderMap) -> Result<(), Denied> {
         let origin = only(headers, header::ORIGIN).ok_or(Denied::Origin)?;
         if self.origins.iter().any(|ours| ours == origin) {
@@ -188,8 +188,8 @@ impl Guard {
         access.map(|access| access.role).ok_or(Denied::Key)
     }
 
-    /// The key for the token in a query, or the one that the page shows: the one that allows more. A page without a key
-    /// shows something random.
+    /// The key for the token in a query, or the one that the page presents, whichever allows more. A page without a key
+    /// presents something random.
     pub(crate) fn key(&self, shown: &str, query: &str) -> Result<&str, Denied> {
         let has = self.role_of(shown);
         let asked = self.accesses().into_iter().find_map(|access| {
@@ -218,7 +218,6 @@ impl Guard {
             if shown.is_empty() || !bool::from(used_by.as_bytes().ct_eq(shown.as_bytes())) {
                 return Err(Denied::Token);
             }
-            // Nobody may wait for it.
             let _ = self.opened.send(());
         }
         Ok(access.role)
@@ -236,15 +235,15 @@ pub(crate) fn check_listen(at: IpAddr) -> Result<(), ServeError> {
     }
 }
 
-/// The address with which this machine goes out; nothing is sent to find it.
+/// This machine's address on its network; finding it sends nothing.
 fn own_address() -> Option<IpAddr> {
     let socket = std::net::UdpSocket::bind(("0.0.0.0", 0)).ok()?;
-    // Of the block kept for documentation.
+    // From the block reserved for documentation.
     socket.connect(("192.0.2.1", 9)).ok()?;
     Some(socket.local_addr().ok()?.ip()).filter(|own| !own.is_unspecified())
 }
 
-/// The value of a header that must be there exactly once.
+/// The value of a header that must occur exactly once.
 fn only(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
     let mut values = headers.get_all(name).iter();
     let value = values.next()?.to_str().ok()?;

@@ -95,7 +95,7 @@ impl Guest {
         })
     }
 
-    /// The guest's turn: passes it the received bytes and returns those it sends. `None`: it has left.
+    /// The guest's turn: passes it the received bytes and returns those it sends. `None`: it has ended.
     pub(crate) fn turn(&self, now_us: u64, arrived: &[u8]) -> Option<Vec<u8>> {
         let said = match self.answers.recv_timeout(PATIENCE) {
             Ok(said) => said,
@@ -107,7 +107,7 @@ impl Guest {
         Some(said)
     }
 
-    /// Its findings, once it has left by itself.
+    /// Its findings, after it has ended by itself.
     pub(crate) fn findings(self) -> Result<Findings, CalibrationError> {
         let joined = self.thread.join();
         joined.unwrap_or(Err(CalibrationError::Panicked))

@@ -1,4 +1,4 @@
-//! The session's lease of control, shared by the pages' connections: a page that goes leaves its place.
+//! The session's lease of control, shared by the pages' connections: a page that is closed releases it.
 
 use rumbo_session::{Order, PageId, View};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -21,16 +21,16 @@ impl Lease {
         self.changed.subscribe()
     }
 
-    /// A page has come; `None`: there is no place for it.
-    pub(crate) fn sit_down(&self, may_control: bool) -> Option<Place> {
-        let page = self.lock().sit_down(may_control)?;
+    /// Admits a page; `None`: too many are open.
+    pub(crate) fn join(&self, may_control: bool) -> Option<Place> {
+        let page = self.lock().join(may_control)?;
         self.changed.send_replace(());
         let lease = self.clone();
         Some(Place { page, lease })
     }
 }
 
-/// A page's place; with it goes control, if it had it.
+/// A page's membership; dropping it releases control, if the page had it.
 #[derive(Debug)]
 pub(crate) struct Place {
     page: PageId,
@@ -38,7 +38,7 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// Whether the page may have this order done; why not otherwise.
+    /// Whether the page may give this order; why not otherwise.
     pub(crate) fn admit(&self, order: &Order) -> Result<(), &'static str> {
         let mut lease = self.lease.lock();
         let before = lease.view(self.page).holder;

@@ -1,7 +1,7 @@
-//! Records while things happen: what is to be recorded goes to a thread, and nobody waits for the disk.
+//! Records a session: entries are queued for a thread, so that nothing waits for the disk.
 //!
-//! What a slow disk cannot take is dropped and counted; a disk that fails ends the recording. Both are reported
-//! ([`Recorder::trouble`]), and the robot goes on.
+//! Entries that a slow disk cannot keep up with are dropped and counted; a disk that fails ends the recording. Both are
+//! reported ([`Recorder::trouble`]), and the session continues.
 
 use crate::log_file::{LogError, Problem};
 use rumbo_log::{Bound, Entry, Kind, LogWriter, Manifest, WriteError};
@@ -13,15 +13,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// What has been recorded reaches the file within this time: half of what may be missing after a crash.
+/// Entries reach the file within this time: half of what may be missing after a crash.
 pub(crate) const FLUSH: Duration = Duration::from_millis(400);
-/// Entries that wait for the disk: several seconds of a session in real time.
-const WAITING: usize = 4_096;
+/// Longest queue of entries: several seconds of a session in real time.
+const QUEUE: usize = 4_096;
 
 /// Where runs are recorded.
 #[derive(Clone, Debug)]
 pub struct Recording {
-    /// The folder for their logs; made if need be.
+    /// The folder for their logs; created if it does not exist.
     pub folder: PathBuf,
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct Recorder {
     trouble: Trouble,
     thread: Option<JoinHandle<()>>,
     dropped: u64,
-    /// Of a real robot, so that a flood on its link does not fill the disk.
+    /// For a real robot, so that a flood on its link does not fill the disk.
     bound: Option<Bound>,
 }
 
@@ -49,7 +49,7 @@ impl Recorder {
     }
 
     fn start(path: PathBuf, file: File, manifest: &Manifest) -> Result<Self, LogError> {
-        let (sender, entries) = sync_channel(WAITING);
+        let (sender, entries) = sync_channel(QUEUE);
         let trouble = Trouble::default();
         let bound = (manifest.kind == Kind::Robot).then(Bound::default);
         let (manifest, reported) = (manifest.clone(), Arc::clone(&trouble));
@@ -76,22 +76,22 @@ impl Recorder {
         &self.path
     }
 
-    /// Takes something to record.
-    pub(crate) fn take(&mut self, entry: impl Into<Arc<Entry>>) {
+    /// Queues an entry.
+    pub(crate) fn record(&mut self, entry: impl Into<Arc<Entry>>) {
         let entry = entry.into();
         if let Some(bound) = &mut self.bound {
             let (admitted, note) = bound.judge(&entry);
             if let Some(note) = note {
-                self.pass_on(Arc::new(note));
+                self.queue(Arc::new(note));
             }
             if !admitted {
                 return;
             }
         }
-        self.pass_on(entry);
+        self.queue(entry);
     }
 
-    fn pass_on(&mut self, entry: Arc<Entry>) {
+    fn queue(&mut self, entry: Arc<Entry>) {
         let Some(entries) = &self.entries else {
             return;
         };
@@ -105,7 +105,7 @@ impl Recorder {
         }
     }
 
-    /// What has gone wrong since it was last asked.
+    /// What has gone wrong since the last call.
     pub(crate) fn trouble(&self) -> Option<Problem> {
         self.trouble
             .lock()
@@ -115,7 +115,7 @@ impl Recorder {
 
     fn close(&mut self) {
         if let Some(note) = self.bound.as_mut().and_then(|bound| bound.pass_to(0)) {
-            self.pass_on(Arc::new(note));
+            self.queue(Arc::new(note));
         }
         drop(self.entries.take());
         if let Some(thread) = self.thread.take()
@@ -154,7 +154,7 @@ pub(crate) fn file_in(folder: &Path, manifest: &Manifest) -> Result<(PathBuf, Fi
     }
 }
 
-/// A file of this name, in place of what was there.
+/// A file of this name; an existing one is replaced.
 pub(crate) fn file_at(path: &Path) -> Result<File, LogError> {
     File::create(path).map_err(|error| LogError::new(path, Problem::NotMade(error, "with --out")))
 }
@@ -163,7 +163,7 @@ fn report(trouble: &Trouble, problem: Problem) {
     *trouble.lock().unwrap_or_else(PoisonError::into_inner) = Some(problem);
 }
 
-/// Writes what comes until the sender is gone.
+/// Writes entries until the sender is gone.
 fn write(
     file: File,
     manifest: &Manifest,
@@ -224,10 +224,10 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn a_full_disk_is_reported_and_nobody_waits_for_it() {
+    fn a_full_disk_is_reported_and_blocks_nothing() {
         let file = File::options().write(true).open("/dev/full").unwrap();
         let mut recorder = Recorder::start("/dev/full".into(), file, &Manifest::default()).unwrap();
-        (0..100).for_each(|number| recorder.take(burst(number)));
+        (0..100).for_each(|number| recorder.record(burst(number)));
         recorder.close();
         let error = recorder.trouble().unwrap().to_string();
         assert!(error.contains("is the disk full?"), "{error}");

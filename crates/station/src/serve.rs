@@ -100,7 +100,7 @@ impl Lab {
         &self.url
     }
 
-    /// The address for those who are to watch only; it opens as often as it is asked for.
+    /// The address for viewers; it can be opened any number of times.
     pub fn viewers_url(&self) -> &str {
         &self.viewers_url
     }
@@ -259,7 +259,7 @@ fn start_on(
                 };
                 // Connections end with the runtime.
                 tokio::select! {
-                    () = door::keep(listener, router) => {}
+                    () = door::accept(listener, router) => {}
                     _ = ended => {}
                     () = asked_to_end() => {}
                 }

@@ -127,7 +127,7 @@ impl Driver {
             for order in stop_first(waiting, stop) {
                 self.obey(order)?;
             }
-            self.session.let_go(self.now());
+            self.session.expire_hold(self.now());
             self.send()?;
             self.advance()?;
             self.update();
@@ -266,7 +266,7 @@ impl Driver {
 
     fn publish(&mut self) {
         for event in self.session.take_events() {
-            self.subscribers.take(event);
+            self.subscribers.publish(event);
         }
     }
 
@@ -299,7 +299,7 @@ impl Driver {
     }
 }
 
-/// A random number that tells sessions apart; from the clock where there is no randomness to be had.
+/// A random number that distinguishes sessions; from the clock if the system has no randomness.
 fn random_id() -> u8 {
     let clock = std::time::SystemTime::UNIX_EPOCH
         .elapsed()

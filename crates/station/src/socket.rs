@@ -48,7 +48,7 @@ pub(crate) struct Hub {
 }
 
 /// Why a connection ends.
-struct Goodbye {
+struct Closing {
     code: u16,
     text: String,
 }
@@ -56,24 +56,24 @@ struct Goodbye {
 /// Serves one page until either side ends it.
 pub(crate) async fn talk(socket: WebSocket, hub: Hub, role: Role) {
     let (mut out, mut from_page) = socket.split();
-    let goodbye = match hub.lease.sit_down(role == Role::Controller) {
+    let closing = match hub.lease.join(role == Role::Controller) {
         Some(place) => {
             let (refuse, refusals) = mpsc::channel(REFUSALS_WAITING);
-            // Control goes with the page's place, however long it takes to say goodbye.
+            // Control goes with the page's place, however long closing takes.
             tokio::select! {
-                goodbye = publish_news(&mut out, &hub, &place, refusals) => goodbye,
-                goodbye = take_orders(&mut from_page, &hub, &place, &refuse) => goodbye,
+                closing = publish_news(&mut out, &hub, &place, refusals) => closing,
+                closing = take_orders(&mut from_page, &hub, &place, &refuse) => closing,
             }
         }
-        None => Some(Goodbye {
+        None => Some(Closing {
             code: close_code::AGAIN,
             text: "too many pages are open: close some of them".into(),
         }),
     };
-    if let Some(goodbye) = goodbye {
+    if let Some(closing) = closing {
         // The page may be gone; then nobody needs to know.
         let _ = timeout(SEND_TIMEOUT, async {
-            say_goodbye(&mut out, goodbye).await?;
+            close(&mut out, closing).await?;
             // A connection with unread bytes would be reset, and the reason lost on its way.
             while let Some(Ok(_)) = from_page.next().await {}
             Ok::<(), axum::Error>(())
@@ -82,23 +82,23 @@ pub(crate) async fn talk(socket: WebSocket, hub: Hub, role: Role) {
     }
 }
 
-async fn say_goodbye(
+async fn close(
     out: &mut SplitSink<WebSocket, Message>,
-    goodbye: Goodbye,
+    closing: Closing,
 ) -> Result<(), axum::Error> {
-    let text = &goodbye.text;
+    let text = &closing.text;
     if let Some(text) = (ToPage::Error { text }).json() {
         out.send(Message::Text(text.into())).await?;
     }
     // A close frame has room for 123 bytes.
-    let reason: String = goodbye
+    let reason: String = closing
         .text
         .chars()
         .filter(char::is_ascii)
         .take(123)
         .collect();
     out.send(Message::Close(Some(CloseFrame {
-        code: goodbye.code,
+        code: closing.code,
         reason: reason.into(),
     })))
     .await
@@ -110,13 +110,13 @@ async fn take_orders(
     hub: &Hub,
     place: &Place,
     refuse: &mpsc::Sender<&'static str>,
-) -> Option<Goodbye> {
+) -> Option<Closing> {
     // After a silence nobody is left to read the reason.
     while let Ok(Some(Ok(message))) = timeout(SILENCE, from_page.next()).await {
         let text = match message {
             Message::Text(text) => text,
             Message::Binary(_) => {
-                return Some(Goodbye {
+                return Some(Closing {
                     code: close_code::UNSUPPORTED,
                     text: "not understood: binary message".into(),
                 });
@@ -127,7 +127,7 @@ async fn take_orders(
         let order = match text.parse::<Order>() {
             Ok(order) => order,
             Err(error) => {
-                return Some(Goodbye {
+                return Some(Closing {
                     code: close_code::POLICY,
                     text: error.to_string(),
                 });
@@ -143,7 +143,7 @@ async fn take_orders(
         }
         // A full queue wakes the session anyway, and STOP has its own flag.
         if hub.orders.try_send(order).is_err() {
-            return Some(Goodbye {
+            return Some(Closing {
                 code: close_code::AGAIN,
                 text: "too many orders at once".into(),
             });
@@ -158,7 +158,7 @@ async fn publish_news(
     hub: &Hub,
     place: &Place,
     mut refusals: mpsc::Receiver<&'static str>,
-) -> Option<Goodbye> {
+) -> Option<Closing> {
     let (mut changed, mut moved) = (hub.board.subscribe(), hub.lease.subscribe());
     let mut cursor = Cursor::default();
     send(out, &ToPage::hello()).await?;
@@ -171,7 +171,7 @@ async fn publish_news(
         }
         let mut news = hub.board.news(&mut cursor);
         if news.events_gone > 0 {
-            return Some(Goodbye {
+            return Some(Closing {
                 code: close_code::AGAIN,
                 text: "too slow: events were missed".into(),
             });
@@ -248,7 +248,7 @@ mod tests {
     #[tokio::test(start_paused = true)]
     async fn a_page_that_answers_no_ping_is_given_up_and_one_that_does_is_not() {
         let hub = hub();
-        let place = hub.lease.sit_down(true).unwrap();
+        let place = hub.lease.join(true).unwrap();
         let (refuse, refusals) = mpsc::channel(1);
         let (mut out, mut page) = connection();
         let begun = tokio::time::Instant::now();
@@ -257,11 +257,11 @@ mod tests {
             .filter(|message| ready(matches!(message, Message::Ping(_))))
             .enumerate()
             .filter_map(|(ping, _)| ready((ping < 10).then(|| Ok(Message::Pong(Bytes::new())))));
-        let goodbye = tokio::select! {
+        let closing = tokio::select! {
             _ = publish_news(&mut out, &hub, &place, refusals) => panic!("the page takes all"),
-            goodbye = take_orders(Box::pin(answers), &hub, &place, &refuse) => goodbye,
+            closing = take_orders(Box::pin(answers), &hub, &place, &refuse) => closing,
         };
-        assert!(goodbye.is_none());
+        assert!(closing.is_none());
         let lasted = begun.elapsed();
         assert!(
             lasted >= 9 * PING + SILENCE && lasted < 10 * PING + SILENCE,
@@ -274,7 +274,7 @@ mod tests {
         const ROUNDS: usize = 300;
         let hub = hub();
         let board = Arc::clone(&hub.board);
-        let place = hub.lease.sit_down(true).unwrap();
+        let place = hub.lease.join(true).unwrap();
         let (mut out, mut page) = connection();
         let (_refuse, refusals) = mpsc::channel(1);
         let reader = async {

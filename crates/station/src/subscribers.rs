@@ -1,4 +1,4 @@
-//! Who listens to a session: pages, the log, the terminal, a bridge. Each gets every event and takes what it needs.
+//! The subscribers of a session: pages, the log, the terminal, a bridge. Each gets every event and uses what it needs.
 
 use crate::board::Board;
 use crate::echo::Echo;
@@ -11,9 +11,9 @@ use std::sync::Arc;
 /// The subscribers of one session.
 pub(crate) struct Subscribers {
     pub(crate) board: Arc<Board>,
-    /// Shows what goes wrong on the terminal too.
+    /// Prints warnings and faults on the terminal too.
     pub(crate) echo: Option<Echo>,
-    /// Shows the same to viewers of another protocol.
+    /// Publishes the entries to viewers of Foxglove's protocol.
     #[cfg(feature = "foxglove")]
     pub(crate) bridge: Option<crate::bridge::Bridge>,
     pub(crate) recorder: Option<Recorder>,
@@ -21,7 +21,7 @@ pub(crate) struct Subscribers {
 
 impl Subscribers {
     /// Passes an event on to all.
-    pub(crate) fn take(&mut self, event: Event) {
+    pub(crate) fn publish(&mut self, event: Event) {
         self.board.take(&event);
         let Event::Entry(entry) = event else {
             return;
@@ -31,19 +31,19 @@ impl Subscribers {
         }
         #[cfg(feature = "foxglove")]
         if let Some(bridge) = &self.bridge {
-            bridge.take(&entry);
+            bridge.queue(&entry);
         }
         if let Some(recorder) = &mut self.recorder {
-            recorder.take(entry);
+            recorder.record(entry);
         }
     }
 
-    /// From now on everything is recorded here. What was recorded before is complete.
+    /// Records everything from now on; the log before is complete.
     pub(crate) fn record(&mut self, recorder: Recorder) {
         self.recorder = Some(recorder);
     }
 
-    /// What has gone wrong with the recording since it was last asked.
+    /// What has gone wrong with the recording since the last call.
     pub(crate) fn recording_trouble(&self) -> Option<Problem> {
         self.recorder.as_ref().and_then(Recorder::trouble)
     }

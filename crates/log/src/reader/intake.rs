@@ -1,8 +1,8 @@
-//! Takes a log in, record by record, with its checksums verified.
+//! Reads a log record by record and verifies its checksums.
 //!
 //! MCAP has checksums of chunks, of attachments, of the data section and of the index; [`crate::digest`] adds one for
-//! metadata. What a flipped bit makes of a record that has none, such as another kind of record, is not passed over
-//! either: only what belongs into a log is taken.
+//! metadata. A flipped bit may turn a record without a checksum into another kind of record: so only records
+//! that belong in a log are accepted.
 
 use super::metadata::Metadata;
 use super::row_json::Signals;

@@ -1,5 +1,5 @@
-//! What is left of a log that is damaged within: its index, at its end, says where each part begins, whatever became of
-//! the parts before.
+//! The readable parts of a log that is damaged in the middle: the index at its end gives the start of each chunk, however
+//! damaged the others are.
 
 use super::intake::{Intake, LONGEST, Stop};
 use mcap::MAGIC;

@@ -1,7 +1,7 @@
 //! What a client reports: events of the robot and the state of the link.
 
+use crate::anomaly::Anomaly;
 use crate::commands::Outcome;
-use crate::oddity::Oddity;
 use rumbo_control::params;
 use rumbo_wire::{EventKind, Hello, Status, Telemetry};
 
@@ -26,10 +26,10 @@ pub enum LinkEvent {
     Event(i64, EventKind),
     /// A command ended.
     Ended(Outcome),
-    /// STOP is not acknowledged, or the robot goes on saying that it is armed.
+    /// STOP is not acknowledged, or the robot keeps reporting that it is armed.
     StopUnconfirmed,
     /// The robot does what no healthy robot does.
-    Odd(Oddity),
+    Anomaly(Anomaly),
 }
 
 /// Why a command was not taken.

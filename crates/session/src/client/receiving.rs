@@ -1,6 +1,6 @@
 //! Messages from the robot: its identity, its time, acknowledgements; and the loss of the link.
 
-use super::meeting::Clock;
+use super::handshake::Clock;
 use super::{LinkEvent, RobotClient};
 use crate::commands::Fate;
 use crate::robot_clock::RobotClock;
@@ -42,19 +42,19 @@ impl RobotClient {
         let now_ms = (now_us / 1_000) as i64;
         let way_ms = (self.manager.way_us() / 1_000) as i64;
         if self.connected && !matches!(message, FromRobot::Ack(_)) {
-            self.oddities.frame(now_us);
+            self.anomalies.frame(now_us);
         }
         match message {
-            FromRobot::Hello(hello) => self.greet(hello, events),
+            FromRobot::Hello(hello) => self.hello_received(hello, events),
             FromRobot::Telemetry(telemetry) => {
-                self.meeting.update_low(telemetry.t_ms);
+                self.handshake.update_low(telemetry.t_ms);
                 if !telemetry.armed {
                     (self.stopping, self.still_armed_us) = (false, None);
                 } else if self.stopping {
                     self.still_armed_us.get_or_insert(now_us);
                 }
                 if self.connected {
-                    self.oddities.telemetry(telemetry.t_ms, now_us);
+                    self.anomalies.telemetry(telemetry.t_ms, now_us);
                 }
                 let t_ms = self.clock.session_ms(telemetry.t_ms, now_ms, way_ms);
                 events.push(LinkEvent::Telemetry(t_ms, telemetry));
@@ -81,12 +81,12 @@ impl RobotClient {
             }
             FromRobot::HeadingRef(heading_rad) => self.heading_ref_rad = heading_rad,
         }
-        events.extend(self.oddities.take().map(LinkEvent::Odd));
+        events.extend(self.anomalies.drain().map(LinkEvent::Anomaly));
     }
 
-    fn greet(&mut self, hello: Hello, events: &mut Vec<LinkEvent>) {
+    fn hello_received(&mut self, hello: Hello, events: &mut Vec<LinkEvent>) {
         (self.hellos, self.words) = (0, 0);
-        let before = self.meeting.greet(hello);
+        let before = self.handshake.hello_received(hello);
         if hello.protocol == PROTOCOL_VERSION {
             return self.meet(events);
         }
@@ -98,7 +98,7 @@ impl RobotClient {
     }
 
     fn time_reported(&mut self, at: RobotTime, now_us: u64, events: &mut Vec<LinkEvent>) {
-        let clock = self.meeting.update(at);
+        let clock = self.handshake.update(at);
         if clock != Clock::On {
             // Pending requests are void, and the new clock is unrelated to the old one.
             self.connected = false;
@@ -107,8 +107,8 @@ impl RobotClient {
             self.clock = RobotClock::UNKNOWN;
         }
         match clock {
-            Clock::Restarted => self.oddities.begin(),
-            Clock::On | Clock::Back => self.oddities.status(at, now_us),
+            Clock::Restarted => self.anomalies.begin(),
+            Clock::On | Clock::Back => self.anomalies.status(at, now_us),
         }
         self.meet(events);
     }
@@ -118,7 +118,7 @@ impl RobotClient {
         if self.connected {
             return;
         }
-        let Some((hello, restarted)) = self.meeting.complete() else {
+        let Some((hello, restarted)) = self.handshake.complete() else {
             return;
         };
         self.connected = true;
@@ -132,8 +132,8 @@ impl RobotClient {
     /// The robot is gone: no pending request is sent when it is back, except STOP.
     pub(super) fn lose(&mut self) {
         self.connected = false;
-        self.meeting.lose();
-        self.oddities.begin();
+        self.handshake.reset();
+        self.anomalies.begin();
         self.manager.give_up(Fate::LinkLost);
         (self.stopping, self.still_armed_us) = (false, None);
         self.hello_sent_us = None;

@@ -5,9 +5,9 @@ use crate::terminal::ParsedRow;
 use rumbo_wire::Command;
 use rumbo_wire::text::RowKind;
 
-/// After so many unanswered HELLOs the robot does not speak frames.
+/// After this many unanswered HELLOs the robot does not speak frames.
 const HELLOS_UNANSWERED: u32 = 4;
-/// After so many rows of text it speaks text. After as many frames it speaks frames after all.
+/// After this many rows of text it speaks text; after as many frames it speaks frames after all.
 const WORDS_KNOWN: u32 = 2;
 
 impl RobotClient {

@@ -74,7 +74,7 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
 fn alarms(now_us: u64, client: &RobotClient) -> Vec<String> {
     let stop = client.stop_unconfirmed(now_us);
     let stop = stop.then(|| words::STOP_UNCONFIRMED.to_owned());
-    let odd = client.oddities(now_us).map(words::alarm);
+    let odd = client.anomalies(now_us).map(words::alarm);
     stop.into_iter().chain(odd).collect()
 }
 

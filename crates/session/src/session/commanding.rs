@@ -122,7 +122,7 @@ impl Session {
     }
 
     /// Ends a movement that is no longer held.
-    pub fn let_go(&mut self, now: Now) {
+    pub fn expire_hold(&mut self, now: Now) {
         let over = |(_, until_us): &mut (Command, u64)| now.wall_us >= *until_us;
         if self.held.take_if(over).is_some() {
             let stop = Command::Move {

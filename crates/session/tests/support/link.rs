@@ -216,7 +216,7 @@ pub(crate) fn commands(frames: u64, seed: u64) -> Commands {
                     outcome.acknowledged += usize::from(done);
                     outcome.given_up += usize::from(!done);
                 }
-                LinkEvent::Odd(_) | LinkEvent::StopUnconfirmed => outcome.alarms += 1,
+                LinkEvent::Anomaly(_) | LinkEvent::StopUnconfirmed => outcome.alarms += 1,
                 _ => {}
             }
         }

@@ -18,7 +18,7 @@ impl PortError {
                 format!("it is no serial port; {}", present())
             }
             io::ErrorKind::ResourceBusy => IN_USE.into(),
-            // The lock that was not to be had counts as a port that is not there.
+            // A lock that another program holds is reported as a port that does not exist.
             _ if error.to_string().contains("exclusive lock") => IN_USE.into(),
             io::ErrorKind::NotFound | io::ErrorKind::InvalidInput => present(),
             _ => format!("is another program using it? {}", present()),

@@ -31,7 +31,7 @@ const LOOK: Duration = Duration::from_millis(100);
 const TCP_PATIENCE: Duration = Duration::from_secs(2);
 /// Most pieces queued for the session.
 const WAITING: usize = 1_024;
-/// After so many consecutive empty reads a serial port is gone.
+/// After this many consecutive empty reads a serial port is gone.
 const EMPTY_READS: u32 = 3;
 
 /// Prefix of a TCP address.

@@ -4,19 +4,19 @@
 //! A link only delays: two frames may arrive closer together than they were made, never with more of the robot's time
 //! between them than the wait for the first one explains, and a link that is silent for a second is lost, with which
 //! everything here begins again. A restart looks like a clock that ran back until the next status, so what is
-//! suspicious is judged then. Each oddity is reported again after `AGAIN_US` at the earliest.
+//! suspicious is judged then. Each anomaly is reported again after `AGAIN_US` at the earliest.
 
 use rumbo_wire::RobotTime;
 use std::collections::VecDeque;
 
-/// The same oddity is not reported again within this time \[us\].
+/// The same anomaly is not reported again within this time \[us\].
 const AGAIN_US: u64 = 30_000_000;
-/// An oddity is shown for so long after it was last seen \[us\].
+/// An anomaly is shown for this long after it was last seen \[us\].
 const SHOWN_US: u64 = 10_000_000;
-/// The robot's clock may be ahead of the arrivals by so much in one step: longer than a silence that ends the
+/// The robot's clock may get ahead of the arrivals by this much in one step: longer than a silence that ends the
 /// connection \[ms\].
 const JUMP_MS: i64 = 1_500;
-/// Telemetry of which the times are remembered: ten seconds of it.
+/// Time stamps of telemetry that are remembered: ten seconds of them.
 const REMEMBERED: usize = 256;
 /// A link may repeat a frame or two.
 const REPEATS: u32 = 5;
@@ -30,7 +30,7 @@ const PATIENCE_US: u64 = 3_000_000;
 
 /// What no healthy robot does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Oddity {
+pub enum Anomaly {
     /// Its clock ran back without a restart.
     ClockBack,
     /// Its clock jumped ahead.
@@ -43,14 +43,14 @@ pub enum Oddity {
     Repeats,
 }
 
-impl Oddity {
+impl Anomaly {
     /// All of them.
-    pub const ALL: [Oddity; 5] = [
-        Oddity::ClockBack,
-        Oddity::ClockJump,
-        Oddity::ClockSpeed,
-        Oddity::Flood,
-        Oddity::Repeats,
+    pub const ALL: [Anomaly; 5] = [
+        Anomaly::ClockBack,
+        Anomaly::ClockJump,
+        Anomaly::ClockSpeed,
+        Anomaly::Flood,
+        Anomaly::Repeats,
     ];
 
     /// What it is, and what to do.
@@ -84,23 +84,23 @@ struct Window {
     frames: i64,
 }
 
-/// Keeps what is needed to judge the next frames.
+/// Detects anomalies in the frames of one robot.
 #[derive(Debug, Default)]
-pub(crate) struct OddityWatch {
+pub(crate) struct AnomalyDetector {
     /// The robot's time in milliseconds, going on where telemetry wraps, and when it arrived \[ms\].
     last: Option<(i64, i64)>,
     recent: VecDeque<u16>,
     last_status: Option<RobotTime>,
     repeats: u32,
-    suspected: Vec<Oddity>,
+    suspected: Vec<Anomaly>,
     suspected_us: Option<u64>,
     window: Option<Window>,
-    seen_us: [Option<u64>; Oddity::ALL.len()],
-    reported_us: [Option<u64>; Oddity::ALL.len()],
-    to_report: Vec<Oddity>,
+    seen_us: [Option<u64>; Anomaly::ALL.len()],
+    reported_us: [Option<u64>; Anomaly::ALL.len()],
+    to_report: Vec<Anomaly>,
 }
 
-impl OddityWatch {
+impl AnomalyDetector {
     /// The robot restarted, or was lost: its messages from now on do not follow from earlier ones.
     pub(crate) fn begin(&mut self) {
         *self = Self {
@@ -111,7 +111,7 @@ impl OddityWatch {
         };
     }
 
-    /// A frame arrived that is not an answer.
+    /// A frame arrived that is no answer.
     pub(crate) fn frame(&mut self, now_us: u64) {
         if let Some(window) = &mut self.window {
             window.frames += 1;
@@ -147,7 +147,7 @@ impl OddityWatch {
                 self.suspect_repeats(now_us);
             }
             Some(before) if at.since(before).is_none() => {
-                self.suspect(Oddity::ClockBack, now_us);
+                self.suspect(Anomaly::ClockBack, now_us);
             }
             _ => {}
         }
@@ -159,9 +159,9 @@ impl OddityWatch {
         let now_ms = (now_us / 1_000) as i64;
         let (robot_ms, arrived_ms) = self.last.unwrap_or((0, now_ms));
         if step_ms < 0 {
-            self.suspect(Oddity::ClockBack, now_us);
+            self.suspect(Anomaly::ClockBack, now_us);
         } else if step_ms > now_ms - arrived_ms + JUMP_MS {
-            self.suspect(Oddity::ClockJump, now_us);
+            self.suspect(Anomaly::ClockJump, now_us);
         }
         self.last = Some((robot_ms + step_ms, now_ms));
     }
@@ -169,25 +169,25 @@ impl OddityWatch {
     fn suspect_repeats(&mut self, now_us: u64) {
         if self.repeats > REPEATS {
             self.repeats = 0;
-            self.suspect(Oddity::Repeats, now_us);
+            self.suspect(Anomaly::Repeats, now_us);
         }
     }
 
-    fn suspect(&mut self, oddity: Oddity, now_us: u64) {
-        if !self.suspected.contains(&oddity) {
-            self.suspected.push(oddity);
+    fn suspect(&mut self, anomaly: Anomaly, now_us: u64) {
+        if !self.suspected.contains(&anomaly) {
+            self.suspected.push(anomaly);
         }
         self.suspected_us.get_or_insert(now_us);
         // A clock that was set says nothing about its speed.
-        if oddity != Oddity::Repeats {
+        if anomaly != Anomaly::Repeats {
             self.window = None;
         }
     }
 
     fn judge(&mut self, now_us: u64) {
         self.suspected_us = None;
-        for oddity in std::mem::take(&mut self.suspected) {
-            self.found(oddity, now_us);
+        for anomaly in std::mem::take(&mut self.suspected) {
+            self.found(anomaly, now_us);
         }
     }
 
@@ -209,34 +209,34 @@ impl OddityWatch {
         if window.frames > FRAMES_S
             && window.frames * 1_000 > FRAMES_S * longer_ms + 5_000 * FRAMES_S
         {
-            self.found(Oddity::Flood, now_us);
+            self.found(Anomaly::Flood, now_us);
             self.window = None;
         } else if passed_ms >= WINDOW_MS {
             if 5 * lived_ms > 6 * passed_ms || 5 * lived_ms < 4 * passed_ms {
-                self.found(Oddity::ClockSpeed, now_us);
+                self.found(Anomaly::ClockSpeed, now_us);
             }
             self.window = None;
         }
     }
 
-    fn found(&mut self, oddity: Oddity, now_us: u64) {
-        let at = oddity as usize;
+    fn found(&mut self, anomaly: Anomaly, now_us: u64) {
+        let at = anomaly as usize;
         self.seen_us[at] = Some(now_us);
         if self.reported_us[at].is_none_or(|reported_us| now_us >= reported_us + AGAIN_US) {
             self.reported_us[at] = Some(now_us);
-            self.to_report.push(oddity);
+            self.to_report.push(anomaly);
         }
     }
 
-    /// What is to be reported now.
-    pub(crate) fn take(&mut self) -> impl Iterator<Item = Oddity> + use<> {
+    /// The anomalies to report now.
+    pub(crate) fn drain(&mut self) -> impl Iterator<Item = Anomaly> + use<> {
         std::mem::take(&mut self.to_report).into_iter()
     }
 
-    /// What was seen lately.
-    pub(crate) fn present(&self, now_us: u64) -> impl Iterator<Item = Oddity> {
+    /// Anomalies seen recently.
+    pub(crate) fn present(&self, now_us: u64) -> impl Iterator<Item = Anomaly> {
         let lately = move |at_us: u64| now_us < at_us + SHOWN_US;
-        let seen = Oddity::ALL.into_iter().zip(self.seen_us);
-        seen.filter_map(move |(oddity, at_us)| at_us.is_some_and(lately).then_some(oddity))
+        let seen = Anomaly::ALL.into_iter().zip(self.seen_us);
+        seen.filter_map(move |(anomaly, at_us)| at_us.is_some_and(lately).then_some(anomaly))
     }
 }

@@ -9,7 +9,7 @@ use rumbo_wire::{Hello, RobotTime};
 /// The robot's clock by its latest status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Clock {
-    /// It went on.
+    /// It advanced.
     On,
     /// The robot started again.
     Restarted,
@@ -19,11 +19,11 @@ pub(super) enum Clock {
 
 /// What is known of the robot so far.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Meeting {
+pub(super) struct Handshake {
     hello: Option<Hello>,
-    /// Its HELLO arrived since it was last lost, and since its last status.
-    greeted: bool,
-    just_greeted: bool,
+    /// Its HELLO arrived: since it was last lost, and since its last status.
+    answered: bool,
+    just_answered: bool,
     /// The newest time received; kept when it is lost, to detect a restart.
     newest: Option<RobotTime>,
     /// That time is from this connection.
@@ -32,14 +32,14 @@ pub(super) struct Meeting {
     restarted: bool,
 }
 
-impl Meeting {
-    /// Takes its HELLO; returns the one before.
-    pub(super) fn greet(&mut self, hello: Hello) -> Option<Hello> {
-        (self.greeted, self.just_greeted) = (true, true);
+impl Handshake {
+    /// Its HELLO arrived; returns the one before.
+    pub(super) fn hello_received(&mut self, hello: Hello) -> Option<Hello> {
+        (self.answered, self.just_answered) = (true, true);
         self.hello.replace(hello)
     }
 
-    /// Takes the time in its status.
+    /// Its status arrived, with this time.
     pub(super) fn update(&mut self, at: RobotTime) -> Clock {
         let before = self.newest.replace(at);
         let clock = match before {
@@ -48,29 +48,29 @@ impl Meeting {
             _ => Clock::On,
         };
         if clock != Clock::On {
-            self.greeted = self.just_greeted;
+            self.answered = self.just_answered;
             self.restarted = true;
         }
-        self.just_greeted = false;
+        self.just_answered = false;
         self.timed = true;
         clock
     }
 
-    /// Takes the lower half of the milliseconds, from telemetry.
+    /// Telemetry arrived, with the lower half of the milliseconds.
     pub(super) fn update_low(&mut self, t_ms: u16) {
         if let Some(newest) = self.newest.as_mut().filter(|_| self.timed) {
             *newest = newest.at_low(t_ms);
         }
     }
 
-    /// It is gone.
-    pub(super) fn lose(&mut self) {
-        (self.greeted, self.just_greeted, self.timed) = (false, false, false);
+    /// The robot is lost.
+    pub(super) fn reset(&mut self) {
+        (self.answered, self.just_answered, self.timed) = (false, false, false);
     }
 
     /// Its HELLO, and whether it restarted, as soon as both are known; returned once.
     pub(super) fn complete(&mut self) -> Option<(Hello, bool)> {
-        let hello = self.hello.filter(|_| self.greeted && self.timed)?;
+        let hello = self.hello.filter(|_| self.answered && self.timed)?;
         Some((hello, std::mem::take(&mut self.restarted)))
     }
 
@@ -103,51 +103,51 @@ mod tests {
 
     #[test]
     fn a_robot_is_connected_once_its_hello_and_its_time_are_known() {
-        let mut meeting = Meeting::default();
-        assert_eq!(meeting.update(at(3, 100)), Clock::On);
-        assert_eq!(meeting.complete(), None);
-        meeting.greet(HELLO);
-        assert_eq!(meeting.complete(), Some((HELLO, false)));
-        meeting.lose();
-        meeting.greet(HELLO);
-        assert_eq!(meeting.complete(), None);
-        assert_eq!(meeting.update(at(3, 9_000)), Clock::On);
-        assert_eq!(meeting.complete(), Some((HELLO, false)));
+        let mut handshake = Handshake::default();
+        assert_eq!(handshake.update(at(3, 100)), Clock::On);
+        assert_eq!(handshake.complete(), None);
+        handshake.hello_received(HELLO);
+        assert_eq!(handshake.complete(), Some((HELLO, false)));
+        handshake.reset();
+        handshake.hello_received(HELLO);
+        assert_eq!(handshake.complete(), None);
+        assert_eq!(handshake.update(at(3, 9_000)), Clock::On);
+        assert_eq!(handshake.complete(), Some((HELLO, false)));
     }
 
     #[test]
     fn a_start_is_detected_with_its_hello_without_it_and_after_a_silence() {
         for (hello, silent) in [(true, false), (false, false), (true, true)] {
-            let mut meeting = Meeting::default();
-            meeting.greet(HELLO);
-            meeting.update(at(255, 50_000));
-            meeting.complete();
+            let mut handshake = Handshake::default();
+            handshake.hello_received(HELLO);
+            handshake.update(at(255, 50_000));
+            handshake.complete();
             if silent {
-                meeting.lose();
+                handshake.reset();
             }
             if hello {
-                meeting.greet(HELLO);
+                handshake.hello_received(HELLO);
             }
-            assert_eq!(meeting.update(at(0, 60_000)), Clock::Restarted);
+            assert_eq!(handshake.update(at(0, 60_000)), Clock::Restarted);
             if !hello {
-                assert_eq!(meeting.complete(), None);
-                meeting.greet(HELLO);
+                assert_eq!(handshake.complete(), None);
+                handshake.hello_received(HELLO);
             }
-            assert_eq!(meeting.complete(), Some((HELLO, true)));
+            assert_eq!(handshake.complete(), Some((HELLO, true)));
         }
     }
 
     #[test]
     fn the_time_goes_on_where_telemetry_wraps_and_a_time_that_runs_back_is_detected() {
-        let mut meeting = Meeting::default();
-        meeting.update(at(1, 65_500));
-        meeting.update_low(4);
-        assert_eq!(meeting.newest(), at(1, 65_540));
-        assert_eq!(meeting.update(at(1, 65_540)), Clock::On);
-        assert_eq!(meeting.update(at(1, 65_539)), Clock::Back);
-        assert_eq!(meeting.update(at(1, u32::MAX)), Clock::Back);
+        let mut handshake = Handshake::default();
+        handshake.update(at(1, 65_500));
+        handshake.update_low(4);
+        assert_eq!(handshake.newest(), at(1, 65_540));
+        assert_eq!(handshake.update(at(1, 65_540)), Clock::On);
+        assert_eq!(handshake.update(at(1, 65_539)), Clock::Back);
+        assert_eq!(handshake.update(at(1, u32::MAX)), Clock::Back);
         assert_eq!(
-            meeting.update(at(1, 5)),
+            handshake.update(at(1, 5)),
             Clock::On,
             "the wrap after 49.7 days"
         );
