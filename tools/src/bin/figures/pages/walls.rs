@@ -69,20 +69,20 @@ fn ahead_m(sample: &Sample) -> f64 {
 }
 
 pub(super) fn mode2() -> Result<Option<Made>, String> {
-    let (Some([baseline, recorded, ours]), Some(turning)) = (
-        three("mode2", runs::BASELINE)?,
+    let (Some([baseline, ours]), Some(turning)) = (
+        both("mode2", runs::BASELINE)?,
         runs("mode2-final", runs::OURS)?,
     ) else {
         return Ok(None);
     };
-    let mut distance = signal(&recorded, &ours, |sample, _| 100.0 * ahead_m(sample));
+    let mut distance = signal(&baseline, &ours, |sample, _| 100.0 * ahead_m(sample));
     distance.insert(0, reference(&ours.setup, 100.0));
     let mut charts = [
         over_time("Mode 2: distance to the wall", "cm", distance),
         over_time(
             "Angle to the wall's normal",
             "deg",
-            signal(&recorded, &ours, |sample, _| DEG * sample.heading_rad),
+            signal(&baseline, &ours, |sample, _| DEG * sample.heading_rad),
         ),
     ];
     charts[0].y_range = Some([0.0, 125.0]);
@@ -128,7 +128,6 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
         words: words(
             &[
                 (REPORT, &baseline),
-                (AS_RECORDED, &recorded),
                 ("ours, one sonar on the servo (`mode2-final`)", &turning),
                 ("ours", &ours),
             ],
@@ -145,10 +144,10 @@ fn beside_m(sample: &Sample) -> f64 {
 }
 
 pub(super) fn mode3() -> Result<Option<Made>, String> {
-    let Some([baseline, recorded, ours]) = three("mode3", runs::BASELINE)? else {
+    let Some([baseline, ours]) = both("mode3", runs::BASELINE)? else {
         return Ok(None);
     };
-    let curves = signal(&recorded, &ours, |sample, _| {
+    let curves = signal(&baseline, &ours, |sample, _| {
         100.0 * (beside_m(sample) - 0.575)
     });
     let mut chart = over_time("Mode 3: error of the distance to the wall", "cm", curves);
@@ -174,20 +173,12 @@ pub(super) fn mode3() -> Result<Option<Made>, String> {
             "Error of the distance to the wall over time: ours stays within half a centimetre",
             svg(&[chart], 1, WIDE)?,
         )],
-        words: words(
-            &[
-                (REPORT, &baseline),
-                (AS_RECORDED, &recorded),
-                ("ours", &ours),
-            ],
-            "mode3",
-            &rows,
-        ),
+        words: words(&[(REPORT, &baseline), ("ours", &ours)], "mode3", &rows),
     }))
 }
 
 pub(super) fn mode4() -> Result<Option<Made>, String> {
-    let Some([baseline, recorded, ours]) = three("mode4", SLOW_STEPS)? else {
+    let Some([baseline, ours]) = both("mode4", SLOW_STEPS)? else {
         return Ok(None);
     };
     let chart = |title, name, colour, runs: &Runs| {
@@ -207,7 +198,7 @@ pub(super) fn mode4() -> Result<Option<Made>, String> {
             "Mode 4: distance to the wall, the report's program",
             REPORT,
             BASELINE,
-            &recorded,
+            &baseline,
         ),
         chart("ours, its references sooner", "ours", OURS, &ours),
     ];
@@ -244,14 +235,6 @@ pub(super) fn mode4() -> Result<Option<Made>, String> {
             "Distance to the wall over time: ours takes each step without swinging",
             svg(&charts, 1, WIDE)?,
         )],
-        words: words(
-            &[
-                (REPORT, &baseline),
-                (AS_RECORDED, &recorded),
-                ("ours", &ours),
-            ],
-            "mode4",
-            &rows,
-        ),
+        words: words(&[(REPORT, &baseline), ("ours", &ours)], "mode4", &rows),
     }))
 }

@@ -33,7 +33,7 @@ fn maps(
 }
 
 pub(super) fn mode7() -> Result<Option<Made>, String> {
-    let Some([baseline, recorded, ours]) = three("mode7", SLOW_SQUARE)? else {
+    let Some([baseline, ours]) = both("mode7", SLOW_SQUARE)? else {
         return Ok(None);
     };
     let square = || {
@@ -73,17 +73,9 @@ pub(super) fn mode7() -> Result<Option<Made>, String> {
         figures: vec![(
             "mode7",
             "True ways of 20 robots around a square of 1 m: ours all but on it",
-            maps([&recorded, &ours], titles, square, ways, range, range)?,
+            maps([&baseline, &ours], titles, square, ways, range, range)?,
         )],
-        words: words(
-            &[
-                (REPORT, &baseline),
-                (AS_RECORDED, &recorded),
-                ("ours", &ours),
-            ],
-            "mode7",
-            &rows,
-        ),
+        words: words(&[(REPORT, &baseline), ("ours", &ours)], "mode7", &rows),
     }))
 }
 
@@ -174,12 +166,12 @@ fn mission(
     range: [Option<[f64; 2]>; 2],
     rows: &[Row],
 ) -> Result<Option<Made>, String> {
-    let Some([baseline, recorded, ours]) = three(scenario, SLOW_MISSION)? else {
+    let Some([baseline, ours]) = both(scenario, SLOW_MISSION)? else {
         return Ok(None);
     };
     let titles = ["Mode 8: the report's program", "ours"];
     let figure = maps(
-        [&recorded, &ours],
+        [&baseline, &ours],
         titles,
         || shapes(&ours.setup),
         in_the_world,
@@ -188,15 +180,7 @@ fn mission(
     )?;
     Ok(Some(Made {
         figures: vec![(scenario, alt, figure)],
-        words: words(
-            &[
-                (REPORT, &baseline),
-                (AS_RECORDED, &recorded),
-                ("ours", &ours),
-            ],
-            scenario,
-            rows,
-        ),
+        words: words(&[(REPORT, &baseline), ("ours", &ours)], scenario, rows),
     }))
 }
 

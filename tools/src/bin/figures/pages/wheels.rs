@@ -72,8 +72,7 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
         uncalibrated: true,
         ..runs::OURS
     };
-    let (Some([baseline, recorded, ours]), Some(raw)) =
-        (three("mode6", runs::BASELINE)?, runs("mode6", raw)?)
+    let (Some([baseline, ours]), Some(raw)) = (both("mode6", runs::BASELINE)?, runs("mode6", raw)?)
     else {
         return Ok(None);
     };
@@ -94,7 +93,7 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
                 Curve::Ways {
                     name: REPORT,
                     colour: BASELINE,
-                    runs: drift(&recorded),
+                    runs: drift(&baseline),
                 },
                 Curve::Ways {
                     name: "ours, calibrated",
@@ -129,7 +128,6 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
         words: words(
             &[
                 (REPORT, &baseline),
-                (AS_RECORDED, &recorded),
                 ("ours, `calibrated = false`", &raw),
                 ("ours", &ours),
             ],
