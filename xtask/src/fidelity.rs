@@ -2,13 +2,12 @@
 
 use crate::project::{Project, run as run_command};
 
-/// Prints two tables, of the robot file's robots and of those that the recordings leave possible: of `seeds` robots, of
-/// the scenarios in `only`. Without either they go into the docs.
+/// Prints the table of `seeds` robots and the scenarios in `only`. Without either it goes into the docs.
 pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Result<bool, String> {
     if std::env::var_os("RUMBO_DATA").is_none() {
         return Err("fidelity needs the recorded runs; set RUMBO_DATA to their folder".to_owned());
     }
-    let program = [
+    let mut command = project.cargo(&[
         "run",
         "--locked",
         "-p",
@@ -16,20 +15,16 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
         "--bin",
         "fidelity",
         "--",
-    ];
-    for robots in [None, Some("--identify")] {
-        let mut command = project.cargo(&program);
-        command.args(robots);
-        if let Some(seeds) = seeds {
-            command.args(["--seeds", &seeds.to_string()]);
-        }
-        for name in only {
-            command.args(["--only", name]);
-        }
-        if only.is_empty() && seeds.is_none() {
-            command.arg("--write");
-        }
-        run_command(&mut command)?;
+    ]);
+    if let Some(seeds) = seeds {
+        command.args(["--seeds", &seeds.to_string()]);
     }
+    for name in only {
+        command.args(["--only", name]);
+    }
+    if only.is_empty() && seeds.is_none() {
+        command.arg("--write");
+    }
+    run_command(&mut command)?;
     Ok(true)
 }

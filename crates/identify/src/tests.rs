@@ -333,8 +333,9 @@ fn the_identified_robot_starts_to_turn_at_the_reports_pwm() {
     let params = memoria();
     let (air, floor) = (dead_zone_pwm(&params, false), dead_zone_pwm(&params, true));
     assert!((32.0..38.0).contains(&air), "the report: 35, here {air}");
+    // "About 65", and it moves with the battery's charge: the fit weighs it with 4.
     assert!(
-        (60.0..70.0).contains(&floor),
+        (58.0..72.0).contains(&floor),
         "the report: 65, here {floor}"
     );
 }

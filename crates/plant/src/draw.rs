@@ -1,46 +1,47 @@
 //! The spread of robots, batteries and floors from seed to seed.
 //!
-//! A seed stands for one robot on one day: no controller may rely on the nominal numbers. Uniform within the bounds
-//! below, except the battery, which is uniform over its whole range of use. The pattern of the encoder's poles and
+//! A seed stands for one robot on one day: no controller may rely on the nominal numbers. Uniform within the
+//! bounds of [`Spread`](crate::params::Spread). The pattern of the encoder's poles and
 //! the changing slip and floor need no drawing here: they follow from the seed itself.
 
 use crate::noise::{Noise, source};
 use crate::params::Params;
 
-/// Wheel radii, each, relative.
-const RADIUS: f64 = 0.005;
-/// Distance between the wheels, relative.
-const BASE: f64 = 0.02;
-/// Dry friction of each wheel's gears and of the floor, relative; breakaway friction follows.
-const FRICTION: f64 = 0.15;
-/// Battery's open-circuit voltage, V.
-const BATTERY_V: (f64, f64) = (6.8, 8.4);
-/// Speed of sound, relative.
-const SOUND: f64 = 0.009;
-
 impl Params {
-    /// The robot of this seed: these parameters with the spread that every scenario applies unless it says otherwise.
+    /// The robot of this seed: these parameters with their [`Spread`](crate::params::Spread), which every scenario
+    /// applies unless it says otherwise. The same seed and number of the robot are the same robot.
     #[must_use]
     pub fn draw(&self, seed: u64, robot: u32) -> Self {
         let noise = Noise::new(seed, robot);
-        let within = |index: u32, relative: f64| {
-            1.0 + relative * (2.0 * noise.uniform(source::DRAW + index, 0) - 1.0)
-        };
+        let uniform = |index: u32| noise.uniform(source::DRAW + index, 0);
+        let within = |index: u32, relative: f64| 1.0 + relative * (2.0 * uniform(index) - 1.0);
+        let spread = &self.spread;
         let mut drawn = *self;
 
-        drawn.wheels.left.radius_m *= within(0, RADIUS);
-        drawn.wheels.right.radius_m *= within(1, RADIUS);
-        drawn.body.base_m *= within(2, BASE);
+        drawn.wheels.left.radius_m *= within(0, spread.radius);
+        drawn.wheels.right.radius_m *= within(1, spread.radius);
+        drawn.body.base_m *= within(2, spread.base);
+        let (static_ratio, memory) = (
+            within(10, spread.static_ratio),
+            within(11, spread.friction_memory),
+        );
         for (wheel, index) in [(&mut drawn.wheels.left, 3), (&mut drawn.wheels.right, 4)] {
-            let friction = within(index, FRICTION);
+            let friction = within(index, spread.friction);
             wheel.coulomb_forward_n_m *= friction;
             wheel.coulomb_backward_n_m *= friction;
+            wheel.static_ratio = (wheel.static_ratio * static_ratio).max(1.0);
+            wheel.friction_memory_s *= memory;
         }
-        drawn.floor.friction_scale *= within(5, FRICTION);
-        let (low_v, high_v) = BATTERY_V;
+        drawn.floor.friction_scale *= within(5, spread.floor);
         drawn.battery.open_circuit_v =
-            low_v + (high_v - low_v) * noise.uniform(source::DRAW + 6, 0);
-        drawn.sonar.temperature_c = at_sound_scale(drawn.sonar.temperature_c, within(7, SOUND));
+            spread.battery_min_v + (spread.battery_max_v - spread.battery_min_v) * uniform(6);
+        drawn.sonar.temperature_c =
+            at_sound_scale(drawn.sonar.temperature_c, within(7, spread.sound));
+        drawn.motor.back_emf_v_s *= within(8, spread.back_emf);
+        drawn.wheels.right.strength *= within(9, spread.strength);
+        drawn.body.yaw_inertia_kg_m2 *= within(12, spread.yaw_inertia);
+        drawn.floor.yaw_damping_n_m_s *= within(13, spread.yaw_damping);
+        drawn.floor.scrub_n_m *= within(14, spread.scrub);
         drawn
     }
 }
@@ -61,10 +62,10 @@ mod tests {
         for seed in 0..2000 {
             let drawn = nominal.draw(seed, 0);
             assert_eq!(drawn.check(), Ok(()));
-            assert!((drawn.body.base_m / nominal.body.base_m - 1.0).abs() <= BASE);
+            assert!((drawn.body.base_m / nominal.body.base_m - 1.0).abs() <= nominal.spread.base);
             assert!((6.8..8.4).contains(&drawn.battery.open_circuit_v));
             let sound = (331.3 + 0.606 * drawn.sonar.temperature_c) / (331.3 + 0.606 * 20.0);
-            assert!((sound - 1.0).abs() <= SOUND + 1e-12);
+            assert!((sound - 1.0).abs() <= nominal.spread.sound + 1e-12);
         }
     }
 

@@ -227,7 +227,7 @@ section! {
         rolling_n_m = 0.01, 0.0 => 1.0, "N m";
         /// Dry resistance per wheel added when turning on the spot: scrubbing tyres and castor.
         scrub_n_m = 0.01, 0.0 => 1.0, "N m";
-        /// Moment against turning, per rad/s of yaw: tyres that spin while they roll, and the castor. None identified yet.
+        /// Moment against turning, per rad/s of yaw: tyres that spin while they roll, and the castor.
         yaw_damping_n_m_s = 0.0, 0.0 => 1.0, "N m s";
         /// Standard deviation of that resistance along the way, relative.
         roughness = 0.09, 0.0 => 0.5, "1";
@@ -316,6 +316,41 @@ section! {
     }
 }
 
+section! {
+    /// How far robots, batteries and floors differ: what a seed draws, uniform within these bounds (see [`Params::draw`]).
+    /// Relative ones are the largest deviation from the robot's own value.
+    Spread {
+        /// Radius of each wheel, relative.
+        radius = 0.005, 0.0 => 0.1, "1";
+        /// Distance between the wheels, relative.
+        base = 0.02, 0.0 => 0.2, "1";
+        /// Dry friction of each wheel's gears, relative; breakaway friction follows.
+        friction = 0.15, 0.0 => 0.9, "1";
+        /// Friction of the floor, relative.
+        floor = 0.15, 0.0 => 0.9, "1";
+        /// Emptiest battery: open-circuit voltage.
+        battery_min_v = 6.8, 5.0 => 9.0, "V";
+        /// Fullest battery: open-circuit voltage.
+        battery_max_v = 8.4, 5.0 => 9.0, "V";
+        /// Speed of sound, relative: the temperature of the room.
+        sound = 0.009, 0.0 => 0.05, "1";
+        /// Back-EMF of both motors, relative.
+        back_emf = 0.0, 0.0 => 0.5, "1";
+        /// Torque of the right motor beside the left one's, relative.
+        strength = 0.0, 0.0 => 0.5, "1";
+        /// Dry friction after rest, relative.
+        static_ratio = 0.0, 0.0 => 0.5, "1";
+        /// Time over which friction remembers the speed, relative.
+        friction_memory = 0.0, 0.0 => 0.9, "1";
+        /// Resistance added when turning on the spot, relative.
+        scrub = 0.0, 0.0 => 0.9, "1";
+        /// Yaw inertia, relative.
+        yaw_inertia = 0.0, 0.0 => 0.9, "1";
+        /// Damping of the yaw, relative.
+        yaw_damping = 0.0, 0.0 => 0.9, "1";
+    }
+}
+
 group! {
     /// All parameters of one robot and its floor: the `[plant]` table of a robot file.
     Params {
@@ -337,6 +372,8 @@ group! {
         sonar: Sonar;
         /// Servo of the front sonar.
         servo: Servo;
+        /// What a seed draws.
+        spread: Spread;
     }
 }
 

@@ -14,19 +14,6 @@ fn baseline(scenario: &str) -> Setup {
     Library::new().setup(scenario, &overrides).unwrap()
 }
 
-/// The report's program on robots that turn as its own did along its wall (docs/theory/baseline.md).
-fn turning_as_recorded(scenario: &str) -> Setup {
-    let overrides = Overrides {
-        program: NativeProgram::Baseline,
-        parameters: vec![
-            ("body.yaw_inertia_kg_m2".to_owned(), 0.0047),
-            ("floor.yaw_damping_n_m_s".to_owned(), 0.016),
-        ],
-        ..Overrides::default()
-    };
-    Library::new().setup(scenario, &overrides).unwrap()
-}
-
 /// The median of a metric; an event that never happened counts as infinitely late.
 fn median(runs: &[RunResult], metric: &str) -> f64 {
     let mut values: Vec<f64> = runs.iter().map(|run| run.metrics[metric]).collect();
@@ -48,16 +35,16 @@ fn the_baseline_takes_about_3_s_to_30_cm_from_a_wall_at_15_passes_a_second() {
 }
 
 #[test]
-fn the_baseline_keeps_to_its_wall_within_5_cm_where_the_robot_turns_as_recorded() {
-    let runs = seeds(&turning_as_recorded("mode3"), 1..21);
+fn the_baseline_keeps_to_its_wall_within_5_cm() {
+    let runs = seeds(&baseline("mode3"), 1..21);
     // Recorded: 1.2 cm rms, 4.6 cm at worst.
     assert_within(median(&runs, "distance_rms_m"), 0.008..=0.03);
     assert_within(median(&runs, "distance_worst_m"), 0.03..=0.07);
 }
 
 #[test]
-fn the_baseline_reaches_its_four_goals_in_about_32_s_where_the_robot_turns_as_recorded() {
-    let mut setup = turning_as_recorded("mode8-goals");
+fn the_baseline_reaches_its_four_goals_in_about_32_s() {
+    let mut setup = baseline("mode8-goals");
     setup.scenario.duration_s = 60.0;
     let runs = seeds(&setup, 1..21);
     // Recorded: 32 s, 4.3 m.
@@ -66,8 +53,8 @@ fn the_baseline_reaches_its_four_goals_in_about_32_s_where_the_robot_turns_as_re
 }
 
 #[test]
-fn the_baseline_drives_all_four_straights_of_the_lane_where_the_robot_turns_as_recorded() {
-    let mut setup = turning_as_recorded("mode8-lane");
+fn the_baseline_drives_all_four_straights_of_the_lane() {
+    let mut setup = baseline("mode8-lane");
     setup.scenario.duration_s = 120.0;
     let runs = seeds(&setup, 1..21);
     // Recorded: 57.8 s.

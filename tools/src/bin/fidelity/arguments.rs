@@ -13,8 +13,6 @@ pub(crate) struct Arguments {
     pub(crate) robot: String,
     /// Numbers of the plant that differ from the robot file's.
     pub(crate) parameters: Vec<(String, f64)>,
-    /// Draw robots that the recordings leave possible.
-    pub(crate) identify: bool,
     only: Vec<String>,
     /// Write table and drawing into the docs.
     pub(crate) write: bool,
@@ -31,7 +29,6 @@ impl Arguments {
             seeds: SEEDS,
             robot: "memoria".to_owned(),
             parameters: Vec::new(),
-            identify: false,
             only: Vec::new(),
             write: false,
         };
@@ -47,7 +44,6 @@ impl Arguments {
                     asked.seeds = seeds.ok_or_else(|| wrong("--seeds: give a number from 1 on"))?;
                 }
                 "--robot" => asked.robot = value()?,
-                "--identify" => asked.identify = true,
                 "--only" => asked.only.push(value()?),
                 "--write" => asked.write = true,
                 "--param" => {
@@ -60,7 +56,7 @@ impl Arguments {
                 }
                 _ => {
                     return Err(wrong(&format!(
-                        "unknown option {option}; allowed: --seeds, --robot, --param, --identify, --only, --write"
+                        "unknown option {option}; allowed: --seeds, --robot, --param, --only, --write"
                     )));
                 }
             }

@@ -3,12 +3,11 @@
 //!
 //! ```text
 //! recordings (RUMBO_DATA) ──► battery and floor of that day ──┐
-//! robot file, or a fit to them ──► robots drawn by seed ──────┴─► runs of the report's program ──► table, drawing
+//! robot file ──► robots drawn by seed ────────────────────────┴─► runs of the report's program ──► table, drawing
 //! ```
 //!
 //! `cargo xtask fidelity` starts it. Arguments: `--seeds N` (200), `--robot FILE` (memoria), `--param KEY=VALUE` of the
-//! plant, `--identify` (fit the robot file's plant to the recordings and draw robots that they leave possible),
-//! `--only SCENARIO`, `--write` (into the docs).
+//! plant, `--only SCENARIO`, `--write` (into the docs).
 
 #![allow(missing_docs)]
 
@@ -30,7 +29,7 @@ use rumbo_experiment::files::FileError;
 use rumbo_tools::pages;
 use std::process::ExitCode;
 
-/// The page that holds both tables, seen from the root.
+/// The page that holds the table, seen from the root.
 const PAGE: &str = "docs/theory/baseline.md";
 
 fn main() -> ExitCode {
@@ -97,13 +96,8 @@ fn compare(arguments: &Arguments) -> Result<(), FileError> {
     );
     println!("{table}");
     if arguments.write {
-        let name = if arguments.identify {
-            "fidelity-fit"
-        } else {
-            "fidelity"
-        };
-        pages::write(PAGE, name, &table)?;
-        pages::write_figure(name, &drawing::svg(&all))?;
+        pages::write(PAGE, "fidelity", &table)?;
+        pages::write_figure("fidelity", &drawing::svg(&all))?;
     }
     Ok(())
 }

@@ -16,8 +16,6 @@ pub(crate) struct Change {
     pub(crate) later: Option<f64>,
     /// Without a calibration, even if the scenario has one.
     pub(crate) uncalibrated: bool,
-    /// Numbers of the plant.
-    pub(crate) plant: &'static [(&'static str, f64)],
 }
 
 /// The report's program, as it is.
@@ -26,31 +24,11 @@ pub(crate) const BASELINE: Change = Change {
     duration_s: None,
     later: None,
     uncalibrated: false,
-    plant: &[],
 };
 pub(crate) const OURS: Change = Change {
     program: NativeProgram::Rumbo,
     ..BASELINE
 };
-
-const YAW: &[(&str, f64)] = &[
-    ("body.yaw_inertia_kg_m2", 0.0047),
-    ("floor.yaw_damping_n_m_s", 0.016),
-];
-const YAW_AND_EARS: &[(&str, f64)] = &[YAW[0], YAW[1], ("sonar.disturbed_weakness", 1.0)];
-const YAW_AND_FLOOR: &[(&str, f64)] = &[YAW[0], YAW[1], ("floor.friction_scale", 0.64)];
-
-/// The same on robots like the report's: they turn as it did along its wall; in mode 2 their sonars disturb each other
-/// at a metre no more than its report states; in modes 3 and 4 the floor is that of its runs before walls. See
-/// docs/theory/baseline.md.
-pub(crate) fn as_recorded(scenario: &str, change: Change) -> Change {
-    let plant = match scenario {
-        "mode2" => YAW_AND_EARS,
-        "mode3" | "mode4" => YAW_AND_FLOOR,
-        _ => YAW,
-    };
-    Change { plant, ..change }
-}
 
 /// The runs, and what is needed to interpret them.
 pub(crate) struct Runs {
@@ -72,11 +50,6 @@ pub(crate) fn runs(scenario: &str, change: Change) -> Result<Option<Runs>, Strin
     }
     let overrides = Overrides {
         program: change.program,
-        parameters: change
-            .plant
-            .iter()
-            .map(|(name, value)| ((*name).to_owned(), *value))
-            .collect(),
         ..Overrides::default()
     };
     let mut setup = library

@@ -17,12 +17,6 @@ use time::Times;
 
 const SEEDS: u64 = 5;
 
-/// Robots that turn as the report's did (docs/theory/baseline.md).
-const AS_RECORDED: [(&str, f64); 2] = [
-    ("body.yaw_inertia_kg_m2", 0.0047),
-    ("floor.yaw_damping_n_m_s", 0.016),
-];
-
 fn main() -> ExitCode {
     let mut names: Vec<String> = std::env::args().skip(1).collect();
     let seeds = names
@@ -41,8 +35,8 @@ fn main() -> ExitCode {
 /// Prints the tables, and writes the complete ones.
 fn print(seeds: u64, names: &[String]) -> Result<(), FileError> {
     let mut whole = String::from(
-        "| scenario | | the sketch | on robots that turn as recorded | its native form | ours | ours on the Mega |\n\
-         |---|---|---|---|---|---|---|\n",
+        "| scenario | | the sketch | its native form | ours | ours on the Mega |\n\
+         |---|---|---|---|---|---|\n",
     );
     let mut short = String::from(
         "| the report's program, ours on the Mega | median of 5 | period of the loop | time that waits | echo to PWM |\n|---|---|---|---|---|\n",
@@ -71,16 +65,12 @@ fn our_setup(experiment: &Experiment) -> Result<Setup, FileError> {
 }
 
 /// The scenario with the sketch at the pins.
-fn sketch_setup(experiment: &Experiment, plant: &[(&str, f64)]) -> Result<Setup, FileError> {
+fn sketch_setup(experiment: &Experiment) -> Result<Setup, FileError> {
     let overrides = Overrides {
         firmware: Some(pages::built(&format!(
             "sketches/memoria-{}.elf",
             experiment.sketch
         ))),
-        parameters: plant
-            .iter()
-            .map(|(name, value)| ((*name).to_owned(), *value))
-            .collect(),
         ..Overrides::default()
     };
     slow(experiment, &overrides)
@@ -111,8 +101,7 @@ fn rows(
     };
     let library = Library::new();
     let setups = [
-        sketch_setup(experiment, &[])?,
-        sketch_setup(experiment, &AS_RECORDED)?,
+        sketch_setup(experiment)?,
         slow(experiment, &natively)?,
         library.setup(experiment.scenario, &Overrides::default())?,
         our_setup(experiment)?,
@@ -137,7 +126,7 @@ fn rows(
         .filter(|_| sketch.echo_to_pwm_ms.is_some());
     for (what, figure) in TIMES {
         let [sketch, ours] = [figure(&sketch), figure(&ours)];
-        *whole += &format!("| {scenario} | {what} | {sketch} | | | | {ours} |\n");
+        *whole += &format!("| {scenario} | {what} | {sketch} | | | {ours} |\n");
     }
     if let Some(metric) = experiment.metrics.first() {
         let both = |figures: [String; 2]| figures.join(", ");
@@ -145,7 +134,7 @@ fn rows(
             let (_, figure) = TIMES[index];
             both([figure(&sketch), figure(&ours)])
         });
-        let result = both([0, 4].map(|index: usize| median(metric, &results[index])));
+        let result = both([0, 3].map(|index: usize| median(metric, &results[index])));
         let what = metric.what;
         *short += &format!("| {scenario}: {what} | {result} | {period} | {waits} | {latency} |\n");
     }

@@ -100,7 +100,7 @@ impl Notes {
 
 /// The report's program.
 pub(crate) fn of_the_sketch(experiment: &Experiment) -> Result<Times, FileError> {
-    let setup = sketch_setup(experiment, &[])?;
+    let setup = sketch_setup(experiment)?;
     let mut sim = setup.sim(1)?;
     sim.advance(START_US);
     for line in [experiment.line, "ON"] {

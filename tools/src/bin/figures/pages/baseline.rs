@@ -122,21 +122,18 @@ pub(super) fn beside() -> Result<Option<Made>, String> {
         ),
     ];
     let mut words = String::from(
-        "| experiment | | the report's robot, one run | its program here | on robots as recorded |\n|---|---|---|---|---|\n",
+        "| experiment | | the report's robot, one run | its program here |\n|---|---|---|---|\n",
     );
     for (name, scenario, change, rows) in experiments {
-        let recorded = runs::as_recorded(scenario, change);
-        let (Some(here), Some(recorded)) = (runs(scenario, change)?, runs(scenario, recorded)?)
-        else {
+        let Some(here) = runs(scenario, change)? else {
             return Ok(None);
         };
         for row in rows {
             words += &format!(
-                "| {name} | {} | {} | {} | {} |\n",
+                "| {name} | {} | {} | {} |\n",
                 row.what,
                 row.real,
                 spread(&row, &here),
-                spread(&row, &recorded),
             );
         }
     }

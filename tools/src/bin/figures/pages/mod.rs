@@ -75,15 +75,6 @@ fn both(scenario: &str, baseline: Change) -> Result<Option<[Runs; 2]>, String> {
         .map(|(baseline, ours)| [baseline, ours]))
 }
 
-/// The report's program, the same on robots that turn as its own did, and ours.
-fn three(scenario: &str, baseline: Change) -> Result<Option<[Runs; 3]>, String> {
-    let Some(recorded) = runs(scenario, runs::as_recorded(scenario, baseline))? else {
-        return Ok(None);
-    };
-    let both = both(scenario, baseline)?;
-    Ok(both.map(|[baseline, ours]| [baseline, recorded, ours]))
-}
-
 /// A signal over time, of both programs.
 fn signal(baseline: &Runs, ours: &Runs, signal: impl Fn(&Sample, f64) -> f64) -> Vec<Curve> {
     vec![
@@ -124,9 +115,6 @@ fn pwm(baseline: &Runs, ours: &Runs) -> Panel {
 }
 
 const REPORT: &str = "the report's program";
-const AS_RECORDED: &str = "on robots as recorded";
-const EXPLAINED: &str = "\n*As recorded*: the same robots, made to turn (and, along or before a wall, to roll or to hear) as the report's own\n\
-did ([why](baseline.md)); the figure shows its program on these.";
 
 /// The text below a figure of both programs: the table, and what was run.
 fn words(columns: &[(&str, &Runs)], scenario: &str, rows: &[Row]) -> String {
@@ -141,12 +129,10 @@ fn words(columns: &[(&str, &Runs)], scenario: &str, rows: &[Row]) -> String {
         }
         _ => String::new(),
     };
-    let recorded = columns.iter().any(|(name, _)| *name == AS_RECORDED);
     format!(
-        "{}\nThe same {seeds} simulated robots with both programs: median, and the range of all.{}\n`rumbo run {scenario} --runs {seeds}`, and \
+        "{}\nThe same {seeds} simulated robots with both programs: median, and the range of all.\n`rumbo run {scenario} --runs {seeds}`, and \
 with `--program baseline`{end}.\n",
         table(columns, rows),
-        if recorded { EXPLAINED } else { "" },
         seeds = runs::SEEDS,
     )
 }

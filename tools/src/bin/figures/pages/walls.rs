@@ -67,15 +67,15 @@ fn ahead_m(sample: &Sample) -> f64 {
 }
 
 pub(super) fn mode2() -> Result<Option<Made>, String> {
-    let (Some([baseline, recorded, ours]), Some(turning)) = (
-        three("mode2", runs::BASELINE)?,
+    let (Some([baseline, ours]), Some(turning)) = (
+        both("mode2", runs::BASELINE)?,
         runs("mode2-final", runs::OURS)?,
     ) else {
         return Ok(None);
     };
-    let mut distance = signal(&recorded, &ours, |sample, _| 100.0 * ahead_m(sample));
+    let mut distance = signal(&baseline, &ours, |sample, _| 100.0 * ahead_m(sample));
     distance.insert(0, reference(&ours.setup, 100.0));
-    let angle = signal(&recorded, &ours, |sample, _| DEG * sample.heading_rad);
+    let angle = signal(&baseline, &ours, |sample, _| DEG * sample.heading_rad);
     let plot = Plot::over_time(vec![
         Panel::new("distance to the wall, cm", distance).exactly(0.0, 125.0),
         Panel::new("angle to its normal, deg", angle).exactly(-20.0, 40.0),
@@ -121,7 +121,6 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
         words: words(
             &[
                 (REPORT, &baseline),
-                (AS_RECORDED, &recorded),
                 ("ours, one sonar on the servo (`mode2-final`)", &turning),
                 ("ours", &ours),
             ],
@@ -138,10 +137,10 @@ fn beside_m(sample: &Sample) -> f64 {
 }
 
 pub(super) fn mode3() -> Result<Option<Made>, String> {
-    let Some([baseline, recorded, ours]) = three("mode3", runs::BASELINE)? else {
+    let Some([baseline, ours]) = both("mode3", runs::BASELINE)? else {
         return Ok(None);
     };
-    let curves = signal(&recorded, &ours, |sample, _| {
+    let curves = signal(&baseline, &ours, |sample, _| {
         100.0 * (beside_m(sample) - 0.575)
     });
     let plot = Plot::over_time(vec![Panel::new("error of the distance, cm", curves)]);
@@ -166,15 +165,7 @@ pub(super) fn mode3() -> Result<Option<Made>, String> {
             "Error of the distance to the wall over time: ours stays within half a centimetre",
             figure("Mode 3: distance to the wall", &plot),
         )],
-        words: words(
-            &[
-                (REPORT, &baseline),
-                (AS_RECORDED, &recorded),
-                ("ours", &ours),
-            ],
-            "mode3",
-            &rows,
-        ),
+        words: words(&[(REPORT, &baseline), ("ours", &ours)], "mode3", &rows),
     }))
 }
 
@@ -192,7 +183,7 @@ pub(super) const MODE_4: [Row; 3] = [
 ];
 
 pub(super) fn mode4() -> Result<Option<Made>, String> {
-    let Some([baseline, recorded, ours]) = three("mode4", SLOW_STEPS)? else {
+    let Some([baseline, ours]) = both("mode4", SLOW_STEPS)? else {
         return Ok(None);
     };
     let panel = |name, ink, runs: &Runs| {
@@ -204,7 +195,7 @@ pub(super) fn mode4() -> Result<Option<Made>, String> {
     let plot = Plot {
         x_range: Some([-1.0, 31.0]),
         ..Plot::over_time(vec![
-            panel(REPORT, BASELINE, &recorded),
+            panel(REPORT, BASELINE, &baseline),
             panel("ours, its references sooner", OURS, &ours),
         ])
     };
@@ -233,11 +224,7 @@ pub(super) fn mode4() -> Result<Option<Made>, String> {
             figure("Mode 4: distance to the wall", &plot),
         )],
         words: words(
-            &[
-                (REPORT, &baseline),
-                (AS_RECORDED, &recorded),
-                ("ours", &ours),
-            ],
+            &[(REPORT, &baseline), ("ours", &ours)],
             "mode4",
             &[&MODE_4[..], &ripple].concat(),
         ),

@@ -22,7 +22,7 @@ fn ideal(points: Points) -> Curve {
 }
 
 pub(super) fn mode7() -> Result<Option<Made>, String> {
-    let Some([baseline, recorded, ours]) = three("mode7", SLOW_SQUARE)? else {
+    let Some([baseline, ours]) = both("mode7", SLOW_SQUARE)? else {
         return Ok(None);
     };
     let square = vec![(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
@@ -60,17 +60,9 @@ pub(super) fn mode7() -> Result<Option<Made>, String> {
         figures: vec![(
             "mode7",
             "True paths of 20 robots around a square of 1 m: ours almost on it",
-            maps([&recorded, &ours], titles, &square, ways),
+            maps([&baseline, &ours], titles, &square, ways),
         )],
-        words: words(
-            &[
-                (REPORT, &baseline),
-                (AS_RECORDED, &recorded),
-                ("ours", &ours),
-            ],
-            "mode7",
-            &rows,
-        ),
+        words: words(&[(REPORT, &baseline), ("ours", &ours)], "mode7", &rows),
     }))
 }
 
@@ -155,7 +147,7 @@ fn mission(
     range: Option<[[f64; 2]; 2]>,
     rows: &[Row],
 ) -> Result<Option<Made>, String> {
-    let Some([baseline, recorded, ours]) = three(scenario, SLOW_MISSION)? else {
+    let Some([baseline, ours]) = both(scenario, SLOW_MISSION)? else {
         return Ok(None);
     };
     let titles = ["Mode 8: the report's program", "ours"];
@@ -163,18 +155,10 @@ fn mission(
         range,
         ..Map::of(shapes(&ours.setup), Vec::new())
     };
-    let figure = maps([&recorded, &ours], titles, &world, in_the_world);
+    let figure = maps([&baseline, &ours], titles, &world, in_the_world);
     Ok(Some(Made {
         figures: vec![(scenario, alt, figure)],
-        words: words(
-            &[
-                (REPORT, &baseline),
-                (AS_RECORDED, &recorded),
-                ("ours", &ours),
-            ],
-            scenario,
-            rows,
-        ),
+        words: words(&[(REPORT, &baseline), ("ours", &ours)], scenario, rows),
     }))
 }
 

@@ -83,8 +83,7 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
         uncalibrated: true,
         ..runs::OURS
     };
-    let (Some([baseline, recorded, ours]), Some(raw)) =
-        (three("mode6", runs::BASELINE)?, runs("mode6", raw)?)
+    let (Some([baseline, ours]), Some(raw)) = (both("mode6", runs::BASELINE)?, runs("mode6", raw)?)
     else {
         return Ok(None);
     };
@@ -96,7 +95,7 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
             .collect()
     };
     let curves = vec![
-        Curve::each(REPORT, BASELINE, &drift(&recorded)),
+        Curve::each(REPORT, BASELINE, &drift(&baseline)),
         Curve::each("ours, calibrated", OURS, &drift(&ours)),
     ];
     let plot = Plot {
@@ -129,7 +128,6 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
         words: words(
             &[
                 (REPORT, &baseline),
-                (AS_RECORDED, &recorded),
                 ("ours, `calibrated = false`", &raw),
                 ("ours", &ours),
             ],
