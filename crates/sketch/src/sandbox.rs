@@ -34,7 +34,7 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         Self {
-            time: Duration::from_secs(60),
+            time: Duration::from_secs(180),
             memory_mb: 1024,
             file_mb: 32,
             output: 256 << 10,

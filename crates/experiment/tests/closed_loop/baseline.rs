@@ -53,12 +53,18 @@ fn the_baseline_reaches_its_four_goals_in_about_32_s() {
 }
 
 #[test]
-fn the_baseline_drives_all_four_straights_of_the_lane() {
+fn the_baseline_drives_all_four_straights_of_the_lane_on_many_robots_but_not_on_all() {
     let mut setup = baseline("mode8-lane");
     setup.scenario.duration_s = 120.0;
-    let runs = seeds(&setup, 1..21);
-    // Recorded: 57.8 s.
-    assert_within(median(&runs, "finish_s"), 45.0..=100.0);
+    let mut finished: Vec<f64> = seeds(&setup, 1..21)
+        .iter()
+        .map(|run| run.metrics["finish_s"])
+        .filter(|finish_s| finish_s.is_finite())
+        .collect();
+    finished.sort_by(f64::total_cmp);
+    // Recorded: 57.8 s. On the others it does not come to the end in 120 s.
+    assert!((7..=15).contains(&finished.len()), "{finished:?}");
+    assert_within(finished[0], 55.0..=75.0);
 }
 
 #[test]
