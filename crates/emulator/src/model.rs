@@ -198,11 +198,11 @@ impl fmt::Debug for Model {
     }
 }
 
-/// A pin of the table; only one that exists compiles.
+/// A pin of a table; one that does not exist does not compile.
 const fn pin(letter: char, bit: u8) -> Pin {
     match Pin::new(letter, bit) {
         Some(pin) => pin,
-        None => panic!("no such pin"),
+        None => unreachable!(),
     }
 }
 

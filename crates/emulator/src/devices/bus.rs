@@ -6,7 +6,7 @@ use super::ports::{self, Change};
 use super::system::Sleep;
 use super::{Core, Devices, Unmodelled, timer};
 use crate::io::{Access, Demand, Io, Stored};
-use crate::registers::{MCUCR, XMCRA};
+use crate::registers::{MCUCR, TWAR, XMCRA};
 
 impl Devices {
     /// Whose register an address is.
@@ -136,7 +136,13 @@ impl Io for Devices {
             }
             Owner::Programming => self.programming.write(&mut self.core, value, at.cycle),
             Owner::Spi => self.spi.write(&mut self.core, address, value, at.cycle),
-            Owner::Twi => self.twi.write(&mut self.core, address, value, at.cycle),
+            Owner::Twi => {
+                self.twi.write(&mut self.core, address, value, at.cycle);
+                // An address of its own: it would be a slave.
+                if address == TWAR {
+                    self.not_modelled(address, at, true);
+                }
+            }
             Owner::Power => {
                 self.power.write(address, value, at.cycle);
                 self.set_divisor(at.cycle);

@@ -16,7 +16,7 @@
 //! | byte | bit n out at 2n, SCL up at 2n + 1, SCL down at 2n + 2; nine bits |
 //! | stop | SDA down at 0, SCL up at 1, SDA up at 2 |
 //!
-//! It never answers as a slave: TWEA and TWAR alone do nothing.
+//! It never answers as a slave: TWEA and TWAR alone do nothing, and a write to TWAR is reported as not modelled.
 
 use super::Core;
 use super::ports::{Force, Pin};

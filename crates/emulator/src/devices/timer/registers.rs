@@ -60,7 +60,8 @@ impl Timer {
         match register {
             Register::Count => {
                 self.wave.count = word;
-                self.wave.blocked = self.clock != Clock::Stopped;
+                // Also while it stands (section 17.7.2).
+                self.wave.blocked = true;
             }
             // The capture register is writable only in a mode that uses it as the top.
             Register::Capture if self.wave.mode.top == Top::Capture => self.wave.capture = word,
