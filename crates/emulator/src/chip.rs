@@ -19,8 +19,8 @@ pub struct Chip {
 const BOOT_SLICE: u64 = 1_000;
 
 impl Chip {
-    /// The image's chip after power-on, with the fuses of its Arduino board. Without anything in the boot section it starts at 0, where a
-    /// boot loader would go on.
+    /// The image's chip after power-on, with the fuses of its Arduino board. Without anything in the boot section it
+    /// starts at 0, where a boot loader would go on.
     pub fn new(image: &Image) -> Chip {
         Chip::with_fuses(image, image.model().fuses)
     }

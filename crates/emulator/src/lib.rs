@@ -1,4 +1,5 @@
-//! An AVR chip, exact to the cycle: an ATmega2560 or an ATmega328P, by its description ([`model`]). It knows the chip only: what is wired to its pins is its caller's business.
+//! An AVR chip, exact to the cycle: an ATmega2560 or an ATmega328P, by its description ([`model`]). It knows the chip
+//! only: what is wired to its pins is its caller's business.
 //!
 //! image file -> [`image`] -> flash -> [`decode`] -> [`cpu`], which meets the peripherals ([`devices`]) through
 //! [`io::Io`]. [`chip::Chip`] is all of it, and [`observe`] watches a program while it

@@ -51,7 +51,8 @@ pub(crate) struct ImageArgs {
 }
 
 impl ImageArgs {
-    /// Compiles the sketch for the board of the robot, or of the scenario's, if one is given: from here on it is the firmware.
+    /// Compiles the sketch, if one is given, for the board of the robot or of the scenario's: from here on it is the
+    /// firmware.
     ///
     /// # Errors
     /// It is not there, or the compiler refuses it.

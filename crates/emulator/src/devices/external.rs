@@ -75,7 +75,7 @@ impl External {
     }
 
     /// Levels of a port have changed: those in `levels`, to what they are in `ports` now.
-    /// Edges of a Mega's INT4 to INT7, and of all of an Uno's, are seen with the peripherals' clock only (section 15.1).
+    /// Edges of a Mega's INT4 to INT7, and of all of an Uno's, are seen with the peripherals' clock only (15.1).
     pub(crate) fn changed(&mut self, port: usize, levels: u8, ports: &Ports, clocked: bool) {
         let (pins, clocked_from) = self.model.external;
         for (number, pin) in pins.iter().enumerate() {

@@ -1,6 +1,6 @@
 #include "RumboRobot.h"
 
-// Sonars are triggered this far apart, so that none hears another's echo [ms].
+// Sonars are triggered this far apart, so that none takes another's echo for its own [ms].
 static const unsigned long TURN_MS = 60;
 // An echo of 2.5 m; the line of a lost one stays high for longer [us].
 static const unsigned long LONGEST_US = 14600;
