@@ -3,12 +3,16 @@
 use crate::state::{State, Variable};
 use rumbo_control::{Echo, Inputs, Outputs};
 use rumbo_emulator::chip::Chip;
-use rumbo_emulator::cpu::{SRAM_START, Stopped};
+use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::ports::Pin;
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
+use rumbo_emulator::model::ATMEGA2560;
 use rumbo_robot::latch::Stamp;
 use std::path::{Path, PathBuf};
+
+/// Where variables start in the data space.
+const SRAM_START: usize = ATMEGA2560.sram_start as usize;
 
 /// Offset of the write count in one of the image's rings: behind its 64 bytes.
 const RING: usize = 64;
@@ -64,8 +68,7 @@ pub(crate) struct Board {
 impl Board {
     pub(crate) fn new(elf: &[u8], image: &Image) -> Board {
         let function = |name| image.function_named(name).unwrap().address;
-        let variable =
-            |name| image.variable(name).unwrap().address as usize - usize::from(SRAM_START);
+        let variable = |name| image.variable(name).unwrap().address as usize - SRAM_START;
         let mut chip = Chip::new(image);
         for (port, bit) in [('D', 0), ('D', 1), ('D', 2), ('D', 3), ('E', 5)] {
             let sensor = Pin::new(port, bit).unwrap();
@@ -129,12 +132,12 @@ impl Board {
     /// The whole robot as `{:?}` writes it.
     pub(crate) fn write_state(&self, text: &mut String) {
         let sram = self.chip.cpu().sram();
-        self.state.write(text, sram, usize::from(SRAM_START));
+        self.state.write(text, sram, SRAM_START);
     }
 
     /// A variable at an address of the data space as text.
     pub(crate) fn write(&self, address: usize, shape: &Variable) -> String {
-        let at = address - usize::from(SRAM_START);
+        let at = address - SRAM_START;
         shape.text(&self.chip.cpu().sram()[at..])
     }
 
@@ -143,12 +146,12 @@ impl Board {
         let mut sram = self.chip.cpu().sram().to_vec();
         let (mut whole, mut other) = (String::new(), String::new());
         self.write_state(&mut whole);
-        let robot = self.state.place(&sram, usize::from(SRAM_START));
+        let robot = self.state.place(&sram, SRAM_START);
         let count = robot.len();
         let counts = robot.filter(|at| {
             sram[*at] ^= 0xFF;
             other.clear();
-            self.state.write(&mut other, &sram, usize::from(SRAM_START));
+            self.state.write(&mut other, &sram, SRAM_START);
             sram[*at] ^= 0xFF;
             other != whole
         });
@@ -222,7 +225,7 @@ impl Board {
 
     /// A word at an address of the data space.
     pub(crate) fn word(&self, address: usize) -> u16 {
-        let at = address - usize::from(SRAM_START);
+        let at = address - SRAM_START;
         let sram = self.chip.cpu().sram();
         u16::from_le_bytes([sram[at], sram[at + 1]])
     }

@@ -2,7 +2,7 @@
 //! counted once.
 
 use crate::faults::drive::setup;
-use rumbo_emulator::cpu::SRAM_START;
+use rumbo_emulator::model::ATMEGA2560;
 use rumbo_experiment::files::FileError;
 use rumbo_experiment::run::run_by;
 
@@ -45,7 +45,7 @@ fn a_fast_wheel_s_edges_come_one_by_one() {
             run.advance();
             let mega = run.sim().mega_mut().unwrap();
             let inputs = mega.firmware().image().variable("RUMBO_INPUTS").unwrap();
-            let at = inputs.address as usize - usize::from(SRAM_START);
+            let at = inputs.address as usize - usize::from(ATMEGA2560.sram_start);
             for (side, before) in before.iter_mut().enumerate() {
                 // Behind the time; 10 bytes for each wheel.
                 let latched = Latched::read(&mega.chip().cpu().sram()[at + 4 + 10 * side..]);

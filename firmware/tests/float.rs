@@ -4,7 +4,8 @@
 use crate::board::image;
 use crate::world::Random;
 use rumbo_emulator::chip::Chip;
-use rumbo_emulator::cpu::{RAMEND, SRAM_START, Stopped};
+use rumbo_emulator::cpu::Stopped;
+use rumbo_emulator::model::ATMEGA2560;
 
 /// Rows of each kind and function.
 const ROWS: u32 = 3_000;
@@ -38,8 +39,9 @@ fn row(kind: u32, random: &mut Random) -> [f32; 2] {
 fn call(chip: &mut Chip, function: u32, a: f32, b: f32) -> [u8; 4] {
     let cpu = chip.cpu_mut();
     // It returns to address 0.
-    let stack = RAMEND - 3;
-    cpu.sram_mut()[usize::from(stack - SRAM_START) + 1..].fill(0);
+    let (start, end) = (ATMEGA2560.sram_start, ATMEGA2560.ram_end);
+    let stack = end - 3;
+    cpu.sram_mut()[usize::from(stack - start) + 1..].fill(0);
     cpu.set_stack_pointer(stack);
     let registers = cpu.registers_mut();
     registers[1] = 0;
@@ -48,7 +50,7 @@ fn call(chip: &mut Chip, function: u32, a: f32, b: f32) -> [u8; 4] {
     cpu.set_program_counter(function);
     assert_eq!(chip.run_until(u64::MAX / 2), Stopped::Breakpoint);
     let cpu = chip.cpu();
-    assert_eq!((cpu.stack_pointer(), cpu.registers()[1]), (RAMEND, 0));
+    assert_eq!((cpu.stack_pointer(), cpu.registers()[1]), (end, 0));
     cpu.registers()[22..26].try_into().unwrap()
 }
 

@@ -1,7 +1,7 @@
 //! The image's pin table is the final wiring of the robot file.
 
 use rumbo_emulator::devices::ports::Pin;
-use rumbo_sim::mega::pins::chip_pin;
+use rumbo_sim::mega::boards::MEGA;
 
 #[allow(dead_code, reason = "the image uses the pins one by one")]
 #[path = "../src/pins.rs"]
@@ -16,7 +16,7 @@ fn the_pin_table_is_the_final_wiring_of_the_robot_file() {
         let number = wiring.get(pin.name).and_then(toml::Value::as_integer);
         assert_eq!(number, Some(pin.arduino.into()), "{}", pin.name);
         let on_chip = Pin::new(char::from(pin.port), pin.bit);
-        assert_eq!(chip_pin(pin.arduino), on_chip, "{}", pin.name);
+        assert_eq!(MEGA.pin(pin.arduino), on_chip, "{}", pin.name);
         assert_eq!(pin.mask(), 1 << pin.bit);
     }
 }

@@ -5,14 +5,19 @@ use std::path::{Path, PathBuf};
 use crate::project::Project;
 use crate::test::{Stop, tools};
 use rumbo_sketch::sandbox::{Limits, Sandbox};
-use rumbo_sketch::{Compiler, Given, SketchError, Toolchain, given};
+use rumbo_sketch::{BOARDS, Board, Compiler, Given, SketchError, Toolchain, given};
 
 /// Folders of sketches: each sketch is a folder with a file of its name.
-const FOLDERS: [&str; 3] = [
+const FOLDERS: [&str; 4] = [
     "crates/emulator/tests/sketches",
     "crates/experiment/tests/sketches",
     "examples/arduino",
+    LIBRARY,
 ];
+/// The examples of the library, which are for every board.
+const LIBRARY: &str = "examples/arduino/RumboRobot/examples";
+/// The sketch for an Uno.
+const OF_UNO: &str = "wall_uno";
 
 /// One of the images of a sketch with build-time options: the suffix of its name, and the macros.
 type Variant = (&'static str, &'static [&'static str]);
@@ -50,14 +55,36 @@ pub(crate) fn build(project: &Project) -> Result<(), Stop> {
     let toolchain = Toolchain::find().map_err(failed)?;
     println!("{}", toolchain.in_words());
     let sandbox = Sandbox::trusting(Limits::default());
-    let compiler = Compiler::new(toolchain, sandbox, out.join("cache")).map_err(failed)?;
+    let compilers = BOARDS.map(|board| {
+        let (toolchain, sandbox) = (toolchain.clone(), sandbox.clone());
+        let compiler = Compiler::new(board, toolchain, sandbox, out.join("cache"))?;
+        Ok((board, compiler))
+    });
+    let compilers: Vec<_> = compilers
+        .into_iter()
+        .collect::<Result<_, _>>()
+        .map_err(failed)?;
     let (mut built, mut fresh) = (0, 0);
     for sketch in sketches(project)? {
         let Given::Sketch(source) = given(&sketch, true).map_err(failed)? else {
             continue;
         };
-        for (ending, macros) in variants(&sketch) {
-            let name = format!("{}{ending}", source.name);
+        let of_library = sketch.starts_with(project.root.join(LIBRARY));
+        let is_for = |board: &Board| match board.name {
+            "uno" => of_library || source.name == OF_UNO,
+            _ => source.name != OF_UNO,
+        };
+        let compilers = compilers.iter().filter(|(board, _)| is_for(board));
+        let images = compilers.flat_map(|(board, compiler)| {
+            let variants = variants(&sketch).into_iter();
+            variants.map(move |variant| (board, compiler, variant))
+        });
+        for (board, compiler, (ending, macros)) in images {
+            let on = match board.name {
+                "uno" => "-uno",
+                _ => "",
+            };
+            let name = format!("{}{ending}{on}", source.name);
             let image = compiler.compile(&source, macros).map_err(failed)?;
             image
                 .warnings

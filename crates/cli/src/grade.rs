@@ -60,6 +60,8 @@ pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
 
 /// The compiler, in the sandbox unless the source is trusted.
 fn compiler(args: &GradeArgs, assignment: &Assignment) -> Result<Compiler, SketchError> {
+    let robot = assignment.tests.first().map(|test| &test.setup.robot);
+    let board = robot.map(|robot| robot.board).unwrap_or_default();
     let toolchain = Toolchain::find()?;
     let limits = Limits {
         time: Duration::from_secs_f64(assignment.compile_s),
@@ -69,7 +71,8 @@ fn compiler(args: &GradeArgs, assignment: &Assignment) -> Result<Compiler, Sketc
         true => Sandbox::trusting(limits),
         false => Sandbox::walled(&toolchain, limits)?,
     };
-    Compiler::new(toolchain, sandbox, crate::sketch::cache())
+    let cache = crate::sketch::cache();
+    Compiler::new(crate::sketch::target(board), toolchain, sandbox, cache)
 }
 
 /// Deviations from the assignment's compiler and core.

@@ -62,17 +62,20 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::List(args)) => list::list(&args),
         Some(Command::New(args)) => sketch::begin(&args),
         Some(Command::Lab(mut args)) => {
-            args.image.compile()?;
+            let robot = args.setting.robot.as_deref();
+            args.image.compile(robot, Some(&args.scenario))?;
             lab::lab(&args)
         }
         Some(Command::Connect(args)) => connect::connect(&args),
         Some(Command::Flash(args)) => flash::flash(&args),
         Some(Command::Run(mut args)) => {
-            args.image.compile()?;
+            let scenario = args.scenarios.first().map(String::as_str);
+            args.image
+                .compile(args.setting.robot.as_deref(), scenario)?;
             run::run(&args)
         }
         Some(Command::Experiments(mut args)) => {
-            args.image.compile()?;
+            args.image.compile(args.robot.as_deref(), None)?;
             experiments::experiments(&args)
         }
         Some(Command::Grade(args)) => grade::grade(&args),
@@ -85,7 +88,8 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Prune(args)) => logs::prune(&args),
         None => {
             let mut args = cli.lab;
-            args.image.compile()?;
+            let robot = args.setting.robot.as_deref();
+            args.image.compile(robot, Some(&args.scenario))?;
             lab::lab(&args)
         }
     }

@@ -3,8 +3,12 @@
 use crate::args::{NewArgs, NewKind};
 use crate::failure::Failure;
 use crate::output;
+use rumbo_experiment::files::Library;
+use rumbo_sim::mega::boards::Board;
 use rumbo_sketch::sandbox::{Limits, Sandbox};
-use rumbo_sketch::{Compiler, Given, SketchError, Toolchain, example, given, starter};
+use rumbo_sketch::{
+    BOARDS, Board as Target, Compiler, Given, SketchError, Toolchain, example, given, starter,
+};
 use std::path::{Path, PathBuf};
 
 /// Prefix of an example's name.
@@ -27,8 +31,13 @@ impl From<SketchError> for Failure {
     }
 }
 
+/// The board as the compiler knows it.
+pub(crate) fn target(board: &Board) -> Target {
+    Target::named(board.name).unwrap_or(BOARDS[0])
+}
+
 /// The image of a user's sketch, compiled if need be: a folder, an `.ino`, or an example by name.
-pub(crate) fn image(name: &str) -> Result<PathBuf, Failure> {
+pub(crate) fn image(name: &str, board: &Board) -> Result<PathBuf, Failure> {
     let source = match name.strip_prefix(EXAMPLE) {
         Some(name) => example(name)?,
         None => match given(Path::new(name), true)? {
@@ -37,7 +46,7 @@ pub(crate) fn image(name: &str) -> Result<PathBuf, Failure> {
         },
     };
     let sandbox = Sandbox::trusting(Limits::default());
-    let compiler = Compiler::new(Toolchain::find()?, sandbox, cache())?;
+    let compiler = Compiler::new(target(board), Toolchain::find()?, sandbox, cache())?;
     let image = compiler.compile(&source, &[])?;
     for warning in &image.warnings {
         warning.to_string().lines().for_each(output::aside);
@@ -77,10 +86,14 @@ pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
     // An existing folder may hold somebody's work.
     std::fs::create_dir(folder).map_err(wrong)?;
     let file = folder.join(format!("{name}.ino"));
-    std::fs::write(&file, starter()?).map_err(wrong)?;
+    std::fs::write(&file, starter(target(args.board))?).map_err(wrong)?;
     let (file, folder) = (output::shown(&file), output::shown(folder));
+    let robot = match Library::new().robot_with(|robot| robot.board == args.board) {
+        Some(robot) if args.board != <&Board>::default() => format!(" --robot {robot}"),
+        _ => String::new(),
+    };
     output::line(&format!(
-        "{file}: edit it, then `rumbo run mode1 --sketch {folder}`"
+        "{file}: edit it, then `rumbo run mode1{robot} --sketch {folder}`"
     ))
 }
 

@@ -3,10 +3,11 @@
 use crate::cpu::{Cpu, Stopped};
 use crate::devices::ports::Pin;
 use crate::devices::{Devices, Fuses, Input, Level, Output, Unmodelled};
-use crate::image::{EEPROM_BYTES, Image};
+use crate::image::Image;
+use crate::model::Model;
 use crate::observe::{self, Observers};
 
-/// An ATmega2560 with a program. A clone is a snapshot: it continues exactly as the original.
+/// A chip with a program. A clone is a snapshot: it continues exactly as the original.
 #[derive(Clone, Debug)]
 pub struct Chip {
     cpu: Cpu,
@@ -18,30 +19,36 @@ pub struct Chip {
 const BOOT_SLICE: u64 = 1_000;
 
 impl Chip {
-    /// A chip after power-on, with the fuses of a Mega. Without anything in the boot section it starts at 0, where a
-    /// boot loader would go on.
+    /// The image's chip after power-on, with the fuses of its Arduino board. Without anything in the boot section it
+    /// starts at 0, where a boot loader would go on.
     pub fn new(image: &Image) -> Chip {
-        Chip::with_fuses(image, Fuses::default())
+        Chip::with_fuses(image, image.model().fuses)
     }
 
     /// The same with other fuses.
     pub fn with_fuses(image: &Image, fuses: Fuses) -> Chip {
-        let mut cpu = Cpu::new(image.flash());
+        let model = image.model();
+        let mut cpu = Cpu::new(model, image.flash());
         if let Some(end) = image.data_end() {
             cpu.set_stack_floor(end);
         }
-        let mut devices = Devices::default();
-        let boot = image.flash().get(2 * fuses.boot_start() as usize..);
+        let mut devices = Devices::new(model);
+        let boot = image.flash().get(2 * model.boot_start(fuses) as usize..);
         let boot = boot.is_some_and(|boot| boot.iter().take(2).any(|byte| *byte != 0xFF));
         cpu.set_program_counter(devices.set_fuses(fuses, boot));
         let eeprom = image.eeprom();
-        let fits = eeprom.len().min(EEPROM_BYTES);
+        let fits = eeprom.len().min(model.eeprom_bytes);
         devices.eeprom_mut()[..fits].copy_from_slice(&eeprom[..fits]);
         Chip {
             cpu,
             devices,
             observers: Observers::default(),
         }
+    }
+
+    /// Which chip it is.
+    pub fn model(&self) -> &'static Model {
+        self.cpu.model()
     }
 
     /// Cycles of the crystal since power-on. Inputs and outputs are timed in these; CPU cycles are the same unless the
@@ -67,7 +74,7 @@ impl Chip {
     /// crystal have passed. A Mega's boot loader waits most of a second for a programmer.
     pub fn pass_boot_loader(&mut self, cycles: u64) {
         let end = self.cycle().saturating_add(cycles);
-        let boot = Fuses::default().boot_start();
+        let boot = self.model().boot_start(self.model().fuses);
         while self.cpu.program_counter() >= boot && self.cycle() < end {
             let stopped = self.run_until(self.cycle() + BOOT_SLICE);
             if matches!(stopped, Stopped::Ended(_) | Stopped::Breakpoint) {

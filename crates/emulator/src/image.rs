@@ -2,19 +2,18 @@
 
 mod elf;
 mod error;
-mod foreign;
 mod hex;
+mod start;
 
 pub use error::ImageError;
 
-use crate::cpu::FLASH_BYTES;
-
-/// Bytes of EEPROM.
-pub const EEPROM_BYTES: usize = 0x1000;
+use crate::model::{MODELS, Model};
 
 /// A program for the chip.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Image {
+    /// The chip that it says it is for.
+    model: Option<&'static Model>,
     flash: Vec<u8>,
     eeprom: Vec<u8>,
     functions: Vec<Symbol>,
@@ -34,10 +33,11 @@ pub struct Symbol {
 }
 
 impl Image {
-    /// Reads an ELF file or Intel HEX, whichever `bytes` are.
+    /// Reads an ELF file or Intel HEX, whichever `bytes` are. An ELF file names its chip; a HEX file does not, but most
+    /// show it by where they put their stack.
     ///
     /// # Errors
-    /// Why they are no program for this chip.
+    /// Why they are no program for any chip that there is.
     pub fn parse(bytes: &[u8]) -> Result<Image, ImageError> {
         let image = if elf::is_elf(bytes) {
             elf::read(bytes)
@@ -49,13 +49,52 @@ impl Image {
         if image.flash.is_empty() {
             return Err(ImageError::Empty);
         }
-        Ok(image)
+        let model = image.model;
+        image.fitting(model)
     }
 
-    /// A program of these bytes of flash, without names; what lies beyond the end of the flash is ignored.
+    /// The image as one for this chip.
+    ///
+    /// # Errors
+    /// It is for another one, or too large.
+    pub fn on(self, model: &'static Model) -> Result<Image, ImageError> {
+        match self.model {
+            Some(own) if own != model => Err(ImageError::Board { own, model }),
+            _ => self.fitting(Some(model)),
+        }
+    }
+
+    fn fitting(mut self, model: Option<&'static Model>) -> Result<Image, ImageError> {
+        self.model = model;
+        let Some(model) = model else {
+            return Ok(self);
+        };
+        let data = self.data_end.map_or(0, usize::from);
+        for (memory, end, size) in [
+            ("flash", self.flash.len(), model.flash_bytes()),
+            ("EEPROM", self.eeprom.len(), model.eeprom_bytes),
+            ("SRAM", data, usize::from(model.ram_end) + 1),
+        ] {
+            if end > size {
+                return Err(ImageError::TooLarge {
+                    memory,
+                    end: end as u64,
+                    size,
+                });
+            }
+        }
+        Ok(self)
+    }
+
+    /// The chip that it is for: a Mega's, if it does not say.
+    pub fn model(&self) -> &'static Model {
+        self.model.unwrap_or_default()
+    }
+
+    /// A program of these bytes of flash, without names; what lies beyond the largest flash is ignored.
     pub fn of_flash(bytes: &[u8]) -> Image {
         Image {
-            flash: bytes[..bytes.len().min(FLASH_BYTES)].to_vec(),
+            flash: bytes[..bytes.len().min(largest(Model::flash_bytes))].to_vec(),
             ..Image::default()
         }
     }
@@ -120,11 +159,12 @@ impl Image {
     /// Puts a part of the program into flash.
     fn put(&mut self, filled: &mut Vec<bool>, at: u64, bytes: &[u8]) -> Result<(), ImageError> {
         let end = at.saturating_add(bytes.len() as u64);
-        if end > FLASH_BYTES as u64 {
+        let size = largest(Model::flash_bytes);
+        if end > size as u64 {
             return Err(ImageError::TooLarge {
                 memory: "flash",
                 end,
-                size: FLASH_BYTES,
+                size,
             });
         }
         let (start, end) = (at as usize, end as usize);
@@ -139,6 +179,11 @@ impl Image {
         self.flash[start..end].copy_from_slice(bytes);
         Ok(())
     }
+}
+
+/// The size of a memory on the model that has most of it.
+fn largest(size: impl Fn(&Model) -> usize) -> usize {
+    MODELS.into_iter().map(size).max().unwrap_or_default()
 }
 
 #[cfg(test)]

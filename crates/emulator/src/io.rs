@@ -28,10 +28,10 @@ pub enum Demand {
 pub enum Stored {
     /// Nothing, or nothing yet.
     Nothing,
-    /// A page is erased, from this word on.
+    /// The page that begins at this word is erased.
     Erased(u32),
-    /// A page is written, from this word on: bits are cleared where these words have zeros.
-    Written(u32, Box<[u16; 128]>),
+    /// The page that begins at this word is written: bits are cleared where these words have zeros.
+    Written(u32, Box<[u16]>),
 }
 
 /// The peripherals as the CPU sees them. Addresses are those of the data space, 0x20 to 0x1FF, and beyond SRAM.

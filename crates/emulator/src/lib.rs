@@ -1,4 +1,5 @@
-//! An ATmega2560, exact to the cycle. It knows the chip only: what is wired to its pins is its caller's business.
+//! An AVR chip, exact to the cycle: an ATmega2560 or an ATmega328P, by its description ([`model`]). It knows the chip
+//! only: what is wired to its pins is its caller's business.
 //!
 //! image file -> [`image`] -> flash -> [`decode`] -> [`cpu`], which meets the peripherals ([`devices`]) through
 //! [`io::Io`]. [`chip::Chip`] is all of it, and [`observe`] watches a program while it
@@ -12,6 +13,8 @@ pub mod disassemble;
 pub mod gdb;
 pub mod image;
 pub mod io;
+pub mod model;
 pub mod observe;
+mod registers;
 pub mod status;
 pub mod verdict;

@@ -51,7 +51,7 @@ pub enum Arrival {
     Return {
         /// Where.
         at: u32,
-        /// The stack pointer behind it: the address was in the three bytes up to there.
+        /// The stack pointer behind it: the address was in the bytes up to there.
         stack_pointer: u16,
     },
     /// A jump or call through Z.

@@ -8,6 +8,7 @@ use proptest::prelude::*;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::Input;
 use rumbo_emulator::image::{Image, ImageError};
+use rumbo_emulator::model::{ATMEGA328P, ATMEGA2560, MODELS};
 use rumbo_emulator::observe::profile::Profile;
 
 const AVR: u16 = 83;
@@ -82,17 +83,34 @@ fn a_program_for_another_machine_is_recognised() {
         ..Elf::of(&[(0, &[1])])
     };
     assert_eq!(elf.error(), ImageError::Processor(62));
-    // The flags of an Uno's program; the top bit allows the linker to relax.
+    // The flags of an ATtiny85's program; the top bit allows the linker to relax.
     let elf = Elf {
-        flags: 0x85,
+        flags: 0x99,
         ..Elf::of(&[(0, &[1])])
     };
-    assert_eq!(elf.error(), ImageError::Chip(5));
+    assert_eq!(elf.error(), ImageError::Chip(25));
     let elf = Elf {
         kind: 1,
         ..Elf::of(&[])
     };
     assert_eq!(elf.error(), ImageError::Object);
+}
+
+#[test]
+fn an_image_says_which_board_it_is_for_and_is_refused_on_another() {
+    let uno = Elf {
+        flags: 5,
+        ..Elf::of(&[(0, &[1])])
+    };
+    let image = Image::parse(&uno.bytes()).unwrap();
+    assert_eq!(image.model().name, "atmega328p");
+    assert!(image.clone().on(&ATMEGA328P).is_ok());
+    let refused = image.on(&ATMEGA2560).unwrap_err().to_string();
+    assert!(
+        refused.contains("an Arduino Uno or Nano, and this robot has an Arduino Mega")
+            && refused.contains("Tools > Board > Arduino Mega or Mega 2560"),
+        "{refused}"
+    );
 }
 
 #[test]
@@ -193,7 +211,7 @@ proptest! {
 }
 
 #[test]
-fn a_hex_file_for_an_uno_is_known_by_where_its_stack_begins() {
+fn a_hex_file_s_board_is_known_by_where_its_stack_begins() {
     // RJMP over a vector, EOR r1, OUT SREG, LDI r28 and r29, OUT SPH and SPL, a loop.
     let hex = |end: u16| {
         let [low, high] = end.to_le_bytes();
@@ -215,11 +233,20 @@ fn a_hex_file_for_an_uno_is_known_by_where_its_stack_begins() {
         ];
         ihex::create_object_file_representation(&records).unwrap()
     };
-    assert!(Image::parse(hex(0x21FF).as_bytes()).is_ok());
-    let error = Image::parse(hex(0x08FF).as_bytes()).unwrap_err();
-    let line = error.to_string();
+    let parse = |stack| Image::parse(hex(stack).as_bytes());
+    for model in MODELS {
+        assert_eq!(parse(model.ram_end).unwrap().model(), model);
+    }
+    let refused = parse(0x08FF).unwrap().on(&ATMEGA2560).unwrap_err();
+    assert!(matches!(refused, ImageError::Board { .. }));
+    let line = parse(0x0AFF).unwrap_err().to_string();
     assert!(
-        line.contains("0x08ff") && line.contains("Arduino Uno"),
+        line.contains("0x0aff") && line.contains("Arduino Leonardo"),
         "{line}"
     );
+    // One that does not show it is for the board on which it is put, if it fits.
+    let silent = Image::parse(b":02000000FFCF30\n:00000001FF\n").unwrap();
+    assert_eq!(silent.on(&ATMEGA328P).unwrap().model(), &ATMEGA328P);
+    let long = Image::of_flash(&[0; 0x8002]).on(&ATMEGA328P).unwrap_err();
+    assert!(matches!(long, ImageError::TooLarge { size: 0x8000, .. }));
 }

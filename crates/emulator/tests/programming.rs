@@ -7,6 +7,7 @@ use common::*;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::devices::Fuses;
 use rumbo_emulator::image::Image;
+use rumbo_emulator::model::ATMEGA2560;
 
 const SPMCSR: u8 = 0x37;
 const SPM: u16 = 0x95E8;
@@ -66,7 +67,7 @@ fn a_boot_loader_erases_and_writes_a_page() {
     words.extend(wait);
     words.extend(spm(0x11, 0, 0));
     words.push(0xCFFF);
-    let mut chip = with_boot(&words, Fuses::default());
+    let mut chip = with_boot(&words, ATMEGA2560.fuses);
     assert_eq!(chip.cpu().program_counter() as usize, BOOT / 2, "BOOTRST");
     chip.run_until(erased + 71_990);
     assert_eq!(chip.cpu().flash()[0x100..0x104], [0xFF; 4]);
@@ -89,7 +90,7 @@ fn a_page_of_the_boot_section_holds_the_cpu() {
     words.extend(spm(0x03, 0, 0xFF00));
     let begun = words.len() as u64;
     words.push(0xCFFF);
-    let mut chip = with_boot(&words, Fuses::default());
+    let mut chip = with_boot(&words, ATMEGA2560.fuses);
     chip.run_until(begun);
     chip.step();
     assert_eq!(chip.cpu().cycle(), begun + 72_000);
@@ -105,7 +106,7 @@ fn outside_of_the_boot_section_and_too_late_spm_does_nothing() {
     let mut late = spm(0x03, 0, 0x0000);
     late.pop();
     late.extend([NOP, NOP, NOP, NOP, SPM, 0xCFFF]);
-    let mut chip = with_boot(&late, Fuses::default());
+    let mut chip = with_boot(&late, ATMEGA2560.fuses);
     chip.run_until(1_000);
     assert_eq!(chip.cpu().flash()[0], 0x34);
 }
@@ -147,14 +148,14 @@ fn fuses_select_the_reset_address() {
     for (high, start) in [(0xD8u8, 0x1_F000), (0xDA, 0x1_F800), (0xDE, 0x1_FE00)] {
         let fuses = Fuses {
             high,
-            ..Fuses::default()
+            ..ATMEGA2560.fuses
         };
-        assert_eq!(fuses.boot_start(), start);
+        assert_eq!(ATMEGA2560.boot_start(fuses), start);
         assert!(fuses.starts_in_boot());
     }
     let application = Fuses {
         high: 0xD9,
-        ..Fuses::default()
+        ..ATMEGA2560.fuses
     };
     assert_eq!(with_boot(&[NOP], application).cpu().program_counter(), 0);
     assert_eq!(chip_of(&[NOP]).cpu().program_counter(), 0, "nothing there");
@@ -164,13 +165,13 @@ fn fuses_select_the_reset_address() {
 fn a_boot_loader_is_passed_when_it_has_jumped_to_the_application() {
     // 65,536 rounds of SBIW and BRNE, 4 cycles each, then JMP 0; the application is an endless loop of 0x1234.
     let words = [ldi(24, 0), ldi(25, 0), 0x9701, 0xF7F1, 0x940C, 0];
-    let mut chip = with_boot(&words, Fuses::default());
+    let mut chip = with_boot(&words, ATMEGA2560.fuses);
     let early = {
         let mut chip = chip.clone();
         chip.pass_boot_loader(100_000);
         chip
     };
-    assert!(early.cpu().program_counter() >= Fuses::default().boot_start());
+    assert!(early.cpu().program_counter() >= ATMEGA2560.boot_start(ATMEGA2560.fuses));
     chip.pass_boot_loader(u64::MAX);
     assert!(chip.cpu().program_counter() < 0x1000);
     let cycle = chip.cycle();

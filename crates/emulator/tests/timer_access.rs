@@ -19,6 +19,16 @@ fn write_word(chip: &mut Chip, address: u16, value: u16) {
     write(chip, address, low);
 }
 
+#[test]
+fn a_count_written_at_a_standstill_blocks_the_match_of_the_first_tick() {
+    // OCR1A and TCNT1 are both 5, or TCNT1 is one before; then the CPU's clock.
+    for (count, flag) in [(5, 0), (4, 0x02)] {
+        let (mut chip, done) = set_up(&[(0x88, 5), (0x84, count), (0x81, 1)]);
+        chip.run_until(done + 10);
+        assert_eq!(read(&mut chip, 0x36) & 0x02, flag, "from {count}");
+    }
+}
+
 /// A chip that has run past its set-up, with a timer at rest.
 fn at_rest(writes: &[(u16, u8)]) -> Chip {
     let (mut chip, _) = set_up(writes);

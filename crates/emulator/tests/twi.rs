@@ -10,6 +10,7 @@ use rumbo_emulator::devices::{Event, Input, Output};
 
 const TWBR: u16 = 0xB8;
 const TWSR: u16 = 0xB9;
+const TWAR: u16 = 0xBA;
 const TWDR: u16 = 0xBB;
 const TWCR: u16 = 0xBC;
 const TWINT: u8 = 0x80;
@@ -38,6 +39,18 @@ fn on_bus(chip: &mut Chip, command: u8) -> (u64, u8) {
         }
     }
     panic!("no TWINT");
+}
+
+#[test]
+fn a_program_that_wants_to_be_a_slave_is_reported() {
+    let (mut chip, done) = set_up(&[(TWBR, 72), (TWAR, 0x10)]);
+    chip.run_until(done + 1);
+    let strange: Vec<u16> = chip
+        .unmodelled()
+        .iter()
+        .map(|access| access.address)
+        .collect();
+    assert_eq!(strange, [TWAR]);
 }
 
 #[test]

@@ -107,6 +107,23 @@ fn a_wire_that_fails_stops_the_native_robot_too() {
 }
 
 #[test]
+fn the_robot_with_an_uno_has_the_body_and_motors_of_the_report_s() {
+    let library = Library::new();
+    let [report, uno] = ["memoria", "uno"].map(|name| library.robot(name).unwrap());
+    assert_eq!(
+        uno.plant, report.plant,
+        "copy [plant] of robots/memoria.toml"
+    );
+    assert_eq!((report.board.name, uno.board.name), ("mega", "uno"));
+    let wrong = uno.text.replace("front_echo = 13", "front_echo = 20");
+    let error = RobotFile::parse("uno", "uno.toml", &wrong).unwrap_err();
+    assert!(error.to_string().contains("0..19"), "{error}");
+    let wrong = uno.text.replace("board = \"uno\"", "board = \"due\"");
+    let error = RobotFile::parse("uno", "uno.toml", &wrong).unwrap_err();
+    assert!(error.to_string().contains("mega, uno"), "{error}");
+}
+
+#[test]
 fn a_wiring_may_have_a_divider_for_the_battery() {
     use rumbo_sim::wiring::Divider;
     let text = |pin: u32| {

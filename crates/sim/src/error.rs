@@ -1,5 +1,6 @@
 //! Why a simulation cannot be made.
 
+use crate::mega::boards::Board;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_wire::Refusal;
@@ -28,6 +29,8 @@ pub enum SimError {
     LinkPins {
         /// Name of the wiring.
         wiring: String,
+        /// The board it is on.
+        board: &'static Board,
         /// Pin of `link_rx`.
         receive: Option<u8>,
         /// Pin of `link_tx`.
@@ -49,6 +52,7 @@ impl fmt::Display for SimError {
             ),
             Self::LinkPins {
                 wiring,
+                board,
                 receive,
                 transmit,
             } => {
@@ -56,9 +60,11 @@ impl fmt::Display for SimError {
                     |pin: &Option<u8>| pin.map_or_else(|| "missing".into(), |pin| pin.to_string());
                 write!(
                     f,
-                    "wiring {wiring}: link_rx = {} and link_tx = {} are no USART of the Mega; use 19 and 18, 17 and 16, 15 and 14, or 0 and 1",
+                    "wiring {wiring}: link_rx = {} and link_tx = {} are no USART of the {}; those are on {}",
                     shown(receive),
-                    shown(transmit)
+                    shown(transmit),
+                    board.title,
+                    board.usarts_in_words()
                 )
             }
         }

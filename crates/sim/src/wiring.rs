@@ -1,5 +1,6 @@
-//! Which signal is on which pin of the Mega.
+//! Which signal is on which pin of the board.
 
+use crate::mega::boards::Board;
 use std::collections::BTreeMap;
 
 /// The signals that a wiring may place: enable and direction inputs of the bridge, encoders, servo, sonars and UARTs.
@@ -25,9 +26,11 @@ pub const SIGNALS: [&str; 19] = [
     "debug_rx",
 ];
 
-/// Signals, of [`SIGNALS`], and the Mega's pin numbers.
+/// Signals, of [`SIGNALS`], and the board's pin numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wiring {
+    /// The board.
+    pub board: &'static Board,
     /// Pin of each signal.
     pub pins: BTreeMap<String, u8>,
     /// The divider that brings the battery's voltage to an analogue input, where there is one.
@@ -37,7 +40,7 @@ pub struct Wiring {
 /// A divider between battery and analogue input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Divider {
-    /// Analogue input, 0..=15: A0 to A15.
+    /// Analogue input: 0 is A0.
     pub input: u8,
     /// Battery's voltage over that at the input.
     pub ratio: f64,

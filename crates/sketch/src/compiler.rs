@@ -1,5 +1,6 @@
 //! Compiles core, libraries and a sketch; products are cached by the hash of all inputs.
 
+use crate::board::Board;
 use crate::diagnostics::{Diagnostic, Severity, parse};
 use crate::error::SketchError;
 use crate::preprocess;
@@ -13,12 +14,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Options of every call: the Mega and the version macros for the sketch.
-const CHIP: [&str; 6] = [
-    "-mmcu=atmega2560",
+/// Options of every call besides the board's: the clock and the version macros for the sketch.
+const COMMON: [&str; 4] = [
     "-DF_CPU=16000000L",
     "-DARDUINO=10819",
-    "-DARDUINO_AVR_MEGA2560",
     "-DARDUINO_ARCH_AVR",
     "-Os",
 ];
@@ -54,6 +53,7 @@ const OUT: &str = "out";
 /// Compiles sketches.
 #[derive(Clone, Debug)]
 pub struct Compiler {
+    board: Board,
     toolchain: Toolchain,
     sandbox: Sandbox,
     cache: PathBuf,
@@ -78,6 +78,7 @@ impl Compiler {
     /// # Errors
     /// If the folder cannot be written, or the core does not compile.
     pub fn new(
+        board: Board,
         toolchain: Toolchain,
         sandbox: Sandbox,
         cache: PathBuf,
@@ -87,6 +88,7 @@ impl Compiler {
             .canonicalize()
             .map_err(|error| SketchError::file(&cache, error))?;
         let mut compiler = Self {
+            board,
             toolchain,
             sandbox,
             cache,
@@ -188,7 +190,8 @@ impl Compiler {
     /// The inputs common to all products.
     fn key(&self, flags: &[&str]) -> Sha256 {
         let mut key = Sha256::new();
-        let fixed = [&CHIP[..], &OBJECT, &C, &CPP, &LINK, flags].concat();
+        let board = &self.board.options[..];
+        let fixed = [board, &COMMON, &OBJECT, &C, &CPP, &LINK, flags].concat();
         for text in fixed.into_iter().chain([
             self.toolchain.compiler.as_str(),
             self.toolchain.core_version.as_str(),
@@ -288,8 +291,12 @@ impl<'a> Build<'a> {
             _ => &CPP,
         };
         let core = &self.compiler.toolchain.core;
-        let folders = [core.join("cores/arduino"), core.join("variants/mega")];
-        let mut args: Vec<OsString> = [&CHIP[..], &OBJECT, flags, language]
+        let folders = [
+            core.join("cores/arduino"),
+            core.join("variants").join(self.compiler.board.variant),
+        ];
+        let board = &self.compiler.board.options[..];
+        let mut args: Vec<OsString> = [board, &COMMON, &OBJECT, flags, language]
             .concat()
             .into_iter()
             .map(OsString::from)
@@ -308,7 +315,9 @@ impl<'a> Build<'a> {
 
     fn link(&mut self) -> Result<(), SketchError> {
         let toolchain = &self.compiler.toolchain;
-        let mut args: Vec<OsString> = CHIP.iter().chain(&LINK).map(OsString::from).collect();
+        let board = &self.compiler.board.options[..];
+        let options = [board, &COMMON, &LINK].concat();
+        let mut args: Vec<OsString> = options.into_iter().map(OsString::from).collect();
         args.extend(["-o", "../out/sketch.elf"].map(OsString::from));
         args.extend(self.objects.iter().map(OsString::from));
         // A copy in the build's folder: the sandbox shows no other of ours, and nobody's sketch may change the core's.

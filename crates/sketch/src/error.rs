@@ -51,7 +51,7 @@ impl fmt::Display for SketchError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoCompiler => f.write_str(
-                "no compiler for the Mega is installed: `apt install gcc-avr avr-libc arduino-core-avr`, \
+                "no compiler for Arduino boards is installed: `apt install gcc-avr avr-libc arduino-core-avr`, \
                  or `arduino-cli core install arduino:avr`",
             ),
             Self::NoSandbox(reason) => write!(

@@ -1,5 +1,6 @@
 //! Sketches that come with us: examples by name, and the starter of `rumbo new sketch`.
 
+use crate::board::Board;
 use crate::error::SketchError;
 use crate::source::Source;
 use rust_embed::RustEmbed;
@@ -8,9 +9,6 @@ use std::collections::BTreeSet;
 #[derive(RustEmbed)]
 #[folder = "../../examples/arduino"]
 struct Examples;
-
-/// The example that a new sketch starts as.
-const STARTER: &str = "wall";
 
 /// Names of the examples, in order, with the first line of each.
 #[must_use]
@@ -62,12 +60,16 @@ pub fn example(name: &str) -> Result<Source, SketchError> {
     }
 }
 
-/// The text of a new sketch: twenty lines that drive to a wall, with the wiring.
+/// The text of a new sketch: forty lines that drive to a wall, with the wiring.
 ///
 /// # Errors
 /// None: it is part of the program.
-pub fn starter() -> Result<String, SketchError> {
-    let file = format!("{STARTER}/{STARTER}.ino");
-    let embedded = Examples::get(&file).ok_or_else(|| unknown(STARTER))?;
+pub fn starter(board: Board) -> Result<String, SketchError> {
+    let name = match board.name {
+        "uno" => "wall_uno",
+        _ => "wall",
+    };
+    let file = format!("{name}/{name}.ino");
+    let embedded = Examples::get(&file).ok_or_else(|| unknown(name))?;
     Ok(String::from_utf8_lossy(&embedded.data).into_owned())
 }

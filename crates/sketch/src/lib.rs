@@ -1,4 +1,4 @@
-//! Arduino sketches compiled for the Mega as the Arduino IDE does, without the IDE.
+//! Arduino sketches compiled for a Mega or an Uno as the Arduino IDE does, without the IDE.
 //!
 //! ```text
 //! folder or .ino ─► Source (files in memory, bounded) ─► one C++ file with prototypes ─► objects ─► image.elf
@@ -7,8 +7,9 @@
 //!
 //! [`Toolchain`] is a compiler and an Arduino core: those that arduino-cli has installed, else Debian's. [`Compiler`]
 //! runs it on a [`Source`], in a [`sandbox`] if the source is not trusted. Products are cached by the hash of all that
-//! went into them. The options are those of the core's `platform.txt`.
+//! went into them. The options are those of the core's `platform.txt` and `boards.txt`.
 
+mod board;
 mod compiler;
 mod diagnostics;
 mod error;
@@ -19,6 +20,7 @@ pub mod sandbox;
 mod source;
 mod toolchain;
 
+pub use board::{BOARDS, Board};
 pub use compiler::{Compiler, Image};
 pub use diagnostics::{Diagnostic, Severity};
 pub use error::SketchError;

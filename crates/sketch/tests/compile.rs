@@ -2,18 +2,22 @@
 #![cfg(test)]
 
 use rumbo_sketch::sandbox::{Limits, Sandbox};
-use rumbo_sketch::{Compiler, SketchError, Source, Toolchain, example, examples};
+use rumbo_sketch::{BOARDS, Board, Compiler, SketchError, Source, Toolchain, example, examples};
 use tempfile::TempDir;
 
 /// A compiler with a cache of its own; `None` where none is installed.
 fn compiler() -> Option<(Compiler, TempDir)> {
+    compiler_for(BOARDS[0])
+}
+
+fn compiler_for(board: Board) -> Option<(Compiler, TempDir)> {
     let Ok(toolchain) = Toolchain::find() else {
         assert!(std::env::var_os("CI").is_none(), "no avr-gcc");
         return None;
     };
     let cache = tempfile::tempdir().unwrap();
     let sandbox = Sandbox::trusting(Limits::default());
-    let compiler = Compiler::new(toolchain, sandbox, cache.path().to_owned()).unwrap();
+    let compiler = Compiler::new(board, toolchain, sandbox, cache.path().to_owned()).unwrap();
     Some((compiler, cache))
 }
 
@@ -46,6 +50,30 @@ fn every_example_compiles_and_is_fresh_the_second_time() {
         assert_eq!(image.warnings, [], "{name}");
         assert!(compiler.compile(&source, &[]).unwrap().fresh);
     }
+}
+
+#[test]
+fn the_library_and_a_servo_are_there_on_every_board() {
+    let both = "#include <RumboRobot.h>\nRumboRobot robot;\nServo other;\n\
+                void setup() { robot.begin(); robot.look(90); other.attach(11); }\nvoid loop() { robot.update(); }\n";
+    let sketch = source("both", &[("both.ino", both)]);
+    for board in BOARDS {
+        let Some((compiler, _cache)) = compiler_for(board) else {
+            return;
+        };
+        assert_eq!(compiler.compile(&sketch, &[]).unwrap().warnings, []);
+    }
+    let Some((compiler, _cache)) = compiler_for(BOARDS[1]) else {
+        return;
+    };
+    let second = source(
+        "second",
+        &[(
+            "a.ino",
+            "void setup() { Serial1.begin(9600); }\nvoid loop() { }\n",
+        )],
+    );
+    assert!(refused(&compiler, &second).contains("'Serial1' was not declared"));
 }
 
 #[test]

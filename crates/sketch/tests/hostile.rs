@@ -3,7 +3,7 @@
 #![cfg(target_os = "linux")]
 
 use rumbo_sketch::sandbox::{Limits, Sandbox};
-use rumbo_sketch::{Compiler, SketchError, Source, Toolchain};
+use rumbo_sketch::{BOARDS, Compiler, SketchError, Source, Toolchain};
 use std::path::Path;
 use std::time::Duration;
 use tempfile::TempDir;
@@ -30,7 +30,7 @@ fn compiler() -> Option<(Compiler, TempDir)> {
         }
     };
     let cache = tempfile::tempdir().unwrap();
-    let compiler = Compiler::new(toolchain, sandbox, cache.path().to_owned()).unwrap();
+    let compiler = Compiler::new(BOARDS[0], toolchain, sandbox, cache.path().to_owned()).unwrap();
     Some((compiler, cache))
 }
 

@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 use rumbo_experiment::grade::{Assignment, HandIn, Mark, grade};
 use rumbo_sketch::sandbox::{Limits, Sandbox};
-use rumbo_sketch::{Compiler, Given, Source, Toolchain, given};
+use rumbo_sketch::{BOARDS, Compiler, Given, Source, Toolchain, given};
 use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
@@ -107,7 +107,7 @@ fn run() -> Result<bool, Box<dyn Error>> {
     let cache = Path::new("target/sketches/class");
     // What is measured is a class that comes for the first time.
     let _ = std::fs::remove_dir_all(cache);
-    let compiler = Compiler::new(toolchain, sandbox, cache.to_owned())?;
+    let compiler = Compiler::new(BOARDS[0], toolchain, sandbox, cache.to_owned())?;
     let Given::Sketch(model) = given(&Path::new(ASSIGNMENT).join("model"), true)? else {
         return Err("the model is no sketch".into());
     };

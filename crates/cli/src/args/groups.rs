@@ -4,7 +4,8 @@ use super::values::parameter;
 use crate::failure::Failure;
 use crate::sketch;
 use clap::Args;
-use rumbo_experiment::files::Overrides;
+use rumbo_experiment::files::{FileError, Library, Overrides};
+use rumbo_sim::mega::boards::Board;
 use std::path::PathBuf;
 
 /// Options that replace values of the scenario.
@@ -21,28 +22,47 @@ pub(crate) struct SettingArgs {
     pub(crate) rig: Option<String>,
 }
 
-/// A program for the Mega.
+/// The board of a robot, or else of the robot of a scenario.
+fn board(robot: Option<&str>, scenario: Option<&str>) -> Result<&'static Board, FileError> {
+    let library = Library::new();
+    let robot = match (robot, scenario) {
+        (Some(robot), _) => library.robot(robot)?,
+        (None, Some(scenario)) => {
+            let robot = library.scenario(scenario)?.robot;
+            library.beside(scenario).robot(&robot)?
+        }
+        (None, None) => return Ok(<&Board>::default()),
+    };
+    Ok(robot.board)
+}
+
+/// A program for the robot's board.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct ImageArgs {
-    /// Firmware for the Mega, ELF or Intel HEX, run on an emulated one in the robot (docs/emulator.md)
+    /// Firmware for the robot's board, ELF or Intel HEX, run on an emulated one (docs/emulator.md)
     #[arg(long, value_name = "IMAGE", group = "image")]
     pub(crate) firmware: Option<PathBuf>,
     /// Arduino sketch, compiled and then run as firmware: its folder or .ino, or example:NAME (`rumbo list sketches`)
     #[arg(long, value_name = "FOLDER", group = "image")]
     pub(crate) sketch: Option<String>,
-    /// Wiring of that Mega, of the robot file [default: the report's for the experiment; `final` for our own firmware]
+    /// Wiring of that board, of the robot file [default: the report's for the experiment; `final` for our own firmware]
     #[arg(long, value_name = "NAME", requires = "image")]
     pub(crate) wiring: Option<String>,
 }
 
 impl ImageArgs {
-    /// Compiles the sketch, if one is given: from here on it is the firmware.
+    /// Compiles the sketch, if one is given, for the board of the robot or of the scenario's: from here on it is the
+    /// firmware.
     ///
     /// # Errors
     /// It is not there, or the compiler refuses it.
-    pub(crate) fn compile(&mut self) -> Result<(), Failure> {
+    pub(crate) fn compile(
+        &mut self,
+        robot: Option<&str>,
+        scenario: Option<&str>,
+    ) -> Result<(), Failure> {
         if let Some(given) = &self.sketch {
-            self.firmware = Some(sketch::image(given)?);
+            self.firmware = Some(sketch::image(given, board(robot, scenario)?)?);
         }
         Ok(())
     }

@@ -19,6 +19,7 @@ pub(crate) use runs::{
 
 use crate::failure::Failure;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use rumbo_sim::mega::boards::Board;
 use std::path::PathBuf;
 
 /// Rumbo: the lab of a small robot. Without a subcommand, `lab`.
@@ -73,7 +74,7 @@ pub(crate) enum Command {
     Rerun(RerunArgs),
     /// Remove old logs of sessions and runs
     Prune(PruneArgs),
-    /// Begin a sketch for the Mega that drives to a wall
+    /// Begin a sketch for a Mega or an Uno that drives to a wall
     New(NewArgs),
     /// List modes, scenarios, worlds, rigs, robots and parameters
     List(ListArgs),
@@ -84,7 +85,9 @@ pub(crate) enum Command {
 #[command(after_help = "\
 Examples:
   rumbo new sketch my_sketch
-  rumbo run mode1 --sketch my_sketch  drive it")]
+  rumbo run mode1 --sketch my_sketch              drive it
+  rumbo new sketch small --board uno
+  rumbo run mode1 --robot uno --sketch small      the robot with an Arduino Uno")]
 pub(crate) struct NewArgs {
     /// What to begin
     #[arg(value_enum)]
@@ -92,6 +95,9 @@ pub(crate) struct NewArgs {
     /// Folder to make; its sketch has the same name, as the Arduino IDE wants it
     #[arg(value_name = "NAME")]
     pub(crate) folder: PathBuf,
+    /// Board that the sketch is for: mega or uno
+    #[arg(long, value_name = "BOARD", default_value = "mega", value_parser = values::board)]
+    pub(crate) board: &'static Board,
 }
 
 /// What can be begun.

@@ -55,7 +55,7 @@ pub(crate) struct RunArgs {
     /// Line of text sent over the link at a time, e.g. 'REF 40@6'; may be repeated
     #[arg(long = "command", value_name = "TEXT@SECONDS", value_parser = timed_text, conflicts_with = "program")]
     pub(crate) commands: Vec<TimedText>,
-    /// Line of text typed on the Mega's USB port (Serial) at a time, e.g. 'go@2'; may be repeated
+    /// Line of text typed on the board's USB port (Serial) at a time, e.g. 'go@2'; may be repeated
     #[arg(long, value_name = "TEXT@SECONDS", value_parser = usb_text, requires = "image")]
     pub(crate) usb: Vec<TimedText>,
     #[command(flatten)]
@@ -74,7 +74,7 @@ pub(crate) struct RunArgs {
     /// File for the firmware's cycles by function, for flame graphs; a summary goes to stderr. One run
     #[arg(long, value_name = "FILE", requires = "image")]
     pub(crate) profile: Option<PathBuf>,
-    /// File for the Mega's pins over time, for a viewer of waveforms such as GTKWave. One run
+    /// File for the board's pins over time, for a viewer of waveforms such as GTKWave. One run
     #[arg(long, value_name = "FILE", requires = "image")]
     pub(crate) vcd: Option<PathBuf>,
     /// Port on 127.0.0.1 where the run waits for avr-gdb; 0 takes any free one. One run

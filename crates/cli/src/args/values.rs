@@ -3,6 +3,13 @@
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
 use rumbo_experiment::files::{Port, TimedText, parameters};
+use rumbo_sim::mega::boards::{BOARDS, Board};
+
+/// A board by its name.
+pub(super) fn board(text: &str) -> Result<&'static Board, String> {
+    let known = || BOARDS.map(|board| board.name).join(", ");
+    Board::named(text).ok_or_else(|| format!("no such board; there are {}", known()))
+}
 
 /// Seconds of simulation or of a log per second.
 pub(super) fn speed(text: &str) -> Result<f64, Failure> {

@@ -1,7 +1,7 @@
 //! `rumbo new sketch` and `--sketch`: from nothing to a robot that drives, and errors with their place.
 
 use crate::support::{folder, program, stderr, stdout};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Output;
 
 /// A fresh folder; `None` where no compiler is installed.
@@ -44,6 +44,79 @@ fn a_new_sketch_drives_to_the_wall_and_stops_before_it() {
     assert_eq!(result["metrics"]["contacts"], 0.0, "{result}");
     let error_m = result["metrics"]["step1.steady_error_m"].as_f64().unwrap();
     assert!(error_m < 0.02, "{result}");
+}
+
+/// The metrics of a run.
+fn metrics(bench: &PathBuf, arguments: &[&str]) -> serde_json::Value {
+    let run = rumbo(bench, &[arguments, &["--json", "--no-record"]].concat());
+    let result: Result<serde_json::Value, _> = serde_json::from_str(&stdout(&run));
+    result.unwrap_or_else(|_| panic!("{}", stderr(&run)))["metrics"].take()
+}
+
+#[test]
+fn a_new_sketch_for_an_uno_drives_the_robot_with_an_uno_and_no_other() {
+    let Some(bench) = bench("uno") else {
+        return;
+    };
+    let made = rumbo(&bench, &["new", "sketch", "small", "--board", "uno"]);
+    assert!(stdout(&made).contains("run mode1 --robot uno --sketch small"));
+    let metrics = metrics(
+        &bench,
+        &["run", "mode1", "--robot", "uno", "--sketch", "small"],
+    );
+    assert_eq!(metrics["contacts"], 0.0, "{metrics}");
+    let error_m = metrics["step1.steady_error_m"].as_f64().unwrap();
+    assert!(error_m < 0.02, "{metrics}");
+
+    // Our own program is too large for it, and a Mega's image is for another chip.
+    let own = rumbo(&bench, &["run", "mode1", "--robot", "uno"]);
+    assert_eq!(own.status.code(), Some(2));
+    assert!(
+        stderr(&own).contains("control program does not fit into the atmega328p"),
+        "{}",
+        stderr(&own)
+    );
+    let mut images = walk(&folder().join("sketches"));
+    let image = images.find(|path| path.ends_with("small.elf")).unwrap();
+    let image = image.to_str().unwrap();
+    let refused = rumbo(&bench, &["run", "mode1", "--firmware", image]);
+    assert_eq!(refused.status.code(), Some(2));
+    let error = stderr(&refused);
+    assert!(
+        error.contains("Tools > Board > Arduino Mega") && error.ends_with("--robot uno\n"),
+        "{error}"
+    );
+    let unknown = rumbo(&bench, &["new", "sketch", "other", "--board", "due"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(stderr(&unknown).contains("there are mega, uno"));
+}
+
+/// The files two folders below.
+fn walk(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
+    let inside = |folder: PathBuf| {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        entries.map(|entry| entry.path())
+    };
+    inside(folder.to_owned()).flat_map(inside)
+}
+
+#[test]
+fn the_library_s_wall_example_stops_at_the_wall_on_both_boards() {
+    let Some(bench) = bench("library") else {
+        return;
+    };
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let sketch = root.join("examples/arduino/RumboRobot/examples/Wall");
+    let sketch = sketch.to_str().unwrap();
+    for on in [
+        &["run", "mode1-final"][..],
+        &["run", "mode1", "--robot", "uno"],
+    ] {
+        let metrics = metrics(&bench, &[on, &["--sketch", sketch]].concat());
+        assert_eq!(metrics["contacts"], 0.0, "{on:?}: {metrics}");
+        let error_m = metrics["step1.steady_error_m"].as_f64().unwrap();
+        assert!(error_m < 0.02, "{on:?}: {metrics}");
+    }
 }
 
 #[test]
@@ -100,6 +173,6 @@ fn an_example_runs_by_name_and_receives_lines_typed_on_usb() {
     let unknown = rumbo(&bench, &["run", "mode1", "--sketch", "example:wal"]);
     assert_eq!(
         stderr(&unknown),
-        "error: no example `wal`; there are memoria, wall\n"
+        "error: no example `wal`; there are memoria, wall, wall_uno\n"
     );
 }

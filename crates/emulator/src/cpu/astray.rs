@@ -1,7 +1,7 @@
 //! How a program came to where it cannot go on: found out afterwards where that is possible, and noted by the jumps whose target only
 //! the running program knows.
 
-use super::{Cpu, RAMEND, SRAM_START};
+use super::Cpu;
 use crate::decode::{Code, FLASH_WORDS, is_long};
 use crate::verdict::{Arrival, Verdict};
 
@@ -46,32 +46,32 @@ impl Cpu {
         }
         let leads_there = |word: &u32| {
             let op = self.original(*word);
-            is_direct(op.code) && op.address() == program_counter
+            is_direct(op.code) && op.address() & self.last_word == program_counter
         };
-        (0..FLASH_WORDS as u32)
+        (0..self.model.flash_words)
             .find(leads_there)
             .map_or(Arrival::Unknown, |at| Arrival::Jump { at })
     }
 
     /// The instruction that ends where `word` begins.
     fn instruction_before(&self, word: u32) -> u32 {
-        let two = word.wrapping_sub(2) % FLASH_WORDS as u32;
+        let two = word.wrapping_sub(2) & self.last_word;
         if is_long(self.flash_word(two)) {
             two
         } else {
-            word.wrapping_sub(1) % FLASH_WORDS as u32
+            word.wrapping_sub(1) & self.last_word
         }
     }
 
     #[cold]
     pub(super) fn stack_overflow(&mut self, program_counter: u32, cycle: u64) {
-        if !self.stack_known && self.stack_pointer() >= SRAM_START {
+        if !self.stack_known && self.stack_pointer() >= self.sram_start {
             return;
         }
         self.end(Verdict::StackOverflow {
-            program_counter: program_counter % FLASH_WORDS as u32,
+            program_counter: program_counter & self.last_word,
             stack_pointer: self.stack_pointer(),
-            depth: RAMEND.wrapping_sub(self.stack_pointer()),
+            depth: self.model.ram_end.wrapping_sub(self.stack_pointer()),
             returns: self.returns(),
             floor: self.stack_floor,
             cycle,
@@ -80,11 +80,14 @@ impl Cpu {
 
     /// Values on the stack that are addresses behind a call.
     fn returns(&self) -> Vec<u32> {
-        let start = usize::from((self.stack_pointer() + 1).saturating_sub(SRAM_START));
+        let start = usize::from((self.stack_pointer() + 1).saturating_sub(self.sram_start));
         let mut stack = self.sram.get(start..).unwrap_or_default();
         let mut returns = Vec::new();
-        while let Some(([high, middle, low], rest)) = stack.split_first_chunk() {
-            let word = u32::from_be_bytes([0, *high, *middle, *low]);
+        let bytes = usize::from(self.model.address_bytes());
+        while let Some((address, rest)) = stack.split_at_checked(bytes) {
+            let word = address
+                .iter()
+                .fold(0, |word, byte| word << 8 | u32::from(*byte));
             if self.is_behind_a_call(word) {
                 returns.push(word);
                 stack = rest;
@@ -96,7 +99,7 @@ impl Cpu {
     }
 
     fn is_behind_a_call(&self, word: u32) -> bool {
-        (1..FLASH_WORDS as u32).contains(&word)
+        (1..self.model.flash_words).contains(&word)
             && matches!(
                 self.original(self.instruction_before(word)).code,
                 Code::Call | Code::Rcall | Code::Icall | Code::Eicall

@@ -1,16 +1,11 @@
 //! The data space as instructions see it: registers, the CPU's own I/O registers, peripherals, SRAM; and the stack.
 
-use super::{Cpu, FLASH_BYTES, SRAM_BYTES, SRAM_START};
+use super::Cpu;
 use crate::io::{Access, Io, Stored};
+use crate::registers::{EIND, RAMPZ, SPH, SPL, SPMCSR, SREG};
 use crate::status::Status;
 use crate::verdict::Verdict;
 
-const RAMPZ: u16 = 0x5B;
-const EIND: u16 = 0x5C;
-const SPMCSR: u16 = 0x57;
-const SPL: u16 = 0x5D;
-const SPH: u16 = 0x5E;
-const SREG: u16 = 0x5F;
 /// Bytes by which a function moves the stack pointer at most.
 const LARGEST_FRAME: u16 = 1024;
 /// Within these cycles a program writes both halves of the stack pointer: the compiler puts a write of SREG in between.
@@ -41,8 +36,8 @@ impl Cpu {
     pub(super) fn load_elsewhere<I: Io>(&self, io: &mut I, address: u16, at: Access) -> u8 {
         match address {
             0..32 => self.registers[usize::from(address) & 31],
-            RAMPZ => self.rampz,
-            EIND => self.eind,
+            RAMPZ if self.is_far => self.rampz,
+            EIND if self.is_far => self.eind,
             SPL => self.stack_pointer().to_le_bytes()[0],
             SPH => self.stack_pointer().to_le_bytes()[1],
             SREG => self.status.bits(),
@@ -52,7 +47,7 @@ impl Cpu {
 
     /// What an instruction would read now, without side effects on the peripherals.
     pub(crate) fn peek<I: Io + Clone>(&self, io: &I, address: u16) -> u8 {
-        let index = usize::from(address.wrapping_sub(SRAM_START));
+        let index = usize::from(address.wrapping_sub(self.sram_start));
         match self.sram.get(index) {
             Some(byte) => *byte,
             None => self.load_elsewhere(&mut io.clone(), address, self.now()),
@@ -74,13 +69,16 @@ impl Cpu {
     /// Stores a byte; returns whether the limit must be recomputed.
     #[inline(always)]
     pub(super) fn store<I: Io>(&mut self, io: &mut I, address: u16, value: u8, at: Access) -> bool {
-        let index = usize::from(address.wrapping_sub(SRAM_START));
-        if index < SRAM_BYTES {
-            self.sram[index] = value;
-            false
-        } else {
-            self.store_elsewhere(io, address, value, at);
-            true
+        let index = usize::from(address.wrapping_sub(self.sram_start));
+        match self.sram.get_mut(index) {
+            Some(place) => {
+                *place = value;
+                false
+            }
+            None => {
+                self.store_elsewhere(io, address, value, at);
+                true
+            }
         }
     }
 
@@ -95,8 +93,8 @@ impl Cpu {
         let [low, high] = self.stack_pointer().to_le_bytes();
         match address {
             0..32 => self.registers[usize::from(address) & 31] = value,
-            RAMPZ => self.rampz = value & 3,
-            EIND => self.eind = value & 1,
+            RAMPZ if self.is_far => self.rampz = value & 3,
+            EIND if self.is_far => self.eind = value & 1,
             SPL => self.move_stack(u16::from_le_bytes([value, high]), at.cycle),
             SPH => self.move_stack(u16::from_le_bytes([low, value]), at.cycle),
             SREG => {
@@ -152,7 +150,9 @@ impl Cpu {
         let [low, middle, high, _] = words.to_le_bytes();
         self.push(io, low, cycle);
         self.push(io, middle, cycle);
-        self.push(io, high, cycle);
+        if self.is_far {
+            self.push(io, high, cycle);
+        }
     }
 
     /// What LPM reads: fuses and signature too, if SPMCSR selects them.
@@ -172,10 +172,11 @@ impl Cpu {
         match stored {
             Stored::Nothing => {}
             Stored::Erased(page) => {
-                (page..page + 128).for_each(|word| self.write_flash(word, 0xFFFF))
+                let end = page + self.model.page_words as u32;
+                (page..end).for_each(|word| self.write_flash(word, 0xFFFF));
             }
             Stored::Written(page, words) => {
-                for (word, value) in (page..).zip(*words) {
+                for (word, value) in (page..).zip(words) {
                     let value = value & self.flash_word(word);
                     self.write_flash(word, value);
                 }
@@ -185,6 +186,6 @@ impl Cpu {
 
     #[inline(always)]
     fn program_byte(&self, address: u32) -> u8 {
-        self.flash[address as usize % FLASH_BYTES]
+        self.flash[address as usize & (self.flash.len() - 1)]
     }
 }

@@ -1,6 +1,6 @@
 //! The loop over instructions: what each does and how many cycles it takes.
 
-use super::{Cpu, SRAM_BYTES, SRAM_START};
+use super::Cpu;
 use crate::decode::{Code, FLASH_WORDS};
 use crate::io::{Access, Io};
 use crate::status::Status;
@@ -67,7 +67,10 @@ impl Cpu {
                 ($address:expr) => {{
                     cycles = 2;
                     let address = $address;
-                    match self.sram.get(usize::from(address.wrapping_sub(SRAM_START))) {
+                    match self
+                        .sram
+                        .get(usize::from(address.wrapping_sub(self.sram_start)))
+                    {
                         Some(value) => *value,
                         None => load_elsewhere!(address, at!(2)),
                     }
@@ -79,7 +82,7 @@ impl Cpu {
                     let (address, value) = ($address, $value);
                     match self
                         .sram
-                        .get_mut(usize::from(address.wrapping_sub(SRAM_START)))
+                        .get_mut(usize::from(address.wrapping_sub(self.sram_start)))
                     {
                         Some(place) => *place = value,
                         None => store_elsewhere!(address, value, at!(2)),
@@ -92,7 +95,7 @@ impl Cpu {
                     let (address, value) = (self.stack_pointer(), $value);
                     match self
                         .sram
-                        .get_mut(usize::from(address.wrapping_sub(SRAM_START)))
+                        .get_mut(usize::from(address.wrapping_sub(self.sram_start)))
                     {
                         Some(place) => *place = value,
                         None => store_elsewhere!(address, value, at!($cycles)),
@@ -104,7 +107,10 @@ impl Cpu {
                 ($cycles:expr) => {{
                     let address = self.stack_pointer().wrapping_add(1);
                     self.set_stack_pointer(address);
-                    match self.sram.get(usize::from(address.wrapping_sub(SRAM_START))) {
+                    match self
+                        .sram
+                        .get(usize::from(address.wrapping_sub(self.sram_start)))
+                    {
                         Some(value) => *value,
                         None => load_elsewhere!(address, at!($cycles)),
                     }
@@ -401,39 +407,41 @@ impl Cpu {
                             (target, 4)
                         }
                     };
-                    back %= FLASH_WORDS as u32;
-                    let [low, middle, high] = [back as u8, (back >> 8) as u8, (back >> 16) as u8];
-                    let lowest = self.stack_pointer().wrapping_sub(2);
-                    cycles = took;
-                    match room_for_address(&mut self.sram, lowest) {
-                        Some(places) => {
-                            *places = [high, middle, low];
-                            self.set_stack_pointer(lowest.wrapping_sub(1));
-                        }
-                        None => {
-                            push!(took, low);
-                            push!(took, middle);
-                            push!(took, high);
+                    let [low, middle, high, _] = (back & self.last_word).to_le_bytes();
+                    cycles = took - u64::from(!self.is_far);
+                    let stored = if self.is_far {
+                        self.store_address([high, middle, low])
+                    } else {
+                        self.store_address([middle, low])
+                    };
+                    if !stored {
+                        push!(cycles, low);
+                        push!(cycles, middle);
+                        if self.is_far {
+                            push!(cycles, high);
                         }
                     }
                     check_stack!();
                     jump!(target);
                 }
                 Code::Ret | Code::Reti => {
-                    let lowest = self.stack_pointer().wrapping_add(1);
-                    let [high, middle, low] = match address_in(&self.sram, lowest) {
-                        Some(bytes) => {
-                            self.set_stack_pointer(lowest.wrapping_add(2));
-                            bytes
-                        }
-                        None => [pop!(5), pop!(5), pop!(5)],
+                    cycles = 5 - u64::from(!self.is_far);
+                    let stored = if self.is_far {
+                        let bytes = self.load_address::<3>();
+                        bytes.map(|[high, middle, low]| [0, high, middle, low])
+                    } else {
+                        let bytes = self.load_address::<2>();
+                        bytes.map(|[high, low]| [0, 0, high, low])
                     };
-                    let target = u32::from(high) << 16 | u32::from(middle) << 8 | u32::from(low);
-                    // The program counter has 17 bits.
-                    let target = target % FLASH_WORDS as u32;
+                    let bytes = match stored {
+                        Some(bytes) => bytes,
+                        None if self.is_far => [0, pop!(cycles), pop!(cycles), pop!(cycles)],
+                        None => [0, 0, pop!(cycles), pop!(cycles)],
+                    };
+                    // The program counter of a Mega has 17 bits, that of an Uno 14.
+                    let target = u32::from_be_bytes(bytes) & self.last_word;
                     look_ahead!(target);
                     jump!(target);
-                    cycles = 5;
                     if op.code == Code::Reti {
                         status.interrupts = true;
                         self.shadow = true;
@@ -494,7 +502,7 @@ impl Cpu {
 
     /// Leaves everything where it is found again.
     fn rest(&mut self, program_counter: u32, cycle: u64, status: Status) {
-        self.program_counter = program_counter % FLASH_WORDS as u32;
+        self.program_counter = program_counter & self.last_word;
         self.cycle = cycle;
         self.status = status;
     }
@@ -510,6 +518,30 @@ impl Cpu {
         high | u32::from(self.pair(Z))
     }
 
+    /// Pushes a return address, the high byte first in memory, if all of it goes to SRAM.
+    #[inline(always)]
+    fn store_address<const N: usize>(&mut self, bytes: [u8; N]) -> bool {
+        let top = self.stack_pointer();
+        let lowest = top.wrapping_sub(N as u16 - 1);
+        let start = usize::from(lowest.wrapping_sub(self.sram_start));
+        let Some(places) = self.sram.get_mut(start..start + N) else {
+            return false;
+        };
+        places.copy_from_slice(&bytes);
+        self.set_stack_pointer(top.wrapping_sub(N as u16));
+        true
+    }
+
+    /// Pops a return address, if all of it is in SRAM.
+    #[inline(always)]
+    fn load_address<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let top = self.stack_pointer();
+        let start = usize::from(top.wrapping_add(1).wrapping_sub(self.sram_start));
+        let bytes = *self.sram.get(start..start + N)?.first_chunk()?;
+        self.set_stack_pointer(top.wrapping_add(N as u16));
+        Some(bytes)
+    }
+
     #[inline(always)]
     fn program_pointer(&self, extended: bool) -> u32 {
         let high = if extended {
@@ -519,20 +551,6 @@ impl Cpu {
         };
         high | u32::from(self.pair(Z))
     }
-}
-
-/// The bytes of a return address from the data address `lowest` on, if all of them are in SRAM: the high one first.
-#[inline(always)]
-fn room_for_address(sram: &mut [u8; SRAM_BYTES], lowest: u16) -> Option<&mut [u8; 3]> {
-    let start = usize::from(lowest.wrapping_sub(SRAM_START));
-    sram.get_mut(start..start + 3)?.first_chunk_mut()
-}
-
-/// The same bytes, to read.
-#[inline(always)]
-fn address_in(sram: &[u8; SRAM_BYTES], lowest: u16) -> Option<[u8; 3]> {
-    let start = usize::from(lowest.wrapping_sub(SRAM_START));
-    sram.get(start..start + 3)?.first_chunk().copied()
 }
 
 /// The pointer register of a load or store that moves it.

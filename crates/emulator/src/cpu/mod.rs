@@ -8,7 +8,8 @@
 //! thus grows with what happens, not with what exists.
 //!
 //! Instruction timing: 2549Q (ATmega640/1280/1281/2560/2561), section 34; interrupts take 5 cycles to enter, 5 more
-//! out of sleep, and the instruction after SEI or RETI always runs first (sections 7.7 and 7.8).
+//! out of sleep, and the instruction after SEI or RETI always runs first (sections 7.7 and 7.8). With a program counter
+//! of 16 bits interrupts, calls and returns take a cycle less (DS40002061B, sections 7.7 and 37).
 
 mod astray;
 mod bus;
@@ -16,23 +17,14 @@ mod execute;
 
 use crate::decode::{Code, FLASH_WORDS, Op, decode};
 use crate::io::{Demand, Io};
+use crate::model::Model;
 use crate::observe::Watchpoint;
 use crate::status::Status;
 use crate::verdict::{Arrival, Verdict};
 
-/// First address of SRAM in the data space.
-pub const SRAM_START: u16 = 0x200;
-/// Bytes of SRAM.
-pub const SRAM_BYTES: usize = 0x2000;
-/// Last address of SRAM.
-pub const RAMEND: u16 = 0x21FF;
-/// Bytes of flash.
-pub const FLASH_BYTES: usize = 2 * FLASH_WORDS;
-
-/// Cycles from the recognition of an interrupt to the first instruction of its routine: a jump in the table.
+/// Cycles from the recognition of an interrupt to the first instruction of its routine, a jump in the table, and as
+/// many more out of sleep; one less where addresses on the stack are short.
 const ENTRY_CYCLES: u64 = 5;
-/// Cycles more out of sleep.
-const WAKE_CYCLES: u64 = 5;
 
 /// Why [`Cpu::run`] returned.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,6 +75,12 @@ pub(crate) enum Turn {
 /// The processor with its memories.
 #[derive(Clone, Debug)]
 pub struct Cpu {
+    model: &'static Model,
+    /// Of the model, what instructions look at: whether its program counter is wide, the last word of flash, and where
+    /// SRAM starts.
+    is_far: bool,
+    last_word: u32,
+    sram_start: u16,
     /// The first 32; as many as a byte can name, so that no index needs a check.
     registers: [u8; 256],
     status: Status,
@@ -92,8 +90,9 @@ pub struct Cpu {
     cycle: u64,
     rampz: u8,
     eind: u8,
-    sram: Box<[u8; SRAM_BYTES]>,
+    sram: Box<[u8]>,
     flash: Box<[u8]>,
+    /// As many as any model has; a smaller flash is repeated, as its short program counter sees it.
     operations: Box<[Op; FLASH_WORDS]>,
     breakpoints: Vec<u32>,
     /// Pushing below this address runs the stack into data.
@@ -114,10 +113,10 @@ pub struct Cpu {
 impl Cpu {
     /// A processor after power-on with this program in its flash; what `flash` does not fill is erased.
     ///
-    /// Anything beyond [`FLASH_BYTES`] is ignored: loaders refuse it before.
-    pub fn new(program: &[u8]) -> Cpu {
-        let mut flash = vec![0xFF; FLASH_BYTES];
-        let fits = program.len().min(FLASH_BYTES);
+    /// Anything beyond the end of the flash is ignored: loaders refuse it before.
+    pub fn new(model: &'static Model, program: &[u8]) -> Cpu {
+        let mut flash = vec![0xFF; model.flash_bytes()];
+        let fits = program.len().min(flash.len());
         flash[..fits].copy_from_slice(&program[..fits]);
         let nothing = Op {
             code: Code::Erased,
@@ -129,18 +128,22 @@ impl Cpu {
             Err(_) => unreachable!("as long as it was made"),
         };
         let mut cpu = Cpu {
+            model,
+            is_far: model.is_far(),
+            last_word: model.flash_words - 1,
+            sram_start: model.sram_start,
             registers: [0; 256],
             status: Status::default(),
-            stack: u32::from(RAMEND),
+            stack: u32::from(model.ram_end),
             program_counter: 0,
             cycle: 0,
             rampz: 0,
             eind: 0,
-            sram: Box::new([0; SRAM_BYTES]),
+            sram: vec![0; model.sram_bytes()].into(),
             flash: flash.into(),
             operations,
             breakpoints: Vec::new(),
-            stack_floor: SRAM_START,
+            stack_floor: model.sram_start,
             stack_known: true,
             stack_move: None,
             sleeping: false,
@@ -159,14 +162,19 @@ impl Cpu {
     /// Starts over at address `program_counter` [words], as after a reset: memories keep what they hold.
     pub fn reset(&mut self, program_counter: u32) {
         self.status = Status::from_bits(0);
-        self.set_stack_pointer(RAMEND);
+        self.set_stack_pointer(self.model.ram_end);
         self.stack_known = true;
-        self.program_counter = program_counter % FLASH_WORDS as u32;
+        self.program_counter = program_counter & self.last_word;
         self.rampz = 0;
         self.eind = 0;
         self.sleeping = false;
         self.shadow = false;
         self.verdict = None;
+    }
+
+    /// Which chip's it is.
+    pub fn model(&self) -> &'static Model {
+        self.model
     }
 
     /// Cycles since power-on.
@@ -181,7 +189,7 @@ impl Cpu {
 
     /// Continues at another instruction [words].
     pub fn set_program_counter(&mut self, words: u32) {
-        self.program_counter = words % FLASH_WORDS as u32;
+        self.program_counter = words & self.last_word;
     }
 
     /// The registers r0 to r31.
@@ -222,13 +230,13 @@ impl Cpu {
         self.stack = u32::from(address);
     }
 
-    /// The SRAM, from [`SRAM_START`] on.
-    pub fn sram(&self) -> &[u8; SRAM_BYTES] {
+    /// The SRAM, from its first address on.
+    pub fn sram(&self) -> &[u8] {
         &self.sram
     }
 
     /// The same, to change it.
-    pub fn sram_mut(&mut self) -> &mut [u8; SRAM_BYTES] {
+    pub fn sram_mut(&mut self) -> &mut [u8] {
         &mut self.sram
     }
 
@@ -244,12 +252,12 @@ impl Cpu {
 
     /// Pushing below this address is a stack that has run into data.
     pub fn set_stack_floor(&mut self, address: u16) {
-        self.stack_floor = address.max(SRAM_START);
+        self.stack_floor = address.max(self.sram_start);
     }
 
     /// Stops before the instruction at `word`; takes no time until it is reached.
     pub fn set_breakpoint(&mut self, word: u32) {
-        let word = word % FLASH_WORDS as u32;
+        let word = word & self.last_word;
         if !self.breakpoints.contains(&word) {
             self.breakpoints.push(word);
         }
@@ -258,30 +266,32 @@ impl Cpu {
 
     /// Removes a breakpoint.
     pub fn clear_breakpoint(&mut self, word: u32) {
-        let word = word % FLASH_WORDS as u32;
+        let word = word & self.last_word;
         self.breakpoints.retain(|other| *other != word);
         self.predecode(word);
     }
 
     /// Writes a word of flash, as SPM does.
     pub fn write_flash(&mut self, word: u32, value: u16) {
-        let word = word % FLASH_WORDS as u32;
+        let word = word & self.last_word;
         let at = 2 * word as usize;
         let [low, high] = value.to_le_bytes();
         self.flash[at] = low;
         self.flash[at + 1] = high;
         // The word before may be a skip that must know how long this one is, or the first half of it.
-        self.predecode(word.wrapping_sub(1) % FLASH_WORDS as u32);
+        self.predecode(word.wrapping_sub(1) & self.last_word);
         self.predecode(word);
     }
 
     fn flash_word(&self, word: u32) -> u16 {
-        let at = 2 * (word as usize % FLASH_WORDS);
+        let at = 2 * (word & self.last_word) as usize;
         u16::from_le_bytes([self.flash[at], self.flash[at + 1]])
     }
 
     fn original(&self, word: u32) -> Op {
-        decode(word, self.flash_word(word), self.flash_word(word + 1))
+        let first = self.flash_word(word);
+        let op = decode(word, first, self.flash_word(word + 1));
+        self.model.admit(op, first)
     }
 
     fn predecode(&mut self, word: u32) {
@@ -289,7 +299,20 @@ impl Cpu {
         if self.breakpoints.contains(&word) {
             op.code = Code::Breakpoint;
         }
-        self.operations[word as usize % FLASH_WORDS] = op;
+        self.put(word, op);
+    }
+
+    /// Puts an operation in its place, in each repetition of the flash.
+    fn put(&mut self, word: u32, op: Op) {
+        let words = self.model.flash_words as usize;
+        for place in self
+            .operations
+            .iter_mut()
+            .skip(word as usize)
+            .step_by(words)
+        {
+            *place = op;
+        }
     }
 
     /// Runs until `until` cycles have passed since power-on, to the end of the instruction that passes them.
@@ -336,7 +359,7 @@ impl Cpu {
         let here = self.program_counter;
         let held = self.breakpoints.contains(&here);
         if held {
-            self.operations[here as usize % FLASH_WORDS] = self.original(here);
+            self.put(here, self.original(here));
         }
         let stopped = run(self);
         if held {
@@ -405,11 +428,15 @@ impl Cpu {
     fn sleep_on<I: Io>(&mut self, io: &mut I, until: u64) {
         if self.status.interrupts && io.pending().is_some() {
             self.sleeping = false;
-            self.cycle += io.wake(self.cycle) + WAKE_CYCLES;
+            self.cycle += io.wake(self.cycle) + self.entry_cycles();
         } else {
             let next = io.deadline(self.status.interrupts).max(self.cycle + 1);
             self.cycle = next.min(until);
         }
+    }
+
+    fn entry_cycles(&self) -> u64 {
+        ENTRY_CYCLES - u64::from(!self.is_far)
     }
 
     fn enter_interrupt<I: Io>(&mut self, io: &mut I) -> Option<u8> {
@@ -420,11 +447,11 @@ impl Cpu {
         io.acknowledge(vector, self.cycle);
         self.push_address(io, self.program_counter, self.cycle);
         self.status.interrupts = false;
-        self.program_counter = (u32::from(vector) * 2 + io.vector_base()) % FLASH_WORDS as u32;
+        self.program_counter = (u32::from(vector) * 2 + io.vector_base()) & self.last_word;
         if self.is_astray(self.program_counter) {
             self.astray = Some((self.program_counter, Arrival::Interrupt { vector }));
         }
-        self.cycle += ENTRY_CYCLES;
+        self.cycle += self.entry_cycles();
         Some(vector)
     }
 }

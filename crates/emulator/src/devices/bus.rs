@@ -1,14 +1,21 @@
 //! The peripherals as the CPU meets them: an access finds its register, after everything that is due has happened.
 
 use super::analog::Trigger;
-use super::interrupts::vector;
-use super::map::{Owner, is_flags, owner};
+use super::map::{Owner, is_flags};
 use super::ports::{self, Change};
 use super::system::Sleep;
-use super::{Core, Devices, Unmodelled, system, timer, usart};
+use super::{Core, Devices, Unmodelled, timer};
 use crate::io::{Access, Demand, Io, Stored};
+use crate::registers::{MCUCR, TWAR, XMCRA};
 
 impl Devices {
+    /// Whose register an address is.
+    #[inline(always)]
+    fn owner(&self, address: u16) -> Owner {
+        let owner = self.core.model.owners.get(usize::from(address));
+        owner.copied().unwrap_or(Owner::Nobody)
+    }
+
     fn not_modelled(&mut self, address: u16, at: Access, written: bool) {
         if self.strange.insert(address) {
             self.unmodelled.push(Unmodelled {
@@ -61,8 +68,9 @@ impl Devices {
     }
 
     fn write_system(&mut self, address: u16, value: u8, cycle: u64) {
-        self.system.write(address, value, cycle);
-        if address == system::MCUCR {
+        let kept = self.core.model.control_bits;
+        self.system.write(address, value, kept, cycle);
+        if address == MCUCR {
             let disabled = self.system.pull_ups_disabled();
             let changes = self.core.ports.disable_pull_ups(disabled, cycle);
             for change in changes {
@@ -75,12 +83,16 @@ impl Devices {
 impl Io for Devices {
     fn read(&mut self, address: u16, at: Access) -> u8 {
         self.advance(at.cycle);
-        match owner(address) {
+        match self.owner(address) {
             Owner::Ports => self.core.ports.read(address, at.cycle),
             Owner::External => self.external.read(address),
-            Owner::Timer(index) => self.timers[index].read(&mut self.core, address, at),
+            Owner::Timer(index) => {
+                self.timers[usize::from(index)].read(&mut self.core, address, at)
+            }
             Owner::TimerPrescalers => timer::read_general_control(&self.core),
-            Owner::Usart(index) => self.usarts[index].read(&mut self.core, address, at),
+            Owner::Usart(index) => {
+                self.usarts[usize::from(index)].read(&mut self.core, address, at)
+            }
             Owner::Analog => self.analog.read(address),
             Owner::Eeprom => self.eeprom.read(address, at.cycle),
             Owner::Watchdog => self.watchdog.read(at.cycle),
@@ -98,7 +110,7 @@ impl Io for Devices {
 
     fn write(&mut self, address: u16, value: u8, at: Access) {
         self.advance(at.cycle);
-        match owner(address) {
+        match self.owner(address) {
             Owner::Ports => {
                 let change = self.core.ports.write(address, value, at.cycle);
                 self.write_port(address, change, at.cycle);
@@ -107,11 +119,15 @@ impl Io for Devices {
                 self.external.write(address, value);
                 self.request_external();
             }
-            Owner::Timer(index) => self.timers[index].write(&mut self.core, address, value, at),
+            Owner::Timer(index) => {
+                self.timers[usize::from(index)].write(&mut self.core, address, value, at)
+            }
             Owner::TimerPrescalers => {
                 timer::write_general_control(&mut self.timers, &mut self.core, value, at.cycle);
             }
-            Owner::Usart(index) => self.usarts[index].write(&mut self.core, address, value, at),
+            Owner::Usart(index) => {
+                self.usarts[usize::from(index)].write(&mut self.core, address, value, at)
+            }
             Owner::Analog => self.write_analog(address, value, at),
             Owner::Eeprom => self.eeprom.write(&mut self.core, address, value, at.cycle),
             Owner::Watchdog => {
@@ -120,7 +136,13 @@ impl Io for Devices {
             }
             Owner::Programming => self.programming.write(&mut self.core, value, at.cycle),
             Owner::Spi => self.spi.write(&mut self.core, address, value, at.cycle),
-            Owner::Twi => self.twi.write(&mut self.core, address, value, at.cycle),
+            Owner::Twi => {
+                self.twi.write(&mut self.core, address, value, at.cycle);
+                // An address of its own: it would be a slave.
+                if address == TWAR {
+                    self.not_modelled(address, at, true);
+                }
+            }
             Owner::Power => {
                 self.power.write(address, value, at.cycle);
                 self.set_divisor(at.cycle);
@@ -128,7 +150,7 @@ impl Io for Devices {
             }
             Owner::System => {
                 self.write_system(address, value, at.cycle);
-                if address == system::XMCRA && self.system.external_memory() {
+                if address == XMCRA && self.system.external_memory() {
                     self.not_modelled(address, at, true);
                 }
             }
@@ -139,7 +161,7 @@ impl Io for Devices {
 
     /// A flag register takes the bit alone: a one clears it, and no other flag is touched.
     fn write_bit(&mut self, address: u16, mask: u8, set: bool, at: Access) {
-        if owner(address) == Owner::Ports {
+        if self.owner(address) == Owner::Ports {
             self.advance(at.cycle);
             let change = self.core.ports.write_bit(address, mask, set, at.cycle);
             self.write_port(address, change, at.cycle);
@@ -182,18 +204,21 @@ impl Io for Devices {
     }
 
     fn acknowledge(&mut self, vector: u8, cycle: u64) {
-        if (vector::INT0..vector::PCINT0 + 3).contains(&vector) {
+        let numbers = &self.core.model.numbers;
+        let mut timers = self.timers.iter_mut();
+        let mut usarts = self.usarts.iter_mut();
+        if self.external.has_vector(vector) {
             self.external.acknowledge(vector);
             self.request_external();
-        } else if let Some(index) = timer::of_vector(vector) {
-            self.timers[index].acknowledge(&mut self.core, vector, cycle);
-        } else if let Some(index) = usart::of_vector(vector) {
-            self.usarts[index].acknowledge(&mut self.core, vector, cycle);
-        } else if vector == vector::WATCHDOG {
+        } else if let Some(timer) = timers.find(|timer| timer.has_vector(vector)) {
+            timer.acknowledge(&mut self.core, vector, cycle);
+        } else if let Some(usart) = usarts.find(|usart| usart.has_vector(vector)) {
+            usart.acknowledge(&mut self.core, vector, cycle);
+        } else if vector == numbers.watchdog {
             self.watchdog.acknowledge(&mut self.core, cycle);
-        } else if matches!(vector, vector::CONVERTED | vector::COMPARED) {
+        } else if vector == numbers.converted || vector == numbers.compared {
             self.analog.acknowledge(&mut self.core, vector);
-        } else if vector == vector::SPI {
+        } else if vector == numbers.spi {
             self.spi.acknowledge(&mut self.core);
         }
         self.settle();
@@ -201,7 +226,7 @@ impl Io for Devices {
 
     fn vector_base(&self) -> u32 {
         if self.system.vectors_in_boot() {
-            self.programming.fuses.boot_start()
+            self.programming.boot_start()
         } else {
             0
         }

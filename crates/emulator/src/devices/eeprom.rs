@@ -4,14 +4,9 @@
 //! takes none, but the CPU stands for four cycles.
 
 use super::Core;
-use super::interrupts::vector;
 use super::schedule::Source;
-use crate::image::EEPROM_BYTES;
-
-const EECR: u16 = 0x3F;
-const EEDR: u16 = 0x40;
-const EEARL: u16 = 0x41;
-const EEARH: u16 = 0x42;
+use crate::model::Model;
+use crate::registers::{EEARH, EEARL, EECR, EEDR};
 
 const EERE: u8 = 0x01;
 const EEPE: u8 = 0x02;
@@ -38,9 +33,9 @@ struct Write {
 }
 
 /// The memory with its registers.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Eeprom {
-    pub(super) bytes: Box<[u8; EEPROM_BYTES]>,
+    pub(super) bytes: Box<[u8]>,
     address: u16,
     data: u8,
     /// EERIE and EEPM.
@@ -49,26 +44,20 @@ pub(super) struct Eeprom {
     write: Option<Write>,
 }
 
-impl Default for Eeprom {
+impl Eeprom {
     /// Erased.
-    fn default() -> Eeprom {
+    pub(super) fn new(model: &Model) -> Eeprom {
         Eeprom {
-            bytes: Box::new([0xFF; EEPROM_BYTES]),
-            address: 0,
-            data: 0,
-            control: 0,
-            armed_until: None,
-            write: None,
+            bytes: vec![0xFF; model.eeprom_bytes].into(),
+            ..Eeprom::default()
         }
     }
-}
 
-impl Eeprom {
     /// The registers start over; what is in the cells stays, and a write that has begun is finished.
     pub(super) fn reset(&mut self) {
         self.finish();
         *self = Eeprom {
-            bytes: std::mem::replace(&mut self.bytes, Box::new([0; EEPROM_BYTES])),
+            bytes: std::mem::take(&mut self.bytes),
             ..Eeprom::default()
         };
     }
@@ -76,8 +65,13 @@ impl Eeprom {
     /// The write is over.
     fn finish(&mut self) {
         if let Some(Write { address, value, .. }) = self.write.take() {
-            self.bytes[address % EEPROM_BYTES] = value;
+            self.bytes[address] = value;
         }
+    }
+
+    /// The last address.
+    fn last(&self) -> u16 {
+        (self.bytes.len() - 1) as u16
     }
 
     /// A write is on its way.
@@ -111,7 +105,9 @@ impl Eeprom {
             EEDR => self.data = value,
             // During a write the address is held.
             EEARL if !self.is_busy() => self.address = u16::from_le_bytes([value, high]),
-            EEARH if !self.is_busy() => self.address = u16::from_le_bytes([low, value & 0x0F]),
+            EEARH if !self.is_busy() => {
+                self.address = u16::from_le_bytes([low, value]) & self.last()
+            }
             _ => {}
         }
     }
@@ -121,7 +117,7 @@ impl Eeprom {
         let modes = if self.is_busy() { self.control } else { value } & EEPM;
         self.control = value & EERIE | modes;
         if value & EERE != 0 && !self.is_busy() {
-            self.data = self.bytes[usize::from(self.address) % EEPROM_BYTES];
+            self.data = self.bytes[usize::from(self.address)];
             core.stall(READ_STALL);
         }
         if value & EEPE != 0 && armed && !self.is_busy() {
@@ -133,7 +129,7 @@ impl Eeprom {
     }
 
     fn begin(&mut self, core: &mut Core, cycle: u64) {
-        let address = usize::from(self.address) % EEPROM_BYTES;
+        let address = usize::from(self.address);
         let (value, cycles) = match self.control & EEPM {
             0x10 => (0xFF, HALF_CYCLES),
             // Without erasing, a write can only clear bits.
@@ -164,6 +160,7 @@ impl Eeprom {
 
     fn request(&self, core: &mut Core) {
         let requested = self.control & EERIE != 0 && !self.is_busy();
-        core.interrupts.set(vector::EEPROM_READY, requested);
+        core.interrupts
+            .set(core.model.numbers.eeprom_ready, requested);
     }
 }

@@ -3,27 +3,15 @@
 //! A flag is raised by its edge whether it is enabled or not, and stays until its routine is entered or a one is written to
 //! it. Low level is no flag: it requests as long as it lasts.
 
-use super::interrupts::{Interrupts, vector};
-use super::ports::{Pin, Ports};
-
-pub(crate) const PCIFR: u16 = 0x3B;
-pub(crate) const EIFR: u16 = 0x3C;
-pub(crate) const EIMSK: u16 = 0x3D;
-pub(crate) const PCICR: u16 = 0x68;
-pub(crate) const EICRA: u16 = 0x69;
-pub(crate) const EICRB: u16 = 0x6A;
-pub(crate) const PCMSK0: u16 = 0x6B;
-const PCMSK2: u16 = 0x6D;
-
-const PORT_B: usize = 1;
-const PORT_D: usize = 3;
-const PORT_E: usize = 4;
-const PORT_J: usize = 8;
-const PORT_K: usize = 9;
+use super::interrupts::Interrupts;
+use super::ports::Ports;
+use crate::model::{Model, PinChange};
+use crate::registers::{EICRA, EICRB, EIFR, EIMSK, PCICR, PCIFR, PCMSK0, PCMSK1, PCMSK2};
 
 /// State of the external interrupts.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct External {
+    model: &'static Model,
     flags: u8,
     enabled: u8,
     /// Two bits of sense for each.
@@ -33,13 +21,22 @@ pub(crate) struct External {
     change_masks: [u8; 3],
 }
 
-/// The pin of INT `number`.
-fn pin(number: u8) -> Pin {
-    let port = if number < 4 { PORT_D } else { PORT_E };
-    Pin::at(port, number)
-}
+/// The vector of INT0.
+const INT0: u8 = 1;
 
 impl External {
+    pub(crate) fn new(model: &'static Model) -> External {
+        External {
+            model,
+            ..External::default()
+        }
+    }
+
+    /// Whether this is one of its vectors.
+    pub(crate) fn has_vector(&self, vector: u8) -> bool {
+        (INT0..self.model.numbers.pin_change + 3).contains(&vector)
+    }
+
     pub(crate) fn read(&self, address: u16) -> u8 {
         let [low, high] = self.sense.to_le_bytes();
         match address {
@@ -49,7 +46,7 @@ impl External {
             EICRB => high,
             PCIFR => self.change_flags,
             PCICR => self.change_enabled,
-            PCMSK0..=PCMSK2 => self.change_masks[usize::from(address - PCMSK0)],
+            PCMSK0 | PCMSK1 | PCMSK2 => self.change_masks[usize::from(address - PCMSK0)],
             _ => 0,
         }
     }
@@ -58,55 +55,56 @@ impl External {
         let [low, high] = self.sense.to_le_bytes();
         match address {
             EIFR => self.flags &= !value,
-            EIMSK => self.enabled = value,
+            EIMSK => self.enabled = value & self.lines(),
             EICRA => self.sense = u16::from_le_bytes([value, high]),
             EICRB => self.sense = u16::from_le_bytes([low, value]),
             PCIFR => self.change_flags &= !value,
             PCICR => self.change_enabled = value & 7,
-            PCMSK0..=PCMSK2 => self.change_masks[usize::from(address - PCMSK0)] = value,
+            PCMSK0 | PCMSK1 | PCMSK2 => self.change_masks[usize::from(address - PCMSK0)] = value,
             _ => {}
         }
     }
 
-    fn sense(&self, number: u8) -> u16 {
+    fn sense(&self, number: usize) -> u16 {
         self.sense >> (2 * number) & 3
     }
 
+    /// A bit for each line that there is.
+    fn lines(&self) -> u8 {
+        0xFF >> (8 - self.model.external.0.len())
+    }
+
     /// Levels of a port have changed: those in `levels`, to what they are in `ports` now.
-    /// Edges of INT4 to INT7 are seen with the peripherals' clock only (section 15.1).
+    /// Edges of a Mega's INT4 to INT7, and of all of an Uno's, are seen with the peripherals' clock only (15.1).
     pub(crate) fn changed(&mut self, port: usize, levels: u8, ports: &Ports, clocked: bool) {
-        let numbers = match port {
-            PORT_D => 0..4,
-            PORT_E if clocked => 4..8,
-            _ => 0..0,
-        };
-        for number in numbers {
-            let mask = 1 << number;
-            if levels & mask == 0 {
+        let (pins, clocked_from) = self.model.external;
+        for (number, pin) in pins.iter().enumerate() {
+            if pin.port() != port || levels & pin.mask() == 0 {
                 continue;
             }
-            let rose = ports.level(pin(number));
+            let rose = ports.level(*pin);
             let meant = match self.sense(number) {
                 0 => false,
                 1 => true,
                 2 => !rose,
                 _ => rose,
             };
-            if meant {
-                self.flags |= mask;
+            if meant && (clocked || number < clocked_from) {
+                self.flags |= 1 << number;
             }
         }
-        let [first, second, third] = self.change_masks;
-        let (group, hit) = match port {
-            PORT_B => (0, levels & first),
-            // PCINT8 is PE0, PCINT9 to 15 are PJ0 to PJ6.
-            PORT_E => (1, levels & 1 & second),
-            PORT_J => (1, levels << 1 & second),
-            PORT_K => (2, levels & third),
-            _ => return,
-        };
-        if hit != 0 {
-            self.change_flags |= 1 << group;
+        for change in self
+            .model
+            .pin_changes
+            .iter()
+            .filter(|change| change.port == port)
+        {
+            let PinChange {
+                pins, group, shift, ..
+            } = *change;
+            if (levels & pins) << shift & self.change_masks[group] != 0 {
+                self.change_flags |= 1 << group;
+            }
         }
     }
 
@@ -117,23 +115,23 @@ impl External {
 
     /// Its routine is entered.
     pub(crate) fn acknowledge(&mut self, number: u8) {
-        match number.checked_sub(vector::PCINT0) {
+        match number.checked_sub(self.model.numbers.pin_change) {
             Some(group) => self.change_flags &= !(1 << group),
-            None => self.flags &= !(1 << (number - vector::INT0)),
+            None => self.flags &= !(1 << (number - INT0)),
         }
     }
 
     /// Tells which of the vectors are requested.
     pub(crate) fn request(&self, interrupts: &mut Interrupts, ports: &Ports) {
-        for number in 0..8 {
+        for (number, pin) in self.model.external.0.iter().enumerate() {
             let mask = 1 << number;
-            let low = self.sense(number) == 0 && !ports.level(pin(number));
+            let low = self.sense(number) == 0 && !ports.level(*pin);
             let requested = self.enabled & mask != 0 && (self.flags & mask != 0 || low);
-            interrupts.set(vector::INT0 + number, requested);
+            interrupts.set(INT0 + number as u8, requested);
         }
         for group in 0..3 {
             let requested = self.change_enabled & self.change_flags & (1 << group) != 0;
-            interrupts.set(vector::PCINT0 + group, requested);
+            interrupts.set(self.model.numbers.pin_change + group, requested);
         }
     }
 }

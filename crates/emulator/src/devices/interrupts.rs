@@ -1,18 +1,5 @@
 //! Which interrupts are requested: a bit for each vector, kept by the peripherals whenever a flag or an enable changes.
 
-/// Numbers of the interrupt vectors (2549Q, section 14.1). A lower number has priority.
-pub(crate) mod vector {
-    pub(crate) const INT0: u8 = 1;
-    pub(crate) const PCINT0: u8 = 9;
-    pub(crate) const WATCHDOG: u8 = 12;
-    pub(crate) const SPI: u8 = 24;
-    pub(crate) const COMPARED: u8 = 28;
-    pub(crate) const CONVERTED: u8 = 29;
-    pub(crate) const EEPROM_READY: u8 = 30;
-    pub(crate) const TWI: u8 = 39;
-    pub(crate) const PROGRAMMED: u8 = 40;
-}
-
 /// The requested interrupts.
 #[derive(Clone, Debug)]
 pub(crate) struct Interrupts {

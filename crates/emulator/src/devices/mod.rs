@@ -9,7 +9,7 @@ mod clock;
 mod eeprom;
 pub(crate) mod external;
 pub(crate) mod interrupts;
-mod map;
+pub(crate) mod map;
 pub mod ports;
 mod power;
 mod programming;
@@ -25,8 +25,8 @@ mod watchdog;
 
 use std::collections::{BTreeSet, VecDeque};
 
-use crate::image::EEPROM_BYTES;
 use crate::io::Demand;
+use crate::model::Model;
 use analog::{Analog, Trigger};
 use clock::Clock;
 use eeprom::Eeprom;
@@ -71,8 +71,8 @@ pub struct Unmodelled {
 pub struct Devices {
     core: Core,
     external: External,
-    timers: [Timer; 6],
-    usarts: [Usart; 4],
+    timers: Box<[Timer]>,
+    usarts: Box<[Usart]>,
     spi: Spi,
     twi: Twi,
     analog: Analog,
@@ -91,21 +91,21 @@ pub struct Devices {
     strange: BTreeSet<u16>,
 }
 
-/// Peripherals after power-on.
-impl Default for Devices {
-    fn default() -> Devices {
+impl Devices {
+    /// Those of a chip after power-on.
+    pub(crate) fn new(model: &'static Model) -> Devices {
         Devices {
-            core: Core::default(),
-            external: External::default(),
-            timers: timer::all(),
-            usarts: usart::all(),
+            core: Core::new(model),
+            external: External::new(model),
+            timers: model.timers.iter().map(timer::new).collect(),
+            usarts: model.usarts.iter().map(usart::new).collect(),
             spi: Spi::default(),
             twi: Twi::default(),
-            analog: Analog::default(),
-            eeprom: Eeprom::default(),
+            analog: Analog::new(model),
+            eeprom: Eeprom::new(model),
             watchdog: Watchdog::default(),
             power: Power::default(),
-            programming: Programming::default(),
+            programming: Programming::new(model),
             system: System::default().after_reset(Cause::PowerOn),
             stopped_at: None,
             start: 0,
@@ -114,9 +114,7 @@ impl Default for Devices {
             strange: BTreeSet::new(),
         }
     }
-}
 
-impl Devices {
     /// Schedules an input at `cycle` of the crystal, in any order; one in the past takes effect at once.
     pub fn input(&mut self, cycle: u64, input: Input) {
         let at = self.inputs.partition_point(|(other, _)| *other <= cycle);
@@ -176,7 +174,7 @@ impl Devices {
         self.power = Power::after_reset(fuses.divides_clock());
         self.set_divisor(0);
         self.start = if fuses.starts_in_boot() && boot {
-            fuses.boot_start()
+            self.programming.boot_start()
         } else {
             0
         };
@@ -184,12 +182,12 @@ impl Devices {
     }
 
     /// What the EEPROM holds.
-    pub fn eeprom(&self) -> &[u8; EEPROM_BYTES] {
+    pub fn eeprom(&self) -> &[u8] {
         &self.eeprom.bytes
     }
 
     /// The same, to change it.
-    pub fn eeprom_mut(&mut self) -> &mut [u8; EEPROM_BYTES] {
+    pub fn eeprom_mut(&mut self) -> &mut [u8] {
         &mut self.eeprom.bytes
     }
 
@@ -238,7 +236,7 @@ impl Devices {
                 core.note(Some(change), cycle);
                 // A released line may read low as a pin, but is high as a line of the bus.
                 self.twi.pin_changed(core, pin, cycle);
-                if let Some(channel) = analog::channel(pin) {
+                if let Some(channel) = core.model.analog.channel(pin) {
                     let volts = level.map(|level| if level { SUPPLY_V } else { 0.0 });
                     self.analog.set_volts(core, channel, volts, cycle);
                 }
@@ -260,7 +258,7 @@ impl Devices {
             }
             Input::Volts { channel, volts } => {
                 self.analog.set_volts(core, channel, Some(volts), cycle);
-                if let Some(pin) = analog::pin(channel) {
+                if let Some(pin) = core.model.analog.pin(channel) {
                     let level = volts >= SUPPLY_V / 2.0;
                     let change = core.ports.set_outside(pin, Some(level), cycle);
                     core.note(Some(change), cycle);
@@ -284,7 +282,7 @@ impl Devices {
         self.core.shared = [None; 2];
         self.programming.reset(&mut self.core);
         self.stopped_at = None;
-        self.external = External::default();
+        self.external = External::new(self.core.model);
         for timer in &mut self.timers {
             timer.reset(&mut self.core, cycle);
         }

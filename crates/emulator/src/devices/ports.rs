@@ -3,6 +3,8 @@
 //! A level that changes in cycle c is read from cycle c + 2 on: the synchroniser holds it for one clock and a half at most
 //! (2549Q, section 13.2.4: an OUT and the IN that reads it back need a NOP in between).
 
+use crate::model::Model;
+
 /// How many ports there are: A to H and J to L.
 pub const PORTS: usize = 11;
 const LETTERS: [u8; PORTS] = *b"ABCDEFGHJKL";
@@ -148,20 +150,21 @@ pub(crate) struct Change {
 /// All ports.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ports {
+    model: &'static Model,
     ports: [Port; PORTS],
     pull_ups_disabled: bool,
 }
 
 /// What a register of a port is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Register {
+pub(crate) enum Register {
     Pin,
     Direction,
     Output,
 }
 
 /// Port and register at an address of the data space.
-fn register(address: u16) -> Option<(usize, Register)> {
+pub(crate) const fn register(address: u16) -> Option<(usize, Register)> {
     let index = match address {
         0x20..=0x34 => address - 0x20,
         0x100..=0x10B => address - 0x100 + 21,
@@ -172,7 +175,7 @@ fn register(address: u16) -> Option<(usize, Register)> {
         1 => Register::Direction,
         _ => Register::Output,
     };
-    Some((usize::from(index / 3), register))
+    Some(((index / 3) as usize, register))
 }
 
 /// A register of directions.
@@ -181,6 +184,13 @@ pub(crate) fn is_direction(address: u16) -> bool {
 }
 
 impl Ports {
+    pub(crate) fn new(model: &'static Model) -> Ports {
+        Ports {
+            model,
+            ..Ports::default()
+        }
+    }
+
     pub(crate) fn read(&self, address: u16, cycle: u64) -> u8 {
         let Some((index, register)) = register(address) else {
             return 0;
@@ -196,6 +206,7 @@ impl Ports {
 
     pub(crate) fn write(&mut self, address: u16, value: u8, cycle: u64) -> Option<Change> {
         let (index, register) = register(address)?;
+        let value = value & self.model.ports[index];
         self.change(index, cycle, |port| match register {
             Register::Pin => port.output ^= value,
             Register::Direction => port.direction = value,
@@ -212,6 +223,7 @@ impl Ports {
         cycle: u64,
     ) -> Option<Change> {
         let (index, register) = register(address)?;
+        let mask = mask & self.model.ports[index];
         let put = |value: &mut u8| *value = if set { *value | mask } else { *value & !mask };
         self.change(index, cycle, |port| match register {
             Register::Pin => port.output ^= if set { mask } else { 0 },

@@ -3,11 +3,7 @@
 //! When a clock stops, its peripheral freezes and resumes when the clock is back.
 
 use super::system::Sleep;
-
-pub(super) const CLKPR: u16 = 0x61;
-const PRR0: u16 = 0x64;
-const PRR1: u16 = 0x65;
-const OSCCAL: u16 = 0x66;
+use crate::registers::{CLKPR, OSCCAL, PRR0, PRR1};
 
 /// Permits to change the system clock's prescaler, in CLKPR, for some cycles.
 const CLKPCE: u8 = 0x80;

@@ -5,9 +5,9 @@
 //! stalls.
 
 use super::Core;
-use super::interrupts::vector;
 use super::schedule::Source;
 use crate::io::{Access, Stored};
+use crate::model::Model;
 
 const SPMIE: u8 = 0x80;
 const RWWSB: u8 = 0x40;
@@ -22,12 +22,6 @@ const SPMEN: u8 = 0x01;
 const OPEN_CYCLES: u64 = 4;
 /// Erasing or writing a page: 4.5 ms (table 29-11) [cycles of the crystal].
 const PAGE_CYCLES: u64 = 72_000;
-/// Words of a page.
-pub(crate) const PAGE_WORDS: usize = 128;
-/// Start of the section that the CPU cannot run beside its programming [words].
-const NO_READ_WHILE_WRITE: u32 = 0x1_F000;
-/// The signature of the ATmega2560.
-const SIGNATURE: [u8; 3] = [0x1E, 0x98, 0x01];
 /// Where the signature row has the calibration of the oscillator, and what it is there.
 const CALIBRATION: (u32, u8) = (1, 0x8D);
 
@@ -44,24 +38,7 @@ pub struct Fuses {
     pub lock: u8,
 }
 
-impl Default for Fuses {
-    /// As a Mega is delivered: crystal, boot section of 8 KB with the reset in it.
-    fn default() -> Fuses {
-        Fuses {
-            low: 0xFF,
-            high: 0xD8,
-            extended: 0xFD,
-            lock: 0xCF,
-        }
-    }
-}
-
 impl Fuses {
-    /// Where the boot section starts [words].
-    pub const fn boot_start(self) -> u32 {
-        0x2_0000 - (4096 >> (self.high >> 1 & 3))
-    }
-
     /// CKDIV8: the system clock starts with an eighth of the crystal's.
     pub(crate) const fn divides_clock(self) -> bool {
         self.low & 0x80 == 0
@@ -76,33 +53,39 @@ impl Fuses {
 /// Registers and buffer.
 #[derive(Clone, Debug)]
 pub(super) struct Programming {
+    model: &'static Model,
     pub(super) fuses: Fuses,
     control: u8,
     /// Until when SPMCSR's selection holds for SPM and LPM.
     open_until: u64,
     /// A page is being erased or written, and it is done at this time.
     busy: Option<u64>,
-    buffer: [Option<u16>; PAGE_WORDS],
-}
-
-impl Default for Programming {
-    fn default() -> Programming {
-        Programming {
-            fuses: Fuses::default(),
-            control: 0,
-            open_until: 0,
-            busy: None,
-            buffer: [None; PAGE_WORDS],
-        }
-    }
+    /// A page.
+    buffer: Box<[Option<u16>]>,
 }
 
 impl Programming {
+    pub(super) fn new(model: &'static Model) -> Programming {
+        Programming {
+            model,
+            fuses: model.fuses,
+            control: 0,
+            open_until: 0,
+            busy: None,
+            buffer: vec![None; model.page_words].into(),
+        }
+    }
+
+    /// Where the boot section starts [words].
+    pub(super) fn boot_start(&self) -> u32 {
+        self.model.boot_start(self.fuses)
+    }
+
     /// Starts over; fuses stay.
     pub(super) fn reset(&mut self, core: &mut Core) {
         *self = Programming {
             fuses: self.fuses,
-            ..Programming::default()
+            ..Programming::new(self.model)
         };
         core.schedule.set(Source::Programming, None);
     }
@@ -131,7 +114,7 @@ impl Programming {
 
     fn request(&self, core: &mut Core) {
         let ready = self.control & SPMIE != 0 && self.busy.is_none();
-        core.interrupts.set(vector::PROGRAMMED, ready);
+        core.interrupts.set(core.model.numbers.programmed, ready);
     }
 
     /// SPM at a byte address.
@@ -142,18 +125,19 @@ impl Programming {
         value: u16,
         at: Access,
     ) -> Stored {
-        let from_boot = at.program_counter >= self.fuses.boot_start();
+        let from_boot = at.program_counter >= self.boot_start();
         if self.busy.is_some() || !from_boot || !self.is_open(at.cycle) {
             return Stored::Nothing;
         }
         let word = address / 2;
-        let page = word / PAGE_WORDS as u32 * PAGE_WORDS as u32;
+        let words = self.buffer.len();
+        let page = word / words as u32 * words as u32;
         let command = self.control & (SIGRD | RWWSRE | BLBSET | PGWRT | PGERS | SPMEN);
         self.control &= !(SIGRD | RWWSRE | BLBSET | PGWRT | PGERS | SPMEN);
         match command {
             SPMEN => {
                 // A word of the buffer is written once.
-                let place = &mut self.buffer[word as usize % PAGE_WORDS];
+                let place = &mut self.buffer[word as usize % words];
                 place.get_or_insert(value);
                 Stored::Nothing
             }
@@ -163,13 +147,14 @@ impl Programming {
             }
             0x05 => {
                 self.begin(core, command, page, at.cycle);
-                let words = self.buffer.map(|word| word.unwrap_or(0xFFFF));
-                self.buffer = [None; PAGE_WORDS];
-                Stored::Written(page, Box::new(words))
+                let words = self.buffer.iter();
+                let words = words.map(|word| word.unwrap_or(0xFFFF)).collect();
+                self.buffer.fill(None);
+                Stored::Written(page, words)
             }
             0x11 => {
                 self.control &= !RWWSB;
-                self.buffer = [None; PAGE_WORDS];
+                self.buffer.fill(None);
                 Stored::Nothing
             }
             0x09 => {
@@ -182,7 +167,7 @@ impl Programming {
     }
 
     fn begin(&mut self, core: &mut Core, command: u8, page: u32, cycle: u64) {
-        if page >= NO_READ_WHILE_WRITE {
+        if page >= self.model.no_read_while_write {
             core.stall(core.clock.cycles(PAGE_CYCLES));
             return;
         }
@@ -222,13 +207,13 @@ impl Programming {
             } else if index == CALIBRATION.0 {
                 CALIBRATION.1
             } else {
-                let byte = SIGNATURE.get(index as usize / 2);
+                let byte = self.model.signature.get(index as usize / 2);
                 byte.copied()
                     .filter(|_| index.is_multiple_of(2))
                     .unwrap_or(0xFF)
             });
         }
-        let held = self.control & RWWSB != 0 && address / 2 < NO_READ_WHILE_WRITE;
+        let held = self.control & RWWSB != 0 && address / 2 < self.model.no_read_while_write;
         held.then_some(0xFF)
     }
 }

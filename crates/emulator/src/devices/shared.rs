@@ -7,14 +7,13 @@ use super::schedule::Schedule;
 use super::signal::{Event, Level, Output};
 use super::timer::Prescaler;
 use crate::io::Demand;
+use crate::model::Model;
 use std::collections::VecDeque;
-
-/// OC0A and OC1C, PB7.
-const SHARED_OUTPUT: Pin = Pin::at(1, 7);
 
 /// What all peripherals share.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Core {
+    pub(crate) model: &'static Model,
     pub(crate) interrupts: Interrupts,
     pub(crate) ports: Ports,
     pub(crate) schedule: Schedule,
@@ -40,6 +39,14 @@ pub(crate) struct Core {
 }
 
 impl Core {
+    pub(crate) fn new(model: &'static Model) -> Core {
+        Core {
+            model,
+            ports: Ports::new(model),
+            ..Core::default()
+        }
+    }
+
     /// Emits an event of the chip at its cycle.
     pub(crate) fn emit(&mut self, cycle: u64, event: Event) {
         if let Event::Pin(pin, _) | Event::Duty { pin, .. } = event {
@@ -72,7 +79,7 @@ impl Core {
         output: Option<bool>,
         cycle: u64,
     ) {
-        if pin == SHARED_OUTPUT {
+        if self.model.shared_output == Some(pin) {
             self.shared[timer % 2] = output;
             self.modulate(cycle);
         } else {
@@ -83,14 +90,15 @@ impl Core {
 
     /// Where both drive it, the pin that OC0A and OC1C share has both, or either if PORTB7 is set (section 19).
     pub(super) fn modulate(&mut self, cycle: u64) {
+        let Some(pin) = self.model.shared_output else {
+            return;
+        };
         let output = match self.shared {
-            [Some(first), Some(second)] if self.ports.output(SHARED_OUTPUT) => {
-                Some(first || second)
-            }
+            [Some(first), Some(second)] if self.ports.output(pin) => Some(first || second),
             [Some(first), Some(second)] => Some(first && second),
             [first, second] => first.or(second),
         };
-        let change = self.ports.override_output(SHARED_OUTPUT, output, cycle);
+        let change = self.ports.override_output(pin, output, cycle);
         self.note(change, cycle);
     }
 

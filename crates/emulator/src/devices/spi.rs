@@ -5,13 +5,9 @@
 //! the first edge. As a master the steps are the interface's own, as a slave those of the pin.
 
 use super::Core;
-use super::interrupts::vector;
 use super::ports::{Force, Pin};
 use super::schedule::Source;
-
-const SPCR: u16 = 0x4C;
-const SPSR: u16 = 0x4D;
-const SPDR: u16 = 0x4E;
+use crate::registers::{SPCR, SPDR, SPSR};
 
 const SPIE: u8 = 0x80;
 const SPE: u8 = 0x40;
@@ -23,11 +19,6 @@ const SPIF: u8 = 0x80;
 const WCOL: u8 = 0x40;
 const SPI2X: u8 = 0x01;
 
-const PORT_B: usize = 1;
-const SELECT: Pin = Pin::at(PORT_B, 0);
-const CLOCK: Pin = Pin::at(PORT_B, 1);
-const MOSI: Pin = Pin::at(PORT_B, 2);
-const MISO: Pin = Pin::at(PORT_B, 3);
 /// Edges of SCK in a transfer.
 const STEPS: u32 = 16;
 
@@ -173,18 +164,19 @@ impl Spi {
         let input = |is_input: bool| if is_input { Force::Input } else { Force::None };
         let (master, slave) = (self.role() == Role::Master, self.role() == Role::Slave);
         let out = slave && self.selected;
+        let [select, clock, mosi, miso] = core.model.spi;
         for change in [
             core.ports
-                .force(MISO, input(master || slave && !out), cycle),
-            core.ports.force(MOSI, input(slave), cycle),
-            core.ports.force(CLOCK, input(slave), cycle),
-            core.ports.force(SELECT, input(slave), cycle),
+                .force(miso, input(master || slave && !out), cycle),
+            core.ports.force(mosi, input(slave), cycle),
+            core.ports.force(clock, input(slave), cycle),
+            core.ports.force(select, input(slave), cycle),
             core.ports
-                .override_output(CLOCK, master.then(|| self.clock()), cycle),
+                .override_output(clock, master.then(|| self.clock()), cycle),
             core.ports
-                .override_output(MOSI, master.then_some(self.level), cycle),
+                .override_output(mosi, master.then_some(self.level), cycle),
             core.ports
-                .override_output(MISO, out.then_some(self.level), cycle),
+                .override_output(miso, out.then_some(self.level), cycle),
         ] {
             core.note(change, cycle);
         }
@@ -192,13 +184,14 @@ impl Spi {
 
     /// A pin has changed: SS or SCK, if it is one of them.
     pub(super) fn pin_changed(&mut self, core: &mut Core, pin: Pin, cycle: u64) {
-        if pin == SELECT {
+        let [select, clock, mosi, _] = core.model.spi;
+        if pin == select {
             self.look_at_select(core, cycle);
-        } else if pin == CLOCK && self.selected && self.stopped.is_none() {
+        } else if pin == clock && self.selected && self.stopped.is_none() {
             // One that was active when the slave was selected has a trailing edge first, which is none of a byte.
-            let leading = core.ports.level(CLOCK) != self.is_set(CPOL);
+            let leading = core.ports.level(clock) != self.is_set(CPOL);
             if leading == self.steps.is_multiple_of(2) {
-                self.step(core, MOSI);
+                self.step(core, mosi);
                 self.drive_pins(core, cycle);
                 self.reschedule(core);
             }
@@ -208,8 +201,9 @@ impl Spi {
     /// A master selected by another master becomes a slave (section 21.3.2); a deselected slave drops a partial byte.
     fn look_at_select(&mut self, core: &mut Core, cycle: u64) {
         let ports = &core.ports;
-        let low = ports.is_driven_outside(SELECT) && !ports.level(SELECT);
-        if self.role() == Role::Master && low && !ports.is_output(SELECT) {
+        let [select, ..] = core.model.spi;
+        let low = ports.is_driven_outside(select) && !ports.level(select);
+        if self.role() == Role::Master && low && !ports.is_output(select) {
             self.control &= !MSTR;
             self.flags |= SPIF;
             self.start_over();
@@ -257,7 +251,8 @@ impl Spi {
     /// An edge of its own clock is due.
     pub(super) fn happen(&mut self, core: &mut Core, cycle: u64) {
         if self.transfer.is_some() {
-            self.step(core, MISO);
+            let [.., miso] = core.model.spi;
+            self.step(core, miso);
             self.drive_pins(core, cycle);
         }
         self.reschedule(core);
@@ -271,7 +266,7 @@ impl Spi {
         });
         core.schedule.set(Source::Spi, next);
         let requested = self.flags & SPIF != 0 && self.control & SPIE != 0;
-        core.interrupts.set(vector::SPI, requested);
+        core.interrupts.set(core.model.numbers.spi, requested);
     }
 
     /// It has a clock from now on, or has none.

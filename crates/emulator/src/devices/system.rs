@@ -2,17 +2,7 @@
 //! of what a Mega does not have, memory and debugger outside (2549Q, sections 9, 11, 12, 13.4, 14.2 and 27).
 
 use super::Cause;
-
-const GPIOR0: u16 = 0x3E;
-const GPIOR1: u16 = 0x4A;
-const GPIOR2: u16 = 0x4B;
-const OCDR: u16 = 0x51;
-const SMCR: u16 = 0x53;
-const MCUSR: u16 = 0x54;
-pub(super) const MCUCR: u16 = 0x55;
-
-pub(super) const XMCRA: u16 = 0x74;
-const XMCRB: u16 = 0x75;
+use crate::registers::{GPIOR0, GPIOR1, GPIOR2, MCUCR, MCUSR, OCDR, SMCR, XMCRA, XMCRB};
 
 /// External memory enable in XMCRA.
 const SRE: u8 = 0x80;
@@ -20,8 +10,6 @@ const SRE: u8 = 0x80;
 const SE: u8 = 1;
 /// Pull-up disable in MCUCR.
 const PUD: u8 = 0x10;
-/// Disables JTAG.
-const JTD: u8 = 0x80;
 /// Vectors in the boot section, and the permission to change that, in MCUCR.
 const IVSEL: u8 = 2;
 const IVCE: u8 = 1;
@@ -98,7 +86,8 @@ impl System {
         }
     }
 
-    pub(super) fn write(&mut self, address: u16, value: u8, cycle: u64) {
+    /// Writes a register; `kept` are the bits of MCUCR that hold what is written.
+    pub(super) fn write(&mut self, address: u16, value: u8, kept: u8, cycle: u64) {
         match address {
             GPIOR0 => self.general[0] = value,
             GPIOR1 => self.general[1] = value,
@@ -106,7 +95,7 @@ impl System {
             SMCR => self.sleep_control = value & 0x0F,
             // Flags of the reset: a zero clears, a one leaves.
             MCUSR => self.reset_causes &= value,
-            MCUCR => self.write_control(value, cycle),
+            MCUCR => self.write_control(value, kept, cycle),
             OCDR => self.debug = value,
             XMCRA => self.external_memory[0] = value,
             XMCRB => self.external_memory[1] = value & 0x87,
@@ -115,7 +104,7 @@ impl System {
     }
 
     /// IVSEL changes only within four cycles after IVCE was written.
-    fn write_control(&mut self, value: u8, cycle: u64) {
+    fn write_control(&mut self, value: u8, kept: u8, cycle: u64) {
         let select = if cycle <= self.control_open_until && value & IVCE == 0 {
             value & IVSEL
         } else {
@@ -124,7 +113,7 @@ impl System {
         if value & IVCE != 0 {
             self.control_open_until = cycle + IVCE_CYCLES;
         }
-        self.control = value & (PUD | JTD) | select;
+        self.control = value & kept | select;
     }
 
     /// A reset by the watchdog keeps it on.

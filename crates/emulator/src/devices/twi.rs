@@ -16,19 +16,12 @@
 //! | byte | bit n out at 2n, SCL up at 2n + 1, SCL down at 2n + 2; nine bits |
 //! | stop | SDA down at 0, SCL up at 1, SDA up at 2 |
 //!
-//! It never answers as a slave: TWEA and TWAR alone do nothing.
+//! It never answers as a slave: TWEA and TWAR alone do nothing, and a write to TWAR is reported as not modelled.
 
 use super::Core;
-use super::interrupts::vector;
 use super::ports::{Force, Pin};
 use super::schedule::Source;
-
-const TWBR: u16 = 0xB8;
-const TWSR: u16 = 0xB9;
-const TWAR: u16 = 0xBA;
-const TWDR: u16 = 0xBB;
-const TWCR: u16 = 0xBC;
-const TWAMR: u16 = 0xBD;
+use crate::registers::{TWAMR, TWAR, TWBR, TWCR, TWDR, TWSR};
 
 const TWINT: u8 = 0x80;
 const TWEA: u8 = 0x40;
@@ -48,8 +41,6 @@ const READ_ADDRESS: [u8; 2] = [0x40, 0x48];
 const READ: [u8; 2] = [0x50, 0x58];
 const NOTHING: u8 = 0xF8;
 
-const SCL: Pin = Pin::at(3, 0);
-const SDA: Pin = Pin::at(3, 1);
 /// Bits of a byte with its acknowledgement.
 const BITS: u32 = 9;
 
@@ -126,6 +117,14 @@ impl Default for Twi {
 /// The level of a line, which has a pull-up.
 fn level(core: &Core, pin: Pin) -> bool {
     core.ports.level(pin) || !core.ports.is_driven_outside(pin) && !core.ports.is_output(pin)
+}
+
+fn clock(core: &Core) -> bool {
+    level(core, core.model.twi[0])
+}
+
+fn line(core: &Core) -> bool {
+    level(core, core.model.twi[1])
 }
 
 impl Twi {
@@ -220,7 +219,7 @@ impl Twi {
             self.control &= !TWSTO;
         }
         match self.action {
-            Some(Action::Start) if !(level(core, SCL) && level(core, SDA)) => {}
+            Some(Action::Start) if !(clock(core) && line(core)) => {}
             Some(Action::Start) => self.next = Some(cycle + self.half_period()),
             Some(_) => {
                 self.next = Some(cycle);
@@ -274,7 +273,7 @@ impl Twi {
                 Move::ClockUp => self.clock = true,
                 Move::ClockDown => {
                     self.clock = false;
-                    self.taken = self.taken << 1 | u16::from(level(core, SDA));
+                    self.taken = self.taken << 1 | u16::from(line(core));
                     last |= match action {
                         Action::Write(_) | Action::Read => self.moves == 2 * BITS,
                         _ => true,
@@ -288,7 +287,7 @@ impl Twi {
         if last || lost {
             self.end(core, action, lost, cycle);
         } else {
-            self.next = (!self.clock || level(core, SCL)).then(|| cycle + self.half_period());
+            self.next = (!self.clock || clock(core)).then(|| cycle + self.half_period());
         }
         self.reschedule(core);
     }
@@ -300,7 +299,7 @@ impl Twi {
             Action::Read => self.moves > 16,
             Action::Start | Action::RepeatedStart | Action::Stop => false,
         };
-        ours && self.moves.is_multiple_of(2) && self.line && !level(core, SDA)
+        ours && self.moves.is_multiple_of(2) && self.line && !line(core)
     }
 
     /// The action is through.
@@ -338,12 +337,12 @@ impl Twi {
 
     /// A line has changed: SCL is no longer held low, or the bus is free.
     pub(super) fn pin_changed(&mut self, core: &mut Core, pin: Pin, cycle: u64) {
-        if !matches!(pin, SCL | SDA) || self.next.is_some() || self.stopped.is_some() {
+        if !core.model.twi.contains(&pin) || self.next.is_some() || self.stopped.is_some() {
             return;
         }
         match self.action {
             Some(Action::Start) if self.moves == 0 => self.begin(core, cycle),
-            Some(_) if self.clock && level(core, SCL) => {
+            Some(_) if self.clock && clock(core) => {
                 self.next = Some(cycle + self.half_period());
             }
             _ => return,
@@ -354,7 +353,7 @@ impl Twi {
     /// Released lines are inputs, with the pull-up that the port selects; the others are low outputs.
     fn drive_pins(&self, core: &mut Core, cycle: u64) {
         let on = self.control & TWEN != 0;
-        for (pin, high) in [(SCL, self.clock), (SDA, self.line)] {
+        for (pin, high) in core.model.twi.into_iter().zip([self.clock, self.line]) {
             let force = match (on, high) {
                 (false, _) => Force::None,
                 (true, true) => Force::Input,
@@ -369,7 +368,7 @@ impl Twi {
         let running = self.next.filter(|_| self.stopped.is_none());
         core.schedule.set(Source::Twi, running);
         let requested = self.flag && self.control & TWIE != 0;
-        core.interrupts.set(vector::TWI, requested);
+        core.interrupts.set(core.model.numbers.twi, requested);
     }
 
     /// It has a clock from now on, or has none.

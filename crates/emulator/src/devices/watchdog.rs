@@ -4,7 +4,6 @@
 //! may be set at any time. After a reset by the watchdog WDRF keeps WDE set, with the shortest time, until a program clears WDRF.
 
 use super::Core;
-use super::interrupts::vector;
 use super::schedule::Source;
 
 const WDIF: u8 = 0x80;
@@ -99,7 +98,7 @@ impl Watchdog {
         let due = self.runs().then_some(due);
         core.schedule.set(Source::Watchdog, due);
         let requested = self.flag && self.control & WDIE != 0;
-        core.interrupts.set(vector::WATCHDOG, requested);
+        core.interrupts.set(core.model.numbers.watchdog, requested);
     }
 
     /// WDR.

@@ -6,7 +6,7 @@ use std::num::NonZeroUsize;
 /// r0 to r31, SREG, two bytes of SP, four of the program counter.
 const PACKET_BYTES: usize = 39;
 
-/// An AVR with a 22-bit program counter.
+/// An AVR; the debugger learns the width of its program counter from the target description.
 #[derive(Debug)]
 pub enum Avr {}
 
@@ -15,10 +15,6 @@ impl Arch for Avr {
     type Registers = AvrRegisters;
     type BreakpointKind = usize;
     type RegId = AvrRegister;
-
-    fn target_description_xml() -> Option<&'static str> {
-        Some(r#"<target version="1.0"><architecture>avr:6</architecture></target>"#)
-    }
 }
 
 /// All registers, as the `g` packet carries them.

@@ -9,8 +9,7 @@
 
 use super::Machine;
 use super::arch::{Avr, AvrRegisters};
-use crate::cpu::{FLASH_BYTES, Stopped};
-use crate::image::EEPROM_BYTES;
+use crate::cpu::Stopped;
 use crate::observe::Watchpoint;
 use crate::status::Status;
 use crate::verdict::Verdict;
@@ -28,18 +27,18 @@ use gdbstub::target::ext::breakpoints::{
     SwBreakpoint, SwBreakpointOps, WatchKind,
 };
 use gdbstub::target::ext::monitor_cmd::{ConsoleOutput, MonitorCmd, MonitorCmdOps, outputln};
+use gdbstub::target::ext::target_description_xml_override::{
+    TargetDescriptionXmlOverride, TargetDescriptionXmlOverrideOps,
+};
 use gdbstub::target::{Target, TargetError, TargetResult};
 use std::convert::Infallible;
 use std::marker::PhantomData;
 use std::net::TcpStream;
 use std::ops::Range;
 
-const FLASH: Range<u32> = 0..FLASH_BYTES as u32;
-const DATA: Range<u32> = 0x80_0000..0x80_2200;
-const EEPROM: Range<u32> = 0x81_0000..0x81_0000 + EEPROM_BYTES as u32;
-const SIGNATURE: Range<u32> = 0x84_0000..0x84_0003;
-/// Of the ATmega2560 (2549Q, section 29.3).
-const SIGNATURE_BYTES: [u8; 3] = [0x1E, 0x98, 0x01];
+const DATA: u32 = 0x80_0000;
+const EEPROM: u32 = 0x81_0000;
+const SIGNATURE: u32 = 0x84_0000;
 /// "Bad address", as GDB's protocol numbers it.
 const EFAULT: u8 = 14;
 /// Steps between two polls of the connection.
@@ -52,6 +51,15 @@ enum Motion {
     Step,
     /// Steps as long as the program counter [bytes] is in here.
     Within(Range<u32>),
+}
+
+/// A byte of one of the memories.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    Flash(usize),
+    Data(usize),
+    Eeprom(usize),
+    Signature(usize),
 }
 
 /// A machine in the hands of a debugger.
@@ -147,7 +155,7 @@ impl<M: Machine> Debugger<M> {
                     (true, false) => WatchKind::Read,
                     (false, _) => WatchKind::Write,
                 },
-                addr: DATA.start + u32::from(address),
+                addr: DATA + u32::from(address),
             }),
             Stopped::Ended(Verdict::StackOverflow { .. }) => {
                 Some(SingleThreadStopReason::Signal(Signal::SIGSEGV))
@@ -156,44 +164,45 @@ impl<M: Machine> Debugger<M> {
         }
     }
 
+    /// The memory at an address, and where in it.
+    fn place(&self, address: u32) -> Option<Place> {
+        let model = self.machine.chip().model();
+        let within = |start: u32, bytes: usize| {
+            let at = address.checked_sub(start)? as usize;
+            (at < bytes).then_some(at)
+        };
+        let flash = within(0, model.flash_bytes()).map(Place::Flash);
+        flash
+            .or_else(|| within(DATA, usize::from(model.ram_end) + 1).map(Place::Data))
+            .or_else(|| within(EEPROM, model.eeprom_bytes).map(Place::Eeprom))
+            .or_else(|| within(SIGNATURE, model.signature.len()).map(Place::Signature))
+    }
+
     fn read(&self, address: u32) -> Option<u8> {
         let chip = self.machine.chip();
-        if FLASH.contains(&address) {
-            chip.cpu().flash().get(address as usize).copied()
-        } else if DATA.contains(&address) {
-            Some(chip.read_data((address - DATA.start) as u16))
-        } else if EEPROM.contains(&address) {
-            let index = (address - EEPROM.start) as usize;
-            chip.devices().eeprom().get(index).copied()
-        } else if SIGNATURE.contains(&address) {
-            let index = (address - SIGNATURE.start) as usize;
-            SIGNATURE_BYTES.get(index).copied()
-        } else {
-            None
+        match self.place(address)? {
+            Place::Flash(at) => chip.cpu().flash().get(at).copied(),
+            Place::Data(at) => Some(chip.read_data(at as u16)),
+            Place::Eeprom(at) => chip.devices().eeprom().get(at).copied(),
+            Place::Signature(at) => chip.model().signature.get(at).copied(),
         }
     }
 
     /// Says whether there is something to write to.
     fn write(&mut self, address: u32, value: u8) -> bool {
+        let place = self.place(address);
         let chip = self.machine.chip_mut();
-        if DATA.contains(&address) {
-            chip.write_data((address - DATA.start) as u16, value);
-        } else if EEPROM.contains(&address) {
-            let index = (address - EEPROM.start) as usize;
-            chip.devices_mut().eeprom_mut()[index] = value;
-        } else if FLASH.contains(&address) {
-            let word = address / 2;
-            let at = 2 * word as usize;
-            let flash = chip.cpu().flash();
-            let [low, high] = [flash[at], flash[at + 1]];
-            let bytes = if address.is_multiple_of(2) {
-                [value, high]
-            } else {
-                [low, value]
-            };
-            chip.cpu_mut().write_flash(word, u16::from_le_bytes(bytes));
-        } else {
-            return false;
+        match place {
+            Some(Place::Data(at)) => chip.write_data(at as u16, value),
+            Some(Place::Eeprom(at)) => chip.devices_mut().eeprom_mut()[at] = value,
+            Some(Place::Flash(at)) => {
+                let flash = chip.cpu().flash();
+                let mut bytes = [flash[at & !1], flash[at | 1]];
+                bytes[at & 1] = value;
+                let word = (at / 2) as u32;
+                chip.cpu_mut().write_flash(word, u16::from_le_bytes(bytes));
+            }
+            Some(Place::Signature(_)) | None => return false,
         }
         true
     }
@@ -207,12 +216,40 @@ impl<M: Machine> Target for Debugger<M> {
         BaseOps::SingleThread(self)
     }
 
+    fn support_target_description_xml_override(
+        &mut self,
+    ) -> Option<TargetDescriptionXmlOverrideOps<'_, Self>> {
+        Some(self)
+    }
+
     fn support_breakpoints(&mut self) -> Option<BreakpointsOps<'_, Self>> {
         Some(self)
     }
 
     fn support_monitor_cmd(&mut self) -> Option<MonitorCmdOps<'_, Self>> {
         Some(self)
+    }
+}
+
+impl<M: Machine> TargetDescriptionXmlOverride for Debugger<M> {
+    fn target_description_xml(
+        &self,
+        annex: &[u8],
+        offset: u64,
+        length: usize,
+        buf: &mut [u8],
+    ) -> TargetResult<usize, Self> {
+        if annex != b"target.xml" {
+            return Err(TargetError::NonFatal);
+        }
+        let architecture = self.machine.chip().model().architecture;
+        let xml = format!(
+            r#"<target version="1.0"><architecture>avr:{architecture}</architecture></target>"#
+        );
+        let rest = xml.as_bytes().get(offset as usize..).unwrap_or_default();
+        let bytes = rest.len().min(length).min(buf.len());
+        buf[..bytes].copy_from_slice(&rest[..bytes]);
+        Ok(bytes)
     }
 }
 
@@ -311,7 +348,7 @@ impl<M: Machine> Breakpoints for Debugger<M> {
 
 impl<M: Machine> SwBreakpoint for Debugger<M> {
     fn add_sw_breakpoint(&mut self, address: u32, _: usize) -> TargetResult<bool, Self> {
-        if !FLASH.contains(&address) {
+        if !matches!(self.place(address), Some(Place::Flash(_))) {
             return Ok(false);
         }
         self.breakpoints.push(address / 2);
@@ -341,15 +378,22 @@ impl<M: Machine> HwBreakpoint for Debugger<M> {
     }
 }
 
-/// Data addresses that are watched; `None` if they are not in the data space.
-fn watchpoint(address: u32, length: u32, kind: WatchKind) -> Option<Watchpoint> {
-    let start = DATA.contains(&address).then(|| address - DATA.start)?;
-    let end = start.saturating_add(length).min(DATA.end - DATA.start);
-    Some(Watchpoint {
-        addresses: start as u16..end as u16,
-        reads: kind != WatchKind::Write,
-        writes: kind != WatchKind::Read,
-    })
+impl<M: Machine> Debugger<M> {
+    /// Data addresses that are watched; `None` if they are not in the data space.
+    fn watchpoint(&self, address: u32, length: u32, kind: WatchKind) -> Option<Watchpoint> {
+        let Place::Data(start) = self.place(address)? else {
+            return None;
+        };
+        let last = self.machine.chip().model().ram_end;
+        let end = start
+            .saturating_add(length as usize)
+            .min(usize::from(last) + 1);
+        Some(Watchpoint {
+            addresses: start as u16..end as u16,
+            reads: kind != WatchKind::Write,
+            writes: kind != WatchKind::Read,
+        })
+    }
 }
 
 impl<M: Machine> HwWatchpoint for Debugger<M> {
@@ -359,7 +403,7 @@ impl<M: Machine> HwWatchpoint for Debugger<M> {
         length: u32,
         kind: WatchKind,
     ) -> TargetResult<bool, Self> {
-        let Some(watchpoint) = watchpoint(address, length, kind) else {
+        let Some(watchpoint) = self.watchpoint(address, length, kind) else {
             return Ok(false);
         };
         self.watchpoints.push(watchpoint.clone());
@@ -373,7 +417,7 @@ impl<M: Machine> HwWatchpoint for Debugger<M> {
         length: u32,
         kind: WatchKind,
     ) -> TargetResult<bool, Self> {
-        let Some(watchpoint) = watchpoint(address, length, kind) else {
+        let Some(watchpoint) = self.watchpoint(address, length, kind) else {
             return Ok(false);
         };
         self.watchpoints.retain(|other| *other != watchpoint);

@@ -3,8 +3,8 @@
 //! They put memories side by side in one space: flash from 0, data at 0x800000, EEPROM at 0x810000, fuses, lock bits and
 //! signature beyond. Loading goes by the program headers' physical addresses: where initial data lie in flash.
 
-use super::{EEPROM_BYTES, Image, ImageError, Symbol};
-use crate::cpu::{FLASH_BYTES, RAMEND, SRAM_START};
+use super::{Image, ImageError, Symbol, largest, start};
+use crate::model::MODELS;
 use object::read::elf::{FileHeader, ProgramHeader};
 use object::{Endianness, Object, ObjectSection, ObjectSymbol, SymbolKind, elf};
 use std::cmp::Reverse;
@@ -15,12 +15,8 @@ const DATA_SPACE: u64 = 0x80_0000;
 const EEPROM_SPACE: u64 = 0x81_0000;
 /// What lies beyond is no memory to load: fuses, lock bits, signature.
 const FUSE_SPACE: u64 = 0x82_0000;
-/// Architecture number of chips with a 22-bit program counter in the ELF header's flags.
-pub(super) const AVR6: u32 = 6;
-/// Bits of the flags that hold it.
+/// Bits of the header's flags that hold the number of the architecture.
 const ARCHITECTURE: u32 = 0x7F;
-/// The chip's name in the toolchain's notes.
-const DEVICE: &str = "atmega2560";
 
 /// The bytes are those of an ELF file.
 pub(super) fn is_elf(bytes: &[u8]) -> bool {
@@ -44,17 +40,21 @@ pub(super) fn read(bytes: &[u8]) -> Result<Image, ImageError> {
         return Err(ImageError::Processor(header.e_machine(endian)));
     }
     let architecture = header.e_flags(endian) & ARCHITECTURE;
-    if architecture != AVR6 {
+    let mut models = MODELS.into_iter();
+    let Some(model) = models.find(|model| model.architecture == architecture) else {
         return Err(ImageError::Chip(architecture));
-    }
+    };
     if header.e_type(endian) == elf::ET_REL {
         return Err(ImageError::Object);
     }
     let file = object::File::parse(bytes).map_err(broken)?;
-    if let Some(name) = device(&file).filter(|name| name != DEVICE) {
+    if let Some(name) = device(&file).filter(|name| name != model.name) {
         return Err(ImageError::Device(name));
     }
-    let mut image = Image::default();
+    let mut image = Image {
+        model: Some(model),
+        ..Image::default()
+    };
     let mut filled = Vec::new();
     for segment in header.program_headers(endian, bytes).map_err(broken)? {
         if segment.p_type(endian) != elf::PT_LOAD || segment.p_filesz(endian) == 0 {
@@ -71,16 +71,18 @@ pub(super) fn read(bytes: &[u8]) -> Result<Image, ImageError> {
         }
     }
     read_symbols(&mut image, &file)?;
+    start::model(&image)?;
     Ok(image)
 }
 
 fn put_eeprom(image: &mut Image, at: u64, data: &[u8]) -> Result<(), ImageError> {
     let end = at + data.len() as u64;
-    if end > EEPROM_BYTES as u64 {
+    let size = largest(|model| model.eeprom_bytes);
+    if end > size as u64 {
         return Err(ImageError::TooLarge {
             memory: "EEPROM",
             end,
-            size: EEPROM_BYTES,
+            size,
         });
     }
     let (start, end) = (at as usize, end as usize);
@@ -107,7 +109,7 @@ fn read_symbols(image: &mut Image, file: &object::File) -> Result<(), ImageError
         let (address, size) = (symbol.address(), symbol.size());
         let in_data = u16::try_from(address.wrapping_sub(DATA_SPACE)).ok();
         if matches!(name, "_end" | "__heap_start") {
-            image.data_end = in_data.filter(|end| *end >= SRAM_START);
+            image.data_end = in_data.filter(|end| *end >= image.model().sram_start);
         }
         let code = symbol.kind() == SymbolKind::Text
             || symbol.kind() == SymbolKind::Label && name.starts_with("__vector");
@@ -118,20 +120,15 @@ fn read_symbols(image: &mut Image, file: &object::File) -> Result<(), ImageError
                 size: size as u32,
                 name: demangled(name),
             }),
-            _ if code && address < FLASH_BYTES as u64 => image.functions.push(Symbol {
-                address: (address / 2) as u32,
-                size: size.div_ceil(2) as u32,
-                name: demangled(name),
-            }),
+            _ if code && address < image.model().flash_bytes() as u64 => {
+                image.functions.push(Symbol {
+                    address: (address / 2) as u32,
+                    size: size.div_ceil(2) as u32,
+                    name: demangled(name),
+                })
+            }
             _ => {}
         }
-    }
-    if let Some(end) = image.data_end.filter(|end| *end > RAMEND) {
-        return Err(ImageError::TooLarge {
-            memory: "SRAM",
-            end: end.into(),
-            size: usize::from(RAMEND) + 1,
-        });
     }
     // Of several names for one place the last one counts: one with a size, which is a function's own.
     let by_place = |symbol: &Symbol| {

@@ -1,10 +1,10 @@
-//! Why a file is no program for this chip, in one line each: what is wrong and what to do.
+//! Why a file is no program for a chip, in one line each: what is wrong and what to do.
 
-use super::elf::AVR6;
+use crate::model::{MODELS, Model};
 use object::elf;
 use std::fmt;
 
-/// Why a file is no program for this chip.
+/// Why a file is no program for a chip.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ImageError {
     /// Neither ELF nor Intel HEX.
@@ -13,10 +13,17 @@ pub enum ImageError {
     Elf(String),
     /// An ELF file for another processor.
     Processor(u16),
-    /// An AVR program, but for a chip of another architecture.
+    /// An AVR program, but for an architecture that no model has.
     Chip(u32),
-    /// An AVR program for this architecture, but for another chip, by its name.
+    /// An AVR program for a chip that there is no model of.
     Device(String),
+    /// A program for another chip than the board's.
+    Board {
+        /// Its chip.
+        own: &'static Model,
+        /// The board's.
+        model: &'static Model,
+    },
     /// An object file: not linked.
     Object,
     /// A line of a HEX file is wrong.
@@ -55,16 +62,25 @@ impl fmt::Display for ImageError {
             }
             ImageError::Processor(machine) => write!(
                 out,
-                "an ELF file for another processor (machine {machine}, an AVR is {}); build for the ATmega2560",
-                elf::EM_AVR
+                "an ELF file for another processor (machine {machine}, an AVR is {}); {}",
+                elf::EM_AVR,
+                advice()
             ),
             ImageError::Chip(architecture) => write!(
                 out,
-                "an AVR program for another chip (architecture avr{architecture}, the ATmega2560 is avr{AVR6}); build with -mmcu=atmega2560"
+                "an AVR program for another chip (architecture avr{architecture}); {}",
+                advice()
             ),
-            ImageError::Device(name) => write!(
+            ImageError::Device(name) => {
+                write!(out, "a program for another chip ({name}); {}", advice())
+            }
+            ImageError::Board { own, model } => write!(
                 out,
-                "a program for another chip ({name}); build with -mmcu=atmega2560"
+                "a program for the {} of an {}, and this robot has an {}; {}",
+                own.name,
+                own.boards,
+                model.boards,
+                model.advice()
             ),
             ImageError::Object => write!(
                 out,
@@ -88,6 +104,11 @@ impl fmt::Display for ImageError {
             ImageError::Empty => write!(out, "there is no program in it"),
         }
     }
+}
+
+/// How to compile for one of the models.
+fn advice() -> String {
+    MODELS.map(Model::advice).join(", or ")
 }
 
 impl std::error::Error for ImageError {}

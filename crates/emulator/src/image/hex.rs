@@ -1,6 +1,6 @@
 //! Intel HEX: lines of bytes with their addresses and checksums.
 
-use super::{Image, ImageError, foreign};
+use super::{Image, ImageError, start};
 use ihex::Record;
 
 /// The text, if the first mark in it is that of a HEX record.
@@ -38,6 +38,6 @@ pub(super) fn read(text: &str) -> Result<Image, ImageError> {
     if !ended {
         return Err(ImageError::Truncated);
     }
-    foreign::refuse(&image)?;
+    image.model = start::model(&image)?;
     Ok(image)
 }

@@ -8,7 +8,6 @@ pub mod profile;
 mod report;
 pub mod touch;
 pub mod trace;
-pub mod vectors;
 pub mod waveform;
 
 use crate::cpu::{Cpu, Pace, Stopped, Turn};
@@ -149,7 +148,7 @@ fn turn(
         Turn::Breakpoint => return Some(Stopped::Breakpoint),
         Turn::Noticed => return Some(Stopped::Output),
         Turn::Slept | Turn::Held => None,
-        Turn::Entered(_) => Some(Touch::pushed_address(before.stack_pointer)),
+        Turn::Entered(_) => Some(Touch::pushed_address(cpu.model(), before.stack_pointer)),
         Turn::Ran => touched,
     };
     if let Some(trace) = &mut observers.trace {

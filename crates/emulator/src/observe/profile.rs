@@ -7,10 +7,11 @@
 //! (`longjmp`, a scheduler) loses no more than the chain it left. A jump to another function takes the place of the one that
 //! jumped. Interrupts are separate roots, since they interrupt whatever is running; so are sleep and `main`.
 
-use super::{Moment, vectors};
+use super::Moment;
 use crate::cpu::{Cpu, Turn};
 use crate::decode::{Code, FLASH_WORDS};
 use crate::image::Image;
+use crate::model::Model;
 use std::collections::HashMap;
 
 /// Deepest chain of calls that is followed.
@@ -23,6 +24,7 @@ const ROOT: usize = 0;
 /// Cycles by function and interrupt.
 #[derive(Clone, Debug)]
 pub struct Profile {
+    pub(super) model: &'static Model,
     names: Vec<String>,
     calls: Vec<u64>,
     /// Number of the function at each word.
@@ -92,6 +94,7 @@ impl Profile {
     /// A profile of this image; names come from its symbols, else functions are called after their addresses.
     pub fn new(image: &Image) -> Profile {
         let mut profile = Profile {
+            model: image.model(),
             names: vec!["(unknown)".to_owned()],
             calls: vec![0],
             function_at: vec![UNKNOWN; FLASH_WORDS],
@@ -125,7 +128,7 @@ impl Profile {
                 profile.main = Some(number);
             }
             // The table of vectors belongs to the interrupts.
-            let start = (function.address as usize).max(2 * vectors::COUNT);
+            let start = (function.address as usize).max(2 * profile.model.vectors.len());
             if let Some(words) = profile.function_at.get_mut(start..end) {
                 words.fill(number);
             }
@@ -228,7 +231,7 @@ impl Profile {
         interrupt.count += 1;
         interrupt.worst_latency = interrupt.worst_latency.max(latency);
         self.push(before.stack_pointer, Some((vector, before.cycle)));
-        let name = format!("interrupt {}", vectors::name(vector));
+        let name = format!("interrupt {}", self.model.vector_name(vector));
         let known = self.nodes[ROOT].children.iter().copied().find(|child| {
             let node = &self.nodes[*child];
             node.interrupt && self.names[usize::from(node.function)] == name

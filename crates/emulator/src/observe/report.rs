@@ -1,9 +1,8 @@
 //! A profile as tables for people.
 
 use super::profile::{FunctionUse, InterruptUse, Profile};
-use super::vectors;
 
-/// Cycles in a second and in a microsecond at the Mega's 16 MHz.
+/// Cycles in a second and in a microsecond at the boards' 16 MHz.
 const HERTZ: f64 = 16e6;
 const CYCLES_PER_US: f64 = 16.0;
 /// Most functions that are listed.
@@ -58,7 +57,7 @@ impl Profile {
                     worst_latency,
                 } = *interrupt;
                 [
-                    vectors::name(vector).to_owned(),
+                    self.model.vector_name(vector).to_owned(),
                     count.to_string(),
                     percent(total),
                     time(longest),

@@ -2,14 +2,13 @@
 
 use crate::cpu::Cpu;
 use crate::decode::{Code, Op};
+use crate::model::Model;
 
 const X: usize = 26;
 const Y: usize = 28;
 const Z: usize = 30;
 /// Where IN, OUT and the instructions on bits count from.
 const IO_START: u16 = 0x20;
-/// Bytes of a return address.
-const ADDRESS_BYTES: u16 = 3;
 
 /// An access to the data space by an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,8 +57,8 @@ impl Touch {
     }
 
     /// A call or an interrupt, with the stack pointer before it.
-    pub(crate) const fn pushed_address(stack_pointer: u16) -> Touch {
-        Touch::pushed(stack_pointer, ADDRESS_BYTES)
+    pub(crate) const fn pushed_address(model: &Model, stack_pointer: u16) -> Touch {
+        Touch::pushed(stack_pointer, model.address_bytes())
     }
 }
 
@@ -90,10 +89,10 @@ pub fn touch(cpu: &Cpu, op: Op) -> Option<Touch> {
         Code::Push => Touch::pushed(stack_pointer, 1),
         Code::Pop => Touch::read(stack_pointer.wrapping_add(1)),
         Code::Call | Code::Rcall | Code::Icall | Code::Eicall => {
-            Touch::pushed_address(stack_pointer)
+            Touch::pushed_address(cpu.model(), stack_pointer)
         }
         Code::Ret | Code::Reti => Touch {
-            bytes: ADDRESS_BYTES,
+            bytes: cpu.model().address_bytes(),
             ..Touch::read(stack_pointer.wrapping_add(1))
         },
         Code::In => Touch::read(io(op.b)),

@@ -1,7 +1,6 @@
 //! A trace: every instruction of a window of cycles with what it changed.
 
 use super::Moment;
-use super::vectors;
 use crate::cpu::{Cpu, Turn};
 use crate::decode::Op;
 use crate::disassemble;
@@ -50,7 +49,10 @@ impl Traced {
         );
         match self.what {
             What::Instruction(op) => line += &disassemble::text(self.program_counter, op),
-            What::Interrupt(vector) => line += &format!("interrupt {}", vectors::name(vector)),
+            What::Interrupt(vector) => {
+                let name = image.model().vector_name(vector);
+                line += &format!("interrupt {name}");
+            }
             What::Sleep => line += "asleep",
         }
         let mut changes = String::new();

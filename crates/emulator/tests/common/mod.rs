@@ -6,6 +6,7 @@ use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_emulator::devices::{Event, Output};
 use rumbo_emulator::image::Image;
 use rumbo_emulator::io::{Access, Io};
+use rumbo_emulator::model::{ATMEGA2560, Model};
 
 pub(crate) const NOP: u16 = 0x0000;
 pub(crate) const SEI: u16 = 0x9478;
@@ -32,8 +33,13 @@ pub(crate) fn sts(address: u16, register: u8) -> [u16; 2] {
 
 /// A chip with these words in its flash.
 pub(crate) fn chip_of(words: &[u16]) -> Chip {
+    chip_on(&ATMEGA2560, words)
+}
+
+/// The same of another model.
+pub(crate) fn chip_on(model: &'static Model, words: &[u16]) -> Chip {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    Chip::new(&Image::of_flash(&bytes))
+    Chip::new(&Image::of_flash(&bytes).on(model).unwrap())
 }
 
 pub(crate) fn pin(letter: char, bit: u8) -> Pin {
@@ -55,6 +61,11 @@ pub(crate) fn edges(chip: &mut Chip, wanted: Pin) -> Vec<(u64, bool)> {
 
 /// Writes to registers, in this order, then waits for ever: the chip, and the cycle in which the last write acts.
 pub(crate) fn set_up(writes: &[(u16, u8)]) -> (Chip, u64) {
+    set_up_on(&ATMEGA2560, writes)
+}
+
+/// The same of another model.
+pub(crate) fn set_up_on(model: &'static Model, writes: &[(u16, u8)]) -> (Chip, u64) {
     let mut words = Vec::new();
     for (address, value) in writes {
         words.push(ldi(16, *value));
@@ -62,7 +73,7 @@ pub(crate) fn set_up(writes: &[(u16, u8)]) -> (Chip, u64) {
     }
     // RJMP to itself.
     words.push(0xCFFF);
-    (chip_of(&words), 3 * writes.len() as u64 - 1)
+    (chip_on(model, &words), 3 * writes.len() as u64 - 1)
 }
 
 /// A 16-bit register, read as a program would.

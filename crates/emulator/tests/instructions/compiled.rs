@@ -5,6 +5,7 @@ use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::Event;
 use rumbo_emulator::image::Image;
+use rumbo_emulator::model::{MODELS, Model};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -12,17 +13,12 @@ use std::process::Command;
 const REPORTS: usize = 6 * 3;
 
 /// Builds `compiled.c`; `None` where the compiler is not installed.
-fn build(level: &str) -> Option<PathBuf> {
+fn build(model: &Model, level: &str) -> Option<PathBuf> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs/compiled.c");
-    let image = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("compiled{level}.elf"));
+    let image = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}{level}.elf", model.name));
     let mut compiler = Command::new("avr-gcc");
-    compiler.args([
-        "-mmcu=atmega2560",
-        level,
-        "-std=gnu11",
-        "-Wno-array-bounds",
-        "-o",
-    ]);
+    let chip = format!("-mmcu={}", model.name);
+    compiler.args([&chip, level, "-std=gnu11", "-Wno-array-bounds", "-o"]);
     let Ok(status) = compiler.arg(&image).arg(source).arg("-lm").status() else {
         assert!(
             std::env::var_os("CI").is_none(),
@@ -31,13 +27,14 @@ fn build(level: &str) -> Option<PathBuf> {
         println!("skipped: avr-gcc is not installed");
         return None;
     };
-    assert!(status.success(), "{level}");
+    assert!(status.success(), "{model:?} {level}");
     Some(image)
 }
 
 /// What our chip sends over USART0, a line for each part.
-fn ours(path: &Path) -> Vec<String> {
+fn ours(model: &Model, path: &Path) -> Vec<String> {
     let image = Image::parse(&std::fs::read(path).unwrap()).unwrap();
+    assert_eq!(image.model(), model);
     let mut chip = Chip::new(&image);
     assert_eq!(chip.run_until(100_000_000), Stopped::Reached);
     assert!(chip.cpu().is_sleeping());
@@ -54,13 +51,17 @@ fn ours(path: &Path) -> Vec<String> {
 
 #[test]
 fn compiled_programs_leave_the_same_registers_flags_memory_and_cycles() {
-    for level in ["-O0", "-O1", "-O2", "-O3", "-Os"] {
-        let Some(path) = build(level) else { return };
-        let ours = ours(&path);
-        assert_eq!(ours.len(), REPORTS);
-        let Some(theirs) = simavr::reports(&path) else {
-            return;
-        };
-        assert_eq!(ours, theirs, "{level}");
+    for model in MODELS {
+        for level in ["-O0", "-O1", "-O2", "-O3", "-Os"] {
+            let Some(path) = build(model, level) else {
+                return;
+            };
+            let ours = ours(model, &path);
+            assert_eq!(ours.len(), REPORTS);
+            let Some(theirs) = simavr::reports(model, &path) else {
+                return;
+            };
+            assert_eq!(ours, theirs, "{model:?} {level}");
+        }
     }
 }

@@ -10,18 +10,19 @@ mod simavr;
 use bench::Bench;
 use program::Program;
 use rumbo_emulator::cpu::{Cpu, Stopped};
+use rumbo_emulator::model::{ATMEGA328P, ATMEGA2560, Model};
 use std::path::Path;
 
-/// Programs in an image: each takes about 350 words.
-const PROGRAMS: u16 = 320;
+/// Words of flash for each program, which takes about 350.
+const WORDS: u32 = 400;
 
 fn bytes(words: &[u16]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
 /// What our CPU reports, a line for each program.
-fn ours(program: &Program) -> Vec<String> {
-    let mut cpu = Cpu::new(&bytes(&program.words));
+fn ours(model: &'static Model, program: &Program) -> Vec<String> {
+    let mut cpu = Cpu::new(model, &bytes(&program.words));
     let mut bench = Bench::default();
     // The end: SLEEP with interrupts off comes round for ever.
     let stopped = cpu.run(&mut bench, 200_000_000);
@@ -32,11 +33,11 @@ fn ours(program: &Program) -> Vec<String> {
 }
 
 /// What simavr reports; `None` where it is not installed.
-fn simavrs(program: &Program, name: &str) -> Option<Vec<String>> {
+fn simavrs(model: &Model, program: &Program, name: &str) -> Option<Vec<String>> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let path = folder.join(format!("{name}.hex"));
     std::fs::write(&path, hex(&bytes(&program.words))).unwrap();
-    simavr::reports(&path)
+    simavr::reports(model, &path)
 }
 
 fn hex(bytes: &[u8]) -> String {
@@ -58,16 +59,20 @@ fn hex(bytes: &[u8]) -> String {
 
 #[test]
 fn random_programs_leave_the_same_registers_flags_memory_and_cycles() {
-    for seed in 0..32 {
-        let program = Program::image(seed, PROGRAMS);
-        let ours = ours(&program);
-        assert_eq!(ours.len(), usize::from(PROGRAMS));
-        let Some(theirs) = simavrs(&program, &format!("random{seed}")) else {
-            return;
-        };
-        assert_eq!(theirs.len(), ours.len(), "seed {seed}");
-        for (number, (ours, theirs)) in ours.iter().zip(&theirs).enumerate() {
-            assert_eq!(ours, theirs, "seed {seed}, program {number}");
+    for (model, seeds) in [(&ATMEGA2560, 0..32), (&ATMEGA328P, 100..132)] {
+        for seed in seeds {
+            let count = (model.flash_words / WORDS) as u16;
+            let program = Program::image(model, seed, count);
+            assert!(program.words.len() < model.flash_words as usize);
+            let ours = ours(model, &program);
+            assert_eq!(ours.len(), usize::from(count));
+            let Some(theirs) = simavrs(model, &program, &format!("random{seed}")) else {
+                return;
+            };
+            assert_eq!(theirs.len(), ours.len(), "seed {seed}");
+            for (number, (ours, theirs)) in ours.iter().zip(&theirs).enumerate() {
+                assert_eq!(ours, theirs, "{model:?}, seed {seed}, program {number}");
+            }
         }
     }
 }

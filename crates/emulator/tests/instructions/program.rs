@@ -2,15 +2,39 @@
 
 use crate::assembler::*;
 use crate::bench::{TCNT1H, TCNT1L, UCSR0A, UDR0};
+use rumbo_emulator::model::Model;
 
-/// Where the final registers, status, stack pointer and timer are put before they are reported.
-const REPORT: u16 = 0x2180;
 /// 32 registers, SREG, SPL, SPH, TCNT1L, TCNT1H.
 const REPORT_BYTES: u8 = 37;
-/// Programs store between these.
-const DATA: std::ops::Range<u16> = 0x300..0xA00;
-/// Their stack starts here: they may pop more than they pushed.
-const STACK: u16 = 0x2100;
+/// Programs store from the second page of SRAM on, in this many bytes.
+const DATA_BYTES: u16 = 0x400;
+
+/// Where a program has what, on one model.
+#[derive(Clone, Copy)]
+struct Layout {
+    model: &'static Model,
+    /// Final registers, status, stack pointer and timer are put here before they are reported.
+    report: u16,
+    data: u16,
+    /// The stack starts here: programs may pop more than they pushed.
+    stack: u16,
+}
+
+impl Layout {
+    fn new(model: &'static Model) -> Layout {
+        Layout {
+            model,
+            report: model.ram_end - 0x7F,
+            data: model.sram_start + 0x100,
+            stack: model.ram_end - 0xFF,
+        }
+    }
+
+    fn address(&self, random: &mut Random) -> u16 {
+        self.data + random.below(DATA_BYTES)
+    }
+}
+
 /// GPIOR0, a register without side effects in reach of SBI.
 const GPIOR0: u8 = 0x1E;
 const SREG: u8 = 0x3F;
@@ -39,10 +63,6 @@ impl Random {
         self.below(256) as u8
     }
 
-    fn data(&mut self) -> u16 {
-        DATA.start + self.below(DATA.end - DATA.start)
-    }
-
     fn pick<T: Copy>(&mut self, from: &[T]) -> T {
         from[usize::from(self.below(from.len() as u16))]
     }
@@ -64,22 +84,23 @@ impl Program {
     }
 
     /// An image of `count` programs, which reports each on a line and then sleeps for ever.
-    pub(crate) fn image(seed: u64, count: u16) -> Program {
+    pub(crate) fn image(model: &'static Model, seed: u64, count: u16) -> Program {
+        let layout = Layout::new(model);
         let mut program = Program::default();
         // A jump over the routines, which are called from everywhere.
         program.put(jump(0x940C, 0));
         let report = program.here();
-        program.write_report();
+        program.write_report(layout);
         let routines: Vec<u32> = {
             let mut random = Random(seed ^ 0xABCD);
             (0..8).map(|_| program.write_routine(&mut random)).collect()
         };
         let start = program.here();
         program.words[1] = start as u16;
-        program.write_set_up();
+        program.write_set_up(layout);
         for number in 0..count {
             let mut random = Random(seed.wrapping_mul(1_000_003).wrapping_add(u64::from(number)));
-            program.write_one(&mut random, report, &routines);
+            program.write_one(layout, &mut random, report, &routines);
         }
         // CLI, SLEEP: the end.
         program.put([0x94F8, 0x9588, relative(0xC000, -1)]);
@@ -87,7 +108,7 @@ impl Program {
     }
 
     /// USART0 as fast as it goes, the timer at the CPU's clock, data cleared, sleeping enabled.
-    fn write_set_up(&mut self) {
+    fn write_set_up(&mut self, layout: Layout) {
         self.put([ldi(16, 2)]);
         self.put(sts(UCSR0A, 16));
         self.put([ldi(16, 0)]);
@@ -98,11 +119,12 @@ impl Program {
         self.put(sts(0xC1, 16));
         self.put([ldi(16, 1)]);
         self.put(sts(0x81, 16));
-        // Y from 0x200 to 0x2200: clear.
-        self.put([ldi(28, 0), ldi(29, 2), ldi(16, 0)]);
+        // Y over the SRAM: clear.
+        let [start, end] = [layout.model.sram_start, layout.model.ram_end + 1];
+        self.put([ldi(28, 0), ldi(29, (start >> 8) as u8), ldi(16, 0)]);
         self.put([
             one(0x9209, 16),
-            immediate(0x3000, 29, 0x22),
+            immediate(0x3000, 29, (end >> 8) as u8),
             branch(0xF400, 1, -3),
         ]);
         // Sleep mode control: enabled.
@@ -110,7 +132,7 @@ impl Program {
     }
 
     /// Reports what lies at REPORT and a hash of the data, in hexadecimal, on a line.
-    fn write_report(&mut self) {
+    fn write_report(&mut self, layout: Layout) {
         let send_nibbles = |program: &mut Program, register: u8| {
             for swap in [true, false] {
                 program.put([mov(20, register)]);
@@ -127,8 +149,8 @@ impl Program {
                 program.put_byte();
             }
         };
-        // The hash first: r24 and r25 over DATA, rotated and summed.
-        let [low, high] = DATA.start.to_le_bytes();
+        // The hash first: r24 and r25 over the data, rotated and summed.
+        let [low, high] = layout.data.to_le_bytes();
         self.put([ldi(26, low), ldi(27, high), ldi(24, 0), ldi(25, 0)]);
         let again = self.here();
         self.put([
@@ -142,12 +164,12 @@ impl Program {
             two(0x2400, 24, 18),
             two(0x0C00, 25, 24),
         ]);
-        let end = (DATA.end >> 8) as u8;
+        let end = ((layout.data + DATA_BYTES) >> 8) as u8;
         self.put([immediate(0x3000, 27, end)]);
         let back = again as i16 - (self.here() as i16 + 1);
         self.put([branch(0xF400, 1, back)]);
         // Then the report's bytes.
-        let [low, high] = REPORT.to_le_bytes();
+        let [low, high] = layout.report.to_le_bytes();
         self.put([ldi(26, low), ldi(27, high), ldi(23, REPORT_BYTES)]);
         let again = self.here();
         self.put([one(0x900D, 22)]);
@@ -182,9 +204,13 @@ impl Program {
         start
     }
 
-    fn write_one(&mut self, random: &mut Random, report: u32, routines: &[u32]) {
-        for (register, value) in [(SPH, STACK >> 8), (SPL, STACK & 0xFF), (EIND, 0)] {
-            self.put([ldi(16, value as u8), output(register, 16)]);
+    fn write_one(&mut self, layout: Layout, random: &mut Random, report: u32, routines: &[u32]) {
+        let [low, high] = layout.stack.to_le_bytes();
+        for (register, value) in [(SPH, high), (SPL, low)] {
+            self.put([ldi(16, value), output(register, 16)]);
+        }
+        if layout.model.is_far() {
+            self.put([ldi(16, 0), output(EIND, 16)]);
         }
         for register in 0..16 {
             self.put([ldi(16, random.byte()), mov(register, 16)]);
@@ -193,7 +219,7 @@ impl Program {
             self.put([ldi(register, random.byte())]);
         }
         for pointer in [26, 28, 30] {
-            self.put(set_pointer(pointer, random.data()));
+            self.put(set_pointer(pointer, layout.address(random)));
         }
         // SREG without I; then the timer starts at 0.
         let flags = random.byte() & 0x7F;
@@ -204,22 +230,22 @@ impl Program {
 
         let mut items = Vec::new();
         for _ in 0..60 {
-            items.push(item(random, routines));
+            items.push(item(layout, random, routines));
         }
         self.write_items(&items);
 
         for register in 0..32 {
-            self.put(sts(REPORT + u16::from(register), register));
+            self.put(sts(layout.report + u16::from(register), register));
         }
         self.put([input(16, SREG)]);
-        self.put(sts(REPORT + 32, 16));
+        self.put(sts(layout.report + 32, 16));
         for (index, address) in [(33, SPL), (34, SPH)] {
             self.put([input(16, address)]);
-            self.put(sts(REPORT + index, 16));
+            self.put(sts(layout.report + index, 16));
         }
         for (index, address) in [(35, TCNT1L), (36, TCNT1H)] {
             self.put(lds(16, address));
-            self.put(sts(REPORT + index, 16));
+            self.put(sts(layout.report + index, 16));
         }
         self.put(jump(CALL, report));
     }
@@ -323,7 +349,7 @@ fn arithmetic(random: &mut Random) -> Vec<u16> {
     }]
 }
 
-fn memory(random: &mut Random) -> Vec<u16> {
+fn memory(layout: Layout, random: &mut Random) -> Vec<u16> {
     let pointers = [26u8, 28, 30];
     match random.below(5) {
         // LD and ST with X, X+, -X, Y+, -Y, Z+, -Z
@@ -340,7 +366,7 @@ fn memory(random: &mut Random) -> Vec<u16> {
             vec![one(base | bits, free(random))]
         }
         3 => {
-            let address = random.data();
+            let address = layout.address(random);
             let register = free(random);
             if random.below(2) == 0 {
                 lds(register, address).into()
@@ -348,12 +374,25 @@ fn memory(random: &mut Random) -> Vec<u16> {
                 sts(address, any(random)).into()
             }
         }
-        _ => set_pointer(random.pick(&pointers), random.data()).into(),
+        _ => set_pointer(random.pick(&pointers), layout.address(random)).into(),
     }
 }
 
-fn program_memory(random: &mut Random) -> Vec<u16> {
+fn program_memory(layout: Layout, random: &mut Random) -> Vec<u16> {
     let address = random.below(0x4000);
+    if !layout.model.is_far() {
+        let mut words = vec![0x0000];
+        words.extend(set_pointer(30, address));
+        // LPM Z, LPM Z+; and that into r0
+        let mode = random.pick(&[0x9004, 0x9005]);
+        words.push(match random.below(3) {
+            0 => 0x95C8,
+            _ => one(mode, free(random)),
+        });
+        words.extend([mov(22, 30), mov(23, 31)]);
+        words.extend(set_pointer(30, layout.address(random)));
+        return words;
+    }
     let high = random.below(4) as u8;
     let mut words = vec![0x0000, ldi(20, high), output(RAMPZ, 20)];
     words.extend(set_pointer(30, address));
@@ -366,16 +405,16 @@ fn program_memory(random: &mut Random) -> Vec<u16> {
     });
     // What is left in RAMPZ and Z.
     words.extend([input(21, RAMPZ), mov(22, 30), mov(23, 31)]);
-    words.extend(set_pointer(30, random.data()));
+    words.extend(set_pointer(30, layout.address(random)));
     words
 }
 
-fn item(random: &mut Random, routines: &[u32]) -> Item {
+fn item(layout: Layout, random: &mut Random, routines: &[u32]) -> Item {
     let flag = random.below(8) as u8;
     let over = random.below(4) as u8;
     match random.below(24) {
         0..=8 => Item::Words(arithmetic(random)),
-        9..=12 => Item::Words(memory(random)),
+        9..=12 => Item::Words(memory(layout, random)),
         13 => Item::Branch(random.pick(&[0xF000, 0xF400]), flag, over),
         14 => Item::Jump(random.pick(&[0xC000, 0xD000]), over),
         // CPSE, SBRC, SBRS, over whatever follows
@@ -409,19 +448,20 @@ fn item(random: &mut Random, routines: &[u32]) -> Item {
             1 => one(0xF800 | u16::from(flag), free(random)),
             _ => random.pick(&[0x9408, 0x9488]) | random.below(7) << 4,
         }]),
-        21 => Item::Words(program_memory(random)),
+        21 => Item::Words(program_memory(layout, random)),
         // CALL, ICALL, EICALL
         22 => {
             let routine = random.pick(routines);
             // A skip before may take the first word, which must not be half of the pointer.
             let mut words = vec![0x0000];
             words.extend(set_pointer(30, routine as u16));
-            match random.below(3) {
+            let kinds = if layout.model.is_far() { 3 } else { 2 };
+            match random.below(kinds) {
                 0 => words = jump(CALL, routine).into(),
                 1 => words.push(0x9509),
                 _ => words.push(0x9519),
             }
-            words.extend(set_pointer(30, random.data()));
+            words.extend(set_pointer(30, layout.address(random)));
             Item::Words(words)
         }
         // NOP, WDR

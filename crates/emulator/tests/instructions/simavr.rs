@@ -1,5 +1,6 @@
 //! simavr as a separate program: what an image reports there.
 
+use rumbo_emulator::model::Model;
 use std::path::Path;
 use std::process::Command;
 
@@ -7,9 +8,9 @@ use std::process::Command;
 const DIGITS: usize = 2 * 39;
 
 /// The reports that a program sends over USART0, a line each; `None` where simavr is not installed.
-pub(crate) fn reports(image: &Path) -> Option<Vec<String>> {
+pub(crate) fn reports(model: &Model, image: &Path) -> Option<Vec<String>> {
     let output = Command::new("simavr")
-        .args(["-m", "atmega2560", "-f", "16000000"])
+        .args(["-m", model.name, "-f", "16000000"])
         .arg(image)
         .output();
     let Ok(output) = output else {

@@ -46,7 +46,7 @@ static void send_hex(uint8_t byte)
 static void report(void)
 {
     uint16_t hash = 0;
-    for (const uint8_t *byte = (const uint8_t *)0x200; byte < (const uint8_t *)0x2100; byte++)
+    for (const uint8_t *byte = (const uint8_t *)RAMSTART; byte < (const uint8_t *)(RAMEND - 0xFF); byte++)
         hash = (hash << 1 | hash >> 15) ^ *byte;
     for (uint8_t i = 0; i < sizeof seen; i++)
         send_hex(seen[i]);

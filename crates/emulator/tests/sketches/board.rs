@@ -1,7 +1,7 @@
 //! A Mega with a sketch, and what its pins did.
 
 use rumbo_emulator::chip::Chip;
-use rumbo_emulator::cpu::{SRAM_START, Stopped};
+use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_emulator::devices::{Cause, Event, Input};
 use rumbo_emulator::image::Image;
@@ -102,7 +102,8 @@ impl Board {
     pub(crate) fn variable<const N: usize>(&self, name: &str, index: usize) -> [u8; N] {
         let variable = self.image.variable(name);
         let variable = variable.unwrap_or_else(|| panic!("no variable {name}"));
-        let start = variable.address as usize - usize::from(SRAM_START) + index * N;
+        let start =
+            variable.address as usize - usize::from(self.chip.model().sram_start) + index * N;
         self.chip.cpu().sram()[start..start + N].try_into().unwrap()
     }
 

@@ -1,9 +1,9 @@
 //! A program image from its file, and the wiring that it is for.
 
 use super::bounded::read_at_most;
-use super::{FileError, RobotFile, ScenarioFile};
+use super::{FileError, Library, RobotFile, ScenarioFile};
 use rumbo_control::mode::ModeId;
-use rumbo_emulator::image::Image;
+use rumbo_emulator::image::{Image, ImageError};
 use rumbo_sim::mega::firmware::{Firmware, Language, Opening, opening};
 use rumbo_sim::mega::pins::link_usart;
 use rumbo_sim::wiring::Wiring;
@@ -34,7 +34,7 @@ pub fn load(
 /// The same of an image that has been read, by the name that messages use.
 ///
 /// # Errors
-/// The robot has no such wiring.
+/// The image is for another board, or the robot has no such wiring.
 pub fn wired(
     name: &str,
     image: Image,
@@ -42,7 +42,21 @@ pub fn wired(
     robot: &RobotFile,
     scenario: &ScenarioFile,
 ) -> Result<Firmware, FileError> {
-    let opening = opening(&image);
+    let board = robot.board;
+    let image = image.on(board.chip).map_err(|error| {
+        let other = match &error {
+            ImageError::Board { own, .. } => {
+                Library::new().robot_with(|robot| robot.board.chip == *own)
+            }
+            _ => None,
+        };
+        let other = other.map(|robot| format!(", or take --robot {robot}"));
+        FileError::Setting(format!(
+            "firmware {name}: {error}{}",
+            other.unwrap_or_default()
+        ))
+    })?;
+    let opening = opening(board, &image);
     let wiring = match wiring {
         Some(wiring) => wiring.to_owned(),
         None => default_wiring(opening, robot, scenario),
@@ -59,7 +73,7 @@ pub fn wired(
 /// Reads an image.
 ///
 /// # Errors
-/// The file is no program for this chip.
+/// The file is no program for any of the boards.
 pub fn read(path: &Path) -> Result<Image, FileError> {
     let bytes = bytes(path)?;
     let shown = path.display();
@@ -124,7 +138,6 @@ fn default_wiring(opening: Opening, robot: &RobotFile, scenario: &ScenarioFile) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::Library;
 
     #[test]
     fn the_report_s_wirings_have_the_module_on_usart_1_and_2() {

@@ -140,6 +140,12 @@ impl Library {
         })
     }
 
+    /// The first of our robots that is so.
+    pub fn robot_with(&self, is_so: impl Fn(&RobotFile) -> bool) -> Option<String> {
+        let mut names = self.list(Kind::Robot).into_iter();
+        names.find(|name| self.robot(name).is_ok_and(|robot| is_so(&robot)))
+    }
+
     /// Names of the built-in files of a kind, in order.
     #[must_use]
     pub fn list(&self, kind: Kind) -> Vec<String> {

@@ -2,10 +2,11 @@
 //!
 //! ```toml
 //! title = "The robot of the report"
+//! board = "mega"         # or "uno"; a Mega if it is left out
 //! [rig.final.front]      # one table per rig and sonar
 //! x_m = 0.13
 //! on_servo = true
-//! [wiring.final]         # signal = pin of the Mega
+//! [wiring.final]         # signal = pin of the board
 //! front_echo = 3
 //! battery = { pin = 54, ratio = 2.0 }   # a divider to A0, where one is wired
 //! [parameters]           # control parameters that differ from their defaults
@@ -14,21 +15,19 @@
 //! ```
 
 use super::error::FileError;
+use super::near;
 use super::parameters::read_parameters;
 use super::read::{Allowed, Source, Table};
 use super::world::ANGLE;
 use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
+use rumbo_sim::mega::boards::{BOARDS, Board};
 use rumbo_sim::wiring::{Divider, SIGNALS, Wiring};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Position of a sonar on the body.
 const MOUNT: Allowed = Allowed::new(-1.0, 1.0, "m");
-/// Digital pins of an Arduino Mega, the analogue ones numbered from 54.
-const PIN: Allowed = Allowed::new(0.0, 69.0, "count");
-/// Those of them with an analogue input, A0 to A15.
-const ANALOGUE_PIN: Allowed = Allowed::new(54.0, 69.0, "count");
 /// Ratio of a divider.
 const RATIO: Allowed = Allowed::new(1.0, 20.0, "1");
 /// Flash and SRAM of an ATmega2560.
@@ -42,6 +41,8 @@ pub struct RobotFile {
     pub name: String,
     /// One line for people.
     pub title: String,
+    /// What its programs run on.
+    pub board: &'static Board,
     /// The text it was read from, kept for the log's manifest.
     pub text: String,
     /// Physics, from `[plant.*]`: nominal values where the file has none.
@@ -86,6 +87,7 @@ impl RobotFile {
         let title = root
             .required_text("title", "one line that says what the robot is")
             .value;
+        let board = read_board(&root);
         let mut plant = Params::default();
         for (key, value) in read_plant(&root.table("plant"), "") {
             if let Err(error) = plant.set(&key, value) {
@@ -96,7 +98,7 @@ impl RobotFile {
         if rigs.is_empty() {
             root.complain_here("has no rig: add a table [rig.NAME.front] (or left, right) with x_m, y_m, angle_deg");
         }
-        let wirings = named(&root.table("wiring"), read_wiring);
+        let wirings = named(&root.table("wiring"), |table| read_wiring(table, board));
         let parameters = read_parameters(&root.table("parameters"));
         let firmware = read_caps(&root.table("firmware"));
         root.finish();
@@ -104,6 +106,7 @@ impl RobotFile {
         Ok(Self {
             name: name.into(),
             title,
+            board,
             text: text.into(),
             plant,
             rigs,
@@ -169,13 +172,26 @@ fn read_rig(table: &Table<'_, '_>) -> Rig {
     rig
 }
 
-fn read_wiring(table: &Table<'_, '_>) -> Wiring {
+fn read_board(root: &Table<'_, '_>) -> &'static Board {
+    let Some(name) = root.text("board") else {
+        return <&Board>::default();
+    };
+    Board::named(&name.value).unwrap_or_else(|| {
+        let known: Vec<String> = BOARDS.map(|board| board.name.to_owned()).into();
+        root.complain("board", name.line, &name.value, &near::did_you_mean(&known));
+        <&Board>::default()
+    })
+}
+
+fn read_wiring(table: &Table<'_, '_>, board: &'static Board) -> Wiring {
     let mut wiring = Wiring {
-        battery: read_divider(&table.table("battery"), table.has("battery")),
+        board,
+        battery: read_divider(&table.table("battery"), table.has("battery"), board),
         ..Wiring::default()
     };
+    let pins = Allowed::new(0.0, board.last_pin().into(), "count");
     for signal in SIGNALS {
-        let Some(pin) = table.placed_number(signal, PIN) else {
+        let Some(pin) = table.placed_number(signal, pins) else {
             continue;
         };
         let number = pin.value as u8;
@@ -189,9 +205,11 @@ fn read_wiring(table: &Table<'_, '_>) -> Wiring {
     wiring
 }
 
-fn read_divider(table: &Table<'_, '_>, wired: bool) -> Option<Divider> {
+fn read_divider(table: &Table<'_, '_>, wired: bool, board: &Board) -> Option<Divider> {
+    let (first, last) = (board.first_analogue.into(), board.last_pin().into());
+    let pins = Allowed::new(first, last, "count");
     let divider = wired.then(|| Divider {
-        input: (table.required_number("pin", ANALOGUE_PIN) - ANALOGUE_PIN.min) as u8,
+        input: (table.required_number("pin", pins) - first) as u8,
         ratio: table.required_number("ratio", RATIO),
     });
     table.finish();

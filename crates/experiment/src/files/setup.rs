@@ -206,6 +206,9 @@ impl Setup {
             .map_err(|error| FileError::Setting(format!("world {}: {error}", setup.world.name)))?;
         let program = match (&setup.firmware, setup.program) {
             (Some(firmware), _) => Program::Image(firmware.clone()),
+            (None, NativeProgram::Rumbo) if !setup.robot.board.runs_rumbo => {
+                return Err(setup.needs_a_program());
+            }
             (None, NativeProgram::Rumbo) => Program::Rumbo {
                 parameters: setup.control_parameters()?,
                 divider: setup.divider(),
@@ -232,6 +235,16 @@ impl Setup {
             seed,
             day: 0,
         })
+    }
+
+    /// Our own control program is too large for the robot's board.
+    fn needs_a_program(&self) -> FileError {
+        let RobotFile { name, board, .. } = &self.robot;
+        FileError::Setting(format!(
+            "robot {name}: Rumbo's own control program does not fit into the {} of an {}; run your own with --sketch \
+             FOLDER or --firmware IMAGE, or take another robot with --robot",
+            board.chip.name, board.title
+        ))
     }
 
     /// The robot file's parameters, drawn for the seed, with the scenario's own values on top.

@@ -1,7 +1,8 @@
-//! A program image for the Mega: what it is, which language it speaks on its link, and how it is wired.
+//! A program image: what it is, which language it speaks on its link, and how it is wired.
 
 use super::CYCLES_PER_US;
-use super::pins::{Wires, board_signals, chip_pin};
+use super::boards::Board;
+use super::pins::Wires;
 use crate::error::SimError;
 use crate::wiring::Wiring;
 use rumbo_emulator::chip::Chip;
@@ -14,9 +15,6 @@ use rumbo_wire::{Decoder, FromRobot, Message, Received};
 
 /// Rate of the Bluetooth module [baud].
 pub const LINK_BAUD: f64 = 9600.0;
-/// Receiving and transmitting pins of the USARTs on the board.
-const RECEIVERS: [u8; 4] = [0, 19, 17, 15];
-const TRANSMITTERS: [u8; 4] = [1, 18, 16, 14];
 /// Time to wait for HELLO, which our program sends as soon as it runs [us].
 const BOOT_US: u64 = 600_000;
 /// A boot loader has handed over after this [cycles], or never will.
@@ -40,6 +38,7 @@ pub struct Firmware {
     image: Image,
     language: Language,
     wiring: String,
+    board: &'static Board,
     wires: Wires,
 }
 
@@ -59,6 +58,7 @@ impl Firmware {
             image,
             language,
             wiring: wiring.to_owned(),
+            board: pins.board,
             wires: Wires::new(wiring, pins)?,
         })
     }
@@ -76,7 +76,7 @@ impl Firmware {
     /// Names for pins: the wired ones by what they are for, and all of the board by their numbers.
     pub fn signals(&self) -> Vec<(String, Pin)> {
         let mut signals = self.wires.signals();
-        signals.extend(board_signals());
+        signals.extend(self.board.signals());
         signals
     }
 
@@ -111,9 +111,9 @@ pub struct Opening {
 
 /// Runs a program for a moment on a chip with nothing attached, and looks for a frame of ours among what it sends.
 #[must_use]
-pub fn opening(image: &Image) -> Opening {
+pub fn opening(board: &Board, image: &Image) -> Opening {
     let mut chip = Chip::new(image);
-    for pin in RECEIVERS.into_iter().filter_map(chip_pin) {
+    for pin in board.receivers() {
         chip.input(0, Input::Pin(pin, Some(true)));
     }
     chip.pass_boot_loader(LONGEST_BOOT);
@@ -142,10 +142,10 @@ pub fn opening(image: &Image) -> Opening {
         }
     }
     // A transmitter that is on holds its idle line high.
-    let transmits = TRANSMITTERS.map(|number| {
-        let pin = chip_pin(number);
-        pin.is_some_and(|pin| chip.devices().drive(pin) == Drive::High)
-    });
+    let mut transmits = [false; 4];
+    for (transmits, pin) in transmits.iter_mut().zip(board.transmitters()) {
+        *transmits = pin.is_some_and(|pin| chip.devices().drive(pin) == Drive::High);
+    }
     Opening {
         language: Language::Text,
         transmits,

@@ -1,4 +1,5 @@
-//! An emulated Arduino Mega at the robot's pins: the chip of `rumbo-emulator`, wired by the robot file.
+//! An emulated Arduino, a Mega or another board, at the robot's pins: the chip of `rumbo-emulator`, wired by the robot
+//! file.
 //!
 //! ```text
 //! plant events ──► encoder and echo pins, at their cycle ──► chip ──► enable and direction pins ──► bridges
@@ -8,7 +9,8 @@
 //!
 //! | file | part |
 //! |---|---|
-//! | [`pins`] | the board's pin numbers, a wiring as pins of the chip |
+//! | [`boards`] | the boards: their chips, pin numbers, USARTs |
+//! | [`pins`] | a wiring as pins of the chip |
 //! | `bridge`, `servo`, `module` | what driver, servo and Bluetooth module make of their lines |
 //! | `inputs` | the edges that the plant announces, scheduled for the chip |
 //! | `outputs` | the chip's outputs as actions on the robot |
@@ -21,6 +23,7 @@
 //! `Mega::run` runs the chip until something happens that affects the plant, so that the plant can follow to the same
 //! microsecond before anything else happens: see `sim::emulated`.
 
+pub mod boards;
 mod console;
 pub mod firmware;
 pub mod pins;
@@ -54,9 +57,9 @@ use rumbo_plant::sonar::SonarId;
 use servo::ServoInput;
 use std::sync::Arc;
 
-/// The Mega's clock is 16 MHz.
+/// The boards' clock is 16 MHz.
 pub const CYCLES_PER_US: u64 = 16;
-/// Battery at which the chip's brown-out detector, set to 2.7 V by the Mega's fuses, resets it: the regulator drops 1.1 V.
+/// Battery at which the chip's brown-out detector, set to 2.7 V by the boards' fuses, resets it: the regulator drops 1.1 V.
 const BROWN_OUT_V: f64 = 3.8;
 /// Cost of an output that the robot feels: the plant follows to its instant.
 pub const ACT: u64 = 10;
@@ -87,7 +90,7 @@ pub(crate) enum Pause {
     Halted(u64),
 }
 
-/// A Mega with its program.
+/// A board with its program.
 #[derive(Clone, Debug)]
 pub struct Mega {
     chip: Chip,
@@ -119,7 +122,7 @@ pub struct Mega {
 }
 
 impl Mega {
-    /// A Mega that has just been switched on; `encoders` are the levels of both Hall sensors, left and right.
+    /// A board that has just been switched on; `encoders` are the levels of both Hall sensors, left and right.
     pub(crate) fn new(firmware: Arc<Firmware>, encoders: [bool; 2]) -> Self {
         let mut chip = Chip::new(firmware.image());
         chip.watch(&firmware.wires().felt());

@@ -1,5 +1,12 @@
 #include "Servo.h"
 
+// Timer 5 of a Mega, else timer 1, as Arduino's library has them.
+#ifdef TCNT5
+#define OF_TIMER(before, after) before##5##after
+#else
+#define OF_TIMER(before, after) before##1##after
+#endif
+
 namespace {
 
 const uint8_t SERVOS = 12;
@@ -21,9 +28,9 @@ volatile uint8_t current = SERVOS;
 
 }  // namespace
 
-ISR(TIMER5_COMPA_vect) {
+ISR(OF_TIMER(TIMER, _COMPA_vect)) {
   if (current == SERVOS) {
-    TCNT5 = 0;
+    OF_TIMER(TCNT, ) = 0;
     current = 0;
   } else {
     if (channels[current].active) {
@@ -32,13 +39,13 @@ ISR(TIMER5_COMPA_vect) {
     current++;
   }
   if (current < used) {
-    OCR5A = TCNT5 + channels[current].ticks;
+    OF_TIMER(OCR, A) = OF_TIMER(TCNT, ) + channels[current].ticks;
     if (channels[current].active) {
       digitalWrite(channels[current].pin, HIGH);
     }
   } else {
-    const uint16_t now = TCNT5;
-    OCR5A = now + LATE < ROUND ? ROUND : now + LATE;
+    const uint16_t now = OF_TIMER(TCNT, );
+    OF_TIMER(OCR, A) = now + LATE < ROUND ? ROUND : now + LATE;
     current = SERVOS;
   }
 }
@@ -58,12 +65,12 @@ uint8_t Servo::attach(int pin, int least_us, int most_us) {
   most = most_us;
   pinMode(pin, OUTPUT);
   channels[index].pin = pin;
-  if (!(TIMSK5 & _BV(OCIE5A))) {
-    TCCR5A = 0;
-    TCCR5B = _BV(CS51);
-    TCNT5 = 0;
-    TIFR5 = _BV(OCF5A);
-    TIMSK5 = _BV(OCIE5A);
+  if (!(OF_TIMER(TIMSK, ) & _BV(OF_TIMER(OCIE, A)))) {
+    OF_TIMER(TCCR, A) = 0;
+    OF_TIMER(TCCR, B) = _BV(OF_TIMER(CS, 1));
+    OF_TIMER(TCNT, ) = 0;
+    OF_TIMER(TIFR, ) = _BV(OF_TIMER(OCF, A));
+    OF_TIMER(TIMSK, ) = _BV(OF_TIMER(OCIE, A));
   }
   channels[index].active = true;
   return index;
@@ -87,7 +94,7 @@ void Servo::writeMicroseconds(int microseconds) {
   if (index == NONE) {
     return;
   }
-  // Between OCR5A and the pin lie some 2 us.
+  // Between the match and the pin lie some 2 us.
   const uint16_t ticks = (constrain(microseconds, least, most) - 2) * TICKS_PER_MICROSECOND;
   const uint8_t before = SREG;
   cli();

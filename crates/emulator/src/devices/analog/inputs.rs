@@ -3,50 +3,43 @@
 //! What the chip does to a pin itself counts too: an output has its level, a pull-up reaches the supply where nothing else is connected.
 
 use crate::devices::SUPPLY_V;
-use crate::devices::ports::{Drive, Pin, Ports};
+use crate::devices::ports::{Drive, Ports};
+use crate::model;
 
-/// The two references on the chip [V].
-const BANDGAP_V: f64 = 1.1;
-const INTERNAL_V: f64 = 2.56;
+/// The reference that is an input too [V].
+pub(super) const BANDGAP_V: f64 = 1.1;
+/// The temperature sensor at 25 degrees (DS40002061B, table 23-2) [V].
+const TEMPERATURE_V: f64 = 0.314;
 /// Inputs: ADC0 to ADC15, the pin AREF, AIN0 and AIN1.
 const INPUTS: usize = 19;
 const AREF: usize = 16;
 /// The comparator's inputs, AIN0 and AIN1.
 pub(super) const COMPARATOR: [u8; 2] = [17, 18];
 
-const PORT_E: usize = 4;
-const PORT_F: usize = 5;
-const PORT_K: usize = 9;
-
-/// The pin that an analog input is on; AREF is none of a port.
-pub(crate) fn pin(channel: u8) -> Option<Pin> {
-    match channel {
-        0..8 => Some(Pin::at(PORT_F, channel)),
-        8..16 => Some(Pin::at(PORT_K, channel - 8)),
-        16 => None,
-        17 | 18 => Some(Pin::at(PORT_E, channel - 15)),
-        _ => None,
-    }
-}
-
-/// The analog input that is on a pin, if one is.
-pub(crate) fn channel(pin: Pin) -> Option<u8> {
-    match (pin.port(), pin.bit()) {
-        (PORT_F, bit) => Some(bit),
-        (PORT_K, bit) => Some(8 + bit),
-        (PORT_E, bit @ (2 | 3)) => Some(15 + bit),
-        _ => None,
-    }
-}
-
 /// What is connected outside [V]; `None` where nothing is.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Inputs([Option<f64>; INPUTS]);
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inputs {
+    model: &'static model::Analog,
+    volts: [Option<f64>; INPUTS],
+}
+
+impl Default for Inputs {
+    fn default() -> Inputs {
+        Inputs::new(&<&model::Model>::default().analog)
+    }
+}
 
 impl Inputs {
+    pub(super) const fn new(model: &'static model::Analog) -> Inputs {
+        Inputs {
+            model,
+            volts: [None; INPUTS],
+        }
+    }
+
     /// Another voltage, or none; what the pins cannot bear is cut off at the supply and at ground.
     pub(super) fn set(&mut self, channel: u8, volts: Option<f64>) {
-        if let Some(input) = self.0.get_mut(usize::from(channel))
+        if let Some(input) = self.volts.get_mut(usize::from(channel))
             && volts.is_none_or(f64::is_finite)
         {
             *input = volts.map(|volts| volts.clamp(0.0, SUPPLY_V));
@@ -55,8 +48,8 @@ impl Inputs {
 
     /// The voltage at an input; a pin that nothing drives is at ground.
     pub(super) fn volts(&self, channel: u8, ports: &Ports) -> f64 {
-        let outside = self.0.get(usize::from(channel)).copied().flatten();
-        match pin(channel).map(|pin| ports.drive(pin)) {
+        let outside = self.volts.get(usize::from(channel)).copied().flatten();
+        match self.model.pin(channel).map(|pin| ports.drive(pin)) {
             Some(Drive::Low) => 0.0,
             Some(Drive::High) => SUPPLY_V,
             Some(Drive::PullUp) => outside.unwrap_or(SUPPLY_V),
@@ -67,15 +60,23 @@ impl Inputs {
     /// The reference that REFS selects.
     fn reference(&self, select: u8) -> f64 {
         match select & 3 {
-            0 => self.0[AREF].unwrap_or(SUPPLY_V),
+            0 => self.volts[AREF].unwrap_or(SUPPLY_V),
             1 => SUPPLY_V,
-            2 => BANDGAP_V,
-            _ => INTERNAL_V,
+            2 => self.model.internal_v[0],
+            _ => self.model.internal_v[1],
         }
     }
 
     /// The voltage of a single input by its MUX number; `None` for the differential ones.
     pub(super) fn single(&self, mux: u8, ports: &Ports) -> Option<f64> {
+        if !self.model.differential {
+            return Some(match mux & 0x0F {
+                channel @ 0..8 => self.volts(channel, ports),
+                8 => TEMPERATURE_V,
+                0x0E => BANDGAP_V,
+                _ => 0.0,
+            });
+        }
         match mux & 0x3F {
             0x1E => Some(BANDGAP_V),
             0x1F => Some(0.0),

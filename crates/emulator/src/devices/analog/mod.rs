@@ -6,20 +6,11 @@
 mod inputs;
 
 use super::Core;
-use super::interrupts::vector;
+use super::ports::Pin;
 use super::schedule::Source;
+use crate::model::Model;
+use crate::registers::{ACSR, ADCH, ADCL, ADCSRA, ADCSRB, ADMUX, DIDR0, DIDR1, DIDR2};
 use inputs::{COMPARATOR, Inputs};
-pub(crate) use inputs::{channel, pin};
-
-const ACSR: u16 = 0x50;
-const ADCL: u16 = 0x78;
-const ADCH: u16 = 0x79;
-const ADCSRA: u16 = 0x7A;
-const ADCSRB: u16 = 0x7B;
-const ADMUX: u16 = 0x7C;
-const DIDR2: u16 = 0x7D;
-const DIDR0: u16 = 0x7E;
-const DIDR1: u16 = 0x7F;
 
 /// ADCSRA.
 const ADEN: u8 = 0x80;
@@ -41,10 +32,6 @@ const ACO: u8 = 0x20;
 const ACI: u8 = 0x10;
 const ACIE: u8 = 0x08;
 const ACIC: u8 = 0x04;
-
-const PORT_E: usize = 4;
-const PORT_F: usize = 5;
-const PORT_K: usize = 9;
 
 /// Latency of a trigger [CPU cycles].
 const TRIGGER_CYCLES: u64 = 3;
@@ -72,6 +59,7 @@ struct Conversion {
 /// Converter and comparator.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Analog {
+    model: &'static Model,
     inputs: Inputs,
     control_a: u8,
     control_b: u8,
@@ -96,11 +84,19 @@ pub(crate) struct Analog {
 }
 
 impl Analog {
+    pub(crate) fn new(model: &'static Model) -> Analog {
+        Analog {
+            model,
+            inputs: Inputs::new(&model.analog),
+            ..Analog::default()
+        }
+    }
+
     /// Starts over; what is connected stays.
     pub(crate) fn reset(&mut self, core: &mut Core) {
         *self = Analog {
             inputs: self.inputs,
-            ..Analog::default()
+            ..Analog::new(self.model)
         };
         self.reschedule(core);
     }
@@ -119,7 +115,8 @@ impl Analog {
 
     /// The chip drives pins of this port differently: the comparator samples them.
     pub(crate) fn port_changed(&mut self, core: &mut Core, port: usize, cycle: u64) {
-        if matches!(port, PORT_E | PORT_F | PORT_K) {
+        let mut pins = self.model.analog.pins.iter().flatten();
+        if pins.any(|pin| pin.port() == port) {
             self.compare(core, cycle);
         }
     }
@@ -207,7 +204,14 @@ impl Analog {
     pub(crate) fn write(&mut self, core: &mut Core, address: u16, value: u8, cycle: u64) {
         match address {
             ADCSRA => self.write_control(value, cycle),
-            ADCSRB => self.control_b = value & (ACME | MUX5 | ADTS),
+            ADCSRB => {
+                let mux5 = if self.model.analog.differential {
+                    MUX5
+                } else {
+                    0
+                };
+                self.control_b = value & (ACME | mux5 | ADTS);
+            }
             ADMUX => self.select = value,
             DIDR0 => self.disabled_digital[0] = value,
             DIDR1 => self.disabled_digital[1] = value & 3,
@@ -318,9 +322,9 @@ impl Analog {
         let next = running.map(|conversion| conversion.sample.unwrap_or(conversion.end));
         core.schedule.set(Source::Analog, next);
         let converted = self.flag && self.control_a & ADIE != 0;
-        core.interrupts.set(vector::CONVERTED, converted);
+        core.interrupts.set(core.model.numbers.converted, converted);
         let compared = self.comparator & (ACI | ACIE) == ACI | ACIE;
-        core.interrupts.set(vector::COMPARED, compared);
+        core.interrupts.set(core.model.numbers.compared, compared);
     }
 
     /// The comparator samples its inputs.
@@ -342,7 +346,7 @@ impl Analog {
         let [positive, negative] = COMPARATOR;
         let positive = match self.comparator & ACBG {
             0 => self.inputs.volts(positive, ports),
-            _ => self.inputs.single(0x1E, ports).unwrap_or_default(),
+            _ => inputs::BANDGAP_V,
         };
         let multiplexed = self.control_b & ACME != 0 && self.control_a & ADEN == 0;
         let negative = if multiplexed {
@@ -373,15 +377,26 @@ impl Analog {
         self.reschedule(core);
     }
 
-    /// Pins whose digital input is off: those of ports E, F and K.
-    pub(crate) fn disabled_digital(&self) -> [(usize, u8); 3] {
-        let [low, comparator, high] = self.disabled_digital;
-        [(PORT_E, comparator << 2), (PORT_F, low), (PORT_K, high)]
+    /// Pins whose digital input is off, by their port: each of the registers is for one.
+    pub(crate) fn disabled_digital(&self) -> impl Iterator<Item = (usize, u8)> + use<> {
+        let (model, registers) = (self.model, self.disabled_digital);
+        let firsts = [0, usize::from(COMPARATOR[0]), 8];
+        firsts
+            .into_iter()
+            .zip(registers)
+            .filter_map(|(first, bits)| {
+                let pins = model.analog.pins[first..].iter().take(8);
+                let off = |(bit, pin): (usize, &Option<Pin>)| {
+                    pin.map_or(0, |pin| if bits >> bit & 1 != 0 { pin.mask() } else { 0 })
+                };
+                let mask = pins.enumerate().map(off).fold(0, |all, mask| all | mask);
+                Some((model.analog.pins[first]?.port(), mask))
+            })
     }
 
     /// One of the two interrupts is entered.
     pub(crate) fn acknowledge(&mut self, core: &mut Core, vector: u8) {
-        if vector == vector::CONVERTED {
+        if vector == core.model.numbers.converted {
             self.flag = false;
         } else {
             self.comparator &= !ACI;

@@ -11,7 +11,10 @@ mod wave;
 use super::ports::Pin;
 use super::schedule::Source;
 use super::{Core, Event, Pwm};
-use place::{PLACES, Place};
+use place::ASYNCHRONOUS;
+#[cfg(test)]
+pub(crate) use place::Register;
+pub(crate) use place::{Place, narrow, wide, wide_of_two};
 pub(crate) use registers::{read_general_control, write_general_control};
 use wave::{CAPTURE, CHANNELS, MATCH, OVERFLOW, Top, Wave};
 
@@ -58,7 +61,7 @@ enum Clock {
 /// One timer.
 #[derive(Clone, Debug)]
 pub(crate) struct Timer {
-    index: usize,
+    place: &'static Place,
     wave: Wave,
     clock: Clock,
     control: [u8; 3],
@@ -83,15 +86,11 @@ pub(crate) struct Timer {
     stopped: bool,
 }
 
-/// All six after reset.
-pub(crate) fn all() -> [Timer; 6] {
-    [0, 1, 2, 3, 4, 5].map(new)
-}
-
-fn new(index: usize) -> Timer {
+/// After reset.
+pub(crate) fn new(place: &'static Place) -> Timer {
     Timer {
-        index,
-        wave: Wave::new(!matches!(index, 0 | 2)),
+        place,
+        wave: Wave::new(place.wide, place.channels),
         clock: Clock::Stopped,
         control: [0; 3],
         enabled: 0,
@@ -109,41 +108,33 @@ fn new(index: usize) -> Timer {
     }
 }
 
-/// The timer that has this interrupt vector.
-pub(crate) fn of_vector(vector: u8) -> Option<usize> {
-    PLACES.iter().position(|place| place.flag(vector).is_some())
-}
-
 impl Timer {
+    /// Whether this is one of its interrupt vectors.
+    pub(crate) fn has_vector(&self, vector: u8) -> bool {
+        self.place.flag(vector).is_some()
+    }
+
     /// Starts over.
     pub(crate) fn reset(&mut self, core: &mut Core, cycle: u64) {
         let published = self.published;
-        *self = new(self.index);
+        *self = new(self.place);
         self.computed_to = cycle;
         for (channel, last) in published.into_iter().enumerate() {
             if last.is_some() {
-                let pin = self.place().outputs[channel];
+                let pin = self.place.outputs[channel];
                 core.emit(cycle, Event::Duty { pin, pwm: None });
             }
         }
         self.reschedule(core);
     }
 
-    fn place(&self) -> &'static Place {
-        &PLACES[self.index]
-    }
-
-    /// Timer 2 waits for a clock at pins where a Mega has none.
+    /// Timer 2 waits for a clock at pins where the boards have none, or their crystal.
     fn is_asynchronous(&self) -> bool {
         self.asynchronous & AS2 != 0
     }
 
-    fn is_wide(&self) -> bool {
-        self.wave.max == 0xFFFF
-    }
-
     fn prescaler(&self, core: &Core) -> Prescaler {
-        core.prescalers[usize::from(self.index == 2)]
+        core.prescalers[usize::from(self.place.number == ASYNCHRONOUS)]
     }
 
     /// Computes the counter up to `cycle`.
@@ -206,7 +197,7 @@ impl Timer {
             _ => None,
         };
         let next = [next, self.capture_due].into_iter().flatten().min();
-        core.schedule.set(Source::Timer(self.index), next);
+        core.schedule.set(Source::Timer(self.place.number), next);
     }
 
     /// Its event is due.
@@ -217,7 +208,7 @@ impl Timer {
 
     /// Passes flags and outputs on to interrupts, pins and converter.
     fn show(&mut self, core: &mut Core, cycle: u64) {
-        let place = self.place();
+        let place = self.place;
         for (flag, vector) in place.vectors {
             let requested = self.wave.flags & self.enabled & flag != 0;
             core.interrupts.set(vector, requested);
@@ -233,7 +224,7 @@ impl Timer {
                 .then_some(self.wave.output[channel]);
             if output != self.driven[channel] {
                 self.driven[channel] = output;
-                core.drive_output(self.index, place.outputs[channel], output, cycle);
+                core.drive_output(self.place.number, place.outputs[channel], output, cycle);
             }
         }
         if std::mem::take(&mut self.wave.updated) | std::mem::take(&mut self.duty_due) {
@@ -244,7 +235,7 @@ impl Timer {
     /// Reports the PWM of pins on which it has changed.
     pub(crate) fn publish_duty(&mut self, core: &mut Core, cycle: u64) {
         for channel in 0..self.wave.channels {
-            let pin = self.place().outputs[channel];
+            let pin = self.place.outputs[channel];
             let divisor = core.clock.divisor();
             let pwm = duty::pwm(&self.wave, channel, self.clock, divisor)
                 .filter(|_| core.ports.is_output(pin));
@@ -276,7 +267,7 @@ impl Timer {
 
     /// A pin has changed: the timer's clock, or its capture.
     pub(crate) fn pin_changed(&mut self, core: &mut Core, pin: Pin, level: bool, cycle: u64) {
-        let place = self.place();
+        let place = self.place;
         if self.stopped {
             return;
         }
@@ -294,10 +285,7 @@ impl Timer {
     /// The comparator takes the place of the capture pin with this output, or gives it back (`None`). Where the two differ, the
     /// change is an edge (section 17.6.1).
     pub(crate) fn set_comparator(&mut self, core: &mut Core, output: Option<bool>, cycle: u64) {
-        let pin = self
-            .place()
-            .capture
-            .is_some_and(|pin| core.ports.level(pin));
+        let pin = self.place.capture.is_some_and(|pin| core.ports.level(pin));
         let before = self.comparator.unwrap_or(pin);
         self.comparator = output;
         let level = output.unwrap_or(pin);
@@ -332,7 +320,7 @@ impl Timer {
     /// One of its interrupts is entered.
     pub(crate) fn acknowledge(&mut self, core: &mut Core, vector: u8, cycle: u64) {
         self.catch_up(core, cycle);
-        if let Some(flag) = self.place().flag(vector) {
+        if let Some(flag) = self.place.flag(vector) {
             self.wave.flags &= !flag;
         }
         self.show(core, cycle);

@@ -1,11 +1,25 @@
-//! Where each timer's registers, vectors and pins are (2549Q, sections 1, 14.1 and 33).
+//! Where a timer's registers, vectors and pins are.
 
 use super::wave::{CAPTURE, CHANNELS, MATCH, OVERFLOW};
 use crate::devices::ports::Pin;
+use crate::registers;
+
+/// The timer with a prescaler of its own, which may have a clock of its own too.
+pub(super) const ASYNCHRONOUS: usize = 2;
+
+/// Control register A of each.
+const BASES: [u16; 6] = [
+    registers::TCCR0A,
+    registers::TCCR1A,
+    registers::TCCR2A,
+    registers::TCCR3A,
+    registers::TCCR4A,
+    registers::TCCR5A,
+];
 
 /// A register of a timer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Register {
+pub(crate) enum Register {
     ControlA,
     ControlB,
     ControlC,
@@ -35,22 +49,33 @@ impl Register {
 }
 
 /// The place of one timer.
-pub(super) struct Place {
+#[derive(Debug)]
+pub(crate) struct Place {
+    pub(crate) number: usize,
+    /// 16 bits.
+    pub(super) wide: bool,
+    pub(super) channels: usize,
     /// Address of control register A.
     base: u16,
-    wide: bool,
-    pub(super) flags: u16,
+    flags: u16,
     enabled: u16,
     /// Flag and vector.
-    pub(super) vectors: [(u8, u8); 5],
+    pub(crate) vectors: [(u8, u8); 5],
     pub(super) outputs: [Pin; CHANNELS],
     pub(super) clock: Option<Pin>,
     pub(super) capture: Option<Pin>,
 }
 
 impl Place {
+    /// With a pin that may clock it, and one whose edges it captures.
+    pub(crate) const fn with(mut self, clock: Pin, capture: Option<Pin>) -> Place {
+        self.clock = Some(clock);
+        self.capture = capture;
+        self
+    }
+
     /// The register at an address.
-    pub(super) fn register(&self, address: u16) -> Option<Register> {
+    pub(crate) fn register(&self, address: u16) -> Option<Register> {
         if address == self.flags {
             return Some(Register::Flags);
         }
@@ -65,7 +90,7 @@ impl Place {
                 2 => Register::Count,
                 3 => Register::Compare(0),
                 4 => Register::Compare(1),
-                6 if self.base == 0xB0 => Register::Asynchronous,
+                6 if self.number == ASYNCHRONOUS => Register::Asynchronous,
                 _ => return None,
             });
         }
@@ -90,20 +115,15 @@ impl Place {
     }
 }
 
-/// A pin that exists, by the name of the table.
-const fn pin(letter: char, bit: u8) -> Pin {
-    match Pin::new(letter, bit) {
-        Some(pin) => pin,
-        None => Pin::at(0, 0),
-    }
-}
-
-const fn wide(base: u16, number: u16, first_vector: u8, outputs: [Pin; 3]) -> Place {
+/// A timer of 16 bits with three outputs and vectors in this order: capture, the matches, overflow.
+pub(crate) const fn wide(number: usize, first_vector: u8, outputs: [Pin; 3]) -> Place {
     Place {
-        base,
+        number,
         wide: true,
-        flags: 0x35 + number,
-        enabled: 0x6E + number,
+        channels: 3,
+        base: BASES[number],
+        flags: registers::TIFR0 + number as u16,
+        enabled: registers::TIMSK0 + number as u16,
         vectors: [
             (CAPTURE, first_vector),
             (MATCH[0], first_vector + 1),
@@ -117,14 +137,28 @@ const fn wide(base: u16, number: u16, first_vector: u8, outputs: [Pin; 3]) -> Pl
     }
 }
 
-const fn narrow(base: u16, number: u16, first_vector: u8, outputs: [Pin; 2]) -> Place {
-    let [a, b] = outputs;
+/// The same with two outputs.
+pub(crate) const fn wide_of_two(number: usize, first_vector: u8, [a, b]: [Pin; 2]) -> Place {
+    let overflow = (OVERFLOW, first_vector + 3);
+    Place {
+        channels: 2,
+        vectors: [
+            (CAPTURE, first_vector),
+            (MATCH[0], first_vector + 1),
+            (MATCH[1], first_vector + 2),
+            overflow,
+            overflow,
+        ],
+        ..wide(number, first_vector, [a, b, b])
+    }
+}
+
+/// A timer of 8 bits with two outputs and vectors in this order: the matches, overflow.
+pub(crate) const fn narrow(number: usize, first_vector: u8, [a, b]: [Pin; 2]) -> Place {
     let overflow = (OVERFLOW, first_vector + 2);
     Place {
-        base,
         wide: false,
-        flags: 0x35 + number,
-        enabled: 0x6E + number,
+        channels: 2,
         vectors: [
             (MATCH[0], first_vector),
             (MATCH[1], first_vector + 1),
@@ -132,37 +166,6 @@ const fn narrow(base: u16, number: u16, first_vector: u8, outputs: [Pin; 2]) -> 
             overflow,
             overflow,
         ],
-        outputs: [a, b, b],
-        clock: None,
-        capture: None,
+        ..wide(number, first_vector, [a, b, b])
     }
 }
-
-/// The six timers.
-pub(super) static PLACES: [Place; 6] = [
-    Place {
-        clock: Some(pin('D', 7)),
-        ..narrow(0x44, 0, 21, [pin('B', 7), pin('G', 5)])
-    },
-    Place {
-        clock: Some(pin('D', 6)),
-        capture: Some(pin('D', 4)),
-        ..wide(0x80, 1, 16, [pin('B', 5), pin('B', 6), pin('B', 7)])
-    },
-    narrow(0xB0, 2, 13, [pin('B', 4), pin('H', 6)]),
-    Place {
-        clock: Some(pin('E', 6)),
-        capture: Some(pin('E', 7)),
-        ..wide(0x90, 3, 31, [pin('E', 3), pin('E', 4), pin('E', 5)])
-    },
-    Place {
-        clock: Some(pin('H', 7)),
-        capture: Some(pin('L', 0)),
-        ..wide(0xA0, 4, 41, [pin('H', 3), pin('H', 4), pin('H', 5)])
-    },
-    Place {
-        clock: Some(pin('L', 2)),
-        capture: Some(pin('L', 1)),
-        ..wide(0x120, 5, 46, [pin('L', 3), pin('L', 4), pin('L', 5)])
-    },
-];

@@ -3,7 +3,7 @@
 //! Counter and capture register are 16 bits behind an 8-bit bus: reading the low byte latches the high one, and writing the low byte
 //! takes the high one along (section 17.3). Compare registers are latched for writing only.
 
-use super::place::Register;
+use super::place::{ASYNCHRONOUS, Register};
 use super::wave::{CAPTURE, CHANNELS, Mode, OVERFLOW, Top};
 use super::{AS2, Clock, Timer};
 use crate::devices::Core;
@@ -20,7 +20,7 @@ const UPDATES: u8 = 0x1F;
 impl Timer {
     pub(crate) fn read(&mut self, core: &mut Core, address: u16, at: Access) -> u8 {
         self.catch_up(core, at.cycle);
-        let Some(register) = self.place().register(address) else {
+        let Some(register) = self.place.register(address) else {
             return 0;
         };
         let [low, high] = match register {
@@ -46,7 +46,7 @@ impl Timer {
 
     pub(crate) fn write(&mut self, core: &mut Core, address: u16, value: u8, at: Access) {
         self.catch_up(core, at.cycle);
-        let Some(register) = self.place().register(address) else {
+        let Some(register) = self.place.register(address) else {
             return;
         };
         if self.is_asynchronous()
@@ -56,11 +56,12 @@ impl Timer {
             self.asynchronous |= busy;
             return;
         }
-        let word = u16::from_le_bytes([value, if self.is_wide() { self.latch } else { 0 }]);
+        let word = u16::from_le_bytes([value, if self.place.wide { self.latch } else { 0 }]);
         match register {
             Register::Count => {
                 self.wave.count = word;
-                self.wave.blocked = self.clock != Clock::Stopped;
+                // Also while it stands (section 17.7.2).
+                self.wave.blocked = true;
             }
             // The capture register is writable only in a mode that uses it as the top.
             Register::Capture if self.wave.mode.top == Top::Capture => self.wave.capture = word,
@@ -90,7 +91,7 @@ impl Timer {
     fn set_control(&mut self, index: usize, value: u8) {
         self.control[index] = value;
         let [a, b, _] = self.control;
-        let mode = if self.is_wide() {
+        let mode = if self.place.wide {
             Mode::wide(a & 3 | b >> 1 & 0x0C)
         } else {
             Mode::narrow(a & 3 | b >> 1 & 4)
@@ -99,12 +100,10 @@ impl Timer {
             self.wave.set_mode(mode);
         }
         self.wave.pin_mode = [a >> 6, a >> 4 & 3, a >> 2 & 3];
-        if !self.is_wide() {
-            self.wave.pin_mode[2] = 0;
-            if index == 1 {
-                self.control[1] &= 0x0F;
-                self.force(value, [0x80, 0x40, 0]);
-            }
+        self.wave.pin_mode[self.wave.channels..].fill(0);
+        if !self.place.wide && index == 1 {
+            self.control[1] &= 0x0F;
+            self.force(value, [0x80, 0x40, 0]);
         }
         self.set_clock();
     }
@@ -121,11 +120,11 @@ impl Timer {
         const SYNCHRONOUS: [u64; 6] = [0, 1, 8, 64, 256, 1024];
         const OWN: [u64; 8] = [0, 1, 8, 32, 64, 128, 256, 1024];
         let select = usize::from(self.control[1] & 7);
-        self.clock = match (self.index, select) {
+        self.clock = match (self.place.number, select) {
             (_, 0) => Clock::Stopped,
-            // The crystal's pins of timer 2 are not connected on a Mega: it stands.
-            (2, _) if self.is_asynchronous() => Clock::Stopped,
-            (2, _) => Clock::Divided(OWN[select]),
+            // The pins of timer 2's own crystal have none: it stands.
+            (ASYNCHRONOUS, _) if self.is_asynchronous() => Clock::Stopped,
+            (ASYNCHRONOUS, _) => Clock::Divided(OWN[select]),
             (_, 6 | 7) => Clock::Pin {
                 rising: select == 7,
             },
@@ -135,12 +134,7 @@ impl Timer {
 }
 
 /// Writes GTCCR: resets the prescalers, or holds them at 0 as long as TSM is set.
-pub(crate) fn write_general_control(
-    timers: &mut [Timer; 6],
-    core: &mut Core,
-    value: u8,
-    cycle: u64,
-) {
+pub(crate) fn write_general_control(timers: &mut [Timer], core: &mut Core, value: u8, cycle: u64) {
     for timer in timers.iter_mut() {
         timer.catch_up(core, cycle);
     }

@@ -126,11 +126,11 @@ pub(crate) struct Wave {
 }
 
 impl Wave {
-    pub(crate) const fn new(wide: bool) -> Wave {
+    pub(crate) const fn new(wide: bool, channels: usize) -> Wave {
         Wave {
             mode: if wide { Mode::wide(0) } else { Mode::narrow(0) },
             max: if wide { 0xFFFF } else { 0xFF },
-            channels: if wide { 3 } else { 2 },
+            channels,
             count: 0,
             down: false,
             compare: [0; CHANNELS],

@@ -53,7 +53,7 @@ impl Usart {
 
     /// The clock is its own: XCK is an output.
     fn is_master(&self, core: &Core) -> bool {
-        core.ports.is_output(self.place().clock)
+        core.ports.is_output(self.place.clock)
     }
 
     /// The cycle of the next step of its own clock, if that runs.
@@ -122,7 +122,7 @@ impl Usart {
                 self.clocked.bit.max(1)
             };
             let event = Event::Byte {
-                usart: self.index as u8,
+                usart: self.place.number as u8,
                 byte,
                 baud: CLOCK_HZ as f64 / (bit * core.clock.divisor()) as f64,
             };
@@ -136,7 +136,7 @@ impl Usart {
             return;
         }
         if self.format.mode == Mode::SpiMaster {
-            let level = core.ports.level(self.place().receive);
+            let level = core.ports.level(self.place.receive);
             self.receiver.clock_bare_bit(level, self.format);
         } else {
             let accept = self.acceptor();

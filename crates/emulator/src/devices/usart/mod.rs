@@ -20,7 +20,7 @@ use crate::io::Access;
 use clocked::Clocked;
 use format::Format;
 use line::Line;
-use place::{PLACES, Place, Register};
+pub(crate) use place::{Place, Register};
 use rate::Rate;
 use receiver::Receiver;
 use transmitter::{Step, Transmitter};
@@ -44,7 +44,7 @@ const TXB8: u8 = 0x01;
 /// One USART.
 #[derive(Clone, Debug)]
 pub(crate) struct Usart {
-    index: usize,
+    place: &'static Place,
     /// U2X and MPCM.
     settings: u8,
     control_b: u8,
@@ -62,14 +62,10 @@ pub(crate) struct Usart {
     stopped: Option<u64>,
 }
 
-/// All four after reset.
-pub(crate) fn all() -> [Usart; 4] {
-    [0, 1, 2, 3].map(new)
-}
-
-fn new(index: usize) -> Usart {
+/// After reset.
+pub(crate) fn new(place: &'static Place) -> Usart {
     Usart {
-        index,
+        place,
         settings: 0,
         control_b: 0,
         // 8N1.
@@ -96,13 +92,14 @@ impl Usart {
         let line = std::mem::take(&mut self.line);
         *self = Usart {
             line,
-            ..new(self.index)
+            ..new(self.place)
         };
         self.reschedule(core);
     }
 
-    fn place(&self) -> &'static Place {
-        &PLACES[self.index]
+    /// Whether this is one of its interrupt vectors.
+    pub(crate) fn has_vector(&self, vector: u8) -> bool {
+        (self.place.vector..self.place.vector + 3).contains(&vector)
     }
 
     fn listens(&self) -> bool {
@@ -111,7 +108,7 @@ impl Usart {
 
     /// A frame comes in from outside.
     pub(crate) fn receive(&mut self, core: &mut Core, bits: u16, count: u8, baud: u32, cycle: u64) {
-        let pin = self.place().receive;
+        let pin = self.place.receive;
         // Nothing is connected until something drives the line; a sender was idle before.
         if !core.ports.is_driven_outside(pin) {
             let change = core.ports.set_outside(pin, Some(true), cycle);
@@ -127,7 +124,7 @@ impl Usart {
             let level = self.line.step();
             let change = core
                 .ports
-                .set_outside(self.place().receive, Some(level), cycle);
+                .set_outside(self.place.receive, Some(level), cycle);
             core.note(Some(change), cycle);
         } else {
             self.catch_up(core, cycle);
@@ -152,7 +149,7 @@ impl Usart {
             match self.transmitter.step(self.format, self.rate) {
                 Some(Step::Sent(byte)) => {
                     let event = Event::Byte {
-                        usart: self.index as u8,
+                        usart: self.place.number as u8,
                         byte,
                         baud: CLOCK_HZ as f64 / (self.rate.bit() * core.clock.divisor()) as f64,
                     };
@@ -182,11 +179,11 @@ impl Usart {
         if self.stopped.is_some() {
             return;
         }
-        if pin == self.place().clock && self.is_clocked() {
+        if pin == self.place.clock && self.is_clocked() {
             let high = core.ports.level(pin);
             self.clock_edge(core, high, cycle);
         }
-        if pin == self.place().receive && self.listens() && !self.is_clocked() {
+        if pin == self.place.receive && self.listens() && !self.is_clocked() {
             let (level, accept) = (self.line_level(core), self.acceptor());
             self.receiver
                 .change(level, cycle, self.format, self.rate, accept);
@@ -225,7 +222,7 @@ impl Usart {
 
     /// The level that the receiver sees; a line that nothing drives counts as idle.
     fn line_level(&self, core: &Core) -> bool {
-        let pin = self.place().receive;
+        let pin = self.place.receive;
         core.ports.level(pin) || !core.ports.is_driven_outside(pin)
     }
 
@@ -244,8 +241,10 @@ impl Usart {
             ),
         };
         let next = [self.line_due(core), transmitter, receiver];
-        core.schedule
-            .set(Source::Usart(self.index), next.into_iter().flatten().min());
+        core.schedule.set(
+            Source::Usart(self.place.number),
+            next.into_iter().flatten().min(),
+        );
     }
 
     fn flags(&self) -> u8 {
@@ -264,7 +263,7 @@ impl Usart {
     fn request(&self, core: &mut Core) {
         let requested = self.flags() & self.control_b;
         for (offset, flag) in [RXC, UDRE, TXC].into_iter().enumerate() {
-            let vector = self.place().vector + offset as u8;
+            let vector = self.place.vector + offset as u8;
             core.interrupts.set(vector, requested & flag != 0);
         }
     }
@@ -276,8 +275,8 @@ impl Usart {
         let transmit = force(sends, Force::Output(self.transmitter.level));
         let receive = force(self.listens(), Force::Input);
         for (pin, force) in [
-            (self.place().transmit, transmit),
-            (self.place().receive, receive),
+            (self.place.transmit, transmit),
+            (self.place.receive, receive),
         ] {
             let change = core.ports.force(pin, force, cycle);
             core.note(change, cycle);
@@ -285,7 +284,7 @@ impl Usart {
         if self.drives_clock || self.is_clocked() {
             let level = self.clock_level();
             self.drives_clock = level.is_some();
-            let change = core.ports.override_output(self.place().clock, level, cycle);
+            let change = core.ports.override_output(self.place.clock, level, cycle);
             core.note(change, cycle);
         }
     }
@@ -296,7 +295,7 @@ impl Usart {
             .receiver
             .first()
             .is_some_and(|first| first.data >= 0x100);
-        match self.place().register(address) {
+        match self.place.register(address) {
             Some(Register::StatusA) => self.flags() | self.settings,
             Some(Register::ControlB) => self.control_b | if ninth { RXB8 } else { 0 },
             Some(Register::ControlC) => self.control_c,
@@ -314,7 +313,7 @@ impl Usart {
     pub(crate) fn write(&mut self, core: &mut Core, address: u16, value: u8, at: Access) {
         self.catch_up(core, at.cycle);
         let [low, high] = self.divisor.to_le_bytes();
-        match self.place().register(address) {
+        match self.place.register(address) {
             Some(Register::StatusA) => {
                 self.transmitter.complete &= value & TXC == 0;
                 self.settings = value & (U2X | MPCM);
@@ -398,16 +397,9 @@ impl Usart {
     /// One of its interrupts is entered: only the end of transmission is a flag that this clears.
     pub(crate) fn acknowledge(&mut self, core: &mut Core, vector: u8, cycle: u64) {
         self.catch_up(core, cycle);
-        if vector == self.place().vector + 2 {
+        if vector == self.place.vector + 2 {
             self.transmitter.complete = false;
         }
         self.request(core);
     }
-}
-
-/// The USART that has this interrupt vector.
-pub(crate) fn of_vector(vector: u8) -> Option<usize> {
-    PLACES
-        .iter()
-        .position(|place| (place.vector..place.vector + 3).contains(&vector))
 }

@@ -2,7 +2,7 @@
 
 use super::Made;
 use rumbo_experiment::files::Library;
-use rumbo_sim::mega::pins::chip_pin;
+use rumbo_sim::mega::boards::MEGA;
 use rumbo_sim::wiring::Wiring;
 use std::fmt::Write;
 
@@ -280,7 +280,9 @@ fn table(wiring: &Wiring) -> Result<String, String> {
     rows.sort_unstable();
     let mut words = String::from("| pin | of the chip | signal | goes to |\n|---|---|---|---|\n");
     for (number, signal, part, terminal) in rows {
-        let chip = chip_pin(number).map_or_else(String::new, |pin| pin.to_string());
+        let chip = MEGA
+            .pin(number)
+            .map_or_else(String::new, |pin| pin.to_string());
         let _ = writeln!(
             words,
             "| {number} | {chip} | `{signal}` | {part}: {terminal} |"

@@ -3,7 +3,7 @@
 use super::*;
 
 fn wave(wide: bool, wgm: u8, compare: [u16; 3], capture: u16) -> Wave {
-    let mut wave = Wave::new(wide);
+    let mut wave = Wave::new(wide, if wide { 3 } else { 2 });
     wave.set_mode(if wide {
         Mode::wide(wgm)
     } else {

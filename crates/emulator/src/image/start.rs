@@ -3,27 +3,31 @@
 
 use super::{Image, ImageError};
 use crate::decode::{Code, decode};
+use crate::model::{MODELS, Model};
 
-/// Ends of SRAM that are not this chip's, and who has them.
-const OTHERS: [(u16, &str); 5] = [
+/// Ends of SRAM of chips that there are no models of, and who has them.
+const OTHERS: [(u16, &str); 4] = [
     (0x02FF, "ATmega88"),
     (0x04FF, "ATmega168"),
-    (0x08FF, "ATmega328P of an Arduino Uno or Nano"),
     (0x0AFF, "ATmega32U4 of an Arduino Leonardo or Micro"),
     (0x10FF, "ATmega128 or ATmega644"),
 ];
 /// Instructions from the start within which the stack pointer is set.
 const START: usize = 12;
 
-/// Refuses a program that sets its stack where another chip's SRAM ends.
-pub(super) fn refuse(image: &Image) -> Result<(), ImageError> {
+/// The chip whose SRAM ends where the program sets its stack, if it does.
+///
+/// # Errors
+/// There is no model of that chip.
+pub(super) fn model(image: &Image) -> Result<Option<&'static Model>, ImageError> {
     let end = stack_at_start(image);
-    let other = OTHERS.iter().find(|(known, _)| end == Some(*known));
-    other.map_or(Ok(()), |(end, name)| {
-        Err(ImageError::Device(format!(
+    if let Some((end, name)) = OTHERS.iter().find(|(known, _)| end == Some(*known)) {
+        return Err(ImageError::Device(format!(
             "its stack begins at 0x{end:04x}, as on the {name}"
-        )))
-    })
+        )));
+    }
+    let mut models = MODELS.into_iter();
+    Ok(models.find(|model| end == Some(model.ram_end)))
 }
 
 /// What the program's first instructions load into Y before they write it to the stack pointer.
