@@ -17,6 +17,8 @@ pub const LINK_BAUD: f64 = 9600.0;
 /// Receiving and transmitting pins of the USARTs on the board.
 const RECEIVERS: [u8; 4] = [0, 19, 17, 15];
 const TRANSMITTERS: [u8; 4] = [1, 18, 16, 14];
+/// The pin of the board's LED.
+const LED: u8 = 13;
 /// Time to wait for HELLO, which our program sends as soon as it runs [us].
 const BOOT_US: u64 = 600_000;
 /// A boot loader has handed over after this [cycles], or never will.
@@ -78,6 +80,12 @@ impl Firmware {
         let mut signals = self.wires.signals();
         signals.extend(board_signals());
         signals
+    }
+
+    /// The pins worth an instrument: the wired ones, and the board's LED.
+    pub(super) fn metered(&self) -> Vec<(String, Pin)> {
+        let led = chip_pin(LED).map(|pin| ("led".to_owned(), pin));
+        self.wires.signals().into_iter().chain(led).collect()
     }
 
     /// What it speaks on its link.

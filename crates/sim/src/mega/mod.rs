@@ -14,6 +14,7 @@
 //! | `outputs` | the chip's outputs as actions on the robot |
 //! | `echo` | echo lines, and sonars that fail |
 //! | `console` | output of the USARTs, for people |
+//! | `meters` | what instruments at the wired pins show |
 //! | `marks` | when the program reaches some of its functions |
 //! | `notes` | oddities of a program, for people |
 //! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
@@ -29,6 +30,7 @@ mod bridge;
 mod echo;
 mod inputs;
 mod marks;
+mod meters;
 mod module;
 mod notes;
 mod outputs;
@@ -43,6 +45,7 @@ use echo::Echoes;
 use firmware::Firmware;
 use inputs::Announced;
 use marks::Marks;
+use meters::Meters;
 use pins::Wires;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
@@ -105,6 +108,7 @@ pub struct Mega {
     /// Bytes that the module has received from the chip, and when [us].
     sent: Vec<(u64, u8)>,
     consoles: [Console; 4],
+    meters: Meters,
     verdict: Option<Verdict>,
     /// When the program reached the functions of interest.
     marks: Marks,
@@ -136,6 +140,7 @@ impl Mega {
             actions: Vec::new(),
             sent: Vec::new(),
             consoles: Default::default(),
+            meters: Meters::at(firmware.metered()),
             verdict: None,
             marks: Marks::default(),
             has_driven: false,
@@ -225,6 +230,11 @@ impl Mega {
     pub fn take_console(&mut self, usart: u8) -> Vec<u8> {
         let console = self.consoles.get_mut(usize::from(usart));
         console.map(Console::take).unwrap_or_default()
+    }
+
+    /// What the instruments at the wired pins show since the last reading.
+    pub(crate) fn read_meters(&mut self) -> Vec<(String, f64)> {
+        self.meters.read(self.chip.cycle())
     }
 
     /// Sends bytes to a USART from a terminal at the rate at which it last spoke.
