@@ -27,6 +27,8 @@ use tokio::time::{interval, sleep, timeout};
 pub(crate) const MAX_MESSAGE: usize = 4_096;
 /// Most rows sent to a page at once; of more it gets the newest.
 const ROWS_AT_ONCE: usize = 500;
+/// The same of readings, of which there may be four times as many.
+const READINGS_AT_ONCE: usize = 2_000;
 /// Refusals that wait for a page.
 const REFUSALS_WAITING: usize = 8;
 /// News within this time are sent together: a page draws at most 60 times a second.
@@ -180,6 +182,8 @@ async fn publish_news(
         let behind = news.samples.len().saturating_sub(ROWS_AT_ONCE);
         if std::mem::replace(&mut run, news.run) == news.run {
             news.samples.drain(..behind);
+            let behind = news.readings.len().saturating_sub(READINGS_AT_ONCE);
+            news.readings.drain(..behind);
         }
         t_s = news.state.as_ref().map_or(t_s, |state| state.t_s);
         while let Ok(text) = refusals.try_recv() {
