@@ -1,5 +1,7 @@
 //! `rumbo lab`: a simulated robot behind the station's dashboard.
 
+mod renewal;
+
 use crate::args::LabArgs;
 use crate::browser;
 use crate::calibrate;
@@ -8,15 +10,16 @@ use crate::logs;
 use crate::manifest;
 use crate::output;
 use crate::scene::{first_commands, scene};
+use renewal::OwnProgram;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
 use rumbo_experiment::run;
-use rumbo_log::{Choice, Kind, Manifest, MapPose, Scene, Truth};
+use rumbo_log::{Choice, Kind, Manifest, MapPose, ProgramState, Scene, Truth};
 use rumbo_session::{Abilities, LinkNews, Standing, Target, TargetError};
 use rumbo_sim::debugging::Debugging;
 use rumbo_sim::mega::firmware::Language;
-use rumbo_sim::{Config, Sim};
+use rumbo_sim::{Config, READING_US, Sim};
 use rumbo_station::LabConfig;
 use rumbo_wire::Command;
 use std::collections::VecDeque;
@@ -34,6 +37,10 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
         ..args.image.overrides()
     };
     let mut robot = SimulatedRobot::new(overrides, choice)?;
+    if let Some(given) = args.image.given() {
+        let watched = OwnProgram::new(&given, args.image.watched());
+        robot.program = Some(watched.map_err(Failure::input)?);
+    }
     if let Some(port) = args.gdb {
         robot.debugging = Some(debugging(port, args)?);
     }
@@ -91,8 +98,12 @@ pub(crate) struct SimulatedRobot {
     overrides: Overrides,
     sim: Sim,
     debugging: Option<Debugging>,
+    /// The program that the user gave, if it is one for the emulated Mega.
+    program: Option<OwnProgram>,
     manifest: Manifest,
     mode: ModeId,
+    /// When the instruments are read next \[us\].
+    reading_due_us: u64,
     /// The emulated program's end has been reported.
     ended: bool,
     /// What has happened to the program and is not reported yet.
@@ -118,8 +129,10 @@ impl SimulatedRobot {
             overrides,
             sim,
             debugging: None,
+            program: None,
             manifest,
             mode,
+            reading_due_us: 0,
             ended: false,
             news: VecDeque::new(),
             scene,
@@ -289,6 +302,15 @@ impl Target for SimulatedRobot {
         })
     }
 
+    fn instruments(&mut self) -> Vec<(String, f64)> {
+        let now_us = self.sim.now_us();
+        if now_us < self.reading_due_us {
+            return Vec::new();
+        }
+        self.reading_due_us = now_us + READING_US;
+        self.sim.read_instruments()
+    }
+
     fn scene(&self) -> Option<Scene> {
         Some(self.scene.clone())
     }
@@ -301,7 +323,12 @@ impl Target for SimulatedRobot {
         said.filter(|(_, bytes)| !bytes.is_empty()).collect()
     }
 
+    fn program(&self) -> Option<ProgramState> {
+        self.program_state()
+    }
+
     fn news(&mut self) -> Option<LinkNews> {
+        self.renew_program();
         if let Some(debugging) = &mut self.debugging {
             let news = debugging.take_news().into_iter();
             self.news.extend(news.map(LinkNews::Held));
@@ -336,14 +363,19 @@ impl Target for SimulatedRobot {
         if !offered {
             return Err(TargetError::NotOffered);
         }
-        let fresh = prepare(
-            &self.library,
-            &self.overrides,
-            choice.clone(),
-            // Switched off and on again: saved parameters persist.
-            &self.sim.memory(),
-        );
-        let fresh = fresh.map_err(|error| TargetError::Setup(error.to_string()))?;
+        if self.program.as_ref().is_some_and(OwnProgram::is_rejected) {
+            return Err(TargetError::NotCompiled);
+        }
+        self.start_again(choice.clone())
+            .map_err(|error| TargetError::Setup(error.to_string()))
+    }
+}
+
+impl SimulatedRobot {
+    /// Starts again from time 0, as switched off and on again: saved parameters persist.
+    fn start_again(&mut self, choice: Choice) -> Result<(), FileError> {
+        let memory = self.sim.memory();
+        let fresh = prepare(&self.library, &self.overrides, choice, &memory)?;
         // What the command line added to the lists stays there.
         let Scene {
             scenarios, worlds, ..
@@ -353,7 +385,7 @@ impl Target for SimulatedRobot {
             debugging.forget();
         }
         self.mode = fresh.mode;
-        self.ended = false;
+        (self.reading_due_us, self.ended) = (0, false);
         self.first_commands = fresh.first_commands;
         self.manifest = fresh.manifest;
         self.scene = Scene {

@@ -27,6 +27,17 @@ impl From<SketchError> for Failure {
     }
 }
 
+/// The path that a user gave, to look for changes there; none for an example.
+pub(crate) fn path(name: &str) -> Option<&Path> {
+    (!name.starts_with(EXAMPLE)).then(|| Path::new(name))
+}
+
+/// A compiler for the user's own sketches.
+pub(crate) fn compiler() -> Result<Compiler, SketchError> {
+    let sandbox = Sandbox::trusting(Limits::default());
+    Compiler::new(Toolchain::find()?, sandbox, cache())
+}
+
 /// The image of a user's sketch, compiled if need be: a folder, an `.ino`, or an example by name.
 pub(crate) fn image(name: &str) -> Result<PathBuf, Failure> {
     let source = match name.strip_prefix(EXAMPLE) {
@@ -36,9 +47,7 @@ pub(crate) fn image(name: &str) -> Result<PathBuf, Failure> {
             Given::Sketch(source) => source,
         },
     };
-    let sandbox = Sandbox::trusting(Limits::default());
-    let compiler = Compiler::new(Toolchain::find()?, sandbox, cache())?;
-    let image = compiler.compile(&source, &[])?;
+    let image = compiler()?.compile(&source, &[])?;
     for warning in &image.warnings {
         warning.to_string().lines().for_each(output::aside);
     }

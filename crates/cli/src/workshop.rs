@@ -1,0 +1,193 @@
+//! The sketch of the lab, compiled again whenever it is saved. A thread looks at its files and compiles; the lab asks for
+//! what it has made.
+//!
+//! The files are read and compared, not their times or the system's notices: an editor may write in place, or a new file
+//! that it renames, and a file saved without a change changes nothing.
+
+use crate::sketch;
+use rumbo_log::Complaint;
+use rumbo_sketch::{Compiler, Diagnostic, Given, SketchError, Source, given};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, SystemTime};
+
+/// The files are looked at this often. What has changed is compiled when it is the same twice: whole, that is.
+const LOOK: Duration = Duration::from_millis(150);
+/// Errors shown: the first ones matter.
+const MOST: usize = 12;
+
+/// What the workshop says.
+#[derive(Debug)]
+pub(crate) enum Made {
+    /// The program has changed and is being compiled.
+    Begun,
+    /// The new image.
+    Image(PathBuf),
+    /// Why there is none.
+    Rejected(Vec<Complaint>),
+}
+
+/// A program that is watched.
+pub(crate) struct Workshop {
+    made: Receiver<Made>,
+}
+
+/// A program as it stands in its files.
+#[derive(Clone, PartialEq)]
+enum Contents {
+    Sketch(Source),
+    Image(PathBuf, Option<(u64, SystemTime)>),
+}
+
+impl Workshop {
+    /// Watches a sketch or an image as it is now; ends when it is dropped.
+    pub(crate) fn watch(path: &Path) -> std::io::Result<Self> {
+        let path = path.to_owned();
+        let (sender, made) = channel();
+        std::thread::Builder::new()
+            .name("workshop".into())
+            .spawn(move || work(&path, &sender))?;
+        Ok(Self { made })
+    }
+
+    /// What it has to say.
+    pub(crate) fn next(&self) -> Option<Made> {
+        self.made.try_recv().ok()
+    }
+}
+
+/// Looks and compiles until nobody listens.
+fn work(path: &Path, sender: &Sender<Made>) {
+    let mut compiler = None;
+    let mut built = contents(path);
+    let mut before = None;
+    loop {
+        std::thread::sleep(LOOK);
+        // Gone for a moment while an editor renames.
+        let now = contents(path);
+        let whole = now.is_some() && now == before;
+        before.clone_from(&now);
+        let Some(changed) = now.filter(|_| whole && built != before) else {
+            // An empty message would wake nobody; the lab's end is noticed at the next change.
+            continue;
+        };
+        built.clone_from(&before);
+        let made = |made| sender.send(made).is_ok();
+        if !made(Made::Begun) || !made(make(&changed, &mut compiler)) {
+            return;
+        }
+    }
+}
+
+fn contents(path: &Path) -> Option<Contents> {
+    match given(path, true).ok()? {
+        Given::Sketch(source) => Some(Contents::Sketch(source)),
+        Given::Image(path) => {
+            let about = std::fs::metadata(&path).ok();
+            let about = about.and_then(|about| Some((about.len(), about.modified().ok()?)));
+            Some(Contents::Image(path, about))
+        }
+    }
+}
+
+fn make(contents: &Contents, compiler: &mut Option<Compiler>) -> Made {
+    let source = match contents {
+        Contents::Sketch(source) => source,
+        Contents::Image(path, _) => return Made::Image(path.clone()),
+    };
+    let mut compile = || {
+        let compiler = match compiler {
+            Some(compiler) => compiler,
+            None => compiler.insert(sketch::compiler()?),
+        };
+        compiler.compile(source, &[])
+    };
+    match compile() {
+        Ok(image) => Made::Image(image.path),
+        Err(SketchError::Rejected(errors)) => {
+            let errors = errors.iter().take(MOST);
+            Made::Rejected(errors.map(|error| complaint(error, source)).collect())
+        }
+        Err(error) => Made::Rejected(vec![problem(error.to_string())]),
+    }
+}
+
+/// What is wrong with no line in particular.
+pub(crate) fn problem(text: String) -> Complaint {
+    Complaint {
+        text,
+        ..Complaint::default()
+    }
+}
+
+/// An error with the line that it is about.
+fn complaint(error: &Diagnostic, source: &Source) -> Complaint {
+    let numbers = [error.line, error.column].into_iter().flatten();
+    let place = error.file.as_ref().map(|file| {
+        let numbers = numbers.map(|number| format!(":{number}"));
+        file.clone() + &numbers.collect::<String>()
+    });
+    let line = error
+        .file
+        .as_ref()
+        .zip(error.line)
+        .and_then(|(file, line)| {
+            let text = String::from_utf8_lossy(source.files.get(file)?);
+            let line = text.lines().nth(line.checked_sub(1)? as usize)?;
+            Some(line.chars().take(200).collect())
+        });
+    Complaint {
+        place,
+        text: error.text.clone(),
+        line,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rumbo_sketch::Severity;
+
+    #[test]
+    fn an_error_comes_with_the_line_that_it_is_about() {
+        let source = Source {
+            name: "wall".into(),
+            files: [("wall.ino".into(), b"void setup() {}\nint x = 1\n".to_vec())].into(),
+        };
+        let error = |file: &str, line: u32| Diagnostic {
+            severity: Severity::Error,
+            file: Some(file.into()),
+            line: Some(line),
+            column: Some(10),
+            text: "expected ';'".into(),
+            notes: Vec::new(),
+        };
+        let seen = complaint(&error("wall.ino", 2), &source);
+        assert_eq!(seen.place.as_deref(), Some("wall.ino:2:10"));
+        assert_eq!(seen.line.as_deref(), Some("int x = 1"));
+        assert_eq!(complaint(&error("Servo.h", 2), &source).line, None);
+        assert_eq!(complaint(&error("wall.ino", 9), &source).line, None);
+    }
+
+    #[test]
+    fn a_file_that_is_written_by_a_rename_is_seen_and_one_saved_unchanged_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let image = folder.path().join("a.elf");
+        std::fs::write(&image, "one").unwrap();
+        let workshop = Workshop::watch(&image).unwrap();
+        let next = || workshop.made.recv_timeout(Duration::from_secs(30)).unwrap();
+        let beside = folder.path().join("a.elf~");
+        std::fs::write(&beside, "another").unwrap();
+        std::fs::rename(&beside, &image).unwrap();
+        assert!(matches!(next(), Made::Begun));
+        assert!(matches!(next(), Made::Image(path) if path == image));
+
+        let sketch = folder.path().join("b.ino");
+        std::fs::write(&sketch, "x").unwrap();
+        let before = contents(&sketch);
+        std::fs::write(&sketch, "x").unwrap();
+        assert!(contents(&sketch) == before);
+        std::fs::write(&sketch, "y").unwrap();
+        assert!(contents(&sketch) != before);
+    }
+}
