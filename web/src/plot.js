@@ -111,8 +111,9 @@ export class PlotPanel {
     if (right && kept) return kept;
     if (!right && min !== null && max !== null) return [min, max];
     // Whole steps, so that the axis does not jitter with the noise.
-    const { step } = UNITS[(right ? this.rightUnit : null) ?? this.unit];
-    if (low === null || low === undefined || high === null) return [0, 10 * step];
+    const unit = UNITS[(right ? this.rightUnit : null) ?? this.unit];
+    if (low === null || low === undefined || high === null) return [0, 10 * unit.step];
+    const step = unit.free ? 10 ** Math.floor(Math.log10(Math.max(high - low, Math.abs(high) / 1_000, 1e-9))) : unit.step;
     return [Math.floor(low / step - 0.05) * step, Math.ceil(high / step + 0.05) * step];
   }
 
@@ -146,7 +147,7 @@ export class PlotPanel {
   /** @param {Curve} each @param {number} series */
   #chip({ name, label, about, kind, colour, unit, right }, series) {
     const value = create('output', { textContent: '–' });
-    const chip = create('button', { type: 'button', className: `curve ${kind}`, title: t('{}: show or hide', t(about)) }, create('span', { className: `swatch ${colour}` }), t(label), value);
+    const chip = create('button', { type: 'button', className: `curve ${kind}`, title: t('{}: show or hide', about) }, create('span', { className: `swatch ${colour}` }), label, value);
     chip.setAttribute('aria-pressed', 'true');
     chip.addEventListener('click', () => {
       const show = chip.getAttribute('aria-pressed') !== 'true';
