@@ -65,6 +65,8 @@ const BROWN_OUT_V: f64 = 3.8;
 pub const ACT: u64 = 10;
 /// A sonar needs its trigger high for 10 us (HC-SR04 user's manual); what is shorter it may ignore.
 const TRIGGER_CYCLES: u64 = 10 * CYCLES_PER_US;
+/// The rate of a terminal at a USART that does not receive \[baud\].
+const UNSET_BAUD: u32 = 9600;
 /// An input goes into the chip's queue this long before its cycle: until then nothing the chip does can change it.
 const AHEAD_CYCLES: u64 = CYCLES_PER_US;
 
@@ -237,12 +239,11 @@ impl Mega {
         self.meters.read(self.chip.cycle())
     }
 
-    /// Sends bytes to a USART from a terminal at the rate at which it last spoke.
+    /// Sends bytes to a USART from a terminal that is set to its rate, as the Serial Monitor is.
     pub fn type_in(&mut self, usart: u8, bytes: &[u8]) {
-        let Some(console) = self.consoles.get(usize::from(usart)) else {
-            return;
-        };
-        let (cycle, baud) = (self.chip.cycle(), console.baud());
+        let cycle = self.chip.cycle();
+        let baud = self.chip.devices().receiving_baud(usart);
+        let baud = baud.map_or(UNSET_BAUD, |baud| baud.round() as u32);
         for byte in bytes {
             let byte = *byte;
             self.chip.input(cycle, Input::Serial { usart, byte, baud });

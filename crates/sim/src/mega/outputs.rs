@@ -101,7 +101,7 @@ impl Mega {
 
     fn byte_sent(&mut self, cycle: u64, usart: u8, byte: u8, baud: f64) {
         if let Some(console) = self.consoles.get_mut(usize::from(usart)) {
-            console.push(byte, baud);
+            console.push(byte);
         }
         if self.wires().link == Some(usart)
             && let Some(byte) = module::decode(byte, baud, firmware::LINK_BAUD)
