@@ -107,7 +107,7 @@ const events = new EventList((t_s) => {
   if (replay.shown) replay.seek(t_s);
 });
 const consoles = new Consoles(send, (usart) => store.readings.printedBy(usart).length > 0, (usart) => plots.showPrinted(usart));
-const program = new ProgramPanel();
+const program = new ProgramPanel(send, (text) => events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text }]));
 /** The run that the consoles are of. @type {number | null} */
 let consoleRun = null;
 const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);

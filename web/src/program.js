@@ -14,6 +14,19 @@ export function phaseWords({ program }) {
   return program?.phase === 'rejected' ? [t('does not compile'), 'warning'] : [t('program runs'), 'good'];
 }
 
+/** Largest file taken [bytes]: an image for the Mega with what a debugger needs. */
+const LARGEST = 1_000_000;
+
+/** A file's content as the station takes it. @param {File} file @returns {Promise<string>} */
+function base64(file) {
+  return new Promise((done, failed) => {
+    const reader = new FileReader();
+    reader.addEventListener('load', () => done(String(reader.result).replace(/^.*?,/, '')));
+    reader.addEventListener('error', () => failed(reader.error));
+    reader.readAsDataURL(file);
+  });
+}
+
 export class ProgramPanel {
   #panel = element('program', HTMLDivElement);
   #name = element('program-name', HTMLElement);
@@ -21,6 +34,25 @@ export class ProgramPanel {
   #hint = element('program-hint', HTMLParagraphElement);
   #list = element('complaints', HTMLOListElement);
   #shown = '';
+
+  /**
+   * A sketch or an image that is dropped on the page runs, where there is an emulated Mega to run it.
+   * @param {(order: import('./types.js').Order) => void} send
+   * @param {(why: string) => void} complain
+   */
+  constructor(send, complain) {
+    const carriesFile = (/** @type {DragEvent} */ event) => !this.#panel.hidden && event.dataTransfer?.types.includes('Files');
+    addEventListener('dragover', (event) => {
+      if (carriesFile(event)) event.preventDefault();
+    });
+    addEventListener('drop', async (event) => {
+      const file = event.dataTransfer?.files[0];
+      if (!file || !carriesFile(event)) return;
+      event.preventDefault();
+      if (file.size > LARGEST) complain(t('{}: not sent, a program has at most {} MB', file.name, LARGEST / 1e6));
+      else send({ type: 'program', name: file.name, data: await base64(file) });
+    });
+  }
 
   /** @param {State} state */
   show(state) {

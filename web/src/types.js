@@ -127,6 +127,7 @@
  *   | {type: 'waypoint', x_m: number, y_m: number}
  *   | {type: 'rig', rig: string}
  *   | {type: 'set_param', id: number, value: number}
+ *   | {type: 'program', name: string, data: string}
  *   | {type: 'type', usart: number, text: string}
  *   | {type: 'speed', factor: number}
  *   | {type: 'seek', t_s: number}

@@ -107,7 +107,8 @@ test('the mended sketch runs from the start, and drives when a line is typed to 
 void setup() {
   for (int pin : OUTPUTS) pinMode(pin, OUTPUT);
   Serial.begin(115200);
-  Serial.println("ready");
+  Serial1.begin(9600);
+  Serial1.println("ready");
 }
 void loop() {
   if (Serial.readStringUntil('\\n') != "go") return;
@@ -118,7 +119,12 @@ void loop() {
   analogWrite(6, 120);
 }
 `);
+  const port = (/** @type {string} */ name) => page.locator('#console-choice button').filter({ hasText: name });
+  await page.locator('#complaints').waitFor({ state: 'hidden' });
+  await port('Serial1 (Bluetooth)').click();
   await page.locator('#console').filter({ hasText: /^ready/ }).waitFor();
+  // It has said nothing here yet.
+  await port('Serial (USB)').click();
   assert.equal(await page.locator('#complaints').isVisible(), false);
   assert.ok(Math.abs(await last('true_x_m')) < 0.01, 'it stands at the start again');
   await page.locator('#console-text').fill('go');
@@ -127,6 +133,25 @@ void loop() {
   await until('true_left_pwm', 110, 130);
   await until('true_x_m', 0.1, 9);
   assert.deepEqual(dashboard.complaints, []);
+});
+
+/** Drops a file on the page. @param {string} name @param {string} text */
+const drop = (name, text) => page.evaluate(([name, text]) => {
+  const dataTransfer = new DataTransfer();
+  dataTransfer.items.add(new File([text ?? ''], name ?? ''));
+  document.body.dispatchEvent(new DragEvent('drop', { dataTransfer, bubbles: true, cancelable: true }));
+}, [name, text]);
+
+const walled = spawnSync('bwrap', ['--ro-bind', '/', '/', 'true']).status === 0;
+
+test('a sketch that is dropped on the page is compiled in the sandbox and runs; what it may not include it does not get', { skip: skip || (walled ? false : 'bwrap is missing') }, async () => {
+  await drop('dropped.ino', 'void setup() { Serial.begin(9600); Serial.println("dropped"); }\nvoid loop() {}\n');
+  await page.locator('#console').filter({ hasText: /^dropped/ }).waitFor();
+  assert.equal(await page.locator('#program-name').textContent(), 'dropped.ino');
+  await drop('thief.ino', '#include "/etc/passwd"\nvoid setup() {}\nvoid loop() {}\n');
+  await page.locator('#complaints li').first().filter({ hasText: /thief\.ino:1.*No such file/ }).waitFor();
+  await drop('notes.txt', 'x');
+  await page.locator('#events li').filter({ hasText: 'program: refused, only an .ino' }).waitFor();
 });
 
 test('its log shows the same: replayed, and exported as tables', { skip }, async () => {

@@ -1,5 +1,6 @@
 //! `rumbo lab`: a simulated robot behind the station's dashboard.
 
+mod prepare;
 mod renewal;
 
 use crate::args::LabArgs;
@@ -7,22 +8,24 @@ use crate::browser;
 use crate::calibrate;
 use crate::failure::Failure;
 use crate::logs;
-use crate::manifest;
 use crate::output;
-use crate::scene::{first_commands, scene};
+use prepare::{Prepared, prepare};
 use renewal::OwnProgram;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
-use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
-use rumbo_experiment::run;
-use rumbo_log::{Choice, Kind, Manifest, MapPose, ProgramState, Scene, Truth};
+use rumbo_experiment::files::{FileError, Library, Overrides};
+use rumbo_log::{Choice, Manifest, MapPose, ProgramState, Scene, Truth};
 use rumbo_session::{Abilities, LinkNews, Standing, Target, TargetError};
 use rumbo_sim::debugging::Debugging;
 use rumbo_sim::mega::firmware::Language;
-use rumbo_sim::{Config, READING_US, Sim};
+use rumbo_sim::{READING_US, Sim};
 use rumbo_station::LabConfig;
 use rumbo_wire::Command;
 use std::collections::VecDeque;
+
+/// The USART of the USB port.
+#[cfg(unix)]
+const USB: u8 = 0;
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.
 pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
@@ -43,6 +46,10 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
     }
     if let Some(port) = args.gdb {
         robot.debugging = Some(debugging(port, args)?);
+    }
+    #[cfg(unix)]
+    if args.usb_pty {
+        robot.usb = Some(crate::pty::UsbPort::offer()?);
     }
     #[cfg(unix)]
     if args.pty {
@@ -98,6 +105,9 @@ pub(crate) struct SimulatedRobot {
     overrides: Overrides,
     sim: Sim,
     debugging: Option<Debugging>,
+    /// Another program at the USB port.
+    #[cfg(unix)]
+    usb: Option<crate::pty::UsbPort>,
     /// The program that the user gave, if it is one for the emulated Mega.
     program: Option<OwnProgram>,
     manifest: Manifest,
@@ -129,6 +139,8 @@ impl SimulatedRobot {
             overrides,
             sim,
             debugging: None,
+            #[cfg(unix)]
+            usb: None,
             program: None,
             manifest,
             mode,
@@ -162,62 +174,6 @@ fn offer(names: &mut Vec<String>, chosen: Option<&String>) {
     }
 }
 
-/// A simulation at time 0 and its surroundings.
-struct Prepared {
-    sim: Sim,
-    mode: ModeId,
-    scene: Scene,
-    first_commands: Vec<Command>,
-    manifest: Manifest,
-}
-
-fn prepare(
-    library: &Library,
-    overrides: &Overrides,
-    choice: Choice,
-    memory: &[u8],
-) -> Result<Prepared, FileError> {
-    let overrides = Overrides {
-        world: choice.world.clone(),
-        rig: choice.rig.clone(),
-        ..overrides.clone()
-    };
-    let setup: Setup = library.setup(&choice.scenario, &overrides)?;
-    let mut manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
-    manifest.remember(memory);
-    let setup = setup.of_seed(choice.seed)?;
-    let ready = run::prepare(&setup, choice.seed)?;
-    Ok(Prepared {
-        sim: Sim::new(Config {
-            memory: memory.to_vec(),
-            ..ready.config(choice.seed)?
-        })?,
-        mode: setup.scenario.mode,
-        scene: scene(library, &setup, choice)?,
-        first_commands: first_words(&ready)?,
-        manifest,
-    })
-}
-
-/// The first commands to the robot. An image does not have its parameters yet, and one with the text protocol sets its
-/// own mode.
-fn first_words(setup: &Setup) -> Result<Vec<Command>, FileError> {
-    let mut commands = first_commands(setup);
-    if setup.firmware.is_none() {
-        return Ok(commands);
-    }
-    if !setup.takes_parameters() {
-        commands.retain(|command| !matches!(command, Command::Mode(_)));
-        return Ok(commands);
-    }
-    let parameters = setup.control_parameters()?.into_iter();
-    let parameters = parameters.map(|(id, value)| Command::SetParam {
-        id: id as u8,
-        value,
-    });
-    Ok(parameters.chain(commands).collect())
-}
-
 impl SimulatedRobot {
     /// Makes it accept the bytes meant for another robot, timed by that one's clock.
     pub(crate) fn be_ghost(&mut self) {
@@ -246,6 +202,10 @@ impl Target for SimulatedRobot {
     }
 
     fn advance(&mut self, dt_us: u64) -> Result<(), TargetError> {
+        #[cfg(unix)]
+        if let (Some(usb), Some(mega)) = (&mut self.usb, self.sim.mega_mut()) {
+            mega.type_in(USB, usb.read());
+        }
         // After a breakpoint, back to the multiples of the step.
         let until_us = (self.sim.now_us() / dt_us.max(1) + 1) * dt_us;
         match &mut self.debugging {
@@ -320,7 +280,12 @@ impl Target for SimulatedRobot {
             return Vec::new();
         };
         let said = (0..4).map(|usart| (usart, mega.take_console(usart)));
-        said.filter(|(_, bytes)| !bytes.is_empty()).collect()
+        let said: Vec<_> = said.filter(|(_, bytes)| !bytes.is_empty()).collect();
+        #[cfg(unix)]
+        if let (Some(usb), Some((USB, bytes))) = (&mut self.usb, said.first()) {
+            usb.write(bytes);
+        }
+        said
     }
 
     fn program(&self) -> Option<ProgramState> {
@@ -347,6 +312,10 @@ impl Target for SimulatedRobot {
             true => Ok(()),
             false => Err(TargetError::NoChip),
         }
+    }
+
+    fn run_program(&mut self, name: String, content: Vec<u8>) -> Result<(), TargetError> {
+        self.drop_program(name, content)
     }
 
     fn first_commands(&self) -> Vec<Command> {

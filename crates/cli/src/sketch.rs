@@ -2,6 +2,7 @@
 
 use crate::args::{NewArgs, NewKind};
 use crate::failure::Failure;
+use crate::mark::crc32;
 use crate::output;
 use rumbo_sketch::sandbox::{Limits, Sandbox};
 use rumbo_sketch::{Compiler, Given, SketchError, Toolchain, example, given, starter};
@@ -36,6 +37,22 @@ pub(crate) fn path(name: &str) -> Option<&Path> {
 pub(crate) fn compiler() -> Result<Compiler, SketchError> {
     let sandbox = Sandbox::trusting(Limits::default());
     Compiler::new(Toolchain::find()?, sandbox, cache())
+}
+
+/// A compiler for sketches of others, in the sandbox.
+pub(crate) fn walled_compiler() -> Result<Compiler, SketchError> {
+    let toolchain = Toolchain::find()?;
+    let sandbox = Sandbox::walled(&toolchain, Limits::default())?;
+    Compiler::new(toolchain, sandbox, cache())
+}
+
+/// Keeps an image that was given as bytes beside the compiled sketches, by its checksum.
+pub(crate) fn keep_image(content: &[u8], kind: &str) -> std::io::Result<PathBuf> {
+    let folder = cache().join("dropped");
+    std::fs::create_dir_all(&folder)?;
+    let path = folder.join(format!("{:08x}.{kind}", crc32(content)));
+    std::fs::write(&path, content)?;
+    Ok(path)
 }
 
 /// The image of a user's sketch, compiled if need be: a folder, an `.ino`, or an example by name.

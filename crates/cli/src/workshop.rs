@@ -50,6 +50,19 @@ impl Workshop {
         Ok(Self { made })
     }
 
+    /// Compiles a sketch of somebody else's once, in the sandbox, or keeps an image; by the name of its file.
+    pub(crate) fn make_dropped(name: String, content: Vec<u8>) -> std::io::Result<Self> {
+        let (sender, made) = channel();
+        std::thread::Builder::new()
+            .name("workshop".into())
+            .spawn(move || {
+                // Nobody listens any more if the next one was dropped meanwhile.
+                let _ = sender.send(Made::Begun);
+                let _ = sender.send(dropped(&name, content));
+            })?;
+        Ok(Self { made })
+    }
+
     /// What it has to say.
     pub(crate) fn next(&self) -> Option<Made> {
         self.made.try_recv().ok()
@@ -104,11 +117,36 @@ fn make(contents: &Contents, compiler: &mut Option<Compiler>) -> Made {
     };
     match compile() {
         Ok(image) => Made::Image(image.path),
-        Err(SketchError::Rejected(errors)) => {
+        Err(error) => rejected(error, source),
+    }
+}
+
+fn dropped(name: &str, content: Vec<u8>) -> Made {
+    let made = match Path::new(name).extension().and_then(|kind| kind.to_str()) {
+        Some(kind @ ("elf" | "hex")) => sketch::keep_image(&content, kind).map(Made::Image),
+        _ => {
+            let stem = Path::new(name).file_stem().unwrap_or_default();
+            let source = Source {
+                name: stem.to_string_lossy().into_owned(),
+                files: [(name.to_owned(), content)].into(),
+            };
+            let compiled = sketch::walled_compiler();
+            match compiled.and_then(|compiler| compiler.compile(&source, &[])) {
+                Err(error) => Ok(rejected(error, &source)),
+                Ok(image) => Ok(Made::Image(image.path)),
+            }
+        }
+    };
+    made.unwrap_or_else(|error: std::io::Error| Made::Rejected(vec![problem(error.to_string())]))
+}
+
+fn rejected(error: SketchError, source: &Source) -> Made {
+    match error {
+        SketchError::Rejected(errors) => {
             let errors = errors.iter().take(MOST);
             Made::Rejected(errors.map(|error| complaint(error, source)).collect())
         }
-        Err(error) => Made::Rejected(vec![problem(error.to_string())]),
+        error => Made::Rejected(vec![problem(error.to_string())]),
     }
 }
 

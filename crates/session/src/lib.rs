@@ -38,7 +38,7 @@ pub use console::{ConsoleText, LINK_CONSOLE, readable};
 pub use error::{CalibrationError, TargetError};
 pub use event::Event;
 pub use lease::{Lease, PageId, Seat, View};
-pub use orders::{BadOrder, MAX_SPEED, Order, stop_first};
+pub use orders::{BadOrder, MAX_ORDER, MAX_SPEED, Order, SHORT_ORDER, stop_first};
 pub use pace::{Pace, SLICE_US};
 pub use page::{LinkBytes, ReadingGroup, ToPage};
 pub use session::{Ask, Going, Now, Session, Sight};

@@ -49,6 +49,8 @@ pub enum Ask {
     Type(u8, String),
     /// Put the ghost there; then [`Session::ghost_restarted`].
     Ghost(Standing),
+    /// Run this program; why not is reported as a note.
+    Program(String, Vec<u8>),
     /// Calibrate the robot; then [`Session::calibration_begun`].
     Calibrate,
 }
@@ -201,6 +203,7 @@ impl Session {
             Order::Calibrate => return self.may_calibrate(now),
             Order::TakeControl | Order::ReleaseControl => {}
             Order::RestartGhost => return Some(Ask::Ghost(self.observer.standing())),
+            Order::Program(name, data) => return Some(Ask::Program(name, data)),
             Order::Seek(_) | Order::Step(_) => {
                 let text = "refused, this is no replay of a log";
                 self.note(Level::Warning, text.into(), now);

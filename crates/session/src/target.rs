@@ -144,6 +144,14 @@ pub trait Target: Send {
         Err(TargetError::NoTyping)
     }
 
+    /// Runs another program, of this file name and content, as soon as it is compiled.
+    ///
+    /// # Errors
+    /// If this robot takes none.
+    fn run_program(&mut self, _name: String, _content: Vec<u8>) -> Result<(), TargetError> {
+        Err(TargetError::NoPrograms)
+    }
+
     /// Starts again from time 0 with the choice given.
     ///
     /// # Errors

@@ -125,7 +125,11 @@ impl Replay {
             Order::Reset(_) => self.seek(0.0),
             Order::Calibrate => {}
             Order::RestartGhost => self.restart_ghost(),
-            Order::Robot(_) | Order::Hold(_) | Order::Route(_) | Order::Type(..)
+            Order::Robot(_)
+            | Order::Hold(_)
+            | Order::Route(_)
+            | Order::Type(..)
+            | Order::Program(..)
                 if !self.warned =>
             {
                 self.warned = true;
@@ -135,6 +139,7 @@ impl Replay {
             | Order::Hold(_)
             | Order::Route(_)
             | Order::Type(..)
+            | Order::Program(..)
             | Order::TakeControl
             | Order::ReleaseControl => {}
         }

@@ -162,6 +162,11 @@ impl Driver {
                 let sent = self.target.type_in(usart, &line);
                 self.session.typed(usart, &line, sent, now);
             }
+            Ask::Program(name, content) => {
+                if let Err(why) = self.target.run_program(name, content) {
+                    self.note(Level::Warning, format!("program: refused, {why}"));
+                }
+            }
             Ask::Ghost(standing) => {
                 let done = self.target.restart_ghost(standing);
                 self.session.ghost_restarted(done, now);

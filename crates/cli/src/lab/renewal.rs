@@ -4,7 +4,7 @@
 use super::SimulatedRobot;
 use crate::workshop::{Made, Workshop, problem};
 use rumbo_log::{Complaint, Level, ProgramPhase, ProgramState};
-use rumbo_session::LinkNews;
+use rumbo_session::{LinkNews, TargetError};
 use std::path::{Path, PathBuf};
 
 /// The program at the pins.
@@ -26,6 +26,13 @@ impl OwnProgram {
             complaints: Vec::new(),
             workshop: path.map(Workshop::watch).transpose()?,
         })
+    }
+
+    /// A program that was dropped on the page.
+    fn dropped(name: String, content: Vec<u8>) -> std::io::Result<Self> {
+        let mut program = Self::new(&name, None)?;
+        program.workshop = Some(Workshop::make_dropped(name, content)?);
+        Ok(program)
     }
 
     /// Why it cannot be started.
@@ -59,6 +66,24 @@ impl SimulatedRobot {
             Some(Made::Image(path)) => self.start_program(path),
             Some(Made::Rejected(complaints)) => self.reject(complaints),
         }
+    }
+
+    /// Replaces the program by one that was dropped on the page, once it is compiled.
+    pub(super) fn drop_program(
+        &mut self,
+        name: String,
+        content: Vec<u8>,
+    ) -> Result<(), TargetError> {
+        let kind = Path::new(&name).extension().and_then(|kind| kind.to_str());
+        if !matches!(kind, Some("ino" | "elf" | "hex")) {
+            return Err(TargetError::NotAProgram);
+        }
+        if self.sim.mega().is_none() {
+            return Err(TargetError::NoChip);
+        }
+        let program = OwnProgram::dropped(name, content);
+        self.program = Some(program.map_err(|error| TargetError::Setup(error.to_string()))?);
+        Ok(())
     }
 
     fn enter(&mut self, phase: ProgramPhase, complaints: Vec<Complaint>) {
