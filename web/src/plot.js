@@ -20,6 +20,8 @@ export const FONT = '11px system-ui, sans-serif';
 const EDGE_PX = 22;
 /** More changes of state than this hide the curves; the band shows them still. */
 const MOST_TRANSITIONS = 60;
+/** How far back the number beside a curve's name may be [lines]. */
+const LINES_BACK = 60;
 /** A drag that goes further than this along both axes is a box [px]. */
 const BOX_PX = 25;
 
@@ -137,7 +139,10 @@ export class PlotPanel {
       const column = /** @type {(number | null | undefined)[]} */ (data[index + 1] ?? []);
       const unused = !plottedIn(column) && !plottedIn(column, data[0], this.#view.range_s);
       if (chip.hidden !== unused) chip.hidden = unused;
-      const now = column[at] ?? column[at - 1] ?? column[at - 2];
+      // Between two lines of its own table a curve continues.
+      let line = at;
+      while (line > 0 && at - line < LINES_BACK && column[line] === undefined) line -= 1;
+      const now = column[line] ?? column[line - 1] ?? column[line - 2];
       const then = mark_s === null ? null : this.#store.tableOf(name).at(name, mark_s);
       const difference = typeof now === 'number' && typeof then === 'number' ? ` Δ ${format(now - then, decimals)}` : '';
       setText(value, `${format(now, decimals)}${difference}`);

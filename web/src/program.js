@@ -32,6 +32,7 @@ export class ProgramPanel {
   #name = element('program-name', HTMLElement);
   #phase = element('program-phase', HTMLOutputElement);
   #hint = element('program-hint', HTMLParagraphElement);
+  #watched = element('program-watched', HTMLElement);
   #list = element('complaints', HTMLOListElement);
   #shown = '';
 
@@ -63,6 +64,7 @@ export class ProgramPanel {
     const [words, level] = phaseWords(state);
     setText(this.#phase, words);
     this.#phase.className = `chip ${level}`;
+    this.#watched.hidden = !program.watched;
     this.#hint.hidden = program.phase !== 'rejected';
     const complaints = program.complaints ?? [];
     const all = JSON.stringify(complaints);

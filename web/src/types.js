@@ -85,7 +85,7 @@
  * @property {string} [refused] The last order, if it was refused or dropped, and why.
  * @property {string[]} [alarms] Alarms that need action at once.
  * @property {{phase: 'running', since_s: number} | {phase: 'done', findings: Findings, at_s: number} | {phase: 'failed', why: string, at_s: number}} [calibration]
- * @property {{name: string, link_usart: number | null, phase: 'running' | 'compiling' | 'rejected', complaints?: {place: string | null, text: string, line: string | null}[]}} [program] Of an emulated robot; what the compiler rejects of it.
+ * @property {{name: string, link_usart: number | null, phase: 'running' | 'compiling' | 'rejected', watched: boolean, complaints?: {place: string | null, text: string, line: string | null}[]}} [program] Of an emulated robot; what the compiler rejects of it.
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
  *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number,

@@ -45,6 +45,9 @@ pub struct ProgramState {
     pub link_usart: Option<u8>,
     /// What it does.
     pub phase: ProgramPhase,
+    /// It starts again when its file is saved.
+    #[serde(default)]
+    pub watched: bool,
     /// What the compiler rejects; then the robot stands still.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub complaints: Vec<Complaint>,

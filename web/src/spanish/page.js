@@ -51,9 +51,9 @@ export const PAGE = {
     'en el mapa: ampliar, ajustar, mover, e Intro elige el punto del centro; en las gráficas: ampliar y mover en el tiempo',
   'fingers': 'dedos', 'map and plots: one moves, two zoom': 'mapa y gráficas: uno mueve, dos amplían',
   // One's own program.
-  'compiled again when it is saved': 'se recompila al guardarlo', 'Errors of the compiler': 'Errores del compilador', 'compiling…': 'compilando…', 'does not compile': 'no compila', 'program runs': 'programa en marcha',
+  'starts again when it is saved': 'empieza de nuevo al guardarlo', 'Errors of the compiler': 'Errores del compilador', 'compiling…': 'compilando…', 'does not compile': 'no compila', 'program runs': 'programa en marcha',
   'The robot is switched off until the program compiles. Correct it and save.': 'El robot está apagado hasta que el programa compile. Corrígelo y guárdalo.',
-  '{}: not sent, a program has at most {} MB': '{}: no enviado, un programa tiene como mucho {} MB', 'or drop an .ino, .elf or .hex file here': 'o suelta aquí un archivo .ino, .elf o .hex',
+  '{}: not sent, a program has at most {} MB': '{}: no enviado, un programa tiene como mucho {} MB', 'drop another .ino, .elf or .hex here': 'suelta aquí otro .ino, .elf o .hex',
   'Plot the numbers that this port prints': 'Dibuja los números que escribe este puerto', 'Plot numbers': 'Dibujar números', '{} (Bluetooth)': '{} (Bluetooth)', 'go to the program as lines of text': 'llegan al programa como líneas de texto', 'sonars': 'sonares',
   'levels of pins, 0 to 1': 'niveles de los pines, 0 a 1', 'encoders, edges': 'encoders, flancos', 'pulses, µs': 'pulsos, µs', 'printed by the program': 'escritas por el programa',
   'edges': 'flancos', 'printed': 'escritas', 'µs': 'µs', 'level of the pin {}': 'nivel del pin {}', 'led': 'LED',

@@ -12,6 +12,8 @@ pub(super) struct OwnProgram {
     name: String,
     phase: ProgramPhase,
     complaints: Vec<Complaint>,
+    /// Its file is watched, and not only compiled once.
+    watched: bool,
     /// Nothing is watched where the program is no file of the user's.
     workshop: Option<Workshop>,
 }
@@ -24,6 +26,7 @@ impl OwnProgram {
             name: name.map_or_else(|| given.into(), |name| name.to_string_lossy().into_owned()),
             phase: ProgramPhase::Running,
             complaints: Vec::new(),
+            watched: path.is_some(),
             workshop: path.map(Workshop::watch).transpose()?,
         })
     }
@@ -51,6 +54,7 @@ impl SimulatedRobot {
                 None => mega.firmware().name().to_owned(),
             },
             link_usart: mega.firmware().link_usart(),
+            watched: program.is_some_and(|program| program.watched),
             phase: program.map(|program| program.phase).unwrap_or_default(),
             complaints: program.map_or_else(Vec::new, |program| program.complaints.clone()),
         })
