@@ -58,7 +58,7 @@ export class StateBand {
     ctx.textBaseline = 'middle';
     ctx.textAlign = 'right';
     ctx.fillStyle = colours.dim;
-    ctx.fillText(t('state'), bbox.left - 4 * devicePixelRatio, bbox.top + bbox.height / 2);
+    if (this.#store.stretches.length > 0) ctx.fillText(t('state'), bbox.left - 4 * devicePixelRatio, bbox.top + bbox.height / 2);
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();

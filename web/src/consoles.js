@@ -1,17 +1,13 @@
 // @ts-check
 /** Output of the USARTs of an emulated chip, or of a robot with the text protocol, and an input line. */
 import { create, element } from './dom.js';
+import { portName } from './signals.js';
+import { t } from './text.js';
 
 /** @typedef {import('./types.js').ConsoleText} ConsoleText */
 
 /** Characters kept of each USART. */
 const KEPT = 40_000;
-
-/** In place of a USART: the link to a robot with the text protocol. */
-const LINK = 255;
-
-/** A port as the student's program calls it. @param {number} usart */
-const name = (usart) => (usart === LINK ? 'link' : usart === 0 ? 'Serial (USB)' : `Serial${usart}`);
 
 export class Consoles {
   #section = element('console-section', HTMLElement);
@@ -22,9 +18,22 @@ export class Consoles {
   #said = new Map();
   /** @type {number | null} */
   #shown = null;
+  #plot = element('console-plot', HTMLButtonElement);
+  /** The USART with the Bluetooth module. @type {number | null} */
+  #link = null;
+  /** Whether a port prints numbers. @type {(usart: number) => boolean} */
+  #hasNumbers;
 
-  /** @param {(order: import('./types.js').Order) => void} send */
-  constructor(send) {
+  /**
+   * @param {(order: import('./types.js').Order) => void} send
+   * @param {(usart: number) => boolean} hasNumbers whether a port prints numbers
+   * @param {(usart: number) => void} plot shows them
+   */
+  constructor(send, hasNumbers, plot) {
+    this.#hasNumbers = hasNumbers;
+    this.#plot.addEventListener('click', () => {
+      if (this.#shown !== null) plot(this.#shown);
+    });
     element('console-line', HTMLFormElement).addEventListener('submit', (event) => {
       event.preventDefault();
       if (this.#shown === null) return;
@@ -42,18 +51,31 @@ export class Consoles {
     this.#text.textContent = '';
   }
 
+  /** The ports of the student's program: shown before they have sent anything. @param {number | null} link The one with the Bluetooth module. */
+  offerPorts(link) {
+    this.#link = link;
+    for (const usart of link === null ? [0] : [0, link]) this.#offer(usart);
+  }
+
+  /** @param {number} usart */
+  #name(usart) {
+    return usart === this.#link && usart > 0 ? t('{} (Bluetooth)', portName(usart)) : portName(usart);
+  }
+
   /** @param {ConsoleText[]} said */
   add(said) {
     for (const { usart, text } of said) {
-      if (!this.#said.has(usart)) this.#offer(usart);
+      this.#offer(usart);
       this.#said.set(usart, ((this.#said.get(usart) ?? '') + text).slice(-KEPT));
     }
     if (said.some(({ usart }) => usart === this.#shown)) this.#show();
   }
 
-  /** The USART has sent something for the first time. @param {number} usart */
+  /** Offers a USART, unless it is there. @param {number} usart */
   #offer(usart) {
-    const button = create('button', { type: 'button', value: String(usart) }, name(usart));
+    if (this.#said.has(usart)) return;
+    this.#said.set(usart, '');
+    const button = create('button', { type: 'button', value: String(usart) }, this.#name(usart));
     button.addEventListener('click', () => {
       this.#shown = usart;
       this.#show();
@@ -62,11 +84,13 @@ export class Consoles {
     this.#choice.insertBefore(button, next ?? null);
     this.#section.hidden = false;
     this.#shown ??= usart;
+    this.#show();
   }
 
   #show() {
     const atEnd = this.#text.scrollHeight - this.#text.scrollTop - this.#text.clientHeight < 30;
     this.#text.textContent = this.#said.get(this.#shown ?? -1) ?? '';
+    this.#plot.hidden = this.#shown === null || !this.#hasNumbers(this.#shown);
     if (atEnd) this.#text.scrollTop = this.#text.scrollHeight;
     for (const button of this.#choice.querySelectorAll('button')) button.setAttribute('aria-pressed', String(Number(button.value) === this.#shown));
   }

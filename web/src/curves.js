@@ -17,7 +17,10 @@ const OTHERS = ['goal', 'front', 'reference', 'right', 'left'];
 /** The curves of a plot, those of the left axis first. @param {PlotSpec} spec @returns {Curve[]} */
 export function curvesOf({ signals }) {
   const [unit] = unitsOf(signals);
-  const all = signals.flatMap((name) => signal(name) ?? []).map((each) => ({ ...each, right: each.unit !== unit }));
+  const known = signals.flatMap((name) => signal(name) ?? []);
+  // Where nothing else is drawn, what is true needs no other line.
+  const only = known.every(({ kind }) => kind === 'true');
+  const all = known.map((each) => ({ ...each, kind: only ? /** @type {const} */ ('measured') : each.kind, right: each.unit !== unit }));
   const left = all.filter(({ right }) => !right);
   const taken = new Set(left.map(look));
   return [...left, ...all.filter(({ right }) => right).map((each) => {
@@ -44,24 +47,26 @@ export function linesOf(store, curves, [from_s, to_s]) {
   const sources = tables.map((table) => (many ? table.coarse : table));
   const [only] = sources;
   if (only && sources.length === 1) return [only.t, ...curves.map(({ name }) => only.columns.get(name) ?? [])];
-  const joined = join(sources, curves.map(({ name }) => name), [from_s, to_s]);
+  // Two tables may have signals of one name: each is taken from its own.
+  const parts = tables.map((table, index) => ({ source: sources[index] ?? table, names: curves.map(({ name }) => name).filter((name) => store.tableOf(name) === table) }));
+  const joined = join(parts, [from_s, to_s]);
   return [joined.t, ...curves.map(({ name }) => joined.columns.get(name) ?? [])];
 }
 
-/** @param {Lines[]} sources @param {string[]} names @param {[number, number]} range_s */
-function join(sources, names, [from_s, to_s]) {
+/** @param {{source: Lines, names: string[]}[]} from @param {[number, number]} range_s */
+function join(from, [from_s, to_s]) {
   /** @type {number[]} */
   const t = [];
   /** @type {Map<string, Column>} */
-  const columns = new Map(names.map((name) => [name, []]));
+  const columns = new Map(from.flatMap(({ names }) => names.map((name) => [name, []])));
   // From the line before to the line after, so that the curves go through to the edges.
-  const parts = sources.map((source) => ({
+  const parts = from.map(({ source, names }) => ({
     t: source.t,
     at: Math.max(0, source.indexAt(from_s) - 1),
     end: Math.min(source.t.length, source.indexAt(to_s) + 1),
-    own: [...columns].flatMap(([name, into]) => {
-      const from = source.columns.get(name);
-      return from ? [{ from, into }] : [];
+    own: names.flatMap((name) => {
+      const [column, into] = [source.columns.get(name), columns.get(name)];
+      return column && into ? [{ column, into }] : [];
     }),
   }));
   for (;;) {
@@ -71,7 +76,7 @@ function join(sources, names, [from_s, to_s]) {
     t.push(next_s);
     for (const part of parts) {
       const here = part.at < part.end && part.t[part.at] === next_s;
-      for (const { from, into } of part.own) into.push(here ? from[part.at] : undefined);
+      for (const { column, into } of part.own) into.push(here ? column[part.at] : undefined);
       if (here) part.at += 1;
     }
   }

@@ -1,6 +1,7 @@
 // @ts-check
 /** The top line: what runs, its speed, and the quality of the link. */
 import { create, element, setText } from './dom.js';
+import { isOwn, phaseWords } from './program.js';
 import { format, formatShort } from './units.js';
 import { named, t } from './text.js';
 
@@ -102,6 +103,7 @@ export class Header {
     if (state.replay) return state.speed === 0 ? [t('replay, paused'), 'warning'] : [t('replay × {}', state.speed), 'good'];
     if (state.speed === 0) return [t('simulation paused'), 'warning'];
     if (performance.now() - this.#received_ms > STALE_MS) return [t('the station is silent'), 'bad'];
+    if (isOwn(state)) return phaseWords(state);
     if (!state.link.connected) return [t('no answer from the robot'), 'bad'];
     const slow = state.simulated && state.achieved_speed > 0 && state.achieved_speed < 0.9 * state.speed;
     const rate = t('live {} Hz', format(state.link.telemetry_hz, 0));

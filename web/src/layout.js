@@ -34,9 +34,22 @@ export const PLOTS = [
   plot('position', 4, ['ghost_x_m', 'ghost_y_m', 'true_x_m', 'true_y_m', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m']),
 ];
 
-/** A mode's default layout: the plots of these titles. @param {string[]} titles @returns {Layout} */
-function initial(titles) {
-  return { window_s: WINDOW_S, plots: titles.flatMap((title) => PLOTS.filter((each) => each.title === title)).map((each) => ({ ...each })) };
+/** In place of a mode's number: a program that does not say which mode it is in, as most people's own. */
+export const OWN_PROGRAM = -2;
+/** What can be plotted of any program. */
+export const OWN_PLOTS = [
+  plot('wheels', 4, ['true_left_rpm', 'true_right_rpm']),
+  plot('PWM', 3, ['true_left_pwm', 'true_right_pwm']),
+  plot('sonars', 4, ['true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'pinged_left_cm', 'pinged_right_cm', 'pinged_front_cm']),
+  plot('heading', 4, ['true_heading_deg']),
+  plot('position', 4, ['true_x_m', 'true_y_m']),
+];
+/** Titles of those that it begins with. */
+const OWN_TITLES = ['wheels', 'PWM', 'sonars'];
+
+/** A mode's default layout: the plots of these titles. @param {string[]} titles @param {PlotSpec[]} plots @returns {Layout} */
+function initial(titles, plots) {
+  return { window_s: WINDOW_S, plots: titles.flatMap((title) => plots.filter((each) => each.title === title)).map((each) => ({ ...each })) };
 }
 
 /** The units of signals, in the order in which they come. @param {string[]} signals */
@@ -134,7 +147,8 @@ export class Shelf {
 
   /** @param {number} mode */
   ofMode(mode) {
-    return this.#modes[mode] ?? initial(this.modes.find(({ id }) => id === mode)?.plots ?? []);
+    const own = mode === OWN_PROGRAM ? initial(OWN_TITLES, OWN_PLOTS) : initial(this.modes.find(({ id }) => id === mode)?.plots ?? [], PLOTS);
+    return this.#modes[mode] ?? own;
   }
 
   /** @param {string} name */

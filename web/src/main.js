@@ -10,8 +10,10 @@ import { CheckupDialog } from './checkup_dialog.js';
 import { Consoles } from './consoles.js';
 import { create, element, onFrame, setText } from './dom.js';
 import { EventList } from './events.js';
+import { IDENTITY } from './geometry.js';
 import { Header } from './header.js';
 import { makeHelp } from './help.js';
+import { OWN_PROGRAM } from './layout.js';
 import { LayoutDialog } from './layout_dialog.js';
 import { Link } from './link.js';
 import { LinkMeter } from './linkmeter.js';
@@ -23,6 +25,7 @@ import { Notice } from './notice.js';
 import { ParameterTable } from './parameters.js';
 import { PlotDialog } from './plot_dialog.js';
 import { Plots } from './plots.js';
+import { ProgramPanel, isOwn } from './program.js';
 import { ReplayBar } from './replay.js';
 import { Seat } from './seat.js';
 import { StateLine, pointerWords } from './stateline.js';
@@ -62,6 +65,13 @@ function setBody() {
   stateLine.sonars = sonars;
 }
 
+/** A program that sends no telemetry has other plots, until it sends some. */
+function showSilence() {
+  const silent = state !== null && isOwn(state) && store.silent;
+  document.body.classList.toggle('silent', silent);
+  if (state) plots.setMode(silent ? OWN_PROGRAM : state.robot.mode);
+}
+
 /** Minimum time between two messages that nothing is sent: a held key would repeat it five times a second [ms]. */
 const UNSENT_MS = 1_000;
 let unsent_ms = -UNSENT_MS;
@@ -96,7 +106,8 @@ const replay = new ReplayBar(send);
 const events = new EventList((t_s) => {
   if (replay.shown) replay.seek(t_s);
 });
-const consoles = new Consoles(send);
+const consoles = new Consoles(send, (usart) => store.readings.printedBy(usart).length > 0, (usart) => plots.showPrinted(usart));
+const program = new ProgramPanel(send, (text) => events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text }]));
 /** The run that the consoles are of. @type {number | null} */
 let consoleRun = null;
 const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);
@@ -180,6 +191,7 @@ function receive(message) {
       break;
     case 'scene':
       store.setRun(message.run);
+      store.start = message.scene?.start ?? IDENTITY;
       if (message.run !== consoleRun) consoles.clear();
       simulated = message.scene?.of_ghost ? null : message.scene;
       header.setScene(simulated);
@@ -198,7 +210,10 @@ function receive(message) {
       panel.show(state);
       stateLine.show(state);
       alarm.show(state);
-      plots.setMode(state.robot.mode);
+      program.show(state);
+      document.body.classList.toggle('own', isOwn(state));
+      if (isOwn(state)) consoles.offerPorts(state.program?.link_usart ?? null);
+      showSilence();
       machine.setMode(state.robot.mode);
       if (table.length > 0 && state.robot.rig !== null) checkup.meet(sonars, servo);
       calibration.show(state);
@@ -232,6 +247,11 @@ function receive(message) {
       Object.assign(ages, { received_ms: message.heard[0], session_ms: message.heard[1], drawn: false });
       for (const row of message.rows) store.push(row);
       if (store.latest?.ghost) document.body.classList.add('haunted');
+      redraw();
+      break;
+    case 'readings':
+      store.setRun(message.run);
+      for (const group of message.groups) store.pushReadings(group);
       redraw();
       break;
     case 'control':

@@ -3,6 +3,7 @@
 import { number, read } from './decimal.js';
 import { create, element, setText } from './dom.js';
 import { Movements } from './movements.js';
+import { isOwn } from './program.js';
 import { Places } from './places.js';
 import { CM_PER_M, RPM_PER_RAD_S, format } from './units.js';
 import { named, said, t } from './text.js';
@@ -89,7 +90,8 @@ export class CommandPanel {
       this.#places.layOut(entry);
     }
     this.#showReference(state, entry);
-    if (entry) this.#showAbout(entry, state.robot.rig);
+    if (isOwn(state)) setText(this.#about, t('go to the program as lines of text'));
+    else if (entry) this.#showAbout(entry, state.robot.rig);
     const scenario = armed || !entry ? null : this.#scenarioOf(entry);
     this.#experiment.hidden = scenario === null;
     if (scenario !== null) {

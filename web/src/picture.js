@@ -36,7 +36,7 @@ export function toPng(panel) {
     x += context.measureText(text).width + 12 * ratio;
   };
   write(`${t(panel.spec.title)} [${t(panel.unit)}]`, colours.text);
-  for (const { label, colour, right, unit } of shown(panel)) write(right ? `${t(label)} [${t(unit)}]` : t(label), colours[colour]);
+  for (const { label, colour, right, unit } of shown(panel)) write(right ? `${label} [${t(unit)}]` : label, colours[colour]);
   const [from_s, to_s] = limits(panel, 'x');
   context.fillStyle = colours.dim;
   context.textAlign = 'right';
@@ -75,7 +75,7 @@ export function toSvg(panel, { store }) {
   let next = LEFT;
   const curves = shown(panel).map(({ name, label, kind, colour, right, unit }) => {
     const ink = INK[colour] ?? '#222222';
-    const words = right ? `${t(label)} [${t(unit)}]` : t(label);
+    const words = right ? `${label} [${t(unit)}]` : label;
     const place = next;
     next += 34 + 7 * words.length;
     return `<path d="${path(store.tableOf(name), name, [from_s, to_s], x, right ? yRight : y, kind === 'reference')}" fill="none" stroke="${ink}" stroke-width="1.4" stroke-dasharray="${DASH[kind]}" clip-path="url(#in)"/>

@@ -20,6 +20,8 @@ export const FONT = '11px system-ui, sans-serif';
 const EDGE_PX = 22;
 /** More changes of state than this hide the curves; the band shows them still. */
 const MOST_TRANSITIONS = 60;
+/** How far back the number beside a curve's name may be [lines]. */
+const LINES_BACK = 60;
 /** A drag that goes further than this along both axes is a box [px]. */
 const BOX_PX = 25;
 
@@ -111,8 +113,9 @@ export class PlotPanel {
     if (right && kept) return kept;
     if (!right && min !== null && max !== null) return [min, max];
     // Whole steps, so that the axis does not jitter with the noise.
-    const { step } = UNITS[(right ? this.rightUnit : null) ?? this.unit];
-    if (low === null || low === undefined || high === null) return [0, 10 * step];
+    const unit = UNITS[(right ? this.rightUnit : null) ?? this.unit];
+    if (low === null || low === undefined || high === null) return [0, 10 * unit.step];
+    const step = unit.free ? 10 ** Math.floor(Math.log10(Math.max(high - low, Math.abs(high) / 1_000, 1e-9))) : unit.step;
     return [Math.floor(low / step - 0.05) * step, Math.ceil(high / step + 0.05) * step];
   }
 
@@ -136,7 +139,10 @@ export class PlotPanel {
       const column = /** @type {(number | null | undefined)[]} */ (data[index + 1] ?? []);
       const unused = !plottedIn(column) && !plottedIn(column, data[0], this.#view.range_s);
       if (chip.hidden !== unused) chip.hidden = unused;
-      const now = column[at] ?? column[at - 1] ?? column[at - 2];
+      // Between two lines of its own table a curve continues.
+      let line = at;
+      while (line > 0 && at - line < LINES_BACK && column[line] === undefined) line -= 1;
+      const now = column[line] ?? column[line - 1] ?? column[line - 2];
       const then = mark_s === null ? null : this.#store.tableOf(name).at(name, mark_s);
       const difference = typeof now === 'number' && typeof then === 'number' ? ` Δ ${format(now - then, decimals)}` : '';
       setText(value, `${format(now, decimals)}${difference}`);
@@ -146,7 +152,7 @@ export class PlotPanel {
   /** @param {Curve} each @param {number} series */
   #chip({ name, label, about, kind, colour, unit, right }, series) {
     const value = create('output', { textContent: '–' });
-    const chip = create('button', { type: 'button', className: `curve ${kind}`, title: t('{}: show or hide', t(about)) }, create('span', { className: `swatch ${colour}` }), t(label), value);
+    const chip = create('button', { type: 'button', className: `curve ${kind}`, title: t('{}: show or hide', about) }, create('span', { className: `swatch ${colour}` }), label, value);
     chip.setAttribute('aria-pressed', 'true');
     chip.addEventListener('click', () => {
       const show = chip.getAttribute('aria-pressed') !== 'true';

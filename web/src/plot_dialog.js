@@ -5,14 +5,17 @@ import { complaint, dialog, saveFile } from './dialog.js';
 import { create } from './dom.js';
 import { MOST_UNITS, unitsOf } from './layout.js';
 import { toCsv, toPng, toSvg } from './picture.js';
-import { SIGNALS, UNITS } from './signals.js';
+import { SIGNALS, UNITS, signal } from './signals.js';
 import { numberAs, t } from './text.js';
 
 /** @typedef {import('./plot.js').PlotPanel} PlotPanel */
 /** @typedef {import('./plots.js').Plots} Plots */
 
 /** What the signals of a unit are. @returns {Record<keyof typeof UNITS, string>} */
-const GROUPS = () => ({ cm: t('distances, cm'), rpm: t('wheel speeds, rpm'), 'of 255': t('PWM, of 255'), '°': t('angles, °'), m: t('positions, m') });
+const GROUPS = () => ({
+  cm: t('distances, cm'), rpm: t('wheel speeds, rpm'), 'of 255': t('PWM, of 255'), '°': t('angles, °'), m: t('positions, m'),
+  level: t('levels of pins, 0 to 1'), edges: t('encoders, edges'), 'µs': t('pulses, µs'), printed: t('printed by the program'),
+});
 
 export class PlotDialog {
   #plots;
@@ -25,10 +28,9 @@ export class PlotDialog {
   #rightMin = decimal('plot-right-min');
   #rightMax = decimal('plot-right-max');
   #right = create('div', { className: 'row' }, create('label', {}, `${t('right axis: y min')} `, this.#rightMin), create('label', {}, `${t('y max')} `, this.#rightMax));
-  #boxes = SIGNALS.map(({ name, about }) => {
-    const box = create('input', { type: 'checkbox', value: name });
-    return { box, label: create('label', {}, box, ` ${t(about)}`) };
-  });
+  /** @type {{box: HTMLInputElement, label: HTMLLabelElement}[]} */
+  #boxes = [];
+  #choice = create('div', { className: 'signal-choice' });
   #complaint = complaint();
   #remove = create('button', { type: 'button', textContent: t('Remove plot') });
   #pictures = create('span', { className: 'row' });
@@ -37,14 +39,11 @@ export class PlotDialog {
   constructor(plots) {
     this.#plots = plots;
     this.#dialog = dialog('plot-dialog', t('Plot'));
-    const units = /** @type {(keyof typeof UNITS)[]} */ (Object.keys(UNITS));
-    const groups = units.map((unit) => create('fieldset', {}, create('legend', { textContent: GROUPS()[unit] }),
-      ...this.#boxes.filter(({ box }) => SIGNALS.find(({ name }) => name === box.value)?.unit === unit).map(({ label }) => label)));
     const form = create('form', { className: 'stack' },
       create('div', { className: 'row' }, create('label', {}, `${t('title')} `, this.#title),
         create('label', {}, `${t('y min')} `, this.#min), create('label', {}, `${t('y max')} `, this.#max), create('span', { className: 'hint', textContent: t('empty = auto') })),
       this.#right,
-      create('div', { className: 'signal-choice' }, ...groups), this.#complaint,
+      this.#choice, this.#complaint,
       create('div', { className: 'row' }, create('button', { type: 'submit', className: 'go', textContent: t('Apply') }), this.#remove, create('span', { className: 'spacer' }), this.#pictures));
     form.addEventListener('submit', (event) => {
       event.preventDefault();
@@ -69,9 +68,25 @@ export class PlotDialog {
     return button;
   }
 
+  /** Offers the signals that there are now. */
+  #offer() {
+    const names = new Set([...SIGNALS.map(({ name }) => name), ...this.#plots.store.readings.names(), ...this.#panel?.spec.signals ?? []]);
+    const signals = [...names].flatMap((name) => signal(name) ?? []);
+    const units = /** @type {(keyof typeof UNITS)[]} */ (Object.keys(UNITS));
+    this.#boxes = [];
+    const groups = units.map((unit) => signals.filter((each) => each.unit === unit).map(({ name, about }) => {
+      const box = create('input', { type: 'checkbox', value: name });
+      const label = create('label', {}, box, ` ${about}`);
+      this.#boxes.push({ box, label });
+      return label;
+    }));
+    this.#choice.replaceChildren(...groups.flatMap((labels, index) => (labels.length === 0 ? [] : [create('fieldset', {}, create('legend', { textContent: GROUPS()[units[index] ?? 'cm'] }), ...labels)])));
+  }
+
   /** @param {PlotPanel | null} panel Null: a new plot. */
   open(panel) {
     this.#panel = panel;
+    this.#offer();
     const spec = panel?.spec ?? null;
     this.#dialog.heading.textContent = spec ? t('Change the plot {}', t(spec.title)) : t('New plot');
     this.#title.value = spec ? t(spec.title) : '';

@@ -5,7 +5,8 @@
  */
 import { BAND_PX, StateBand } from './band.js';
 import { create, element, setText } from './dom.js';
-import { LONGEST_S, PLOTS, SHORTEST_S, Shelf, unitsOf } from './layout.js';
+import { LONGEST_S, OWN_PLOTS, OWN_PROGRAM, PLOTS, SHORTEST_S, Shelf, unitsOf } from './layout.js';
+import { portName } from './signals.js';
 import { PlotPanel } from './plot.js';
 import { t } from './text.js';
 import { onThemeChange } from './theme.js';
@@ -127,10 +128,9 @@ export class Plots {
   }
 
   draw() {
-    const newest_s = this.store.slow.t.at(-1);
     const { window_s } = this.layout;
     if (this.#following) {
-      const to_s = Math.max(newest_s ?? 0, window_s);
+      const to_s = Math.max(this.store.newest_s, window_s);
       this.range_s = [to_s - window_s, to_s];
     }
     for (const panel of this.#panels) panel.draw();
@@ -170,6 +170,14 @@ export class Plots {
     this.use({ ...this.layout, plots });
   }
 
+  /** Plots the numbers that a port prints, in a plot of their own. @param {number} usart */
+  showPrinted(usart) {
+    const title = portName(usart);
+    const signals = this.store.readings.printedBy(usart);
+    const old = this.layout.plots.find((each) => each.title === title) ?? null;
+    this.change(old, { title, signals, min: null, max: null, weight: 4 });
+  }
+
   /** @param {Layout} layout */
   #show(layout) {
     this.layout = layout;
@@ -201,8 +209,10 @@ export class Plots {
 
   /** One button for each plot that there is from the start: shown or not. */
   #offerChoices() {
-    const own = this.#choices.querySelectorAll('button');
-    const buttons = own.length > 0 ? [...own] : PLOTS.map((spec) => {
+    const offered = this.#mode === OWN_PROGRAM ? OWN_PLOTS : PLOTS;
+    const own = [...this.#choices.querySelectorAll('button')];
+    const same = own.map(({ value }) => value).join() === offered.map(({ title }) => title).join();
+    const buttons = same ? own : offered.map((spec) => {
       const button = create('button', { type: 'button', value: spec.title, textContent: t(spec.title), title: t('Plot {}, or not', t(spec.title)) });
       button.addEventListener('click', () => {
         const shown = this.layout.plots.find((each) => each.title === spec.title);
@@ -210,7 +220,7 @@ export class Plots {
       });
       return button;
     });
-    if (own.length === 0) this.#choices.replaceChildren(...buttons);
+    if (!same) this.#choices.replaceChildren(...buttons);
     for (const button of buttons) button.setAttribute('aria-pressed', String(this.layout.plots.some(({ title }) => title === button.value)));
   }
 

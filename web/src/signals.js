@@ -1,8 +1,10 @@
 // @ts-check
 /** The signals that can be plotted, each with its label, its unit and its colour. */
 
+import { named, t } from './text.js';
+
 /** @typedef {import('./theme.js').ColourName} ColourName */
-/** @typedef {'cm' | 'rpm' | 'of 255' | '°' | 'm'} Unit */
+/** @typedef {'cm' | 'rpm' | 'of 255' | '°' | 'm' | 'level' | 'edges' | 'µs' | 'printed'} Unit */
 
 /**
  * @typedef {object} Signal
@@ -14,13 +16,17 @@
  * @property {'measured' | 'reference' | 'true'} kind
  */
 
-/** The unit's first scale reaches over ten steps; values have so many decimals. @type {Record<Unit, {step: number, decimals: number}>} */
+/** The unit's first scale reaches over ten steps; values have so many decimals. Steps of `free` units grow and shrink with the values. @type {Record<Unit, {step: number, decimals: number, free?: boolean}>} */
 export const UNITS = {
   cm: { step: 10, decimals: 1 },
   rpm: { step: 20, decimals: 0 },
   'of 255': { step: 50, decimals: 0 },
   '°': { step: 30, decimals: 0 },
   m: { step: 0.5, decimals: 2 },
+  level: { step: 0.1, decimals: 2 },
+  edges: { step: 10, decimals: 0, free: true },
+  'µs': { step: 100, decimals: 0, free: true },
+  printed: { step: 1, decimals: 2, free: true },
 };
 
 /** @type {Signal[]} */
@@ -31,6 +37,9 @@ export const SIGNALS = [
   { name: 'range_left_cm', label: 'left', about: 'range, left sonar', unit: 'cm', colour: 'left', kind: 'measured' },
   { name: 'range_right_cm', label: 'right', about: 'range, right sonar', unit: 'cm', colour: 'right', kind: 'measured' },
   { name: 'range_front_cm', label: 'front', about: 'range, front sonar', unit: 'cm', colour: 'front', kind: 'measured' },
+  { name: 'pinged_left_cm', label: 'left', about: 'range by the last echo, left sonar', unit: 'cm', colour: 'left', kind: 'measured' },
+  { name: 'pinged_right_cm', label: 'right', about: 'range by the last echo, right sonar', unit: 'cm', colour: 'right', kind: 'measured' },
+  { name: 'pinged_front_cm', label: 'front', about: 'range by the last echo, front sonar', unit: 'cm', colour: 'front', kind: 'measured' },
   { name: 'reference_cm', label: 'setpoint', about: 'distance setpoint', unit: 'cm', colour: 'reference', kind: 'reference' },
   { name: 'range_difference_cm', label: 'left − right', about: 'range, left minus right sonar', unit: 'cm', colour: 'goal', kind: 'measured' },
   { name: 'true_left_rpm', label: 'true l.', about: 'true speed, left wheel', unit: 'rpm', colour: 'left', kind: 'true' },
@@ -43,11 +52,17 @@ export const SIGNALS = [
   { name: 'right_error_rpm', label: 'error r.', about: 'error of the speed, right wheel', unit: 'rpm', colour: 'goal', kind: 'measured' },
   { name: 'left_pwm', label: 'left', about: 'PWM, left wheel', unit: 'of 255', colour: 'left', kind: 'measured' },
   { name: 'right_pwm', label: 'right', about: 'PWM, right wheel', unit: 'of 255', colour: 'right', kind: 'measured' },
+  { name: 'true_left_pwm', label: 'true l.', about: 'PWM at the motor, left wheel', unit: 'of 255', colour: 'left', kind: 'true' },
+  { name: 'true_right_pwm', label: 'true r.', about: 'PWM at the motor, right wheel', unit: 'of 255', colour: 'right', kind: 'true' },
   { name: 'true_heading_deg', label: 'true', about: 'true heading', unit: '°', colour: 'front', kind: 'true' },
   { name: 'heading_deg', label: 'heading', about: 'estimated heading', unit: '°', colour: 'front', kind: 'measured' },
   { name: 'heading_ref_deg', label: 'setpoint', about: 'heading setpoint', unit: '°', colour: 'reference', kind: 'reference' },
   { name: 'heading_error_deg', label: 'error', about: 'error of the heading', unit: '°', colour: 'goal', kind: 'measured' },
   { name: 'servo_deg', label: 'servo', about: 'angle of the servo', unit: '°', colour: 'right', kind: 'measured' },
+  { name: 'true_servo_deg', label: 'true servo', about: 'true angle of the servo', unit: '°', colour: 'right', kind: 'true' },
+  { name: 'servo_pulse_us', label: 'servo', about: 'last pulse to the servo', unit: 'µs', colour: 'right', kind: 'measured' },
+  { name: 'left_edges', label: 'left', about: 'edges of the encoder so far, left wheel', unit: 'edges', colour: 'left', kind: 'measured' },
+  { name: 'right_edges', label: 'right', about: 'edges of the encoder so far, right wheel', unit: 'edges', colour: 'right', kind: 'measured' },
   { name: 'ghost_heading_deg', label: 'ghost', about: 'ghost heading', unit: '°', colour: 'goal', kind: 'true' },
   { name: 'ghost_x_m', label: 'ghost x', about: 'ghost position, x', unit: 'm', colour: 'goal', kind: 'true' },
   { name: 'ghost_y_m', label: 'ghost y', about: 'ghost position, y', unit: 'm', colour: 'front', kind: 'true' },
@@ -62,7 +77,27 @@ export const SIGNALS = [
   { name: 'goal_y_m', label: 'goal y', about: 'goal position, y', unit: 'm', colour: 'right', kind: 'reference' },
 ];
 
-/** The signal with this name. @param {string} name */
+/** Colours of signals that a wiring or a program names, in turn. @type {ColourName[]} */
+const COLOURS = ['left', 'right', 'front', 'goal', 'reference'];
+/** Signals by their names, in the reader's language. @type {Map<string, Signal>} */
+const met = new Map(SIGNALS.map((each) => [each.name, { ...each, label: t(each.label), about: t(each.about) }]));
+
+/** The signal with this name: one of those above, a pin's, or a printed one. @param {string} name @returns {Signal | null} */
 export function signal(name) {
-  return SIGNALS.find((each) => each.name === name) ?? null;
+  const known = met.get(name) ?? null;
+  const [, pin = null, port = null, printed = null] = name.match(/^(?:pin_(\w+)|serial(\d+):(.+))$/) ?? [];
+  const label = pin ? named(pin) : printed;
+  if (known || label === null) return known;
+  const about = pin ? t('level of the pin {}', named(pin)) : `${portName(Number(port))}: ${label}`;
+  const colour = COLOURS[(met.size - SIGNALS.length) % COLOURS.length] ?? 'left';
+  /** @type {Signal} */
+  const made = { name, label, about, unit: pin ? 'level' : 'printed', colour, kind: 'measured' };
+  met.set(name, made);
+  return made;
 }
+
+/** A port as the student's program calls it. @param {number} usart */
+export const portName = (usart) => (usart === LINK ? 'link' : usart === 0 ? 'Serial (USB)' : `Serial${usart}`);
+
+/** In place of a USART: the link to a robot with the text protocol. */
+export const LINK = 255;

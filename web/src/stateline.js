@@ -1,7 +1,7 @@
 // @ts-check
 /** The line with the robot's activity: state, heading, goal and distance, reached or not; or the fault, and a wrong rig. */
 import { create, element, setText } from './dom.js';
-import { near, wrapped } from './geometry.js';
+import { compose, inverse, near, wrapped } from './geometry.js';
 import { inWords } from './places.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S, format } from './units.js';
 import { named, said, t } from './text.js';
@@ -132,7 +132,7 @@ export class StateLine {
   /** @param {State} slow */
   #showPose({ robot }) {
     const latest = this.#store.latest;
-    const at = latest?.estimated;
+    const at = latest?.estimated ?? (latest?.truth && compose(inverse(latest.origin), latest.truth));
     if (!latest || !at) return setText(this.#pose, '');
     const lines = [`x ${format(at.x_m * CM_PER_M)} cm   y ${format(at.y_m * CM_PER_M)} cm   ${t('heading')} ${degrees(at.heading_rad)}`];
     const ranges = this.sonars.map((id) => `${t(SONARS[id] ?? '')} ${inReach(latest.ranges_m[id] ?? null)}`);

@@ -6,6 +6,7 @@
  * Positions are in metres from the robot's origin, the true ones too, and headings continue through 180 degrees up to 315.
  */
 import { IDENTITY, compose, inverse, near, wrapped } from './geometry.js';
+import { Readings } from './readings.js';
 import { Table } from './table.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S } from './units.js';
 
@@ -77,6 +78,9 @@ const TRAIL_STEP_M = 0.02;
 export class Store {
   slow = new Table(SLOW, KEPT_S);
   fast = new Table(FAST, KEPT_S);
+  readings = new Readings(KEPT_S);
+  /** Where the robot began, in the world. @type {Pose} */
+  start = IDENTITY;
   /** @type {Stretch[]} */
   stretches = [];
   /** @type {Latest | null} */
@@ -105,6 +109,7 @@ export class Store {
   clear() {
     this.slow.clear();
     this.fast.clear();
+    this.readings.clear();
     this.stretches = [];
     this.latest = null;
     this.trails = { estimated: [], truth: [], ghost: [] };
@@ -244,9 +249,33 @@ export class Store {
     if (first && first.to_s < t_s - 1.2 * KEPT_S) this.stretches.shift();
   }
 
+  /** @param {import('./types.js').ReadingGroup} group */
+  pushReadings(group) {
+    const before = this.latest;
+    // Of a program that sends no telemetry nothing else is known.
+    const silent = this.silent;
+    const origin = silent || before === null ? this.start : before.origin;
+    for (const { t_s, pose, pinged_m, servo_rad, contact } of this.readings.push(group, origin)) {
+      lengthen(this.trails.truth, pose);
+      /** @type {Latest} */
+      const known = this.latest ?? { t_s, mode: -1, state: null, armed: false, origin, estimated: null, spread: null, truth: null, ghost: null, heading_ref_rad: null, ranges_m: pinged_m, servo_rad, contact };
+      this.latest = { ...known, truth: pose, servo_rad, contact, ranges_m: silent ? pinged_m : known.ranges_m };
+    }
+  }
+
+  /** The robot has sent no telemetry. */
+  get silent() {
+    return this.slow.t.length === 0;
+  }
+
+  /** Time of the newest line [s]. */
+  get newest_s() {
+    return Math.max(this.slow.t.at(-1) ?? 0, this.readings.newest_s);
+  }
+
   /** The table that a signal is in. @param {string} name */
   tableOf(name) {
-    return this.fast.columns.has(name) ? this.fast : this.slow;
+    return this.readings.tableOf(name) ?? (this.fast.columns.has(name) ? this.fast : this.slow);
   }
 
   /**
@@ -255,11 +284,10 @@ export class Store {
    * @returns {{t: number[], y: Column}}
    */
   series(name) {
-    for (const table of [this.slow, this.fast]) {
-      const y = table.columns.get(name);
-      if (y) return { t: [...table.t], y: [...y] };
-    }
-    throw new Error(`no signal ${name}; there are ${[...SLOW, ...FAST].join(', ')}`);
+    const table = this.tableOf(name);
+    const y = table.columns.get(name);
+    if (y) return { t: [...table.t], y: [...y] };
+    throw new Error(`no signal ${name}; there are ${[...SLOW, ...FAST, ...this.readings.names()].join(', ')}`);
   }
 }
 

@@ -93,6 +93,15 @@ export class Table extends Lines {
     this.#bucket = new Map(names.map((name) => [name, new Extent()]));
   }
 
+  /** Adds the columns that there are not yet. @param {string[]} names */
+  offer(names) {
+    for (const name of names) {
+      if (this.columns.has(name)) continue;
+      for (const lines of [this, this.coarse]) lines.columns.set(name, Array(lines.t.length).fill(undefined));
+      this.#bucket.set(name, new Extent());
+    }
+  }
+
   /**
    * Appends a line; one that is not later than the last is dropped.
    * @param {number} t_s

@@ -85,12 +85,15 @@
  * @property {string} [refused] The last order, if it was refused or dropped, and why.
  * @property {string[]} [alarms] Alarms that need action at once.
  * @property {{phase: 'running', since_s: number} | {phase: 'done', findings: Findings, at_s: number} | {phase: 'failed', why: string, at_s: number}} [calibration]
+ * @property {{name: string, link_usart: number | null, phase: 'running' | 'compiling' | 'rejected', watched: boolean, complaints?: {place: string | null, text: string, line: string | null}[]}} [program] Of an emulated robot; what the compiler rejects of it.
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
  *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number,
  *   clock_offset_ms?: number, clock_fast_ppm?: number}} link When the robot's clock began, in the session's time, and by how much it is fast.
  * @property {{mode: number, armed: boolean, fault: string | null, battery_v: number | null, true_battery_v: number | null,
  *   reference: [number, number], overruns: number, servo_rad: number, rig: string | null, errand: Errand, foreign: boolean, text?: boolean}} robot `text`: it speaks the original's.
+ *
+ * @typedef {{usart: number | null, names: string[], rows: [number, Cell[]][]}} ReadingGroup Time [s] and values of signals beside the telemetry; `usart`: the port that printed them, null for ground truth.
  *
  * @typedef {{t_s: number, level: 'info' | 'good' | 'warning' | 'fault', text: string}} LoggedEvent
  *
@@ -103,6 +106,7 @@
  *   | {type: 'parameters', parameters: Parameter[]}
  *   | {type: 'state', state: State}
  *   | {type: 'samples', run: number, heard: [number, number], rows: Cell[][]}
+ *   | {type: 'readings', run: number, groups: ReadingGroup[]}
  *   | {type: 'events', events: LoggedEvent[]}
  *   | {type: 'bytes', bytes: LinkBytes[]}
  *   | {type: 'consoles', run: number, said: ConsoleText[]}
@@ -123,6 +127,7 @@
  *   | {type: 'waypoint', x_m: number, y_m: number}
  *   | {type: 'rig', rig: string}
  *   | {type: 'set_param', id: number, value: number}
+ *   | {type: 'program', name: string, data: string}
  *   | {type: 'type', usart: number, text: string}
  *   | {type: 'speed', factor: number}
  *   | {type: 'seek', t_s: number}

@@ -30,7 +30,7 @@ after(() => dashboard?.close());
 test('ON reaches a robot that speaks text, its rows are drawn and stand in the console of its USART', { skip }, async () => {
   await page.locator('#on').click();
   await page.locator('#console').filter({ hasText: /\d+, ?-?\d/ }).waitFor();
-  assert.equal(await page.locator('#console-choice button[aria-pressed="true"]').textContent(), 'Serial1');
+  assert.equal(await page.locator('#console-choice button[aria-pressed="true"]').textContent(), 'Serial1 (Bluetooth)');
   await page.waitForFunction(() => {
     const rumbo = /** @type {any} */ (window).rumbo;
     return rumbo.series('left_rpm').y.some((/** @type {number} */ rpm) => rpm > 40);

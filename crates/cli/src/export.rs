@@ -6,8 +6,9 @@ use crate::figures;
 use crate::mark::{Mark, Stamp};
 use crate::output;
 use crate::place::{self, Guard};
-use rumbo_log::{Kind, Log, Manifest, Row};
+use rumbo_log::{Kind, Log, Manifest, Reading, Row, Source};
 use rumbo_station::log_file;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -31,6 +32,13 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     }
     let log = log_file::read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log)?;
+    // Which columns they have is known only now.
+    let readings = readings_of(&log);
+    if formats.contains(&Format::Csv) {
+        for (ending, table) in &readings {
+            guard.check(&path(ending), &Mark::table(table))?;
+        }
+    }
     if !folder.as_os_str().is_empty() {
         place::folder(&folder)?;
     }
@@ -46,6 +54,9 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
             Format::Csv => {
                 write(&path("csv"), signals(&log))?;
                 write(&path("events.csv"), events(&log))?;
+                for (ending, table) in &readings {
+                    write(&path(ending), table)?;
+                }
             }
             Format::Svg => {
                 write(&path("svg"), stamp.put_on(figures.svg()))?;
@@ -132,6 +143,46 @@ fn signals(log: &Log) -> String {
         text.push('\n');
     }
     text
+}
+
+/// The signals beside the telemetry, as far as there are any, each table with its suffix: ground truth and pins, and what
+/// the program printed on each port.
+fn readings_of(log: &Log) -> Vec<(String, String)> {
+    let sources: BTreeSet<Source> = log.readings.iter().map(|each| each.source).collect();
+    let tables = sources.into_iter().map(|source| {
+        let ending = match source {
+            Source::Truth => "instruments.csv".to_owned(),
+            Source::Usart(usart) => format!("printed{usart}.csv"),
+        };
+        let of_it = log.readings.iter().filter(|each| each.source == source);
+        (ending, table(&of_it.collect::<Vec<_>>()))
+    });
+    tables.collect()
+}
+
+/// A column for each name that there is, one row per reading.
+fn table(readings: &[&Reading]) -> String {
+    let names = readings.iter().flat_map(|each| each.names.iter());
+    let names: BTreeSet<&str> = names.map(String::as_str).collect();
+    let header: Vec<String> = names.iter().map(|name| heading(name)).collect();
+    let mut text = format!("t_s,{}\n", header.join(","));
+    for reading in readings {
+        let cells = names.iter().map(|name| reading.signal(name));
+        let cells = cells.map(|value| value.map_or_else(String::new, |value| value.to_string()));
+        let cells: Vec<String> = cells.collect();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{},{}", reading.t_ms as f64 / 1e3, cells.join(","));
+    }
+    text
+}
+
+/// The name of a column, which a program may have chosen.
+fn heading(name: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    match name.chars().all(plain) {
+        true => name.to_owned(),
+        false => text_cell(name),
+    }
 }
 
 fn events(log: &Log) -> String {

@@ -1,25 +1,31 @@
 //! `rumbo lab`: a simulated robot behind the station's dashboard.
 
+mod prepare;
+mod renewal;
+
 use crate::args::LabArgs;
 use crate::browser;
 use crate::calibrate;
 use crate::failure::Failure;
 use crate::logs;
-use crate::manifest;
 use crate::output;
-use crate::scene::{first_commands, scene};
+use prepare::{Prepared, prepare};
+use renewal::OwnProgram;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
-use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
-use rumbo_experiment::run;
-use rumbo_log::{Choice, Kind, Manifest, MapPose, Scene, Truth};
+use rumbo_experiment::files::{FileError, Library, Overrides};
+use rumbo_log::{Choice, Manifest, MapPose, ProgramState, Scene, Truth};
 use rumbo_session::{Abilities, LinkNews, Standing, Target, TargetError};
 use rumbo_sim::debugging::Debugging;
 use rumbo_sim::mega::firmware::Language;
-use rumbo_sim::{Config, Sim};
+use rumbo_sim::{READING_US, Sim};
 use rumbo_station::LabConfig;
 use rumbo_wire::Command;
 use std::collections::VecDeque;
+
+/// The USART of the USB port.
+#[cfg(unix)]
+const USB: u8 = 0;
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.
 pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
@@ -34,8 +40,17 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
         ..args.image.overrides()
     };
     let mut robot = SimulatedRobot::new(overrides, choice)?;
+    if let (Some(given), Some(mega)) = (args.image.given(), robot.sim.mega()) {
+        let board = mega.firmware().board();
+        let watched = OwnProgram::new(&given, args.image.watched(), board);
+        robot.program = Some(watched.map_err(Failure::input)?);
+    }
     if let Some(port) = args.gdb {
         robot.debugging = Some(debugging(port, args)?);
+    }
+    #[cfg(unix)]
+    if args.usb_pty {
+        robot.usb = Some(crate::pty::UsbPort::offer()?);
     }
     #[cfg(unix)]
     if args.pty {
@@ -91,8 +106,15 @@ pub(crate) struct SimulatedRobot {
     overrides: Overrides,
     sim: Sim,
     debugging: Option<Debugging>,
+    /// Another program at the USB port.
+    #[cfg(unix)]
+    usb: Option<crate::pty::UsbPort>,
+    /// The program that the user gave, if it is one for the emulated Mega.
+    program: Option<OwnProgram>,
     manifest: Manifest,
     mode: ModeId,
+    /// When the instruments are read next \[us\].
+    reading_due_us: u64,
     /// The emulated program's end has been reported.
     ended: bool,
     /// What has happened to the program and is not reported yet.
@@ -118,8 +140,12 @@ impl SimulatedRobot {
             overrides,
             sim,
             debugging: None,
+            #[cfg(unix)]
+            usb: None,
+            program: None,
             manifest,
             mode,
+            reading_due_us: 0,
             ended: false,
             news: VecDeque::new(),
             scene,
@@ -147,62 +173,6 @@ fn offer(names: &mut Vec<String>, chosen: Option<&String>) {
     if let Some(chosen) = chosen.filter(|chosen| !names.contains(chosen)) {
         names.push(chosen.clone());
     }
-}
-
-/// A simulation at time 0 and its surroundings.
-struct Prepared {
-    sim: Sim,
-    mode: ModeId,
-    scene: Scene,
-    first_commands: Vec<Command>,
-    manifest: Manifest,
-}
-
-fn prepare(
-    library: &Library,
-    overrides: &Overrides,
-    choice: Choice,
-    memory: &[u8],
-) -> Result<Prepared, FileError> {
-    let overrides = Overrides {
-        world: choice.world.clone(),
-        rig: choice.rig.clone(),
-        ..overrides.clone()
-    };
-    let setup: Setup = library.setup(&choice.scenario, &overrides)?;
-    let mut manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
-    manifest.remember(memory);
-    let setup = setup.of_seed(choice.seed)?;
-    let ready = run::prepare(&setup, choice.seed)?;
-    Ok(Prepared {
-        sim: Sim::new(Config {
-            memory: memory.to_vec(),
-            ..ready.config(choice.seed)?
-        })?,
-        mode: setup.scenario.mode,
-        scene: scene(library, &setup, choice)?,
-        first_commands: first_words(&ready)?,
-        manifest,
-    })
-}
-
-/// The first commands to the robot. An image does not have its parameters yet, and one with the text protocol sets its
-/// own mode.
-fn first_words(setup: &Setup) -> Result<Vec<Command>, FileError> {
-    let mut commands = first_commands(setup);
-    if setup.firmware.is_none() {
-        return Ok(commands);
-    }
-    if !setup.takes_parameters() {
-        commands.retain(|command| !matches!(command, Command::Mode(_)));
-        return Ok(commands);
-    }
-    let parameters = setup.control_parameters()?.into_iter();
-    let parameters = parameters.map(|(id, value)| Command::SetParam {
-        id: id as u8,
-        value,
-    });
-    Ok(parameters.chain(commands).collect())
 }
 
 impl SimulatedRobot {
@@ -233,6 +203,10 @@ impl Target for SimulatedRobot {
     }
 
     fn advance(&mut self, dt_us: u64) -> Result<(), TargetError> {
+        #[cfg(unix)]
+        if let (Some(usb), Some(mega)) = (&mut self.usb, self.sim.mega_mut()) {
+            mega.type_in(USB, usb.read());
+        }
         // After a breakpoint, back to the multiples of the step.
         let until_us = (self.sim.now_us() / dt_us.max(1) + 1) * dt_us;
         match &mut self.debugging {
@@ -289,6 +263,15 @@ impl Target for SimulatedRobot {
         })
     }
 
+    fn instruments(&mut self) -> Vec<(String, f64)> {
+        let now_us = self.sim.now_us();
+        if now_us < self.reading_due_us {
+            return Vec::new();
+        }
+        self.reading_due_us = now_us + READING_US;
+        self.sim.read_instruments()
+    }
+
     fn scene(&self) -> Option<Scene> {
         Some(self.scene.clone())
     }
@@ -298,10 +281,20 @@ impl Target for SimulatedRobot {
             return Vec::new();
         };
         let said = (0..4).map(|usart| (usart, mega.take_console(usart)));
-        said.filter(|(_, bytes)| !bytes.is_empty()).collect()
+        let said: Vec<_> = said.filter(|(_, bytes)| !bytes.is_empty()).collect();
+        #[cfg(unix)]
+        if let (Some(usb), Some((USB, bytes))) = (&mut self.usb, said.first()) {
+            usb.write(bytes);
+        }
+        said
+    }
+
+    fn program(&self) -> Option<ProgramState> {
+        self.program_state()
     }
 
     fn news(&mut self) -> Option<LinkNews> {
+        self.renew_program();
         if let Some(debugging) = &mut self.debugging {
             let news = debugging.take_news().into_iter();
             self.news.extend(news.map(LinkNews::Held));
@@ -322,6 +315,10 @@ impl Target for SimulatedRobot {
         }
     }
 
+    fn run_program(&mut self, name: String, content: Vec<u8>) -> Result<(), TargetError> {
+        self.drop_program(name, content)
+    }
+
     fn first_commands(&self) -> Vec<Command> {
         self.first_commands.clone()
     }
@@ -336,14 +333,19 @@ impl Target for SimulatedRobot {
         if !offered {
             return Err(TargetError::NotOffered);
         }
-        let fresh = prepare(
-            &self.library,
-            &self.overrides,
-            choice.clone(),
-            // Switched off and on again: saved parameters persist.
-            &self.sim.memory(),
-        );
-        let fresh = fresh.map_err(|error| TargetError::Setup(error.to_string()))?;
+        if self.program.as_ref().is_some_and(OwnProgram::is_rejected) {
+            return Err(TargetError::NotCompiled);
+        }
+        self.start_again(choice.clone())
+            .map_err(|error| TargetError::Setup(error.to_string()))
+    }
+}
+
+impl SimulatedRobot {
+    /// Starts again from time 0, as switched off and on again: saved parameters persist.
+    fn start_again(&mut self, choice: Choice) -> Result<(), FileError> {
+        let memory = self.sim.memory();
+        let fresh = prepare(&self.library, &self.overrides, choice, &memory)?;
         // What the command line added to the lists stays there.
         let Scene {
             scenarios, worlds, ..
@@ -353,7 +355,7 @@ impl Target for SimulatedRobot {
             debugging.forget();
         }
         self.mode = fresh.mode;
-        self.ended = false;
+        (self.reading_due_us, self.ended) = (0, false);
         self.first_commands = fresh.first_commands;
         self.manifest = fresh.manifest;
         self.scene = Scene {

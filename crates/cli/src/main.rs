@@ -39,6 +39,7 @@ mod run;
 mod run_log;
 mod scene;
 mod sketch;
+mod workshop;
 
 use args::{Cli, Command};
 use clap::Parser;

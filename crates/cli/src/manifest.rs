@@ -45,11 +45,8 @@ pub(crate) fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) ->
         image: overrides.firmware.as_deref().and_then(hash),
         seed: Some(seed),
         parameters: overrides.parameters.clone(),
-        texts: overrides
-            .texts
-            .iter()
-            .map(|timed| (timed.at_s, line_of(timed)))
-            .collect(),
+        texts: lines(&overrides.texts, Port::Link),
+        usb_texts: lines(&overrides.texts, Port::Usb),
         files: files
             .map(|(name, text)| (name.to_owned(), text.clone()))
             .into(),
@@ -57,26 +54,28 @@ pub(crate) fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) ->
     }
 }
 
-/// What a line for the USB cable begins with in a manifest: no line has it.
-const TO_USB: char = '\t';
-
-fn line_of(timed: &TimedText) -> String {
-    match timed.port {
-        Port::Link => timed.text.clone(),
-        Port::Usb => format!("{TO_USB}{}", timed.text),
-    }
+/// The lines for a port.
+fn lines(texts: &[TimedText], port: Port) -> Vec<(f64, String)> {
+    let of_it = texts.iter().filter(|timed| timed.port == port);
+    of_it
+        .map(|timed| (timed.at_s, timed.text.clone()))
+        .collect()
 }
 
-fn typed(at_s: f64, line: &str) -> TimedText {
-    let (text, port) = match line.strip_prefix(TO_USB) {
-        Some(text) => (text, Port::Usb),
-        None => (line, Port::Link),
+/// What a line for the USB cable began with in logs in which such lines had no list of their own.
+const TO_USB: char = '\t';
+
+fn typed(manifest: &Manifest) -> Vec<TimedText> {
+    let line = |at_s: f64, line: &str, port: Port| match line.strip_prefix(TO_USB) {
+        Some(text) => (at_s, text.to_owned(), Port::Usb),
+        None => (at_s, line.to_owned(), port),
     };
-    TimedText {
-        at_s,
-        text: text.to_owned(),
-        port,
-    }
+    let texts = manifest.texts.iter();
+    let texts = texts.map(|(at_s, text)| line(*at_s, text, Port::Link));
+    let usb = manifest.usb_texts.iter();
+    let usb = usb.map(|(at_s, text)| line(*at_s, text, Port::Usb));
+    let timed = |(at_s, text, port)| TimedText { at_s, text, port };
+    texts.chain(usb).map(timed).collect()
 }
 
 /// CRC-32 of a program image, as hexadecimal digits.
@@ -98,13 +97,18 @@ fn check_ranges(log: &Path, manifest: &Manifest) -> Result<(), Failure> {
         let range = format!("within {MIN_STEP_US}..{MAX_STEP_US}");
         return Err(wrong("step_us", &step_us, &range));
     }
-    if manifest.texts.len() > MOST_TEXTS {
-        let range = format!("at most {MOST_TEXTS} lines");
-        return Err(wrong("texts", &manifest.texts.len(), &range));
-    }
-    let is_late = |(at_s, _): &&(f64, String)| !(0.0..=LONGEST_S).contains(at_s);
-    if let Some((at_s, _)) = manifest.texts.iter().find(is_late) {
-        return Err(wrong("texts", at_s, &format!("within 0..{LONGEST_S} s")));
+    for (key, texts) in [
+        ("texts", &manifest.texts),
+        ("usb_texts", &manifest.usb_texts),
+    ] {
+        if texts.len() > MOST_TEXTS {
+            let range = format!("at most {MOST_TEXTS} lines");
+            return Err(wrong(key, &texts.len(), &range));
+        }
+        let is_late = |(at_s, _): &&(f64, String)| !(0.0..=LONGEST_S).contains(at_s);
+        if let Some((at_s, _)) = texts.iter().find(is_late) {
+            return Err(wrong(key, at_s, &format!("within 0..{LONGEST_S} s")));
+        }
     }
     let eeprom = manifest
         .eeprom
@@ -165,11 +169,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         program,
         firmware,
         wiring: manifest.wiring.clone(),
-        texts: manifest
-            .texts
-            .iter()
-            .map(|(at_s, line)| typed(*at_s, line))
-            .collect(),
+        texts: typed(manifest),
         ground_truth: false,
     };
     Ok((library.setup(scenario, &overrides)?, seed))
@@ -178,6 +178,28 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_for_the_usb_port_is_read_from_its_own_list_and_as_earlier_logs_have_it() {
+        let timed = |text: &str, port: Port| TimedText {
+            at_s: 2.0,
+            text: text.into(),
+            port,
+        };
+        let texts = vec![timed("REF 30", Port::Link), timed("go", Port::Usb)];
+        let now = Manifest {
+            texts: lines(&texts, Port::Link),
+            usb_texts: lines(&texts, Port::Usb),
+            ..Manifest::default()
+        };
+        assert_eq!(now.usb_texts, [(2.0, "go".to_owned())]);
+        let before = Manifest {
+            texts: vec![(2.0, "REF 30".into()), (2.0, "\tgo".into())],
+            ..Manifest::default()
+        };
+        assert_eq!(typed(&now), texts);
+        assert_eq!(typed(&before), texts);
+    }
 
     #[test]
     fn a_log_of_the_baseline_is_run_again_under_its_name_and_its_earlier_one() {

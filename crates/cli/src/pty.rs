@@ -4,26 +4,23 @@ use crate::failure::Failure;
 use crate::output;
 use rumbo_session::Target;
 use rumbo_station::port::Pty;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The simulation advances in steps of this length \[us\].
 const STEP_US: u64 = 5_000;
+/// Longest wait for the other side of the link, so that the loop does not spin.
+const PATIENCE: Duration = Duration::from_millis(5);
 /// A simulation that is late by more lets the rest go \[us\].
 const CATCH_UP_US: u64 = 100_000;
 
 /// Offers the robot until the process is ended. Prints the name of the port first thing.
 pub(crate) fn offer(mut robot: impl Target, speed: f64) -> Result<(), Failure> {
-    let mut pty = Pty::new().map_err(|error| {
-        Failure::Input(format!(
-            "no pseudo terminal to be had ({error}); close other programs that use some"
-        ))
-    })?;
+    let mut pty = open(PATIENCE)?;
     output::line(pty.path())?;
     let mut bytes = Vec::new();
     let (mut last, mut due_us) = (Instant::now(), 0);
     loop {
         bytes.clear();
-        // This waits a little, so that the loop does not spin.
         pty.read(&mut bytes);
         robot.send(&bytes).map_err(Failure::input)?;
         let passed_us = last.elapsed().as_secs_f64() * 1e6;
@@ -37,5 +34,48 @@ pub(crate) fn offer(mut robot: impl Target, speed: f64) -> Result<(), Failure> {
         bytes.clear();
         robot.receive(&mut bytes);
         pty.write(&bytes);
+        // Those of the USB port go to its own terminal; nobody looks at the others.
+        robot.consoles();
+    }
+}
+
+/// A terminal for another program.
+fn open(patience: Duration) -> Result<Pty, Failure> {
+    Pty::new(patience).map_err(|error| {
+        Failure::Input(format!(
+            "no pseudo terminal to be had ({error}); close other programs that use some"
+        ))
+    })
+}
+
+/// The USB port of an emulated Mega for another program, beside whatever else the robot is offered to.
+pub(crate) struct UsbPort {
+    pty: Pty,
+    /// Kept to spare allocations.
+    bytes: Vec<u8>,
+}
+
+impl UsbPort {
+    /// Opens it and prints its name.
+    pub(crate) fn offer() -> Result<Self, Failure> {
+        // The session's thread does not wait.
+        let pty = open(Duration::ZERO)?;
+        output::aside(&format!("Serial (USB) of the Mega: {}", pty.path()));
+        Ok(Self {
+            pty,
+            bytes: Vec::new(),
+        })
+    }
+
+    /// What the other program has sent since the last call.
+    pub(crate) fn read(&mut self) -> &[u8] {
+        self.bytes.clear();
+        self.pty.read(&mut self.bytes);
+        &self.bytes
+    }
+
+    /// What the Mega has sent.
+    pub(crate) fn write(&mut self, bytes: &[u8]) {
+        self.pty.write(bytes);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::args::{NewArgs, NewKind};
 use crate::failure::Failure;
+use crate::mark::crc32;
 use crate::output;
 use rumbo_experiment::files::Library;
 use rumbo_sim::mega::boards::Board;
@@ -36,6 +37,33 @@ pub(crate) fn target(board: &Board) -> Target {
     Target::named(board.name).unwrap_or(BOARDS[0])
 }
 
+/// The path that a user gave, to look for changes there; none for an example.
+pub(crate) fn path(name: &str) -> Option<&Path> {
+    (!name.starts_with(EXAMPLE)).then(|| Path::new(name))
+}
+
+/// A compiler for the user's own sketches.
+pub(crate) fn compiler(board: &Board) -> Result<Compiler, SketchError> {
+    let sandbox = Sandbox::trusting(Limits::default());
+    Compiler::new(target(board), Toolchain::find()?, sandbox, cache())
+}
+
+/// A compiler for sketches of others, in the sandbox.
+pub(crate) fn walled_compiler(board: &Board) -> Result<Compiler, SketchError> {
+    let toolchain = Toolchain::find()?;
+    let sandbox = Sandbox::walled(&toolchain, Limits::default())?;
+    Compiler::new(target(board), toolchain, sandbox, cache())
+}
+
+/// Keeps an image that was given as bytes beside the compiled sketches, by its checksum.
+pub(crate) fn keep_image(content: &[u8], kind: &str) -> std::io::Result<PathBuf> {
+    let folder = cache().join("dropped");
+    std::fs::create_dir_all(&folder)?;
+    let path = folder.join(format!("{:08x}.{kind}", crc32(content)));
+    std::fs::write(&path, content)?;
+    Ok(path)
+}
+
 /// The image of a user's sketch, compiled if need be: a folder, an `.ino`, or an example by name.
 pub(crate) fn image(name: &str, board: &Board) -> Result<PathBuf, Failure> {
     let source = match name.strip_prefix(EXAMPLE) {
@@ -45,9 +73,7 @@ pub(crate) fn image(name: &str, board: &Board) -> Result<PathBuf, Failure> {
             Given::Sketch(source) => source,
         },
     };
-    let sandbox = Sandbox::trusting(Limits::default());
-    let compiler = Compiler::new(target(board), Toolchain::find()?, sandbox, cache())?;
-    let image = compiler.compile(&source, &[])?;
+    let image = compiler(board)?.compile(&source, &[])?;
     for warning in &image.warnings {
         warning.to_string().lines().for_each(output::aside);
     }

@@ -3,6 +3,7 @@
 use crate::event::LoggedEvent;
 use crate::manifest::Outcome;
 use crate::parameters::ParameterState;
+use crate::reading::Reading;
 use crate::scene::Scene;
 use crate::signals::Row;
 use crate::state::State;
@@ -16,6 +17,8 @@ pub enum Entry {
     Said(Said),
     /// Signals.
     Rows(Vec<Row>),
+    /// Signals beside the telemetry.
+    Readings(Vec<Reading>),
     /// What happened.
     Event(LoggedEvent),
     /// What surrounds the robot; `None` where that is not known.

@@ -11,6 +11,8 @@
 //! | `/scene` | `rumbo.Scene` | what the dashboard draws around the robot |
 //! | `/link/from_robot`, `/link/to_robot` | `rumbo.Bytes` | the raw bytes of the link, base64 |
 //! | `/console` | `rumbo.Console` | what the USARTs of an emulated chip sent, and what a person typed to them, base64 |
+//! | `/truth` | `rumbo.Truth` | ground truth and pins of an emulated robot, 33 times a second |
+//! | `/printed` | `rumbo.Printed` | numbers that its program printed, by name |
 //! | `/digest` | `rumbo.Digest` | the checksum of each metadata record |
 //!
 //! Messages are JSON with JSON schemas, times are the run's own, from 0. A metadata record `manifest` says what ran
@@ -30,6 +32,7 @@ mod manifest;
 mod messages;
 mod parameters;
 mod reader;
+mod reading;
 mod scene;
 mod schema;
 mod signals;
@@ -45,13 +48,15 @@ pub use log::{Log, Sent};
 pub use manifest::{Kind, Manifest, Outcome};
 pub use messages::Sink;
 pub use parameters::{Parameter, ParameterState, parameter, parameters};
+pub use reading::{Names, Reading, Source};
 pub use scene::{
     Choice, Experiment, MapPose, Obstacle, Place, RoutePlan, Scene, SonarMount, Truth, compose,
 };
 pub use schema::Topic;
 pub use signals::{Cell, EARLIER_MS, Row, Sample, Spread};
 pub use state::{
-    CalibrationState, End, Finding, Findings, LinkState, ReplayState, RobotState, State, Task,
+    CalibrationState, Complaint, End, Finding, Findings, LinkState, ProgramPhase, ProgramState,
+    ReplayState, RobotState, State, Task,
 };
 pub use summary::Summary;
 pub use writer::{LogWriter, WriteError};

@@ -3,6 +3,7 @@
 use crate::entry::{Burst, Said};
 use crate::event::LoggedEvent;
 use crate::manifest::{Manifest, Outcome};
+use crate::reading::Reading;
 use crate::scene::{MapPose, Scene, compose};
 use crate::signals::Row;
 use crate::state::State;
@@ -17,6 +18,8 @@ pub struct Log {
     pub outcome: Option<Outcome>,
     /// The signals, in order of time.
     pub rows: Vec<Row>,
+    /// Signals beside the telemetry, in order of time.
+    pub readings: Vec<Reading>,
     /// What happened, with its time \[s\].
     pub events: Vec<LoggedEvent>,
     /// The slow state, in order of time.
@@ -82,7 +85,7 @@ impl Log {
     #[must_use]
     pub fn holds_nothing(&self) -> bool {
         let silent = self.rows.is_empty() && self.states.is_empty() && self.events.is_empty();
-        silent && self.link.is_empty() && self.said.is_empty()
+        silent && self.readings.is_empty() && self.link.is_empty() && self.said.is_empty()
     }
 
     /// The robot spoke the original's text, which people can read, too.
@@ -120,7 +123,11 @@ impl Log {
             .link
             .last()
             .map_or(0.0, |burst| burst.t_us as f64 / 1e6);
-        row_s.max(state_s).max(link_s)
+        let reading_s = self
+            .readings
+            .last()
+            .map_or(0.0, |each| each.t_ms as f64 / 1e3);
+        row_s.max(state_s).max(link_s).max(reading_s)
     }
 
     /// Whether part of it is missing.

@@ -52,6 +52,9 @@ pub struct Manifest {
     pub parameters: Vec<(String, f64)>,
     /// Lines of text sent besides the scenario's commands, with their times \[s\].
     pub texts: Vec<(f64, String)>,
+    /// Lines typed on the USB port of an emulated Mega, with their times \[s\].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub usb_texts: Vec<(f64, String)>,
     /// What the robot's EEPROM held at the start, as hexadecimal digits; `None` where it was erased.
     pub eeprom: Option<String>,
     /// The simulation advanced in steps of this length \[us\].

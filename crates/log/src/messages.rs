@@ -3,6 +3,7 @@
 use crate::entry::{Burst, Entry, Said};
 use crate::event::{Level, LoggedEvent};
 use crate::parameters::ParameterState;
+use crate::reading::{Reading, Source};
 use crate::scene::{MapPose, Scene, compose};
 use crate::schema::Topic;
 use crate::signals::Row;
@@ -35,6 +36,7 @@ pub trait Sink {
             }
             Entry::Said(said) => self.said(said),
             Entry::Rows(rows) => rows.iter().try_for_each(|row| self.row(row)),
+            Entry::Readings(readings) => readings.iter().try_for_each(|each| self.reading(each)),
             Entry::Event(event) => self.event(event),
             Entry::State(state) => self.state(state),
             Entry::Scene(scene) => self.scene(*now_us, scene.as_deref()),
@@ -82,6 +84,15 @@ trait Messages: Sink {
             self.pose(Topic::True, t_us, truth)?;
         }
         Ok(())
+    }
+
+    /// Signals beside the telemetry.
+    fn reading(&mut self, reading: &Reading) -> Result<(), Self::Error> {
+        let topic = match reading.source {
+            Source::Truth => Topic::Truth,
+            Source::Usart(_) => Topic::Printed,
+        };
+        self.put_json(topic, to_us(reading.t_ms), &reading.json())
     }
 
     fn pose(&mut self, topic: Topic, t_us: u64, at: MapPose) -> Result<(), Self::Error> {

@@ -8,6 +8,7 @@ mod earlier;
 mod intake;
 mod metadata;
 mod pieces;
+mod reading_json;
 mod row_json;
 
 use crate::error::ReadError;

@@ -31,11 +31,15 @@ pub enum Topic {
     Console,
     /// Checksums of the metadata.
     Digest,
+    /// Ground truth and pins of an emulated robot.
+    Truth,
+    /// Numbers that a program printed.
+    Printed,
 }
 
 impl Topic {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Telemetry,
         Self::State,
         Self::Parameters,
@@ -48,6 +52,8 @@ impl Topic {
         Self::ToRobot,
         Self::Console,
         Self::Digest,
+        Self::Truth,
+        Self::Printed,
     ];
 
     /// Its name in the log.
@@ -66,6 +72,8 @@ impl Topic {
             Self::ToRobot => "/link/to_robot",
             Self::Console => "/console",
             Self::Digest => "/digest",
+            Self::Truth => "/truth",
+            Self::Printed => "/printed",
         }
     }
 
@@ -90,6 +98,9 @@ impl Topic {
             Self::FromRobot | Self::ToRobot => ("rumbo.Bytes", bytes()),
             Self::Console => ("rumbo.Console", console()),
             Self::Digest => ("rumbo.Digest", digest()),
+            // Which signals there are depends on the wiring.
+            Self::Truth => ("rumbo.Truth", object("rumbo.Truth", json!({}))),
+            Self::Printed => ("rumbo.Printed", printed()),
         }
     }
 }
@@ -217,6 +228,15 @@ fn digest() -> Value {
     object(
         "rumbo.Digest",
         json!({ "name": text(), "crc32": { "type": "integer" } }),
+    )
+}
+
+fn printed() -> Value {
+    // The program gives the names.
+    let values = object("values", json!({}));
+    object(
+        "rumbo.Printed",
+        json!({ "usart": { "type": "integer" }, "values": values }),
     )
 }
 

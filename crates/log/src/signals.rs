@@ -2,6 +2,7 @@
 
 mod row;
 
+pub(crate) use row::tidy;
 pub use row::{Cell, Row};
 
 use crate::scene::{MapPose, Truth};

@@ -28,9 +28,53 @@ pub struct State {
     /// The calibration that runs, or ran last in this run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<CalibrationState>,
+    /// The program of an emulated robot.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub program: Option<ProgramState>,
     /// A log is being shown, of this length; `t_s` is where.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub replay: Option<ReplayState>,
+}
+
+/// The program of an emulated robot, for the page.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ProgramState {
+    /// Name of its sketch or image.
+    pub name: String,
+    /// The USART that the Bluetooth module is on, if the wiring has one.
+    pub link_usart: Option<u8>,
+    /// What it does.
+    pub phase: ProgramPhase,
+    /// It starts again when its file is saved.
+    #[serde(default)]
+    pub watched: bool,
+    /// What the compiler rejects; then the robot stands still.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub complaints: Vec<Complaint>,
+}
+
+/// What a program does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProgramPhase {
+    /// It runs.
+    #[default]
+    Running,
+    /// It runs while its changed source is compiled.
+    Compiling,
+    /// Its changed source does not compile: the chip is switched off.
+    Rejected,
+}
+
+/// An error of the compiler.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Complaint {
+    /// File, line and column, as far as the compiler names them: `wall.ino:12:3`.
+    pub place: Option<String>,
+    /// What is wrong.
+    pub text: String,
+    /// The line itself.
+    pub line: Option<String>,
 }
 
 /// A log being shown, for the page.

@@ -1,7 +1,7 @@
 //! What was recorded is read again: whole, cut anywhere, damaged anywhere.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use rumbo_log::{Burst, Entry, Log, LogWriter, Manifest, ReadError, Said, Sent};
+use rumbo_log::{Burst, Entry, Log, LogWriter, Manifest, Names, ReadError, Said, Sent, Source};
 use std::io::Cursor;
 
 type Writer = LogWriter<Cursor<Vec<u8>>>;
@@ -152,4 +152,37 @@ fn what_is_no_log_gets_one_line() {
         let error = read(bytes).unwrap_err().to_string();
         assert!(error.contains(said) && !error.contains('\n'), "{error}");
     }
+}
+
+#[test]
+fn readings_are_read_as_they_were_recorded_ranges_without_an_echo_and_unknown_ones_too() {
+    let signals = |x_m: f64| {
+        [
+            ("true_x_m", x_m),
+            ("pinged_front_m", f64::INFINITY),
+            ("servo_pulse_us", f64::NAN),
+        ]
+        .map(|(name, value)| (name.to_owned(), value))
+        .to_vec()
+    };
+    let (mut truth, mut printed) = (Names::default(), Names::default());
+    let readings = vec![
+        truth.reading(30, Source::Truth, signals(0.1234)),
+        printed.reading(31, Source::Usart(0), vec![("kp".into(), 1e-7)]),
+        truth.reading(60, Source::Truth, signals(0.2)),
+    ];
+    let mut writer = self::writer(&Manifest::default());
+    writer.record(&Entry::Readings(readings)).unwrap();
+    let log = read(&finish(writer)).unwrap();
+    let [first, second, third] = &log.readings[..] else {
+        panic!("{:?}", log.readings)
+    };
+    assert_eq!(first.signal("true_x_m"), Some(0.1234));
+    assert_eq!(first.signal("pinged_front_m"), Some(f64::INFINITY));
+    assert_eq!(first.signal("servo_pulse_us"), None);
+    assert_eq!((second.source, second.t_ms), (Source::Usart(0), 31));
+    assert_eq!(second.signal("kp"), Some(1e-7));
+    assert_eq!(third.t_ms, 60);
+    assert!(std::sync::Arc::ptr_eq(&first.names, &third.names));
+    assert_eq!(log.duration_s(), 0.06);
 }

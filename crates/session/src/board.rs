@@ -9,10 +9,12 @@ mod ring;
 use crate::console::{ConsoleText, readable};
 use crate::event::Event;
 use ring::{Ring, Versioned};
-use rumbo_log::{Burst, Entry, LoggedEvent, ParameterState, Row, Scene, State};
+use rumbo_log::{Burst, Entry, LoggedEvent, ParameterState, Reading, Row, Scene, Source, State};
 
 /// Samples kept: ten minutes of telemetry at 25 Hz.
 pub const SAMPLES_KEPT: usize = 15_000;
+/// Readings kept: ten minutes of ground truth at 33 Hz, and as much of what programs print.
+const READINGS_KEPT: usize = 20_000;
 /// Events kept.
 pub const EVENTS_KEPT: usize = 1_000;
 /// Pieces of console text kept: one for each time slice in which a USART sent.
@@ -30,6 +32,9 @@ pub struct Board {
     run: u32,
     received: Arrival,
     samples: Ring<Row>,
+    /// Ground truth, and apart from it what may be a flood: numbers that a program prints.
+    truth: Ring<Reading>,
+    printed: Ring<Reading>,
     events: Ring<LoggedEvent>,
     consoles: Ring<ConsoleText>,
     bytes: Ring<Burst>,
@@ -43,6 +48,8 @@ pub struct Board {
 pub struct Cursor {
     run: u32,
     samples: u64,
+    truth: u64,
+    printed: u64,
     events: u64,
     consoles: u64,
     bytes: u64,
@@ -64,7 +71,9 @@ pub struct News {
     pub state: Option<State>,
     /// Signals.
     pub samples: Vec<Row>,
-    /// When the newest of them arrived.
+    /// Signals beside the telemetry.
+    pub readings: Vec<Reading>,
+    /// When the newest samples arrived.
     pub received: Arrival,
     /// What happened.
     pub events: Vec<LoggedEvent>,
@@ -82,6 +91,8 @@ impl Default for Board {
             run: 1,
             received: (0.0, 0),
             samples: Ring::new(SAMPLES_KEPT),
+            truth: Ring::new(READINGS_KEPT),
+            printed: Ring::new(READINGS_KEPT),
             events: Ring::new(EVENTS_KEPT),
             consoles: Ring::new(CONSOLES_KEPT),
             bytes: Ring::new(BURSTS_KEPT),
@@ -99,6 +110,8 @@ impl Board {
             Event::Run => {
                 self.run += 1;
                 self.samples.clear();
+                self.truth.clear();
+                self.printed.clear();
                 self.consoles.clear();
                 self.bytes.clear();
                 false
@@ -132,6 +145,15 @@ impl Board {
                 rows.iter().for_each(|row| self.samples.push(*row));
                 true
             }
+            Entry::Readings(readings) => {
+                for reading in readings {
+                    match reading.source {
+                        Source::Truth => self.truth.push(reading.clone()),
+                        Source::Usart(_) => self.printed.push(reading.clone()),
+                    }
+                }
+                true
+            }
             Entry::Event(event) => {
                 self.events.push(event.clone());
                 true
@@ -146,6 +168,8 @@ impl Board {
     /// What is new since `cursor`, which moves on.
     pub fn news(&self, cursor: &mut Cursor) -> News {
         let (samples, _) = self.samples.read(&mut cursor.samples);
+        let (mut readings, _) = self.truth.read(&mut cursor.truth);
+        readings.extend(self.printed.read(&mut cursor.printed).0);
         let (events, gone) = self.events.read(&mut cursor.events);
         let (consoles, _) = self.consoles.read(&mut cursor.consoles);
         let (bytes, _) = self.bytes.read(&mut cursor.bytes);
@@ -157,6 +181,7 @@ impl Board {
             parameters: self.parameters.newer(&mut cursor.parameters),
             state: self.state.newer(&mut cursor.state),
             samples,
+            readings,
             received: self.received,
             events,
             consoles,

@@ -19,6 +19,12 @@ pub enum TargetError {
     NotOffered,
     /// The scenario cannot be set up, and why.
     Setup(String),
+    /// The program of its chip does not compile.
+    NotCompiled,
+    /// It takes no program from a page.
+    NoPrograms,
+    /// The name is not that of a program's file.
+    NotAProgram,
     /// No ghost runs beside it.
     NoGhost,
     /// The log has no signals, so a ghost has nothing to follow.
@@ -44,6 +50,11 @@ impl fmt::Display for TargetError {
                 f.write_str("no such scenario or world here; choose one of the list")
             }
             Self::Setup(why) => f.write_str(why),
+            Self::NotCompiled => f.write_str("the program does not compile; correct it and save"),
+            Self::NoPrograms => f.write_str("this robot takes no program from a page"),
+            Self::NotAProgram => {
+                f.write_str("only an .ino, .elf or .hex file is a program for the Mega")
+            }
             Self::NoGhost => f.write_str("there is none; start with --ghost"),
             Self::NoSignals => f.write_str("the log has no signals"),
             Self::NoPose => f.write_str("the robot's pose at that time is not in the log"),

@@ -7,6 +7,7 @@ use crate::commands::{Fate, Outcome};
 use crate::console::{ConsoleText, LINK_CONSOLE, readable};
 use crate::event::Event;
 use crate::origin::Origin;
+use crate::printed::Printed;
 use crate::target::Standing;
 use crate::task;
 use crate::terminal;
@@ -16,11 +17,14 @@ use rumbo_control::Pose;
 use rumbo_control::params::{ParamId, Params};
 use rumbo_control::rig::Rig;
 use rumbo_log::{
-    Burst, EARLIER_MS, Entry, Level, LoggedEvent, MapPose, ParameterState, Row, Said, Sample,
-    Scene, State, Task, Truth, parameters,
+    Burst, EARLIER_MS, Entry, Level, LoggedEvent, MapPose, Names, ParameterState, Reading, Row,
+    Said, Sample, Scene, Source, State, Task, Truth, parameters,
 };
 use rumbo_wire::{Command, EventKind, Hello, Recalled, Status, Telemetry};
+use std::collections::BTreeMap;
 
+/// Touches closer together than this are one collision \[ms\].
+const APART_MS: i64 = 1_000;
 /// Restarts are reported at most this often \[ms\].
 const RESTARTS_MS: i64 = 2_000;
 
@@ -41,6 +45,13 @@ pub(crate) struct Observer {
     truths: TruthLog,
     ghosts: TruthLog,
     samples: Vec<Row>,
+    readings: Vec<Reading>,
+    /// Names of the instruments.
+    names: Names,
+    /// What each port prints.
+    printed: BTreeMap<u8, Printed>,
+    /// The body touches something, or did until then \[ms\].
+    touched_ms: Option<i64>,
     /// Why the last order was refused or given up, if it was.
     refused: Option<String>,
     /// When the last restart was reported \[ms\].
@@ -65,6 +76,10 @@ impl Observer {
             truths: TruthLog::default(),
             ghosts: TruthLog::default(),
             samples: Vec::new(),
+            readings: Vec::new(),
+            names: Names::default(),
+            printed: BTreeMap::new(),
+            touched_ms: None,
             refused: None,
             restart_ms: None,
             urgent: true,
@@ -84,6 +99,16 @@ impl Observer {
 
     /// Notes the ground truth at `now_ms`.
     pub(crate) fn truth(&mut self, now_ms: i64, truth: Truth) {
+        if truth.contact {
+            let apart = |last_ms: i64| now_ms > last_ms + APART_MS;
+            if self.touched_ms.replace(now_ms).is_none_or(apart) {
+                self.note(
+                    now_ms,
+                    Level::Warning,
+                    "collision: the robot touches something".into(),
+                );
+            }
+        }
         self.truths.push(now_ms, truth);
     }
 
@@ -186,9 +211,18 @@ impl Observer {
         self.emit(Entry::Burst(burst));
     }
 
-    /// Records what the USARTs of an emulated chip sent.
+    /// Takes what instruments show.
+    pub(crate) fn instruments(&mut self, now_ms: i64, signals: Vec<(String, f64)>) {
+        if !signals.is_empty() {
+            let reading = self.names.reading(now_ms, Source::Truth, signals);
+            self.readings.push(reading);
+        }
+    }
+
+    /// Records what the USARTs of an emulated chip sent, and the numbers in it.
     pub(crate) fn consoles(&mut self, t_us: u64, said: Vec<(u8, Vec<u8>)>) {
         for (usart, bytes) in said {
+            self.read_numbers(usart, &bytes, (t_us / 1_000) as i64);
             self.emit(Entry::Said(Said {
                 t_us,
                 usart,
@@ -196,6 +230,11 @@ impl Observer {
                 bytes,
             }));
         }
+    }
+
+    fn read_numbers(&mut self, usart: u8, bytes: &[u8], now_ms: i64) {
+        let printed = self.printed.entry(usart).or_default();
+        self.readings.extend(printed.take(usart, bytes, now_ms));
     }
 
     /// Records a line that a person typed to a USART.
@@ -209,7 +248,8 @@ impl Observer {
     }
 
     /// Shows the text of a robot as received.
-    pub(crate) fn said_in_text(&mut self, bytes: &[u8]) {
+    pub(crate) fn said_in_text(&mut self, bytes: &[u8], now_ms: i64) {
+        self.read_numbers(LINK_CONSOLE, bytes, now_ms);
         let text = readable(bytes);
         if !text.is_empty() {
             let usart = LINK_CONSOLE;
@@ -220,6 +260,10 @@ impl Observer {
 
     /// Publishes the samples; returns whether the state must follow at once.
     pub(crate) fn publish(&mut self, now_ms: i64) -> bool {
+        let readings = std::mem::take(&mut self.readings);
+        if !readings.is_empty() {
+            self.emit(Entry::Readings(readings));
+        }
         let samples = std::mem::take(&mut self.samples);
         if !samples.is_empty() {
             self.events.push(Event::Received(now_ms));

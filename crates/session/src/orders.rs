@@ -1,5 +1,7 @@
 //! Orders of a page: parses JSON text into a checked order.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use rumbo_control::Wheels;
 use rumbo_control::mode::waypoints::{MAX_WAYPOINTS, Waypoint};
 use rumbo_control::mode::{ModeId, Movement};
@@ -17,6 +19,11 @@ pub const MAX_SPEED: f64 = 100.0;
 const MAX_NAME: usize = 100;
 /// Longest line typed.
 const MAX_LINE: usize = 200;
+
+/// Longest order; only one with a program is longer than [`SHORT_ORDER`] \[bytes\].
+pub const MAX_ORDER: usize = 1_500_000;
+/// Longest order without a program \[bytes\].
+pub const SHORT_ORDER: usize = 4_096;
 
 /// What the session is to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +52,8 @@ pub enum Order {
     ReleaseControl,
     /// Start the ghost again where the robot is.
     RestartGhost,
+    /// Run this program on the emulated Mega: the name of its file, which is no path, and what is in it.
+    Program(String, Vec<u8>),
 }
 
 /// The orders to execute when STOP was pressed (`stop`): no older command to the robot comes after it.
@@ -141,6 +150,10 @@ enum Message {
     Speed {
         factor: f64,
     },
+    Program {
+        name: String,
+        data: String,
+    },
     Seek {
         t_s: f64,
     },
@@ -183,6 +196,9 @@ impl FromStr for Order {
 
     /// The order in a page's text. A page that sends anything else is not ours, and its connection is to be closed.
     fn from_str(text: &str) -> Result<Self, BadOrder> {
+        if text.len() > SHORT_ORDER && !text.starts_with("{\"type\":\"program\"") {
+            return Err(BadOrder(format!("longer than {SHORT_ORDER} bytes")));
+        }
         let message: Message =
             serde_json::from_str(text).map_err(|error| BadOrder(error.to_string()))?;
         let order = match message {
@@ -249,6 +265,7 @@ impl FromStr for Order {
                     "factor {factor} is not within 0 to {MAX_SPEED}"
                 )));
             }
+            Message::Program { name, data } => program(name, &data)?,
             Message::Seek { t_s } if t_s.is_finite() => Order::Seek(t_s),
             Message::Seek { .. } => return Err(BadOrder("t_s is too large".into())),
             Message::Step { frames } => Order::Step(frames),
@@ -276,6 +293,20 @@ impl FromStr for Order {
         };
         Ok(order)
     }
+}
+
+/// A program with a name that is only a name.
+fn program(name: String, data: &str) -> Result<Order, BadOrder> {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.' | ' ');
+    if name.len() > MAX_NAME || name.starts_with('.') || !name.chars().all(plain) {
+        return Err(BadOrder(
+            "a file's name has letters, digits, _, - and . only".into(),
+        ));
+    }
+    let data = STANDARD
+        .decode(data)
+        .map_err(|error| BadOrder(error.to_string()))?;
+    Ok(Order::Program(name, data))
 }
 
 /// A route in the commands that make it.

@@ -4,7 +4,7 @@ use crate::board::{Arrival, News};
 use crate::catalogue::{self, ModeEntry};
 use crate::console::ConsoleText;
 use crate::lease::View;
-use rumbo_log::{Burst, Cell, LoggedEvent, ParameterState, Row, Scene, State};
+use rumbo_log::{Burst, Cell, LoggedEvent, ParameterState, Reading, Row, Scene, Source, State};
 use serde::Serialize;
 
 /// Rows of samples in one message.
@@ -48,6 +48,13 @@ pub enum ToPage<'a> {
         heard: Arrival,
         /// In order of time.
         rows: Vec<Vec<Cell>>,
+    },
+    /// Signals beside the telemetry; the page discards those of another run.
+    Readings {
+        /// Number of the run.
+        run: u32,
+        /// Each of the same signals, in order of time.
+        groups: Vec<ReadingGroup<'a>>,
     },
     /// What happened.
     Events {
@@ -93,6 +100,33 @@ impl ToPage<'_> {
     }
 }
 
+/// Readings of the same signals, as the page gets them.
+#[derive(Debug, Serialize)]
+pub struct ReadingGroup<'a> {
+    /// The USART whose program printed them; `None` for ground truth and pins.
+    usart: Option<u8>,
+    names: &'a [String],
+    /// Time \[s\] and values of each.
+    rows: Vec<(f64, Vec<Cell>)>,
+}
+
+impl<'a> ReadingGroup<'a> {
+    fn of(readings: &'a [Reading]) -> Option<Self> {
+        let first = readings.first()?;
+        Some(Self {
+            usart: match first.source {
+                Source::Truth => None,
+                Source::Usart(usart) => Some(usart),
+            },
+            names: &first.names,
+            rows: readings
+                .iter()
+                .map(|each| (each.t_ms as f64 / 1e3, each.cells()))
+                .collect(),
+        })
+    }
+}
+
 /// Bytes that crossed the link together, as the page gets them.
 #[derive(Debug, Serialize)]
 pub struct LinkBytes {
@@ -132,6 +166,17 @@ impl News {
             heard: self.received,
             rows: rows.iter().map(Row::cells).collect(),
         });
+        let readings = self.readings.chunks(ROWS_PER_MESSAGE);
+        let readings = readings.map(move |readings| {
+            let alike = |one: &Reading, other: &Reading| {
+                one.source == other.source && one.names == other.names
+            };
+            let groups = readings.chunk_by(alike).filter_map(ReadingGroup::of);
+            ToPage::Readings {
+                run,
+                groups: groups.collect(),
+            }
+        });
         scene
             .chain(state)
             .chain(parameters)
@@ -139,6 +184,7 @@ impl News {
             .chain(said)
             .chain(bytes)
             .chain(samples)
+            .chain(readings)
     }
 }
 

@@ -17,7 +17,7 @@ use crate::orders::Order;
 use crate::target::{About, LinkNews, Standing};
 use crate::watch::LinkWatch;
 use rumbo_control::mode::ModeId;
-use rumbo_log::{Burst, CalibrationState, Choice, Level, MapPose, State, Truth};
+use rumbo_log::{Burst, CalibrationState, Choice, Level, MapPose, ProgramState, State, Truth};
 use rumbo_wire::Command;
 
 /// The slow state is published this often, and at once when it matters \[us\].
@@ -49,6 +49,8 @@ pub enum Ask {
     Type(u8, String),
     /// Put the ghost there; then [`Session::ghost_restarted`].
     Ghost(Standing),
+    /// Run this program; why not is reported as a note.
+    Program(String, Vec<u8>),
     /// Calibrate the robot; then [`Session::calibration_begun`].
     Calibrate,
 }
@@ -62,10 +64,12 @@ pub struct Sight {
     pub ghost: Option<MapPose>,
     /// What the USARTs of an emulated chip have sent.
     pub consoles: Vec<(u8, Vec<u8>)>,
+    /// What instruments show, if a reading is due.
+    pub instruments: Vec<(String, f64)>,
 }
 
 /// The target's progress.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Going {
     /// Requested seconds of its time per second of the wall clock.
     pub speed: f64,
@@ -73,6 +77,8 @@ pub struct Going {
     pub achieved_speed: f64,
     /// The voltage of its battery, where that is known \[V\].
     pub true_battery_v: Option<f64>,
+    /// The program of an emulated robot.
+    pub program: Option<ProgramState>,
 }
 
 /// A session with one target.
@@ -128,16 +134,7 @@ impl Session {
             Ok(about) => about,
             Err(why) => return self.note(Level::Warning, format!("reset: refused, {why}"), now),
         };
-        self.client = new_client(&about, id, self.text);
-        self.about = about;
-        self.link_events.clear();
-        self.to_robot.clear();
-        self.held = None;
-        self.calibration = None;
-        self.briefed = false;
-        self.state_noted_us = None;
-        self.observer.start_run();
-        self.show_scene();
+        self.begin_run(about, id);
         let part = |what: &str, name: &Option<String>| {
             let name = name.as_ref();
             name.map_or_else(String::new, |name| format!(" {what} {name}"))
@@ -150,6 +147,27 @@ impl Session {
             choice.seed
         );
         self.note(Level::Info, text, now);
+    }
+
+    /// The target has started again by itself, with a changed program.
+    pub fn renew(&mut self, about: About, id: u8, now: Now) {
+        self.begin_run(about, id);
+        let text = "the changed program runs, from the start";
+        self.note(Level::Good, text.into(), now);
+    }
+
+    fn begin_run(&mut self, about: About, id: u8) {
+        self.client = new_client(&about, id, self.text);
+        self.about = about;
+        self.link_events.clear();
+        self.to_robot.clear();
+        self.held = None;
+        self.calibrating = None;
+        self.calibration = None;
+        self.briefed = false;
+        self.state_noted_us = None;
+        self.observer.start_run();
+        self.show_scene();
     }
 
     /// Executes an order of the page; returns the request to the target, if any.
@@ -185,6 +203,7 @@ impl Session {
             Order::Calibrate => return self.may_calibrate(now),
             Order::TakeControl | Order::ReleaseControl => {}
             Order::RestartGhost => return Some(Ask::Ghost(self.observer.standing())),
+            Order::Program(name, data) => return Some(Ask::Program(name, data)),
             Order::Seek(_) | Order::Step(_) => {
                 let text = "refused, this is no replay of a log";
                 self.note(Level::Warning, text.into(), now);
@@ -201,6 +220,8 @@ impl Session {
         if let Some(truth) = sight.truth {
             self.observer.truth(now.target_ms(), truth);
         }
+        self.observer
+            .instruments(now.target_ms(), sight.instruments);
         self.observer.consoles(now.target_us, sight.consoles);
     }
 
@@ -208,7 +229,7 @@ impl Session {
     pub fn receive(&mut self, bytes: &[u8], now: Now) {
         self.note_bytes(bytes, false, now);
         if self.about.abilities.port && self.client.speaks_text() {
-            self.observer.said_in_text(bytes);
+            self.observer.said_in_text(bytes, now.target_ms());
         }
         self.client
             .receive(bytes, now.target_us, &mut self.link_events);
@@ -240,6 +261,9 @@ impl Session {
             }
             LinkNews::Held(text) => (Level::Warning, text),
             LinkNews::Ended(why) => (Level::Fault, why),
+            LinkNews::Program(level, text) => (level, text),
+            // Its driver begins the new run.
+            LinkNews::Renewed => return,
         };
         self.note(level, text, now);
     }
@@ -330,6 +354,7 @@ impl Session {
         };
         State {
             calibration: self.calibration.clone(),
+            program: going.program,
             ..describe(&around, &mut self.client, &self.observer)
         }
     }

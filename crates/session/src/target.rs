@@ -7,7 +7,7 @@
 use crate::error::TargetError;
 use rumbo_control::Fault;
 use rumbo_control::mode::ModeId;
-use rumbo_log::{Choice, Manifest, MapPose, Scene, Truth};
+use rumbo_log::{Choice, Level, Manifest, MapPose, ProgramState, Scene, Truth};
 use rumbo_wire::Command;
 
 /// What can be done with a target besides speaking to its robot.
@@ -109,6 +109,12 @@ pub trait Target: Send {
         None
     }
 
+    /// What instruments show of an emulated robot, by name with the unit last, if a reading is due: ground truth and
+    /// pins. Not a number: unknown; infinite: a sonar without an echo.
+    fn instruments(&mut self) -> Vec<(String, f64)> {
+        Vec::new()
+    }
+
     /// The robot's surroundings (or those of its ghost, in which the robot should be), and the alternatives to choose
     /// from; constant between resets.
     fn scene(&self) -> Option<Scene> {
@@ -125,12 +131,25 @@ pub trait Target: Send {
         Vec::new()
     }
 
+    /// The program of an emulated robot.
+    fn program(&self) -> Option<ProgramState> {
+        None
+    }
+
     /// Sends a line that a person typed to a USART.
     ///
     /// # Errors
     /// If there is no such chip.
     fn type_in(&mut self, _usart: u8, _line: &str) -> Result<(), TargetError> {
         Err(TargetError::NoTyping)
+    }
+
+    /// Runs another program, of this file name and content, as soon as it is compiled.
+    ///
+    /// # Errors
+    /// If this robot takes none.
+    fn run_program(&mut self, _name: String, _content: Vec<u8>) -> Result<(), TargetError> {
+        Err(TargetError::NoPrograms)
     }
 
     /// Starts again from time 0 with the choice given.
@@ -168,6 +187,10 @@ pub enum LinkNews {
     Held(String),
     /// A program cannot go on, and why.
     Ended(String),
+    /// Something about its program.
+    Program(Level, String),
+    /// It has started again from time 0 with a changed program: a new run begins.
+    Renewed,
 }
 
 /// A robot's pose.

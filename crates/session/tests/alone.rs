@@ -249,3 +249,67 @@ proptest! {
         prop_assert!(run() == run());
     }
 }
+
+#[test]
+fn a_program_that_sends_nothing_is_seen_by_instruments_and_what_it_prints_and_touches() {
+    let mut bench = Bench::new();
+    let mut events = Vec::new();
+    for slice in 0..800_u64 {
+        let now = Now {
+            target_us: slice * SLICE_US,
+            wall_us: slice * SLICE_US,
+        };
+        // Touching for a moment, again and again, as a body does that pushes.
+        let contact = (1_000_000..2_000_000).contains(&now.target_us) && slice % 3 == 0;
+        let truth = rumbo_log::Truth {
+            contact,
+            ..bench.toy.truth().unwrap()
+        };
+        let sight = Sight {
+            truth: Some(truth),
+            instruments: vec![("true_x_m".into(), now.target_us as f64)],
+            consoles: vec![(0, b"cm:3.5\n".to_vec())],
+            ..Sight::default()
+        };
+        bench.session.observe(sight, now);
+        bench.session.update(Going::default(), now);
+        events.extend(bench.session.take_events());
+    }
+    let entries = events.iter().filter_map(|event| match event {
+        Event::Entry(entry) => Some(entry.as_ref()),
+        _ => None,
+    });
+    let (mut truth, mut printed, mut collisions) = (0, 0, 0);
+    for entry in entries {
+        match entry {
+            Entry::Readings(readings) => {
+                for reading in readings {
+                    truth += usize::from(reading.signal("true_x_m").is_some());
+                    printed += usize::from(reading.signal("cm") == Some(3.5));
+                }
+            }
+            Entry::Event(event) => collisions += usize::from(event.text.starts_with("collision")),
+            _ => {}
+        }
+    }
+    assert_eq!((truth, printed, collisions), (800, 400, 1));
+    // A page that comes now gets the readings of both.
+    let mut board = Board::default();
+    for event in &events {
+        board.take(event, 0.0);
+    }
+    let news = board.news(&mut Cursor::default());
+    let messages: Vec<_> = news
+        .messages()
+        .filter_map(|message| message.json())
+        .collect();
+    let readings = messages
+        .iter()
+        .filter(|text| text.contains(r#""type":"readings""#));
+    let (names, port) = (r#""names":["true_x_m"]"#, r#""usart":0,"names":["cm"]"#);
+    let readings: String = readings.map(String::as_str).collect();
+    assert!(
+        readings.contains(names) && readings.contains(port),
+        "{readings}"
+    );
+}

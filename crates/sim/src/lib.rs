@@ -8,6 +8,7 @@ mod board;
 mod config;
 pub mod debugging;
 mod error;
+mod instruments;
 pub mod mega;
 mod sim;
 pub mod sonar_fault;
@@ -17,4 +18,5 @@ pub mod wiring;
 
 pub use config::{Config, Program};
 pub use error::SimError;
+pub use instruments::READING_US;
 pub use sim::{Burst, Latched, Sim};

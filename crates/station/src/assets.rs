@@ -58,6 +58,8 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/plot.js": SCRIPT,
     "src/plot_dialog.js": SCRIPT,
     "src/plots.js": SCRIPT,
+    "src/program.js": SCRIPT,
+    "src/readings.js": SCRIPT,
     "src/replay.js": SCRIPT,
     "src/seat.js": SCRIPT,
     "src/signals.js": SCRIPT,

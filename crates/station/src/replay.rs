@@ -36,8 +36,9 @@ pub(crate) struct Replay {
     /// Position of the playhead \[ms\].
     at_ms: f64,
     end_ms: f64,
-    /// The first row that is not on the board yet.
+    /// The first row, and the first reading, that are not on the board yet.
     next_row: usize,
+    next_reading: usize,
     speed: f64,
     last: Option<Instant>,
     shown: Option<(usize, usize)>,
@@ -65,6 +66,7 @@ impl Replay {
             at_ms: 0.0,
             end_ms,
             next_row: 0,
+            next_reading: 0,
             speed,
             last: None,
             shown: None,
@@ -123,7 +125,11 @@ impl Replay {
             Order::Reset(_) => self.seek(0.0),
             Order::Calibrate => {}
             Order::RestartGhost => self.restart_ghost(),
-            Order::Robot(_) | Order::Hold(_) | Order::Route(_) | Order::Type(..)
+            Order::Robot(_)
+            | Order::Hold(_)
+            | Order::Route(_)
+            | Order::Type(..)
+            | Order::Program(..)
                 if !self.warned =>
             {
                 self.warned = true;
@@ -133,6 +139,7 @@ impl Replay {
             | Order::Hold(_)
             | Order::Route(_)
             | Order::Type(..)
+            | Order::Program(..)
             | Order::TakeControl
             | Order::ReleaseControl => {}
         }
@@ -191,6 +198,19 @@ impl Replay {
         }
     }
 
+    fn put_readings(&self, readings: Range<usize>) {
+        let readings = self.log.readings.get(readings).unwrap_or_default();
+        if !readings.is_empty() {
+            self.put(Entry::Readings(readings.to_vec()));
+        }
+    }
+
+    /// The first reading after a time.
+    fn reading_after(&self, t_ms: f64) -> usize {
+        let readings = &self.log.readings;
+        readings.partition_point(|reading| reading.t_ms as f64 <= t_ms)
+    }
+
     /// The first row after a time.
     fn row_after(&self, t_ms: f64) -> usize {
         self.log.rows.partition_point(|row| row.t_ms as f64 <= t_ms)
@@ -203,6 +223,9 @@ impl Replay {
         let from = self.row_after(self.at_ms - BEFORE_MS as f64);
         self.next_row = self.row_after(self.at_ms);
         self.put_rows(from..self.next_row);
+        let from = self.reading_after(self.at_ms - BEFORE_MS as f64);
+        self.next_reading = self.reading_after(self.at_ms);
+        self.put_readings(from..self.next_reading);
         let from_ms = self.at_ms - BEFORE_MS as f64;
         self.speech.seek(from_ms, self.at_ms, &self.board);
     }
@@ -210,11 +233,15 @@ impl Replay {
     /// To the next telemetry frame, or to the one before; the playhead stands there.
     fn step(&mut self, frames: i32) {
         self.speed = 0.0;
-        let now = self.row_after(self.at_ms) as i64 - 1;
-        let wanted =
-            (now + i64::from(frames)).clamp(0, self.log.rows.len().saturating_sub(1) as i64);
-        if let Some(row) = self.log.rows.get(wanted as usize) {
-            let t_ms = row.t_ms as f64;
+        // A program that sends no telemetry is seen by the instruments.
+        let t_ms: Vec<i64> = match self.log.rows.is_empty() {
+            true => self.log.readings.iter().map(|each| each.t_ms).collect(),
+            false => self.log.rows.iter().map(|row| row.t_ms).collect(),
+        };
+        let now = t_ms.partition_point(|t_ms| *t_ms as f64 <= self.at_ms) as i64 - 1;
+        let wanted = (now + i64::from(frames)).clamp(0, t_ms.len().saturating_sub(1) as i64);
+        if let Some(t_ms) = t_ms.get(wanted as usize) {
+            let t_ms = *t_ms as f64;
             if frames > 0 {
                 self.advance(t_ms)
             } else {
@@ -239,6 +266,9 @@ impl Replay {
         let until = self.row_after(self.at_ms);
         self.put_rows(self.next_row..until);
         self.next_row = until.max(self.next_row);
+        let until = self.reading_after(self.at_ms);
+        self.put_readings(self.next_reading..until);
+        self.next_reading = until.max(self.next_reading);
         self.speech.advance(self.at_ms, &self.board);
     }
 

@@ -215,6 +215,7 @@ fn start_on(
 ) -> io::Result<Lab> {
     listener.set_nonblocking(true)?;
     let (opens, opened) = mpsc::channel();
+    let local = listener.local_addr()?.ip().is_loopback();
     let guard = Guard::new(listener.local_addr()?, opens.clone()).map_err(io::Error::other)?;
     let (url, viewers_url) = (guard.url(), guard.viewers_url());
 
@@ -244,6 +245,7 @@ fn start_on(
             orders: orders.clone(),
             stop,
             lease: Lease::default(),
+            takes_programs: local,
         },
     );
     let runtime = tokio::runtime::Builder::new_current_thread()

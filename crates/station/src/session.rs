@@ -10,8 +10,8 @@ use crate::recorder::{Recorder, Recording, now_utc};
 use crate::subscribers::Subscribers;
 use rumbo_log::{Level, Manifest};
 use rumbo_session::{
-    About, Ask, CalibrationError, Going, MAX_SPEED, Now, Order, Pace, SLICE_US, Session, Sight,
-    Target, TargetError, stop_first,
+    About, Ask, CalibrationError, Going, LinkNews, MAX_SPEED, Now, Order, Pace, SLICE_US, Session,
+    Sight, Target, TargetError, stop_first,
 };
 use rumbo_wire::Command;
 use std::sync::Arc;
@@ -162,6 +162,11 @@ impl Driver {
                 let sent = self.target.type_in(usart, &line);
                 self.session.typed(usart, &line, sent, now);
             }
+            Ask::Program(name, content) => {
+                if let Err(why) = self.target.run_program(name, content) {
+                    self.note(Level::Warning, format!("program: refused, {why}"));
+                }
+            }
             Ask::Ghost(standing) => {
                 let done = self.target.restart_ghost(standing);
                 self.session.ghost_restarted(done, now);
@@ -176,15 +181,19 @@ impl Driver {
             Ask::Reset(choice) => {
                 let done = self.target.reset(&choice);
                 if done.is_ok() {
-                    // Earlier events belong to the previous run.
-                    self.publish();
-                    self.pace = Pace::new(self.pace.speed);
-                    self.record();
+                    self.begin_run();
                 }
                 let done = done.map(|()| About::of(self.target.as_ref()));
                 self.session.restart(&choice, done, random_id(), self.now());
             }
         }
+    }
+
+    /// Earlier events belong to the previous run.
+    fn begin_run(&mut self) {
+        self.publish();
+        self.pace = Pace::new(self.pace.speed);
+        self.record();
     }
 
     /// Advances the target by the time due.
@@ -199,6 +208,7 @@ impl Driver {
                 truth: self.target.truth(),
                 ghost: self.target.ghost(),
                 consoles: self.target.consoles(),
+                instruments: self.target.instruments(),
             };
             self.session.observe(sight, now);
             self.bytes.clear();
@@ -231,7 +241,13 @@ impl Driver {
 
     fn news(&mut self) {
         while let Some(news) = self.target.news() {
-            self.session.news(news, self.now());
+            if news == LinkNews::Renewed {
+                self.begin_run();
+                let about = About::of(self.target.as_ref());
+                self.session.renew(about, random_id(), self.now());
+            } else {
+                self.session.news(news, self.now());
+            }
         }
         if !self.session.calibrating() {
             self.guest = None;
@@ -247,6 +263,7 @@ impl Driver {
             speed: self.pace.speed,
             achieved_speed: self.pace.achieved(),
             true_battery_v: self.target.truth().map(|truth| truth.battery_v),
+            program: self.target.program(),
         };
         self.session.update(going, self.now());
         self.publish();

@@ -14,7 +14,7 @@ use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use futures_util::stream::SplitSink;
 use futures_util::{Sink, SinkExt, Stream, StreamExt};
 use rumbo_log::{Level, LoggedEvent};
-use rumbo_session::{Cursor, News, Order, ToPage};
+use rumbo_session::{Cursor, MAX_ORDER, News, Order, SHORT_ORDER, ToPage};
 use rumbo_wire::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,10 +23,10 @@ use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::{interval, sleep, timeout};
 
-/// Longest message of a page [bytes].
-pub(crate) const MAX_MESSAGE: usize = 4_096;
 /// Most rows sent to a page at once; of more it gets the newest.
 const ROWS_AT_ONCE: usize = 500;
+/// The same of readings, of which there may be four times as many.
+const READINGS_AT_ONCE: usize = 2_000;
 /// Refusals that wait for a page.
 const REFUSALS_WAITING: usize = 8;
 /// News within this time are sent together: a page draws at most 60 times a second.
@@ -45,6 +45,18 @@ pub(crate) struct Hub {
     pub(crate) orders: SyncSender<Order>,
     pub(crate) stop: Arc<AtomicBool>,
     pub(crate) lease: Lease,
+    /// Only this computer reaches the pages: a program dropped on one is taken.
+    pub(crate) takes_programs: bool,
+}
+
+impl Hub {
+    /// Longest message of a page \[bytes\].
+    pub(crate) fn longest_message(&self) -> usize {
+        match self.takes_programs {
+            true => MAX_ORDER,
+            false => SHORT_ORDER,
+        }
+    }
 }
 
 /// Why a connection ends.
@@ -133,7 +145,13 @@ async fn take_orders(
                 });
             }
         };
-        if let Err(why) = place.admit(&order) {
+        let admitted = match order {
+            Order::Program(..) if !hub.takes_programs => {
+                Err("refused: a program is taken only where no other computer reaches the page")
+            }
+            _ => place.admit(&order),
+        };
+        if let Err(why) = admitted {
             // A page need not read each of many refusals.
             let _ = refuse.try_send(why);
             continue;
@@ -180,6 +198,8 @@ async fn publish_news(
         let behind = news.samples.len().saturating_sub(ROWS_AT_ONCE);
         if std::mem::replace(&mut run, news.run) == news.run {
             news.samples.drain(..behind);
+            let behind = news.readings.len().saturating_sub(READINGS_AT_ONCE);
+            news.readings.drain(..behind);
         }
         t_s = news.state.as_ref().map_or(t_s, |state| state.t_s);
         while let Ok(text) = refusals.try_recv() {
@@ -233,6 +253,7 @@ mod tests {
             orders: std::sync::mpsc::sync_channel(1).0,
             stop: Arc::default(),
             lease: Lease::default(),
+            takes_programs: true,
         }
     }
 

@@ -99,8 +99,8 @@ async fn upgrade(
         .ok_or(Denied::Key)?;
     Ok(upgrade
         .protocols([PROTOCOL])
-        .max_message_size(socket::MAX_MESSAGE)
-        .max_frame_size(socket::MAX_MESSAGE)
+        .max_message_size(hub.longest_message())
+        .max_frame_size(hub.longest_message())
         .on_upgrade(move |socket| socket::talk(socket, hub, role)))
 }
 

@@ -26,7 +26,7 @@ struct Plugged {
 
 impl Plugged {
     fn new(name: &Path) -> Self {
-        let mut pty = Pty::new().unwrap();
+        let mut pty = Pty::new(Duration::from_millis(5)).unwrap();
         let _ = std::fs::remove_file(name);
         std::os::unix::fs::symlink(pty.path(), name).unwrap();
         let out = Arc::new(AtomicBool::new(false));

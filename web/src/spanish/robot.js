@@ -155,6 +155,11 @@ export const ROBOT = {
   'reset: refused, this is a real robot': 'reinicio: rechazado, es un robot real', 'this is a real robot': 'es un robot real', 'reset: refused, {}': 'reinicio: rechazado, {}',
   'reset: {}, seed {}': 'reinicio: {}, semilla {}', 'reset: {} in world {}, seed {}': 'reinicio: {} en el mundo {}, semilla {}',
   'reset: {} with rig {}, seed {}': 'reinicio: {} con el montaje {}, semilla {}', 'reset: {} in world {} with rig {}, seed {}': 'reinicio: {} en el mundo {} con el montaje {}, semilla {}',
+  'collision: the robot touches something': 'colisión: el robot toca algo', 'the changed program runs, from the start': 'el programa modificado está en marcha, desde el principio',
+  'the changed program does not compile: the robot is switched off until it does': 'el programa modificado no compila: el robot está apagado hasta que compile',
+  'compiler: {}': 'compilador: {}', 'program: refused, {}': 'programa: rechazado, {}', 'only an .ino, .elf or .hex file is a program for the Mega': 'solo un archivo .ino, .elf o .hex es un programa para el Mega',
+  'refused: a program is taken only where no other computer reaches the page': 'rechazado: solo se acepta un programa donde ningún otro ordenador alcanza la página',
+  'the program does not compile; correct it and save': 'el programa no compila; corrígelo y guárdalo', 'this robot takes no program from a page': 'este robot no acepta programas desde una página',
   'recording to {}': 'grabando en {}', 'not recording: {}': 'no se graba: {}', 'recording ended: the log cannot be written ({}); is the disk full?': 'fin de la grabación: no se puede escribir ({}); ¿disco lleno?',
   'recording: the disk is slow, {} entries are missing in the log': 'grabación: el disco es lento, faltan {} entradas',
   'recording: more came in this second than a robot says; {} bytes of the link and {} samples and events are left out':

@@ -6,7 +6,7 @@ use crate::sketch;
 use clap::Args;
 use rumbo_experiment::files::{FileError, Library, Overrides};
 use rumbo_sim::mega::boards::Board;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Options that replace values of the scenario.
 #[derive(Args, Clone, Debug)]
@@ -65,6 +65,21 @@ impl ImageArgs {
             self.firmware = Some(sketch::image(given, board(robot, scenario)?)?);
         }
         Ok(())
+    }
+
+    /// What the user gave as the program.
+    pub(crate) fn given(&self) -> Option<String> {
+        let image = self.firmware.as_ref();
+        let image = image.map(|path| path.display().to_string());
+        self.sketch.clone().or(image)
+    }
+
+    /// Where to look for changes of it.
+    pub(crate) fn watched(&self) -> Option<&Path> {
+        match &self.sketch {
+            Some(sketch) => sketch::path(sketch),
+            None => self.firmware.as_deref(),
+        }
     }
 
     /// The resulting overrides of a scenario.

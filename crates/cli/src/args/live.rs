@@ -17,7 +17,8 @@ Examples:
   rumbo lab --scenario mode5 --firmware my_sketch.elf --gdb 1234
   rumbo lab --port 9000 --no-browser
   rumbo lab --listen 192.168.1.7
-  rumbo lab --pty")]
+  rumbo lab --pty
+  rumbo lab --sketch my_sketch --usb-pty")]
 pub(crate) struct LabArgs {
     /// Scenario that the robot starts in: name or path
     #[arg(long, value_name = "NAME", default_value = "mode1")]
@@ -40,6 +41,10 @@ pub(crate) struct LabArgs {
     #[cfg(unix)]
     #[arg(long, conflicts_with_all = ["port", "listen", "no_browser", "out"])]
     pub(crate) pty: bool,
+    /// Offer the emulated Mega's USB port (Serial) as a serial port to other programs, beside all else; prints its name
+    #[cfg(unix)]
+    #[arg(long, requires = "image")]
+    pub(crate) usb_pty: bool,
 }
 
 /// Options of `rumbo connect`.

@@ -181,6 +181,13 @@ impl Devices {
         self.start
     }
 
+    /// The rate at which a USART receives, if its receiver is on \[baud\].
+    pub fn receiving_baud(&self, usart: u8) -> Option<f64> {
+        self.usarts
+            .get(usize::from(usart))?
+            .receiving_baud(&self.core)
+    }
+
     /// What the EEPROM holds.
     pub fn eeprom(&self) -> &[u8] {
         &self.eeprom.bytes

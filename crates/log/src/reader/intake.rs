@@ -5,12 +5,14 @@
 //! that belong in a log are accepted.
 
 use super::metadata::Metadata;
+use super::reading_json::Readings;
 use super::row_json::Signals;
 use crate::digest::Digest;
 use crate::entry::{Burst, Said};
 use crate::event::{Level, LoggedEvent};
 use crate::log::{Log, Place};
 use crate::lz4::Lz4;
+use crate::reading::Reading;
 use crate::scene::Scene;
 use crate::schema::Topic;
 use crate::signals::Row;
@@ -79,6 +81,7 @@ pub(super) struct Intake {
     channels: HashMap<u16, Channel>,
     metadata: Metadata,
     with_link: bool,
+    readings: Readings,
     part: Part,
     /// The checksum of all data is right.
     verified: bool,
@@ -95,6 +98,7 @@ impl Intake {
             channels: HashMap::new(),
             metadata: Metadata::default(),
             with_link,
+            readings: Readings::default(),
             part: Part::Beginning,
             verified: false,
             filled: 0,
@@ -250,7 +254,7 @@ impl Intake {
             Topic::State | Topic::Parameters | Topic::Events | Topic::Scene => 2 * data.len(),
             Topic::FromRobot | Topic::ToRobot => size_of::<Burst>() + data.len(),
             Topic::Console => size_of::<Said>() + data.len(),
-            Topic::Telemetry | Topic::Digest => 0,
+            Topic::Telemetry | Topic::Digest | Topic::Truth | Topic::Printed => 0,
             Topic::Estimated | Topic::True | Topic::World => 0,
         };
         match topic {
@@ -303,6 +307,14 @@ impl Intake {
                     to_chip,
                     bytes: decoded(&data)?,
                 });
+            }
+            Topic::Truth => {
+                log.readings.push(self.readings.truth(t_ms, data)?);
+                self.filled += size_of::<Reading>() + data.len() / 4;
+            }
+            Topic::Printed => {
+                log.readings.push(self.readings.printed(t_ms, data)?);
+                self.filled += size_of::<Reading>() + data.len();
             }
             Topic::Digest => {
                 let digest: Digest = serde_json::from_slice(data)?;

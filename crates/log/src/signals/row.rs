@@ -17,6 +17,17 @@ pub enum Cell {
     Unknown(Option<()>),
 }
 
+impl Cell {
+    /// Of a value that is not a number where unknown, infinite where a range is clear.
+    pub(crate) fn of(value: f64) -> Self {
+        match value {
+            value if value.is_finite() => Self::Number(value),
+            value if value.is_nan() => Self::Unknown(None),
+            _ => Self::Word("clear"),
+        }
+    }
+}
+
 /// The signals at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
@@ -129,17 +140,13 @@ impl Row {
     #[must_use]
     pub fn cells(&self) -> Vec<Cell> {
         (0..COLUMNS)
-            .map(|column| match self.get(column) {
-                Some(value) if value.is_finite() => Cell::Number(value),
-                Some(_) => Cell::Word("clear"),
-                None => Cell::Unknown(None),
-            })
+            .map(|column| Cell::of(self.get(column).unwrap_or(f64::NAN)))
             .collect()
     }
 }
 
 /// Four decimals: a tenth of a millimetre, less than any signal's own step.
-fn tidy(value: f32) -> f64 {
+pub(crate) fn tidy(value: f32) -> f64 {
     if value.is_finite() {
         (f64::from(value) * 1e4).round() / 1e4
     } else {

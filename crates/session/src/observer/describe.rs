@@ -66,6 +66,7 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
         refused: observer.refused().map(str::to_owned),
         alarms: alarms(around.t_us, client),
         calibration: None,
+        program: None,
         replay: None,
     }
 }

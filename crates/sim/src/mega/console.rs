@@ -4,23 +4,21 @@ use std::collections::VecDeque;
 
 /// Unread bytes kept.
 const KEPT: usize = 1 << 16;
-/// The rate of a USART that has not spoken yet [baud].
-const SILENT_BAUD: u32 = 9600;
 
 /// One USART's output.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Console {
     bytes: VecDeque<u8>,
-    baud: Option<u32>,
+    spoken: bool,
 }
 
 impl Console {
-    pub(super) fn push(&mut self, byte: u8, baud: f64) {
+    pub(super) fn push(&mut self, byte: u8) {
         if self.bytes.len() == KEPT {
             self.bytes.pop_front();
         }
         self.bytes.push_back(byte);
-        self.baud = Some(baud.round() as u32);
+        self.spoken = true;
     }
 
     pub(super) fn take(&mut self) -> Vec<u8> {
@@ -29,11 +27,7 @@ impl Console {
 
     /// Something has been sent.
     pub(super) fn has_spoken(&self) -> bool {
-        self.baud.is_some()
-    }
-
-    pub(super) fn baud(&self) -> u32 {
-        self.baud.unwrap_or(SILENT_BAUD)
+        self.spoken
     }
 }
 
@@ -44,9 +38,12 @@ mod tests {
     #[test]
     fn a_console_nobody_reads_keeps_the_latest_bytes() {
         let mut console = Console::default();
-        (0..KEPT + 3).for_each(|n| console.push(n as u8, 9615.4));
+        (0..KEPT + 3).for_each(|n| console.push(n as u8));
         let bytes = console.take();
-        assert_eq!((bytes.len(), bytes[0], console.baud()), (KEPT, 3, 9615));
+        assert_eq!(
+            (bytes.len(), bytes[0], console.has_spoken()),
+            (KEPT, 3, true)
+        );
         assert!(console.take().is_empty());
     }
 }

@@ -15,6 +15,8 @@ use rumbo_wire::{Decoder, FromRobot, Message, Received};
 
 /// Rate of the Bluetooth module [baud].
 pub const LINK_BAUD: f64 = 9600.0;
+/// The pin of the LED, on every board.
+const LED: u8 = 13;
 /// Time to wait for HELLO, which our program sends as soon as it runs [us].
 const BOOT_US: u64 = 600_000;
 /// A boot loader has handed over after this [cycles], or never will.
@@ -68,6 +70,11 @@ impl Firmware {
         &self.name
     }
 
+    /// The board it is for.
+    pub fn board(&self) -> &'static Board {
+        self.board
+    }
+
     /// The program.
     pub fn image(&self) -> &Image {
         &self.image
@@ -78,6 +85,12 @@ impl Firmware {
         let mut signals = self.wires.signals();
         signals.extend(self.board.signals());
         signals
+    }
+
+    /// The pins worth an instrument: the wired ones, and the board's LED.
+    pub(super) fn metered(&self) -> Vec<(String, Pin)> {
+        let led = self.board.pin(LED).map(|pin| ("led".to_owned(), pin));
+        self.wires.signals().into_iter().chain(led).collect()
     }
 
     /// What it speaks on its link.

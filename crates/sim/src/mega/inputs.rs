@@ -135,6 +135,7 @@ impl Mega {
 
     pub(super) fn put(&mut self, cycle: u64, pin: Option<Pin>, level: bool) {
         if let Some(pin) = pin {
+            self.meters.set(cycle, pin, level);
             self.chip.input(cycle, Input::Pin(pin, Some(level)));
         }
     }

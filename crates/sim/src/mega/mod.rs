@@ -16,6 +16,7 @@
 //! | `outputs` | the chip's outputs as actions on the robot |
 //! | `echo` | echo lines, and sonars that fail |
 //! | `console` | output of the USARTs, for people |
+//! | `meters` | what instruments at the wired pins show |
 //! | `marks` | when the program reaches some of its functions |
 //! | `notes` | oddities of a program, for people |
 //! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
@@ -32,6 +33,7 @@ mod bridge;
 mod echo;
 mod inputs;
 mod marks;
+mod meters;
 mod module;
 mod notes;
 mod outputs;
@@ -46,6 +48,7 @@ use echo::Echoes;
 use firmware::Firmware;
 use inputs::Announced;
 use marks::Marks;
+use meters::Meters;
 use pins::Wires;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
@@ -65,6 +68,8 @@ const BROWN_OUT_V: f64 = 3.8;
 pub const ACT: u64 = 10;
 /// A sonar needs its trigger high for 10 us (HC-SR04 user's manual); what is shorter it may ignore.
 const TRIGGER_CYCLES: u64 = 10 * CYCLES_PER_US;
+/// The rate of a terminal at a USART that does not receive \[baud\].
+const UNSET_BAUD: u32 = 9600;
 /// An input goes into the chip's queue this long before its cycle: until then nothing the chip does can change it.
 const AHEAD_CYCLES: u64 = CYCLES_PER_US;
 
@@ -108,6 +113,7 @@ pub struct Mega {
     /// Bytes that the module has received from the chip, and when [us].
     sent: Vec<(u64, u8)>,
     consoles: [Console; 4],
+    meters: Meters,
     verdict: Option<Verdict>,
     /// When the program reached the functions of interest.
     marks: Marks,
@@ -139,6 +145,7 @@ impl Mega {
             actions: Vec::new(),
             sent: Vec::new(),
             consoles: Default::default(),
+            meters: Meters::at(firmware.metered()),
             verdict: None,
             marks: Marks::default(),
             has_driven: false,
@@ -230,12 +237,16 @@ impl Mega {
         console.map(Console::take).unwrap_or_default()
     }
 
-    /// Sends bytes to a USART from a terminal at the rate at which it last spoke.
+    /// What the instruments at the wired pins show since the last reading.
+    pub(crate) fn read_meters(&mut self) -> Vec<(String, f64)> {
+        self.meters.read(self.chip.cycle())
+    }
+
+    /// Sends bytes to a USART from a terminal that is set to its rate, as the Serial Monitor is.
     pub fn type_in(&mut self, usart: u8, bytes: &[u8]) {
-        let Some(console) = self.consoles.get(usize::from(usart)) else {
-            return;
-        };
-        let (cycle, baud) = (self.chip.cycle(), console.baud());
+        let cycle = self.chip.cycle();
+        let baud = self.chip.devices().receiving_baud(usart);
+        let baud = baud.map_or(UNSET_BAUD, |baud| baud.round() as u32);
         for byte in bytes {
             let byte = *byte;
             self.chip.input(cycle, Input::Serial { usart, byte, baud });

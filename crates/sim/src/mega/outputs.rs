@@ -19,7 +19,7 @@ impl Mega {
                 Event::Pin(pin, drive) => {
                     self.level(cycle, pin, matches!(drive, Drive::High | Drive::PullUp));
                 }
-                Event::Duty { pin, pwm } => self.modulate(pin, pwm),
+                Event::Duty { pin, pwm } => self.modulate(cycle, pin, pwm),
                 Event::Byte { usart, byte, baud } => self.byte_sent(cycle, usart, byte as u8, baud),
                 // Covered by the events of the pins.
                 Event::Reset(_) => {}
@@ -45,6 +45,7 @@ impl Mega {
     }
 
     fn level(&mut self, cycle: u64, pin: Pin, high: bool) {
+        self.meters.set(cycle, pin, high);
         if let Some(line) = self.line(pin) {
             line.set(cycle, high);
         }
@@ -68,7 +69,8 @@ impl Mega {
         }
     }
 
-    fn modulate(&mut self, pin: Pin, pwm: Option<Pwm>) {
+    fn modulate(&mut self, cycle: u64, pin: Pin, pwm: Option<Pwm>) {
+        self.meters.modulate(cycle, pin, pwm);
         if let Some(line) = self.line(pin) {
             line.modulate(pwm);
         }
@@ -99,7 +101,7 @@ impl Mega {
 
     fn byte_sent(&mut self, cycle: u64, usart: u8, byte: u8, baud: f64) {
         if let Some(console) = self.consoles.get_mut(usize::from(usart)) {
-            console.push(byte, baud);
+            console.push(byte);
         }
         if self.wires().link == Some(usart)
             && let Some(byte) = module::decode(byte, baud, firmware::LINK_BAUD)

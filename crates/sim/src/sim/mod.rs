@@ -70,6 +70,8 @@ pub struct Sim {
     noise: Noise,
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
+    /// The chip is without power: its program does not run, and its pins drive nothing.
+    off: bool,
     /// What crossed the link, while it is tapped.
     tapped: Option<Vec<Burst>>,
 }
@@ -151,6 +153,7 @@ impl Sim {
             wire_faults,
             noise,
             outputs_us: (0, 0, 0),
+            off: false,
             tapped: None,
         })
     }
@@ -343,6 +346,17 @@ impl Sim {
         }
     }
 
+    /// Takes an emulated chip's power away: its program stops, the wheels are released. The robot rolls out.
+    pub fn switch_off(&mut self) {
+        self.off = true;
+        self.set_bridges(Wheels::default());
+    }
+
+    /// Whether its power was taken away.
+    pub(crate) fn is_off(&self) -> bool {
+        self.off
+    }
+
     /// How the program at the pins ended, if it could not go on.
     pub fn verdict(&self) -> Option<String> {
         self.mega().and_then(Mega::verdict)
@@ -373,6 +387,7 @@ impl Sim {
         match &mut controller {
             Some(Controller::Rumbo(native)) => self.advance_native(native, until_us),
             Some(Controller::Baseline(baseline)) => self.advance_baseline(baseline, until_us),
+            Some(Controller::Mega(_)) if self.off => self.advance_plant(until_us, &mut |_| {}),
             Some(Controller::Mega(mega)) => self.advance_mega(mega, until_us),
             None => {}
         }

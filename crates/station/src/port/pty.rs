@@ -4,32 +4,31 @@ use serialport::{SerialPort, TTYPort};
 use std::io::{self, Read, Write};
 use std::time::Duration;
 
-/// Longest wait for the other side to read or write.
-const PATIENCE: Duration = Duration::from_millis(5);
-
 /// The robot's side of a pseudo terminal.
 #[derive(Debug)]
 pub struct Pty {
     master: TTYPort,
     path: String,
+    patience: Duration,
     /// A program has the other side open.
     open: bool,
 }
 
 impl Pty {
-    /// Opens a new one.
+    /// Opens a new one. `patience`: longest wait for the other side to read or write.
     ///
     /// # Errors
     /// If the system has none left.
-    pub fn new() -> io::Result<Self> {
+    pub fn new(patience: Duration) -> io::Result<Self> {
         let (mut master, slave) = TTYPort::pair()?;
-        master.set_timeout(PATIENCE)?;
+        master.set_timeout(patience)?;
         let path = slave
             .name()
             .ok_or_else(|| io::Error::other("a pseudo terminal without a name"))?;
         Ok(Self {
             master,
             path,
+            patience,
             open: false,
         })
     }
@@ -40,7 +39,7 @@ impl Pty {
         &self.path
     }
 
-    /// Appends what the other side has written. Waits a few milliseconds for it.
+    /// Appends what the other side has written; waits for it as long as its patience lasts.
     pub fn read(&mut self, into: &mut Vec<u8>) {
         let mut buffer = [0; 1_024];
         match self.master.read(&mut buffer) {
@@ -51,7 +50,7 @@ impl Pty {
             Err(error) if error.kind() == io::ErrorKind::TimedOut => self.open = true,
             Err(_) => {
                 self.open = false;
-                std::thread::sleep(PATIENCE);
+                std::thread::sleep(self.patience);
             }
         }
     }

@@ -102,6 +102,16 @@ impl Usart {
         (self.place.vector..self.place.vector + 3).contains(&vector)
     }
 
+    /// The rate that it is set to \[baud\].
+    fn baud(&self, core: &Core) -> f64 {
+        CLOCK_HZ as f64 / (self.rate.bit() * core.clock.divisor()) as f64
+    }
+
+    /// The rate at which it receives, if it does \[baud\].
+    pub(crate) fn receiving_baud(&self, core: &Core) -> Option<f64> {
+        self.listens().then(|| self.baud(core))
+    }
+
     fn listens(&self) -> bool {
         self.control_b & RXEN != 0
     }
@@ -151,7 +161,7 @@ impl Usart {
                     let event = Event::Byte {
                         usart: self.place.number as u8,
                         byte,
-                        baud: CLOCK_HZ as f64 / (self.rate.bit() * core.clock.divisor()) as f64,
+                        baud: self.baud(core),
                     };
                     core.emit(at, event);
                     self.drive_pins(core, at);

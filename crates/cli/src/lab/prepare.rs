@@ -1,0 +1,67 @@
+//! A simulation of the lab, before its first step.
+
+use crate::manifest;
+use crate::scene::{first_commands, scene};
+use rumbo_control::mode::ModeId;
+use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
+use rumbo_experiment::run;
+use rumbo_log::{Choice, Kind, Manifest, Scene};
+use rumbo_sim::{Config, Sim};
+use rumbo_wire::Command;
+
+/// A simulation at time 0 and its surroundings.
+pub(super) struct Prepared {
+    pub(super) sim: Sim,
+    pub(super) mode: ModeId,
+    pub(super) scene: Scene,
+    pub(super) first_commands: Vec<Command>,
+    pub(super) manifest: Manifest,
+}
+
+/// Prepares the page's choice; `memory` is what the robot's EEPROM holds.
+pub(super) fn prepare(
+    library: &Library,
+    overrides: &Overrides,
+    choice: Choice,
+    memory: &[u8],
+) -> Result<Prepared, FileError> {
+    let overrides = Overrides {
+        world: choice.world.clone(),
+        rig: choice.rig.clone(),
+        ..overrides.clone()
+    };
+    let setup: Setup = library.setup(&choice.scenario, &overrides)?;
+    let mut manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
+    manifest.remember(memory);
+    let setup = setup.of_seed(choice.seed)?;
+    let ready = run::prepare(&setup, choice.seed)?;
+    Ok(Prepared {
+        sim: Sim::new(Config {
+            memory: memory.to_vec(),
+            ..ready.config(choice.seed)?
+        })?,
+        mode: setup.scenario.mode,
+        scene: scene(library, &setup, choice)?,
+        first_commands: first_words(&ready)?,
+        manifest,
+    })
+}
+
+/// The first commands to the robot. An image does not have its parameters yet, and one with the text protocol sets its
+/// own mode.
+fn first_words(setup: &Setup) -> Result<Vec<Command>, FileError> {
+    let mut commands = first_commands(setup);
+    if setup.firmware.is_none() {
+        return Ok(commands);
+    }
+    if !setup.takes_parameters() {
+        commands.retain(|command| !matches!(command, Command::Mode(_)));
+        return Ok(commands);
+    }
+    let parameters = setup.control_parameters()?.into_iter();
+    let parameters = parameters.map(|(id, value)| Command::SetParam {
+        id: id as u8,
+        value,
+    });
+    Ok(parameters.chain(commands).collect())
+}

@@ -1,0 +1,236 @@
+//! The sketch of the lab, compiled again whenever it is saved. A thread looks at its files and compiles; the lab asks for
+//! what it has made.
+//!
+//! The files are read and compared, not their times or the system's notices: an editor may write in place, or a new file
+//! that it renames, and a file saved without a change changes nothing.
+
+use crate::sketch;
+use rumbo_log::Complaint;
+use rumbo_sim::mega::boards::Board;
+use rumbo_sketch::{Compiler, Diagnostic, Given, SketchError, Source, given};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, SystemTime};
+
+/// The files are looked at this often. What has changed is compiled when it is the same twice: whole, that is.
+const LOOK: Duration = Duration::from_millis(150);
+/// Errors shown: the first ones matter.
+const MOST: usize = 12;
+
+/// What the workshop says.
+#[derive(Debug)]
+pub(crate) enum Made {
+    /// The program has changed and is being compiled.
+    Begun,
+    /// The new image.
+    Image(PathBuf),
+    /// Why there is none.
+    Rejected(Vec<Complaint>),
+}
+
+/// A program that is watched.
+pub(crate) struct Workshop {
+    made: Receiver<Made>,
+}
+
+/// A program as it stands in its files.
+#[derive(Clone, PartialEq)]
+enum Contents {
+    Sketch(Source),
+    Image(PathBuf, Option<(u64, SystemTime)>),
+}
+
+impl Workshop {
+    /// Watches a sketch or an image as it is now; ends when it is dropped.
+    pub(crate) fn watch(path: &Path, board: &'static Board) -> std::io::Result<Self> {
+        let path = path.to_owned();
+        let (sender, made) = channel();
+        std::thread::Builder::new()
+            .name("workshop".into())
+            .spawn(move || work(&path, board, &sender))?;
+        Ok(Self { made })
+    }
+
+    /// Compiles a sketch of somebody else's once, in the sandbox, or keeps an image; by the name of its file.
+    pub(crate) fn make_dropped(
+        board: &'static Board,
+        name: String,
+        content: Vec<u8>,
+    ) -> std::io::Result<Self> {
+        let (sender, made) = channel();
+        std::thread::Builder::new()
+            .name("workshop".into())
+            .spawn(move || {
+                // Nobody listens any more if the next one was dropped meanwhile.
+                let _ = sender.send(Made::Begun);
+                let _ = sender.send(dropped(board, &name, content));
+            })?;
+        Ok(Self { made })
+    }
+
+    /// What it has to say.
+    pub(crate) fn next(&self) -> Option<Made> {
+        self.made.try_recv().ok()
+    }
+}
+
+/// Looks and compiles until nobody listens.
+fn work(path: &Path, board: &Board, sender: &Sender<Made>) {
+    let mut compiler = None;
+    let mut built = contents(path);
+    let mut before = None;
+    loop {
+        std::thread::sleep(LOOK);
+        // Gone for a moment while an editor renames.
+        let now = contents(path);
+        let whole = now.is_some() && now == before;
+        before.clone_from(&now);
+        let Some(changed) = now.filter(|_| whole && built != before) else {
+            // An empty message would wake nobody; the lab's end is noticed at the next change.
+            continue;
+        };
+        built.clone_from(&before);
+        let made = |made| sender.send(made).is_ok();
+        if !made(Made::Begun) || !made(make(&changed, board, &mut compiler)) {
+            return;
+        }
+    }
+}
+
+fn contents(path: &Path) -> Option<Contents> {
+    match given(path, true).ok()? {
+        Given::Sketch(source) => Some(Contents::Sketch(source)),
+        Given::Image(path) => {
+            let about = std::fs::metadata(&path).ok();
+            let about = about.and_then(|about| Some((about.len(), about.modified().ok()?)));
+            Some(Contents::Image(path, about))
+        }
+    }
+}
+
+fn make(contents: &Contents, board: &Board, compiler: &mut Option<Compiler>) -> Made {
+    let source = match contents {
+        Contents::Sketch(source) => source,
+        Contents::Image(path, _) => return Made::Image(path.clone()),
+    };
+    let mut compile = || {
+        let compiler = match compiler {
+            Some(compiler) => compiler,
+            None => compiler.insert(sketch::compiler(board)?),
+        };
+        compiler.compile(source, &[])
+    };
+    match compile() {
+        Ok(image) => Made::Image(image.path),
+        Err(error) => rejected(error, source),
+    }
+}
+
+fn dropped(board: &Board, name: &str, content: Vec<u8>) -> Made {
+    let made = match Path::new(name).extension().and_then(|kind| kind.to_str()) {
+        Some(kind @ ("elf" | "hex")) => sketch::keep_image(&content, kind).map(Made::Image),
+        _ => {
+            let stem = Path::new(name).file_stem().unwrap_or_default();
+            let source = Source {
+                name: stem.to_string_lossy().into_owned(),
+                files: [(name.to_owned(), content)].into(),
+            };
+            let compiled = sketch::walled_compiler(board);
+            match compiled.and_then(|compiler| compiler.compile(&source, &[])) {
+                Err(error) => Ok(rejected(error, &source)),
+                Ok(image) => Ok(Made::Image(image.path)),
+            }
+        }
+    };
+    made.unwrap_or_else(|error: std::io::Error| Made::Rejected(vec![problem(error.to_string())]))
+}
+
+fn rejected(error: SketchError, source: &Source) -> Made {
+    match error {
+        SketchError::Rejected(errors) => {
+            let errors = errors.iter().take(MOST);
+            Made::Rejected(errors.map(|error| complaint(error, source)).collect())
+        }
+        error => Made::Rejected(vec![problem(error.to_string())]),
+    }
+}
+
+/// What is wrong with no line in particular.
+pub(crate) fn problem(text: String) -> Complaint {
+    Complaint {
+        text,
+        ..Complaint::default()
+    }
+}
+
+/// An error with the line that it is about.
+fn complaint(error: &Diagnostic, source: &Source) -> Complaint {
+    let numbers = [error.line, error.column].into_iter().flatten();
+    let place = error.file.as_ref().map(|file| {
+        let numbers = numbers.map(|number| format!(":{number}"));
+        file.clone() + &numbers.collect::<String>()
+    });
+    let line = error
+        .file
+        .as_ref()
+        .zip(error.line)
+        .and_then(|(file, line)| {
+            let text = String::from_utf8_lossy(source.files.get(file)?);
+            let line = text.lines().nth(line.checked_sub(1)? as usize)?;
+            Some(line.chars().take(200).collect())
+        });
+    Complaint {
+        place,
+        text: error.text.clone(),
+        line,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rumbo_sketch::Severity;
+
+    #[test]
+    fn an_error_comes_with_the_line_that_it_is_about() {
+        let source = Source {
+            name: "wall".into(),
+            files: [("wall.ino".into(), b"void setup() {}\nint x = 1\n".to_vec())].into(),
+        };
+        let error = |file: &str, line: u32| Diagnostic {
+            severity: Severity::Error,
+            file: Some(file.into()),
+            line: Some(line),
+            column: Some(10),
+            text: "expected ';'".into(),
+            notes: Vec::new(),
+        };
+        let seen = complaint(&error("wall.ino", 2), &source);
+        assert_eq!(seen.place.as_deref(), Some("wall.ino:2:10"));
+        assert_eq!(seen.line.as_deref(), Some("int x = 1"));
+        assert_eq!(complaint(&error("Servo.h", 2), &source).line, None);
+        assert_eq!(complaint(&error("wall.ino", 9), &source).line, None);
+    }
+
+    #[test]
+    fn a_file_that_is_written_by_a_rename_is_seen_and_one_saved_unchanged_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let image = folder.path().join("a.elf");
+        std::fs::write(&image, "one").unwrap();
+        let workshop = Workshop::watch(&image).unwrap();
+        let next = || workshop.made.recv_timeout(Duration::from_secs(30)).unwrap();
+        let beside = folder.path().join("a.elf~");
+        std::fs::write(&beside, "another").unwrap();
+        std::fs::rename(&beside, &image).unwrap();
+        assert!(matches!(next(), Made::Begun));
+        assert!(matches!(next(), Made::Image(path) if path == image));
+
+        let sketch = folder.path().join("b.ino");
+        std::fs::write(&sketch, "x").unwrap();
+        let before = contents(&sketch);
+        std::fs::write(&sketch, "x").unwrap();
+        assert!(contents(&sketch) == before);
+        std::fs::write(&sketch, "y").unwrap();
+        assert!(contents(&sketch) != before);
+    }
+}

@@ -1,0 +1,77 @@
+// @ts-check
+/** The student's own program: its name, whether it runs, and what the compiler rejects. */
+import { create, element, setText } from './dom.js';
+import { t } from './text.js';
+
+/** @typedef {import('./types.js').State} State */
+
+/** A program that does not speak Rumbo's protocol: it has no modes and no parameters for the page. @param {State} state */
+export const isOwn = (state) => Boolean(state.simulated && state.robot.text);
+
+/** What the program does, and how good that is. @param {State} state @returns {[string, 'good' | 'warning']} */
+export function phaseWords({ program }) {
+  if (program?.phase === 'compiling') return [t('compiling…'), 'warning'];
+  return program?.phase === 'rejected' ? [t('does not compile'), 'warning'] : [t('program runs'), 'good'];
+}
+
+/** Largest file taken [bytes]: an image for the Mega with what a debugger needs. */
+const LARGEST = 1_000_000;
+
+/** A file's content as the station takes it. @param {File} file @returns {Promise<string>} */
+function base64(file) {
+  return new Promise((done, failed) => {
+    const reader = new FileReader();
+    reader.addEventListener('load', () => done(String(reader.result).replace(/^.*?,/, '')));
+    reader.addEventListener('error', () => failed(reader.error));
+    reader.readAsDataURL(file);
+  });
+}
+
+export class ProgramPanel {
+  #panel = element('program', HTMLDivElement);
+  #name = element('program-name', HTMLElement);
+  #phase = element('program-phase', HTMLOutputElement);
+  #hint = element('program-hint', HTMLParagraphElement);
+  #watched = element('program-watched', HTMLElement);
+  #list = element('complaints', HTMLOListElement);
+  #shown = '';
+
+  /**
+   * A sketch or an image that is dropped on the page runs, where there is an emulated Mega to run it.
+   * @param {(order: import('./types.js').Order) => void} send
+   * @param {(why: string) => void} complain
+   */
+  constructor(send, complain) {
+    const carriesFile = (/** @type {DragEvent} */ event) => !this.#panel.hidden && event.dataTransfer?.types.includes('Files');
+    addEventListener('dragover', (event) => {
+      if (carriesFile(event)) event.preventDefault();
+    });
+    addEventListener('drop', async (event) => {
+      const file = event.dataTransfer?.files[0];
+      if (!file || !carriesFile(event)) return;
+      event.preventDefault();
+      if (file.size > LARGEST) complain(t('{}: not sent, a program has at most {} MB', file.name, LARGEST / 1e6));
+      else send({ type: 'program', name: file.name, data: await base64(file) });
+    });
+  }
+
+  /** @param {State} state */
+  show(state) {
+    const { program } = state;
+    this.#panel.hidden = !program;
+    if (!program) return;
+    setText(this.#name, program.name);
+    const [words, level] = phaseWords(state);
+    setText(this.#phase, words);
+    this.#phase.className = `chip ${level}`;
+    this.#watched.hidden = !program.watched;
+    this.#hint.hidden = program.phase !== 'rejected';
+    const complaints = program.complaints ?? [];
+    const all = JSON.stringify(complaints);
+    if (all === this.#shown) return;
+    this.#shown = all;
+    this.#list.hidden = complaints.length === 0;
+    this.#list.replaceChildren(...complaints.map(({ place, text, line }) => create('li', {},
+      create('b', { textContent: place ?? '' }), ` ${text}`, line === null ? '' : create('code', { textContent: line }))));
+  }
+}

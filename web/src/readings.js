@@ -1,0 +1,110 @@
+// @ts-check
+/**
+ * Signals beside the robot's telemetry, in columns for uPlot: ground truth and pins of an emulated robot, and the numbers
+ * that its program prints, a table for each port. Which signals there are is known when they arrive.
+ *
+ * A printed signal is named `serial0:speed`, so that two ports may print the same name.
+ */
+import { compose, inverse, near } from './geometry.js';
+import { Table } from './table.js';
+import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S } from './units.js';
+
+/** @typedef {import('./types.js').Cell} Cell */
+/** @typedef {import('./types.js').Pose} Pose */
+/** @typedef {import('./types.js').ReadingGroup} ReadingGroup */
+
+/** What people see: by the unit at the end of a name. @type {[string, string, number][]} */
+const SEEN = [['_rad_s', '_rpm', RPM_PER_RAD_S], ['_rad', '_deg', DEG_PER_RAD], ['_m', '_cm', CM_PER_M]];
+
+/** A signal with the unit that people see. @param {string} name @returns {[string, number]} */
+function seen(name) {
+  const unit = SEEN.find(([suffix]) => name.endsWith(suffix));
+  return unit && !/^true_[xy]_m$/.test(name) ? [name.slice(0, -unit[0].length) + unit[1], unit[2]] : [name, 1];
+}
+
+/**
+ * What is true now, for the map and the numbers.
+ * @typedef {object} Truth
+ * @property {number} t_s
+ * @property {Pose} pose In the world.
+ * @property {[Cell, Cell, Cell]} pinged_m What the sonars measured: left, right, front.
+ * @property {number | null} servo_rad
+ * @property {boolean} contact
+ */
+
+export class Readings {
+  truth;
+  /** By port. @type {Map<number, Table>} */
+  #printed = new Map();
+  #kept_s;
+  /** The heading plotted last [deg]. */
+  #heading_deg = 0;
+
+  /** @param {number} kept_s how long lines are kept [s] */
+  constructor(kept_s) {
+    this.#kept_s = kept_s;
+    this.truth = new Table([], kept_s);
+  }
+
+  clear() {
+    this.truth = new Table([], this.#kept_s);
+    this.#printed.clear();
+    this.#heading_deg = 0;
+  }
+
+  /** The table that a signal is in. @param {string} name */
+  tableOf(name) {
+    return [this.truth, ...this.#printed.values()].find((table) => table.columns.has(name));
+  }
+
+  /** The names of all signals. */
+  names() {
+    return [this.truth, ...this.#printed.values()].flatMap((table) => [...table.columns.keys()]);
+  }
+
+  /** The signals that a port has printed. @param {number} usart */
+  printedBy(usart) {
+    return [...this.#printed.get(usart)?.columns.keys() ?? []];
+  }
+
+  /** Time of the newest line [s]. */
+  get newest_s() {
+    return Math.max(0, ...[this.truth, ...this.#printed.values()].map(({ t }) => t.at(-1) ?? 0));
+  }
+
+  /**
+   * Takes readings; returns what is true at the end of them, if they tell.
+   * @param {ReadingGroup} group
+   * @param {Pose} origin The robot's, in the world: positions are plotted from there.
+   * @returns {Truth[]} One for each reading of the simulation.
+   */
+  push({ usart, names, rows }, origin) {
+    if (usart !== null) {
+      const table = this.#printed.get(usart) ?? new Table([], this.#kept_s);
+      this.#printed.set(usart, table);
+      const signals = names.map((name) => `serial${usart}:${name}`);
+      table.offer(signals);
+      for (const [t_s, cells] of rows) table.push(t_s, Object.fromEntries(signals.map((name, index) => [name, number(cells[index])])));
+      return [];
+    }
+    const signals = names.map(seen);
+    this.truth.offer(signals.map(([name]) => name));
+    return rows.flatMap(([t_s, cells]) => {
+      const cell = (/** @type {string} */ name) => cells[names.indexOf(name)] ?? null;
+      const values = Object.fromEntries(signals.map(([name, factor], index) => [name, times(number(cells[index]), factor)]));
+      const [x_m, y_m, heading_rad] = ['true_x_m', 'true_y_m', 'true_heading_rad'].map((name) => number(cell(name)));
+      if (typeof x_m !== 'number' || typeof y_m !== 'number' || typeof heading_rad !== 'number') return [];
+      const pose = { x_m, y_m, heading_rad };
+      const from = compose(inverse(origin), pose);
+      this.#heading_deg = near(from.heading_rad * DEG_PER_RAD, this.#heading_deg);
+      this.truth.push(t_s, { ...values, true_x_m: from.x_m, true_y_m: from.y_m, true_heading_deg: this.#heading_deg });
+      return [{ t_s, pose, pinged_m: /** @type {[Cell, Cell, Cell]} */ (['left', 'right', 'front'].map((sonar) => cell(`pinged_${sonar}_m`))), servo_rad: number(cell('true_servo_rad')), contact: cell('contact') === 1 }];
+    });
+  }
+}
+
+/** @param {Cell | undefined} cell */
+const number = (cell) => (typeof cell === 'number' ? cell : null);
+
+/** @param {number | null} value @param {number} factor */
+const times = (value, factor) => (value === null ? null : value * factor);
