@@ -105,11 +105,11 @@ impl<'a> Beside<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{params, ranges_m};
+    use crate::fixtures::{params, with_ranges_m};
 
     #[test]
     fn a_pair_looks_to_its_own_side_and_the_final_rig_to_the_nearer_wall() {
-        let side = |rig, ranges_m| Beside::new(&params(rig)).side(&ranges_m(ranges_m), 0.5);
+        let side = |rig, ranges_m| Beside::new(&params(rig)).side(&with_ranges_m(ranges_m), 0.5);
         assert_eq!(side(Rig::SidePairLeft, [0.5, 0.5, 0.0]), Some(Side::Left));
         assert_eq!(side(Rig::SidePairRight, [0.5, 0.5, 0.0]), Some(Side::Right));
         assert_eq!(side(Rig::SidePairRight, [0.5, 0.0, 0.0]), None);
@@ -135,13 +135,13 @@ mod tests {
     #[test]
     fn it_is_ready_with_a_wall_in_reach_and_on_the_final_rig_with_eyes_ahead() {
         let ready = |rig, ranges_m| {
-            Beside::new(&params(rig)).is_ready(&ranges_m(ranges_m), 0.5, (0.1, 1.5))
+            Beside::new(&params(rig)).is_ready(&with_ranges_m(ranges_m), 0.5, (0.1, 1.5))
         };
         assert!(ready(Rig::SidePairLeft, [0.5, 0.5, 0.0]));
         assert!(!ready(Rig::SidePairLeft, [0.5, 0.05, 0.0]));
         assert!(!ready(Rig::SidePairLeft, [1.7, 1.7, 0.0]));
         assert!(ready(Rig::Final, [0.5, 0.0, 0.0]));
-        let mut blind = ranges_m([0.5, 0.0, 0.0]);
+        let mut blind = with_ranges_m([0.5, 0.0, 0.0]);
         blind.ranges[2].range = Range::Faulty;
         assert!(!Beside::new(&params(Rig::Final)).is_ready(&blind, 0.5, (0.1, 1.5)));
     }

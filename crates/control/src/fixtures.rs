@@ -13,7 +13,7 @@ pub(crate) fn params(rig: Rig) -> Params {
 }
 
 /// Fresh ranges of the sonars left, right and front.
-pub(crate) fn ranges(ranges: [Range; 3]) -> Estimate {
+pub(crate) fn with_ranges(ranges: [Range; 3]) -> Estimate {
     Estimate {
         ranges: ranges.map(AgedRange::fresh),
         ..Estimate::default()
@@ -21,8 +21,8 @@ pub(crate) fn ranges(ranges: [Range; 3]) -> Estimate {
 }
 
 /// The same in metres; 0 is nothing in range.
-pub(crate) fn ranges_m(ranges_m: [f32; 3]) -> Estimate {
-    ranges(ranges_m.map(|range_m| match range_m > 0.0 {
+pub(crate) fn with_ranges_m(ranges_m: [f32; 3]) -> Estimate {
+    with_ranges(ranges_m.map(|range_m| match range_m > 0.0 {
         true => Range::Valid(range_m),
         false => Range::Clear,
     }))

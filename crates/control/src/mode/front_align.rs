@@ -250,11 +250,12 @@ impl<'a> Mode<'a> for FrontAlign<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{params, ranges_m, twist};
+    use crate::fixtures::{params, twist, with_ranges_m};
+    use crate::types::Range;
 
     /// A tick of the pair.
     fn step(state: &mut State, left_m: f32, right_m: f32) -> Result<Action, Fault> {
-        let estimate = &ranges_m([left_m, right_m, 0.0]);
+        let estimate = &with_ranges_m([left_m, right_m, 0.0]);
         FrontAlign::new(&params(Rig::FrontPair), &0.3).step(state, estimate)
     }
 
@@ -307,7 +308,7 @@ mod tests {
 
     #[test]
     fn it_is_ready_only_when_every_sonar_it_needs_sees_the_wall() {
-        let ready = |rig, ranges_m| Ahead::new(&params(rig)).is_ready(&ranges_m(ranges_m));
+        let ready = |rig, ranges_m| Ahead::new(&params(rig)).is_ready(&with_ranges_m(ranges_m));
         assert!(ready(Rig::FrontPair, [1.0, 1.0, 0.0]));
         assert!(!ready(Rig::FrontPair, [1.0, 0.0, 1.0]));
         assert!(ready(Rig::Final, [0.0, 0.0, 1.0]));
@@ -316,13 +317,13 @@ mod tests {
 
     #[test]
     fn it_never_drives_on_a_stale_lost_or_silent_sonar() {
-        let mut old = ranges_m([1.0, 1.0, 0.0]);
+        let mut old = with_ranges_m([1.0, 1.0, 0.0]);
         old.ranges[1].age_ticks = 60;
-        let mut silent = ranges_m([1.0, 1.0, 0.0]);
+        let mut silent = with_ranges_m([1.0, 1.0, 0.0]);
         silent.ranges[0].range = Range::Faulty;
         for (estimate, fault) in [
             (old, Fault::SonarStale),
-            (ranges_m([1.0, 0.0, 0.0]), Fault::WallLost),
+            (with_ranges_m([1.0, 0.0, 0.0]), Fault::WallLost),
             (silent, Fault::SonarFaulty),
         ] {
             let stopped = FrontAlign::new(&params(Rig::FrontPair), &0.3)
@@ -335,7 +336,7 @@ mod tests {
     fn with_one_sonar_on_the_servo_it_first_stands_and_looks_aside() {
         let params = params(Rig::Final);
         let (mut state, mode) = (State::default(), FrontAlign::new(&params, &0.3));
-        let estimate = &ranges_m([0.0, 0.0, 1.0]);
+        let estimate = &with_ranges_m([0.0, 0.0, 1.0]);
         let first = mode.step(&mut state, estimate).unwrap();
         assert_eq!((first.drive, first.state), (Drive::Release, 0));
         assert!(first.look.servo.0.abs() > 0.5, "{:?}", first.look);

@@ -375,14 +375,14 @@ impl<'a> Mode<'a> for WallFollow<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{params, ranges};
+    use crate::fixtures::{params, with_ranges};
     use crate::types::AgedRange;
 
     const PAIRS: [Rig; 2] = [Rig::SidePairLeft, Rig::SidePairRight];
 
     /// Ranges of the sonars left, right and front to walls this far away.
     fn seeing(left_m: f32, right_m: f32, ahead: Range) -> Estimate {
-        ranges([Range::Valid(left_m), Range::Valid(right_m), ahead])
+        with_ranges([Range::Valid(left_m), Range::Valid(right_m), ahead])
     }
 
     fn first(mode: &WallFollow, estimate: &Estimate) -> Result<(f32, f32), Fault> {

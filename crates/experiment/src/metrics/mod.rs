@@ -1,7 +1,7 @@
 //! Metrics of a run: from ground truth and the signals at the pins, never from the robot's own estimates.
 //!
-//! Some are given for every run, some by the mode's description; each step of a reference has its own group, numbered in the
-//! order of the scenario: `step1.settling_s`. Names end in their unit; docs/scenarios.md lists them all.
+//! Some are given for every run, some by the mode's description; each step of a reference has its own group, numbered
+//! in the order of the scenario: `step1.settling_s`. Names end in their unit; docs/scenarios.md lists them all.
 
 mod align;
 mod curve;

@@ -1,5 +1,5 @@
-//! The readable parts of a log that is damaged in the middle: the index at its end gives the start of each chunk, however
-//! damaged the others are.
+//! The readable parts of a log that is damaged in the middle: the index at its end gives the start of each chunk,
+//! however damaged the others are.
 
 use super::intake::{Intake, LONGEST, Stop};
 use mcap::MAGIC;
