@@ -217,7 +217,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let image = folder.path().join("a.elf");
         std::fs::write(&image, "one").unwrap();
-        let workshop = Workshop::watch(&image).unwrap();
+        let workshop = Workshop::watch(&image, <&Board>::default()).unwrap();
         let next = || workshop.made.recv_timeout(Duration::from_secs(30)).unwrap();
         let beside = folder.path().join("a.elf~");
         std::fs::write(&beside, "another").unwrap();
