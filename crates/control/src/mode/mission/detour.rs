@@ -38,11 +38,7 @@ impl Mission<'_> {
             state.phase = Phase::GoToGoal;
             return;
         };
-        let mut saved_m = saved_by_left_m(obstacle, pose, goal_m);
-        match state.last {
-            Some((side, way_m)) if way_m < SOON_M => saved_m += to_left(side, STAY_M),
-            _ => {}
-        }
+        let mut saved_m = saved_by_left_m(obstacle, pose, goal_m) + stay_m(state.last);
         if abs(saved_m) < ALIKE_M {
             saved_m = side_m(estimate, SonarId::Left) - side_m(estimate, SonarId::Right) + ROOM_M;
         }
@@ -74,6 +70,7 @@ impl Mission<'_> {
         planned: bool,
     ) -> Drive {
         let pose = &estimate.pose;
+        let last = state.last;
         let Some(detour) = &mut state.detour else {
             self.face(state, pose, goal_m, SPOT_RAD);
             return Drive::Release;
@@ -100,7 +97,8 @@ impl Mission<'_> {
             if let Some(obstacle) = &state.plan.obstacle {
                 if obstacle.nearest_m > BESIDE_M
                     && detour.changes < 1
-                    && to_left(detour.side, saved_by_left_m(obstacle, pose, goal_m)) < -CHANGE_M
+                    && to_left(detour.side, saved_by_left_m(obstacle, pose, goal_m) + stay_m(last))
+                        < -CHANGE_M
                 {
                     detour.changes += 1;
                     detour.side = detour.side.other();
@@ -189,6 +187,14 @@ fn saved_by_left_m(obstacle: &Obstacle, pose: &Pose, goal_m: &(f32, f32)) -> f32
     };
     cost_m(obstacle.right.at, goal_rad - obstacle.right.pass_rad)
         - cost_m(obstacle.left.at, obstacle.left.pass_rad - goal_rad)
+}
+
+/// What the left way may be longer for the side on which the last obstacle was passed, if that was a short way ago [m].
+fn stay_m(last: Option<(Side, f32)>) -> f32 {
+    match last {
+        Some((side, way_m)) if way_m < SOON_M => to_left(side, STAY_M),
+        _ => 0.0,
+    }
 }
 
 /// A value as it is for the left side, the other way round for the right one.
