@@ -1,7 +1,7 @@
 //! The image's pin table is the final wiring of the robot file.
 
 use rumbo_emulator::devices::ports::Pin;
-use rumbo_sim::mega::boards::MEGA;
+use rumbo_sim::boards::MEGA;
 
 #[allow(dead_code, reason = "the image uses the pins one by one")]
 #[path = "../src/pins.rs"]

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::mark::crc32;
 use crate::output;
 use rumbo_experiment::files::Library;
-use rumbo_sim::mega::boards::Board;
+use rumbo_sim::boards::Board;
 use rumbo_sketch::sandbox::{Limits, Sandbox};
 use rumbo_sketch::{
     BOARDS, Board as Target, Compiler, Given, SketchError, Toolchain, example, given, starter,

@@ -6,7 +6,7 @@
 
 use crate::sketch;
 use rumbo_log::Complaint;
-use rumbo_sim::mega::boards::Board;
+use rumbo_sim::boards::Board;
 use rumbo_sketch::{Compiler, Diagnostic, Given, SketchError, Source, given};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};

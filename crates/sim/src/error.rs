@@ -1,6 +1,6 @@
 //! Why a simulation cannot be made.
 
-use crate::mega::boards::Board;
+use crate::boards::Board;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_wire::Refusal;

@@ -5,6 +5,7 @@
 
 mod baseline;
 mod board;
+pub mod boards;
 mod config;
 pub mod debugging;
 mod error;

@@ -1,6 +1,6 @@
 //! Which signal is on which pin of the board.
 
-use crate::mega::boards::Board;
+use crate::boards::Board;
 use std::collections::BTreeMap;
 
 /// The signals that a wiring may place: enable and direction inputs of the bridge, encoders, servo, sonars and UARTs.

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::sketch;
 use clap::Args;
 use rumbo_experiment::files::{FileError, Library, Overrides};
-use rumbo_sim::mega::boards::Board;
+use rumbo_sim::boards::Board;
 use std::path::{Path, PathBuf};
 
 /// Options that replace values of the scenario.

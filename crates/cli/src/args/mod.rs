@@ -19,7 +19,7 @@ pub(crate) use runs::{
 
 use crate::failure::Failure;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
-use rumbo_sim::mega::boards::Board;
+use rumbo_sim::boards::Board;
 use std::path::PathBuf;
 
 /// Rumbo: the lab of a small robot. Without a subcommand, `lab`.

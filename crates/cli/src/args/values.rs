@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
 use rumbo_experiment::files::{Port, TimedText, parameters};
-use rumbo_sim::mega::boards::{BOARDS, Board};
+use rumbo_sim::boards::{BOARDS, Board};
 
 /// A board by its name.
 pub(super) fn board(text: &str) -> Result<&'static Board, String> {

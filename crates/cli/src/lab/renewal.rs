@@ -5,7 +5,7 @@ use super::SimulatedRobot;
 use crate::workshop::{Made, Workshop, problem};
 use rumbo_log::{Complaint, Level, ProgramPhase, ProgramState};
 use rumbo_session::{LinkNews, TargetError};
-use rumbo_sim::mega::boards::Board;
+use rumbo_sim::boards::Board;
 use std::path::{Path, PathBuf};
 
 /// The program at the pins.

@@ -22,7 +22,7 @@ use super::world::ANGLE;
 use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
-use rumbo_sim::mega::boards::{BOARDS, Board};
+use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::wiring::{Divider, SIGNALS, Wiring};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,8 +1,8 @@
 //! A program image: what it is, which language it speaks on its link, and how it is wired.
 
 use super::CYCLES_PER_US;
-use super::boards::Board;
 use super::pins::Wires;
+use crate::boards::Board;
 use crate::error::SimError;
 use crate::wiring::Wiring;
 use rumbo_emulator::chip::Chip;

@@ -9,7 +9,6 @@
 //!
 //! | file | part |
 //! |---|---|
-//! | [`boards`] | the boards: their chips, pin numbers, USARTs |
 //! | [`pins`] | a wiring as pins of the chip |
 //! | `bridge`, `servo`, `module` | what driver, servo and Bluetooth module make of their lines |
 //! | `inputs` | the edges that the plant announces, scheduled for the chip |
@@ -24,7 +23,6 @@
 //! `Mega::run` runs the chip until something happens that affects the plant, so that the plant can follow to the same
 //! microsecond before anything else happens: see `sim::emulated`.
 
-pub mod boards;
 mod console;
 pub mod firmware;
 pub mod pins;

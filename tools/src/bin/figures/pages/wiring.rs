@@ -2,7 +2,7 @@
 
 use super::Made;
 use rumbo_experiment::files::Library;
-use rumbo_sim::mega::boards::MEGA;
+use rumbo_sim::boards::MEGA;
 use rumbo_sim::wiring::Wiring;
 use std::fmt::Write;
 
