@@ -44,10 +44,12 @@ impl Workshop {
     /// Watches a sketch or an image as it is now; ends when it is dropped.
     pub(crate) fn watch(path: &Path, board: &'static Board) -> std::io::Result<Self> {
         let path = path.to_owned();
+        // Now, and not when the thread comes to it: what is saved from here on is a change.
+        let built = contents(&path);
         let (sender, made) = channel();
         std::thread::Builder::new()
             .name("workshop".into())
-            .spawn(move || work(&path, board, &sender))?;
+            .spawn(move || work(&path, board, built, &sender))?;
         Ok(Self { made })
     }
 
@@ -75,9 +77,8 @@ impl Workshop {
 }
 
 /// Looks and compiles until nobody listens.
-fn work(path: &Path, board: &Board, sender: &Sender<Made>) {
+fn work(path: &Path, board: &Board, mut built: Option<Contents>, sender: &Sender<Made>) {
     let mut compiler = None;
-    let mut built = contents(path);
     let mut before = None;
     loop {
         std::thread::sleep(LOOK);
