@@ -97,8 +97,10 @@ impl Mission<'_> {
             if let Some(obstacle) = &state.plan.obstacle {
                 if obstacle.nearest_m > BESIDE_M
                     && detour.changes < 1
-                    && to_left(detour.side, saved_by_left_m(obstacle, pose, goal_m) + stay_m(last))
-                        < -CHANGE_M
+                    && to_left(
+                        detour.side,
+                        saved_by_left_m(obstacle, pose, goal_m) + stay_m(last),
+                    ) < -CHANGE_M
                 {
                     detour.changes += 1;
                     detour.side = detour.side.other();
