@@ -1,9 +1,10 @@
-// Stops at a distance from a wall: PWM in proportion to the error, above the dead zone of the motors.
+// Stops at a distance from a wall: PWM in proportion to the error, less for the speed, above the motors' dead zone.
 
 const int ENABLE[] = {5, 6}, FORWARD[] = {4, 7}, BACKWARD[] = {2, 8};
 const int TRIGGER = 12, ECHO = 13;
 const float CM_PER_US = 0.0343 / 2;
 const float GAIN = 1.5;      // PWM per cm
+const float DAMPING = 18;    // PWM per cm that the last round brought nearer
 const int DEAD_ZONE = 66;    // PWM below which the wheels stand
 const int MOST = 110;        // PWM
 const float NEAR_CM = 0.8;   // near enough to stand
@@ -12,6 +13,7 @@ const float PUSH = 0.5;      // PWM more per round where the robot sticks near i
 
 bool on = false;
 float push = 0;
+float lastCm = 0;
 float wantedCm = 30;
 char line[32];
 byte length = 0;
@@ -64,10 +66,12 @@ void loop() {
   listen();
   float cm = distanceCm();
   float error = cm - wantedCm;
+  float nearer = constrain(lastCm - cm, -2, 2);
+  lastCm = cm;
   int pwm = 0;
   if (on && cm > 0 && abs(error) > NEAR_CM) {
-    push = abs(error) < 6 ? min(push + PUSH, 25) : 0;
-    float wanted = GAIN * error + (error > 0 ? DEAD_ZONE + push : -DEAD_ZONE - push);
+    push = abs(error) < 10 ? min(push + PUSH, 25) : 0;
+    float wanted = GAIN * error - DAMPING * nearer + (error > 0 ? DEAD_ZONE + push : -DEAD_ZONE - push);
     pwm = constrain(wanted, -MOST, MOST);
   } else {
     push = 0;
