@@ -1,8 +1,8 @@
 //! The spread of robots, batteries and floors from seed to seed.
 //!
-//! A seed stands for one robot on one day: no controller may rely on the nominal numbers. Uniform within the
-//! bounds of [`Spread`](crate::params::Spread). The pattern of the encoder's poles and
-//! the changing slip and floor need no drawing here: they follow from the seed itself.
+//! A seed stands for one robot on one day: no controller may rely on the nominal numbers. Uniform within the bounds of
+//! [`Spread`](crate::params::Spread). The pattern of the encoder's poles and the changing slip and floor need no drawing
+//! here: they follow from the seed itself.
 
 use crate::noise::{Noise, source};
 use crate::params::Params;
