@@ -199,8 +199,10 @@ impl FromStr for Order {
         if text.len() > SHORT_ORDER && !text.starts_with("{\"type\":\"program\"") {
             return Err(BadOrder(format!("longer than {SHORT_ORDER} bytes")));
         }
+        // The error repeats an unknown name as it was sent, ends of lines included.
+        let one_line = |why: String| why.replace(char::is_control, "\u{fffd}");
         let message: Message =
-            serde_json::from_str(text).map_err(|error| BadOrder(error.to_string()))?;
+            serde_json::from_str(text).map_err(|error| BadOrder(one_line(error.to_string())))?;
         let order = match message {
             Message::Stop {} => Order::Robot(Command::Stop),
             Message::TakeControl {} => Order::TakeControl,
@@ -492,6 +494,7 @@ mod tests {
             ("\u{0}\u{1}", "expected value"),
             ("{}", "missing field `type`"),
             (r#"{"type":"fly"}"#, "unknown variant `fly`"),
+            (r#"{"type":"f\nly"}"#, "unknown variant `f\u{fffd}ly`"),
             (r#"{"type":"stop","now":true}"#, "unknown field `now`"),
             (r#"{"type":"mode","mode":9}"#, "no mode 9"),
             (r#"{"type":"mode","mode":-1}"#, "invalid value"),
