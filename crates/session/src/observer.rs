@@ -313,7 +313,7 @@ impl Observer {
                     self.status = status;
                 }
                 LinkEvent::Event(t_ms, kind) => {
-                    task::happened(&mut self.task, kind, client.mode(), self.pose);
+                    task::happened(&mut self.task, kind, self.pose);
                     self.event(t_ms, kind);
                 }
                 LinkEvent::Ended(outcome) => self.end_command(&outcome, client, now_ms),

@@ -3,8 +3,8 @@
 //! Derived from the acknowledged commands and the robot's events; telemetry does not repeat a route.
 
 use rumbo_control::Pose;
-use rumbo_control::mode::ModeId;
 use rumbo_control::mode::waypoints::Route;
+use rumbo_control::mode::{ModeId, Takes};
 use rumbo_log::{End, Place, RoutePlan, Task};
 use rumbo_wire::{Command, EventKind};
 
@@ -12,7 +12,7 @@ use rumbo_wire::{Command, EventKind};
 pub(crate) fn applied(task: &mut Task, command: &Command, mode: ModeId) {
     match *command {
         Command::Mode(mode) => *task = of(mode),
-        Command::Goal { x_m, y_m } if mode == ModeId::Mission => {
+        Command::Goal { x_m, y_m } if !takes_route(mode) => {
             *task = Task {
                 goal: Some([x_m, y_m]),
                 ..Task::default()
@@ -54,8 +54,8 @@ pub(crate) fn applied(task: &mut Task, command: &Command, mode: ModeId) {
     }
 }
 
-/// Updates the task for an event in this mode, with the robot at `pose`.
-pub(crate) fn happened(task: &mut Task, kind: EventKind, mode: ModeId, pose: Pose) {
+/// Updates the task for an event, with the robot at `pose`.
+pub(crate) fn happened(task: &mut Task, kind: EventKind, pose: Pose) {
     match kind {
         EventKind::ModeChanged(mode) => *task = of(mode),
         EventKind::Armed => {
@@ -64,9 +64,7 @@ pub(crate) fn happened(task: &mut Task, kind: EventKind, mode: ModeId, pose: Pos
         }
         EventKind::Reached => {
             task.end = Some(End::Reached);
-            if mode == ModeId::Mission {
-                task.goal = None;
-            }
+            task.goal = None;
         }
         EventKind::Unreachable => task.end = Some(End::Unreachable),
         EventKind::Disarmed
@@ -77,10 +75,15 @@ pub(crate) fn happened(task: &mut Task, kind: EventKind, mode: ModeId, pose: Pos
     }
 }
 
-/// The task of a mode just selected: mode 7 begins with its default route.
+/// Whether a mode drives routes; a goal is then a route of one waypoint.
+fn takes_route(mode: ModeId) -> bool {
+    matches!(mode.description().takes, Some(Takes::Route(_)))
+}
+
+/// The task of a mode just selected: one of routes begins with the default route.
 fn of(mode: ModeId) -> Task {
     let own = Route::default();
-    let route = (mode == ModeId::Waypoints).then(|| RoutePlan {
+    let route = takes_route(mode).then(|| RoutePlan {
         repeat: own.repeat,
         relative: own.relative,
         waypoints: own.waypoints().iter().copied().map(Place::from).collect(),
@@ -110,24 +113,14 @@ mod tests {
     fn a_goal_is_cleared_once_it_is_reached_and_stays_while_it_is_unreachable() {
         let mut task = Task::default();
         applied(&mut task, &GOAL, ModeId::Mission);
-        happened(
-            &mut task,
-            EventKind::Unreachable,
-            ModeId::Mission,
-            Pose::default(),
-        );
+        happened(&mut task, EventKind::Unreachable, Pose::default());
         assert_eq!(
             (task.goal, task.end),
             (Some([1.0, -0.5]), Some(End::Unreachable))
         );
         applied(&mut task, &GOAL, ModeId::Mission);
         assert_eq!(task.end, None);
-        happened(
-            &mut task,
-            EventKind::Reached,
-            ModeId::Mission,
-            Pose::default(),
-        );
+        happened(&mut task, EventKind::Reached, Pose::default());
         assert_eq!((task.goal, task.end), (None, Some(End::Reached)));
     }
 

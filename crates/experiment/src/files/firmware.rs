@@ -3,6 +3,7 @@
 use super::bounded::read_at_most;
 use super::{FileError, Library, RobotFile, ScenarioFile};
 use rumbo_control::mode::ModeId;
+use rumbo_control::rig::Rigs;
 use rumbo_emulator::image::{Image, ImageError};
 use rumbo_sim::mega::firmware::{Firmware, Language, Opening, opening};
 use rumbo_sim::mega::pins::link_usart;
@@ -116,9 +117,8 @@ fn default_wiring(opening: Opening, robot: &RobotFile, scenario: &ScenarioFile) 
         (_, "front_single", ModeId::FrontDistance) => "mode_1",
         (_, "front_pair", _) => of_pair("mode_2"),
         (_, "side_pair_left" | "side_pair_right", _) => of_pair("modes_3_and_4"),
-        (_, _, ModeId::WheelSpeed | ModeId::StraightLine | ModeId::Waypoints | ModeId::Manual) => {
-            "modes_5_to_7"
-        }
+        // Without sonars.
+        (.., mode) if mode.description().rigs == Rigs::ANY => "modes_5_to_7",
         _ => "final",
     };
     let fits = |name: &str| {
