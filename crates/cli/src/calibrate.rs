@@ -5,12 +5,12 @@ use crate::failure::Failure;
 use crate::output::{self, figure};
 use crate::place;
 use crate::run_log::{Kept, Source};
-use rumbo_experiment::calibrate::{self, Calibration, Row};
+use rumbo_experiment::calibrate::{self, Calibration, Calibrator, Row};
 use rumbo_experiment::calibration_run;
 use rumbo_experiment::files::{Library, Overrides, RobotFile, Setup, bounded};
 use rumbo_log::{Finding, Findings, Kind};
-use rumbo_session::CalibrationError;
-use rumbo_station::{Extras, GuestLink};
+use rumbo_session::{CalibrationError, Guest};
+use rumbo_station::Extras;
 use serde::Serialize;
 use std::path::Path;
 
@@ -27,50 +27,45 @@ struct Report<'a> {
     written: Option<String>,
 }
 
-/// The robot at the other end of the dashboard's link.
-struct Guest<'a>(&'a mut GuestLink);
+/// The calibration of the robot in the dashboard.
+#[derive(Debug)]
+struct InDashboard(Calibrator);
 
-impl calibrate::Linked for Guest<'_> {
-    fn now_us(&self) -> u64 {
-        self.0.now_us()
-    }
-
-    fn send(&mut self, bytes: &[u8]) {
-        self.0.send(bytes);
-    }
-
-    fn receive(&mut self, into: &mut Vec<u8>) {
-        self.0.receive(into);
-    }
-
-    fn wait_until(&mut self, us: u64) {
-        self.0.wait_until(us);
+impl Guest for InDashboard {
+    fn advance(
+        &mut self,
+        now_us: u64,
+        received: &[u8],
+        to_robot: &mut Vec<u8>,
+    ) -> Option<Result<Findings, CalibrationError>> {
+        let found = self.0.advance(now_us, received, to_robot)?;
+        Some(match found {
+            Ok(found) => Ok(findings(&found)),
+            Err(why) => Err(CalibrationError::GivenUp(why.to_string())),
+        })
     }
 }
 
 /// The calibration of the robot in the dashboard, started by its button.
 pub(crate) fn in_dashboard() -> Extras {
     Extras {
-        calibration: Some(|link| {
-            let found = calibrate::calibrate(&mut Guest(link))
-                .map_err(|error| CalibrationError::GivenUp(error.to_string()))?;
-            let rows = calibrate::rows(&found, None).into_iter();
-            Ok(Findings {
-                rows: rows
-                    .map(|row| Finding {
-                        name: row.name,
-                        found: row.found,
-                        standard_error: row.standard_error,
-                    })
-                    .collect(),
-                parameters: found
-                    .parameters()
-                    .into_iter()
-                    .map(|(id, value)| (id as u8, value))
-                    .collect(),
-            })
-        }),
+        calibration: Some(|now_us| Box::new(InDashboard(Calibrator::new(now_us)))),
         ..Extras::default()
+    }
+}
+
+fn findings(found: &Calibration) -> Findings {
+    let rows = calibrate::rows(found, None).into_iter();
+    let parameters = found.parameters().into_iter();
+    Findings {
+        rows: rows
+            .map(|row| Finding {
+                name: row.name,
+                found: row.found,
+                standard_error: row.standard_error,
+            })
+            .collect(),
+        parameters: parameters.map(|(id, value)| (id as u8, value)).collect(),
     }
 }
 

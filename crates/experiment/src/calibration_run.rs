@@ -101,7 +101,7 @@ impl Linked for Watched<'_> {
         self.sim.receive(into);
     }
 
-    fn wait_until(&mut self, us: u64) {
+    fn advance(&mut self, us: u64) {
         loop {
             let sample_us = (self.sim.now_us() / SAMPLE_US + 1) * SAMPLE_US;
             self.sim.advance(us.min(sample_us));

@@ -83,10 +83,6 @@ pub enum CalibrationError {
     PortGone,
     /// It gave up, and why.
     GivenUp(String),
-    /// No thread could be started for it.
-    NoThread(String),
-    /// It panicked.
-    Panicked,
 }
 
 impl fmt::Display for CalibrationError {
@@ -100,8 +96,6 @@ impl fmt::Display for CalibrationError {
             Self::Stopped => f.write_str("it was stopped"),
             Self::PortGone => f.write_str("the port is gone"),
             Self::GivenUp(why) => f.write_str(why),
-            Self::NoThread(why) => write!(f, "no thread for it ({why})"),
-            Self::Panicked => f.write_str("it ended by a fault of its own; please report it"),
         }
     }
 }

@@ -11,6 +11,7 @@ mod commanding;
 use crate::client::{KnownTable, LinkEvent, RobotClient};
 use crate::error::{CalibrationError, TargetError};
 use crate::event::Event;
+use crate::guest::Guest;
 use crate::observer::Observer;
 use crate::observer::describe::{Around, describe};
 use crate::orders::Order;
@@ -89,8 +90,8 @@ pub struct Session {
     text: bool,
     client: RobotClient,
     observer: Observer,
-    /// Start of the running calibration \[us\], and the state of the last one.
-    calibrating: Option<u64>,
+    /// The running calibration and its start \[us\], and the state of the last one.
+    calibrating: Option<(Box<dyn Guest>, u64)>,
     calibration: Option<CalibrationState>,
     state_noted_us: Option<u64>,
     /// The movement held by a key, and when it expires unless the page repeats it \[us\].
@@ -225,7 +226,7 @@ impl Session {
         self.observer.consoles(now.target_us, sight.consoles);
     }
 
-    /// Takes the bytes received from the robot.
+    /// Takes the bytes received from the robot, and gives a guest its turn.
     pub fn receive(&mut self, bytes: &[u8], now: Now) {
         self.note_bytes(bytes, false, now);
         if self.about.abilities.port && self.client.speaks_text() {
@@ -233,6 +234,7 @@ impl Session {
         }
         self.client
             .receive(bytes, now.target_us, &mut self.link_events);
+        self.advance_guest(bytes, now);
     }
 
     /// Time has passed: queues the bytes due, and turns link events into events.

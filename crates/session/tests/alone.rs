@@ -4,9 +4,10 @@
 mod support;
 
 use proptest::prelude::*;
-use rumbo_log::{Entry, Log, LogWriter, Manifest, Row};
+use rumbo_log::{Entry, Findings, Log, LogWriter, Manifest, Row};
 use rumbo_session::{
-    About, Ask, Board, Cursor, Event, Going, LinkNews, Now, Order, SLICE_US, Session, Sight, Target,
+    About, Ask, Board, CalibrationError, Cursor, Event, Going, Guest, LinkNews, Now, Order,
+    SLICE_US, Session, Sight, Target,
 };
 use rumbo_wire::Command;
 use std::io::Cursor as Bytes;
@@ -312,4 +313,51 @@ fn a_program_that_sends_nothing_is_seen_by_instruments_and_what_it_prints_and_to
         readings.contains(names) && readings.contains(port),
         "{readings}"
     );
+}
+
+/// Sends back each byte that arrives, until there were three of them.
+#[derive(Debug, Default)]
+struct Echo(usize);
+
+impl Guest for Echo {
+    fn advance(
+        &mut self,
+        _now_us: u64,
+        received: &[u8],
+        to_robot: &mut Vec<u8>,
+    ) -> Option<Result<Findings, CalibrationError>> {
+        to_robot.extend_from_slice(received);
+        self.0 += received.len();
+        (self.0 >= 3).then(|| Ok(Findings::default()))
+    }
+}
+
+/// A session with a guest, without a robot: what it has sent is the guest's.
+fn with_guest() -> Session {
+    let mut session = Session::new(About::of(&Toy::default()), 7, false);
+    session.calibration_begun(Ok(Box::new(Echo::default())), Now::default());
+    session
+}
+
+#[test]
+fn a_guest_gets_the_bytes_received_and_its_own_are_sent_until_it_ends() {
+    let mut session = with_guest();
+    let mut sent = Vec::new();
+    for byte in 1..=5 {
+        session.receive(&[byte], Now::default());
+        sent.extend(session.take_bytes());
+    }
+    assert_eq!(sent, [1, 2, 3]);
+}
+
+#[test]
+fn stop_takes_the_link_back_from_a_guest_and_another_order_does_not() {
+    let mut session = with_guest();
+    session.order(ON, Now::default());
+    session.receive(&[1], Now::default());
+    assert_eq!(session.take_bytes(), [1], "refused, and the guest goes on");
+    session.order(STOP, Now::default());
+    session.take_bytes();
+    session.receive(&[2], Now::default());
+    assert!(session.take_bytes().is_empty());
 }

@@ -4,14 +4,13 @@
 //! factor ([`Pace`]), and passes the results to the [`Session`], which returns the bytes to send and the events to
 //! publish. Nothing waits for a page.
 
-use crate::guest::{Calibration, Guest};
 use crate::log_file::LogError;
 use crate::recorder::{Recorder, Recording, now_utc};
 use crate::subscribers::Subscribers;
 use rumbo_log::{Level, Manifest};
 use rumbo_session::{
-    About, Ask, CalibrationError, Going, LinkNews, MAX_SPEED, Now, Order, Pace, SLICE_US, Session,
-    Sight, Target, TargetError, stop_first,
+    About, Ask, CalibrationError, Going, Guest, LinkNews, MAX_SPEED, Now, Order, Pace, SLICE_US,
+    Session, Sight, Target, TargetError, stop_first,
 };
 use rumbo_wire::Command;
 use std::sync::Arc;
@@ -25,6 +24,9 @@ const WAKE: Duration = Duration::from_millis(5);
 const WAKE_PAUSED: Duration = Duration::from_millis(250);
 /// Longest time spent on one round of slices: orders wait no longer, however high the speed factor.
 const ROUND: Duration = Duration::from_millis(20);
+
+/// Begins a calibration of the robot at this instant \[us\].
+pub type Calibration = fn(u64) -> Box<dyn Guest>;
 
 /// Options of a session.
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,8 +54,6 @@ pub(crate) struct Driver {
     /// Where to record; nowhere in tests.
     recording: Option<Recording>,
     calibration: Option<Calibration>,
-    /// The calibration that drives the robot now.
-    guest: Option<Guest>,
     orders: Orders,
     pace: Pace,
     began: Instant,
@@ -82,7 +82,6 @@ impl Driver {
             subscribers,
             recording,
             calibration: extras.calibration,
-            guest: None,
             orders,
             pace: Pace::new(speed),
             began: Instant::now(),
@@ -144,9 +143,6 @@ impl Driver {
 
     fn obey(&mut self, order: Order) -> Result<(), TargetError> {
         let ask = self.session.order(order, self.now());
-        if !self.session.calibrating() {
-            self.guest = None;
-        }
         if let Some(ask) = ask {
             self.act(ask);
         }
@@ -172,10 +168,8 @@ impl Driver {
                 self.session.ghost_restarted(done, now);
             }
             Ask::Calibrate => {
-                let invite = |calibration| Guest::invite(calibration, now.target_us);
-                let none = Err(CalibrationError::Missing);
-                let begun = self.calibration.map_or(none, invite);
-                let begun = begun.map(|guest| self.guest = Some(guest));
+                let calibration = self.calibration.ok_or(CalibrationError::Missing);
+                let begun = calibration.map(|begin| begin(now.target_us));
                 self.session.calibration_begun(begun, now);
             }
             Ask::Reset(choice) => {
@@ -214,7 +208,6 @@ impl Driver {
             self.bytes.clear();
             self.target.receive(&mut self.bytes);
             self.session.receive(&self.bytes, now);
-            self.take_turns(now);
             self.session.advance(now);
             self.send()?;
             self.news();
@@ -223,20 +216,6 @@ impl Driver {
             }
         }
         Ok(())
-    }
-
-    /// The guest's turn, with the bytes just received.
-    fn take_turns(&mut self, now: Now) {
-        let Some(guest) = self.guest.take() else {
-            return;
-        };
-        match guest.turn(now.target_us, &self.bytes) {
-            Some(said) => {
-                self.session.lend(&said, now);
-                self.guest = Some(guest);
-            }
-            None => self.session.calibration_ended(guest.findings(), now),
-        }
     }
 
     fn news(&mut self) {
@@ -248,9 +227,6 @@ impl Driver {
             } else {
                 self.session.news(news, self.now());
             }
-        }
-        if !self.session.calibrating() {
-            self.guest = None;
         }
     }
 

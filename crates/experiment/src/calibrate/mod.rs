@@ -8,7 +8,8 @@
 //! whole turns between two legs    -> the heading to the wall before and after: distance between the wheels
 //! ```
 //!
-//! It works from the station's end of a link ([`Linked`]), with ordinary commands and telemetry.
+//! It works from the station's end of a link, with ordinary commands and telemetry, and blocks on nothing: a
+//! [`Calibrator`] is advanced with the time and the bytes received.
 
 mod error;
 mod fit;
@@ -22,8 +23,7 @@ mod station;
 
 pub use error::CalibrateError;
 pub use fit::{Feedforward, Measured};
-pub use link::Linked;
-pub use procedure::calibrate;
+pub use link::{Calibrator, Linked, calibrate};
 pub use report::{Row, rows};
 pub use rewrite::{is_calibrated, rewrite};
 pub use simulated::{WORLD, calibrate_simulated};

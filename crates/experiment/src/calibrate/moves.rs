@@ -1,7 +1,6 @@
 //! The movements of a calibration: a leg along the wall, a turn on the spot, a slow ramp of the duty.
 
 use super::error::CalibrateError;
-use super::link::Linked;
 use super::station::{Sample, Station};
 use rumbo_control::mode::{Level, ModeId, Movement};
 use rumbo_control::{SIDES, SonarId, Wheels};
@@ -35,22 +34,24 @@ fn stands(sample: &Sample) -> bool {
         .all(|side| sample.wheel_rad_s[*side].abs() < STANDING_RAD_S)
 }
 
-impl<R: Linked> Station<'_, R> {
+impl Station {
     /// Selects a mode and arms it.
-    fn start(&mut self, mode: ModeId) -> Result<(), CalibrateError> {
-        self.command(Command::Disarm)?;
-        self.command(Command::Mode(mode))?;
+    async fn start(&mut self, mode: ModeId) -> Result<(), CalibrateError> {
+        self.command(Command::Disarm).await?;
+        self.command(Command::Mode(mode)).await?;
         Ok(())
     }
 
     /// Waits until the robot has stood for a moment, and disarms it.
-    fn rest(&mut self) -> Result<(), CalibrateError> {
+    async fn rest(&mut self) -> Result<(), CalibrateError> {
         let mut still = 0;
-        let rests = self.until(3.0, |_, sample| {
-            still = if stands(sample) { still + 1 } else { 0 };
-            still >= 6
-        })?;
-        self.command(Command::Disarm)?;
+        let rests = self
+            .until(3.0, |_, sample| {
+                still = if stands(sample) { still + 1 } else { 0 };
+                still >= 6
+            })
+            .await?;
+        self.command(Command::Disarm).await?;
         if rests {
             Ok(())
         } else {
@@ -59,7 +60,7 @@ impl<R: Linked> Station<'_, R> {
     }
 
     /// Drives straight on by `way_m` (negative: backward) at a wheel speed; returns the telemetry from start to rest.
-    pub(super) fn leg(
+    pub(super) async fn leg(
         &mut self,
         side: SonarId,
         way_m: f64,
@@ -69,28 +70,30 @@ impl<R: Linked> Station<'_, R> {
         let forward = way_m > 0.0;
         let speed_m_s = wheel_rad_s * radius_m;
         let braking_m = speed_m_s * speed_m_s / (2.0 * BRAKE_M_S2) + speed_m_s * LATENCY_S;
-        self.start(ModeId::StraightLine)?;
+        self.start(ModeId::StraightLine).await?;
         let from = self.last()?;
         let first = self.samples.len();
-        self.command(Command::Arm)?;
+        self.command(Command::Arm).await?;
         let speed = if forward { wheel_rad_s } else { -wheel_rad_s };
-        self.command(Command::Reference(speed as f32))?;
-        let arrived = self.until(3.0 + way_m.abs() / speed_m_s * 1.5, |_, now| {
-            let gone_m = (now.x_m - from.x_m).hypot(now.y_m - from.y_m);
-            let ahead = now.range_m(SonarId::Front);
-            let blind = now.faulty[SonarId::Front as usize];
-            let near = forward && (blind || ahead.is_some_and(|m| m < AHEAD_M + braking_m));
-            let beside = now.range_m(side);
-            let astray = match (beside, from.range_m(side)) {
-                (Some(now_m), Some(then_m)) => {
-                    forward && (now_m < BESIDE_M || (now_m - then_m).abs() > ASTRAY_M)
-                }
-                _ => forward,
-            };
-            gone_m + braking_m >= way_m.abs() || near || astray
-        })?;
-        self.command(Command::Reference(0.0))?;
-        self.rest()?;
+        self.command(Command::Reference(speed as f32)).await?;
+        let arrived = self
+            .until(3.0 + way_m.abs() / speed_m_s * 1.5, |_, now| {
+                let gone_m = (now.x_m - from.x_m).hypot(now.y_m - from.y_m);
+                let ahead = now.range_m(SonarId::Front);
+                let blind = now.faulty[SonarId::Front as usize];
+                let near = forward && (blind || ahead.is_some_and(|m| m < AHEAD_M + braking_m));
+                let beside = now.range_m(side);
+                let astray = match (beside, from.range_m(side)) {
+                    (Some(now_m), Some(then_m)) => {
+                        forward && (now_m < BESIDE_M || (now_m - then_m).abs() > ASTRAY_M)
+                    }
+                    _ => forward,
+                };
+                gone_m + braking_m >= way_m.abs() || near || astray
+            })
+            .await?;
+        self.command(Command::Reference(0.0)).await?;
+        self.rest().await?;
         if !arrived {
             return Err(CalibrateError::TooSlow("a leg along the wall"));
         }
@@ -98,12 +101,13 @@ impl<R: Linked> Station<'_, R> {
     }
 
     /// Turns on the spot by any angle, as measured by odometry.
-    pub(super) fn turn(&mut self, turn_rad: f64) -> Result<(), CalibrateError> {
-        self.start(ModeId::Waypoints)?;
+    pub(super) async fn turn(&mut self, turn_rad: f64) -> Result<(), CalibrateError> {
+        self.start(ModeId::Waypoints).await?;
         self.command(Command::Route {
             repeat: false,
             relative: true,
-        })?;
+        })
+        .await?;
         let parts = (turn_rad.abs() / PART_RAD).ceil().max(1.0);
         for part in 1..=parts as u32 {
             let heading_rad = turn_rad * f64::from(part) / parts;
@@ -113,11 +117,14 @@ impl<R: Linked> Station<'_, R> {
                 x_m: 0.0,
                 y_m: 0.0,
                 heading_rad: Some(wrapped_rad as f32),
-            }))?;
+            }))
+            .await?;
         }
-        self.command(Command::Arm)?;
-        let done = self.until(6.0 + 4.0 * parts, |station, _| station.reached)?;
-        self.rest()?;
+        self.command(Command::Arm).await?;
+        let done = self
+            .until(6.0 + 4.0 * parts, |station, _| station.reached)
+            .await?;
+        self.rest().await?;
         if done {
             Ok(())
         } else {
@@ -126,12 +133,12 @@ impl<R: Linked> Station<'_, R> {
     }
 
     /// Raises the duty of both wheels slowly until both turn; returns the duty at which each broke away.
-    pub(super) fn break_away(
+    pub(super) async fn break_away(
         &mut self,
         movement: Movement,
     ) -> Result<Wheels<Option<f64>>, CalibrateError> {
         let (from, to, per_s) = RAMP;
-        self.start(ModeId::Manual)?;
+        self.start(ModeId::Manual).await?;
         let mut found = Wheels::both(None);
         let mut moving = 0;
         let start_s = self.now_s();
@@ -144,9 +151,10 @@ impl<R: Linked> Station<'_, R> {
             self.command(Command::Move {
                 movement,
                 level: Level::Duty(duty as f32),
-            })?;
+            })
+            .await?;
             if !armed {
-                self.command(Command::Arm)?;
+                self.command(Command::Arm).await?;
                 armed = true;
             }
             self.until(RAMP_STEP_S, |_, sample| {
@@ -156,7 +164,8 @@ impl<R: Linked> Station<'_, R> {
                     }
                 }
                 false
-            })?;
+            })
+            .await?;
             if found.left.is_some() && found.right.is_some() {
                 moving += 1;
             }
@@ -164,8 +173,8 @@ impl<R: Linked> Station<'_, R> {
                 break;
             }
         }
-        self.command(Command::Stop)?;
-        self.rest()?;
+        self.command(Command::Stop).await?;
+        self.rest().await?;
         Ok(found)
     }
 }

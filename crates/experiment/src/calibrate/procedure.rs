@@ -2,7 +2,7 @@
 
 use super::error::CalibrateError;
 use super::fit::{self, LegFit, Measured, Steady};
-use super::link::Linked;
+use super::link::Link;
 use super::station::Station;
 use super::{Calibration, fit::mean};
 use rumbo_control::mode::Movement;
@@ -32,22 +32,20 @@ const SOUND: f64 = 0.0052;
 /// Standard deviation of the nominal mean radius, relative: each wheel +-0.5 %, uniform.
 const MAKER: f64 = 0.002;
 
-/// Calibrates a robot that stands beside a wall, along it, with free floor ahead. It is left disarmed, with the parameters found.
-///
-/// # Errors
-/// Why it failed; the robot is stopped.
-pub fn calibrate<R: Linked>(robot: &mut R) -> Result<Calibration, CalibrateError> {
-    let mut station = Station::new(robot);
-    let result = Course::begin(&mut station).and_then(|course| course.run());
+/// Calibrates a robot that stands beside a wall, along it, with free floor ahead. It is left disarmed, with the
+/// parameters found; if it fails, stopped.
+pub(super) async fn course(link: Link) -> Result<Calibration, CalibrateError> {
+    let mut station = Station::new(link);
+    let result = Course::drive(&mut station).await;
     if result.is_err() {
-        station.stop();
+        station.stop().await;
     }
     result
 }
 
 /// A calibration in progress.
-struct Course<'s, 'r, R: Linked> {
-    station: &'s mut Station<'r, R>,
+struct Course<'s> {
+    station: &'s mut Station,
     side: SonarId,
     ahead_m: f64,
     radius_m: Wheels<f64>,
@@ -64,18 +62,22 @@ struct Course<'s, 'r, R: Linked> {
     steady: Vec<Steady>,
 }
 
-impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
-    fn begin(station: &'s mut Station<'r, R>) -> Result<Self, CalibrateError> {
-        station.wait(0.6)?;
-        if station.parameter(ParamId::Rig)? != f64::from(Rig::Final as u8) {
+impl<'s> Course<'s> {
+    async fn drive(station: &'s mut Station) -> Result<Calibration, CalibrateError> {
+        Self::begin(station).await?.run().await
+    }
+
+    async fn begin(station: &'s mut Station) -> Result<Self, CalibrateError> {
+        station.wait(0.6).await?;
+        if station.parameter(ParamId::Rig).await? != f64::from(Rig::Final as u8) {
             return Err(CalibrateError::WrongRig);
         }
         let radius_m = Wheels {
-            left: station.parameter(ParamId::RadiusLeft)?,
-            right: station.parameter(ParamId::RadiusRight)?,
+            left: station.parameter(ParamId::RadiusLeft).await?,
+            right: station.parameter(ParamId::RadiusRight).await?,
         };
-        let base_m = station.parameter(ParamId::Base)?;
-        let ahead_m = station.parameter(ParamId::SonarSideX)?;
+        let base_m = station.parameter(ParamId::Base).await?;
+        let ahead_m = station.parameter(ParamId::SonarSideX).await?;
         let side = wall_side(station)?;
         Ok(Self {
             station,
@@ -92,20 +94,20 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
         })
     }
 
-    fn run(mut self) -> Result<Calibration, CalibrateError> {
+    async fn run(mut self) -> Result<Calibration, CalibrateError> {
         let start_s = self.station.now_s();
         let before_m = 0.5 * (self.radius_m.left + self.radius_m.right);
         let dead_zone = [
-            self.dead_zone(Movement::Forward)?,
-            self.dead_zone(Movement::Backward)?,
+            self.dead_zone(Movement::Forward).await?,
+            self.dead_zone(Movement::Backward).await?,
         ];
         for _ in 0..PAIRS {
-            self.straighten(self.heading_rad)?;
-            let (_, back) = self.leg_and_back()?;
+            self.straighten(self.heading_rad).await?;
+            let (_, back) = self.leg_and_back().await?;
             self.heading_rad = back.end_rad;
         }
         for turns in TURNS {
-            self.turn_and_compare(turns)?;
+            self.turn_and_compare(turns).await?;
         }
         let ratio = mean(&self.ratios).ok_or(CalibrateError::NotDetermined("the wheels' radii"))?;
         let scale = mean(&self.scales);
@@ -129,34 +131,37 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
             way_m: self.ratios.iter().map(|(_, way_m)| way_m).sum(),
         };
         for (id, value) in calibration.parameters() {
-            self.station.set_parameter(id, f64::from(value))?;
+            self.station.set_parameter(id, f64::from(value)).await?;
         }
         Ok(calibration)
     }
 
     /// Dead zone of both wheels; one breaks away before the other, so the robot then turns back.
-    fn dead_zone(&mut self, movement: Movement) -> Result<Wheels<Option<f64>>, CalibrateError> {
+    async fn dead_zone(
+        &mut self,
+        movement: Movement,
+    ) -> Result<Wheels<Option<f64>>, CalibrateError> {
         let before_rad = self.station.last()?.heading_rad;
-        let found = self.station.break_away(movement)?;
+        let found = self.station.break_away(movement).await?;
         let turned_rad = self.station.last()?.heading_rad - before_rad;
-        self.straighten(turned_rad)?;
+        self.straighten(turned_rad).await?;
         Ok(found)
     }
 
     /// Turns back by a heading, unless it is too small to matter.
-    fn straighten(&mut self, heading_rad: f64) -> Result<(), CalibrateError> {
+    async fn straighten(&mut self, heading_rad: f64) -> Result<(), CalibrateError> {
         if heading_rad.abs() > ASKEW_RAD {
-            self.station.turn(-heading_rad)?;
+            self.station.turn(-heading_rad).await?;
         }
         Ok(())
     }
 
     /// A leg along the wall and back; returns both fits, and records their estimates.
-    fn leg_and_back(&mut self) -> Result<(LegFit, LegFit), CalibrateError> {
+    async fn leg_and_back(&mut self) -> Result<(LegFit, LegFit), CalibrateError> {
         let speed_rad_s = SPEEDS_RPM[self.legs % SPEEDS_RPM.len()] * TAU / 60.0;
         self.legs += 1;
-        let there = self.leg(LEG_M, speed_rad_s)?;
-        let back = self.leg(-there.way_m, speed_rad_s)?;
+        let there = self.leg(LEG_M, speed_rad_s).await?;
+        let back = self.leg(-there.way_m, speed_rad_s).await?;
         let ratio = self
             .ratios
             .iter()
@@ -170,15 +175,20 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
             right: left_m * ratio.exp(),
         };
         self.station
-            .set_parameter(ParamId::RadiusLeft, self.radius_m.left)?;
+            .set_parameter(ParamId::RadiusLeft, self.radius_m.left)
+            .await?;
         self.station
-            .set_parameter(ParamId::RadiusRight, self.radius_m.right)?;
+            .set_parameter(ParamId::RadiusRight, self.radius_m.right)
+            .await?;
         Ok((there, back))
     }
 
-    fn leg(&mut self, way_m: f64, speed_rad_s: f64) -> Result<LegFit, CalibrateError> {
+    async fn leg(&mut self, way_m: f64, speed_rad_s: f64) -> Result<LegFit, CalibrateError> {
         let mean_m = 0.5 * (self.radius_m.left + self.radius_m.right);
-        let samples = self.station.leg(self.side, way_m, speed_rad_s, mean_m)?;
+        let samples = self
+            .station
+            .leg(self.side, way_m, speed_rad_s, mean_m)
+            .await?;
         let found = fit::leg(&samples, self.side, self.ahead_m)?;
         let forward = way_m > 0.0;
         self.steady.extend(fit::steady(&samples, forward));
@@ -220,12 +230,12 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
     }
 
     /// Whole turns between two legs: the base is what makes the odometry's turn the true one.
-    fn turn_and_compare(&mut self, turns: f64) -> Result<(), CalibrateError> {
+    async fn turn_and_compare(&mut self, turns: f64) -> Result<(), CalibrateError> {
         let before = self.heading_rad;
         let from = self.station.last()?;
-        self.station.turn(TAU * turns - before)?;
+        self.station.turn(TAU * turns - before).await?;
         let to = self.station.last()?;
-        let (there, back) = self.leg_and_back()?;
+        let (there, back) = self.leg_and_back().await?;
         let seen_rad = to.heading_rad - from.heading_rad;
         // A robot that has drifted drives back, and turns the shorter way to its next heading: a whole turn may be
         // missing.
@@ -236,7 +246,9 @@ impl<'s, 'r, R: Linked> Course<'s, 'r, R> {
             self.bases.push(Base { base_m, turns });
         }
         self.base_m = self.base(self.base_m).value;
-        self.station.set_parameter(ParamId::Base, self.base_m)?;
+        self.station
+            .set_parameter(ParamId::Base, self.base_m)
+            .await?;
         self.heading_rad = back.end_rad;
         Ok(())
     }
@@ -264,7 +276,7 @@ impl Base {
 }
 
 /// The side sonar that sees a wall at a fitting distance, the nearer one if both do.
-fn wall_side<R: Linked>(station: &Station<'_, R>) -> Result<SonarId, CalibrateError> {
+fn wall_side(station: &Station) -> Result<SonarId, CalibrateError> {
     let sample = station.last()?;
     let fitting = |sonar| {
         sample

@@ -1,7 +1,7 @@
 //! The station's end of the link during a calibration: commands until they are acknowledged, heartbeats, telemetry.
 
 use super::error::CalibrateError;
-use super::link::Linked;
+use super::link::Link;
 use rumbo_control::params::ParamId;
 use rumbo_control::{Range, SIDES, SonarId, Wheels};
 use rumbo_wire::{
@@ -52,8 +52,8 @@ impl Sample {
 }
 
 /// The station's end.
-pub(super) struct Station<'a, R: Linked> {
-    robot: &'a mut R,
+pub(super) struct Station {
+    link: Link,
     number: u16,
     seq: u8,
     heartbeat_due_us: u64,
@@ -70,10 +70,10 @@ pub(super) struct Station<'a, R: Linked> {
     pub(super) samples: Vec<Sample>,
 }
 
-impl<'a, R: Linked> Station<'a, R> {
-    pub(super) fn new(robot: &'a mut R) -> Self {
+impl Station {
+    pub(super) fn new(link: Link) -> Self {
         Self {
-            robot,
+            link,
             number: 0,
             seq: 0,
             heartbeat_due_us: 0,
@@ -90,7 +90,7 @@ impl<'a, R: Linked> Station<'a, R> {
 
     /// Time on this side [s].
     pub(super) fn now_s(&self) -> f64 {
-        self.robot.now_us() as f64 * 1e-6
+        self.link.now_us() as f64 * 1e-6
     }
 
     /// The last sample.
@@ -99,12 +99,12 @@ impl<'a, R: Linked> Station<'a, R> {
     }
 
     /// Sends a command until it is acknowledged; returns the value in force.
-    pub(super) fn command(&mut self, command: Command) -> Result<f32, CalibrateError> {
+    pub(super) async fn command(&mut self, command: Command) -> Result<f32, CalibrateError> {
         self.number = self.number.wrapping_add(1);
         self.reached = false;
-        let until_us = self.robot.now_us() + u64::from(TRIES) * REPEAT_US;
-        while self.seen.is_none() && self.robot.now_us() < until_us {
-            self.look();
+        let until_us = self.link.now_us() + u64::from(TRIES) * REPEAT_US;
+        while self.seen.is_none() && self.link.now_us() < until_us {
+            self.look().await;
         }
         // It is issued now; repetitions carry the same time.
         let seen = self.seen.unwrap_or_default();
@@ -115,9 +115,9 @@ impl<'a, R: Linked> Station<'a, R> {
                 command,
                 seen,
             });
-            let until_us = self.robot.now_us() + REPEAT_US;
-            while self.robot.now_us() < until_us {
-                self.look();
+            let until_us = self.link.now_us() + REPEAT_US;
+            while self.link.now_us() < until_us {
+                self.look().await;
                 match self.answer.take() {
                     Some((number, Ok(value))) if number == self.number => return Ok(value),
                     Some((number, Err(refusal))) if number == self.number => {
@@ -131,31 +131,37 @@ impl<'a, R: Linked> Station<'a, R> {
     }
 
     /// A parameter of the robot.
-    pub(super) fn parameter(&mut self, id: ParamId) -> Result<f64, CalibrateError> {
+    pub(super) async fn parameter(&mut self, id: ParamId) -> Result<f64, CalibrateError> {
         self.command(Command::GetParam { id: id as u8 })
+            .await
             .map(f64::from)
     }
 
     /// Sets a parameter of the robot.
-    pub(super) fn set_parameter(&mut self, id: ParamId, value: f64) -> Result<(), CalibrateError> {
+    pub(super) async fn set_parameter(
+        &mut self,
+        id: ParamId,
+        value: f64,
+    ) -> Result<(), CalibrateError> {
         let value = value as f32;
         self.command(Command::SetParam {
             id: id as u8,
             value,
-        })?;
+        })
+        .await?;
         Ok(())
     }
 
     /// Runs until `done`, called at each new sample, or the time is over; returns which. A fault is an error.
-    pub(super) fn until(
+    pub(super) async fn until(
         &mut self,
         within_s: f64,
         mut done: impl FnMut(&Self, &Sample) -> bool,
     ) -> Result<bool, CalibrateError> {
-        let end_us = self.robot.now_us() + (within_s * 1e6) as u64;
+        let end_us = self.link.now_us() + (within_s * 1e6) as u64;
         let mut seen = self.samples.len();
-        while self.robot.now_us() < end_us {
-            self.look();
+        while self.link.now_us() < end_us {
+            self.look().await;
             if let Some(fault) = self.fault {
                 return Err(CalibrateError::Faulted(fault));
             }
@@ -170,32 +176,32 @@ impl<'a, R: Linked> Station<'a, R> {
     }
 
     /// Runs for a while.
-    pub(super) fn wait(&mut self, seconds: f64) -> Result<(), CalibrateError> {
-        self.until(seconds, |_, _| false).map(|_| ())
+    pub(super) async fn wait(&mut self, seconds: f64) -> Result<(), CalibrateError> {
+        self.until(seconds, |_, _| false).await.map(|_| ())
     }
 
     /// Stops the robot, in any state.
-    pub(super) fn stop(&mut self) {
+    pub(super) async fn stop(&mut self) {
         // A robot that no longer answers stops by itself, for lack of heartbeats.
-        let _ = self.command(Command::Stop);
+        let _ = self.command(Command::Stop).await;
     }
 
     fn send(&mut self, message: &ToRobot) {
-        self.robot.send(message.frame(self.seq).bytes());
+        self.link.send(message.frame(self.seq).bytes());
         self.seq = self.seq.wrapping_add(1);
     }
 
     /// One poll interval.
-    fn look(&mut self) {
-        let now_us = self.robot.now_us();
+    async fn look(&mut self) {
+        let now_us = self.link.now_us();
         if now_us >= self.heartbeat_due_us {
             self.send(&ToRobot::Heartbeat);
             self.heartbeat_due_us = now_us + HEARTBEAT_US;
         }
-        self.robot.wait_until(now_us + LOOK_US);
+        self.link.wait_until(now_us + LOOK_US).await;
         let mut buffer = std::mem::take(&mut self.buffer);
         buffer.clear();
-        self.robot.receive(&mut buffer);
+        self.link.receive(&mut buffer);
         for byte in &buffer {
             if let Some(Received::Frame(body)) = self.decoder.push(*byte)
                 && let Ok(message) = FromRobot::from_body(&body)

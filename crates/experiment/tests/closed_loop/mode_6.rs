@@ -134,7 +134,7 @@ impl Linked for Cut {
         self.sim.receive(into);
     }
 
-    fn wait_until(&mut self, us: u64) {
+    fn advance(&mut self, us: u64) {
         if us >= self.at_us {
             self.sim.cut_sonar(self.sonar);
         }

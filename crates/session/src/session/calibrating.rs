@@ -2,20 +2,15 @@
 
 use super::{Ask, Now, Session};
 use crate::error::CalibrationError;
+use crate::guest::Guest;
 use crate::orders::Order;
 use rumbo_log::{CalibrationState, Findings, Level};
 use rumbo_wire::Command;
 
 impl Session {
-    /// Whether a calibration drives the robot: it gets the received bytes, and its own are sent by [`Session::lend`].
-    #[must_use]
-    pub fn calibrating(&self) -> bool {
-        self.calibrating.is_some()
-    }
-
     /// Whether a calibration can begin.
     pub(super) fn may_calibrate(&mut self, now: Now) -> Option<Ask> {
-        let trouble = if self.calibrating() {
+        let trouble = if self.calibrating.is_some() {
             CalibrationError::Running
         } else if !self.client.connected() {
             CalibrationError::NoAnswer
@@ -30,26 +25,41 @@ impl Session {
         None
     }
 
-    /// A calibration has started, or why not.
-    pub fn calibration_begun(&mut self, begun: Result<(), CalibrationError>, now: Now) {
-        if let Err(why) = begun {
-            return self.note(Level::Warning, format!("calibration: refused, {why}"), now);
-        }
-        self.calibrating = Some(now.target_us);
+    /// A calibration starts, or why not. It gets the received bytes, and drives the robot by its own.
+    pub fn calibration_begun(&mut self, begun: Result<Box<dyn Guest>, CalibrationError>, now: Now) {
+        let guest = match begun {
+            Ok(guest) => guest,
+            Err(why) => {
+                return self.note(Level::Warning, format!("calibration: refused, {why}"), now);
+            }
+        };
+        self.calibrating = Some((guest, now.target_us));
         let since_s = now.target_us as f64 / 1e6;
         self.calibration = Some(CalibrationState::Running { since_s });
         let text = "calibration: the robot drives by itself";
         self.note(Level::Info, text.into(), now);
     }
 
-    /// Sends the guest's bytes to the robot.
-    pub fn lend(&mut self, bytes: &[u8], now: Now) {
-        self.send(bytes, now);
+    /// The guest's turn, with the bytes just received.
+    pub(super) fn advance_guest(&mut self, received: &[u8], now: Now) {
+        let Some((guest, _)) = &mut self.calibrating else {
+            return;
+        };
+        let mut to_robot = Vec::new();
+        let found = guest.advance(now.target_us, received, &mut to_robot);
+        self.send(&to_robot, now);
+        if let Some(found) = found {
+            self.calibration_ended(found, now);
+        }
     }
 
     /// Ends a calibration that runs: notes its findings, or why there are none, and reads the robot's parameters.
-    pub fn calibration_ended(&mut self, found: Result<Findings, CalibrationError>, now: Now) {
-        let Some(since_us) = self.calibrating.take() else {
+    pub(super) fn calibration_ended(
+        &mut self,
+        found: Result<Findings, CalibrationError>,
+        now: Now,
+    ) {
+        let Some((_, since_us)) = self.calibrating.take() else {
             return;
         };
         let at_s = now.target_us as f64 / 1e6;
@@ -71,7 +81,7 @@ impl Session {
 
     /// Whether an order is for the robot, and a calibration in its way. One that stops the robot ends the calibration.
     pub(super) fn is_taken(&mut self, order: &Order, now: Now) -> bool {
-        if !self.calibrating() {
+        if self.calibrating.is_none() {
             return false;
         }
         match order {
