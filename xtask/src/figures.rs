@@ -12,16 +12,9 @@ pub(crate) fn check(project: &Project) -> Result<(), String> {
     draw(project, &["--check".to_owned()])
 }
 
-/// Built like the tests: the bytes are the same with any optimisation, and CI has already built these crates.
+/// Built as the tests are: the bytes are the same with any optimisation, and CI has already built these crates.
 fn draw(project: &Project, args: &[String]) -> Result<(), String> {
-    let program = [
-        "run",
-        "--locked",
-        "-p",
-        "rumbo-tools",
-        "--bin",
-        "figures",
-        "--",
-    ];
-    run_command(project.cargo(&program).args(args))
+    run_command(project.whole("build").args(["--bin", "figures"]))?;
+    let program = format!("debug/figures{}", std::env::consts::EXE_SUFFIX);
+    run_command(project.command(project.target.join(program)).args(args))
 }

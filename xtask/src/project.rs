@@ -52,6 +52,13 @@ impl Project {
         command
     }
 
+    /// A command of cargo on the whole workspace with the bridge to Foxglove, which the usual build leaves out. Cargo
+    /// builds a dependency once for each set of features: what the tests share with it is not built again.
+    pub(crate) fn whole(&self, command: &str) -> Command {
+        let bridge = "--features=rumbo-cli/foxglove";
+        self.cargo(&[command, "--workspace", bridge, "--locked"])
+    }
+
     /// Builds the release binary of `rumbo` (does nothing when it is fresh) and returns its path.
     pub(crate) fn release_binary(&self) -> Result<PathBuf, String> {
         run(&mut self.cargo(&["build", "--release", "--locked"]))?;

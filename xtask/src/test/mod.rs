@@ -47,7 +47,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 17] = [
+const STEPS: [Step; 16] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
@@ -90,18 +90,13 @@ const STEPS: [Step; 17] = [
     },
     Step {
         name: "test",
-        what: "the tests of all crates",
+        what: "the tests of all crates, the bridge to Foxglove included",
         check: tests,
     },
     Step {
         name: "fuzz",
         what: "the fuzz targets find nothing in five seconds each",
         check: fuzz,
-    },
-    Step {
-        name: "bridge",
-        what: "the bridge to Foxglove, which the usual build leaves out",
-        check: bridge,
     },
     Step {
         name: "figures",
@@ -258,36 +253,12 @@ fn doc(project: &Project) -> Result<(), Stop> {
 /// Where simavr or avr-gdb is missing, the tests that need it skip themselves, so this step is incomplete.
 fn tests(project: &Project) -> Result<(), Stop> {
     let tools = [tools::simavr(project), tools::avr_gdb(project)];
-    run_command(&mut project.cargo(&["test", "--workspace", "--no-fail-fast", "--locked"]))?;
+    run_command(project.whole("test").arg("--no-fail-fast"))?;
     tools.into_iter().try_for_each(|tool| tool.map(|_| ()))
 }
 
 fn fuzz(project: &Project) -> Result<(), Stop> {
     found_nothing(crate::fuzz::campaign(project, Some(5), &[])?)
-}
-
-fn bridge(project: &Project) -> Result<(), Stop> {
-    let test = [
-        "test",
-        "--locked",
-        "-p",
-        "rumbo-station",
-        "--features",
-        "foxglove",
-        "--test",
-        "bridge",
-    ];
-    run_command(&mut project.cargo(&test))?;
-    // The options of the command line that come with it.
-    let check = [
-        "check",
-        "--locked",
-        "-p",
-        "rumbo-cli",
-        "--features",
-        "foxglove",
-    ];
-    Ok(run_command(&mut project.cargo(&check))?)
 }
 
 /// With the firmware's Rust, which has the sources of the library: no further target need be installed.

@@ -214,16 +214,10 @@ impl Watch {
             self.landmarks.silence(&beam);
             self.unanswered = self.unanswered.saturating_add(u8::from(second));
             if abs(reading.servo_rad) >= LOOKS_ASIDE_RAD {
-                if self.aside_m > 0.0 && {
-                    let [left_m, right_m] = walls_m(estimate, NEAR_M);
-                    if reading.servo_rad > 0.0 {
-                        left_m
-                    } else {
-                        right_m
-                    }
-                }
-                .is_some()
-                {
+                let [left_m, right_m] = walls_m(estimate, NEAR_M);
+                let left = reading.servo_rad > 0.0;
+                let wall_m = if left { left_m } else { right_m };
+                if wall_m.is_some() && self.aside_m > 0.0 {
                     self.walls_silent = self.walls_silent.saturating_add(1);
                 }
                 self.aside_m = 0.0;
@@ -358,6 +352,7 @@ fn walls_m(estimate: &Estimate, within_m: f32) -> [Option<f32>; 2] {
 mod tests {
     use super::*;
     use crate::rig::View;
+    use crate::types::AgedRange;
 
     /// Answers of all three sonars in turn, while the robot rolls `rolled_m` per tick; the front one looks ahead.
     fn watched(
@@ -489,6 +484,41 @@ mod tests {
         assert!(!after(160, 500).suspects());
         assert!(after(200, 500).suspects());
         assert!(!after(240, 200).suspects());
+    }
+
+    #[test]
+    fn a_wall_beside_the_robot_that_leaves_two_looks_unanswered_is_to_be_proven() {
+        let aside = |watch: &mut Watch, range: Range, left: Range| {
+            let mut estimate = Estimate {
+                rolled_m: 0.06,
+                facing: (0.0, 1.0),
+                ..Estimate::default()
+            };
+            estimate.ranges[SonarId::Left as usize] = AgedRange::fresh(left);
+            watch.step(&estimate, 0.5, false).unwrap();
+            let view = View {
+                axis_rad: SWEEP_RAD,
+                ..View::default()
+            };
+            let reading = Reading {
+                sonar: SonarId::Front,
+                range,
+                view,
+                servo_rad: SWEEP_RAD,
+            };
+            (0..2).for_each(|_| _ = watch.ingest(&estimate, &reading, true));
+        };
+        let (wall, far) = (Range::Valid(0.2), Range::Clear);
+        let mut watch = Watch::default();
+        aside(&mut watch, Range::Clear, far);
+        assert!(!watch.doubts(), "nothing must answer there");
+        aside(&mut watch, Range::Clear, wall);
+        assert!(watch.doubts() && !watch.suspects());
+        let mut silent = watch;
+        aside(&mut silent, Range::Clear, wall);
+        assert!(silent.suspects());
+        aside(&mut watch, Range::Valid(0.2), wall);
+        assert!(!watch.doubts(), "it answers");
     }
 
     #[test]
