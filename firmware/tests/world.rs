@@ -46,7 +46,8 @@ struct Wheel {
 }
 
 impl Wheel {
-    fn turn(&mut self, duty: i16, now: Micros, random: &mut Random) {
+    /// A period at this duty; in one of so many its edges are disturbed.
+    fn turn(&mut self, duty: i16, now: Micros, random: &mut Random, disturbed_in: u32) {
         self.rad_s += (f64::from(duty) / 255.0 * 30.0 - self.rad_s) * 0.1;
         let new = self.rad_s.abs() * 0.01 * 384.0 / std::f64::consts::TAU;
         let tick_us = f64::from(TICK_US);
@@ -56,7 +57,7 @@ impl Wheel {
             .map(|us| us as u32)
             .collect();
         self.edges_due = (self.edges_due + new).fract();
-        if random.chance(200) {
+        if random.chance(disturbed_in) {
             after_us.extend((0..random.below(5)).map(|_| random.below(TICK_US)));
             after_us.sort_unstable();
         }
@@ -123,12 +124,12 @@ impl World {
     /// The sensors at a tick, after the last outputs.
     pub(crate) fn inputs(&mut self, tick: u32, last: &Outputs) -> Inputs {
         let now = self.start.after(tick * TICK_US);
-        self.wheels
-            .left
-            .turn(last.drive.left.counts(), now, &mut self.random);
-        self.wheels
-            .right
-            .turn(last.drive.right.counts(), now, &mut self.random);
+        // A text has no command that clears a fault before the next mode.
+        let disturbed_in = if self.in_text { 4_000 } else { 200 };
+        let (drive, random) = (last.drive, &mut self.random);
+        let Wheels { left, right } = &mut self.wheels;
+        left.turn(drive.left.counts(), now, random, disturbed_in);
+        right.turn(drive.right.counts(), now, random, disturbed_in);
         let forward_m_s = (self.wheels.left.rad_s + self.wheels.right.rad_s) * 0.5 * 0.0325;
         self.range_m = (self.range_m - 0.01 * forward_m_s).clamp(0.03, 2.4);
         if self.random.chance(300) {

@@ -48,6 +48,18 @@ pub struct SpeedEstimator {
     turn_rad_s: f32,
 }
 
+/// Whether the edges of a tick are those of a turning disc.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Evenness {
+    /// None came, or the wheel is too slow or has turned too little to say.
+    #[default]
+    Unknown,
+    /// They came as the motor's last turn predicts.
+    Even,
+    /// Edges are missing or spurious.
+    Uneven,
+}
+
 /// A wheel's motion measured from its edges, without sign.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WheelMotion {
@@ -60,8 +72,8 @@ pub struct WheelMotion {
     pub edges: u16,
     /// No edge for long enough that the wheel may be driven the other way.
     pub standing: bool,
-    /// Edges are missing or spurious: these are not exactly those of a turning disc.
-    pub uneven: bool,
+    /// Whether these edges are those of a turning disc.
+    pub evenness: Evenness,
     /// Number of overdue edges, even at the steepest deceleration.
     pub overdue: u8,
 }
@@ -79,9 +91,9 @@ impl SpeedEstimator {
             };
         }
         let new = edges.count.wrapping_sub(self.count);
-        let (mut uneven, mut overdue) = (false, 0);
+        let (mut evenness, mut overdue) = (Evenness::Unknown, 0);
         if new > 0 {
-            uneven = self.ingest(new, edges);
+            evenness = self.ingest(new, edges);
             self.last_rad_s = self.speed_rad_s;
         } else if !self.standing {
             overdue = self.overdue(now);
@@ -111,7 +123,7 @@ impl SpeedEstimator {
             believed_rad_s: self.believed_rad_s,
             edges: new,
             standing: self.standing,
-            uneven,
+            evenness,
             overdue,
         }
     }
@@ -129,8 +141,8 @@ impl SpeedEstimator {
         u8::try_from(round(max(edges, 0.0))).unwrap_or(u8::MAX)
     }
 
-    /// Ingests new edges; returns whether they are uneven.
-    fn ingest(&mut self, new: u16, edges: &Edges) -> bool {
+    /// Ingests new edges; returns whether they are even.
+    fn ingest(&mut self, new: u16, edges: &Edges) -> Evenness {
         let span_us = edges.last.since(self.last);
         let fresh = if self.standing || span_us == 0 {
             // From rest the time of the first gap is unknown; the tick bounds it.
@@ -140,15 +152,18 @@ impl SpeedEstimator {
         };
         self.run = core::cmp::min(self.run.saturating_add(new), EDGES_PER_TURN + 1);
         let whole_turn = self.run > EDGES_PER_TURN && edges.turn_us > 0;
-        let mut uneven = false;
+        let mut evenness = Evenness::Unknown;
         self.speed_rad_s = if whole_turn {
             const TURN: f32 = EDGES_PER_TURN as f32 * EDGE;
             let turn = TURN / from_u32(edges.turn_us);
             // A lost edge lengthens the turn by an eighth: no wheel slows down like that.
             let slower_rad_s = self.turn_rad_s - turn;
-            uneven = is_uneven(new, span_us, edges.turn_us)
-                || (self.turn_rad_s > 0.0
-                    && slower_rad_s > 1e-6 * STEEPEST_RAD_S2 * from_u32(span_us));
+            let brakes_rad_s = 1e-6 * STEEPEST_RAD_S2 * from_u32(span_us);
+            evenness = if self.turn_rad_s > 0.0 && slower_rad_s > brakes_rad_s {
+                Evenness::Uneven
+            } else {
+                evenness_of(new, span_us, edges.turn_us)
+            };
             self.turn_rad_s = turn;
             let explained = turn * explained(new);
             if fresh > turn + explained {
@@ -164,16 +179,16 @@ impl SpeedEstimator {
         self.count = edges.count;
         self.last = edges.last;
         self.standing = false;
-        uneven
+        evenness
     }
 }
 
-/// Whether this number of edges in this time is half an edge off the prediction from the motor's last turn.
+/// Uneven is a number of edges in this time that is half an edge off the prediction from the motor's last turn.
 ///
 /// A disc whose pulses are longer than its pauses shifts an odd number of edges, so those may be off by three quarters.
-fn is_uneven(new: u16, span_us: u32, turn_us: u32) -> bool {
+fn evenness_of(new: u16, span_us: u32, turn_us: u32) -> Evenness {
     if turn_us >= BRISK_US {
-        return false;
+        return Evenness::Unknown;
     }
     // All below 65 ms, else the wheel has stood.
     let edge_us = (turn_us / u32::from(EDGES_PER_TURN)) as u16;
@@ -184,7 +199,11 @@ fn is_uneven(new: u16, span_us: u32, turn_us: u32) -> bool {
     } else {
         half_us + half_us / 2
     };
-    off_us > allowed_us
+    if off_us > allowed_us {
+        Evenness::Uneven
+    } else {
+        Evenness::Even
+    }
 }
 
 /// The part of the difference of both measurements that uneven poles and the lag of a turn's mean explain, relative,
@@ -324,7 +343,8 @@ mod tests {
             let tick = *tick;
             let speed = f64::from(tick.min(300 - tick).min(80)) * 0.01 * 20.0;
             let edges = disc.tick(tick * 10_000, speed);
-            estimator.step(&edges, Micros((tick + 1) * 10_000)).uneven
+            let motion = estimator.step(&edges, Micros((tick + 1) * 10_000));
+            motion.evenness == Evenness::Uneven
         };
         (0..300).filter(uneven).count()
     }

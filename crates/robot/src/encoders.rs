@@ -8,7 +8,7 @@
 //!
 //! *Implausible*: edges are missing, or are noise. The edges of a disc on a motor are regular: those of a tick come as
 //! predicted by the motor's last turn, whatever friction, floor and battery do to the speed. Where they repeatedly do
-//! not ([`WheelMotion::uneven`]), edges are lost or spurious. Of 2.5 million ticks of fast wheels in healthy runs none
+//! not ([`WheelMotion::evenness`]), edges are lost or spurious. Of 2.5 million ticks of fast wheels in healthy runs none
 //! is uneven; with poles displaced by up to 22 % of their pitch at most 0.23 % are; with a tenth of the edges lost 5 %,
 //! and more with every other fault: docs/theory/wheel_speed.md.
 //!
@@ -16,7 +16,7 @@
 //! either: the duty for a speed differs by more between sound robots.
 
 use rumbo_control::math::abs;
-use rumbo_control::speed::WheelMotion;
+use rumbo_control::speed::{Evenness, WheelMotion};
 use rumbo_control::{Duty, Fault, SIDES, Side, TICK_S, Wheels};
 
 /// Duty that eventually moves any free wheel: the original needed 65 of 255 on the floor, 35 in the air.
@@ -32,10 +32,10 @@ const STANDING_RAD_S: f32 = 0.5;
 const ASKED_RAD: f32 = 1.2;
 /// Overdue edges of a rolling wheel after which its encoder is silent.
 const OVERDUE: u8 = 3;
-/// What an uneven tick adds to an encoder's doubt; any other tick subtracts one.
+/// What an uneven tick adds to an encoder's doubt; an even one subtracts one, any other leaves it.
 const UNEVEN: u8 = 24;
-/// Doubt above which an encoder is implausible: six uneven ticks in quick succession, or one in twenty for long.
-const IMPLAUSIBLE: u8 = 144;
+/// Doubt above which an encoder is implausible: four uneven ticks in quick succession, or one in twenty for long.
+const IMPLAUSIBLE: u8 = 96;
 
 /// Watches both encoders.
 #[derive(Clone, Copy, Debug, Default)]
@@ -92,15 +92,15 @@ impl EncoderWatch {
         for side in SIDES {
             let WheelMotion {
                 edges,
-                uneven,
+                evenness,
                 overdue,
                 ..
             } = motion[side];
             let doubt = &mut self.doubt[side];
-            *doubt = if uneven {
-                doubt.saturating_add(UNEVEN)
-            } else {
-                doubt.saturating_sub(1)
+            *doubt = match evenness {
+                Evenness::Uneven => doubt.saturating_add(UNEVEN),
+                Evenness::Even => doubt.saturating_sub(1),
+                Evenness::Unknown => *doubt,
             };
             let silent = if edges > 0 {
                 self.missing[side] = Missing::default();
@@ -130,6 +130,7 @@ mod tests {
     fn motion(left: u16, right: u16) -> Wheels<WheelMotion> {
         Wheels { left, right }.map(|edges| WheelMotion {
             edges,
+            evenness: Evenness::Even,
             ..WheelMotion::default()
         })
     }
@@ -171,7 +172,9 @@ mod tests {
         let mut watch = EncoderWatch::default();
         let step = |tick: usize| {
             let mut motion = motion(1, 1);
-            motion.left.uneven = tick.is_multiple_of(ticks);
+            if tick.is_multiple_of(ticks) {
+                motion.left.evenness = Evenness::Uneven;
+            }
             let end = watch.step(&motion, Wheels::both(Duty::new(70)), Wheels::both(6.0));
             end == Err(Fault::LeftEncoderImplausible)
         };
@@ -217,7 +220,7 @@ mod tests {
 
     #[test]
     fn uneven_edges_are_doubted_when_they_come_often() {
-        assert_eq!(doubted(1), Some(5));
+        assert_eq!(doubted(1), Some(3));
         assert!(doubted(20).is_some_and(|tick| tick < 700));
         assert_eq!(doubted(30), None, "a knock now and then");
     }

@@ -1,13 +1,14 @@
 //! The drive layer: feedforward, reversal, saturation.
 
 use super::*;
+use crate::speed::Evenness;
 
 const TURNING: WheelMotion = WheelMotion {
     speed_rad_s: 6.0,
     believed_rad_s: 6.0,
     edges: 4,
     standing: false,
-    uneven: false,
+    evenness: Evenness::Unknown,
     overdue: 0,
 };
 const STANDING: WheelMotion = WheelMotion {
@@ -15,7 +16,7 @@ const STANDING: WheelMotion = WheelMotion {
     believed_rad_s: 0.0,
     edges: 0,
     standing: true,
-    uneven: false,
+    evenness: Evenness::Unknown,
     overdue: 0,
 };
 
@@ -126,7 +127,7 @@ fn a_standing_wheel_is_kicked_harder_until_it_moves() {
         believed_rad_s: 0.5,
         edges: 1,
         standing: false,
-        uneven: false,
+        evenness: Evenness::Unknown,
         overdue: 0,
     };
     assert!(step(&mut layer, speed(0.5), moving).left.counts() < later - 30);

@@ -1,6 +1,6 @@
 //! Around an obstacle: which side, how near, when to leave it, and when there is no way.
 
-use super::goal::{PROGRESS_M, SPOT_RAD};
+use super::goal::{CREEP_M_S, PROGRESS_M, SPOT_RAD};
 use super::lane::side_m;
 use super::obstacle::Obstacle;
 use super::{Detour, Drive, Mission, Phase, Place, Plan, Pose, Side, State, abs, min, sqrt};
@@ -125,7 +125,7 @@ impl Mission<'_> {
             state.phase = self.beside(state, estimate, side);
             let careful_m_s = self.careful_m_s(state.near_m, error_rad);
             let speed_m_s = min(self.free_m_s(state), min(self.around_m_s, careful_m_s));
-            if speed_m_s >= 0.03 {
+            if speed_m_s >= CREEP_M_S {
                 let drive = self.line.steer(speed_m_s, error_rad);
                 return if state.near_m < CLOSE_M || state.watch.doubts() {
                     slow_corners(drive)

@@ -75,6 +75,11 @@ impl Echo {
     pub(super) fn place(&self) -> Option<Place> {
         (self.belief > 0).then_some(self.at)
     }
+
+    /// Detected again.
+    fn confirm(&mut self) {
+        self.belief = (self.belief + 1).clamp(FIRM, MOST_BELIEF);
+    }
 }
 
 /// A beam of a sonar.
@@ -262,7 +267,11 @@ impl Echoes {
                 x_m + range_m * cos + GOES_ON_M * robot.cos,
                 y_m + range_m * sin + GOES_ON_M * robot.sin,
             );
-            self.put(at, beam.axis, &mut room);
+            // While the robot turns, this place slides off the wall: it confirms a point, and moves none.
+            match self.merging(at) {
+                Some(point) => point.confirm(),
+                None => self.put(at, beam.axis, &mut room),
+            }
         }
     }
 
@@ -361,7 +370,7 @@ impl Echoes {
             return false;
         };
         point.axis = beam.axis;
-        point.belief = (point.belief + 1).clamp(FIRM, MOST_BELIEF);
+        point.confirm();
         true
     }
 
@@ -384,16 +393,22 @@ impl Echoes {
         room
     }
 
+    /// The point that a new one at this place is merged with.
+    fn merging(&mut self, at: Place) -> Option<&mut Echo> {
+        let around = Bounds::around(at, MERGE_MM);
+        let mut points = self.points.iter_mut();
+        points.find(|point| {
+            point.belief > 0 && around.hold(point.at) && point.at.is_within(MERGE_MM, at)
+        })
+    }
+
     /// Stores a point: merged with an existing one, in a free slot, or in place of a farther one.
     fn put(&mut self, at: Place, axis: i8, room: &mut Room) {
-        let around = Bounds::around(at, MERGE_MM);
-        for point in &mut self.points {
-            if point.belief > 0 && around.hold(point.at) && point.at.is_within(MERGE_MM, at) {
-                point.at = at;
-                point.axis = axis;
-                point.belief = (point.belief + 1).clamp(FIRM, MOST_BELIEF);
-                return;
-            }
+        if let Some(point) = self.merging(at) {
+            point.at = at;
+            point.axis = axis;
+            point.confirm();
+            return;
         }
         if let Some(point) = room
             .take(at)

@@ -36,6 +36,8 @@ const FRONT_M: f32 = 0.13;
 const KEEP_M: f32 = 0.05;
 /// Speed while a sonar may be lying [m/s].
 pub(super) const DOUBT_M_S: f32 = 0.08;
+/// A robot that may not even drive so fast stands [m/s].
+pub(super) const CREEP_M_S: f32 = 0.03;
 /// Speed during a sweep [m/s].
 const SWEEP_M_S: f32 = 0.1;
 /// Nearer than this the robot turns slowly on the spot: its corners reach 0.15 m [m].
@@ -122,7 +124,7 @@ impl Mission<'_> {
                 Drive::Release
             }
             Phase::InitialTurn => self.turn(state, estimate, way.heading_rad, Phase::GoToGoal),
-            Phase::GoToGoal => self.go(state, estimate, way, left_m),
+            Phase::GoToGoal => self.go(state, estimate, goal_m, (way, left_m)),
             Phase::SweepRight | Phase::SweepLeft => self.sweep(state, estimate, left_m),
             Phase::Decide => {
                 self.decide(state, estimate, goal_m);
@@ -180,7 +182,13 @@ impl Mission<'_> {
         turn.step(&mut state.turn, estimate, heading_rad)
     }
 
-    fn go(&self, state: &mut State, estimate: &Estimate, way: &Way, left_m: f32) -> Drive {
+    fn go(
+        &self,
+        state: &mut State,
+        estimate: &Estimate,
+        goal_m: &(f32, f32),
+        (way, left_m): (&Way, f32),
+    ) -> Drive {
         if state
             .detour
             .is_some_and(|detour| left_m < detour.least_m - PROGRESS_M)
@@ -204,6 +212,11 @@ impl Mission<'_> {
         let error_rad = wrap_angle(state.heading_ref_rad - estimate.pose.heading_rad);
         let near_m = state.near_m;
         let limit_m_s = min(self.free_m_s(state), self.careful_m_s(near_m, error_rad));
+        if limit_m_s < CREEP_M_S && abs(error_rad) > FACED_RAD {
+            // What stops it is ahead, and the goal is not.
+            self.face(state, &estimate.pose, goal_m, FACED_RAD);
+            return Drive::Release;
+        }
         let step = self
             .line
             .step(&mut state.line, estimate, &state.segment, limit_m_s);

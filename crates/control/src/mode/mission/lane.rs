@@ -26,6 +26,8 @@ use core::f32::consts::{FRAC_PI_2, PI};
 
 /// The front sonar looks ahead within this of the middle [rad].
 const AHEAD_RAD: f32 = 0.06;
+/// It looks along the lane while the robot's heading is off by at most this: a little more than [`MOST_ASIDE_RAD`].
+const ALONG_RAD: f32 = 0.2;
 /// A range that stands for nothing within reach [m].
 const FAR_M: f32 = 3.0;
 /// A range jumps when it is this much longer than that of the face [m].
@@ -37,6 +39,10 @@ const SWEEP_RAD: f32 = 1.5;
 const SURE: u8 = 2;
 /// What was seen as a face but is this much farther from the place where the robot stands was none [m].
 const GONE_M: f32 = 0.1;
+/// Two looks agree on a face within this [m].
+const AGREE_M: f32 = 0.06;
+/// Echoes in a row, each agreeing with the one before, that make a face of what is behind another.
+const BEHIND: u8 = 3;
 /// Walls at the sides count within this [m].
 const BESIDE_M: f32 = 0.6;
 /// A wall on one side only counts within this [m].
@@ -60,10 +66,17 @@ enum Stage {
 
 /// What is ahead: the second nearest of the last five looks, moved along with the robot. One wild look brings nothing
 /// nearer, and what was near is only gone when four looks say so.
+///
+/// A face that looks in a row have agreed on is not gone by silence, nor by looks that disagree: it is missing, until
+/// it is seen again, looks agree on one behind it, or the robot has been where it was.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ahead {
     last_m: [f32; 5],
     count: u8,
+    /// Distance to the face that looks have agreed on; [`FAR_M`]: none.
+    face_m: f32,
+    /// Echoes in a row that agree with the one before.
+    agreeing: u8,
 }
 
 impl Default for Ahead {
@@ -72,26 +85,51 @@ impl Default for Ahead {
         Self {
             last_m: [FAR_M; 5],
             count: 0,
+            face_m: FAR_M,
+            agreeing: 0,
         }
     }
 }
 
 impl Ahead {
-    fn step(&mut self, estimate: &Estimate) {
+    /// One tick of a lane in this direction.
+    fn step(&mut self, estimate: &Estimate, heading_rad: f32) {
         for range_m in &mut self.last_m {
             *range_m -= estimate.rolled_m;
+        }
+        if self.face_m < FAR_M {
+            self.face_m -= estimate.rolled_m;
+        }
+        if self.face_m < -GONE_M {
+            self.face_m = FAR_M;
         }
         let Some(reading) = front(estimate) else {
             return;
         };
-        if abs(reading.servo_rad) > AHEAD_RAD {
+        let off_rad = wrap_angle(estimate.pose.heading_rad - heading_rad);
+        if abs(reading.servo_rad) > AHEAD_RAD || abs(off_rad) > ALONG_RAD {
             return;
         }
+        let range_m = range_m(reading);
+        let agrees = |before_m: &f32| range_m < FAR_M && abs(range_m - before_m) < AGREE_M;
+        self.agreeing = match self.last_m.last().is_some_and(agrees) {
+            true => self.agreeing.saturating_add(1),
+            false => 0,
+        };
         self.last_m.rotate_left(1);
         if let Some(newest_m) = self.last_m.last_mut() {
-            *newest_m = range_m(reading);
+            *newest_m = range_m;
+        }
+        if self.agreeing >= BEHIND || (self.agreeing > 0 && range_m < self.face_m + AGREE_M) {
+            self.face_m = range_m;
         }
         self.count = self.count.saturating_add(1);
+    }
+
+    /// The face that looks have agreed on is not seen any more.
+    fn is_missing(&self) -> bool {
+        let behind_m = |range_m: f32| range_m > self.face_m + AGREE_M;
+        self.range_m().is_some_and(behind_m)
     }
 
     /// Distance from the sonar; none before three looks.
@@ -182,7 +220,7 @@ impl Mission<'_> {
             state.fresh = false;
             *lane = Lane::default();
         }
-        lane.ahead.step(estimate);
+        lane.ahead.step(estimate, lane.heading_rad);
         if proving && proof.is_none() {
             // On from where the robot stands now.
             lane.stage = Stage::Turn;
@@ -279,7 +317,7 @@ impl Mission<'_> {
                 return Drive::Release;
             }
         }
-        let cruise_m_s = if doubts {
+        let cruise_m_s = if doubts || lane.ahead.is_missing() {
             DOUBT_M_S
         } else {
             self.params.get(ParamId::MissionCruise)
@@ -305,7 +343,6 @@ impl Lane {
 
     fn go_on(&mut self) {
         self.stage = Stage::Straight;
-        self.ahead = Ahead::default();
         self.stop = StopState::default();
         self.line = LineState::default();
     }
@@ -358,6 +395,7 @@ impl Lane {
             (None, None) => PI,
         };
         self.heading_rad = wrap_angle(self.heading_rad + change_rad);
+        self.ahead = Ahead::default();
         self.turn = TurnState::default();
         self.stage = Stage::Turn;
     }

@@ -96,6 +96,7 @@ states! {
         /// Follows the straight line to the goal, at 0.40 m/s at most; at its end the event *reached*.
         GoToGoal = "go to goal" {
             Wait: "it stands at the goal",
+            InitialTurn: "the goal is not ahead",
             SweepRight: "an obstacle ahead",
             Seek: "the obstacle that it has just left",
             Prove: "the front sonar is in doubt",

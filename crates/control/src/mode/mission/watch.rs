@@ -38,8 +38,13 @@ const WILD_LIMIT: u8 = 60;
 /// Ranges beyond this are not judged: there corners and the noise of weak echoes make them change [m].
 const JUDGED_M: f32 = 1.2;
 
-/// Way between two looks aside [m].
+/// Way of the front sonar between two looks aside, and after one that was not answered [m].
 const ASIDE_M: f32 = 0.12;
+const AGAIN_M: f32 = 0.05;
+/// How far ahead of the axis it sits, about: a turn moves it too [m].
+const ARM_M: f32 = 0.1;
+/// Looks aside at a wall that were not answered, after which it must be tested.
+const WALLS_SILENT: u8 = 2;
 /// The servo looks aside beyond this [rad].
 const LOOKS_ASIDE_RAD: f32 = 1.4;
 /// Farthest wall that is taken for one [m].
@@ -169,8 +174,10 @@ pub(super) struct Watch {
     pub landmarks: Landmarks,
     /// Directions without an echo since the last call of `ask`; none after an echo.
     unanswered: u8,
-    /// Way since the last look aside [m].
+    /// The front sonar's way since the last look aside [m].
     aside_m: f32,
+    /// Looks aside since its last echo that a wall there did not answer.
+    walls_silent: u8,
     /// Way with something near beside the robot since the front sonar's last echo [m].
     blind_m: f32,
     /// Way since the front sonar's last echo; none before the first, and where no known face must answer [m].
@@ -199,6 +206,7 @@ impl Watch {
         let (beam, at) = Beam::of(&estimate.transform(), reading);
         if let Some(at) = at {
             self.unanswered = 0;
+            self.walls_silent = 0;
             self.blind_m = 0.0;
             self.silent_m = Some(0.0);
             self.landmarks.answer(&beam, at);
@@ -206,6 +214,12 @@ impl Watch {
             self.landmarks.silence(&beam);
             self.unanswered = self.unanswered.saturating_add(u8::from(second));
             if abs(reading.servo_rad) >= LOOKS_ASIDE_RAD {
+                let [left_m, right_m] = walls_m(estimate, NEAR_M);
+                let left = reading.servo_rad > 0.0;
+                let wall_m = if left { left_m } else { right_m };
+                if wall_m.is_some() && self.aside_m > 0.0 {
+                    self.walls_silent = self.walls_silent.saturating_add(1);
+                }
                 self.aside_m = 0.0;
             }
         }
@@ -217,7 +231,12 @@ impl Watch {
         if self.landmarks.is_alive() {
             return None;
         }
-        if self.aside_m > ASIDE_M {
+        let wait_m = if self.walls_silent > 0 {
+            AGAIN_M
+        } else {
+            ASIDE_M
+        };
+        if self.aside_m > wait_m {
             match walls_m(estimate, NEAR_M) {
                 [Some(left_m), Some(right_m)] if right_m < left_m => return Some(-SWEEP_RAD),
                 [Some(_), _] => return Some(SWEEP_RAD),
@@ -240,7 +259,7 @@ impl Watch {
     ) -> Result<(), Fault> {
         self.landmarks.step(estimate.rolled_m);
         let rolled_m = abs(estimate.rolled_m);
-        self.aside_m += rolled_m;
+        self.aside_m += rolled_m + ARM_M * abs(estimate.turned_rad);
         if let Some(silent_m) = &mut self.silent_m {
             *silent_m += rolled_m;
         }
@@ -267,7 +286,10 @@ impl Watch {
     /// Whether the front sonar should have had an echo by now: it must be tested.
     pub(super) fn suspects(&self) -> bool {
         let silent = self.silent_m.is_some_and(|silent_m| silent_m > SILENT_M);
-        silent || self.landmarks.is_deaf() || self.blind_m > BLIND_M
+        silent
+            || self.landmarks.is_deaf()
+            || self.blind_m > BLIND_M
+            || self.walls_silent >= WALLS_SILENT
     }
 
     /// A sweep before an obstacle is over: a working sonar has detected it.
@@ -278,6 +300,7 @@ impl Watch {
     /// No known face near the robot can test the front sonar.
     pub(super) fn postpone(&mut self) {
         self.landmarks.postpone();
+        self.walls_silent = 0;
         self.blind_m = 0.0;
         self.silent_m = None;
     }
@@ -311,7 +334,9 @@ impl Watch {
 
     /// Whether some sonar may be wrong: the robot should be slow.
     pub(super) fn doubts(&self) -> bool {
-        self.landmarks.doubts() || self.sonars.iter().any(|sonar| sonar.outliers >= UNEASY)
+        self.walls_silent > 0
+            || self.landmarks.doubts()
+            || self.sonars.iter().any(|sonar| sonar.outliers >= UNEASY)
     }
 }
 
@@ -327,6 +352,7 @@ fn walls_m(estimate: &Estimate, within_m: f32) -> [Option<f32>; 2] {
 mod tests {
     use super::*;
     use crate::rig::View;
+    use crate::types::AgedRange;
 
     /// Answers of all three sonars in turn, while the robot rolls `rolled_m` per tick; the front one looks ahead.
     fn watched(
@@ -458,6 +484,41 @@ mod tests {
         assert!(!after(160, 500).suspects());
         assert!(after(200, 500).suspects());
         assert!(!after(240, 200).suspects());
+    }
+
+    #[test]
+    fn a_wall_beside_the_robot_that_leaves_two_looks_unanswered_is_to_be_proven() {
+        let aside = |watch: &mut Watch, range: Range, left: Range| {
+            let mut estimate = Estimate {
+                rolled_m: 0.06,
+                facing: (0.0, 1.0),
+                ..Estimate::default()
+            };
+            estimate.ranges[SonarId::Left as usize] = AgedRange::fresh(left);
+            watch.step(&estimate, 0.5, false).unwrap();
+            let view = View {
+                axis_rad: SWEEP_RAD,
+                ..View::default()
+            };
+            let reading = Reading {
+                sonar: SonarId::Front,
+                range,
+                view,
+                servo_rad: SWEEP_RAD,
+            };
+            (0..2).for_each(|_| _ = watch.ingest(&estimate, &reading, true));
+        };
+        let (wall, far) = (Range::Valid(0.2), Range::Clear);
+        let mut watch = Watch::default();
+        aside(&mut watch, Range::Clear, far);
+        assert!(!watch.doubts(), "nothing must answer there");
+        aside(&mut watch, Range::Clear, wall);
+        assert!(watch.doubts() && !watch.suspects());
+        let mut silent = watch;
+        aside(&mut silent, Range::Clear, wall);
+        assert!(silent.suspects());
+        aside(&mut watch, Range::Valid(0.2), wall);
+        assert!(!watch.doubts(), "it answers");
     }
 
     #[test]

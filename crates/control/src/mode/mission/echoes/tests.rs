@@ -140,3 +140,22 @@ fn a_silence_contradicts_nothing_before_the_next_echo() {
     settle(&mut echoes);
     assert_eq!(echoes, before, "the one after the echo waits");
 }
+
+#[test]
+fn a_turn_moves_no_point_of_the_wall_ahead_of_the_sonar_beside() {
+    let mut echoes = Echoes::default();
+    let right = Reading {
+        sonar: SonarId::Right,
+        ..answer(Range::Valid(0.15), -core::f32::consts::FRAC_PI_2)
+    };
+    for step in 0..8u16 {
+        let pose = Pose {
+            heading_rad: -0.05 * f32::from(step),
+            ..Pose::default()
+        };
+        echoes.ingest(&Transform::of(pose), &right, true);
+    }
+    // The wall lies along y = -0.15 m; ahead of the sonar it is assumed at x = 0.1 m.
+    let ahead = Place::new(0.1, -0.15);
+    assert!(places(&echoes).any(|at| at == ahead), "{echoes:?}");
+}

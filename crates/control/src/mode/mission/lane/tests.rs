@@ -29,20 +29,47 @@ fn between(left: Range, right: Range) -> Estimate {
 #[test]
 fn one_wrong_look_ahead_changes_nothing_and_way_rolled_counts() {
     let mut ahead = Ahead::default();
-    ahead.step(&hears(Range::Valid(0.8), 0.0));
-    ahead.step(&hears(Range::Valid(0.8), 0.0));
+    ahead.step(&hears(Range::Valid(0.8), 0.0), 0.0);
+    ahead.step(&hears(Range::Valid(0.8), 0.0), 0.0);
     assert_eq!(ahead.range_m(), None, "two looks are too few");
-    ahead.step(&hears(Range::Valid(2.1), 0.0));
+    ahead.step(&hears(Range::Valid(2.1), 0.0), 0.0);
     assert_eq!(ahead.range_m(), Some(0.8));
-    ahead.step(&hears(Range::Valid(0.2), 0.5));
+    ahead.step(&hears(Range::Valid(0.2), 0.5), 0.0);
     assert_eq!(ahead.range_m(), Some(0.8), "a look aside");
-    ahead.step(&hears(Range::Faulty, 0.0));
+    ahead.step(&hears(Range::Faulty, 0.0), 0.0);
     assert_eq!(ahead.range_m(), Some(0.8), "no look at all");
-    ahead.step(&Estimate {
+    let rolled = Estimate {
         rolled_m: 0.1,
         ..Estimate::default()
-    });
+    };
+    ahead.step(&rolled, 0.0);
     assert!((ahead.range_m().unwrap() - 0.7).abs() < 1e-6);
+}
+
+#[test]
+fn a_face_that_looks_agreed_on_is_missing_until_it_is_seen_again_or_one_behind_it_is() {
+    let look = |ahead: &mut Ahead, range: Range| ahead.step(&hears(range, 0.0), 0.0);
+    let mut ahead = Ahead::default();
+    (0..5).for_each(|_| look(&mut ahead, Range::Valid(0.5)));
+    assert!(!ahead.is_missing());
+    for (range_m, missing) in [(1.9, false), (2.4, false), (0.9, false), (1.4, true)] {
+        look(&mut ahead, Range::Valid(range_m));
+        assert_eq!(ahead.is_missing(), missing, "{range_m}");
+    }
+    (0..50).for_each(|_| look(&mut ahead, Range::Clear));
+    assert!(ahead.is_missing(), "silence proves nothing");
+    let mut behind = ahead;
+    (0..4).for_each(|_| look(&mut behind, Range::Valid(1.5)));
+    assert!(!behind.is_missing());
+    (0..2).for_each(|_| look(&mut ahead, Range::Valid(0.5)));
+    assert!(!ahead.is_missing());
+}
+
+#[test]
+fn a_look_across_the_lane_is_none_ahead() {
+    let mut ahead = Ahead::default();
+    (0..5).for_each(|_| ahead.step(&hears(Range::Valid(0.5), 0.0), 0.3));
+    assert_eq!(ahead.range_m(), None);
 }
 
 /// A sweep over a face that ends at `end_rad`, with a look lost at `lost_rad`.
