@@ -5,9 +5,10 @@
  *
  * A replay has what is before and after its playhead: plots show all of it, the map and the numbers only what has been.
  *
- * Positions are in metres from the robot's origin, the true ones too, and headings continue through 180 degrees up to 315.
+ * Positions are in metres from where the run began, also after the robot has moved its origin, the true ones too; headings
+ * continue through 180 degrees up to 315.
  */
-import { IDENTITY, compose, inverse, near, wrapped } from './geometry.js';
+import { IDENTITY, compose, inverse, near, place, wrapped } from './geometry.js';
 import { Readings } from './readings.js';
 import { Table } from './table.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S } from './units.js';
@@ -199,6 +200,10 @@ export class Store {
     const follows = armed && (idle === null || cell('state') !== idle);
     const heading_ref_rad = follows && heading ? number(cell('heading_ref_rad')) : null;
     const toPlace = follows && reference?.kind === 'goal';
+    // The robot's origin may move with a goal: what is plotted does not jump.
+    const frame = compose(inverse(this.start), origin);
+    const [left, right] = [number(cell('reference_left')), number(cell('reference_right'))];
+    const goal = toPlace && left !== null && right !== null ? place(frame, [left, right]) : null;
 
     this.slow.push(t_s, {
       reference_cm: reference?.kind === 'distance' && cell('reference_left') !== 0 ? cm('reference_left') : null,
@@ -215,9 +220,9 @@ export class Store {
       servo_deg: scaled(cell('servo_rad'), DEG_PER_RAD),
       left_pwm: number(cell('left_pwm')),
       right_pwm: number(cell('right_pwm')),
-      ...this.#placeAndHeading(estimated, truth && compose(inverse(origin), truth), ghost && compose(inverse(origin), ghost), heading_ref_rad),
-      goal_x_m: toPlace ? number(cell('reference_left')) : null,
-      goal_y_m: toPlace ? number(cell('reference_right')) : null,
+      ...this.#placeAndHeading(estimated && compose(frame, estimated), truth && compose(inverse(this.start), truth), ghost && compose(inverse(this.start), ghost), heading_ref_rad === null ? null : frame.heading_rad + heading_ref_rad),
+      goal_x_m: goal?.[0] ?? null,
+      goal_y_m: goal?.[1] ?? null,
       x_deviation_m: number(cell('x_deviation_m')),
       y_deviation_m: number(cell('y_deviation_m')),
       heading_deviation_deg: scaled(cell('heading_deviation_rad'), DEG_PER_RAD),
@@ -241,8 +246,8 @@ export class Store {
       ghost_right_rpm: rpm('ghost_right_rad_s'),
     });
     // The speeds wanted come with every frame, other setpoints with the status.
-    const wanted = reference?.kind === 'wheel_speed' ? ['left_ref_rad_s', 'right_ref_rad_s'] : ['reference_left', 'reference_right'];
-    this.#pushStep(t_s, mode, armed && (toPlace || reference?.kind !== 'goal') ? wanted.map((name) => number(cell(name))) : null);
+    const wanted = reference?.kind === 'wheel_speed' ? [number(cell('left_ref_rad_s')), number(cell('right_ref_rad_s'))] : reference?.kind === 'goal' ? goal : [left, right];
+    this.#pushStep(t_s, mode, armed ? wanted : null);
     this.#pushStretch(t_s, mode, number(cell('state')), armed, cell('faulted') === 1);
 
     this.haunted ||= ghost !== null;
@@ -265,9 +270,10 @@ export class Store {
   }
 
   /**
+   * All from where the run began.
    * @param {Pose | null} estimated
-   * @param {Pose | null} truth From the robot's origin.
-   * @param {Pose | null} ghost From the robot's origin.
+   * @param {Pose | null} truth
+   * @param {Pose | null} ghost
    * @param {number | null} heading_ref_rad
    */
   #placeAndHeading(estimated, truth, ghost, heading_ref_rad) {
@@ -347,7 +353,7 @@ export class Store {
     // Of a program that sends no telemetry nothing else is known.
     const silent = this.silent;
     const origin = silent || before === null ? this.start : before.origin;
-    for (const { t_s, pose, pinged_m, servo_rad, contact } of this.readings.push(group, origin)) {
+    for (const { t_s, pose, pinged_m, servo_rad, contact } of this.readings.push(group, this.start)) {
       // Telemetry has the truth too.
       if (silent) this.#moments.push({ t_s, mode: -1, state: null, armed: false, origin, estimated: null, spread: null, truth: pose, ghost: null, heading_ref_rad: null, ranges_m: pinged_m, servo_rad, contact });
     }

@@ -123,6 +123,25 @@ test('Enter on an event goes to its time too', async () => {
   await page.waitForFunction(() => Math.abs(/** @type {any} */ (window).rumbo.state().t_s - 5.5) < 0.1);
 });
 
+test('what is plotted does not jump where the robot moves its origin to its goal', async () => {
+  const out = folder();
+  spawnSync(program(), ['run', 'mode8-obstacles', '--seed', '1', '--out', out]);
+  const other = await open(['replay', join(out, 'mode8-obstacles-1.mcap'), '--speed', '16']);
+  try {
+    await other.page.waitForFunction(() => /** @type {any} */ (window).rumbo.state()?.speed === 0);
+    await other.page.waitForFunction(() => /** @type {any} */ (window).rumbo.shown()?.origin.x_m > 2, undefined, { timeout: 60_000 });
+    for (const [name, most] of /** @type {[string, number][]} */ ([['true_x_m', 0.1], ['x_m', 0.1], ['y_m', 0.1], ['true_heading_deg', 20], ['heading_deg', 20]])) {
+      const jump = await other.page.evaluate((name) => {
+        const y = /** @type {any} */ (window).rumbo.series(name).y.filter((/** @type {unknown} */ each) => typeof each === 'number');
+        return Math.max(...y.slice(1).map((/** @type {number} */ each, /** @type {number} */ index) => Math.abs(each - y[index])));
+      }, name);
+      assert.ok(jump < most, `${name} jumps by ${jump}`);
+    }
+  } finally {
+    await other.close();
+  }
+});
+
 test('no script failed on the way', () => {
   assert.deepEqual(dashboard.complaints, []);
 });

@@ -87,7 +87,7 @@ export const PAGE = {
   'Show it as a replay, in a page of its own': 'La muestra en una página aparte', 'being recorded': 'grabándose', 'Delete this recording': 'Borra esta grabación', 'Delete for good': 'Borrar para siempre', 'Keep': 'Conservar',
   'signal': 'señal', 'metric': 'medida', 'parameter that differs': 'parámetro distinto', 'never': 'nunca', 'the two have no signal in common': 'las dos no tienen ninguna señal en común',
   // Replay.
-  'whole log': 'toda', 'ghost l.': 'fantasma izq.', 'ghost r.': 'fantasma der.', 'ghost front': 'fantasma frontal', 'ghost range, left sonar': 'distancia del fantasma, sonar izquierdo', 'ghost range, right sonar': 'distancia del fantasma, sonar derecho',
+  'whole log': 'toda', 'Follow': 'Seguir', 'ghost l.': 'fantasma izq.', 'ghost r.': 'fantasma der.', 'ghost front': 'fantasma frontal', 'ghost range, left sonar': 'distancia del fantasma, sonar izquierdo', 'ghost range, right sonar': 'distancia del fantasma, sonar derecho',
   'ghost range, front sonar': 'distancia del fantasma, sonar frontal', 'ghost speed, left wheel': 'velocidad del fantasma, rueda izquierda', 'ghost speed, right wheel': 'velocidad del fantasma, rueda derecha',
   'Replay': 'Grabación', 'The log that is shown': 'La grabación que se muestra', 'Play': 'Reproducir', 'Pause': 'Pausa',
   'Play or pause (K)': 'Reproducir o pausar (K)', 'One telemetry frame back (comma)': 'Una trama de telemetría atrás (coma)', 'One frame back': 'Una trama atrás',
