@@ -87,6 +87,8 @@ const FARTHEST_DEG = 315;
 
 /** Steps kept: more than a person gives in ten minutes. */
 const STEPS_KEPT = 500;
+/** Samples kept of a replay: what a page gets around the playhead, and as much again. */
+const MOMENTS_KEPT = 30_000;
 /** Points kept of each trail, in the world, one every 2 cm at least. */
 const TRAIL_POINTS = 2_000;
 const TRAIL_STEP_M = 0.02;
@@ -168,7 +170,8 @@ export class Store {
       this.latest = next;
     }
     // Live, where all is shown, those before the last are not needed again.
-    if (this.#playhead_s === Infinity) this.#shown -= this.#moments.splice(0, this.#moments.length - 1).length;
+    const kept = this.#playhead_s === Infinity ? 1 : MOMENTS_KEPT;
+    if (this.#moments.length > kept) this.#shown -= this.#moments.splice(0, this.#moments.length - kept).length;
   }
 
   /**

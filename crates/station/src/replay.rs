@@ -97,6 +97,8 @@ impl Replay {
                 false => format!("the log ends early: {why}"),
             });
         }
+        // First where the playhead is: a page that comes now takes no sample for the present.
+        self.show();
         self.begin_at(0.0);
         loop {
             let busy = self.ghost.as_ref().is_some_and(GhostReplay::at_work);
