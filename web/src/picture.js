@@ -59,17 +59,21 @@ function shown(panel) {
   return panel.curves.filter((_curve, index) => panel.plot.series[index + 1]?.show && panel.plot.data[index + 1]?.some((value) => typeof value === 'number'));
 }
 
-/** @param {PlotPanel} panel @param {string} scale @returns {[number, number]} */
-function limits(panel, scale) {
-  const { min = 0, max = 1 } = panel.plot.scales[scale] ?? {};
-  return [min ?? 0, max ?? 1];
+/** Limits of an axis for its curves in this time. @param {PlotPanel} panel @param {import('./store.js').Store} store @param {boolean} right @param {[number, number]} range_s @returns {[number, number]} */
+function span(panel, store, right, [from_s, to_s]) {
+  const values = shown(panel).filter((curve) => curve.right === right).flatMap(({ name }) => {
+    const table = store.tableOf(name);
+    return (table.columns.get(name) ?? []).slice(table.indexAt(from_s), table.indexAt(to_s)).filter((value) => typeof value === 'number');
+  });
+  const [low, high] = values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+  return low > high ? panel.limits(right, null, null) : panel.limits(right, low, high);
 }
 
 /** @param {PlotPanel} panel @param {{store: import('./store.js').Store}} view @param {Frame} frame @returns {Blob} */
 export function toSvg(panel, { store }, { from_s, to_s, width_mm, height_mm }) {
   const [width, tall] = [px(width_mm), px(height_mm)];
-  const [low, high] = limits(panel, 'y');
-  const other = panel.rightUnit === null ? null : limits(panel, 'right');
+  const [low, high] = span(panel, store, false, [from_s, to_s]);
+  const other = panel.rightUnit === null ? null : span(panel, store, true, [from_s, to_s]);
   const right_px = other ? LEFT : RIGHT;
   const x = (/** @type {number} */ t_s) => LEFT + ((t_s - from_s) / (to_s - from_s)) * (width - LEFT - right_px);
   const height = ([from, to] = [low, high]) => (/** @type {number} */ value) => tall - BOTTOM - ((value - from) / (to - from)) * (tall - TOP - BOTTOM);

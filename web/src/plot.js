@@ -106,7 +106,7 @@ export class PlotPanel {
    * @param {number | null} high
    * @returns {[number, number]}
    */
-  #limits(right, low, high) {
+  limits(right, low, high) {
     const { min, max, right: kept } = this.#spec;
     const zoomed = this.#zoomed?.[right ? 1 : 0];
     if (zoomed) return zoomed;
@@ -166,8 +166,8 @@ export class PlotPanel {
   #make(body) {
     const right = this.rightUnit !== null;
     /** @type {uPlot.Scales} */
-    const scales = { x: { time: false, auto: false }, y: { range: (_plot, low, high) => this.#limits(false, low, high) } };
-    if (right) scales['right'] = { range: (_plot, low, high) => this.#limits(true, low, high) };
+    const scales = { x: { time: false, auto: false }, y: { range: (_plot, low, high) => this.limits(false, low, high) } };
+    if (right) scales['right'] = { range: (_plot, low, high) => this.limits(true, low, high) };
     const plot = new uPlot({
       ...commonOptions(this.#view, right),
       scales,

@@ -161,7 +161,7 @@ test('a plot is a figure of chosen time and size, as SVG, PNG and PDF, and its v
   const svg = await saved('SVG');
   assert.equal(svg.name, 'distance.svg');
   const text = readFileSync(svg.path, 'utf8');
-  assert.ok(text.startsWith('<svg ') && text.includes('distance [cm]') && /<path d="M[\d.]+ [\d.]+L/.test(text), 'a title and a curve');
+  assert.ok(text.startsWith('<svg ') && text.includes('distance [cm]') && /<path d="M-?[\d.]+ -?[\d.]+L/.test(text), 'a title and a curve');
   const png = await saved('PNG');
   assert.deepEqual([...readFileSync(png.path).subarray(1, 4)], [...Buffer.from('PNG')]);
   const csv = await saved('CSV');
