@@ -2,7 +2,7 @@
 /** The band below the plots: the states of the mode's machine along the time axis. */
 import uPlot from '../vendor/uplot/uPlot.js';
 import { create } from './dom.js';
-import { commonOptions, drawMark, makeNavigable, timeAxis, valueAxis } from './plot.js';
+import { commonOptions, drawLine, makeNavigable, timeAxis, valueAxis } from './plot.js';
 import { stateWords } from './stateline.js';
 import { t } from './text.js';
 import { STATE_COLOURS, colours, stateColour } from './theme.js';
@@ -34,7 +34,10 @@ export class StateBand {
         }],
         setCursor: [() => view.label()],
         drawAxes: [(/** @type {uPlot} */ plot) => this.#draw(plot)],
-        draw: [(/** @type {uPlot} */ plot) => drawMark(plot, view.mark_s)],
+        draw: [(/** @type {uPlot} */ plot) => {
+          drawLine(plot, view.mark_s, colours.goal);
+          drawLine(plot, store.playhead_s, colours.text);
+        }],
       },
     }, [[], []], this.body);
     makeNavigable(this.plot, view);

@@ -76,3 +76,18 @@ export function likelyArea({ x_m, y_m, correlation }) {
   const half_m = (variance) => Math.sqrt(CHI_SQUARE_95 * Math.max(variance, 0));
   return { half_m: [half_m(middle + apart), half_m(middle - apart)], direction_rad: Math.atan2(2 * xy, xx - yy) / 2 };
 }
+
+/**
+ * The part of a wall next to a place: its nearest point, and as far as `along_m` to both sides of it.
+ * @param {[number, number]} from @param {[number, number]} to @param {[number, number]} at @param {number} along_m
+ * @returns {[number, number][]}
+ */
+export function nextTo(from, to, at, along_m) {
+  const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+  const length_m = Math.hypot(dx, dy) || 1;
+  const nearest_m = ((at[0] - from[0]) * dx + (at[1] - from[1]) * dy) / length_m;
+  return [-along_m, 0, along_m].map((beside_m) => {
+    const share = Math.min(1, Math.max(0, (nearest_m + beside_m) / length_m));
+    return [from[0] + share * dx, from[1] + share * dy];
+  });
+}

@@ -3,7 +3,7 @@
 import { create, element, setText } from './dom.js';
 import { isOwn, phaseWords } from './program.js';
 import { format, formatShort } from './units.js';
-import { named, t } from './text.js';
+import { named, said, t } from './text.js';
 
 /** @typedef {import('./types.js').State} State */
 /** @typedef {import('./types.js').Scene} Scene */
@@ -41,6 +41,8 @@ export class Header {
       event.preventDefault();
       send({ type: 'reset', scenario: this.#scenario.value, world: this.#world.value === OWN ? null : this.#world.value, rig: this.#rig.value === OWN ? null : this.#rig.value, seed: this.#seed.valueAsNumber });
     });
+    // A scenario brings its own world and sensors; it begins disarmed.
+    this.#scenario.addEventListener('change', () => send({ type: 'reset', scenario: this.#scenario.value, world: null, rig: null, seed: this.#seed.valueAsNumber || 1 }));
     setInterval(() => this.#showConnection(), STALE_MS / 3);
   }
 
@@ -48,11 +50,12 @@ export class Header {
   setScene(scene) {
     this.#form.hidden = scene === null;
     if (!scene) return;
-    this.#scenario.replaceChildren(...scene.scenarios.map((name) => option(name, name)));
+    this.#scenario.replaceChildren(...grouped(scene.experiments));
     this.#world.replaceChildren(option(OWN, t('scenario default')), ...scene.worlds.map((name) => option(name, name)));
     this.#rig.replaceChildren(option(OWN, t('scenario default')), ...scene.rigs.map((name) => option(name, named(name))));
     this.#rig.title = named(scene.rig);
     this.#scenario.value = scene.choice.scenario;
+    this.#scenario.title = scene.choice.scenario;
     this.#world.value = scene.choice.world ?? OWN;
     this.#rig.value = scene.choice.rig ?? OWN;
     this.#seed.value = String(scene.choice.seed);
@@ -110,6 +113,29 @@ export class Header {
     return slow ? [t('{}, only × {}', rate, format(state.achieved_speed)), 'warning'] : [rate, 'good'];
   }
 }
+
+/** Scenarios by their titles, below the headings of their groups. @param {Scene['experiments']} experiments */
+function grouped(experiments) {
+  /** @type {Map<string | null, HTMLElement>} */
+  const groups = new Map();
+  /** @type {HTMLElement[]} */
+  const made = [];
+  for (const { name, title, group } of experiments) {
+    const each = option(name, titleWords(title));
+    const into = groups.get(group);
+    if (into) into.append(each);
+    else if (group === null) made.push(each);
+    else {
+      const heading = create('optgroup', { label: said(group) }, each);
+      groups.set(group, heading);
+      made.push(heading);
+    }
+  }
+  return made;
+}
+
+/** @param {string} title */
+const titleWords = (title) => said(title).replaceAll('->', '→');
 
 /**
  * @param {string} value

@@ -35,11 +35,17 @@ function list(title, lines) {
 /** A text with what stands between backticks as code. @param {string} text */
 const withCode = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? create('code', { textContent: part }) : part));
 
-/** Makes the help page; returns the function that opens it. */
-export function makeHelp() {
+/** Makes the help page; returns the function that opens it. @param {() => void} begin shows the first steps */
+export function makeHelp(begin) {
   const made = dialog('help-dialog', t('Help'));
+  const again = create('button', { type: 'button', id: 'tour-again', textContent: t('Show the first steps') });
+  again.addEventListener('click', () => {
+    made.dialog.close();
+    begin();
+  });
   made.body.append(
     create('p', { textContent: t('Choose a mode, enter its setpoint, press ON. OFF stops the mode; STOP releases the wheels at once. The robot never starts because a page was opened.') }),
+    create('div', { className: 'row' }, again),
     create('div', { className: 'help-lists' }, list(t('Keys'), KEYS()), list(t('Colours and lines'), LEGEND())),
     create('p', { className: 'hint' }, ...withCode(t('Every event says its cause and what to do. Each run is recorded; `rumbo list logs` finds it, `rumbo replay` shows it here.'))));
   return made.open;

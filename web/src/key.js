@@ -55,3 +55,16 @@ export async function askForKey() {
     return { key: null, why: 'closed' };
   }
 }
+
+/**
+ * The answer of the station to a request with the page's key.
+ * @param {string} path
+ * @param {'GET' | 'POST' | 'DELETE'} [method]
+ * @returns {Promise<string>}
+ */
+export async function ask(path, method = 'GET') {
+  const answer = await fetch(path, { method, headers: { Authorization: `Bearer ${shown()}` } });
+  const text = await answer.text();
+  if (!answer.ok) throw new Error(text);
+  return text;
+}

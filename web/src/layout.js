@@ -27,8 +27,8 @@ const plot = (title, weight, signals) => ({ title, signals, min: null, max: null
 
 /** The default plots of modes. */
 export const PLOTS = [
-  plot('distance', 5, ['true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'range_left_cm', 'range_right_cm', 'range_front_cm', 'reference_cm']),
-  plot('wheels', 5, ['true_left_rpm', 'true_right_rpm', 'left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm']),
+  plot('distance', 5, ['ghost_range_left_cm', 'ghost_range_right_cm', 'ghost_range_front_cm', 'true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'range_left_cm', 'range_right_cm', 'range_front_cm', 'reference_cm']),
+  plot('wheels', 5, ['ghost_left_rpm', 'ghost_right_rpm', 'true_left_rpm', 'true_right_rpm', 'left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm']),
   plot('PWM', 3, ['left_pwm', 'right_pwm']),
   plot('heading', 4, ['ghost_heading_deg', 'true_heading_deg', 'heading_deg', 'heading_ref_deg']),
   plot('position', 4, ['ghost_x_m', 'ghost_y_m', 'true_x_m', 'true_y_m', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m']),
@@ -47,9 +47,10 @@ export const OWN_PLOTS = [
 /** Titles of those that it begins with. */
 const OWN_TITLES = ['wheels', 'PWM', 'sonars'];
 
-/** A mode's default layout: the plots of these titles. @param {string[]} titles @param {PlotSpec[]} plots @returns {Layout} */
+/** A mode's default layout: the plots of these titles, the first of which matters most. @param {string[]} titles @param {PlotSpec[]} plots @returns {Layout} */
 function initial(titles, plots) {
-  return { window_s: WINDOW_S, plots: titles.flatMap((title) => plots.filter((each) => each.title === title)).map((each) => ({ ...each })) };
+  const chosen = titles.flatMap((title) => plots.filter((each) => each.title === title));
+  return { window_s: WINDOW_S, plots: chosen.map((each, index) => ({ ...each, weight: index === 0 ? 2 * each.weight : each.weight })) };
 }
 
 /** The units of signals, in the order in which they come. @param {string[]} signals */

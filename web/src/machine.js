@@ -1,9 +1,11 @@
 // @ts-check
 /**
- * The state machine of the mode: its states in a row, forward transitions above them and backward ones below, with the
- * active state and the transition to it highlighted. States and transitions come from the control core.
+ * The state machine of the mode: its states in a row, forward transitions above them and backward ones below; or, where they
+ * are many, in several rows, with the transitions of one state only. The active state and the transition to it are
+ * highlighted. Below in words: when the active state, or the one that is pointed at, is left. States and transitions come from
+ * the control core.
  */
-import { element } from './dom.js';
+import { create, element } from './dom.js';
 import { said, t } from './text.js';
 
 /** @typedef {import('./types.js').ModeEntry} ModeEntry */
@@ -12,9 +14,13 @@ import { said, t } from './text.js';
 const SVG = 'http://www.w3.org/2000/svg';
 const BOX_HEIGHT_PX = 44;
 const MARGIN_PX = 4;
-const LINE_PX = 10;
+const LINE_PX = 12;
 /** About the width of a letter of a state's name [px]. */
-const LETTER_PX = 4.7;
+const LETTER_PX = 6.1;
+/** Narrower than this a box does not stand in one row with all others [px]. */
+const NARROWEST_PX = 92;
+/** Of several rows [px]. */
+const ROW_PX = 62;
 /** The arrows of a state begin and end this far beside its middle, and further for further states [px]. */
 const BESIDE_PX = 4;
 
@@ -56,6 +62,29 @@ function lines(name, width_px) {
   return made.slice(0, 4);
 }
 
+/** Height of one row with its arcs, and room for the words below [px]. */
+const ONE_ROW_PX = 84;
+const WORDS_PX = 40;
+
+/** An arc above the boxes, or below them on the way back; higher the further it goes. @param {number} from @param {number} to @param {number} top @param {number} box @param {number} share */
+function arc(from, to, top, box, share) {
+  const on = to > from;
+  const reach = (top - 6) * (0.35 + 0.65 * share);
+  const beside = (on ? 1 : -1) * Math.min(box / 2 - 3, BESIDE_PX + 20 * share);
+  const edge = on ? top : top + BOX_HEIGHT_PX;
+  const y = on ? edge - reach : edge + reach;
+  return `M${from + beside} ${edge}C${from + beside} ${y} ${to - beside} ${y} ${to - beside} ${edge + (on ? -2 : 2)}`;
+}
+
+/** A line from box to box, from edge to edge. @param {[number, number]} from Middle and top. @param {[number, number]} to @param {number} box */
+function straight([x1, y1], [x2, y2], box) {
+  const [dx, dy] = [x2 - x1, y2 - y1];
+  // The share of the way that is inside a box.
+  const inside = Math.min((box / 2 + 1) / Math.max(Math.abs(dx), 1), (BOX_HEIGHT_PX / 2 + 1) / Math.max(Math.abs(dy), 1), 0.45);
+  const at = (/** @type {number} */ share) => `${(x1 + share * dx).toFixed(1)} ${(y1 + BOX_HEIGHT_PX / 2 + share * dy).toFixed(1)}`;
+  return `M${at(inside)}L${at(1 - inside)}`;
+}
+
 export class Machine {
   #svg = element('machine', SVGSVGElement);
   #store;
@@ -68,6 +97,10 @@ export class Machine {
   /** The transitions, by from and to. @type {Map<string, Element>} */
   #ways = new Map();
   #lit = '';
+  #list = element('ways', HTMLUListElement);
+  #live = /** @type {number | null} */ (null);
+  /** The state that is pointed at or has the focus. @type {number | null} */
+  #pointed = null;
 
   /** @param {Store} store */
   constructor(store) {
@@ -80,34 +113,49 @@ export class Machine {
     const entry = this.modes.find(({ id }) => id === mode) ?? null;
     if (entry === this.#mode) return;
     this.#mode = entry;
+    this.#pointed = null;
     this.#layOut();
   }
 
   #layOut() {
-    const { clientWidth: width, clientHeight: height } = this.#svg;
+    const width = this.#svg.clientWidth;
     const states = this.#mode?.states ?? [];
     if (width === 0 || states.length === 0) return;
-    const pitch = (width - 2 * MARGIN_PX) / states.length;
-    const box = Math.min(pitch * 0.84, 150);
-    const top = (height - BOX_HEIGHT_PX) / 2;
-    const middle = (/** @type {number} */ state) => MARGIN_PX + pitch * (state + 0.5);
+    const rows = Math.ceil(states.length / Math.max(2, Math.floor((width - 2 * MARGIN_PX) / NARROWEST_PX)));
+    const columns = Math.ceil(states.length / rows);
+    const pitch = (width - 2 * MARGIN_PX) / columns;
+    const box = Math.min(pitch - 10, 150);
+    this.#svg.classList.toggle('rows', rows > 1);
+    const height = rows > 1 ? rows * ROW_PX : Math.max(ONE_ROW_PX, element('states', HTMLDivElement).clientHeight - WORDS_PX);
+    this.#svg.style.height = `${height}px`;
     this.#svg.setAttribute('viewBox', `0 0 ${width} ${height}`);
-    this.#boxes = states.map((state, index) => this.#box(said(state), index, middle(index), top, box));
+    const middle = (/** @type {number} */ state) => MARGIN_PX + pitch * (state % columns + 0.5);
+    const top = (/** @type {number} */ state) => (rows > 1 ? Math.floor(state / columns) * ROW_PX + (ROW_PX - BOX_HEIGHT_PX) / 2 : (height - BOX_HEIGHT_PX) / 2);
+    this.#boxes = states.map((state, index) => this.#box(said(state), index, middle(index), top(index), box));
     this.#ways = new Map((this.#mode?.ways ?? []).map(([from, to, when]) => {
-      const on = to > from;
-      const span = Math.abs(to - from);
-      const reach = (top - 6) * (0.35 + 0.65 * (span - 1) / Math.max(1, states.length - 2));
-      const beside = (on ? 1 : -1) * Math.min(box / 2 - 3, BESIDE_PX + 2 * span);
-      const edge = on ? top : top + BOX_HEIGHT_PX;
-      const [x1, x2] = [middle(from) + beside, middle(to) - beside];
-      const y = on ? edge - reach : edge + reach;
-      const path = draw('path', { class: 'way', d: `M${x1} ${edge}C${x1} ${y} ${x2} ${y} ${x2} ${edge + (on ? -2 : 2)}`, 'marker-end': 'url(#way-end)' }, draw('title', {}, `${said(states[from] ?? '')} → ${said(states[to] ?? '')}: ${said(when)}`));
-      return [`${from},${to}`, path];
+      const d = rows > 1 ? straight([middle(from), top(from)], [middle(to), top(to)], box) : arc(middle(from), middle(to), top(0), box, Math.abs(to - from) / states.length);
+      return [`${from},${to}`, draw('path', { class: 'way', d, 'marker-end': 'url(#way-end)' }, draw('title', {}, `${said(states[from] ?? '')} → ${said(states[to] ?? '')}: ${said(when)}`))];
     }));
     const end = draw('marker', { id: 'way-end', viewBox: '0 0 6 6', refX: 5, refY: 3, markerWidth: 6, markerHeight: 6, orient: 'auto' }, draw('path', { d: 'M0 0L6 3L0 6z', class: 'way-head' }));
     this.#svg.replaceChildren(draw('defs', {}, end), ...this.#ways.values(), ...this.#boxes);
     this.#lit = '';
     this.draw();
+  }
+
+  /** Shows the transitions of a state; null: of the active one. @param {number | null} state */
+  #point(state) {
+    this.#pointed = state;
+    this.#showWays();
+  }
+
+  /** In words, when the state is left that is pointed at, or the active one; without one, the first. */
+  #showWays() {
+    const { states = [], ways = [] } = this.#mode ?? {};
+    const of = this.#pointed ?? this.#live ?? 0;
+    const known = this.#pointed !== null || this.#live !== null;
+    for (const [key, path] of this.#ways) path.classList.toggle('near', known && key.startsWith(`${of},`));
+    this.#boxes.forEach((box, state) => box.classList.toggle('next', known && this.#ways.has(`${of},${state}`)));
+    this.#list.replaceChildren(...ways.filter(([from]) => from === of).map(([, to, when]) => create('li', {}, create('b', { textContent: `${said(states[of] ?? '')} → ${said(states[to] ?? '')}` }), ` ${said(when)}`)));
   }
 
   /**
@@ -120,23 +168,26 @@ export class Machine {
   #box(name, state, x, top, width) {
     const rows = lines(name, width - 2);
     const first = top + (BOX_HEIGHT_PX - rows.length * LINE_PX) / 2 + LINE_PX - 2;
-    return draw('g', { class: `state-box s${state % 6}` },
+    const box = draw('g', { class: `state-box s${state % 6}`, tabindex: 0, role: 'img', 'aria-label': `${state} ${name}` },
       draw('rect', { x: x - width / 2, y: top, width, height: BOX_HEIGHT_PX, rx: 5 }),
       draw('text', { x, y: first }, ...rows.map((row, index) => draw('tspan', { x, dy: index === 0 ? 0 : LINE_PX }, row))),
       draw('title', {}, `${state} ${name}`));
+    for (const type of ['pointerenter', 'focus']) box.addEventListener(type, () => this.#point(state));
+    for (const type of ['pointerleave', 'blur']) box.addEventListener(type, () => this.#point(null));
+    return box;
   }
 
   /** Highlights the state, and the transition that led there. */
   draw() {
-    const { stretches } = this.#store;
-    const last = stretches.at(-1);
-    const before = stretches.at(-2);
+    const { last, before } = this.#store.now;
     const own = last && last.mode === this.#mode?.id ? last : null;
     const live = own?.armed ? own.state : null;
     const way = live !== null && before?.armed && before.mode === own?.mode ? `${before.state},${live}` : '';
     const lit = `${live} ${way} ${own?.faulted}`;
     if (lit === this.#lit) return;
     this.#lit = lit;
+    this.#live = live;
+    this.#showWays();
     this.#boxes.forEach((box, state) => box.classList.toggle('live', state === live));
     for (const [key, path] of this.#ways) path.classList.toggle('taken', key === way);
     const name = live === null ? t(own?.faulted ? 'fault' : 'off') : said(this.#mode?.states[live] ?? '');

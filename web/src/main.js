@@ -9,6 +9,7 @@ import { CalibrationDialog } from './calibration_dialog.js';
 import { CheckupDialog } from './checkup_dialog.js';
 import { Consoles } from './consoles.js';
 import { create, element, onFrame, setText } from './dom.js';
+import { makeEnlargeable } from './enlarge.js';
 import { EventList } from './events.js';
 import { IDENTITY } from './geometry.js';
 import { Header } from './header.js';
@@ -26,12 +27,15 @@ import { ParameterTable } from './parameters.js';
 import { PlotDialog } from './plot_dialog.js';
 import { Plots } from './plots.js';
 import { ProgramPanel, isOwn } from './program.js';
+import { Recordings } from './recordings.js';
 import { ReplayBar } from './replay.js';
 import { Seat } from './seat.js';
 import { StateLine, pointerWords } from './stateline.js';
+import { StepFigures, figures } from './step.js';
 import { Store } from './store.js';
 import { Tabs } from './tabs.js';
 import { LANGUAGES, language, speak, t, translatePage, untranslated } from './text.js';
+import { Tour } from './tour.js';
 
 translatePage();
 const languages = element('language', HTMLSelectElement);
@@ -96,6 +100,7 @@ const redraw = onFrame(() => {
   plots.draw();
   map.draw();
   stateLine.draw();
+  stepFigures.show(panel.mode);
   machine.draw();
   setText(pointer, pointerWords(map.pointed()));
 });
@@ -117,6 +122,7 @@ const meter = new LinkMeter();
 const tabs = new Tabs('tabs', (panel) => meter.show(panel === 'bytes'));
 tabs.show('event-panel');
 const stateLine = new StateLine(store, send);
+const stepFigures = new StepFigures(store);
 const alarm = new Alarm();
 const pointer = element('pointer', HTMLOutputElement);
 element('ghost-here', HTMLButtonElement).addEventListener('click', () => send({ type: 'restart_ghost' }));
@@ -142,9 +148,12 @@ const layoutDialog = new LayoutDialog(plots);
 element('layouts', HTMLButtonElement).addEventListener('click', () => layoutDialog.open());
 const checkup = new CheckupDialog(send, store, () => state);
 element('checkup', HTMLButtonElement).addEventListener('click', () => checkup.open(sonars, servo));
+const recordings = new Recordings(() => plots.modes);
 const calibration = new CalibrationDialog(send);
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
-const help = makeHelp();
+makeEnlargeable();
+const tour = new Tour();
+const help = makeHelp(() => tour.begin());
 element('help', HTMLButtonElement).addEventListener('click', help);
 addEventListener('keydown', (event) => {
   // Space is STOP: Enter ticks.
@@ -194,6 +203,7 @@ function receive(message) {
       store.start = message.scene?.start ?? IDENTITY;
       if (message.run !== consoleRun) consoles.clear();
       simulated = message.scene?.of_ghost ? null : message.scene;
+      recordings.titles = new Map(message.scene?.experiments.map(({ name, title }) => [name, title]));
       header.setScene(simulated);
       map.setScene(message.scene);
       panel.setScene(message.scene);
@@ -204,16 +214,22 @@ function receive(message) {
       break;
     case 'state':
       state = message.state;
+      store.playhead_s = state.replay ? state.t_s : Infinity;
+      plots.whole_s = state.replay?.duration_s ?? null;
       setBody();
       header.show(state);
       replay.show(state);
       panel.show(state);
       stateLine.show(state);
       alarm.show(state);
+      stepFigures.show(panel.mode);
+      if (simulated && !isOwn(state) && !state.replay && !document.body.classList.contains('viewer')) tour.offer();
+      tour.show(state);
       program.show(state);
       document.body.classList.toggle('own', isOwn(state));
       if (isOwn(state)) consoles.offerPorts(state.program?.link_usart ?? null);
       showSilence();
+      if (state.replay) redraw();
       machine.setMode(state.robot.mode);
       if (table.length > 0 && state.robot.rig !== null) checkup.meet(sonars, servo);
       calibration.show(state);
@@ -246,7 +262,7 @@ function receive(message) {
       store.setRun(message.run);
       Object.assign(ages, { received_ms: message.heard[0], session_ms: message.heard[1], drawn: false });
       for (const row of message.rows) store.push(row);
-      if (store.latest?.ghost) document.body.classList.add('haunted');
+      if (store.haunted) document.body.classList.add('haunted');
       redraw();
       break;
     case 'readings':
@@ -256,6 +272,7 @@ function receive(message) {
       break;
     case 'control':
       seat.show(message);
+      recordings.page = message.page;
       break;
     case 'error':
       break;
@@ -272,12 +289,16 @@ Object.assign(window, {
   rumbo: {
     /** A signal as plotted. @param {string} name */
     series: (name) => store.series(name),
+    /** The sample that the map shows. */
+    shown: () => store.latest,
     /** The slow state last received. */
     state: () => state,
     /** Where a place from the robot's origin is on the map [px]. @param {[number, number]} at */
     onMap: (at) => map.toCanvas(at),
     /** The plots and what is seen of them. */
     plots: () => ({ layout: plots.layout, range_s: plots.range_s, mark_s: plots.mark_s, following: plots.following }),
+    /** The figures of every step of the setpoint. */
+    figures: () => store.steps.map((step) => figures(store, step)),
     /** What is seen of a plot's axes. @param {string} title */
     scales: (title) => plots.scales(title),
     /** For measurements: times from reception to the frame after drawing [ms], the clocks of page and session, a frame at once. */

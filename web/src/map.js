@@ -8,7 +8,7 @@
  * With a real robot the two frames are the same.
  */
 import { element } from './dom.js';
-import { IDENTITY, compose, inverse, place } from './geometry.js';
+import { IDENTITY, compose, inverse, nextTo, place } from './geometry.js';
 import { Sketch } from './sketch.js';
 import { colours, onThemeChange } from './theme.js';
 import { watchFingers } from './touch.js';
@@ -25,6 +25,8 @@ import { watchFingers } from './touch.js';
 const MARGIN_M = 0.12;
 /** Margin for the texts above and below the map [px]. */
 const [ABOVE_PX, BELOW_PX] = [34, 18];
+/** Of a long wall this much to both sides of the point next to the robot is in sight [m]. */
+const ALONG_M = 0.5;
 /** The view grows in steps of this size [m], so that it does not creep. */
 const GROWTH_M = 0.5;
 const ZOOM_STEP = 1.25;
@@ -236,15 +238,18 @@ export class WorldMap {
     ];
   }
 
-  /** Everything in sight, with room to pick places where that is what a click does. @returns {View} */
+  /** What is around the robot in sight, with room to pick places where that is what a click does. @returns {View} */
   #fitted() {
     const frame = this.#origin();
     const start = this.#start();
     const robot = this.#robot();
-    const around_m = this.#pick ? 1.3 : 0.5;
+    const around_m = this.#pick ? 1.3 : 0.35;
     const { goal = null, route = null } = this.#errand ?? {};
     const all = [
-      ...(this.#sketch.scene?.obstacles.flatMap((obstacle) => obstacle.corners_m) ?? []),
+      ...(this.#sketch.scene?.obstacles.flatMap(({ corners_m, closed }) => corners_m.flatMap((corner, index) => {
+        const next = corners_m[index + 1] ?? (closed ? corners_m[0] : undefined);
+        return next ? nextTo(corner, next, [start.x_m, start.y_m], ALONG_M) : [];
+      })) ?? []),
       [start.x_m - around_m, start.y_m - around_m], [start.x_m + around_m, start.y_m + around_m],
       ...[[robot.x_m, robot.y_m], ...this.#trailCorners(), ...(goal ? [place(frame, goal)] : []), ...(route?.waypoints.map(({ x_m, y_m }) => place(frame, [x_m, y_m])) ?? [])]
         .map((point) => point.map((each) => Math.round(each / GROWTH_M) * GROWTH_M)),

@@ -71,10 +71,14 @@ export class CommandPanel {
     this.#places.setScene(scene);
   }
 
+  /** The mode shown. @type {ModeEntry | null} */
+  mode = null;
+
   /** @param {State} state */
   show(state) {
     const { mode, armed, fault } = state.robot;
     const entry = this.#entries.find((each) => each.id === mode) ?? null;
+    this.mode = entry;
     for (const button of this.#modes.querySelectorAll('button')) {
       const own = this.#entries.find((each) => String(each.id) === button.value);
       button.setAttribute('aria-pressed', String(button.value === String(mode)));
@@ -82,6 +86,7 @@ export class CommandPanel {
       button.title = button.disabled ? t('Switch OFF first') : said(own?.about ?? '');
     }
     setText(this.#armed, fault ? t('fault') : armed ? t('armed') : t('off'));
+    document.body.classList.toggle('armed', armed);
     this.#armed.className = `chip ${fault ? 'bad' : armed ? 'good' : ''}`;
     this.#movements.show(entry?.movements ?? false, armed);
     if (this.#shown !== mode && entry) {
@@ -96,14 +101,14 @@ export class CommandPanel {
     this.#experiment.hidden = scenario === null;
     if (scenario !== null) {
       this.#experiment.value = scenario;
-      setText(this.#experiment, t('Scenario {}', scenario));
+      setText(this.#experiment, t('Load a scenario of this mode'));
     }
   }
 
   /** The simulation runs another mode's experiment, whose world and sonars may not fit this one: offers this mode's first. @param {ModeEntry} mode */
   #scenarioOf(mode) {
     if (!this.#scene || mode.movements) return null;
-    const own = (this.#scene.experiments ?? []).filter((each) => each.mode === mode.id).map(({ name }) => name);
+    const own = this.#scene.experiments.filter((each) => each.mode === mode.id && each.shows_mode).map(({ name }) => name);
     return own.includes(this.#scene.choice.scenario) ? null : own[0] ?? null;
   }
 

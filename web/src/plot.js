@@ -106,7 +106,7 @@ export class PlotPanel {
    * @param {number | null} high
    * @returns {[number, number]}
    */
-  #limits(right, low, high) {
+  limits(right, low, high) {
     const { min, max, right: kept } = this.#spec;
     const zoomed = this.#zoomed?.[right ? 1 : 0];
     if (zoomed) return zoomed;
@@ -132,7 +132,7 @@ export class PlotPanel {
   label() {
     const cursor = this.plot.cursor.idx;
     const data = this.plot.data;
-    const at = cursor ?? (data[0]?.length ?? 0) - 1;
+    const at = cursor ?? shownUntil(data[0] ?? [], this.#store.playhead_s);
     const { mark_s } = this.#view;
     this.#chips.forEach(({ chip, value, name, unit }, index) => {
       const { decimals } = UNITS[unit];
@@ -166,8 +166,8 @@ export class PlotPanel {
   #make(body) {
     const right = this.rightUnit !== null;
     /** @type {uPlot.Scales} */
-    const scales = { x: { time: false, auto: false }, y: { range: (_plot, low, high) => this.#limits(false, low, high) } };
-    if (right) scales['right'] = { range: (_plot, low, high) => this.#limits(true, low, high) };
+    const scales = { x: { time: false, auto: false }, y: { range: (_plot, low, high) => this.limits(false, low, high) } };
+    if (right) scales['right'] = { range: (_plot, low, high) => this.limits(true, low, high) };
     const plot = new uPlot({
       ...commonOptions(this.#view, right),
       scales,
@@ -178,7 +178,8 @@ export class PlotPanel {
         setCursor: [() => this.#view.label()],
         drawAxes: [(/** @type {uPlot} */ each) => drawTransitions(each, this.#store, this.#view.range_s)],
         draw: [(/** @type {uPlot} */ each) => {
-          drawMark(each, this.#view.mark_s);
+          drawLine(each, this.#view.mark_s, colours.goal);
+          drawLine(each, this.#store.playhead_s, colours.text);
           if (!each.data.slice(1).some((column, index) => each.series[index + 1]?.show && plottedIn(column, each.data[0], this.#view.range_s))) drawNothing(each);
         }],
       },
@@ -269,14 +270,25 @@ function drawNothing({ ctx, bbox }) {
   ctx.restore();
 }
 
-/** The line that differences are counted from. @param {uPlot} plot @param {number | null} mark_s */
-export function drawMark(plot, mark_s) {
+/** Index of the last line up to the playhead. @param {ArrayLike<number>} times @param {number} playhead_s */
+function shownUntil(times, playhead_s) {
+  let [low, high] = [0, times.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if ((times[middle] ?? Infinity) <= playhead_s) low = middle + 1;
+    else high = middle;
+  }
+  return low - 1;
+}
+
+/** An upright line: the mark, from which differences are counted, or a replay's playhead. @param {uPlot} plot @param {number | null} at_s @param {string} colour */
+export function drawLine(plot, at_s, colour) {
   const { min, max } = plot.scales['x'] ?? {};
-  if (mark_s === null || typeof min !== 'number' || typeof max !== 'number' || mark_s < min || mark_s > max) return;
+  if (at_s === null || typeof min !== 'number' || typeof max !== 'number' || at_s < min || at_s > max) return;
   const { ctx, bbox } = plot;
-  const x = Math.round(plot.valToPos(mark_s, 'x', true));
+  const x = Math.round(plot.valToPos(at_s, 'x', true));
   ctx.save();
-  ctx.strokeStyle = colours.goal;
+  ctx.strokeStyle = colour;
   ctx.lineWidth = 1.5 * devicePixelRatio;
   ctx.setLineDash([]);
   ctx.beginPath();

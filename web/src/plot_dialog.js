@@ -1,10 +1,10 @@
 // @ts-check
 /** The dialog of one plot: its title, its signals, the limits of its axis, and its export as a picture. */
-import { check, decimal, read } from './decimal.js';
+import { check, decimal, number, read, write } from './decimal.js';
 import { complaint, dialog, saveFile } from './dialog.js';
 import { create } from './dom.js';
 import { MOST_UNITS, unitsOf } from './layout.js';
-import { toCsv, toPng, toSvg } from './picture.js';
+import { printPdf, toCsv, toPng, toSvg } from './picture.js';
 import { SIGNALS, UNITS, signal } from './signals.js';
 import { numberAs, t } from './text.js';
 
@@ -33,7 +33,11 @@ export class PlotDialog {
   #choice = create('div', { className: 'signal-choice' });
   #complaint = complaint();
   #remove = create('button', { type: 'button', textContent: t('Remove plot') });
-  #pictures = create('span', { className: 'row' });
+  #from = decimal('figure-from');
+  #to = decimal('figure-to');
+  #width = number('figure-width', 160, 40, 400);
+  #height = number('figure-height', 70, 30, 400);
+  #pictures = create('fieldset', { className: 'row' });
 
   /** @param {Plots} plots */
   constructor(plots) {
@@ -44,7 +48,7 @@ export class PlotDialog {
         create('label', {}, `${t('y min')} `, this.#min), create('label', {}, `${t('y max')} `, this.#max), create('span', { className: 'hint', textContent: t('empty = auto') })),
       this.#right,
       this.#choice, this.#complaint,
-      create('div', { className: 'row' }, create('button', { type: 'submit', className: 'go', textContent: t('Apply') }), this.#remove, create('span', { className: 'spacer' }), this.#pictures));
+      create('div', { className: 'row' }, create('button', { type: 'submit', className: 'go', textContent: t('Apply') }), this.#remove), this.#pictures);
     form.addEventListener('submit', (event) => {
       event.preventDefault();
       this.#apply();
@@ -54,16 +58,26 @@ export class PlotDialog {
       if (this.#panel) plots.change(this.#panel.spec, null);
       this.#dialog.dialog.close();
     });
-    this.#pictures.replaceChildren(this.#pictureButton('SVG', 'svg', (panel) => toSvg(panel, plots)), this.#pictureButton('PNG', 'png', (panel) => toPng(panel)), this.#pictureButton('CSV', 'csv', (panel) => toCsv(panel, plots)));
+    const field = (/** @type {string} */ text, /** @type {HTMLInputElement} */ input, /** @type {string} */ unit) => create('label', {}, `${text} `, input, ` ${unit}`);
+    this.#pictures.replaceChildren(create('legend', { textContent: t('figure') }),
+      field(t('from'), this.#from, 's'), field(t('to'), this.#to, 's'), field(t('width'), this.#width, 'mm'), field(t('height'), this.#height, 'mm'), create('span', { className: 'spacer' }),
+      this.#pictureButton('SVG', 'svg', (panel, frame) => toSvg(panel, plots, frame)), this.#pictureButton('PNG', 'png', (panel, frame) => toPng(panel, plots, frame)),
+      this.#pictureButton('PDF', null, (panel, frame) => printPdf(panel, plots, frame)), this.#pictureButton('CSV', 'csv', (panel, frame) => toCsv(panel, plots, frame)));
     this.#dialog.body.append(form);
   }
 
-  /** @param {string} text @param {string} ending @param {(panel: PlotPanel) => Blob | Promise<Blob>} make */
+  /** @param {string} text @param {string | null} ending Null: the browser's print dialog saves it. @param {(panel: PlotPanel, frame: import('./picture.js').Frame) => Blob | Promise<Blob | void>} make */
   #pictureButton(text, ending, make) {
-    const button = create('button', { type: 'button', textContent: text, title: t('Save what is seen of this plot as {}', text) });
+    const title = ending === null ? t('Print this plot, or save it as PDF') : t('Save this plot as {}', text);
+    const button = create('button', { type: 'button', textContent: text, title });
     button.addEventListener('click', async () => {
       const panel = this.#panel;
-      if (panel) saveFile(`${panel.spec.title.replace(/[^\p{Letter}\d]+/gu, '_')}.${ending}`, await make(panel));
+      const [from_s = 0, to_s = 0, width_mm = 0, height_mm = 0] = [this.#from, this.#to, this.#width, this.#height].map(read);
+      const fits = from_s < to_s && width_mm >= 40 && width_mm <= 400 && height_mm >= 30 && height_mm <= 400;
+      this.#complain(fits ? '' : t('a figure goes from a time to a later one, and is 40 to 400 mm wide and 30 to 400 mm high'));
+      if (!panel || !fits) return;
+      const made = await make(panel, { from_s, to_s, width_mm, height_mm });
+      if (made) saveFile(`${panel.spec.title.replace(/[^\p{Letter}\d]+/gu, '_')}.${ending}`, made);
     });
     return button;
   }
@@ -98,6 +112,9 @@ export class PlotDialog {
     for (const input of [this.#min, this.#max, this.#rightMin, this.#rightMax]) check(input);
     for (const { box } of this.#boxes) box.checked = spec?.signals.includes(box.value) ?? false;
     this.#remove.hidden = this.#pictures.hidden = panel === null;
+    const [from_s, to_s] = this.#plots.range_s;
+    write(this.#from, Math.round(from_s * 100) / 100);
+    write(this.#to, Math.round(to_s * 100) / 100);
     this.#complaint.textContent = '';
     this.#limitUnits();
     this.#dialog.open();

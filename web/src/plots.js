@@ -16,6 +16,8 @@ import { format } from './units.js';
 /** @typedef {import('./layout.js').Layout} Layout */
 /** @typedef {import('./layout.js').PlotSpec} PlotSpec */
 
+/** In place of a window of time: all of a log. */
+const WHOLE = 'whole';
 /** Part of the window that an arrow key moves by. */
 const KEY_PAN = 0.1;
 
@@ -38,6 +40,10 @@ export class Plots {
   range_s = [0, 20];
   /** Differences are counted from here. @type {number | null} */
   mark_s = null;
+  /** Duration of the log that is shown [s]; null: live. @type {number | null} */
+  #whole_s = null;
+  /** All of it is in sight, and not a window around the playhead. */
+  #wholly = false;
   #onFollow;
   #redraw;
   /** A plot's title takes another line where its curves' names need one. */
@@ -60,7 +66,11 @@ export class Plots {
     this.#show(this.layout);
     new ResizeObserver(() => this.#fitAnew()).observe(root);
     onThemeChange(() => this.draw());
-    this.#window.addEventListener('change', () => this.setWindow(Number(this.#window.value)));
+    this.#window.addEventListener('change', () => {
+      this.#wholly = this.#window.value === WHOLE;
+      if (this.#wholly) this.follow(true);
+      else this.setWindow(Number(this.#window.value));
+    });
     root.addEventListener('keydown', (event) => this.#press(event));
   }
 
@@ -75,6 +85,14 @@ export class Plots {
 
   get following() {
     return this.#following;
+  }
+
+  /** A log of this duration is shown [s], at first all of it; null: live. */
+  set whole_s(/** @type {number | null} */ duration_s) {
+    if (duration_s === this.#whole_s) return;
+    this.#whole_s = duration_s;
+    this.#wholly = duration_s !== null;
+    this.#showWindow();
   }
 
   /** Some plot has an axis on the right. */
@@ -111,7 +129,7 @@ export class Plots {
   /** Zooms in time about an instant, or the window while the newest data is followed. @param {number} factor @param {number} at_s */
   scale(factor, at_s) {
     const [from_s, to_s] = this.range_s;
-    if (this.#following) {
+    if (this.#following && !this.#wholly) {
       this.layout = { ...this.layout, window_s: Math.min(LONGEST_S, Math.max(SHORTEST_S, this.layout.window_s * factor)) };
       this.#showWindow();
       this.#redraw();
@@ -129,7 +147,11 @@ export class Plots {
 
   draw() {
     const { window_s } = this.layout;
-    if (this.#following) {
+    if (this.#following && this.#whole_s !== null) {
+      const span_s = Math.min(this.#wholly ? this.#whole_s : window_s, LONGEST_S);
+      const from_s = Math.min(Math.max(0, this.store.playhead_s - span_s / 2), Math.max(0, this.#whole_s - span_s));
+      this.range_s = [from_s, from_s + Math.max(span_s, SHORTEST_S)];
+    } else if (this.#following) {
       const to_s = Math.max(this.store.newest_s, window_s);
       this.range_s = [to_s - window_s, to_s];
     }
@@ -200,11 +222,12 @@ export class Plots {
 
   #showWindow() {
     const value = String(this.layout.window_s);
-    this.#window.querySelector('.other')?.remove();
+    for (const each of this.#window.querySelectorAll('.other, .whole')) each.remove();
+    if (this.#whole_s !== null) this.#window.prepend(create('option', { className: 'whole', value: WHOLE, textContent: t('whole log') }));
     if (![...this.#window.options].some((each) => each.value === value)) {
       this.#window.append(create('option', { className: 'other', value, textContent: `${format(this.layout.window_s, 1)} s` }));
     }
-    this.#window.value = value;
+    this.#window.value = this.#wholly ? WHOLE : value;
   }
 
   /** One button for each plot that there is from the start: shown or not. */

@@ -75,7 +75,7 @@ export class Readings {
   /**
    * Takes readings; returns what is true at the end of them, if they tell.
    * @param {ReadingGroup} group
-   * @param {Pose} origin The robot's, in the world: positions are plotted from there.
+   * @param {Pose} origin Where the run began, in the world: positions are plotted from there.
    * @returns {Truth[]} One for each reading of the simulation.
    */
   push({ usart, names, rows }, origin) {

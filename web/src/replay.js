@@ -73,6 +73,7 @@ export class ReplayBar {
     const { replay } = state;
     this.#bar.hidden = !replay;
     document.body.classList.toggle('replay', Boolean(replay));
+    setText(element('live', HTMLButtonElement), replay ? t('Follow') : t('Live'));
     // Nothing is sent to a robot from a replay, nor from a viewer's page.
     const watching = document.body.classList.contains('viewer');
     element('command-section', HTMLElement).inert = element('parameter-section', HTMLElement).inert = Boolean(replay) || watching;

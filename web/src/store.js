@@ -3,9 +3,12 @@
  * The signals received, in columns for uPlot: a slow table with a line for each telemetry frame, and a fast one for the
  * wheel speeds, of which a frame carries two samples.
  *
- * Positions are in metres from the robot's origin, the true ones too, and headings continue through 180 degrees up to 315.
+ * A replay has what is before and after its playhead: plots show all of it, the map and the numbers only what has been.
+ *
+ * Positions are in metres from where the run began, also after the robot has moved its origin, the true ones too; headings
+ * continue through 180 degrees up to 315.
  */
-import { IDENTITY, compose, inverse, near, wrapped } from './geometry.js';
+import { IDENTITY, compose, inverse, near, place, wrapped } from './geometry.js';
 import { Readings } from './readings.js';
 import { Table } from './table.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S } from './units.js';
@@ -38,9 +41,9 @@ const SLOW = [
   'reference_cm', 'range_left_cm', 'range_right_cm', 'range_front_cm',
   'true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'left_pwm', 'right_pwm',
   'range_difference_cm', 'servo_deg', 'heading_deg', 'heading_ref_deg', 'heading_error_deg', 'true_heading_deg', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m', 'true_x_m', 'true_y_m',
-  'ghost_x_m', 'ghost_y_m', 'ghost_heading_deg', 'x_deviation_m', 'y_deviation_m', 'heading_deviation_deg',
+  'ghost_x_m', 'ghost_y_m', 'ghost_heading_deg', 'ghost_range_left_cm', 'ghost_range_right_cm', 'ghost_range_front_cm', 'x_deviation_m', 'y_deviation_m', 'heading_deviation_deg',
 ];
-const FAST = ['left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm', 'left_error_rpm', 'right_error_rpm', 'true_left_rpm', 'true_right_rpm'];
+const FAST = ['left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm', 'left_error_rpm', 'right_error_rpm', 'true_left_rpm', 'true_right_rpm', 'ghost_left_rpm', 'ghost_right_rpm'];
 
 /** A heading is plotted on through 180 degrees up to here [deg]. */
 const FARTHEST_DEG = 315;
@@ -50,11 +53,22 @@ const FARTHEST_DEG = 315;
  * @typedef {{from_s: number, to_s: number, mode: number, state: number | null, armed: boolean, faulted: boolean}} Stretch
  */
 
+/**
+ * A step of the setpoint: from arming, or from its change, to the next one or the end.
+ * @typedef {object} Step
+ * @property {number} from_s
+ * @property {number} until_s
+ * @property {number} mode
+ * @property {import('./types.js').Reference['kind']} kind
+ * @property {[number, number]} reference As plotted: cm, rpm, or m of a goal.
+ * @property {boolean} ahead The distance is to a wall ahead.
+ */
+
 /** @typedef {import('./types.js').Pose} Pose */
 /** @typedef {import('./types.js').Spread} Spread */
 
 /**
- * The newest sample, for the map and the numbers.
+ * A sample, for the map and the numbers: the newest, or that of a replay's playhead.
  * @typedef {object} Latest
  * @property {number} t_s
  * @property {number} mode
@@ -71,6 +85,10 @@ const FARTHEST_DEG = 315;
  * @property {boolean} contact
  */
 
+/** Steps kept: more than a person gives in ten minutes. */
+const STEPS_KEPT = 500;
+/** Samples kept of a replay: what a page gets around the playhead, and as much again. */
+const MOMENTS_KEPT = 30_000;
 /** Points kept of each trail, in the world, one every 2 cm at least. */
 const TRAIL_POINTS = 2_000;
 const TRAIL_STEP_M = 0.02;
@@ -83,6 +101,10 @@ export class Store {
   start = IDENTITY;
   /** @type {Stretch[]} */
   stretches = [];
+  /** The steps of the setpoint. @type {Step[]} */
+  steps = [];
+  /** Some sample has a ghost. */
+  haunted = false;
   /** @type {Latest | null} */
   latest = null;
   /** @type {{estimated: [number, number][], truth: [number, number][], ghost: [number, number][]}} */
@@ -92,6 +114,11 @@ export class Store {
   #run = 0;
   /** The heading plotted last [deg]. */
   #heading_deg = 0;
+  /** Where a replay is [s]; live there is nothing after it. */
+  #playhead_s = Infinity;
+  /** The samples, and how many of them the map shows. @type {Latest[]} */
+  #moments = [];
+  #shown = 0;
   /** @type {Map<string, number>} */
   #index = new Map();
 
@@ -111,8 +138,40 @@ export class Store {
     this.fast.clear();
     this.readings.clear();
     this.stretches = [];
+    this.steps = [];
+    this.haunted = false;
+    this.#moments = [];
+    this.#rewind();
+  }
+
+  /** Where a replay is [s]. */
+  get playhead_s() {
+    return this.#playhead_s;
+  }
+
+  set playhead_s(t_s) {
+    if (t_s < this.#playhead_s) this.#rewind();
+    this.#playhead_s = t_s;
+    this.#advance();
+  }
+
+  #rewind() {
     this.latest = null;
     this.trails = { estimated: [], truth: [], ghost: [] };
+    this.#shown = 0;
+  }
+
+  /** Shows the samples up to the playhead. */
+  #advance() {
+    for (let next = this.#moments[this.#shown]; next && next.t_s <= this.#playhead_s; next = this.#moments[++this.#shown]) {
+      lengthen(this.trails.estimated, next.estimated && compose(next.origin, next.estimated));
+      lengthen(this.trails.truth, next.truth);
+      lengthen(this.trails.ghost, next.ghost);
+      this.latest = next;
+    }
+    // Live, where all is shown, those before the last are not needed again.
+    const kept = this.#playhead_s === Infinity ? 1 : MOMENTS_KEPT;
+    if (this.#moments.length > kept) this.#shown -= this.#moments.splice(0, this.#moments.length - kept).length;
   }
 
   /**
@@ -144,6 +203,10 @@ export class Store {
     const follows = armed && (idle === null || cell('state') !== idle);
     const heading_ref_rad = follows && heading ? number(cell('heading_ref_rad')) : null;
     const toPlace = follows && reference?.kind === 'goal';
+    // The robot's origin may move with a goal: what is plotted does not jump.
+    const frame = compose(inverse(this.start), origin);
+    const [left, right] = [number(cell('reference_left')), number(cell('reference_right'))];
+    const goal = toPlace && left !== null && right !== null ? place(frame, [left, right]) : null;
 
     this.slow.push(t_s, {
       reference_cm: reference?.kind === 'distance' && cell('reference_left') !== 0 ? cm('reference_left') : null,
@@ -153,13 +216,16 @@ export class Store {
       true_range_left_cm: cm('true_range_left_m'),
       true_range_right_cm: cm('true_range_right_m'),
       true_range_front_cm: cm('true_range_front_m'),
+      ghost_range_left_cm: cm('ghost_range_left_m'),
+      ghost_range_right_cm: cm('ghost_range_right_m'),
+      ghost_range_front_cm: cm('ghost_range_front_m'),
       range_difference_cm: less(cm('range_left_m'), cm('range_right_m')),
       servo_deg: scaled(cell('servo_rad'), DEG_PER_RAD),
       left_pwm: number(cell('left_pwm')),
       right_pwm: number(cell('right_pwm')),
-      ...this.#placeAndHeading(estimated, truth && compose(inverse(origin), truth), ghost && compose(inverse(origin), ghost), heading_ref_rad),
-      goal_x_m: toPlace ? number(cell('reference_left')) : null,
-      goal_y_m: toPlace ? number(cell('reference_right')) : null,
+      ...this.#placeAndHeading(estimated && compose(frame, estimated), truth && compose(inverse(this.start), truth), ghost && compose(inverse(this.start), ghost), heading_ref_rad === null ? null : frame.heading_rad + heading_ref_rad),
+      goal_x_m: goal?.[0] ?? null,
+      goal_y_m: goal?.[1] ?? null,
       x_deviation_m: number(cell('x_deviation_m')),
       y_deviation_m: number(cell('y_deviation_m')),
       heading_deviation_deg: scaled(cell('heading_deviation_rad'), DEG_PER_RAD),
@@ -179,13 +245,16 @@ export class Store {
       right_error_rpm: less(rpm('right_ref_rad_s'), rpm('right_rad_s')),
       true_left_rpm: rpm('true_left_rad_s'),
       true_right_rpm: rpm('true_right_rad_s'),
+      ghost_left_rpm: rpm('ghost_left_rad_s'),
+      ghost_right_rpm: rpm('ghost_right_rad_s'),
     });
+    // The speeds wanted come with every frame, other setpoints with the status.
+    const wanted = reference?.kind === 'wheel_speed' ? [number(cell('left_ref_rad_s')), number(cell('right_ref_rad_s'))] : reference?.kind === 'goal' ? goal : [left, right];
+    this.#pushStep(t_s, mode, armed ? wanted : null);
     this.#pushStretch(t_s, mode, number(cell('state')), armed, cell('faulted') === 1);
 
-    lengthen(this.trails.estimated, estimated && compose(origin, estimated));
-    lengthen(this.trails.truth, truth);
-    lengthen(this.trails.ghost, ghost);
-    this.latest = {
+    this.haunted ||= ghost !== null;
+    this.#moments.push({
       t_s,
       mode,
       state: number(cell('state')),
@@ -199,13 +268,15 @@ export class Store {
       ranges_m: [cell('range_left_m') ?? null, cell('range_right_m') ?? null, cell('range_front_m') ?? null],
       servo_rad: number(cell('true_servo_rad')) ?? number(cell('servo_rad')),
       contact: cell('contact') === 1,
-    };
+    });
+    this.#advance();
   }
 
   /**
+   * All from where the run began.
    * @param {Pose | null} estimated
-   * @param {Pose | null} truth From the robot's origin.
-   * @param {Pose | null} ghost From the robot's origin.
+   * @param {Pose | null} truth
+   * @param {Pose | null} ghost
    * @param {number | null} heading_ref_rad
    */
   #placeAndHeading(estimated, truth, ghost, heading_ref_rad) {
@@ -249,18 +320,47 @@ export class Store {
     if (first && first.to_s < t_s - 1.2 * KEPT_S) this.stretches.shift();
   }
 
+  /** @param {number} t_s @param {number} mode @param {(number | null)[] | null} reference Null: none is in force. */
+  #pushStep(t_s, mode, reference) {
+    const entry = this.#modes.get(mode);
+    const kind = entry?.reference?.kind;
+    const [left, right] = reference ?? [];
+    const last = this.steps.at(-1);
+    const runs = last && last.until_s === Infinity ? last : null;
+    const in_force = entry && kind && typeof left === 'number' && typeof right === 'number' && (kind !== 'distance' || left !== 0);
+    const factor = kind === 'distance' ? CM_PER_M : kind === 'goal' ? 1 : RPM_PER_RAD_S;
+    /** @type {[number, number]} */
+    const now = [(left ?? 0) * factor, (right ?? 0) * factor];
+    if (runs && (!in_force || runs.mode !== mode || runs.reference.some((value, index) => value !== now[index]))) runs.until_s = t_s;
+    if (in_force && (!runs || runs.until_s !== Infinity)) {
+      this.steps.push({ from_s: t_s, until_s: Infinity, mode, kind, reference: now, ahead: entry.rigs.some((rig) => rig.startsWith('front_')) });
+    }
+    if (this.steps.length > STEPS_KEPT) this.steps.shift();
+  }
+
+  /** The step that runs, or the last one, as far as it is shown. @returns {Step | null} */
+  get step() {
+    const last = this.steps.findLast(({ from_s }) => from_s <= this.#playhead_s);
+    return last ? { ...last, until_s: Math.min(last.until_s, this.#playhead_s) } : null;
+  }
+
+  /** The stretch shown now, and the one before. */
+  get now() {
+    const index = this.stretches.findLastIndex(({ from_s }) => from_s <= this.#playhead_s);
+    return { last: this.stretches[index], before: this.stretches[index - 1] };
+  }
+
   /** @param {import('./types.js').ReadingGroup} group */
   pushReadings(group) {
-    const before = this.latest;
+    const before = this.#moments.at(-1) ?? null;
     // Of a program that sends no telemetry nothing else is known.
     const silent = this.silent;
     const origin = silent || before === null ? this.start : before.origin;
-    for (const { t_s, pose, pinged_m, servo_rad, contact } of this.readings.push(group, origin)) {
-      lengthen(this.trails.truth, pose);
-      /** @type {Latest} */
-      const known = this.latest ?? { t_s, mode: -1, state: null, armed: false, origin, estimated: null, spread: null, truth: null, ghost: null, heading_ref_rad: null, ranges_m: pinged_m, servo_rad, contact };
-      this.latest = { ...known, truth: pose, servo_rad, contact, ranges_m: silent ? pinged_m : known.ranges_m };
+    for (const { t_s, pose, pinged_m, servo_rad, contact } of this.readings.push(group, this.start)) {
+      // Telemetry has the truth too.
+      if (silent) this.#moments.push({ t_s, mode: -1, state: null, armed: false, origin, estimated: null, spread: null, truth: pose, ghost: null, heading_ref_rad: null, ranges_m: pinged_m, servo_rad, contact });
     }
+    this.#advance();
   }
 
   /** The robot has sent no telemetry. */

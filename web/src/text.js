@@ -9,9 +9,10 @@ import { GUIDE } from './spanish/guide.js';
 import { PAGE } from './spanish/page.js';
 import { PARAMETERS } from './spanish/parameters.js';
 import { ROBOT, UNDERSCORED } from './spanish/robot.js';
+import { SCENARIOS } from './spanish/scenarios.js';
 
 /** Every text with its Spanish. @type {Record<string, string>} */
-export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...GUIDE };
+export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...SCENARIOS, ...GUIDE };
 
 /** The languages, by the code that browsers have for them. */
 export const LANGUAGES = /** @type {const} */ ({ en: 'English', es: 'Español' });

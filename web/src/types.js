@@ -37,8 +37,7 @@
  *
  * @typedef {object} Scene
  * @property {{scenario: string, world: string | null, rig: string | null, seed: number}} choice
- * @property {string[]} scenarios
- * @property {{name: string, mode: number}[]} [experiments] Those of them that command something in a mode.
+ * @property {{name: string, title: string, group: string | null, mode: number, shows_mode: boolean}[]} experiments The scenarios to choose from; `shows_mode`: it commands something in its mode.
  * @property {string[]} worlds
  * @property {string[]} rigs
  * @property {string} rig What the robot carries.
@@ -94,6 +93,9 @@
  *   reference: [number, number], overruns: number, servo_rad: number, rig: string | null, errand: Errand, foreign: boolean, text?: boolean}} robot `text`: it speaks the original's.
  *
  * @typedef {{usart: number | null, names: string[], rows: [number, Cell[]][]}} ReadingGroup Time [s] and values of signals beside the telemetry; `usart`: the port that printed them, null for ground truth.
+ *
+ * @typedef {{name: string, bytes: number, written_s: number, open: boolean, readable: boolean, duration_s: number, started: string | null, scenario: string | null, robot: string | null, seed: number | null}} Recording
+ * @typedef {{name: string, duration_s: number, metrics: Record<string, number | null>, parameters: Record<string, number>, columns: string[], rows: Cell[][]}} RecordingContent
  *
  * @typedef {{t_s: number, level: 'info' | 'good' | 'warning' | 'fault', text: string}} LoggedEvent
  *

@@ -56,15 +56,16 @@ export async function start(options, port = 0) {
  * Starts `rumbo` with these arguments and opens its page. What a script of the page complains of is collected in `complaints`.
  * @param {string[]} options
  * @param {import('playwright-core').BrowserContextOptions} [browserOptions]
+ * @param {boolean} [firstTime] nobody has seen the first steps in this browser
  */
-export async function open(options, browserOptions = {}) {
+export async function open(options, browserOptions = {}, firstTime = false) {
   const { server, url, address } = await start(options);
   const browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, colorScheme: 'dark', locale: 'en-GB', ...browserOptions });
   const page = await context.newPage();
   /** @type {string[]} */
   const complaints = [];
-  await prepare(page);
+  await prepare(page, firstTime);
   page.on('pageerror', (error) => complaints.push(String(error)));
   page.on('console', (message) => {
     if (message.type() === 'error') complaints.push(message.text());
@@ -87,9 +88,10 @@ export async function showPage(context, url) {
   return page;
 }
 
-/** @param {import('playwright-core').Page} page */
-async function prepare(page) {
+/** @param {import('playwright-core').Page} page @param {boolean} [firstTime] nobody has seen the first steps in this browser */
+async function prepare(page, firstTime = false) {
   page.setDefaultTimeout(PATIENCE_MS);
+  if (!firstTime) await page.addInitScript(() => localStorage.setItem('rumbo.tour', 'seen'));
   if (process.env['WEB']) await serveFolder(page);
 }
 

@@ -108,9 +108,6 @@ test('mode 1 holds 30 cm, and the distance follows the reference to 50 cm', asyn
 /** Starts a scenario again, paused or not as before. @param {string} scenario */
 async function startScenario(scenario) {
   await page.locator('#scenario').selectOption(scenario);
-  await page.locator('#world').selectOption('');
-  await page.locator('#rig').selectOption('');
-  await page.locator('#simulation button[type=submit]').click();
   await page.waitForFunction((scenario) => [...document.querySelectorAll('#events li')][0]?.textContent?.includes('acknowledged')
     && [...document.querySelectorAll('#events li')].some((line) => line.textContent?.includes(`reset: ${scenario}, `)), scenario);
 }
@@ -283,6 +280,18 @@ test('each mode has its controls, and nothing moves when the mode changes', asyn
     places.add(JSON.stringify(await page.locator('#on').boundingBox()));
   }
   assert.equal(places.size, 1, [...places].join());
+});
+
+test('scenarios have titles below groups, and one that is chosen is loaded, disarmed', async () => {
+  const menu = await page.locator('#scenario').evaluate((select) => [.../** @type {HTMLSelectElement} */ (select).querySelectorAll('optgroup')].map((group) => [group.label, ...[...group.querySelectorAll('option')].map(({ textContent }) => textContent)]));
+  assert.deepEqual(menu[2], ['Mode 1: front distance', 'Stop at a distance from a wall, 107 → 30 → 50 cm', 'Stop at a distance from a wall, 107 → 30 → 50 cm, on the final rig']);
+  assert.ok(menu.length <= 12, `${menu.length} groups`);
+  await startScenario('mode1');
+  await page.locator('#on').click();
+  await isArmed(true);
+  await page.locator('#scenario').selectOption('mode5');
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state()?.robot.mode === 5);
+  await isArmed(false);
 });
 
 test('a reset starts again with the seed asked for', async () => {

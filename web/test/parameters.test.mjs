@@ -53,7 +53,7 @@ test('a mode that shares parameters with another shows them too', async () => {
 test('a mode that the rig cannot serve is reported, and its experiment offered', async () => {
   await select(8);
   await page.locator('#about', { hasText: /^needs the sensor layout final$/ }).waitFor();
-  await page.locator('#mode-scenario', { hasText: 'Scenario mode8-goals' }).waitFor();
+  await page.locator('#mode-scenario', { hasText: 'Load a scenario of this mode' }).waitFor();
   await select(1);
   await page.locator('#about', { hasText: /^stop at a distance from the wall ahead$/ }).waitFor();
   assert.equal(await page.locator('#mode-scenario').isVisible(), false);

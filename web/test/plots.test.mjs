@@ -156,12 +156,12 @@ test('the states of the run stand below the plots, each in its own colour', asyn
   assert.ok(colours >= 4, `off, approach, settle and hold: ${colours}`);
 });
 
-test('what is seen of a plot is saved as SVG, PNG and CSV', async () => {
+test('a plot is a figure of chosen time and size, as SVG, PNG and PDF, and its values a CSV', async () => {
   await change('distance');
   const svg = await saved('SVG');
   assert.equal(svg.name, 'distance.svg');
   const text = readFileSync(svg.path, 'utf8');
-  assert.ok(text.startsWith('<svg ') && text.includes('distance [cm]') && /<path d="M[\d.]+ [\d.]+L/.test(text), 'a title and a curve');
+  assert.ok(text.startsWith('<svg ') && text.includes('distance [cm]') && /<path d="M-?[\d.]+ -?[\d.]+L/.test(text), 'a title and a curve');
   const png = await saved('PNG');
   assert.deepEqual([...readFileSync(png.path).subarray(1, 4)], [...Buffer.from('PNG')]);
   const csv = await saved('CSV');
@@ -169,6 +169,28 @@ test('what is seen of a plot is saved as SVG, PNG and CSV', async () => {
   assert.match(head, /^t \[s\],true_range_front_cm \[cm\],range_front_cm \[cm\],reference_cm \[cm\]$/);
   assert.match(first, /^[\d.]+(,[\d.]*){3}$/);
   assert.ok(Math.abs(Number(second.split(',')[0]) - Number(first.split(',')[0]) - 0.04) < 0.002, 'a line for each frame');
+  await page.locator('#figure-from').fill('1');
+  await page.locator('#figure-to').fill('2');
+  await page.locator('#figure-width').fill('100');
+  await page.locator('#figure-height').fill('50');
+  assert.match(readFileSync((await saved('SVG')).path, 'utf8'), /viewBox="0 0 378 189"/);
+  const { path } = await saved('PNG');
+  const [width, height] = [readFileSync(path).readUInt32BE(16), readFileSync(path).readUInt32BE(20)];
+  assert.ok(Math.abs(width - 1181) < 3 && Math.abs(height - 590) < 3, `300 dots to an inch: ${width} x ${height}`);
+  const times = readFileSync((await saved('CSV')).path, 'utf8').trim().split('\n').slice(1).map((line) => Number(line.split(',')[0]));
+  assert.ok(times.length > 20 && times.every((t_s) => t_s >= 1 && t_s <= 2), `${times[0]} to ${times.at(-1)}`);
+  await page.evaluate(() => { window.print = () => {}; });
+  await page.getByRole('button', { name: 'PDF' }).click();
+  await page.locator('#printed').waitFor({ state: 'attached' });
+  const pdf = (await page.pdf({ preferCSSPageSize: true })).toString('latin1');
+  const [, wide, high] = pdf.match(/\/MediaBox\s*\[0 0 ([\d.]+) ([\d.]+)\]/) ?? [];
+  assert.ok(Math.abs(Number(wide) - 286) < 2 && Math.abs(Number(high) - 144.6) < 2, `points: ${wide} x ${high}`);
+  assert.equal(pdf.match(/\/Type\s*\/Page\b/g)?.length, 1, 'one page');
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  assert.equal(await page.locator('#printed').count(), 0);
+  await page.locator('#figure-to').fill('1');
+  await page.getByRole('button', { name: 'PNG' }).click();
+  await page.locator('#plot-dialog .complaint', { hasText: 'from a time to a later one' }).waitFor();
   await page.keyboard.press('Escape');
 });
 

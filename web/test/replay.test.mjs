@@ -20,8 +20,8 @@ before(async () => {
 
 after(() => dashboard?.close());
 
-/** The time of the last range plotted [s]. */
-const plotted_s = () => page.evaluate(() => /** @type {number} */ (/** @type {any} */ (window).rumbo.series('range_front_cm').t.at(-1) ?? -1));
+/** The time of what the map shows [s]. */
+const mapped_s = () => page.evaluate(() => /** @type {number} */ (/** @type {any} */ (window).rumbo.shown()?.t_s ?? -1));
 const shown_s = () => page.evaluate(() => /** @type {number} */ (/** @type {any} */ (window).rumbo.state()?.t_s ?? -1));
 
 /** @param {number} t_s */
@@ -48,27 +48,46 @@ test('the parameters have the values that the run had', async () => {
   assert.equal(await input.inputValue(), '0.4');
 });
 
-test('scrubbing shows what was before that time, forwards and backwards', async () => {
+test('scrubbing shows what was at that time, forwards and backwards', async () => {
   await scrub(5);
   await page.waitForFunction(() => {
-    const t = /** @type {any} */ (window).rumbo.series('range_front_cm').t.at(-1);
+    const t = /** @type {any} */ (window).rumbo.shown()?.t_s;
     return t > 4.9 && t <= 5;
   });
+  await page.locator('#state', { hasText: 'hold' }).waitFor();
   await scrub(2);
   await page.waitForFunction(() => {
-    const t = /** @type {any} */ (window).rumbo.series('range_front_cm').t.at(-1);
+    const t = /** @type {any} */ (window).rumbo.shown()?.t_s;
     return t > 1.9 && t <= 2;
   });
+  // The numbers beside the curves are those of that time.
+  const at_2 = await page.evaluate(() => {
+    const { t, y } = /** @type {any} */ (window).rumbo.series('range_front_cm');
+    return y[t.findLastIndex((/** @type {number} */ each) => each <= 2)].toFixed(1);
+  });
+  await page.locator('.plot-curves .curve.measured output', { hasText: at_2 }).first().waitFor();
+});
+
+test('the plots show the whole log, before and after the playhead', async () => {
+  await scrub(2);
+  await page.waitForFunction(() => {
+    const { series, plots } = /** @type {any} */ (window).rumbo;
+    const [from_s, to_s] = plots().range_s;
+    return series('range_front_cm').t.at(-1) > 8.8 && from_s < 0.01 && to_s > 8.8;
+  });
+  await page.locator('#window').selectOption('10');
+  await page.locator('#window').selectOption('whole');
+  assert.equal(await page.locator('#pause').isVisible(), false, 'there is one Pause');
 });
 
 test('a step is one telemetry frame', async () => {
   await scrub(2);
-  const before_s = await plotted_s();
+  const before_s = await mapped_s();
   await page.locator('#replay-on').click();
-  await page.waitForFunction((before) => /** @type {any} */ (window).rumbo.series('range_front_cm').t.at(-1) > before, before_s);
-  assert.ok(Math.abs((await plotted_s()) - before_s - 0.04) < 1e-6);
+  await page.waitForFunction((before) => /** @type {any} */ (window).rumbo.shown().t_s > before, before_s);
+  assert.ok(Math.abs((await mapped_s()) - before_s - 0.04) < 1e-6);
   await page.keyboard.press(',');
-  await page.waitForFunction((before) => /** @type {any} */ (window).rumbo.series('range_front_cm').t.at(-1) <= before, before_s);
+  await page.waitForFunction((before) => /** @type {any} */ (window).rumbo.shown().t_s <= before, before_s);
 });
 
 test('it plays at the speed asked for', async () => {
@@ -102,6 +121,25 @@ test('Enter on an event goes to its time too', async () => {
   await page.locator('#events li', { hasText: 'sent: setpoint 50.0 cm' }).focus();
   await page.keyboard.press('Enter');
   await page.waitForFunction(() => Math.abs(/** @type {any} */ (window).rumbo.state().t_s - 5.5) < 0.1);
+});
+
+test('what is plotted does not jump where the robot moves its origin to its goal', async () => {
+  const out = folder();
+  spawnSync(program(), ['run', 'mode8-obstacles', '--seed', '1', '--out', out]);
+  const other = await open(['replay', join(out, 'mode8-obstacles-1.mcap'), '--speed', '16']);
+  try {
+    await other.page.waitForFunction(() => /** @type {any} */ (window).rumbo.state()?.speed === 0);
+    await other.page.waitForFunction(() => /** @type {any} */ (window).rumbo.shown()?.origin.x_m > 2, undefined, { timeout: 60_000 });
+    for (const [name, most] of /** @type {[string, number][]} */ ([['true_x_m', 0.1], ['x_m', 0.1], ['y_m', 0.1], ['true_heading_deg', 20], ['heading_deg', 20]])) {
+      const jump = await other.page.evaluate((name) => {
+        const y = /** @type {any} */ (window).rumbo.series(name).y.filter((/** @type {unknown} */ each) => typeof each === 'number');
+        return Math.max(...y.slice(1).map((/** @type {number} */ each, /** @type {number} */ index) => Math.abs(each - y[index])));
+      }, name);
+      assert.ok(jump < most, `${name} jumps by ${jump}`);
+    }
+  } finally {
+    await other.close();
+  }
 });
 
 test('no script failed on the way', () => {

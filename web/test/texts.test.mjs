@@ -7,8 +7,9 @@ import { GUIDE } from '../src/spanish/guide.js';
 import { PAGE } from '../src/spanish/page.js';
 import { PARAMETERS } from '../src/spanish/parameters.js';
 import { ROBOT } from '../src/spanish/robot.js';
+import { SCENARIOS } from '../src/spanish/scenarios.js';
 
-const TABLES = [PAGE, ROBOT, PARAMETERS, GUIDE];
+const TABLES = [PAGE, ROBOT, PARAMETERS, SCENARIOS, GUIDE];
 /** @type {Record<string, string>} */
 const SPANISH = Object.assign({}, ...TABLES);
 
@@ -66,11 +67,19 @@ test('messages of the robot: faults, refusals, why it started, events, modes, st
 const NO_SENTENCE = ['rig', 'in world', 'with rig', 'this program has none', '{}: {}', '{}-{}-{}T{}:{}:{}Z', 'reset: {}{}{}, seed {}', 'a new route, {}', 'allowed is {}', 'parameter {}', 'once', 'again and again'];
 
 test('messages of session and station', () => {
-  const texts = ['session/src/words', 'session/src/anomaly', 'session/src/error', 'session/src/observer', 'session/src/session', 'session/src/session/calibrating', 'session/src/session/commanding', 'session/src/observer/describe', 'station/src/session', 'station/src/replay', 'log/src/bound'].flatMap((name) => {
+  const texts = ['session/src/words', 'session/src/anomaly', 'session/src/error', 'session/src/observer', 'session/src/session', 'session/src/session/calibrating', 'session/src/session/commanding', 'session/src/observer/describe', 'station/src/session', 'station/src/recordings', 'station/src/web/recordings', 'station/src/replay', 'log/src/bound'].flatMap((name) => {
     const source = (read(`../../crates/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '');
     return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => (found[1] ?? '').replace(/\{[^}]*\}/g, '{}'));
   }).map((text) => text.replace('allowed is {} to {} {}', 'allowed is {} to {}').replace(/^allowed is \{\} to \{\} (?:cm|rpm)$/, 'allowed is {} to {}'));
   allSpanish(texts.filter((text) => /[ :]/.test(text) && hasWords(text) && !NO_SENTENCE.includes(text)));
+});
+
+test('titles and groups of the built-in scenarios', () => {
+  const folder = new URL('../../scenarios/', import.meta.url);
+  const files = readdirSync(folder).map((name) => readFileSync(new URL(name, folder), 'utf8'));
+  const texts = files.flatMap((file) => ['title', 'group'].map((key) => file.match(new RegExp(`^${key} = "(.*)"$`, 'm'))?.[1] ?? `no ${key}: ${file.slice(0, 80)}`));
+  assert.ok(texts.length > 100, String(texts.length));
+  allSpanish(texts);
 });
 
 test('a text keeps its values in the other language, and stands in one table only', () => {

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::lab::SimulatedRobot;
 use rumbo_control::Fault;
 use rumbo_experiment::files::Overrides;
-use rumbo_log::{Choice, Log, Manifest, MapPose, Scene};
+use rumbo_log::{Choice, Log, Manifest, Scene, Truth};
 use rumbo_session::{Abilities, Ghost, LinkNews, Standing, Target, TargetError};
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
 use std::collections::VecDeque;
@@ -36,10 +36,6 @@ fn surroundings(ghost: &SimulatedRobot) -> Scene {
         of_ghost: true,
         ..ghost.scene().unwrap_or_default()
     }
-}
-
-fn pose(ghost: &SimulatedRobot) -> MapPose {
-    ghost.truth().unwrap_or_default().pose
 }
 
 /// A robot on a port with its ghost.
@@ -120,8 +116,8 @@ impl<T: Target> Target for WithGhost<T> {
             .or_else(|| self.faults.pop_front().map(LinkNews::GhostFault))
     }
 
-    fn ghost(&self) -> Option<MapPose> {
-        Some(pose(&self.ghost))
+    fn ghost(&self) -> Option<Truth> {
+        self.ghost.truth()
     }
 
     /// Also clears the ghost's fault, since the robot may have none to clear. ON restarts it.
@@ -174,7 +170,7 @@ impl Ghost for Recorded {
         Ok(())
     }
 
-    fn advance_to(&mut self, until_us: u64) -> Result<MapPose, TargetError> {
+    fn advance_to(&mut self, until_us: u64) -> Result<Truth, TargetError> {
         while let Some((at_us, bytes)) = self.to_robot.get(self.next)
             && *at_us <= until_us
         {
@@ -185,7 +181,7 @@ impl Ghost for Recorded {
         follow(&mut self.ghost, until_us, &mut self.received)?;
         // Beside a log its messages are not used.
         self.received.clear();
-        Ok(pose(&self.ghost))
+        Ok(self.ghost.truth().unwrap_or_default())
     }
 
     fn place(&mut self, standing: Standing) {
@@ -287,7 +283,7 @@ mod tests {
         robot.advance(1_000_000).unwrap();
         send(&mut robot, 1, Command::Mode(ModeId::FrontDistance));
         send(&mut robot, 2, Command::Arm);
-        let begin_m = robot.ghost().unwrap().x_m;
+        let begin_m = robot.ghost().unwrap().pose.x_m;
         robot.advance(2_000_000).unwrap();
         let news = robot.news();
         assert_eq!(
@@ -299,17 +295,17 @@ mod tests {
         assert_eq!(robot.news(), None);
 
         let standing = Standing {
-            at: robot.ghost().unwrap(),
-            estimated: MapPose::default(),
+            at: robot.ghost().unwrap().pose,
+            estimated: rumbo_log::MapPose::default(),
         };
         robot.restart_ghost(standing).unwrap();
         send(&mut robot, 3, Command::Arm);
-        let stood_m = robot.ghost().unwrap().x_m;
+        let stood_m = robot.ghost().unwrap().pose.x_m;
         for _ in 0..5 {
             robot.send(ToRobot::Heartbeat.frame(0).bytes()).unwrap();
             robot.advance(200_000).unwrap();
         }
-        let gone_m = robot.ghost().unwrap().x_m - stood_m;
+        let gone_m = robot.ghost().unwrap().pose.x_m - stood_m;
         assert!(gone_m > 0.05, "{gone_m} m, after {} m", stood_m - begin_m);
         assert_eq!(robot.news(), None);
     }

@@ -133,8 +133,11 @@ impl SimulatedRobot {
             first_commands,
             manifest,
         } = prepare(&library, &overrides, choice, &[])?;
-        offer(&mut scene.scenarios, Some(&scene.choice.scenario));
-        offer(&mut scene.worlds, scene.choice.world.as_ref());
+        if let Some(world) = &scene.choice.world
+            && !scene.worlds.contains(world)
+        {
+            scene.worlds.push(world.clone());
+        }
         Ok(Self {
             library,
             overrides,
@@ -166,13 +169,6 @@ pub(crate) fn type_to(sim: &mut Sim, usart: u8, line: &str) -> bool {
         mega.type_in(usart, bytes.as_bytes());
     }
     true
-}
-
-/// Adds a path from the command line to the names to choose from.
-fn offer(names: &mut Vec<String>, chosen: Option<&String>) {
-    if let Some(chosen) = chosen.filter(|chosen| !names.contains(chosen)) {
-        names.push(chosen.clone());
-    }
 }
 
 impl SimulatedRobot {
@@ -326,9 +322,11 @@ impl Target for SimulatedRobot {
     fn reset(&mut self, choice: &Choice) -> Result<(), TargetError> {
         // The page chooses among names it was given; it opens no files.
         let Scene {
-            scenarios, worlds, ..
+            experiments,
+            worlds,
+            ..
         } = &self.scene;
-        let offered = scenarios.contains(&choice.scenario)
+        let offered = experiments.iter().any(|each| each.name == choice.scenario)
             && choice.world.iter().all(|world| worlds.contains(world));
         if !offered {
             return Err(TargetError::NotOffered);
@@ -348,7 +346,9 @@ impl SimulatedRobot {
         let fresh = prepare(&self.library, &self.overrides, choice, &memory)?;
         // What the command line added to the lists stays there.
         let Scene {
-            scenarios, worlds, ..
+            experiments,
+            worlds,
+            ..
         } = std::mem::take(&mut self.scene);
         self.sim = fresh.sim;
         if let Some(debugging) = &mut self.debugging {
@@ -359,7 +359,7 @@ impl SimulatedRobot {
         self.first_commands = fresh.first_commands;
         self.manifest = fresh.manifest;
         self.scene = Scene {
-            scenarios,
+            experiments,
             worlds,
             ..fresh.scene
         };

@@ -12,7 +12,10 @@ use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig as Mounts};
 use serde_json::{Map, Value, json};
 
-/// Lists one topic, or all but the plant's numbers.
+/// Longest list of names on a line of the overview \[characters\].
+const NAMES: usize = 60;
+
+/// Lists one topic, or gives an overview; as JSON, all but the plant's numbers.
 pub(crate) fn list(args: &ListArgs) -> Result<(), Failure> {
     let library = Library::new();
     let topics = match args.topic {
@@ -29,8 +32,10 @@ pub(crate) fn list(args: &ListArgs) -> Result<(), Failure> {
     let mut all = Map::new();
     for topic in topics {
         let entries = entries(&library, topic)?;
-        if args.json {
+        if args.json || args.topic.is_none() {
             all.insert(name(topic).to_owned(), Value::Array(entries));
+        } else if topic == Topic::Scenarios {
+            print_scenarios(&entries)?;
         } else {
             output::line(name(topic))?;
             output::table(&entries.iter().map(row).collect::<Vec<_>>())?;
@@ -41,9 +46,57 @@ pub(crate) fn list(args: &ListArgs) -> Result<(), Failure> {
     }
     if args.json {
         output::json(&all)
+    } else if args.topic.is_none() {
+        overview(&all)
     } else {
         Ok(())
     }
+}
+
+/// What there is, on one screen.
+fn overview(all: &Map<String, Value>) -> Result<(), Failure> {
+    let entries = |topic| all[name(topic)].as_array().map_or(&[][..], Vec::as_slice);
+    let text = |entry: &Value, key: &str| entry[key].as_str().unwrap_or_default().to_owned();
+    output::line("modes")?;
+    let mode = |entry: &Value| {
+        let number = entry["number"].to_string();
+        vec![number, text(entry, "name"), text(entry, "help")]
+    };
+    output::table(&entries(Topic::Modes).iter().map(mode).collect::<Vec<_>>())?;
+    output::line("scenarios, for rumbo run and rumbo lab --scenario")?;
+    let groups = entries(Topic::Scenarios).chunk_by(|one, other| one["group"] == other["group"]);
+    let group = |group: &[Value]| vec![text(&group[0], "group"), names(group)];
+    output::table(&groups.map(group).collect::<Vec<_>>())?;
+    let others = [Topic::Worlds, Topic::Rigs, Topic::Robots, Topic::Parameters];
+    let other = |topic| vec![name(topic).to_owned(), names(entries(topic))];
+    output::table(&others.map(other))?;
+    output::line(
+        "More of each: rumbo list modes, rumbo list scenarios, ...; topics: rumbo list --help",
+    )
+}
+
+/// The names of entries, the first ones if they are too many for a line.
+fn names(entries: &[Value]) -> String {
+    let mut line = String::new();
+    let mut left = entries.len();
+    for name in entries.iter().filter_map(|entry| entry["name"].as_str()) {
+        if line.len() + name.len() > NAMES {
+            return format!("{line}, {left} more");
+        }
+        line += if line.is_empty() { "" } else { ", " };
+        line += name;
+        left -= 1;
+    }
+    line
+}
+
+/// The scenarios below the headings of their groups.
+fn print_scenarios(entries: &[Value]) -> Result<(), Failure> {
+    for group in entries.chunk_by(|one, other| one["group"] == other["group"]) {
+        output::line(group[0]["group"].as_str().unwrap_or("scenarios"))?;
+        output::table(&group.iter().map(row).collect::<Vec<_>>())?;
+    }
+    Ok(())
 }
 
 fn name(topic: Topic) -> &'static str {
@@ -70,10 +123,12 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
             for name in library.list(Kind::Scenario) {
                 let file = library.scenario(&name).map_err(wrong)?;
                 entries.push(
-                    json!({ "name": name, "title": file.title, "mode": file.mode.name(),
-                    "rig": file.rig, "world": file.world }),
+                    json!({ "name": name, "title": file.title, "group": file.group,
+                    "mode": file.mode.name(), "rig": file.rig, "world": file.world }),
                 );
             }
+            // Stable: by name within a group.
+            entries.sort_by(|one, other| one["group"].as_str().cmp(&other["group"].as_str()));
         }
         Topic::Worlds => {
             for name in library.list(Kind::World) {
@@ -283,8 +338,6 @@ fn row(entry: &Value) -> Vec<String> {
     if let (Some(min), Some(max), Some(default)) = (number("min"), number("max"), number("default"))
     {
         row.extend([default, format!("{min}..{max}"), text("unit"), text("help")]);
-    } else if entry.get("rig").is_some() {
-        row.extend(["mode", "rig", "world", "title"].map(text));
     } else if let Some(rigs) = entry["rigs"].as_array() {
         let rigs: Vec<_> = rigs.iter().filter_map(Value::as_str).collect();
         row.push(format!("{} (rigs: {})", text("title"), rigs.join(", ")));

@@ -48,7 +48,6 @@ pub(crate) fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<
     Ok(Scene {
         experiments: experiments(library, scenario, &choice),
         choice,
-        scenarios: library.list(Kind::Scenario),
         worlds: library.list(Kind::World),
         rigs: robot.rigs.keys().cloned().collect(),
         rig: scenario.rig.clone(),
@@ -72,19 +71,24 @@ pub(crate) fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<
     })
 }
 
-/// The scenarios that command something, each with its mode: those that there are, and the one of a file.
+/// The scenarios to choose from: the one of a file first, then the built-in ones by group.
 fn experiments(library: &Library, scenario: &ScenarioFile, choice: &Choice) -> Vec<Experiment> {
-    let of = |name: String, file: &ScenarioFile| {
-        let mode = file.mode as u8;
-        (!file.commands.is_empty()).then_some(Experiment { name, mode })
+    let of = |name: &str, file: &ScenarioFile| Experiment {
+        name: name.into(),
+        title: file.title.clone(),
+        group: file.group.clone(),
+        mode: file.mode as u8,
+        shows_mode: !file.commands.is_empty(),
     };
     let names = library.list(Kind::Scenario);
-    let own = (!names.contains(&choice.scenario)).then(|| of(choice.scenario.clone(), scenario));
-    let known = names.into_iter().filter_map(|name| {
-        let file = library.scenario(&name).ok()?;
-        of(name, &file)
+    let own = (!names.contains(&choice.scenario)).then(|| of(&choice.scenario, scenario));
+    let known = names.iter().filter_map(|name| {
+        let file = library.scenario(name).ok()?;
+        Some(of(name, &file))
     });
-    own.flatten().into_iter().chain(known).collect()
+    let mut known: Vec<_> = known.collect();
+    known.sort_by(|one, other| one.group.cmp(&other.group));
+    own.into_iter().chain(known).collect()
 }
 
 /// The commands that prepare a robot without starting it: the mode, and the experiment's settings up to arming, or its

@@ -4,7 +4,7 @@ use crate::entry::{Burst, Said};
 use crate::event::LoggedEvent;
 use crate::manifest::{Manifest, Outcome};
 use crate::reading::Reading;
-use crate::scene::{MapPose, Scene, compose};
+use crate::scene::{Scene, Truth, compose};
 use crate::signals::Row;
 use crate::state::State;
 use std::collections::BTreeMap;
@@ -50,7 +50,7 @@ pub(crate) enum Place {
 }
 
 impl Log {
-    /// Adds a ghost: its pose at the time of each row \[us\], in the world of `scene`. A robot without a known world is
+    /// Adds a ghost: its ground truth at the time of each row \[us\], in the world of `scene`. A robot without a known world is
     /// placed there too, with its origin at the ghost's start.
     ///
     /// # Errors
@@ -58,12 +58,12 @@ impl Log {
     pub fn add_ghost<E>(
         &mut self,
         scene: Scene,
-        mut ghost: impl FnMut(u64) -> Result<MapPose, E>,
+        mut ghost: impl FnMut(u64) -> Result<Truth, E>,
     ) -> Result<(), E> {
         let start = self.scene.is_none().then_some(scene.start);
         for row in &mut self.rows {
-            let pose = ghost(u64::try_from(row.t_ms).unwrap_or(0) * 1_000)?;
-            row.set_pose("ghost_", pose);
+            let truth = ghost(u64::try_from(row.t_ms).unwrap_or(0) * 1_000)?;
+            row.set_ghost(Some(&truth));
             if let Some(start) = start {
                 let at = row.pose("origin_").unwrap_or_default();
                 row.set_pose("origin_", compose(start, at));

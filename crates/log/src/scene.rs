@@ -49,9 +49,7 @@ pub struct Truth {
 pub struct Scene {
     /// What is running.
     pub choice: Choice,
-    /// Names of the scenarios to choose from.
-    pub scenarios: Vec<String>,
-    /// Those of them that command something in a mode.
+    /// The scenarios to choose from.
     #[serde(default)]
     pub experiments: Vec<Experiment>,
     /// Names of the worlds to choose from.
@@ -83,13 +81,20 @@ pub struct Scene {
     pub of_ghost: bool,
 }
 
-/// A scenario that shows a mode.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// A scenario to choose.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Experiment {
     /// Name of the scenario.
     pub name: String,
-    /// Number of the mode.
+    /// One line for people.
+    pub title: String,
+    /// Its heading in the list.
+    pub group: Option<String>,
+    /// Number of its mode.
     pub mode: u8,
+    /// It commands something in that mode: it shows what the mode does.
+    pub shows_mode: bool,
 }
 
 /// The places of a route.

@@ -29,8 +29,8 @@ pub struct Sample {
     pub spread: Spread,
     /// Ground truth [`EARLIER_MS`] before and at `t_ms`; `None` with a real robot.
     pub truth: Option<[Truth; 2]>,
-    /// The ghost's pose; `None` without one.
-    pub ghost: Option<MapPose>,
+    /// The ghost's ground truth; `None` without one.
+    pub ghost: Option<Truth>,
 }
 
 /// Uncertainty of a pose, in its origin's frame.
@@ -65,8 +65,35 @@ fn measured(range: Range) -> f32 {
     }
 }
 
+/// The ghost's signals.
+pub(crate) const GHOST: [&str; 8] = [
+    "ghost_x_m",
+    "ghost_y_m",
+    "ghost_heading_rad",
+    "ghost_left_rad_s",
+    "ghost_right_rad_s",
+    "ghost_range_left_m",
+    "ghost_range_right_m",
+    "ghost_range_front_m",
+];
+
+/// Their values, in this order; not a number where unknown.
+pub(crate) fn ghost_values(truth: &Truth) -> [f64; GHOST.len()] {
+    let [left, right, front] = truth.range_m.map(|range_m| range_m.unwrap_or(f64::NAN));
+    [
+        truth.pose.x_m,
+        truth.pose.y_m,
+        truth.pose.heading_rad,
+        truth.wheel_rad_s.left,
+        truth.wheel_rad_s.right,
+        left,
+        right,
+        front,
+    ]
+}
+
 /// Values in a row.
-pub(crate) const COLUMNS: usize = 45;
+pub(crate) const COLUMNS: usize = 42 + GHOST.len();
 
 impl Sample {
     /// The row of this sample, each value with its name. The page finds the values by the names.
@@ -80,6 +107,8 @@ impl Sample {
         };
         let was_range =
             |id: usize| optional(self.truth.as_ref().and_then(|[_, at]| at.range_m[id]));
+        let ghost = self.ghost.as_ref().map(ghost_values);
+        let ghosts = |index: usize| (GHOST[index], optional(ghost.map(|values| values[index])));
         [
             ("t_s", (self.t_ms as f64 / 1e3) as f32),
             ("mode", f32::from(self.mode as u8)),
@@ -129,12 +158,14 @@ impl Sample {
             ("true_range_front_m", was_range(2)),
             ("true_servo_rad", was(|truth| truth.servo_rad)),
             ("contact", was(|truth| f64::from(u8::from(truth.contact)))),
-            ("ghost_x_m", optional(self.ghost.map(|pose| pose.x_m))),
-            ("ghost_y_m", optional(self.ghost.map(|pose| pose.y_m))),
-            (
-                "ghost_heading_rad",
-                optional(self.ghost.map(|pose| pose.heading_rad)),
-            ),
+            ghosts(0),
+            ghosts(1),
+            ghosts(2),
+            ghosts(3),
+            ghosts(4),
+            ghosts(5),
+            ghosts(6),
+            ghosts(7),
         ]
     }
 

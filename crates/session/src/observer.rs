@@ -121,12 +121,8 @@ impl Observer {
         }
     }
 
-    /// Notes the ghost's pose at `now_ms`.
-    pub(crate) fn ghost(&mut self, now_ms: i64, pose: MapPose) {
-        let truth = Truth {
-            pose,
-            ..Truth::default()
-        };
+    /// Notes the ghost's ground truth at `now_ms`.
+    pub(crate) fn ghost(&mut self, now_ms: i64, truth: Truth) {
         self.ghosts.push(now_ms, truth);
     }
 
@@ -371,7 +367,7 @@ impl Observer {
             origin,
             spread: self.origin.spread(&errors),
             truth: truth.map(|(before, at)| [before, at]),
-            ghost: self.ghosts.at(t_ms).map(|truth| truth.pose),
+            ghost: self.ghosts.at(t_ms),
         };
         let mut row = sample.row();
         let absent_signals = client

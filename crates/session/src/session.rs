@@ -18,7 +18,7 @@ use crate::orders::Order;
 use crate::target::{About, LinkNews, Standing};
 use crate::watch::LinkWatch;
 use rumbo_control::mode::ModeId;
-use rumbo_log::{Burst, CalibrationState, Choice, Level, MapPose, ProgramState, State, Truth};
+use rumbo_log::{Burst, CalibrationState, Choice, Level, ProgramState, State, Truth};
 use rumbo_wire::Command;
 
 /// The slow state is published this often, and at once when it matters \[us\].
@@ -61,8 +61,8 @@ pub enum Ask {
 pub struct Sight {
     /// Ground truth.
     pub truth: Option<Truth>,
-    /// The ghost's pose.
-    pub ghost: Option<MapPose>,
+    /// The ghost's.
+    pub ghost: Option<Truth>,
     /// What the USARTs of an emulated chip have sent.
     pub consoles: Vec<(u8, Vec<u8>)>,
     /// What instruments show, if a reading is due.
@@ -215,8 +215,8 @@ impl Session {
 
     /// Takes what is known of the target now.
     pub fn observe(&mut self, sight: Sight, now: Now) {
-        if let Some(pose) = sight.ghost {
-            self.observer.ghost(now.target_ms(), pose);
+        if let Some(truth) = sight.ghost {
+            self.observer.ghost(now.target_ms(), truth);
         }
         if let Some(truth) = sight.truth {
             self.observer.truth(now.target_ms(), truth);

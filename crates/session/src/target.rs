@@ -160,8 +160,8 @@ pub trait Target: Send {
         Err(TargetError::NoReset)
     }
 
-    /// Pose of a simulated robot that received the same bytes, in the world of [`Target::scene`].
-    fn ghost(&self) -> Option<MapPose> {
+    /// Ground truth of a simulated robot that received the same bytes, in the world of [`Target::scene`].
+    fn ghost(&self) -> Option<Truth> {
         None
     }
 
@@ -210,11 +210,11 @@ pub trait Ghost: Send {
     /// Why it cannot start.
     fn begin(&mut self) -> Result<(), TargetError>;
 
-    /// Advances to this instant \[us\]; returns the pose there.
+    /// Advances to this instant \[us\]; returns the ground truth there.
     ///
     /// # Errors
     /// Why it cannot go on.
-    fn advance_to(&mut self, until_us: u64) -> Result<MapPose, TargetError>;
+    fn advance_to(&mut self, until_us: u64) -> Result<Truth, TargetError>;
 
     /// Moves it to this pose.
     fn place(&mut self, standing: Standing);

@@ -1,6 +1,6 @@
 //! The session's lease of control, shared by the pages' connections: a page that is closed releases it.
 
-use rumbo_session::{Order, PageId, View};
+use rumbo_session::{Order, PageId, Seat, View};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 
@@ -19,6 +19,11 @@ impl Lease {
     /// Wakes its holder when control has changed hands.
     pub(crate) fn subscribe(&self) -> watch::Receiver<()> {
         self.changed.subscribe()
+    }
+
+    /// Whether this page has control, or may have it since nobody else has.
+    pub(crate) fn drives(&self, page: PageId) -> bool {
+        matches!(self.lock().view(page).seat, Seat::Driver | Seat::Free)
     }
 
     /// Admits a page; `None`: too many are open.

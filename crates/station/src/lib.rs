@@ -17,6 +17,7 @@ mod lease;
 pub mod log_file;
 pub mod port;
 mod recorder;
+mod recordings;
 mod replay;
 mod serve;
 mod session;

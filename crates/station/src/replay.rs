@@ -1,7 +1,8 @@
 //! Replays a log: the same board and page as a live session, with a playhead that can be moved.
 //!
-//! Nothing is sent to any robot: commands to one are answered with a note. Moving the playhead begins a new run on the
-//! board, so that pages discard what they had, and fills it with the [`BEFORE_MS`] before the new position.
+//! Nothing is sent to any robot: commands to one are answered with a note. Pages get what lies up to [`BEFORE_MS`]
+//! before and [`AHEAD_MS`] after the playhead, whose time is that of the state. Moved beyond that, it begins a new run on
+//! the board, so that pages discard what they had.
 
 mod ghost;
 mod speech;
@@ -18,8 +19,12 @@ use std::sync::Arc;
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
-/// How much before the playhead a page gets \[ms\]: the longest window of the plots that is quick to send.
-const BEFORE_MS: i64 = 60_000;
+/// How much before the playhead a page gets \[ms\].
+const BEFORE_MS: f64 = 300_000.0;
+/// How much after the playhead a page gets \[ms\]; both together are what board and page keep.
+const AHEAD_MS: f64 = 300_000.0;
+/// Rows that a page takes at once without losing some.
+const ROWS_AT_ONCE: usize = 250;
 /// Time between two moves of the playhead.
 const WAKE: Duration = Duration::from_millis(20);
 /// The same while paused.
@@ -36,6 +41,8 @@ pub(crate) struct Replay {
     /// Position of the playhead \[ms\].
     at_ms: f64,
     end_ms: f64,
+    /// From here on the pages have what is before the playhead \[ms\].
+    from_ms: f64,
     /// The first row, and the first reading, that are not on the board yet.
     next_row: usize,
     next_reading: usize,
@@ -65,6 +72,7 @@ impl Replay {
             orders,
             at_ms: 0.0,
             end_ms,
+            from_ms: 0.0,
             next_row: 0,
             next_reading: 0,
             speed,
@@ -89,7 +97,9 @@ impl Replay {
                 false => format!("the log ends early: {why}"),
             });
         }
-        self.seek(0.0);
+        // First where the playhead is: a page that comes now takes no sample for the present.
+        self.show();
+        self.begin_at(0.0);
         loop {
             let busy = self.ghost.as_ref().is_some_and(GhostReplay::at_work);
             let wait = match self.speed > 0.0 || busy {
@@ -159,7 +169,7 @@ impl Replay {
                     level: Level::Info,
                     text: "the ghost starts again where the robot is".into(),
                 }));
-                self.seek(self.at_ms);
+                self.begin_at(self.at_ms);
             }
             Err(why) => self.note(format!("the ghost: refused, {why}")),
         }
@@ -175,7 +185,7 @@ impl Replay {
             ghost.give_up();
             self.note(format!("the ghost: refused, {why}"));
         } else if behind && !ghost.is_behind(self.next_row) {
-            self.seek(self.at_ms);
+            self.begin_at(self.at_ms);
         }
     }
 
@@ -216,18 +226,31 @@ impl Replay {
         self.log.rows.partition_point(|row| row.t_ms as f64 <= t_ms)
     }
 
+    /// Moves the playhead; pages that have what is around it already only follow.
     fn seek(&mut self, t_ms: f64) {
+        let t_ms = t_ms.clamp(0.0, self.end_ms);
+        let missing = self
+            .row_after(t_ms + AHEAD_MS)
+            .saturating_sub(self.next_row);
+        let back = t_ms < self.at_ms;
+        if t_ms < self.from_ms || missing > ROWS_AT_ONCE || (back && self.speech.speaks()) {
+            self.begin_at(t_ms);
+        } else {
+            self.last = None;
+            self.advance(t_ms);
+        }
+    }
+
+    /// Begins a new run on the board, with what is around this time.
+    fn begin_at(&mut self, t_ms: f64) {
         self.at_ms = t_ms.clamp(0.0, self.end_ms);
         self.last = None;
         self.board.take(&Event::Run);
-        let from = self.row_after(self.at_ms - BEFORE_MS as f64);
-        self.next_row = self.row_after(self.at_ms);
-        self.put_rows(from..self.next_row);
-        let from = self.reading_after(self.at_ms - BEFORE_MS as f64);
-        self.next_reading = self.reading_after(self.at_ms);
-        self.put_readings(from..self.next_reading);
-        let from_ms = self.at_ms - BEFORE_MS as f64;
-        self.speech.seek(from_ms, self.at_ms, &self.board);
+        self.from_ms = self.at_ms - BEFORE_MS;
+        self.next_row = self.row_after(self.from_ms);
+        self.next_reading = self.reading_after(self.from_ms);
+        self.speech.seek(self.from_ms, self.from_ms, &self.board);
+        self.advance(self.at_ms);
     }
 
     /// To the next telemetry frame, or to the one before; the playhead stands there.
@@ -263,10 +286,15 @@ impl Replay {
 
     fn advance(&mut self, t_ms: f64) {
         self.at_ms = t_ms.min(self.end_ms);
-        let until = self.row_after(self.at_ms);
+        let ahead_ms = self.at_ms + AHEAD_MS;
+        // What a page keeps moves on with what it gets.
+        self.from_ms = self
+            .from_ms
+            .max(ahead_ms.min(self.end_ms) - BEFORE_MS - AHEAD_MS);
+        let until = self.row_after(ahead_ms);
         self.put_rows(self.next_row..until);
         self.next_row = until.max(self.next_row);
-        let until = self.reading_after(self.at_ms);
+        let until = self.reading_after(ahead_ms);
         self.put_readings(self.next_reading..until);
         self.next_reading = until.max(self.next_reading);
         self.speech.advance(self.at_ms, &self.board);
@@ -304,7 +332,7 @@ impl Replay {
     fn state_of_row(&self) -> State {
         let mut state = State::default();
         let row = self
-            .next_row
+            .row_after(self.at_ms)
             .checked_sub(1)
             .and_then(|last| self.log.rows.get(last));
         if let Some(row) = row {

@@ -8,6 +8,7 @@ use crate::error::{ServeError, SessionError};
 use crate::guard::{self, Guard};
 use crate::lease::Lease;
 use crate::recorder::Recording;
+use crate::recordings::Recordings;
 use crate::replay::Replay;
 use crate::session::{Driver, Extras, Orders};
 use crate::socket::Hub;
@@ -165,7 +166,10 @@ pub fn serve_with(
         echo,
         ..
     } = config;
-    start(at, move |board, orders| {
+    let recordings =
+        recording.map(|recording| Arc::new(Recordings::new(recording.folder, serve_replay)));
+    let shown = recordings.clone();
+    start(at, shown, move |board, orders| {
         let subscribers = Subscribers {
             board,
             echo: echo.and_then(Echo::start),
@@ -173,7 +177,7 @@ pub fn serve_with(
             bridge: config.bridge,
             recorder: None,
         };
-        Driver::new(target, subscribers, orders, speed, recording, extras).run()
+        Driver::new(target, subscribers, orders, speed, recordings, extras).run()
     })
 }
 
@@ -189,15 +193,22 @@ pub fn serve_log(
     log: Log,
     ghost: Option<Box<dyn Ghost>>,
 ) -> Result<Lab, ServeError> {
-    start(at, move |board, orders| {
+    start(at, None, move |board, orders| {
         Replay::new(name, log, board, orders, speed, ghost).run();
         Ok(())
     })
 }
 
+/// A replay beside a session, for this computer: paused at its beginning.
+fn serve_replay(name: String, log: Log) -> Result<(String, Box<dyn Send>), ServeError> {
+    let lab = serve_log(ServeAt::here(0), 0.0, name, log, None)?;
+    Ok((lab.url().to_owned(), Box::new(lab)))
+}
+
 /// Serves a board that `session` writes, in a thread of its own, until there are no more orders.
 fn start(
     at: ServeAt,
+    recordings: Option<Arc<Recordings>>,
     session: impl FnOnce(Arc<Board>, Orders) -> Result<(), TargetError> + Send + 'static,
 ) -> Result<Lab, ServeError> {
     guard::check_listen(at.address)?;
@@ -206,11 +217,12 @@ fn start(
         io::ErrorKind::AddrInUse => ServeError::PortInUse(at),
         _ => ServeError::Io(at, error),
     })?;
-    start_on(listener, session).map_err(|error| ServeError::Io(at, error))
+    start_on(listener, recordings, session).map_err(|error| ServeError::Io(at, error))
 }
 
 fn start_on(
     listener: TcpListener,
+    recordings: Option<Arc<Recordings>>,
     session: impl FnOnce(Arc<Board>, Orders) -> Result<(), TargetError> + Send + 'static,
 ) -> io::Result<Lab> {
     listener.set_nonblocking(true)?;
@@ -245,7 +257,8 @@ fn start_on(
             orders: orders.clone(),
             stop,
             lease: Lease::default(),
-            takes_programs: local,
+            local,
+            recordings,
         },
     );
     let runtime = tokio::runtime::Builder::new_current_thread()

@@ -5,7 +5,8 @@
 //! publish. Nothing waits for a page.
 
 use crate::log_file::LogError;
-use crate::recorder::{Recorder, Recording, now_utc};
+use crate::recorder::{Recorder, now_utc};
+use crate::recordings::Recordings;
 use crate::subscribers::Subscribers;
 use rumbo_log::{Level, Manifest};
 use rumbo_session::{
@@ -52,7 +53,7 @@ pub(crate) struct Driver {
     session: Session,
     subscribers: Subscribers,
     /// Where to record; nowhere in tests.
-    recording: Option<Recording>,
+    recordings: Option<Arc<Recordings>>,
     calibration: Option<Calibration>,
     orders: Orders,
     pace: Pace,
@@ -68,7 +69,7 @@ impl Driver {
         subscribers: Subscribers,
         orders: Orders,
         speed: f64,
-        recording: Option<Recording>,
+        recordings: Option<Arc<Recordings>>,
         extras: Extras,
     ) -> Self {
         let about = About::of(target.as_ref());
@@ -80,7 +81,7 @@ impl Driver {
             session: Session::new(about, random_id(), extras.text),
             target,
             subscribers,
-            recording,
+            recordings,
             calibration: extras.calibration,
             orders,
             pace: Pace::new(speed),
@@ -265,11 +266,12 @@ impl Driver {
 
     /// Begins the log of a run; the one before is complete.
     fn record(&mut self) {
-        let Some(recording) = &self.recording else {
+        let Some(recordings) = &self.recordings else {
             return;
         };
-        let (level, text) = match self.recorder(recording) {
+        let (level, text) = match self.recorder(recordings) {
             Ok(recorder) => {
+                recordings.set_current(recorder.path());
                 let text = format!("recording to {}", recorder.path().display());
                 self.subscribers.record(recorder);
                 (Level::Info, text)
@@ -280,7 +282,7 @@ impl Driver {
         self.publish();
     }
 
-    fn recorder(&self, recording: &Recording) -> Result<Recorder, LogError> {
+    fn recorder(&self, recordings: &Recordings) -> Result<Recorder, LogError> {
         let manifest = Manifest {
             version: env!("CARGO_PKG_VERSION").into(),
             baud: self.target.baud(),
@@ -288,7 +290,7 @@ impl Driver {
             started: Some(now_utc()),
             ..self.target.manifest()
         };
-        Recorder::in_folder(&recording.folder, &manifest)
+        Recorder::in_folder(recordings.folder(), &manifest)
     }
 }
 

@@ -9,6 +9,7 @@
 use crate::board::Board;
 use crate::guard::Role;
 use crate::lease::{Lease, Place};
+use crate::recordings::Recordings;
 use axum::body::Bytes;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use futures_util::stream::SplitSink;
@@ -45,14 +46,15 @@ pub(crate) struct Hub {
     pub(crate) orders: SyncSender<Order>,
     pub(crate) stop: Arc<AtomicBool>,
     pub(crate) lease: Lease,
-    /// Only this computer reaches the pages: a program dropped on one is taken.
-    pub(crate) takes_programs: bool,
+    /// Only this computer reaches the pages: they may hand in programs, and see and delete recordings.
+    pub(crate) local: bool,
+    pub(crate) recordings: Option<Arc<Recordings>>,
 }
 
 impl Hub {
     /// Longest message of a page \[bytes\].
     pub(crate) fn longest_message(&self) -> usize {
-        match self.takes_programs {
+        match self.local {
             true => MAX_ORDER,
             false => SHORT_ORDER,
         }
@@ -146,7 +148,7 @@ async fn take_orders(
             }
         };
         let admitted = match order {
-            Order::Program(..) if !hub.takes_programs => {
+            Order::Program(..) if !hub.local => {
                 Err("refused: a program is taken only where no other computer reaches the page")
             }
             _ => place.admit(&order),
@@ -253,7 +255,8 @@ mod tests {
             orders: std::sync::mpsc::sync_channel(1).0,
             stop: Arc::default(),
             lease: Lease::default(),
-            takes_programs: true,
+            local: true,
+            recordings: None,
         }
     }
 

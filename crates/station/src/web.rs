@@ -1,5 +1,7 @@
 //! The web server: the dashboard's files and its WebSocket, behind the [`Guard`].
 
+mod recordings;
+
 use crate::assets;
 use crate::guard::{Denied, Guard};
 use crate::socket::{self, Hub};
@@ -17,7 +19,8 @@ const SECURITY_HEADERS: [(HeaderName, HeaderValue); 7] = [
     (
         header::CONTENT_SECURITY_POLICY,
         HeaderValue::from_static(
-            "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; object-src 'none'",
+            // Blobs are pictures that the page itself made.
+            "default-src 'self'; img-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; object-src 'none'",
         ),
     ),
     (
@@ -48,6 +51,12 @@ pub(crate) fn router(guard: Arc<Guard>, hub: Hub) -> Router {
     Router::new()
         .route("/ws", get(upgrade))
         .route("/key", post(key))
+        .route("/recordings", get(recordings::list))
+        .route(
+            "/recordings/{name}",
+            get(recordings::content).delete(recordings::delete),
+        )
+        .route("/recordings/{name}/replay", post(recordings::replay))
         .fallback(file)
         .with_state(hub)
         .layer(middleware::from_fn_with_state(Arc::clone(&guard), admit))
@@ -77,11 +86,16 @@ async fn key(
     headers: HeaderMap,
 ) -> Result<String, Denied> {
     guard.check_origin(&headers)?;
+    guard
+        .key(bearer(&headers), uri.query().unwrap_or_default())
+        .map(str::to_owned)
+}
+
+/// The key that a request presents.
+fn bearer(headers: &HeaderMap) -> &str {
     let shown = headers.get(header::AUTHORIZATION);
     let shown = shown.and_then(|value| value.to_str().ok()?.strip_prefix("Bearer "));
-    guard
-        .key(shown.unwrap_or_default(), uri.query().unwrap_or_default())
-        .map(str::to_owned)
+    shown.unwrap_or_default()
 }
 
 async fn upgrade(

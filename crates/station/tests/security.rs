@@ -6,7 +6,7 @@ mod page;
 mod support;
 
 use page::*;
-use rumbo_station::{Lab, LabConfig, ServeAt, serve};
+use rumbo_station::{Lab, LabConfig, Recording, ServeAt, serve};
 use serde_json::{Value, json};
 use support::Toy;
 use tokio_tungstenite::tungstenite::Error;
@@ -247,4 +247,49 @@ fn an_address_that_is_everybodys_is_not_served() {
     let error = serve(config, Box::new(Toy::default())).unwrap_err();
     let said = error.to_string();
     assert!(said.contains("no such address"), "{said}");
+}
+
+#[test]
+fn recordings_are_for_a_page_that_may_drive_on_this_computer() {
+    let folder = tempfile::tempdir().unwrap();
+    let config = LabConfig {
+        at: ServeAt::here(0),
+        recording: Some(Recording {
+            folder: folder.path().to_owned(),
+        }),
+        ..LabConfig::default()
+    };
+    let lab = serve(config, Box::new(Toy::default())).unwrap();
+    let (host, watching, driving) = (host(&lab), redeem(&lab, lab.viewers_url()), open(&lab));
+    let status_of = |method: &str, target: &str, key: &str, origin: &str| {
+        let has = format!("Bearer {key}");
+        let headers = [
+            ("Host", host.as_str()),
+            ("Origin", origin),
+            ("Authorization", &has),
+        ];
+        status(&ask(&host, method, target, &headers)).to_owned()
+    };
+    let own = format!("http://{host}");
+    assert_eq!(status_of("GET", "/recordings", &driving, &own), "200");
+    for (key, origin) in [
+        (watching.as_str(), own.as_str()),
+        ("", &own),
+        (&driving, "http://evil.example"),
+    ] {
+        for (method, target) in [
+            ("GET", "/recordings"),
+            ("GET", "/recordings/a"),
+            ("POST", "/recordings/a/replay"),
+            ("DELETE", "/recordings/a?page=1"),
+        ] {
+            let status = status_of(method, target, key, origin);
+            assert_eq!(status, "403", "{method} {target} {origin}");
+        }
+    }
+    // No page is open, so none has control.
+    assert_eq!(
+        status_of("DELETE", "/recordings/a?page=1", &driving, &own),
+        "403"
+    );
 }

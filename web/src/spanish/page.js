@@ -50,6 +50,17 @@ export const PAGE = {
   '+ − 0, arrow keys': '+ − 0, flechas', 'in the map: zoom, fit, move, and Enter picks the point in the middle; in the plots: zoom and move in time':
     'en el mapa: ampliar, ajustar, mover, e Intro elige el punto del centro; en las gráficas: ampliar y mover en el tiempo',
   'fingers': 'dedos', 'map and plots: one moves, two zoom': 'mapa y gráficas: uno mueve, dos amplían',
+  'Show the first steps': 'Ver los primeros pasos',
+  // The first steps, and panels.
+  'First steps': 'Primeros pasos', 'Done': 'Listo', 'step {} of {}': 'paso {} de {}',
+  'This is the robot from above, in a simulation: nothing can break. The cones are what its sonars see.': 'Este es el robot visto desde arriba, en una simulación: nada se puede romper. Los conos son lo que ven sus sonares.',
+  'Press ON: the robot starts the chosen mode. STOP, or the space bar, releases the wheels at any time.': 'Pulsa ON: el robot empieza el modo elegido. PARAR, o la barra espaciadora, suelta las ruedas en cualquier momento.',
+  'Enter another setpoint and press Set. In the plot the thick curve follows the dashed line.': 'Escribe otra referencia y pulsa Fijar. En la gráfica la curva gruesa sigue a la línea de trazos.',
+  'This menu has other experiments, each with its own world. ⤢ enlarges a panel, ? explains keys and colours.': 'Este menú tiene otros experimentos, cada uno con su mundo. ⤢ amplía un panel, ? explica teclas y colores.',
+  'Figures of the running step': 'Medidas del escalón en curso', 'rise': 'subida', 'overshoot': 'sobreoscilación', 'settling': 'asentamiento', 'steady error': 'error permanente',
+  'From 10 % to 90 % of the step': 'Del 10 % al 90 % del escalón', 'Beyond the setpoint, in the direction of the step': 'Más allá de la referencia, en el sentido del escalón',
+  'Until it stays within 5 % of the step; for speeds, 3.2 rpm': 'Hasta que se queda a menos del 5 % del escalón; en velocidades, 3,2 rpm', 'Mean error of the last 40 % of the step so far': 'Error medio del último 40 % del escalón hasta ahora',
+  'Enlarge the panel': 'Ampliar el panel', 'Put the panel back (Escape)': 'Devolver el panel a su sitio (Escape)',
   // One's own program.
   'starts again when it is saved': 'empieza de nuevo al guardarlo', 'Errors of the compiler': 'Errores del compilador', 'compiling…': 'compilando…', 'does not compile': 'no compila', 'program runs': 'programa en marcha',
   'The robot is switched off until the program compiles. Correct it and save.': 'El robot está apagado hasta que el programa compile. Corrígelo y guárdalo.',
@@ -69,7 +80,15 @@ export const PAGE = {
   'the ghost: a simulated robot that gets the same commands': 'el fantasma: un robot simulado que recibe las mismas órdenes',
   'pink': 'rosa', 'goal, route, mark': 'destino, ruta, marca', 'red cone': 'cono rojo', 'a sonar without a reading': 'un sonar sin lectura',
   'grey page': 'página gris', 'what is shown is old: the link or the station is silent': 'lo que se ve es viejo: el enlace o la estación callan',
+  // Recordings.
+  'Recordings': 'Grabaciones', 'Recordings of this computer: find, open, compare, delete': 'Grabaciones de este ordenador: buscar, abrir, comparar, borrar', 'scenario, robot, date': 'escenario, robot, fecha',
+  'Compare': 'Comparar', 'compare': 'comparar', 'recording': 'grabación', 'duration': 'duración', 'size': 'tamaño', 'actions': 'acciones', 'find': 'buscar', '{} of {} recordings': '{} de {} grabaciones', 'no recordings': 'no hay grabaciones',
+  'Choose two recordings to compare': 'Elige dos grabaciones para compararlas', 'a real robot': 'un robot real', 'not readable': 'ilegible', 'Compare {}': 'Comparar {}', 'Open|replay': 'Abrir',
+  'Show it as a replay, in a page of its own': 'La muestra en una página aparte', 'being recorded': 'grabándose', 'Delete this recording': 'Borra esta grabación', 'Delete for good': 'Borrar para siempre', 'Keep': 'Conservar',
+  'signal': 'señal', 'metric': 'medida', 'parameter that differs': 'parámetro distinto', 'never': 'nunca', 'the two have no signal in common': 'las dos no tienen ninguna señal en común',
   // Replay.
+  'whole log': 'toda', 'Follow': 'Seguir', 'ghost l.': 'fantasma izq.', 'ghost r.': 'fantasma der.', 'ghost front': 'fantasma frontal', 'ghost range, left sonar': 'distancia del fantasma, sonar izquierdo', 'ghost range, right sonar': 'distancia del fantasma, sonar derecho',
+  'ghost range, front sonar': 'distancia del fantasma, sonar frontal', 'ghost speed, left wheel': 'velocidad del fantasma, rueda izquierda', 'ghost speed, right wheel': 'velocidad del fantasma, rueda derecha',
   'Replay': 'Grabación', 'The log that is shown': 'La grabación que se muestra', 'Play': 'Reproducir', 'Pause': 'Pausa',
   'Play or pause (K)': 'Reproducir o pausar (K)', 'One telemetry frame back (comma)': 'Una trama de telemetría atrás (coma)', 'One frame back': 'Una trama atrás',
   'One telemetry frame on (full stop)': 'Una trama de telemetría adelante (punto)', 'One frame on': 'Una trama adelante',
@@ -87,7 +106,7 @@ export const PAGE = {
   'no reading': 'sin lectura', 'clear|sonar': 'libre', 'Clear fault': 'Borrar fallo',
   // Commands.
   'Commands': 'Órdenes', 'Mode': 'Modo', 'Arm and start the mode': 'Arma el robot y empieza el modo', 'Stop the mode and disarm': 'Detiene el modo y desarma',
-  'Switch OFF first': 'Primero OFF', 'Scenario {}': 'Escenario {}',
+  'Switch OFF first': 'Primero OFF', 'Load a scenario of this mode': 'Cargar un escenario de este modo',
   'Start the simulation again with an experiment of this mode: its world, its sonars': 'Empieza la simulación de nuevo con un experimento de este modo: su mundo, sus sonares', 'setpoint': 'referencia', 'Set': 'Fijar', 'now {} cm': 'ahora {} cm', 'now {} rpm': 'ahora {} rpm', '{} to {} {}': 'de {} a {} {}', 'a number': 'un número', 'a number from {} to {}': 'un número de {} a {}',
   'left': 'izq.', 'right': 'der.', 'front': 'frontal', 'both': 'ambas',
   'Open loop by PWM, or closed loop by speed': 'Lazo abierto por PWM, o lazo cerrado por velocidad', 'pivot on': 'pivote', 'L|wheel': 'I', 'R|wheel': 'D', 'level': 'nivel',
@@ -120,7 +139,8 @@ export const PAGE = {
   'distance': 'distancia', 'wheels': 'ruedas', 'position': 'posición', 'of 255': 'de 255', 'lock': 'fijar',
   'Hold the limits of the axis': 'Mantiene los límites del eje', 'Signals, axis and picture of this plot': 'Señales, eje e imagen de esta gráfica',
   'Change the plot {}': 'Cambiar la gráfica {}', 'New plot': 'Gráfica nueva', 'Plot': 'Gráfica', 'Remove plot': 'Quitar gráfica', 'title': 'título', 'y min': 'y mín.', 'y max': 'y máx.', 'right axis: y min': 'eje derecho: y mín.', 'These have the axis on the right': 'Estas tienen el eje a la derecha',
-  'empty = auto': 'vacío = automático', 'Save what is seen of this plot as {}': 'Guarda lo que se ve de esta gráfica como {}', 'choose a signal at least': 'elige al menos una señal',
+  'empty = auto': 'vacío = automático', 'Save this plot as {}': 'Guarda esta gráfica como {}', 'Print this plot, or save it as PDF': 'Imprime esta gráfica, o la guarda como PDF', 'figure': 'figura', 'from': 'desde', 'width': 'ancho', 'height': 'alto',
+  'a figure goes from a time to a later one, and is 40 to 400 mm wide and 30 to 400 mm high': 'una figura va de un tiempo a otro posterior, y mide de 40 a 400 mm de ancho y de 30 a 400 mm de alto', 'choose a signal at least': 'elige al menos una señal',
   'give y min and y max, min below max, or leave both empty': 'da y mín. e y máx., el mínimo por debajo del máximo, o deja ambos vacíos', 'time [s]': 'tiempo [s]', 'Close': 'Cerrar',
   'true l.': 'real izq.', 'true r.': 'real der.', 'true front': 'real frontal', 'set l.': 'ref. izq.', 'set r.': 'ref. der.', 'true': 'real',
   'true x': 'x real', 'true y': 'y real', 'goal y': 'destino y', 'left − right': 'izq. − der.', 'error l.': 'error izq.', 'error r.': 'error der.', 'error': 'error', 'servo': 'servo',

@@ -22,6 +22,11 @@ export const ROBOT = {
   'straight lines': 'líneas rectas',
   // Values of parameters.
   'yes': 'sí', 'no': 'no', 'straight': 'línea recta y giros',
+  // Recordings.
+  'no recording has this name; load the list again': 'ninguna grabación tiene este nombre; carga la lista otra vez', 'it is being recorded: it can be deleted when it has ended': 'se está grabando: se puede borrar cuando termine',
+  'it is no log of Rumbo: delete it by hand': 'no es una grabación de Rumbo: bórrala a mano', '{}; check the permissions of the folder': '{}; revisa los permisos de la carpeta',
+  'recordings are shown only where no other computer reaches the page': 'las grabaciones solo se muestran donde ningún otro ordenador llega a la página', 'nothing is recorded here': 'aquí no se graba nada',
+  'another page has control; take it first': 'otra página tiene el control; tómalo primero', 'a fault of the program; please report it': 'un fallo del programa; por favor, comunícalo',
   // Rigs.
   'front single': 'un frontal', 'front pair': 'dos frontales', 'side pair left': 'dos a la izquierda', 'side pair right': 'dos a la derecha', 'final': 'final',
   // States.

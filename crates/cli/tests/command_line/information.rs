@@ -18,15 +18,21 @@ fn every_subcommand_shows_an_example_in_its_help() {
 #[test]
 fn list_names_what_there_is() {
     let all = stdout(&rumbo(&["list"]));
-    for name in [
-        "mode1",
-        "manual-turn-left",
-        "wall_front",
-        "memoria",
-        "front_distance",
-    ] {
+    for name in ["mode1", "wall_front", "memoria", "front_distance"] {
         assert!(all.contains(name), "{name} is not in\n{all}");
     }
+    let widest = all.lines().map(|line| line.chars().count()).max();
+    assert!(
+        all.lines().count() <= 35 && widest <= Some(100),
+        "more than a screen:\n{all}"
+    );
+    let scenarios = stdout(&rumbo(&["list", "scenarios"]));
+    let (_, movements) = scenarios.split_once("\nMovements\n").unwrap();
+    assert!(movements.contains("manual-turn-left"), "{scenarios}");
+    assert!(
+        scenarios.contains("\nMode 1: front distance\n  mode1 "),
+        "{scenarios}"
+    );
     let json: serde_json::Value =
         serde_json::from_str(&stdout(&rumbo(&["list", "robots", "--json"]))).unwrap();
     assert_eq!(json["robots"][0]["name"], "memoria");

@@ -2,6 +2,7 @@
 //!
 //! ```toml
 //! title = "Stop at a distance from a wall"
+//! group = "Mode 1"       # in lists of scenarios; may be missing
 //! robot = "memoria"      # a built-in name, or the path of a file beside this one
 //! rig = "front_single"
 //! world = "wall_front"
@@ -45,6 +46,8 @@ pub struct ScenarioFile {
     pub path: Option<String>,
     /// One line for people.
     pub title: String,
+    /// Its heading in lists of scenarios.
+    pub group: Option<String>,
     /// The text it was read from, kept for the log's manifest.
     pub text: String,
     /// Name of the robot, or path of its file.
@@ -168,6 +171,7 @@ impl ScenarioFile {
             title: root
                 .required_text("title", "one line that says what the experiment is")
                 .value,
+            group: root.text("group").map(|group| group.value),
             text: text.into(),
             robot: root
                 .required_text("robot", "name of a robot, e.g. \"memoria\"")

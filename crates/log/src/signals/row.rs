@@ -1,7 +1,7 @@
 //! A sample as it is shown and recorded: one number per signal, small enough to keep an hour of them.
 
-use super::{COLUMNS, Sample};
-use crate::scene::MapPose;
+use super::{COLUMNS, GHOST, Sample, ghost_values};
+use crate::scene::{MapPose, Truth};
 use serde::Serialize;
 use std::sync::LazyLock;
 
@@ -126,6 +126,14 @@ impl Row {
         ];
         for (name, value) in parts {
             self.set(&format!("{whose}{name}"), value);
+        }
+    }
+
+    /// Sets the ghost's signals; `None`: they are not known.
+    pub fn set_ghost(&mut self, truth: Option<&Truth>) {
+        let values = truth.map_or([f64::NAN; GHOST.len()], ghost_values);
+        for (name, value) in GHOST.into_iter().zip(values) {
+            self.set(name, value);
         }
     }
 

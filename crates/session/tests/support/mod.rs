@@ -6,7 +6,7 @@
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamError, ParamId, Params, SCHEMA};
 use rumbo_control::{AgedRange, Duty, Pose, Range, Wheels};
-use rumbo_log::{Choice, MapPose, Obstacle, Scene, SonarMount, Truth};
+use rumbo_log::{Choice, Experiment, MapPose, Obstacle, Scene, SonarMount, Truth};
 use rumbo_session::{Abilities, Target, TargetError};
 use rumbo_wire::{
     Ack, Command, Decoder, Event, EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received,
@@ -331,8 +331,10 @@ impl Target for Toy {
         };
         Some(Scene {
             choice: self.choice.clone(),
-            scenarios: vec!["toy".into()],
-            experiments: Vec::new(),
+            experiments: vec![Experiment {
+                name: "toy".into(),
+                ..Experiment::default()
+            }],
             worlds: vec!["wall".into()],
             rigs: vec!["final".into()],
             rig: "final".into(),

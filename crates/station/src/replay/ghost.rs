@@ -2,7 +2,7 @@
 //! pose, and continues. That takes a while for a long log and is done in slices: what is not known yet is not shown,
 //! and nothing blocks.
 
-use rumbo_log::{Log, MapPose, Row, compose};
+use rumbo_log::{Log, Row, compose};
 use rumbo_session::{Ghost, Standing, TargetError};
 use std::time::{Duration, Instant};
 
@@ -10,14 +10,6 @@ use std::time::{Duration, Instant};
 const SLICE: Duration = Duration::from_millis(12);
 /// It is advanced by this much between two checks of the time \[us\].
 const STEP_US: u64 = 500_000;
-
-/// Prefix of its pose among the signals.
-const GHOST: &str = "ghost_";
-const UNKNOWN: MapPose = MapPose {
-    x_m: f64::NAN,
-    y_m: f64::NAN,
-    heading_rad: f64::NAN,
-};
 
 /// A restart in progress.
 struct Work {
@@ -59,7 +51,7 @@ impl GhostReplay {
         let standing = standing(last).ok_or(TargetError::NoPose)?;
         self.ghost.begin()?;
         for row in later {
-            row.set_pose(GHOST, UNKNOWN);
+            row.set_ghost(None);
         }
         self.work = Some(Work {
             put: Some((to_us(last.t_ms), standing)),
@@ -87,7 +79,7 @@ impl GhostReplay {
             match log.rows.get_mut(work.next_row) {
                 Some(row) => {
                     let at = self.ghost.advance_to(to_us(row.t_ms))?;
-                    row.set_pose(GHOST, at);
+                    row.set_ghost(Some(&at));
                     work.next_row += 1;
                 }
                 None => self.work = None,

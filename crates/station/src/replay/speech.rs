@@ -32,6 +32,11 @@ impl Speech {
         Self { said, next: 0 }
     }
 
+    /// Whether there is any.
+    pub(super) fn speaks(&self) -> bool {
+        !self.said.is_empty()
+    }
+
     fn after(&self, t_ms: f64) -> usize {
         self.said.partition_point(|(at_ms, ..)| *at_ms <= t_ms)
     }

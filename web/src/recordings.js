@@ -1,0 +1,151 @@
+// @ts-check
+/** The recordings of this computer: find one, open it as a replay, compare two, delete. */
+import { Comparison } from './comparison.js';
+import { complaint, dialog } from './dialog.js';
+import { create, element, setText } from './dom.js';
+import { ask } from './key.js';
+import { language, said, t } from './text.js';
+import { format } from './units.js';
+
+/** @typedef {import('./types.js').Recording} Recording */
+
+export class Recordings {
+  #dialog = dialog('recordings-dialog', t('Recordings'));
+  #find = create('input', { type: 'search', id: 'recordings-find', placeholder: t('scenario, robot, date') });
+  #compare = create('button', { type: 'button', textContent: t('Compare') });
+  #rows = create('tbody');
+  #none = create('p', { className: 'hint' });
+  #complaint = complaint();
+  #comparison = new Comparison();
+  /** @type {Recording[]} */
+  #list = [];
+  /** Names of those to compare, the one chosen last at the end. @type {string[]} */
+  #chosen = [];
+  /** The number of this page, which has to be in control to delete. */
+  page = 0;
+  /** Titles of scenarios by their names. @type {Map<string, string>} */
+  titles = new Map();
+  /** @type {() => import('./types.js').ModeEntry[]} */
+  #modes;
+
+  /** @param {() => import('./types.js').ModeEntry[]} modes */
+  constructor(modes) {
+    this.#modes = modes;
+    const head = create('thead', {}, create('tr', {}, ...[t('compare'), t('recording'), t('actions'), t('duration'), t('size'), t('seed')].map((textContent) => create('th', { textContent, scope: 'col' }))));
+    const find = create('label', {}, `${t('find')} `, this.#find);
+    this.#dialog.body.append(
+      create('div', { className: 'row' }, find, create('span', { className: 'spacer' }), this.#compare),
+      this.#complaint, create('div', { className: 'scroll recordings', tabIndex: 0 }, create('table', {}, head, this.#rows)), this.#none, this.#comparison.body,
+    );
+    this.#find.addEventListener('input', () => this.#show());
+    this.#compare.addEventListener('click', () => this.#try(() => this.#compareChosen()));
+    element('recordings', HTMLButtonElement).addEventListener('click', () => this.open());
+  }
+
+  open() {
+    this.#comparison.clear();
+    this.#dialog.open();
+    return this.#try(() => this.#load());
+  }
+
+  async #load() {
+    this.#list = JSON.parse(await ask('/recordings'));
+    const names = this.#list.map(({ name }) => name);
+    this.#chosen = this.#chosen.filter((name) => names.includes(name));
+    this.#show();
+  }
+
+  /** Says what went wrong. @param {() => Promise<void>} work */
+  async #try(work) {
+    setText(this.#complaint, '');
+    try {
+      await work();
+    } catch (error) {
+      setText(this.#complaint, said(error instanceof Error ? error.message : String(error)));
+    }
+  }
+
+  #show() {
+    const wanted = this.#find.value.trim().toLowerCase();
+    const found = this.#list.filter((each) => this.#words(each).toLowerCase().includes(wanted));
+    this.#rows.replaceChildren(...found.map((each) => this.#row(each)));
+    setText(this.#none, found.length > 0 ? t('{} of {} recordings', found.length, this.#list.length) : t('no recordings'));
+    this.#compare.disabled = this.#chosen.length !== 2;
+    this.#compare.title = t('Choose two recordings to compare');
+  }
+
+  /** What a recording is found by. @param {Recording} recording */
+  #words(recording) {
+    return [recording.name, this.#title(recording), recording.robot ?? '', when(recording)].join(' ');
+  }
+
+  /** @param {Recording} recording */
+  #title({ scenario, readable }) {
+    const title = this.titles.get(scenario ?? '');
+    return title ? said(title).replaceAll('->', '→') : scenario ?? (readable ? t('a real robot') : t('not readable'));
+  }
+
+  /** @param {Recording} recording */
+  #row(recording) {
+    const { name, seed, duration_s, bytes, open, readable } = recording;
+    const box = create('input', { type: 'checkbox', checked: this.#chosen.includes(name), disabled: !readable || open });
+    box.setAttribute('aria-label', t('Compare {}', name));
+    box.addEventListener('change', () => {
+      this.#chosen = [...this.#chosen.filter((each) => each !== name), ...(box.checked ? [name] : [])].slice(-2);
+      this.#show();
+    });
+    const show = create('button', { type: 'button', textContent: t('Open|replay'), disabled: !readable, title: t('Show it as a replay, in a page of its own') });
+    show.addEventListener('click', () => this.#replay(name));
+    return create('tr', { title: name },
+      create('td', {}, box), create('td', { className: 'wrap' }, this.#title(recording), create('span', { className: 'hint', textContent: when(recording) })),
+      create('td', {}, show, ...(open ? [create('span', { className: 'chip', textContent: t('being recorded') })] : readable ? [this.#deleteButton(name)] : [])),
+      create('td', { textContent: readable ? `${format(duration_s)} s` : '' }), create('td', { textContent: `${format(bytes / 1e6)} MB` }), create('td', { textContent: seed === null ? '' : String(seed) }));
+  }
+
+  /** Asks before it deletes. @param {string} name */
+  #deleteButton(name) {
+    const first = create('button', { type: 'button', textContent: t('Delete'), title: t('Delete this recording') });
+    const sure = create('button', { type: 'button', className: 'bad', textContent: t('Delete for good') });
+    const keep = create('button', { type: 'button', textContent: t('Keep') });
+    const asked = create('span', { className: 'row', hidden: true }, sure, keep);
+    const offer = (/** @type {boolean} */ question) => {
+      first.hidden = question;
+      asked.hidden = !question;
+      (question ? keep : first).focus();
+    };
+    first.addEventListener('click', () => offer(true));
+    keep.addEventListener('click', () => offer(false));
+    sure.addEventListener('click', () => this.#try(async () => {
+      await ask(`/recordings/${encodeURIComponent(name)}?page=${this.page}`, 'DELETE');
+      await this.#load();
+    }));
+    return create('span', {}, first, asked);
+  }
+
+  /** @param {string} name */
+  #replay(name) {
+    // At once: what opens later, browsers take for an advertisement.
+    const tab = window.open('about:blank', '_blank');
+    return this.#try(async () => {
+      try {
+        const url = await ask(`/recordings/${encodeURIComponent(name)}/replay`, 'POST');
+        if (tab) tab.location.href = url;
+        else location.href = url;
+      } catch (error) {
+        tab?.close();
+        throw error;
+      }
+    });
+  }
+
+  async #compareChosen() {
+    const contents = await Promise.all(this.#chosen.map(async (name) => JSON.parse(await ask(`/recordings/${encodeURIComponent(name)}`))));
+    this.#comparison.show(contents, this.#modes());
+  }
+}
+
+/** When it was made, as people of the page's language write it. @param {Recording} recording */
+function when({ started, written_s }) {
+  const at = started ? new Date(started) : new Date(written_s * 1_000);
+  return at.toLocaleString(language === 'en' ? 'en-GB' : language, { dateStyle: 'medium', timeStyle: 'short' });
+}

@@ -1,0 +1,45 @@
+// @ts-check
+/** Spanish of the titles and groups of the built-in scenarios. */
+
+/** @type {Record<string, string>} */
+export const SCENARIOS = {
+  // Groups.
+  'Calibration': 'Calibración', 'Free driving': 'Conducción libre', 'Mode 1: front distance': 'Modo 1: distancia', 'Mode 2: front align': 'Modo 2: alinear',
+  'Mode 3: wall hold': 'Modo 3: mantener pared', 'Mode 4: wall follow': 'Modo 4: seguir pared', 'Mode 5: wheel speed': 'Modo 5: velocidad',
+  'Mode 6: straight line': 'Modo 6: línea recta', 'Mode 7: waypoints': 'Modo 7: ruta', 'Mode 8: mission': 'Modo 8: misión', 'Motors': 'Motores', 'Movements': 'Movimientos',
+  // Titles.
+  'A robot beside a wall, to be calibrated': 'Un robot junto a una pared, para calibrarlo',
+  'Free driving in a room with boxes': 'Conducción libre en una habitación con cajas',
+  'Stop at a distance from a wall, 107 -> 30 -> 50 cm': 'Parar a una distancia de una pared, 107 -> 30 -> 50 cm',
+  'Stop at a distance from a wall, 107 -> 30 -> 50 cm, on the final rig': 'Parar a una distancia de una pared, 107 -> 30 -> 50 cm, con el montaje final',
+  'Stop square to a wall, 119 -> 30 -> 50 -> 15 -> 25 cm': 'Parar perpendicular a una pared, 119 -> 30 -> 50 -> 15 -> 25 cm',
+  'Stop square to a wall, 119 -> 30 -> 50 -> 15 -> 25 cm, one sonar on the servo': 'Parar perpendicular a una pared, 119 -> 30 -> 50 -> 15 -> 25 cm, un sonar en el servo',
+  'Follow a wall at the distance of the start, 57.5 cm, 27 s': 'Seguir una pared a la distancia inicial, 57,5 cm, 27 s',
+  'Follow a wall at the distance of the start, 57.5 cm, 27 s, one sonar': 'Seguir una pared a la distancia inicial, 57,5 cm, 27 s, un sonar',
+  'Follow a wall at the distance of the start, 57.5 cm, 27 s, on the right': 'Seguir una pared a la distancia inicial, 57,5 cm, 27 s, a la derecha',
+  'Follow a wall at 50, 30 and 40 cm, from 59 cm': 'Seguir una pared a 50, 30 y 40 cm, desde 59 cm',
+  'Follow a wall at 50, 30 and 40 cm, from 59 cm, one sonar': 'Seguir una pared a 50, 30 y 40 cm, desde 59 cm, un sonar',
+  'Follow a wall at 50, 30 and 40 cm, from 59 cm, on the right': 'Seguir una pared a 50, 30 y 40 cm, desde 59 cm, a la derecha',
+  'Wheel speeds 60, 50, 100, 70, 0, -100, -50, 0, 40 rpm': 'Velocidades de rueda 60, 50, 100, 70, 0, −100, −50, 0, 40 rpm',
+  'Reversal at speed, 70 -> -100 -> 70 rpm': 'Inversión en marcha, 70 -> −100 -> 70 rpm',
+  'Straight on at 40 rpm for 23.5 s, calibrated': 'En línea recta a 40 rpm durante 23,5 s, calibrado',
+  'A square of 1 m, once': 'Un cuadrado de 1 m, una vez', 'A square of 1 m without end': 'Un cuadrado de 1 m sin fin',
+  'Pure pursuit on a curve of 3 m': 'Persecución pura por una curva de 3 m', 'Pure pursuit on a straight line of 3 m': 'Persecución pura por una recta de 3 m',
+  'The goals (1, 1), (0.5, -0.5), (0.5, -0.5), (-1, -1), one after the other': 'Los destinos (1, 1), (0,5, −0,5), (0,5, −0,5), (−1, −1), uno tras otro',
+  'A lane of boxes': 'Un carril de cajas', 'To (2.5, 0) around a box and a block of two': 'A (2,5, 0) rodeando una caja y un bloque de dos',
+  'A goal in a random world': 'Un destino en un mundo aleatorio',
+  'Forward, open loop': 'Adelante, en lazo abierto', 'Forward, at 60 rpm': 'Adelante, a 60 rpm', 'Backward, open loop': 'Atrás, en lazo abierto', 'Backward, at 60 rpm': 'Atrás, a 60 rpm',
+  'Turn left about the centre, open loop': 'Giro a la izquierda sobre el centro, en lazo abierto', 'Turn left about the centre, at 60 rpm': 'Giro a la izquierda sobre el centro, a 60 rpm',
+  'Turn right about the centre, open loop': 'Giro a la derecha sobre el centro, en lazo abierto', 'Turn right about the centre, at 60 rpm': 'Giro a la derecha sobre el centro, a 60 rpm',
+  'Forward along an arc to the left, open loop': 'Adelante en arco a la izquierda, en lazo abierto', 'Forward along an arc to the left, at 60 rpm': 'Adelante en arco a la izquierda, a 60 rpm',
+  'Forward along an arc to the right, open loop': 'Adelante en arco a la derecha, en lazo abierto', 'Forward along an arc to the right, at 60 rpm': 'Adelante en arco a la derecha, a 60 rpm',
+  'Backward along an arc to the left, open loop': 'Atrás en arco a la izquierda, en lazo abierto', 'Backward along an arc to the right, open loop': 'Atrás en arco a la derecha, en lazo abierto',
+  'Pivot about the left wheel, forward, open loop': 'Giro sobre la rueda izquierda, adelante, en lazo abierto', 'Pivot about the left wheel, backward, open loop': 'Giro sobre la rueda izquierda, atrás, en lazo abierto',
+  'Pivot about the right wheel, forward, open loop': 'Giro sobre la rueda derecha, adelante, en lazo abierto', 'Pivot about the right wheel, backward, open loop': 'Giro sobre la rueda derecha, atrás, en lazo abierto',
+  'Asymmetry of the wheels, forward, in the air': 'Asimetría de las ruedas, adelante, en el aire', 'Asymmetry of the wheels, backward, in the air': 'Asimetría de las ruedas, atrás, en el aire',
+  'Speed over PWM in the air, forward': 'Velocidad según la PWM en el aire, adelante', 'Speed over PWM in the air, backward': 'Velocidad según la PWM en el aire, atrás',
+  'Speed over PWM on the floor, forward': 'Velocidad según la PWM en el suelo, adelante', 'Speed over PWM on the floor, backward': 'Velocidad según la PWM en el suelo, atrás',
+  'Dead zone on the floor, forward': 'Zona muerta en el suelo, adelante', 'Dead zone on the floor, backward': 'Zona muerta en el suelo, atrás',
+  'Dead zone of the left wheel, forward, in the air': 'Zona muerta de la rueda izquierda, adelante, en el aire', 'Dead zone of the left wheel, backward, in the air': 'Zona muerta de la rueda izquierda, atrás, en el aire',
+  'Dead zone of the right wheel, forward, in the air': 'Zona muerta de la rueda derecha, adelante, en el aire', 'Dead zone of the right wheel, backward, in the air': 'Zona muerta de la rueda derecha, atrás, en el aire',
+};

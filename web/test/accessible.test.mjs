@@ -1,0 +1,75 @@
+// @ts-check
+/** What axe finds on the pages: nothing serious, in both colour schemes. */
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { pathToFileURL } from 'node:url';
+import { folder, open, program } from './dashboard.mjs';
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+/** Serious violations, with the elements. @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
+async function violations(page) {
+  await page.evaluate(AXE);
+  return page.evaluate(async () => {
+    const { violations } = await /** @type {any} */ (window).axe.run(document);
+    return violations.filter((/** @type {any} */ { impact }) => ['serious', 'critical'].includes(impact))
+      .flatMap((/** @type {any} */ { id, nodes }) => nodes.map((/** @type {any} */ node) => `${id}: ${node.html.slice(0, 140)} ${node.any[0]?.message ?? node.failureSummary ?? ''}`));
+  });
+}
+
+for (const colorScheme of /** @type {const} */ (['dark', 'light'])) {
+  test(`dashboard, first steps, recordings and replay, ${colorScheme}`, async () => {
+    const out = folder();
+    execFileSync(program(), ['run', 'mode1', '--seed', '1', '--out', out], { stdio: 'ignore' });
+    const dashboard = await open(['lab', '--out', out], { colorScheme, viewport: { width: 1280, height: 800 } }, true);
+    try {
+      const { page } = dashboard;
+      await page.waitForSelector('#connection.good');
+      await page.locator('#parameters input').first().waitFor();
+      await page.locator('#tour').waitFor();
+      assert.deepEqual(await violations(page), [], 'first steps');
+      await page.getByRole('button', { name: 'Skip' }).click();
+      await page.locator('#on').click();
+      for (const name of ['Events', 'States', 'Link', 'Bytes']) {
+        await page.getByRole('tab', { name }).click();
+        assert.deepEqual(await violations(page), [], name);
+      }
+      await page.getByRole('tab', { name: 'Events' }).click();
+      await page.locator('#help').click();
+      assert.deepEqual(await violations(page), [], 'help');
+      await page.keyboard.press('Escape');
+      await page.locator('#recordings').click();
+      await page.locator('.recordings td').first().waitFor();
+      assert.deepEqual(await violations(page), [], 'recordings');
+    } finally {
+      await dashboard.close();
+    }
+    const replay = await open(['replay', join(out, 'mode1-1.mcap')], { colorScheme });
+    try {
+      await replay.page.locator('#parameters input').first().waitFor();
+      assert.deepEqual(await violations(replay.page), [], 'replay');
+    } finally {
+      await replay.close();
+    }
+  });
+}
+
+test('the report', async () => {
+  const out = folder();
+  execFileSync(program(), ['experiments', '--only', 'mode1', '--out', out], { stdio: 'ignore' });
+  const dashboard = await open(['lab', '--out', out]);
+  try {
+    const { page } = dashboard;
+    for (const colorScheme of /** @type {const} */ (['dark', 'light'])) {
+      await page.emulateMedia({ colorScheme });
+      await page.goto(pathToFileURL(join(out, 'report.html')).href);
+      assert.deepEqual(await violations(page), [], colorScheme);
+    }
+  } finally {
+    await dashboard.close();
+  }
+});
