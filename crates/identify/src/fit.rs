@@ -3,9 +3,11 @@
 //!
 //! The search is seeded and its objective has no randomness: the same logs and robot give the same parameters.
 
+use crate::contradiction;
 use crate::error::IdentifyError;
 use crate::log::{DriveLog, Seen};
 use crate::problem::{Problem, UNKNOWNS, dead_zone_pwm};
+use crate::replay::Nuisance;
 use crate::score::{RunScore, score};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::{DMatrix, DVector};
@@ -15,6 +17,10 @@ use serde::Serialize;
 /// Generations of the global search that suffice for runs of half a minute.
 pub const GENERATIONS: usize = 100;
 const POPULATION: usize = 24;
+/// Half of the 95 % interval of a normal distribution, in standard deviations.
+pub(crate) const SDS_95: f64 = 1.96;
+/// Most by which the uncertainty's square grows for the residuals that the fit has taken away.
+const MOST_TAKEN: f64 = 2.0;
 /// First spread of the search, in standard deviations of what is believed beforehand.
 const SPREAD: f64 = 0.7;
 
@@ -31,6 +37,21 @@ pub struct Identified {
     pub unit: String,
     /// Share of the knowledge that came from the runs, 0 to 1; the rest is what was believed beforehand.
     pub told_by_runs: f64,
+    /// The experiment that shows it.
+    pub shown_by: &'static str,
+}
+
+/// A parameter of a simulated robot, identified and true.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AgainstTruth {
+    /// Its first key.
+    pub key: String,
+    /// What was found.
+    pub value: f64,
+    /// Half of the 95 % interval.
+    pub within: f64,
+    /// Its true value.
+    pub truth: f64,
 }
 
 /// The outcome of an identification.
@@ -59,6 +80,25 @@ pub struct Posterior {
     pub(crate) z: DVector<f64>,
     /// Cholesky factor of the covariance.
     pub(crate) factor: DMatrix<f64>,
+}
+
+impl Identification {
+    /// The identified parameters beside those of the robot that drove. A floor's resistance is what its scale makes of it.
+    #[must_use]
+    pub fn against(&self, truth: &Params) -> Vec<AgainstTruth> {
+        let scale = truth.floor.friction_scale / self.params.floor.friction_scale;
+        let of = |parameter: &Identified| {
+            let key = parameter.keys.first()?;
+            let is_dry = matches!(key.as_str(), "floor.rolling_n_m" | "floor.scrub_n_m");
+            Some(AgainstTruth {
+                key: key.clone(),
+                value: parameter.value,
+                within: SDS_95 * parameter.uncertainty,
+                truth: truth.get(key)? * if is_dry { scale } else { 1.0 },
+            })
+        };
+        self.parameters.iter().filter_map(of).collect()
+    }
 }
 
 impl Posterior {
@@ -90,8 +130,12 @@ pub fn identify(
 ) -> Result<Identification, IdentifyError> {
     let logs = useful(logs)?;
     let problem = Problem::new(&UNKNOWNS, &logs, start);
-    let nuisances = logs.iter().map(|log| Ok(check_one(log, start)?.nuisance));
-    let nuisances: Vec<_> = nuisances.collect::<Result<_, IdentifyError>>()?;
+    progress(0.0);
+    let nuisances: Vec<Nuisance> = check(&logs, start)?
+        .runs
+        .iter()
+        .map(|run| run.nuisance)
+        .collect();
     let mut best = descend(problem.clone(), &problem.point(start, &nuisances))?;
     if generations > 0 {
         let found = descend(problem.clone(), &search(&problem, generations, progress)?)?;
@@ -100,6 +144,8 @@ pub fn identify(
         }
     }
     let (problem, z) = best;
+    progress(0.9);
+    contradiction::refuse(&logs, start, &problem, &z)?;
     let factor = covariance_factor(&problem, &z)?;
     let sd = |i: usize| factor.row(i).norm();
 
@@ -112,6 +158,7 @@ pub fn identify(
             uncertainty: problem.slope(i, z[i]) * sd(i),
             unit: problem.unit(i).to_owned(),
             told_by_runs: (1.0 - sd(i) * sd(i)).max(0.0),
+            shown_by: unknown.shown_by,
         }
     });
     Ok(Identification {
@@ -140,12 +187,12 @@ pub fn identify(
 /// # Errors
 /// As [`identify`].
 pub fn check(logs: &[DriveLog], params: &Params) -> Result<Check, IdentifyError> {
-    Ok(Check {
-        runs: useful(logs)?
-            .iter()
-            .map(|log| check_one(log, params))
-            .collect::<Result<_, _>>()?,
-    })
+    let logs = useful(logs)?;
+    let mut runs = Vec::new();
+    for source in logs.chunk_by(|a, b| a.source == b.source) {
+        runs.extend(check_source(source, params)?);
+    }
+    Ok(Check { runs })
 }
 
 /// Fits the plant to all runs but one, from `start`, and repeats that one on it: for each run in turn. What a plant
@@ -159,19 +206,20 @@ pub fn leave_one_out(
     progress: &dyn Fn(f64),
 ) -> Result<Vec<RunScore>, IdentifyError> {
     let logs = useful(logs)?;
-    let without = |left_out: usize| {
-        progress(left_out as f64 / logs.len() as f64);
-        let mut others = logs.clone();
-        let log = others.remove(left_out);
-        let found = identify(&others, start, 0, &|_| {})?;
-        check_one(&log, &found.params)
-    };
-    (0..logs.len()).map(without).collect()
+    let mut scores = Vec::new();
+    for (done, left_out) in logs.chunk_by(|a, b| a.source == b.source).enumerate() {
+        progress(done as f64 / logs.len() as f64);
+        let source = &left_out[0].source;
+        let others = logs.iter().filter(|log| log.source != *source);
+        let found = identify(&others.cloned().collect::<Vec<_>>(), start, 0, &|_| {})?;
+        scores.extend(check_source(left_out, &found.params)?);
+    }
+    Ok(scores)
 }
 
-fn check_one(log: &DriveLog, params: &Params) -> Result<RunScore, IdentifyError> {
-    let run = std::slice::from_ref(log);
-    let problem = Problem::new(&[], run, params);
+/// Repeats the runs of one source, which share battery and floor.
+fn check_source(logs: &[DriveLog], params: &Params) -> Result<Vec<RunScore>, IdentifyError> {
+    let problem = Problem::new(&[], logs, params);
     // A coarse grid first: a battery too low is a robot that never moves, and no slope leads away from that.
     let grid = [-2.0, -1.0, 0.0, 1.0, 2.0]
         .map(|volts| [-2.0, 0.0, 2.0].map(|floor| [volts, floor]))
@@ -179,7 +227,10 @@ fn check_one(log: &DriveLog, params: &Params) -> Result<RunScore, IdentifyError>
     let points = grid.iter().map(|point| DVector::from_row_slice(point));
     let best = points.min_by(|a, b| problem.cost(a).total_cmp(&problem.cost(b)));
     let (problem, z) = descend(problem, &best.unwrap_or_else(|| DVector::zeros(2)))?;
-    Ok(score(log, params, problem.nuisance(0, &z)))
+    let scores = logs.iter().enumerate();
+    Ok(scores
+        .map(|(i, log)| score(log, params, problem.nuisance(i, &z)))
+        .collect())
 }
 
 fn useful(logs: &[DriveLog]) -> Result<Vec<DriveLog>, IdentifyError> {
@@ -217,15 +268,16 @@ fn search(
     Ok(best.point.clone())
 }
 
-fn descend<'a>(
+pub(crate) fn descend<'a>(
     mut problem: Problem<'a>,
     from: &DVector<f64>,
 ) -> Result<(Problem<'a>, DVector<f64>), IdentifyError> {
     problem.set_params(from);
+    let tolerance = problem.tolerance();
     let optimiser = LevenbergMarquardt::new()
-        .with_patience(2)
-        .with_ftol(1e-4)
-        .with_xtol(1e-3);
+        .with_patience(problem.patience())
+        .with_ftol(tolerance)
+        .with_xtol(10.0 * tolerance);
     let (problem, report) = optimiser.minimize(problem);
     let z = LeastSquaresProblem::params(&problem);
     match report.termination {
@@ -238,7 +290,11 @@ fn descend<'a>(
     }
 }
 
-/// Cholesky factor of the normalised unknowns' covariance: the inverse of the curvature, scaled by the residuals' size.
+/// Cholesky factor of the normalised unknowns' covariance.
+///
+/// Residuals near each other have common causes, such as the floor at a place, so the inverse of the curvature H alone
+/// would be too small. This is the sandwich H^-1 (B + sum g g') H^-1: B the curvature of what is believed beforehand, g
+/// the gradient of one block of residuals, among which anything may be correlated.
 fn covariance_factor(
     problem: &Problem<'_>,
     z: &DVector<f64>,
@@ -247,13 +303,33 @@ fn covariance_factor(
         .jacobian()
         .ok_or_else(|| IdentifyError::Optimiser("no Jacobian".into()))?;
     let residuals = problem.residuals_at(z);
-    let freedom = residuals.len().saturating_sub(z.len()).max(1) as f64;
-    let size = (residuals.norm_squared() / freedom).max(1.0);
+    let blocks = problem.blocks(z);
+    let count = blocks.iter().flatten().max().map_or(0, |last| last + 1);
+    let (mut gradients, mut middle) = (
+        DMatrix::zeros(count, z.len()),
+        DMatrix::zeros(z.len(), z.len()),
+    );
+    for (i, block) in blocks.iter().enumerate() {
+        let row = jacobian.row(i);
+        match block {
+            Some(block) => {
+                let mut gradient = gradients.row_mut(*block);
+                gradient += row * residuals[i];
+            }
+            None => middle += row.transpose() * row,
+        }
+    }
+    // The fit has taken part of each block's residuals away.
+    let blocks = count as f64;
+    let freedom = (blocks / (blocks - z.len() as f64).max(1.0)).min(MOST_TAKEN);
+    middle += gradients.transpose() * &gradients * freedom;
+    let undetermined =
+        || IdentifyError::Optimiser("the runs leave a parameter undetermined".into());
     let inverse = (jacobian.transpose() * &jacobian).try_inverse();
-    let factor = inverse.and_then(|inverse| (inverse * size).cholesky());
-    let mut factor = factor
-        .ok_or_else(|| IdentifyError::Optimiser("the runs leave a parameter undetermined".into()))?
-        .unpack();
+    let inverse = inverse.ok_or_else(undetermined)?;
+    let covariance = &inverse * middle * &inverse;
+    let factor = (0.5 * (&covariance + covariance.transpose())).cholesky();
+    let mut factor = factor.ok_or_else(undetermined)?.unpack();
     // What is believed beforehand bounds the uncertainty, whatever the residuals' size.
     for mut row in factor.row_iter_mut() {
         let sd = row.norm();

@@ -1,3 +1,6 @@
+mod bad_input;
+mod own_logs;
+
 use super::problem::dead_zone_pwm;
 use super::replay::{Correct, Replay};
 use super::*;
@@ -249,6 +252,7 @@ fn identification() -> Identification {
                 uncertainty: 0.01,
                 unit: "V s/rad".into(),
                 told_by_runs: 0.9,
+                shown_by: "",
             },
             Identified {
                 keys: vec![
@@ -259,6 +263,7 @@ fn identification() -> Identification {
                 uncertainty: 0.1,
                 unit: "1".into(),
                 told_by_runs: 0.9,
+                shown_by: "",
             },
         ],
         dead_zone_air_pwm: 35.0,
