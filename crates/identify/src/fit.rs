@@ -327,7 +327,7 @@ fn covariance_factor(
         || IdentifyError::Optimiser("the runs leave a parameter undetermined".into());
     let inverse = (jacobian.transpose() * &jacobian).try_inverse();
     let inverse = inverse.ok_or_else(undetermined)?;
-    let covariance = &inverse * middle * &inverse;
+    let covariance = &inverse * middle * &inverse * problem.model_error().powi(2);
     let factor = (0.5 * (&covariance + covariance.transpose())).cholesky();
     let mut factor = factor.ok_or_else(undetermined)?.unpack();
     // What is believed beforehand bounds the uncertainty, whatever the residuals' size.

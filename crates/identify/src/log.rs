@@ -45,23 +45,12 @@ pub struct Row {
 }
 
 /// The time over which a speed was measured.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Window {
     /// Its end since the log's start, ms.
     pub end_ms: usize,
     /// Its length, ms.
     pub length_ms: usize,
-    /// The newest edges within it, where the program follows them when the speed changes.
-    pub fresh: Option<Fresh>,
-}
-
-/// The edges of the last tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fresh {
-    /// Their time, ms.
-    pub length_ms: usize,
-    /// Differences from the speed of the whole window up to this share of it are the poles' spacing.
-    pub within: f64,
 }
 
 impl Row {
@@ -216,7 +205,6 @@ impl DriveLog {
             let window = Window {
                 end_ms: window_end_ms(row.at_ms, window_phase_ms),
                 length_ms: WINDOW_MS,
-                fresh: None,
             };
             row.window = [window; 2];
         }

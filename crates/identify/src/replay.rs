@@ -8,7 +8,7 @@
 //! wheel is. Battery and friction memory are those of the plant that runs along. No row after the start is used, but
 //! for the duty, which is the prediction's input.
 
-use crate::log::{DriveLog, Fresh, Program, Row, Window};
+use crate::log::{DriveLog, Program, Row, Window};
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side, State};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
@@ -302,22 +302,9 @@ fn angles(state: &State) -> [f64; 2] {
 /// rad/s. Windows that reach beyond end there.
 fn window_speeds(window: &[Window; 2], angle_rad: &[[f64; 2]], from_ms: usize) -> [f64; 2] {
     let speed = |i: usize| {
-        let Window {
-            end_ms,
-            length_ms,
-            fresh,
-        } = window[i];
+        let Window { end_ms, length_ms } = window[i];
         let at = |ms: usize| angle_rad[ms.saturating_sub(from_ms).min(angle_rad.len() - 1)][i];
-        let over = |length_ms: usize| {
-            (at(end_ms) - at(end_ms.saturating_sub(length_ms))) * 1000.0 / length_ms as f64
-        };
-        let mean = over(length_ms);
-        let Some(Fresh { length_ms, within }) = fresh else {
-            return mean;
-        };
-        // Nearer the newest edges than the poles' spacing explains.
-        let (newest, border) = (over(length_ms), within * mean.abs());
-        mean.clamp(newest - border, newest + border)
+        (at(end_ms) - at(end_ms.saturating_sub(length_ms))) * 1000.0 / length_ms as f64
     };
     [speed(0), speed(1)]
 }

@@ -10,7 +10,7 @@
 //! simulated robots have too, is not looked at.
 
 use crate::error::IdentifyError;
-use crate::log::{DriveLog, Fresh, Program, Row, Seen, Window};
+use crate::log::{DriveLog, Program, Row, Seen, Window};
 use rumbo_log::Log;
 use std::path::Path;
 
@@ -34,10 +34,6 @@ const LEAD_MS: i64 = 200;
 /// Angle of one edge, and of one motor turn, rad.
 const EDGE_RAD: f64 = std::f64::consts::TAU / 384.0;
 const MOTOR_TURN_RAD: f64 = 8.0 * EDGE_RAD;
-/// The robot's tick, and how far the speed of its edges may be from that of the motor turn (docs/theory/wheel_speed.md).
-const TICK_MS: f64 = 10.0;
-const POLES: f64 = 0.12;
-const LAG: f64 = 0.02;
 /// Time over which a standing wheel is known to stand.
 const STANDING_MS: f64 = 40.0;
 /// Shortest and longest window: a tick, and what a wheel takes that is about to stop.
@@ -173,16 +169,10 @@ impl Frame {
                     0.0 => (0.0, STANDING_MS),
                     speed => (0.5e3 * EDGE_RAD / speed, 1e3 * MOTOR_TURN_RAD / speed),
                 };
-                let edges = (speed_rad_s.abs() * TICK_MS * 1e-3 / EDGE_RAD).round();
-                let fresh = (edges >= 1.0).then(|| Fresh {
-                    length_ms: (1e3 * edges * EDGE_RAD / speed_rad_s.abs()).round() as usize,
-                    within: POLES / edges + LAG,
-                });
                 let end_ms = at_ms as f64 - half_edge_ms.min(0.5 * STANDING_MS);
                 Window {
                     end_ms: end_ms.round() as usize,
                     length_ms: length_ms.clamp(WINDOW_MS.0, WINDOW_MS.1).round() as usize,
-                    fresh,
                 }
             }),
         }

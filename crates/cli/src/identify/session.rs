@@ -106,7 +106,7 @@ impl<T: Target> Driven<T> {
         if self.is_real {
             std::thread::sleep(Duration::from_micros(SLICE_US));
         }
-        self.target.advance(SLICE_US).map_err(Failure::Input)?;
+        self.target.advance(SLICE_US).map_err(Failure::input)?;
         let now = self.now();
         let sight = Sight {
             truth: self.target.truth(),
@@ -157,7 +157,7 @@ impl<T: Target> Driven<T> {
         let bytes = self.session.take_bytes();
         match bytes.is_empty() {
             true => Ok(()),
-            false => self.target.send(&bytes).map_err(Failure::Input),
+            false => self.target.send(&bytes).map_err(Failure::input),
         }
     }
 
