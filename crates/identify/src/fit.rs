@@ -83,7 +83,8 @@ pub struct Posterior {
 }
 
 impl Identification {
-    /// The identified parameters beside those of the robot that drove. A floor's resistance is what its scale makes of it.
+    /// The identified parameters beside those of the robot that drove. A floor's resistance is what its scale makes of
+    /// it.
     #[must_use]
     pub fn against(&self, truth: &Params) -> Vec<AgainstTruth> {
         let scale = truth.floor.friction_scale / self.params.floor.friction_scale;

@@ -100,9 +100,9 @@ const FLOOR_SD: f64 = 0.2;
 
 /// By how much another robot of the same kind differs: standard deviation in the logarithm.
 const SAME_KIND_SD: f64 = 0.3;
-/// Logs of our program: what their residuals do not show, such as how a speed is measured while it changes. Measured: of
-/// 30 simulated robots the true value then lies within its 95 % interval in at least 27, for each parameter; without it
-/// in 22 for those that share the scale of all torques.
+/// Logs of our program: what their residuals do not show, such as how a speed is measured while it changes. Measured:
+/// of 30 simulated robots the true value of each parameter then lies within its 95 % interval in at least 27; without
+/// it in 22 for those that share the scale of all torques.
 const TIMED_MODEL_ERROR: f64 = 1.5;
 /// PWM at which wheels start, in the air and on the floor, each with its standard deviation.
 const DEAD_ZONES: [(bool, f64, f64); 2] = [(false, 35.0, 2.0), (true, 65.0, 4.0)];
