@@ -78,7 +78,7 @@ impl fmt::Display for IdentifyError {
             }
             Self::Contradiction { one, other, ratio } => write!(
                 f,
-                "{one} and {other} contradict each other: no common robot explains both (the errors of the first are {ratio:.1} \
+                "{one} and {other} contradict each other: no common robot explains both (the errors of the first are {ratio:.2} \
                  times those of a fit of its own); give the logs of one robot with one wiring"
             ),
             Self::Optimiser(cause) => write!(f, "the fit did not converge: {cause}"),

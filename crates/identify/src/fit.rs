@@ -6,7 +6,7 @@
 use crate::contradiction;
 use crate::error::IdentifyError;
 use crate::log::{DriveLog, Seen};
-use crate::problem::{Problem, UNKNOWNS, dead_zone_pwm};
+use crate::problem::{Problem, TIMED_MODEL_ERROR, UNKNOWNS, dead_zone_pwm};
 use crate::replay::Nuisance;
 use crate::score::{RunScore, score};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
@@ -68,18 +68,8 @@ pub struct Identification {
     pub dead_zone_floor_pwm: f64,
     /// How well each run is repeated.
     pub runs: Vec<RunScore>,
-    /// How sure the identified parameters are, together.
-    #[serde(skip)]
-    pub posterior: Posterior,
-}
-
-/// What the runs leave possible: a normal distribution of the normalised unknowns about the fit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Posterior {
-    pub(crate) params: Params,
-    pub(crate) z: DVector<f64>,
-    /// Cholesky factor of the covariance.
-    pub(crate) factor: DMatrix<f64>,
+    /// The largest misfit of a run's file under the common fit, beside a fit of its own: 1 if they agree, or it is the only one.
+    pub disagreement: f64,
 }
 
 impl Identification {
@@ -99,14 +89,6 @@ impl Identification {
             })
         };
         self.parameters.iter().filter_map(of).collect()
-    }
-}
-
-impl Posterior {
-    /// A plant that the runs leave possible, for independent standard normal numbers; with all of them 0 the fit itself.
-    pub fn plant(&self, mut normal: impl FnMut() -> f64) -> Params {
-        let normals = DVector::from_fn(self.z.len(), |_, _| normal());
-        Problem::new(&UNKNOWNS, &[], &self.params).plant(&(&self.z + &self.factor * normals))
     }
 }
 
@@ -146,9 +128,8 @@ pub fn identify(
     }
     let (problem, z) = best;
     progress(0.9);
-    contradiction::refuse(&logs, start, &problem, &z)?;
-    let factor = covariance_factor(&problem, &z)?;
-    let sd = |i: usize| factor.row(i).norm();
+    let disagreement = contradiction::refuse(&logs, start, &problem, &z)?;
+    let sds = standard_deviations(&problem, &z)?;
 
     let params = problem.plant(&z);
     let parameters = UNKNOWNS.iter().enumerate().map(|(i, unknown)| {
@@ -156,9 +137,9 @@ pub fn identify(
         Identified {
             keys: unknown.keys.iter().map(|&key| key.to_owned()).collect(),
             value,
-            uncertainty: problem.slope(i, z[i]) * sd(i),
+            uncertainty: problem.slope(i, z[i]) * sds[i],
             unit: problem.unit(i).to_owned(),
-            told_by_runs: (1.0 - sd(i) * sd(i)).max(0.0),
+            told_by_runs: 1.0 - sds[i] * sds[i],
             shown_by: unknown.shown_by,
         }
     });
@@ -171,14 +152,7 @@ pub fn identify(
             .enumerate()
             .map(|(i, log)| score(log, &params, problem.nuisance(i, &z)))
             .collect(),
-        posterior: Posterior {
-            params,
-            z: z.rows(0, UNKNOWNS.len()).into_owned(),
-            factor: factor
-                .rows(0, UNKNOWNS.len())
-                .columns(0, UNKNOWNS.len())
-                .into_owned(),
-        },
+        disagreement,
         params,
     })
 }
@@ -291,19 +265,41 @@ pub(crate) fn descend<'a>(
     }
 }
 
-/// Cholesky factor of the normalised unknowns' covariance.
+/// Standard deviations of the normalised unknowns.
 ///
-/// Residuals near each other have common causes, such as the floor at a place, so the inverse of the curvature H alone
-/// would be too small. This is the sandwich H^-1 (B + sum g g') H^-1: B the curvature of what is believed beforehand, g
-/// the gradient of one block of residuals, among which anything may be correlated.
-fn covariance_factor(
-    problem: &Problem<'_>,
-    z: &DVector<f64>,
-) -> Result<DMatrix<f64>, IdentifyError> {
+/// For the report's runs the inverse of the curvature H, scaled by the residuals' size. For logs of our program, in which
+/// residuals near each other have common causes such as the floor at a place, that would be too small: there it is the
+/// sandwich H^-1 (B + sum g g') H^-1, with B the curvature of what is believed beforehand and g the gradient of one block
+/// of residuals, among which anything may be correlated.
+fn standard_deviations(problem: &Problem<'_>, z: &DVector<f64>) -> Result<Vec<f64>, IdentifyError> {
     let jacobian = problem
         .jacobian()
         .ok_or_else(|| IdentifyError::Optimiser("no Jacobian".into()))?;
     let residuals = problem.residuals_at(z);
+    let curvature = jacobian.transpose() * &jacobian;
+    let middle = match problem.is_the_reports {
+        true => {
+            let freedom = residuals.len().saturating_sub(z.len()).max(1) as f64;
+            &curvature * (residuals.norm_squared() / freedom).max(1.0)
+        }
+        false => correlated(problem, z, &jacobian, &residuals) * TIMED_MODEL_ERROR.powi(2),
+    };
+    let inverse = curvature.try_inverse().ok_or_else(|| {
+        IdentifyError::Optimiser("the runs leave a parameter undetermined".into())
+    })?;
+    let covariance = &inverse * middle * &inverse;
+    // What is believed beforehand bounds the uncertainty, whatever the residuals' size.
+    let sd = |variance: &f64| variance.sqrt().min(1.0);
+    Ok(covariance.diagonal().iter().map(sd).collect())
+}
+
+/// B + sum g g' of the sandwich.
+fn correlated(
+    problem: &Problem<'_>,
+    z: &DVector<f64>,
+    jacobian: &DMatrix<f64>,
+    residuals: &DVector<f64>,
+) -> DMatrix<f64> {
     let blocks = problem.blocks(z);
     let count = blocks.iter().flatten().max().map_or(0, |last| last + 1);
     let (mut gradients, mut middle) = (
@@ -323,20 +319,5 @@ fn covariance_factor(
     // The fit has taken part of each block's residuals away.
     let blocks = count as f64;
     let freedom = (blocks / (blocks - z.len() as f64).max(1.0)).min(MOST_TAKEN);
-    middle += gradients.transpose() * &gradients * freedom;
-    let undetermined =
-        || IdentifyError::Optimiser("the runs leave a parameter undetermined".into());
-    let inverse = (jacobian.transpose() * &jacobian).try_inverse();
-    let inverse = inverse.ok_or_else(undetermined)?;
-    let covariance = &inverse * middle * &inverse * problem.model_error().powi(2);
-    let factor = (0.5 * (&covariance + covariance.transpose())).cholesky();
-    let mut factor = factor.ok_or_else(undetermined)?.unpack();
-    // What is believed beforehand bounds the uncertainty, whatever the residuals' size.
-    for mut row in factor.row_iter_mut() {
-        let sd = row.norm();
-        if sd > 1.0 {
-            row /= sd;
-        }
-    }
-    Ok(factor)
+    middle + gradients.transpose() * &gradients * freedom
 }

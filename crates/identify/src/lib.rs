@@ -23,7 +23,6 @@ pub mod sonar_stats;
 mod contradiction;
 mod error;
 mod fit;
-mod kind;
 mod log;
 mod pair;
 mod plot;
@@ -40,10 +39,8 @@ mod tests;
 
 pub use error::IdentifyError;
 pub use fit::{
-    AgainstTruth, Check, GENERATIONS, Identification, Identified, Posterior, check, identify,
-    leave_one_out,
+    AgainstTruth, Check, GENERATIONS, Identification, Identified, check, identify, leave_one_out,
 };
-pub use kind::of_the_same_kind;
 pub use log::{DriveLog, Program};
 pub use pair::{Correlation, Pair};
 pub use plot::plot;

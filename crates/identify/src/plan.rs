@@ -83,11 +83,13 @@ pub fn plan() -> [Part; 3] {
 fn in_the_air() -> Vec<Step> {
     let direction = |movement| {
         let ramp = (30..=50).step_by(4).map(|pwm| step(movement, pwm, 0.4));
-        let levels = [70, 110, 180].map(|pwm| step(movement, pwm, 1.2));
+        // Coasting shows friction over inertia, whatever the motors do.
+        let levels = [70, 110, 180, 255];
+        let levels = levels.map(|pwm| [step(movement, pwm, 1.2), rest(0.8)]);
         // How easily a wheel runs that has gone fast for long, and for how long it does.
         let after = [step(movement, 255, 5.0), step(movement, 60, 3.5), rest(0.8)];
         let starts = [100, 0, 160, 0].map(|pwm| step(movement, pwm, 0.7));
-        let parts: [Vec<Step>; 4] = [ramp.collect(), levels.into(), after.into(), starts.into()];
+        let parts: [Vec<Step>; 4] = [ramp.collect(), levels.concat(), after.into(), starts.into()];
         parts.concat()
     };
     [direction(Movement::Forward), direction(Movement::Backward)].concat()
@@ -102,6 +104,8 @@ fn straight_on() -> Vec<Step> {
         (95, 1.4),
         (190, 0.7),
         (120, 1.1),
+        (230, 0.6),
+        (170, 0.8),
     ] {
         for movement in [Movement::Forward, Movement::Backward] {
             steps.extend([step(movement, pwm, seconds), rest(0.7)]);
@@ -116,7 +120,14 @@ fn straight_on() -> Vec<Step> {
 
 fn turns() -> Vec<Step> {
     let mut steps = Vec::new();
-    for (pwm, seconds) in [(100, 1.4), (140, 1.0), (85, 1.6), (180, 0.8), (115, 1.2)] {
+    for (pwm, seconds) in [
+        (100, 1.4),
+        (140, 1.0),
+        (85, 1.6),
+        (180, 0.8),
+        (115, 1.2),
+        (220, 0.7),
+    ] {
         for movement in [Movement::TurnLeft, Movement::TurnRight] {
             steps.extend([step(movement, pwm, seconds), rest(0.6)]);
         }

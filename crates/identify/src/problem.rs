@@ -100,10 +100,9 @@ const FLOOR_SD: f64 = 0.2;
 
 /// By how much another robot of the same kind differs: standard deviation in the logarithm.
 const SAME_KIND_SD: f64 = 0.3;
-/// Logs of our program: what their residuals do not show, such as how a speed is measured while it changes. Measured:
-/// of 30 simulated robots the true value of each parameter then lies within its 95 % interval in at least 27; without
-/// it in 22 for those that share the scale of all torques.
-const TIMED_MODEL_ERROR: f64 = 1.5;
+/// Logs of our program: what their residuals do not show, such as how a speed is measured while it changes. Chosen on 30
+/// simulated robots, measured on others (docs/theory/plant.md).
+pub(crate) const TIMED_MODEL_ERROR: f64 = 1.5;
 /// PWM at which wheels start, in the air and on the floor, each with its standard deviation.
 const DEAD_ZONES: [(bool, f64, f64); 2] = [(false, 35.0, 2.0), (true, 65.0, 4.0)];
 
@@ -129,7 +128,7 @@ pub struct Problem<'a> {
     /// Standard deviation of what is believed of each unknown, in the logarithm.
     prior_sd: Vec<f64>,
     /// The report's dead zones hold: no other robot's logs are among these.
-    is_the_reports: bool,
+    pub(crate) is_the_reports: bool,
     z: DVector<f64>,
 }
 
@@ -290,16 +289,6 @@ impl<'a> Problem<'a> {
             run_residuals(log, &replay, &mut residuals);
         }
         residuals
-    }
-
-    /// By how much the fit's errors are larger than its residuals say.
-    #[must_use]
-    pub fn model_error(&self) -> f64 {
-        if self.is_the_reports {
-            1.0
-        } else {
-            TIMED_MODEL_ERROR
-        }
     }
 
     /// Relative change below which a fit has converged. Timed speeds tell far more than counted ones.

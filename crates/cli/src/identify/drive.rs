@@ -1,7 +1,10 @@
 //! `rumbo identify --drive`: a short drive that shows a robot's parameters, part by part, each begun by a person.
 //!
-//! The robot stops at Ctrl-C, at a fault, when its telemetry stays away, and when it leaves its place. A movement ends
-//! early where something is near ahead, or half of the free floor is behind the robot.
+//! The robot stops at Ctrl-C, at a fault, when its telemetry stays away, when something is near ahead, and when it leaves
+//! its place. A movement ends early where most of the free floor is behind the robot.
+
+#[cfg(test)]
+mod tests;
 
 use super::session::Driven;
 use crate::failure::Failure;
@@ -31,10 +34,11 @@ const ANSWER_US: u64 = 5_000_000;
 const SILENT_US: u64 = 500_000;
 /// A robot that was switched ON reports it within this time [us].
 const ON_US: u64 = 2_500_000;
-/// Movements forward end when something is nearer ahead than this [m].
-const AHEAD_M: f64 = 0.35;
+/// Going forward, the robot is stopped for good when something is nearer ahead than this [m]: on the free floor that is
+/// asked for nothing is.
+const AHEAD_M: f64 = 0.25;
 /// Movements end this far from where the part began, unless they lead back [m].
-const FREE_M: f64 = 0.7;
+const FREE_M: f64 = 0.55;
 /// There the robot is stopped for good [m].
 const ASTRAY_M: f64 = 1.2;
 
@@ -65,12 +69,7 @@ pub(crate) fn in_lab(drive: &Drive<'_>, robot: &str, seed: u64) -> Result<Drivin
         robot: Some(robot.to_owned()),
         ..Overrides::default()
     };
-    let drawn = SimulatedRobot::new(overrides.clone(), choice.clone())?;
-    let other = Overrides {
-        parameters: rumbo_identify::of_the_same_kind(drawn.params(), seed),
-        ..overrides
-    };
-    let robot = SimulatedRobot::new(other, choice)?;
+    let robot = SimulatedRobot::new(overrides, choice)?;
     let truth = *robot.params();
     let battery_v = drive.battery_v.unwrap_or(truth.battery.open_circuit_v);
     let mut driven = Driven::begin(robot, drive.folder)?;
@@ -92,16 +91,14 @@ pub(crate) fn at_port(drive: &Drive<'_>, address: &str, baud: u32) -> Result<Dri
     let mut driven = Driven::begin(port, drive.folder)?;
     let asked = interrupt::asked();
     let lines = lines();
-    let done = answer(&mut driven, &asked).and_then(|()| {
-        all_parts(&mut driven, drive.battery_v, &asked, |driven, part| {
-            output::line(&format!(
-                "\n{}, {:.0} s: {}; then press Enter. Ctrl-C stops the robot at any time.",
-                part.name,
-                part.seconds(),
-                part.instruction
-            ))?;
-            wait_for_enter(driven, &lines, &asked)
-        })
+    let done = all_parts(&mut driven, drive.battery_v, &asked, |driven, part| {
+        output::line(&format!(
+            "\n{}, {:.0} s: {}; then press Enter. Ctrl-C stops the robot at any time.",
+            part.name,
+            part.seconds(),
+            part.instruction
+        ))?;
+        wait_for_enter(driven, &lines, &asked)
     });
     let path = end(driven, done)?;
     Ok(Driving { path, truth: None })
@@ -243,9 +240,13 @@ fn supervise<T: Target>(
         step.movement,
         Movement::Forward | Movement::ArcLeft | Movement::ArcRight
     );
-    let ahead_m = row.signal("range_front_m");
-    if forward && ahead_m.is_some_and(|ahead_m| ahead_m < AHEAD_M) {
-        return Ok(false);
+    let near_m = row
+        .signal("range_front_m")
+        .filter(|range_m| *range_m < AHEAD_M);
+    if let (true, Some(near_m)) = (forward, near_m) {
+        return Err(Failure::Input(format!(
+            "something is {near_m:.2} m ahead of the robot: it was stopped; clear the floor and begin again"
+        )));
     }
     let away_m = |[x_m, y_m]: [f64; 2], [from_x_m, from_y_m]: [f64; 2]| {
         (x_m - from_x_m).hypot(y_m - from_y_m)

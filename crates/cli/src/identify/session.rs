@@ -127,6 +127,7 @@ impl<T: Target> Driven<T> {
                 speed: 1.0,
                 achieved_speed: 1.0,
                 true_battery_v: self.target.truth().map(|truth| truth.battery_v),
+                program: self.target.program(),
             };
             self.session.update(going, now);
         }
