@@ -1,5 +1,9 @@
-//! The fit: Levenberg-Marquardt from the robot's present values and from the best point of a global search (CMA-ES), the better of
-//! the two; then uncertainties from its Jacobian.
+//! The fit: Levenberg-Marquardt from the robot's present values and from what is believed beforehand; a search (CMA-ES)
+//! around the better of the two; then uncertainties from its Jacobian.
+//!
+//! Whether a wheel breaks away or sticks is a step of the objective, which ends a descent by slopes early. A population
+//! looks past such steps. It searches in standard deviations of the curvature, along the valley in which all torques scale
+//! together, and begins again from what it has found, as the curvature differs there (docs/theory/plant.md).
 //!
 //! The search is seeded and its objective has no randomness: the same logs and robot give the same parameters.
 
@@ -14,15 +18,19 @@ use nalgebra::{DMatrix, DVector};
 use rumbo_plant::params::Params;
 use serde::Serialize;
 
-/// Generations of the global search that suffice for runs of half a minute.
-pub const GENERATIONS: usize = 100;
+/// Generations of each round of the search that suffice for runs of half a minute.
+pub const GENERATIONS: usize = 60;
+/// Rounds of the search.
+const SEARCHES: usize = 3;
 const POPULATION: usize = 24;
 /// Half of the 95 % interval of a normal distribution, in standard deviations.
 pub(crate) const SDS_95: f64 = 1.96;
 /// Most by which the uncertainty's square grows for the residuals that the fit has taken away.
 const MOST_TAKEN: f64 = 2.0;
-/// First spread of the search, in standard deviations of what is believed beforehand.
-const SPREAD: f64 = 0.7;
+/// First spread of a round, in standard deviations of the curvature.
+const SPREAD: f64 = 1.0;
+/// Longest first step of a descent, in standard deviations of what is believed beforehand.
+const FIRST_STEP: f64 = 3.0;
 
 /// One identified parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -99,9 +107,9 @@ pub struct Check {
     pub runs: Vec<RunScore>,
 }
 
-/// Fits the plant to all runs together, from the values in `start` and, unless `generations` is 0, from the best point of a global
-/// search of so many generations ([`GENERATIONS`] suffice); the better fit wins. `progress` is given the share of the
-/// search that is done.
+/// Fits the plant to all runs together, from the values in `start` and, unless `generations` is 0, also from what is believed
+/// beforehand, with a search around the better of the two, each round so many generations ([`GENERATIONS`] suffice).
+/// `progress` is given the share of the search that is done.
 ///
 /// # Errors
 /// No run with speeds or a distance ahead; a fit that breaks down.
@@ -114,19 +122,26 @@ pub fn identify(
     let logs = useful(logs)?;
     let problem = Problem::new(&UNKNOWNS, &logs, start);
     progress(0.0);
-    let nuisances: Vec<Nuisance> = check(&logs, start)?
-        .runs
-        .iter()
-        .map(|run| run.nuisance)
-        .collect();
-    let mut best = descend(problem.clone(), &problem.point(start, &nuisances))?;
+    let fit = |params: &Params| -> Result<DVector<f64>, IdentifyError> {
+        let runs = check(&logs, params)?.runs;
+        let nuisances: Vec<Nuisance> = runs.iter().map(|run| run.nuisance).collect();
+        Ok(descend(problem.clone(), &problem.point(params, &nuisances))?.1)
+    };
+    let mut z = fit(start)?;
     if generations > 0 {
-        let found = descend(problem.clone(), &search(&problem, generations, progress)?)?;
-        if problem.cost(&found.1) < problem.cost(&best.1) {
-            best = found;
+        let other = fit(&problem.plant(&DVector::zeros(problem.dimension())))?;
+        if problem.cost(&other) < problem.cost(&z) {
+            z = other;
+        }
+        for round in 0..SEARCHES {
+            let share = |done: f64| progress(0.9 * (round as f64 + done) / SEARCHES as f64);
+            let found = search(&problem, &z, generations, &share)?;
+            if problem.cost(&found) >= problem.cost(&z) {
+                break;
+            }
+            z = found;
         }
     }
-    let (problem, z) = best;
     progress(0.9);
     let disagreement = contradiction::refuse(&logs, start, &problem, &z)?;
     let sds = standard_deviations(&problem, &z)?;
@@ -221,16 +236,24 @@ fn useful(logs: &[DriveLog]) -> Result<Vec<DriveLog>, IdentifyError> {
     }
 }
 
+/// The best point that a population finds around this one.
 fn search(
     problem: &Problem<'_>,
+    around: &DVector<f64>,
     generations: usize,
     progress: &dyn Fn(f64),
 ) -> Result<DVector<f64>, IdentifyError> {
     let nothing = || IdentifyError::Optimiser("the search found no finite error".into());
+    let jacobian = jacobian(problem, around)?;
+    let covariance = (jacobian.transpose() * jacobian).try_inverse();
+    let axes = covariance
+        .and_then(DMatrix::cholesky)
+        .ok_or_else(undetermined)?
+        .l();
     let mut search = cmaes::CMAESOptions::new(DVector::zeros(problem.dimension()), SPREAD)
         .seed(1)
         .population_size(POPULATION)
-        .build(|z: &DVector<f64>| problem.cost(z))
+        .build(|along: &DVector<f64>| problem.cost(&(around + &axes * along)))
         .map_err(|error| IdentifyError::Optimiser(format!("{error:?}")))?;
     for generation in 0..generations {
         progress(generation as f64 / generations as f64);
@@ -240,7 +263,7 @@ fn search(
         }
     }
     let best = search.overall_best_individual().ok_or_else(nothing)?;
-    Ok(best.point.clone())
+    Ok(around + &axes * &best.point)
 }
 
 pub(crate) fn descend<'a>(
@@ -252,7 +275,10 @@ pub(crate) fn descend<'a>(
     let optimiser = LevenbergMarquardt::new()
         .with_patience(problem.patience())
         .with_ftol(tolerance)
-        .with_xtol(10.0 * tolerance);
+        .with_xtol(10.0 * tolerance)
+        .with_stepbound(FIRST_STEP)
+        // All unknowns have one scale. Scaled by their slopes, one that met a step would hardly move again.
+        .with_scale_diag(false);
     let (problem, report) = optimiser.minimize(problem);
     let z = LeastSquaresProblem::params(&problem);
     match report.termination {
@@ -272,9 +298,7 @@ pub(crate) fn descend<'a>(
 /// sandwich H^-1 (B + sum g g') H^-1, with B the curvature of what is believed beforehand and g the gradient of one block
 /// of residuals, among which anything may be correlated.
 fn standard_deviations(problem: &Problem<'_>, z: &DVector<f64>) -> Result<Vec<f64>, IdentifyError> {
-    let jacobian = problem
-        .jacobian()
-        .ok_or_else(|| IdentifyError::Optimiser("no Jacobian".into()))?;
+    let jacobian = jacobian(problem, z)?;
     let residuals = problem.residuals_at(z);
     let curvature = jacobian.transpose() * &jacobian;
     let middle = match problem.is_the_reports {
@@ -284,13 +308,22 @@ fn standard_deviations(problem: &Problem<'_>, z: &DVector<f64>) -> Result<Vec<f6
         }
         false => correlated(problem, z, &jacobian, &residuals) * TIMED_MODEL_ERROR.powi(2),
     };
-    let inverse = curvature.try_inverse().ok_or_else(|| {
-        IdentifyError::Optimiser("the runs leave a parameter undetermined".into())
-    })?;
+    let inverse = curvature.try_inverse().ok_or_else(undetermined)?;
     let covariance = &inverse * middle * &inverse;
     // What is believed beforehand bounds the uncertainty, whatever the residuals' size.
     let sd = |variance: &f64| variance.sqrt().min(1.0);
     Ok(covariance.diagonal().iter().map(sd).collect())
+}
+
+fn jacobian(problem: &Problem<'_>, z: &DVector<f64>) -> Result<DMatrix<f64>, IdentifyError> {
+    let mut problem = problem.clone();
+    problem.set_params(z);
+    let none = || IdentifyError::Optimiser("no Jacobian".into());
+    problem.jacobian().ok_or_else(none)
+}
+
+fn undetermined() -> IdentifyError {
+    IdentifyError::Optimiser("the runs leave a parameter undetermined".into())
 }
 
 /// B + sum g g' of the sandwich.

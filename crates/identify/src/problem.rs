@@ -1,8 +1,9 @@
 //! The least-squares problem: unknowns, what is known about them beforehand, residuals.
 //!
 //! Each unknown is a normalised number `z`: 0 is the nominal value of such a robot's parts, +-1 one standard deviation
-//! of what is believed about it (in the logarithm of its distance from the lower limit, so that it stays allowed). The
-//! values before the fit are a place to start from and nothing more, so that a second fit does not drift from the first.
+//! of what is believed about it (in the logarithm of its distance from the lower limit over that from the upper one, so
+//! that it stays allowed and always has a slope). The values before the fit are a place to start from and nothing more, so
+//! that a second fit does not drift from the first.
 //! The beliefs enter as residuals; they hold what the runs cannot tell, such as which part of a torque is voltage and which is
 //! friction. Two facts of the report are such residuals too: wheels start to turn at a PWM of about 35 in the air and
 //! 65 on the floor.
@@ -143,7 +144,8 @@ impl<'a> Problem<'a> {
             let key = unknown.keys[0];
             let mut limit = all.iter().find(|limit| limit.key == key)?.clone();
             let believed = unknown.believed.unwrap_or(limit.nominal);
-            let of_start = start.get(key).filter(|value| *value > limit.min);
+            let within = |value: &f64| limit.min < *value && *value < limit.max;
+            let of_start = start.get(key).filter(within);
             limit.nominal = match is_the_reports {
                 true => believed,
                 false => of_start.unwrap_or(believed),
@@ -195,13 +197,30 @@ impl<'a> Problem<'a> {
         let Limit {
             min, max, nominal, ..
         } = &self.limits[index];
-        (min + (nominal - min).max(1e-9) * (self.prior_sd[index] * z).exp()).min(*max)
+        let odds = self.odds(index, *nominal) * (self.steepness(index) * z).exp();
+        min + (max - min) / (1.0 + 1.0 / odds)
     }
 
     /// Change of that value per unit of `z`.
     #[must_use]
     pub fn slope(&self, index: usize, z: f64) -> f64 {
-        (self.value(index, z) - self.limits[index].min) * self.prior_sd[index]
+        let Limit { min, max, .. } = &self.limits[index];
+        let value = self.value(index, z);
+        self.steepness(index) * (value - min) * (max - value) / (max - min)
+    }
+
+    /// How far a value is from its lower limit, relative to its distance from the upper one.
+    fn odds(&self, index: usize, value: f64) -> f64 {
+        let Limit { min, max, .. } = &self.limits[index];
+        (value - min).max(1e-9) / (max - value).max(1e-9)
+    }
+
+    /// Change of the logarithm of the odds per unit of z: at the nominal value that of the value's is what is believed.
+    fn steepness(&self, index: usize) -> f64 {
+        let Limit {
+            min, max, nominal, ..
+        } = &self.limits[index];
+        self.prior_sd[index] * (max - min) / (max - nominal)
     }
 
     /// Unit of unknown `index`.
@@ -214,10 +233,10 @@ impl<'a> Problem<'a> {
     /// first of its logs'.
     #[must_use]
     pub fn point(&self, params: &Params, nuisances: &[Nuisance]) -> DVector<f64> {
-        let unknowns = self.limits.iter().zip(&self.prior_sd).map(|(limit, sd)| {
-            let above = |value: f64| (value - limit.min).max(1e-9);
+        let unknowns = self.limits.iter().enumerate().map(|(index, limit)| {
             let value = params.get(&limit.key).unwrap_or(limit.nominal);
-            let z = (above(value) / above(limit.nominal)).ln() / sd;
+            let relative = self.odds(index, value) / self.odds(index, limit.nominal);
+            let z = relative.ln() / self.steepness(index);
             // A value at its limit is infinitely far.
             z.clamp(-FARTHEST, FARTHEST)
         });
@@ -294,13 +313,19 @@ impl<'a> Problem<'a> {
     /// Relative change below which a fit has converged. Timed speeds tell far more than counted ones.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
-        if self.is_the_reports { 1e-4 } else { 1e-6 }
+        if self.is_the_reports { 1e-5 } else { 1e-6 }
     }
 
     /// How many evaluations a fit may take, in units of its unknowns.
     #[must_use]
     pub fn patience(&self) -> usize {
-        if self.is_the_reports { 2 } else { 8 }
+        if self.is_the_reports { 4 } else { 8 }
+    }
+
+    /// Half the width of a difference that counts as a slope: past single edges of stick and slip, which are steps of the
+    /// residuals.
+    fn step(&self) -> f64 {
+        if self.is_the_reports { 0.03 } else { 0.01 }
     }
 
     /// Half the sum of squares at `z`.
@@ -327,16 +352,16 @@ impl levenberg_marquardt::LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         Some(self.residuals_at(&self.z))
     }
 
-    /// Central differences, wide enough to see past single edges of stick and slip.
+    /// Central differences.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        const STEP: f64 = 0.01;
+        let step = self.step();
         let column = |i: usize| {
             let at = |shift: f64| {
                 let mut z = self.z.clone();
                 z[i] += shift;
                 self.residuals_at(&z)
             };
-            (at(STEP) - at(-STEP)) / (2.0 * STEP)
+            (at(step) - at(-step)) / (2.0 * step)
         };
         let columns: Vec<DVector<f64>> = (0..self.z.len()).into_par_iter().map(column).collect();
         Some(DMatrix::from_columns(&columns))

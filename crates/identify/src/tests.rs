@@ -1,5 +1,6 @@
 mod bad_input;
 mod own_logs;
+mod starts;
 
 use super::problem::dead_zone_pwm;
 use super::replay::{Correct, Replay};

@@ -71,7 +71,7 @@ fn logs_of_two_wirings_are_refused() {
         let [left, right] = exercise(at_s);
         [0.8 * left, 1.2 * right]
     };
-    let text = recorded(&Params::default(), uneven, 9.0);
+    let text = recorded(&Params::default(), uneven, 3.0);
     let swapped = text.replacen("pwm_a,pwm_b", "pwm_b,pwm_a", 1);
     let logs = [named("right.csv", &text), named("swapped.csv", &swapped)];
     let error = identify(&logs, &Params::default(), 0, &|_| {}).unwrap_err();
