@@ -146,6 +146,9 @@ fn ctrl_c_stops_the_robot_and_keeps_the_log() {
     let until = std::time::Instant::now() + std::time::Duration::from_secs(60);
     while !log_file::read_signals(&only_log()).is_ok_and(|log| drives(&log)) {
         assert!(std::time::Instant::now() < until, "it does not drive");
+        if drive.try_wait().unwrap().is_some() {
+            panic!("{}", support::stderr(&drive.wait_with_output().unwrap()));
+        }
         std::thread::sleep(std::time::Duration::from_millis(200));
     }
     let asked = Command::new("kill")
