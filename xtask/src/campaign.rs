@@ -28,6 +28,9 @@ const FAULTS_INSTANTS_IMAGE: u32 = 2;
 const FUZZ: &str = "fuzz";
 /// A class of a hundred hand-ins, thirty of them hostile.
 const GRADE: &str = "grade";
+/// Simulated robots with known parameters, driven and identified.
+const IDENTIFY: &str = "identify";
+const IDENTIFY_ROBOTS: u32 = 100;
 /// Seconds of each.
 const FUZZ_SECONDS: u32 = 600;
 /// Minutes of [`IMAGE`]: past the wrap of the microseconds at 71.6.
@@ -60,8 +63,12 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if only.is_empty() || only.iter().any(|name| name == GRADE) {
         tools::arduino_core(project).map_err(said)?;
         tools::bubblewrap(project).map_err(said)?;
-        met &= mistakes(project)?;
+        met &= made_longer(project, "grade", "RUMBO_MISTAKES", "all")?;
         met &= tool(project, GRADE, &[])?;
+    }
+    if only.is_empty() || only.iter().any(|name| name == IDENTIFY) {
+        let robots = seeds.unwrap_or(IDENTIFY_ROBOTS).min(IDENTIFY_ROBOTS);
+        met &= made_longer(project, "identify", "RUMBO_ROBOTS", &robots.to_string())?;
     }
     if only.is_empty() || only.iter().any(|name| name == FAULTS) {
         met &= faults(project, seeds)?;
@@ -69,7 +76,9 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     let mut scenarios = vec![seeds.unwrap_or(SEEDS).to_string()];
     scenarios.extend(
         only.iter()
-            .filter(|name| ![LINK, IMAGE, MEDIANS, FUZZ, GRADE, FAULTS].contains(&name.as_str()))
+            .filter(|name| {
+                ![LINK, IMAGE, MEDIANS, FUZZ, GRADE, IDENTIFY, FAULTS].contains(&name.as_str())
+            })
             .cloned(),
     );
     if only.is_empty() || scenarios.len() > 1 {
@@ -78,8 +87,8 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     Ok(met)
 }
 
-/// Grades every mistake of the assignments; true if they lose points where they should.
-fn mistakes(project: &Project) -> Result<bool, String> {
+/// Runs a test of the command line that this variable makes longer; true if it passed.
+fn made_longer(project: &Project, test: &str, variable: &str, value: &str) -> Result<bool, String> {
     let mut command = project.cargo(&[
         "test",
         "--quiet",
@@ -88,9 +97,11 @@ fn mistakes(project: &Project) -> Result<bool, String> {
         "--package",
         "rumbo-cli",
         "--test",
-        "grade",
+        test,
+        "--",
+        "--nocapture",
     ]);
-    command.env("RUMBO_MISTAKES", "all");
+    command.env(variable, value);
     let status = command
         .stdin(Stdio::null())
         .status()

@@ -1,17 +1,26 @@
 //! `rumbo identify`: the plant's parameters from recorded runs, or how well a robot file reproduces them.
 
+mod drive;
+mod session;
+
 use crate::args::IdentifyArgs;
 use crate::failure::Failure;
+use crate::logs;
 use crate::mark::Stamp;
-use crate::output;
+use crate::output::{self, figure};
 use crate::place::{self, Guard};
 use crate::recorded::{self, attached};
+use drive::Driving;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::files::{Library, RobotFile, bounded};
+use rumbo_identify::AgainstTruth;
 use rumbo_identify::sonar_stats::{self, Comparison, SonarLog};
-use rumbo_identify::{DriveLog, GENERATIONS, Identification, IdentifyError, RunScore, dialect};
+use rumbo_identify::{
+    DriveLog, GENERATIONS, Identification, IdentifyError, Program, RunScore, dialect, stretches,
+};
 use rumbo_plant::params::Params;
 use rumbo_plot::{Sheet, WIDTH, Words};
+use rumbo_station::log_file;
 use rumbo_wire::csv;
 use rumbo_wire::text::RowKind;
 use serde::Serialize;
@@ -34,6 +43,11 @@ struct Report<'a> {
     /// Measured and simulated figures of each sonar of the runs.
     sonars: &'a [Comparison],
     plots: Vec<String>,
+    /// The log of the drive.
+    log: Option<String>,
+    /// A simulated robot's true parameters.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    against_truth: Vec<AgainstTruth>,
     written: Option<String>,
 }
 
@@ -51,7 +65,10 @@ enum Drive {
 pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     let name = args.check.as_ref().unwrap_or(&args.robot);
     let robot = Library::new().robot(name)?;
-    let logs = read(&args.logs)?;
+    let driving = drive(args, name)?;
+    let driven = driving.iter().map(|driving| driving.path.clone());
+    let paths: Vec<PathBuf> = args.logs.iter().cloned().chain(driven).collect();
+    let logs = read(&paths)?;
     if let Some(folder) = &args.plots {
         check_plots(args, &logs, folder)?;
         place::try_folder(folder)?;
@@ -70,7 +87,14 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
         }
         Some(_) => (check(&logs, &robot.plant)?, robot.plant),
         None => {
-            let found = rumbo_identify::identify(&logs.drive, &robot.plant, GENERATIONS, &progress)
+            let is_ours = |log: &DriveLog| log.program == Program::Rumbo;
+            // A robot like the one in the file needs no search.
+            let generations = if logs.drive.iter().all(is_ours) {
+                0
+            } else {
+                GENERATIONS
+            };
+            let found = rumbo_identify::identify(&logs.drive, &robot.plant, generations, &progress)
                 .map_err(Failure::input)?;
             let params = found.params;
             (Drive::Identified(Box::new(found)), params)
@@ -86,9 +110,19 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
         None => Vec::new(),
     };
     bar.finish_and_clear();
-    let written = match &drive {
-        Drive::Identified(found) if name.ends_with(".toml") => Some(write(Path::new(name), found)?),
+    let into = match (&args.write, name.ends_with(".toml")) {
+        (Some(path), _) => Some(path.as_path()),
+        (None, true) => Some(Path::new(name)),
+        (None, false) => None,
+    };
+    let written = match (&drive, into) {
+        (Drive::Identified(found), Some(path)) => Some(write(path, &robot.text, found)?),
         _ => None,
+    };
+    let truth = driving.as_ref().and_then(|driving| driving.truth);
+    let against_truth = match (&drive, truth) {
+        (Drive::Identified(found), Some(truth)) => found.against(&truth),
+        _ => Vec::new(),
     };
     if args.json {
         return output::json(&Report {
@@ -96,20 +130,49 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
             drive,
             sonars: &sonars,
             plots: plots.iter().map(|path| output::shown(path)).collect(),
+            log: driving.as_ref().map(|driving| output::shown(&driving.path)),
+            against_truth,
             written: written.map(output::shown),
         });
     }
     report(&logs, &drive, &sonars, &plots)?;
+    if !against_truth.is_empty() {
+        output::line("")?;
+        output::table(&beside_truth(&against_truth))?;
+    }
+    if let Some(driving) = &driving {
+        output::remark(&format!(
+            "log of the drive: {}",
+            output::shown(&driving.path)
+        ))?;
+    }
     match written {
         Some(path) => output::remark(&format!(
             "{}: its [plant] table is rewritten",
             path.display()
         )),
         None if args.check.is_none() => output::remark(
-            "nothing is written: give --robot as the path of a file to have its [plant] table rewritten",
+            "nothing is written: name a robot file with --write to have it in its [plant] table",
         ),
         None => Ok(()),
     }
+}
+
+/// Drives the robot, if one is to be driven.
+fn drive(args: &IdentifyArgs, robot: &str) -> Result<Option<Driving>, Failure> {
+    let Some(address) = &args.drive else {
+        return Ok(None);
+    };
+    let folder = logs::recording(args.out.as_deref()).map(|recording| recording.folder);
+    let drive = drive::Drive {
+        folder: &folder.unwrap_or_else(|| PathBuf::from(".")),
+        battery_v: args.battery,
+    };
+    match address.as_str() {
+        drive::LAB => drive::in_lab(&drive, robot, args.seed.seed),
+        address => drive::at_port(&drive, address, args.baud),
+    }
+    .map(Some)
 }
 
 /// What is being done, and how much of it is.
@@ -118,7 +181,7 @@ fn bar(args: &IdentifyArgs) -> ProgressBar {
         (Some(_), false) => "comparing with the plant",
         (Some(_), true) => "fitting without each run in turn",
         (None, _) => {
-            "searching for the plant that repeats the runs; two cores take some three minutes"
+            "searching for the plant that repeats the runs; CSVs take two cores some three minutes"
         }
     };
     let style = ProgressStyle::with_template("{bar:20} {percent:>3} % {elapsed} {msg}");
@@ -141,11 +204,17 @@ fn check(logs: &Logs, params: &Params) -> Result<Drive, Failure> {
     }
 }
 
-/// Reads CSVs of the original program, and logs that carry one.
+/// Reads CSVs of the original program, logs that carry one, and logs of our own program.
 fn read(paths: &[PathBuf]) -> Result<Logs, Failure> {
     let mut logs = Logs::default();
     for path in paths {
-        let text = text_of(path)?;
+        let Some(text) = text_of(path)? else {
+            let log = log_file::read_signals(path).map_err(Failure::input)?;
+            let found = stretches(path, &log).map_err(Failure::input)?;
+            found.notes.iter().for_each(|note| output::note(note));
+            logs.drive.extend(found.logs);
+            continue;
+        };
         let kind = csv::recognise(text.lines().next().unwrap_or_default());
         if kind == Some(RowKind::Mission) && paths.len() > 1 {
             let path = path.display();
@@ -154,8 +223,11 @@ fn read(paths: &[PathBuf]) -> Result<Logs, Failure> {
             ));
             continue;
         }
-        logs.drive
-            .push(DriveLog::parse(path, text.as_bytes()).map_err(Failure::input)?);
+        let log = DriveLog::parse(path, text.as_bytes()).map_err(Failure::input)?;
+        for error in &log.damaged {
+            output::note(&format!("{error}; the row is left out"));
+        }
+        logs.drive.push(log);
         if kind == Some(RowKind::Distance) {
             logs.sonar
                 .push(SonarLog::parse(path, &text).map_err(Failure::input)?);
@@ -164,8 +236,8 @@ fn read(paths: &[PathBuf]) -> Result<Logs, Failure> {
     Ok(logs)
 }
 
-/// The CSV that a path holds: itself, or attached to a log by `rumbo import`.
-fn text_of(path: &Path) -> Result<String, Failure> {
+/// The CSV that a path holds: itself, or attached to a log by `rumbo import`. `None` for a log of our own program.
+fn text_of(path: &Path) -> Result<Option<String>, Failure> {
     let wrong = |what: String| Failure::Input(format!("{}: {what}", path.display()));
     let bytes = recorded::bytes(path).map_err(|error| {
         wrong(format!(
@@ -175,13 +247,15 @@ fn text_of(path: &Path) -> Result<String, Failure> {
     let is_log = path
         .extension()
         .is_some_and(|extension| extension == "mcap");
-    let bytes = if is_log {
-        attached(&bytes).map_err(|error| wrong(error.to_string()))?
-    } else {
-        bytes
+    let bytes = match is_log {
+        true => match attached(&bytes) {
+            Ok(csv) => csv,
+            Err(_) => return Ok(None),
+        },
+        false => bytes,
     };
     let text = dialect::plain(&bytes).map_err(|error| wrong(error.to_string()))?;
-    Ok(text.into_owned())
+    Ok(Some(text.into_owned()))
 }
 
 /// Where the plots of a run go.
@@ -237,16 +311,34 @@ fn plot(
 }
 
 /// Rewrites the `[plant]` table of a robot file, after checking that the result is a valid robot.
-fn write<'a>(path: &'a Path, found: &Identification) -> Result<&'a Path, Failure> {
+fn write<'a>(path: &'a Path, robot: &str, found: &Identification) -> Result<&'a Path, Failure> {
     let file = path.display().to_string();
     let wrong = |what: String| Failure::Input(format!("{file}: cannot be rewritten ({what})"));
-    let text = bounded::read_text(path).map_err(|error| wrong(error.to_string()))?;
+    let text = match path.exists() {
+        true => bounded::read_text(path).map_err(|error| wrong(error.to_string()))?,
+        false => robot.to_owned(),
+    };
     let today = time::OffsetDateTime::now_utc().date().to_string();
     let text =
         rumbo_identify::rewrite(&text, found, &today).map_err(|error| wrong(error.to_string()))?;
     RobotFile::parse("", &file, &text)?;
     place::write(path, text)?;
     Ok(path)
+}
+
+/// A simulated robot's parameters as a table.
+fn beside_truth(parameters: &[AgainstTruth]) -> Vec<Vec<String>> {
+    let head = ["", "found", "+- (95 %)", "truth", ""].map(String::from);
+    let row = |parameter: &AgainstTruth| {
+        let inside = (parameter.value - parameter.truth).abs() <= parameter.within;
+        let figures = [parameter.value, parameter.within, parameter.truth].map(figure);
+        let verdict = if inside { "inside" } else { "outside" };
+        let name = std::iter::once(parameter.key.clone());
+        name.chain(figures).chain([verdict.to_owned()]).collect()
+    };
+    std::iter::once(head.to_vec())
+        .chain(parameters.iter().map(row))
+        .collect()
 }
 
 fn report(

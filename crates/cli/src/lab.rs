@@ -177,6 +177,16 @@ impl SimulatedRobot {
         self.sim.be_ghost();
     }
 
+    /// Lifts the robot so that its wheels turn freely, or puts it down.
+    pub(crate) fn lift(&mut self, wheels_in_air: bool) {
+        self.sim.lift(wheels_in_air);
+    }
+
+    /// Its parameters, as drawn for the seed.
+    pub(crate) fn params(&self) -> &rumbo_plant::params::Params {
+        self.sim.params()
+    }
+
     /// Moves the robot.
     pub(crate) fn place(&mut self, Standing { at, estimated }: Standing) {
         let at = rumbo_plant::contact::Pose {

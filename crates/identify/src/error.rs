@@ -35,6 +35,15 @@ pub enum IdentifyError {
     },
     /// No log shows speeds or a distance ahead.
     NothingToFit,
+    /// No common plant explains these logs.
+    Contradiction {
+        /// The one that the common fit explains worst.
+        one: String,
+        /// The one that contradicts it most.
+        other: String,
+        /// How much larger its errors are than under a fit of its own.
+        ratio: f64,
+    },
     /// The optimiser failed.
     Optimiser(String),
 }
@@ -67,6 +76,11 @@ impl fmt::Display for IdentifyError {
                     "no log shows wheel speeds (modes 5 to 7) or a wall ahead (modes 1, 2); add one that does"
                 )
             }
+            Self::Contradiction { one, other, ratio } => write!(
+                f,
+                "{one} and {other} contradict each other: no common robot explains both (the errors of the first are {ratio:.2} \
+                 times those of a fit of its own); give the logs of one robot with one wiring"
+            ),
             Self::Optimiser(cause) => write!(f, "the fit did not converge: {cause}"),
         }
     }

@@ -1,22 +1,36 @@
-//! The fit: Levenberg-Marquardt from the robot's present values and from the best point of a global search (CMA-ES), the better of
-//! the two; then uncertainties from its Jacobian.
+//! The fit: Levenberg-Marquardt from the robot's present values and from what is believed beforehand; a search (CMA-ES)
+//! around the better of the two; then uncertainties from its Jacobian.
+//!
+//! Whether a wheel breaks away or sticks is a step of the objective, which ends a descent by slopes early. A population
+//! looks past such steps. It searches in standard deviations of the curvature, along the valley in which all torques scale
+//! together, and begins again from what it has found, as the curvature differs there (docs/theory/plant.md).
 //!
 //! The search is seeded and its objective has no randomness: the same logs and robot give the same parameters.
 
+use crate::contradiction;
 use crate::error::IdentifyError;
 use crate::log::{DriveLog, Seen};
-use crate::problem::{Problem, UNKNOWNS, dead_zone_pwm};
+use crate::problem::{Problem, TIMED_MODEL_ERROR, UNKNOWNS, dead_zone_pwm};
+use crate::replay::Nuisance;
 use crate::score::{RunScore, score};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::{DMatrix, DVector};
 use rumbo_plant::params::Params;
 use serde::Serialize;
 
-/// Generations of the global search that suffice for runs of half a minute.
-pub const GENERATIONS: usize = 100;
+/// Generations of each round of the search that suffice for runs of half a minute.
+pub const GENERATIONS: usize = 60;
+/// Rounds of the search.
+const SEARCHES: usize = 3;
 const POPULATION: usize = 24;
-/// First spread of the search, in standard deviations of what is believed beforehand.
-const SPREAD: f64 = 0.7;
+/// Half of the 95 % interval of a normal distribution, in standard deviations.
+pub(crate) const SDS_95: f64 = 1.96;
+/// Most by which the uncertainty's square grows for the residuals that the fit has taken away.
+const MOST_TAKEN: f64 = 2.0;
+/// First spread of a round, in standard deviations of the curvature.
+const SPREAD: f64 = 1.0;
+/// Longest first step of a descent, in standard deviations of what is believed beforehand.
+const FIRST_STEP: f64 = 3.0;
 
 /// One identified parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,6 +45,21 @@ pub struct Identified {
     pub unit: String,
     /// Share of the knowledge that came from the runs, 0 to 1; the rest is what was believed beforehand.
     pub told_by_runs: f64,
+    /// The experiment that shows it.
+    pub shown_by: &'static str,
+}
+
+/// A parameter of a simulated robot, identified and true.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AgainstTruth {
+    /// Its first key.
+    pub key: String,
+    /// What was found.
+    pub value: f64,
+    /// Half of the 95 % interval.
+    pub within: f64,
+    /// Its true value.
+    pub truth: f64,
 }
 
 /// The outcome of an identification.
@@ -47,25 +76,27 @@ pub struct Identification {
     pub dead_zone_floor_pwm: f64,
     /// How well each run is repeated.
     pub runs: Vec<RunScore>,
-    /// How sure the identified parameters are, together.
-    #[serde(skip)]
-    pub posterior: Posterior,
+    /// The largest misfit of a run's file under the common fit, beside a fit of its own: 1 if they agree, or it is the only one.
+    pub disagreement: f64,
 }
 
-/// What the runs leave possible: a normal distribution of the normalised unknowns about the fit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Posterior {
-    pub(crate) params: Params,
-    pub(crate) z: DVector<f64>,
-    /// Cholesky factor of the covariance.
-    pub(crate) factor: DMatrix<f64>,
-}
-
-impl Posterior {
-    /// A plant that the runs leave possible, for independent standard normal numbers; with all of them 0 the fit itself.
-    pub fn plant(&self, mut normal: impl FnMut() -> f64) -> Params {
-        let normals = DVector::from_fn(self.z.len(), |_, _| normal());
-        Problem::new(&UNKNOWNS, &[], &self.params).plant(&(&self.z + &self.factor * normals))
+impl Identification {
+    /// The identified parameters beside those of the robot that drove. A floor's resistance is what its scale makes of
+    /// it.
+    #[must_use]
+    pub fn against(&self, truth: &Params) -> Vec<AgainstTruth> {
+        let scale = truth.floor.friction_scale / self.params.floor.friction_scale;
+        let of = |parameter: &Identified| {
+            let key = parameter.keys.first()?;
+            let is_dry = matches!(key.as_str(), "floor.rolling_n_m" | "floor.scrub_n_m");
+            Some(AgainstTruth {
+                key: key.clone(),
+                value: parameter.value,
+                within: SDS_95 * parameter.uncertainty,
+                truth: truth.get(key)? * if is_dry { scale } else { 1.0 },
+            })
+        };
+        self.parameters.iter().filter_map(of).collect()
     }
 }
 
@@ -76,9 +107,9 @@ pub struct Check {
     pub runs: Vec<RunScore>,
 }
 
-/// Fits the plant to all runs together, from the values in `start` and, unless `generations` is 0, from the best point of a global
-/// search of so many generations ([`GENERATIONS`] suffice); the better fit wins. `progress` is given the share of the
-/// search that is done.
+/// Fits the plant to all runs together, from the values in `start` and, unless `generations` is 0, also from what is believed
+/// beforehand, with a search around the better of the two, each round so many generations ([`GENERATIONS`] suffice).
+/// `progress` is given the share of the search that is done.
 ///
 /// # Errors
 /// No run with speeds or a distance ahead; a fit that breaks down.
@@ -90,18 +121,30 @@ pub fn identify(
 ) -> Result<Identification, IdentifyError> {
     let logs = useful(logs)?;
     let problem = Problem::new(&UNKNOWNS, &logs, start);
-    let nuisances = logs.iter().map(|log| Ok(check_one(log, start)?.nuisance));
-    let nuisances: Vec<_> = nuisances.collect::<Result<_, IdentifyError>>()?;
-    let mut best = descend(problem.clone(), &problem.point(start, &nuisances))?;
+    progress(0.0);
+    let fit = |params: &Params| -> Result<DVector<f64>, IdentifyError> {
+        let runs = check(&logs, params)?.runs;
+        let nuisances: Vec<Nuisance> = runs.iter().map(|run| run.nuisance).collect();
+        Ok(descend(problem.clone(), &problem.point(params, &nuisances))?.1)
+    };
+    let mut z = fit(start)?;
     if generations > 0 {
-        let found = descend(problem.clone(), &search(&problem, generations, progress)?)?;
-        if problem.cost(&found.1) < problem.cost(&best.1) {
-            best = found;
+        let other = fit(&problem.plant(&DVector::zeros(problem.dimension())))?;
+        if problem.cost(&other) < problem.cost(&z) {
+            z = other;
+        }
+        for round in 0..SEARCHES {
+            let share = |done: f64| progress(0.9 * (round as f64 + done) / SEARCHES as f64);
+            let found = search(&problem, &z, generations, &share)?;
+            if problem.cost(&found) >= problem.cost(&z) {
+                break;
+            }
+            z = found;
         }
     }
-    let (problem, z) = best;
-    let factor = covariance_factor(&problem, &z)?;
-    let sd = |i: usize| factor.row(i).norm();
+    progress(0.9);
+    let disagreement = contradiction::refuse(&logs, start, &problem, &z)?;
+    let sds = standard_deviations(&problem, &z)?;
 
     let params = problem.plant(&z);
     let parameters = UNKNOWNS.iter().enumerate().map(|(i, unknown)| {
@@ -109,9 +152,10 @@ pub fn identify(
         Identified {
             keys: unknown.keys.iter().map(|&key| key.to_owned()).collect(),
             value,
-            uncertainty: problem.slope(i, z[i]) * sd(i),
+            uncertainty: problem.slope(i, z[i]) * sds[i],
             unit: problem.unit(i).to_owned(),
-            told_by_runs: (1.0 - sd(i) * sd(i)).max(0.0),
+            told_by_runs: 1.0 - sds[i] * sds[i],
+            shown_by: unknown.shown_by,
         }
     });
     Ok(Identification {
@@ -123,14 +167,7 @@ pub fn identify(
             .enumerate()
             .map(|(i, log)| score(log, &params, problem.nuisance(i, &z)))
             .collect(),
-        posterior: Posterior {
-            params,
-            z: z.rows(0, UNKNOWNS.len()).into_owned(),
-            factor: factor
-                .rows(0, UNKNOWNS.len())
-                .columns(0, UNKNOWNS.len())
-                .into_owned(),
-        },
+        disagreement,
         params,
     })
 }
@@ -140,12 +177,12 @@ pub fn identify(
 /// # Errors
 /// As [`identify`].
 pub fn check(logs: &[DriveLog], params: &Params) -> Result<Check, IdentifyError> {
-    Ok(Check {
-        runs: useful(logs)?
-            .iter()
-            .map(|log| check_one(log, params))
-            .collect::<Result<_, _>>()?,
-    })
+    let logs = useful(logs)?;
+    let mut runs = Vec::new();
+    for source in logs.chunk_by(|a, b| a.source == b.source) {
+        runs.extend(check_source(source, params)?);
+    }
+    Ok(Check { runs })
 }
 
 /// Fits the plant to all runs but one, from `start`, and repeats that one on it: for each run in turn. What a plant
@@ -159,19 +196,20 @@ pub fn leave_one_out(
     progress: &dyn Fn(f64),
 ) -> Result<Vec<RunScore>, IdentifyError> {
     let logs = useful(logs)?;
-    let without = |left_out: usize| {
-        progress(left_out as f64 / logs.len() as f64);
-        let mut others = logs.clone();
-        let log = others.remove(left_out);
-        let found = identify(&others, start, 0, &|_| {})?;
-        check_one(&log, &found.params)
-    };
-    (0..logs.len()).map(without).collect()
+    let mut scores = Vec::new();
+    for (done, left_out) in logs.chunk_by(|a, b| a.source == b.source).enumerate() {
+        progress(done as f64 / logs.len() as f64);
+        let source = &left_out[0].source;
+        let others = logs.iter().filter(|log| log.source != *source);
+        let found = identify(&others.cloned().collect::<Vec<_>>(), start, 0, &|_| {})?;
+        scores.extend(check_source(left_out, &found.params)?);
+    }
+    Ok(scores)
 }
 
-fn check_one(log: &DriveLog, params: &Params) -> Result<RunScore, IdentifyError> {
-    let run = std::slice::from_ref(log);
-    let problem = Problem::new(&[], run, params);
+/// Repeats the runs of one source, which share battery and floor.
+fn check_source(logs: &[DriveLog], params: &Params) -> Result<Vec<RunScore>, IdentifyError> {
+    let problem = Problem::new(&[], logs, params);
     // A coarse grid first: a battery too low is a robot that never moves, and no slope leads away from that.
     let grid = [-2.0, -1.0, 0.0, 1.0, 2.0]
         .map(|volts| [-2.0, 0.0, 2.0].map(|floor| [volts, floor]))
@@ -179,7 +217,10 @@ fn check_one(log: &DriveLog, params: &Params) -> Result<RunScore, IdentifyError>
     let points = grid.iter().map(|point| DVector::from_row_slice(point));
     let best = points.min_by(|a, b| problem.cost(a).total_cmp(&problem.cost(b)));
     let (problem, z) = descend(problem, &best.unwrap_or_else(|| DVector::zeros(2)))?;
-    Ok(score(log, params, problem.nuisance(0, &z)))
+    let scores = logs.iter().enumerate();
+    Ok(scores
+        .map(|(i, log)| score(log, params, problem.nuisance(i, &z)))
+        .collect())
 }
 
 fn useful(logs: &[DriveLog]) -> Result<Vec<DriveLog>, IdentifyError> {
@@ -195,16 +236,24 @@ fn useful(logs: &[DriveLog]) -> Result<Vec<DriveLog>, IdentifyError> {
     }
 }
 
+/// The best point that a population finds around this one.
 fn search(
     problem: &Problem<'_>,
+    around: &DVector<f64>,
     generations: usize,
     progress: &dyn Fn(f64),
 ) -> Result<DVector<f64>, IdentifyError> {
     let nothing = || IdentifyError::Optimiser("the search found no finite error".into());
+    let jacobian = jacobian(problem, around)?;
+    let covariance = (jacobian.transpose() * jacobian).try_inverse();
+    let axes = covariance
+        .and_then(DMatrix::cholesky)
+        .ok_or_else(undetermined)?
+        .l();
     let mut search = cmaes::CMAESOptions::new(DVector::zeros(problem.dimension()), SPREAD)
         .seed(1)
         .population_size(POPULATION)
-        .build(|z: &DVector<f64>| problem.cost(z))
+        .build(|along: &DVector<f64>| problem.cost(&(around + &axes * along)))
         .map_err(|error| IdentifyError::Optimiser(format!("{error:?}")))?;
     for generation in 0..generations {
         progress(generation as f64 / generations as f64);
@@ -214,18 +263,22 @@ fn search(
         }
     }
     let best = search.overall_best_individual().ok_or_else(nothing)?;
-    Ok(best.point.clone())
+    Ok(around + &axes * &best.point)
 }
 
-fn descend<'a>(
+pub(crate) fn descend<'a>(
     mut problem: Problem<'a>,
     from: &DVector<f64>,
 ) -> Result<(Problem<'a>, DVector<f64>), IdentifyError> {
     problem.set_params(from);
+    let tolerance = problem.tolerance();
     let optimiser = LevenbergMarquardt::new()
-        .with_patience(2)
-        .with_ftol(1e-4)
-        .with_xtol(1e-3);
+        .with_patience(problem.patience())
+        .with_ftol(tolerance)
+        .with_xtol(10.0 * tolerance)
+        .with_stepbound(FIRST_STEP)
+        // All unknowns have one scale. Scaled by their slopes, one that met a step would hardly move again.
+        .with_scale_diag(false);
     let (problem, report) = optimiser.minimize(problem);
     let z = LeastSquaresProblem::params(&problem);
     match report.termination {
@@ -238,28 +291,66 @@ fn descend<'a>(
     }
 }
 
-/// Cholesky factor of the normalised unknowns' covariance: the inverse of the curvature, scaled by the residuals' size.
-fn covariance_factor(
+/// Standard deviations of the normalised unknowns.
+///
+/// For the report's runs the inverse of the curvature H, scaled by the residuals' size. For logs of our program, in which
+/// residuals near each other have common causes such as the floor at a place, that would be too small: there it is the
+/// sandwich H^-1 (B + sum g g') H^-1, with B the curvature of what is believed beforehand and g the gradient of one block
+/// of residuals, among which anything may be correlated.
+fn standard_deviations(problem: &Problem<'_>, z: &DVector<f64>) -> Result<Vec<f64>, IdentifyError> {
+    let jacobian = jacobian(problem, z)?;
+    let residuals = problem.residuals_at(z);
+    let curvature = jacobian.transpose() * &jacobian;
+    let middle = match problem.is_the_reports {
+        true => {
+            let freedom = residuals.len().saturating_sub(z.len()).max(1) as f64;
+            &curvature * (residuals.norm_squared() / freedom).max(1.0)
+        }
+        false => correlated(problem, z, &jacobian, &residuals) * TIMED_MODEL_ERROR.powi(2),
+    };
+    let inverse = curvature.try_inverse().ok_or_else(undetermined)?;
+    let covariance = &inverse * middle * &inverse;
+    // What is believed beforehand bounds the uncertainty, whatever the residuals' size.
+    let sd = |variance: &f64| variance.sqrt().min(1.0);
+    Ok(covariance.diagonal().iter().map(sd).collect())
+}
+
+fn jacobian(problem: &Problem<'_>, z: &DVector<f64>) -> Result<DMatrix<f64>, IdentifyError> {
+    let mut problem = problem.clone();
+    problem.set_params(z);
+    let none = || IdentifyError::Optimiser("no Jacobian".into());
+    problem.jacobian().ok_or_else(none)
+}
+
+fn undetermined() -> IdentifyError {
+    IdentifyError::Optimiser("the runs leave a parameter undetermined".into())
+}
+
+/// B + sum g g' of the sandwich.
+fn correlated(
     problem: &Problem<'_>,
     z: &DVector<f64>,
-) -> Result<DMatrix<f64>, IdentifyError> {
-    let jacobian = problem
-        .jacobian()
-        .ok_or_else(|| IdentifyError::Optimiser("no Jacobian".into()))?;
-    let residuals = problem.residuals_at(z);
-    let freedom = residuals.len().saturating_sub(z.len()).max(1) as f64;
-    let size = (residuals.norm_squared() / freedom).max(1.0);
-    let inverse = (jacobian.transpose() * &jacobian).try_inverse();
-    let factor = inverse.and_then(|inverse| (inverse * size).cholesky());
-    let mut factor = factor
-        .ok_or_else(|| IdentifyError::Optimiser("the runs leave a parameter undetermined".into()))?
-        .unpack();
-    // What is believed beforehand bounds the uncertainty, whatever the residuals' size.
-    for mut row in factor.row_iter_mut() {
-        let sd = row.norm();
-        if sd > 1.0 {
-            row /= sd;
+    jacobian: &DMatrix<f64>,
+    residuals: &DVector<f64>,
+) -> DMatrix<f64> {
+    let blocks = problem.blocks(z);
+    let count = blocks.iter().flatten().max().map_or(0, |last| last + 1);
+    let (mut gradients, mut middle) = (
+        DMatrix::zeros(count, z.len()),
+        DMatrix::zeros(z.len(), z.len()),
+    );
+    for (i, block) in blocks.iter().enumerate() {
+        let row = jacobian.row(i);
+        match block {
+            Some(block) => {
+                let mut gradient = gradients.row_mut(*block);
+                gradient += row * residuals[i];
+            }
+            None => middle += row.transpose() * row,
         }
     }
-    Ok(factor)
+    // The fit has taken part of each block's residuals away.
+    let blocks = count as f64;
+    let freedom = (blocks / (blocks - z.len() as f64).max(1.0)).min(MOST_TAKEN);
+    middle + gradients.transpose() * &gradients * freedom
 }

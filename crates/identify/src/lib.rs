@@ -16,9 +16,11 @@
 //! It knows the plant, and the texts it is given: no scenario, no simulator, no files of the project.
 
 pub mod dialect;
+pub mod plan;
 pub mod problem;
 pub mod sonar_stats;
 
+mod contradiction;
 mod error;
 mod fit;
 mod log;
@@ -26,8 +28,10 @@ mod pair;
 mod plot;
 mod replay;
 mod report;
+mod residuals;
 mod rewrite;
 mod score;
+mod stretches;
 mod wall;
 
 #[cfg(test)]
@@ -35,11 +39,12 @@ mod tests;
 
 pub use error::IdentifyError;
 pub use fit::{
-    Check, GENERATIONS, Identification, Identified, Posterior, check, identify, leave_one_out,
+    AgainstTruth, Check, GENERATIONS, Identification, Identified, check, identify, leave_one_out,
 };
-pub use log::DriveLog;
+pub use log::{DriveLog, Program};
 pub use pair::{Correlation, Pair};
 pub use plot::plot;
 pub use replay::Nuisance;
 pub use rewrite::rewrite;
 pub use score::{RunScore, WheelError};
+pub use stretches::{BATTERY, IN_THE_AIR, ON_THE_FLOOR, Stretches, stretches};

@@ -6,12 +6,14 @@
 
 use crate::error::IdentifyError;
 use crate::pair::Pair;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Length of the windows in which the original counts encoder edges, ms.
-pub(crate) const WINDOW_MS: usize = 50;
+const WINDOW_MS: usize = 50;
 /// Longest run: the simulation is kept for each millisecond.
 const LONGEST_MS: usize = 3_600_000;
+/// A log with more than one damaged row in so many is refused.
+pub(crate) const DAMAGED_IN: usize = 10;
 const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;
 
 /// What a run tells about the motion.
@@ -38,6 +40,34 @@ pub struct Row {
     pub speed_rad_s: [f64; 2],
     /// Measured distances, columns `left_cm` and `right_cm`, m; zero in modes without.
     pub range_m: [f64; 2],
+    /// Over what time the speeds of the left and right wheel were measured.
+    pub window: [Window; 2],
+}
+
+/// The time over which a speed was measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Window {
+    /// Its end since the log's start, ms.
+    pub end_ms: usize,
+    /// Its length, ms.
+    pub length_ms: usize,
+}
+
+impl Row {
+    /// When the measurement of its speeds was complete, ms.
+    #[must_use]
+    pub fn measured_ms(&self) -> usize {
+        self.window[0].end_ms.max(self.window[1].end_ms)
+    }
+}
+
+/// The program that the robot ran.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Program {
+    /// The report's: a row each pass, speeds counted in windows of 50 ms.
+    Original,
+    /// Ours: a row each 40 ms, speeds from the times of edges.
+    Rumbo,
 }
 
 impl Row {
@@ -59,6 +89,14 @@ impl Row {
 pub struct DriveLog {
     /// File name without folder.
     pub name: String,
+    /// The file that it is from, or is a stretch of: one robot, battery and floor.
+    pub source: PathBuf,
+    /// The program that was recorded.
+    pub program: Program,
+    /// Whether the wheels were on the floor; else they were in the air.
+    pub on_floor: bool,
+    /// Voltage of the idle battery and its standard deviation, V, where it was measured.
+    pub battery_v: Option<(f64, f64)>,
     /// What it measured.
     pub seen: Seen,
     /// Rows in the order of time.
@@ -67,6 +105,8 @@ pub struct DriveLog {
     pub window_phase_ms: Option<usize>,
     /// What the run says about its two sonars, if it has two.
     pub pair: Option<Pair>,
+    /// Rows that were left out, and why.
+    pub damaged: Vec<IdentifyError>,
 }
 
 impl DriveLog {
@@ -102,14 +142,25 @@ impl DriveLog {
             .collect();
         let columns = Columns::find(path, &header)?;
         let (mut rows, mut at_ms, mut is_front) = (Vec::new(), 0_usize, false);
+        let (mut damaged, mut lasted_ms) = (Vec::new(), 0);
         for record in reader.records() {
-            let record = record.map_err(bad)?;
+            let record = match record {
+                Ok(record) => record,
+                Err(error) if error.position().is_some() => {
+                    damaged.push(bad(error));
+                    continue;
+                }
+                Err(error) => return Err(bad(error)),
+            };
             let fields = Fields {
                 path,
                 header: &header,
                 record: &record,
             };
-            at_ms += fields.duration_ms(columns.dt)?;
+            let duration = fields.duration_ms(columns.dt);
+            // A row whose own time is damaged lasted about as long as the one before.
+            lasted_ms = *duration.as_ref().unwrap_or(&lasted_ms);
+            at_ms += lasted_ms;
             if at_ms > LONGEST_MS {
                 return Err(IdentifyError::Read {
                     path: path.into(),
@@ -119,8 +170,17 @@ impl DriveLog {
                     ),
                 });
             }
-            rows.push(columns.row(&fields, at_ms)?);
-            is_front = columns.is_front(&fields)?;
+            let row = duration.and_then(|_| columns.row(&fields, at_ms));
+            match row.and_then(|row| Ok((row, columns.is_front(&fields)?))) {
+                Ok((row, front)) => {
+                    rows.push(row);
+                    is_front = front;
+                }
+                Err(error) => damaged.push(error),
+            }
+        }
+        if damaged.len() > rows.len() / DAMAGED_IN {
+            return Err(damaged.swap_remove(0));
         }
         if rows.len() < 2 {
             return Err(IdentifyError::Read {
@@ -141,32 +201,44 @@ impl DriveLog {
         } else {
             None
         };
+        for row in &mut rows {
+            let window = Window {
+                end_ms: window_end_ms(row.at_ms, window_phase_ms),
+                length_ms: WINDOW_MS,
+            };
+            row.window = [window; 2];
+        }
         // Mode 1 has one sonar and writes its reading twice.
         let is_pair = rows.iter().any(|row| row.range_m[0] != row.range_m[1]);
         let pair = is_pair.then(|| Pair::of(&rows, seen == Seen::SidePair));
         Ok(Self {
             name,
+            source: path.into(),
+            program: Program::Original,
+            on_floor: true,
+            battery_v: None,
             seen,
             rows,
             window_phase_ms,
             pair,
+            damaged,
         })
-    }
-
-    /// When the counting window ended whose speed a row shows, ms. Unknown phases count as half a window old.
-    #[must_use]
-    pub fn window_end_ms(&self, row: &Row) -> usize {
-        let age_ms = self.window_phase_ms.map_or(WINDOW_MS / 2, |phase_ms| {
-            (row.at_ms + WINDOW_MS - phase_ms) % WINDOW_MS
-        });
-        row.at_ms.saturating_sub(age_ms)
     }
 
     /// Length of the run, ms.
     #[must_use]
     pub fn duration_ms(&self) -> usize {
-        self.rows.last().map_or(0, |row| row.at_ms)
+        let last = self.rows.last();
+        last.map_or(0, |row| row.at_ms.max(row.measured_ms()))
     }
+}
+
+/// When the counting window ended whose speed a row shows, ms. Unknown phases count as half a window old.
+fn window_end_ms(at_ms: usize, window_phase_ms: Option<usize>) -> usize {
+    let age_ms = window_phase_ms.map_or(WINDOW_MS / 2, |phase_ms| {
+        (at_ms + WINDOW_MS - phase_ms) % WINDOW_MS
+    });
+    at_ms.saturating_sub(age_ms)
 }
 
 /// The phase of the counting windows: rows within one window must show the same speeds. `None` if the rows are too
@@ -262,6 +334,7 @@ impl Columns {
             reference_rad_s: [0.0; 2],
             speed_rad_s: [0.0; 2],
             range_m: [0.0; 2],
+            window: [Window::default(); 2],
         };
         match self.signals {
             Signals::Speeds { speed, reference } => {

@@ -1,8 +1,8 @@
 //! Measured against simulated: speeds of both wheels or the distances to a wall, and the PWM below.
 
 use crate::log::{DriveLog, Seen};
-use crate::problem::RANGE_SD_M;
 use crate::replay::{Nuisance, Replay};
+use crate::residuals::RANGE_SD_M;
 use crate::score::RPM_PER_RAD_S;
 use crate::wall;
 use rumbo_plant::params::Params;

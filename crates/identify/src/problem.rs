@@ -1,20 +1,22 @@
 //! The least-squares problem: unknowns, what is known about them beforehand, residuals.
 //!
 //! Each unknown is a normalised number `z`: 0 is the nominal value of such a robot's parts, +-1 one standard deviation
-//! of what is believed about it (in the logarithm of its distance from the lower limit, so that it stays allowed). The
-//! values before the fit are a place to start from and nothing more, so that a second fit does not drift from the first.
+//! of what is believed about it (in the logarithm of its distance from the lower limit over that from the upper one, so
+//! that it stays allowed and always has a slope). The values before the fit are a place to start from and nothing more, so
+//! that a second fit does not drift from the first.
 //! The beliefs enter as residuals; they hold what the runs cannot tell, such as which part of a torque is voltage and which is
 //! friction. Two facts of the report are such residuals too: wheels start to turn at a PWM of about 35 in the air and
 //! 65 on the floor.
 
-use crate::log::{DriveLog, Seen};
-use crate::replay::{Correct, Nuisance, Replay};
-use crate::wall;
+use crate::log::{DriveLog, Program};
+use crate::replay::{Nuisance, Replay};
+use crate::residuals::{Residuals, run_residuals};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use rayon::prelude::*;
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::{Limit, Params};
+use std::path::Path;
 
 /// A parameter (or several of one value) to identify.
 #[derive(Clone, Copy, Debug)]
@@ -25,38 +27,52 @@ pub struct Unknown {
     pub prior_sd: f64,
     /// What is believed, where that is not the nominal value.
     pub believed: Option<f64>,
+    /// The experiment that shows it.
+    pub shown_by: &'static str,
 }
 
-const fn unknown(keys: &'static [&'static str], prior_sd: f64) -> Unknown {
+const LEVELS: &str =
+    "several PWM from 60 to 255 with the wheels in the air, and the battery's voltage";
+const STARTS: &str = "starts and stops at several PWM, in the air and on the floor";
+const BACKWARD: &str = "the same backward";
+const FAST: &str = "some seconds of full PWM and then of a low one, without a stop";
+const STRAIGHT: &str = "straight stretches on the floor beside some in the air";
+const TURNS: &str = "turns on the spot at several PWM";
+
+const fn unknown(keys: &'static [&'static str], prior_sd: f64, shown_by: &'static str) -> Unknown {
     Unknown {
         keys,
         prior_sd,
         believed: None,
+        shown_by,
     }
 }
 
 /// What the runs can tell. Resistance, gear efficiency and mass scale all torques together and stay nominal.
 pub const UNKNOWNS: [Unknown; 17] = [
-    unknown(&["motor.back_emf_v_s"], 0.3),
-    unknown(&["motor.inductance_h"], 0.5),
-    unknown(&["motor.inertia_kg_m2"], 0.5),
-    unknown(&["motor.resistance_ohm"], 0.3),
-    unknown(&["body.yaw_inertia_kg_m2"], 0.2),
-    unknown(&["wheels.left.coulomb_forward_n_m"], 0.5),
-    unknown(&["wheels.left.coulomb_backward_n_m"], 0.5),
-    unknown(&["wheels.right.coulomb_forward_n_m"], 0.5),
-    unknown(&["wheels.right.coulomb_backward_n_m"], 0.5),
+    unknown(&["motor.back_emf_v_s"], 0.3, LEVELS),
+    unknown(&["motor.inductance_h"], 0.5, LEVELS),
+    unknown(&["motor.inertia_kg_m2"], 0.5, STARTS),
+    unknown(&["motor.resistance_ohm"], 0.3, STRAIGHT),
+    unknown(&["body.yaw_inertia_kg_m2"], 0.2, TURNS),
+    unknown(&["wheels.left.coulomb_forward_n_m"], 0.5, FAST),
+    unknown(&["wheels.left.coulomb_backward_n_m"], 0.5, BACKWARD),
+    unknown(&["wheels.right.coulomb_forward_n_m"], 0.5, FAST),
+    unknown(&["wheels.right.coulomb_backward_n_m"], 0.5, BACKWARD),
     unknown(
         &["wheels.left.viscous_n_m_s", "wheels.right.viscous_n_m_s"],
         0.7,
+        LEVELS,
     ),
     unknown(
         &["wheels.left.static_ratio", "wheels.right.static_ratio"],
         0.7,
+        FAST,
     ),
     unknown(
         &["wheels.left.stribeck_rad_s", "wheels.right.stribeck_rad_s"],
         0.5,
+        FAST,
     ),
     unknown(
         &[
@@ -64,15 +80,16 @@ pub const UNKNOWNS: [Unknown; 17] = [
             "wheels.right.friction_memory_s",
         ],
         0.7,
+        FAST,
     ),
     // 10 % of the whole: the logarithm counts from the lower limit, 0.5.
-    unknown(&["wheels.right.strength"], 0.2),
-    unknown(&["floor.rolling_n_m"], 0.5),
-    unknown(&["floor.scrub_n_m"], 0.7),
+    unknown(&["wheels.right.strength"], 0.2, LEVELS),
+    unknown(&["floor.rolling_n_m"], 0.5, STRAIGHT),
+    unknown(&["floor.scrub_n_m"], 0.7, TURNS),
     // Nominal floors have none.
     Unknown {
         believed: Some(0.01),
-        ..unknown(&["floor.yaw_damping_n_m_s"], 1.0)
+        ..unknown(&["floor.yaw_damping_n_m_s"], 1.0, TURNS)
     },
 ];
 
@@ -82,51 +99,89 @@ const FARTHEST: f64 = 5.0;
 const BATTERY_V: (f64, f64) = (7.4, 0.4);
 const FLOOR_SD: f64 = 0.2;
 
-/// Wheel speed error that counts as one standard deviation, rad/s: 10 rpm over the whole run, 1.7 rpm half a second ahead:
-/// the prediction tells more, since the floor's disturbances have less time to add up.
-const WHOLE_SD_RAD_S: f64 = 1.0;
-const AHEAD_SD_RAD_S: f64 = 0.18;
-/// The same for a distance to a wall, over a stretch of some seconds, m.
-pub(crate) const RANGE_SD_M: f64 = 0.006;
-/// Errors in turns on the spot count as this much smaller: the castor and the tyres scrub in ways not modelled.
-const TURNING: f64 = 3.0;
-/// Errors closer in time than this say the same thing once, s.
-const CORRELATION_S: f64 = 0.2;
-/// Every so manieth row starts a prediction half a second ahead.
-const AHEAD_EVERY: usize = 4;
+/// By how much another robot of the same kind differs: standard deviation in the logarithm.
+const SAME_KIND_SD: f64 = 0.3;
+/// Logs of our program: what their residuals do not show, such as how a speed is measured while it changes. Chosen on 30
+/// simulated robots, measured on others (docs/theory/plant.md).
+pub(crate) const TIMED_MODEL_ERROR: f64 = 1.5;
 /// PWM at which wheels start, in the air and on the floor, each with its standard deviation.
 const DEAD_ZONES: [(bool, f64, f64); 2] = [(false, 35.0, 2.0), (true, 65.0, 4.0)];
+
+/// What is believed beforehand of a source's battery and floor: mean and standard deviation, V, and the standard
+/// deviation of the logarithm of the floor's scale.
+#[derive(Clone, Copy, Debug)]
+struct Day {
+    battery_v: (f64, f64),
+    floor_sd: f64,
+}
 
 /// Unknowns, runs, and a point among the unknowns.
 #[derive(Clone)]
 pub struct Problem<'a> {
     unknowns: &'a [Unknown],
     logs: &'a [DriveLog],
+    /// The number of each log's source.
+    sources: Vec<usize>,
+    /// What is believed of each source.
+    days: Vec<Day>,
     start: Params,
     limits: Vec<Limit>,
+    /// Standard deviation of what is believed of each unknown, in the logarithm.
+    prior_sd: Vec<f64>,
+    /// The report's dead zones hold: no other robot's logs are among these.
+    pub(crate) is_the_reports: bool,
     z: DVector<f64>,
 }
 
 impl<'a> Problem<'a> {
-    /// All of `unknowns` around their nominal values, the rest as in `start`, and two nuisance values per log.
+    /// All of `unknowns` around their nominal values, the rest as in `start`, and two nuisance values per source. With
+    /// logs of our program the unknowns are believed to be near `start`: it is a robot of that kind.
     #[must_use]
     pub fn new(unknowns: &'a [Unknown], logs: &'a [DriveLog], start: &Params) -> Self {
+        let is_the_reports = logs.iter().all(|log| log.program == Program::Original);
         let all = Params::limits();
         let limits = unknowns.iter().filter_map(|unknown| {
-            let mut limit = all
-                .iter()
-                .find(|limit| limit.key == unknown.keys[0])?
-                .clone();
-            limit.nominal = unknown.believed.unwrap_or(limit.nominal);
+            let key = unknown.keys[0];
+            let mut limit = all.iter().find(|limit| limit.key == key)?.clone();
+            let believed = unknown.believed.unwrap_or(limit.nominal);
+            let within = |value: &f64| limit.min < *value && *value < limit.max;
+            let of_start = start.get(key).filter(within);
+            limit.nominal = match is_the_reports {
+                true => believed,
+                false => of_start.unwrap_or(believed),
+            };
             Some(limit)
         });
-        let z = DVector::zeros(unknowns.len() + 2 * logs.len());
+        let prior_sd = unknowns.iter().map(|unknown| match unknown.believed {
+            None if !is_the_reports => SAME_KIND_SD,
+            _ => unknown.prior_sd,
+        });
+        let mut paths: Vec<&Path> = Vec::new();
+        let mut days = Vec::new();
+        let mut sources = Vec::new();
+        for log in logs {
+            let known = paths.iter().position(|path| *path == log.source);
+            sources.push(known.unwrap_or(paths.len()));
+            if known.is_none() {
+                // Without runs on other floors the first one is the floor of the robot file.
+                let is_the_floor = paths.is_empty() && !is_the_reports && !unknowns.is_empty();
+                paths.push(&log.source);
+                days.push(Day {
+                    battery_v: log.battery_v.unwrap_or(BATTERY_V),
+                    floor_sd: if is_the_floor { 1e-3 } else { FLOOR_SD },
+                });
+            }
+        }
         Self {
             unknowns,
             logs,
+            sources,
             start: *start,
             limits: limits.collect(),
-            z,
+            prior_sd: prior_sd.collect(),
+            is_the_reports,
+            z: DVector::zeros(unknowns.len() + 2 * days.len()),
+            days,
         }
     }
 
@@ -142,13 +197,30 @@ impl<'a> Problem<'a> {
         let Limit {
             min, max, nominal, ..
         } = &self.limits[index];
-        (min + (nominal - min).max(1e-9) * (self.unknowns[index].prior_sd * z).exp()).min(*max)
+        let odds = self.odds(index, *nominal) * (self.steepness(index) * z).exp();
+        min + (max - min) / (1.0 + 1.0 / odds)
     }
 
     /// Change of that value per unit of `z`.
     #[must_use]
     pub fn slope(&self, index: usize, z: f64) -> f64 {
-        (self.value(index, z) - self.limits[index].min) * self.unknowns[index].prior_sd
+        let Limit { min, max, .. } = &self.limits[index];
+        let value = self.value(index, z);
+        self.steepness(index) * (value - min) * (max - value) / (max - min)
+    }
+
+    /// How far a value is from its lower limit, relative to its distance from the upper one.
+    fn odds(&self, index: usize, value: f64) -> f64 {
+        let Limit { min, max, .. } = &self.limits[index];
+        (value - min).max(1e-9) / (max - value).max(1e-9)
+    }
+
+    /// Change of the logarithm of the odds per unit of z: at the nominal value that of the value's is what is believed.
+    fn steepness(&self, index: usize) -> f64 {
+        let Limit {
+            min, max, nominal, ..
+        } = &self.limits[index];
+        self.prior_sd[index] * (max - min) / (max - nominal)
     }
 
     /// Unit of unknown `index`.
@@ -157,23 +229,26 @@ impl<'a> Problem<'a> {
         self.limits[index].unit
     }
 
-    /// The point with the values in `params` and these nuisance values, one pair per log.
+    /// The point with the values in `params` and these nuisance values, one pair per log; those of a source are the
+    /// first of its logs'.
     #[must_use]
     pub fn point(&self, params: &Params, nuisances: &[Nuisance]) -> DVector<f64> {
-        let unknowns = self
-            .unknowns
-            .iter()
-            .zip(&self.limits)
-            .map(|(unknown, limit)| {
-                let above = |value: f64| (value - limit.min).max(1e-9);
-                let value = params.get(&limit.key).unwrap_or(limit.nominal);
-                let z = (above(value) / above(limit.nominal)).ln() / unknown.prior_sd;
-                // A value at its limit is infinitely far.
-                z.clamp(-FARTHEST, FARTHEST)
-            });
-        let nuisances = nuisances.iter().flat_map(|nuisance| {
-            let battery = (nuisance.battery_v - BATTERY_V.0) / BATTERY_V.1;
-            [battery, nuisance.floor_scale.ln() / FLOOR_SD]
+        let unknowns = self.limits.iter().enumerate().map(|(index, limit)| {
+            let value = params.get(&limit.key).unwrap_or(limit.nominal);
+            let relative = self.odds(index, value) / self.odds(index, limit.nominal);
+            let z = relative.ln() / self.steepness(index);
+            // A value at its limit is infinitely far.
+            z.clamp(-FARTHEST, FARTHEST)
+        });
+        let nuisances = self.days.iter().enumerate().flat_map(|(source, day)| {
+            let of = self.sources.iter().position(|&each| each == source);
+            let nuisance = of.and_then(|log| nuisances.get(log));
+            let (mean_v, sd_v) = day.battery_v;
+            nuisance.map_or([0.0; 2], |nuisance| {
+                let battery = (nuisance.battery_v - mean_v) / sd_v;
+                let floor = nuisance.floor_scale.ln() / day.floor_sd;
+                [battery, floor].map(|z| z.clamp(-FARTHEST, FARTHEST))
+            })
         });
         DVector::from_iterator(self.dimension(), unknowns.chain(nuisances))
     }
@@ -194,28 +269,63 @@ impl<'a> Problem<'a> {
     /// The nuisance values of run `run` at `z`.
     #[must_use]
     pub fn nuisance(&self, run: usize, z: &DVector<f64>) -> Nuisance {
-        let at = self.unknowns.len() + 2 * run;
+        let source = self.sources[run];
+        let at = self.unknowns.len() + 2 * source;
+        let Day {
+            battery_v: (mean_v, sd_v),
+            floor_sd,
+        } = self.days[source];
         Nuisance {
-            battery_v: (BATTERY_V.0 + BATTERY_V.1 * z[at]).clamp(6.0, 8.6),
-            floor_scale: (FLOOR_SD * z[at + 1]).exp().clamp(0.5, 2.0),
+            battery_v: (mean_v + sd_v * z[at]).clamp(6.0, 8.6),
+            floor_scale: (floor_sd * z[at + 1]).exp().clamp(0.5, 2.0),
         }
     }
 
     /// All residuals at `z`, each in standard deviations.
     #[must_use]
     pub fn residuals_at(&self, z: &DVector<f64>) -> DVector<f64> {
+        DVector::from_vec(self.measured(z).values)
+    }
+
+    /// The block of each residual: those of one block may have one cause. `None` for what is believed beforehand.
+    #[must_use]
+    pub fn blocks(&self, z: &DVector<f64>) -> Vec<Option<usize>> {
+        self.measured(z).blocks
+    }
+
+    fn measured(&self, z: &DVector<f64>) -> Residuals {
         let params = self.plant(z);
-        let mut residuals: Vec<f64> = z.iter().copied().collect();
-        if !self.unknowns.is_empty() {
-            residuals.extend(
-                DEAD_ZONES.map(|(on_floor, pwm, sd)| (dead_zone_pwm(&params, on_floor) - pwm) / sd),
-            );
+        let mut residuals = Residuals::default();
+        z.iter().for_each(|z| residuals.believe(*z));
+        if !self.unknowns.is_empty() && self.is_the_reports {
+            for (on_floor, pwm, sd) in DEAD_ZONES {
+                residuals.believe((dead_zone_pwm(&params, on_floor) - pwm) / sd);
+            }
         }
         for (run, log) in self.logs.iter().enumerate() {
+            residuals.begin_run();
             let replay = Replay::new(log, &params, self.nuisance(run, z));
             run_residuals(log, &replay, &mut residuals);
         }
-        DVector::from_vec(residuals)
+        residuals
+    }
+
+    /// Relative change below which a fit has converged. Timed speeds tell far more than counted ones.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        if self.is_the_reports { 1e-5 } else { 1e-6 }
+    }
+
+    /// How many evaluations a fit may take, in units of its unknowns.
+    #[must_use]
+    pub fn patience(&self) -> usize {
+        if self.is_the_reports { 4 } else { 8 }
+    }
+
+    /// Half the width of a difference that counts as a slope: past single edges of stick and slip, which are steps of the
+    /// residuals.
+    fn step(&self) -> f64 {
+        if self.is_the_reports { 0.03 } else { 0.01 }
     }
 
     /// Half the sum of squares at `z`.
@@ -242,70 +352,20 @@ impl levenberg_marquardt::LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         Some(self.residuals_at(&self.z))
     }
 
-    /// Central differences, wide enough to see past single edges of stick and slip.
+    /// Central differences.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        const STEP: f64 = 0.01;
+        let step = self.step();
         let column = |i: usize| {
             let at = |shift: f64| {
                 let mut z = self.z.clone();
                 z[i] += shift;
                 self.residuals_at(&z)
             };
-            (at(STEP) - at(-STEP)) / (2.0 * STEP)
+            (at(step) - at(-step)) / (2.0 * step)
         };
         let columns: Vec<DVector<f64>> = (0..self.z.len()).into_par_iter().map(column).collect();
         Some(DMatrix::from_columns(&columns))
     }
-}
-
-fn run_residuals(log: &DriveLog, replay: &Replay<'_>, residuals: &mut Vec<f64>) {
-    let trace = replay.whole();
-    let weight = (log.duration_ms() as f64 / log.rows.len() as f64 / 1000.0 / CORRELATION_S)
-        .min(1.0)
-        .sqrt();
-    if log.seen != Seen::Speeds {
-        let errors_m = wall::errors_m(log, &trace, RANGE_SD_M);
-        residuals.extend(
-            errors_m
-                .iter()
-                .map(|error_m| weight * robust(error_m / RANGE_SD_M)),
-        );
-        return;
-    }
-    for (simulated, row) in replay.speeds(&trace).iter().zip(&log.rows) {
-        let weight = if row.is_turning() {
-            weight / TURNING
-        } else {
-            weight
-        };
-        let errors = simulated
-            .iter()
-            .zip(row.speed_rad_s)
-            .map(|(simulated, measured)| simulated - measured);
-        residuals.extend(errors.map(|error| weight * robust(error / WHOLE_SD_RAD_S)));
-    }
-    let weight = weight * (AHEAD_EVERY as f64).sqrt();
-    let observed = replay.observe(Correct::Speeds);
-    for (index, observed) in observed.iter().enumerate().step_by(AHEAD_EVERY) {
-        if let Some((target, predicted)) = replay.ahead(index, observed) {
-            let row = &log.rows[target];
-            let weight = if row.is_turning() {
-                weight / TURNING
-            } else {
-                weight
-            };
-            for (i, speed) in predicted.iter().enumerate() {
-                residuals.push(weight * robust((speed - row.speed_rad_s[i]) / AHEAD_SD_RAD_S));
-            }
-        }
-    }
-}
-
-/// Pseudo-Huber: quadratic below five standard deviations, linear far above.
-fn robust(residual: f64) -> f64 {
-    const BEND: f64 = 5.0;
-    let relative = residual / BEND;
-    (BEND * (2.0 * ((1.0 + relative * relative).sqrt() - 1.0)).sqrt()).copysign(residual)
 }
 
 /// PWM at which the wheels start to turn, both alike, mean of wheels and directions.

@@ -8,7 +8,7 @@
 //! wheel is. Battery and friction memory are those of the plant that runs along. No row after the start is used, but
 //! for the duty, which is the prediction's input.
 
-use crate::log::{DriveLog, Row, WINDOW_MS};
+use crate::log::{DriveLog, Program, Row, Window};
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side, State};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
@@ -16,6 +16,9 @@ use rumbo_plant::params::Params;
 const STEP_S: f64 = 0.001;
 /// Horizon of the short prediction, ms.
 pub(crate) const AHEAD_MS: usize = 500;
+
+/// A slope is that over twice this time, ms.
+const SHIFT_MS: usize = 4;
 
 /// Share of the speed's error that a window corrects.
 const SPEED_GAIN: f64 = 0.7;
@@ -39,6 +42,16 @@ pub(crate) struct Observed {
     state: State,
     /// Dry resistance of the floor here beyond the mean, each wheel, N m.
     resist_n_m: [f64; 2],
+}
+
+/// What a row would have shown.
+pub(crate) struct Predicted {
+    /// Its number.
+    pub(crate) row: usize,
+    /// Its speeds, rad/s.
+    pub(crate) speed_rad_s: [f64; 2],
+    /// How they change with time, rad/s2.
+    pub(crate) slope_rad_s2: [f64; 2],
 }
 
 /// What differs from run to run and no log says.
@@ -77,7 +90,7 @@ impl<'a> Replay<'a> {
         params.floor.friction_scale *= nuisance.floor_scale;
         params.floor.roughness = 0.0;
         params.floor.slip = 0.0;
-        let drivetrain = Drivetrain::new(&params, Noise::new(0, 0), true);
+        let drivetrain = Drivetrain::new(&params, Noise::new(0, 0), log.on_floor);
         Self {
             log,
             drivetrain,
@@ -94,10 +107,7 @@ impl<'a> Replay<'a> {
             way_m: Vec::new(),
             heading_rad: Vec::new(),
         };
-        let (mut state, mut way_m, mut heading_rad) = (self.drivetrain.start(), 0.0, 0.0);
-        // The first row reports the time since a pass that is not in the log and had applied nearly the same: wheels
-        // already turn in first rows.
-        self.apply(&mut state, &self.log.rows[0]);
+        let (mut state, mut way_m, mut heading_rad) = (self.start(), 0.0, 0.0);
         let mut rows = self.log.rows.iter().peekable();
         for now_ms in 0..=self.log.duration_ms() {
             trace.angle_rad.push(angles(&state));
@@ -116,35 +126,44 @@ impl<'a> Replay<'a> {
     /// Speeds that the rows of the log would have shown in this trace, rad/s.
     #[must_use]
     pub(crate) fn speeds(&self, trace: &Trace) -> Vec<[f64; 2]> {
-        let speed = |row: &Row| {
-            let end_ms = self.log.window_end_ms(row);
-            window_speed(
-                trace.angle_rad[end_ms.saturating_sub(WINDOW_MS)],
-                trace.angle_rad[end_ms],
-            )
-        };
+        let speed = |row: &Row| window_speeds(&row.window, &trace.angle_rad, 0);
         self.log.rows.iter().map(speed).collect()
+    }
+
+    /// The state before the first row.
+    fn start(&self) -> State {
+        let mut state = self.drivetrain.start();
+        let first = &self.log.rows[0];
+        if self.log.program == Program::Rumbo {
+            // A stretch may begin in motion.
+            for (wheel, speed_rad_s) in state.wheels.iter_mut().zip(first.speed_rad_s) {
+                wheel.speed_rad_s = speed_rad_s;
+                wheel.remembered_rad_s = speed_rad_s.abs();
+            }
+        }
+        // The first row reports the time since a pass that is not in the log and had applied nearly the same: wheels
+        // already turn in first rows.
+        self.apply(&mut state, first);
+        state
     }
 
     /// The state at the end of each row's window.
     #[must_use]
     pub(crate) fn observe(&self, correct: Correct) -> Vec<Observed> {
         let mut now = Observed {
-            state: self.drivetrain.start(),
+            state: self.start(),
             resist_n_m: [0.0; 2],
         };
-        self.apply(&mut now.state, &self.log.rows[0]);
         let (mut angle_rad, mut observed, mut shown_ms) = (Vec::new(), Vec::new(), None);
         let mut rows = self.log.rows.iter().peekable();
         let mut windows = self.log.rows.iter().peekable();
         for now_ms in 0..=self.log.duration_ms() {
             angle_rad.push(angles(&now.state));
-            while let Some(row) = windows.next_if(|row| self.log.window_end_ms(row) <= now_ms) {
+            while let Some(row) = windows.next_if(|row| row.measured_ms() <= now_ms) {
                 // Rows between two windows' ends show the same window again.
                 if shown_ms != Some(now_ms) {
                     shown_ms = Some(now_ms);
-                    let before = angle_rad[now_ms.saturating_sub(WINDOW_MS)];
-                    now.correct(correct, row, window_speed(before, angle_rad[now_ms]));
+                    now.correct(correct, row, window_speeds(&row.window, &angle_rad, 0));
                 }
                 observed.push(now);
             }
@@ -160,28 +179,76 @@ impl<'a> Replay<'a> {
     /// `None` near the end of the log.
     #[must_use]
     pub(crate) fn ahead(&self, index: usize, observed: &Observed) -> Option<(usize, [f64; 2])> {
-        let from_ms = self.log.window_end_ms(&self.log.rows[index]);
-        let after = &self.log.rows[index..];
-        let target = index
-            + after
-                .iter()
-                .position(|row| self.log.window_end_ms(row) >= from_ms + AHEAD_MS)?;
-        let until_ms = self.log.window_end_ms(&self.log.rows[target]);
+        let target = self.row_after(index, AHEAD_MS)?;
+        let (angle_rad, from_ms) = self.run_on(index, observed, target);
+        Some((
+            target,
+            window_speeds(&self.log.rows[target].window, &angle_rad, from_ms),
+        ))
+    }
 
+    /// Predicts all rows after row `index` up to row `last`, from the state `observed` at it. Windows that begin before
+    /// are left out.
+    pub(crate) fn span(&self, index: usize, observed: &Observed, last: usize) -> Vec<Predicted> {
+        let (angle_rad, from_ms) = self.run_on(index, observed, last);
+        let within = |row: &Row| {
+            let begins = |window: &Window| window.end_ms >= from_ms + window.length_ms + SHIFT_MS;
+            row.window.iter().all(begins)
+        };
+        let rows = (index + 1..=last).filter(|&target| within(&self.log.rows[target]));
+        rows.map(|target| self.predicted(target, &angle_rad, from_ms))
+            .collect()
+    }
+
+    /// All rows as this trace shows them.
+    pub(crate) fn series(&self, trace: &Trace) -> Vec<Predicted> {
+        let rows = 0..self.log.rows.len();
+        rows.map(|target| self.predicted(target, &trace.angle_rad, 0))
+            .collect()
+    }
+
+    fn predicted(&self, row: usize, angle_rad: &[[f64; 2]], from_ms: usize) -> Predicted {
+        let shown = &self.log.rows[row];
+        let later = |by_ms: usize| {
+            let window = shown.window.map(|window| Window {
+                end_ms: window.end_ms + by_ms,
+                ..window
+            });
+            window_speeds(&window, angle_rad, from_ms + SHIFT_MS)
+        };
+        let (before, after) = (later(0), later(2 * SHIFT_MS));
+        Predicted {
+            row,
+            speed_rad_s: window_speeds(&shown.window, angle_rad, from_ms),
+            slope_rad_s2: [0, 1].map(|i| (after[i] - before[i]) / (2e-3 * SHIFT_MS as f64)),
+        }
+    }
+
+    /// The first row measured at least so long after row `index`.
+    pub(crate) fn row_after(&self, index: usize, later_ms: usize) -> Option<usize> {
+        let after = &self.log.rows[index..];
+        let due_ms = after.first()?.measured_ms() + later_ms;
+        Some(index + after.iter().position(|row| row.measured_ms() >= due_ms)?)
+    }
+
+    /// Both wheels' angles at each millisecond from row `index`, where the state is `observed`, to row `target`; and
+    /// when the first one is.
+    fn run_on(&self, index: usize, observed: &Observed, target: usize) -> (Vec<[f64; 2]>, usize) {
+        let from_ms = self.log.rows[index].measured_ms();
+        let until_ms = self.log.rows[target].measured_ms();
         let mut now = *observed;
         let applied = self.log.rows.partition_point(|row| row.at_ms < from_ms);
         let mut rows = self.log.rows[applied..].iter().peekable();
-        let mut window_start = angles(&now.state);
+        let mut angle_rad = Vec::with_capacity(until_ms - from_ms + 1);
         for now_ms in from_ms..until_ms {
-            if now_ms + WINDOW_MS == until_ms {
-                window_start = angles(&now.state);
-            }
+            angle_rad.push(angles(&now.state));
             while let Some(row) = rows.next_if(|row| row.at_ms <= now_ms) {
                 self.apply(&mut now.state, row);
             }
             self.roll(&mut now);
         }
-        Some((target, window_speed(window_start, angles(&now.state))))
+        angle_rad.push(angles(&now.state));
+        (angle_rad, from_ms)
     }
 
     /// One step; the resistance is forgotten along the way, as the floor changes.
@@ -231,7 +298,13 @@ fn angles(state: &State) -> [f64; 2] {
     state.wheels.map(|wheel| wheel.angle_rad)
 }
 
-fn window_speed(from_rad: [f64; 2], to_rad: [f64; 2]) -> [f64; 2] {
-    let speed = |i: usize| (to_rad[i] - from_rad[i]) * 1000.0 / WINDOW_MS as f64;
+/// What these windows would have shown if the wheels' angles, of each millisecond from `from_ms` on, had been these,
+/// rad/s. Windows that reach beyond end there.
+fn window_speeds(window: &[Window; 2], angle_rad: &[[f64; 2]], from_ms: usize) -> [f64; 2] {
+    let speed = |i: usize| {
+        let Window { end_ms, length_ms } = window[i];
+        let at = |ms: usize| angle_rad[ms.saturating_sub(from_ms).min(angle_rad.len() - 1)][i];
+        (at(end_ms) - at(end_ms.saturating_sub(length_ms))) * 1000.0 / length_ms as f64
+    };
     [speed(0), speed(1)]
 }

@@ -1,7 +1,8 @@
 //! Identification in words: tables for a terminal.
 
-use crate::fit::{Check, Identification};
+use crate::fit::{Check, Identification, SDS_95};
 use crate::score::{RunScore, WheelError};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// Share of the knowledge from the runs below which a parameter does not count as identified.
@@ -11,8 +12,8 @@ impl fmt::Display for Identification {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{:<42}{:>10}  {:>10}  {:<12}told by the runs",
-            "parameter", "value", "+- 1 sd", "unit"
+            "{:<42}{:>10}  {:>10}  {:<12}from the runs",
+            "parameter", "value", "+- (95 %)", "unit"
         )?;
         for parameter in &self.parameters {
             let unit = if parameter.unit == "1" {
@@ -22,7 +23,7 @@ impl fmt::Display for Identification {
             };
             let (value, uncertainty) = (
                 significant(parameter.value),
-                significant(parameter.uncertainty),
+                significant(SDS_95 * parameter.uncertainty),
             );
             let share = 100.0 * parameter.told_by_runs;
             for key in &parameter.keys {
@@ -32,25 +33,30 @@ impl fmt::Display for Identification {
                 )?;
             }
         }
-        let unidentified = self
-            .parameters
-            .iter()
-            .filter(|parameter| parameter.told_by_runs < SHOWN)
-            .filter_map(|parameter| parameter.keys.first());
-        let unidentified: Vec<&str> = unidentified.map(String::as_str).collect();
-        if !unidentified.is_empty() {
-            writeln!(
-                f,
-                "these runs hardly show {}: a run with turns on the spot, fast stretches, stops and starts would",
-                unidentified.join(", ")
-            )?;
-        }
+        self.write_hardly_shown(f)?;
         writeln!(
             f,
             "wheels start to turn at PWM {:.0} in the air, {:.0} on the floor",
             self.dead_zone_air_pwm, self.dead_zone_floor_pwm
         )?;
         self.runs.iter().try_for_each(|run| write!(f, "{run}"))
+    }
+}
+
+impl Identification {
+    /// What the runs hardly show, by the experiment that would.
+    fn write_hardly_shown(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut by_experiment: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+        for parameter in &self.parameters {
+            if parameter.told_by_runs < SHOWN {
+                let names = by_experiment.entry(parameter.shown_by).or_default();
+                names.extend(parameter.keys.first().map(String::as_str));
+            }
+        }
+        by_experiment.iter().try_for_each(|(experiment, names)| {
+            let names = names.join(", ");
+            writeln!(f, "these runs hardly show {names}; what does: {experiment}")
+        })
     }
 }
 

@@ -133,6 +133,12 @@ impl Drivetrain {
         }
     }
 
+    /// The same one put on the floor, or lifted off it.
+    #[must_use]
+    pub fn moved(&self, params: &Params, on_floor: bool) -> Self {
+        Self::new(params, self.noise, on_floor)
+    }
+
     /// At rest, bridges released, at a random angle of the motor shafts.
     #[must_use]
     pub fn start(&self) -> State {

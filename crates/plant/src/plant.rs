@@ -342,6 +342,12 @@ impl Plant {
         [0, 1].map(|index| self.encoders[index].level(&state.encoders[index]))
     }
 
+    /// Lifts the robot of these parameters so that its wheels turn freely, or puts it down.
+    pub fn lift(&mut self, params: &Params, wheels_in_air: bool) {
+        self.drivetrain = self.drivetrain.moved(params, !wheels_in_air);
+        self.wheels_in_air = wheels_in_air;
+    }
+
     /// True if the robot was set up with its wheels off the floor.
     #[must_use]
     pub const fn wheels_in_air(&self) -> bool {

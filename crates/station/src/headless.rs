@@ -2,7 +2,7 @@
 
 use crate::log_file::LogError;
 use crate::recorder;
-use rumbo_log::{Burst, Manifest, WriteError};
+use rumbo_log::{Burst, LogWriter, Manifest, WriteError};
 use rumbo_session::headless::{self, Run};
 use std::fs::File;
 use std::io::BufWriter;
@@ -37,6 +37,21 @@ pub fn record_run_in(
         let _ = std::fs::remove_file(&path);
     }
     written.map(|()| path)
+}
+
+/// Begins the log of a session in this folder, under a name made of its manifest, and says which.
+///
+/// # Errors
+/// If the file cannot be made.
+pub fn begin_log(
+    folder: &Path,
+    manifest: &Manifest,
+) -> Result<(PathBuf, LogWriter<BufWriter<File>>), LogError> {
+    let (path, file) = recorder::file_in(folder, manifest)?;
+    match LogWriter::new(BufWriter::new(file), manifest) {
+        Ok(log) => Ok((path, log)),
+        Err(error) => Err(LogError::not_written(&path, error)),
+    }
 }
 
 /// Writes the log of what a robot of the original program and its terminal have said to each other.

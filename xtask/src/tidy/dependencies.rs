@@ -21,7 +21,11 @@ const ARROWS: [(&str, &[&str]); 19] = [
     ),
     ("rumbo-experiment", &["rumbo-sim"]),
     ("rumbo-plot", &[]),
-    ("rumbo-identify", &["rumbo-plant", "rumbo-plot"]),
+    // The logs of our robots are read by what reads all logs.
+    (
+        "rumbo-identify",
+        &["rumbo-plant", "rumbo-plot", "rumbo-log"],
+    ),
     ("rumbo-log", &["rumbo-wire"]),
     ("rumbo-session", &["rumbo-log"]),
     ("rumbo-sketch", &[]),

@@ -186,15 +186,40 @@ pub(crate) struct GradeArgs {
 Examples:
   rumbo identify runs/mode5.csv runs/mode7.csv --robot my_robot.toml
   rumbo identify runs/mode5.csv --check memoria --json --plots out
+  rumbo identify --drive /dev/rfcomm0 --battery 7.62 --write my_robot.toml
+  rumbo identify --drive lab --seed 7          # a simulated robot, beside its true values
+  rumbo identify 20261123-101500-robot.mcap --robot my_robot.toml
 
 Whole run: the recorded duty replayed, from the first row to the last. 0.5 s ahead: from the state that the rows
 up to then tell (wheel speeds, the floor's resistance), no later speed used. Of each run only the battery's
 voltage and the floor's friction are fitted with --check. Beside a wall, and ahead of one, distances are compared over
-3 s at a time. Without --check a fit takes some three minutes.")]
+3 s at a time. Without --check a fit to CSVs takes some three minutes, one to logs of Rumbo half a minute.
+
+Logs of Rumbo are cut into stretches: where frames are lost, the robot started again or the mode changed, and where it is
+OFF. The robot is believed to be of the kind of --robot, each value within some 30 %. Logs that no one robot explains are
+refused; intervals are those of 95 %.")]
 pub(crate) struct IdentifyArgs {
-    /// Recorded runs: CSV of the original program, or logs made of them by `rumbo import`
-    #[arg(required = true, value_name = "LOG")]
+    /// Recorded runs: logs of Rumbo (connect, lab, run), CSV of the original program, or logs made of it by `rumbo import`
+    #[arg(required_unless_present = "drive", value_name = "LOG")]
     pub(crate) logs: Vec<PathBuf>,
+    /// Drive the robot at this port for less than two minutes, part by part, and identify it from that; `lab` is a
+    /// simulated one
+    #[arg(long, value_name = "PORT", conflicts_with = "check")]
+    pub(crate) drive: Option<String>,
+    /// Robot file whose [plant] table is rewritten with what is found; a new file starts as a copy of the robot's
+    #[arg(long, value_name = "FILE.toml", conflicts_with = "check")]
+    pub(crate) write: Option<PathBuf>,
+    /// Voltage of the battery with the wheels at rest, by a multimeter: the motors are known no better than it
+    #[arg(long, value_name = "VOLTS", requires = "drive")]
+    pub(crate) battery: Option<f64>,
+    /// Speed of the port [baud]
+    #[arg(long, value_name = "BAUD", default_value_t = rumbo_session::DEFAULT_BAUD)]
+    pub(crate) baud: u32,
+    /// Folder for the log of the drive [default: that of sessions]
+    #[arg(long, value_name = "DIR", requires = "drive")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) seed: SeedArgs,
     /// Robot to start from; given by path, its table `plant` is rewritten and its comments are kept
     #[arg(
         long,

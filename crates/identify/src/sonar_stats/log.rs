@@ -1,5 +1,6 @@
 //! Ranges of a recorded run, from the original program's CSV.
 
+use crate::log::DAMAGED_IN;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -83,24 +84,36 @@ impl SonarLog {
         }
         let (mut t_s, mut driven, mut left_m, mut right_m) = (vec![], vec![], vec![], vec![]);
         let mut now_s = 0.0;
+        let mut damaged = Vec::new();
         for record in reader.records() {
-            let record = record.map_err(bad)?;
-            let line = record.position().map_or(0, csv::Position::line);
-            let mut values = [0.0; 5];
-            for ((value, &column), name) in values.iter_mut().zip(&columns).zip(names) {
-                let field = record.get(column).unwrap_or_default();
-                *value = field
-                    .parse()
-                    .ok()
-                    .filter(|number: &f64| number.is_finite())
-                    .ok_or_else(|| error(line, format!("`{name}` is `{field}`, not a number")))?;
+            let values = record.map_err(bad).and_then(|record| {
+                let line = record.position().map_or(0, csv::Position::line);
+                let mut values = [0.0; 5];
+                for ((value, &column), name) in values.iter_mut().zip(&columns).zip(names) {
+                    let field = record.get(column).unwrap_or_default();
+                    let number = field.parse().ok();
+                    *value = number
+                        .filter(|number: &f64| number.is_finite())
+                        .ok_or_else(|| {
+                            error(line, format!("`{name}` is `{field}`, not a number"))
+                        })?;
+                }
+                Ok(values)
+            });
+            match values {
+                Ok([dt_ms, left_cm, right_cm, pwm_a, pwm_b]) => {
+                    now_s += dt_ms * 1e-3;
+                    t_s.push(now_s);
+                    driven.push(pwm_a != 0.0 || pwm_b != 0.0);
+                    left_m.push(left_cm * 0.01);
+                    right_m.push(right_cm * 0.01);
+                }
+                Err(error) => damaged.push(error),
             }
-            let [dt_ms, left_cm, right_cm, pwm_a, pwm_b] = values;
-            now_s += dt_ms * 1e-3;
-            t_s.push(now_s);
-            driven.push(pwm_a != 0.0 || pwm_b != 0.0);
-            left_m.push(left_cm * 0.01);
-            right_m.push(right_cm * 0.01);
+        }
+        // The same share as of a drive's log.
+        if damaged.len() > t_s.len() / DAMAGED_IN {
+            return Err(damaged.swap_remove(0));
         }
         let name = path
             .file_name()

@@ -313,6 +313,11 @@ impl Sim {
         }
     }
 
+    /// Lifts the robot so that its wheels turn freely, or puts it down where it is.
+    pub fn lift(&mut self, wheels_in_air: bool) {
+        self.plant.lift(&self.params, wheels_in_air);
+    }
+
     /// Makes it accept the bytes meant for another robot, timed by that one's clock: our native robot no longer checks
     /// their age.
     pub fn be_ghost(&mut self) {
