@@ -125,10 +125,11 @@ impl LinkWatch {
     /// Damaged frames in the present window.
     fn noise(&mut self, now_us: u64, crc_errors: u16) -> u16 {
         let (from_us, from) = *self.noise_from.get_or_insert((now_us, crc_errors));
-        if now_us >= from_us + NOISE_US {
+        // A count that has fallen is another one: that of a robot that restarted.
+        if now_us >= from_us + NOISE_US || crc_errors < from {
             self.noise_from = Some((now_us, crc_errors));
         }
-        crc_errors.wrapping_sub(from)
+        crc_errors.saturating_sub(from)
     }
 
     fn is_due(&mut self, cause: Cause, now_us: u64) -> bool {
@@ -144,6 +145,13 @@ impl LinkWatch {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_count_of_damaged_frames_that_begins_again_is_no_noise() {
+        let mut watch = LinkWatch::default();
+        let counts = [3, 5, 0, 1].map(|count| watch.noise(1_000, count));
+        assert_eq!(counts, [0, 2, 0, 1]);
+    }
 
     #[test]
     fn a_speed_that_carries_too_little_is_warned_of_and_one_that_carries_nothing_refused() {
