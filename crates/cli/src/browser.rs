@@ -6,7 +6,7 @@
 use crate::args::ServeArgs;
 use crate::failure::Failure;
 use crate::output;
-use rumbo_station::Lab;
+use rumbo_station::{Folder, Lab};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -17,12 +17,26 @@ pub(crate) fn show(lab: Lab, serve: ServeArgs) -> Result<(), Failure> {
     if serve.listen.is_some() {
         output::line(&format!("viewers: {}", lab.viewers_url()))?;
     }
-    let opening = (!serve.no_browser).then(|| open(lab.url()));
+    open_while(lab.url(), serve, "the dashboard", || lab.until_opened());
+    lab.wait().map_err(Failure::input)
+}
+
+/// The same for a folder.
+pub(crate) fn show_folder(folder: Folder, serve: ServeArgs) -> Result<(), Failure> {
+    output::line(folder.url())?;
+    open_while(folder.url(), serve, "the page", || folder.until_opened());
+    folder.wait();
+    Ok(())
+}
+
+/// Opens the browser if wanted, and explains; returns when the page has been loaded.
+fn open_while(url: &str, serve: ServeArgs, page: &str, until_opened: impl FnOnce()) {
+    let opening = (!serve.no_browser).then(|| open(url));
     let what = match &opening {
-        None => "open the address above in a browser: it opens once",
-        Some(Err(_)) => "no browser could be opened; open the address above yourself",
+        None => "open the address above in a browser".to_owned(),
+        Some(Err(_)) => "no browser could be opened; open the address above yourself".to_owned(),
         Some(Ok(_)) => {
-            "the dashboard opens in the browser; if it does not, open the address above yourself"
+            format!("{page} opens in the browser; if it does not, open the address above yourself")
         }
     };
     // The address alone is on stdout; this is for people, who may have closed stderr.
@@ -31,10 +45,9 @@ pub(crate) fn show(lab: Lab, serve: ServeArgs) -> Result<(), Failure> {
         let _ = writeln!(stderr, "{what}. Ctrl-C ends the session");
     }
     if let Some(Ok(file)) = opening {
-        lab.until_opened();
+        until_opened();
         drop(file);
     }
-    lab.wait().map_err(Failure::input)
 }
 
 /// Opens the browser at an address; the file is needed until the page is loaded.

@@ -1,4 +1,7 @@
-//! `rumbo compare`: several logs side by side, with their differences from the first; a gate for regressions.
+//! `rumbo compare`: several logs side by side, with their differences from the first, a gate for regressions; or variants
+//! of a scenario with the same seeds.
+
+mod variants;
 
 use crate::args::CompareArgs;
 use crate::export::warn_if_cut;
@@ -14,8 +17,22 @@ use std::collections::{BTreeMap, BTreeSet};
 
 type Metrics = BTreeMap<String, f64>;
 
-/// Prints metrics and differences, draws all runs overlaid on request, and fails where a tolerance is exceeded.
+/// Compares variants of a scenario if there are any, else logs.
 pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
+    match (&args.variants[..], &args.logs[..]) {
+        ([], [_]) => Err(Failure::input(
+            "one log has nothing to be compared with: give another, or variants of a scenario with --with NAME=VALUE",
+        )),
+        ([], _) => compare_logs(args),
+        (_, [scenario]) => variants::compare(args, &output::shown(scenario)),
+        _ => Err(Failure::input(
+            "--with is for variants of one scenario; give one",
+        )),
+    }
+}
+
+/// Prints metrics and differences, draws all runs overlaid on request, and fails where a tolerance is exceeded.
+fn compare_logs(args: &CompareArgs) -> Result<(), Failure> {
     let names: Vec<String> = args.logs.iter().map(|path| output::shown(path)).collect();
     let stamp = Stamp::of("compare", &names);
     if let Some(path) = &args.out {
@@ -176,7 +193,7 @@ fn print(names: &[String], metrics: &[Metrics], passes: &[Option<bool>]) -> Resu
 }
 
 /// A difference with a sign, in four significant digits.
-struct Rounded(f64);
+pub(crate) struct Rounded(pub(crate) f64);
 
 impl std::fmt::Display for Rounded {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -11,6 +11,7 @@ use crate::failure::Failure;
 use crate::mark::Stamp;
 use crate::output;
 use crate::place::{self, Guard};
+use crate::run::set_threads;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::grade::{Assignment, Mark, grade as grade_all};
 use rumbo_report::grade::{class, student};
@@ -29,12 +30,7 @@ const GRADESCOPE: &str = "gradescope";
 pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
     let assignment = Assignment::read(&output::shown(&args.assignment))?;
     let stamp = check_places(args, &assignment)?;
-    if let Some(threads) = args.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.into())
-            .build_global()
-            .map_err(Failure::input)?;
-    }
+    set_threads(args.threads)?;
     let found = hand_ins::find(&args.folder)?;
     let sketches = found.iter().filter(|one| one.is_sketch()).count();
     // Images need no compiler.

@@ -39,6 +39,7 @@ mod run;
 mod run_log;
 mod scene;
 mod sketch;
+mod sweep;
 mod workshop;
 
 use args::{Cli, Command};
@@ -74,6 +75,11 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
             args.image
                 .compile(args.setting.robot.as_deref(), scenario)?;
             run::run(&args)
+        }
+        Some(Command::Sweep(mut args)) => {
+            let robot = args.setting.robot.as_deref();
+            args.image.compile(robot, Some(&args.scenario))?;
+            sweep::sweep(&args)
         }
         Some(Command::Experiments(mut args)) => {
             args.image.compile(args.robot.as_deref(), None)?;

@@ -1,6 +1,6 @@
 //! `rumbo run`: scenarios without a window, as fast as the machine can, judged against their limits.
 
-use crate::args::{ProgramName, RunArgs};
+use crate::args::RunArgs;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::observe;
@@ -9,7 +9,7 @@ use crate::place::{self, Guard};
 use crate::results::Results;
 use crate::run_log::{Kept, Source};
 use indicatif::{ProgressBar, ProgressStyle};
-use rumbo_experiment::files::{Library, NativeProgram, Overrides, ScenarioFile, Setup};
+use rumbo_experiment::files::{Library, Overrides, ScenarioFile, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_log::Kind;
 use rumbo_sim::trace::Trace;
@@ -20,16 +20,10 @@ use std::sync::atomic::Ordering;
 /// Runs every scenario with every seed; one line or table per scenario, or one JSON object per run.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let overrides = Overrides {
-        robot: args.setting.robot.clone(),
-        rig: args.setting.rig.clone(),
-        world: args.setting.world.clone(),
-        parameters: args.parameters.params.clone(),
-        program: match args.program {
-            ProgramName::Rumbo => NativeProgram::Rumbo,
-            ProgramName::Baseline => NativeProgram::Baseline,
-        },
         texts: [&args.commands[..], &args.usb].concat(),
-        ..args.image.overrides()
+        ..args
+            .setting
+            .overrides(args.program, &args.image, &args.parameters)
     };
     let library = Library::new();
     let setup = |name: &String| library.setup(name, &overrides);
@@ -39,12 +33,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         place::try_folder(folder)?;
     }
 
-    if let Some(threads) = args.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.into())
-            .build_global()
-            .map_err(Failure::input)?;
-    }
+    set_threads(args.threads)?;
     let runs = args.runs as usize;
     let jobs: Vec<_> = setups
         .iter()
@@ -110,6 +99,15 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     }
 }
 
+/// Sets the number of threads, if one is requested.
+pub(crate) fn set_threads(threads: Option<u16>) -> Result<(), Failure> {
+    let Some(threads) = threads else {
+        return Ok(());
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
+    pool.build_global().map_err(Failure::input)
+}
+
 fn seeds(args: &RunArgs) -> impl Iterator<Item = u64> {
     let first = args.seed.seed;
     (0..args.runs).map(move |index| first.wrapping_add(u64::from(index)))
@@ -156,7 +154,7 @@ fn run_jobs(
 }
 
 /// On stderr, and only where that is a terminal and there is something to wait for.
-fn progress_bar(runs: usize) -> ProgressBar {
+pub(crate) fn progress_bar(runs: usize) -> ProgressBar {
     if runs < 4 {
         return ProgressBar::hidden();
     }

@@ -8,6 +8,8 @@ pub mod calibrate;
 pub mod calibration_run;
 #[cfg(feature = "host")]
 pub mod campaign;
+#[cfg(feature = "host")]
+pub mod compare;
 pub mod files;
 #[cfg(feature = "host")]
 pub mod grade;
@@ -17,3 +19,5 @@ mod operator;
 pub mod random_world;
 pub mod run;
 pub mod shortest_path;
+#[cfg(feature = "host")]
+pub mod sweep;

@@ -6,7 +6,7 @@
 mod batch;
 
 #[cfg(feature = "host")]
-pub use batch::run_all;
+pub use batch::{in_order, run_all};
 
 use crate::calibrate::calibrate_simulated;
 use crate::files::{FileError, Setup, near};

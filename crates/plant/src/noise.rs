@@ -18,6 +18,8 @@ pub mod source {
     pub const LINK: u32 = 400;
     /// Random worlds.
     pub const WORLD: u32 = 500;
+    /// Points of a sweep; one for each parameter that varies, at most 256.
+    pub const SWEEP: u32 = 600;
     /// The spread of parameters from seed to seed; open upwards.
     pub const DRAW: u32 = 1000;
 }

@@ -1,24 +1,31 @@
-//! Rumbo's plots: panels over one axis ([`Plot`]) and maps ([`Map`]), inline in a page or as a file of their own
-//! ([`Sheet`]).
+//! Rumbo's plots: panels over one axis ([`Plot`]), maps ([`Map`]), heat maps ([`Heat`]), parallel coordinates
+//! ([`Parallel`]) and box plots ([`Boxes`]), inline in a page or as a file of their own ([`Sheet`]).
 //!
 //! Curves have classes, which a style sheet colours, so that one picture serves a light page, a dark one and paper. A
 //! page brings its own values for the variables of [`STYLE`]; a sheet contains those of a light page. Legends stand
 //! above the curves, never on them.
 
+mod boxes;
 mod curve;
 mod frame;
+mod heat;
 mod map;
 mod panels;
+mod parallel;
 #[cfg(feature = "png")]
 mod png;
+mod ramp;
 mod sheet;
 #[cfg(test)]
 mod tests;
 mod text;
 
+pub use boxes::Boxes;
 pub use curve::{Band, Curve, Ink, Points};
+pub use heat::Heat;
 pub use map::{Map, Shape};
 pub use panels::{Panel, Plot};
+pub use parallel::Parallel;
 #[cfg(feature = "png")]
 pub use png::{PngError, png};
 pub use sheet::{Picture, Sheet};

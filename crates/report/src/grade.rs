@@ -9,7 +9,7 @@ use crate::chapters::parts::{DISTANCE, LEFT, REFERENCE, RIGHT, SPEED, TIME};
 use crate::judge;
 use crate::metric_names::{Shown, shown};
 use crate::signals::{CM, Outcome, Place, RPM};
-use crate::summary::shell;
+use crate::summary::{figure, heading, shell};
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, escape, put, word};
 use pulldown_cmark::{Event, Options, Parser, html};
@@ -138,10 +138,6 @@ pub fn class(
         CLASS.of(language),
         &body,
     )
-}
-
-fn heading(text: &str) -> String {
-    format!("<h2 class=\"on\">{}</h2>\n", escape(text))
 }
 
 fn list(title: &str, lines: &[String], class: &str) -> String {
@@ -436,12 +432,7 @@ fn distribution(assignment: &Assignment, marks: &[Mark], language: Language) -> 
         .each_ref()
         .map(|(name, value)| (*name, value.as_str()));
     let facts = CLASS_FACTS.with(language, &facts);
-    let label = format!("<svg role=\"img\" aria-label=\"{}\"", escape(&facts));
-    let svg = svg.replacen("<svg", &label, 1);
-    format!(
-        "<p>{}</p>\n<figure><div class=\"wide\">{svg}</div></figure>\n",
-        escape(&facts)
-    )
+    format!("<p>{}</p>\n{}", escape(&facts), figure(&svg, &facts))
 }
 
 /// The class's share of the points of each criterion, the most lost first.

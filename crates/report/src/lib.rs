@@ -10,6 +10,8 @@
 //! the same bytes.
 
 mod chapters;
+#[cfg(feature = "host")]
+pub mod compare;
 mod complaints;
 mod content;
 mod data;
@@ -26,6 +28,8 @@ pub mod real;
 mod respond;
 mod signals;
 mod summary;
+#[cfg(feature = "host")]
+pub mod sweep;
 mod table;
 pub mod text;
 mod text_rows;

@@ -165,14 +165,20 @@ pub(crate) fn shown(language: Language, outcome: &Outcome, key: &str) -> Option<
     } else {
         (String::new(), stem)
     };
+    let shown = bare(language, stem)?;
+    let name = match of.is_empty() {
+        true => shown.name,
+        false => format!("{of}: {}", shown.bare),
+    };
+    Some(Shown { name, ..shown })
+}
+
+/// What a metric is called without the step or goal that it is of.
+pub(crate) fn bare(language: Language, stem: &str) -> Option<Shown> {
     let known = KNOWN.iter().find(|known| known.stem == stem)?;
     let name = known.name.of(language);
     Some(Shown {
-        name: if of.is_empty() {
-            capital(name)
-        } else {
-            format!("{of}: {name}")
-        },
+        name: capital(name),
         bare: name,
         factor: known.factor,
         unit: known.unit.of(language),

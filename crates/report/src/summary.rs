@@ -67,6 +67,18 @@ pub(crate) fn shell(language: Language, title: &str, subtitle: &str, body: &str)
     )
 }
 
+/// A heading of a page without numbers.
+pub(crate) fn heading(text: &str) -> String {
+    format!("<h2 class=\"on\">{}</h2>\n", escape(text))
+}
+
+/// A figure without a number; `label` is for screen readers.
+pub(crate) fn figure(svg: &str, label: &str) -> String {
+    let label = format!("<svg role=\"img\" aria-label=\"{}\"", escape(label));
+    let svg = svg.replacen("<svg", &label, 1);
+    format!("<figure><div class=\"wide\">{svg}</div></figure>\n")
+}
+
 /// What stands before the chapters.
 fn front(data: &Data, language: Language, contents: String) -> Places {
     let mut places = Places::new(language);

@@ -61,6 +61,13 @@ impl Language {
         text
     }
 
+    /// A value in its shortest form with at most so many significant digits.
+    #[must_use]
+    pub fn significant(self, value: f64, digits: i32) -> String {
+        let magnitude = value.abs().max(1e-9).log10().floor() as i32;
+        self.short(value, (digits - 1 - magnitude).clamp(0, 9) as usize)
+    }
+
     /// A measured value: three significant digits, at most two decimals.
     #[must_use]
     pub fn figure(self, value: f64) -> String {

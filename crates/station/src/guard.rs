@@ -19,10 +19,10 @@ use subtle::ConstantTimeEq;
 
 /// A random secret of 256 bits, in hexadecimal.
 #[derive(Debug)]
-struct Secret(String);
+pub(crate) struct Secret(pub(crate) String);
 
 impl Secret {
-    fn new() -> Result<Self, getrandom::Error> {
+    pub(crate) fn new() -> Result<Self, getrandom::Error> {
         let mut bytes = [0u8; 32];
         getrandom::fill(&mut bytes)?;
         Ok(Self(

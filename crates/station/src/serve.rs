@@ -200,7 +200,7 @@ pub fn serve_log(
 }
 
 /// A replay beside a session, for this computer: paused at its beginning.
-fn serve_replay(name: String, log: Log) -> Result<(String, Box<dyn Send>), ServeError> {
+pub(crate) fn serve_replay(name: String, log: Log) -> Result<(String, Box<dyn Send>), ServeError> {
     let lab = serve_log(ServeAt::here(0), 0.0, name, log, None)?;
     Ok((lab.url().to_owned(), Box::new(lab)))
 }
@@ -212,12 +212,17 @@ fn start(
     session: impl FnOnce(Arc<Board>, Orders) -> Result<(), TargetError> + Send + 'static,
 ) -> Result<Lab, ServeError> {
     guard::check_listen(at.address)?;
+    let listener = bind(at)?;
     let at = SocketAddr::new(at.address, at.port);
-    let listener = TcpListener::bind(at).map_err(|error| match error.kind() {
+    start_on(listener, recordings, session).map_err(|error| ServeError::Io(at, error))
+}
+
+pub(crate) fn bind(at: ServeAt) -> Result<TcpListener, ServeError> {
+    let at = SocketAddr::new(at.address, at.port);
+    TcpListener::bind(at).map_err(|error| match error.kind() {
         io::ErrorKind::AddrInUse => ServeError::PortInUse(at),
         _ => ServeError::Io(at, error),
-    })?;
-    start_on(listener, recordings, session).map_err(|error| ServeError::Io(at, error))
+    })
 }
 
 fn start_on(

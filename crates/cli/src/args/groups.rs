@@ -1,10 +1,11 @@
 //! Options that several commands have.
 
+use super::runs::ProgramName;
 use super::values::parameter;
 use crate::failure::Failure;
 use crate::sketch;
 use clap::Args;
-use rumbo_experiment::files::{FileError, Library, Overrides};
+use rumbo_experiment::files::{FileError, Library, NativeProgram, Overrides};
 use rumbo_sim::boards::Board;
 use std::path::{Path, PathBuf};
 
@@ -22,8 +23,33 @@ pub(crate) struct SettingArgs {
     pub(crate) rig: Option<String>,
 }
 
+impl SettingArgs {
+    /// The overrides of a scenario by these options, a program and parameters.
+    pub(crate) fn overrides(
+        &self,
+        program: ProgramName,
+        image: &ImageArgs,
+        parameters: &ParameterArgs,
+    ) -> Overrides {
+        Overrides {
+            robot: self.robot.clone(),
+            rig: self.rig.clone(),
+            world: self.world.clone(),
+            parameters: parameters.params.clone(),
+            program: match program {
+                ProgramName::Rumbo => NativeProgram::Rumbo,
+                ProgramName::Baseline => NativeProgram::Baseline,
+            },
+            ..image.overrides()
+        }
+    }
+}
+
 /// The board of a robot, or else of the robot of a scenario.
-fn board(robot: Option<&str>, scenario: Option<&str>) -> Result<&'static Board, FileError> {
+pub(crate) fn board(
+    robot: Option<&str>,
+    scenario: Option<&str>,
+) -> Result<&'static Board, FileError> {
     let library = Library::new();
     let robot = match (robot, scenario) {
         (Some(robot), _) => library.robot(robot)?,

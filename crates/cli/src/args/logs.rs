@@ -1,6 +1,7 @@
 //! Options of the commands for logs: `import`, `replay`, `export`, `compare`, `rerun`, `prune`.
 
-use super::groups::{OverwriteArgs, ServeArgs};
+use super::groups::{OverwriteArgs, SeedArgs, ServeArgs};
+use super::runs::LanguageName;
 use super::values::{percent, speed};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -42,9 +43,10 @@ Examples:
   rumbo replay out/mode1-7.mcap
   rumbo replay out/mode1-7.mcap --speed 4
   rumbo replay robot.mcap --ghost mode1
-  rumbo replay out/mode1-7.mcap --port 0 --no-browser")]
+  rumbo replay out/mode1-7.mcap --port 0 --no-browser
+  rumbo replay rumbo-sweep            the page of a sweep: a click on a run replays it")]
 pub(crate) struct ReplayArgs {
-    /// The log
+    /// The log, or the folder of a sweep
     #[arg(value_name = "LOG")]
     pub(crate) log: PathBuf,
     /// Show a simulated robot that receives the same commands, in this scenario [default: the log's]
@@ -98,24 +100,48 @@ Examples:
   rumbo compare out/mode1-7.mcap out/mode1-8.mcap
   rumbo compare before/mode1-7.mcap after/mode1-7.mcap --tolerance 5
   rumbo compare a.mcap b.mcap c.mcap --out overlaid.svg --json
+  rumbo compare mode1 --with front_kp=5 --with front_kp=8 --runs 200
+  rumbo compare mode5 --with program=rumbo --with program=baseline --out page.html
+  rumbo compare mode7 --with waypoint_tracker=pure_pursuit,pursuit_lookahead_m=0.2
+  rumbo compare mode1 --with sketch=mine --with sketch=example:wall
 
-With --tolerance, exit status 1 if a metric of a later log differs from the first one's by more, or a run fails where the first
-passed.")]
+Logs: with --tolerance, exit status 1 if a metric of a later log differs from the first one's by more, or a run fails where
+the first passed.
+
+A scenario with --with: every variant is run with the same seeds, so that each pair of runs is of one robot with itself. A
+variant is NAME=VALUE with parameters of the control core or the plant, or robot, world, rig, program, firmware, sketch or wiring;
+several with commas between them. Differences are from the first variant; with one --with from the scenario as it is.
+Shown: medians, the mean difference with its 95 % interval (Student's t of the pairs), the effect (the mean over the standard
+deviation of the differences), and the share of seeds in which it is better.")]
 pub(crate) struct CompareArgs {
-    /// The logs; differences are from the first
-    #[arg(required = true, num_args = 2.., value_name = "LOG")]
+    /// Logs, or with --with a scenario; differences are from the first
+    #[arg(required = true, value_name = "LOG")]
     pub(crate) logs: Vec<PathBuf>,
+    /// Variant of the scenario; may be repeated
+    #[arg(long = "with", value_name = "NAME=VALUE", conflicts_with = "tolerance")]
+    pub(crate) variants: Vec<String>,
+    /// Runs of each variant, with consecutive seeds
+    #[arg(long, value_name = "N", default_value_t = 50, requires = "variants", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub(crate) runs: u32,
+    #[command(flatten)]
+    pub(crate) seed: SeedArgs,
     /// Largest allowed difference of a metric, in percent of the first log's value
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub(crate) tolerance: Option<f64>,
-    /// Figure with all runs overlaid
-    #[arg(long, value_name = "FILE.svg")]
+    /// Figure with all logs overlaid (SVG); of variants a page with box plots (HTML)
+    #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) overwrite: OverwriteArgs,
     /// The result as one JSON object
     #[arg(long)]
     pub(crate) json: bool,
+    /// Language of the page [default: that of the locale]
+    #[arg(long, value_enum, value_name = "LANGUAGE", requires = "variants")]
+    pub(crate) language: Option<LanguageName>,
+    /// Threads [default: one per core]; the results do not depend on it
+    #[arg(long, value_name = "N", requires = "variants", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
 }
 
 /// Options of `rumbo rerun`.

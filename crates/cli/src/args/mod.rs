@@ -4,18 +4,21 @@ mod groups;
 mod live;
 mod logs;
 mod runs;
+mod studies;
 mod values;
 
 #[cfg(feature = "foxglove")]
 pub(crate) use groups::BridgeArgs;
-pub(crate) use groups::ServeArgs;
+pub(crate) use groups::{ServeArgs, board};
 pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs};
 pub(crate) use logs::{
     CompareArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
 };
 pub(crate) use runs::{
-    CalibrateArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, ProgramName, RunArgs,
+    CalibrateArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, RunArgs,
 };
+
+pub(crate) use studies::SweepArgs;
 
 use crate::failure::Failure;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
@@ -54,6 +57,8 @@ pub(crate) enum Command {
     Flash(FlashArgs),
     /// Run scenarios as fast as the machine can and judge their metrics
     Run(RunArgs),
+    /// Run a scenario with many values of its parameters: a table, and a page with plots
+    Sweep(SweepArgs),
     /// Run every experiment of the report and write it: one page with all figures
     Experiments(ExperimentsArgs),
     /// Grade a class: compile each hand-in in a sandbox, drive it with every seed, write pages and marks

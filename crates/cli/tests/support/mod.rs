@@ -154,6 +154,19 @@ impl Page {
     }
 }
 
+/// The answer to a request, whole.
+pub(crate) fn get(host: &str, path: &str) -> String {
+    let mut stream = TcpStream::connect(host).unwrap();
+    write!(
+        stream,
+        "GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"
+    )
+    .unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    answer
+}
+
 /// An image of `cargo xtask sketches`; `None` where they have not been built.
 pub(crate) fn sketch(name: &str) -> Option<PathBuf> {
     let target = PathBuf::from(env!("CARGO_BIN_EXE_rumbo"));

@@ -26,6 +26,7 @@ mod world;
 pub use error::{FileError, Problem};
 pub use library::{Kind, Library};
 pub use names::{MOVEMENTS, find_mode, find_movement};
+pub use near::unknown;
 pub use robot::{FirmwareCaps, RobotFile};
 pub use scenario::{Bounds, ScenarioFile, Spread, Start, TimedCommand};
 pub use setup::{NativeProgram, Overrides, Port, Setup, TimedText};

@@ -1,5 +1,7 @@
 //! Suggestions for mistyped names and keys.
 
+use super::error::FileError;
+
 /// A unit's suffix in a key, what it measures, and how many of the dimension's base unit it is.
 const UNITS: [(&str, &str, f64); 24] = [
     ("rad_s", "turn rate", 1.0),
@@ -56,6 +58,19 @@ fn likeness(name: &str, candidate: &str) -> f64 {
     let edits = strsim::normalized_damerau_levenshtein(&name, &candidate);
     let contained = name.len() >= 3 && (candidate.contains(&name) || name.contains(&candidate));
     if contained { edits.max(0.6) } else { edits }
+}
+
+/// A name that is none of the known ones, with those that are near, or all.
+pub fn unknown<'a>(
+    kind: &'static str,
+    name: &str,
+    known: impl IntoIterator<Item = &'a str> + Clone,
+) -> FileError {
+    FileError::Unknown {
+        kind,
+        name: name.to_owned(),
+        near: near_or_all(name, known),
+    }
 }
 
 /// The near names, or all where none is near: what [`did_you_mean`] then offers.

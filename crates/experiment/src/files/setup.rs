@@ -115,7 +115,15 @@ impl Library {
         if let Some(rig) = &overrides.rig {
             scenario.rig.clone_from(rig);
         }
-        for (name, value) in &overrides.parameters {
+        for (index, (name, value)) in overrides.parameters.iter().enumerate() {
+            if overrides.parameters[..index]
+                .iter()
+                .any(|(other, _)| other == name)
+            {
+                return Err(FileError::Setting(format!(
+                    "parameter {name} is given twice; give it once, or compare both with `rumbo compare`"
+                )));
+            }
             apply(&mut scenario, name, *value)?;
         }
         stands_free(&scenario, &robot, &world)?;
@@ -148,6 +156,18 @@ impl Library {
 }
 
 impl Setup {
+    /// The same with other values of parameters, of the control core or the plant.
+    ///
+    /// # Errors
+    /// A name that is none, or a value out of its limits.
+    pub fn with_parameters(&self, values: &[(&str, f64)]) -> Result<Self, FileError> {
+        let mut setup = self.clone();
+        for (name, value) in values {
+            apply(&mut setup.scenario, name, *value)?;
+        }
+        Ok(setup)
+    }
+
     /// The setup of a seed: with boxes and goal in place where the world is random, otherwise unchanged.
     ///
     /// # Errors

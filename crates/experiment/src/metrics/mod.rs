@@ -25,6 +25,47 @@ use std::collections::BTreeMap;
 /// Metrics by name.
 pub type Metrics = BTreeMap<String, f64>;
 
+/// Metrics of which more is better; of all others less is.
+const MORE_IS_BETTER: [&str; 7] = [
+    "clearance_m",
+    "contact_clearance_m",
+    "cruise_m_s",
+    "forward_m",
+    "reached",
+    "straights",
+    "telemetry_hz",
+];
+
+/// A metric's name without the step, goal or instant that it is of: `settling_s` of `step1.settling_s`.
+#[must_use]
+pub fn bare(name: &str) -> &str {
+    name.split_once('.').map_or(name, |(_, bare)| bare)
+}
+
+/// Whether more of a metric is better.
+#[must_use]
+pub fn more_is_better(name: &str) -> bool {
+    MORE_IS_BETTER.contains(&bare(name))
+}
+
+/// The metric of this name, or the worst of those with this bare name; not a number where one never happened, `None`
+/// where a run has none.
+#[must_use]
+pub fn worst(metrics: &Metrics, name: &str) -> Option<f64> {
+    if let Some(value) = metrics.get(name) {
+        return Some(*value);
+    }
+    let more = more_is_better(name);
+    let values = metrics.iter().filter(|(full, _)| bare(full) == name);
+    values
+        .map(|(_, value)| *value)
+        .reduce(|worst, value| match worst.is_nan() || value.is_nan() {
+            true => f64::NAN,
+            false if more => worst.min(value),
+            false => worst.max(value),
+        })
+}
+
 /// All metrics of a run. Not a number where what is measured did not happen; of a robot that was never driven, those of
 /// its mode are missing.
 pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {

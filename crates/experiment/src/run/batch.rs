@@ -4,7 +4,7 @@ use super::{RunResult, run};
 use crate::files::{FileError, Setup};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::mpsc::sync_channel;
 
 /// Capacity of the result queue: a slow reader holds the runs back, so that their traces do not fill the memory.
 const WAITING: usize = 16;
@@ -16,47 +16,49 @@ const WAITING: usize = 16;
 /// The first error, of a setup or of `handle`; no further run is begun.
 pub fn run_all<E: From<FileError>>(
     jobs: &[(&Setup, u64)],
-    handle: impl FnMut(&Setup, RunResult) -> Result<(), E>,
+    mut handle: impl FnMut(&Setup, RunResult) -> Result<(), E>,
+) -> Result<(), E> {
+    let work = |index: usize| run(jobs[index].0, jobs[index].1);
+    in_order(jobs.len(), work, |index, result| {
+        handle(jobs[index].0, result?)
+    })
+}
+
+/// Does `work` for 0, 1 ... `count` - 1 on as many threads as the current pool has, and hands the results to `handle` in
+/// that order, each as soon as it and all before it are there.
+///
+/// # Errors
+/// The first error of `handle`; no further work is begun.
+pub fn in_order<T: Send, E>(
+    count: usize,
+    work: impl Fn(usize) -> T + Sync,
+    mut handle: impl FnMut(usize, T) -> Result<(), E>,
 ) -> Result<(), E> {
     let next = AtomicUsize::new(0);
     let (done, results) = sync_channel(WAITING);
     // Separate threads: the caller may be one of the pool's, perhaps its only one, and waits for the results.
     std::thread::scope(|scope| {
-        for _ in 0..rayon::current_num_threads() {
-            let (done, next) = (done.clone(), &next);
+        for _ in 0..rayon::current_num_threads().min(count) {
+            let (done, next, work) = (done.clone(), &next, &work);
             scope.spawn(move || {
                 loop {
                     let index = next.fetch_add(1, Ordering::Relaxed);
-                    let Some((setup, seed)) = jobs.get(index) else {
-                        return;
-                    };
-                    // The receiver is gone: an error has ended the batch.
-                    if done.send((index, run(setup, *seed))).is_err() {
+                    // A receiver that is gone: an error has ended the batch.
+                    if index >= count || done.send((index, work(index))).is_err() {
                         return;
                     }
                 }
             });
         }
         drop(done);
-        in_order(jobs, results, handle)
-    })
-}
-
-fn in_order<E: From<FileError>>(
-    jobs: &[(&Setup, u64)],
-    results: Receiver<(usize, Result<RunResult, FileError>)>,
-    mut handle: impl FnMut(&Setup, RunResult) -> Result<(), E>,
-) -> Result<(), E> {
-    let mut early = BTreeMap::new();
-    let mut left = jobs.iter().enumerate().peekable();
-    for (index, result) in results {
-        early.insert(index, result);
-        while let Some((due, (setup, _))) = left.peek()
-            && let Some(result) = early.remove(due)
-        {
-            handle(setup, result?)?;
-            left.next();
+        let (mut early, mut due) = (BTreeMap::new(), 0);
+        for (index, result) in results {
+            early.insert(index, result);
+            while let Some(result) = early.remove(&due) {
+                handle(due, result)?;
+                due += 1;
+            }
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }

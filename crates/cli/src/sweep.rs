@@ -1,0 +1,268 @@
+//! `rumbo sweep`: a scenario with many values of its parameters, as a table and a page.
+
+mod journal;
+mod tables;
+
+use crate::args::SweepArgs;
+use crate::experiments::language;
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::manifest;
+use crate::mark::{Mark, Stamp, crc32};
+use crate::output::{self, figure};
+use crate::place::{self, Guard};
+use crate::run::{progress_bar, set_threads};
+use crate::run_log::Source;
+use journal::{Header, Journal};
+use rumbo_control::params::ParamId;
+use rumbo_experiment::MODEL;
+use rumbo_experiment::files::{self, Library, Overrides, Setup};
+use rumbo_experiment::metrics::bare;
+use rumbo_experiment::run;
+use rumbo_experiment::sweep::{Design, Plan, Row, Sweep};
+use rumbo_log::Kind;
+use rumbo_report::sweep::{Page, SHOWN};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+/// The page, the tables, the runs as they are done, and the logs of the best and the worst.
+const PAGE: &str = "index.html";
+const CSV: &str = "runs.csv";
+const PARQUET: &str = "runs.parquet";
+const JOURNAL: &str = "runs.jsonl";
+const LOGS: &str = "logs";
+
+/// Runs what is missing, and writes tables and page of what is there.
+pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
+    let library = Library::new();
+    let overrides = args
+        .setting
+        .overrides(args.program, &args.image, &args.parameters);
+    let setup = library.setup(&args.scenario, &overrides)?;
+    let plan = plan(args, &setup)?;
+    set_threads(args.threads)?;
+    let header = header(args, &setup, &overrides, &plan);
+    let about = serde_json::to_string(&header).map_err(Failure::input)?;
+    let stamp = Stamp::of("sweep", &[about]);
+    let path = args.out.join(JOURNAL);
+    let before = match args.overwrite.force {
+        true => None,
+        false => Journal::resume(&path, &header, &plan, args.resume)?,
+    };
+    let (mut journal, rows) = match before {
+        Some(before) => before,
+        None => {
+            check_places(args)?;
+            place::try_folder(&args.out)?;
+            (Journal::begin(&path, &header)?, Vec::new())
+        }
+    };
+    let first = rows.len();
+    let mut sweep = Sweep { plan, rows };
+    let asked = interrupt::asked();
+    let progress = progress_bar(sweep.plan.len());
+    progress.set_position(first as u64);
+    progress.reset_eta();
+    let mut done = Vec::new();
+    let ended = sweep.plan.run(&setup, first, |row| {
+        journal.put(&row)?;
+        done.push(row);
+        progress.inc(1);
+        match asked.load(Ordering::Relaxed) {
+            true => Err(Failure::Interrupted),
+            false => Ok(()),
+        }
+    });
+    progress.finish_and_clear();
+    sweep.rows.extend(done);
+    let by = by(args, &setup, &sweep)?;
+    let writer = Writer {
+        args,
+        library: &library,
+        overrides: &overrides,
+        setup: &setup,
+        by: &by,
+    };
+    writer.write(&sweep, &stamp)?;
+    report(args, &sweep, &by)?;
+    if sweep.rows.len() < sweep.plan.len() {
+        output::note(&format!(
+            "{} of {} runs are done; the same command with --resume goes on",
+            sweep.rows.len(),
+            sweep.plan.len()
+        ));
+    }
+    ended
+}
+
+fn plan(args: &SweepArgs, setup: &Setup) -> Result<Plan, Failure> {
+    let fixed = args.parameters.params.iter().map(|(name, _)| name);
+    for name in fixed {
+        if args.axes.iter().any(|axis| axis.name == *name) {
+            return Err(Failure::Input(format!(
+                "{name} is an axis and has a --param; give it once"
+            )));
+        }
+    }
+    let design = match (args.random, args.sobol) {
+        (Some(count), _) => Design::Random(count as usize),
+        (None, Some(count)) => Design::Sobol(count as usize),
+        (None, None) => Design::Grid,
+    };
+    let plan = Plan::new(args.axes.clone(), design, args.seed.seed, args.runs);
+    let plan = plan.map_err(Failure::input)?;
+    plan.check(setup)?;
+    check_control(args.axes.iter().map(|axis| axis.name.as_str()), setup)?;
+    Ok(plan)
+}
+
+/// A program without our parameters would do the same with any.
+pub(crate) fn check_control<'a>(
+    mut names: impl Iterator<Item = &'a str>,
+    setup: &Setup,
+) -> Result<(), Failure> {
+    match names.find(|name| ParamId::from_name(name).is_some()) {
+        Some(name) if !setup.takes_parameters() => Err(Failure::Input(format!(
+            "{name}: is a parameter of Rumbo's control core, which does not drive here; choose one of the plant's (`rumbo list plant`)"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+fn header(args: &SweepArgs, setup: &Setup, overrides: &Overrides, plan: &Plan) -> Header {
+    let about = manifest::of(Kind::Run, setup, overrides, plan.seed);
+    let files = format!("{:?}", (&about.files, &about.rig, &about.wiring));
+    Header {
+        rumbo_sweep: about.version,
+        model: MODEL,
+        scenario: args.scenario.clone(),
+        axes: args.axes.iter().map(|axis| format!("{axis:?}")).collect(),
+        design: format!("{:?}", plan.design),
+        seed: plan.seed,
+        runs: plan.runs,
+        program: about.program,
+        image: about.image,
+        parameters: about.parameters,
+        files: format!("{:08x}", crc32(files.as_bytes())),
+    }
+}
+
+/// Refuses, before anything runs, a folder with files that are no sweep's: one of a sweep has a journal.
+fn check_places(args: &SweepArgs) -> Result<(), Failure> {
+    let named = [&args.setting.robot, &args.setting.world];
+    let inputs = [&args.scenario]
+        .into_iter()
+        .chain(named.into_iter().flatten());
+    let inputs = inputs.map(PathBuf::from).chain(args.image.firmware.clone());
+    let guard = Guard::new(inputs, args.overwrite.force);
+    let mark = Mark::Text("rumbo sweep ".into());
+    [PAGE, CSV, PARQUET, JOURNAL]
+        .into_iter()
+        .try_for_each(|name| guard.check(&args.out.join(name), &mark))
+}
+
+/// The metric that ranks: the requested one, else a time or an error with a limit.
+fn by(args: &SweepArgs, setup: &Setup, sweep: &Sweep) -> Result<String, Failure> {
+    let known = sweep.metrics(&setup.scenario);
+    let Some(asked) = &args.by else {
+        let limits = || setup.scenario.limits.keys().map(|name| bare(name));
+        let timed = limits().find(|name| name.ends_with("_s") && !name.ends_with("_m_s"));
+        let first = limits().find(|name| *name != "contacts");
+        let name = timed.or(first).or(known.first().copied());
+        return Ok(name.unwrap_or("contacts").to_owned());
+    };
+    let is_there = |row: &Row| row.metrics.contains_key(asked) || known.contains(&asked.as_str());
+    if sweep.rows.is_empty() || sweep.rows.iter().any(is_there) {
+        return Ok(asked.clone());
+    }
+    let unknown = files::unknown("metric", asked, known);
+    Err(Failure::Input(format!(
+        "--by: {unknown} The runs are kept: give the command once more with --resume"
+    )))
+}
+
+struct Writer<'a> {
+    args: &'a SweepArgs,
+    library: &'a Library,
+    overrides: &'a Overrides,
+    setup: &'a Setup,
+    by: &'a str,
+}
+
+impl Writer<'_> {
+    fn write(&self, sweep: &Sweep, stamp: &Stamp) -> Result<(), Failure> {
+        let out = |name: &str| self.args.out.join(name);
+        let logs = self.logs(sweep)?;
+        place::write(&out(CSV), tables::csv(sweep))?;
+        place::write(&out(PARQUET), tables::parquet(sweep)?)?;
+        let page = Page {
+            sweep,
+            scenario: &self.setup.scenario,
+            by: self.by,
+            logs: &logs,
+        };
+        let html = page.html(language(self.args.language));
+        place::write(&out(PAGE), stamp.put_on(html))
+    }
+
+    /// Runs the best and the worst of the points in the page once more, for their logs; returns their addresses.
+    fn logs(&self, sweep: &Sweep) -> Result<BTreeMap<(usize, u64), String>, Failure> {
+        let ranked = sweep.ranked(self.by);
+        let folder = self.args.out.join(LOGS);
+        place::folder(&folder)?;
+        let ends = ranked
+            .iter()
+            .take(SHOWN)
+            .chain(ranked.iter().rev().take(SHOWN));
+        let mut logs = BTreeMap::new();
+        for point in ends {
+            for worst in [false, true] {
+                let Some(row) = sweep.extreme(*point, self.by, worst) else {
+                    continue;
+                };
+                let name = format!("point{}-{}", row.point, row.seed);
+                let address = format!("{LOGS}/{name}.mcap");
+                if logs.insert((row.point, row.seed), address).is_none() {
+                    self.record(sweep, row, &folder.join(name + ".mcap"))?;
+                }
+            }
+        }
+        Ok(logs)
+    }
+
+    fn record(&self, sweep: &Sweep, row: &Row, path: &std::path::Path) -> Result<(), Failure> {
+        let mut overrides = self.overrides.clone();
+        let names = sweep.plan.axes.iter().map(|axis| axis.name.clone());
+        let values = sweep.plan.points[row.point].iter().copied();
+        overrides.parameters.extend(names.zip(values));
+        let source = Source {
+            kind: Kind::Run,
+            library: self.library,
+            overrides: &overrides,
+        };
+        let setup = sweep.plan.setup(self.setup, row.point)?;
+        let result = run::run(&setup, row.seed)?;
+        source.write(path, &setup, &result)
+    }
+}
+
+/// The best points, and where the page is.
+fn report(args: &SweepArgs, sweep: &Sweep, by: &str) -> Result<(), Failure> {
+    let axes = sweep.plan.axes.iter().map(|axis| axis.name.clone());
+    let more = ["pass".to_owned(), format!("{by}, median")];
+    let mut rows: Vec<Vec<String>> = vec![axes.chain(more).collect()];
+    for point in sweep.ranked(by).into_iter().take(SHOWN) {
+        let values = sweep.plan.points[point].iter();
+        let mut row: Vec<String> = values.map(|value| figure(*value)).collect();
+        row.push(format!("{:.0} %", 100.0 * sweep.pass_share(point)));
+        let median = sweep.spread(point, by).map(|spread| spread.median);
+        row.push(match median {
+            Some(median) if median.is_finite() => figure(median),
+            _ => "never".into(),
+        });
+        rows.push(row);
+    }
+    output::table(&rows)?;
+    output::line(&output::shown(&args.out.join(PAGE)))
+}
