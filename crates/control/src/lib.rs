@@ -25,6 +25,7 @@ pub mod pursuit;
 pub mod range;
 pub mod rig;
 pub mod speed;
+pub mod stuck;
 pub mod sweep;
 pub mod types;
 pub mod unrest;

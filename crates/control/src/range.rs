@@ -5,6 +5,7 @@
 //! the error rate of odometry's prediction (slip, a wheel's radius, the speed of sound).
 
 use crate::math::{abs, clamp, from_u32, max, min};
+use crate::stuck::Stuck;
 use crate::types::{AgedRange, Echo, Range, TICK_S};
 
 /// Shortest distance an HC-SR04 can measure [m]; less is impossible.
@@ -21,12 +22,8 @@ const GIVE_IN: u8 = 5;
 const FAULTY_AFTER: u8 = 3;
 /// Answers without an echo in a row that make the range clear.
 const CLEAR_AFTER: u8 = 3;
-/// Answers in a row that are equal to the microsecond: echoes of a moving sonar differ, so it is stuck.
-const STUCK_AFTER: u8 = 8;
-/// Edges of both wheels together in which they must have come: 3 cm of the original's wheels.
-const STUCK_EDGES: u16 = 112;
-/// The same number of equal answers suffices when the robot has come this much nearer by its encoders [m].
-const STUCK_SOON: (u8, f32) = (3, 0.04);
+/// Edges of both wheels between two answers of a robot that moves: 2 mm of the original's wheels.
+const MOVED_EDGES: u16 = 8;
 /// Gain on the distance at close range, where readings err by a millimetre.
 const GAIN_NEAR: f32 = 0.45;
 /// Gain on the distance at 1 m and beyond, where they err by centimetres.
@@ -69,12 +66,7 @@ pub struct RangeFilter {
     refused: u8,
     clear: u8,
     faulty: u8,
-    /// The last distance, unfiltered, its number of repetitions, and since the first of them: the edges of both wheels,
-    /// and how much nearer the sonar came to its target.
-    last_m: f32,
-    repeated: u8,
-    same_edges: u16,
-    same_closer_m: f32,
+    stuck: Stuck,
     /// The range and its age.
     aged: AgedRange,
 }
@@ -99,31 +91,17 @@ impl RangeFilter {
     }
 
     /// Predicts the stored distances to the present position.
-    fn arrive(&mut self) {
+    fn arrive(&mut self, closer_m: f32) {
         for recent in &mut self.recent_m {
-            *recent -= self.closer_m;
+            *recent -= closer_m;
         }
-        self.same_closer_m = clamp(self.same_closer_m + self.closer_m, -1.0, 1.0);
-        self.same_edges = self.same_edges.saturating_add(self.edges);
-        (self.closer_m, self.edges) = (0.0, 0);
-    }
-
-    /// Whether the sonar is stuck: the same distance repeatedly although it moved.
-    fn is_stuck(&mut self, range_m: f32) -> bool {
-        if range_m == self.last_m {
-            self.repeated = self.repeated.saturating_add(1);
-        } else {
-            (self.last_m, self.repeated) = (range_m, 0);
-            (self.same_edges, self.same_closer_m) = (0, 0.0);
-        }
-        let (soon, closer_m) = STUCK_SOON;
-        (self.repeated >= STUCK_AFTER && self.same_edges >= STUCK_EDGES)
-            || (self.repeated >= soon && abs(self.same_closer_m) >= closer_m)
     }
 
     /// Updates with an answer of the sonar.
     pub fn update(&mut self, reading: Range) {
-        self.arrive();
+        let closer_m = core::mem::take(&mut self.closer_m);
+        let moved = core::mem::take(&mut self.edges) >= MOVED_EDGES;
+        self.arrive(closer_m);
         match reading {
             Range::Faulty => {
                 self.faulty = self.faulty.saturating_add(1);
@@ -138,7 +116,7 @@ impl RangeFilter {
                 }
             }
             Range::Valid(range_m) => {
-                if self.is_stuck(range_m) {
+                if self.stuck.ingest(range_m, moved, closer_m) {
                     self.declare(Range::Faulty);
                     return;
                 }
@@ -279,14 +257,14 @@ mod tests {
     fn the_same_answer_for_ever_is_a_stuck_sonar_if_the_robot_moves_and_a_wall_if_it_stands() {
         let mut filter = fed(&[Range::Valid(0.5); 30]);
         assert!((distance(&filter) - 0.5).abs() < 1e-6);
-        for _ in 0..=STUCK_AFTER {
+        for _ in 0..14 {
             filter.predict(0.0, 40);
             filter.update(Range::Valid(0.5));
         }
         assert_eq!(filter.range().range, Range::Faulty);
         for step in 0..20u8 {
             filter.predict(0.0, 40);
-            filter.update(Range::Valid(0.5 + 2e-4 * f32::from(step)));
+            filter.update(Range::Valid(0.5 + 4e-4 * f32::from(step)));
         }
         assert!((distance(&filter) - 0.5).abs() < 0.01);
     }
@@ -295,7 +273,7 @@ mod tests {
     fn the_same_answer_while_the_wall_comes_nearer_is_a_stuck_sonar_at_once() {
         let mut filter = fed(&[Range::Valid(1.5), Range::Valid(1.5), Range::Valid(1.0)]);
         for _ in 0..3 {
-            filter.predict(0.02, 0);
+            filter.predict(0.02, 40);
             filter.update(Range::Valid(1.0));
         }
         assert_eq!(filter.range().range, Range::Faulty);

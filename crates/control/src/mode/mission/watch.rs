@@ -10,16 +10,12 @@ use super::gaze::SWEEP_RAD;
 use super::landmarks::Landmarks;
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sin_cos};
+use crate::stuck::Stuck;
 use crate::types::{Fault, Range, Reading, SonarId, TICK_S};
 use core::f32::consts::FRAC_PI_2;
 
 /// Impossible answers in a row that make a sonar faulty.
 const FAULTY_AFTER: u8 = 3;
-/// Consecutive equal readings that make it stuck. A healthy one repeats to the microsecond in at most one of ten
-/// readings, beside a parallel wall: seven in a row are one in ten million.
-const STUCK_AFTER: u8 = 7;
-/// Answers this near to each other are equal: a microsecond is 0.17 mm [m].
-const SAME_M: f32 = 0.000_05;
 /// Motion between readings below which equal ones are plausible [m, rad].
 const MOVED_M: f32 = 0.002;
 const MOVED_RAD: f32 = 0.02;
@@ -75,7 +71,8 @@ pub(super) enum Worth {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct SonarState {
     faulty: u8,
-    same: u8,
+    stuck: Stuck,
+    is_stuck: bool,
     outliers: u8,
     /// The last reading was that nothing is in reach.
     silent: bool,
@@ -83,8 +80,6 @@ struct SonarState {
     looks: u8,
     /// The last three ranges of these that differ, as they would be from here, the newer one first; 0: none [m].
     known_m: [f32; 3],
-    /// The last range that it gave, whatever came after it [m].
-    last_m: f32,
     /// Direction of the last answer's beam, seen from the robot at present [rad].
     axis_rad: f32,
     age_s: f32,
@@ -105,16 +100,17 @@ impl SonarState {
         self.faulty = 0;
         let axis_rad = reading.view.axis_rad;
         let aside_rad = abs(axis_rad - (self.axis_rad - turned_rad));
-        self.repeats(
-            reading.range,
-            abs(rolled_m) > MOVED_M || aside_rad > MOVED_RAD,
-        );
         self.axis_rad = axis_rad;
         if aside_rad > BESIDE_RAD {
             self.known_m = [0.0; 3];
             self.looks = 0;
         }
         let closer_m = rolled_m * sin_cos(axis_rad).1;
+        let moved = abs(rolled_m) > MOVED_M || aside_rad > MOVED_RAD;
+        self.is_stuck = match reading.range {
+            Range::Valid(range_m) => self.stuck.ingest(range_m, moved, closer_m),
+            _ => false,
+        };
         for known_m in self.known_m.iter_mut().filter(|known_m| **known_m > 0.0) {
             *known_m -= closer_m;
         }
@@ -149,20 +145,6 @@ impl SonarState {
             }
             Worth::Wild
         }
-    }
-
-    /// Counts answers that are equal although the robot or the servo `moved`.
-    fn repeats(&mut self, range: Range, moved: bool) {
-        let Range::Valid(range_m) = range else {
-            self.same = 0;
-            return;
-        };
-        if abs(range_m - self.last_m) > SAME_M {
-            self.same = 0;
-        } else if moved {
-            self.same = self.same.saturating_add(1);
-        }
-        self.last_m = range_m;
     }
 }
 
@@ -270,10 +252,7 @@ impl Watch {
             sonar.age_s += TICK_S;
             sonar.rolled_m += estimate.rolled_m;
             sonar.turned_rad += estimate.turned_rad;
-            if sonar.faulty >= FAULTY_AFTER
-                || sonar.same >= STUCK_AFTER
-                || sonar.outliers >= WILD_LIMIT
-            {
+            if sonar.faulty >= FAULTY_AFTER || sonar.is_stuck || sonar.outliers >= WILD_LIMIT {
                 return Err(Fault::SonarFaulty);
             }
             if sonar.age_s > stale_s {

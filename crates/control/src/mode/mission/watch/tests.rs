@@ -82,6 +82,19 @@ fn a_silent_line_is_a_fault_after_three_answers_and_one_is_none() {
 }
 
 #[test]
+fn a_stuck_sonar_whose_stamps_differ_now_and_then_is_found_too() {
+    let late = |tick: u16, range_m: f32| match tick / 6 % 4 {
+        0 => Range::Valid(range_m + 0.000_17),
+        _ => Range::Valid(range_m),
+    };
+    let stuck = watched(|_, tick| late(tick, 0.8), 500, 0.002).map(|_| ());
+    assert!(
+        matches!(stuck, Err((tick, Fault::SonarFaulty)) if tick < 90),
+        "{stuck:?}"
+    );
+}
+
+#[test]
 fn an_answer_that_never_changes_while_the_robot_drives_is_a_fault_within_half_a_second() {
     let stuck = watched(|_, _| Range::Valid(0.8), 500, 0.002).map(|_| ());
     assert!(
