@@ -1,6 +1,6 @@
 //! `rumbo calibrate`: the calibration of a simulated robot, beside its true values.
 
-use crate::args::CalibrateArgs;
+use crate::args::{CalibrateArgs, OverwriteArgs};
 use crate::failure::Failure;
 use crate::output::{self, figure};
 use crate::place;
@@ -9,6 +9,7 @@ use rumbo_experiment::calibrate::{self, Calibration, Calibrator, Row};
 use rumbo_experiment::calibration_run;
 use rumbo_experiment::files::{Library, Overrides, RobotFile, Setup, bounded};
 use rumbo_log::{Finding, Findings, Kind};
+use rumbo_plant::rewrite::RewriteError;
 use rumbo_session::{CalibrationError, Guest};
 use rumbo_station::Extras;
 use serde::Serialize;
@@ -80,7 +81,7 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     };
     let setup = calibration_run::calibration_setup(&overrides)?;
     if let Some(path) = &args.out {
-        check_place(path, args)?;
+        check_robot(path, &args.robot, calibrate::is_calibrated, args.overwrite)?;
     }
     let run = calibration_run::run_calibration(&setup, args.seed.seed)?;
     let source = Source {
@@ -167,27 +168,43 @@ fn report(found: &Calibration, rows: &[Row], contacts: u32, seed: u64) -> Result
     }
 }
 
-/// Refuses, before anything runs, to write over parameters that no calibration found, unless they are those of the
-/// robot that is calibrated.
-fn check_place(path: &Path, args: &CalibrateArgs) -> Result<(), Failure> {
-    let is_robot = same_file::is_same_file(path, &args.robot).unwrap_or(false);
-    if args.overwrite.force || is_robot || !path.is_file() {
+/// Refuses, before anything runs, to write over parameters that a person chose, unless they are those of the robot at
+/// hand.
+pub(crate) fn check_robot(
+    path: &Path,
+    robot: &str,
+    is_ours: impl FnOnce(&str) -> bool,
+    overwrite: OverwriteArgs,
+) -> Result<(), Failure> {
+    let is_robot = same_file::is_same_file(path, robot).unwrap_or(false);
+    if overwrite.force || is_robot || !path.is_file() {
         return Ok(());
     }
     let file = path.display().to_string();
     let read = bounded::read_text(path);
     let text = read.map_err(|error| Failure::Input(format!("{file}: cannot be read ({error})")))?;
     let before = RobotFile::parse("", &file, &text)?;
-    if before.parameters.is_empty() || calibrate::is_calibrated(&text) {
+    if before.parameters.is_empty() || is_ours(&text) {
         return Ok(());
     }
     Err(Failure::Input(format!(
-        "{file}: has [parameters] that no calibration found; choose another place, or replace them with --force"
+        "{file}: has [parameters] that were not found by this command; choose another place, or replace them with --force"
     )))
 }
 
-/// Writes the `[parameters]` table into the file: an existing robot file is rewritten, a new one starts as a copy of the robot's.
 fn write(path: &Path, setup: &Setup, found: &Calibration) -> Result<(), Failure> {
+    rewrite_robot(path, setup, |text, today| {
+        calibrate::rewrite(text, found, today)
+    })
+}
+
+/// Writes parameters into a robot file: an existing one is rewritten, a new one starts as a copy of the robot's.
+/// `rewrite` gets the text and the date.
+pub(crate) fn rewrite_robot(
+    path: &Path,
+    setup: &Setup,
+    rewrite: impl FnOnce(&str, &str) -> Result<String, RewriteError>,
+) -> Result<(), Failure> {
     let file = path.display().to_string();
     let wrong = |what: String| Failure::Input(format!("{file}: {what}"));
     let text = if path.exists() {
@@ -196,8 +213,8 @@ fn write(path: &Path, setup: &Setup, found: &Calibration) -> Result<(), Failure>
         setup.robot.text.clone()
     };
     let today = time::OffsetDateTime::now_utc().date().to_string();
-    let text = calibrate::rewrite(&text, found, &today)
-        .map_err(|error| wrong(format!("is no robot file ({error})")))?;
+    let text =
+        rewrite(&text, &today).map_err(|error| wrong(format!("is no robot file ({error})")))?;
     RobotFile::parse("", &file, &text)?;
     place::write(path, text)
 }

@@ -1,7 +1,7 @@
 //! `rumbo compare`: several logs side by side, with their differences from the first, a gate for regressions; or variants
 //! of a scenario with the same seeds.
 
-mod variants;
+pub(crate) mod variants;
 
 use crate::args::CompareArgs;
 use crate::export::warn_if_cut;

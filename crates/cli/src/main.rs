@@ -40,6 +40,7 @@ mod run_log;
 mod scene;
 mod sketch;
 mod sweep;
+mod tune;
 mod workshop;
 
 use args::{Cli, Command};
@@ -81,6 +82,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
             args.image.compile(robot, Some(&args.scenario))?;
             sweep::sweep(&args)
         }
+        Some(Command::Tune(args)) => tune::tune(&args),
         Some(Command::Experiments(mut args)) => {
             args.image.compile(args.robot.as_deref(), None)?;
             experiments::experiments(&args)

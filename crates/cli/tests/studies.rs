@@ -257,3 +257,66 @@ fn wrong_variants_are_refused() {
     assert_eq!(twice.status.code(), Some(2));
     assert!(stderr(&twice).contains("front_kp is given twice"));
 }
+
+#[test]
+fn a_gain_that_is_far_too_small_is_tuned_and_written_to_a_robot_file() {
+    let (folder, _) = out("tune");
+    std::fs::create_dir_all(&folder).unwrap();
+    let robot = folder.join("mine.toml").display().to_string();
+    let tune = |more: &[&str]| {
+        let begin = ["tune", "mode1", "--for", "settling_s", "--over", "front_kp"];
+        let quick = ["--runs", "2000", "--held-out", "10"];
+        rumbo(&[&begin[..], &quick, more].concat())
+    };
+    let done = tune(&["--param", "front_kp=1", "--out", &robot]);
+    assert!(done.status.success(), "{}", stderr(&done));
+    let said = stdout(&done);
+    assert!(said.contains("0 passed, 10 pass"), "{said}");
+    let text = read(&folder, "mine.toml");
+    assert!(text.contains("# Tuned by `rumbo tune`"), "{text}");
+    let run = rumbo(&[
+        "run",
+        "mode1",
+        "--robot",
+        &robot,
+        "--seed",
+        "77",
+        "--no-record",
+    ]);
+    assert!(run.status.success(), "{}", stdout(&run));
+    // A file with parameters of one's own is kept.
+    let own = text.replace("# Tuned by `rumbo tune`", "# mine");
+    std::fs::write(&robot, &own).unwrap();
+    let kept = tune(&["--out", &robot]);
+    assert_eq!(kept.status.code(), Some(2));
+    assert!(stderr(&kept).contains("were not found by this command"));
+    assert_eq!(read(&folder, "mine.toml"), own);
+}
+
+#[test]
+fn a_tuning_without_sense_is_refused() {
+    for (arguments, why) in [
+        (&["--over", "front_kq"][..], "did you mean `front_kp`"),
+        (&["--over", "front_kp,front_kp"], "given twice"),
+        (
+            &["--over", "front_kp=1,2"],
+            "unknown parameter of the control core `2`",
+        ),
+        (&["--over", "front_kp=1:99"], "must lie within 0.1..20"),
+        (&["--over", "waypoint_tracker"], "switch or a choice"),
+        (
+            &["--over", "front_kp", "--for", "setling_s"],
+            "did you mean `settling_s`",
+        ),
+        (
+            &["--over", "front_kp", "--for", "settling_s < x"],
+            "its limit is not a number",
+        ),
+        (&["--over", "front_kp", "--runs", "5"], "at least 2000 runs"),
+    ] {
+        let refused = rumbo(&[&["tune", "mode1"][..], arguments].concat());
+        assert_eq!(refused.status.code(), Some(2), "{arguments:?}");
+        let said = stderr(&refused);
+        assert!(said.contains(why), "{said}");
+    }
+}

@@ -21,3 +21,5 @@ pub mod run;
 pub mod shortest_path;
 #[cfg(feature = "host")]
 pub mod sweep;
+#[cfg(feature = "host")]
+pub mod tune;

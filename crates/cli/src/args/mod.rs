@@ -9,7 +9,7 @@ mod values;
 
 #[cfg(feature = "foxglove")]
 pub(crate) use groups::BridgeArgs;
-pub(crate) use groups::{ServeArgs, board};
+pub(crate) use groups::{OverwriteArgs, ServeArgs, board};
 pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs};
 pub(crate) use logs::{
     CompareArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
@@ -18,7 +18,7 @@ pub(crate) use runs::{
     CalibrateArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, RunArgs,
 };
 
-pub(crate) use studies::SweepArgs;
+pub(crate) use studies::{SweepArgs, TuneArgs};
 
 use crate::failure::Failure;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
@@ -59,6 +59,8 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Run a scenario with many values of its parameters: a table, and a page with plots
     Sweep(SweepArgs),
+    /// Find values of control parameters that serve an aim on many robots, and check them on others
+    Tune(TuneArgs),
     /// Run every experiment of the report and write it: one page with all figures
     Experiments(ExperimentsArgs),
     /// Grade a class: compile each hand-in in a sandbox, drive it with every seed, write pages and marks

@@ -1,9 +1,11 @@
-//! Options of the commands that run one scenario many times to learn about its parameters: `sweep`.
+//! Options of the commands that run one scenario many times to learn about its parameters: `sweep`, `tune`.
 
 use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, SeedArgs, SettingArgs};
 use super::runs::{LanguageName, ProgramName};
+use super::values::over;
 use clap::Args;
 use rumbo_experiment::sweep::Axis;
+use rumbo_experiment::tune::{Objective, Over};
 use std::path::PathBuf;
 
 /// Options of `rumbo sweep`.
@@ -71,6 +73,63 @@ pub(crate) struct SweepArgs {
     /// Language of the page [default: that of the locale]
     #[arg(long, value_enum, value_name = "LANGUAGE")]
     pub(crate) language: Option<LanguageName>,
+    /// Threads [default: one per core]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
+/// Options of `rumbo tune`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo tune mode1 --for settling_s --over front_kp,front_brake_m_s2
+  rumbo tune mode1 --for 'settling_s, overshoot_m < 0.01' --over front_kp=1:20 --out my_robot.toml
+  rumbo tune mode5 --over kv,speed_kp_left,speed_ki_left --param kv=0.004
+  rumbo tune mode1 --for settling_s --over front_kp --image rumbo.elf      checked on the emulated Mega too
+
+An aim is a metric that is made small (large, where more is better) on many drawn robots; of a metric with several steps or
+goals the worst counts. NAME < VALUE is a limit; the scenario's own limits always hold. Without --for the limits are
+kept with as much room as possible. A parameter is searched from an eighth of its present value to eight times it, or
+within NAME=FROM:TO, or, if it is 0, within its limits.
+
+The values found are then driven on robots that the search has not seen, beside the present ones: runs that pass, and each
+metric's mean difference with its 95 % interval. --out writes them only if no more of these runs fail than before.
+
+Exit status 0: all limits are met on the unseen robots; 1: not by all; 2: wrong input; 130: Ctrl-C.")]
+pub(crate) struct TuneArgs {
+    /// Scenario: name, or path of its file
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) scenario: String,
+    /// Metrics to make small, and limits, with commas between them
+    #[arg(long = "for", value_name = "AIMS")]
+    pub(crate) aims: Option<Objective>,
+    /// Parameters of the control core, with commas between them
+    #[arg(long, required = true, value_name = "NAMES", value_delimiter = ',', value_parser = over)]
+    pub(crate) over: Vec<Over>,
+    #[command(flatten)]
+    pub(crate) seed: SeedArgs,
+    /// Most runs of the search [default: 600,000 s of driving]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pub(crate) runs: Option<u32>,
+    /// Runs with seeds that the search has not seen
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    pub(crate) held_out: u32,
+    #[command(flatten)]
+    pub(crate) setting: SettingArgs,
+    #[command(flatten)]
+    pub(crate) parameters: ParameterArgs,
+    /// Drive the first 20 unseen robots with this image of Rumbo's firmware on the emulated Mega too
+    #[arg(long, value_name = "IMAGE")]
+    pub(crate) image: Option<PathBuf>,
+    /// Robot file whose [parameters] get the values: this robot's own, or one that was tuned; a new file starts as a copy
+    /// of the robot's
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
+    /// The result as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
     /// Threads [default: one per core]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,

@@ -168,25 +168,28 @@ fn print(scenario: &ScenarioFile, runs: &[Variant], seeds: &[u64]) -> Result<(),
     for (index, other) in others.iter().enumerate() {
         let number = index + 2;
         let all = differences(first, other);
-        let header = [
-            "".to_owned(),
-            "1".to_owned(),
-            number.to_string(),
-            format!("{number} - 1"),
-            "95 % interval".to_owned(),
-            "effect".to_owned(),
-            "better".to_owned(),
-            String::new(),
-        ];
-        let mut rows = vec![header.to_vec()];
-        rows.extend(shown(&all).map(row));
         output::line("")?;
-        match rows.len() {
-            1 => output::line(&format!("  {number} differs from 1 in no run"))?,
-            _ => output::table(&rows)?,
-        }
+        print_differences(&all, ["1", &number.to_string()])?;
     }
     Ok(())
+}
+
+/// A table of what differs between two variants.
+pub(crate) fn print_differences(all: &[Difference], names: [&str; 2]) -> Result<(), Failure> {
+    let [first, second] = names.map(str::to_owned);
+    let difference = format!("{second} - {first}");
+    let rest = ["95 % interval", "effect", "better", ""].map(str::to_owned);
+    let header = [
+        [String::new(), first, second, difference].to_vec(),
+        rest.to_vec(),
+    ]
+    .concat();
+    let mut rows = vec![header];
+    rows.extend(shown(all).map(row));
+    match rows.len() {
+        1 => output::line("  no run differs"),
+        _ => output::table(&rows),
+    }
 }
 
 fn row(difference: &Difference) -> Vec<String> {
@@ -248,23 +251,26 @@ fn as_json(scenario: &ScenarioFile, runs: &[Variant], seeds: &[u64]) -> Value {
         .collect();
     let differences: Vec<Value> = runs[1..]
         .iter()
-        .flat_map(|other| {
-            differences(&runs[0], other).into_iter().map(|one| {
-                json!({
-                    "first": runs[0].name,
-                    "second": other.name,
-                    "metric": one.metric,
-                    "pairs": one.pairs,
-                    "never": one.never,
-                    "medians": one.medians,
-                    "mean": one.mean,
-                    "interval": one.interval,
-                    "effect": one.effect,
-                    "better": one.better,
-                    "worse": one.worse,
-                })
-            })
-        })
+        .flat_map(|other| differences_as_json(&runs[0], other))
         .collect();
     json!({ "scenario": scenario.name, "variants": variants, "differences": differences })
+}
+
+pub(crate) fn differences_as_json(first: &Variant, other: &Variant) -> Vec<Value> {
+    let one = |one: Difference| {
+        json!({
+            "first": first.name,
+            "second": other.name,
+            "metric": one.metric,
+            "pairs": one.pairs,
+            "never": one.never,
+            "medians": one.medians,
+            "mean": one.mean,
+            "interval": one.interval,
+            "effect": one.effect,
+            "better": one.better,
+            "worse": one.worse,
+        })
+    };
+    differences(first, other).into_iter().map(one).collect()
 }

@@ -240,7 +240,10 @@ fn a_calibration_replaces_no_parameters_but_those_of_a_calibration() {
         .replace("[parameters]\n", "[parameters]\nkv = 0.03\n");
     std::fs::write(folder.join("mine.toml"), &own).unwrap();
     let into_mine = ["calibrate", "--out", "mine.toml"];
-    assert_refused(&rumbo_in(folder, &into_mine), "that no calibration found");
+    assert_refused(
+        &rumbo_in(folder, &into_mine),
+        "that were not found by this command",
+    );
     assert_eq!(read(folder, "mine.toml"), own.as_bytes());
     // Its own robot's are meant, and then they are a calibration's.
     for command in [
