@@ -63,7 +63,7 @@ mod tests {
     #[test]
     fn stamps_that_differ_delay_little() {
         // Between two microseconds, and with a late stamp in every eighth answer.
-        let answer = |step: u32| 0.8 + 0.000_17 * f32::from(u8::from(step % 2 == 0));
+        let answer = |step: u32| 0.8 + 0.000_17 * f32::from(u8::from(step.is_multiple_of(2)));
         assert_eq!(stuck_after(answer, true, 0.0), Some(14));
         let late = |step: u32| answer(step) + if step % 8 == 7 { 0.004 } else { 0.0 };
         assert!(stuck_after(late, true, 0.0).is_some_and(|step| step < 26));

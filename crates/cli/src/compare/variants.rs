@@ -143,7 +143,7 @@ fn has_its_parameters(overrides: &Overrides, setup: &Setup) -> Result<(), Failur
 }
 
 /// What differs in some run.
-fn shown<'a>(all: &'a [Difference]) -> impl Iterator<Item = &'a Difference> {
+fn shown(all: &[Difference]) -> impl Iterator<Item = &Difference> {
     all.iter().filter(|difference| !difference.is_none())
 }
 
