@@ -7,7 +7,7 @@
 use rumbo_control::drive::DriveLayer;
 use rumbo_control::estimate::{Estimate, Estimator};
 use rumbo_control::math::round;
-use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, SetpointError};
+use rumbo_control::mode::{Action, ActiveMode, Level, Look, ModeId, SetpointError};
 use rumbo_control::params::{ParamError, ParamId, Params};
 use rumbo_control::rig::Rig;
 use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, Range, SonarId, Wheels};
@@ -47,6 +47,9 @@ pub(crate) struct Pilot {
     encoders: EncoderWatch,
     low_battery_ticks: u8,
     refresh_in: u8,
+    /// Where a caller without a link points the servo, in place of the mode.
+    #[cfg(not(target_arch = "avr"))]
+    aim: Option<rumbo_control::ServoAngle>,
 }
 
 /// An outcome of the mode.
@@ -76,6 +79,8 @@ impl Default for Pilot {
             encoders: EncoderWatch::default(),
             low_battery_ticks: 0,
             refresh_in: FIRST_REFRESH_TICKS,
+            #[cfg(not(target_arch = "avr"))]
+            aim: None,
         }
     }
 }
@@ -96,7 +101,7 @@ impl Pilot {
             self.release();
             self.action = self.at_rest();
         }
-        let look = self.action.look;
+        let look = self.look();
         let ping = self.pings.next(self.carried(look.sonars));
         self.estimator.commanded(look.servo, ping);
         let outputs = Outputs {
@@ -162,6 +167,20 @@ impl Pilot {
         }
         let drive = self.action.drive;
         self.apply(&drive, battery_v)
+    }
+
+    #[cfg(target_arch = "avr")]
+    fn look(&self) -> Look {
+        self.action.look
+    }
+
+    #[cfg(not(target_arch = "avr"))]
+    fn look(&self) -> Look {
+        let look = self.action.look;
+        Look {
+            servo: self.aim.unwrap_or(look.servo),
+            ..look
+        }
     }
 
     fn at_rest(&self) -> Action {
@@ -351,6 +370,12 @@ impl Pilot {
     #[cfg(not(target_arch = "avr"))]
     pub(crate) fn set_pose(&mut self, pose: rumbo_control::Pose) {
         self.estimator.set_pose(pose);
+    }
+
+    /// Points the servo there from now on; `None` leaves it to the mode again.
+    #[cfg(not(target_arch = "avr"))]
+    pub(crate) fn aim(&mut self, servo: Option<rumbo_control::ServoAngle>) {
+        self.aim = servo;
     }
 
     /// Makes the present pose the origin.

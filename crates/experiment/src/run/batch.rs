@@ -18,11 +18,23 @@ pub fn run_all<E: From<FileError>>(
     jobs: &[(&Setup, u64)],
     handle: impl FnMut(&Setup, RunResult) -> Result<(), E>,
 ) -> Result<(), E> {
+    run_all_on(rayon::current_num_threads(), jobs, handle)
+}
+
+/// The same on this many threads of its own, at least one: no pool is needed.
+///
+/// # Errors
+/// As [`run_all`].
+pub fn run_all_on<E: From<FileError>>(
+    threads: usize,
+    jobs: &[(&Setup, u64)],
+    handle: impl FnMut(&Setup, RunResult) -> Result<(), E>,
+) -> Result<(), E> {
     let next = AtomicUsize::new(0);
     let (done, results) = sync_channel(WAITING);
     // Separate threads: the caller may be one of the pool's, perhaps its only one, and waits for the results.
     std::thread::scope(|scope| {
-        for _ in 0..rayon::current_num_threads() {
+        for _ in 0..threads.max(1) {
             let (done, next) = (done.clone(), &next);
             scope.spawn(move || {
                 loop {
