@@ -12,8 +12,8 @@ from typing import Any, Literal
 
 from . import _rumbo
 from ._log import Log, read_log
-from ._run import Run, Runs, run
 from ._rumbo import Snapshot
+from ._run import Run, Runs, run
 from ._setup import Source
 from ._sim import OBSERVED, TRUE, Batch, Sim
 

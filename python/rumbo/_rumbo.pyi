@@ -6,7 +6,21 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__: list[str]
+__all__ = [
+    "MAX_WHEEL_RAD_S",
+    "MODEL",
+    "OBSERVED",
+    "REACH_M",
+    "TRUE",
+    "VERSION",
+    "Batch",
+    "Setup",
+    "Snapshot",
+    "load",
+    "names",
+    "read_log",
+    "run",
+]
 
 VERSION: str
 MODEL: int

@@ -33,8 +33,8 @@ class Run:
     notes: tuple[str, ...]
     #: Ground truth every 10 ms, an array for each signal; ``None`` unless `run` was called with ``trace=True``.
     #: ``t_s`` [s], ``x_m``, ``y_m`` [m], ``heading_rad`` [rad, turns add up], ``left_rad_s``, ``right_rad_s`` [rad/s],
-    #: ``range_left_m``, ``range_right_m``, ``range_front_m`` [m, inf where nothing is within reach], ``servo_rad`` [rad],
-    #: ``battery_v`` [V], ``left_duty``, ``right_duty`` [PWM, -255 to 255], ``touching``.
+    #: ``range_left_m``, ``range_right_m``, ``range_front_m`` [m, inf where nothing is within reach], ``servo_rad``
+    #: [rad], ``battery_v`` [V], ``left_duty``, ``right_duty`` [PWM, -255 to 255], ``touching``.
     trace: dict[str, NDArray[Any]] | None = None
 
 

@@ -95,7 +95,7 @@ class Batch:
     def drive(
         self, actions: ArrayLike, duration_s: float = 0.1, *, active: ArrayLike | None = None
     ) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
-        """Sets wheel speeds and servo angle of every robot, advances them, and gives what `observe_rows` and `truth_rows` do.
+        """Sets wheel speeds and servo of every robot, advances them, and gives what `rows` does.
 
         The robots must be driven by the caller, in mode ``wheel_speed`` and armed: see `begin_wheel_speed`.
 
@@ -121,8 +121,10 @@ class Batch:
         return known, truth
 
     def begin_wheel_speed(self, indices: Sequence[int] | None = None, duration_s: float = 0.5) -> None:
-        """Selects mode ``wheel_speed`` and arms these robots (all by default), then lets them stand for `duration_s` [s], so
-        that every sonar has answered."""
+        """Selects mode ``wheel_speed`` and arms these robots, all by default.
+
+        They then stand for `duration_s` [s], so that every sonar has answered.
+        """
         if not self._caller:
             raise ValueError('the scenario commands these robots; make the batch with driver="caller"')
         chosen = range(len(self)) if indices is None else indices
@@ -150,10 +152,10 @@ class Batch:
     def observe_rows(self) -> NDArray[np.float32]:
         """What the robots' programs know after the last tick, shape (robots, 14), in the order of `rumbo.OBSERVED`.
 
-        Wheel speeds [rad/s]; ranges [m], the front one in the servo's direction: `rumbo.REACH_M` where nothing is within
-        reach, 0 before the first reading and of a sonar that is faulty or not there; their ages [s, at most 1]; the
-        servo's angle [rad]; the pose by odometry from the start [m, rad]; the goal of a random world as seen from there
-        [m ahead, m to the left], otherwise 0.
+        Wheel speeds [rad/s]; ranges [m], the front one in the servo's direction: `rumbo.REACH_M` where nothing is
+        within reach, 0 before the first reading and of a sonar that is faulty or not there; their ages [s, at most 1];
+        the servo's angle [rad]; the pose by odometry from the start [m, rad]; the goal of a random world as seen from
+        there [m ahead, m to the left], otherwise 0.
         """
         return self.rows()[0]
 
@@ -271,8 +273,8 @@ class Sim:
         ``arm=True``, ``disarm=True``, ``stop=True``, ``clear_fault=True``, ``reset_pose=True``, ``mode="wheel_speed"``
         (while disarmed), ``reference_m=0.3``, ``speed_rpm=60``, ``left_rpm=60, right_rpm=50``, ``goal_m=[1, 0.5]``,
         ``goal="world"``, ``route_m=[[1, 0], [1, 1, 90]]``, ``lane=True``, ``move="turn_left", duty=0.4``,
-        ``parameter="front_kp", value=5``; and ``servo_rad=0.5`` [rad, left is positive], which points the servo whatever
-        the mode requests, until ``servo_rad=None``.
+        ``parameter="front_kp", value=5``; and ``servo_rad=0.5`` [rad, left is positive], which points the servo
+        whatever the mode requests, until ``servo_rad=None``.
 
         Raises:
             ValueError: An unknown key, with the near ones; a value out of range; a command that the robot refuses, with

@@ -10,7 +10,7 @@ import pytest
 
 @pytest.fixture(scope="session")
 def rumbo_command() -> str:
-    """The `rumbo` command of the same checkout, by the variable RUMBO_COMMAND; `cargo xtask test --only python` sets it."""
+    """The `rumbo` command of the same checkout, which RUMBO_COMMAND names as `cargo xtask test` does."""
     command = os.environ.get("RUMBO_COMMAND")
     if command is None:
         pytest.skip("RUMBO_COMMAND names no rumbo command to compare with")

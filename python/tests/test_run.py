@@ -118,14 +118,27 @@ def test_progress_counts_and_its_error_ends_the_runs() -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
-def test_control_c_ends_many_runs_soon() -> None:
-    code = "import rumbo; print('go', flush=True); rumbo.run('mode5', seeds=range(1_000_000), threads=2)"
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
+@pytest.mark.parametrize(
+    "act",
+    [
+        "rumbo.run('mode5', seeds=range(1_000_000), threads=2)",
+        "rumbo.Batch('mode5', seeds=range(100), threads=2).step(1e6)",
+        "rumbo.Sim('mode5').step(1e7)",
+    ],
+)
+def test_control_c_ends_what_takes_long(act: str) -> None:
+    # A child of a shell's background job would ignore the signal.
+    begin = "import rumbo, signal; signal.signal(signal.SIGINT, signal.default_int_handler); print('go', flush=True)"
+    code = f"{begin}; {act}"
+    child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
         assert child.stdout is not None
         child.stdout.readline()
         time.sleep(0.5)
         child.send_signal(signal.SIGINT)
         _, errors = child.communicate(timeout=60)
+    finally:
+        child.kill()
     assert "KeyboardInterrupt" in errors and child.returncode != 0
 
 
@@ -175,7 +188,9 @@ def test_names_and_content_of_files() -> None:
 
 
 def test_a_log_is_read_as_arrays(rumbo_command: str, tmp_path: pathlib.Path) -> None:
-    subprocess.run([rumbo_command, "run", "mode1", "--seed", "7", "--out", str(tmp_path)], check=True, capture_output=True)
+    subprocess.run(
+        [rumbo_command, "run", "mode1", "--seed", "7", "--out", str(tmp_path)], check=True, capture_output=True
+    )
     log = rumbo.read_log(tmp_path / "mode1-7.mcap")
     rows = {len(column) for column in log.signals.values()}
     assert len(rows) == 1 and rows.pop() > 200
@@ -194,6 +209,7 @@ def test_a_log_is_read_as_arrays(rumbo_command: str, tmp_path: pathlib.Path) -> 
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no forks here")
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_runs_work_in_a_fork() -> None:
     before = rumbo.run("mode1", seeds=[1, 2], threads=2).metrics
     child = os.fork()

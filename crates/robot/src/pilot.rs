@@ -7,7 +7,7 @@
 use rumbo_control::drive::DriveLayer;
 use rumbo_control::estimate::{Estimate, Estimator};
 use rumbo_control::math::round;
-use rumbo_control::mode::{Action, ActiveMode, Level, Look, ModeId, SetpointError};
+use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, SetpointError};
 use rumbo_control::params::{ParamError, ParamId, Params};
 use rumbo_control::rig::Rig;
 use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, Range, SonarId, Wheels};
@@ -101,7 +101,9 @@ impl Pilot {
             self.release();
             self.action = self.at_rest();
         }
-        let look = self.look();
+        let look = self.action.look;
+        #[cfg(not(target_arch = "avr"))]
+        let look = self.aimed(look);
         let ping = self.pings.next(self.carried(look.sonars));
         self.estimator.commanded(look.servo, ping);
         let outputs = Outputs {
@@ -169,15 +171,9 @@ impl Pilot {
         self.apply(&drive, battery_v)
     }
 
-    #[cfg(target_arch = "avr")]
-    fn look(&self) -> Look {
-        self.action.look
-    }
-
     #[cfg(not(target_arch = "avr"))]
-    fn look(&self) -> Look {
-        let look = self.action.look;
-        Look {
+    fn aimed(&self, look: rumbo_control::mode::Look) -> rumbo_control::mode::Look {
+        rumbo_control::mode::Look {
             servo: self.aim.unwrap_or(look.servo),
             ..look
         }

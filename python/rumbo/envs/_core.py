@@ -89,12 +89,20 @@ class Core:
         self._truth = np.zeros((count, len(TRUE)))
 
     @property
+    def batch(self) -> Batch:
+        """The robots, to be looked at; `gymnasium.error.ResetNeeded` before the first reset."""
+        self.check_open()
+        if self._batch is None:
+            raise error.ResetNeeded("reset() comes first")
+        return self._batch
+
+    @property
     def is_seeded(self) -> bool:
         """Some reset has given seeds."""
         return self._batch is not None
 
     def begin(self, chosen: Sequence[int], bases: Sequence[int | None]) -> None:
-        """Begins an episode for the chosen robots: the one of the seed, or the next of the last seed where it is ``None``."""
+        """Begins an episode for each of the chosen: that of its base, or with ``None`` the next of the last base."""
         self.check_open()
         for index, base in zip(chosen, bases):
             if base is not None:
@@ -134,12 +142,10 @@ class Core:
 
     def step(self, actions: Any, active: Bools) -> Step:
         """Acts for the 0.1 s of an action; robots of which `active` is false stay as they are."""
-        self.check_open()
-        if self._batch is None:
-            raise error.ResetNeeded("reset() comes before the first step()")
+        batch = self.batch
         rows = self._checked_actions(actions)
         before = self._truth
-        known, truth = self._batch.drive(rows, ACTION_S, active=active)
+        known, truth = batch.drive(rows, ACTION_S, active=active)
         self._finish(known)
         self._known, self._truth = known, truth
         self._steps[active] += 1
@@ -183,10 +189,7 @@ class Core:
 
     def render(self, index: int) -> NDArray[np.uint8]:
         """The world from above."""
-        self.check_open()
-        if self._batch is None:
-            raise error.ResetNeeded("reset() comes before the first render()")
-        return frame(self._batch.obstacles(index), dict(zip(TRUE, self._truth[index])))
+        return frame(self.batch.obstacles(index), dict(zip(TRUE, self._truth[index])))
 
     def close(self) -> None:
         """Lets go of the robots."""

@@ -63,9 +63,7 @@ class RumboEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         self._over = False
         return self._core.known()[0], self._core.info(0)
 
-    def step(
-        self, action: NDArray[np.float32]
-    ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+    def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Acts for 0.1 s."""
         self._core.check_open()
         if self._core.is_seeded and self._over:
@@ -97,8 +95,8 @@ def check_render_mode(render_mode: str | None) -> None:
 class WheelSpeedEnv(RumboEnv):
     """``rumbo/WheelSpeed-v0``: both wheels at speeds of their own, on an open floor, for 5 s.
 
-    The last two numbers of an observation are the speeds to reach, left and right [rad/s], -10 to 10. The reward is minus
-    the sum of both wheels' errors, divided by 10 rad/s.
+    The last two numbers of an observation are the speeds to reach, left and right [rad/s], -10 to 10. The reward is
+    minus the sum of both wheels' errors, divided by 10 rad/s.
     """
 
     _task = _tasks.WHEEL_SPEED
@@ -107,8 +105,8 @@ class WheelSpeedEnv(RumboEnv):
 class StopAtWallEnv(RumboEnv):
     """``rumbo/StopAtWall-v0``: stand at a distance from the wall ahead, for 10 s.
 
-    The second last number of an observation is the distance [m] from sonar to wall, 0.2 to 0.8; the last is 0. The reward
-    is minus the error [m]. A contact above 0.1 m/s, or a fault of the robot, costs 10 and ends the episode.
+    The second last number of an observation is the distance [m] from sonar to wall, 0.2 to 0.8; the last is 0. The
+    reward is minus the error [m]. A contact above 0.1 m/s, or a fault of the robot, costs 10 and ends the episode.
     """
 
     _task = _tasks.STOP_AT_WALL
@@ -117,9 +115,9 @@ class StopAtWallEnv(RumboEnv):
 class FollowWallEnv(RumboEnv):
     """``rumbo/FollowWall-v0``: drive along the wall on the left at a distance from it, for 20 s.
 
-    The second last number of an observation is the distance [m] from the pair of sonars to the wall, 0.3 to 0.6; the last
-    is 0. The reward is the forward speed divided by 0.3 m/s, 0 to 1, minus the error divided by 0.1 m. A contact above
-    0.1 m/s, or a fault of the robot, costs 10 and ends the episode.
+    The second last number of an observation is the distance [m] from the pair of sonars to the wall, 0.3 to 0.6; the
+    last is 0. The reward is the forward speed divided by 0.3 m/s, 0 to 1, minus the error divided by 0.1 m. A contact
+    above 0.1 m/s, or a fault of the robot, costs 10 and ends the episode.
     """
 
     _task = _tasks.FOLLOW_WALL
@@ -128,9 +126,9 @@ class FollowWallEnv(RumboEnv):
 class GoalEnv(RumboEnv):
     """``rumbo/Goal-v0``: reach a goal among one to three groups of boxes, other ones in each episode, within 60 s.
 
-    The last two numbers of an observation are the goal as seen from the robot by its odometry: ahead, to the left [m]. The
-    reward is how much nearer the robot came to it [m]. At less than 0.1 m it has arrived: 10, and the end. A contact above
-    0.1 m/s, or a fault of the robot, costs 10 and ends the episode.
+    The last two numbers of an observation are the goal as seen from the robot by its odometry: ahead, to the left [m].
+    The reward is how much nearer the robot came to it [m]. At less than 0.1 m it has arrived: 10, and the end. A
+    contact above 0.1 m/s, or a fault of the robot, costs 10 and ends the episode.
     """
 
     _task = _tasks.GOAL

@@ -65,7 +65,11 @@ def _inside(
 
 
 def _near(
-    start: NDArray[np.float64], end: NDArray[np.float64], x_m: NDArray[np.float64], y_m: NDArray[np.float64], reach_m: float
+    start: NDArray[np.float64],
+    end: NDArray[np.float64],
+    x_m: NDArray[np.float64],
+    y_m: NDArray[np.float64],
+    reach_m: float,
 ) -> NDArray[np.bool_]:
     """Points within reach of a line."""
     (px, py), (ex, ey) = start, end - start

@@ -100,9 +100,7 @@ class RumboVectorEnv(VectorEnv[Observations, NDArray[np.float32], NDArray[Any]])
             raise ValueError(f"{len(seed)} seeds for {self.num_envs} environments")
         drawn = self.np_random.integers(2**63, size=self.num_envs)
         needed = not self._core.is_seeded
-        return [
-            int(drawn[index]) if base is None and needed else base for index, base in enumerate(seed)
-        ]
+        return [int(drawn[index]) if base is None and needed else base for index, base in enumerate(seed)]
 
     def _checked_mask(self, mask: Any) -> NDArray[np.bool_]:
         if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:
@@ -120,7 +118,7 @@ class RumboVectorEnv(VectorEnv[Observations, NDArray[np.float32], NDArray[Any]])
         ended = self._over
         if ended.any() and self.autoreset_mode is not AutoresetMode.NEXT_STEP:
             index = int(np.flatnonzero(ended)[0])
-            raise error.ResetNeeded(f'the episode of environment {index} is over; reset it by options={{"reset_mask": ...}}')
+            raise error.ResetNeeded(f"the episode of environment {index} is over; reset it by a reset_mask")
         done = self._core.step(actions, ~ended)
         # Those that had ended begin their next episode, and do nothing else in this step.
         reward = np.where(ended, 0.0, done.reward)

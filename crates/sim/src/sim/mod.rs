@@ -12,6 +12,7 @@
 mod baseline;
 mod emulated;
 mod native;
+mod unlinked;
 
 use crate::baseline::Baseline;
 use crate::config::{Config, Program};
@@ -22,7 +23,7 @@ use crate::wire_fault::{TimedWireFault, WireFaults};
 pub use native::Latched;
 use native::{Memory, Native};
 use rumbo_control::mode::ModeId;
-use rumbo_control::{Duty, Fault, SIDES, ServoAngle, SonarId, Wheels};
+use rumbo_control::{Duty, SIDES, SonarId, Wheels};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::link::{Direction, Link, LinkParams};
@@ -30,7 +31,7 @@ use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Event, Plant, State, Truth};
 use rumbo_plant::world::World;
-use rumbo_wire::{Command, FromRobot, Refusal, Telemetry};
+use rumbo_wire::{Command, FromRobot};
 
 /// What is at the robot's pins.
 #[derive(Clone, Debug)]
@@ -287,56 +288,6 @@ impl Sim {
         };
         baseline.command(command);
         true
-    }
-
-    /// Takes our native robot off its link: from now on it gets its commands by [`Sim::instruct`] and sends nothing. False
-    /// for any other program, which stays on its link.
-    pub fn unlink(&mut self) -> bool {
-        let native = self.native_mut();
-        let is_native = native.is_some();
-        if let Some(native) = native {
-            native.is_unlinked = true;
-        }
-        is_native
-    }
-
-    /// Applies a command at once, without a link; gives the value in force, 0 where there is none.
-    ///
-    /// # Errors
-    /// Why the robot refuses it; `None` if the program is not our native one.
-    pub fn instruct(&mut self, command: &Command) -> Result<f32, Option<Refusal>> {
-        let native = self.native_mut().ok_or(None)?;
-        native.order(command).map_err(Some)
-    }
-
-    /// Points the servo of our native robot, whatever its mode requests; `None` leaves it to the mode again.
-    pub fn aim(&mut self, servo: Option<ServoAngle>) {
-        if let Some(native) = self.native_mut() {
-            native.aim(servo);
-        }
-    }
-
-    /// What our native robot knows after its last tick; `None` for any other program.
-    pub fn knowledge(&self) -> Option<Telemetry> {
-        match &self.controller {
-            Some(Controller::Rumbo(native)) => Some(native.knowledge()),
-            _ => None,
-        }
-    }
-
-    /// The fault that our native robot has latched.
-    pub fn fault(&self) -> Option<Fault> {
-        match &self.controller {
-            Some(Controller::Rumbo(native)) => native.fault(),
-            _ => None,
-        }
-    }
-
-    fn native_mut(&mut self) -> Option<&mut Native> {
-        match &mut self.controller {
-            Some(Controller::Rumbo(native)) => Some(native),
-            _ => None,
-        }
     }
 
     /// The world.
