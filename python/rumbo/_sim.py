@@ -76,6 +76,7 @@ class Batch:
         self.duration_s: float = setup.duration_s
         self._batch = _rumbo.Batch(setup, make_seeds(seeds), caller=caller, threads=threads)
         self._caller = caller
+        self._is_known = program == "rumbo" and firmware is None
 
     def __len__(self) -> int:
         return len(self._batch)
@@ -156,7 +157,12 @@ class Batch:
         within reach, 0 before the first reading and of a sonar that is faulty or not there; their ages [s, at most 1];
         the servo's angle [rad]; the pose by odometry from the start [m, rad]; the goal of a random world as seen from
         there [m ahead, m to the left], otherwise 0.
+
+        Raises:
+            ValueError: The robots run another program.
         """
+        if not self._is_known:
+            raise ValueError("only Rumbo's own program shows what it knows; truth() is there for every one")
         return self.rows()[0]
 
     def truth_rows(self) -> NDArray[np.float64]:

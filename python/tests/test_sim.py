@@ -80,6 +80,14 @@ def test_a_snapshot_comes_back_any_number_of_times() -> None:
         rumbo.Batch("mode1", seeds=[1, 2]).restore(snapshot)
 
 
+def test_what_another_program_knows_is_not_made_up() -> None:
+    sim = rumbo.Sim("mode2", program="baseline")
+    sim.step(1)
+    assert sim.truth()["t_s"] == 1
+    with pytest.raises(ValueError, match="own program"):
+        sim.observe()
+
+
 def test_columns_share_the_memory_of_their_rows() -> None:
     batch = rumbo.Batch("mode1", seeds=range(3))
     truth = batch.truth()

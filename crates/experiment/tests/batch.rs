@@ -4,12 +4,14 @@
 
 use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Batch, Driver, OBSERVED, Robot, TRUE};
-use rumbo_experiment::files::{Library, Overrides, Setup};
+use rumbo_experiment::files::{Kind, Library, Overrides, Setup};
 use rumbo_experiment::run;
 use rumbo_sim::trace::Sample;
 use rumbo_wire::Command;
 
 const SEEDS: [u64; 3] = [1, 7, 1_000_003];
+/// Between two looks [ticks].
+const STEP: usize = 37;
 
 fn setup(scenario: &str) -> Setup {
     let overrides = Overrides::default();
@@ -56,27 +58,24 @@ fn of_robot(robot: &Robot) -> [u64; 8] {
 
 #[test]
 fn each_robot_of_a_batch_is_bit_for_bit_that_of_a_run() {
-    for scenario in ["mode1", "mode4-final", "mode5", "mode7", "mode8-random"] {
-        let setup = setup(scenario);
+    for scenario in Library::new().list(Kind::Scenario) {
+        let setup = setup(&scenario);
         let runs = SEEDS.map(|seed| run::run(&setup, seed).unwrap());
         for threads in [1, 2] {
             on_threads(threads, || {
                 let mut batch = Batch::new(setup.clone(), Driver::Scenario, &SEEDS).unwrap();
-                let ticks = (setup.scenario.duration_s * 100.0) as usize;
                 // Uneven steps: where a caller looks changes nothing.
-                for (at, step) in (0..).step_by(7).zip([7; 100_000]) {
-                    if at + step > ticks.min(6_000) {
-                        break;
-                    }
-                    batch.advance(step as u32);
+                let ticks = runs[0].trace.samples.len();
+                for at in (0..ticks - STEP).step_by(STEP) {
+                    batch.advance(STEP as u32);
                     for (robot, run) in batch.robots().iter().zip(&runs) {
-                        let sample = &run.trace.samples[at + step - 1];
+                        let sample = &run.trace.samples[at + STEP - 1];
                         assert_eq!(
                             of_robot(robot),
                             of_sample(sample),
                             "{scenario}, seed {}, {threads} threads, tick {}",
                             run.seed,
-                            at + step
+                            at + STEP
                         );
                     }
                 }
