@@ -46,6 +46,7 @@ pub fn run_variants<E: From<FileError>>(
         Ok((result.pass, result.metrics))
     };
     in_order(
+        rayon::current_num_threads(),
         count * seeds.len(),
         work,
         |index, result: Result<_, FileError>| {

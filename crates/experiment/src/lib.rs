@@ -4,6 +4,7 @@
 /// two runs of the same scenario and seed are comparable bit for bit only within one model.
 pub const MODEL: u32 = 5;
 
+pub mod batch;
 pub mod calibrate;
 pub mod calibration_run;
 #[cfg(feature = "host")]

@@ -6,7 +6,7 @@
 mod batch;
 
 #[cfg(feature = "host")]
-pub use batch::{in_order, run_all};
+pub use batch::{in_order, run_all, run_all_on};
 
 use crate::calibrate::calibrate_simulated;
 use crate::files::{FileError, Setup, near};
@@ -58,7 +58,7 @@ pub struct Run<'a> {
     setup: &'a Setup,
     seed: u64,
     sim: Sim,
-    operator: Operator<'a>,
+    operator: Operator<&'a Setup>,
     trace: Trace,
     end_us: u64,
     /// End of the current sample [us].

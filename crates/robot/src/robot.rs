@@ -177,6 +177,53 @@ impl Robot {
         self.pilot.set_pose(pose);
     }
 
+    /// Applies a command that arrives without a link, from a program on this machine; it is a sign of life.
+    ///
+    /// # Errors
+    /// Why the robot refuses it.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn order(&mut self, command: &Command) -> Result<f32, Refusal> {
+        self.stay_alive();
+        self.apply(command)
+    }
+
+    /// The one who gives orders without a link is there.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn stay_alive(&mut self) {
+        self.supervisor.sign_of_life(self.clock.now());
+    }
+
+    /// Points the servo there from now on, whatever the mode requests; `None` leaves it to the mode again.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn aim(&mut self, servo: Option<rumbo_control::ServoAngle>) {
+        self.pilot.aim(servo);
+    }
+
+    /// [`Robot::report`] without the report: the mode decides, and nothing is sent.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn decide(&mut self) {
+        if let Err(fault) = self.pilot.think(self.supervisor.is_armed()) {
+            self.fail(fault);
+        }
+    }
+
+    /// What the robot knows after the last tick: as in its telemetry, but not rounded, at every tick, with the ages of the
+    /// ranges and without a time.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn knowledge(&self) -> rumbo_wire::Telemetry {
+        rumbo_wire::Telemetry {
+            armed: self.supervisor.is_armed(),
+            faulted: self.supervisor.fault().is_some(),
+            ..self.pilot.signals().telemetry
+        }
+    }
+
+    /// The latched fault.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn fault(&self) -> Option<Fault> {
+        self.supervisor.fault()
+    }
+
     /// Sets a parameter before the robot starts, as the overrides of a robot file do in a simulation.
     ///
     /// # Errors

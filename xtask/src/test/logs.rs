@@ -1,6 +1,5 @@
 //! Logs as other programs read them: with MCAP's own Python library and Foxglove's own definitions, in an environment made for it.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
@@ -21,7 +20,7 @@ const RECORDING: &str = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n6
 
 /// Makes logs of every kind and has them read.
 pub(super) fn check(project: &Project) -> Result<(), Stop> {
-    let python = environment(project)?;
+    let python = tools::python_with(project, "python", &PACKAGES)?;
     let folder = project.target.join("tmp/logs-read-by-others");
     // Of an earlier time.
     let _ = std::fs::remove_dir_all(&folder);
@@ -72,44 +71,4 @@ fn killed_session(project: &Project, rumbo: &Path, folder: &Path) -> Result<Path
         .next()
         .ok_or_else(|| "the lab recorded nothing".to_owned())?;
     Ok(file.map_err(|error| error.to_string())?.path())
-}
-
-/// A Python with the packages, made once.
-fn environment(project: &Project) -> Result<PathBuf, Stop> {
-    let system = tools::python(project)?;
-    let folder = project.target.join("python");
-    let python = folder.join("bin/python");
-    let list = folder.join("packages");
-    if read(&list) == PACKAGES.join("\n") {
-        return Ok(python);
-    }
-    let remedy = || {
-        Stop::Missing(format!(
-            "the packages {} could not be installed; is PyPI reachable, and Debian's python3-venv installed?",
-            PACKAGES.join(", ")
-        ))
-    };
-    run(project
-        .command(system)
-        .args(["-m", "venv", "--clear"])
-        .arg(&folder))
-    .map_err(|_| remedy())?;
-    let mut install = project.command(&python);
-    install.args([
-        "-m",
-        "pip",
-        "install",
-        "--quiet",
-        "--disable-pip-version-check",
-    ]);
-    run(install.args(PACKAGES)).map_err(|_| remedy())?;
-    std::fs::write(&list, PACKAGES.join("\n")).map_err(|error| error.to_string())?;
-    Ok(python)
-}
-
-fn read(path: &Path) -> String {
-    let mut text = String::new();
-    // What is not there is made.
-    let _ = std::fs::File::open(path).and_then(|mut file| file.read_to_string(&mut text));
-    text
 }

@@ -8,6 +8,7 @@ mod logs;
 mod readme;
 pub(crate) mod tools;
 mod web;
+mod wheel;
 
 use std::time::{Duration, Instant};
 
@@ -47,7 +48,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 16] = [
+const STEPS: [Step; 17] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
@@ -122,6 +123,11 @@ const STEPS: [Step; 16] = [
         name: "logs",
         what: "logs as other programs read them",
         check: logs::check,
+    },
+    Step {
+        name: "python",
+        what: "the Python package: wheel, tests, environments, types",
+        check: wheel::check,
     },
     Step {
         name: "readme",

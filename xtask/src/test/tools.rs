@@ -97,6 +97,44 @@ pub(crate) fn python(project: &Project) -> Result<PathBuf, Stop> {
     )
 }
 
+/// A Python with these packages of PyPI, in an environment of this name below the target folder, made once.
+pub(crate) fn python_with(
+    project: &Project,
+    name: &str,
+    packages: &[&str],
+) -> Result<PathBuf, Stop> {
+    let system = python(project)?;
+    let folder = project.target.join(name);
+    let python = folder.join("bin/python");
+    let list = folder.join("packages");
+    // What is not there is made.
+    if std::fs::read_to_string(&list).is_ok_and(|made| made == packages.join("\n")) {
+        return Ok(python);
+    }
+    let remedy = || {
+        Stop::Missing(format!(
+            "the packages {} could not be installed; is PyPI reachable, and Debian's python3-venv installed?",
+            packages.join(", ")
+        ))
+    };
+    run(project
+        .command(system)
+        .args(["-m", "venv", "--clear"])
+        .arg(&folder))
+    .map_err(|_| remedy())?;
+    let mut install = project.command(&python);
+    install.args([
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--disable-pip-version-check",
+    ]);
+    run(install.args(packages)).map_err(|_| remedy())?;
+    std::fs::write(&list, packages.join("\n")).map_err(|error| error.to_string())?;
+    Ok(python)
+}
+
 /// Node and npm, with the packages of `web/package-lock.json` installed.
 pub(crate) fn node(project: &Project) -> Result<PathBuf, Stop> {
     let node = program(project, "node", &["nodejs", "npm"], "Node 20 or newer")?;

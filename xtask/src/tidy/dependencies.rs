@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 19] = [
+const ARROWS: [(&str, &[&str]); 20] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
@@ -35,6 +35,7 @@ const ARROWS: [(&str, &[&str]); 19] = [
         "rumbo-cli",
         &["rumbo-station", "rumbo-report", "rumbo-sketch"],
     ),
+    ("rumbo-python", &["rumbo-experiment", "rumbo-log"]),
     ("rumbo-firmware", &["rumbo-robot"]),
     ("rumbo-firmware-tests", &["rumbo-experiment"]),
     (

@@ -20,9 +20,10 @@
 //! | the same with `duty = 0`, `ramp_to_duty = 0.4`, `ramp_s = 12` | open loop, the duty moves by one count of PWM at a time |
 //! | `parameter = "name"` and `value = 1.5` | set a control parameter |
 
+use super::error::FileError;
 use super::names::{find_mode, find_movement};
 use super::parameters;
-use super::read::{Allowed, Table};
+use super::read::{Allowed, Source, Table};
 use super::route::{self, GOAL, read_route};
 use super::scenario::TimedCommand;
 use rumbo_control::mode::{Description, ModeId, Movement, ReferenceKind, Takes};
@@ -101,6 +102,28 @@ pub(crate) fn read_commands(
         table.finish();
     }
     commands
+}
+
+/// Reads the keys of one command, without `at_s`, for a robot in this mode: at once, so that no ramp is among them.
+///
+/// # Errors
+/// All problems of the text.
+pub(crate) fn read_one(text: &str, mode: ModeId) -> Result<Vec<TimedCommand>, FileError> {
+    let source = Source::new("command", text);
+    let parsed = source.parse()?;
+    let table = source.root(&parsed);
+    for key in ["at_s", "after_reached", "ramp_to_duty", "ramp_s"] {
+        if table.has(key) {
+            table.complain_here(&format!(
+                "{key} goes with the commands of a scenario; this one is applied at once"
+            ));
+        }
+    }
+    let commands = read_command(&table, 0.0, &mut Some(mode), 0.0);
+    table.finish();
+    drop(table);
+    source.verdict()?;
+    Ok(commands)
 }
 
 /// One command: a list, since a ramp or a route is many.

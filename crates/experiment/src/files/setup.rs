@@ -363,7 +363,7 @@ impl Setup {
 }
 
 /// The command to go to a point of the world, for a robot whose origin is the start.
-fn goal_seen_from(start: &Start, goal_m: Point) -> Command {
+pub(crate) fn goal_seen_from(start: &Start, goal_m: Point) -> Command {
     let (x_m, y_m) = (goal_m[0] - start.x_m, goal_m[1] - start.y_m);
     let (sin, cos) = (libm::sin(start.heading_rad), libm::cos(start.heading_rad));
     Command::Goal {

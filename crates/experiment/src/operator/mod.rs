@@ -12,12 +12,13 @@
 mod goal;
 mod text;
 
-use crate::files::{FileError, Port, Setup, TimedCommand, TimedText};
+use crate::files::{FileError, Port, Setup, TimedText};
 use rumbo_control::mode::ModeId;
 use rumbo_sim::Sim;
 use rumbo_sim::trace::TimedMessage;
 use rumbo_wire::text::TextCommand;
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
+use std::ops::Deref;
 use text::Terminal;
 
 /// Time between heartbeats [us].
@@ -34,20 +35,22 @@ const USB: u8 = 0;
 const LINE: usize = 160;
 
 /// The language of the program at the pins.
+#[derive(Clone)]
 enum Speech {
     Frames,
     Text(Box<Terminal>),
     Direct,
 }
 
-/// The sending side of a run.
-pub(crate) struct Operator<'a> {
-    setup: &'a Setup,
-    commands: &'a [TimedCommand],
-    texts: &'a [TimedText],
+/// The sending side of a run, with a reference to its setup of whatever kind.
+#[derive(Clone)]
+pub(crate) struct Operator<S> {
+    setup: S,
     speech: Speech,
     mode: Option<ModeId>,
+    /// The next of the scenario's commands, and of the lines of the command line.
     next: usize,
+    next_text: usize,
     number: u16,
     seq: u8,
     /// The newest robot time received.
@@ -68,22 +71,21 @@ pub(crate) struct Operator<'a> {
     pub(crate) received: Vec<TimedMessage>,
 }
 
-impl<'a> Operator<'a> {
-    pub(crate) fn new(setup: &'a Setup) -> Self {
+impl<S: Deref<Target = Setup>> Operator<S> {
+    pub(crate) fn new(setup: S) -> Self {
         let speech = if setup.takes_parameters() {
             Speech::Frames
         } else if setup.firmware.is_some() {
-            Speech::Text(Box::new(Terminal::new(setup)))
+            Speech::Text(Box::new(Terminal::new(&setup)))
         } else {
             Speech::Direct
         };
         Self {
-            setup,
-            commands: &setup.scenario.commands,
-            texts: &setup.texts,
             speech,
             mode: Some(setup.scenario.mode),
+            setup,
             next: 0,
+            next_text: 0,
             number: 0,
             seq: 0,
             seen: None,
@@ -104,7 +106,7 @@ impl<'a> Operator<'a> {
     /// # Errors
     /// It does not answer.
     pub(crate) fn brief(&mut self, sim: &mut Sim) -> Result<(), FileError> {
-        let (Some(firmware), Speech::Frames) = (&self.setup.firmware, &self.speech) else {
+        let (Some(firmware), Speech::Frames) = (self.setup.firmware.clone(), &self.speech) else {
             return Ok(());
         };
         let mute = || {
@@ -195,10 +197,10 @@ impl<'a> Operator<'a> {
 
     /// Sends the lines of the command line that are due.
     fn type_texts(&mut self, sim: &mut Sim) {
-        while let Some((timed, later)) = self.texts.split_first()
+        while let Some(timed) = self.setup.texts.get(self.next_text)
             && timed.at_s * 1e6 <= sim.now_us() as f64
         {
-            self.texts = later;
+            self.next_text += 1;
             let line = format!("{}\n", timed.text);
             if let (Port::Usb, Some(mega)) = (timed.port, sim.mega_mut()) {
                 mega.type_in(USB, line.as_bytes());
@@ -234,7 +236,7 @@ impl<'a> Operator<'a> {
 
     /// The next command of the scenario, if it is time for it.
     fn due(&mut self, now_us: u64) -> Option<Command> {
-        let timed = self.commands.get(self.next)?;
+        let timed = self.setup.scenario.commands.get(self.next)?;
         let soon = timed.after_reached && self.reached;
         if timed.at_s * 1e6 > now_us as f64 && !soon {
             return None;

@@ -14,7 +14,7 @@ use rumbo_wire::{Command, EventKind, FromRobot, Telemetry};
 const LONGEST: usize = 256;
 
 /// The station's end of a link of text.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Terminal {
     mode: ModeId,
     line: Vec<u8>,

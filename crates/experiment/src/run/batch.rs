@@ -16,20 +16,33 @@ const WAITING: usize = 16;
 /// The first error, of a setup or of `handle`; no further run is begun.
 pub fn run_all<E: From<FileError>>(
     jobs: &[(&Setup, u64)],
+    handle: impl FnMut(&Setup, RunResult) -> Result<(), E>,
+) -> Result<(), E> {
+    run_all_on(rayon::current_num_threads(), jobs, handle)
+}
+
+/// The same on this many threads of its own, at least one: no pool is needed.
+///
+/// # Errors
+/// As [`run_all`].
+pub fn run_all_on<E: From<FileError>>(
+    threads: usize,
+    jobs: &[(&Setup, u64)],
     mut handle: impl FnMut(&Setup, RunResult) -> Result<(), E>,
 ) -> Result<(), E> {
     let work = |index: usize| run(jobs[index].0, jobs[index].1);
-    in_order(jobs.len(), work, |index, result| {
+    in_order(threads, jobs.len(), work, |index, result| {
         handle(jobs[index].0, result?)
     })
 }
 
-/// Does `work` for 0, 1 ... `count` - 1 on as many threads as the current pool has, and hands the results to `handle` in
-/// that order, each as soon as it and all before it are there.
+/// Does `work` for 0, 1 ... `count` - 1 on this many threads of its own, at least one, and hands the results to `handle`
+/// in that order, each as soon as it and all before it are there.
 ///
 /// # Errors
 /// The first error of `handle`; no further work is begun.
 pub fn in_order<T: Send, E>(
+    threads: usize,
     count: usize,
     work: impl Fn(usize) -> T + Sync,
     mut handle: impl FnMut(usize, T) -> Result<(), E>,
@@ -38,7 +51,7 @@ pub fn in_order<T: Send, E>(
     let (done, results) = sync_channel(WAITING);
     // Separate threads: the caller may be one of the pool's, perhaps its only one, and waits for the results.
     std::thread::scope(|scope| {
-        for _ in 0..rayon::current_num_threads().min(count) {
+        for _ in 0..threads.max(1).min(count) {
             let (done, next, work) = (done.clone(), &next, &work);
             scope.spawn(move || {
                 loop {

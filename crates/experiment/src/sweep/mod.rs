@@ -186,6 +186,7 @@ impl Plan {
             Ok(Row::of(point, &result))
         };
         in_order(
+            rayon::current_num_threads(),
             self.len() - first,
             work,
             |_, row: Result<Row, FileError>| handle(row?),

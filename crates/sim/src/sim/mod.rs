@@ -12,6 +12,7 @@
 mod baseline;
 mod emulated;
 mod native;
+mod unlinked;
 
 use crate::baseline::Baseline;
 use crate::config::{Config, Program};
@@ -29,6 +30,7 @@ use rumbo_plant::link::{Direction, Link, LinkParams};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Event, Plant, State, Truth};
+use rumbo_plant::world::World;
 use rumbo_wire::{Command, FromRobot};
 
 /// What is at the robot's pins.
@@ -286,6 +288,11 @@ impl Sim {
         };
         baseline.command(command);
         true
+    }
+
+    /// The world.
+    pub fn world(&self) -> &World {
+        self.plant.world()
     }
 
     /// Drains the messages of the report's native program; empty for other programs, which send over the link.

@@ -7,10 +7,10 @@ use crate::wire_fault::Wire;
 use crate::wiring::Divider;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
-use rumbo_control::{Inputs, OUTPUT_DELAY_US, Outputs, TICK_US};
+use rumbo_control::{Fault, Inputs, OUTPUT_DELAY_US, Outputs, ServoAngle, TICK_US};
 use rumbo_plant::plant::Event;
 use rumbo_robot::{Cell, Config, Robot, START_AT};
-use rumbo_wire::ResetCause;
+use rumbo_wire::{Command, Refusal, ResetCause, Telemetry};
 
 /// The converter's reference, the chip's supply [V].
 const CONVERTER_V: f64 = 5.0;
@@ -53,6 +53,8 @@ pub(super) struct Native {
     pub(super) pending: Option<(u64, Outputs)>,
     /// Its inputs, while they are recorded.
     pub(super) recorded: Option<Vec<Latched>>,
+    /// Its orders come from the caller, not over the link, which is silent.
+    pub(super) is_unlinked: bool,
 }
 
 /// What the robot is given at a tick.
@@ -95,6 +97,7 @@ impl Native {
             next_tick_us: 0,
             pending: None,
             recorded: None,
+            is_unlinked: false,
         })
     }
 
@@ -105,6 +108,23 @@ impl Native {
 
     pub(super) fn be_ghost(&mut self) {
         self.is_ghost = true;
+    }
+
+    /// Applies a command that did not come over the link.
+    pub(super) fn order(&mut self, command: &Command) -> Result<f32, Refusal> {
+        self.robot.order(command)
+    }
+
+    pub(super) fn aim(&mut self, servo: Option<ServoAngle>) {
+        self.robot.aim(servo);
+    }
+
+    pub(super) fn knowledge(&self) -> Telemetry {
+        self.robot.knowledge()
+    }
+
+    pub(super) fn fault(&self) -> Option<Fault> {
+        self.robot.fault()
     }
 
     pub(super) fn mode_state(&self) -> Option<(ModeId, u8)> {
@@ -187,6 +207,9 @@ impl Sim {
     fn tick(&mut self, native: &mut Native) {
         let now_us = self.now_us();
         let mut received = Vec::new();
+        if native.is_unlinked {
+            native.robot.stay_alive();
+        }
         while let Some((_, byte)) = self.uplink.pop(now_us) {
             if native.is_ghost {
                 native.robot.receive_as_ghost(byte);
@@ -210,13 +233,20 @@ impl Sim {
         if let Some(recorded) = &mut native.recorded {
             recorded.push(Latched { received, inputs });
         }
-        native.robot.report();
+        if native.is_unlinked {
+            native.robot.decide();
+        } else {
+            native.robot.report();
+        }
         // A byte takes 3.4 ms: the one before is written.
         if let Some(cell) = native.robot.store() {
             native.memory.write(cell);
         }
         native.pending = Some((now_us + u64::from(OUTPUT_DELAY_US), outputs));
         native.next_tick_us += u64::from(TICK_US);
+        if native.is_unlinked {
+            return;
+        }
         // The transmit interrupt hands a byte to the line whenever the line is free.
         while self.downlink.line_free_us() < native.next_tick_us {
             let Some(byte) = native.robot.transmit() else {

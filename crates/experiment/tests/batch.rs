@@ -1,0 +1,201 @@
+//! Robots of a batch are the robots of runs.
+
+#![allow(clippy::unwrap_used)]
+
+use rumbo_control::{ServoAngle, Wheels};
+use rumbo_experiment::batch::{Batch, Driver, OBSERVED, Robot, TRUE};
+use rumbo_experiment::files::{Kind, Library, Overrides, Setup};
+use rumbo_experiment::run;
+use rumbo_sim::trace::Sample;
+use rumbo_wire::Command;
+
+const SEEDS: [u64; 3] = [1, 7, 1_000_003];
+/// Between two looks [ticks].
+const STEP: usize = 37;
+
+fn setup(scenario: &str) -> Setup {
+    let overrides = Overrides::default();
+    Library::new().setup(scenario, &overrides).unwrap()
+}
+
+fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.unwrap().install(work)
+}
+
+/// What a sample of a trace and a row of a batch both have.
+fn of_sample(sample: &Sample) -> [u64; 8] {
+    let [left, right, front] = sample.range_m;
+    let [left_rad_s, right_rad_s] = sample.wheel_rad_s;
+    [
+        sample.x_m,
+        sample.y_m,
+        left_rad_s,
+        right_rad_s,
+        left,
+        right,
+        front,
+        sample.battery_v,
+    ]
+    .map(f64::to_bits)
+}
+
+fn of_robot(robot: &Robot) -> [u64; 8] {
+    let truth = robot.true_values();
+    let value = |name: &str| truth[TRUE.iter().position(|each| *each == name).unwrap()].to_bits();
+    [
+        "x_m",
+        "y_m",
+        "left_rad_s",
+        "right_rad_s",
+        "range_left_m",
+        "range_right_m",
+        "range_front_m",
+        "battery_v",
+    ]
+    .map(value)
+}
+
+#[test]
+fn each_robot_of_a_batch_is_bit_for_bit_that_of_a_run() {
+    for scenario in Library::new().list(Kind::Scenario) {
+        let setup = setup(&scenario);
+        let runs = SEEDS.map(|seed| run::run(&setup, seed).unwrap());
+        for threads in [1, 2] {
+            on_threads(threads, || {
+                let mut batch = Batch::new(setup.clone(), Driver::Scenario, &SEEDS).unwrap();
+                // Uneven steps: where a caller looks changes nothing.
+                let ticks = runs[0].trace.samples.len();
+                for at in (0..ticks - STEP).step_by(STEP) {
+                    batch.advance(STEP as u32);
+                    for (robot, run) in batch.robots().iter().zip(&runs) {
+                        let sample = &run.trace.samples[at + STEP - 1];
+                        assert_eq!(
+                            of_robot(robot),
+                            of_sample(sample),
+                            "{scenario}, seed {}, {threads} threads, tick {}",
+                            run.seed,
+                            at + STEP
+                        );
+                    }
+                }
+            });
+        }
+    }
+}
+
+/// Drives by actions that change, and gives all that is known and true at the end of each step.
+fn driven(batch: &mut Batch, steps: u32) -> Vec<(Vec<u32>, Vec<u64>)> {
+    batch.for_each(|_, robot| {
+        robot.command(&Command::Arm).unwrap();
+        robot.advance(50);
+    });
+    let robots = batch.robots().len();
+    let (mut known, mut truth) = (
+        vec![0.0; robots * OBSERVED.len()],
+        vec![0.0; robots * TRUE.len()],
+    );
+    let mut rows = Vec::new();
+    for step in 0..steps {
+        batch.step(&mut known, &mut truth, |_, robot| {
+            // By the seed: the same robot does the same in every batch.
+            let speed = 4.0 + (step * 7 % 5) as f32 - (robot.seed() % 3) as f32;
+            let wheels = Wheels {
+                left: speed,
+                right: speed - 0.5,
+            };
+            robot.command(&Command::WheelReference(wheels)).unwrap();
+            robot.aim(Some(ServoAngle((step % 3) as f32 * 0.4 - 0.4)));
+            robot.advance(10);
+        });
+        let known = known.iter().map(|value| value.to_bits()).collect();
+        let truth = truth.iter().map(|value| value.to_bits()).collect();
+        rows.push((known, truth));
+    }
+    rows
+}
+
+#[test]
+fn a_driven_robot_is_the_same_alone_and_among_others_on_any_threads() {
+    let mut setup = setup("mode8-random");
+    setup.scenario.mode = rumbo_control::mode::ModeId::WheelSpeed;
+    let make = |seeds: &[u64]| Batch::new(setup.clone(), Driver::Caller, seeds).unwrap();
+    let together = [1, 2].map(|threads| on_threads(threads, || driven(&mut make(&SEEDS), 60)));
+    assert!(together[0] == together[1]);
+    for (index, seed) in SEEDS.into_iter().enumerate() {
+        let alone = driven(&mut make(&[seed]), 60);
+        for ((known, truth), (all_known, all_truth)) in alone.iter().zip(&together[0]) {
+            assert!(known[..] == all_known[index * OBSERVED.len()..][..OBSERVED.len()]);
+            assert!(truth[..] == all_truth[index * TRUE.len()..][..TRUE.len()]);
+        }
+    }
+}
+
+#[test]
+fn a_driven_robot_turns_its_wheels_and_its_servo_as_commanded_and_knows_it() {
+    let setup = setup("mode5");
+    let mut batch = Batch::new(setup, Driver::Caller, &[3]).unwrap();
+    let robot = &mut batch.robots_mut()[0];
+    robot.command(&Command::Arm).unwrap();
+    let wheels = Wheels {
+        left: 6.0,
+        right: 3.0,
+    };
+    robot.command(&Command::WheelReference(wheels)).unwrap();
+    robot.aim(Some(ServoAngle(0.5)));
+    robot.advance(300);
+    let (known, truth) = (robot.observed(), robot.sim().truth());
+    assert!((truth.wheel_rad_s[0] - 6.0).abs() < 0.4 && (truth.wheel_rad_s[1] - 3.0).abs() < 0.4);
+    assert!((f64::from(known[0]) - truth.wheel_rad_s[0]).abs() < 0.3);
+    assert!((truth.servo_rad - 0.5).abs() < 0.05 && known[8] == 0.5);
+    assert!(
+        robot.sim().fault().is_none(),
+        "nobody is missed on a link that is not there"
+    );
+}
+
+#[test]
+fn a_snapshot_continues_bit_for_bit_the_same() {
+    for driver in [Driver::Scenario, Driver::Caller] {
+        let mut batch = Batch::new(setup("mode4-final"), driver, &SEEDS).unwrap();
+        batch.advance(300);
+        let mut again = batch.clone();
+        batch.advance(300);
+        again.advance(300);
+        for (one, other) in batch.robots().iter().zip(again.robots()) {
+            assert_eq!(of_robot(one), of_robot(other));
+        }
+    }
+}
+
+#[test]
+fn a_renewed_robot_is_that_of_its_seed_and_the_others_go_on() {
+    let mut batch = Batch::new(setup("mode1"), Driver::Scenario, &[1, 2]).unwrap();
+    let mut fresh = Batch::new(setup("mode1"), Driver::Scenario, &[9]).unwrap();
+    batch.advance(100);
+    let second = of_robot(&batch.robots()[1]);
+    batch.renew(&[(0, 9)]).unwrap();
+    assert_eq!(of_robot(&batch.robots()[1]), second);
+    batch.advance(200);
+    fresh.advance(200);
+    assert_eq!(of_robot(&batch.robots()[0]), of_robot(&fresh.robots()[0]));
+}
+
+#[test]
+fn a_command_in_words_is_checked_as_in_a_scenario() {
+    let mut batch = Batch::new(setup("mode1"), Driver::Caller, &[1]).unwrap();
+    batch.advance(50);
+    let robot = &mut batch.robots_mut()[0];
+    robot.instruct("reference_m = 0.4").unwrap();
+    robot.instruct("arm = true").unwrap();
+    let said = |result: Result<(), _>| -> String {
+        rumbo_experiment::files::FileError::to_string(&result.unwrap_err())
+    };
+    assert!(said(robot.instruct("referenc_m = 0.4")).contains("reference_m"));
+    assert!(said(robot.instruct("reference_m = 9")).contains("0.02"));
+    assert!(said(robot.instruct("mode = \"mission\"")).contains("refused"));
+    assert!(said(robot.instruct("goal = \"world\"")).contains("mode"));
+    assert!(said(robot.instruct("arm = true\nat_s = 3")).contains("at_s"));
+    let mut scenario = Batch::new(setup("mode1"), Driver::Scenario, &[1]).unwrap();
+    assert!(said(scenario.robots_mut()[0].instruct("arm = true")).contains("scenario"));
+}

@@ -1,0 +1,61 @@
+//! Our native robot without its link: the caller commands it at once and looks at what its program knows.
+//!
+//! For callers that stand in for a program on the robot, such as a policy that learns: what they decide takes no way over
+//! a serial line. The robot sends nothing, which saves its time, and it misses no heartbeat.
+
+use super::native::Native;
+use super::{Controller, Sim};
+use rumbo_control::{Fault, ServoAngle};
+use rumbo_wire::{Command, Refusal, Telemetry};
+
+impl Sim {
+    /// Takes our native robot off its link: from now on it gets its commands by [`Sim::instruct`] and sends nothing. False
+    /// for any other program, which stays on its link.
+    pub fn unlink(&mut self) -> bool {
+        let native = self.native_mut();
+        let is_native = native.is_some();
+        if let Some(native) = native {
+            native.is_unlinked = true;
+        }
+        is_native
+    }
+
+    /// Applies a command at once, without a link; gives the value in force, 0 where there is none.
+    ///
+    /// # Errors
+    /// Why the robot refuses it; `None` if the program is not our native one.
+    pub fn instruct(&mut self, command: &Command) -> Result<f32, Option<Refusal>> {
+        let native = self.native_mut().ok_or(None)?;
+        native.order(command).map_err(Some)
+    }
+
+    /// Points the servo of our native robot, whatever its mode requests; `None` leaves it to the mode again.
+    pub fn aim(&mut self, servo: Option<ServoAngle>) {
+        if let Some(native) = self.native_mut() {
+            native.aim(servo);
+        }
+    }
+
+    /// What our native robot knows after its last tick; `None` for any other program.
+    pub fn knowledge(&self) -> Option<Telemetry> {
+        match &self.controller {
+            Some(Controller::Rumbo(native)) => Some(native.knowledge()),
+            _ => None,
+        }
+    }
+
+    /// The fault that our native robot has latched.
+    pub fn fault(&self) -> Option<Fault> {
+        match &self.controller {
+            Some(Controller::Rumbo(native)) => native.fault(),
+            _ => None,
+        }
+    }
+
+    fn native_mut(&mut self) -> Option<&mut Native> {
+        match &mut self.controller {
+            Some(Controller::Rumbo(native)) => Some(native),
+            _ => None,
+        }
+    }
+}

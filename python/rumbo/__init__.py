@@ -1,0 +1,62 @@
+"""Rumbo's simulator of a small differential-drive robot.
+
+`run` repeats a scenario with many seeds, `Sim` and `Batch` step robots by hand, `read_log` reads what was recorded;
+`rumbo.envs` has environments for Gymnasium. Units are SI and stand in the names: ``range_m``, ``speed_rad_s``. x is
+forward, y to the left, angles counter-clockwise.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Literal
+
+from . import _rumbo
+from ._log import Log, read_log
+from ._rumbo import Snapshot
+from ._run import Run, Runs, run
+from ._setup import Source
+from ._sim import OBSERVED, TRUE, Batch, Sim
+
+__version__: str = _rumbo.VERSION
+#: Number of the model: runs are comparable bit for bit only within one.
+MODEL: int = _rumbo.MODEL
+#: Largest range that the robot's program uses [m]: what it takes a clear range for.
+REACH_M: float = _rumbo.REACH_M
+#: Fastest wheel speed that a robot is commanded, either way [rad/s].
+MAX_WHEEL_RAD_S: float = _rumbo.MAX_WHEEL_RAD_S
+
+__all__ = [
+    "MAX_WHEEL_RAD_S",
+    "MODEL",
+    "OBSERVED",
+    "REACH_M",
+    "TRUE",
+    "Batch",
+    "Log",
+    "Run",
+    "Runs",
+    "Sim",
+    "Snapshot",
+    "Source",
+    "__version__",
+    "load",
+    "names",
+    "read_log",
+    "run",
+]
+
+
+def names(kind: Literal["robot", "world", "scenario", "parameter"]) -> list[str]:
+    """Names of the built-in robots, worlds or scenarios, or of all parameters."""
+    return _rumbo.names(kind)
+
+
+def load(kind: Literal["robot", "world", "scenario"], name_or_path: str) -> dict[str, Any]:
+    """The content of a robot, world or scenario file, checked, to be changed and given to `run`, `Sim` or `Batch`.
+
+    Raises:
+        ValueError: An unknown name, with the near ones, or whatever is wrong with the file.
+        OSError: A file that cannot be read.
+    """
+    content: dict[str, Any] = json.loads(_rumbo.load(kind, name_or_path))
+    return content

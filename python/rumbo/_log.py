@@ -1,0 +1,54 @@
+"""Logs: what a session or a run recorded, as arrays."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+
+from . import _rumbo
+
+
+@dataclass(frozen=True)
+class Log:
+    """A log in memory. Times are in s since its start."""
+
+    #: The telemetry, with ground truth beside it (``true_x_m``) where the robot was simulated: an array for each signal
+    #: that is known at any time, units in the names. NaN where unknown, inf where a range is clear.
+    signals: dict[str, NDArray[Any]]
+    #: Signals beside the telemetry by their source, each with a ``t_s`` of its own: ``truth`` for the pins of an
+    #: emulated robot, ``usart0`` for the numbers that its program printed there.
+    readings: dict[str, dict[str, NDArray[Any]]]
+    #: What happened: time [s], level, text.
+    events: list[tuple[float, str, str]]
+    #: The parameters as known at the end, by name.
+    parameters: dict[str, float]
+    #: What ran: scenario, robot, world, seed, version, and the files themselves; ``None`` where not recorded.
+    manifest: dict[str, Any] | None
+    #: ``passed``, ``metrics`` and ``failures``; ``None`` where it was not judged.
+    outcome: dict[str, Any] | None
+    #: Why the log ends early, if it does, such as that of a killed session.
+    cut: str | None
+    #: What its reader should know.
+    notes: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """The signals as `pandas.DataFrame` and `pyarrow.table` take them."""
+        return dict(self.signals)
+
+
+def read_log(path: str | os.PathLike[str]) -> Log:
+    """Reads a log (``.mcap``) of a session or a run, whole or cut off.
+
+    Raises:
+        OSError: The file cannot be read.
+        ValueError: It is no log.
+    """
+    parts = _rumbo.read_log(os.fspath(path))
+    if parts["manifest"] is not None:
+        parts["manifest"] = json.loads(parts["manifest"])
+    parts["notes"] = tuple(parts["notes"])
+    return Log(**parts)

@@ -1,0 +1,89 @@
+"""The Rust part of `rumbo`: called by the modules beside it, not by users."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "MAX_WHEEL_RAD_S",
+    "MODEL",
+    "OBSERVED",
+    "REACH_M",
+    "TRUE",
+    "VERSION",
+    "Batch",
+    "Setup",
+    "Snapshot",
+    "load",
+    "names",
+    "read_log",
+    "run",
+]
+
+VERSION: str
+MODEL: int
+OBSERVED: list[str]
+TRUE: list[str]
+REACH_M: float
+MAX_WHEEL_RAD_S: float
+
+@final
+class Setup:
+    def __new__(
+        cls,
+        scenario: str,
+        *,
+        held: Sequence[tuple[str, str, str]],
+        robot: str | None,
+        world: str | None,
+        rig: str | None,
+        parameters: Sequence[tuple[str, float]],
+        program: str,
+        firmware: str | None,
+        randomize: bool | None,
+    ) -> Setup: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def duration_s(self) -> float: ...
+
+@final
+class Snapshot: ...
+
+@final
+class Batch:
+    def __new__(cls, setup: Setup, seeds: Sequence[int], *, caller: bool, threads: int | None) -> Batch: ...
+    def __len__(self) -> int: ...
+    def seeds(self) -> NDArray[np.uint64]: ...
+    def advance(self, ticks: int) -> None: ...
+    def observe(self, known: NDArray[np.float32], truth: NDArray[np.float64]) -> None: ...
+    def drive(
+        self,
+        actions: NDArray[np.float32],
+        active: NDArray[np.bool_],
+        ticks: int,
+        known: NDArray[np.float32],
+        truth: NDArray[np.float64],
+    ) -> None: ...
+    def begin(self, indices: Sequence[int], ticks: int) -> None: ...
+    def renew(self, indices: Sequence[int], seeds: Sequence[int]) -> None: ...
+    def instruct(self, index: int, text: str) -> None: ...
+    def aim(self, index: int, servo_rad: float | None) -> None: ...
+    def obstacles(self, index: int) -> list[list[list[float]]]: ...
+    def fault(self, index: int) -> str | None: ...
+    def snapshot(self) -> Snapshot: ...
+    def restore(self, snapshot: Snapshot) -> None: ...
+
+def names(kind: str) -> list[str]: ...
+def load(kind: str, name_or_path: str) -> str: ...
+def run(
+    setup: Setup,
+    seeds: Sequence[int],
+    *,
+    threads: int | None,
+    trace: bool,
+    progress: Callable[[int], object] | None,
+) -> list[dict[str, Any]]: ...
+def read_log(path: str) -> dict[str, Any]: ...

@@ -1,0 +1,135 @@
+"""What is to be simulated: names, paths or dictionaries, made into one checked setup."""
+
+from __future__ import annotations
+
+import json
+import math
+import operator
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+
+from . import _rumbo
+
+#: A built-in file by its name, a file by its path (with a ``/`` or ending in ``.toml``), or its content.
+Source: TypeAlias = "str | os.PathLike[str] | Mapping[str, Any]"
+
+Program: TypeAlias = Literal["rumbo", "baseline"]
+
+
+def to_toml(content: Mapping[str, Any], what: str) -> str:
+    """A dictionary as TOML, a line for each of its keys: the line numbers of messages count them from 1."""
+    return "".join(f"{_key(key, what)} = {_value(value, f'{what}.{key}')}\n" for key, value in content.items())
+
+
+def _key(key: object, what: str) -> str:
+    if not isinstance(key, str):
+        raise TypeError(f"{what}: the key {key!r} is no text")
+    return json.dumps(key, ensure_ascii=False)
+
+
+def _value(value: object, what: str) -> str:
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    if isinstance(value, (float, np.floating)):
+        number = float(value)
+        if not math.isfinite(number):
+            raise ValueError(f"{what} = {number}: must be a finite number")
+        return repr(number)
+    if isinstance(value, (str, os.PathLike)):
+        text = os.fspath(value)
+        if not isinstance(text, str):
+            raise TypeError(f"{what} = {value!r}: must be text")
+        return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_key(k, what)} = {_value(v, f'{what}.{k}')}" for k, v in value.items()) + "}"
+    if isinstance(value, (Sequence, np.ndarray)):
+        return "[" + ", ".join(_value(item, f"{what}[{index}]") for index, item in enumerate(value)) + "]"
+    raise TypeError(f"{what} = {value!r}: must be a number, text, true or false, a list or a dictionary")
+
+
+class _Held:
+    """Names for what is given as a dictionary."""
+
+    def __init__(self) -> None:
+        self.files: list[tuple[str, str, str]] = []
+
+    def name(self, kind: str, source: Source) -> str:
+        if isinstance(source, Mapping):
+            name = f"given {kind}"
+            self.files.append((kind, name, to_toml(source, kind)))
+            return name
+        if isinstance(source, (str, os.PathLike)):
+            name = os.fspath(source)
+            if isinstance(name, str):
+                return name
+        raise TypeError(f"{kind} = {source!r}: must be a name, a path or a dictionary")
+
+
+def make_setup(
+    scenario: Source,
+    *,
+    robot: Source | None = None,
+    world: Source | None = None,
+    rig: str | None = None,
+    parameters: Mapping[str, float] | None = None,
+    program: Program = "rumbo",
+    firmware: str | os.PathLike[str] | None = None,
+    randomize: bool | None = None,
+) -> _rumbo.Setup:
+    """The setup of these; errors as for `rumbo.run`."""
+    held = _Held()
+    if isinstance(scenario, Mapping):
+        # Its robot and world may be dictionaries, too.
+        scenario = dict(scenario)
+        for kind in ("robot", "world"):
+            if isinstance(scenario.get(kind), Mapping):
+                scenario[kind] = held.name(kind, scenario[kind])
+    name = held.name("scenario", scenario)
+    return _rumbo.Setup(
+        name,
+        robot=None if robot is None else held.name("robot", robot),
+        world=None if world is None else held.name("world", world),
+        rig=rig,
+        parameters=[(key, _number(key, value)) for key, value in (parameters or {}).items()],
+        program=program,
+        firmware=None if firmware is None else os.fspath(firmware),
+        randomize=randomize,
+        held=held.files,
+    )
+
+
+def _number(name: str, value: object) -> float:
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise ValueError(f"parameter {name} = {value!r}: must be a number") from None
+
+
+def make_seeds(seeds: int | Iterable[int]) -> list[int]:
+    """The seeds as a list; a single number is one seed."""
+    try:
+        numbers: Iterable[int] = [operator.index(seeds)]  # type: ignore[arg-type]
+    except TypeError:
+        numbers = seeds  # type: ignore[assignment]
+    checked = []
+    for index, seed in enumerate(numbers):
+        number = operator.index(seed)
+        if not 0 <= number < 2**64:
+            raise ValueError(f"seeds[{index}] = {number}: must be 0 or more and below 2**64")
+        checked.append(number)
+    if not checked:
+        raise ValueError("seeds is empty: give at least one")
+    return checked
+
+
+def to_ticks(duration_s: float) -> int:
+    """A duration as a number of control ticks of 10 ms."""
+    ticks = round(duration_s * 100) if math.isfinite(duration_s) else 0
+    if not (1 <= ticks < 2**31) or abs(ticks - duration_s * 100) > 1e-6:
+        raise ValueError(f"duration_s = {duration_s}: must be a multiple of 0.01 s, the control tick")
+    return ticks

@@ -1,0 +1,309 @@
+"""Robots that the caller steps: one, or many together."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _rumbo
+from ._setup import Program, Source, make_seeds, make_setup, to_ticks, to_toml
+
+#: Names of what a robot's program knows, in the order of the columns of `Batch.observe_rows`.
+OBSERVED: tuple[str, ...] = tuple(_rumbo.OBSERVED)
+#: Names of the ground truth, in the order of the columns of `Batch.truth_rows`.
+TRUE: tuple[str, ...] = tuple(_rumbo.TRUE)
+
+Driver = Literal["scenario", "caller"]
+
+
+def _is_caller(driver: str) -> bool:
+    if driver not in ("scenario", "caller"):
+        raise ValueError(f'driver = {driver!r}: must be "scenario" or "caller"')
+    return driver == "caller"
+
+
+class Batch:
+    """Robots of one setup, a seed for each, stepped together on all cores.
+
+    Driven by the scenario (``driver="scenario"``), each robot is bit for bit the one that `rumbo.run` simulates for its
+    seed. Driven by the caller, it has no link: it starts disarmed in the scenario's mode, with the parameters of the
+    files (a scenario's calibration is left out), gets commands at once, and never misses its heartbeat. A robot is the
+    same in every batch and on any number of threads.
+
+    Args:
+        scenario, robot, world, rig, parameters, program, firmware, randomize: As for `rumbo.run`.
+        seeds: A robot for each.
+        driver: Who commands the robots.
+        threads: One on each core by default.
+
+    Raises:
+        ValueError, OSError: As `rumbo.run`.
+        RuntimeError: From any method, in a process that was forked after threads were used (begin workers by
+            ``multiprocessing.get_context("spawn")``), or while another thread is stepping the same robots.
+    """
+
+    def __init__(
+        self,
+        scenario: Source,
+        *,
+        seeds: int | Iterable[int],
+        driver: Driver = "scenario",
+        robot: Source | None = None,
+        world: Source | None = None,
+        rig: str | None = None,
+        parameters: Mapping[str, float] | None = None,
+        program: Program = "rumbo",
+        firmware: str | os.PathLike[str] | None = None,
+        randomize: bool | None = None,
+        threads: int | None = None,
+    ) -> None:
+        caller = _is_caller(driver)
+        setup = make_setup(
+            scenario,
+            robot=robot,
+            world=world,
+            rig=rig,
+            parameters=parameters,
+            program=program,
+            firmware=firmware,
+            randomize=randomize,
+        )
+        #: How long the scenario lasts [s]; the robots can be stepped beyond.
+        self.duration_s: float = setup.duration_s
+        self._batch = _rumbo.Batch(setup, make_seeds(seeds), caller=caller, threads=threads)
+        self._caller = caller
+        self._is_known = program == "rumbo" and firmware is None
+
+    def __len__(self) -> int:
+        return len(self._batch)
+
+    @property
+    def seeds(self) -> NDArray[np.uint64]:
+        """The robots' seeds, shape (robots,)."""
+        return self._batch.seeds()
+
+    def step(self, duration_s: float = 0.01) -> None:
+        """Advances every robot by `duration_s` [s], a multiple of the control tick of 0.01 s.
+
+        Ctrl-C ends it after a second of simulated time, with every robot at the same time.
+        """
+        self._batch.advance(to_ticks(duration_s))
+
+    def drive(
+        self, actions: ArrayLike, duration_s: float = 0.1, *, active: ArrayLike | None = None
+    ) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+        """Sets wheel speeds and servo of every robot, advances them, and gives what `rows` does.
+
+        The robots must be driven by the caller, in mode ``wheel_speed`` and armed: see `begin_wheel_speed`.
+
+        Args:
+            actions: Shape (robots, 3): left and right wheel [rad/s, -20 to 20], servo [rad, -pi/2 to pi/2, left is
+                positive].
+            duration_s: A multiple of 0.01 s.
+            active: Shape (robots,); robots of which it is false stand still in time.
+
+        Raises:
+            ValueError: A wrong shape, or a value that is out of range or not a number, with its index.
+        """
+        if not self._caller:
+            raise ValueError('the scenario commands these robots; make the batch with driver="caller"')
+        rows = np.ascontiguousarray(actions, dtype=np.float32)
+        if rows.shape != (len(self), 3):
+            raise ValueError(f"actions has the shape {rows.shape}: must be ({len(self)}, 3)")
+        chosen = np.ones(len(self), np.bool_) if active is None else np.ascontiguousarray(active, dtype=np.bool_)
+        if chosen.shape != (len(self),):
+            raise ValueError(f"active has the shape {chosen.shape}: must be ({len(self)},)")
+        known, truth = self._empty()
+        self._batch.drive(rows, chosen, to_ticks(duration_s), known, truth)
+        return known, truth
+
+    def begin_wheel_speed(self, indices: Sequence[int] | None = None, duration_s: float = 0.5) -> None:
+        """Selects mode ``wheel_speed`` and arms these robots, all by default.
+
+        They then stand for `duration_s` [s], so that every sonar has answered.
+        """
+        if not self._caller:
+            raise ValueError('the scenario commands these robots; make the batch with driver="caller"')
+        chosen = range(len(self)) if indices is None else indices
+        self._batch.begin([int(index) for index in chosen], to_ticks(duration_s))
+
+    def renew(self, indices: Sequence[int], seeds: Iterable[int]) -> None:
+        """Puts new robots of these seeds, at their start, in place of those of these numbers."""
+        numbers = [int(index) for index in indices]
+        of_them = make_seeds(seeds) if numbers else []
+        if len(of_them) != len(numbers):
+            raise ValueError(f"{len(numbers)} robots need as many seeds, not {len(of_them)}")
+        if any(index < 0 for index in numbers):
+            raise IndexError(f"robot {min(numbers)}: numbers begin at 0")
+        self._batch.renew(numbers, of_them)
+
+    def command(self, index: int, **keys: Any) -> None:
+        """Applies a command to one robot, in the words of a scenario's ``[[command]]``: see `Sim.command`."""
+        servo = "servo_rad" in keys
+        if servo:
+            angle = keys.pop("servo_rad")
+            self._batch.aim(index, None if angle is None else float(angle))
+        if keys or not servo:
+            self._batch.instruct(index, to_toml(keys, "command"))
+
+    def observe_rows(self) -> NDArray[np.float32]:
+        """What the robots' programs know after the last tick, shape (robots, 14), in the order of `rumbo.OBSERVED`.
+
+        Wheel speeds [rad/s]; ranges [m], the front one in the servo's direction: `rumbo.REACH_M` where nothing is
+        within reach, 0 before the first reading and of a sonar that is faulty or not there; their ages [s, at most 1];
+        the servo's angle [rad]; the pose by odometry from the start [m, rad]; the goal of a random world as seen from
+        there [m ahead, m to the left], otherwise 0.
+
+        Raises:
+            ValueError: The robots run another program.
+        """
+        if not self._is_known:
+            raise ValueError("only Rumbo's own program shows what it knows; truth() is there for every one")
+        return self.rows()[0]
+
+    def truth_rows(self) -> NDArray[np.float64]:
+        """Ground truth now, shape (robots, 20), in the order of `rumbo.TRUE`.
+
+        Time [s]; pose [m, rad]; wheel speeds [rad/s]; body velocities [m/s, rad/s]; ranges [m, inf where nothing is
+        within reach]; servo [rad]; battery [V]; whether the body touches something, the number of contacts and the
+        fastest of them [m/s]; whether the robot is armed and the number of its latched fault, 0 for none; the goal of
+        a random world [m], else NaN.
+        """
+        return self.rows()[1]
+
+    def observe(self) -> dict[str, NDArray[np.float32]]:
+        """The columns of `observe_rows` by name, shape (robots,) each, without a copy."""
+        rows = self.observe_rows()
+        return {name: rows[:, column] for column, name in enumerate(OBSERVED)}
+
+    def truth(self) -> dict[str, NDArray[np.float64]]:
+        """The columns of `truth_rows` by name, shape (robots,) each, without a copy."""
+        rows = self.truth_rows()
+        return {name: rows[:, column] for column, name in enumerate(TRUE)}
+
+    def obstacles(self, index: int) -> list[NDArray[np.float64]]:
+        """The corners of each wall and box in the world of one robot, shape (corners, 2) each [m]."""
+        return [np.array(corners) for corners in self._batch.obstacles(index)]
+
+    def fault(self, index: int) -> str | None:
+        """The fault that one robot has latched, in words."""
+        return self._batch.fault(index)
+
+    def snapshot(self) -> _rumbo.Snapshot:
+        """The robots as they are now: `restore` puts them back, any number of times."""
+        return self._batch.snapshot()
+
+    def restore(self, snapshot: _rumbo.Snapshot) -> None:
+        """Puts the robots back to a snapshot; from there on they are bit for bit the same.
+
+        Raises:
+            ValueError: The snapshot is of another number of robots.
+        """
+        self._batch.restore(snapshot)
+
+    def rows(self) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+        """`observe_rows` and `truth_rows` at once."""
+        known, truth = self._empty()
+        self._batch.observe(known, truth)
+        return known, truth
+
+    def _empty(self) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+        return np.empty((len(self), len(OBSERVED)), np.float32), np.empty((len(self), len(TRUE)), np.float64)
+
+
+class Sim:
+    """One robot that the caller steps; what is said of `Batch` holds for it.
+
+    >>> sim = rumbo.Sim("mode1", seed=7, driver="caller")
+    >>> sim.step(0.5)
+    >>> sim.command(reference_m=0.4)
+    >>> sim.command(arm=True)
+    >>> sim.step(3)
+    >>> sim.truth()["range_front_m"]
+    """
+
+    def __init__(
+        self,
+        scenario: Source,
+        *,
+        seed: int = 1,
+        driver: Driver = "scenario",
+        robot: Source | None = None,
+        world: Source | None = None,
+        rig: str | None = None,
+        parameters: Mapping[str, float] | None = None,
+        program: Program = "rumbo",
+        firmware: str | os.PathLike[str] | None = None,
+        randomize: bool | None = None,
+    ) -> None:
+        self._batch = Batch(
+            scenario,
+            seeds=[seed],
+            driver=driver,
+            robot=robot,
+            world=world,
+            rig=rig,
+            parameters=parameters,
+            program=program,
+            firmware=firmware,
+            randomize=randomize,
+            threads=1,
+        )
+
+    @property
+    def seed(self) -> int:
+        """The robot's seed."""
+        return int(self._batch.seeds[0])
+
+    @property
+    def t_s(self) -> float:
+        """Simulated time since the start [s]."""
+        return self.truth()["t_s"]
+
+    @property
+    def fault(self) -> str | None:
+        """The fault that the robot has latched, in words; `command(clear_fault=True)` clears it."""
+        return self._batch.fault(0)
+
+    def step(self, duration_s: float = 0.01) -> None:
+        """Advances by `duration_s` [s], a multiple of the control tick of 0.01 s."""
+        self._batch.step(duration_s)
+
+    def command(self, **keys: Any) -> None:
+        """Applies a command at once, in the words of a scenario's ``[[command]]``, without its time.
+
+        ``arm=True``, ``disarm=True``, ``stop=True``, ``clear_fault=True``, ``reset_pose=True``, ``mode="wheel_speed"``
+        (while disarmed), ``reference_m=0.3``, ``speed_rpm=60``, ``left_rpm=60, right_rpm=50``, ``goal_m=[1, 0.5]``,
+        ``goal="world"``, ``route_m=[[1, 0], [1, 1, 90]]``, ``lane=True``, ``move="turn_left", duty=0.4``,
+        ``parameter="front_kp", value=5``; and ``servo_rad=0.5`` [rad, left is positive], which points the servo
+        whatever the mode requests, until ``servo_rad=None``.
+
+        Raises:
+            ValueError: An unknown key, with the near ones; a value out of range; a command that the robot refuses, with
+                its reason; a robot that its scenario commands.
+        """
+        self._batch.command(0, **keys)
+
+    def observe(self) -> dict[str, float]:
+        """What the robot's program knows after its last tick: see `Batch.observe_rows`."""
+        return {name: float(value) for name, value in zip(OBSERVED, self._batch.observe_rows()[0])}
+
+    def truth(self) -> dict[str, float]:
+        """Ground truth now: see `Batch.truth_rows`."""
+        return {name: float(value) for name, value in zip(TRUE, self._batch.truth_rows()[0])}
+
+    def obstacles(self) -> list[NDArray[np.float64]]:
+        """The corners of each wall and box, shape (corners, 2) each [m]."""
+        return self._batch.obstacles(0)
+
+    def snapshot(self) -> _rumbo.Snapshot:
+        """The robot as it is now: see `Batch.snapshot`."""
+        return self._batch.snapshot()
+
+    def restore(self, snapshot: _rumbo.Snapshot) -> None:
+        """Puts the robot back to a snapshot: see `Batch.restore`."""
+        self._batch.restore(snapshot)

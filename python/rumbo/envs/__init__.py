@@ -1,0 +1,51 @@
+"""Environments for Gymnasium: ``import rumbo.envs`` makes them known.
+
+    import gymnasium
+    import rumbo.envs
+    env = gymnasium.make("rumbo/Goal-v0")
+    envs = gymnasium.make_vec("rumbo/Goal-v0", num_envs=4096)
+
+Every environment has the same spaces. An action, ten times a second, is three numbers from -1 to 1: the setpoints of
+the left and the right wheel (1 is 12 rad/s) and where the servo points (1 is a quarter turn to the left); what is out
+of range is clipped. The robot's own control core drives the wheels to them. An observation is what the robot's program
+knows, by the names of `rumbo.OBSERVED`, its last two numbers being the task's: see each environment. Ground truth is in
+``info``, by the names of `rumbo.TRUE`, never in an observation.
+
+Each episode has a seed, in ``info["seed"]``: it draws the robot from the spread in its file, the world, the task and
+all noise. ``reset(seed=s)`` begins the episode of seed s (of s + i in the i-th of a vector); those after it follow from
+s. An episode is bit for bit the same alone, in a vector, and on any number of threads.
+"""
+
+from __future__ import annotations
+
+import gymnasium
+
+from ._env import FollowWallEnv, GoalEnv, RumboEnv, StopAtWallEnv, WheelSpeedEnv
+from ._vector import (
+    FollowWallVectorEnv,
+    GoalVectorEnv,
+    RumboVectorEnv,
+    StopAtWallVectorEnv,
+    WheelSpeedVectorEnv,
+)
+
+__all__ = [
+    "FollowWallEnv",
+    "FollowWallVectorEnv",
+    "GoalEnv",
+    "GoalVectorEnv",
+    "RumboEnv",
+    "RumboVectorEnv",
+    "StopAtWallEnv",
+    "StopAtWallVectorEnv",
+    "WheelSpeedEnv",
+    "WheelSpeedVectorEnv",
+]
+
+for _name in ("WheelSpeed", "StopAtWall", "FollowWall", "Goal"):
+    if f"rumbo/{_name}-v0" not in gymnasium.registry:
+        gymnasium.register(
+            id=f"rumbo/{_name}-v0",
+            entry_point=f"rumbo.envs:{_name}Env",
+            vector_entry_point=f"rumbo.envs:{_name}VectorEnv",
+        )

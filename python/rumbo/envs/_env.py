@@ -1,0 +1,134 @@
+"""Single environments."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import gymnasium
+import numpy as np
+from gymnasium import error
+from numpy.typing import NDArray
+
+from .._setup import Source
+from . import _tasks
+from ._core import Core, Settings, action_space, observation_space
+
+_ALL = np.ones(1, np.bool_)
+
+
+class RumboEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
+    """One robot with a task.
+
+    Args:
+        robot, world, parameters: As for `rumbo.run`, in place of the task's.
+        randomize: ``False``: every episode drives the robot of the file; only noise, world and task differ.
+        render_mode: ``"rgb_array"``, the world from above, shape (256, 256, 3); or ``None``.
+
+    Raises:
+        ValueError: An action of a wrong shape or with a value that is not a number, with its index; whatever is wrong
+            with robot, world or parameters, at the first reset.
+        gymnasium.error.ClosedEnvironmentError: Use after `close`.
+        gymnasium.error.ResetNeeded: A step before the first reset, or after the end of an episode.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012
+    _task: ClassVar[_tasks.Task]
+
+    def __init__(
+        self,
+        *,
+        robot: Source | None = None,
+        world: Source | None = None,
+        parameters: Mapping[str, float] | None = None,
+        randomize: bool | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        check_render_mode(render_mode)
+        self.render_mode = render_mode
+        self.observation_space: gymnasium.spaces.Box = observation_space()  # type: ignore[assignment]
+        self.action_space: gymnasium.spaces.Box = action_space()  # type: ignore[assignment]
+        self._core = Core(self._task, Settings(robot, world, parameters, randomize, threads=1), 1)
+        self._over = True
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begins the episode of `seed`, or the next one."""
+        self._core.check_open()
+        super().reset(seed=seed)
+        if seed is None and not self._core.is_seeded:
+            seed = int(self.np_random.integers(2**63))
+        self._core.begin([0], [seed])
+        self._over = False
+        return self._core.known()[0], self._core.info(0)
+
+    def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Acts for 0.1 s."""
+        self._core.check_open()
+        if self._core.is_seeded and self._over:
+            raise error.ResetNeeded("the episode is over; reset() begins the next one")
+        one = np.asarray(action, dtype=np.float32)
+        if one.shape != (3,):
+            raise ValueError(f"action has the shape {one.shape}: must be (3,)")
+        done = self._core.step(one[None], _ALL)
+        terminated, truncated = bool(done.terminated[0]), bool(done.truncated[0])
+        self._over = terminated or truncated
+        return done.known[0].copy(), float(done.reward[0]), terminated, truncated, self._core.info(0)
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """The world from above; ``None`` without a render mode."""
+        return None if self.render_mode is None else self._core.render(0)
+
+    def close(self) -> None:
+        """Lets go of the robot."""
+        self._core.close()
+        super().close()
+
+
+def check_render_mode(render_mode: str | None) -> None:
+    """Refuses what cannot be drawn."""
+    if render_mode not in (None, "rgb_array"):
+        raise ValueError(f'render_mode = {render_mode!r}: must be "rgb_array" or None')
+
+
+class WheelSpeedEnv(RumboEnv):
+    """``rumbo/WheelSpeed-v0``: both wheels at speeds of their own, on an open floor, for 5 s.
+
+    The last two numbers of an observation are the speeds to reach, left and right [rad/s], -10 to 10. The reward is
+    minus the sum of both wheels' errors, divided by 10 rad/s.
+    """
+
+    _task = _tasks.WHEEL_SPEED
+
+
+class StopAtWallEnv(RumboEnv):
+    """``rumbo/StopAtWall-v0``: stand at a distance from the wall ahead, for 10 s.
+
+    The second last number of an observation is the distance [m] from sonar to wall, 0.2 to 0.8; the last is 0. The
+    reward is minus the error [m]. A contact above 0.1 m/s, or a fault of the robot, costs 10 and ends the episode.
+    """
+
+    _task = _tasks.STOP_AT_WALL
+
+
+class FollowWallEnv(RumboEnv):
+    """``rumbo/FollowWall-v0``: drive along the wall on the left at a distance from it, for 20 s.
+
+    The second last number of an observation is the distance [m] from the pair of sonars to the wall, 0.3 to 0.6; the
+    last is 0. The reward is the forward speed divided by 0.3 m/s, 0 to 1, minus the error divided by 0.1 m. A contact
+    above 0.1 m/s, or a fault of the robot, costs 10 and ends the episode.
+    """
+
+    _task = _tasks.FOLLOW_WALL
+
+
+class GoalEnv(RumboEnv):
+    """``rumbo/Goal-v0``: reach a goal among one to three groups of boxes, other ones in each episode, within 60 s.
+
+    The last two numbers of an observation are the goal as seen from the robot by its odometry: ahead, to the left [m].
+    The reward is how much nearer the robot came to it [m]. At less than 0.1 m it has arrived: 10, and the end. A
+    contact above 0.1 m/s, or a fault of the robot, costs 10 and ends the episode.
+    """
+
+    _task = _tasks.GOAL

@@ -1,0 +1,149 @@
+"""The tasks: what the last two numbers of an observation are, what is rewarded, and when an episode ends.
+
+All arithmetic is of kinds that NumPy rounds alike for one robot and for many (no sines, no powers): the reward of an
+episode must not depend on the number of environments beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._sim import TRUE
+
+#: Seconds of an action.
+ACTION_S = 0.1
+#: The wheel speed of an action of 1 [rad/s].
+MAX_WHEEL_RAD_S = 12.0
+#: A contact faster than this ends an episode [m/s].
+HARD_CONTACT_M_S = 0.1
+#: The reward of an end that should not be: a contact, or a fault of the robot.
+FAILURE = -10.0
+#: A distance farther than the sonars reach counts as this [m].
+REACH_M = 2.5
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+_COLUMN = {name: column for column, name in enumerate(TRUE)}
+_BITS = 2**64 - 1
+
+
+def mix(number: int) -> int:
+    """A hash of 64 bits (the finaliser of SplitMix64)."""
+    number = (number + 0x9E3779B97F4A7C15) & _BITS
+    number = ((number ^ (number >> 30)) * 0xBF58476D1CE4E5B9) & _BITS
+    number = ((number ^ (number >> 27)) * 0x94D049BB133111EB) & _BITS
+    return number ^ (number >> 31)
+
+
+def uniform(seed: int, which: int, low: float, high: float) -> float:
+    """A number in [low, high) of an episode's seed."""
+    return low + (high - low) * ((mix(seed ^ mix(which)) >> 11) / 2**53)
+
+
+def column(truth: Floats, name: str) -> Floats:
+    """A column of the ground truth."""
+    return truth[:, _COLUMN[name]]
+
+
+def collided(truth: Floats) -> Bools:
+    """The robot met something hard, or stopped itself with a fault."""
+    hard: Bools = (column(truth, "contact_m_s") > HARD_CONTACT_M_S) | (column(truth, "fault") != 0)
+    return hard
+
+
+@dataclass(frozen=True)
+class Task:
+    """A task, in one place for single and vector environments."""
+
+    #: Where robot, sensor layout, world and start come from.
+    scenario: str
+    #: In place of the scenario's world.
+    world: Mapping[str, Any] | None
+    #: An episode is cut off after this many actions.
+    steps: int
+
+    def targets(self, seed: int) -> tuple[float, float] | None:
+        """The last two numbers of the observations of an episode; ``None`` where the goal of the world stands there."""
+        raise NotImplementedError
+
+    def judge(self, before: Floats, truth: Floats, targets: Floats) -> tuple[Floats, Bools]:
+        """Rewards, and whether each robot has succeeded, which ends its episode.
+
+        `before` and `truth` are the ground truth before and after the action, `targets` those of `Task.targets`.
+        """
+        raise NotImplementedError
+
+
+class WheelSpeed(Task):
+    """Both wheels at speeds of their own."""
+
+    def targets(self, seed: int) -> tuple[float, float] | None:
+        return uniform(seed, 1, -10.0, 10.0), uniform(seed, 2, -10.0, 10.0)
+
+    def judge(self, before: Floats, truth: Floats, targets: Floats) -> tuple[Floats, Bools]:
+        left = np.abs(column(truth, "left_rad_s") - targets[:, 0])
+        right = np.abs(column(truth, "right_rad_s") - targets[:, 1])
+        return -(left + right) / 10.0, np.zeros(len(truth), np.bool_)
+
+
+class StopAtWall(Task):
+    """Stand at a distance from the wall ahead."""
+
+    def targets(self, seed: int) -> tuple[float, float] | None:
+        return uniform(seed, 1, 0.2, 0.8), 0.0
+
+    def judge(self, before: Floats, truth: Floats, targets: Floats) -> tuple[Floats, Bools]:
+        error = np.abs(np.minimum(column(truth, "range_front_m"), REACH_M) - targets[:, 0])
+        return -error, np.zeros(len(truth), np.bool_)
+
+
+class FollowWall(Task):
+    """Drive along the wall on the left at a distance from it."""
+
+    def targets(self, seed: int) -> tuple[float, float] | None:
+        return uniform(seed, 1, 0.3, 0.6), 0.0
+
+    def judge(self, before: Floats, truth: Floats, targets: Floats) -> tuple[Floats, Bools]:
+        left = np.minimum(column(truth, "range_left_m"), REACH_M)
+        right = np.minimum(column(truth, "range_right_m"), REACH_M)
+        error = np.abs(0.5 * (left + right) - targets[:, 0])
+        ahead = np.clip(column(truth, "forward_m_s"), 0.0, 0.3) / 0.3
+        return ahead - error / 0.1, np.zeros(len(truth), np.bool_)
+
+
+class Goal(Task):
+    """Reach a goal among boxes."""
+
+    def targets(self, seed: int) -> tuple[float, float] | None:
+        return None
+
+    def judge(self, before: Floats, truth: Floats, targets: Floats) -> tuple[Floats, Bools]:
+        was, now = _goal_m(before), _goal_m(truth)
+        reached: Bools = now < 0.1
+        return (was - now) + 10.0 * reached, reached
+
+
+def _goal_m(truth: Floats) -> Floats:
+    x_m = column(truth, "goal_x_m") - column(truth, "x_m")
+    y_m = column(truth, "goal_y_m") - column(truth, "y_m")
+    distance: Floats = np.sqrt(x_m * x_m + y_m * y_m)
+    return distance
+
+
+#: One to three groups of boxes, and a goal that can be reached.
+_BOXES: Mapping[str, Any] = {
+    "title": "Boxes at random and a goal that can be reached",
+    "arena": {"from_m": [-1.0, -2.1], "to_m": [4.4, 2.1], "walled": True},
+    "random": {"groups": [1, 3], "goal_away_m": [2.0, 4.0], "unreachable": 0.0, "blocked": 0.8},
+}
+
+WHEEL_SPEED = WheelSpeed(scenario="mode5", world=None, steps=50)
+STOP_AT_WALL = StopAtWall(scenario="mode1", world=None, steps=100)
+FOLLOW_WALL = FollowWall(scenario="mode4", world=None, steps=200)
+GOAL = Goal(scenario="mode8-random", world=_BOXES, steps=600)

@@ -1,0 +1,314 @@
+//! Robots stepped from Python: one for `rumbo.Sim`, many for `rumbo.Batch` and the environments.
+
+use crate::guard::{detached, exception, pool, threads};
+use crate::setup::Setup;
+use numpy::{
+    PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods,
+    ToPyArray,
+};
+use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use rumbo_control::mode::{MAX_WHEEL_RAD_S, ModeId};
+use rumbo_control::{ServoAngle, Wheels};
+use rumbo_experiment::batch::{Batch as Robots, Driver, OBSERVED, Robot, TRUE};
+use rumbo_experiment::files::FileError;
+use rumbo_wire::Command;
+use std::f32::consts::FRAC_PI_2;
+use std::sync::{Mutex, MutexGuard, TryLockError};
+
+/// Between two looks for Ctrl-C [ticks]: a second of simulated time.
+const STRIDE_TICKS: u32 = 100;
+/// An action: wheel speeds, left and right [rad/s], and where the servo points [rad].
+const ACTION: usize = 3;
+
+/// Robots of one setup.
+#[pyclass(frozen, module = "rumbo._rumbo")]
+pub(crate) struct Batch {
+    robots: Mutex<Robots>,
+    count: usize,
+    threads: usize,
+}
+
+/// Robots as they were at one moment.
+#[pyclass(frozen, module = "rumbo._rumbo")]
+pub(crate) struct Snapshot {
+    robots: Robots,
+}
+
+#[pymethods]
+impl Batch {
+    /// A robot for each seed, driven by its scenario or by the caller.
+    #[new]
+    #[pyo3(signature = (setup, seeds, *, caller, threads))]
+    fn new(
+        py: Python<'_>,
+        setup: &Setup,
+        seeds: Vec<u64>,
+        caller: bool,
+        threads: Option<i64>,
+    ) -> PyResult<Self> {
+        let threads = self::threads(threads)?;
+        let driver = match caller {
+            true => Driver::Caller,
+            false => Driver::Scenario,
+        };
+        let robots = on_threads(py, seeds.len(), threads, || {
+            Robots::new(setup.files.clone(), driver, &seeds)
+        })?;
+        Ok(Self {
+            robots: Mutex::new(robots.map_err(|error| exception(&error))?),
+            count: seeds.len(),
+            threads,
+        })
+    }
+
+    fn __len__(&self) -> usize {
+        self.count
+    }
+
+    /// The robots' seeds.
+    fn seeds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u64>>> {
+        let seeds: Vec<u64> = self.lock()?.robots().iter().map(Robot::seed).collect();
+        Ok(seeds.to_pyarray(py))
+    }
+
+    /// Advances every robot by this many control ticks.
+    fn advance(&self, py: Python<'_>, ticks: u32) -> PyResult<()> {
+        let mut held = self.lock()?;
+        let robots = &mut *held;
+        let mut left = ticks;
+        while left > 0 {
+            let now = left.min(STRIDE_TICKS);
+            left -= now;
+            on_threads(py, self.count, self.threads, || robots.advance(now))?;
+            py.check_signals()?;
+        }
+        Ok(())
+    }
+
+    /// Writes what each robot's program knows, and ground truth: a row for each robot.
+    fn observe(
+        &self,
+        py: Python<'_>,
+        known: PyReadwriteArray2<'_, f32>,
+        truth: PyReadwriteArray2<'_, f64>,
+    ) -> PyResult<()> {
+        self.step(py, known, truth, |_, _| {})
+    }
+
+    /// Gives each robot its row of `actions`, advances it by this many control ticks and writes its rows. Robots of which
+    /// `active` is false stand still in time.
+    fn drive(
+        &self,
+        py: Python<'_>,
+        actions: PyReadonlyArray2<'_, f32>,
+        active: PyReadonlyArray1<'_, bool>,
+        ticks: u32,
+        known: PyReadwriteArray2<'_, f32>,
+        truth: PyReadwriteArray2<'_, f64>,
+    ) -> PyResult<()> {
+        has_rows("actions", actions.shape(), self.count, ACTION)?;
+        if !actions.is_c_contiguous() || active.len() != self.count {
+            return Err(PyValueError::new_err(
+                "actions must be C-contiguous, and active must have a value for each robot",
+            ));
+        }
+        let (actions, active) = (actions.as_slice()?, active.as_slice()?);
+        check_actions(actions)?;
+        self.step(py, known, truth, |index, robot| {
+            if active.get(index) != Some(&true) {
+                return;
+            }
+            if let Some([left, right, servo_rad]) = actions.as_chunks().0.get(index) {
+                let (left, right) = (*left, *right);
+                // In range: only a robot of another mode refuses it, and that one drives by its mode.
+                let _ = robot.command(&Command::WheelReference(Wheels { left, right }));
+                robot.aim(Some(ServoAngle(*servo_rad)));
+            }
+            robot.advance(ticks);
+        })
+    }
+
+    /// Selects the mode of wheel speeds for these robots, arms them, and lets them stand for this many ticks.
+    fn begin(&self, py: Python<'_>, indices: Vec<usize>, ticks: u32) -> PyResult<()> {
+        let mut held = self.lock()?;
+        let robots = &mut *held;
+        let mut chosen = vec![false; self.count];
+        for index in indices {
+            *chosen.get_mut(index).ok_or_else(|| self.beyond(index))? = true;
+        }
+        on_threads(py, self.count, self.threads, || {
+            robots.for_each(|index, robot| {
+                if chosen.get(index) == Some(&true) {
+                    for command in [Command::Mode(ModeId::WheelSpeed), Command::Arm] {
+                        // A robot at its start obeys.
+                        let _ = robot.command(&command);
+                    }
+                    robot.advance(ticks);
+                }
+            });
+        })
+    }
+
+    /// Puts new robots of these seeds in place of those of these numbers.
+    fn renew(&self, py: Python<'_>, indices: Vec<usize>, seeds: Vec<u64>) -> PyResult<()> {
+        if let Some(index) = indices.iter().find(|index| **index >= self.count) {
+            return Err(self.beyond(*index));
+        }
+        let mut held = self.lock()?;
+        let robots = &mut *held;
+        let pairs: Vec<_> = indices.into_iter().zip(seeds).collect();
+        on_threads(py, pairs.len(), self.threads, || robots.renew(&pairs))?
+            .map_err(|error| exception(&error))
+    }
+
+    /// Applies a command in the words of a scenario to one robot.
+    fn instruct(&self, index: usize, text: &str) -> PyResult<()> {
+        self.with(index, |robot| robot.instruct(text))?
+            .map_err(|error: FileError| exception(&error))
+    }
+
+    /// Points the servo of one robot; `None` leaves it to the mode.
+    fn aim(&self, index: usize, servo_rad: Option<f32>) -> PyResult<()> {
+        if let Some(servo_rad) = servo_rad {
+            check_actions(&[0.0, 0.0, servo_rad])?;
+        }
+        self.with(index, |robot| robot.aim(servo_rad.map(ServoAngle)))
+    }
+
+    /// Corners of each obstacle in the world of one robot [m].
+    fn obstacles(&self, index: usize) -> PyResult<Vec<Vec<[f64; 2]>>> {
+        self.with(index, |robot| {
+            let obstacles = robot.world().obstacles().iter();
+            obstacles
+                .map(|obstacle| obstacle.corners().collect())
+                .collect()
+        })
+    }
+
+    /// The fault that one robot has latched, in words.
+    fn fault(&self, index: usize) -> PyResult<Option<&'static str>> {
+        self.with(index, |robot| {
+            robot.sim().fault().map(|fault| fault.explanation())
+        })
+    }
+
+    /// The robots as they are now.
+    fn snapshot(&self) -> PyResult<Snapshot> {
+        let robots = self.lock()?.clone();
+        Ok(Snapshot { robots })
+    }
+
+    /// Puts the robots back to a snapshot of a batch of the same size.
+    fn restore(&self, snapshot: &Snapshot) -> PyResult<()> {
+        let count = snapshot.robots.robots().len();
+        if count != self.count {
+            return Err(PyValueError::new_err(format!(
+                "a snapshot of {count} robots does not fit a batch of {}",
+                self.count
+            )));
+        }
+        *self.lock()? = snapshot.robots.clone();
+        Ok(())
+    }
+}
+
+impl Batch {
+    fn lock(&self) -> PyResult<MutexGuard<'_, Robots>> {
+        self.robots.try_lock().map_err(|error| {
+            PyRuntimeError::new_err(match error {
+                TryLockError::WouldBlock => {
+                    "another thread is stepping these robots; give each thread its own"
+                }
+                TryLockError::Poisoned(_) => {
+                    "an earlier step of these robots failed; make new ones"
+                }
+            })
+        })
+    }
+
+    fn beyond(&self, index: usize) -> PyErr {
+        PyIndexError::new_err(format!("robot {index}: there are {}", self.count))
+    }
+
+    fn with<T>(&self, index: usize, act: impl FnOnce(&mut Robot) -> T) -> PyResult<T> {
+        let mut robots = self.lock()?;
+        let robot = robots.robots_mut().get_mut(index);
+        robot.map(act).ok_or_else(|| self.beyond(index))
+    }
+
+    fn step(
+        &self,
+        py: Python<'_>,
+        mut known: PyReadwriteArray2<'_, f32>,
+        mut truth: PyReadwriteArray2<'_, f64>,
+        act: impl Fn(usize, &mut Robot) + Sync + Send,
+    ) -> PyResult<()> {
+        let mut held = self.lock()?;
+        let robots = &mut *held;
+        let known = rows("known", &mut known, self.count, OBSERVED.len())?;
+        let truth = rows("truth", &mut truth, self.count, TRUE.len())?;
+        on_threads(py, self.count, self.threads, || {
+            robots.step(known, truth, act);
+        })
+    }
+}
+
+/// Does the work on a pool of this many threads; for a single robot on this one.
+fn on_threads<T: Send>(
+    py: Python<'_>,
+    robots: usize,
+    threads: usize,
+    work: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
+    if robots <= 1 {
+        return detached(py, work);
+    }
+    let pool = pool(threads)?;
+    detached(py, || pool.install(work))
+}
+
+/// The array's numbers, row by row, if it has this shape.
+fn rows<'a, T: numpy::Element>(
+    name: &str,
+    array: &'a mut PyReadwriteArray2<'_, T>,
+    rows: usize,
+    columns: usize,
+) -> PyResult<&'a mut [T]> {
+    has_rows(name, array.shape(), rows, columns)?;
+    // A slice of an array in Fortran's order would be transposed.
+    if !array.is_c_contiguous() {
+        return Err(PyValueError::new_err(format!(
+            "{name} must be C-contiguous"
+        )));
+    }
+    Ok(array.as_slice_mut()?)
+}
+
+fn has_rows(name: &str, shape: &[usize], rows: usize, columns: usize) -> PyResult<()> {
+    if shape == [rows, columns] {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!(
+        "{name} has the shape {shape:?}: must be [{rows}, {columns}]"
+    )))
+}
+
+/// Every number is one that the robot takes.
+fn check_actions(actions: &[f32]) -> PyResult<()> {
+    const LIMITS: [(&str, f32, &str); ACTION] = [
+        ("left wheel speed", MAX_WHEEL_RAD_S, "rad/s"),
+        ("right wheel speed", MAX_WHEEL_RAD_S, "rad/s"),
+        ("servo angle", FRAC_PI_2, "rad"),
+    ];
+    for (index, action) in actions.as_chunks::<ACTION>().0.iter().enumerate() {
+        for (column, (value, (what, most, unit))) in action.iter().zip(LIMITS).enumerate() {
+            if value.is_nan() || value.abs() > most {
+                return Err(PyValueError::new_err(format!(
+                    "action[{index}, {column}] = {value}: {what} must be within {most:.4} {unit} of zero"
+                )));
+            }
+        }
+    }
+    Ok(())
+}

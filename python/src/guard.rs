@@ -1,0 +1,78 @@
+//! The way from Python into the simulator and back: errors, Python's lock, threads, forks, faults of our own.
+
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use rayon::ThreadPool;
+use rumbo_experiment::files::FileError;
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// More threads than any machine has use for.
+const MOST_THREADS: usize = 1_024;
+
+/// The pools of this process by their number of threads, and the process that began them.
+static POOLS: Mutex<(u32, BTreeMap<usize, Arc<ThreadPool>>)> = Mutex::new((0, BTreeMap::new()));
+
+/// The Python exception of an error in a file or a setting.
+pub(crate) fn exception(error: &FileError) -> PyErr {
+    match error {
+        FileError::Unreadable { .. } => PyOSError::new_err(error.to_string()),
+        FileError::Unknown { .. } | FileError::Invalid(_) | FileError::Setting(_) => {
+            PyValueError::new_err(error.to_string())
+        }
+    }
+}
+
+/// The number of threads asked for; all cores by default.
+pub(crate) fn threads(asked: Option<i64>) -> PyResult<usize> {
+    let Some(asked) = asked else {
+        return Ok(std::thread::available_parallelism().map_or(1, usize::from));
+    };
+    usize::try_from(asked)
+        .ok()
+        .filter(|asked| (1..=MOST_THREADS).contains(asked))
+        .ok_or_else(|| {
+            PyValueError::new_err(format!(
+                "threads = {asked}: must be 1 to {MOST_THREADS}; leave it out for one on each core"
+            ))
+        })
+}
+
+/// The pool with this many threads. The threads of a pool do not survive a fork: a child that waited for them would
+/// hang.
+pub(crate) fn pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
+    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let (owner, pools) = &mut *pools;
+    if pools.is_empty() {
+        *owner = std::process::id();
+    } else if *owner != std::process::id() {
+        return Err(PyRuntimeError::new_err(
+            "this process is a fork of one that had used Rumbo's threads, which a fork loses; begin worker processes by \
+             multiprocessing.get_context(\"spawn\")",
+        ));
+    }
+    if let Some(pool) = pools.get(&threads) {
+        return Ok(pool.clone());
+    }
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|error| PyRuntimeError::new_err(format!("threads = {threads}: {error}")))?;
+    let pool = Arc::new(pool);
+    pools.insert(threads, pool.clone());
+    Ok(pool)
+}
+
+/// Does the work without Python's lock. A panic, which is a fault of ours, becomes a `RuntimeError`.
+pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    py.detach(|| catch_unwind(AssertUnwindSafe(work)))
+        .map_err(|panic| {
+            let what = panic
+                .downcast_ref::<&str>()
+                .map(|text| (*text).to_owned())
+                .or_else(|| panic.downcast_ref::<String>().cloned())
+                .unwrap_or_default();
+            PyRuntimeError::new_err(format!("a fault of Rumbo itself, please report it: {what}"))
+        })
+}

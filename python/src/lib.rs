@@ -1,0 +1,38 @@
+//! `rumbo._rumbo`: what the Python package `rumbo` calls. Its typed face, with the documentation for users, is the
+//! Python beside it, in `python/rumbo/`.
+//!
+//! Every call that takes time gives up Python's lock and looks for Ctrl-C between runs, or between seconds of simulated
+//! time. Input is checked before anything runs; an error of the simulator's files is a `ValueError` with their text.
+
+mod batch;
+mod guard;
+mod log;
+mod run;
+mod setup;
+
+#[pyo3::pymodule]
+mod _rumbo {
+    #[pymodule_export]
+    use super::batch::{Batch, Snapshot};
+    #[pymodule_export]
+    use super::log::read_log;
+    #[pymodule_export]
+    use super::run::run;
+    #[pymodule_export]
+    use super::setup::{Setup, load, names};
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
+        module.add("MODEL", rumbo_experiment::MODEL)?;
+        module.add("OBSERVED", rumbo_experiment::batch::OBSERVED.to_vec())?;
+        module.add("TRUE", rumbo_experiment::batch::TRUE.to_vec())?;
+        module.add("REACH_M", f64::from(rumbo_control::range::REACH_M))?;
+        module.add(
+            "MAX_WHEEL_RAD_S",
+            f64::from(rumbo_control::mode::MAX_WHEEL_RAD_S),
+        )
+    }
+}

@@ -1,0 +1,115 @@
+//! Runs from start to end, and their traces as columns.
+
+use crate::guard::{detached, exception, threads};
+use crate::setup::Setup;
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rumbo_experiment::files::FileError;
+use rumbo_experiment::run::{RunResult, run_all_on};
+use rumbo_sim::trace::Sample;
+
+/// Why the runs ended early.
+enum Stop {
+    File(FileError),
+    Python(PyErr),
+}
+
+impl From<FileError> for Stop {
+    fn from(error: FileError) -> Self {
+        Self::File(error)
+    }
+}
+
+/// Runs the scenario with each seed; a dictionary for each run, in the order of the seeds. `progress` is called with
+/// the number of finished runs.
+#[pyfunction]
+#[pyo3(signature = (setup, seeds, *, threads, trace, progress))]
+pub(crate) fn run<'py>(
+    py: Python<'py>,
+    setup: &Setup,
+    seeds: Vec<u64>,
+    threads: Option<i64>,
+    trace: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let threads = self::threads(threads)?;
+    let jobs: Vec<_> = seeds.iter().map(|seed| (&setup.files, *seed)).collect();
+    let mut results: Vec<RunResult> = Vec::with_capacity(jobs.len());
+    let ended = detached(py, || {
+        run_all_on(threads.min(jobs.len()), &jobs, |_, mut result| {
+            if !trace {
+                result.trace = Default::default();
+            }
+            results.push(result);
+            let done = results.len();
+            Python::attach(|py| {
+                py.check_signals()?;
+                match &progress {
+                    Some(progress) => progress.call1(py, (done,)).map(|_| ()),
+                    None => Ok(()),
+                }
+            })
+            .map_err(Stop::Python)
+        })
+    })?;
+    match ended {
+        Ok(()) => {}
+        Err(Stop::File(error)) => return Err(exception(&error)),
+        Err(Stop::Python(error)) => return Err(error),
+    }
+    results
+        .into_iter()
+        .map(|result| in_python(py, result, trace))
+        .collect()
+}
+
+fn in_python(py: Python<'_>, result: RunResult, trace: bool) -> PyResult<Bound<'_, PyDict>> {
+    let run = PyDict::new(py);
+    run.set_item("scenario", &result.scenario)?;
+    run.set_item("seed", result.seed)?;
+    run.set_item("passed", result.pass)?;
+    let metrics = PyDict::new(py);
+    for (name, value) in &result.metrics {
+        metrics.set_item(name, value)?;
+    }
+    run.set_item("metrics", metrics)?;
+    run.set_item("failures", &result.failures)?;
+    run.set_item("notes", &result.notes)?;
+    if trace {
+        run.set_item("trace", columns(py, &result.trace.samples)?)?;
+    }
+    Ok(run)
+}
+
+/// A signal's name and its value in a sample.
+type Column = (&'static str, fn(&Sample) -> f64);
+
+/// The samples as one array for each signal.
+fn columns<'py>(py: Python<'py>, samples: &[Sample]) -> PyResult<Bound<'py, PyDict>> {
+    let trace = PyDict::new(py);
+    let numbers: [Column; 11] = [
+        ("t_s", |sample| sample.t_s),
+        ("x_m", |sample| sample.x_m),
+        ("y_m", |sample| sample.y_m),
+        ("heading_rad", |sample| sample.heading_rad),
+        ("left_rad_s", |sample| sample.wheel_rad_s[0]),
+        ("right_rad_s", |sample| sample.wheel_rad_s[1]),
+        ("range_left_m", |sample| sample.range_m[0]),
+        ("range_right_m", |sample| sample.range_m[1]),
+        ("range_front_m", |sample| sample.range_m[2]),
+        ("servo_rad", |sample| sample.servo_rad),
+        ("battery_v", |sample| sample.battery_v),
+    ];
+    for (name, value) in numbers {
+        let column: Vec<f64> = samples.iter().map(value).collect();
+        trace.set_item(name, column.into_pyarray(py))?;
+    }
+    for (name, side) in [("left_duty", 0), ("right_duty", 1)] {
+        let column: Vec<i16> = samples.iter().map(|sample| sample.duty[side]).collect();
+        trace.set_item(name, column.into_pyarray(py))?;
+    }
+    let touching: Vec<bool> = samples.iter().map(|sample| sample.touching).collect();
+    trace.set_item("touching", touching.into_pyarray(py))?;
+    Ok(trace)
+}

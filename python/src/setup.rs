@@ -1,0 +1,115 @@
+//! What is to be simulated: a scenario with its robot and world, checked.
+
+use crate::guard::exception;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use rumbo_control::params::ParamId;
+use rumbo_experiment::files::{Kind, Library, NativeProgram, Overrides, Setup as Files, Spread};
+use rumbo_plant::params::Params;
+use std::path::PathBuf;
+
+/// A scenario ready to run.
+#[pyclass(frozen, module = "rumbo._rumbo")]
+pub(crate) struct Setup {
+    pub(crate) files: Files,
+}
+
+#[pymethods]
+impl Setup {
+    /// `held` are files given as text: kind (`robot`, `world`, `scenario`), name, TOML.
+    #[new]
+    #[pyo3(signature = (scenario, *, held, robot, world, rig, parameters, program, firmware, randomize))]
+    #[allow(clippy::too_many_arguments, reason = "keywords of one Python call")]
+    fn new(
+        scenario: &str,
+        held: Vec<(String, String, String)>,
+        robot: Option<String>,
+        world: Option<String>,
+        rig: Option<String>,
+        parameters: Vec<(String, f64)>,
+        program: &str,
+        firmware: Option<PathBuf>,
+        randomize: Option<bool>,
+    ) -> PyResult<Self> {
+        let mut library = Library::new();
+        for (kind, name, text) in held {
+            library = library.holding(find_kind(&kind)?, &name, &text);
+        }
+        let program = match program {
+            "rumbo" => NativeProgram::Rumbo,
+            "baseline" => NativeProgram::Baseline,
+            other => {
+                return Err(PyValueError::new_err(format!(
+                    "program = {other:?}: must be \"rumbo\" or \"baseline\"; an image is given by firmware="
+                )));
+            }
+        };
+        let overrides = Overrides {
+            robot,
+            rig,
+            world,
+            parameters,
+            program,
+            firmware,
+            ..Overrides::default()
+        };
+        let mut files = library
+            .setup(scenario, &overrides)
+            .map_err(|error| exception(&error))?;
+        match randomize {
+            Some(true) => files.scenario.spread = Spread::Drawn,
+            Some(false) => files.scenario.spread = Spread::None,
+            None => {}
+        }
+        Ok(Self { files })
+    }
+
+    /// The scenario's name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.files.scenario.name
+    }
+
+    /// How long the scenario lasts [s].
+    #[getter]
+    fn duration_s(&self) -> f64 {
+        self.files.scenario.duration_s
+    }
+}
+
+/// Names of the built-in files of a kind, or of all parameters.
+#[pyfunction]
+pub(crate) fn names(kind: &str) -> PyResult<Vec<String>> {
+    if kind == "parameter" {
+        let of_control = ParamId::ALL.iter().map(|id| id.name().to_owned());
+        let of_plant = Params::limits().into_iter().map(|limit| limit.key);
+        return Ok(of_control.chain(of_plant).collect());
+    }
+    Ok(Library::new().list(find_kind(kind)?))
+}
+
+/// The content of a file as JSON, if nothing is wrong with it.
+#[pyfunction]
+pub(crate) fn load(kind: &str, name_or_path: &str) -> PyResult<String> {
+    let library = Library::new();
+    let text = match find_kind(kind)? {
+        Kind::Robot => library.robot(name_or_path).map(|file| file.text),
+        Kind::World => library.world(name_or_path).map(|file| file.text),
+        Kind::Scenario => library.scenario(name_or_path).map(|file| file.text),
+    }
+    .map_err(|error| exception(&error))?;
+    let content: toml::Table =
+        toml::from_str(&text).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    serde_json::to_string(&content).map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+fn find_kind(kind: &str) -> PyResult<Kind> {
+    match kind {
+        "robot" => Ok(Kind::Robot),
+        "world" => Ok(Kind::World),
+        "scenario" => Ok(Kind::Scenario),
+        _ => Err(PyValueError::new_err(format!(
+            "kind = {kind:?}: must be \"robot\", \"world\", \"scenario\" or \"parameter\""
+        ))),
+    }
+}

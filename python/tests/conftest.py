@@ -1,0 +1,18 @@
+"""What the tests share."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+
+import pytest
+
+
+@pytest.fixture(scope="session")
+def rumbo_command() -> str:
+    """The `rumbo` command of the same checkout, which RUMBO_COMMAND names as `cargo xtask test` does."""
+    command = os.environ.get("RUMBO_COMMAND")
+    if command is None:
+        pytest.skip("RUMBO_COMMAND names no rumbo command to compare with")
+    assert pathlib.Path(command).is_file()
+    return command

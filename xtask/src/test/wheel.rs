@@ -1,0 +1,98 @@
+//! The Python package: its wheel and its source archive are built, and the wheel is installed and tested, in an environment
+//! made for it.
+
+use std::path::{Path, PathBuf};
+
+use super::{Stop, tools};
+use crate::project::{Project, output, run};
+
+/// Packages of PyPI; what type checkers find depends on their versions. They need Python 3.11, the wheel itself 3.10.
+const PACKAGES: [&str; 6] = [
+    "maturin==1.16.0",
+    "numpy==2.4.6",
+    "gymnasium==1.4.0",
+    "pytest==9.2.0",
+    "mypy==2.4.1",
+    "ruff==0.17.6",
+];
+
+/// Builds the package, installs it, and runs its tests and type checks.
+pub(super) fn check(project: &Project) -> Result<(), Stop> {
+    let python = tools::python_with(project, "wheel", &PACKAGES)?;
+    // The same interpreter each time, or the crate is built again.
+    let interpreter = python.to_string_lossy();
+    let build = [
+        "build",
+        "--release",
+        "--locked",
+        "--interpreter",
+        &interpreter,
+    ];
+    let wheel = package(project, &python, &build, "whl")?;
+    let sources = package(project, &python, &["sdist"], "gz")?;
+    let rumbo = project.release_binary()?;
+    let module = |words: &[&str]| {
+        let mut command = project.command(&python);
+        // Nothing of it beside the sources.
+        command.env("PYTHONDONTWRITEBYTECODE", "1");
+        command.arg("-m").args(words);
+        command
+    };
+    let install = [
+        "pip",
+        "install",
+        "--quiet",
+        "--disable-pip-version-check",
+        "--force-reinstall",
+        "--no-deps",
+    ];
+    run(module(&install).arg(wheel))?;
+    let mut tests = module(&["pytest", "--quiet", "-p", "no:cacheprovider"]);
+    tests
+        .env("RUMBO_COMMAND", rumbo)
+        .env("RUMBO_SDIST", sources);
+    run(&mut tests)?;
+    run(&mut module(&[
+        "ruff",
+        "format",
+        "--no-cache",
+        "--check",
+        "python",
+    ]))?;
+    run(&mut module(&[
+        "ruff",
+        "check",
+        "--no-cache",
+        "--quiet",
+        "python",
+    ]))?;
+    let cache = project.target.join("tmp/mypy");
+    run(module(&["mypy", "--cache-dir"]).arg(cache))?;
+    // Whether the stub of the Rust part is true.
+    let mut stub = module(&["mypy.stubtest", "rumbo._rumbo"]);
+    Ok(run(stub.current_dir(project.target.join("tmp")))?)
+}
+
+/// Has maturin build one file that ends so, alone in its folder.
+fn package(
+    project: &Project,
+    python: &Path,
+    words: &[&str],
+    ending: &str,
+) -> Result<PathBuf, Stop> {
+    let folder = project.target.join("tmp").join(format!("python-{ending}"));
+    // Of an earlier version.
+    let _ = std::fs::remove_dir_all(&folder);
+    let mut build = project.command(python);
+    build.args(["-m", "maturin"]).args(words);
+    // Its warnings about metadata for a registry concern nobody here; errors are shown.
+    output(build.arg("--out").arg(&folder))?;
+    let mut files = std::fs::read_dir(&folder).map_err(|error| error.to_string())?;
+    let file = files.find_map(|file| {
+        let path = file.ok()?.path();
+        path.extension()
+            .is_some_and(|end| end == ending)
+            .then_some(path)
+    });
+    file.ok_or_else(|| Stop::Failed(format!("maturin left no .{ending} in {}", folder.display())))
+}
