@@ -17,7 +17,7 @@ use journal::{Header, Journal};
 use rumbo_control::params::ParamId;
 use rumbo_experiment::MODEL;
 use rumbo_experiment::files::{self, Library, Overrides, Setup};
-use rumbo_experiment::metrics::bare;
+use rumbo_experiment::metrics::{bare, more_is_better};
 use rumbo_experiment::run;
 use rumbo_experiment::sweep::{Design, Plan, Row, Sweep};
 use rumbo_log::Kind;
@@ -167,8 +167,11 @@ fn by(args: &SweepArgs, setup: &Setup, sweep: &Sweep) -> Result<String, Failure>
     let known = sweep.metrics(&setup.scenario);
     let Some(asked) = &args.by else {
         let limits = || setup.scenario.limits.keys().map(|name| bare(name));
-        let timed = limits().find(|name| name.ends_with("_s") && !name.ends_with("_m_s"));
-        let first = limits().find(|name| *name != "contacts");
+        let is_time = |name: &&str| {
+            name.ends_with("_s") && !name.ends_with("m_s") && !name.ends_with("rad_s")
+        };
+        let timed = limits().find(is_time);
+        let first = limits().find(|name| *name != "contacts" && !more_is_better(name));
         let name = timed.or(first).or(known.first().copied());
         return Ok(name.unwrap_or("contacts").to_owned());
     };

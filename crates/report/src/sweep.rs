@@ -117,6 +117,13 @@ impl Page<'_> {
         body
     }
 
+    /// Whether some runs pass and some do not.
+    fn pass_varies(&self) -> bool {
+        let mut rows = self.sweep.rows.iter();
+        let first = rows.next().map(|row| row.pass);
+        rows.any(|row| Some(row.pass) != first)
+    }
+
     /// Whether a metric is not the same in all runs.
     fn varies(&self, metric: &str) -> bool {
         let rows = self.sweep.rows.iter();
@@ -317,7 +324,8 @@ impl Page<'_> {
             let (Some(columns), Some(rows)) = (&grids[x], &grids[y]) else {
                 continue;
             };
-            for metric in [None, Some(self.by)] {
+            let pass = self.pass_varies().then_some(None);
+            for metric in pass.into_iter().chain([Some(self.by)]) {
                 html += &self.heat(language, (x, columns), (y, rows), metric);
             }
         }
@@ -393,12 +401,15 @@ impl Page<'_> {
         }
         let others = self.limited().into_iter().filter(|name| *name != self.by);
         let metrics: Vec<&str> = others.take(2).chain([self.by]).collect();
+        let pass_varies = self.pass_varies();
         let line = |point: &usize| {
             let values = self.sweep.plan.points[*point].iter().zip(axes);
             let mut line: Vec<f64> = values
                 .map(|(value, axis)| if axis.is_log() { value.log10() } else { *value })
                 .collect();
-            line.push(100.0 * self.sweep.pass_share(*point));
+            if pass_varies {
+                line.push(100.0 * self.sweep.pass_share(*point));
+            }
             line.extend(metrics.iter().map(|metric| {
                 let factor = self.shown(language, metric).factor;
                 let spread = self.sweep.spread(*point, metric);
@@ -407,7 +418,9 @@ impl Page<'_> {
             line
         };
         let mut names: Vec<String> = axes.iter().map(axis_name).collect();
-        names.push(format!("{}, %", PASS.of(language)));
+        if pass_varies {
+            names.push(format!("{}, %", PASS.of(language)));
+        }
         names.extend(metrics.iter().map(|metric| self.name(language, metric)));
         // The best lie above the others.
         let every = ranked.len().div_ceil(MOST_LINES).max(1);

@@ -44,7 +44,7 @@ pub(crate) struct SweepArgs {
     pub(crate) runs: u32,
     #[command(flatten)]
     pub(crate) seed: SeedArgs,
-    /// Metric by which points are ranked; of several steps or goals the worst counts [default: a time with a limit]
+    /// Metric by which points are ranked; of several steps or goals the worst counts [default: a time with a limit, else an error with one]
     #[arg(long, value_name = "METRIC")]
     pub(crate) by: Option<String>,
     #[command(flatten)]
