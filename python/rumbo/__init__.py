@@ -1,8 +1,8 @@
 """Rumbo's simulator of a small differential-drive robot.
 
-`run` repeats a scenario with many seeds, `Sim` and `Batch` step robots by hand, `read_log` reads what was recorded;
-`rumbo.envs` has environments for Gymnasium. Units are SI and stand in the names: ``range_m``, ``speed_rad_s``. x is
-forward, y to the left, angles counter-clockwise.
+`run` repeats a scenario with many seeds, `sweep` over its parameters, `compare` as variants, `Sim` and `Batch` step
+robots by hand, `read_log` reads what was recorded; `rumbo.envs` has environments for Gymnasium. Units are SI and stand
+in the names: ``range_m``, ``speed_rad_s``. x is forward, y to the left, angles counter-clockwise.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from ._rumbo import Snapshot
 from ._run import Run, Runs, run
 from ._setup import Source
 from ._sim import OBSERVED, TRUE, Batch, Sim
+from ._study import Comparison, Difference, Sweep, compare, sweep
 
 __version__: str = _rumbo.VERSION
 #: Number of the model: runs are comparable bit for bit only within one.
@@ -32,17 +33,22 @@ __all__ = [
     "REACH_M",
     "TRUE",
     "Batch",
+    "Comparison",
+    "Difference",
     "Log",
     "Run",
     "Runs",
     "Sim",
     "Snapshot",
     "Source",
+    "Sweep",
     "__version__",
+    "compare",
     "load",
     "names",
     "read_log",
     "run",
+    "sweep",
 ]
 
 

@@ -16,10 +16,12 @@ __all__ = [
     "Batch",
     "Setup",
     "Snapshot",
+    "differences",
     "load",
     "names",
     "read_log",
     "run",
+    "sweep",
 ]
 
 VERSION: str
@@ -87,3 +89,15 @@ def run(
     progress: Callable[[int], object] | None,
 ) -> list[dict[str, Any]]: ...
 def read_log(path: str) -> dict[str, Any]: ...
+def sweep(
+    setup: Setup,
+    axes: Sequence[str],
+    *,
+    design: str,
+    count: int,
+    seed: int,
+    runs: int,
+    threads: int | None,
+    progress: Callable[[int], object] | None,
+) -> tuple[list[list[float]], list[tuple[int, int, bool, dict[str, float]]]]: ...
+def differences(first: Sequence[dict[str, float]], second: Sequence[dict[str, float]]) -> list[dict[str, Any]]: ...

@@ -134,13 +134,7 @@ def run(
         randomize=randomize,
     )
     numbers = make_seeds(seeds)
-    total = len(numbers)
-    show: Callable[[int], object] | None = None
-    if callable(progress):
-        report = progress
-        show = lambda done: report(done, total)  # noqa: E731
-    elif progress:
-        show = lambda done: _count(done, total)  # noqa: E731
+    show = make_progress(progress, len(numbers))
     results = _rumbo.run(setup, numbers, threads=threads, trace=trace, progress=show)
     return Runs(
         Run(
@@ -156,6 +150,17 @@ def run(
     )
 
 
-def _count(done: int, total: int) -> None:
+def make_progress(progress: bool | Callable[[int, int], object], total: int | None) -> Callable[[int], object] | None:
+    """What is called with the number of finished runs; the number of all may be unknown."""
+    if callable(progress):
+        report = progress
+        return lambda done: report(done, done if total is None else total)
+    if not progress:
+        return None
+    return lambda done: _count(done, total)
+
+
+def _count(done: int, total: int | None) -> None:
     end = "\n" if done == total else ""
-    print(f"\r{done} of {total} runs", end=end, file=sys.stderr, flush=True)
+    of = "" if total is None else f" of {total}"
+    print(f"\r{done}{of} runs", end=end, file=sys.stderr, flush=True)

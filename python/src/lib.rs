@@ -9,6 +9,7 @@ mod guard;
 mod log;
 mod run;
 mod setup;
+mod study;
 
 #[pyo3::pymodule]
 mod _rumbo {
@@ -20,6 +21,8 @@ mod _rumbo {
     use super::run::run;
     #[pymodule_export]
     use super::setup::{Setup, load, names};
+    #[pymodule_export]
+    use super::study::{differences, sweep};
 
     use pyo3::prelude::*;
 

@@ -10,15 +10,36 @@ use rumbo_experiment::run::{RunResult, run_all_on};
 use rumbo_sim::trace::Sample;
 
 /// Why the runs ended early.
-enum Stop {
+pub(crate) enum Stop {
     File(FileError),
     Python(PyErr),
+}
+
+impl Stop {
+    pub(crate) fn into_exception(self) -> PyErr {
+        match self {
+            Self::File(error) => exception(&error),
+            Self::Python(error) => error,
+        }
+    }
 }
 
 impl From<FileError> for Stop {
     fn from(error: FileError) -> Self {
         Self::File(error)
     }
+}
+
+/// Looks for Ctrl-C, and says how many runs are done.
+pub(crate) fn call(progress: Option<&Py<PyAny>>, done: usize) -> Result<(), Stop> {
+    Python::attach(|py| {
+        py.check_signals()?;
+        match progress {
+            Some(progress) => progress.call1(py, (done,)).map(|_| ()),
+            None => Ok(()),
+        }
+    })
+    .map_err(Stop::Python)
 }
 
 /// Runs the scenario with each seed; a dictionary for each run, in the order of the seeds. `progress` is called with
@@ -42,22 +63,10 @@ pub(crate) fn run<'py>(
                 result.trace = Default::default();
             }
             results.push(result);
-            let done = results.len();
-            Python::attach(|py| {
-                py.check_signals()?;
-                match &progress {
-                    Some(progress) => progress.call1(py, (done,)).map(|_| ()),
-                    None => Ok(()),
-                }
-            })
-            .map_err(Stop::Python)
+            call(progress.as_ref(), results.len())
         })
     })?;
-    match ended {
-        Ok(()) => {}
-        Err(Stop::File(error)) => return Err(exception(&error)),
-        Err(Stop::Python(error)) => return Err(error),
-    }
+    ended.map_err(Stop::into_exception)?;
     results
         .into_iter()
         .map(|result| in_python(py, result, trace))

@@ -169,7 +169,7 @@ impl Plan {
         (0..self.points.len()).try_for_each(|point| self.setup(setup, point).map(drop))
     }
 
-    /// Runs everything from `first` on, on all cores; `handle` gets each row in order as soon as it and all before it
+    /// Runs everything from `first` on, on this many threads; `handle` gets each row in order as soon as it and all before it
     /// are there.
     ///
     /// # Errors
@@ -178,6 +178,7 @@ impl Plan {
         &self,
         setup: &Setup,
         first: usize,
+        threads: usize,
         mut handle: impl FnMut(Row) -> Result<(), E>,
     ) -> Result<(), E> {
         let work = |index: usize| {
@@ -186,7 +187,7 @@ impl Plan {
             Ok(Row::of(point, &result))
         };
         in_order(
-            rayon::current_num_threads(),
+            threads,
             self.len() - first,
             work,
             |_, row: Result<Row, FileError>| handle(row?),

@@ -82,7 +82,7 @@ fn each_run_is_that_of_its_point_and_seed_and_can_go_on_anywhere() {
     let plan = Plan::new(axes, Design::Grid, 3, 2).unwrap();
     let rows = |first: usize| {
         let mut rows = Vec::new();
-        plan.run(&setup, first, |row| {
+        plan.run(&setup, first, 2, |row| {
             rows.push(row);
             Ok::<(), FileError>(())
         })
