@@ -4,7 +4,7 @@
 //! Commands (bridge, servo, trigger) act at the present time; what the robot's pins would see comes back from
 //! [`Plant::advance`] as events in the order of time, each at its microsecond.
 
-use libm::{cos, sin, sqrt};
+use libm::{sincos, sqrt};
 
 pub use crate::event::Event;
 pub use crate::rig::{Mount, Rig};
@@ -255,7 +255,7 @@ impl Plant {
         }
         let before = state.pose;
         let middle_rad = before.heading_rad + 0.5 * motion.yaw_rad;
-        let (ahead, across) = (cos(middle_rad), sin(middle_rad));
+        let (across, ahead) = sincos(middle_rad);
         let mut pose = Pose {
             x_m: before.x_m + motion.forward_m * ahead,
             y_m: before.y_m + motion.forward_m * across,
@@ -285,7 +285,7 @@ impl Plant {
     fn view(&self, state: &State, sonar: SonarId) -> Option<View> {
         self.mounts[sonar.index()].map(|mount| {
             let pose = &state.pose;
-            let (s, c) = (sin(pose.heading_rad), cos(pose.heading_rad));
+            let (s, c) = sincos(pose.heading_rad);
             let [forward_m_s, yaw_rad_s] = state.speed;
             let along = forward_m_s - yaw_rad_s * mount.y_m;
             let across = yaw_rad_s * mount.x_m;

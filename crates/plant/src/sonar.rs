@@ -288,7 +288,7 @@ impl Sonar {
     /// Lets an echo of `speaker` end the pulse of `listener` if it comes first.
     fn overhear(&self, states: &mut [State; 3], listener: usize, speaker: usize) {
         let burst = states[speaker].burst;
-        let alike = cos(burst.axis_rad - states[listener].burst.axis_rad).max(0.0);
+        let aside_rad = burst.axis_rad - states[listener].burst.axis_rad;
         // One draw per pair of pings, whichever of them came first.
         let key = (states[listener].pings << 32) ^ states[speaker].pings;
         let (rise_us, fall_us) = match states[listener].line {
@@ -300,6 +300,7 @@ impl Sonar {
         let mut earliest_us = fall_us;
         for (index, (&at_us, chance)) in burst.echo_us.iter().zip(chances).enumerate() {
             let received = || {
+                let alike = cos(aside_rad).max(0.0);
                 self.draw(listener, 7 + index as u32)
                     .chance(key ^ ((speaker as u64) << 62), chance * alike)
             };

@@ -4,7 +4,7 @@
 //! outward normals, and a bounding circle, so that most of a query ends after a few multiplications.
 //! [`crate::cone`] asks it what a sonar sees, [`crate::contact`] what the robot touches.
 
-use libm::{cos, sin, sqrt};
+use libm::{sincos, sqrt};
 
 /// A point or a vector on the floor: `[x, y]`, metres.
 pub type Point = [f64; 2];
@@ -278,7 +278,7 @@ impl World {
 /// `center` and `heading_rad`.
 #[must_use]
 pub fn rectangle(half_m: [f64; 2], offset: Point, center: Point, heading_rad: f64) -> [Point; 4] {
-    let (s, c) = (sin(heading_rad), cos(heading_rad));
+    let (s, c) = sincos(heading_rad);
     [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].map(|[i, j]: Point| {
         let (x, y) = (offset[0] + i * half_m[0], offset[1] + j * half_m[1]);
         [center[0] + c * x - s * y, center[1] + s * x + c * y]

@@ -59,6 +59,8 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Run a scenario with many values of its parameters: a table, and a page with plots
     Sweep(SweepArgs),
+    /// Compare variants of a scenario pair by pair, or logs side by side
+    Compare(CompareArgs),
     /// Find values of control parameters that serve an aim on many robots, and check them on others
     Tune(TuneArgs),
     /// Run every experiment of the report and write it: one page with all figures
@@ -71,12 +73,10 @@ pub(crate) enum Command {
     Calibrate(CalibrateArgs),
     /// Check a CSV of the original program and convert it to a log (MCAP)
     Import(ImportArgs),
-    /// Show a log in the dashboard: play, pause, step, scrub
+    /// Show a log in the dashboard: play, pause, step, scrub; or the page of a sweep
     Replay(ReplayArgs),
     /// Write a log as CSV, SVG or PNG
     Export(ExportArgs),
-    /// Metrics of several logs side by side, with their differences
-    Compare(CompareArgs),
     /// Run a recorded simulation again and compare it bit for bit
     Rerun(RerunArgs),
     /// Remove old logs of sessions and runs

@@ -53,6 +53,9 @@ impl Coupling {
             |i: usize, own: f64| old[i] + dt_s * (own * torque_n_m[i] + shared * torque_n_m[1 - i]);
         let free = [driven(0, own_l), driven(1, own_r)];
         let limit = [dt_s * dry_n_m[0], dt_s * dry_n_m[1]];
+        if free == [0.0; 2] && limit[0] > 0.0 && limit[1] > 0.0 {
+            return [0.0; 2];
+        }
         let with = |p: [f64; 2]| {
             [
                 free[0] + own_l * p[0] + shared * p[1],
