@@ -47,9 +47,6 @@ pub(crate) struct Pilot {
     encoders: EncoderWatch,
     low_battery_ticks: u8,
     refresh_in: u8,
-    /// Where a caller without a link points the servo, in place of the mode.
-    #[cfg(not(target_arch = "avr"))]
-    aim: Option<rumbo_control::ServoAngle>,
 }
 
 /// An outcome of the mode.
@@ -79,8 +76,6 @@ impl Default for Pilot {
             encoders: EncoderWatch::default(),
             low_battery_ticks: 0,
             refresh_in: FIRST_REFRESH_TICKS,
-            #[cfg(not(target_arch = "avr"))]
-            aim: None,
         }
     }
 }
@@ -102,8 +97,6 @@ impl Pilot {
             self.action = self.at_rest();
         }
         let look = self.action.look;
-        #[cfg(not(target_arch = "avr"))]
-        let look = self.aimed(look);
         let ping = self.pings.next(self.carried(look.sonars));
         self.estimator.commanded(look.servo, ping);
         let outputs = Outputs {
@@ -169,14 +162,6 @@ impl Pilot {
         }
         let drive = self.action.drive;
         self.apply(&drive, battery_v)
-    }
-
-    #[cfg(not(target_arch = "avr"))]
-    fn aimed(&self, look: rumbo_control::mode::Look) -> rumbo_control::mode::Look {
-        rumbo_control::mode::Look {
-            servo: self.aim.unwrap_or(look.servo),
-            ..look
-        }
     }
 
     fn at_rest(&self) -> Action {
@@ -368,10 +353,10 @@ impl Pilot {
         self.estimator.set_pose(pose);
     }
 
-    /// Points the servo there from now on; `None` leaves it to the mode again.
+    /// Points the servo there at the next tick, in place of the mode.
     #[cfg(not(target_arch = "avr"))]
-    pub(crate) fn aim(&mut self, servo: Option<rumbo_control::ServoAngle>) {
-        self.aim = servo;
+    pub(crate) fn point(&mut self, servo: rumbo_control::ServoAngle) {
+        self.action.look.servo = servo;
     }
 
     /// Makes the present pose the origin.

@@ -193,10 +193,10 @@ impl Robot {
         self.supervisor.sign_of_life(self.clock.now());
     }
 
-    /// Points the servo there from now on, whatever the mode requests; `None` leaves it to the mode again.
+    /// Points the servo there at the next tick, whatever the mode requests.
     #[cfg(not(target_arch = "avr"))]
-    pub fn aim(&mut self, servo: Option<rumbo_control::ServoAngle>) {
-        self.pilot.aim(servo);
+    pub fn point(&mut self, servo: rumbo_control::ServoAngle) {
+        self.pilot.point(servo);
     }
 
     /// [`Robot::report`] without the report: the mode decides, and nothing is sent.

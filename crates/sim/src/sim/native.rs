@@ -55,6 +55,8 @@ pub(super) struct Native {
     pub(super) recorded: Option<Vec<Latched>>,
     /// Its orders come from the caller, not over the link, which is silent.
     pub(super) is_unlinked: bool,
+    /// Where that caller points the servo, in place of the mode.
+    pub(super) aim: Option<ServoAngle>,
 }
 
 /// What the robot is given at a tick.
@@ -98,6 +100,7 @@ impl Native {
             pending: None,
             recorded: None,
             is_unlinked: false,
+            aim: None,
         })
     }
 
@@ -113,10 +116,6 @@ impl Native {
     /// Applies a command that did not come over the link.
     pub(super) fn order(&mut self, command: &Command) -> Result<f32, Refusal> {
         self.robot.order(command)
-    }
-
-    pub(super) fn aim(&mut self, servo: Option<ServoAngle>) {
-        self.robot.aim(servo);
     }
 
     pub(super) fn knowledge(&self) -> Telemetry {
@@ -209,6 +208,9 @@ impl Sim {
         let mut received = Vec::new();
         if native.is_unlinked {
             native.robot.stay_alive();
+        }
+        if let Some(aim) = native.aim {
+            native.robot.point(aim);
         }
         while let Some((_, byte)) = self.uplink.pop(now_us) {
             if native.is_ghost {

@@ -32,7 +32,7 @@ impl Sim {
     /// Points the servo of our native robot, whatever its mode requests; `None` leaves it to the mode again.
     pub fn aim(&mut self, servo: Option<ServoAngle>) {
         if let Some(native) = self.native_mut() {
-            native.aim(servo);
+            native.aim = servo;
         }
     }
 
