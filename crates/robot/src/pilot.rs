@@ -10,7 +10,7 @@ use rumbo_control::math::round;
 use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, SetpointError};
 use rumbo_control::params::{ParamError, ParamId, Params};
 use rumbo_control::rig::Rig;
-use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, Range, SonarId, Wheels};
+use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, Range, ServoAngle, SonarId, Wheels};
 use rumbo_wire::{Command, Refusal, Telemetry};
 
 use crate::encoders::EncoderWatch;
@@ -82,8 +82,15 @@ impl Default for Pilot {
 
 impl Pilot {
     /// The part of a tick that the outputs depend on: estimates, and drives as the mode requested after the previous
-    /// tick. Releases the wheels on a fault and unless `armed`.
-    pub(crate) fn step(&mut self, inputs: &Inputs, armed: bool) -> (Outputs, Option<Fault>) {
+    /// tick. Releases the wheels on a fault and unless `armed`. The servo goes to `aim` if there is one, whatever the mode
+    /// requested.
+    #[inline]
+    pub(crate) fn step(
+        &mut self,
+        inputs: &Inputs,
+        armed: bool,
+        aim: Option<ServoAngle>,
+    ) -> (Outputs, Option<Fault>) {
         self.estimator.step(
             &self.params,
             inputs,
@@ -96,7 +103,8 @@ impl Pilot {
             self.release();
             self.action = self.at_rest();
         }
-        let look = self.action.look;
+        let mut look = self.action.look;
+        look.servo = aim.unwrap_or(look.servo);
         let ping = self.pings.next(self.carried(look.sonars));
         self.estimator.commanded(look.servo, ping);
         let outputs = Outputs {
@@ -351,12 +359,6 @@ impl Pilot {
     #[cfg(not(target_arch = "avr"))]
     pub(crate) fn set_pose(&mut self, pose: rumbo_control::Pose) {
         self.estimator.set_pose(pose);
-    }
-
-    /// Points the servo there at the next tick, in place of the mode.
-    #[cfg(not(target_arch = "avr"))]
-    pub(crate) fn point(&mut self, servo: rumbo_control::ServoAngle) {
-        self.action.look.servo = servo;
     }
 
     /// Makes the present pose the origin.

@@ -7,7 +7,7 @@
 
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamId, SCHEMA};
-use rumbo_control::{Fault, Inputs, Outputs};
+use rumbo_control::{Fault, Inputs, Outputs, ServoAngle};
 use rumbo_wire::text::TextCommand;
 use rumbo_wire::{
     Ack, Body, COMMAND_LIFE_MS, Command, Decoder, EventKind, Hello, Message, PROTOCOL_VERSION,
@@ -102,6 +102,12 @@ impl Robot {
     /// One tick: judges, estimates, drives as the mode asked after the tick before. The outputs take effect
     /// [`OUTPUT_DELAY_US`](rumbo_control::OUTPUT_DELAY_US) after the tick. [`Robot::report`] follows.
     pub fn tick(&mut self, inputs: &Inputs) -> Outputs {
+        self.tick_aiming(inputs, None)
+    }
+
+    /// The same, with the servo where a caller without a link points it, whatever the mode requested.
+    #[inline]
+    pub fn tick_aiming(&mut self, inputs: &Inputs, aim: Option<ServoAngle>) -> Outputs {
         let elapsed_us = self.clock.advance(inputs.now);
         if elapsed_us > TICK_LOST_US {
             self.fail(Fault::Overrun);
@@ -115,7 +121,7 @@ impl Robot {
             self.released_by(event);
         }
         let armed = self.supervisor.is_armed();
-        let (outputs, fault) = self.pilot.step(inputs, armed);
+        let (outputs, fault) = self.pilot.step(inputs, armed, aim);
         if let Some(fault) = fault {
             self.fail(fault);
         }
@@ -191,12 +197,6 @@ impl Robot {
     #[cfg(not(target_arch = "avr"))]
     pub fn stay_alive(&mut self) {
         self.supervisor.sign_of_life(self.clock.now());
-    }
-
-    /// Points the servo there at the next tick, whatever the mode requests.
-    #[cfg(not(target_arch = "avr"))]
-    pub fn point(&mut self, servo: rumbo_control::ServoAngle) {
-        self.pilot.point(servo);
     }
 
     /// [`Robot::report`] without the report: the mode decides, and nothing is sent.

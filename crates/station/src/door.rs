@@ -5,10 +5,13 @@
 //! oldest make room, and a new page can always connect. A connection that became a page's WebSocket has presented a key
 //! and is exempt; the [lease](crate::lease) limits the number of pages.
 
+use crate::ending::asked_to_end;
 use axum::Router;
 use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
+use std::io;
+use std::thread::JoinHandle;
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
@@ -25,8 +28,36 @@ const LONGEST_HEAD: usize = 16 << 10;
 /// Pause after a failed accept, for lack of descriptors for instance.
 const RETRY: Duration = Duration::from_millis(50);
 
+/// Accepts connections in a thread of its own until `ended`, or until the process is asked to end; `after` is called
+/// then. Connections end with the thread.
+pub(crate) fn spawn(
+    listener: std::net::TcpListener,
+    router: Router,
+    ended: impl Future<Output = ()> + Send + 'static,
+    after: impl FnOnce() + Send + 'static,
+) -> io::Result<JoinHandle<()>> {
+    listener.set_nonblocking(true)?;
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()?;
+    let serve = move || {
+        runtime.block_on(async {
+            let Ok(listener) = TcpListener::from_std(listener) else {
+                return;
+            };
+            tokio::select! {
+                () = accept(listener, router) => {}
+                () = ended => {}
+                () = asked_to_end() => {}
+            }
+        });
+        after();
+    };
+    std::thread::Builder::new().name("web".into()).spawn(serve)
+}
+
 /// Accepts connections for ever.
-pub(crate) async fn accept(listener: TcpListener, router: Router) {
+async fn accept(listener: TcpListener, router: Router) {
     let newest = watch::Sender::new(0);
     loop {
         match listener.accept().await {

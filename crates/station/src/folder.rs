@@ -4,7 +4,6 @@
 //! reads it. A log is found by its name among those of the folder `logs`; the name never becomes a path.
 
 use crate::door;
-use crate::ending::asked_to_end;
 use crate::error::ServeError;
 use crate::guard::{Guard, Secret};
 use crate::recordings::{RecordingError, Recordings};
@@ -84,7 +83,6 @@ struct Shown {
 pub fn serve_folder(at: ServeAt, folder: PathBuf) -> Result<Folder, ServeError> {
     let listener = bind(ServeAt::here(at.port))?;
     let start = || -> io::Result<Folder> {
-        listener.set_nonblocking(true)?;
         let at = listener.local_addr()?;
         let (opens, opened) = mpsc::channel();
         let guard = Arc::new(Guard::new(at, opens.clone()).map_err(io::Error::other)?);
@@ -99,22 +97,7 @@ pub fn serve_folder(at: ServeAt, folder: PathBuf) -> Result<Folder, ServeError> 
             .route(&format!("/{secret}/{LOGS}/{{name}}"), get(replay))
             .with_state(shown)
             .layer(middleware::from_fn_with_state(guard, admit));
-        let runtime = tokio::runtime::Builder::new_current_thread()
-            .enable_all()
-            .build()?;
-        let web = std::thread::Builder::new()
-            .name("web".into())
-            .spawn(move || {
-                runtime.block_on(async {
-                    let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
-                        return;
-                    };
-                    tokio::select! {
-                        () = door::accept(listener, router) => {}
-                        () = asked_to_end() => {}
-                    }
-                });
-            })?;
+        let web = door::spawn(listener, router, std::future::pending(), || {})?;
         Ok(Folder {
             url: format!("http://{at}/{secret}/"),
             opened,

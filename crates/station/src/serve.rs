@@ -3,7 +3,6 @@
 use crate::board::Board;
 use crate::door;
 use crate::echo::{Echo, Print};
-use crate::ending::asked_to_end;
 use crate::error::{ServeError, SessionError};
 use crate::guard::{self, Guard};
 use crate::lease::Lease;
@@ -230,7 +229,6 @@ fn start_on(
     recordings: Option<Arc<Recordings>>,
     session: impl FnOnce(Arc<Board>, Orders) -> Result<(), TargetError> + Send + 'static,
 ) -> io::Result<Lab> {
-    listener.set_nonblocking(true)?;
     let (opens, opened) = mpsc::channel();
     let local = listener.local_addr()?.ip().is_loopback();
     let guard = Guard::new(listener.local_addr()?, opens.clone()).map_err(io::Error::other)?;
@@ -266,26 +264,14 @@ fn start_on(
             recordings,
         },
     );
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()?;
-    let (web_ends, ended) = oneshot::channel();
-    let web = std::thread::Builder::new()
-        .name("web".into())
-        .spawn(move || {
-            runtime.block_on(async {
-                let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
-                    return;
-                };
-                // Connections end with the runtime.
-                tokio::select! {
-                    () = door::accept(listener, router) => {}
-                    _ = ended => {}
-                    () = asked_to_end() => {}
-                }
-            });
-            let _ = opens.send(());
-        })?;
+    let (web_ends, ended) = oneshot::channel::<()>();
+    let ended = async {
+        // An error: the lab was dropped.
+        let _ = ended.await;
+    };
+    let web = door::spawn(listener, router, ended, move || {
+        let _ = opens.send(());
+    })?;
     Ok(Lab {
         url,
         viewers_url,

@@ -209,9 +209,6 @@ impl Sim {
         if native.is_unlinked {
             native.robot.stay_alive();
         }
-        if let Some(aim) = native.aim {
-            native.robot.point(aim);
-        }
         while let Some((_, byte)) = self.uplink.pop(now_us) {
             if native.is_ghost {
                 native.robot.receive_as_ghost(byte);
@@ -231,7 +228,7 @@ impl Sim {
             echo,
             battery_v,
         };
-        let outputs = native.robot.tick(&inputs);
+        let outputs = native.robot.tick_aiming(&inputs, native.aim);
         if let Some(recorded) = &mut native.recorded {
             recorded.push(Latched { received, inputs });
         }
