@@ -40,7 +40,12 @@ test('refusals and failures are reported in Spanish, with the remedy', async () 
   await page.locator('#scenario').selectOption('free');
   await page.locator('#simulation button[type=submit]').click();
   await event(/reinicio: free, semilla 1/);
-  await page.locator('#modes button').nth(4).click();
+  // While the robot starts once more it refuses, and says so beside the button.
+  const mode4 = page.locator('#modes button[value="4"]');
+  for (let tries = 0; tries < 10 && (await mode4.getAttribute('aria-pressed')) !== 'true'; tries += 1) {
+    await mode4.click();
+    await page.locator('#modes button[value="4"][aria-pressed="true"]').waitFor({ timeout: 2000 }).catch(() => {});
+  }
   await page.locator('#modes button[value="4"][aria-pressed="true"]').waitFor();
   await page.locator('#on').click();
   // Which of the two depends on the tick in which ON arrives.
