@@ -11,12 +11,12 @@ use crate::manifest;
 use crate::mark::{Mark, Stamp, crc32};
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
-use crate::run::{progress_bar, set_threads};
+use crate::run::{check_metrics, progress_bar, set_threads};
 use crate::run_log::Source;
 use journal::{Header, Journal};
 use rumbo_control::params::ParamId;
 use rumbo_experiment::MODEL;
-use rumbo_experiment::files::{self, Library, Overrides, Setup};
+use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_experiment::metrics::{bare, more_is_better};
 use rumbo_experiment::run;
 use rumbo_experiment::sweep::{Design, Plan, Row, Sweep};
@@ -42,6 +42,9 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     let setup = library.setup(&args.scenario, &overrides)?;
     let plan = plan(args, &setup)?;
     set_threads(args.threads)?;
+    if let Some(by) = &args.by {
+        check_metrics([by.as_str()].into_iter(), &setup, args.seed.seed)?;
+    }
     let header = header(args, &setup, &overrides, &plan);
     let about = serde_json::to_string(&header).map_err(Failure::input)?;
     let stamp = Stamp::of("sweep", &[about]);
@@ -78,7 +81,7 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         });
     progress.finish_and_clear();
     sweep.rows.extend(done);
-    let by = by(args, &setup, &sweep)?;
+    let by = by(args, &setup);
     let writer = Writer {
         args,
         library: &library,
@@ -165,26 +168,16 @@ fn check_places(args: &SweepArgs) -> Result<(), Failure> {
 }
 
 /// The metric that ranks: the requested one, else a time or an error with a limit.
-fn by(args: &SweepArgs, setup: &Setup, sweep: &Sweep) -> Result<String, Failure> {
-    let known = sweep.metrics(&setup.scenario);
-    let Some(asked) = &args.by else {
-        let limits = || setup.scenario.limits.keys().map(|name| bare(name));
-        let is_time = |name: &&str| {
-            name.ends_with("_s") && !name.ends_with("m_s") && !name.ends_with("rad_s")
-        };
-        let timed = limits().find(is_time);
-        let first = limits().find(|name| *name != "contacts" && !more_is_better(name));
-        let name = timed.or(first).or(known.first().copied());
-        return Ok(name.unwrap_or("contacts").to_owned());
-    };
-    let is_there = |row: &Row| row.metrics.contains_key(asked) || known.contains(&asked.as_str());
-    if sweep.rows.is_empty() || sweep.rows.iter().any(is_there) {
-        return Ok(asked.clone());
+fn by(args: &SweepArgs, setup: &Setup) -> String {
+    if let Some(asked) = &args.by {
+        return asked.clone();
     }
-    let unknown = files::unknown("metric", asked, known);
-    Err(Failure::Input(format!(
-        "--by: {unknown} The runs are kept: give the command once more with --resume"
-    )))
+    let limits = || setup.scenario.limits.keys().map(|name| bare(name));
+    let is_time =
+        |name: &&str| name.ends_with("_s") && !name.ends_with("m_s") && !name.ends_with("rad_s");
+    let timed = limits().find(is_time);
+    let error = limits().find(|name| *name != "contacts" && !more_is_better(name));
+    timed.or(error).unwrap_or("contacts").to_owned()
 }
 
 struct Writer<'a> {

@@ -6,11 +6,10 @@ use crate::compare::variants::{differences_as_json, print_differences};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::output::{self, figure};
-use crate::run::set_threads;
+use crate::run::{check_metrics, set_threads};
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::compare::{Variant, differences, run_variants};
-use rumbo_experiment::files::{Library, Overrides, Setup, unknown};
-use rumbo_experiment::metrics;
+use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_experiment::run;
 use rumbo_experiment::tune::{Found, Objective, Search, is_tuned, rewrite, tuned};
 use rumbo_experiment::tune::{Over, Tuned};
@@ -37,7 +36,7 @@ pub(crate) fn tune(args: &TuneArgs) -> Result<(), Failure> {
     let over = tuned(&setup, &args.over)?;
     let objective = args.aims.clone().unwrap_or_default();
     set_threads(args.threads)?;
-    check_names(&objective, &setup, args.seed.seed)?;
+    check_metrics(objective.names(), &setup, args.seed.seed)?;
     let search = Search {
         setup: &setup,
         over: &over,
@@ -103,18 +102,6 @@ fn check(args: &TuneArgs, library: &Library, setup: &Setup) -> Result<(), Failur
     }
     match &args.out {
         Some(out) => check_robot(out, &setup.robot.name, is_tuned, args.overwrite),
-        None => Ok(()),
-    }
-}
-
-/// Metrics that the scenario does not have.
-fn check_names(objective: &Objective, setup: &Setup, seed: u64) -> Result<(), Failure> {
-    let run = run::run(setup, seed)?;
-    let known: Vec<&str> = run.metrics.keys().map(String::as_str).collect();
-    let bare = known.iter().map(|name| metrics::bare(name));
-    let all: Vec<&str> = known.iter().copied().chain(bare).collect();
-    match objective.names().find(|name| !all.contains(name)) {
-        Some(name) => Err(unknown("metric", name, all.iter().copied()).into()),
         None => Ok(()),
     }
 }

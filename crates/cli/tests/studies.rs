@@ -115,6 +115,10 @@ fn a_sweep_without_sense_is_refused_and_nothing_is_written() {
         (&["kq=1,2"][..], "unknown parameter `kq`"),
         (&["kv=0.02:0.01:3"], "from a lower to a higher"),
         (&["kv=0.01:0.02"], "needs a count"),
+        (
+            &["kv=0.01,0.02", "--by", "setling_s"],
+            "did you mean `settling_s`",
+        ),
         (&["kv=0.01:9:3"], "must be within"),
         (
             &["kv=0.01,0.02", "--param", "kv=0.03"],

@@ -36,8 +36,8 @@ const LAST_SEEDS: usize = 60;
 const STEP: f64 = 0.35;
 /// The search has converged at this step size.
 const FINE: f64 = 0.012;
-/// Candidates of the end, and the seeds of each.
-const FINALISTS: usize = 6;
+/// Candidates of the end: the start, and the middle and the best of two descents; the seeds of each.
+const FINALISTS: usize = 5;
 const FINAL_SEEDS: usize = 120;
 /// The mean over this share of the robots, the worst ones, is half of the cost.
 const WORST: f64 = 0.25;
@@ -298,7 +298,7 @@ impl Search<'_> {
 
     /// What the end needs of the budget.
     fn last_share(&self) -> f64 {
-        ((FINALISTS + 1) * FINAL_SEEDS) as f64 / self.budget as f64
+        (FINALISTS * FINAL_SEEDS) as f64 / self.budget as f64
     }
 
     /// The scale of each aim: its median at the start, or else its limit in the scenario.
