@@ -58,18 +58,18 @@ export function saveFile(name, content) {
  * A button that opens a file of the reader's.
  * @param {string} text
  * @param {string} accept
- * @param {(name: string, text: string) => void} taken
+ * @param {(file: File) => void} taken
  */
 export function fileButton(text, accept, taken) {
   const input = create('input', { type: 'file', accept, hidden: true });
   const button = create('button', { type: 'button', textContent: text });
   button.addEventListener('click', () => input.click());
-  input.addEventListener('change', async () => {
+  input.addEventListener('change', () => {
     const file = input.files?.[0];
     if (!file) return;
     // The same file can be opened again.
     input.value = '';
-    taken(file.name, await file.text());
+    taken(file);
   });
   return create('span', {}, button, input);
 }

@@ -33,7 +33,7 @@ export class LayoutDialog {
     });
     this.#dialog.body.append(
       create('p', { className: 'hint', textContent: t('A layout is a set of plots with their signals and axes, and the window of time. Each mode has its own.') }),
-      this.#list, keep, create('div', { className: 'row' }, save, fileButton(t('Load file'), '.json,application/json', (name, text) => this.#take(name, text)), initial), this.#complaint);
+      this.#list, keep, create('div', { className: 'row' }, save, fileButton(t('Load file'), '.json,application/json', async (file) => this.#take(file.name, await file.text())), initial), this.#complaint);
   }
 
   open() {

@@ -6,8 +6,9 @@ import { askForKey } from './key.js';
 /** @typedef {import('./types.js').Order} Order */
 
 /**
- * `locked`: a station is there to which this browser has no key; `used`: the address of the page gave none.
- * @typedef {'open' | 'closed' | 'locked' | 'used'} Connection
+ * `locked`: a station is there to which this browser has no key; `used`: the address of the page gave none; `ended`: the
+ * lab of the page is gone.
+ * @typedef {'open' | 'closed' | 'locked' | 'used' | 'ended'} Connection
  */
 
 const RETRY_MS = 500;

@@ -30,12 +30,14 @@ import { ProgramPanel, isOwn } from './program.js';
 import { Recordings } from './recordings.js';
 import { ReplayBar } from './replay.js';
 import { Seat } from './seat.js';
+import { Share } from './share.js';
 import { StateLine, pointerWords } from './stateline.js';
 import { StepFigures, figures } from './step.js';
 import { Store } from './store.js';
 import { Tabs } from './tabs.js';
 import { LANGUAGES, language, speak, t, translatePage, untranslated } from './text.js';
 import { Tour } from './tour.js';
+import { WorkerLink, isSite } from './worker_link.js';
 
 translatePage();
 const languages = element('language', HTMLSelectElement);
@@ -85,7 +87,7 @@ function send(order) {
   if (link.send(order)) return;
   if (order.type !== 'stop' && performance.now() - unsent_ms < UNSENT_MS) return;
   unsent_ms = performance.now();
-  events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text: order.type === 'stop' ? 'STOP was not sent: there is no connection to the station' : 'not sent: there is no connection to the station' }]);
+  events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text: isSite ? 'not sent: the lab of this page is not there' : order.type === 'stop' ? 'STOP was not sent: there is no connection to the station' : 'not sent: there is no connection to the station' }]);
 }
 
 /** When the data drawn next was received; and times from there to the frame after, while a test measures. */
@@ -148,8 +150,11 @@ const layoutDialog = new LayoutDialog(plots);
 element('layouts', HTMLButtonElement).addEventListener('click', () => layoutDialog.open());
 const checkup = new CheckupDialog(send, store, () => state);
 element('checkup', HTMLButtonElement).addEventListener('click', () => checkup.open(sonars, servo));
-const recordings = new Recordings(() => plots.modes);
+const recordings = new Recordings(() => plots.modes, () => {
+  if (link instanceof WorkerLink) link.save();
+});
 const calibration = new CalibrationDialog(send);
+new Share(() => ({ scene: simulated, table, own: state !== null && isOwn(state), version: version ?? '' }));
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
 makeEnlargeable();
 const tour = new Tour();
@@ -279,8 +284,11 @@ function receive(message) {
   }
 }
 
+// Where the browser allows it, the site opens without a network from now on.
+if (isSite) navigator.serviceWorker?.register('offline.js').catch(() => {});
+
 const notice = new Notice();
-const link = new Link(receive, (now, why) => {
+const link = new (isSite ? WorkerLink : Link)(receive, (now, why) => {
   header.setOpen(now === 'open');
   notice.show(now, why);
 });

@@ -1,7 +1,9 @@
 // @ts-check
 /** The student's own program: its name, whether it runs, and what the compiler rejects. */
+import { fileButton } from './dialog.js';
 import { create, element, setText } from './dom.js';
 import { t } from './text.js';
+import { isSite } from './worker_link.js';
 
 /** @typedef {import('./types.js').State} State */
 
@@ -34,6 +36,7 @@ export class ProgramPanel {
   #hint = element('program-hint', HTMLParagraphElement);
   #watched = element('program-watched', HTMLElement);
   #list = element('complaints', HTMLOListElement);
+  #drop = element('program-drop', HTMLElement);
   #shown = '';
 
   /**
@@ -42,7 +45,11 @@ export class ProgramPanel {
    * @param {(why: string) => void} complain
    */
   constructor(send, complain) {
-    const carriesFile = (/** @type {DragEvent} */ event) => !this.#panel.hidden && event.dataTransfer?.types.includes('Files');
+    const carriesFile = (/** @type {DragEvent} */ event) => (isSite || !this.#panel.hidden) && event.dataTransfer?.types.includes('Files');
+    const run = async (/** @type {File} */ file) => {
+      if (file.size > LARGEST) complain(t('{}: not sent, a program has at most {} MB', file.name, LARGEST / 1e6));
+      else send({ type: 'program', name: file.name, data: await base64(file) });
+    };
     addEventListener('dragover', (event) => {
       if (carriesFile(event)) event.preventDefault();
     });
@@ -50,15 +57,22 @@ export class ProgramPanel {
       const file = event.dataTransfer?.files[0];
       if (!file || !carriesFile(event)) return;
       event.preventDefault();
-      if (file.size > LARGEST) complain(t('{}: not sent, a program has at most {} MB', file.name, LARGEST / 1e6));
-      else send({ type: 'program', name: file.name, data: await base64(file) });
+      await run(file);
     });
+    if (!isSite) return;
+    setText(this.#drop, t('.elf or .hex, or drop one here; an .ino needs rumbo on a computer'));
+    // Fingers drop no files.
+    const choose = fileButton(t('Run a program…'), '.elf,.hex', run);
+    choose.title = t('Run a program for the Arduino Mega, .elf or .hex, on an emulated one');
+    this.#drop.before(choose);
   }
 
   /** @param {State} state */
   show(state) {
     const { program } = state;
-    this.#panel.hidden = !program;
+    this.#panel.hidden = !program && !isSite;
+    this.#name.hidden = this.#phase.hidden = !program;
+    this.#panel.classList.toggle('idle', !program);
     if (!program) return;
     setText(this.#name, program.name);
     const [words, level] = phaseWords(state);

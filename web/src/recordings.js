@@ -6,6 +6,7 @@ import { create, element, setText } from './dom.js';
 import { ask } from './key.js';
 import { language, said, t } from './text.js';
 import { format } from './units.js';
+import { isSite } from './worker_link.js';
 
 /** @typedef {import('./types.js').Recording} Recording */
 
@@ -28,9 +29,19 @@ export class Recordings {
   /** @type {() => import('./types.js').ModeEntry[]} */
   #modes;
 
-  /** @param {() => import('./types.js').ModeEntry[]} modes */
-  constructor(modes) {
+  /**
+   * @param {() => import('./types.js').ModeEntry[]} modes
+   * @param {() => void} save saves the run of the site's lab
+   */
+  constructor(modes, save) {
     this.#modes = modes;
+    element('recordings', HTMLButtonElement).addEventListener('click', () => this.open());
+    if (isSite) {
+      const saves = create('button', { type: 'button', className: 'go', textContent: t('Save this run'), title: t('Save the recording of the run so far as a file') });
+      saves.addEventListener('click', save);
+      this.#dialog.body.append(create('p', { textContent: t('This page records the run until the next reset. Rumbo on a computer opens the file: rumbo replay shows it, rumbo rerun runs it again. It also keeps every session and compares two.') }), create('div', { className: 'row' }, saves));
+      return;
+    }
     const head = create('thead', {}, create('tr', {}, ...[t('compare'), t('recording'), t('actions'), t('duration'), t('size'), t('seed')].map((textContent) => create('th', { textContent, scope: 'col' }))));
     const find = create('label', {}, `${t('find')} `, this.#find);
     this.#dialog.body.append(
@@ -39,12 +50,12 @@ export class Recordings {
     );
     this.#find.addEventListener('input', () => this.#show());
     this.#compare.addEventListener('click', () => this.#try(() => this.#compareChosen()));
-    element('recordings', HTMLButtonElement).addEventListener('click', () => this.open());
   }
 
   open() {
     this.#comparison.clear();
     this.#dialog.open();
+    if (isSite) return Promise.resolve();
     return this.#try(() => this.#load());
   }
 

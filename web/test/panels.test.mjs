@@ -20,6 +20,7 @@ after(() => dashboard?.close());
 
 test('the states of the mode are drawn, with the live one lit and the way that led there', async () => {
   await page.getByRole('tab', { name: 'States' }).click();
+  await page.locator('.state-box').nth(2).waitFor();
   assert.deepEqual(await page.locator('.state-box text').allTextContents(), ['approach', 'settle', 'hold']);
   assert.equal(await page.locator('.state-box.live').count(), 0, 'not armed');
   await page.locator('#on').click();

@@ -1,12 +1,12 @@
 //! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds, everything that can
 //! fail in the middle of drives, a million frames over a link with faults, and the image for 75 minutes under a flood
-//! of bytes, and beside the native robot; the fuzz targets for ten minutes each.
+//! of bytes, and beside the native robot; sweeps of the Python package on Ray; the fuzz targets for ten minutes each.
 //!
 //! Runs and requirements are those of `rumbo_experiment::campaign`. Each program is built in release mode, and its
 //! output is printed as it comes.
 
 use crate::project::{Project, shown};
-use crate::test::{Stop, tools};
+use crate::test::{Stop, tools, wheel};
 use std::process::Stdio;
 
 /// The part that is not a scenario.
@@ -31,6 +31,11 @@ const GRADE: &str = "grade";
 /// Simulated robots with known parameters, driven and identified.
 const IDENTIFY: &str = "identify";
 const IDENTIFY_ROBOTS: u32 = 100;
+/// Tuning from gains far off.
+const TUNE: &str = "tune";
+const TUNE_STARTS: u32 = 10;
+/// Sweeps of the Python package on Ray.
+const RAY: &str = "ray";
 /// Seconds of each.
 const FUZZ_SECONDS: u32 = 600;
 /// Minutes of [`IMAGE`]: past the wrap of the microseconds at 71.6.
@@ -70,14 +75,24 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
         let robots = seeds.unwrap_or(IDENTIFY_ROBOTS).min(IDENTIFY_ROBOTS);
         met &= made_longer(project, "identify", "RUMBO_ROBOTS", &robots.to_string())?;
     }
+    if only.is_empty() || only.iter().any(|name| name == TUNE) {
+        let starts = seeds.unwrap_or(TUNE_STARTS).min(TUNE_STARTS);
+        met &= tool(project, TUNE, &[starts.to_string()])?;
+    }
     if only.is_empty() || only.iter().any(|name| name == FAULTS) {
         met &= faults(project, seeds)?;
+    }
+    if only.is_empty() || only.iter().any(|name| name == RAY) {
+        wheel::on_ray(project).map_err(said)?;
     }
     let mut scenarios = vec![seeds.unwrap_or(SEEDS).to_string()];
     scenarios.extend(
         only.iter()
             .filter(|name| {
-                ![LINK, IMAGE, MEDIANS, FUZZ, GRADE, IDENTIFY, FAULTS].contains(&name.as_str())
+                ![
+                    LINK, IMAGE, MEDIANS, FUZZ, GRADE, IDENTIFY, TUNE, FAULTS, RAY,
+                ]
+                .contains(&name.as_str())
             })
             .cloned(),
     );

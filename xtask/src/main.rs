@@ -18,6 +18,7 @@ mod lab;
 mod markdown;
 mod memoria;
 mod project;
+mod site;
 mod sketches;
 mod test;
 mod tidy;
@@ -35,6 +36,7 @@ Commands:
   tidy                     the rules of ARCHITECTURE.md: dependencies, no_std, files, links
   bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
   firmware                 the image for the Mega, target/firmware/rumbo.elf and .hex, with its sizes
+  site                     the lab as a static page, WebAssembly in place of a station, in site/
   sketches                 the Arduino sketches of examples and tests, compiled into target/sketches/*.elf
   memoria [--seeds N] [--only SCENARIO]...
                            the report's program as an Arduino sketch on the emulated Mega, beside its native form,
@@ -47,7 +49,8 @@ Commands:
                            frames over a link with faults; `faults`, every sensor and wire broken in every drive
                            (50 seeds or N); `image`, 75 minutes of the image; `medians`, the image beside the native
                            robot; `fuzz`, the fuzz targets, ten minutes each; `grade`, a class of 100, 30 of them
-                           hostile: what is required beside what was measured
+                           hostile; `tune`, gains far off tuned again; `identify`, simulated robots identified; `ray`,
+                           sweeps on Ray: what is required beside what was measured
   fuzz [--seconds N] [--only TARGET]...
                            the fuzz targets of fuzz/, a minute each or N seconds
   figures [--only NAME]... the figures and tables of docs/theory, from runs of both programs
@@ -61,6 +64,7 @@ Examples:
   cargo xtask tidy
   cargo xtask firmware
   cargo xtask sketches
+  cargo xtask site
   cargo xtask memoria --seeds 1 --only mode5
   RUMBO_DATA=recordings cargo xtask fidelity --seeds 40 --only mode3
   cargo xtask bench --only headless
@@ -121,6 +125,8 @@ fn main() -> ExitCode {
         "memoria" => memoria::run(&project, seeds, &only),
         "firmware" if only.is_empty() => firmware::run(&project),
         "firmware" => return usage("firmware takes no options"),
+        "site" if only.is_empty() => site::run(&project),
+        "site" => return usage("site takes no options"),
         "sketches" if only.is_empty() => sketches::run(&project),
         "sketches" => return usage("sketches takes no options"),
         "tidy" => return usage("tidy takes no options"),

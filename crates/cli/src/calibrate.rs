@@ -5,12 +5,11 @@ use crate::failure::Failure;
 use crate::output::{self, figure};
 use crate::place;
 use crate::run_log::{Kept, Source};
-use rumbo_experiment::calibrate::{self, Calibration, Calibrator, Row};
+use rumbo_experiment::calibrate::{self, Calibration, Row};
 use rumbo_experiment::calibration_run;
 use rumbo_experiment::files::{Library, Overrides, RobotFile, Setup, bounded};
-use rumbo_log::{Finding, Findings, Kind};
+use rumbo_log::Kind;
 use rumbo_plant::rewrite::RewriteError;
-use rumbo_session::{CalibrationError, Guest};
 use rumbo_station::Extras;
 use serde::Serialize;
 use std::path::Path;
@@ -28,45 +27,11 @@ struct Report<'a> {
     written: Option<String>,
 }
 
-/// The calibration of the robot in the dashboard.
-#[derive(Debug)]
-struct InDashboard(Calibrator);
-
-impl Guest for InDashboard {
-    fn advance(
-        &mut self,
-        now_us: u64,
-        received: &[u8],
-        to_robot: &mut Vec<u8>,
-    ) -> Option<Result<Findings, CalibrationError>> {
-        let found = self.0.advance(now_us, received, to_robot)?;
-        Some(match found {
-            Ok(found) => Ok(findings(&found)),
-            Err(why) => Err(CalibrationError::GivenUp(why.to_string())),
-        })
-    }
-}
-
 /// The calibration of the robot in the dashboard, started by its button.
 pub(crate) fn in_dashboard() -> Extras {
     Extras {
-        calibration: Some(|now_us| Box::new(InDashboard(Calibrator::new(now_us)))),
+        calibration: Some(rumbo_lab::calibration),
         ..Extras::default()
-    }
-}
-
-fn findings(found: &Calibration) -> Findings {
-    let rows = calibrate::rows(found, None).into_iter();
-    let parameters = found.parameters().into_iter();
-    Findings {
-        rows: rows
-            .map(|row| Finding {
-                name: row.name,
-                found: row.found,
-                standard_error: row.standard_error,
-            })
-            .collect(),
-        parameters: parameters.map(|(id, value)| (id as u8, value)).collect(),
     }
 }
 

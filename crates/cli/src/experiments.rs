@@ -2,7 +2,6 @@
 
 use crate::args::{ExperimentsArgs, LanguageName};
 use crate::failure::Failure;
-use crate::manifest;
 use crate::mark::Stamp;
 use crate::output;
 use crate::place::{self, Guard};
@@ -11,6 +10,7 @@ use crate::results::Results;
 use crate::run_log::Source;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::files::{Library, Overrides};
+use rumbo_lab::manifest;
 use rumbo_log::Kind;
 use rumbo_report::real::{self, Real};
 use rumbo_report::text::Language;

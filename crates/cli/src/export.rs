@@ -1,4 +1,4 @@
-//! `rumbo export`: a log as CSV, SVG and PNG.
+//! `rumbo export`: a log as CSV, SVG and PNG, and as a bag of ROS 2.
 
 use crate::args::{ExportArgs, Format};
 use crate::failure::Failure;
@@ -6,6 +6,7 @@ use crate::figures;
 use crate::mark::{Mark, Stamp};
 use crate::output;
 use crate::place::{self, Guard};
+use crate::ros2bag::Bag;
 use rumbo_log::{Kind, Log, Manifest, Reading, Row, Source};
 use rumbo_station::log_file;
 use std::collections::BTreeSet;
@@ -19,16 +20,19 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     let stem = stem.to_string_lossy();
     let path = |ending: &str| folder.join(format!("{stem}.{ending}"));
     let stamp = Stamp::of("export", &[stem.to_string()]);
-    let formats = if args.formats.is_empty() {
-        &[Format::Csv, Format::Svg][..]
-    } else {
-        &args.formats
+    let formats = match args.formats.is_empty() && !args.ros2bag {
+        true => &[Format::Csv, Format::Svg][..],
+        false => &args.formats,
     };
+    let bag = Bag::of(&stem, &folder, stamp.clone());
     let guard = Guard::new([&args.log], args.overwrite.force);
     for format in formats {
         for (ending, mark) in files(*format, &stamp) {
             guard.check(&path(ending), &mark)?;
         }
+    }
+    if args.ros2bag {
+        bag.check(&guard)?;
     }
     let log = log_file::read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log)?;
@@ -41,6 +45,9 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     }
     if !folder.as_os_str().is_empty() {
         place::folder(&folder)?;
+    }
+    if args.ros2bag {
+        bag.write(&args.log, &log)?;
     }
     let figures = figures::of_one(&log);
     for format in formats {

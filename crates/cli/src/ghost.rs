@@ -3,9 +3,9 @@
 //! Beside a real robot it runs in step with it. For a log it runs on the recorded bytes before the log is shown.
 
 use crate::failure::Failure;
-use crate::lab::SimulatedRobot;
 use rumbo_control::Fault;
 use rumbo_experiment::files::Overrides;
+use rumbo_lab::SimulatedRobot;
 use rumbo_log::{Choice, Log, Manifest, Scene, Truth};
 use rumbo_session::{Abilities, Ghost, LinkNews, Standing, Target, TargetError};
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};

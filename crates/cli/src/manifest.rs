@@ -1,13 +1,11 @@
-//! The manifest of a run in its log, and its conversion back into a run.
+//! The manifest of a log, converted back into a run.
 
 use crate::failure::Failure;
-use crate::mark::crc32;
-use rumbo_experiment::MODEL;
-use rumbo_experiment::files::firmware;
 use rumbo_experiment::files::{
     Kind as File, Library, NativeProgram, Overrides, Port, Setup, TimedText,
 };
-use rumbo_log::{Kind, Manifest};
+use rumbo_lab::manifest::hash;
+use rumbo_log::Manifest;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
@@ -19,48 +17,6 @@ const MOST_TEXTS: usize = 10_000;
 pub(crate) const LONGEST_S: f64 = 3_600.0;
 /// Of the ATmega2560 [bytes].
 const EEPROM: usize = 4_096;
-
-/// The manifest of a setup as the command line made it; `step_us` and the time are for the one who runs it.
-pub(crate) fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manifest {
-    let program = match (&overrides.firmware, setup.program) {
-        (Some(image), _) => image.display().to_string(),
-        (None, NativeProgram::Rumbo) => "rumbo".into(),
-        (None, NativeProgram::Baseline) => "baseline".into(),
-    };
-    let files = [
-        ("scenario", &setup.scenario.text),
-        ("robot", &setup.robot.text),
-        ("world", &setup.world.text),
-    ];
-    Manifest {
-        kind,
-        version: env!("CARGO_PKG_VERSION").into(),
-        model: Some(MODEL),
-        scenario: Some(setup.scenario.name.clone()),
-        robot: Some(setup.robot.name.clone()),
-        world: Some(setup.world.name.clone()),
-        rig: Some(setup.scenario.rig.clone()),
-        wiring: overrides.wiring.clone(),
-        program,
-        image: overrides.firmware.as_deref().and_then(hash),
-        seed: Some(seed),
-        parameters: overrides.parameters.clone(),
-        texts: lines(&overrides.texts, Port::Link),
-        usb_texts: lines(&overrides.texts, Port::Usb),
-        files: files
-            .map(|(name, text)| (name.to_owned(), text.clone()))
-            .into(),
-        ..Manifest::default()
-    }
-}
-
-/// The lines for a port.
-fn lines(texts: &[TimedText], port: Port) -> Vec<(f64, String)> {
-    let of_it = texts.iter().filter(|timed| timed.port == port);
-    of_it
-        .map(|timed| (timed.at_s, timed.text.clone()))
-        .collect()
-}
 
 /// What a line for the USB cable began with in logs in which such lines had no list of their own.
 const TO_USB: char = '\t';
@@ -76,12 +32,6 @@ fn typed(manifest: &Manifest) -> Vec<TimedText> {
     let usb = usb.map(|(at_s, text)| line(*at_s, text, Port::Usb));
     let timed = |(at_s, text, port)| TimedText { at_s, text, port };
     texts.chain(usb).map(timed).collect()
-}
-
-/// CRC-32 of a program image, as hexadecimal digits.
-pub(crate) fn hash(path: &Path) -> Option<String> {
-    let bytes = firmware::bytes(path).ok()?;
-    Some(format!("{:08x}", crc32(&bytes)))
 }
 
 /// Rejects values that no recorded run can have had.
@@ -178,6 +128,8 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rumbo_lab::manifest::{lines, of};
+    use rumbo_log::Kind;
 
     #[test]
     fn a_line_for_the_usb_port_is_read_from_its_own_list_and_as_earlier_logs_have_it() {

@@ -9,6 +9,7 @@
 //! | PNG | the same as a text chunk |
 //! | profile | nothing but chains of functions with their cycles |
 
+use rumbo_lab::manifest::crc32;
 use rumbo_log::Kind;
 use rumbo_station::log_file;
 use std::fs::File;
@@ -117,11 +118,6 @@ fn text_chunk(text: &str) -> Vec<u8> {
     let length = (body.len() - 4) as u32;
     let sum = crc32(&body);
     [&length.to_be_bytes(), &body[..], &sum.to_be_bytes()].concat()
-}
-
-/// CRC-32 as PNG, MCAP and zip have it.
-pub(crate) fn crc32(bytes: &[u8]) -> u32 {
-    crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(bytes)
 }
 
 #[cfg(test)]

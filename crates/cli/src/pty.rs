@@ -66,16 +66,16 @@ impl UsbPort {
             bytes: Vec::new(),
         })
     }
+}
 
-    /// What the other program has sent since the last call.
-    pub(crate) fn read(&mut self) -> &[u8] {
+impl rumbo_lab::Cable for UsbPort {
+    fn read(&mut self) -> &[u8] {
         self.bytes.clear();
         self.pty.read(&mut self.bytes);
         &self.bytes
     }
 
-    /// What the Mega has sent.
-    pub(crate) fn write(&mut self, bytes: &[u8]) {
+    fn write(&mut self, bytes: &[u8]) {
         self.pty.write(bytes);
     }
 }

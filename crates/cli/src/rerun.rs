@@ -6,7 +6,6 @@
 use crate::args::RerunArgs;
 use crate::export::warn_if_cut;
 use crate::failure::Failure;
-use crate::lab;
 use crate::manifest;
 use crate::output;
 use crate::run_log;
@@ -250,7 +249,7 @@ fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<V
                 Sent::Link(burst) => sim.send(&burst.bytes),
                 Sent::Typed(line) => {
                     let text = String::from_utf8_lossy(&line.bytes);
-                    lab::type_to(&mut sim, line.usart, &text);
+                    rumbo_lab::type_to(&mut sim, line.usart, &text);
                 }
             }
         }

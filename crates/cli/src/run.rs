@@ -9,8 +9,7 @@ use crate::place::{self, Guard};
 use crate::results::Results;
 use crate::run_log::{Kept, Source};
 use indicatif::{ProgressBar, ProgressStyle};
-use rumbo_experiment::files::{self, Library, Overrides, ScenarioFile, Setup};
-use rumbo_experiment::metrics;
+use rumbo_experiment::files::{Library, Overrides, ScenarioFile, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_log::Kind;
 use rumbo_sim::trace::Trace;
@@ -107,22 +106,6 @@ pub(crate) fn set_threads(threads: Option<u16>) -> Result<(), Failure> {
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
     pool.build_global().map_err(Failure::input)
-}
-
-/// Refuses metrics that the runs of a scenario do not have, bare or with their step, after one run.
-pub(crate) fn check_metrics<'a>(
-    mut names: impl Iterator<Item = &'a str>,
-    setup: &Setup,
-    seed: u64,
-) -> Result<(), Failure> {
-    let run = run::run(setup, seed)?;
-    let known: Vec<&str> = run.metrics.keys().map(String::as_str).collect();
-    let bare = known.iter().map(|name| metrics::bare(name));
-    let all: Vec<&str> = known.iter().copied().chain(bare).collect();
-    match names.find(|name| !all.contains(name)) {
-        Some(name) => Err(files::unknown("metric", name, all.iter().copied()).into()),
-        None => Ok(()),
-    }
 }
 
 fn seeds(args: &RunArgs) -> impl Iterator<Item = u64> {

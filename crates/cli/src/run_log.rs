@@ -6,16 +6,15 @@
 
 use crate::failure::Failure;
 use crate::logs;
-use crate::manifest;
 use crate::output;
 use crate::place;
-use crate::scene::scene;
 use rumbo_control::Wheels;
 use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_experiment::run::RunResult;
+use rumbo_lab::{manifest, scene};
 use rumbo_log::{Burst, Choice, Kind, Manifest, MapPose, Outcome, Said, Truth};
 use rumbo_session::headless::Run;
-use rumbo_sim::trace::{SAMPLE_US, Sample, Trace};
+use rumbo_sim::trace::{SAMPLE_US, Sample, Shown, Trace};
 use rumbo_station::headless::{record_run, record_run_in};
 use rumbo_wire::FromRobot;
 use std::path::{Path, PathBuf};
@@ -62,6 +61,7 @@ impl Source<'_> {
             truths: &trace.samples.iter().map(truth).collect::<Vec<_>>(),
             messages: &messages(trace),
             said: &trace.consoles.iter().map(said).collect::<Vec<_>>(),
+            readings: &trace.readings.iter().map(shown).collect::<Vec<_>>(),
             link: &link,
             outcome: Outcome {
                 pass: result.pass,
@@ -182,6 +182,10 @@ pub(crate) fn said(said: &rumbo_sim::trace::Said) -> Said {
         to_chip: false,
         bytes: said.bytes.clone(),
     }
+}
+
+fn shown(shown: &Shown) -> (u64, Vec<(String, f64)>) {
+    (shown.t_us, shown.signals.clone())
 }
 
 fn truth(sample: &Sample) -> (u64, Truth) {

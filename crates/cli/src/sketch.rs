@@ -2,9 +2,9 @@
 
 use crate::args::{NewArgs, NewKind};
 use crate::failure::Failure;
-use crate::mark::crc32;
 use crate::output;
 use rumbo_experiment::files::Library;
+use rumbo_lab::manifest::crc32;
 use rumbo_sim::boards::Board;
 use rumbo_sketch::sandbox::{Limits, Sandbox};
 use rumbo_sketch::{

@@ -5,7 +5,9 @@
 //! that it renames, and a file saved without a change changes nothing.
 
 use crate::sketch;
+use rumbo_lab::{Made, problem};
 use rumbo_log::Complaint;
+use rumbo_session::TargetError;
 use rumbo_sim::boards::Board;
 use rumbo_sketch::{Compiler, Diagnostic, Given, SketchError, Source, given};
 use std::path::{Path, PathBuf};
@@ -16,17 +18,6 @@ use std::time::{Duration, SystemTime};
 const LOOK: Duration = Duration::from_millis(150);
 /// Errors shown: the first ones matter.
 const MOST: usize = 12;
-
-/// What the workshop says.
-#[derive(Debug)]
-pub(crate) enum Made {
-    /// The program has changed and is being compiled.
-    Begun,
-    /// The new image.
-    Image(PathBuf),
-    /// Why there is none.
-    Rejected(Vec<Complaint>),
-}
 
 /// A program that is watched.
 pub(crate) struct Workshop {
@@ -53,8 +44,7 @@ impl Workshop {
         Ok(Self { made })
     }
 
-    /// Compiles a sketch of somebody else's once, in the sandbox, or keeps an image; by the name of its file.
-    pub(crate) fn make_dropped(
+    fn make_dropped(
         board: &'static Board,
         name: String,
         content: Vec<u8>,
@@ -69,10 +59,24 @@ impl Workshop {
             })?;
         Ok(Self { made })
     }
+}
 
-    /// What it has to say.
-    pub(crate) fn next(&self) -> Option<Made> {
+impl rumbo_lab::Workshop for Workshop {
+    fn next(&mut self) -> Option<Made> {
         self.made.try_recv().ok()
+    }
+}
+
+/// Compiles a sketch of somebody else's once, in the sandbox, or keeps an image; by the name of its file.
+pub(crate) fn make_dropped(
+    board: Option<&'static Board>,
+    name: String,
+    content: Vec<u8>,
+) -> Result<Box<dyn rumbo_lab::Workshop>, TargetError> {
+    let board = board.ok_or(TargetError::NoChip)?;
+    match Workshop::make_dropped(board, name, content) {
+        Ok(workshop) => Ok(Box::new(workshop)),
+        Err(error) => Err(TargetError::Setup(error.to_string())),
     }
 }
 
@@ -153,14 +157,6 @@ fn rejected(error: SketchError, source: &Source) -> Made {
             Made::Rejected(errors.map(|error| complaint(error, source)).collect())
         }
         error => Made::Rejected(vec![problem(error.to_string())]),
-    }
-}
-
-/// What is wrong with no line in particular.
-pub(crate) fn problem(text: String) -> Complaint {
-    Complaint {
-        text,
-        ..Complaint::default()
     }
 }
 

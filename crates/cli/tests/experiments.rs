@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use rumbo_log::{Kind, Manifest, Outcome, Truth};
+use rumbo_log::{Kind, Manifest, Truth};
 use rumbo_session::headless::Run;
 use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
@@ -111,13 +111,9 @@ fn a_log_of_a_real_robot_stands_beside_ours_and_one_of_a_simulated_robot_does_no
         .map(|tick| (tick * 10_000, Truth::default()))
         .collect();
     let run = Run {
-        scene: None,
-        parameters: None,
         truths: &truths,
         link: &log.link,
-        said: &[],
-        messages: &[],
-        outcome: Outcome::default(),
+        ..Run::default()
     };
     record_run(&folder.path().join("real/robot.mcap"), &manifest, run).unwrap();
     let output = experiments(folder.path(), "C", &["--only", "mode5", "--real", "real"]);

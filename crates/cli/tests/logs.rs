@@ -2,7 +2,7 @@
 
 #![cfg(test)]
 
-use rumbo_log::{Burst, Outcome, Truth};
+use rumbo_log::{Burst, Truth};
 use rumbo_session::headless::Run;
 use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
@@ -317,13 +317,9 @@ fn another_table_of_parameters_and_the_end_of_a_truncated_log_are_reported() {
         t_us: 20_000,
     }];
     let run = Run {
-        scene: None,
-        parameters: None,
         truths: &[(60_000_000, Truth::default())],
         link: &link,
-        said: &[],
-        messages: &[],
-        outcome: Outcome::default(),
+        ..Run::default()
     };
     record_run(&path, &manifest, run).unwrap();
     let other = rumbo(&["rerun", "mode5-1.mcap"], folder.path());

@@ -21,6 +21,8 @@ pub enum TargetError {
     Setup(String),
     /// The program of its chip does not compile.
     NotCompiled,
+    /// There is no compiler for sketches.
+    NoCompiler,
     /// It takes no program from a page.
     NoPrograms,
     /// The name is not that of a program's file.
@@ -51,6 +53,9 @@ impl fmt::Display for TargetError {
             }
             Self::Setup(why) => f.write_str(why),
             Self::NotCompiled => f.write_str("the program does not compile; correct it and save"),
+            Self::NoCompiler => f.write_str(
+                "compiling a sketch needs rumbo on a computer; drop the .elf or .hex that a compiler made",
+            ),
             Self::NoPrograms => f.write_str("this robot takes no program from a page"),
             Self::NotAProgram => {
                 f.write_str("only an .ino, .elf or .hex file is a program for the Mega")

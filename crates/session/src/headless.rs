@@ -19,7 +19,7 @@ const STATE_PERIOD_US: u64 = 200_000;
 const LINE: usize = 160;
 
 /// The records of a run.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Run<'a> {
     /// What surrounds the robot.
     pub scene: Option<Scene>,
@@ -31,6 +31,8 @@ pub struct Run<'a> {
     pub link: &'a [Burst],
     /// What crossed the USARTs of an emulated chip, in order.
     pub said: &'a [Said],
+    /// What instruments at its pins have shown, with its time \[us\], in order.
+    pub readings: &'a [(u64, Vec<(String, f64)>)],
     /// Messages of a program that does not use our link, with their time \[us\], in order.
     pub messages: &'a [(u64, FromRobot)],
     /// How it ended.
@@ -63,15 +65,19 @@ pub fn record_run<W: Write + Seek>(
         recorder.observer.know_parameters(&parameters);
     }
     let (mut link, mut messages) = (run.link.iter().peekable(), run.messages.iter().peekable());
-    let mut said = run.said.iter().peekable();
+    let (mut said, mut readings) = (run.said.iter().peekable(), run.readings.iter().peekable());
     let mut state_due_us = 0;
     for (t_us, truth) in run.truths {
         while let Some(burst) = link.next_if(|burst| burst.t_us <= *t_us) {
             recorder.burst(burst);
         }
         while let Some(said) = said.next_if(|said| said.t_us <= *t_us) {
-            recorder.keep(&mut log)?;
-            log.record(&Entry::Said(said.clone()))?;
+            recorder.observer.said(said.clone());
+        }
+        while let Some((at_us, signals)) = readings.next_if(|(at_us, _)| at_us <= t_us) {
+            recorder
+                .observer
+                .instruments(to_ms(*at_us), signals.clone());
         }
         while let Some((at_us, message)) = messages.next_if(|(at_us, _)| at_us <= t_us) {
             recorder
@@ -88,10 +94,10 @@ pub fn record_run<W: Write + Seek>(
         }
         recorder.keep(&mut log)?;
     }
-    recorder.keep(&mut log)?;
     for said in said {
-        log.record(&Entry::Said(said.clone()))?;
+        recorder.observer.said(said.clone());
     }
+    recorder.keep(&mut log)?;
     log.record(&Entry::Outcome(run.outcome))?;
     log.finish()
 }

@@ -1,8 +1,8 @@
 //! Rumbo's session with a robot: time and bytes come in, events and bytes to send go out.
 //!
-//! A [`Session`] knows no port, thread, clock or socket. Its driver advances the [`Target`], hands over the bytes
+//! A [`Session`] knows no port, thread, clock or socket. Its [`Driver`] advances the [`Target`], hands over the bytes
 //! received, sends the outgoing ones, and publishes the [`Event`]s: to the page's [`Board`], to a log, to a bridge,
-//! each of which takes what it needs.
+//! each of which takes what it needs. The program around the driver, its [`Host`], has the clock and the threads.
 
 pub mod anomaly;
 mod board;
@@ -10,6 +10,7 @@ mod catalogue;
 pub mod client;
 pub mod commands;
 mod console;
+mod driver;
 mod error;
 mod event;
 pub mod fault;
@@ -36,6 +37,7 @@ mod words;
 pub use board::{Arrival, Board, Cursor, EVENTS_KEPT, News, SAMPLES_KEPT};
 pub use catalogue::ModeEntry;
 pub use console::{ConsoleText, LINK_CONSOLE, readable};
+pub use driver::{Calibration, Driver, Extras, Host};
 pub use error::{CalibrationError, TargetError};
 pub use event::Event;
 pub use guest::Guest;

@@ -218,14 +218,21 @@ impl Observer {
     /// Records what the USARTs of an emulated chip sent, and the numbers in it.
     pub(crate) fn consoles(&mut self, t_us: u64, said: Vec<(u8, Vec<u8>)>) {
         for (usart, bytes) in said {
-            self.read_numbers(usart, &bytes, (t_us / 1_000) as i64);
-            self.emit(Entry::Said(Said {
+            self.said(Said {
                 t_us,
                 usart,
                 to_chip: false,
                 bytes,
-            }));
+            });
         }
+    }
+
+    /// Records what crossed a USART of an emulated chip, and the numbers that its program printed.
+    pub(crate) fn said(&mut self, said: Said) {
+        if !said.to_chip {
+            self.read_numbers(said.usart, &said.bytes, (said.t_us / 1_000) as i64);
+        }
+        self.emit(Entry::Said(said));
     }
 
     fn read_numbers(&mut self, usart: u8, bytes: &[u8], now_ms: i64) {
@@ -235,12 +242,12 @@ impl Observer {
 
     /// Records a line that a person typed to a USART.
     pub(crate) fn typed(&mut self, t_us: u64, usart: u8, line: &str) {
-        self.emit(Entry::Said(Said {
+        self.said(Said {
             t_us,
             usart,
             to_chip: true,
             bytes: line.into(),
-        }));
+        });
     }
 
     /// Shows the text of a robot as received.

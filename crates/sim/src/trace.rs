@@ -1,5 +1,6 @@
 //! Ground truth of a run, sampled at every control tick from the plant and the pins.
 
+use crate::instruments::READING_US;
 use crate::sim::{Burst, Sim};
 use rumbo_control::params::Params;
 use rumbo_wire::FromRobot;
@@ -55,6 +56,30 @@ pub struct Trace {
     pub link: Vec<Burst>,
     /// What the USARTs of an emulated Mega have sent, in order.
     pub consoles: Vec<Said>,
+    /// What instruments at an emulated Mega have shown, in order.
+    pub readings: Vec<Shown>,
+}
+
+/// What instruments show at one instant.
+#[derive(Clone, Debug)]
+pub struct Shown {
+    /// Time of the sample [us].
+    pub t_us: u64,
+    /// The signals, as [`Sim::read_instruments`] names them.
+    pub signals: Vec<(String, f64)>,
+}
+
+/// Two unknown values are equal.
+impl PartialEq for Shown {
+    fn eq(&self, other: &Self) -> bool {
+        let bits = |shown: &Self| -> Vec<(String, u64)> {
+            let signals = shown.signals.iter();
+            signals
+                .map(|(name, value)| (name.clone(), value.to_bits()))
+                .collect()
+        };
+        self.t_us == other.t_us && bits(self) == bits(other)
+    }
 }
 
 /// What a USART of an emulated Mega has sent since the sample before.
@@ -95,9 +120,14 @@ impl Trace {
         });
     }
 
-    /// Adds what the USARTs of an emulated Mega have sent since.
+    /// Adds what the USARTs of an emulated Mega have sent since, and what instruments show, if a reading is due.
     pub fn listen(&mut self, sim: &mut Sim) {
         let t_us = sim.now_us();
+        let is_due = |last: &Shown| t_us >= last.t_us + READING_US;
+        if sim.mega().is_some() && self.readings.last().is_none_or(is_due) {
+            let signals = sim.read_instruments();
+            self.readings.push(Shown { t_us, signals });
+        }
         if let Some(mega) = sim.mega_mut() {
             let said = (0..4).map(|usart| Said {
                 t_us,

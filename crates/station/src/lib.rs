@@ -26,6 +26,8 @@ mod socket;
 mod subscribers;
 mod web;
 
+pub use rumbo_session::Extras;
+
 #[cfg(feature = "foxglove")]
 pub use bridge::{BRIDGE_PORT, Bridge, BridgeError};
 pub use echo::Print;
@@ -34,4 +36,3 @@ pub use error::{ServeError, SessionError};
 pub use folder::{Folder, serve_folder};
 pub use recorder::{Recording, now_utc};
 pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, serve, serve_log, serve_with};
-pub use session::{Calibration, Extras};

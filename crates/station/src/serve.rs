@@ -9,12 +9,12 @@ use crate::lease::Lease;
 use crate::recorder::Recording;
 use crate::recordings::Recordings;
 use crate::replay::Replay;
-use crate::session::{Driver, Extras, Orders};
+use crate::session::{Orders, Running};
 use crate::socket::Hub;
 use crate::subscribers::Subscribers;
 use crate::web;
 use rumbo_log::Log;
-use rumbo_session::{Ghost, Order, Target, TargetError};
+use rumbo_session::{Extras, Ghost, Order, Target, TargetError};
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
@@ -176,7 +176,7 @@ pub fn serve_with(
             bridge: config.bridge,
             recorder: None,
         };
-        Driver::new(target, subscribers, orders, speed, recordings, extras).run()
+        Running::new(target, subscribers, orders, speed, recordings, extras).run()
     })
 }
 

@@ -1,18 +1,14 @@
-//! The session's thread: advances the target, paced by the wall clock, and connects it, the pages and the session.
+//! The session's thread: drives it by the wall clock, and connects it with the pages and the log.
 //!
-//! It wakes every [`WAKE`], or at once for an order; advances the target in slices by the elapsed time times the speed
-//! factor ([`Pace`]), and passes the results to the [`Session`], which returns the bytes to send and the events to
-//! publish. Nothing waits for a page.
+//! It wakes every [`WAKE`], or at once for an order, and has the [`Driver`] advance the target by the time due. Nothing
+//! waits for a page.
 
 use crate::log_file::LogError;
 use crate::recorder::{Recorder, now_utc};
 use crate::recordings::Recordings;
 use crate::subscribers::Subscribers;
 use rumbo_log::{Level, Manifest};
-use rumbo_session::{
-    About, Ask, CalibrationError, Going, Guest, LinkNews, MAX_SPEED, Now, Order, Pace, SLICE_US,
-    Session, Sight, Target, TargetError, stop_first,
-};
+use rumbo_session::{Driver, Event, Extras, Host, Order, Target, TargetError, stop_first};
 use rumbo_wire::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,19 +22,6 @@ const WAKE_PAUSED: Duration = Duration::from_millis(250);
 /// Longest time spent on one round of slices: orders wait no longer, however high the speed factor.
 const ROUND: Duration = Duration::from_millis(20);
 
-/// Begins a calibration of the robot at this instant \[us\].
-pub type Calibration = fn(u64) -> Box<dyn Guest>;
-
-/// Options of a session.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Extras {
-    /// The robot runs the original program, which is silent until its first ON: it is addressed in text from the
-    /// beginning.
-    pub text: bool,
-    /// How the robot calibrates itself.
-    pub calibration: Option<Calibration>,
-}
-
 /// The source of orders.
 pub(crate) struct Orders {
     /// The orders, in order. The session ends when the sending side is gone.
@@ -47,22 +30,57 @@ pub(crate) struct Orders {
     pub(crate) stop: Arc<AtomicBool>,
 }
 
-/// The session, its target and its subscribers.
-pub(crate) struct Driver {
-    target: Box<dyn Target>,
-    session: Session,
+/// The subscribers of a session and its recordings.
+struct Around {
     subscribers: Subscribers,
     /// Where to record; nowhere in tests.
     recordings: Option<Arc<Recordings>>,
-    calibration: Option<Calibration>,
-    orders: Orders,
-    pace: Pace,
-    began: Instant,
-    /// Kept to spare allocations.
-    bytes: Vec<u8>,
 }
 
-impl Driver {
+impl Host for Around {
+    /// From the clock if the system has no randomness.
+    fn random_id(&mut self) -> u8 {
+        let clock = std::time::SystemTime::UNIX_EPOCH
+            .elapsed()
+            .map_or(0, |elapsed| elapsed.subsec_micros());
+        getrandom::u32().unwrap_or(clock).to_le_bytes()[0]
+    }
+
+    fn publish(&mut self, event: Event) {
+        self.subscribers.publish(event);
+    }
+
+    /// Begins the log of the run; the one before is complete.
+    fn begin_run(&mut self, manifest: Manifest) -> Option<(Level, String)> {
+        let recordings = self.recordings.as_ref()?;
+        Some(match recorder(recordings, manifest) {
+            Ok(recorder) => {
+                recordings.set_current(recorder.path());
+                let text = format!("recording to {}", recorder.path().display());
+                self.subscribers.record(recorder);
+                (Level::Info, text)
+            }
+            Err(error) => (Level::Warning, format!("not recording: {error}")),
+        })
+    }
+}
+
+fn recorder(recordings: &Recordings, manifest: Manifest) -> Result<Recorder, LogError> {
+    let manifest = Manifest {
+        started: Some(now_utc()),
+        ..manifest
+    };
+    Recorder::in_folder(recordings.folder(), &manifest)
+}
+
+/// A session in its thread.
+pub(crate) struct Running {
+    driver: Driver<Around>,
+    orders: Orders,
+    began: Instant,
+}
+
+impl Running {
     /// A session that has not begun yet.
     pub(crate) fn new(
         target: Box<dyn Target>,
@@ -72,21 +90,14 @@ impl Driver {
         recordings: Option<Arc<Recordings>>,
         extras: Extras,
     ) -> Self {
-        let about = About::of(target.as_ref());
-        let speed = match about.abilities.pace {
-            true => speed.clamp(0.0, MAX_SPEED),
-            false => 1.0,
-        };
-        Self {
-            session: Session::new(about, random_id(), extras.text),
-            target,
+        let around = Around {
             subscribers,
             recordings,
-            calibration: extras.calibration,
+        };
+        Self {
+            driver: Driver::new(target, around, speed, extras),
             orders,
-            pace: Pace::new(speed),
             began: Instant::now(),
-            bytes: Vec::new(),
         }
     }
 
@@ -95,18 +106,19 @@ impl Driver {
     /// # Errors
     /// The target's error when it is gone for good.
     pub(crate) fn run(mut self) -> Result<(), TargetError> {
-        self.record();
+        self.driver.begin(self.wall_us());
         let ended = self.run_until_ended();
         if let Err(why) = &ended {
-            self.note(Level::Fault, format!("the robot is gone: {why}"));
+            let text = format!("the robot is gone: {why}");
+            self.driver.note(Level::Fault, text, self.wall_us());
         }
-        self.publish();
+        self.driver.publish();
         ended
     }
 
     fn run_until_ended(&mut self) -> Result<(), TargetError> {
         loop {
-            let wait = if self.pace.speed > 0.0 {
+            let wait = if self.driver.speed() > 0.0 {
                 WAKE
             } else {
                 WAKE_PAUSED
@@ -116,7 +128,8 @@ impl Driver {
                 Err(RecvTimeoutError::Timeout) => None,
                 // Do not leave the robot driving. Should this STOP be lost, the missing heartbeat stops it.
                 Err(RecvTimeoutError::Disconnected) => {
-                    return self.obey(Order::Robot(Command::Stop));
+                    let stop = Order::Robot(Command::Stop);
+                    return self.driver.obey([stop], self.wall_us());
                 }
             };
             let waiting = first
@@ -124,180 +137,26 @@ impl Driver {
                 .chain(self.orders.queue.try_iter())
                 .collect();
             let stop = self.orders.stop.swap(false, Ordering::SeqCst);
-            for order in stop_first(waiting, stop) {
-                self.obey(order)?;
-            }
-            self.session.expire_hold(self.now());
-            self.send()?;
+            let orders = stop_first(waiting, stop);
+            self.driver.obey(orders, self.wall_us())?;
             self.advance()?;
-            self.update();
+            if let Some(trouble) = self.driver.host().subscribers.recording_trouble() {
+                let text = trouble.to_string();
+                self.driver.note(Level::Warning, text, self.wall_us());
+            }
+            self.driver.update(self.wall_us());
         }
     }
 
-    fn now(&self) -> Now {
-        let wall = self.began.elapsed().as_micros();
-        Now {
-            target_us: self.target.now_us(),
-            wall_us: u64::try_from(wall).unwrap_or(u64::MAX),
-        }
-    }
-
-    fn obey(&mut self, order: Order) -> Result<(), TargetError> {
-        let ask = self.session.order(order, self.now());
-        if let Some(ask) = ask {
-            self.act(ask);
-        }
-        // At once: STOP does not wait for the next slice.
-        self.send()
-    }
-
-    fn act(&mut self, ask: Ask) {
-        let now = self.now();
-        match ask {
-            Ask::Pace(factor) => self.pace = Pace::new(factor),
-            Ask::Type(usart, line) => {
-                let sent = self.target.type_in(usart, &line);
-                self.session.typed(usart, &line, sent, now);
-            }
-            Ask::Program(name, content) => {
-                if let Err(why) = self.target.run_program(name, content) {
-                    self.note(Level::Warning, format!("program: refused, {why}"));
-                }
-            }
-            Ask::Ghost(standing) => {
-                let done = self.target.restart_ghost(standing);
-                self.session.ghost_restarted(done, now);
-            }
-            Ask::Calibrate => {
-                let calibration = self.calibration.ok_or(CalibrationError::Missing);
-                let begun = calibration.map(|begin| begin(now.target_us));
-                self.session.calibration_begun(begun, now);
-            }
-            Ask::Reset(choice) => {
-                let done = self.target.reset(&choice);
-                if done.is_ok() {
-                    self.begin_run();
-                }
-                let done = done.map(|()| About::of(self.target.as_ref()));
-                self.session.restart(&choice, done, random_id(), self.now());
-            }
-        }
-    }
-
-    /// Earlier events belong to the previous run.
-    fn begin_run(&mut self) {
-        self.publish();
-        self.pace = Pace::new(self.pace.speed);
-        self.record();
+    fn wall_us(&self) -> u64 {
+        u64::try_from(self.began.elapsed().as_micros()).unwrap_or(u64::MAX)
     }
 
     /// Advances the target by the time due.
     fn advance(&mut self) -> Result<(), TargetError> {
         let began = Instant::now();
-        self.pace.wall_passed(self.now().wall_us);
-        while self.pace.slice_due() {
-            self.target.advance(SLICE_US)?;
-            self.pace.slice_lived();
-            let now = self.now();
-            let sight = Sight {
-                truth: self.target.truth(),
-                ghost: self.target.ghost(),
-                consoles: self.target.consoles(),
-                instruments: self.target.instruments(),
-            };
-            self.session.observe(sight, now);
-            self.bytes.clear();
-            self.target.receive(&mut self.bytes);
-            self.session.receive(&self.bytes, now);
-            self.session.advance(now);
-            self.send()?;
-            self.news();
-            if began.elapsed() >= ROUND {
-                break;
-            }
-        }
+        self.driver.wall_passed(self.wall_us());
+        while began.elapsed() < ROUND && self.driver.slice(self.wall_us())? {}
         Ok(())
     }
-
-    fn news(&mut self) {
-        while let Some(news) = self.target.news() {
-            if news == LinkNews::Renewed {
-                self.begin_run();
-                let about = About::of(self.target.as_ref());
-                self.session.renew(about, random_id(), self.now());
-            } else {
-                self.session.news(news, self.now());
-            }
-        }
-    }
-
-    fn update(&mut self) {
-        self.news();
-        if let Some(trouble) = self.subscribers.recording_trouble() {
-            self.note(Level::Warning, trouble.to_string());
-        }
-        let going = Going {
-            speed: self.pace.speed,
-            achieved_speed: self.pace.achieved(),
-            true_battery_v: self.target.truth().map(|truth| truth.battery_v),
-            program: self.target.program(),
-        };
-        self.session.update(going, self.now());
-        self.publish();
-    }
-
-    fn note(&mut self, level: Level, text: String) {
-        self.session.note(level, text, self.now());
-    }
-
-    fn send(&mut self) -> Result<(), TargetError> {
-        let bytes = self.session.take_bytes();
-        match bytes.is_empty() {
-            true => Ok(()),
-            false => self.target.send(&bytes),
-        }
-    }
-
-    fn publish(&mut self) {
-        for event in self.session.take_events() {
-            self.subscribers.publish(event);
-        }
-    }
-
-    /// Begins the log of a run; the one before is complete.
-    fn record(&mut self) {
-        let Some(recordings) = &self.recordings else {
-            return;
-        };
-        let (level, text) = match self.recorder(recordings) {
-            Ok(recorder) => {
-                recordings.set_current(recorder.path());
-                let text = format!("recording to {}", recorder.path().display());
-                self.subscribers.record(recorder);
-                (Level::Info, text)
-            }
-            Err(error) => (Level::Warning, format!("not recording: {error}")),
-        };
-        self.note(level, text);
-        self.publish();
-    }
-
-    fn recorder(&self, recordings: &Recordings) -> Result<Recorder, LogError> {
-        let manifest = Manifest {
-            version: env!("CARGO_PKG_VERSION").into(),
-            baud: self.target.baud(),
-            step_us: SLICE_US,
-            started: Some(now_utc()),
-            ..self.target.manifest()
-        };
-        Recorder::in_folder(recordings.folder(), &manifest)
-    }
-}
-
-/// A random number that distinguishes sessions; from the clock if the system has no randomness.
-fn random_id() -> u8 {
-    let clock = std::time::SystemTime::UNIX_EPOCH
-        .elapsed()
-        .map_or(0, |elapsed| elapsed.subsec_micros());
-    getrandom::u32().unwrap_or(clock).to_le_bytes()[0]
 }

@@ -22,6 +22,15 @@ export const PAGE = {
   'Take control': 'Tomar el control', 'Drive from this page; the other one then watches': 'Conduce desde esta página; la otra pasa a mirar',
   'connecting…': 'conectando…', 'no connection': 'sin conexión',
   'No connection to the station. Trying again…': 'Sin conexión con la estación. Reintentando…', 'No connection to the station: {}. Trying again…': 'Sin conexión con la estación: {}. Reintentando…',
+  'The lab of this page has ended: {}. Load the page again.': 'El laboratorio de esta página ha terminado: {}. Carga la página otra vez.',
+  'This page records the run until the next reset. Rumbo on a computer opens the file: rumbo replay shows it, rumbo rerun runs it again. It also keeps every session and compares two.':
+    'Esta página graba hasta el próximo reinicio. Rumbo en un ordenador abre el archivo: rumbo replay lo muestra, rumbo rerun lo ejecuta otra vez. También guarda cada sesión y compara dos.',
+  'Save this run': 'Guardar esta grabación', 'Save the recording of the run so far as a file': 'Guarda en un archivo lo grabado hasta ahora',
+  'Share': 'Compartir', 'A link that opens this run elsewhere': 'Un enlace que abre esto mismo en otro sitio', 'Copy': 'Copiar', 'copied': 'copiado', 'copy it from the field': 'cópialo del campo',
+  'The link opens this scenario, world, sensor layout and seed. Your program is not in it.': 'El enlace abre este escenario, mundo, montaje y semilla. Tu programa no va en él.',
+  'The link opens this scenario, world, sensor layout and seed, with these parameters.': 'El enlace abre este escenario, mundo, montaje y semilla, con estos parámetros.',
+  'Run a program…': 'Ejecutar un programa…', 'Run a program for the Arduino Mega, .elf or .hex, on an emulated one': 'Ejecuta un programa para el Arduino Mega, .elf o .hex, en uno emulado',
+  '.elf or .hex, or drop one here; an .ino needs rumbo on a computer': '.elf o .hex, o suelta uno aquí; un .ino necesita rumbo en un ordenador',
   'What is shown is of {}, and STOP does not reach the robot.': 'Lo que se ve es de las {}, y PARAR no llega al robot.',
   'This browser has no key to the station: open the address that rumbo printed when it started.':
     'Este navegador no tiene la clave de la estación: abre la dirección que imprimió rumbo al arrancar.',

@@ -8,7 +8,7 @@ mod logs;
 mod readme;
 pub(crate) mod tools;
 mod web;
-mod wheel;
+pub(crate) mod wheel;
 
 use std::time::{Duration, Instant};
 
@@ -86,7 +86,7 @@ const STEPS: [Step; 17] = [
     },
     Step {
         name: "wasm",
-        what: "simulator, experiments, report, session and logs compile for a browser",
+        what: "simulator, experiments, report, session, logs and lab compile for a browser",
         check: wasm,
     },
     Step {
@@ -282,6 +282,7 @@ fn wasm(project: &Project) -> Result<(), Stop> {
         "rumbo-experiment",
         "rumbo-report",
         "rumbo-session",
+        "rumbo-browser",
     ] {
         check.args(["--package", package]);
     }

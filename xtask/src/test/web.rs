@@ -2,6 +2,7 @@
 
 use super::{Stop, tools};
 use crate::project::{Project, run};
+use std::env::consts::EXE_SUFFIX;
 
 /// Checks the types that the JSDoc comments of `web/` declare.
 pub(crate) fn types(project: &Project) -> Result<(), Stop> {
@@ -14,18 +15,30 @@ pub(crate) fn types(project: &Project) -> Result<(), Stop> {
     ]))?)
 }
 
-/// Runs `web/test` against the release build of `rumbo`.
+/// Runs `web/test` against the release build of `rumbo`, and against the site.
 pub(crate) fn browser(project: &Project) -> Result<(), Stop> {
     let node = tools::node(project)?;
     let chromium = tools::chromium(project)?;
     let rumbo = project.release_binary()?;
+    let site = crate::site::build(project)?;
+    let hashes = ["build", "--locked", "-p", "rumbo-tools", "--bin", "hashes"];
+    run(&mut project.cargo(&hashes))?;
     let web = project.root.join("web");
     let tests = test_files(&web.join("test"))?;
     let mut test = project.command(node);
     test.current_dir(&web)
         .env("RUMBO_BIN", rumbo)
         .env("CHROMIUM", chromium)
-        .env("SKETCHES", project.target.join("sketches"));
+        .env("SKETCHES", project.target.join("sketches"))
+        .env("SITE", site)
+        .env("FIRMWARE", project.target.join("firmware/rumbo.elf"))
+        .env(
+            "HASHES",
+            project
+                .target
+                .join("debug")
+                .join(format!("hashes{EXE_SUFFIX}")),
+        );
     Ok(run(test
         .args(["--test", "--test-concurrency=2", "--test-reporter=spec"])
         .args(tests))?)

@@ -2,51 +2,33 @@
 //! made for it.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use super::{Stop, tools};
 use crate::project::{Project, output, run};
 
 /// Packages of PyPI; what type checkers find depends on their versions. They need Python 3.11, the wheel itself 3.10.
-const PACKAGES: [&str; 6] = [
+const PACKAGES: [&str; 8] = [
     "maturin==1.16.0",
     "numpy==2.4.6",
     "gymnasium==1.4.0",
+    "matplotlib==3.11.2",
     "pytest==9.2.0",
+    "rosbags==0.11.9",
     "mypy==2.4.1",
     "ruff==0.17.6",
 ];
 
+/// For its tests and figures on Ray.
+const RAY_PACKAGES: [&str; 3] = ["numpy==2.4.6", "pytest==9.2.0", "ray==2.60.0"];
+
 /// Builds the package, installs it, and runs its tests and type checks.
 pub(super) fn check(project: &Project) -> Result<(), Stop> {
     let python = tools::python_with(project, "wheel", &PACKAGES)?;
-    // The same interpreter each time, or the crate is built again.
-    let interpreter = python.to_string_lossy();
-    let build = [
-        "build",
-        "--release",
-        "--locked",
-        "--interpreter",
-        &interpreter,
-    ];
-    let wheel = package(project, &python, &build, "whl")?;
+    install(project, &python, &wheel(project)?)?;
     let sources = package(project, &python, &["sdist"], "gz")?;
     let rumbo = project.release_binary()?;
-    let module = |words: &[&str]| {
-        let mut command = project.command(&python);
-        // Nothing of it beside the sources.
-        command.env("PYTHONDONTWRITEBYTECODE", "1");
-        command.arg("-m").args(words);
-        command
-    };
-    let install = [
-        "pip",
-        "install",
-        "--quiet",
-        "--disable-pip-version-check",
-        "--force-reinstall",
-        "--no-deps",
-    ];
-    run(module(&install).arg(wheel))?;
+    let module = |words: &[&str]| module(project, &python, words);
     let mut tests = module(&["pytest", "--quiet", "-p", "no:cacheprovider"]);
     tests
         .env("RUMBO_COMMAND", rumbo)
@@ -58,6 +40,7 @@ pub(super) fn check(project: &Project) -> Result<(), Stop> {
         "--no-cache",
         "--check",
         "python",
+        "examples/python",
     ]))?;
     run(&mut module(&[
         "ruff",
@@ -65,12 +48,68 @@ pub(super) fn check(project: &Project) -> Result<(), Stop> {
         "--no-cache",
         "--quiet",
         "python",
+        "examples/python",
     ]))?;
     let cache = project.target.join("tmp/mypy");
     run(module(&["mypy", "--cache-dir"]).arg(cache))?;
     // Whether the stub of the Rust part is true.
     let mut stub = module(&["mypy.stubtest", "rumbo._rumbo"]);
     Ok(run(stub.current_dir(project.target.join("tmp")))?)
+}
+
+/// Builds the package, installs it beside Ray, and runs its tests on clusters of two workers, then its figures.
+pub(crate) fn on_ray(project: &Project) -> Result<(), Stop> {
+    let python = tools::python_with(project, "ray", &RAY_PACKAGES)?;
+    install(project, &python, &wheel(project)?)?;
+    let rumbo = project.release_binary()?;
+    let file = "python/tests/test_ray.py";
+    run(&mut module(
+        project,
+        &python,
+        &["pytest", "--quiet", "-p", "no:cacheprovider", file],
+    ))?;
+    let mut bench = project.command(&python);
+    bench
+        .env("RUMBO_COMMAND", rumbo)
+        .arg("python/benches/on_ray.py");
+    Ok(run(&mut bench)?)
+}
+
+/// A module of Python, as a program.
+fn module(project: &Project, python: &Path, words: &[&str]) -> Command {
+    let mut command = project.command(python);
+    // Nothing of it beside the sources.
+    command.env("PYTHONDONTWRITEBYTECODE", "1");
+    command.arg("-m").args(words);
+    command
+}
+
+/// Builds the wheel.
+fn wheel(project: &Project) -> Result<PathBuf, Stop> {
+    let python = tools::python_with(project, "wheel", &PACKAGES)?;
+    // The same interpreter each time, or the crate is built again.
+    let interpreter = python.to_string_lossy();
+    let build = [
+        "build",
+        "--release",
+        "--locked",
+        "--interpreter",
+        &interpreter,
+    ];
+    package(project, &python, &build, "whl")
+}
+
+/// Installs it in place of an earlier one.
+fn install(project: &Project, python: &Path, wheel: &Path) -> Result<(), Stop> {
+    let words = [
+        "pip",
+        "install",
+        "--quiet",
+        "--disable-pip-version-check",
+        "--force-reinstall",
+        "--no-deps",
+    ];
+    Ok(run(module(project, python, &words).arg(wheel))?)
 }
 
 /// Has maturin build one file that ends so, alone in its folder.

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 20] = [
+const ARROWS: [(&str, &[&str]); 24] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
@@ -28,19 +28,34 @@ const ARROWS: [(&str, &[&str]); 20] = [
     ),
     ("rumbo-log", &["rumbo-wire"]),
     ("rumbo-session", &["rumbo-log"]),
+    ("rumbo-ros", &["rumbo-log"]),
+    ("rumbo-lab", &["rumbo-experiment", "rumbo-session"]),
+    ("rumbo-browser", &["rumbo-lab"]),
+    ("rumbo-bindgen", &[]),
     ("rumbo-sketch", &[]),
     ("rumbo-station", &["rumbo-session"]),
     ("rumbo-report", &["rumbo-experiment", "rumbo-identify"]),
     (
         "rumbo-cli",
-        &["rumbo-station", "rumbo-report", "rumbo-sketch"],
+        &[
+            "rumbo-station",
+            "rumbo-report",
+            "rumbo-lab",
+            "rumbo-sketch",
+            "rumbo-ros",
+        ],
     ),
     ("rumbo-python", &["rumbo-experiment", "rumbo-log"]),
     ("rumbo-firmware", &["rumbo-robot"]),
     ("rumbo-firmware-tests", &["rumbo-experiment"]),
     (
         "rumbo-tools",
-        &["rumbo-experiment", "rumbo-identify", "rumbo-sketch"],
+        &[
+            "rumbo-experiment",
+            "rumbo-identify",
+            "rumbo-lab",
+            "rumbo-sketch",
+        ],
     ),
     ("xtask", &["rumbo-sketch"]),
 ];

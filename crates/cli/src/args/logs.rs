@@ -65,6 +65,7 @@ pub(crate) struct ReplayArgs {
 Examples:
   rumbo export out/mode1-7.mcap
   rumbo export out/mode1-7.mcap --format png --out figures
+  rumbo export out/mode8-goals-1.mcap --ros2bag
 
 CSV: one row per telemetry frame, time and units in the names of the columns; empty where a value is not known, inf where a sonar
 hears nothing within its reach; events in a second file.")]
@@ -75,6 +76,9 @@ pub(crate) struct ExportArgs {
     /// What to write; may be repeated [default: csv and svg]
     #[arg(long = "format", value_enum, value_name = "FORMAT")]
     pub(crate) formats: Vec<Format>,
+    /// A bag of ROS 2 instead, or besides: odometry, transforms, sonars, joints, battery, diagnostics, events
+    #[arg(long)]
+    pub(crate) ros2bag: bool,
     /// Folder for the files; made if need be [default: the current one]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

@@ -46,6 +46,43 @@ fn a_new_sketch_drives_to_the_wall_and_stops_before_it() {
     assert!(error_m < 0.02, "{result}");
 }
 
+#[test]
+fn the_log_of_a_headless_run_shows_what_a_sketch_does_and_prints() {
+    let Some(bench) = bench("logged") else {
+        return;
+    };
+    assert!(rumbo(&bench, &["new", "sketch", "mine"]).status.success());
+    let run = rumbo(
+        &bench,
+        &["run", "mode1", "--sketch", "mine", "--out", "logs"],
+    );
+    assert_ne!(run.status.code(), Some(2), "{}", stderr(&run));
+    let export = rumbo(&bench, &["export", "logs/mode1-1.mcap", "--format", "csv"]);
+    assert!(export.status.success(), "{}", stderr(&export));
+    let csv = |name: &str| std::fs::read_to_string(bench.join(name)).unwrap();
+    let instruments = csv("mode1-1.instruments.csv");
+    let mut lines = instruments.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|each| *each == name).unwrap();
+    let (x, front) = (column("true_x_m"), column("true_range_front_m"));
+    let row = |line: &str| -> Vec<f64> {
+        let cells = line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN));
+        cells.collect()
+    };
+    let rows: Vec<Vec<f64>> = lines.map(row).collect();
+    // 33 a second; what it has driven is missing before it.
+    assert!(
+        (rows[1][0] - rows[0][0] - 0.03).abs() < 1e-6,
+        "{:?}",
+        rows[1]
+    );
+    let [first, last] = [&rows[0], &rows[rows.len() - 1]];
+    let driven_m = last[x] - first[x];
+    assert!(driven_m > 0.5, "{driven_m}");
+    assert!((first[front] - last[front] - driven_m).abs() < 0.02);
+    assert!(csv("mode1-1.printed0.csv").lines().count() > 50);
+}
+
 /// The metrics of a run.
 fn metrics(bench: &PathBuf, arguments: &[&str]) -> serde_json::Value {
     let run = rumbo(bench, &[arguments, &["--json", "--no-record"]].concat());

@@ -73,17 +73,14 @@ fn texts_of_a_log_are_shown_and_not_interpreted() {
         bytes: b"=cmd|' /C calc'!A0\r\n".to_vec(),
     }];
     let run = Run {
-        scene: None,
-        parameters: None,
         truths: &[(10_000, rumbo_log::Truth::default())],
         link: &link,
-        said: &[],
-        messages: &[],
         outcome: Outcome {
             metrics: [(hostile.to_owned(), 1.0)].into(),
             failures: vec![hostile.into()],
             pass: false,
         },
+        ..Run::default()
     };
     let logs = folder.join("logs");
     std::fs::create_dir(&logs).unwrap();

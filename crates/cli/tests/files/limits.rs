@@ -2,7 +2,7 @@
 
 use crate::support::stderr;
 use crate::{rumbo_in, scenario, status};
-use rumbo_log::{Burst, Manifest, Outcome, Truth};
+use rumbo_log::{Burst, Manifest, Truth};
 use rumbo_session::headless::Run;
 use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
@@ -16,13 +16,9 @@ fn session(path: &Path, manifest: &Manifest, t_us: u64) {
         bytes: vec![0],
     }];
     let run = Run {
-        scene: None,
-        parameters: None,
         truths: &[(t_us, Truth::default())],
         link: &link,
-        said: &[],
-        messages: &[],
-        outcome: Outcome::default(),
+        ..Run::default()
     };
     record_run(path, manifest, run).unwrap();
 }

@@ -25,13 +25,11 @@ fn a_run_of_another_model_that_differs_reports_the_model_first() {
             ..recorded.clone()
         };
         let run = Run {
-            scene: None,
-            parameters: None,
             truths: &[(200_000, Truth::default())],
             link: &log.link,
             said: &log.said,
-            messages: &[],
             outcome,
+            ..Run::default()
         };
         record_run(&folder.join("x.mcap"), &manifest, run).unwrap();
         let output = rumbo_in(folder, &["rerun", "x.mcap"]);

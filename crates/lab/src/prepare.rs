@@ -1,6 +1,7 @@
 //! A simulation of the lab, before its first step.
 
 use crate::manifest;
+use crate::program::Held;
 use crate::scene::{first_commands, scene};
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
@@ -10,18 +11,19 @@ use rumbo_sim::{Config, Sim};
 use rumbo_wire::Command;
 
 /// A simulation at time 0 and its surroundings.
-pub(super) struct Prepared {
-    pub(super) sim: Sim,
-    pub(super) mode: ModeId,
-    pub(super) scene: Scene,
-    pub(super) first_commands: Vec<Command>,
-    pub(super) manifest: Manifest,
+pub(crate) struct Prepared {
+    pub(crate) sim: Sim,
+    pub(crate) mode: ModeId,
+    pub(crate) scene: Scene,
+    pub(crate) first_commands: Vec<Command>,
+    pub(crate) manifest: Manifest,
 }
 
-/// Prepares the page's choice; `memory` is what the robot's EEPROM holds.
-pub(super) fn prepare(
+/// Prepares the page's choice, on the emulated Mega with an image; `memory` is what the robot's EEPROM holds.
+pub(crate) fn prepare(
     library: &Library,
     overrides: &Overrides,
+    image: Option<&Held>,
     choice: Choice,
     memory: &[u8],
 ) -> Result<Prepared, FileError> {
@@ -30,8 +32,13 @@ pub(super) fn prepare(
         rig: choice.rig.clone(),
         ..overrides.clone()
     };
-    let setup: Setup = library.setup(&choice.scenario, &overrides)?;
+    let mut setup: Setup = library.setup(&choice.scenario, &overrides)?;
     let mut manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
+    if let Some(held) = image {
+        setup.firmware = Some(held.firmware(&setup, overrides.wiring.as_deref())?);
+        manifest.program.clone_from(&held.name);
+        manifest.image = Some(held.hash.clone());
+    }
     manifest.remember(memory);
     let setup = setup.of_seed(choice.seed)?;
     let ready = run::prepare(&setup, choice.seed)?;

@@ -9,7 +9,10 @@ use rumbo_plant::plant::Mount;
 use rumbo_wire::Command;
 
 /// The scene of a setup.
-pub(crate) fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, FileError> {
+///
+/// # Errors
+/// The world's shapes are none.
+pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, FileError> {
     let Setup {
         scenario,
         robot,

@@ -1,0 +1,102 @@
+//! What JavaScript sees of it.
+
+use crate::lab::{Lab as Inner, Start};
+use wasm_bindgen::prelude::wasm_bindgen;
+
+#[wasm_bindgen]
+extern "C" {
+    #[wasm_bindgen(js_namespace = performance, js_name = now)]
+    fn now_ms() -> f64;
+
+    #[wasm_bindgen(js_namespace = Date, js_name = now)]
+    fn day_ms() -> f64;
+
+    #[wasm_bindgen(js_namespace = console)]
+    fn error(text: &str);
+}
+
+/// A panic says why on the console before it ends the worker.
+#[wasm_bindgen(start)]
+pub fn start() {
+    std::panic::set_hook(Box::new(|panic| error(&panic.to_string())));
+}
+
+/// The lab of one page.
+#[wasm_bindgen]
+pub struct Lab(Inner);
+
+#[wasm_bindgen]
+impl Lab {
+    /// The robot at its start, in real time; `start` is a [`Start`] as JSON, `id` is to be random.
+    #[wasm_bindgen(constructor)]
+    pub fn new(start: &str, id: u8) -> Result<Lab, String> {
+        let start: Start = serde_json::from_str(start).map_err(|error| error.to_string())?;
+        let lab = Inner::new(start, id, day_ms());
+        lab.map(Lab).map_err(|error| error.to_string())
+    }
+
+    /// The version of Rumbo.
+    #[wasm_bindgen(getter)]
+    pub fn version(&self) -> String {
+        env!("CARGO_PKG_VERSION").into()
+    }
+
+    /// When the run began \[ms since 1970\].
+    #[wasm_bindgen(getter)]
+    pub fn began_ms(&mut self) -> f64 {
+        self.0.began_ms()
+    }
+
+    /// The run so far as a log, which began at `started`, the time in UTC as `2026-11-23T22:40:03Z`.
+    pub fn log(&mut self, started: String) -> Result<LogFile, String> {
+        let (name, bytes) = self.0.log(started).map_err(|error| error.to_string())?;
+        Ok(LogFile { name, bytes })
+    }
+
+    /// Warns the page.
+    pub fn warn(&mut self, text: String) {
+        self.0.warn(text);
+    }
+
+    /// Takes an order, as JSON.
+    pub fn order(&mut self, json: &str) {
+        self.0.order(json);
+    }
+
+    /// One round, of 20 ms at most.
+    pub fn advance(&mut self) -> Result<(), String> {
+        let wall_us = || (now_ms() * 1e3) as u64;
+        let done = self.0.advance(wall_us, day_ms());
+        done.map_err(|error| error.to_string())
+    }
+
+    /// The messages that are new to the page, as JSON.
+    pub fn news(&mut self) -> Vec<String> {
+        self.0.news()
+    }
+}
+
+/// A log to be saved.
+#[wasm_bindgen(getter_with_clone)]
+pub struct LogFile {
+    /// The name of a file for it.
+    pub name: String,
+    /// Its content.
+    pub bytes: Vec<u8>,
+}
+
+/// The hash of a headless run as 16 hexadecimal digits, by the native program, or by an image if it is not empty.
+#[wasm_bindgen]
+pub fn run_hash(scenario: &str, seed: u32, image: &[u8]) -> Result<String, String> {
+    let image = (!image.is_empty()).then_some(("image", image));
+    let hash = rumbo_lab::run_hash(scenario, seed.into(), image);
+    hash.map(|hash| format!("{hash:016x}"))
+        .map_err(|error| error.to_string())
+}
+
+/// The names of the scenarios, in order.
+#[wasm_bindgen]
+pub fn scenarios() -> Vec<String> {
+    use rumbo_experiment::files::{Kind, Library};
+    Library::new().list(Kind::Scenario)
+}

@@ -1,0 +1,225 @@
+//! A session with a simulated robot, and the one page that it has.
+
+use crate::recording::Recording;
+use rumbo_experiment::files::{FileError, Overrides};
+use rumbo_lab::SimulatedRobot;
+use rumbo_log::{Choice, Level, LoggedEvent, Manifest, WriteError};
+use rumbo_session::{
+    Board, Cursor, Driver, Event, Extras, Host, Lease, Order, PageId, TargetError, ToPage, View,
+    stop_first,
+};
+use rumbo_wire::Command;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// Longest time spent on one round of slices, so that orders do not wait \[us\].
+const ROUND_US: u64 = 20_000;
+/// Orders that wait for a round; a page that gives more at once has gone wrong.
+const WAITING: usize = 1_000;
+
+/// What runs when the page is opened: as its address says, or else the first scenario.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct Start {
+    /// The scenario's name.
+    pub scenario: String,
+    /// Another world than the scenario's.
+    pub world: Option<String>,
+    /// Other sonars than the scenario's.
+    pub rig: Option<String>,
+    /// Another robot than the scenario's.
+    pub robot: Option<String>,
+    /// Draws the robot and its noise.
+    pub seed: u64,
+    /// Values of parameters by name, which hold in every run of the page.
+    pub parameters: BTreeMap<String, f64>,
+}
+
+impl Default for Start {
+    fn default() -> Self {
+        Self {
+            scenario: "mode1".into(),
+            world: None,
+            rig: None,
+            robot: None,
+            seed: 1,
+            parameters: BTreeMap::new(),
+        }
+    }
+}
+
+/// What the driver passes events to.
+struct Page {
+    board: Board,
+    /// Time of day \[ms since 1970\].
+    day_ms: f64,
+    id: u8,
+    recording: Option<Recording>,
+    /// The recording has just run out of room.
+    full: bool,
+}
+
+impl Host for Page {
+    fn random_id(&mut self) -> u8 {
+        self.id = self.id.wrapping_add(1);
+        self.id
+    }
+
+    fn publish(&mut self, event: Event) {
+        self.board.take(&event, self.day_ms);
+        if let (Event::Entry(entry), Some(recording)) = (&event, &mut self.recording) {
+            self.full |= !recording.keep(entry);
+        }
+    }
+
+    /// The recording of the run before is gone.
+    fn begin_run(&mut self, manifest: Manifest) -> Option<(Level, String)> {
+        self.recording = Some(Recording::new(manifest, self.day_ms));
+        None
+    }
+}
+
+/// The lab of one page.
+pub struct Lab {
+    driver: Driver<Page>,
+    /// Orders since the last round.
+    waiting: Vec<Order>,
+    lease: Lease,
+    page: PageId,
+    cursor: Cursor,
+    /// The page has had its first message.
+    greeted: bool,
+    seat: Option<View>,
+    /// Warnings for the page.
+    warnings: Vec<String>,
+}
+
+impl Lab {
+    /// The robot at its start, in real time; `id` is to be random, `day_ms` is the time of day
+    /// \[ms since 1970\].
+    ///
+    /// # Errors
+    /// No such scenario, world, rig, robot or parameter, or a value out of its range.
+    pub fn new(start: Start, id: u8, day_ms: f64) -> Result<Self, FileError> {
+        let choice = Choice {
+            scenario: start.scenario,
+            world: start.world,
+            rig: start.rig,
+            seed: start.seed,
+        };
+        let overrides = Overrides {
+            robot: start.robot,
+            parameters: start.parameters.into_iter().collect(),
+            ..Overrides::default()
+        };
+        let robot = SimulatedRobot::new(overrides, choice)?;
+        let page = Page {
+            board: Board::default(),
+            day_ms,
+            id,
+            recording: None,
+            full: false,
+        };
+        let extras = Extras {
+            calibration: Some(rumbo_lab::calibration),
+            ..Extras::default()
+        };
+        let mut driver = Driver::new(Box::new(robot), page, 1.0, extras);
+        driver.begin(0);
+        let mut lease = Lease::default();
+        Ok(Self {
+            driver,
+            waiting: Vec::new(),
+            // The first page is always admitted.
+            page: lease.join(true).unwrap_or_default(),
+            lease,
+            cursor: Cursor::default(),
+            greeted: false,
+            seat: None,
+            warnings: Vec::new(),
+        })
+    }
+
+    /// Takes an order of the page, to be executed in the next round; what is refused is reported with the next news.
+    pub fn order(&mut self, json: &str) {
+        let admitted = json.parse::<Order>().map_err(|error| error.to_string());
+        let admitted = admitted.and_then(|order| {
+            self.lease.admit(&order, self.page)?;
+            match self.waiting.len() < WAITING || order == Order::Robot(Command::Stop) {
+                true => Ok(order),
+                false => Err("too many orders at once".into()),
+            }
+        });
+        match admitted {
+            Ok(order) => self.waiting.push(order),
+            Err(why) => self.warn(why),
+        }
+    }
+
+    /// Warns the page, with the next news.
+    pub fn warn(&mut self, text: String) {
+        self.warnings.push(text);
+    }
+
+    /// Executes the orders, STOP first, and advances the robot by the time due: one round, which ends early rather than
+    /// late. `wall_us` reads a clock that never goes back \[us\]; `day_ms` is the time of day \[ms since 1970\].
+    ///
+    /// # Errors
+    /// The robot is gone for good, which no simulated one is.
+    pub fn advance(&mut self, wall_us: impl Fn() -> u64, day_ms: f64) -> Result<(), TargetError> {
+        let began_us = wall_us();
+        self.driver.host().day_ms = day_ms;
+        let waiting = std::mem::take(&mut self.waiting);
+        let stop = waiting.contains(&Order::Robot(Command::Stop));
+        self.driver.obey(stop_first(waiting, stop), began_us)?;
+        self.driver.wall_passed(began_us);
+        let mut now_us = began_us;
+        while now_us < began_us + ROUND_US && self.driver.slice(now_us)? {
+            now_us = wall_us();
+        }
+        self.driver.update(now_us);
+        if std::mem::take(&mut self.driver.host().full) {
+            self.warn("the recording is full: save it, and reset for another one".into());
+        }
+        Ok(())
+    }
+
+    /// When the run began: time of day \[ms since 1970\].
+    pub fn began_ms(&mut self) -> f64 {
+        let recording = self.driver.host().recording.as_ref();
+        recording.map_or(0.0, |recording| recording.began_ms)
+    }
+
+    /// The run so far as a log: the name of a file for it, and the file. `started` is when it began, as a manifest has it.
+    ///
+    /// # Errors
+    /// Why it cannot be written.
+    pub fn log(&mut self, started: String) -> Result<(String, Vec<u8>), WriteError> {
+        match &self.driver.host().recording {
+            Some(recording) => recording.log(started),
+            None => Ok(Default::default()),
+        }
+    }
+
+    /// What is new to the page, as JSON.
+    pub fn news(&mut self) -> Vec<String> {
+        let mut messages = Vec::new();
+        if !std::mem::replace(&mut self.greeted, true) {
+            messages.extend(ToPage::hello().json());
+        }
+        let view = self.lease.view(self.page);
+        if self.seat.replace(view) != Some(view) {
+            messages.extend(ToPage::Control(view).json());
+        }
+        let mut news = self.driver.host().board.news(&mut self.cursor);
+        let t_s = news.state.as_ref().map_or(0.0, |state| state.t_s);
+        let refused = self.warnings.drain(..).map(|text| LoggedEvent {
+            t_s,
+            level: Level::Warning,
+            text,
+        });
+        news.events.extend(refused);
+        messages.extend(news.messages().filter_map(|message| message.json()));
+        messages
+    }
+}

@@ -1,0 +1,11 @@
+//! The lab in a browser: a simulated robot and its session as one object that a worker drives, `web/lab/worker.js`.
+//!
+//! The worker hands in the page's orders, advances the [`Lab`] by the browser's clock in bounded rounds, and posts its
+//! messages to the page: those of the station's WebSocket.
+
+#[cfg(target_family = "wasm")]
+pub mod exports;
+mod lab;
+mod recording;
+
+pub use lab::{Lab, Start};

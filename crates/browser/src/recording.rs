@@ -1,0 +1,64 @@
+//! The recording of the page's run: kept in memory, written as a log when it is saved.
+
+use rumbo_log::{Entry, LogWriter, Manifest, Row, WriteError};
+use std::io::Cursor;
+use std::sync::Arc;
+
+/// Room for a recording in memory \[bytes\]: some hours of driving.
+const ROOM: usize = 200 << 20;
+/// About what an entry takes besides its bytes or rows \[bytes\].
+const ENTRY: usize = 500;
+
+/// What has happened since the run began.
+pub(crate) struct Recording {
+    manifest: Manifest,
+    /// Time of day when the run began \[ms since 1970\].
+    pub(crate) began_ms: f64,
+    entries: Vec<Arc<Entry>>,
+    bytes: usize,
+}
+
+impl Recording {
+    pub(crate) fn new(manifest: Manifest, began_ms: f64) -> Self {
+        Self {
+            manifest,
+            began_ms,
+            entries: Vec::new(),
+            bytes: 0,
+        }
+    }
+
+    /// Keeps an entry, while there is room; false when it has just run out.
+    pub(crate) fn keep(&mut self, entry: &Arc<Entry>) -> bool {
+        if self.bytes >= ROOM {
+            return true;
+        }
+        self.bytes += ENTRY + size_of_content(entry);
+        self.entries.push(Arc::clone(entry));
+        self.bytes < ROOM
+    }
+
+    /// The name of a file for it, and the file; `started` is when the run began, as in a manifest.
+    pub(crate) fn log(&self, started: String) -> Result<(String, Vec<u8>), WriteError> {
+        let manifest = Manifest {
+            started: Some(started),
+            ..self.manifest.clone()
+        };
+        let mut log = LogWriter::new(Cursor::new(Vec::new()), &manifest)?;
+        for entry in &self.entries {
+            log.record(entry)?;
+        }
+        let name = format!("{}.mcap", manifest.stem());
+        Ok((name, log.finish()?.into_inner()))
+    }
+}
+
+fn size_of_content(entry: &Entry) -> usize {
+    match entry {
+        Entry::Burst(burst) => burst.bytes.len(),
+        Entry::Said(said) => said.bytes.len(),
+        Entry::Rows(rows) => rows.len() * size_of::<Row>(),
+        Entry::Readings(readings) => readings.len() * ENTRY,
+        _ => 0,
+    }
+}

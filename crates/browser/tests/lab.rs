@@ -1,0 +1,139 @@
+//! The lab of a page, driven as its worker drives it, by a clock of the test.
+#![allow(clippy::unwrap_used, reason = "helpers of tests too")]
+
+use rumbo_browser::{Lab, Start};
+use rumbo_log::Log;
+use std::cell::Cell;
+
+/// What the page gets while the lab is driven for this long, a round every 10 ms.
+fn drive(lab: &mut Lab, clock_us: &Cell<u64>, seconds: f64) -> Vec<String> {
+    let mut messages = Vec::new();
+    for _ in 0..(seconds * 100.0) as u32 {
+        clock_us.set(clock_us.get() + 10_000);
+        lab.advance(|| clock_us.get(), 0.0).unwrap();
+        messages.extend(lab.news());
+    }
+    messages
+}
+
+fn is(kind: &str) -> impl Fn(&&String) -> bool {
+    let start = format!("{{\"type\":\"{kind}\"");
+    move |message: &&String| message.starts_with(&start)
+}
+
+/// The last state of these messages.
+fn state(messages: &[String]) -> &str {
+    messages.iter().rfind(is("state")).unwrap()
+}
+
+#[test]
+fn the_page_is_greeted_first_and_gets_what_the_station_sends() {
+    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    let messages = drive(&mut lab, &Cell::new(0), 1.0);
+    assert!(is("hello")(&&messages[0]), "{}", messages[0]);
+    for kind in [
+        "control",
+        "scene",
+        "state",
+        "samples",
+        "parameters",
+        "events",
+    ] {
+        assert!(messages.iter().any(|message| is(kind)(&message)), "{kind}");
+    }
+    assert_eq!(messages.iter().filter(is("hello")).count(), 1);
+    // In real time.
+    assert!(
+        state(&messages).contains("\"t_s\":0.9"),
+        "{}",
+        state(&messages)
+    );
+}
+
+#[test]
+fn the_robot_is_armed_and_stop_comes_before_all_that_waits() {
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    drive(&mut lab, &clock_us, 1.0);
+    lab.order(r#"{"type":"arm"}"#);
+    let messages = drive(&mut lab, &clock_us, 0.5);
+    assert!(state(&messages).contains("\"armed\":true"));
+    lab.order(r#"{"type":"arm"}"#);
+    lab.order(r#"{"type":"stop"}"#);
+    let messages = drive(&mut lab, &clock_us, 0.5);
+    assert!(state(&messages).contains("\"armed\":false"));
+}
+
+#[test]
+fn what_is_no_order_is_reported_and_the_lab_goes_on() {
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    drive(&mut lab, &clock_us, 0.1);
+    lab.order(r#"{"type":"fly"}"#);
+    let messages = drive(&mut lab, &clock_us, 0.5);
+    let events: String = messages
+        .into_iter()
+        .filter(|it| is("events")(&it))
+        .collect();
+    assert!(events.contains("not understood"), "{events}");
+}
+
+#[test]
+fn a_page_that_slept_does_not_rush_and_a_high_speed_does_not_hold_up_orders() {
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    drive(&mut lab, &clock_us, 0.1);
+    lab.order(r#"{"type":"speed","factor":100}"#);
+    drive(&mut lab, &clock_us, 0.1);
+    clock_us.set(clock_us.get() + 60_000_000);
+    // Each look at the clock takes 5 ms: a round ends after 20 ms of them, and not when all is done.
+    let looks = Cell::new(0);
+    let slow_us = || {
+        looks.set(looks.get() + 1);
+        clock_us.set(clock_us.get() + 5_000);
+        clock_us.get()
+    };
+    lab.advance(slow_us, 0.0).unwrap();
+    assert!(looks.get() <= 6, "{}", looks.get());
+}
+
+#[test]
+fn a_link_sets_the_experiment_and_one_that_is_wrong_says_where() {
+    let clock_us = Cell::new(0);
+    let start = Start {
+        scenario: "mode5".into(),
+        seed: 9,
+        parameters: [("link_timeout_s".to_owned(), 0.3)].into(),
+        ..Start::default()
+    };
+    let mut lab = Lab::new(start.clone(), 7, 0.0).unwrap();
+    let messages = drive(&mut lab, &clock_us, 20.0);
+    let scene = messages.iter().find(is("scene")).unwrap();
+    assert!(scene.contains("\"scenario\":\"mode5\"") && scene.contains("\"seed\":9"));
+    let table = messages.iter().rfind(is("parameters")).unwrap();
+    let (_, from) = table.split_once("\"name\":\"link_timeout_s\"").unwrap();
+    let (_, from) = from.split_once("\"value\":").unwrap();
+    assert!(from.starts_with("0.3,"), "{}", &from[..20]);
+    let wrong = Start {
+        parameters: [("link_timeout".to_owned(), 0.3)].into(),
+        ..start
+    };
+    let why = Lab::new(wrong, 7, 0.0).err().unwrap().to_string();
+    assert!(why.contains("link_timeout"), "{why}");
+}
+
+#[test]
+fn the_recording_is_a_log_of_the_run_since_its_reset() {
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    drive(&mut lab, &clock_us, 1.0);
+    lab.order(r#"{"type":"reset","scenario":"mode5","world":null,"seed":3}"#);
+    drive(&mut lab, &clock_us, 1.0);
+    let (name, bytes) = lab.log("2026-11-23T22:40:03Z".into()).unwrap();
+    assert_eq!(name, "20261123-224003-mode5-3.mcap");
+    let log = Log::read(std::io::Cursor::new(bytes)).unwrap();
+    let manifest = log.manifest.as_ref().unwrap();
+    assert_eq!(manifest.scenario.as_deref(), Some("mode5"));
+    assert_eq!(manifest.seed, Some(3));
+    assert!(log.rows.len() > 20 && log.rows.iter().all(|row| row.t_ms <= 1_000));
+}

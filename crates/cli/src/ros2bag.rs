@@ -1,0 +1,65 @@
+//! `rumbo export --ros2bag`: a log as a bag of ROS 2.
+
+use crate::failure::Failure;
+use crate::mark::Stamp;
+use crate::output;
+use crate::place::{self, Guard, unwritable};
+use rumbo_log::Log;
+use rumbo_ros::{bag, convert};
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// A bag: a folder with two files.
+pub(crate) struct Bag {
+    folder: PathBuf,
+    /// Name of its MCAP file.
+    file: String,
+    stamp: Stamp,
+}
+
+impl Bag {
+    /// The bag of the log with this name, in a folder.
+    pub(crate) fn of(stem: &str, folder: &Path, stamp: Stamp) -> Self {
+        Self {
+            folder: folder.join(format!("{stem}.ros2bag")),
+            file: format!("{stem}.mcap"),
+            stamp,
+        }
+    }
+
+    fn paths(&self) -> [PathBuf; 2] {
+        [&self.file, "metadata.yaml"].map(|name| self.folder.join(name))
+    }
+
+    /// Whether its files may be written.
+    pub(crate) fn check(&self, guard: &Guard) -> Result<(), Failure> {
+        let mark = self.stamp.mark();
+        self.paths()
+            .iter()
+            .try_for_each(|path| guard.check(path, &mark))
+    }
+
+    /// Writes it, and prints where it is.
+    pub(crate) fn write(&self, path: &Path, log: &Log) -> Result<(), Failure> {
+        let messages = convert::messages(log)
+            .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
+        place::folder(&self.folder)?;
+        let [mcap, metadata] = self.paths();
+        place::make(&mcap, |place| {
+            let written = File::create(place)
+                .map_err(mcap::McapError::Io)
+                .and_then(|file| {
+                    let mut file = bag::write(BufWriter::new(file), &messages, &self.stamp.0)?;
+                    Ok(file.flush()?)
+                });
+            written.map_err(|error| match error {
+                mcap::McapError::Io(error) => unwritable(&mcap, &error),
+                error => Failure::Input(format!("{}: {error}", mcap.display())),
+            })
+        })?;
+        let text = bag::metadata(&messages, &self.file);
+        place::write(&metadata, format!("# {}\n{text}", self.stamp.0))?;
+        output::line(&self.folder.display().to_string())
+    }
+}

@@ -1,0 +1,79 @@
+//! A run in one number: equal numbers are equal runs, to the last bit, on any machine.
+
+use crate::program::Held;
+use rumbo_experiment::files::{FileError, Library, Overrides};
+use rumbo_experiment::run::{self, RunResult};
+use rumbo_sim::trace::Sample;
+
+const CRC: crc::Crc<u64> = crc::Crc::<u64>::new(&crc::CRC_64_XZ);
+
+/// Runs a scenario of ours with a seed, by the native program or an image (name and bytes of its file), as fast as it
+/// goes. Returns the CRC-64 of its ground truth, of all bytes on the link and the USARTs, and of its metrics.
+///
+/// # Errors
+/// No such scenario, or no image for its robot.
+pub fn run_hash(scenario: &str, seed: u64, image: Option<(&str, &[u8])>) -> Result<u64, FileError> {
+    let mut setup = Library::new().setup(scenario, &Overrides::default())?;
+    if let Some((name, bytes)) = image {
+        setup.firmware = Some(Held::new(name, bytes)?.firmware(&setup, None)?);
+    }
+    Ok(of(&run::run(&setup, seed)?))
+}
+
+fn of(result: &RunResult) -> u64 {
+    let mut digest = CRC.digest();
+    let trace = &result.trace;
+    for sample in &trace.samples {
+        values_of(sample).for_each(|value| digest.update(&bits(value)));
+    }
+    for burst in &trace.link {
+        digest.update(&burst.t_us.to_le_bytes());
+        digest.update(&[u8::from(burst.to_robot)]);
+        digest.update(&burst.bytes);
+    }
+    for said in &trace.consoles {
+        digest.update(&said.t_us.to_le_bytes());
+        digest.update(&[said.usart]);
+        digest.update(&said.bytes);
+    }
+    for (name, value) in &result.metrics {
+        digest.update(name.as_bytes());
+        digest.update(&bits(*value));
+    }
+    digest.finalize()
+}
+
+fn values_of(sample: &Sample) -> impl Iterator<Item = f64> {
+    let Sample {
+        t_s,
+        x_m,
+        y_m,
+        heading_rad,
+        wheel_rad_s,
+        duty,
+        range_m,
+        servo_rad,
+        battery_v,
+        touching,
+    } = *sample;
+    let [left, right] = duty.map(f64::from);
+    let touching = f64::from(u8::from(touching));
+    let rest = [
+        t_s,
+        x_m,
+        y_m,
+        heading_rad,
+        left,
+        right,
+        servo_rad,
+        battery_v,
+        touching,
+    ];
+    rest.into_iter().chain(wheel_rad_s).chain(range_m)
+}
+
+/// Not a number has many bit patterns, which processors choose as they like.
+fn bits(value: f64) -> [u8; 8] {
+    let value = if value.is_nan() { f64::NAN } else { value };
+    value.to_bits().to_le_bytes()
+}

@@ -1,0 +1,19 @@
+//! The lab: a simulated robot as the target of a session, with its world and its experiments.
+//!
+//! A [`SimulatedRobot`] needs no files, threads or clocks: `rumbo lab` runs it behind the station, the browser in a
+//! worker. What only a computer has is plugged in: a compiler for sketches ([`Make`]), a port for other programs
+//! ([`Cable`]), a debugger.
+
+mod calibration;
+mod hash;
+pub mod manifest;
+mod prepare;
+mod program;
+mod robot;
+mod scene;
+
+pub use calibration::calibration;
+pub use hash::run_hash;
+pub use program::{Made, Make, OwnProgram, Workshop, problem};
+pub use robot::{Cable, SimulatedRobot, type_to};
+pub use scene::scene;

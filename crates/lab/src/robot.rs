@@ -1,0 +1,337 @@
+//! The simulated robot behind the interface of a session's target.
+
+use crate::prepare::{Prepared, prepare};
+use crate::program::{Held, Make, OwnProgram};
+use rumbo_control::Wheels;
+use rumbo_control::mode::ModeId;
+use rumbo_experiment::files::{FileError, Library, Overrides};
+use rumbo_log::{Choice, Manifest, MapPose, ProgramState, Scene, Truth};
+use rumbo_session::{Abilities, LinkNews, Standing, Target, TargetError};
+use rumbo_sim::boards::Board;
+use rumbo_sim::debugging::Debugging;
+use rumbo_sim::mega::firmware::Language;
+use rumbo_sim::{READING_US, Sim};
+use rumbo_wire::Command;
+use std::collections::VecDeque;
+
+/// The USART of the USB port.
+const USB: u8 = 0;
+
+/// Another program at the USB port of an emulated Mega.
+pub trait Cable: Send {
+    /// What the other program has sent since the last call.
+    fn read(&mut self) -> &[u8];
+
+    /// What the Mega has sent.
+    fn write(&mut self, bytes: &[u8]);
+}
+
+/// A simulated robot, with what is connected to it.
+pub struct SimulatedRobot {
+    library: Library,
+    /// The overrides of the command line; the page chooses scenario, world and rig.
+    pub(crate) overrides: Overrides,
+    /// An image that was dropped on the page, in place of that of the overrides.
+    pub(crate) held: Option<Held>,
+    pub(crate) sim: Sim,
+    debugging: Option<Debugging>,
+    usb: Option<Box<dyn Cable>>,
+    /// The program that the user gave, if it is one for the emulated Mega.
+    pub(crate) program: Option<OwnProgram>,
+    pub(crate) make: Option<Make>,
+    manifest: Manifest,
+    mode: ModeId,
+    /// When the instruments are read next \[us\].
+    reading_due_us: u64,
+    /// The emulated program's end has been reported.
+    ended: bool,
+    /// What has happened to the program and is not reported yet.
+    pub(crate) news: VecDeque<LinkNews>,
+    pub(crate) scene: Scene,
+    first_commands: Vec<Command>,
+}
+
+impl SimulatedRobot {
+    /// The robot of a choice at its start, by the overrides.
+    ///
+    /// # Errors
+    /// The problems of the files that they name.
+    pub fn new(overrides: Overrides, choice: Choice) -> Result<Self, FileError> {
+        let library = Library::new();
+        let Prepared {
+            sim,
+            mode,
+            mut scene,
+            first_commands,
+            manifest,
+        } = prepare(&library, &overrides, None, choice, &[])?;
+        if let Some(world) = &scene.choice.world
+            && !scene.worlds.contains(world)
+        {
+            scene.worlds.push(world.clone());
+        }
+        Ok(Self {
+            library,
+            overrides,
+            held: None,
+            sim,
+            debugging: None,
+            usb: None,
+            program: None,
+            make: None,
+            manifest,
+            mode,
+            reading_due_us: 0,
+            ended: false,
+            news: VecDeque::new(),
+            scene,
+            first_commands,
+        })
+    }
+
+    /// Lets a debugger in.
+    pub fn debug(&mut self, debugging: Debugging) {
+        self.debugging = Some(debugging);
+    }
+
+    /// Connects another program to the USB port of the emulated Mega.
+    pub fn plug_in(&mut self, usb: Box<dyn Cable>) {
+        self.usb = Some(usb);
+    }
+
+    /// Names the program that runs on the emulated Mega, and renews it by its workshop.
+    pub fn own_program(&mut self, program: OwnProgram) {
+        self.program = Some(program);
+    }
+
+    /// Makes images of the programs that are dropped on the page. Without it only images are taken.
+    pub fn make_dropped_by(&mut self, make: Make) {
+        self.make = Some(make);
+    }
+
+    /// The board of the emulated chip, if there is one.
+    #[must_use]
+    pub fn chip_board(&self) -> Option<&'static Board> {
+        Some(self.sim.mega()?.firmware().board())
+    }
+}
+
+/// Sends a line to a USART of the emulated chip, over the link if it is the link's; whether there is a chip.
+pub fn type_to(sim: &mut Sim, usart: u8, line: &str) -> bool {
+    let bytes = format!("{line}\n");
+    let Some(mega) = sim.mega_mut() else {
+        return false;
+    };
+    if mega.firmware().link_usart() == Some(usart) {
+        sim.send(bytes.as_bytes());
+    } else {
+        mega.type_in(usart, bytes.as_bytes());
+    }
+    true
+}
+
+impl SimulatedRobot {
+    /// Makes it accept the bytes meant for another robot, timed by that one's clock.
+    pub fn be_ghost(&mut self) {
+        self.sim.be_ghost();
+    }
+
+    /// Lifts the robot so that its wheels turn freely, or puts it down.
+    pub fn lift(&mut self, wheels_in_air: bool) {
+        self.sim.lift(wheels_in_air);
+    }
+
+    /// Its parameters, as drawn for the seed.
+    #[must_use]
+    pub fn params(&self) -> &rumbo_plant::params::Params {
+        self.sim.params()
+    }
+
+    /// Moves the robot.
+    pub fn place(&mut self, Standing { at, estimated }: Standing) {
+        let at = rumbo_plant::contact::Pose {
+            x_m: at.x_m,
+            y_m: at.y_m,
+            heading_rad: at.heading_rad,
+        };
+        let estimate = rumbo_control::Pose {
+            x_m: estimated.x_m as f32,
+            y_m: estimated.y_m as f32,
+            heading_rad: estimated.heading_rad as f32,
+        };
+        self.sim.place(at, estimate);
+    }
+}
+
+impl Target for SimulatedRobot {
+    fn now_us(&self) -> u64 {
+        self.sim.now_us()
+    }
+
+    fn advance(&mut self, dt_us: u64) -> Result<(), TargetError> {
+        if let (Some(usb), Some(mega)) = (&mut self.usb, self.sim.mega_mut()) {
+            mega.type_in(USB, usb.read());
+        }
+        // After a breakpoint, back to the multiples of the step.
+        let until_us = (self.sim.now_us() / dt_us.max(1) + 1) * dt_us;
+        match &mut self.debugging {
+            Some(debugging) => debugging.advance(&mut self.sim, until_us),
+            None => self.sim.advance(until_us),
+        }
+        Ok(())
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TargetError> {
+        self.sim.send(bytes);
+        Ok(())
+    }
+
+    fn receive(&mut self, into: &mut Vec<u8>) {
+        self.sim.receive(into);
+    }
+
+    fn baud(&self) -> u32 {
+        self.sim.baud()
+    }
+
+    fn manifest(&self) -> Manifest {
+        self.manifest.clone()
+    }
+
+    fn abilities(&self) -> Abilities {
+        let firmware = self.sim.mega().map(|mega| mega.firmware());
+        let text = firmware.is_some_and(|firmware| firmware.language() == Language::Text);
+        Abilities {
+            pace: true,
+            reset: true,
+            clock: true,
+            port: false,
+            typing: true,
+            text: text.then_some(self.mode),
+        }
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        let truth = self.sim.truth();
+        let [left, right] = truth.wheel_rad_s;
+        Some(Truth {
+            pose: MapPose {
+                x_m: truth.pose.x_m,
+                y_m: truth.pose.y_m,
+                heading_rad: truth.pose.heading_rad,
+            },
+            wheel_rad_s: Wheels { left, right },
+            range_m: truth.range_m,
+            servo_rad: truth.servo_rad,
+            contact: truth.touching,
+            battery_v: truth.battery_v,
+        })
+    }
+
+    fn instruments(&mut self) -> Vec<(String, f64)> {
+        let now_us = self.sim.now_us();
+        if now_us < self.reading_due_us {
+            return Vec::new();
+        }
+        self.reading_due_us = now_us + READING_US;
+        self.sim.read_instruments()
+    }
+
+    fn scene(&self) -> Option<Scene> {
+        Some(self.scene.clone())
+    }
+
+    fn consoles(&mut self) -> Vec<(u8, Vec<u8>)> {
+        let Some(mega) = self.sim.mega_mut() else {
+            return Vec::new();
+        };
+        let said = (0..4).map(|usart| (usart, mega.take_console(usart)));
+        let said: Vec<_> = said.filter(|(_, bytes)| !bytes.is_empty()).collect();
+        if let (Some(usb), Some((USB, bytes))) = (&mut self.usb, said.first()) {
+            usb.write(bytes);
+        }
+        said
+    }
+
+    fn program(&self) -> Option<ProgramState> {
+        self.program_state()
+    }
+
+    fn news(&mut self) -> Option<LinkNews> {
+        self.renew_program();
+        if let Some(debugging) = &mut self.debugging {
+            let news = debugging.take_news().into_iter();
+            self.news.extend(news.map(LinkNews::Held));
+        }
+        if !self.ended
+            && let Some(verdict) = self.sim.verdict()
+        {
+            self.ended = true;
+            self.news.push_back(LinkNews::Ended(verdict));
+        }
+        self.news.pop_front()
+    }
+
+    fn type_in(&mut self, usart: u8, line: &str) -> Result<(), TargetError> {
+        match type_to(&mut self.sim, usart, line) {
+            true => Ok(()),
+            false => Err(TargetError::NoChip),
+        }
+    }
+
+    fn run_program(&mut self, name: String, content: Vec<u8>) -> Result<(), TargetError> {
+        self.drop_program(name, content)
+    }
+
+    fn first_commands(&self) -> Vec<Command> {
+        self.first_commands.clone()
+    }
+
+    fn reset(&mut self, choice: &Choice) -> Result<(), TargetError> {
+        // The page chooses among names it was given; it opens no files.
+        let Scene {
+            experiments,
+            worlds,
+            ..
+        } = &self.scene;
+        let offered = experiments.iter().any(|each| each.name == choice.scenario)
+            && choice.world.iter().all(|world| worlds.contains(world));
+        if !offered {
+            return Err(TargetError::NotOffered);
+        }
+        if self.program.as_ref().is_some_and(OwnProgram::is_rejected) {
+            return Err(TargetError::NotCompiled);
+        }
+        self.start_again(choice.clone())
+            .map_err(|error| TargetError::Setup(error.to_string()))
+    }
+}
+
+impl SimulatedRobot {
+    /// Starts again from time 0, as switched off and on again: saved parameters persist.
+    pub(crate) fn start_again(&mut self, choice: Choice) -> Result<(), FileError> {
+        let memory = self.sim.memory();
+        let held = self.held.as_ref();
+        let fresh = prepare(&self.library, &self.overrides, held, choice, &memory)?;
+        // What the command line added to the lists stays there.
+        let Scene {
+            experiments,
+            worlds,
+            ..
+        } = std::mem::take(&mut self.scene);
+        self.sim = fresh.sim;
+        if let Some(debugging) = &mut self.debugging {
+            debugging.forget();
+        }
+        self.mode = fresh.mode;
+        (self.reading_due_us, self.ended) = (0, false);
+        self.first_commands = fresh.first_commands;
+        self.manifest = fresh.manifest;
+        self.scene = Scene {
+            experiments,
+            worlds,
+            ..fresh.scene
+        };
+        Ok(())
+    }
+}

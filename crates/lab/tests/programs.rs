@@ -1,0 +1,57 @@
+//! Programs dropped on the page of a lab that has images in memory only.
+#![allow(clippy::unwrap_used, reason = "helpers of tests too")]
+
+use rumbo_experiment::files::Overrides;
+use rumbo_lab::SimulatedRobot;
+use rumbo_log::{Choice, ProgramPhase};
+use rumbo_session::{LinkNews, Target, TargetError};
+
+/// `rjmp .-2` at address 0, as Intel HEX: a program that does nothing.
+const IDLE: &[u8] = b":02000000FFCF30\n:00000001FF\n";
+
+fn robot() -> SimulatedRobot {
+    let choice = Choice {
+        scenario: "mode1".into(),
+        world: None,
+        rig: None,
+        seed: 1,
+    };
+    SimulatedRobot::new(Overrides::default(), choice).unwrap()
+}
+
+#[test]
+fn a_dropped_image_replaces_the_native_program_on_an_emulated_mega() {
+    let mut robot = robot();
+    assert!(robot.program().is_none());
+    robot.run_program("idle.hex".into(), IDLE.into()).unwrap();
+    assert_eq!(robot.news(), Some(LinkNews::Renewed));
+    let program = robot.program().unwrap();
+    assert_eq!(
+        (program.name.as_str(), program.phase),
+        ("idle.hex", ProgramPhase::Running)
+    );
+    let manifest = robot.manifest();
+    assert_eq!(manifest.program, "idle.hex");
+    assert!(manifest.image.is_some());
+    robot.advance(5_000).unwrap();
+    assert!(robot.type_in(0, "hello").is_ok());
+    // It stays through a reset.
+    let choice = robot.scene().unwrap().choice;
+    robot.reset(&choice).unwrap();
+    assert_eq!(robot.program().unwrap().name, "idle.hex");
+}
+
+#[test]
+fn what_is_no_image_is_refused_with_the_reason_and_the_robot_goes_on() {
+    let mut robot = robot();
+    robot.advance(5_000).unwrap();
+    let sketch = robot.run_program("a.ino".into(), b"void setup() {}".into());
+    assert_eq!(sketch, Err(TargetError::NoCompiler));
+    let text = robot.run_program("a.txt".into(), b"hello".into());
+    assert_eq!(text, Err(TargetError::NotAProgram));
+    let broken = robot.run_program("a.elf".into(), b"hello".into());
+    let why = broken.unwrap_err().to_string();
+    assert!(why.contains("a.elf"), "{why}");
+    assert!(robot.news().is_none() && robot.program().is_none());
+    assert_eq!(robot.now_us(), 5_000);
+}

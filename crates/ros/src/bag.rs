@@ -1,0 +1,118 @@
+//! A bag of ROS 2: a folder with an MCAP file and `metadata.yaml`, as rosbag2 writes it (its version 5: Humble and
+//! newer read it).
+
+use crate::convert::{Sent, Topic};
+use mcap::records::MessageHeader;
+use mcap::{Compression, McapError, WriteOptions};
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::io::{Seek, Write};
+
+/// The quality of service of a topic, as rosbag2 notes it: reliable; a latched topic keeps its last message for those
+/// who come late.
+fn quality(is_latched: bool) -> String {
+    let (depth, durability) = if is_latched { (1, 1) } else { (10, 2) };
+    let forever = json!({ "sec": 9_223_372_036_u64, "nsec": 854_775_807_u64 });
+    json!([{
+        "history": 1,
+        "depth": depth,
+        "reliability": 1,
+        "durability": durability,
+        "deadline": forever,
+        "lifespan": forever,
+        "liveliness": 1,
+        "liveliness_lease_duration": forever,
+        "avoid_ros_namespace_conventions": false,
+    }])
+    .to_string()
+}
+
+/// Writes the MCAP file. `library` says who wrote it.
+///
+/// # Errors
+/// What `into` does not take.
+pub fn write<W: Write + Seek>(into: W, messages: &[Sent], library: &str) -> Result<W, McapError> {
+    let mut bag = WriteOptions::new()
+        .profile("ros2")
+        .library(library)
+        .compression(Some(Compression::Lz4))
+        .create(into)?;
+    let mut channels = BTreeMap::new();
+    for topic in topics(messages).into_keys() {
+        let definition = topic.definition();
+        let schema = bag.add_schema(definition.name, "ros2msg", definition.text().as_bytes())?;
+        let about = [
+            ("offered_qos_profiles", quality(topic.is_latched())),
+            ("topic_type_hash", definition.hash()),
+        ];
+        let about = about.map(|(key, value)| (key.to_owned(), value));
+        let channel = bag.add_channel(schema, topic.name(), "cdr", &BTreeMap::from(about))?;
+        channels.insert(topic, (channel, 0));
+    }
+    for message in messages {
+        if let Some((channel_id, sequence)) = channels.get_mut(&message.topic) {
+            let header = MessageHeader {
+                channel_id: *channel_id,
+                sequence: *sequence,
+                log_time: message.t_ns,
+                publish_time: message.t_ns,
+            };
+            bag.write_to_known_channel(&header, &message.data)?;
+            *sequence += 1;
+        }
+    }
+    bag.finish()?;
+    Ok(bag.into_inner())
+}
+
+/// The text of `metadata.yaml`, for an MCAP file of this name. It is JSON, which is YAML too.
+#[must_use]
+pub fn metadata(messages: &[Sent], file: &str) -> String {
+    let (first, last) = (
+        messages.first().map_or(0, |message| message.t_ns),
+        messages.last().map_or(0, |message| message.t_ns),
+    );
+    let duration = json!({ "nanoseconds": last - first });
+    let start = json!({ "nanoseconds_since_epoch": first });
+    let topics = topics(messages).into_iter().map(|(topic, count)| {
+        json!({
+            "topic_metadata": {
+                "name": topic.name(),
+                "type": topic.definition().name,
+                "type_description_hash": topic.definition().hash(),
+                "serialization_format": "cdr",
+                "offered_qos_profiles": quality(topic.is_latched()),
+            },
+            "message_count": count,
+        })
+    });
+    let metadata = json!({
+        "rosbag2_bagfile_information": {
+            "version": 5,
+            "storage_identifier": "mcap",
+            "duration": duration,
+            "starting_time": start,
+            "message_count": messages.len(),
+            "topics_with_message_count": topics.collect::<Vec<_>>(),
+            "compression_format": "",
+            "compression_mode": "",
+            "relative_file_paths": [file],
+            "files": [{
+                "path": file,
+                "starting_time": start,
+                "duration": duration,
+                "message_count": messages.len(),
+            }],
+        }
+    });
+    format!("{metadata:#}\n")
+}
+
+/// The topics that have messages, and how many.
+fn topics(messages: &[Sent]) -> BTreeMap<Topic, usize> {
+    let mut topics = BTreeMap::new();
+    for message in messages {
+        *topics.entry(message.topic).or_default() += 1;
+    }
+    topics
+}

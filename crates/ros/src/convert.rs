@@ -1,0 +1,470 @@
+//! A log as messages of ROS 2, by topic.
+
+use crate::geometry::{
+    BASE, Geometry, MAP, ODOM, SONARS, WHEELS, pose, seen_from, stamped, transform,
+};
+use crate::messages::{
+    BatteryState, DiagnosticStatus, Diagnostics, Event, Header, JointState, KeyValue, Odometry,
+    Range, Text, Time, Transforms,
+};
+use crate::types::{Byte, Covariance, Definition, Message, encode};
+use rumbo_log::{Level, Log, MapPose, Row, SonarMount, State, compose};
+use std::fmt;
+use time::OffsetDateTime;
+use time::format_description::well_known::Rfc3339;
+
+/// Shortest distance that the sonars measure [m]: HC-SR04.
+const LEAST_M: f32 = 0.02;
+/// Who says the events.
+const SPEAKER: &str = "rumbo";
+
+/// A topic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Topic {
+    /// Pose and velocity, as the robot estimates them.
+    Odometry,
+    /// Frames that move.
+    Transforms,
+    /// Frames that do not.
+    StaticTransforms,
+    /// Wheels and servo.
+    Joints,
+    /// A sonar's distance, by `SonarId` number.
+    Range(u8),
+    /// Battery.
+    Battery,
+    /// State of robot and link.
+    Diagnostics,
+    /// What happened.
+    Events,
+    /// True pose and velocity, of a simulated robot.
+    Truth,
+    /// The robot's URDF.
+    Description,
+}
+
+impl Topic {
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Odometry => "/odom",
+            Self::Transforms => "/tf",
+            Self::StaticTransforms => "/tf_static",
+            Self::Joints => "/joint_states",
+            Self::Range(0) => "/sonar/left",
+            Self::Range(1) => "/sonar/right",
+            Self::Range(_) => "/sonar/front",
+            Self::Battery => "/battery_state",
+            Self::Diagnostics => "/diagnostics",
+            Self::Events => "/rosout",
+            Self::Truth => "/ground_truth/odom",
+            Self::Description => "/robot_description",
+        }
+    }
+
+    /// The type of its messages.
+    #[must_use]
+    pub fn definition(self) -> &'static Definition {
+        match self {
+            Self::Odometry | Self::Truth => Odometry::DEFINITION,
+            Self::Transforms | Self::StaticTransforms => Transforms::DEFINITION,
+            Self::Joints => JointState::DEFINITION,
+            Self::Range(_) => Range::DEFINITION,
+            Self::Battery => BatteryState::DEFINITION,
+            Self::Diagnostics => Diagnostics::DEFINITION,
+            Self::Events => Event::DEFINITION,
+            Self::Description => Text::DEFINITION,
+        }
+    }
+
+    /// Its last message is kept for those who come late.
+    #[must_use]
+    pub fn is_latched(self) -> bool {
+        matches!(self, Self::StaticTransforms | Self::Description)
+    }
+}
+
+/// A message on its topic.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sent {
+    /// The topic.
+    pub topic: Topic,
+    /// Its time [ns]: since 1970, or since the start of a run that has no date.
+    pub t_ns: u64,
+    /// The message in CDR.
+    pub data: Vec<u8>,
+}
+
+/// Why a log is no bag.
+#[derive(Debug)]
+pub enum ConvertError {
+    /// It has no telemetry.
+    NoTelemetry,
+    /// Nothing tells the size of wheels and base.
+    NoGeometry,
+    /// A message could not be encoded.
+    Encoding(cdr_encoding::Error),
+}
+
+impl fmt::Display for ConvertError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoTelemetry => f.write_str(
+                "holds no telemetry of a robot: no pose and no ranges; --format csv writes what there is",
+            ),
+            Self::NoGeometry => f.write_str(
+                "tells neither the radii of the wheels nor the distance between them: the robot's parameters were not received",
+            ),
+            Self::Encoding(error) => write!(f, "a message cannot be encoded: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for ConvertError {}
+
+/// All messages of a log, in order of time.
+///
+/// # Errors
+/// [`ConvertError`].
+pub fn messages(log: &Log) -> Result<Vec<Sent>, ConvertError> {
+    let first = log.rows.first().ok_or(ConvertError::NoTelemetry)?;
+    let geometry = Geometry::of(log).ok_or(ConvertError::NoGeometry)?;
+    let started = log.manifest.as_ref().and_then(|manifest| {
+        let started = manifest.started.as_ref()?;
+        OffsetDateTime::parse(started, &Rfc3339).ok()
+    });
+    let started = started.map_or(0, OffsetDateTime::unix_timestamp_nanos);
+    let mut converter = Converter {
+        geometry,
+        started_ns: u64::try_from(started).unwrap_or(0),
+        robot: log
+            .manifest
+            .as_ref()
+            .and_then(|manifest| manifest.robot.clone())
+            .unwrap_or_default(),
+        origin: Origin::default(),
+        wheel_rad: [0.0; 2],
+        last_ms: first.t_ms,
+        sent: Vec::new(),
+    };
+    converter.begin(first)?;
+    for row in &log.rows {
+        converter.row(row)?;
+    }
+    for state in &log.states {
+        converter.state(state)?;
+    }
+    for event in &log.events {
+        converter.event(event.t_s, event.level, &event.text)?;
+    }
+    let mut sent = converter.sent;
+    sent.sort_by_key(|message| message.t_ns);
+    Ok(sent)
+}
+
+struct Converter {
+    geometry: Geometry,
+    started_ns: u64,
+    /// Its name.
+    robot: String,
+    origin: Origin,
+    /// How far the wheels have turned: the sum of the measured speeds.
+    wheel_rad: [f64; 2],
+    last_ms: i64,
+    sent: Vec<Sent>,
+}
+
+/// The robot's origin in the frame `odom`, in which its pose never jumps (REP 105): it does when the robot begins to count
+/// from somewhere else, as at each goal.
+#[derive(Default)]
+struct Origin {
+    in_odom: MapPose,
+    /// Where the log has it, and the last pose.
+    last: Option<(Option<MapPose>, MapPose)>,
+}
+
+impl Origin {
+    /// The pose in `odom` of a pose from the robot's origin, which the log has there.
+    fn pose(&mut self, logged: Option<MapPose>, from_origin: MapPose) -> MapPose {
+        if let Some((before, at)) = self.last
+            && before != logged
+        {
+            self.in_odom = compose(at, seen_from(from_origin, MapPose::default()));
+        }
+        let at = compose(self.in_odom, from_origin);
+        self.last = Some((logged, at));
+        at
+    }
+}
+
+impl Converter {
+    fn put<M: Message>(
+        &mut self,
+        topic: Topic,
+        t_ns: u64,
+        message: &M,
+    ) -> Result<(), ConvertError> {
+        let data = encode(message).map_err(ConvertError::Encoding)?;
+        self.sent.push(Sent { topic, t_ns, data });
+        Ok(())
+    }
+
+    fn at_ms(&self, t_ms: i64) -> u64 {
+        self.started_ns + u64::try_from(t_ms).unwrap_or(0) * 1_000_000
+    }
+
+    fn header(&self, t_ns: u64, frame: &str) -> Header {
+        Header {
+            stamp: stamp(t_ns),
+            frame_id: frame.to_owned(),
+        }
+    }
+
+    /// What does not change.
+    fn begin(&mut self, first: &Row) -> Result<(), ConvertError> {
+        let t_ns = self.at_ms(first.t_ms);
+        let is_fixed = |mount: &&SonarMount| !mount.on_servo;
+        let fixed: Vec<&str> = self
+            .geometry
+            .sonars
+            .iter()
+            .filter(is_fixed)
+            .filter_map(frame)
+            .collect();
+        let parts = self.geometry.parts([0.0; 2], 0.0).into_iter();
+        let parts = parts.filter(|(part, _)| fixed.contains(part));
+        let parts = parts.map(|(part, at)| stamped(&stamp(t_ns), BASE, part, at));
+        let mut transforms: Vec<_> = parts.collect();
+        if first.pose("true_").is_some() {
+            let odom = first.pose("origin_").unwrap_or_default();
+            transforms.push(stamped(&stamp(t_ns), MAP, ODOM, transform(odom)));
+        }
+        if !transforms.is_empty() {
+            self.put(Topic::StaticTransforms, t_ns, &Transforms { transforms })?;
+        }
+        let data = self.geometry.urdf(&self.robot);
+        self.put(Topic::Description, t_ns, &Text { data })
+    }
+
+    fn row(&mut self, row: &Row) -> Result<(), ConvertError> {
+        let t_ns = self.at_ms(row.t_ms);
+        let speeds = |prefix: &str| {
+            ["left", "right"]
+                .map(|side| row.signal(&format!("{prefix}{side}_rad_s")).unwrap_or(0.0))
+        };
+        let elapsed_s = (row.t_ms - self.last_ms).max(0) as f64 / 1e3;
+        self.last_ms = row.t_ms;
+        let (before, now) = (speeds_before(row), speeds(""));
+        for side in 0..2 {
+            self.wheel_rad[side] += 0.5 * elapsed_s * (before[side] + now[side]);
+        }
+        let servo_rad = row.signal("servo_rad").unwrap_or(0.0);
+        let mut frames = Vec::new();
+        if let Some(at) = row.pose("") {
+            let at = self.origin.pose(row.pose("origin_"), at);
+            let turned_rad = self.origin.in_odom.heading_rad;
+            let odometry = self.odometry(t_ns, ODOM, at, now, covariance(row, turned_rad));
+            self.put(Topic::Odometry, t_ns, &odometry)?;
+            frames.push(stamped(&stamp(t_ns), ODOM, BASE, transform(at)));
+        }
+        let moving = self.geometry.sonars.iter().filter(|mount| mount.on_servo);
+        let moving: Vec<&str> = moving.filter_map(frame).chain(WHEELS).collect();
+        let parts = self.geometry.parts(self.wheel_rad, servo_rad).into_iter();
+        let parts = parts.filter(|(part, _)| moving.contains(part));
+        frames.extend(parts.map(|(part, at)| stamped(&stamp(t_ns), BASE, part, at)));
+        self.put(Topic::Transforms, t_ns, &Transforms { transforms: frames })?;
+        self.joints(t_ns, now, servo_rad)?;
+        for mount in self.geometry.sonars.clone() {
+            self.range(t_ns, row, &mount)?;
+        }
+        if let Some(at) = row.pose("true_") {
+            let truth = self.odometry(t_ns, MAP, at, speeds("true_"), Covariance::default());
+            self.put(Topic::Truth, t_ns, &truth)?;
+        }
+        Ok(())
+    }
+
+    fn odometry(
+        &self,
+        t_ns: u64,
+        frame: &str,
+        at: MapPose,
+        wheel_rad_s: [f64; 2],
+        covariance: Covariance,
+    ) -> Odometry {
+        let mut odometry = Odometry {
+            header: self.header(t_ns, frame),
+            child_frame_id: BASE.to_owned(),
+            ..Odometry::default()
+        };
+        odometry.pose.pose = pose(at);
+        odometry.pose.covariance = covariance;
+        let [forward_m_s, yaw_rad_s] = self.geometry.velocity(wheel_rad_s);
+        odometry.twist.twist.linear.x = forward_m_s;
+        odometry.twist.twist.angular.z = yaw_rad_s;
+        odometry
+    }
+
+    fn joints(
+        &mut self,
+        t_ns: u64,
+        wheel_rad_s: [f64; 2],
+        servo_rad: f64,
+    ) -> Result<(), ConvertError> {
+        let mut joints = JointState {
+            header: self.header(t_ns, ""),
+            name: WHEELS.map(|wheel| format!("{wheel}_joint")).to_vec(),
+            position: self.wheel_rad.to_vec(),
+            velocity: wheel_rad_s.to_vec(),
+            effort: Vec::new(),
+        };
+        let on_servo = self.geometry.sonars.iter().filter(|mount| mount.on_servo);
+        for sonar in on_servo.filter_map(frame) {
+            joints.name.push(format!("{sonar}_joint"));
+            joints.position.push(servo_rad);
+            joints.velocity.push(0.0);
+        }
+        self.put(Topic::Joints, t_ns, &joints)
+    }
+
+    fn range(&mut self, t_ns: u64, row: &Row, mount: &SonarMount) -> Result<(), ConvertError> {
+        let name = ["range_left_m", "range_right_m", "range_front_m"].get(usize::from(mount.id));
+        let range_m = name.and_then(|name| row.signal(name));
+        let (Some(range_m), Some(sonar)) = (range_m, frame(mount)) else {
+            return Ok(());
+        };
+        let range = Range {
+            header: self.header(t_ns, sonar),
+            radiation_type: 0,
+            field_of_view: (2.0 * mount.half_angle_rad) as f32,
+            min_range: LEAST_M,
+            max_range: mount.reach_m as f32,
+            range: range_m as f32,
+            variance: 0.0,
+        };
+        self.put(Topic::Range(mount.id), t_ns, &range)
+    }
+
+    fn state(&mut self, state: &State) -> Result<(), ConvertError> {
+        let t_ns = self.at_ms((state.t_s * 1e3) as i64);
+        if let Some(battery_v) = state.robot.battery_v {
+            let battery = BatteryState {
+                header: self.header(t_ns, BASE),
+                voltage: battery_v as f32,
+                temperature: f32::NAN,
+                current: f32::NAN,
+                charge: f32::NAN,
+                capacity: f32::NAN,
+                design_capacity: f32::NAN,
+                percentage: f32::NAN,
+                present: true,
+                ..BatteryState::default()
+            };
+            self.put(Topic::Battery, t_ns, &battery)?;
+        }
+        let (robot, link) = (&state.robot, &state.link);
+        let of_robot = match (&robot.fault, robot.armed) {
+            (Some(fault), _) => (2, fault.to_string()),
+            (None, true) => (0, "on".to_owned()),
+            (None, false) => (0, "off".to_owned()),
+        };
+        let of_link = match link.connected {
+            true => (0, "connected".to_owned()),
+            false => (1, "the robot does not answer".to_owned()),
+        };
+        let figures = |figures: &[(&str, String)]| {
+            let figures = figures.iter().map(|(key, value)| KeyValue {
+                key: (*key).to_owned(),
+                value: value.clone(),
+            });
+            figures.collect::<Vec<_>>()
+        };
+        let of_alarms = state
+            .alarms
+            .iter()
+            .map(|alarm| ("alarm", (2, alarm.clone()), Vec::new()));
+        let robot_figures = figures(&[
+            ("mode", robot.mode.to_string()),
+            ("tick overruns", robot.overruns.to_string()),
+        ]);
+        let link_figures = figures(&[
+            (
+                "telemetry, frames a second",
+                format!("{:.1}", link.telemetry_hz),
+            ),
+            ("frames lost", link.frames_lost.to_string()),
+            (
+                "frames with a wrong checksum",
+                link.crc_errors_down.to_string(),
+            ),
+        ]);
+        let all = [
+            ("robot", of_robot, robot_figures),
+            ("link", of_link, link_figures),
+        ];
+        let status = all
+            .into_iter()
+            .chain(of_alarms)
+            .map(|(name, (level, message), values)| DiagnosticStatus {
+                level: Byte(level),
+                name: format!("{SPEAKER}: {name}"),
+                message,
+                hardware_id: self.robot.clone(),
+                values,
+            });
+        let diagnostics = Diagnostics {
+            status: status.collect(),
+            header: self.header(t_ns, ""),
+        };
+        self.put(Topic::Diagnostics, t_ns, &diagnostics)
+    }
+
+    fn event(&mut self, t_s: f64, level: Level, text: &str) -> Result<(), ConvertError> {
+        let t_ns = self.at_ms((t_s * 1e3) as i64);
+        let event = Event {
+            stamp: stamp(t_ns),
+            level: match level {
+                Level::Info | Level::Good => 20,
+                Level::Warning => 30,
+                Level::Fault => 40,
+            },
+            name: SPEAKER.to_owned(),
+            msg: text.to_owned(),
+            ..Event::default()
+        };
+        self.put(Topic::Events, t_ns, &event)
+    }
+}
+
+/// The frame of a sonar.
+fn frame(mount: &SonarMount) -> Option<&'static str> {
+    SONARS.get(usize::from(mount.id)).copied()
+}
+
+/// The wheels' speeds in the middle of the time since the row before [rad/s].
+fn speeds_before(row: &Row) -> [f64; 2] {
+    ["left_before_rad_s", "right_before_rad_s"].map(|name| row.signal(name).unwrap_or(0.0))
+}
+
+fn stamp(t_ns: u64) -> Time {
+    Time {
+        sec: i32::try_from(t_ns / 1_000_000_000).unwrap_or(i32::MAX),
+        nanosec: (t_ns % 1_000_000_000) as u32,
+    }
+}
+
+/// Covariance of the pose; the robot estimates it in the frame of its own origin, turned by so much.
+fn covariance(row: &Row, turned_rad: f64) -> Covariance {
+    let deviation = |name: &str| row.signal(name).unwrap_or(0.0);
+    let (x, y) = (deviation("x_deviation_m"), deviation("y_deviation_m"));
+    let xy = deviation("xy_correlation") * x * y;
+    let (sin, cos) = turned_rad.sin_cos();
+    let mut all = [0.0; 36];
+    all[0] = cos * cos * x * x + sin * sin * y * y - 2.0 * sin * cos * xy;
+    all[7] = sin * sin * x * x + cos * cos * y * y + 2.0 * sin * cos * xy;
+    all[1] = sin * cos * (x * x - y * y) + (cos * cos - sin * sin) * xy;
+    all[6] = all[1];
+    all[35] = deviation("heading_deviation_rad").powi(2);
+    Covariance(all)
+}

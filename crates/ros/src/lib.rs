@@ -1,0 +1,18 @@
+//! A robot in the messages of ROS 2: a log becomes a bag, without a ROS installation.
+//!
+//! ```text
+//! types      what a message is made of: its definition as text, its hash (REP 2016)
+//! messages   the messages used here
+//! geometry   frames and body of a robot; its URDF
+//! convert    a log as messages, by topic
+//! bag        the bag: an MCAP file and its metadata
+//! ```
+//!
+//! Frames follow REP 103 (x forward, y left, counter-clockwise; metres, radians) and REP 105 (`map`, `odom`,
+//! `base_link`). `base_link` is the middle of the wheels' axis, on the floor.
+
+pub mod bag;
+pub mod convert;
+pub mod geometry;
+pub mod messages;
+pub mod types;

@@ -1,0 +1,85 @@
+// @ts-check
+/**
+ * The lab in a worker of the page: the simulator and its session as WebAssembly, in place of a station.
+ *
+ * Strings from the page are orders; null says that it has read what it was sent, and may be sent more: a slow page loses
+ * samples of plots, and the lab does not wait for it. 'save' asks for the recording, a file `{ name, bytes }`. To the page
+ * go arrays of the messages of the station's WebSocket, or `{ error }` when the lab has ended.
+ */
+import { readLink } from '../src/run_link.js';
+import init, { Lab } from './rumbo.js';
+
+/** Time between two rounds [ms]; a round takes at most 20 ms, so that orders do not wait. */
+const EVERY_MS = 10;
+const STOP = JSON.stringify({ type: 'stop' });
+/** What asks for the recording. */
+const SAVE = 'save';
+
+/** @type {Lab | null} */
+let lab = null;
+let pageIsReady = true;
+
+/** Advances the lab by the time that has passed. */
+function round() {
+  if (!lab) return;
+  try {
+    lab.advance();
+    if (!pageIsReady) return;
+    const news = lab.news();
+    if (news.length === 0) return;
+    pageIsReady = false;
+    self.postMessage(news);
+  } catch (error) {
+    end(error);
+  }
+}
+
+/** Hands over the recording of the run so far. */
+function save() {
+  if (!lab) return;
+  try {
+    const started = new Date(lab.began_ms).toISOString().replace(/\.\d+/, '');
+    const { name, bytes } = lab.log(started);
+    self.postMessage({ name, bytes }, { transfer: [bytes.buffer] });
+  } catch (error) {
+    lab.warn(`not recording: ${error}`);
+  }
+}
+
+/** @param {unknown} error */
+function end(error) {
+  lab = null;
+  self.postMessage({ error: error instanceof Error ? error.message : String(error) });
+  self.close();
+}
+
+self.addEventListener('message', ({ data }) => {
+  if (data === null) pageIsReady = true;
+  else if (data === SAVE) save();
+  else lab?.order(data);
+  // It does not wait for the next round.
+  if (data === STOP) round();
+});
+
+/** The lab that the worker's address asks for; if it asks for what is not there, the usual one, which says so. */
+function open() {
+  const [random = 0] = crypto.getRandomValues(new Uint8Array(1));
+  const { start, version } = readLink(location.search);
+  try {
+    const made = new Lab(JSON.stringify(start), random);
+    if (version !== null && version !== made.version) made.warn(`the link is of version ${version}, this is ${made.version}: the run may differ`);
+    return made;
+  } catch (error) {
+    const made = new Lab('{}', random);
+    made.warn(`the link is not for this version: ${error}`);
+    return made;
+  }
+}
+
+try {
+  await init();
+  lab = open();
+  setInterval(round, EVERY_MS);
+} catch (error) {
+  end(error);
+}

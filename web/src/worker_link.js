@@ -1,0 +1,65 @@
+// @ts-check
+/** The lab in a worker of this page, in place of a station: the same messages and orders as over the WebSocket. */
+
+import { saveFile } from './dialog.js';
+
+/** @typedef {import('./types.js').FromServer} FromServer */
+/** @typedef {import('./types.js').Order} Order */
+/** @typedef {import('./link.js').Connection} Connection */
+
+/** The session runs in the page, not in a station: the site's `index.html` says so. */
+export const isSite = document.querySelector('meta[name="rumbo-session"]')?.getAttribute('content') === 'page';
+
+export class WorkerLink {
+  /** @type {Worker | null} */
+  #worker = null;
+  #open = false;
+  #onChange;
+
+  /**
+   * @param {(message: FromServer) => void} onMessage
+   * @param {(now: Connection, why: string | null) => void} onChange called when the lab is there, and when it has ended
+   */
+  constructor(onMessage, onChange) {
+    this.#onChange = onChange;
+    if (typeof WebAssembly !== 'object' || typeof Worker !== 'function') {
+      // After the constructor: the caller has no link yet.
+      queueMicrotask(() => this.#end('this browser has no WebAssembly or no workers; open the page in another one'));
+      return;
+    }
+    const worker = new Worker(new URL(`../lab/worker.js?${location.hash.slice(1)}`, import.meta.url), { type: 'module' });
+    this.#worker = worker;
+    worker.addEventListener('message', ({ data }) => {
+      if (data.bytes) return saveFile(data.name, new Blob([data.bytes], { type: 'application/octet-stream' }));
+      if (!Array.isArray(data)) return this.#end(data.error);
+      if (!this.#open) onChange('open', null);
+      this.#open = true;
+      for (const text of data) onMessage(JSON.parse(text));
+      return worker.postMessage(null);
+    });
+    worker.addEventListener('error', (event) => this.#end(event.message || 'its program could not be loaded'));
+  }
+
+  /** @param {string} why */
+  #end(why) {
+    this.#worker?.terminate();
+    this.#worker = null;
+    this.#open = false;
+    this.#onChange('ended', why);
+  }
+
+  /** Saves the recording of the run so far as a file. */
+  save() {
+    this.#worker?.postMessage('save');
+  }
+
+  /**
+   * Gives an order to the lab; false if it is not there (yet).
+   * @param {Order} order
+   */
+  send(order) {
+    if (!this.#worker || !this.#open) return false;
+    this.#worker.postMessage(JSON.stringify(order));
+    return true;
+  }
+}

@@ -1,0 +1,70 @@
+// @ts-check
+/** The site from a plain static server, for the tests: SITE is its folder, as `cargo xtask site` builds it. */
+import { createReadStream, existsSync, statSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { extname, join, normalize } from 'node:path';
+import { chromium } from 'playwright-core';
+import { BROWSER_ARGS, PATIENCE_MS } from './dashboard.mjs';
+
+const FOLDER = process.env['SITE'] ?? '';
+/** Why there is nothing to test, or false. */
+export const skip = existsSync(join(FOLDER, 'lab/rumbo_bg.wasm')) ? false : 'SITE is no site: run `cargo xtask site`, and name its folder';
+if (skip && process.env['CI']) throw new Error(skip);
+
+/** Below a folder, as the pages of a project are. */
+const BELOW = '/rumbo/';
+/** @type {Record<string, string>} */
+const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.wasm': 'application/wasm', '.webmanifest': 'application/manifest+json' };
+
+/** Serves the site's files and nothing else. @returns {Promise<{url: string, close: () => void}>} */
+function serve() {
+  const server = createServer((request, response) => {
+    const { pathname } = new URL(request.url ?? '/', 'http://localhost');
+    const path = join(FOLDER, normalize(pathname.slice(BELOW.length - 1)), pathname.endsWith('/') ? 'index.html' : '');
+    if (!pathname.startsWith(BELOW) || !existsSync(path) || !statSync(path).isFile()) return response.writeHead(404).end();
+    response.writeHead(200, { 'Content-Type': TYPES[extname(path)] ?? 'text/plain' });
+    return createReadStream(path).pipe(response);
+  });
+  return new Promise((done) => {
+    server.listen(0, '127.0.0.1', () => {
+      const address = server.address();
+      const port = address !== null && typeof address === 'object' ? address.port : 0;
+      const close = () => {
+        server.close();
+        server.closeAllConnections();
+      };
+      done({ url: `http://127.0.0.1:${port}${BELOW}`, close });
+    });
+  });
+}
+
+/**
+ * Opens the site. What its scripts complain of is in `complaints`, and requests that leave it are in `abroad`.
+ * @param {import('playwright-core').BrowserContextOptions} [options]
+ * @param {string} [link] what follows the `#` of its address
+ */
+export async function open(options = {}, link = '') {
+  const server = await serve();
+  const browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, colorScheme: 'dark', locale: 'en-GB', ...options });
+  const page = await context.newPage();
+  page.setDefaultTimeout(PATIENCE_MS);
+  await page.addInitScript(() => localStorage.setItem('rumbo.tour', 'seen'));
+  /** @type {string[]} */
+  const complaints = [];
+  /** @type {string[]} */
+  const abroad = [];
+  page.on('pageerror', (error) => complaints.push(String(error)));
+  page.on('console', (message) => {
+    if (message.type() === 'error') complaints.push(message.text());
+  });
+  context.on('request', (request) => {
+    if (!request.url().startsWith(server.url) && !/^(blob|data):/.test(request.url())) abroad.push(request.url());
+  });
+  await page.goto(server.url + (link && `#${link}`));
+  const close = async () => {
+    await browser.close();
+    server.close();
+  };
+  return { page, complaints, abroad, unplug: server.close, close };
+}

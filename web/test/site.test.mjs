@@ -1,0 +1,176 @@
+// @ts-check
+/**
+ * The lab of the site, from a plain static server: it drives, STOP stops it, a dropped image runs, and a run has the same
+ * bits as natively. HASHES is the native program for that (`hashes` of tools/), FIRMWARE our image, SKETCHES the folder of
+ * built sketches, SCREENSHOT_SITE a file for a picture.
+ */
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { existsSync, readFileSync } from 'node:fs';
+import { basename, join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { folder, program } from './dashboard.mjs';
+import { open, skip } from './site.mjs';
+
+const SKETCH = join(process.env['SKETCHES'] ?? '', 'memoria-mode5.elf');
+const FIRMWARE = process.env['FIRMWARE'] ?? '';
+const SEEDS = 5;
+
+/** @type {Awaited<ReturnType<typeof open>>} */
+let site;
+/** @type {import('playwright-core').Page} */
+let page;
+
+before(async () => {
+  if (skip) return;
+  site = await open();
+  page = site.page;
+});
+
+after(() => site?.close());
+
+/** @param {boolean} armed */
+const isArmed = (armed) => page.waitForFunction((armed) => /** @type {any} */ (window).rumbo.state()?.robot.armed === armed, armed);
+
+/** @param {string} text */
+const says = (text) => page.locator('#events li', { hasText: text }).first().waitFor();
+
+/** Drops a file on the page. @param {string} name @param {Buffer | string} content */
+function drop(name, content) {
+  return page.evaluate(({ name, data }) => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([Uint8Array.from(atob(data), (each) => each.charCodeAt(0))], name));
+    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
+  }, { name, data: Buffer.from(content).toString('base64') });
+}
+
+test('the lab starts by itself, in real time, and the robot is not armed by it', { skip }, async () => {
+  await page.waitForSelector('#connection.good');
+  await isArmed(false);
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.length > 30);
+  const state = await page.evaluate(() => /** @type {any} */ (window).rumbo.state());
+  assert.ok(state.simulated && state.speed === 1, JSON.stringify(state));
+});
+
+test('it drives to its goal, and STOP stops it on the way to the next', { skip }, async () => {
+  await page.locator('#scenario').selectOption('mode8-random');
+  await says('reset: mode8-random');
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.goal !== null);
+  await page.locator('#speed').selectOption('4');
+  await page.locator('#on').click();
+  await isArmed(true);
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.end === 'reached');
+  if (process.env['SCREENSHOT_SITE']) await page.screenshot({ path: process.env['SCREENSHOT_SITE'] });
+  await page.locator('#speed').selectOption('1');
+  await page.locator('#goal-x').fill('3');
+  await page.locator('#goal-y').fill('1');
+  await page.locator('#goal button').click();
+  await isArmed(true);
+  const turns = () => page.waitForFunction(() => Math.abs(/** @type {any} */ (window).rumbo.series('left_rpm').y.at(-1)) > 10);
+  await turns();
+  await page.locator('#stop').click();
+  await isArmed(false);
+  await page.waitForFunction(() => {
+    const last = /** @type {any} */ (window).rumbo.series('true_left_rpm').y.slice(-20);
+    return last.every((/** @type {number | null} */ rpm) => Math.abs(rpm ?? 0) < 3);
+  });
+});
+
+test('a link opens the same scenario, seed and parameters, and one for something else says so', { skip }, async () => {
+  await page.locator('#seed').fill('7');
+  await page.locator('#simulation button[type="submit"]').click();
+  await says('seed 7');
+  const cruise = page.locator('#parameter-mission_cruise_m_s');
+  await page.waitForFunction(() => /** @type {HTMLInputElement | null} */ (document.querySelector('#parameter-mission_cruise_m_s'))?.value === '0.4');
+  await cruise.fill('0.25');
+  await cruise.press('Enter');
+  await says('mission_cruise_m_s = 0.25: acknowledged');
+  await page.locator('#share').click();
+  const link = new URL(await page.locator('#share-link').inputValue());
+  await page.keyboard.press('Escape');
+  assert.ok(link.href.length < 2_048, link.href);
+
+  const elsewhere = await open({}, link.hash.slice(1));
+  await elsewhere.page.waitForFunction(() => /** @type {HTMLInputElement | null} */ (document.querySelector('#parameter-mission_cruise_m_s'))?.value === '0.25');
+  assert.equal(await elsewhere.page.locator('#scenario').inputValue(), 'mode8-random');
+  assert.equal(await elsewhere.page.locator('#seed').inputValue(), '7');
+  assert.deepEqual([...elsewhere.complaints, ...elsewhere.abroad], []);
+  await elsewhere.close();
+
+  const wrong = await open({}, 'scenario=mode99&version=0.1.0');
+  await wrong.page.locator('#events li', { hasText: 'the link is not for this version' }).first().waitFor();
+  assert.equal(await wrong.page.locator('#scenario').inputValue(), 'mode1');
+  await wrong.close();
+});
+
+test('what needs a computer says so', { skip }, async () => {
+  await drop('blink.ino', 'void setup() {}');
+  await says('compiling a sketch needs rumbo on a computer');
+  await drop('notes.txt', 'x');
+  await says('only an .ino, .elf or .hex file');
+  assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
+});
+
+test('the run is saved as a log, which runs again natively, byte for byte', { skip: skip || (process.env['RUMBO_BIN'] ? false : 'RUMBO_BIN names no program') }, async () => {
+  await page.locator('#recordings').click();
+  const saved = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Save this run' }).click();
+  const download = await saved;
+  await page.keyboard.press('Escape');
+  const path = join(folder(), download.suggestedFilename());
+  assert.match(path, /\d{8}-\d{6}-mode8-random-7\.mcap$/);
+  await download.saveAs(path);
+  const again = spawnSync(program(), ['rerun', path], { encoding: 'utf8' });
+  assert.equal(again.status, 0, again.stdout + again.stderr);
+});
+
+test('a dropped image runs on an emulated Mega with its consoles', { skip: skip || (existsSync(SKETCH) ? false : `${SKETCH} is missing: run \`cargo xtask sketches\``) }, async () => {
+  await page.locator('#scenario').selectOption('mode5');
+  await says('reset: mode5');
+  await drop(basename(SKETCH), readFileSync(SKETCH));
+  await says('the changed program runs');
+  await page.locator('#program-name', { hasText: 'memoria-mode5.elf' }).waitFor();
+  await page.locator('#on').click();
+  await page.locator('#console').filter({ hasText: /\d+, ?-?\d/ }).waitFor();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.series('left_rpm').y.some((/** @type {number} */ rpm) => rpm > 40));
+});
+
+test('every scenario has the same bits as natively, and so has an image', { skip: skip || (process.env['HASHES'] ? false : 'HASHES names no program: `cargo build -p rumbo-tools --bin hashes`') }, async () => {
+  const images = [SKETCH, FIRMWARE].filter((path) => existsSync(path));
+  const native = spawnSync(process.env['HASHES'] ?? '', [String(SEEDS), ...images], { encoding: 'utf8' });
+  assert.equal(native.status, 0, native.stderr);
+  /** @type {Record<string, string[]>} */
+  const expected = JSON.parse(native.stdout);
+  const data = Object.fromEntries(images.map((path) => [path, readFileSync(path).toString('base64')]));
+  const found = await page.evaluate(async ({ names, data, seeds }) => {
+    const { default: init, run_hash } = await import(new URL('lab/rumbo.js', location.href).href);
+    await init();
+    const hashes = (/** @type {string} */ name) => {
+      const image = data[name];
+      const bytes = Uint8Array.from(atob(image ?? ''), (each) => each.charCodeAt(0));
+      if (image) return [run_hash('mode5', 1, bytes)];
+      return Array.from({ length: seeds }, (_, index) => run_hash(name, index + 1, bytes));
+    };
+    return Object.fromEntries(names.map((name) => [name, hashes(name)]));
+  }, { names: Object.keys(expected), data, seeds: SEEDS });
+  assert.ok(Object.keys(expected).length > 50);
+  assert.deepEqual(found, expected);
+});
+
+test('without a network it opens again, from what the browser has kept', { skip }, async () => {
+  const here = await open();
+  await here.page.waitForSelector('#connection.good');
+  await here.page.evaluate(() => navigator.serviceWorker.ready);
+  here.unplug();
+  await here.page.reload();
+  await here.page.waitForSelector('#connection.good');
+  await here.page.locator('#on').click();
+  await here.page.waitForFunction(() => /** @type {any} */ (window).rumbo.state()?.robot.armed);
+  assert.deepEqual([...here.complaints, ...here.abroad], []);
+  await here.close();
+});
+
+test('nothing is loaded from elsewhere, and no script complains', { skip }, () => {
+  assert.deepEqual(site.abroad, []);
+  assert.deepEqual(site.complaints, []);
+});

@@ -1,0 +1,210 @@
+//! `cargo xtask site`: the lab as a static page in `site/`, for any web server that serves files.
+//!
+//! The crate `browser` is compiled to WebAssembly with the Rust of the firmware, which has the sources of the library:
+//! no further target need be installed. Beside it stand the files of `web/`; `index.html` gets a content policy, which
+//! the station sends as a header, and the note that its session runs in the page.
+
+use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::{Path, PathBuf};
+
+use crate::firmware::toolchain::Toolchain;
+use crate::project::{Project, find_program, output, run as run_command};
+use crate::test::{Stop, tools};
+
+const TARGET: &str = "wasm32-unknown-unknown";
+/// As in `Cargo.toml`.
+const PROFILE: &str = "site";
+/// What of `web/` the page loads.
+const FILES: [&str; 5] = [
+    "index.html",
+    "style.css",
+    "icon.svg",
+    "app.webmanifest",
+    OFFLINE,
+];
+/// Keeps the files for use without a network, by their list.
+const OFFLINE: &str = "offline.js";
+const LIST: &str = "const FILES = [];\nconst VERSION = '';\n";
+const FOLDERS: [&str; 4] = ["src", "src/spanish", "lab", "vendor/uplot"];
+/// Where the additions to `index.html` go.
+const MARK: &str = "<meta charset=\"utf-8\">\n";
+/// Everything comes from the site itself; blobs are pictures that the page made. Browsers count the compilation of
+/// WebAssembly as a kind of `eval`.
+const HEAD: &str = r#"  <meta http-equiv="Content-Security-Policy" content="default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; img-src 'self' blob:; base-uri 'none'; form-action 'none'; object-src 'none'">
+  <meta name="referrer" content="no-referrer">
+  <meta name="rumbo-session" content="page">
+  <link rel="manifest" href="app.webmanifest">
+"#;
+
+/// Builds the site, or reports the missing tool.
+pub(crate) fn run(project: &Project) -> Result<bool, String> {
+    match build(project) {
+        Ok(site) => {
+            println!("{}", site.display());
+            Ok(true)
+        }
+        Err(Stop::Failed(error) | Stop::Missing(error)) => Err(error),
+    }
+}
+
+/// Builds the site anew and returns its folder.
+pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
+    let wasm = compile(project)?;
+    let site = project.root.join("site");
+    match fs::remove_dir_all(&site) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            return Err(wrong(&site, &error).into());
+        }
+        _ => {}
+    }
+    let web = project.root.join("web");
+    for folder in FOLDERS {
+        copy_scripts(&web.join(folder), &site.join(folder))?;
+    }
+    for file in FILES {
+        copy(&web.join(file), &site.join(file))?;
+    }
+    complete(&site.join("index.html"))?;
+    let lab = site.join("lab");
+    let mut bindgen = project.cargo(&["run", "--quiet", "--locked", "-p", "rumbo-bindgen", "--"]);
+    run_command(bindgen.arg(&wasm).arg(&lab).arg("rumbo"))?;
+    list_files(&site)?;
+    Ok(site)
+}
+
+/// Gives the service worker the list of the files, and a version that changes with what is in them.
+fn list_files(site: &Path) -> Result<(), String> {
+    let mut files = files_below(site)?;
+    files.sort();
+    let offline = site.join(OFFLINE);
+    let mut hasher = DefaultHasher::new();
+    // The page itself is asked for by its folder.
+    let mut names = vec!["./".to_owned()];
+    for path in &files {
+        let content = fs::read(path).map_err(|error| wrong(path, &error))?;
+        let name = path.strip_prefix(site).unwrap_or(path);
+        let name = name.to_string_lossy().replace('\\', "/");
+        (&name, content).hash(&mut hasher);
+        if *path != offline && !name.ends_with(".d.ts") {
+            names.push(name);
+        }
+    }
+    let text = fs::read_to_string(&offline).map_err(|error| wrong(&offline, &error))?;
+    let Some((before, after)) = text.split_once(LIST) else {
+        return Err(format!("{}: no line {LIST:?}", offline.display()));
+    };
+    let list = serde_json::json!(names);
+    let version = hasher.finish();
+    let text = format!("{before}const FILES = {list};\nconst VERSION = '{version:016x}';\n{after}");
+    fs::write(&offline, text).map_err(|error| wrong(&offline, &error))
+}
+
+fn files_below(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).map_err(|error| wrong(folder, &error))? {
+        let path = entry.map_err(|error| wrong(folder, &error))?.path();
+        match path.is_dir() {
+            true => files.extend(files_below(&path)?),
+            false => files.push(path),
+        }
+    }
+    Ok(files)
+}
+
+/// The lab as WebAssembly.
+fn compile(project: &Project) -> Result<PathBuf, Stop> {
+    let toolchain = Toolchain::find(project)?;
+    // Apart, so that this compiler and the usual one do not build each other's crates again.
+    let target = project.target.join("wasm");
+    let mut build = toolchain.command("cargo");
+    build.current_dir(&project.root).args([
+        "build",
+        "--quiet",
+        "--locked",
+        "--lib",
+        "--package=rumbo-browser",
+        "-Zbuild-std=std,panic_abort",
+    ]);
+    build.args(["--profile", PROFILE, "--target", TARGET]);
+    build.arg("--target-dir").arg(&target);
+    if matches!(toolchain, Toolchain::Debian) {
+        build.env(
+            "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER",
+            linker(project)?,
+        );
+    }
+    run_command(&mut build)?;
+    let folder = target.join(TARGET).join(PROFILE);
+    Ok(folder.join("rumbo_browser.wasm"))
+}
+
+/// Debian's compiler has no linker for WebAssembly: that of the Rust in use, or else LLVM's.
+fn linker(project: &Project) -> Result<PathBuf, Stop> {
+    let of_rust = || {
+        let root = output(project.command("rustc").args(["--print", "sysroot"])).ok()?;
+        let host = output(project.command("rustc").args(["--print", "host-tuple"])).ok()?;
+        let library = Path::new(root.trim()).join("lib/rustlib");
+        Some(library.join(host.trim()).join("bin/rust-lld"))
+    };
+    let find = || {
+        let found = of_rust().filter(|path| path.is_file());
+        found.or_else(|| find_program("wasm-ld"))
+    };
+    tools::install(
+        project,
+        "a linker for WebAssembly",
+        &["lld"],
+        "or a Rust of rustup, which has one",
+        find,
+    )
+}
+
+/// The additions to the page.
+fn complete(page: &Path) -> Result<(), String> {
+    let text = fs::read_to_string(page).map_err(|error| wrong(page, &error))?;
+    let Some((before, after)) = text.split_once(MARK) else {
+        return Err(format!("{}: no line {}", page.display(), MARK.trim()));
+    };
+    let text = format!("{before}{MARK}{HEAD}{after}");
+    fs::write(page, text).map_err(|error| wrong(page, &error))
+}
+
+/// Copies what a page loads; declarations of types it does not.
+fn copy_scripts(from: &Path, to: &Path) -> Result<(), String> {
+    let entries = fs::read_dir(from).map_err(|error| wrong(from, &error))?;
+    for path in entries.flatten().map(|entry| entry.path()) {
+        let name = path.file_name().unwrap_or_default();
+        if path.is_file() && !name.to_string_lossy().ends_with(".d.ts") {
+            copy(&path, &to.join(name))?;
+        }
+    }
+    Ok(())
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), String> {
+    if let Some(folder) = to.parent() {
+        fs::create_dir_all(folder).map_err(|error| wrong(folder, &error))?;
+    }
+    fs::copy(from, to).map_err(|error| wrong(from, &error))?;
+    Ok(())
+}
+
+fn wrong(path: &Path, error: &std::io::Error) -> String {
+    format!("{}: {error}", path.display())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_of_the_site_has_its_policy_before_anything_that_it_loads() {
+        let page = Project::find().unwrap().root.join("web/index.html");
+        let text = fs::read_to_string(page).unwrap();
+        let (before, after) = text.split_once(MARK).unwrap();
+        assert!(!before.contains("href") && !before.contains("src"));
+        // In a folder of any name.
+        assert!(!after.contains("=\"/"), "an absolute path");
+    }
+}
