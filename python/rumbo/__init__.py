@@ -1,8 +1,9 @@
 """Rumbo's simulator of a small differential-drive robot.
 
-`run` repeats a scenario with many seeds, `sweep` over its parameters, `compare` as variants, `Sim` and `Batch` step
-robots by hand, `read_log` reads what was recorded; `rumbo.envs` has environments for Gymnasium. Units are SI and stand
-in the names: ``range_m``, ``speed_rad_s``. x is forward, y to the left, angles counter-clockwise.
+`run` repeats a scenario with many seeds, `sweep` over its parameters, `compare` as variants, `tune` searches for
+values, `Sim` and `Batch` step robots by hand, `read_log` reads what was recorded; `rumbo.envs` has environments for
+Gymnasium, `rumbo.ray` clusters for sweeps. Units are SI and stand in the names: ``range_m``, ``speed_rad_s``. x is
+forward, y to the left, angles counter-clockwise.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ from ._rumbo import Snapshot
 from ._run import Run, Runs, run
 from ._setup import Source
 from ._sim import OBSERVED, TRUE, Batch, Sim
-from ._study import Comparison, Difference, Sweep, compare, sweep
+from ._study import Comparison, Difference, Interrupted, Sweep, compare, sweep
+from ._tune import Tuning, tune
 
 __version__: str = _rumbo.VERSION
 #: Number of the model: runs are comparable bit for bit only within one.
@@ -35,6 +37,7 @@ __all__ = [
     "Batch",
     "Comparison",
     "Difference",
+    "Interrupted",
     "Log",
     "Run",
     "Runs",
@@ -42,6 +45,7 @@ __all__ = [
     "Snapshot",
     "Source",
     "Sweep",
+    "Tuning",
     "__version__",
     "compare",
     "load",
@@ -49,6 +53,7 @@ __all__ = [
     "read_log",
     "run",
     "sweep",
+    "tune",
 ]
 
 

@@ -19,9 +19,11 @@ __all__ = [
     "differences",
     "load",
     "names",
+    "plan",
     "read_log",
     "run",
-    "sweep",
+    "run_jobs",
+    "tune",
 ]
 
 VERSION: str
@@ -50,6 +52,7 @@ class Setup:
     def name(self) -> str: ...
     @property
     def duration_s(self) -> float: ...
+    def arguments(self) -> dict[str, Any]: ...
 
 @final
 class Snapshot: ...
@@ -89,15 +92,24 @@ def run(
     progress: Callable[[int], object] | None,
 ) -> list[dict[str, Any]]: ...
 def read_log(path: str) -> dict[str, Any]: ...
-def sweep(
+def plan(setup: Setup, axes: Sequence[str], *, design: str, count: int, seed: int, runs: int) -> list[list[float]]: ...
+def run_jobs(
     setup: Setup,
-    axes: Sequence[str],
+    names: Sequence[str],
+    jobs: Sequence[tuple[list[float], int]],
     *,
-    design: str,
-    count: int,
-    seed: int,
-    runs: int,
     threads: int | None,
-    progress: Callable[[int], object] | None,
-) -> tuple[list[list[float]], list[tuple[int, int, bool, dict[str, float]]]]: ...
+    handle: Callable[[bool, dict[str, float]], object],
+) -> None: ...
+def tune(
+    setup: Setup,
+    over: Sequence[str],
+    *,
+    aims: str | None,
+    seed: int,
+    runs: int | None,
+    held_out: int,
+    threads: int | None,
+    progress: Callable[[float], object] | None,
+) -> dict[str, Any]: ...
 def differences(first: Sequence[dict[str, float]], second: Sequence[dict[str, float]]) -> list[dict[str, Any]]: ...

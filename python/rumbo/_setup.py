@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import copyreg
 import json
 import math
 import operator
 import os
+import pathlib
+import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, TypeAlias
 
@@ -101,6 +104,25 @@ def make_setup(
         randomize=randomize,
         held=held.files,
     )
+
+
+def pack_setup(setup: _rumbo.Setup) -> tuple[dict[str, Any], bytes | None]:
+    """A setup with its files, for another process or machine: arguments, and the image if there is one."""
+    arguments = setup.arguments()
+    path = arguments["firmware"]
+    return arguments, None if path is None else pathlib.Path(path).read_bytes()
+
+
+def _unpack_setup(arguments: dict[str, Any], image: bytes | None) -> _rumbo.Setup:
+    if image is None:
+        return _rumbo.Setup(**arguments)
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder, pathlib.Path(arguments["firmware"]).name)
+        path.write_bytes(image)
+        return _rumbo.Setup(**{**arguments, "firmware": os.fspath(path)})
+
+
+copyreg.pickle(_rumbo.Setup, lambda setup: (_unpack_setup, pack_setup(setup)))
 
 
 def _number(name: str, value: object) -> float:

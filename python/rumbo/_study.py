@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _rumbo
+from ._cluster import Cluster, Row, connected, run_on
 from ._run import Runs, make_progress, run
-from ._setup import Program, Source, make_setup
+from ._setup import Program, Source, make_setup, pack_setup
 
 #: Values of a parameter: each of them, ``"FROM:TO:COUNT"``, ``"FROM:TO:COUNT:log"``, or where points are drawn
 #: ``"FROM:TO"`` and ``"FROM:TO:log"``; names of a choice, ``"straight,pure_pursuit"``.
@@ -33,6 +35,8 @@ class Sweep:
     passed: NDArray[np.bool_]
     #: An array of shape (runs,) for each metric; NaN where what is measured did not happen.
     metrics: dict[str, NDArray[np.float64]]
+    #: Of what was to be run, on which model: the sweeps with the same one have the same runs.
+    fingerprint: str
 
     def __len__(self) -> int:
         return len(self.seeds)
@@ -46,6 +50,15 @@ class Sweep:
         each metric; as in the tables of ``rumbo sweep``."""
         values = {name: column[self.point] for name, column in self.points.items()}
         return {"point": self.point, "seed": self.seeds, **values, "passed": self.passed, **self.metrics}
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during a sweep."""
+
+    def __init__(self, done: Sweep) -> None:
+        super().__init__(f"{len(done)} runs are done; they are in `done`, and `sweep` goes on with `resume=`")
+        #: The runs that are done. It can be pickled.
+        self.done = done
 
 
 def sweep(
@@ -64,6 +77,8 @@ def sweep(
     firmware: str | os.PathLike[str] | None = None,
     randomize: bool | None = None,
     threads: int | None = None,
+    cluster: str | Cluster | None = None,
+    resume: Sweep | None = None,
     progress: bool | Callable[[int, int], object] = False,
 ) -> Sweep:
     """Runs a scenario at many values of its parameters, each point with the same seeds, as ``rumbo sweep`` does.
@@ -75,10 +90,15 @@ def sweep(
         points: How many are drawn; for a grid none.
         runs: Of each point, 1 or more.
         seed: The first one; run i of every point has ``seed + i``. It draws the points, too.
+        cluster: Where it runs in place of the threads of this process: ``"local"`` for worker processes on this machine
+            (``threads=`` of them), the address of a Ray cluster, or a `rumbo.ray.Cluster`. It needs the extra ``ray``,
+            and does not change the numbers.
+        resume: What is done of the same sweep (`Interrupted.done`): the other runs are added.
 
     Raises:
         ValueError: An unknown parameter, with the near ones; values without sense or out of range. Nothing has run.
-        KeyboardInterrupt: Ctrl-C, as soon as the runs under way are over.
+        Interrupted: Ctrl-C, as soon as the runs under way are over; a ``KeyboardInterrupt`` that has what is done.
+        ModuleNotFoundError: A cluster, and Ray is not installed.
     """
     if (points is None) != (design == "grid"):
         raise ValueError(
@@ -97,25 +117,74 @@ def sweep(
         randomize=randomize,
     )
     names = list(axes)
-    places, rows = _rumbo.sweep(
-        setup,
-        [f"{name}={_text(values)}" for name, values in axes.items()],
-        design=design,
-        count=points or 0,
-        seed=seed,
-        runs=runs,
-        threads=threads,
-        progress=make_progress(progress, None if points is None else points * runs),
-    )
-    values = np.array(places, dtype=np.float64).reshape(len(places), len(names))
-    metrics = {name: None for _, _, _, metrics in rows for name in metrics}
-    return Sweep(
-        points={name: values[:, index].copy() for index, name in enumerate(names)},
-        point=np.array([point for point, _, _, _ in rows], dtype=np.int64),
-        seeds=np.array([number for _, number, _, _ in rows], dtype=np.uint64),
-        passed=np.array([passed for _, _, passed, _ in rows], dtype=np.bool_),
-        metrics={name: np.array([found.get(name, np.nan) for _, _, _, found in rows]) for name in metrics},
-    )
+    words = [f"{name}={_text(values)}" for name, values in axes.items()]
+    places = _rumbo.plan(setup, words, design=design, count=points or 0, seed=seed, runs=runs)
+    table = _Table(names, np.array(places, dtype=np.float64).reshape(len(places), len(names)), seed, runs, setup)
+    if resume is not None:
+        table.add(resume)
+    missing = [index for index in range(len(places) * runs) if index not in table.rows]
+    jobs = [(places[index // runs], table.seed_of(index)) for index in missing]
+    show = make_progress(progress, len(places) * runs)
+
+    def keep(number: int, row: Row) -> None:
+        table.rows[missing[number]] = row
+        if show is not None:
+            show(len(table.rows))
+
+    try:
+        if cluster is None:
+            numbers = iter(range(len(jobs)))
+            _rumbo.run_jobs(
+                setup, names, jobs, threads=threads, handle=lambda passed, found: keep(next(numbers), (passed, found))
+            )
+        else:
+            with connected(cluster, threads) as workers:
+                run_on(workers, setup, names, jobs, keep)
+    except KeyboardInterrupt:
+        raise Interrupted(table.sweep()) from None
+    return table.sweep()
+
+
+@dataclass
+class _Table:
+    """The runs of a sweep by their number: those of the first point, then those of the second."""
+
+    names: list[str]
+    #: Shape (points, axes).
+    values: NDArray[np.float64]
+    seed: int
+    runs: int
+    setup: _rumbo.Setup
+    rows: dict[int, Row] = field(default_factory=dict)
+
+    def seed_of(self, index: int) -> int:
+        return (self.seed + index % self.runs) % 2**64
+
+    def fingerprint(self) -> str:
+        model = (_rumbo.VERSION, _rumbo.MODEL)
+        what = (model, pack_setup(self.setup), self.names, self.values.tolist(), self.seed, self.runs)
+        return hashlib.sha256(repr(what).encode()).hexdigest()
+
+    def add(self, done: Sweep) -> None:
+        if done.fingerprint != self.fingerprint():
+            raise ValueError("resume: is of another sweep; give the same arguments, or leave it out")
+        indices = done.point * self.runs + (done.seeds - np.uint64(self.seed)).astype(np.int64)
+        for row, index in enumerate(indices.tolist()):
+            metrics = {name: float(column[row]) for name, column in done.metrics.items()}
+            self.rows[index] = (bool(done.passed[row]), metrics)
+
+    def sweep(self) -> Sweep:
+        indices = sorted(self.rows)
+        rows = [self.rows[index] for index in indices]
+        metrics = sorted({name for _, found in rows for name in found})
+        return Sweep(
+            points={name: self.values[:, axis].copy() for axis, name in enumerate(self.names)},
+            point=np.array([index // self.runs for index in indices], dtype=np.int64),
+            seeds=np.array([self.seed_of(index) for index in indices], dtype=np.uint64),
+            passed=np.array([passed for passed, _ in rows], dtype=np.bool_),
+            metrics={name: np.array([found.get(name, np.nan) for _, found in rows]) for name in metrics},
+            fingerprint=self.fingerprint(),
+        )
 
 
 def _text(values: Values) -> str:

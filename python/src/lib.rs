@@ -10,6 +10,7 @@ mod log;
 mod run;
 mod setup;
 mod study;
+mod tune;
 
 #[pyo3::pymodule]
 mod _rumbo {
@@ -22,7 +23,9 @@ mod _rumbo {
     #[pymodule_export]
     use super::setup::{Setup, load, names};
     #[pymodule_export]
-    use super::study::{differences, sweep};
+    use super::study::{differences, plan, run_jobs};
+    #[pymodule_export]
+    use super::tune::tune;
 
     use pyo3::prelude::*;
 

@@ -30,8 +30,11 @@ impl From<FileError> for Stop {
     }
 }
 
-/// Looks for Ctrl-C, and says how many runs are done.
-pub(crate) fn call(progress: Option<&Py<PyAny>>, done: usize) -> Result<(), Stop> {
+/// Looks for Ctrl-C, and says how much is done: a number of runs, or a share.
+pub(crate) fn call(
+    progress: Option<&Py<PyAny>>,
+    done: impl for<'py> IntoPyObject<'py>,
+) -> Result<(), Stop> {
     Python::attach(|py| {
         py.check_signals()?;
         match progress {

@@ -3,8 +3,11 @@
 use crate::guard::exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use rumbo_control::params::ParamId;
-use rumbo_experiment::files::{Kind, Library, NativeProgram, Overrides, Setup as Files, Spread};
+use rumbo_experiment::files::{
+    Kind, Library, NativeProgram, Overrides, ScenarioFile, Setup as Files, Spread,
+};
 use rumbo_plant::params::Params;
 use std::path::PathBuf;
 
@@ -12,6 +15,10 @@ use std::path::PathBuf;
 #[pyclass(frozen, module = "rumbo._rumbo")]
 pub(crate) struct Setup {
     pub(crate) files: Files,
+    /// The scenario as its file has it.
+    pub(crate) own: ScenarioFile,
+    overrides: Overrides,
+    randomize: Option<bool>,
 }
 
 #[pymethods]
@@ -35,12 +42,12 @@ impl Setup {
         for (kind, name, text) in held {
             library = library.holding(find_kind(&kind)?, &name, &text);
         }
-        let program = match program {
-            "rumbo" => NativeProgram::Rumbo,
-            "baseline" => NativeProgram::Baseline,
-            other => {
+        let known = [NativeProgram::Rumbo, NativeProgram::Baseline];
+        let program = match known.into_iter().find(|known| word(*known) == program) {
+            Some(known) => known,
+            None => {
                 return Err(PyValueError::new_err(format!(
-                    "program = {other:?}: must be \"rumbo\" or \"baseline\"; an image is given by firmware="
+                    "program = {program:?}: must be \"rumbo\" or \"baseline\"; an image is given by firmware="
                 )));
             }
         };
@@ -53,6 +60,9 @@ impl Setup {
             firmware,
             ..Overrides::default()
         };
+        let own = library
+            .scenario(scenario)
+            .map_err(|error| exception(&error))?;
         let mut files = library
             .setup(scenario, &overrides)
             .map_err(|error| exception(&error))?;
@@ -61,7 +71,41 @@ impl Setup {
             Some(false) => files.scenario.spread = Spread::None,
             None => {}
         }
-        Ok(Self { files })
+        Ok(Self {
+            files,
+            own,
+            overrides,
+            randomize,
+        })
+    }
+
+    /// The arguments that make it anywhere: with the texts of its files, except that of an image.
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let Files {
+            scenario,
+            robot,
+            world,
+            ..
+        } = &self.files;
+        let held = [
+            (Kind::Scenario, &scenario.name, &scenario.text),
+            (Kind::Robot, &robot.name, &robot.text),
+            (Kind::World, &world.name, &world.text),
+        ];
+        let arguments = PyDict::new(py);
+        arguments.set_item("scenario", &scenario.name)?;
+        arguments.set_item(
+            "held",
+            held.map(|(kind, name, text)| (kind.word(), name, text)),
+        )?;
+        arguments.set_item("robot", &robot.name)?;
+        arguments.set_item("world", &world.name)?;
+        arguments.set_item("rig", &self.overrides.rig)?;
+        arguments.set_item("parameters", &self.overrides.parameters)?;
+        arguments.set_item("program", word(self.overrides.program))?;
+        arguments.set_item("firmware", &self.overrides.firmware)?;
+        arguments.set_item("randomize", self.randomize)?;
+        Ok(arguments)
     }
 
     /// The scenario's name.
@@ -74,6 +118,14 @@ impl Setup {
     #[getter]
     fn duration_s(&self) -> f64 {
         self.files.scenario.duration_s
+    }
+}
+
+/// The word for a program.
+fn word(program: NativeProgram) -> &'static str {
+    match program {
+        NativeProgram::Rumbo => "rumbo",
+        NativeProgram::Baseline => "baseline",
     }
 }
 
@@ -104,12 +156,11 @@ pub(crate) fn load(kind: &str, name_or_path: &str) -> PyResult<String> {
 }
 
 fn find_kind(kind: &str) -> PyResult<Kind> {
-    match kind {
-        "robot" => Ok(Kind::Robot),
-        "world" => Ok(Kind::World),
-        "scenario" => Ok(Kind::Scenario),
-        _ => Err(PyValueError::new_err(format!(
+    let known = [Kind::Robot, Kind::World, Kind::Scenario];
+    let found = known.into_iter().find(|known| known.word() == kind);
+    found.ok_or_else(|| {
+        PyValueError::new_err(format!(
             "kind = {kind:?}: must be \"robot\", \"world\", \"scenario\" or \"parameter\""
-        ))),
-    }
+        ))
+    })
 }

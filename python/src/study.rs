@@ -1,38 +1,33 @@
 //! Sweeps, and the differences of variants pair by pair.
 
 use crate::guard::{detached, exception, threads};
-use crate::run::{Stop, call};
+use crate::run::Stop;
 use crate::setup::Setup;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rumbo_experiment::compare::{Variant, differences as of_variants};
 use rumbo_experiment::metrics::Metrics;
-use rumbo_experiment::sweep::{Axis, Design, Plan, Row};
+use rumbo_experiment::run::{RunResult, in_order, run as run_once};
+use rumbo_experiment::sweep::{Axis, Design, Plan};
 use std::fmt::Display;
 
-fn refuse(error: impl Display) -> PyErr {
+pub(crate) fn refuse(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// Runs a scenario at every point of `axes`, written `NAME=VALUES`; returns the points, each a value for every axis, and
-/// the runs in order: number of the point, seed, whether it passed, metrics. `count` points are drawn unless it is a grid.
+/// The points of a sweep over `axes`, written `NAME=VALUES`: a value for every axis, checked. `count` points are drawn
+/// unless it is a grid.
 #[pyfunction]
-#[pyo3(signature = (setup, axes, *, design, count, seed, runs, threads, progress))]
-#[allow(clippy::too_many_arguments, reason = "keywords of one Python call")]
-#[allow(clippy::type_complexity, reason = "taken apart by the caller at once")]
-pub(crate) fn sweep(
-    py: Python<'_>,
+#[pyo3(signature = (setup, axes, *, design, count, seed, runs))]
+pub(crate) fn plan(
     setup: &Setup,
     axes: Vec<String>,
     design: &str,
     count: usize,
     seed: u64,
     runs: u32,
-    threads: Option<i64>,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<(Vec<Vec<f64>>, Vec<(usize, u64, bool, Metrics)>)> {
-    let threads = self::threads(threads)?;
+) -> PyResult<Vec<Vec<f64>>> {
     let axes = axes.iter().map(|axis| axis.parse::<Axis>());
     let axes: Vec<Axis> = axes.collect::<Result<_, _>>().map_err(refuse)?;
     let design = match design {
@@ -48,18 +43,40 @@ pub(crate) fn sweep(
     let plan = Plan::new(axes, design, seed, runs).map_err(refuse)?;
     plan.check(&setup.files)
         .map_err(|error| exception(&error))?;
-    let mut rows: Vec<Row> = Vec::with_capacity(plan.len());
+    Ok(plan.points)
+}
+
+/// Runs the scenario once for each job, which has a value for every parameter in `names`, and a seed. `handle` is called
+/// with whether the run passed and its metrics, in the order of the jobs.
+#[pyfunction]
+#[pyo3(signature = (setup, names, jobs, *, threads, handle))]
+pub(crate) fn run_jobs(
+    py: Python<'_>,
+    setup: &Setup,
+    names: Vec<String>,
+    jobs: Vec<(Vec<f64>, u64)>,
+    threads: Option<i64>,
+    handle: Py<PyAny>,
+) -> PyResult<()> {
+    let threads = self::threads(threads)?;
+    let work = |index: usize| {
+        let (values, seed) = &jobs[index];
+        let names = names.iter().map(String::as_str);
+        let values: Vec<_> = names.zip(values.iter().copied()).collect();
+        run_once(&setup.files.with_parameters(&values)?, *seed)
+    };
     let ended = detached(py, || {
-        plan.run(&setup.files, 0, threads, |row| {
-            rows.push(row);
-            call(progress.as_ref(), rows.len())
+        in_order(threads, jobs.len(), work, |_, result| {
+            let result: RunResult = result?;
+            Python::attach(|py| {
+                py.check_signals()?;
+                handle.call1(py, (result.pass, result.metrics))
+            })
+            .map(drop)
+            .map_err(Stop::Python)
         })
     })?;
-    ended.map_err(Stop::into_exception)?;
-    let rows = rows
-        .into_iter()
-        .map(|row| (row.point, row.seed, row.pass, row.metrics));
-    Ok((plan.points, rows.collect()))
+    ended.map_err(Stop::into_exception)
 }
 
 /// The differences of two variants over the same seeds: for each metric that both have, a dictionary.

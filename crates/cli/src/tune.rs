@@ -6,18 +6,16 @@ use crate::compare::variants::{differences_as_json, print_differences};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::output::{self, figure};
-use crate::run::{check_metrics, set_threads};
+use crate::run::set_threads;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::compare::{Variant, differences, run_variants};
 use rumbo_experiment::files::{Library, Overrides, Setup};
-use rumbo_experiment::run;
+use rumbo_experiment::run::{self, check_metrics};
+use rumbo_experiment::tune::Tuned;
 use rumbo_experiment::tune::{Found, Objective, Search, is_tuned, rewrite, tuned};
-use rumbo_experiment::tune::{Over, Tuned};
 use serde_json::json;
 use std::sync::atomic::Ordering;
 
-/// Driving of a search by default [s].
-const DRIVING_S: f64 = 600_000.0;
 /// Runs on the image: each takes about two seconds.
 const ON_IMAGE: usize = 20;
 
@@ -42,10 +40,9 @@ pub(crate) fn tune(args: &TuneArgs) -> Result<(), Failure> {
         over: &over,
         objective: &objective,
         seed: args.seed.seed,
-        budget: args.runs.map_or_else(
-            || ((DRIVING_S / setup.scenario.duration_s) as usize).max(Search::LEAST),
-            |runs| runs as usize,
-        ),
+        budget: args
+            .runs
+            .map_or_else(|| Search::default_budget(&setup), |runs| runs as usize),
     };
     let asked = interrupt::asked();
     let is_asked = || asked.load(Ordering::Relaxed);
@@ -90,16 +87,8 @@ pub(crate) fn tune(args: &TuneArgs) -> Result<(), Failure> {
 
 /// Refuses what could not come to anything, before anything runs.
 fn check(args: &TuneArgs, library: &Library, setup: &Setup) -> Result<(), Failure> {
-    let own = library.scenario(&args.scenario)?.parameters;
-    for Over::Name(id) | Over::Range(id, _) in &args.over {
-        if own.iter().any(|(own, _)| own == id) {
-            return Err(Failure::Input(format!(
-                "{}: scenario {} sets it itself, whatever a robot file says; take it out of the scenario",
-                id.name(),
-                setup.scenario.name
-            )));
-        }
-    }
+    let own = library.scenario(&args.scenario)?;
+    args.over.iter().try_for_each(|over| over.check(&own))?;
     match &args.out {
         Some(out) => check_robot(out, &setup.robot.name, is_tuned, args.overwrite),
         None => Ok(()),

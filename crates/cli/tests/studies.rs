@@ -88,6 +88,10 @@ fn a_sweep_that_was_cut_off_goes_on_to_the_same_bytes() {
         let [one, other] = [&whole, &part].map(|folder| std::fs::read(folder.join(name)).unwrap());
         assert!(one == other, "{name}");
     }
+    // A complete one is made again.
+    let again = sweep(&part_text, &[]);
+    assert!(again.status.success(), "{}", stderr(&again));
+    assert_eq!(read(&part, "runs.jsonl"), journal);
     // Another sweep is not gone on with, and a run that is none is named.
     let other = sweep(&part_text, &["--resume", "--seed", "9"]);
     assert!(

@@ -9,14 +9,14 @@ mod batch;
 pub use batch::{in_order, run_all, run_all_on};
 
 use crate::calibrate::calibrate_simulated;
-use crate::files::{FileError, Setup, near};
+use crate::files::{Calibrated, FileError, Setup, near, unknown};
 use crate::metrics::{self, Metrics};
 use crate::operator::Operator;
-use rumbo_control::params::Params;
+use rumbo_control::params::{ParamId, Params};
 use rumbo_emulator::observe::waveform::Waveform;
 use rumbo_sim::Sim;
 use rumbo_sim::mega::Mega;
-use rumbo_sim::trace::{SAMPLE_US, TimedMessage, Trace};
+use rumbo_sim::trace::{SAMPLE_US, Trace};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::fs::File;
@@ -103,11 +103,13 @@ impl<'a> Run<'a> {
     }
 
     /// The messages received from the robot so far.
-    pub(crate) fn received(&self) -> &[TimedMessage] {
+    #[cfg(feature = "host")]
+    pub(crate) fn received(&self) -> &[rumbo_sim::trace::TimedMessage] {
         &self.operator.received
     }
 
     /// Ground truth so far.
+    #[cfg(feature = "host")]
     pub(crate) fn trace(&self) -> &Trace {
         &self.trace
     }
@@ -254,13 +256,28 @@ pub fn prepare(setup: &Setup, seed: u64) -> Result<Cow<'_, Setup>, FileError> {
     if !setup.scenario.calibrated || !setup.takes_parameters() {
         return Ok(Cow::Borrowed(setup));
     }
-    // For any rig of the experiment: sonars are moved back after a calibration, wheels stay.
+    let mut parameters = calibration(setup, seed)?;
+    let mut setup = setup.clone();
+    parameters.append(&mut setup.scenario.parameters);
+    setup.scenario.parameters = parameters;
+    Ok(Cow::Owned(setup))
+}
+
+/// The parameters that the calibration of a seed's robot finds. Parameters of the scenario are of its run, not of the
+/// calibration before it.
+fn calibration(setup: &Setup, seed: u64) -> Result<Vec<(ParamId, f32)>, FileError> {
     let mut own = setup.clone();
+    own.scenario.parameters.clear();
     // An image with our frames has our control core: the native one finds the same parameters sooner.
     own.firmware = None;
+    // For any rig of the experiment: sonars are moved back after a calibration, wheels stay.
     if let Some(rig) = own.robot.rigs.get("final") {
         own.rig = *rig;
         "final".clone_into(&mut own.scenario.rig);
+    }
+    let (robot, before) = (own.drawn_params(seed)?, own.control_parameters()?);
+    if let Some(found) = setup.calibrations.found(seed, &robot, &before) {
+        return Ok(found);
     }
     let (found, _) = calibrate_simulated(&own, seed, false)?;
     let found = found.map_err(|error| {
@@ -269,11 +286,33 @@ pub fn prepare(setup: &Setup, seed: u64) -> Result<Cow<'_, Setup>, FileError> {
             "scenario {name}, calibration of seed {seed}: {error}"
         ))
     })?;
-    let mut setup = setup.clone();
-    let mut parameters = found.parameters();
-    parameters.append(&mut setup.scenario.parameters);
-    setup.scenario.parameters = parameters;
-    Ok(Cow::Owned(setup))
+    let found = found.parameters();
+    let calibrated = Calibrated {
+        robot,
+        before,
+        found: found.clone(),
+    };
+    setup.calibrations.keep(seed, calibrated);
+    Ok(found)
+}
+
+/// Refuses metrics that the runs of a scenario do not have, bare or with their step, after one run.
+///
+/// # Errors
+/// A metric with the near ones, or that of the run.
+pub fn check_metrics<'a>(
+    mut names: impl Iterator<Item = &'a str>,
+    setup: &Setup,
+    seed: u64,
+) -> Result<(), FileError> {
+    let run = run(setup, seed)?;
+    let known: Vec<&str> = run.metrics.keys().map(String::as_str).collect();
+    let bare = known.iter().map(|name| metrics::bare(name));
+    let all: Vec<&str> = known.iter().copied().chain(bare).collect();
+    match names.find(|name| !all.contains(name)) {
+        Some(name) => Err(unknown("metric", name, all.iter().copied())),
+        None => Ok(()),
+    }
 }
 
 fn instead(name: &str, metrics: &Metrics) -> String {

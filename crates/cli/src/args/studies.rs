@@ -2,7 +2,6 @@
 
 use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, SeedArgs, SettingArgs};
 use super::runs::{LanguageName, ProgramName};
-use super::values::over;
 use clap::Args;
 use rumbo_experiment::sweep::Axis;
 use rumbo_experiment::tune::{Objective, Over};
@@ -104,11 +103,11 @@ pub(crate) struct TuneArgs {
     #[arg(long = "for", value_name = "AIMS")]
     pub(crate) aims: Option<Objective>,
     /// Parameters of the control core, with commas between them
-    #[arg(long, required = true, value_name = "NAMES", value_delimiter = ',', value_parser = over)]
+    #[arg(long, required = true, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) over: Vec<Over>,
     #[command(flatten)]
     pub(crate) seed: SeedArgs,
-    /// Most runs of the search [default: 600,000 s of driving]
+    /// Most runs of the search [default: 500,000 s of driving]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub(crate) runs: Option<u32>,
     /// Runs with seeds that the search has not seen

@@ -2,9 +2,7 @@
 
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
-use rumbo_control::params::ParamId;
-use rumbo_experiment::files::{Port, TimedText, parameters, unknown};
-use rumbo_experiment::tune::Over;
+use rumbo_experiment::files::{Port, TimedText, parameters};
 use rumbo_sim::boards::{BOARDS, Board};
 
 /// A board by its name.
@@ -62,17 +60,4 @@ pub(super) fn parameter(text: &str) -> Result<(String, f64), Failure> {
     let name = name.trim();
     let value = parameters::parse(name, value.trim()).map_err(Failure::input)?;
     Ok((name.to_owned(), value))
-}
-
-/// A parameter to tune: `front_kp`, or with a range `front_kp=1:20`.
-pub(super) fn over(text: &str) -> Result<Over, Failure> {
-    let name = text.split_once('=').map_or(text, |(name, _)| name).trim();
-    let Some(id) = ParamId::from_name(name) else {
-        let known = ParamId::ALL.map(ParamId::name);
-        return Err(unknown("parameter of the control core", name, known).into());
-    };
-    match text.contains('=') {
-        false => Ok(Over::Name(id)),
-        true => Ok(Over::Range(id, text.parse().map_err(Failure::input)?)),
-    }
 }

@@ -67,7 +67,8 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// Goes on with the sweep of this file; returns the runs that are done. `None` if there is no file.
+    /// Goes on with the sweep of this file; returns the runs that are done. `None` if there is no file. A complete sweep
+    /// begins again without `resume`.
     ///
     /// # Errors
     /// It is of another sweep, or a line is none.
@@ -81,6 +82,9 @@ impl Journal {
             return Ok(None);
         };
         let before = Content::parse(path, &text, header, plan)?;
+        if !resume && before.rows.len() == plan.len() {
+            return Ok(Some((Self::begin(path, header)?, Vec::new())));
+        }
         if !resume {
             return Err(Failure::Input(format!(
                 "{}: has {} of {} runs of this sweep; go on with --resume, or begin again with --force",

@@ -32,7 +32,9 @@ pub enum Kind {
 }
 
 impl Kind {
-    fn word(self) -> &'static str {
+    /// Its word in messages.
+    #[must_use]
+    pub fn word(self) -> &'static str {
         match self {
             Self::Robot => "robot",
             Self::World => "world",

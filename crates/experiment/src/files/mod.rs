@@ -10,6 +10,7 @@ pub mod commands;
 mod dropped;
 mod error;
 pub mod firmware;
+mod kept;
 mod library;
 mod names;
 pub(crate) mod near;
@@ -24,6 +25,8 @@ mod word;
 mod world;
 
 pub use error::{FileError, Problem};
+pub(crate) use kept::Calibrated;
+pub use kept::Calibrations;
 pub use library::{Kind, Library};
 pub use names::{MOVEMENTS, find_mode, find_movement};
 pub use near::unknown;

@@ -1,6 +1,7 @@
 //! A scenario with everything it names, and the overrides of the command line.
 
 use super::error::FileError;
+use super::kept::Calibrations;
 use super::near::{near, near_or_all};
 use super::read::Allowed;
 use super::{Library, RobotFile, ScenarioFile, Spread, Start, WorldFile, firmware, parameters};
@@ -91,6 +92,8 @@ pub struct Setup {
     pub texts: Vec<TimedText>,
     /// What an image says is not believed: it is spoken to in text, and nothing that it says reaches a metric.
     pub ground_truth: bool,
+    /// The calibrations made so far; copies share them.
+    pub calibrations: Calibrations,
 }
 
 impl Library {
@@ -151,6 +154,7 @@ impl Library {
             firmware,
             texts,
             ground_truth: overrides.ground_truth,
+            calibrations: Calibrations::default(),
         })
     }
 }
@@ -268,7 +272,7 @@ impl Setup {
     }
 
     /// The robot file's parameters, drawn for the seed, with the scenario's own values on top.
-    fn drawn_params(&self, seed: u64) -> Result<Params, FileError> {
+    pub(crate) fn drawn_params(&self, seed: u64) -> Result<Params, FileError> {
         let mut params = match self.scenario.spread {
             Spread::Drawn => self.robot.plant.draw(seed, 0),
             Spread::None => self.robot.plant,

@@ -4,19 +4,21 @@
 //! a Sobol sequence over all ranges ─► the best of it and the start ─► CMA-ES (Hansen 2016) from each ─► finalists, on fresh seeds
 //! ```
 //!
-//! Each generation runs all its candidates with the same seeds, and the next one takes other seeds: what suits some
-//! robots only does not last. The cost of a candidate is half its mean over the robots and half the mean of the worst
+//! Each generation runs all its candidates with the same seeds, and the next one takes others: what suits some robots
+//! only does not last. The cost of a candidate is half its mean over the robots and half the mean of the worst
 //! quarter of them. A limit that is nearly missed costs too, so that other robots keep it as well. The result depends on
 //! the seed and the budget alone, not on threads or time.
 
 mod objective;
+mod over;
 
 pub use objective::{Objective, ObjectiveError};
+pub use over::Over;
 
 use crate::files::parameters::exact;
 use crate::files::{FileError, Setup};
-use crate::run::run;
-use crate::sweep::{Axis, Values};
+use crate::run::{prepare, run};
+use crate::sweep::Values;
 use nalgebra::DVector;
 use rayon::prelude::*;
 use rumbo_control::params::{ParamId, ParamKind, Params};
@@ -26,12 +28,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A range without a given one goes from the start's value divided by this to its multiple.
 const FACTOR: f64 = 8.0;
+/// Driving of a search by default [s].
+const DRIVING_S: f64 = 500_000.0;
 /// Points of the first look, and the seeds of each.
 const LOOK: usize = 48;
 const LOOK_SEEDS: usize = 4;
 /// Seeds of a generation: at first, and at last, when candidates differ little and rare robots count.
 const FIRST_SEEDS: usize = 6;
 const LAST_SEEDS: usize = 60;
+/// The robots of a search: its generations take their seeds from these in turn, so that no robot is calibrated often.
+const ROBOTS: usize = 300;
 /// Step size of the search at first, in units of half a range.
 const STEP: f64 = 0.35;
 /// The search has converged at this step size.
@@ -126,15 +132,6 @@ pub fn is_tuned(text: &str) -> bool {
     text.lines().any(|line| line.starts_with(MARK))
 }
 
-/// What to search over: names, or axes `NAME=FROM:TO`.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Over {
-    /// About the start's value.
-    Name(ParamId),
-    /// Within a range.
-    Range(ParamId, Axis),
-}
-
 /// The parameters to tune, with their starts and ranges.
 ///
 /// # Errors
@@ -148,8 +145,7 @@ pub fn tuned(setup: &Setup, over: &[Over]) -> Result<Vec<Tuned>, FileError> {
     }
     let mut all: Vec<Tuned> = Vec::new();
     for one in over {
-        let (Over::Name(id) | Over::Range(id, _)) = one;
-        let id = *id;
+        let id = one.id();
         if all.iter().any(|other| other.id == id) {
             return Err(refuse(TuneError::Twice(id.name().to_owned())));
         }
@@ -247,6 +243,12 @@ impl Search<'_> {
     /// Fewer runs are no search.
     pub const LEAST: usize = 2_000;
 
+    /// Most runs of a search by default.
+    #[must_use]
+    pub fn default_budget(setup: &Setup) -> usize {
+        ((DRIVING_S / setup.scenario.duration_s) as usize).max(Self::LEAST)
+    }
+
     /// Searches; `progress` gets the share of the budget that is used, and says whether to go on.
     ///
     /// # Errors
@@ -267,6 +269,7 @@ impl Search<'_> {
         let dimension = self.over.len();
         let start: Vec<f64> = self.over.iter().map(|one| one.place(one.start)).collect();
         // The first look.
+        evaluator.calibrate(0, LOOK_SEEDS)?;
         let mut looked: Vec<(f64, Vec<f64>)> = (0..LOOK)
             .into_par_iter()
             .map(|index| {
@@ -357,16 +360,16 @@ impl Search<'_> {
             });
         let mut search = search.map_err(|error| broken(format!("{error:?}")))?;
         let begun = evaluator.share();
-        let mut generation = 0;
+        let mut next = 0;
         while go_on() && search.sigma() > FINE {
             let done = (evaluator.share() - begun) / (0.5 * (1.0 - self.last_share()));
             let more = (LAST_SEEDS - FIRST_SEEDS) as f64 * done;
-            seeds.store(FIRST_SEEDS + more as usize, Ordering::Relaxed);
-            generation += 1;
-            first.store(
-                (generation + 1_000 * number) * 2 * LAST_SEEDS,
-                Ordering::Relaxed,
-            );
+            let count = FIRST_SEEDS + more as usize;
+            let from = next % (ROBOTS - count);
+            next += count;
+            first.store(from, Ordering::Relaxed);
+            seeds.store(count, Ordering::Relaxed);
+            evaluator.calibrate(from, count)?;
             if search.next_parallel().is_some() {
                 break;
             }
@@ -384,6 +387,7 @@ impl Search<'_> {
         finalists: Vec<Vec<f64>>,
     ) -> Result<Found, FileError> {
         let first = Self::SEEDS as usize / 2;
+        evaluator.calibrate(first, FINAL_SEEDS)?;
         let costs: Vec<f64> = finalists
             .par_iter()
             .map(|place| evaluator.cost(place, first, FINAL_SEEDS))
@@ -414,22 +418,26 @@ impl Evaluator<'_> {
         self.runs.load(Ordering::Relaxed) as f64 / self.search.budget as f64
     }
 
+    /// Calibrates the robots of so many seeds from one on, if their scenario requests it: else each candidate would.
+    fn calibrate(&self, first: usize, seeds: usize) -> Result<(), FileError> {
+        let Search { setup, seed, .. } = self.search;
+        (first..first + seeds)
+            .into_par_iter()
+            .try_for_each(|index| prepare(setup, seed.wrapping_add(index as u64)).map(|_| ()))
+    }
+
     /// The cost at a place over so many seeds from one on.
     fn cost(&self, place: &[f64], first: usize, seeds: usize) -> Result<f64, FileError> {
         let search = self.search;
         let values = search.over.iter().zip(place);
         let values: Vec<f64> = values.map(|(one, place)| one.at(*place)).collect();
         let setup = search.setup_of(&values)?;
-        let mut costs = Vec::with_capacity(seeds);
-        for index in first..first + seeds {
+        let costs = (first..first + seeds).into_par_iter().map(|index| {
             let result = run(&setup, search.seed.wrapping_add(index as u64))?;
-            let pass = result.pass;
-            costs.push(
-                search
-                    .objective
-                    .cost(&setup.scenario, self.units, &result.metrics, pass),
-            );
-        }
+            let objective = search.objective;
+            Ok(objective.cost(&setup.scenario, self.units, &result.metrics, result.pass))
+        });
+        let mut costs: Vec<f64> = costs.collect::<Result<_, FileError>>()?;
         self.runs.fetch_add(seeds, Ordering::Relaxed);
         costs.sort_by(|one, other| other.total_cmp(one));
         let mean = |costs: &[f64]| costs.iter().sum::<f64>() / costs.len() as f64;

@@ -1,0 +1,58 @@
+//! What to search over: `front_kp`, or within a range `front_kp=1:20`.
+
+use crate::files::{FileError, ScenarioFile, unknown};
+use crate::sweep::Axis;
+use rumbo_control::params::ParamId;
+
+/// What to search over: names, or axes `NAME=FROM:TO`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Over {
+    /// About the start's value.
+    Name(ParamId),
+    /// Within a range.
+    Range(ParamId, Axis),
+}
+
+impl std::str::FromStr for Over {
+    type Err = FileError;
+
+    fn from_str(text: &str) -> Result<Self, FileError> {
+        let name = text.split_once('=').map_or(text, |(name, _)| name).trim();
+        let Some(id) = ParamId::from_name(name) else {
+            let known = ParamId::ALL.map(ParamId::name);
+            return Err(unknown("parameter of the control core", name, known));
+        };
+        let range = || text.parse::<Axis>();
+        match text.contains('=') {
+            false => Ok(Self::Name(id)),
+            true => range()
+                .map(|axis| Self::Range(id, axis))
+                .map_err(|error| FileError::Setting(error.to_string())),
+        }
+    }
+}
+
+impl Over {
+    /// The parameter.
+    #[must_use]
+    pub fn id(&self) -> ParamId {
+        match self {
+            Self::Name(id) | Self::Range(id, _) => *id,
+        }
+    }
+
+    /// Refuses a parameter that the scenario's file sets, in vain.
+    ///
+    /// # Errors
+    /// The parameter and the remedy.
+    pub fn check(&self, scenario: &ScenarioFile) -> Result<(), FileError> {
+        match scenario.parameters.iter().any(|(own, _)| *own == self.id()) {
+            true => Err(FileError::Setting(format!(
+                "{}: scenario {} sets it itself, whatever a robot file says; take it out of the scenario",
+                self.id().name(),
+                scenario.name
+            ))),
+            false => Ok(()),
+        }
+    }
+}

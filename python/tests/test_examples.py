@@ -1,0 +1,34 @@
+"""The examples of examples/python run in their short form, and draw what they say."""
+
+from __future__ import annotations
+
+import pathlib
+import runpy
+
+import numpy as np
+import pytest
+
+EXAMPLES = pathlib.Path(__file__).parents[2] / "examples/python"
+
+
+def test_the_sweep_draws_bands_a_map_and_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    matplotlib = pytest.importorskip("matplotlib", reason="matplotlib is not installed")
+    matplotlib.use("agg")
+    from matplotlib import pyplot
+
+    monkeypatch.setenv("RUMBO_SHORT", "1")
+    monkeypatch.setattr(pyplot, "show", lambda: None)
+    sweep = runpy.run_path(str(EXAMPLES / "sweep.py"))["sweep"]
+    assert len(sweep) == 72
+    bands, passed, runs = (pyplot.figure(number).axes[0] for number in pyplot.get_fignums())
+    # More gain settles sooner, up to a point; too little never does.
+    for line in bands.lines:
+        times = np.array(line.get_ydata())
+        assert times[0] > times[1] > times[2] and np.isfinite(times[1:]).all()
+    assert len(bands.lines) == len(bands.collections) == 3
+    shares = passed.collections[0].get_array()
+    assert shares.shape == (3, 6) and shares.max() == 100 and shares.min() < 100
+    assert len(runs.lines) == 3
+    for line in runs.lines:
+        assert np.ptp(line.get_ydata()) > 0.1
+    pyplot.close("all")
