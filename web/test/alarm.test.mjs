@@ -6,7 +6,7 @@ import { createReadStream, openSync, write } from 'node:fs';
 import { createServer } from 'node:net';
 import { createInterface } from 'node:readline';
 import { test } from 'node:test';
-import { folder, open, program } from './dashboard.mjs';
+import { eventually, folder, open, program } from './dashboard.mjs';
 
 /** Pictures go there, if somebody wants some. */
 const PICTURES = process.env['SCREENSHOTS'];
@@ -56,7 +56,7 @@ test('ON where no wall is near is refused beside the button, until the next orde
     const refusal = page.locator('#refusal', { hasText: 'ON: refused, no wall within reach' });
     await refusal.waitFor();
     assert.doesNotMatch(await refusal.innerText(), /wiring/);
-    assert.doesNotMatch(await page.locator('#aim').innerText(), /ON starts it/);
+    await eventually(async () => assert.doesNotMatch(await page.locator('#aim').innerText(), /ON starts it/));
     const [on, why] = [await page.locator('#on').boundingBox(), await refusal.boundingBox()];
     assert.ok(on && why && Math.abs(why.y - on.y) < 30, `${JSON.stringify(on)} ${JSON.stringify(why)}`);
     await picture(page, 'refusal');

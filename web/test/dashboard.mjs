@@ -20,6 +20,21 @@ export const BROWSER_ARGS = [
 /** Long enough for any machine; nothing is judged by it [ms]. */
 export const PATIENCE_MS = 30_000;
 
+/**
+ * Repeats a check of what the page shows until it holds: the page draws when the robot's next message comes, not when a click returns.
+ * @param {() => Promise<void>} check throws while it does not hold
+ */
+export async function eventually(check) {
+  for (const end = Date.now() + PATIENCE_MS; ;) {
+    try {
+      return await check();
+    } catch (error) {
+      if (Date.now() > end) throw error;
+      await new Promise((again) => setTimeout(again, 50));
+    }
+  }
+}
+
 /** The program to test. */
 export function program() {
   const path = process.env['RUMBO_BIN'];

@@ -8,7 +8,7 @@ import { spawnSync } from 'node:child_process';
 import { existsSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { folder, open, program } from './dashboard.mjs';
+import { eventually, folder, open, program } from './dashboard.mjs';
 
 const image = join(process.env['SKETCHES'] ?? '', 'memoria-mode5.elf');
 const skip = existsSync(image) ? false : `${image} is missing: run \`cargo xtask sketches\``;
@@ -30,7 +30,7 @@ after(() => dashboard?.close());
 test('ON reaches a robot that speaks text, its rows are drawn and stand in the console of its USART', { skip }, async () => {
   await page.locator('#on').click();
   await page.locator('#console').filter({ hasText: /\d+, ?-?\d/ }).waitFor();
-  assert.equal(await page.locator('#console-choice button[aria-pressed="true"]').textContent(), 'Serial1 (Bluetooth)');
+  await eventually(async () => assert.equal(await page.locator('#console-choice button[aria-pressed="true"]').textContent(), 'Serial1 (Bluetooth)'));
   await page.waitForFunction(() => {
     const rumbo = /** @type {any} */ (window).rumbo;
     return rumbo.series('left_rpm').y.some((/** @type {number} */ rpm) => rpm > 40);

@@ -5,7 +5,7 @@ import { spawn, spawnSync } from 'node:child_process';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
 import { test } from 'node:test';
-import { folder, open, program } from './dashboard.mjs';
+import { eventually, folder, open, program } from './dashboard.mjs';
 
 /** The value of a signal at the time shown, or the last one before. @param {import('playwright-core').Page} page @param {string} name @returns {Promise<number>} */
 const last = (page, name) => page.evaluate((name) => {
@@ -118,7 +118,7 @@ test('the ghost of a robot on a port receives the same commands', { skip: proces
     await page.locator('#connection.good').waitFor();
     // The first time that this browser meets a real robot, the check comes by itself, for the sonars that the robot carries.
     await page.locator('#checkup-dialog').waitFor();
-    assert.deepEqual((await page.locator('#checkup-dialog .steps li').allTextContents()).slice(4), ['Sonar: front'], 'its rig has no servo');
+    await eventually(async () => assert.deepEqual((await page.locator('#checkup-dialog .steps li').allTextContents()).slice(4), ['Sonar: front'], 'its rig has no servo'));
     await page.keyboard.press('Escape');
     await page.reload();
     await page.locator('#connection.good').waitFor();

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { request } from 'node:http';
 import { after, before, test } from 'node:test';
-import { folder, open } from './dashboard.mjs';
+import { eventually, folder, open } from './dashboard.mjs';
 
 /** @typedef {{series: (name: string) => {t: number[], y: (number | null | undefined)[]}, state: () => import('../src/types.js').State | null}} Rumbo */
 
@@ -208,7 +208,7 @@ test('mode 7: a route made by clicks is driven point by point, and the state lin
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.route?.waypoints.length === 4);
   await clickMap([0.3, 0]);
   await clickMap([0.3, 0.3]);
-  assert.deepEqual(await page.locator('.place b').allTextContents(), ['1', '2']);
+  await eventually(async () => assert.deepEqual(await page.locator('.place b').allTextContents(), ['1', '2']));
   await clickMap([-1, -1]);
   await page.locator('.place').nth(2).click();
   await page.locator('#route-set').click();
@@ -257,7 +257,7 @@ test('a sensor layout that the robot does not carry is warned about, and the rob
   await page.locator('#rig').selectOption('front_single');
   await page.locator('#simulation button[type=submit]').click();
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.rig === 'front_single');
-  assert.equal(await page.locator('#rig-warning').isVisible(), false);
+  await eventually(async () => assert.equal(await page.locator('#rig-warning').isVisible(), false));
   await page.locator('#reset-parameters').click();
   await page.waitForSelector('#rig-warning');
   assert.match(await page.locator('#rig-text').innerText(), /is set to the sensor layout final, but front_single is mounted/);

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { folder, open } from './dashboard.mjs';
+import { eventually, folder, open } from './dashboard.mjs';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
 let dashboard;
@@ -20,8 +20,7 @@ after(() => dashboard?.close());
 
 test('the states of the mode are drawn, with the live one lit and the way that led there', async () => {
   await page.getByRole('tab', { name: 'States' }).click();
-  await page.locator('.state-box').nth(2).waitFor();
-  assert.deepEqual(await page.locator('.state-box text').allTextContents(), ['approach', 'settle', 'hold']);
+  await eventually(async () => assert.deepEqual(await page.locator('.state-box text').allTextContents(), ['approach', 'settle', 'hold']));
   assert.equal(await page.locator('.state-box.live').count(), 0, 'not armed');
   await page.locator('#on').click();
   for (const [state, way] of [['approach', ''], ['settle', 'approach → settle'], ['hold', 'settle → hold']]) {

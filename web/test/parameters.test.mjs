@@ -2,7 +2,7 @@
 /** What the page makes of the modes' descriptions and the parameters' types. */
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { folder, open } from './dashboard.mjs';
+import { eventually, folder, open } from './dashboard.mjs';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
 let dashboard;
@@ -56,14 +56,14 @@ test('a mode that the rig cannot serve is reported, and its experiment offered',
   await page.locator('#mode-scenario', { hasText: 'Load a scenario of this mode' }).waitFor();
   await select(1);
   await page.locator('#about', { hasText: /^stop at a distance from the wall ahead$/ }).waitFor();
-  assert.equal(await page.locator('#mode-scenario').isVisible(), false);
+  await eventually(async () => assert.equal(await page.locator('#mode-scenario').isVisible(), false));
 });
 
 test('a choice is one of its names, and applied like any value', async () => {
   await select(7);
   const field = page.locator('select#parameter-waypoint_tracker');
   await page.waitForFunction(() => /** @type {HTMLSelectElement} */ (document.querySelector('#parameter-waypoint_tracker')).value === '0');
-  assert.deepEqual(await field.locator('option').allTextContents(), ['straight', 'pure pursuit']);
+  await eventually(async () => assert.deepEqual(await field.locator('option').allTextContents(), ['straight', 'pure pursuit']));
   const row = page.locator('#parameters tr', { has: field });
   await field.selectOption('pure pursuit');
   await row.getByRole('button', { name: 'Revert' }).click();

@@ -2,7 +2,7 @@
 /** The page fits and can be used without a pointer: sizes of screens, names, the order of Tab. */
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { PATIENCE_MS, folder, open } from './dashboard.mjs';
+import { PATIENCE_MS, eventually, folder, open } from './dashboard.mjs';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
 let dashboard;
@@ -211,7 +211,7 @@ test('what a parameter is can be read with a finger and with the keyboard, on a 
     await page.waitForSelector('#connection.good');
     const about = page.locator('#parameter-about');
     await page.locator('#goal').waitFor();
-    assert.equal(await page.locator('#goal-x').inputValue(), '2.5', 'the form begins with the experiment\'s goal');
+    await eventually(async () => assert.equal(await page.locator('#goal-x').inputValue(), '2.5', 'the form begins with the experiment\'s goal'));
     await about.getByText('Tap a line').waitFor();
     await page.locator('#parameters td', { hasText: /^link_timeout_s$/ }).tap();
     await about.getByText('link_timeout_s Time without a sign of life after which the wheels are released.').waitFor();

@@ -5,7 +5,7 @@ import { spawnSync } from 'node:child_process';
 import { existsSync, readdirSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { folder, open, program, showPage } from './dashboard.mjs';
+import { eventually, folder, open, program, showPage } from './dashboard.mjs';
 
 const out = folder();
 /** @type {Awaited<ReturnType<typeof open>>} */
@@ -35,12 +35,12 @@ const ask = (path, method) => page.evaluate(async ({ path, method }) => {
 test('all recordings of the folder are listed, with what they are, and found by words', async () => {
   await page.locator('#recordings').click();
   await row('mode1-3').waitFor();
-  assert.equal(await page.locator('.recordings tbody tr').count(), 5, 'four files and the one that is being recorded');
+  await eventually(async () => assert.equal(await page.locator('.recordings tbody tr').count(), 5, 'four files and the one that is being recorded'));
   assert.match(await row('mode1-3').innerText(), /Stop at a distance from a wall, 107 → 30 → 50 cm/);
   assert.match(await row('notes').innerText(), /not readable/);
   await page.locator('#recordings-find').fill('wheel speeds');
   await row('mode5-1').waitFor();
-  assert.equal(await page.locator('.recordings tbody tr').count(), 1);
+  await eventually(async () => assert.equal(await page.locator('.recordings tbody tr').count(), 1));
   await page.locator('#recordings-find').fill('');
 });
 

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { folder, open, program } from './dashboard.mjs';
+import { eventually, folder, open, program } from './dashboard.mjs';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
 let dashboard;
@@ -36,8 +36,8 @@ async function scrub(t_s) {
 
 test('a log opens paused, and nothing can be sent to a robot', async () => {
   await page.locator('#replay').waitFor();
-  assert.equal(await page.locator('#replay-name').textContent(), 'mode1-3');
-  assert.match(await page.locator('#replay-time').textContent() ?? '', /of 8\.9\d s/);
+  await eventually(async () => assert.equal(await page.locator('#replay-name').textContent(), 'mode1-3'));
+  await eventually(async () => assert.match(await page.locator('#replay-time').textContent() ?? '', /of 8\.9\d s/));
   assert.equal(await page.locator('#stop').isVisible(), false);
   assert.equal(await page.locator('#command-section').evaluate((section) => /** @type {HTMLElement} */ (section).inert), true);
 });
@@ -106,7 +106,7 @@ test('it plays, and pauses at its end', async () => {
   await scrub(8.5);
   await page.locator('#replay-play').click();
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().t_s > 8.9 && /** @type {any} */ (window).rumbo.state().speed === 0);
-  assert.equal(await page.locator('#replay-play').textContent(), 'Play');
+  await eventually(async () => assert.equal(await page.locator('#replay-play').textContent(), 'Play'));
 });
 
 test('a click on an event goes to its time', async () => {

@@ -2,7 +2,7 @@
 /** The dashboard in Spanish, as a Spanish browser gets it. */
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { folder, open } from './dashboard.mjs';
+import { eventually, folder, open } from './dashboard.mjs';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
 let dashboard;
@@ -22,8 +22,8 @@ const event = (text) => page.locator('#events li', { hasText: text }).first().wa
 test('a Spanish browser gets the page, the modes and the events in Spanish', async () => {
   await page.locator('#connection', { hasText: /^en vivo \d+ Hz$/ }).waitFor();
   assert.equal(await page.evaluate(() => document.documentElement.lang), 'es');
-  assert.match(await page.locator('#stop').innerText(), /PARAR/);
-  assert.equal(await page.locator('#modes button').nth(1).innerText(), '1distancia');
+  await eventually(async () => assert.match(await page.locator('#stop').innerText(), /PARAR/));
+  await eventually(async () => assert.equal(await page.locator('#modes button').nth(1).innerText(), '1distancia'));
   await page.locator('#on').click();
   await event(/^\d+,\d\d s.armado$/);
   await page.locator('#state', { hasText: 'acercarse' }).waitFor();
