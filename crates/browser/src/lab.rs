@@ -81,7 +81,7 @@ impl Host for Page {
 
 /// The lab of one page.
 pub struct Lab {
-    driver: Driver<Page>,
+    driver: Driver<Page, SimulatedRobot>,
     /// Orders since the last round.
     waiting: Vec<Order>,
     lease: Lease,

@@ -39,8 +39,8 @@ pub trait Host {
 }
 
 /// A session with its target.
-pub struct Driver<H> {
-    target: Box<dyn Target>,
+pub struct Driver<H, T: ?Sized = dyn Target> {
+    target: Box<T>,
     session: Session,
     host: H,
     calibration: Option<Calibration>,
@@ -49,10 +49,10 @@ pub struct Driver<H> {
     bytes: Vec<u8>,
 }
 
-impl<H: Host> Driver<H> {
+impl<H: Host, T: Target + ?Sized> Driver<H, T> {
     /// A session at `speed`, in seconds of the target per second of the wall clock, that has not begun yet. Times of
     /// the wall clock are \[us\] since any instant, and never decrease.
-    pub fn new(target: Box<dyn Target>, mut host: H, speed: f64, extras: Extras) -> Self {
+    pub fn new(target: Box<T>, mut host: H, speed: f64, extras: Extras) -> Self {
         let about = About::of(target.as_ref());
         let speed = match about.abilities.pace {
             true => speed.clamp(0.0, MAX_SPEED),
@@ -71,6 +71,22 @@ impl<H: Host> Driver<H> {
     /// The program around it.
     pub fn host(&mut self) -> &mut H {
         &mut self.host
+    }
+
+    /// The same, for good.
+    pub fn into_host(self) -> H {
+        self.host
+    }
+
+    /// What is driven.
+    pub fn target(&mut self) -> &mut T {
+        &mut self.target
+    }
+
+    /// The target's time \[us\].
+    #[must_use]
+    pub fn now_us(&self) -> u64 {
+        self.target.now_us()
     }
 
     /// The requested speed; 0 is a pause.

@@ -56,7 +56,7 @@ pub struct About {
 
 impl About {
     /// The properties of this target.
-    pub fn of(target: &dyn Target) -> Self {
+    pub fn of(target: &(impl Target + ?Sized)) -> Self {
         Self {
             abilities: target.abilities(),
             baud: target.baud(),

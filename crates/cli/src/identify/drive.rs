@@ -75,7 +75,7 @@ pub(crate) fn in_lab(drive: &Drive<'_>, robot: &str, seed: u64) -> Result<Drivin
     let mut driven = Driven::begin(robot, drive.folder)?;
     let asked = Arc::new(AtomicBool::new(false));
     let done = all_parts(&mut driven, battery_v.into(), &asked, |driven, part| {
-        driven.target.lift(!part.on_floor);
+        driven.robot().lift(!part.on_floor);
         Ok(())
     });
     let path = end(driven, done)?;
@@ -108,7 +108,7 @@ pub(crate) fn at_port(drive: &Drive<'_>, address: &str, baud: u32) -> Result<Dri
 
 /// Stops the robot, whatever came, and completes the log.
 fn end<T: Target>(mut driven: Driven<T>, done: Result<(), Failure>) -> Result<PathBuf, Failure> {
-    let path = driven.path().to_owned();
+    let path = driven.path();
     let stopped = driven.order(Command::Stop).and_then(|()| {
         let until_us = driven.now_us() + SILENT_US;
         while driven.now_us() < until_us {
@@ -178,7 +178,7 @@ fn drive_part<T: Target>(
     driven.order(Command::Arm)?;
     let is_on = |row: &Row| row.signal("armed") == Some(1.0) && row.signal("mode") == Some(0.0);
     wait(driven, asked, is_on, "the robot does not go ON")?;
-    let from = position(driven.signals(SILENT_US));
+    let from = position(driven.signals(SILENT_US).as_ref());
     for step in &part.steps {
         driven.order(command(*step))?;
         let until_us = driven.now_us() + (step.seconds * 1e6) as u64;
@@ -211,7 +211,7 @@ fn wait<T: Target>(
     otherwise: &str,
 ) -> Result<(), Failure> {
     let until_us = driven.now_us() + ON_US;
-    while !driven.signals(SILENT_US).is_some_and(&reached) {
+    while !driven.signals(SILENT_US).as_ref().is_some_and(&reached) {
         pass(driven, asked)?;
         if driven.now_us() >= until_us {
             return Err(refused(driven, otherwise));
@@ -227,7 +227,7 @@ fn supervise<T: Target>(
     step: Step,
     from: Option<[f64; 2]>,
 ) -> Result<bool, Failure> {
-    let Some(row) = driven.signals(SILENT_US).copied() else {
+    let Some(row) = driven.signals(SILENT_US) else {
         return Err(Failure::Input(
             "the robot's telemetry stays away: it was stopped; check the link".into(),
         ));

@@ -4,9 +4,10 @@
 //! robot takes its time; a simulated one takes none.
 
 use crate::failure::Failure;
-use rumbo_log::{Entry, Level, LogWriter, Manifest, Row};
-use rumbo_session::{About, Event, Going, Now, Order, SLICE_US, Session, Sight, Target};
-use rumbo_station::{headless, now_utc};
+use rumbo_log::{Entry, Level, LogWriter, Manifest, Row, WriteError};
+use rumbo_session::{Driver, Event, Extras, Host, Order, SLICE_US, Target};
+use rumbo_station::headless::begin_log;
+use rumbo_station::now_utc;
 use rumbo_wire::Command;
 use std::fs::File;
 use std::io::BufWriter;
@@ -19,86 +20,151 @@ const FLUSH_US: u64 = 400_000;
 const UPDATE_US: u64 = 20_000;
 
 /// A session, its robot and its log.
-pub(crate) struct Driven<T: Target> {
-    pub(crate) target: T,
-    session: Session,
-    log: LogWriter<BufWriter<File>>,
-    path: PathBuf,
+pub(crate) struct Driven<T> {
+    driver: Driver<Recording, T>,
     began: Instant,
     /// The robot lives in real time.
     is_real: bool,
+    /// What a wall clock would say beside a simulated robot \[us\].
+    pretended_us: u64,
     flushed_us: u64,
     updated_us: u64,
-    bytes: Vec<u8>,
-    /// The newest signals, and when they came [us].
-    newest: Option<(Row, u64)>,
+    /// When the newest signals came \[us\].
+    newest_us: u64,
+}
+
+/// What the driver passes events to.
+struct Recording {
+    folder: PathBuf,
+    log: Option<(PathBuf, LogWriter<BufWriter<File>>)>,
+    /// Why there is no log, or no more of it.
+    failure: Option<Failure>,
+    /// The newest signals, and whether they are newer than those that were looked at.
+    newest: Option<Row>,
+    is_new: bool,
     /// The last message of a fault, a refusal or a loss.
     trouble: Option<String>,
+}
+
+impl Recording {
+    fn write(
+        &mut self,
+        write: impl FnOnce(&mut LogWriter<BufWriter<File>>) -> Result<(), WriteError>,
+    ) {
+        if let Some((path, log)) = &mut self.log
+            && let Err(error) = write(log)
+        {
+            self.failure = Some(unwritten(path, &error));
+        }
+    }
+}
+
+impl Host for Recording {
+    fn random_id(&mut self) -> u8 {
+        Instant::now().elapsed().subsec_nanos() as u8 ^ std::process::id() as u8
+    }
+
+    fn publish(&mut self, event: Event) {
+        let Event::Entry(entry) = event else {
+            return;
+        };
+        match &*entry {
+            Entry::Rows(rows) => {
+                let known = rows.iter().rev().find(|row| row.signal("armed").is_some());
+                self.is_new |= known.is_some();
+                self.newest = known.copied().or(self.newest);
+            }
+            Entry::Event(event) if matches!(event.level, Level::Warning | Level::Fault) => {
+                self.trouble = Some(event.text.clone());
+            }
+            _ => {}
+        }
+        self.write(|log| log.record(&entry));
+    }
+
+    /// A robot that begins again goes on in the same log.
+    fn begin_run(&mut self, manifest: Manifest) -> Option<(Level, String)> {
+        if self.log.is_none() {
+            let manifest = Manifest {
+                started: Some(now_utc()),
+                ..manifest
+            };
+            match begin_log(&self.folder, &manifest) {
+                Ok(log) => self.log = Some(log),
+                Err(error) => self.failure = Some(Failure::input(error)),
+            }
+        }
+        None
+    }
 }
 
 impl<T: Target> Driven<T> {
     /// Begins a session, recorded in this folder.
     pub(crate) fn begin(target: T, folder: &Path) -> Result<Self, Failure> {
-        let about = About::of(&target);
-        let manifest = Manifest {
-            version: env!("CARGO_PKG_VERSION").into(),
-            baud: target.baud(),
-            step_us: SLICE_US,
-            started: Some(now_utc()),
-            ..target.manifest()
+        let is_real = !target.abilities().pace;
+        let recording = Recording {
+            folder: folder.to_owned(),
+            log: None,
+            failure: None,
+            newest: None,
+            is_new: false,
+            trouble: None,
         };
-        let (path, log) = headless::begin_log(folder, &manifest).map_err(Failure::input)?;
-        let id = Instant::now().elapsed().subsec_nanos() as u8 ^ std::process::id() as u8;
-        Ok(Self {
-            is_real: !about.abilities.pace,
-            session: Session::new(about, id, false),
-            target,
-            log,
-            path,
+        let mut driver = Driver::new(Box::new(target), recording, 1.0, Extras::default());
+        driver.begin(0);
+        driver.wall_passed(0);
+        let mut driven = Self {
+            driver,
             began: Instant::now(),
+            is_real,
+            pretended_us: 0,
             flushed_us: 0,
             updated_us: 0,
-            bytes: Vec::new(),
-            newest: None,
-            trouble: None,
-        })
+            newest_us: 0,
+        };
+        driven.look()?;
+        Ok(driven)
+    }
+
+    /// The robot.
+    pub(crate) fn robot(&mut self) -> &mut T {
+        self.driver.target()
     }
 
     /// The log's file.
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
+    pub(crate) fn path(&mut self) -> PathBuf {
+        let log = self.driver.host().log.as_ref();
+        log.map(|(path, _)| path.clone()).unwrap_or_default()
     }
 
-    /// The session's time [us].
+    /// The session's time \[us\].
     pub(crate) fn now_us(&self) -> u64 {
-        self.target.now_us()
+        self.driver.now_us()
     }
 
     /// The newest signals that are not older than `age_us`.
-    pub(crate) fn signals(&self, age_us: u64) -> Option<&Row> {
-        let (row, at_us) = self.newest.as_ref()?;
-        (self.now_us() <= at_us + age_us).then_some(row)
+    pub(crate) fn signals(&mut self, age_us: u64) -> Option<Row> {
+        let is_young = self.now_us() <= self.newest_us + age_us;
+        self.driver.host().newest.filter(|_| is_young)
     }
 
     /// The last message of a fault, a refusal or a loss since it was last asked.
     pub(crate) fn take_trouble(&mut self) -> Option<String> {
-        self.trouble.take()
+        self.driver.host().trouble.take()
     }
 
     /// Gives an order.
     pub(crate) fn order(&mut self, command: Command) -> Result<(), Failure> {
-        let now = self.now();
-        // These orders ask nothing of the target.
-        let _ = self.session.order(Order::Robot(command), now);
-        self.send()?;
-        self.publish()
+        let ordered = self.driver.obey([Order::Robot(command)], self.wall_us());
+        ordered.map_err(Failure::input)?;
+        self.look()
     }
 
     /// Notes something in the log.
     pub(crate) fn note(&mut self, text: String) -> Result<(), Failure> {
-        let now = self.now();
-        self.session.note(Level::Info, text, now);
-        self.publish()
+        let wall_us = self.wall_us();
+        self.driver.note(Level::Info, text, wall_us);
+        self.look()
     }
 
     /// Lets one slice of time pass.
@@ -106,87 +172,48 @@ impl<T: Target> Driven<T> {
         if self.is_real {
             std::thread::sleep(Duration::from_micros(SLICE_US));
         }
-        self.target.advance(SLICE_US).map_err(Failure::input)?;
-        let now = self.now();
-        let sight = Sight {
-            truth: self.target.truth(),
-            ..Sight::default()
-        };
-        self.session.observe(sight, now);
-        self.bytes.clear();
-        self.target.receive(&mut self.bytes);
-        self.session.receive(&self.bytes, now);
-        self.session.advance(now);
-        self.send()?;
-        while let Some(news) = self.target.news() {
-            self.session.news(news, now);
+        self.pretended_us += SLICE_US;
+        let wall_us = self.wall_us();
+        self.driver.wall_passed(wall_us);
+        while self.driver.slice(wall_us).map_err(Failure::input)? {}
+        let now_us = self.now_us();
+        if now_us >= self.updated_us + UPDATE_US {
+            self.updated_us = now_us;
+            self.driver.update(wall_us);
         }
-        if now.target_us >= self.updated_us + UPDATE_US {
-            self.updated_us = now.target_us;
-            let going = Going {
-                speed: 1.0,
-                achieved_speed: 1.0,
-                true_battery_v: self.target.truth().map(|truth| truth.battery_v),
-                program: self.target.program(),
-            };
-            self.session.update(going, now);
-        }
-        self.publish()
+        self.look()
     }
 
     /// Completes the log.
     pub(crate) fn finish(mut self) -> Result<PathBuf, Failure> {
-        self.publish()?;
-        let done = self.log.finish();
-        done.map_err(|error| unwritten(&self.path, &error))?;
-        Ok(self.path)
+        self.look()?;
+        let Some((path, log)) = self.driver.into_host().log else {
+            return Ok(PathBuf::new());
+        };
+        log.finish().map_err(|error| unwritten(&path, &error))?;
+        Ok(path)
     }
 
-    fn now(&self) -> Now {
-        let target_us = self.target.now_us();
-        let wall = self.began.elapsed().as_micros();
-        Now {
-            target_us,
-            wall_us: match self.is_real {
-                true => u64::try_from(wall).unwrap_or(u64::MAX),
-                false => target_us,
-            },
+    fn wall_us(&self) -> u64 {
+        match self.is_real {
+            true => u64::try_from(self.began.elapsed().as_micros()).unwrap_or(u64::MAX),
+            false => self.pretended_us,
         }
     }
 
-    fn send(&mut self) -> Result<(), Failure> {
-        let bytes = self.session.take_bytes();
-        match bytes.is_empty() {
-            true => Ok(()),
-            false => self.target.send(&bytes).map_err(Failure::input),
-        }
-    }
-
-    fn publish(&mut self) -> Result<(), Failure> {
-        let now_us = self.target.now_us();
-        for event in self.session.take_events() {
-            let Event::Entry(entry) = event else {
-                continue;
-            };
-            match &*entry {
-                Entry::Rows(rows) => {
-                    let known = rows.iter().rev().find(|row| row.signal("armed").is_some());
-                    self.newest = known.map(|row| (*row, now_us)).or(self.newest);
-                }
-                Entry::Event(event) if matches!(event.level, Level::Warning | Level::Fault) => {
-                    self.trouble = Some(event.text.clone());
-                }
-                _ => {}
-            }
-            let recorded = self.log.record(&entry);
-            recorded.map_err(|error| unwritten(&self.path, &error))?;
+    /// Takes what has happened.
+    fn look(&mut self) -> Result<(), Failure> {
+        self.driver.publish();
+        let now_us = self.now_us();
+        let host = self.driver.host();
+        if std::mem::take(&mut host.is_new) {
+            self.newest_us = now_us;
         }
         if now_us >= self.flushed_us + FLUSH_US {
             self.flushed_us = now_us;
-            let flushed = self.log.flush();
-            flushed.map_err(|error| unwritten(&self.path, &error))?;
+            host.write(LogWriter::flush);
         }
-        Ok(())
+        host.failure.take().map_or(Ok(()), Err)
     }
 }
 

@@ -30,7 +30,7 @@ fn straight_on(wall_m: f64) -> (Result<(), Failure>, rumbo_log::Log) {
     let asked = AtomicBool::new(false);
     let done =
         answer(&mut driven, &asked).and_then(|()| drive_part(&mut driven, &plan()[1], &asked));
-    let path = driven.path().to_owned();
+    let path = driven.path();
     let done = end(driven, done).map(|_| ());
     (done, log_file::read(&path).unwrap())
 }
