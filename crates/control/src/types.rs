@@ -401,7 +401,7 @@ impl Fault {
                 "link lost: no heartbeat arrived in time; check the connection, then clear and arm again"
             }
             Fault::SonarFaulty => {
-                "sonar faulty: its echo line is silent or gives impossible values; check its wiring"
+                "sonar faulty: its echo line is silent, or its readings jump; check its wiring, and see that it faces no corner, gap or slanted box"
             }
             Fault::SonarStale => {
                 "sonar stale: no good reading for too long; is something absorbing the echo?"

@@ -70,8 +70,8 @@ export const ROBOT = {
   // Faults, each with its cause.
   'link lost: no heartbeat arrived in time; check the connection, then clear and arm again':
     'enlace perdido: no llegó ningún latido a tiempo; comprueba la conexión, borra el fallo y arma otra vez',
-  'sonar faulty: its echo line is silent or gives impossible values; check its wiring':
-    'sonar averiado: su línea de eco calla o da valores imposibles; comprueba su cableado',
+  'sonar faulty: its echo line is silent, or its readings jump; check its wiring, and see that it faces no corner, gap or slanted box':
+    'sonar averiado: su línea de eco calla o sus lecturas saltan; comprueba su cableado y que no mire a una esquina, un hueco o una caja oblicua',
   'sonar stale: no good reading for too long; is something absorbing the echo?':
     'sonar sin lecturas: ninguna buena desde hace demasiado; ¿hay algo que absorbe el eco?',
   'wall lost: nothing within the sonar\'s reach; face the robot to a wall': 'pared perdida: nada al alcance del sonar; pon el robot frente a una pared',
