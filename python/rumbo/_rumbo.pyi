@@ -17,6 +17,7 @@ __all__ = [
     "Setup",
     "Snapshot",
     "differences",
+    "identify",
     "load",
     "names",
     "plan",
@@ -101,6 +102,16 @@ def run_jobs(
     threads: int | None,
     handle: Callable[[bool, dict[str, float]], object],
 ) -> None: ...
+def identify(
+    paths: Sequence[str],
+    robot: str,
+    *,
+    held: Sequence[tuple[str, str, str]],
+    fit: bool,
+    date: str,
+    threads: int | None,
+    progress: Callable[[float], object] | None,
+) -> str: ...
 def tune(
     setup: Setup,
     over: Sequence[str],

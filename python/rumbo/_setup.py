@@ -73,6 +73,12 @@ class _Held:
         raise TypeError(f"{kind} = {source!r}: must be a name, a path or a dictionary")
 
 
+def hold(kind: str, source: Source) -> tuple[str, list[tuple[str, str, str]]]:
+    """The name of a source, and the files that it needs: kind, name, TOML."""
+    held = _Held()
+    return held.name(kind, source), held.files
+
+
 def make_setup(
     scenario: Source,
     *,

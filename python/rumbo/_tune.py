@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _rumbo
+from ._progress import shown
 from ._setup import Source, make_setup
 from ._study import Difference
 
@@ -74,18 +74,17 @@ def tune(
     if held_out < 2:
         raise ValueError(f"held_out = {held_out}: must be at least 2")
     setup = make_setup(scenario, robot=robot, world=world, rig=rig, parameters=parameters)
-    found = _rumbo.tune(
-        setup,
-        over.split(",") if isinstance(over, str) else list(over),
-        aims=aims,
-        seed=seed,
-        runs=runs,
-        held_out=held_out,
-        threads=threads,
-        progress=progress if callable(progress) else _show if progress else None,
-    )
-    if progress is True:
-        print(file=sys.stderr)
+    with shown(progress, " of the runs, at most") as show:
+        found = _rumbo.tune(
+            setup,
+            over.split(",") if isinstance(over, str) else list(over),
+            aims=aims,
+            seed=seed,
+            runs=runs,
+            held_out=held_out,
+            threads=threads,
+            progress=show,
+        )
     passed_now, passed = found["passed"]
     differences = [Difference(**one) for one in _rumbo.differences(*found["metrics"])]
     return Tuning(
@@ -97,7 +96,3 @@ def tune(
         passed=passed,
         differences={one.metric: one for one in differences},
     )
-
-
-def _show(share: float) -> None:
-    print(f"\r{100 * share:.0f} % of the runs, at most", end="", file=sys.stderr, flush=True)

@@ -5,8 +5,11 @@ use pyo3::prelude::*;
 use rayon::ThreadPool;
 use rumbo_experiment::files::FileError;
 use std::collections::BTreeMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 /// More threads than any machine has use for.
 const MOST_THREADS: usize = 1_024;
@@ -62,6 +65,55 @@ pub(crate) fn pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
     let pool = Arc::new(pool);
     pools.insert(threads, pool.clone());
     Ok(pool)
+}
+
+/// How often Ctrl-C is looked for.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// Does work that takes long on the threads of `pool`, and looks for Ctrl-C meanwhile, which only Python's main thread
+/// sees. The work sends the share of it that is done, which `progress` is called with, and ends soon after the flag is
+/// set; then what it returns is of no use.
+pub(crate) fn watched<T: Send>(
+    py: Python<'_>,
+    pool: &ThreadPool,
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce(&Sender<f64>, &AtomicBool) -> T + Send,
+) -> PyResult<T> {
+    let stop = AtomicBool::new(false);
+    detached(py, || {
+        let (shares, arriving) = channel();
+        std::thread::scope(|scope| {
+            let stop = &stop;
+            let working = scope.spawn(move || pool.install(|| work(&shares, stop)));
+            let ended = loop {
+                let looked = match arriving.recv_timeout(LOOK) {
+                    Ok(share) => call(progress, share),
+                    Err(RecvTimeoutError::Timeout) => call(None, 0.0),
+                    Err(RecvTimeoutError::Disconnected) => break Ok(()),
+                };
+                if looked.is_err() {
+                    stop.store(true, Ordering::Relaxed);
+                    break looked;
+                }
+            };
+            let done = working.join().unwrap_or_else(|panic| resume_unwind(panic));
+            ended.map(|()| done)
+        })
+    })?
+}
+
+/// Looks for Ctrl-C, and says how much is done: a number of runs, or a share.
+pub(crate) fn call(
+    progress: Option<&Py<PyAny>>,
+    done: impl for<'py> IntoPyObject<'py>,
+) -> PyResult<()> {
+    Python::attach(|py| {
+        py.check_signals()?;
+        match progress {
+            Some(progress) => progress.call1(py, (done,)).map(|_| ()),
+            None => Ok(()),
+        }
+    })
 }
 
 /// Does the work without Python's lock. A panic, which is a fault of ours, becomes a `RuntimeError`.

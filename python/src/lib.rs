@@ -6,6 +6,7 @@
 
 mod batch;
 mod guard;
+mod identify;
 mod log;
 mod run;
 mod setup;
@@ -16,6 +17,8 @@ mod tune;
 mod _rumbo {
     #[pymodule_export]
     use super::batch::{Batch, Snapshot};
+    #[pymodule_export]
+    use super::identify::identify;
     #[pymodule_export]
     use super::log::read_log;
     #[pymodule_export]

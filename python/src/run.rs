@@ -1,6 +1,6 @@
 //! Runs from start to end, and their traces as columns.
 
-use crate::guard::{detached, exception, threads};
+use crate::guard::{call, detached, exception, threads};
 use crate::setup::Setup;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -30,21 +30,6 @@ impl From<FileError> for Stop {
     }
 }
 
-/// Looks for Ctrl-C, and says how much is done: a number of runs, or a share.
-pub(crate) fn call(
-    progress: Option<&Py<PyAny>>,
-    done: impl for<'py> IntoPyObject<'py>,
-) -> Result<(), Stop> {
-    Python::attach(|py| {
-        py.check_signals()?;
-        match progress {
-            Some(progress) => progress.call1(py, (done,)).map(|_| ()),
-            None => Ok(()),
-        }
-    })
-    .map_err(Stop::Python)
-}
-
 /// Runs the scenario with each seed; a dictionary for each run, in the order of the seeds. `progress` is called with
 /// the number of finished runs.
 #[pyfunction]
@@ -66,7 +51,7 @@ pub(crate) fn run<'py>(
                 result.trace = Default::default();
             }
             results.push(result);
-            call(progress.as_ref(), results.len())
+            call(progress.as_ref(), results.len()).map_err(Stop::Python)
         })
     })?;
     ended.map_err(Stop::into_exception)?;

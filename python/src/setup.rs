@@ -23,7 +23,7 @@ pub(crate) struct Setup {
 
 #[pymethods]
 impl Setup {
-    /// `held` are files given as text: kind (`robot`, `world`, `scenario`), name, TOML.
+    /// `held` are files given as text, as for [`library`].
     #[new]
     #[pyo3(signature = (scenario, *, held, robot, world, rig, parameters, program, firmware, randomize))]
     #[allow(clippy::too_many_arguments, reason = "keywords of one Python call")]
@@ -38,10 +38,7 @@ impl Setup {
         firmware: Option<PathBuf>,
         randomize: Option<bool>,
     ) -> PyResult<Self> {
-        let mut library = Library::new();
-        for (kind, name, text) in held {
-            library = library.holding(find_kind(&kind)?, &name, &text);
-        }
+        let library = library(held)?;
         let known = [NativeProgram::Rumbo, NativeProgram::Baseline];
         let program = match known.into_iter().find(|known| word(*known) == program) {
             Some(known) => known,
@@ -119,6 +116,15 @@ impl Setup {
     fn duration_s(&self) -> f64 {
         self.files.scenario.duration_s
     }
+}
+
+/// Files by their names, and those `held`: kind (`robot`, `world`, `scenario`), name, TOML.
+pub(crate) fn library(held: Vec<(String, String, String)>) -> PyResult<Library> {
+    let mut library = Library::new();
+    for (kind, name, text) in held {
+        library = library.holding(find_kind(&kind)?, &name, &text);
+    }
+    Ok(library)
 }
 
 /// The word for a program.

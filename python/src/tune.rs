@@ -1,7 +1,6 @@
 //! Tuning: the search of `rumbo tune`, and its check on robots that the search has not seen.
 
-use crate::guard::{detached, exception, pool, threads};
-use crate::run::{Stop, call};
+use crate::guard::{exception, pool, threads, watched};
 use crate::setup::Setup;
 use crate::study::refuse;
 use pyo3::prelude::*;
@@ -10,13 +9,8 @@ use rumbo_experiment::compare::{Variant, run_variants};
 use rumbo_experiment::files::{FileError, Setup as Files};
 use rumbo_experiment::run::check_metrics;
 use rumbo_experiment::tune::{Found, Objective, Over, Search, Tuned, tuned};
-use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::time::Duration;
-
-/// How often Ctrl-C is looked for.
-const LOOK: Duration = Duration::from_millis(100);
+use std::sync::mpsc::Sender;
 
 /// What is done, apart from how.
 struct Task<'a> {
@@ -67,28 +61,10 @@ pub(crate) fn tune<'py>(
         budget: runs.map_or_else(|| Search::default_budget(setup), |runs| runs as usize),
         held_out,
     };
-    let stop = AtomicBool::new(false);
-    // The search is on threads of its own: only Python's main thread sees Ctrl-C.
-    let (found, variants) = detached(py, || {
-        let (shares, arriving) = channel();
-        std::thread::scope(|scope| {
-            let search = scope.spawn(|| pool.install(|| task.run(shares, &stop)));
-            let ended = loop {
-                let looked = match arriving.recv_timeout(LOOK) {
-                    Ok(share) => call(progress.as_ref(), share),
-                    Err(RecvTimeoutError::Timeout) => call(None, 0.0),
-                    Err(RecvTimeoutError::Disconnected) => break Ok(()),
-                };
-                if looked.is_err() {
-                    stop.store(true, Ordering::Relaxed);
-                    break looked;
-                }
-            };
-            let found = search.join().unwrap_or_else(|panic| resume_unwind(panic));
-            ended.and(found.map_err(Stop::File))
-        })
-    })?
-    .map_err(Stop::into_exception)?;
+    let done = watched(py, &pool, progress.as_ref(), |shares, stop| {
+        task.run(shares, stop)
+    })?;
+    let (found, variants) = done.map_err(|error| exception(&error))?;
     let passed = |variant: &Variant| {
         let runs = variant.passes.iter().zip(&variant.metrics);
         let passed = runs.filter(|(pass, run)| **pass && objective.admits(run));
@@ -117,7 +93,7 @@ impl Task<'_> {
     /// Until `stop` is set; then what it returns is of no use.
     fn run(
         &self,
-        shares: Sender<f64>,
+        shares: &Sender<f64>,
         stop: &AtomicBool,
     ) -> Result<(Found, Vec<Variant>), FileError> {
         let goes_on = || !stop.load(Ordering::Relaxed);

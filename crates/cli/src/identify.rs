@@ -9,37 +9,23 @@ use crate::logs;
 use crate::mark::Stamp;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
-use crate::recorded::{self, attached};
 use drive::Driving;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::files::{Library, RobotFile, bounded};
-use rumbo_identify::AgainstTruth;
-use rumbo_identify::sonar_stats::{self, Comparison, SonarLog};
-use rumbo_identify::{
-    DriveLog, GENERATIONS, Identification, IdentifyError, Program, RunScore, dialect, stretches,
-};
+use rumbo_identify::sonar_stats::{self, Comparison};
+use rumbo_identify::{AgainstTruth, Identification, Outcome, Progress, Recordings};
 use rumbo_plant::params::Params;
 use rumbo_plot::{Sheet, WIDTH, Words};
-use rumbo_station::log_file;
-use rumbo_wire::csv;
-use rumbo_wire::text::RowKind;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-
-/// What the runs recorded: the drive, and the sonars where there are any.
-#[derive(Default)]
-struct Logs {
-    drive: Vec<DriveLog>,
-    sonar: Vec<SonarLog>,
-}
 
 /// The outcome as JSON.
 #[derive(Serialize)]
 struct Report<'a> {
     robot: &'a str,
     #[serde(flatten)]
-    drive: Drive,
+    drive: &'a Outcome,
     /// Measured and simulated figures of each sonar of the runs.
     sonars: &'a [Comparison],
     plots: Vec<String>,
@@ -51,16 +37,6 @@ struct Report<'a> {
     written: Option<String>,
 }
 
-/// The result for the drive's runs.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Drive {
-    /// Parameters fitted.
-    Identified(Box<Identification>),
-    /// Reproduced with a robot file's parameters; no runs if none shows the drive.
-    Checked { runs: Vec<RunScore> },
-}
-
 /// Identifies, or checks, and prints the result.
 pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     let name = args.check.as_ref().unwrap_or(&args.robot);
@@ -68,45 +44,27 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     let driving = drive(args, name)?;
     let driven = driving.iter().map(|driving| driving.path.clone());
     let paths: Vec<PathBuf> = args.logs.iter().cloned().chain(driven).collect();
-    let logs = read(&paths)?;
+    let bytes = |path: &Path| bounded::read_at_most(path, bounded::LONGEST_LOG);
+    let logs = Recordings::read(&paths, bytes).map_err(Failure::input)?;
+    logs.notes.iter().for_each(|note| output::note(note));
     if let Some(folder) = &args.plots {
         check_plots(args, &logs, folder)?;
         place::try_folder(folder)?;
     }
     let bar = bar(args);
-    let progress = |share: f64| bar.set_position((100.0 * share) as u64);
-    let (drive, params) = match args.check {
-        Some(_) if args.leave_one_out => {
-            let runs = rumbo_identify::leave_one_out(&logs.drive, &robot.plant, &progress);
-            (
-                Drive::Checked {
-                    runs: runs.map_err(Failure::input)?,
-                },
-                robot.plant,
-            )
-        }
-        Some(_) => (check(&logs, &robot.plant)?, robot.plant),
-        None => {
-            let is_ours = |log: &DriveLog| log.program == Program::Rumbo;
-            // A robot like the one in the file needs no search.
-            let generations = if logs.drive.iter().all(is_ours) {
-                0
-            } else {
-                GENERATIONS
-            };
-            let found = rumbo_identify::identify(&logs.drive, &robot.plant, generations, &progress)
-                .map_err(Failure::input)?;
-            let params = found.params;
-            (Drive::Identified(Box::new(found)), params)
-        }
-    };
-    let sonars: Vec<Comparison> = logs
-        .sonar
-        .iter()
-        .flat_map(|log| sonar_stats::compare(log, &params.sonar))
-        .collect();
+    let shown = |share: f64| bar.set_position((100.0 * share) as u64);
+    let progress = Progress::to(&shown);
+    let outcome = match args.check {
+        Some(_) if args.leave_one_out => logs.leave_one_out(&robot.plant, &progress),
+        Some(_) => logs.check(&robot.plant),
+        None => logs.identify(&robot.plant, &progress),
+    }
+    .map_err(Failure::input)?;
+    let found = outcome.identification();
+    let params = found.map_or(robot.plant, |found| found.params);
+    let sonars = logs.compare_sonars(&params);
     let plots = match &args.plots {
-        Some(folder) => plot(&logs, &drive, &params, folder)?,
+        Some(folder) => plot(&logs, &outcome, &params, folder)?,
         None => Vec::new(),
     };
     bar.finish_and_clear();
@@ -115,19 +73,19 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
         (None, true) => Some(Path::new(name)),
         (None, false) => None,
     };
-    let written = match (&drive, into) {
-        (Drive::Identified(found), Some(path)) => Some(write(path, &robot.text, found)?),
+    let written = match (found, into) {
+        (Some(found), Some(path)) => Some(write(path, &robot.text, found)?),
         _ => None,
     };
     let truth = driving.as_ref().and_then(|driving| driving.truth);
-    let against_truth = match (&drive, truth) {
-        (Drive::Identified(found), Some(truth)) => found.against(&truth),
+    let against_truth = match (found, truth) {
+        (Some(found), Some(truth)) => found.against(&truth),
         _ => Vec::new(),
     };
     if args.json {
         return output::json(&Report {
             robot: name,
-            drive,
+            drive: &outcome,
             sonars: &sonars,
             plots: plots.iter().map(|path| output::shown(path)).collect(),
             log: driving.as_ref().map(|driving| output::shown(&driving.path)),
@@ -135,7 +93,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
             written: written.map(output::shown),
         });
     }
-    report(&logs, &drive, &sonars, &plots)?;
+    report(&logs, &outcome, &sonars, &plots)?;
     if !against_truth.is_empty() {
         output::line("")?;
         output::table(&beside_truth(&against_truth))?;
@@ -193,71 +151,6 @@ fn bar(args: &IdentifyArgs) -> ProgressBar {
     }
 }
 
-fn check(logs: &Logs, params: &Params) -> Result<Drive, Failure> {
-    match rumbo_identify::check(&logs.drive, params) {
-        Ok(check) => Ok(Drive::Checked { runs: check.runs }),
-        // Runs beside a wall contain no information on the drive, but all on the sonars.
-        Err(IdentifyError::NothingToFit) if !logs.sonar.is_empty() => {
-            Ok(Drive::Checked { runs: Vec::new() })
-        }
-        Err(error) => Err(Failure::input(error)),
-    }
-}
-
-/// Reads CSVs of the original program, logs that carry one, and logs of our own program.
-fn read(paths: &[PathBuf]) -> Result<Logs, Failure> {
-    let mut logs = Logs::default();
-    for path in paths {
-        let Some(text) = text_of(path)? else {
-            let log = log_file::read_signals(path).map_err(Failure::input)?;
-            let found = stretches(path, &log).map_err(Failure::input)?;
-            found.notes.iter().for_each(|note| output::note(note));
-            logs.drive.extend(found.logs);
-            continue;
-        };
-        let kind = csv::recognise(text.lines().next().unwrap_or_default());
-        if kind == Some(RowKind::Mission) && paths.len() > 1 {
-            let path = path.display();
-            output::note(&format!(
-                "{path} is skipped: recordings of mode 8 have no PWM"
-            ));
-            continue;
-        }
-        let log = DriveLog::parse(path, text.as_bytes()).map_err(Failure::input)?;
-        for error in &log.damaged {
-            output::note(&format!("{error}; the row is left out"));
-        }
-        logs.drive.push(log);
-        if kind == Some(RowKind::Distance) {
-            logs.sonar
-                .push(SonarLog::parse(path, &text).map_err(Failure::input)?);
-        }
-    }
-    Ok(logs)
-}
-
-/// The CSV that a path holds: itself, or attached to a log by `rumbo import`. `None` for a log of our own program.
-fn text_of(path: &Path) -> Result<Option<String>, Failure> {
-    let wrong = |what: String| Failure::Input(format!("{}: {what}", path.display()));
-    let bytes = recorded::bytes(path).map_err(|error| {
-        wrong(format!(
-            "cannot be read ({error}); give the path of a CSV or a log"
-        ))
-    })?;
-    let is_log = path
-        .extension()
-        .is_some_and(|extension| extension == "mcap");
-    let bytes = match is_log {
-        true => match attached(&bytes) {
-            Ok(csv) => csv,
-            Err(_) => return Ok(None),
-        },
-        false => bytes,
-    };
-    let text = dialect::plain(&bytes).map_err(|error| wrong(error.to_string()))?;
-    Ok(Some(text.into_owned()))
-}
-
 /// Where the plots of a run go.
 fn places(folder: &Path, name: &str) -> [PathBuf; 2] {
     ["svg", "png"].map(|ending| folder.join(Path::new(name).with_extension(ending)))
@@ -268,7 +161,7 @@ fn stamp(name: &str) -> Stamp {
 }
 
 /// Refuses, before anything is fitted, plots that would be written over something else.
-fn check_plots(args: &IdentifyArgs, logs: &Logs, folder: &Path) -> Result<(), Failure> {
+fn check_plots(args: &IdentifyArgs, logs: &Recordings, folder: &Path) -> Result<(), Failure> {
     let guard = Guard::new(&args.logs, args.overwrite.force);
     let mut results = Vec::new();
     for (number, log) in (1..).zip(&logs.drive) {
@@ -281,17 +174,13 @@ fn check_plots(args: &IdentifyArgs, logs: &Logs, folder: &Path) -> Result<(), Fa
 }
 
 fn plot(
-    logs: &Logs,
-    drive: &Drive,
+    logs: &Recordings,
+    outcome: &Outcome,
     params: &Params,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, Failure> {
-    let runs = match drive {
-        Drive::Identified(found) => &found.runs,
-        Drive::Checked { runs } => runs,
-    };
     let mut plots = Vec::new();
-    for run in runs {
+    for run in outcome.runs() {
         for log in logs.drive.iter().filter(|log| log.name == run.name) {
             let plot = rumbo_identify::plot(log, params, run.nuisance);
             let picture = plot.picture(Words::default(), WIDTH);
@@ -342,14 +231,14 @@ fn beside_truth(parameters: &[AgainstTruth]) -> Vec<Vec<String>> {
 }
 
 fn report(
-    logs: &Logs,
-    drive: &Drive,
+    logs: &Recordings,
+    outcome: &Outcome,
     sonars: &[Comparison],
     plots: &[PathBuf],
 ) -> Result<(), Failure> {
-    let text = match drive {
-        Drive::Identified(found) => found.to_string(),
-        Drive::Checked { runs } => runs.iter().map(ToString::to_string).collect(),
+    let text = match outcome {
+        Outcome::Identified(found) => found.to_string(),
+        Outcome::Checked { runs } => runs.iter().map(ToString::to_string).collect(),
     };
     if !text.is_empty() {
         output::lines(text.trim())?;

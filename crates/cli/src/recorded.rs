@@ -1,33 +1,24 @@
-//! Logs of real robots as the original program's CSV, which reports and `rumbo identify` read.
+//! Logs of real robots as the original program's CSV, which reports read.
 //!
 //! A log that `rumbo import` made of a CSV carries it. Any other one has the signals of its telemetry: what was recorded from the first
 //! armed instant to the last becomes rows of the kind that the original program writes in that mode.
 
-use crate::failure::Failure;
 use rumbo_control::mode::{Description, ModeId, ReferenceKind, Takes};
-use rumbo_experiment::files::bounded::{LONGEST_RECORDING, read_at_most};
-use rumbo_log::{Kind, Row};
+use rumbo_experiment::files::bounded::{LONGEST_LOG, read_at_most};
+use rumbo_log::{Kind, Row, recorded_csv};
 use rumbo_report::real::{FromLog, NotShown};
 use rumbo_station::log_file;
 use rumbo_wire::text::RowKind;
 use std::f64::consts::PI;
-use std::io;
 use std::path::Path;
 
-/// Media type of the CSV that an imported log carries.
-pub(crate) const CSV: &str = "text/csv";
 /// The value for a clear range \[cm\]: the sonars' maximum.
 const CLEAR_CM: f64 = 250.0;
 
-/// The bytes of a CSV, or of the log that was made of it.
-pub(crate) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
-    read_at_most(path, 4 * LONGEST_RECORDING)
-}
-
 /// The run in a log, or why it is not one of a real robot.
 pub(crate) fn from_log(path: &Path) -> Result<FromLog, NotShown> {
-    let bytes = bytes(path).map_err(|_| NotShown::NoLog)?;
-    if let Ok(csv) = attached(&bytes) {
+    let bytes = read_at_most(path, LONGEST_LOG).map_err(|_| NotShown::NoLog)?;
+    if let Some(csv) = recorded_csv(&bytes) {
         let csv = String::from_utf8_lossy(&csv).into_owned();
         return Ok(FromLog { csv, ours: false });
     }
@@ -39,28 +30,6 @@ pub(crate) fn from_log(path: &Path) -> Result<FromLog, NotShown> {
     let csv = csv(&log.rows).ok_or(NotShown::NoRun)?;
     let ours = manifest.program != "original";
     Ok(FromLog { csv, ours })
-}
-
-/// The CSV that a log carries.
-pub(crate) fn attached(log: &[u8]) -> Result<Vec<u8>, Failure> {
-    let damaged = |error: mcap::McapError| {
-        Failure::Input(format!(
-            "is no intact MCAP log ({error}); import the CSV again"
-        ))
-    };
-    let summary = mcap::Summary::read(log)
-        .map_err(damaged)?
-        .unwrap_or_default();
-    let index = summary
-        .attachment_indexes
-        .iter()
-        .find(|index| index.media_type == CSV);
-    let none = "carries no recording of the original program; give one made by `rumbo import`";
-    let index = index.ok_or_else(|| Failure::input(none))?;
-    Ok(mcap::read::attachment(log, index)
-        .map_err(damaged)?
-        .data
-        .into_owned())
 }
 
 /// The rows of a run: armed, in the mode in which it was armed first. A robot that does not report it counts as armed.

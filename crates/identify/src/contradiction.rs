@@ -38,7 +38,7 @@ pub(crate) fn refuse(
     let mut first = 0;
     let mut alone = Vec::new();
     for source in sources {
-        let problem = Problem::new(&UNKNOWNS, source, start);
+        let problem = Problem::new(&UNKNOWNS, source, start).until(joint.stop());
         let nuisance = joint.nuisance(first, z);
         first += source.len();
         let from = problem.point(&common, &vec![nuisance; source.len()]);

@@ -1,5 +1,6 @@
 //! What can go wrong between a log and its parameters.
 
+use crate::sonar_stats::SonarLogError;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -33,6 +34,8 @@ pub enum IdentifyError {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// A log of ranges cannot be used.
+    Sonar(SonarLogError),
     /// No log shows speeds or a distance ahead.
     NothingToFit,
     /// No common plant explains these logs.
@@ -46,6 +49,8 @@ pub enum IdentifyError {
     },
     /// The optimiser failed.
     Optimiser(String),
+    /// Somebody wanted it to end.
+    Interrupted,
 }
 
 impl fmt::Display for IdentifyError {
@@ -70,6 +75,7 @@ impl fmt::Display for IdentifyError {
                     path.display()
                 )
             }
+            Self::Sonar(error) => error.fmt(f),
             Self::NothingToFit => {
                 write!(
                     f,
@@ -82,6 +88,7 @@ impl fmt::Display for IdentifyError {
                  times those of a fit of its own); give the logs of one robot with one wiring"
             ),
             Self::Optimiser(cause) => write!(f, "the fit did not converge: {cause}"),
+            Self::Interrupted => f.write_str("interrupted"),
         }
     }
 }

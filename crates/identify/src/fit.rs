@@ -11,6 +11,7 @@ use crate::contradiction;
 use crate::error::IdentifyError;
 use crate::log::{DriveLog, Seen};
 use crate::problem::{Problem, TIMED_MODEL_ERROR, UNKNOWNS, dead_zone_pwm};
+use crate::progress::Progress;
 use crate::replay::Nuisance;
 use crate::score::{RunScore, score};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
@@ -44,7 +45,7 @@ pub struct Identified {
     /// Unit.
     pub unit: String,
     /// Share of the knowledge that came from the runs, 0 to 1; the rest is what was believed beforehand.
-    pub told_by_runs: f64,
+    pub from_runs: f64,
     /// The experiment that shows it.
     pub shown_by: &'static str,
 }
@@ -109,19 +110,18 @@ pub struct Check {
 
 /// Fits the plant to all runs together, from the values in `start` and, unless `generations` is 0, also from what is believed
 /// beforehand, with a search around the better of the two, each round so many generations ([`GENERATIONS`] suffice).
-/// `progress` is given the share of the search that is done.
 ///
 /// # Errors
-/// No run with speeds or a distance ahead; a fit that breaks down.
+/// No run with speeds or a distance ahead; a fit that breaks down, or is interrupted.
 pub fn identify(
     logs: &[DriveLog],
     start: &Params,
     generations: usize,
-    progress: &dyn Fn(f64),
+    progress: &Progress<'_>,
 ) -> Result<Identification, IdentifyError> {
     let logs = useful(logs)?;
-    let problem = Problem::new(&UNKNOWNS, &logs, start);
-    progress(0.0);
+    let problem = Problem::new(&UNKNOWNS, &logs, start).until(Some(progress.stop));
+    (progress.report)(0.0);
     let fit = |params: &Params| -> Result<DVector<f64>, IdentifyError> {
         let runs = check(&logs, params)?.runs;
         let nuisances: Vec<Nuisance> = runs.iter().map(|run| run.nuisance).collect();
@@ -134,7 +134,8 @@ pub fn identify(
             z = other;
         }
         for round in 0..SEARCHES {
-            let share = |done: f64| progress(0.9 * (round as f64 + done) / SEARCHES as f64);
+            let share =
+                |done: f64| (progress.report)(0.9 * (round as f64 + done) / SEARCHES as f64);
             let found = search(&problem, &z, generations, &share)?;
             if problem.cost(&found) >= problem.cost(&z) {
                 break;
@@ -142,7 +143,7 @@ pub fn identify(
             z = found;
         }
     }
-    progress(0.9);
+    (progress.report)(0.9);
     let disagreement = contradiction::refuse(&logs, start, &problem, &z)?;
     let sds = standard_deviations(&problem, &z)?;
 
@@ -154,7 +155,7 @@ pub fn identify(
             value,
             uncertainty: problem.slope(i, z[i]) * sds[i],
             unit: problem.unit(i).to_owned(),
-            told_by_runs: 1.0 - sds[i] * sds[i],
+            from_runs: 1.0 - sds[i] * sds[i],
             shown_by: unknown.shown_by,
         }
     });
@@ -193,15 +194,19 @@ pub fn check(logs: &[DriveLog], params: &Params) -> Result<Check, IdentifyError>
 pub fn leave_one_out(
     logs: &[DriveLog],
     start: &Params,
-    progress: &dyn Fn(f64),
+    progress: &Progress<'_>,
 ) -> Result<Vec<RunScore>, IdentifyError> {
     let logs = useful(logs)?;
     let mut scores = Vec::new();
     for (done, left_out) in logs.chunk_by(|a, b| a.source == b.source).enumerate() {
-        progress(done as f64 / logs.len() as f64);
+        (progress.report)(done as f64 / logs.len() as f64);
         let source = &left_out[0].source;
         let others = logs.iter().filter(|log| log.source != *source);
-        let found = identify(&others.cloned().collect::<Vec<_>>(), start, 0, &|_| {})?;
+        let quietly = Progress {
+            report: &|_| {},
+            ..*progress
+        };
+        let found = identify(&others.cloned().collect::<Vec<_>>(), start, 0, &quietly)?;
         scores.extend(check_source(left_out, &found.params)?);
     }
     Ok(scores)
@@ -256,6 +261,9 @@ fn search(
         .build(|along: &DVector<f64>| problem.cost(&(around + &axes * along)))
         .map_err(|error| IdentifyError::Optimiser(format!("{error:?}")))?;
     for generation in 0..generations {
+        if problem.is_stopped() {
+            return Err(IdentifyError::Interrupted);
+        }
         progress(generation as f64 / generations as f64);
         // It has converged, or cannot go on.
         if search.next_parallel().is_some() {
@@ -287,6 +295,7 @@ pub(crate) fn descend<'a>(
         | TerminationReason::Orthogonal
         | TerminationReason::NoImprovementPossible(_)
         | TerminationReason::LostPatience => Ok((problem, z)),
+        _ if problem.is_stopped() => Err(IdentifyError::Interrupted),
         other => Err(IdentifyError::Optimiser(format!("{other:?}"))),
     }
 }
@@ -316,10 +325,13 @@ fn standard_deviations(problem: &Problem<'_>, z: &DVector<f64>) -> Result<Vec<f6
 }
 
 fn jacobian(problem: &Problem<'_>, z: &DVector<f64>) -> Result<DMatrix<f64>, IdentifyError> {
-    let mut problem = problem.clone();
-    problem.set_params(z);
-    let none = || IdentifyError::Optimiser("no Jacobian".into());
-    problem.jacobian().ok_or_else(none)
+    let mut at = problem.clone();
+    at.set_params(z);
+    let none = || match problem.is_stopped() {
+        true => IdentifyError::Interrupted,
+        false => IdentifyError::Optimiser("no Jacobian".into()),
+    };
+    at.jacobian().ok_or_else(none)
 }
 
 fn undetermined() -> IdentifyError {

@@ -1,7 +1,7 @@
 //! The plant's parameters from recorded runs, and how noisy their sonars were.
 //!
 //! ```text
-//! CSV ─► dialect: as one program writes it
+//! files ─► recordings: CSVs of the original program (dialect), logs of ours (stretches)
 //!            ├─► log ─► replay: the recorded duty on a plant ─► residuals (problem) ─► search and fit
 //!            │     └─► pair: which sonar is which ─► wall: distances      │
 //!            │            score: RMSE, R^2 per run ◄─────────────────┤ parameters, uncertainties
@@ -26,6 +26,8 @@ mod fit;
 mod log;
 mod pair;
 mod plot;
+mod progress;
+mod recordings;
 mod replay;
 mod report;
 mod residuals;
@@ -44,6 +46,8 @@ pub use fit::{
 pub use log::{DriveLog, Program};
 pub use pair::{Correlation, Pair};
 pub use plot::plot;
+pub use progress::Progress;
+pub use recordings::{Outcome, Recordings};
 pub use replay::Nuisance;
 pub use rewrite::rewrite;
 pub use score::{RunScore, WheelError};

@@ -17,6 +17,7 @@ use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::{Limit, Params};
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A parameter (or several of one value) to identify.
 #[derive(Clone, Copy, Debug)]
@@ -130,6 +131,8 @@ pub struct Problem<'a> {
     prior_sd: Vec<f64>,
     /// The report's dead zones hold: no other robot's logs are among these.
     pub(crate) is_the_reports: bool,
+    /// Set when what solves it is to end.
+    stop: Option<&'a AtomicBool>,
     z: DVector<f64>,
 }
 
@@ -180,9 +183,26 @@ impl<'a> Problem<'a> {
             limits: limits.collect(),
             prior_sd: prior_sd.collect(),
             is_the_reports,
+            stop: None,
             z: DVector::zeros(unknowns.len() + 2 * days.len()),
             days,
         }
+    }
+
+    /// The same problem, left unsolved when this is set.
+    #[must_use]
+    pub(crate) fn until(self, stop: Option<&'a AtomicBool>) -> Self {
+        Self { stop, ..self }
+    }
+
+    /// What ends it.
+    pub(crate) fn stop(&self) -> Option<&'a AtomicBool> {
+        self.stop
+    }
+
+    /// Whether what solves it is to end.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed))
     }
 
     /// Number of unknowns with the nuisances.
@@ -349,11 +369,14 @@ impl levenberg_marquardt::LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        Some(self.residuals_at(&self.z))
+        (!self.is_stopped()).then(|| self.residuals_at(&self.z))
     }
 
     /// Central differences.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
+        if self.is_stopped() {
+            return None;
+        }
         let step = self.step();
         let column = |i: usize| {
             let at = |shift: f64| {

@@ -25,7 +25,7 @@ impl fmt::Display for Identification {
                 significant(parameter.value),
                 significant(SDS_95 * parameter.uncertainty),
             );
-            let share = 100.0 * parameter.told_by_runs;
+            let share = 100.0 * parameter.from_runs;
             for key in &parameter.keys {
                 writeln!(
                     f,
@@ -48,7 +48,7 @@ impl Identification {
     fn write_hardly_shown(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut by_experiment: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
         for parameter in &self.parameters {
-            if parameter.told_by_runs < SHOWN {
+            if parameter.from_runs < SHOWN {
                 let names = by_experiment.entry(parameter.shown_by).or_default();
                 names.extend(parameter.keys.first().map(String::as_str));
             }

@@ -205,7 +205,7 @@ fn a_plant_with_other_parameters_is_found_from_its_run() {
     other.motor.inertia_kg_m2 *= 1.4;
     let run = [log(&recorded(&other, exercise, 9.0))];
     let before = check(&run, &Params::default()).unwrap();
-    let found = identify(&run, &Params::default(), 0, &|_| {}).unwrap();
+    let found = identify(&run, &Params::default(), 0, &Progress::none()).unwrap();
     let (before, after) = (before.runs[0].whole.unwrap(), found.runs[0].whole.unwrap());
     for i in 0..2 {
         assert!(
@@ -246,7 +246,7 @@ fn identification() -> Identification {
                 value: 0.243_187,
                 uncertainty: 0.01,
                 unit: "V s/rad".into(),
-                told_by_runs: 0.9,
+                from_runs: 0.9,
                 shown_by: "",
             },
             Identified {
@@ -257,7 +257,7 @@ fn identification() -> Identification {
                 value: 1.5,
                 uncertainty: 0.1,
                 unit: "1".into(),
-                told_by_runs: 0.9,
+                from_runs: 0.9,
                 shown_by: "",
             },
         ],
@@ -434,7 +434,7 @@ fn a_run_along_a_wall_identifies_the_yaw_damping() {
         let mut params = Params::default();
         params.floor.yaw_damping_n_m_s = true_n_m_s;
         let run = [log(&along_a_wall(&params, true))];
-        let found = identify(&run, &Params::default(), 0, &|_| {}).unwrap();
+        let found = identify(&run, &Params::default(), 0, &Progress::none()).unwrap();
         let key = "floor.yaw_damping_n_m_s".to_owned();
         let found = found
             .parameters
@@ -446,6 +446,6 @@ fn a_run_along_a_wall_identifies_the_yaw_damping() {
         let found = damping(true_n_m_s);
         let off = (found.value - true_n_m_s) / found.uncertainty;
         assert!(off.abs() < 2.0, "{true_n_m_s}: {found:?}");
-        assert!(found.told_by_runs > 0.5, "{found:?}");
+        assert!(found.from_runs > 0.5, "{found:?}");
     }
 }

@@ -33,6 +33,7 @@ mod messages;
 mod parameters;
 mod reader;
 mod reading;
+mod recorded;
 mod scene;
 mod schema;
 mod signals;
@@ -49,6 +50,7 @@ pub use manifest::{Kind, Manifest, Outcome};
 pub use messages::Sink;
 pub use parameters::{Parameter, ParameterState, parameter, parameters};
 pub use reading::{Names, Reading, Source};
+pub use recorded::{CSV, recorded_csv};
 pub use scene::{
     Choice, Experiment, MapPose, Obstacle, Place, RoutePlan, Scene, SonarMount, Truth, compose,
 };

@@ -45,7 +45,7 @@ const ARROWS: [(&str, &[&str]); 24] = [
             "rumbo-ros",
         ],
     ),
-    ("rumbo-python", &["rumbo-experiment", "rumbo-log"]),
+    ("rumbo-python", &["rumbo-experiment", "rumbo-identify"]),
     ("rumbo-firmware", &["rumbo-robot"]),
     ("rumbo-firmware-tests", &["rumbo-experiment"]),
     (

@@ -8,6 +8,8 @@ use std::path::Path;
 pub const LONGEST_TEXT: u64 = 1 << 20;
 /// Longest CSV: half a day of one robot \[bytes\].
 pub const LONGEST_RECORDING: u64 = 64 << 20;
+/// Longest log that is read for such a recording, or as one \[bytes\].
+pub const LONGEST_LOG: u64 = 4 * LONGEST_RECORDING;
 
 /// Reads a file of at most this many bytes.
 ///

@@ -2,7 +2,7 @@
 
 use super::{exercise, log, recorded};
 use crate::problem::{Problem, UNKNOWNS};
-use crate::{Identified, identify};
+use crate::{Identified, Progress, identify};
 use rumbo_plant::params::Params;
 
 #[test]
@@ -14,7 +14,11 @@ fn two_fits_from_far_apart_end_at_the_same_values() {
     far.motor.resistance_ohm *= 1.2;
     far.motor.inertia_kg_m2 *= 0.7;
     far.floor.rolling_n_m *= 0.7;
-    let fitted = |start: &Params| identify(&run, start, 0, &|_| {}).unwrap().parameters;
+    let fitted = |start: &Params| {
+        identify(&run, start, 0, &Progress::none())
+            .unwrap()
+            .parameters
+    };
     let off = |(one, other): (&Identified, &Identified)| {
         (other.value - one.value).abs() / (1.96 * one.uncertainty)
     };

@@ -1,0 +1,40 @@
+//! How far a fit is, and whether it goes on.
+
+use std::fmt;
+use std::sync::atomic::AtomicBool;
+
+/// What a fit reports to while it runs, and asks.
+#[derive(Clone, Copy)]
+pub struct Progress<'a> {
+    /// Takes the share of the work that is done, 0 to 1.
+    pub report: &'a dyn Fn(f64),
+    /// Set when the fit is to end, within about a second: with [`Interrupted`](crate::IdentifyError::Interrupted).
+    pub stop: &'a AtomicBool,
+}
+
+/// Of what nobody stops.
+static GOES_ON: AtomicBool = AtomicBool::new(false);
+
+impl<'a> Progress<'a> {
+    /// Reports to this function, until the end.
+    pub fn to(report: &'a dyn Fn(f64)) -> Self {
+        Self {
+            report,
+            stop: &GOES_ON,
+        }
+    }
+
+    /// Reports to nobody, until the end.
+    #[must_use]
+    pub fn none() -> Self {
+        Self::to(&|_| {})
+    }
+}
+
+impl fmt::Debug for Progress<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Progress")
+            .field("stop", &self.stop)
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,176 @@
+//! Recorded runs from files: CSVs of the original program, logs that carry one, and logs of our own program.
+
+use crate::dialect;
+use crate::error::IdentifyError;
+use crate::fit::{GENERATIONS, Identification, check, identify, leave_one_out};
+use crate::log::{DriveLog, Program};
+use crate::progress::Progress;
+use crate::score::RunScore;
+use crate::sonar_stats::{self, Comparison, SonarLog};
+use crate::stretches::stretches;
+use rumbo_log::{Log, recorded_csv};
+use rumbo_plant::params::Params;
+use rumbo_wire::csv;
+use rumbo_wire::text::RowKind;
+use serde::Serialize;
+use std::io::{self, Cursor};
+use std::path::{Path, PathBuf};
+
+/// What comes of recordings.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Outcome {
+    /// Parameters fitted.
+    Identified(Box<Identification>),
+    /// Repeated with the robot's own parameters.
+    Checked {
+        /// How well; none of them if the runs show nothing of the drive.
+        runs: Vec<RunScore>,
+    },
+}
+
+impl Outcome {
+    /// How well each run is repeated.
+    #[must_use]
+    pub fn runs(&self) -> &[RunScore] {
+        match self {
+            Self::Identified(found) => &found.runs,
+            Self::Checked { runs } => runs,
+        }
+    }
+
+    /// What was identified.
+    #[must_use]
+    pub fn identification(&self) -> Option<&Identification> {
+        match self {
+            Self::Identified(found) => Some(found),
+            Self::Checked { .. } => None,
+        }
+    }
+}
+
+/// What the runs of some files show.
+#[derive(Clone, Debug, Default)]
+pub struct Recordings {
+    /// Of the drive.
+    pub drive: Vec<DriveLog>,
+    /// Of the sonars, where there was a wall.
+    pub sonars: Vec<SonarLog>,
+    /// What is left out or missing, a line each.
+    pub notes: Vec<String>,
+}
+
+impl Recordings {
+    /// Reads files; `bytes` gets the content of one, within the limits of its caller.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or holds nothing for identification.
+    pub fn read(
+        paths: &[PathBuf],
+        bytes: impl Fn(&Path) -> io::Result<Vec<u8>>,
+    ) -> Result<Self, IdentifyError> {
+        let mut recordings = Self::default();
+        for path in paths {
+            let bytes = bytes(path).map_err(|error| {
+                let cause = format!("cannot be read ({error}); give the path of a CSV or a log");
+                wrong(path, cause)
+            })?;
+            let is_log = path.extension().is_some_and(|ending| ending == "mcap");
+            match (is_log, recorded_csv(&bytes)) {
+                (true, Some(csv)) => recordings.add_csv(path, &csv, paths.len() == 1)?,
+                (true, None) => recordings.add_log(path, &bytes)?,
+                (false, _) => recordings.add_csv(path, &bytes, paths.len() == 1)?,
+            }
+        }
+        Ok(recordings)
+    }
+
+    /// Fits the plant to all runs together, from a robot's parameters. A robot like that one needs no search besides: the
+    /// logs of our own program are of such.
+    ///
+    /// # Errors
+    /// As [`identify`].
+    pub fn identify(
+        &self,
+        start: &Params,
+        progress: &Progress<'_>,
+    ) -> Result<Outcome, IdentifyError> {
+        let is_ours = |log: &DriveLog| log.program == Program::Rumbo;
+        let generations = match self.drive.iter().all(is_ours) {
+            true => 0,
+            false => GENERATIONS,
+        };
+        let found = identify(&self.drive, start, generations, progress)?;
+        Ok(Outcome::Identified(Box::new(found)))
+    }
+
+    /// Repeats each run on this plant ([`check`]). Runs along a wall show nothing of the drive, but all of the sonars.
+    ///
+    /// # Errors
+    /// As [`check`]; not where the sonars are all that is shown.
+    pub fn check(&self, params: &Params) -> Result<Outcome, IdentifyError> {
+        let runs = match check(&self.drive, params) {
+            Ok(check) => check.runs,
+            Err(IdentifyError::NothingToFit) if !self.sonars.is_empty() => Vec::new(),
+            Err(error) => return Err(error),
+        };
+        Ok(Outcome::Checked { runs })
+    }
+
+    /// Repeats each run on what the others give ([`leave_one_out`]).
+    ///
+    /// # Errors
+    /// As [`leave_one_out`].
+    pub fn leave_one_out(
+        &self,
+        start: &Params,
+        progress: &Progress<'_>,
+    ) -> Result<Outcome, IdentifyError> {
+        let runs = leave_one_out(&self.drive, start, progress)?;
+        Ok(Outcome::Checked { runs })
+    }
+
+    /// The recorded figures of each sonar beside those of a simulated one.
+    #[must_use]
+    pub fn compare_sonars(&self, params: &Params) -> Vec<Comparison> {
+        let compared = |log| sonar_stats::compare(log, &params.sonar);
+        self.sonars.iter().flat_map(compared).collect()
+    }
+
+    /// A log of our own program.
+    fn add_log(&mut self, path: &Path, bytes: &[u8]) -> Result<(), IdentifyError> {
+        let log = Log::read_signals(Cursor::new(bytes)).map_err(|error| wrong(path, error))?;
+        let found = stretches(path, &log)?;
+        self.notes.extend(found.notes);
+        self.drive.extend(found.logs);
+        Ok(())
+    }
+
+    /// A CSV of the original program.
+    fn add_csv(&mut self, path: &Path, bytes: &[u8], alone: bool) -> Result<(), IdentifyError> {
+        let text = dialect::plain(bytes).map_err(|error| wrong(path, error))?;
+        let kind = csv::recognise(text.lines().next().unwrap_or_default());
+        if kind == Some(RowKind::Mission) && !alone {
+            let path = path.display();
+            let note = format!("{path} is skipped: recordings of mode 8 have no PWM");
+            self.notes.push(note);
+            return Ok(());
+        }
+        let log = DriveLog::parse(path, text.as_bytes())?;
+        let left_out = |error| format!("{error}; the row is left out");
+        self.notes.extend(log.damaged.iter().map(left_out));
+        self.drive.push(log);
+        if kind == Some(RowKind::Distance) {
+            let log = SonarLog::parse(path, &text).map_err(IdentifyError::Sonar)?;
+            self.sonars.push(log);
+        }
+        Ok(())
+    }
+}
+
+fn wrong(path: &Path, cause: impl ToString) -> IdentifyError {
+    IdentifyError::Read {
+        path: path.into(),
+        cause: cause.to_string(),
+    }
+}
