@@ -6,6 +6,7 @@
 //! output is printed as it comes.
 
 use crate::project::{Project, shown};
+use crate::release;
 use crate::test::{Stop, tools, wheel};
 use std::process::Stdio;
 
@@ -36,6 +37,8 @@ const TUNE: &str = "tune";
 const TUNE_STARTS: u32 = 10;
 /// Sweeps of the Python package on Ray.
 const RAY: &str = "ray";
+/// The release on a system with nothing else, and the crates that others can use alone.
+const RELEASE: &str = "release";
 /// Seconds of each.
 const FUZZ_SECONDS: u32 = 600;
 /// Minutes of [`IMAGE`]: past the wrap of the microseconds at 71.6.
@@ -85,12 +88,16 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if only.is_empty() || only.iter().any(|name| name == RAY) {
         wheel::on_ray(project).map_err(said)?;
     }
+    if only.is_empty() || only.iter().any(|name| name == RELEASE) {
+        release::try_it(project).map_err(said)?;
+        release::try_crates(project)?;
+    }
     let mut scenarios = vec![seeds.unwrap_or(SEEDS).to_string()];
     scenarios.extend(
         only.iter()
             .filter(|name| {
                 ![
-                    LINK, IMAGE, MEDIANS, FUZZ, GRADE, IDENTIFY, TUNE, FAULTS, RAY,
+                    LINK, IMAGE, MEDIANS, FUZZ, GRADE, IDENTIFY, TUNE, FAULTS, RAY, RELEASE,
                 ]
                 .contains(&name.as_str())
             })

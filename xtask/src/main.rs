@@ -18,6 +18,7 @@ mod lab;
 mod markdown;
 mod memoria;
 mod project;
+mod release;
 mod site;
 mod sketches;
 mod test;
@@ -37,6 +38,7 @@ Commands:
   bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
   firmware                 the image for the Mega, target/firmware/rumbo.elf and .hex, with its sizes
   site                     the lab as a static page, WebAssembly in place of a station, in site/
+  release                  what a version is published as, in dist/: archive, Debian package, image, licences, checksums
   sketches                 the Arduino sketches of examples and tests, compiled into target/sketches/*.elf
   memoria [--seeds N] [--only SCENARIO]...
                            the report's program as an Arduino sketch on the emulated Mega, beside its native form,
@@ -50,7 +52,8 @@ Commands:
                            (50 seeds or N); `image`, 75 minutes of the image; `medians`, the image beside the native
                            robot; `fuzz`, the fuzz targets, ten minutes each; `grade`, a class of 100, 30 of them
                            hostile; `tune`, gains far off tuned again; `identify`, simulated robots identified; `ray`,
-                           sweeps on Ray: what is required beside what was measured
+                           sweeps on Ray; `release`, the Debian package in a clean system without a network, and
+                           the crates for others: what is required beside what was measured
   fuzz [--seconds N] [--only TARGET]...
                            the fuzz targets of fuzz/, a minute each or N seconds
   figures [--only NAME]... the figures and tables of docs/theory, from runs of both programs
@@ -65,6 +68,7 @@ Examples:
   cargo xtask firmware
   cargo xtask sketches
   cargo xtask site
+  cargo xtask release
   cargo xtask memoria --seeds 1 --only mode5
   RUMBO_DATA=recordings cargo xtask fidelity --seeds 40 --only mode3
   cargo xtask bench --only headless
@@ -127,6 +131,8 @@ fn main() -> ExitCode {
         "firmware" => return usage("firmware takes no options"),
         "site" if only.is_empty() => site::run(&project),
         "site" => return usage("site takes no options"),
+        "release" if only.is_empty() => release::run(&project),
+        "release" => return usage("release takes no options"),
         "sketches" if only.is_empty() => sketches::run(&project),
         "sketches" => return usage("sketches takes no options"),
         "tidy" => return usage("tidy takes no options"),

@@ -3,6 +3,7 @@
 use crate::args::FlashArgs;
 use crate::failure::Failure;
 use crate::output;
+use crate::place;
 use rumbo_experiment::files::firmware;
 use rumbo_station::port::Port;
 use std::path::{Path, PathBuf};
@@ -14,6 +15,11 @@ const BUILT: &str = "firmware/rumbo.hex";
 const BOOT_BAUD: u32 = 115_200;
 /// Signature of an ATmega2560 (2549Q, section 29.3).
 const SIGNATURE: [u8; 3] = [0x1E, 0x98, 0x01];
+/// The image that a release carries.
+#[cfg(carries_image)]
+const CARRIED: Option<&[u8]> = Some(include_bytes!(env!("RUMBO_IMAGE")));
+#[cfg(not(carries_image))]
+const CARRIED: Option<&[u8]> = None;
 /// How an ELF file begins.
 const ELF: &[u8] = b"\x7fELF";
 
@@ -43,7 +49,7 @@ pub(crate) fn flash(args: &FlashArgs) -> Result<(), Failure> {
     output::line("done: the robot starts again, disarmed")
 }
 
-/// The requested image, or the one built here; in any case a program for this chip.
+/// The requested image, or the one built here, or the one that this release carries; in any case a program for this chip.
 fn image(args: &FlashArgs) -> Result<PathBuf, Failure> {
     let path = match &args.image {
         Some(path) => path.clone(),
@@ -52,6 +58,9 @@ fn image(args: &FlashArgs) -> Result<PathBuf, Failure> {
             let built = target
                 .map_or_else(|| PathBuf::from("target"), PathBuf::from)
                 .join(BUILT);
+            if let (false, Some(carried)) = (built.exists(), CARRIED) {
+                return unpack(carried);
+            }
             if !built.exists() {
                 return Err(Failure::Input(format!(
                     "there is no firmware {}: build it with `cargo xtask firmware` in the folder of Rumbo's sources, or give one with --image",
@@ -62,6 +71,17 @@ fn image(args: &FlashArgs) -> Result<PathBuf, Failure> {
         }
     };
     firmware::read(&path)?;
+    Ok(path)
+}
+
+/// Puts the carried image where avrdude can read it, also for a command that is printed.
+fn unpack(image: &[u8]) -> Result<PathBuf, Failure> {
+    let folder = dirs::cache_dir()
+        .unwrap_or_else(std::env::temp_dir)
+        .join("rumbo");
+    let path = folder.join(concat!("rumbo-", env!("CARGO_PKG_VERSION"), ".hex"));
+    let written = std::fs::create_dir_all(&folder).and_then(|()| std::fs::write(&path, image));
+    written.map_err(|error| place::unwritable(&path, &error))?;
     Ok(path)
 }
 

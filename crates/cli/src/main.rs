@@ -25,6 +25,7 @@ mod left_out;
 mod list;
 mod logs;
 mod manifest;
+mod manual;
 mod mark;
 mod observe;
 mod output;
@@ -64,6 +65,8 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Import(args)) => import::import(&args),
         Some(Command::List(args)) => list::list(&args),
         Some(Command::New(args)) => sketch::begin(&args),
+        Some(Command::Completions(args)) => manual::completions(&args),
+        Some(Command::Manual(args)) => manual::manual(&args),
         Some(Command::Lab(mut args)) => {
             let robot = args.setting.robot.as_deref();
             args.image.compile(robot, Some(&args.scenario))?;

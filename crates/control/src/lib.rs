@@ -32,3 +32,8 @@ pub mod unrest;
 pub mod wall;
 
 pub use types::*;
+
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

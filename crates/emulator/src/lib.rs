@@ -18,3 +18,8 @@ pub mod observe;
 mod registers;
 pub mod status;
 pub mod verdict;
+
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -29,3 +29,8 @@ pub mod rig;
 pub mod servo;
 pub mod sonar;
 pub mod world;
+
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

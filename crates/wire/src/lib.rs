@@ -31,3 +31,8 @@ pub use codec::{Malformed, Message};
 pub use decoder::{Decoder, Received};
 pub use frame::{Body, Frame, Kind, crc as crc16};
 pub use message::*;
+
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -82,6 +82,11 @@ pub(crate) fn bubblewrap(project: &Project) -> Result<PathBuf, Stop> {
     program(project, "bwrap", &["bubblewrap"], "Linux only")
 }
 
+/// What makes a system with nothing else on it.
+pub(crate) fn debootstrap(project: &Project) -> Result<PathBuf, Stop> {
+    program(project, "debootstrap", &["debootstrap"], "Debian only")
+}
+
 /// The debugger that the tests attach to the emulated chip.
 pub(crate) fn avr_gdb(project: &Project) -> Result<PathBuf, Stop> {
     program(project, "avr-gdb", &["gdb-avr"], "GDB for the AVR")

@@ -90,7 +90,7 @@ pub(crate) struct FlashArgs {
     /// Serial port of the Mega's USB cable
     #[arg(value_name = "PORT", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     pub(crate) port: String,
-    /// Firmware to write, Intel HEX or ELF [default: the one that `cargo xtask firmware` built, target/firmware/rumbo.hex]
+    /// Firmware to write, Intel HEX or ELF [default: the one that `cargo xtask firmware` built, target/firmware/rumbo.hex, or that of this release]
     #[arg(long, value_name = "FILE")]
     pub(crate) image: Option<PathBuf>,
     /// Print the commands instead of running them

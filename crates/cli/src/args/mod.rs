@@ -85,6 +85,11 @@ pub(crate) enum Command {
     New(NewArgs),
     /// List modes, scenarios, worlds, rigs, robots and parameters
     List(ListArgs),
+    /// Print a script with which a shell completes the words of `rumbo`
+    Completions(CompletionsArgs),
+    /// Write the manual pages, for packages
+    #[command(hide = true)]
+    Manual(ManualArgs),
 }
 
 /// Options of `rumbo new`.
@@ -129,6 +134,31 @@ pub(crate) struct ListArgs {
     /// As one JSON object
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Options of `rumbo completions`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo completions bash > ~/.local/share/bash-completion/completions/rumbo
+  rumbo completions fish > ~/.config/fish/completions/rumbo.fish
+  rumbo completions zsh > ~/.zfunc/_rumbo         with ~/.zfunc in fpath
+  rumbo completions powershell >> $PROFILE")]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    #[arg(value_enum)]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+/// Options of `rumbo manual`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo manual ~/.local/share/man/man1            then: man rumbo-run")]
+pub(crate) struct ManualArgs {
+    /// Folder for them
+    #[arg(value_name = "FOLDER")]
+    pub(crate) folder: PathBuf,
 }
 
 /// What can be listed.
