@@ -140,10 +140,10 @@ pub(crate) struct ListArgs {
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
-  rumbo completions bash > ~/.local/share/bash-completion/completions/rumbo
-  rumbo completions fish > ~/.config/fish/completions/rumbo.fish
-  rumbo completions zsh > ~/.zfunc/_rumbo         with ~/.zfunc in fpath
-  rumbo completions powershell >> $PROFILE")]
+  rumbo completions bash        > ~/.local/share/bash-completion/completions/rumbo
+  rumbo completions fish        > ~/.config/fish/completions/rumbo.fish
+  rumbo completions zsh         > ~/.zfunc/_rumbo, with ~/.zfunc in fpath
+  rumbo completions powershell  >> $PROFILE")]
 pub(crate) struct CompletionsArgs {
     /// The shell
     #[arg(value_enum)]
