@@ -182,7 +182,7 @@ impl<H: Host> Driver<H> {
             truth: self.target.truth(),
             ghost: self.target.ghost(),
             consoles: self.target.consoles(),
-            instruments: self.target.instruments(),
+            shown: self.target.shown(),
         };
         self.session.observe(sight, now);
         self.bytes.clear();
