@@ -39,6 +39,7 @@
  * @property {{scenario: string, world: string | null, rig: string | null, seed: number}} choice
  * @property {{name: string, title: string, group: string | null, mode: number, shows_mode: boolean}[]} experiments The scenarios to choose from; `shows_mode`: it commands something in its mode.
  * @property {string[]} worlds
+ * @property {Record<string, string>} [world_titles] What each of them is; logs of earlier versions have none.
  * @property {string[]} rigs
  * @property {string} rig What the robot carries.
  * @property {[number, number][]} goals The experiment's goals, from the origin [m].

@@ -323,6 +323,7 @@ impl SimulatedRobot {
         let Scene {
             experiments,
             worlds,
+            world_titles,
             ..
         } = std::mem::take(&mut self.scene);
         self.sim = fresh.sim;
@@ -336,6 +337,7 @@ impl SimulatedRobot {
         self.scene = Scene {
             experiments,
             worlds,
+            world_titles,
             ..fresh.scene
         };
         Ok(())
