@@ -19,8 +19,9 @@ class Log:
     #: The telemetry, with ground truth beside it (``true_x_m``) where the robot was simulated: an array for each signal
     #: that is known at any time, units in the names. NaN where unknown, inf where a range is clear.
     signals: dict[str, NDArray[Any]]
-    #: Signals beside the telemetry by their source, each with a ``t_s`` of its own: ``truth`` for the pins of an
-    #: emulated robot, ``usart0`` for the numbers that its program printed there.
+    #: Signals beside the telemetry by their source, each with a ``t_s`` of its own: ``loops`` for what the control
+    #: loops of a simulated robot add up, ``truth`` for the pins of an emulated one, ``usart0`` for the numbers that its
+    #: program printed there.
     readings: dict[str, dict[str, NDArray[Any]]]
     #: What happened: time [s], level, text.
     events: list[tuple[float, str, str]]

@@ -98,6 +98,7 @@ fn by_source(log: &Log) -> BTreeMap<String, Readings> {
 fn name(source: Source) -> String {
     match source {
         Source::Truth => "truth".to_owned(),
+        Source::Loops => "loops".to_owned(),
         Source::Usart(number) => format!("usart{number}"),
     }
 }

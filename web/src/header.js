@@ -51,12 +51,13 @@ export class Header {
     this.#form.hidden = scene === null;
     if (!scene) return;
     this.#scenario.replaceChildren(...grouped(scene.experiments));
-    this.#world.replaceChildren(option(OWN, t('scenario default')), ...scene.worlds.map((name) => option(name, name)));
+    this.#world.replaceChildren(option(OWN, t('scenario default')), ...scene.worlds.map((name) => option(name, titleWords(scene.world_titles?.[name] ?? name))));
     this.#rig.replaceChildren(option(OWN, t('scenario default')), ...scene.rigs.map((name) => option(name, named(name))));
     this.#rig.title = named(scene.rig);
     this.#scenario.value = scene.choice.scenario;
     this.#scenario.title = scene.choice.scenario;
     this.#world.value = scene.choice.world ?? OWN;
+    this.#world.title = scene.choice.world ?? '';
     this.#rig.value = scene.choice.rig ?? OWN;
     this.#seed.value = String(scene.choice.seed);
   }
@@ -134,7 +135,7 @@ function grouped(experiments) {
   return made;
 }
 
-/** @param {string} title */
+/** The title of a scenario or a world. @param {string} title */
 const titleWords = (title) => said(title).replaceAll('->', '→');
 
 /**

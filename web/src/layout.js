@@ -34,6 +34,13 @@ export const PLOTS = [
   plot('position', 4, ['ghost_x_m', 'ghost_y_m', 'true_x_m', 'true_y_m', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m']),
 ];
 
+/** The terms of control loops, where they are known. */
+export const LOOP_PLOTS = [
+  plot('left loop', 4, ['left_p_pwm', 'left_i_pwm', 'left_d_pwm', 'left_feedforward_pwm', 'left_pwm']),
+  plot('right loop', 4, ['right_p_pwm', 'right_i_pwm', 'right_d_pwm', 'right_feedforward_pwm', 'right_pwm']),
+  plot('steering', 4, ['heading_p_deg_s', 'heading_d_deg_s', 'yaw_ref_deg_s', 'distance_p_deg', 'distance_i_deg']),
+];
+
 /** In place of a mode's number: a program that does not say which mode it is in, as most people's own. */
 export const OWN_PROGRAM = -2;
 /** What can be plotted of any program. */

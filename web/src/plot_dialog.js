@@ -14,7 +14,7 @@ import { numberAs, t } from './text.js';
 /** What the signals of a unit are. @returns {Record<keyof typeof UNITS, string>} */
 const GROUPS = () => ({
   cm: t('distances, cm'), rpm: t('wheel speeds, rpm'), 'of 255': t('PWM, of 255'), '°': t('angles, °'), m: t('positions, m'),
-  level: t('levels of pins, 0 to 1'), edges: t('encoders, edges'), 'µs': t('pulses, µs'), printed: t('printed by the program'),
+  '°/s': t('yaw rates, °/s'), 'm/s': t('speeds, m/s'), level: t('levels of pins, 0 to 1'), edges: t('encoders, edges'), 'µs': t('pulses, µs'), printed: t('printed by the program'),
 });
 
 export class PlotDialog {
@@ -94,7 +94,10 @@ export class PlotDialog {
       this.#boxes.push({ box, label });
       return label;
     }));
-    this.#choice.replaceChildren(...groups.flatMap((labels, index) => (labels.length === 0 ? [] : [create('fieldset', {}, create('legend', { textContent: GROUPS()[units[index] ?? 'cm'] }), ...labels)])));
+    const boxes = groups.flatMap((labels, index) => (labels.length === 0 ? [] : [create('fieldset', {}, create('legend', { textContent: GROUPS()[units[index] ?? 'cm'] }), ...labels)]));
+    const absent = t('Terms of the loops are known only of Rumbo’s own program on a simulated robot: the link has no room for them.');
+    const known = this.#plots.store.readings.loops.t.length > 0;
+    this.#choice.replaceChildren(...boxes, ...(known ? [] : [create('p', { className: 'hint', textContent: absent })]));
   }
 
   /** @param {PlotPanel | null} panel Null: a new plot. */

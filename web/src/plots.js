@@ -5,7 +5,7 @@
  */
 import { BAND_PX, StateBand } from './band.js';
 import { create, element, setText } from './dom.js';
-import { LONGEST_S, OWN_PLOTS, OWN_PROGRAM, PLOTS, SHORTEST_S, Shelf, unitsOf } from './layout.js';
+import { LONGEST_S, LOOP_PLOTS, OWN_PLOTS, OWN_PROGRAM, PLOTS, SHORTEST_S, Shelf, unitsOf } from './layout.js';
 import { portName } from './signals.js';
 import { PlotPanel } from './plot.js';
 import { t } from './text.js';
@@ -156,6 +156,7 @@ export class Plots {
       this.range_s = [to_s - window_s, to_s];
     }
     for (const panel of this.#panels) panel.draw();
+    if (this.#choices.childElementCount !== this.#offered.length) this.#offerChoices();
     this.#band.draw();
     this.#showTime();
   }
@@ -230,9 +231,15 @@ export class Plots {
     this.#window.value = this.#wholly ? WHOLE : value;
   }
 
-  /** One button for each plot that there is from the start: shown or not. */
+  /** The plots that there are from the start. */
+  get #offered() {
+    if (this.#mode === OWN_PROGRAM) return OWN_PLOTS;
+    return this.store.readings.loops.t.length > 0 ? [...PLOTS, ...LOOP_PLOTS] : PLOTS;
+  }
+
+  /** One button for each of them: shown or not. */
   #offerChoices() {
-    const offered = this.#mode === OWN_PROGRAM ? OWN_PLOTS : PLOTS;
+    const offered = this.#offered;
     const own = [...this.#choices.querySelectorAll('button')];
     const same = own.map(({ value }) => value).join() === offered.map(({ title }) => title).join();
     const buttons = same ? own : offered.map((spec) => {

@@ -1,7 +1,8 @@
 // @ts-check
 /**
- * Signals beside the robot's telemetry, in columns for uPlot: ground truth and pins of an emulated robot, and the numbers
- * that its program prints, a table for each port. Which signals there are is known when they arrive.
+ * Signals beside the robot's telemetry, in columns for uPlot: ground truth and pins of an emulated robot, what the control
+ * loops of our simulated one add up, and the numbers that a program prints, a table for each port. Which signals there are
+ * is known when they arrive.
  *
  * A printed signal is named `serial0:speed`, so that two ports may print the same name.
  */
@@ -15,10 +16,12 @@ import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S } from './units.js';
 
 /** What people see: by the unit at the end of a name. @type {[string, string, number][]} */
 const SEEN = [['_rad_s', '_rpm', RPM_PER_RAD_S], ['_rad', '_deg', DEG_PER_RAD], ['_m', '_cm', CM_PER_M]];
+/** Of what turns, but is no wheel. @type {[string, string, number]} */
+const YAW = ['_rad_s', '_deg_s', DEG_PER_RAD];
 
 /** A signal with the unit that people see. @param {string} name @returns {[string, number]} */
 function seen(name) {
-  const unit = SEEN.find(([suffix]) => name.endsWith(suffix));
+  const unit = /^(yaw|heading)_.*_rad_s$/.test(name) ? YAW : SEEN.find(([suffix]) => name.endsWith(suffix));
   return unit && !/^true_[xy]_m$/.test(name) ? [name.slice(0, -unit[0].length) + unit[1], unit[2]] : [name, 1];
 }
 
@@ -34,6 +37,8 @@ function seen(name) {
 
 export class Readings {
   truth;
+  /** What control loops add up. */
+  loops;
   /** By port. @type {Map<number, Table>} */
   #printed = new Map();
   #kept_s;
@@ -44,22 +49,28 @@ export class Readings {
   constructor(kept_s) {
     this.#kept_s = kept_s;
     this.truth = new Table([], kept_s);
+    this.loops = new Table([], kept_s);
   }
 
   clear() {
     this.truth = new Table([], this.#kept_s);
+    this.loops = new Table([], this.#kept_s);
     this.#printed.clear();
     this.#heading_deg = 0;
   }
 
+  get #tables() {
+    return [this.truth, this.loops, ...this.#printed.values()];
+  }
+
   /** The table that a signal is in. @param {string} name */
   tableOf(name) {
-    return [this.truth, ...this.#printed.values()].find((table) => table.columns.has(name));
+    return this.#tables.find((table) => table.columns.has(name));
   }
 
   /** The names of all signals. */
   names() {
-    return [this.truth, ...this.#printed.values()].flatMap((table) => [...table.columns.keys()]);
+    return this.#tables.flatMap((table) => [...table.columns.keys()]);
   }
 
   /** The signals that a port has printed. @param {number} usart */
@@ -69,17 +80,18 @@ export class Readings {
 
   /** Time of the newest line [s]. */
   get newest_s() {
-    return Math.max(0, ...[this.truth, ...this.#printed.values()].map(({ t }) => t.at(-1) ?? 0));
+    return Math.max(0, ...this.#tables.map(({ t }) => t.at(-1) ?? 0));
   }
 
   /**
    * Takes readings; returns what is true at the end of them, if they tell.
    * @param {ReadingGroup} group
    * @param {Pose} origin Where the run began, in the world: positions are plotted from there.
-   * @returns {Truth[]} One for each reading of the simulation.
+   * @returns {Truth[]} One for each reading of ground truth.
    */
-  push({ usart, names, rows }, origin) {
-    if (usart !== null) {
+  push({ source, names, rows }, origin) {
+    if (typeof source === 'object') {
+      const { usart } = source;
       const table = this.#printed.get(usart) ?? new Table([], this.#kept_s);
       this.#printed.set(usart, table);
       const signals = names.map((name) => `serial${usart}:${name}`);
@@ -88,7 +100,16 @@ export class Readings {
       return [];
     }
     const signals = names.map(seen);
-    this.truth.offer(signals.map(([name]) => name));
+    this[source].offer(signals.map(([name]) => name));
+    if (source === 'loops') {
+      // A loop that is not at work is left out of a log: its curve ends.
+      const idle = Object.fromEntries([...this.loops.columns.keys()].map((name) => [name, null]));
+      for (const [t_s, cells] of rows) {
+        const at_work = signals.map(([name, factor], index) => [name, times(number(cells[index]), factor)]);
+        this.loops.push(t_s, { ...idle, ...Object.fromEntries(at_work) });
+      }
+      return [];
+    }
     return rows.flatMap(([t_s, cells]) => {
       const cell = (/** @type {string} */ name) => cells[names.indexOf(name)] ?? null;
       const values = Object.fromEntries(signals.map(([name, factor], index) => [name, times(number(cells[index]), factor)]));

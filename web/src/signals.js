@@ -4,7 +4,7 @@
 import { named, t } from './text.js';
 
 /** @typedef {import('./theme.js').ColourName} ColourName */
-/** @typedef {'cm' | 'rpm' | 'of 255' | '°' | 'm' | 'level' | 'edges' | 'µs' | 'printed'} Unit */
+/** @typedef {'cm' | 'rpm' | 'of 255' | '°' | 'm' | '°/s' | 'm/s' | 'level' | 'edges' | 'µs' | 'printed'} Unit */
 
 /**
  * @typedef {object} Signal
@@ -23,6 +23,8 @@ export const UNITS = {
   'of 255': { step: 50, decimals: 0 },
   '°': { step: 30, decimals: 0 },
   m: { step: 0.5, decimals: 2 },
+  '°/s': { step: 10, decimals: 1 },
+  'm/s': { step: 0.05, decimals: 3 },
   level: { step: 0.1, decimals: 2 },
   edges: { step: 10, decimals: 0, free: true },
   'µs': { step: 100, decimals: 0, free: true },
@@ -82,10 +84,30 @@ export const SIGNALS = [
   { name: 'goal_y_m', label: 'goal y', about: 'goal position, y', unit: 'm', colour: 'right', kind: 'reference' },
 ];
 
+/** What control loops add up: known of our own program where it is simulated, offered where it is known. @type {Signal[]} */
+const LOOPS = [
+  { name: 'left_p_pwm', label: 'P l.', about: 'speed loop, P, left wheel', unit: 'of 255', colour: 'reference', kind: 'measured' },
+  { name: 'left_i_pwm', label: 'I l.', about: 'speed loop, I, left wheel', unit: 'of 255', colour: 'right', kind: 'measured' },
+  { name: 'left_d_pwm', label: 'D l.', about: 'speed loop, D, left wheel', unit: 'of 255', colour: 'goal', kind: 'measured' },
+  { name: 'left_feedforward_pwm', label: 'feedforward l.', about: 'speed loop, feedforward, left wheel', unit: 'of 255', colour: 'front', kind: 'measured' },
+  { name: 'right_p_pwm', label: 'P r.', about: 'speed loop, P, right wheel', unit: 'of 255', colour: 'reference', kind: 'measured' },
+  { name: 'right_i_pwm', label: 'I r.', about: 'speed loop, I, right wheel', unit: 'of 255', colour: 'left', kind: 'measured' },
+  { name: 'right_d_pwm', label: 'D r.', about: 'speed loop, D, right wheel', unit: 'of 255', colour: 'goal', kind: 'measured' },
+  { name: 'right_feedforward_pwm', label: 'feedforward r.', about: 'speed loop, feedforward, right wheel', unit: 'of 255', colour: 'front', kind: 'measured' },
+  { name: 'left_ramp_rpm', label: 'ramp l.', about: 'speed loop, ramp, left wheel', unit: 'rpm', colour: 'left', kind: 'reference' },
+  { name: 'right_ramp_rpm', label: 'ramp r.', about: 'speed loop, ramp, right wheel', unit: 'rpm', colour: 'right', kind: 'reference' },
+  { name: 'forward_ref_m_s', label: 'set forward', about: 'setpoint of the forward speed', unit: 'm/s', colour: 'reference', kind: 'reference' },
+  { name: 'yaw_ref_deg_s', label: 'set yaw', about: 'setpoint of the yaw rate', unit: '°/s', colour: 'reference', kind: 'reference' },
+  { name: 'heading_p_deg_s', label: 'P', about: 'heading loop, P', unit: '°/s', colour: 'left', kind: 'measured' },
+  { name: 'heading_d_deg_s', label: 'D', about: 'heading loop, D', unit: '°/s', colour: 'goal', kind: 'measured' },
+  { name: 'distance_p_deg', label: 'P', about: 'distance loop, P', unit: '°', colour: 'left', kind: 'measured' },
+  { name: 'distance_i_deg', label: 'I', about: 'distance loop, I', unit: '°', colour: 'right', kind: 'measured' },
+];
+
 /** Colours of signals that a wiring or a program names, in turn. @type {ColourName[]} */
 const COLOURS = ['left', 'right', 'front', 'goal', 'reference'];
 /** Signals by their names, in the reader's language. @type {Map<string, Signal>} */
-const met = new Map(SIGNALS.map((each) => [each.name, { ...each, label: t(each.label), about: t(each.about) }]));
+const met = new Map([...SIGNALS, ...LOOPS].map((each) => [each.name, { ...each, label: t(each.label), about: t(each.about) }]));
 
 /** The signal with this name: one of those above, a pin's, or a printed one. @param {string} name @returns {Signal | null} */
 export function signal(name) {
@@ -94,7 +116,7 @@ export function signal(name) {
   const label = pin ? named(pin) : printed;
   if (known || label === null) return known;
   const about = pin ? t('level of the pin {}', named(pin)) : `${portName(Number(port))}: ${label}`;
-  const colour = COLOURS[(met.size - SIGNALS.length) % COLOURS.length] ?? 'left';
+  const colour = COLOURS[(met.size - SIGNALS.length - LOOPS.length) % COLOURS.length] ?? 'left';
   /** @type {Signal} */
   const made = { name, label, about, unit: pin ? 'level' : 'printed', colour, kind: 'measured' };
   met.set(name, made);

@@ -134,7 +134,7 @@ export class StateLine {
     const latest = this.#store.latest;
     const at = latest?.estimated ?? (latest?.truth && compose(inverse(latest.origin), latest.truth));
     if (!latest || !at) return setText(this.#pose, '');
-    const lines = [`x ${format(at.x_m * CM_PER_M)} cm   y ${format(at.y_m * CM_PER_M)} cm   ${t('heading')} ${degrees(at.heading_rad)}`];
+    const lines = [`x ${format(at.x_m, 3)} m   y ${format(at.y_m, 3)} m   ${t('heading')} ${degrees(at.heading_rad)}`];
     const ranges = this.sonars.map((id) => `${t(SONARS[id] ?? '')} ${inReach(latest.ranges_m[id] ?? null)}`);
     lines.push(`${robot.rig === null ? '' : `${named(robot.rig)}:  `}${ranges.join('   ')}`);
     if (latest.contact) lines.push(t('contact!'));

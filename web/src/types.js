@@ -39,6 +39,7 @@
  * @property {{scenario: string, world: string | null, rig: string | null, seed: number}} choice
  * @property {{name: string, title: string, group: string | null, mode: number, shows_mode: boolean}[]} experiments The scenarios to choose from; `shows_mode`: it commands something in its mode.
  * @property {string[]} worlds
+ * @property {Record<string, string>} [world_titles] What each of them is; logs of earlier versions have none.
  * @property {string[]} rigs
  * @property {string} rig What the robot carries.
  * @property {[number, number][]} goals The experiment's goals, from the origin [m].
@@ -92,7 +93,7 @@
  * @property {{mode: number, armed: boolean, fault: string | null, battery_v: number | null, true_battery_v: number | null,
  *   reference: [number, number], overruns: number, servo_rad: number, rig: string | null, errand: Errand, foreign: boolean, text?: boolean}} robot `text`: it speaks the original's.
  *
- * @typedef {{usart: number | null, names: string[], rows: [number, Cell[]][]}} ReadingGroup Time [s] and values of signals beside the telemetry; `usart`: the port that printed them, null for ground truth.
+ * @typedef {{source: 'truth' | 'loops' | {usart: number}, names: string[], rows: [number, Cell[]][]}} ReadingGroup Time [s] and values of signals beside the telemetry; `usart`: the port that printed them.
  *
  * @typedef {{name: string, bytes: number, written_s: number, open: boolean, readable: boolean, duration_s: number, started: string | null, scenario: string | null, robot: string | null, seed: number | null}} Recording
  * @typedef {{name: string, duration_s: number, metrics: Record<string, number | null>, parameters: Record<string, number>, columns: string[], rows: Cell[][]}} RecordingContent

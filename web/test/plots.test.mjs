@@ -239,3 +239,29 @@ test('what is plotted is cleared while data arrives', async () => {
   await page.waitForFunction((t) => /** @type {any} */ (window).rumbo.series('left_pwm').t[0] >= t, last);
   assert.deepEqual(dashboard.complaints, []);
 });
+
+test('what the control loops add up is plotted and can be chosen, and adds up to the PWM', async () => {
+  const speeds = await open(['lab', '--scenario', 'mode5', '--out', folder()]);
+  try {
+    const own = speeds.page;
+    await own.waitForSelector('#connection.good');
+    await own.locator('#plot-choice button[value="left loop"]').click();
+    await own.locator('#on').click();
+    const names = ['left_p_pwm', 'left_i_pwm', 'left_d_pwm', 'left_feedforward_pwm'];
+    // At a steady speed telemetry and terms may be of different ticks.
+    await own.waitForFunction((terms) => {
+      const last = (/** @type {string} */ name) => /** @type {any} */ (window).rumbo.series(name).y.at(-1);
+      const [sum, pwm] = [terms.reduce((total, name) => total + (last(name) ?? NaN), 0), last('left_pwm')];
+      return last('left_feedforward_pwm') > 50 && Math.abs(sum - pwm) < 25;
+    }, names);
+    await own.locator('.plot-head', { hasText: 'left loop' }).locator('.curve', { hasText: 'feedforward l.' }).locator('output', { hasText: /\d/ }).waitFor();
+    await own.locator('#off').click();
+    // A loop that is not at work has no value.
+    await own.waitForFunction(() => /** @type {any} */ (window).rumbo.series('left_p_pwm').y.at(-1) === null);
+    await own.locator('#add-plot').click();
+    assert.equal(await own.getByLabel('speed loop, ramp, left wheel').count(), 1);
+    assert.deepEqual(speeds.complaints, []);
+  } finally {
+    await speeds.close();
+  }
+});

@@ -57,7 +57,7 @@ test('refusals and failures are reported in Spanish, with the remedy', async () 
 
 test('numbers have a decimal comma, and fields take a point too', async () => {
   await page.locator('#battery', { hasText: /^\d,\d V$/ }).waitFor();
-  await page.locator('#pose', { hasText: /x −?\d+,\d cm/ }).waitFor();
+  await page.locator('#pose', { hasText: /x −?\d+,\d{3} m/ }).waitFor();
   const input = page.locator('#parameter-link_timeout_s');
   for (const [typed, shown] of [['0,3', '0,3'], ['0.35', '0,35']]) {
     await input.fill(/** @type {string} */ (typed));

@@ -82,6 +82,11 @@ test('titles and groups of the built-in scenarios', () => {
   allSpanish(texts);
 });
 
+test('titles of the built-in worlds', () => {
+  const folder = new URL('../../worlds/', import.meta.url);
+  allSpanish(readdirSync(folder).map((name) => readFileSync(new URL(name, folder), 'utf8').match(/^title = "(.*)"$/m)?.[1] ?? `no title: ${name}`));
+});
+
 test('a text keeps its values in the other language, and stands in one table only', () => {
   for (const [english, spanish] of Object.entries(SPANISH)) {
     assert.ok(spanish.trim() !== '' || english.trim() === '', english);

@@ -12,9 +12,11 @@ use rumbo_control::Wheels;
 use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_experiment::run::RunResult;
 use rumbo_lab::{manifest, scene};
-use rumbo_log::{Burst, Choice, Kind, Manifest, MapPose, Outcome, Said, Truth};
+use rumbo_log::{Burst, Choice, Kind, Manifest, MapPose, Outcome, Said, Source as Origin, Truth};
+use rumbo_session::Shown;
 use rumbo_session::headless::Run;
-use rumbo_sim::trace::{SAMPLE_US, Sample, Shown, Trace};
+use rumbo_sim::loop_signals;
+use rumbo_sim::trace::{SAMPLE_US, Sample, Trace};
 use rumbo_station::headless::{record_run, record_run_in};
 use rumbo_wire::FromRobot;
 use std::path::{Path, PathBuf};
@@ -61,7 +63,7 @@ impl Source<'_> {
             truths: &trace.samples.iter().map(truth).collect::<Vec<_>>(),
             messages: &messages(trace),
             said: &trace.consoles.iter().map(said).collect::<Vec<_>>(),
-            readings: &trace.readings.iter().map(shown).collect::<Vec<_>>(),
+            shown: &shown(trace),
             link: &link,
             outcome: Outcome {
                 pass: result.pass,
@@ -184,8 +186,13 @@ pub(crate) fn said(said: &rumbo_sim::trace::Said) -> Said {
     }
 }
 
-fn shown(shown: &Shown) -> (u64, Vec<(String, f64)>) {
-    (shown.t_us, shown.signals.clone())
+/// Of a program there are either instruments or control loops.
+fn shown(trace: &Trace) -> Vec<(u64, Shown)> {
+    let instruments = trace.readings.iter();
+    let instruments = instruments.map(|each| (each.t_us, (Origin::Truth, each.signals.clone())));
+    let loops = trace.loops.iter();
+    let loops = loops.map(|(t_us, loops)| (*t_us, (Origin::Loops, loop_signals(loops))));
+    instruments.chain(loops).collect()
 }
 
 fn truth(sample: &Sample) -> (u64, Truth) {

@@ -116,6 +116,52 @@ fn a_run_is_recorded_whole_and_the_same_run_is_the_same_file() {
 }
 
 #[test]
+fn a_log_has_what_the_control_loops_add_up_to() {
+    let folder = tempfile::tempdir().unwrap();
+    rumbo(&["run", "mode3", "--out", "."], folder.path());
+    let done = rumbo(
+        &["export", "mode3-1.mcap", "--format", "csv"],
+        folder.path(),
+    );
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let log = log_file::read(&folder.path().join("mode3-1.mcap")).unwrap();
+    let (mut compared, mut steered) = (0, 0);
+    for reading in &log.readings {
+        let term = |name: &str| reading.signal(name);
+        if let (Some(p), Some(d), Some(ref_rad_s)) = (
+            term("heading_p_rad_s"),
+            term("heading_d_rad_s"),
+            term("yaw_ref_rad_s"),
+        ) {
+            steered += 1;
+            let limited = ref_rad_s.abs() > (p + d).abs() + 0.01;
+            assert!(!limited, "{p} {d} {ref_rad_s}");
+        }
+        // The terms are those of the tick before, in which the telemetry of that instant was measured.
+        let row = log.rows.iter().find(|row| row.t_ms == reading.t_ms - 10);
+        for side in ["left", "right"] {
+            let parts = ["p_pwm", "i_pwm", "d_pwm", "feedforward_pwm"];
+            let parts = parts.map(|part| term(&format!("{side}_{part}")));
+            let [Some(p), Some(i), Some(d), Some(feedforward)] = parts else {
+                continue;
+            };
+            let sum = p + i + d + feedforward;
+            let Some(pwm) = row.and_then(|row| row.signal(&format!("{side}_pwm"))) else {
+                continue;
+            };
+            // While it breaks away, a wheel gets its kick.
+            if reading.t_ms > 1_000 && sum > 0.0 && sum < 255.0 {
+                assert!((sum - pwm).abs() < 0.6, "{}: {sum} {pwm}", reading.t_ms);
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 200 && steered > 500, "{compared} {steered}");
+    let csv = std::fs::read_to_string(folder.path().join("mode3-1.loops.csv")).unwrap();
+    assert!(csv.starts_with("t_s,distance_i_rad,distance_p_rad,forward_ref_m_s"));
+}
+
+#[test]
 fn a_log_is_exported_with_units_and_compared_with_another() {
     let folder = tempfile::tempdir().unwrap();
     let done = rumbo(

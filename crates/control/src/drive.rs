@@ -17,8 +17,12 @@
 
 use crate::math::{abs, clamp, is_finite, max, min, round};
 use crate::params::{ParamId, Params};
+#[cfg(not(target_arch = "avr"))]
+use crate::pid::Terms;
 use crate::pid::{NotFinite, Pid, PidState};
 use crate::speed::WheelMotion;
+#[cfg(not(target_arch = "avr"))]
+use crate::types::Side;
 use crate::types::{Drive, Duty, SIDES, TICK_S, Wheels};
 
 /// References below this are a standstill [rad/s]: half a turn per minute.
@@ -74,6 +78,19 @@ impl SpeedLoop {
             next
         }
     }
+}
+
+/// What a wheel's speed loop adds up, as parts of full duty, forward positive: for people to see. The duty differs from
+/// the sum where it is limited, and where a standing wheel gets its kick.
+#[cfg(not(target_arch = "avr"))]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WheelTerms {
+    /// Of the controller.
+    pub pid: Terms,
+    /// Duty from the reference alone, by the battery's voltage.
+    pub feedforward: f32,
+    /// The ramped reference [rad/s].
+    pub ramp_rad_s: f32,
 }
 
 /// The direction in which a wheel was last driven.
@@ -136,6 +153,35 @@ impl DriveLayer {
     /// The direction in which each wheel turns if it turns.
     pub fn directions(&self) -> Wheels<Direction> {
         self.wheels.map(|wheel| wheel.direction)
+    }
+
+    /// What both speed loops added up at the last tick, of which this is the state `before`, with the inputs that it had;
+    /// `None` for a wheel that is released or driven open loop.
+    ///
+    /// Worked out afterwards: neither the chip nor the robot's state has anything of it.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn terms(
+        &self,
+        before: &DriveLayer,
+        params: &Params,
+        motion: &Wheels<WheelMotion>,
+        battery_v: Option<f32>,
+    ) -> Wheels<Option<WheelTerms>> {
+        let compensation = compensation(params, battery_v);
+        let of = |side: Side| {
+            let measured_rad_s = motion[side].believed_rad_s;
+            let wheel_loop = params.speed_loop(side);
+            self.wheels[side].terms(
+                &before.wheels[side],
+                wheel_loop,
+                measured_rad_s,
+                compensation,
+            )
+        };
+        Wheels {
+            left: of(Side::Left),
+            right: of(Side::Right),
+        }
     }
 
     /// One tick: `motion` is measured from the edges, `battery_v` the battery's voltage if it is measured.
@@ -304,6 +350,45 @@ impl WheelState {
             self.held_s = 0.0;
         }
         Ok(self.duty(counts(duty)))
+    }
+
+    #[cfg(not(target_arch = "avr"))]
+    fn terms(
+        &self,
+        before: &WheelState,
+        wheel_loop: &SpeedLoop,
+        measured_rad_s: f32,
+        compensation: f32,
+    ) -> Option<WheelTerms> {
+        let ramp_rad_s = self.ramp_rad_s.filter(|_| !self.waits)?;
+        // A wheel that changes its direction begins again.
+        let (pid, ramp_before_rad_s) = if before.direction == self.direction {
+            (before.pid, before.ramp_rad_s)
+        } else {
+            (PidState::default(), None)
+        };
+        let slope_rad_s2 =
+            (ramp_rad_s - ramp_before_rad_s.unwrap_or(measured_rad_s)) * (1.0 / TICK_S);
+        let gains = &wheel_loop.feedforward;
+        let friction = match self.direction {
+            Direction::Forward => gains.static_forward,
+            Direction::Backward => gains.static_backward,
+        };
+        let feedforward =
+            friction + gains.velocity * ramp_rad_s + gains.acceleration * slope_rad_s2;
+        let terms = wheel_loop
+            .pid
+            .terms(&pid, ramp_rad_s, measured_rad_s, TICK_S);
+        let signed = |value| self.direction.sign(value);
+        Some(WheelTerms {
+            pid: Terms {
+                proportional: signed(terms.proportional),
+                integral: signed(terms.integral),
+                derivative: signed(terms.derivative),
+            },
+            feedforward: signed(compensation * feedforward),
+            ramp_rad_s: signed(ramp_rad_s),
+        })
     }
 
     fn duty(&self, counts: i16) -> Duty {

@@ -41,6 +41,18 @@ pub struct PidState {
     measurement: Option<f32>,
 }
 
+/// The terms of a PID controller, in units of its output.
+#[cfg(not(target_arch = "avr"))]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Terms {
+    /// Of the error.
+    pub proportional: f32,
+    /// Of the past errors.
+    pub integral: f32,
+    /// Of the measurement's slope.
+    pub derivative: f32,
+}
+
 /// An input of a step was not a finite number, or the period was not positive. The state is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotFinite;
@@ -84,6 +96,18 @@ impl Pid {
         state.integral = clamp(integral, -span, span);
         state.measurement = Some(measurement);
         Ok(output)
+    }
+
+    /// What the next step adds up, beside its feedforward: for people to see. The chip has no use for it.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn terms(&self, state: &PidState, reference: f32, measurement: f32, dt_s: f32) -> Terms {
+        let Gains { kp, ki: _, kd } = self.gains;
+        let rate = |last: f32| (measurement - last) / dt_s;
+        Terms {
+            proportional: kp * (reference - measurement),
+            integral: state.integral,
+            derivative: -kd * state.measurement.map_or(0.0, rate),
+        }
     }
 
     /// Sets the state so that the next step, given the same inputs, gives `output`: a bumpless transfer.
@@ -224,6 +248,20 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn the_terms_add_up_to_the_output(
+            inputs in prop::collection::vec((-1f32..1.0, -1f32..1.0, -0.5f32..0.5), 1..50)
+        ) {
+            let mut state = PidState::default();
+            for (reference, measurement, feedforward) in inputs {
+                let Terms { proportional, integral, derivative } =
+                    PID.terms(&state, reference, measurement, 0.01);
+                let sum = feedforward + proportional + integral + derivative;
+                let output = PID.step(&mut state, reference, measurement, feedforward, 0.01);
+                prop_assert!((output.unwrap() - sum.clamp(-1.0, 1.0)).abs() < 1e-5);
+            }
+        }
+
         #[test]
         fn the_output_never_leaves_its_limits(inputs in prop::collection::vec((-1e30f32..1e30, -1e30f32..1e30), 1..50)) {
             let mut state = PidState::default();

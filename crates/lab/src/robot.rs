@@ -5,12 +5,12 @@ use crate::program::{Held, Make, OwnProgram};
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::{FileError, Library, Overrides};
-use rumbo_log::{Choice, Manifest, MapPose, ProgramState, Scene, Truth};
-use rumbo_session::{Abilities, LinkNews, Standing, Target, TargetError};
+use rumbo_log::{Choice, Manifest, MapPose, ProgramState, Scene, Source, Truth};
+use rumbo_session::{Abilities, LinkNews, Shown, Standing, Target, TargetError};
 use rumbo_sim::boards::Board;
 use rumbo_sim::debugging::Debugging;
 use rumbo_sim::mega::firmware::Language;
-use rumbo_sim::{READING_US, Sim};
+use rumbo_sim::{READING_US, Sim, loop_signals};
 use rumbo_wire::Command;
 use std::collections::VecDeque;
 
@@ -228,13 +228,19 @@ impl Target for SimulatedRobot {
         })
     }
 
-    fn instruments(&mut self) -> Vec<(String, f64)> {
+    fn shown(&mut self) -> Vec<Shown> {
         let now_us = self.sim.now_us();
         if now_us < self.reading_due_us {
             return Vec::new();
         }
         self.reading_due_us = now_us + READING_US;
-        self.sim.read_instruments()
+        match self.sim.loops() {
+            Some(loops) => vec![(Source::Loops, loop_signals(&loops))],
+            None if self.sim.mega().is_some() => {
+                vec![(Source::Truth, self.sim.read_instruments())]
+            }
+            None => Vec::new(),
+        }
     }
 
     fn scene(&self) -> Option<Scene> {
@@ -317,6 +323,7 @@ impl SimulatedRobot {
         let Scene {
             experiments,
             worlds,
+            world_titles,
             ..
         } = std::mem::take(&mut self.scene);
         self.sim = fresh.sim;
@@ -330,6 +337,7 @@ impl SimulatedRobot {
         self.scene = Scene {
             experiments,
             worlds,
+            world_titles,
             ..fresh.scene
         };
         Ok(())

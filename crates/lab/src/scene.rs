@@ -7,6 +7,7 @@ use rumbo_log::{Choice, Experiment, MapPose, Obstacle, RoutePlan, Scene, SonarMo
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::plant::Mount;
 use rumbo_wire::Command;
+use std::collections::BTreeMap;
 
 /// The scene of a setup.
 ///
@@ -50,8 +51,8 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
     let footprint = Footprint::new(&plant.body, &plant.wheels);
     Ok(Scene {
         experiments: experiments(library, scenario, &choice),
-        choice,
         worlds: library.list(Kind::World),
+        world_titles: world_titles(library, choice.world.as_deref()),
         rigs: robot.rigs.keys().cloned().collect(),
         rig: scenario.rig.clone(),
         goals: goals(&scenario.commands),
@@ -71,7 +72,19 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
             .filter_map(|(id, mount)| Some(sonar(id, mount?)))
             .collect(),
         of_ghost: false,
+        choice,
     })
+}
+
+/// What the built-in worlds are, and the one of a file.
+fn world_titles(library: &Library, chosen: Option<&str>) -> BTreeMap<String, String> {
+    let names = library.list(Kind::World).into_iter();
+    let names = names.chain(chosen.map(str::to_owned));
+    let titled = names.filter_map(|name| {
+        let title = library.world(&name).ok()?.title;
+        Some((name, title))
+    });
+    titled.collect()
 }
 
 /// The scenarios to choose from: the one of a file first, then the built-in ones by group.

@@ -90,6 +90,7 @@ trait Messages: Sink {
     fn reading(&mut self, reading: &Reading) -> Result<(), Self::Error> {
         let topic = match reading.source {
             Source::Truth => Topic::Truth,
+            Source::Loops => Topic::Loops,
             Source::Usart(_) => Topic::Printed,
         };
         self.put_json(topic, to_us(reading.t_ms), &reading.json())

@@ -1,15 +1,19 @@
 //! Readings: signals beside the robot's telemetry, each with its name. Ground truth and pins of an emulated robot, which
-//! there are whatever its program is, and the numbers that a program prints.
+//! there are whatever its program is; the terms of our simulated robot's control loops; the numbers that a program prints.
 
 use crate::signals::{Cell, tidy};
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::sync::Arc;
 
 /// Where a reading comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Source {
     /// The simulation: ground truth and pins.
     Truth,
+    /// The control loops of our simulated robot: their terms.
+    Loops,
     /// What the program printed to this USART.
     Usart(u8),
 }
@@ -71,7 +75,7 @@ impl Reading {
     /// What a program printed keeps all its digits.
     fn value(&self, value: f32) -> f64 {
         match self.source {
-            Source::Truth => tidy(value),
+            Source::Truth | Source::Loops => tidy(value),
             // The shortest digits that give the same `f32`.
             Source::Usart(_) => value.to_string().parse().unwrap_or(f64::NAN),
         }
@@ -88,7 +92,7 @@ impl Reading {
             }
         }
         match self.source {
-            Source::Truth => Value::Object(message),
+            Source::Truth | Source::Loops => Value::Object(message),
             Source::Usart(usart) => json!({ "usart": usart, "values": message }),
         }
     }

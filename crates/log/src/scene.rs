@@ -4,6 +4,7 @@ use rumbo_control::Pose;
 use rumbo_control::Wheels;
 use rumbo_control::mode::waypoints::Waypoint;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A place on the map: world frame, x east, y north, counter-clockwise heading (REP 103).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -54,6 +55,9 @@ pub struct Scene {
     pub experiments: Vec<Experiment>,
     /// Names of the worlds to choose from.
     pub worlds: Vec<String>,
+    /// Their titles, by name: one line each for people.
+    #[serde(default)]
+    pub world_titles: BTreeMap<String, String>,
     /// Names of the rigs to choose from.
     pub rigs: Vec<String>,
     /// Name of the rig that the robot carries.

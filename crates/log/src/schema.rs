@@ -35,11 +35,13 @@ pub enum Topic {
     Truth,
     /// Numbers that a program printed.
     Printed,
+    /// Terms of our simulated robot's control loops.
+    Loops,
 }
 
 impl Topic {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Telemetry,
         Self::State,
         Self::Parameters,
@@ -54,6 +56,7 @@ impl Topic {
         Self::Digest,
         Self::Truth,
         Self::Printed,
+        Self::Loops,
     ];
 
     /// Its name in the log.
@@ -74,6 +77,7 @@ impl Topic {
             Self::Digest => "/digest",
             Self::Truth => "/truth",
             Self::Printed => "/printed",
+            Self::Loops => "/loops",
         }
     }
 
@@ -101,6 +105,7 @@ impl Topic {
             // Which signals there are depends on the wiring.
             Self::Truth => ("rumbo.Truth", object("rumbo.Truth", json!({}))),
             Self::Printed => ("rumbo.Printed", printed()),
+            Self::Loops => ("rumbo.Loops", object("rumbo.Loops", json!({}))),
         }
     }
 }

@@ -23,5 +23,7 @@ mod store;
 mod supervisor;
 mod text;
 
+#[cfg(not(target_arch = "avr"))]
+pub use robot::Loops;
 pub use robot::{Config, Robot};
 pub use store::{Cell, START_AT};

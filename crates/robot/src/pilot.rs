@@ -245,6 +245,27 @@ impl Pilot {
         }
     }
 
+    /// The state of the drive layer.
+    #[cfg(not(target_arch = "avr"))]
+    pub(crate) fn drive_layer(&self) -> &DriveLayer {
+        &self.drive
+    }
+
+    /// What the control loops added up at the last tick, before which the drive layer was in this state.
+    #[cfg(not(target_arch = "avr"))]
+    pub(crate) fn loops(&self, before: &DriveLayer, battery_v: Option<f32>) -> crate::Loops {
+        let motion = &self.estimate.motion;
+        let request = self.action.drive;
+        crate::Loops {
+            wheels: self.drive.terms(before, &self.params, motion, battery_v),
+            request,
+            wall: match request {
+                Drive::Twist { .. } => self.mode.wall_terms(&self.params, &self.estimate),
+                _ => None,
+            },
+        }
+    }
+
     /// The selected mode.
     pub(crate) fn mode(&self) -> ModeId {
         self.mode.id()

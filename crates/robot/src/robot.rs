@@ -5,6 +5,8 @@
 //! own pace ([`Robot::transmit`]). Nothing here waits, reads a clock or knows a pin, so the firmware, the emulated chip
 //! and the simulator run the same robot.
 
+#[cfg(not(target_arch = "avr"))]
+use rumbo_control::drive::{DriveLayer, WheelTerms};
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamId, SCHEMA};
 use rumbo_control::{Fault, Inputs, Outputs, ServoAngle};
@@ -37,6 +39,18 @@ pub struct Config {
     pub reset: ResetCause,
     /// Number of this start, wrapping: another one than at the starts before.
     pub start: u8,
+}
+
+/// What the control loops add up, for people to see: on this machine only, since the link has no room for it.
+#[cfg(not(target_arch = "avr"))]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Loops {
+    /// Of the wheels' speeds; `None` for a wheel that is released or driven open loop.
+    pub wheels: rumbo_control::Wheels<Option<WheelTerms>>,
+    /// What the mode's loops ask of the wheels, from the next tick on.
+    pub request: rumbo_control::Drive,
+    /// Of the mode's own loops beside a wall; `None` in other modes.
+    pub wall: Option<rumbo_control::mode::WallTerms>,
 }
 
 /// The whole robot, but for its hardware.
@@ -216,6 +230,18 @@ impl Robot {
             faulted: self.supervisor.fault().is_some(),
             ..self.pilot.signals().telemetry
         }
+    }
+
+    /// The state of the drive layer, for [`Robot::loops`].
+    #[cfg(not(target_arch = "avr"))]
+    pub fn drive_layer(&self) -> &DriveLayer {
+        self.pilot.drive_layer()
+    }
+
+    /// What the control loops added up at the last tick, before which the drive layer was in this state.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn loops(&self, before: &DriveLayer) -> Loops {
+        self.pilot.loops(before, self.battery_v)
     }
 
     /// The latched fault.

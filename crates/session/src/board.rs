@@ -13,7 +13,7 @@ use rumbo_log::{Burst, Entry, LoggedEvent, ParameterState, Reading, Row, Scene, 
 
 /// Samples kept: ten minutes of telemetry at 25 Hz.
 pub const SAMPLES_KEPT: usize = 15_000;
-/// Readings kept: ten minutes of ground truth at 33 Hz, and as much of what programs print.
+/// Readings kept: ten minutes of what is shown at 33 Hz, and as much of what programs print.
 const READINGS_KEPT: usize = 20_000;
 /// Events kept.
 pub const EVENTS_KEPT: usize = 1_000;
@@ -32,8 +32,8 @@ pub struct Board {
     run: u32,
     received: Arrival,
     samples: Ring<Row>,
-    /// Ground truth, and apart from it what may be a flood: numbers that a program prints.
-    truth: Ring<Reading>,
+    /// What is shown of the robot, and apart from it what may be a flood: numbers that a program prints.
+    shown: Ring<Reading>,
     printed: Ring<Reading>,
     events: Ring<LoggedEvent>,
     consoles: Ring<ConsoleText>,
@@ -48,7 +48,7 @@ pub struct Board {
 pub struct Cursor {
     run: u32,
     samples: u64,
-    truth: u64,
+    shown: u64,
     printed: u64,
     events: u64,
     consoles: u64,
@@ -91,7 +91,7 @@ impl Default for Board {
             run: 1,
             received: (0.0, 0),
             samples: Ring::new(SAMPLES_KEPT),
-            truth: Ring::new(READINGS_KEPT),
+            shown: Ring::new(READINGS_KEPT),
             printed: Ring::new(READINGS_KEPT),
             events: Ring::new(EVENTS_KEPT),
             consoles: Ring::new(CONSOLES_KEPT),
@@ -110,7 +110,7 @@ impl Board {
             Event::Run => {
                 self.run += 1;
                 self.samples.clear();
-                self.truth.clear();
+                self.shown.clear();
                 self.printed.clear();
                 self.consoles.clear();
                 self.bytes.clear();
@@ -148,7 +148,7 @@ impl Board {
             Entry::Readings(readings) => {
                 for reading in readings {
                     match reading.source {
-                        Source::Truth => self.truth.push(reading.clone()),
+                        Source::Truth | Source::Loops => self.shown.push(reading.clone()),
                         Source::Usart(_) => self.printed.push(reading.clone()),
                     }
                 }
@@ -168,7 +168,7 @@ impl Board {
     /// What is new since `cursor`, which moves on.
     pub fn news(&self, cursor: &mut Cursor) -> News {
         let (samples, _) = self.samples.read(&mut cursor.samples);
-        let (mut readings, _) = self.truth.read(&mut cursor.truth);
+        let (mut readings, _) = self.shown.read(&mut cursor.shown);
         readings.extend(self.printed.read(&mut cursor.printed).0);
         let (events, gone) = self.events.read(&mut cursor.events);
         let (consoles, _) = self.consoles.read(&mut cursor.consoles);

@@ -198,7 +198,7 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
             truth: self.target.truth(),
             ghost: self.target.ghost(),
             consoles: self.target.consoles(),
-            instruments: self.target.instruments(),
+            shown: self.target.shown(),
         };
         self.session.observe(sight, now);
         self.bytes.clear();

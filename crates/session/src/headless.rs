@@ -4,6 +4,7 @@ use crate::client::{KnownTable, LinkEvent, RobotClient};
 use crate::event::Event;
 use crate::observer::Observer;
 use crate::observer::describe::{Around, describe};
+use crate::target::Shown;
 use crate::words;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::Params;
@@ -31,8 +32,8 @@ pub struct Run<'a> {
     pub link: &'a [Burst],
     /// What crossed the USARTs of an emulated chip, in order.
     pub said: &'a [Said],
-    /// What instruments at its pins have shown, with its time \[us\], in order.
-    pub readings: &'a [(u64, Vec<(String, f64)>)],
+    /// What was shown of it beside its telemetry, with its time \[us\], in order.
+    pub shown: &'a [(u64, Shown)],
     /// Messages of a program that does not use our link, with their time \[us\], in order.
     pub messages: &'a [(u64, FromRobot)],
     /// How it ended.
@@ -65,7 +66,7 @@ pub fn record_run<W: Write + Seek>(
         recorder.observer.know_parameters(&parameters);
     }
     let (mut link, mut messages) = (run.link.iter().peekable(), run.messages.iter().peekable());
-    let (mut said, mut readings) = (run.said.iter().peekable(), run.readings.iter().peekable());
+    let (mut said, mut shown) = (run.said.iter().peekable(), run.shown.iter().peekable());
     let mut state_due_us = 0;
     for (t_us, truth) in run.truths {
         while let Some(burst) = link.next_if(|burst| burst.t_us <= *t_us) {
@@ -74,10 +75,8 @@ pub fn record_run<W: Write + Seek>(
         while let Some(said) = said.next_if(|said| said.t_us <= *t_us) {
             recorder.observer.said(said.clone());
         }
-        while let Some((at_us, signals)) = readings.next_if(|(at_us, _)| at_us <= t_us) {
-            recorder
-                .observer
-                .instruments(to_ms(*at_us), signals.clone());
+        while let Some((at_us, signals)) = shown.next_if(|(at_us, _)| at_us <= t_us) {
+            recorder.observer.shown(to_ms(*at_us), [signals.clone()]);
         }
         while let Some((at_us, message)) = messages.next_if(|(at_us, _)| at_us <= t_us) {
             recorder

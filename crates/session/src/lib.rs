@@ -46,5 +46,5 @@ pub use orders::{BadOrder, MAX_ORDER, MAX_SPEED, Order, SHORT_ORDER, stop_first}
 pub use pace::{Pace, SLICE_US};
 pub use page::{LinkBytes, ReadingGroup, ToPage};
 pub use session::{Ask, Going, Now, Session, Sight};
-pub use target::{Abilities, About, Ghost, LinkNews, Standing, Target};
+pub use target::{Abilities, About, Ghost, LinkNews, Shown, Standing, Target};
 pub use watch::{BaudTooLow, DEFAULT_BAUD, check_baud};

@@ -8,7 +8,7 @@ use crate::console::{ConsoleText, LINK_CONSOLE, readable};
 use crate::event::Event;
 use crate::origin::Origin;
 use crate::printed::Printed;
-use crate::target::Standing;
+use crate::target::{Shown, Standing};
 use crate::task;
 use crate::terminal;
 use crate::truth_log::TruthLog;
@@ -18,7 +18,7 @@ use rumbo_control::params::{ParamId, Params};
 use rumbo_control::rig::Rig;
 use rumbo_log::{
     Burst, EARLIER_MS, Entry, Level, LoggedEvent, MapPose, Names, ParameterState, Reading, Row,
-    Said, Sample, Scene, Source, State, Task, Truth, parameters,
+    Said, Sample, Scene, State, Task, Truth, parameters,
 };
 use rumbo_wire::{Command, EventKind, Hello, Recalled, Status, Telemetry};
 use std::collections::BTreeMap;
@@ -46,7 +46,7 @@ pub(crate) struct Observer {
     ghosts: TruthLog,
     samples: Vec<Row>,
     readings: Vec<Reading>,
-    /// Names of the instruments.
+    /// Names of what is shown: a target has one source of it.
     names: Names,
     /// What each port prints.
     printed: BTreeMap<u8, Printed>,
@@ -207,10 +207,10 @@ impl Observer {
         self.emit(Entry::Burst(burst));
     }
 
-    /// Takes what instruments show.
-    pub(crate) fn instruments(&mut self, now_ms: i64, signals: Vec<(String, f64)>) {
-        if !signals.is_empty() {
-            let reading = self.names.reading(now_ms, Source::Truth, signals);
+    /// Takes what is shown of the robot beside its telemetry.
+    pub(crate) fn shown(&mut self, now_ms: i64, shown: impl IntoIterator<Item = Shown>) {
+        for (source, signals) in shown {
+            let reading = self.names.reading(now_ms, source, signals);
             self.readings.push(reading);
         }
     }

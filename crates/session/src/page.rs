@@ -103,8 +103,7 @@ impl ToPage<'_> {
 /// Readings of the same signals, as the page gets them.
 #[derive(Debug, Serialize)]
 pub struct ReadingGroup<'a> {
-    /// The USART whose program printed them; `None` for ground truth and pins.
-    usart: Option<u8>,
+    source: Source,
     names: &'a [String],
     /// Time \[s\] and values of each.
     rows: Vec<(f64, Vec<Cell>)>,
@@ -114,10 +113,7 @@ impl<'a> ReadingGroup<'a> {
     fn of(readings: &'a [Reading]) -> Option<Self> {
         let first = readings.first()?;
         Some(Self {
-            usart: match first.source {
-                Source::Truth => None,
-                Source::Usart(usart) => Some(usart),
-            },
+            source: first.source,
             names: &first.names,
             rows: readings
                 .iter()

@@ -15,7 +15,7 @@ use crate::guest::Guest;
 use crate::observer::Observer;
 use crate::observer::describe::{Around, describe};
 use crate::orders::Order;
-use crate::target::{About, LinkNews, Standing};
+use crate::target::{About, LinkNews, Shown, Standing};
 use crate::watch::LinkWatch;
 use rumbo_control::mode::ModeId;
 use rumbo_log::{Burst, CalibrationState, Choice, Level, ProgramState, State, Truth};
@@ -65,8 +65,8 @@ pub struct Sight {
     pub ghost: Option<Truth>,
     /// What the USARTs of an emulated chip have sent.
     pub consoles: Vec<(u8, Vec<u8>)>,
-    /// What instruments show, if a reading is due.
-    pub instruments: Vec<(String, f64)>,
+    /// What is shown of it beside its telemetry, if a reading is due.
+    pub shown: Vec<Shown>,
 }
 
 /// The target's progress.
@@ -221,8 +221,7 @@ impl Session {
         if let Some(truth) = sight.truth {
             self.observer.truth(now.target_ms(), truth);
         }
-        self.observer
-            .instruments(now.target_ms(), sight.instruments);
+        self.observer.shown(now.target_ms(), sight.shown);
         self.observer.consoles(now.target_us, sight.consoles);
     }
 

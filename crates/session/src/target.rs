@@ -7,7 +7,7 @@
 use crate::error::TargetError;
 use rumbo_control::Fault;
 use rumbo_control::mode::ModeId;
-use rumbo_log::{Choice, Level, Manifest, MapPose, ProgramState, Scene, Truth};
+use rumbo_log::{Choice, Level, Manifest, MapPose, ProgramState, Scene, Source, Truth};
 use rumbo_wire::Command;
 
 /// What can be done with a target besides speaking to its robot.
@@ -66,6 +66,9 @@ impl About {
     }
 }
 
+/// Signals by name, the unit last, and where they come from. Not a number: unknown; infinite: a sonar without an echo.
+pub type Shown = (Source, Vec<(String, f64)>);
+
 /// A robot at the other end of a byte link.
 pub trait Target: Send {
     /// The target's time since its start or last reset \[us\].
@@ -109,9 +112,9 @@ pub trait Target: Send {
         None
     }
 
-    /// What instruments show of an emulated robot, by name with the unit last, if a reading is due: ground truth and
-    /// pins. Not a number: unknown; infinite: a sonar without an echo.
-    fn instruments(&mut self) -> Vec<(String, f64)> {
+    /// What is shown of the robot beside its telemetry, if a reading is due: ground truth and pins of an emulated one,
+    /// terms of the control loops of our simulated one.
+    fn shown(&mut self) -> Vec<Shown> {
         Vec::new()
     }
 

@@ -4,7 +4,7 @@
 mod support;
 
 use proptest::prelude::*;
-use rumbo_log::{Entry, Findings, Log, LogWriter, Manifest, Row};
+use rumbo_log::{Entry, Findings, Log, LogWriter, Manifest, Row, Source};
 use rumbo_session::{
     About, Ask, Board, CalibrationError, Cursor, Event, Going, Guest, LinkNews, Now, Order,
     SLICE_US, Session, Sight, Target,
@@ -268,7 +268,10 @@ fn a_program_that_sends_nothing_is_seen_by_instruments_and_what_it_prints_and_to
         };
         let sight = Sight {
             truth: Some(truth),
-            instruments: vec![("true_x_m".into(), now.target_us as f64)],
+            shown: vec![(
+                Source::Truth,
+                vec![("true_x_m".into(), now.target_us as f64)],
+            )],
             consoles: vec![(0, b"cm:3.5\n".to_vec())],
             ..Sight::default()
         };
@@ -307,7 +310,10 @@ fn a_program_that_sends_nothing_is_seen_by_instruments_and_what_it_prints_and_to
     let readings = messages
         .iter()
         .filter(|text| text.contains(r#""type":"readings""#));
-    let (names, port) = (r#""names":["true_x_m"]"#, r#""usart":0,"names":["cm"]"#);
+    let (names, port) = (
+        r#""source":"truth","names":["true_x_m"]"#,
+        r#""source":{"usart":0},"names":["cm"]"#,
+    );
     let readings: String = readings.map(String::as_str).collect();
     assert!(
         readings.contains(names) && readings.contains(port),

@@ -1,15 +1,23 @@
-//! Ground truth and pins of an emulated robot as named signals, the unit last: what can be shown of any program, even one
-//! that prints nothing. This is the one list of them; logs and pages go by the names.
+//! What can be shown of a robot beside its telemetry, as named signals, the unit last; logs and pages go by the names.
+//!
+//! Of an emulated robot ground truth and pins, whatever its program is, even one that prints nothing. Of our native robot
+//! what its control loops add up, which the link has no room for.
 
 use crate::sim::Sim;
+use rumbo_control::drive::WheelTerms;
+use rumbo_control::{Drive, Duty, Wheels};
+use rumbo_robot::Loops;
 
 /// Period of the readings \[us\]: 33 Hz.
 pub const READING_US: u64 = 30_000;
 
+/// Values with their names.
+type Signals = Vec<(String, f64)>;
+
 impl Sim {
-    /// What is true of the robot now, and what instruments at the wired pins show since the last call. Not a number:
+    /// What is true of an emulated robot now, and what instruments at the wired pins show since the last call. Not a number:
     /// not known; infinite: a sonar without an echo. Nothing where no chip is emulated.
-    pub fn read_instruments(&mut self) -> Vec<(String, f64)> {
+    pub fn read_instruments(&mut self) -> Signals {
         let (truth, duty, is_off) = (self.truth(), self.duty(), self.is_off());
         let Some(mega) = self.mega_mut() else {
             return Vec::new();
@@ -38,4 +46,59 @@ impl Sim {
         };
         named.into_iter().chain(pins).collect()
     }
+}
+
+/// What the control loops add up, by name. Terms of the wheels' loops are in counts of PWM, as the PWM in telemetry is. Not
+/// a number: that loop is not at work.
+#[must_use]
+pub fn loop_signals(loops: &Loops) -> Signals {
+    let wheel = |of: fn(&WheelTerms) -> f32, scale: f32| -> Wheels<f64> {
+        let value = |terms: Option<WheelTerms>| terms.map(|terms| hundredths(scale * of(&terms)));
+        loops.wheels.map(|terms| signal(value(terms)))
+    };
+    let counts = f32::from(Duty::MAX);
+    let wheels = [
+        ("p_pwm", wheel(|terms| terms.pid.proportional, counts)),
+        ("i_pwm", wheel(|terms| terms.pid.integral, counts)),
+        ("d_pwm", wheel(|terms| terms.pid.derivative, counts)),
+        ("feedforward_pwm", wheel(|terms| terms.feedforward, counts)),
+        ("ramp_rad_s", wheel(|terms| terms.ramp_rad_s, 1.0)),
+    ];
+    let wheels = wheels.into_iter().flat_map(|(name, value)| {
+        [("left", value.left), ("right", value.right)]
+            .map(|(side, value)| (format!("{side}_{name}"), value))
+    });
+    let (forward_m_s, yaw_rad_s) = match loops.request {
+        Drive::Twist {
+            forward_m_s,
+            yaw_rad_s,
+        } => (Some(forward_m_s), Some(yaw_rad_s)),
+        _ => (None, None),
+    };
+    let outer = [
+        ("forward_ref_m_s", forward_m_s),
+        ("yaw_ref_rad_s", yaw_rad_s),
+        ("distance_p_rad", loops.wall.map(|wall| wall.distance_p_rad)),
+        ("distance_i_rad", loops.wall.map(|wall| wall.distance_i_rad)),
+        (
+            "heading_p_rad_s",
+            loops.wall.map(|wall| wall.heading_p_rad_s),
+        ),
+        (
+            "heading_d_rad_s",
+            loops.wall.map(|wall| wall.heading_d_rad_s),
+        ),
+    ];
+    let outer = outer.map(|(name, value)| (name.to_owned(), signal(value)));
+    wheels.chain(outer).collect()
+}
+
+/// Not a number where unknown; no zero with a sign.
+fn signal(value: Option<f32>) -> f64 {
+    value.map_or(f64::NAN, |value| f64::from(value) + 0.0)
+}
+
+/// A hundredth of a count of PWM is finer than anyone reads; more digits would only make logs longer.
+fn hundredths(value: f32) -> f32 {
+    (100.0 * value).round() / 100.0
 }

@@ -19,5 +19,5 @@ pub mod wiring;
 
 pub use config::{Config, Program};
 pub use error::SimError;
-pub use instruments::READING_US;
+pub use instruments::{READING_US, loop_signals};
 pub use sim::{Burst, Latched, Sim};

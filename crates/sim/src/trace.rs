@@ -3,6 +3,7 @@
 use crate::instruments::READING_US;
 use crate::sim::{Burst, Sim};
 use rumbo_control::params::Params;
+use rumbo_robot::Loops;
 use rumbo_wire::FromRobot;
 use std::fmt::Write;
 
@@ -58,6 +59,8 @@ pub struct Trace {
     pub consoles: Vec<Said>,
     /// What instruments at an emulated Mega have shown, in order.
     pub readings: Vec<Shown>,
+    /// What the control loops of our native robot added up, with its time [us], in order.
+    pub loops: Vec<(u64, Loops)>,
 }
 
 /// What instruments show at one instant.
@@ -120,13 +123,22 @@ impl Trace {
         });
     }
 
-    /// Adds what the USARTs of an emulated Mega have sent since, and what instruments show, if a reading is due.
+    /// Adds what the USARTs of an emulated Mega have sent since, and what instruments and control loops show, if a reading
+    /// is due.
     pub fn listen(&mut self, sim: &mut Sim) {
         let t_us = sim.now_us();
-        let is_due = |last: &Shown| t_us >= last.t_us + READING_US;
-        if sim.mega().is_some() && self.readings.last().is_none_or(is_due) {
+        let is_due = |last_us: u64| t_us >= last_us + READING_US;
+        if sim.mega().is_some() && self.readings.last().is_none_or(|last| is_due(last.t_us)) {
             let signals = sim.read_instruments();
             self.readings.push(Shown { t_us, signals });
+        }
+        if let Some(loops) = sim.loops()
+            && self
+                .loops
+                .last()
+                .is_none_or(|(last_us, _)| is_due(*last_us))
+        {
+            self.loops.push((t_us, loops));
         }
         if let Some(mega) = sim.mega_mut() {
             let said = (0..4).map(|usart| Said {

@@ -167,6 +167,16 @@ export const PAGE = {
   'true position, x': 'posición real, x', 'true position, y': 'posición real, y', 'estimated position, x': 'posición estimada, x', 'estimated position, y': 'posición estimada, y',
   'σ x': 'σ x', 'σ y': 'σ y', 'σ heading': 'σ rumbo', 'standard deviation of the estimated position, x': 'desviación típica de la posición estimada, x',
   'standard deviation of the estimated position, y': 'desviación típica de la posición estimada, y', 'standard deviation of the estimated heading': 'desviación típica del rumbo estimado',
+  'P l.': 'P izq.', 'I l.': 'I izq.', 'D l.': 'D izq.', 'P r.': 'P der.', 'I r.': 'I der.', 'D r.': 'D der.', 'feedforward l.': 'prealim. izq.', 'feedforward r.': 'prealim. der.',
+  'ramp l.': 'rampa izq.', 'ramp r.': 'rampa der.', 'set forward': 'ref. avance', 'set yaw': 'ref. giro',
+  'speed loop, P, left wheel': 'lazo de velocidad, P, rueda izq.', 'speed loop, P, right wheel': 'lazo de velocidad, P, rueda der.', 'speed loop, I, left wheel': 'lazo de velocidad, I, rueda izq.', 'speed loop, I, right wheel': 'lazo de velocidad, I, rueda der.',
+  'speed loop, D, left wheel': 'lazo de velocidad, D, rueda izq.', 'speed loop, D, right wheel': 'lazo de velocidad, D, rueda der.',
+  'speed loop, feedforward, left wheel': 'prealimentación, rueda izq.', 'speed loop, feedforward, right wheel': 'prealimentación, rueda der.',
+  'speed loop, ramp, left wheel': 'lazo de velocidad, rampa, rueda izq.', 'speed loop, ramp, right wheel': 'lazo de velocidad, rampa, rueda der.',
+  'setpoint of the forward speed': 'referencia de la velocidad de avance', 'setpoint of the yaw rate': 'referencia de la velocidad de giro',
+  'heading loop, P': 'lazo de rumbo, P', 'heading loop, D': 'lazo de rumbo, D', 'distance loop, P': 'lazo de distancia, P', 'distance loop, I': 'lazo de distancia, I',
+  'left loop': 'lazo izq.', 'right loop': 'lazo der.', 'steering': 'dirección', 'yaw rates, °/s': 'velocidades de giro, °/s', 'speeds, m/s': 'velocidades, m/s',
+  'Terms of the loops are known only of Rumbo’s own program on a simulated robot: the link has no room for them.': 'Los términos de los lazos solo se conocen con el programa de Rumbo en un robot simulado: no caben en el enlace.',
   'goal position, x': 'posición del destino, x', 'goal position, y': 'posición del destino, y',
   // Layouts; those saved with version 0.1 have a plot `place`.
   'place': 'posición',
@@ -200,4 +210,4 @@ export const PAGE = {
 };
 
 /** Texts that are the same in both languages. */
-for (const same of ['Rumbo', 'Rumbo ', '10 s', '20 s', '1 min', '5 min', '10 min', 'SVG', 'PNG', 'ON', 'OFF', 'REF 40', 'USART', 'PWM', '% PWM', 'rpm', 'cm', 'm', '°', 'x', 'y']) PAGE[same] = same;
+for (const same of ['Rumbo', 'Rumbo ', '10 s', '20 s', '1 min', '5 min', '10 min', 'SVG', 'PNG', 'ON', 'OFF', 'REF 40', 'USART', 'PWM', '% PWM', 'rpm', 'cm', 'm', '°', '°/s', 'm/s', 'x', 'y', 'P', 'I', 'D']) PAGE[same] = same;

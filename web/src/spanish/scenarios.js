@@ -1,5 +1,5 @@
 // @ts-check
-/** Spanish of the titles and groups of the built-in scenarios. */
+/** Spanish of the titles and groups of the built-in scenarios, and of the titles of the worlds. */
 
 /** @type {Record<string, string>} */
 export const SCENARIOS = {
@@ -7,7 +7,14 @@ export const SCENARIOS = {
   'Calibration': 'Calibración', 'Free driving': 'Conducción libre', 'Mode 1: front distance': 'Modo 1: distancia', 'Mode 2: front align': 'Modo 2: alinear',
   'Mode 3: wall hold': 'Modo 3: mantener pared', 'Mode 4: wall follow': 'Modo 4: seguir pared', 'Mode 5: wheel speed': 'Modo 5: velocidad',
   'Mode 6: straight line': 'Modo 6: línea recta', 'Mode 7: waypoints': 'Modo 7: ruta', 'Mode 8: mission': 'Modo 8: misión', 'Motors': 'Motores', 'Movements': 'Movimientos',
-  // Titles.
+  // Worlds.
+  'A walled floor of 2.9 x 1.9 m to calibrate in: along its walls': 'Un suelo de 2,9 x 1,9 m con paredes para calibrar: a lo largo de ellas',
+  'A lane of boxes: left, right, right, and out to the left': 'Un carril de cajas: izquierda, derecha, derecha y salida a la izquierda',
+  'A box and a block of two behind it, on the way to a goal': 'Una caja y detrás un bloque de dos, de camino a un destino',
+  'An empty floor': 'Un suelo vacío', 'Boxes at random and a goal, another arrangement for each seed': 'Cajas al azar y un destino, distintos con cada semilla',
+  'A walled room of 4 x 3 m with boxes': 'Una habitación de 4 x 3 m con cajas', 'A wall across the way at x = 1.20 m': 'Una pared que cierra el paso en x = 1,20 m',
+  'A straight wall of 7.5 m along y = 0.65 m': 'Una pared recta de 7,5 m a lo largo de y = 0,65 m',
+  // Titles of scenarios.
   'A robot beside a wall, to be calibrated': 'Un robot junto a una pared, para calibrarlo',
   'Free driving in a room with boxes': 'Conducción libre en una habitación con cajas',
   'Stop at a distance from a wall, 107 -> 30 -> 50 cm': 'Parar a una distancia de una pared, 107 -> 30 -> 50 cm',

@@ -186,3 +186,41 @@ fn a_held_wheel_does_not_wind_the_ramp_up() {
     }
     assert!(layer.wheels.left.ramp_rad_s.unwrap() <= RAMP_LEAD_RAD_S);
 }
+
+#[test]
+fn the_terms_of_a_wheel_add_up_to_its_duty_forward_and_backward() {
+    let mut params = Params::default();
+    params.set(ParamId::SpeedKdLeft, 0.002).unwrap();
+    let battery_v = Some(7.0);
+    for sign in [1.0, -1.0] {
+        let (mut layer, mut turning) = (DriveLayer::default(), STANDING);
+        let mut regulated = 0;
+        for tick in 0u8..60 {
+            let (before, motion) = (layer, Wheels::both(turning));
+            let driven = layer
+                .step(&params, &speed(sign * 5.0), &motion, battery_v)
+                .unwrap();
+            let terms = layer.terms(&before, &params, &motion, battery_v).left;
+            let WheelTerms {
+                pid, feedforward, ..
+            } = terms.unwrap();
+            let sum = pid.proportional + pid.integral + pid.derivative + feedforward;
+            if !turning.standing && sign * sum > 0.0 && sign * sum < 1.0 {
+                let duty = f32::from(driven.duty.left.counts());
+                assert!((255.0 * sum - duty).abs() <= 0.51, "{tick}: {sum} {duty}");
+                assert!(tick < 2 || pid.derivative != 0.0);
+                regulated += 1;
+            }
+            // It breaks away, then comes near its reference with a ripple.
+            turning = WheelMotion {
+                believed_rad_s: 0.1 * f32::from(tick) + 0.2 * f32::from(tick % 3),
+                ..TURNING
+            };
+        }
+        assert!(regulated > 50, "{regulated}");
+        let (before, motion) = (layer, Wheels::both(STANDING));
+        step(&mut layer, Drive::Release, STANDING);
+        let released = layer.terms(&before, &params, &motion, battery_v);
+        assert_eq!(released, Wheels::both(None));
+    }
+}

@@ -98,6 +98,12 @@ macro_rules! modes {
             pub fn step(&mut self, params: &Params, estimate: &Estimate) -> Result<Action, Fault> {
                 match self { $( Self::$mode(setpoint, state) => $module::$mode::new(params, setpoint).step(state, estimate), )+ }
             }
+
+            /// What its loops beside a wall add up by this estimate, after its tick; `None` where it has none.
+            #[cfg(not(target_arch = "avr"))]
+            pub fn wall_terms(&self, params: &Params, estimate: &Estimate) -> Option<super::WallTerms> {
+                match self { $( Self::$mode(setpoint, state) => $module::$mode::new(params, setpoint).wall_terms(state, estimate), )+ }
+            }
         }
     };
 }

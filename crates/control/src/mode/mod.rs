@@ -64,6 +64,20 @@ pub struct Action {
     pub new_origin: bool,
 }
 
+/// What the loops of the distance and the heading beside a wall add up, each before its limit: for people to see.
+#[cfg(not(target_arch = "avr"))]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WallTerms {
+    /// Of the distance error, to the heading's setpoint [rad].
+    pub distance_p_rad: f32,
+    /// Of the past distance errors, to the heading's setpoint [rad].
+    pub distance_i_rad: f32,
+    /// Of the heading error, to the yaw rate [rad/s].
+    pub heading_p_rad_s: f32,
+    /// Of the present yaw rate, to the yaw rate [rad/s].
+    pub heading_d_rad_s: f32,
+}
+
 /// Where the robot looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
@@ -142,6 +156,12 @@ pub trait Mode<'a>: Sized {
     /// # Errors
     /// Why it must stop; the supervisor then releases the wheels.
     fn step(&self, state: &mut Self::State, estimate: &Estimate) -> Result<Action, Fault>;
+
+    /// What its loops beside a wall add up by this estimate, after its tick; `None` where it has none.
+    #[cfg(not(target_arch = "avr"))]
+    fn wall_terms(&self, _state: &Self::State, _estimate: &Estimate) -> Option<WallTerms> {
+        None
+    }
 }
 
 /// Why a reference is refused; the last valid one stays.

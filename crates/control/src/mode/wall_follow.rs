@@ -22,6 +22,8 @@
 //! 2 cm: 59 -> 50 cm in 1.6 s instead of 7.1, 50 -> 30 cm in 3.2 s instead of 6.3, 30 -> 40 cm in 1.6 s instead of 9.0
 //! (`rumbo run mode4 --runs 20`). Derivation and margins: docs/theory/wall_follow.md.
 
+#[cfg(not(target_arch = "avr"))]
+use super::WallTerms;
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
     Action, DEFAULT_WALL_M, Description, Group, MAX_WALL_M, MIN_WALL_M, MetricGroup, Mode, Plot,
@@ -234,6 +236,30 @@ impl WallFollow<'_> {
     }
 }
 
+#[cfg(not(target_arch = "avr"))]
+impl WallFollow<'_> {
+    /// What both loops add up at this distance [m], with the integral as the next tick adds it.
+    pub(super) fn terms(
+        &self,
+        state: &State,
+        at: &Estimate,
+        reference_m: f32,
+    ) -> Option<WallTerms> {
+        let (side, wall) = (state.side?, state.wall.wall()?);
+        let gain = |id| self.params.get(id);
+        let (distance_m, angle_rad) = self.distance_and_angle(side, &wall);
+        let error_m = distance_m - reference_m;
+        let (angle_ref_rad, _) = self.angle_ref_rad(state, error_m, wall.bearing_sd_rad());
+        let off_rad = angle_ref_rad - angle_rad;
+        Some(WallTerms {
+            distance_p_rad: sign(side) * gain(ParamId::WallKp) / self.cruise_m_s * error_m,
+            distance_i_rad: sign(side) * state.integral_rad,
+            heading_p_rad_s: sign(side) * gain(ParamId::WallHeadingKp) * off_rad,
+            heading_d_rad_s: -gain(ParamId::WallDamping) * at.yaw_rad_s,
+        })
+    }
+}
+
 /// Setpoints relative to the wall.
 struct Aim {
     /// Distance minus its reference [m].
@@ -370,6 +396,11 @@ impl<'a> Mode<'a> for WallFollow<'a> {
     fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
         self.keep(state, estimate, self.distance_m)
     }
+
+    #[cfg(not(target_arch = "avr"))]
+    fn wall_terms(&self, state: &State, estimate: &Estimate) -> Option<WallTerms> {
+        self.terms(state, estimate, self.distance_m)
+    }
 }
 
 #[cfg(test)]
@@ -434,6 +465,35 @@ mod tests {
             mode.step(&mut state, &seen).unwrap();
         }
         assert_eq!(state.integral_rad, 0.0);
+    }
+
+    #[test]
+    fn the_terms_of_its_loops_add_up_to_the_heading_setpoint_and_the_yaw_rate_on_either_side() {
+        for rig in PAIRS {
+            let params = params(rig);
+            let mode = WallFollow::new(&params, &0.4);
+            let mut state = State::default();
+            let mut seen = seeing(0.42, 0.42, Range::Clear);
+            seen.yaw_rad_s = 0.05;
+            for _ in 0..50 {
+                let action = mode.step(&mut state, &seen).unwrap();
+                let terms = mode.wall_terms(&state, &seen).unwrap();
+                let heading_rad = terms.distance_p_rad + terms.distance_i_rad;
+                // The integral has grown by a tick of 2 cm.
+                let grown_rad = params.get(ParamId::WallKi) * 0.02 * TICK_S + 1e-5;
+                assert!((heading_rad - action.heading_ref_rad).abs() < grown_rad);
+                let sum_rad_s = terms.heading_p_rad_s + terms.heading_d_rad_s;
+                let grown_rad_s = params.get(ParamId::WallHeadingKp) * grown_rad;
+                match action.drive {
+                    Drive::Twist { yaw_rad_s, .. } => {
+                        assert!((sum_rad_s - yaw_rad_s).abs() < grown_rad_s, "{terms:?}");
+                    }
+                    other => panic!("{other:?}"),
+                }
+            }
+            let integral_rad = mode.wall_terms(&state, &seen).unwrap().distance_i_rad;
+            assert!(integral_rad.abs() > 0.005, "{rig:?}");
+        }
     }
 
     #[test]

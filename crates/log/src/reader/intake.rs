@@ -12,7 +12,7 @@ use crate::entry::{Burst, Said};
 use crate::event::{Level, LoggedEvent};
 use crate::log::{Log, Place};
 use crate::lz4::Lz4;
-use crate::reading::Reading;
+use crate::reading::{Reading, Source};
 use crate::scene::Scene;
 use crate::schema::Topic;
 use crate::signals::Row;
@@ -254,7 +254,7 @@ impl Intake {
             Topic::State | Topic::Parameters | Topic::Events | Topic::Scene => 2 * data.len(),
             Topic::FromRobot | Topic::ToRobot => size_of::<Burst>() + data.len(),
             Topic::Console => size_of::<Said>() + data.len(),
-            Topic::Telemetry | Topic::Digest | Topic::Truth | Topic::Printed => 0,
+            Topic::Telemetry | Topic::Digest | Topic::Truth | Topic::Loops | Topic::Printed => 0,
             Topic::Estimated | Topic::True | Topic::World => 0,
         };
         match topic {
@@ -308,8 +308,12 @@ impl Intake {
                     bytes: decoded(&data)?,
                 });
             }
-            Topic::Truth => {
-                log.readings.push(self.readings.truth(t_ms, data)?);
+            Topic::Truth | Topic::Loops => {
+                let source = match topic {
+                    Topic::Loops => Source::Loops,
+                    _ => Source::Truth,
+                };
+                log.readings.push(self.readings.shown(t_ms, source, data)?);
                 self.filled += size_of::<Reading>() + data.len() / 4;
             }
             Topic::Printed => {

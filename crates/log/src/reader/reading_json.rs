@@ -18,10 +18,15 @@ struct Printed {
 }
 
 impl Readings {
-    /// Ground truth and pins.
-    pub(super) fn truth(&mut self, t_ms: i64, data: &[u8]) -> serde_json::Result<Reading> {
+    /// What the simulation shows: ground truth and pins, or terms of control loops.
+    pub(super) fn shown(
+        &mut self,
+        t_ms: i64,
+        source: Source,
+        data: &[u8],
+    ) -> serde_json::Result<Reading> {
         let values = serde_json::from_slice(data)?;
-        Ok(self.reading(t_ms, Source::Truth, values))
+        Ok(self.reading(t_ms, source, values))
     }
 
     /// Numbers that a program printed.

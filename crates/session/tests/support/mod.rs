@@ -336,6 +336,7 @@ impl Target for Toy {
                 ..Experiment::default()
             }],
             worlds: vec!["wall".into()],
+            world_titles: std::collections::BTreeMap::new(),
             rigs: vec!["final".into()],
             rig: "final".into(),
             goals: vec![[1.0, 0.5]],

@@ -5,11 +5,12 @@ use crate::board::{Board, micros};
 use crate::error::SimError;
 use crate::wire_fault::Wire;
 use crate::wiring::Divider;
+use rumbo_control::drive::DriveLayer;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_control::{Fault, Inputs, OUTPUT_DELAY_US, Outputs, ServoAngle, TICK_US};
 use rumbo_plant::plant::Event;
-use rumbo_robot::{Cell, Config, Robot, START_AT};
+use rumbo_robot::{Cell, Config, Loops, Robot, START_AT};
 use rumbo_wire::{Command, Refusal, ResetCause, Telemetry};
 
 /// The converter's reference, the chip's supply [V].
@@ -39,6 +40,8 @@ impl Memory {
 #[derive(Clone, Debug)]
 pub(super) struct Native {
     robot: Robot,
+    /// Its drive layer before the last tick.
+    before: DriveLayer,
     /// It gets what another robot is given.
     is_ghost: bool,
     pub(super) board: Board,
@@ -91,6 +94,7 @@ impl Native {
         }
         Ok(Self {
             robot,
+            before: DriveLayer::default(),
             is_ghost: false,
             board: Board::default(),
             divider: None,
@@ -120,6 +124,10 @@ impl Native {
 
     pub(super) fn knowledge(&self) -> Telemetry {
         self.robot.knowledge()
+    }
+
+    pub(super) fn loops(&self) -> Loops {
+        self.robot.loops(&self.before)
     }
 
     pub(super) fn fault(&self) -> Option<Fault> {
@@ -228,6 +236,7 @@ impl Sim {
             echo,
             battery_v,
         };
+        native.before = *native.robot.drive_layer();
         let outputs = native.robot.tick_aiming(&inputs, native.aim);
         if let Some(recorded) = &mut native.recorded {
             recorded.push(Latched { received, inputs });

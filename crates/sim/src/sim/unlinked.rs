@@ -6,6 +6,7 @@
 use super::native::Native;
 use super::{Controller, Sim};
 use rumbo_control::{Fault, ServoAngle};
+use rumbo_robot::Loops;
 use rumbo_wire::{Command, Refusal, Telemetry};
 
 impl Sim {
@@ -40,6 +41,14 @@ impl Sim {
     pub fn knowledge(&self) -> Option<Telemetry> {
         match &self.controller {
             Some(Controller::Rumbo(native)) => Some(native.knowledge()),
+            _ => None,
+        }
+    }
+
+    /// What the control loops of our native robot added up at its last tick; `None` for any other program.
+    pub fn loops(&self) -> Option<Loops> {
+        match &self.controller {
+            Some(Controller::Rumbo(native)) => Some(native.loops()),
             _ => None,
         }
     }
