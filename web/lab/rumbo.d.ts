@@ -10,6 +10,10 @@ export class Lab {
   readonly began_ms: number;
   /** The run so far as a log, which began at this time in UTC. */
   log(started: string): { name: string, bytes: Uint8Array<ArrayBuffer> };
+  /** Shows a recording in place of the lab, which waits. */
+  show(recording: Recording): void;
+  /** Shows the lab again. */
+  resume(): void;
   /** Warns the page. */
   warn(text: string): void;
   /** Takes an order, as JSON. */
@@ -18,6 +22,11 @@ export class Lab {
   advance(): void;
   /** The messages that are new to the page, as JSON. */
   news(): string[];
+}
+
+/** A recording to be shown; it is read apart from the lab, which goes on when the memory does not suffice. */
+export class Recording {
+  constructor(file: string, bytes: Uint8Array);
 }
 
 /** The hash of a headless run, by the native program, or by an image if it is not empty. */

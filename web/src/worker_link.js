@@ -48,9 +48,15 @@ export class WorkerLink {
     this.#onChange('ended', why);
   }
 
-  /** Saves the recording of the run so far as a file. */
-  save() {
-    this.#worker?.postMessage('save');
+  /** Saves the recording of the run so far as a file; shows it as a replay; shows the lab again. @param {'save' | 'replay' | 'resume'} what */
+  ask(what) {
+    this.#worker?.postMessage(what);
+  }
+
+  /** Shows a recording in place of the lab. @param {File} file */
+  async show(file) {
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    this.#worker?.postMessage({ name: file.name, bytes }, [bytes.buffer]);
   }
 
   /**

@@ -111,6 +111,54 @@ test('what needs a computer says so', { skip }, async () => {
   assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
 });
 
+test('the run is replayed, as rumbo replay would, and so is a saved one; then the lab goes on', { skip }, async () => {
+  const state = () => page.evaluate(() => /** @type {any} */ (window).rumbo.state());
+  const replays = (/** @type {boolean} */ shown) => page.waitForFunction((shown) => Boolean(/** @type {any} */ (window).rumbo.state()?.replay) === shown, shown);
+  const back = async () => {
+    await page.locator('#replay-end').click();
+    await replays(false);
+  };
+  await page.locator('#recordings').click();
+  const saved = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Save this run' }).click();
+  const download = await saved;
+  const path = join(folder(), download.suggestedFilename());
+  await download.saveAs(path);
+  await page.getByRole('button', { name: 'Replay this run' }).click();
+  await replays(true);
+  const { t_s, speed, replay } = await state();
+  assert.deepEqual([t_s, speed], [0, 0]);
+  assert.match(replay.name, /mode8-random-7$/);
+  assert.equal(await page.locator('#stop').isVisible(), false);
+  // The whole curve, before and after the playhead.
+  await page.waitForFunction((end_s) => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1) > end_s - 1, replay.duration_s);
+  await page.locator('#replay-play').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().t_s > 0.5);
+  await page.locator('#replay-play').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().speed === 0);
+  if (process.env['SCREENSHOT_REPLAY']) await page.screenshot({ path: process.env['SCREENSHOT_REPLAY'] });
+  await back();
+  assert.equal((await state()).replay, undefined);
+  await page.waitForFunction((before_s) => /** @type {any} */ (window).rumbo.state().t_s >= before_s, replay.duration_s);
+
+  const log = readFileSync(path);
+  await drop('saved.mcap', log);
+  await replays(true);
+  assert.equal((await state()).replay.name, 'saved');
+  await says('mission_cruise_m_s = 0.25: acknowledged');
+  await page.locator('#events li', { hasText: 'mission_cruise_m_s = 0.25: acknowledged' }).first().click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().t_s > 0);
+  await back();
+  await drop('cut.mcap', log.subarray(0, log.length * 2 / 3));
+  await replays(true);
+  await page.locator('#events li', { hasText: /the log (?:ends early|is damaged): / }).first().waitFor();
+  await back();
+  await drop('notes.mcap', 'no log');
+  await says('notes.mcap: is no MCAP log; give a log of rumbo, or convert a CSV with `rumbo import`');
+  assert.equal((await state()).replay, undefined);
+  assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
+});
+
 test('the run is saved as a log, which runs again natively, byte for byte', { skip: skip || (process.env['RUMBO_BIN'] ? false : 'RUMBO_BIN names no program') }, async () => {
   await page.locator('#recordings').click();
   const saved = page.waitForEvent('download');

@@ -1,6 +1,7 @@
 //! What JavaScript sees of it.
 
 use crate::lab::{Lab as Inner, Start};
+use crate::showing::Showing;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 #[wasm_bindgen]
@@ -53,6 +54,16 @@ impl Lab {
         Ok(LogFile { name, bytes })
     }
 
+    /// Shows a recording in place of the lab, which waits.
+    pub fn show(&mut self, recording: Recording) {
+        self.0.show(Some(recording.0));
+    }
+
+    /// Shows the lab again.
+    pub fn resume(&mut self) {
+        self.0.show(None);
+    }
+
     /// Warns the page.
     pub fn warn(&mut self, text: String) {
         self.0.warn(text);
@@ -73,6 +84,19 @@ impl Lab {
     /// The messages that are new to the page, as JSON.
     pub fn news(&mut self) -> Vec<String> {
         self.0.news()
+    }
+}
+
+/// A recording to be shown. It is read apart from the lab, which goes on when the memory does not suffice.
+#[wasm_bindgen]
+pub struct Recording(Showing);
+
+#[wasm_bindgen]
+impl Recording {
+    /// Reads a file of this name.
+    #[wasm_bindgen(constructor)]
+    pub fn new(file: &str, bytes: Vec<u8>) -> Result<Recording, String> {
+        Showing::new(file, bytes).map(Recording)
     }
 }
 

@@ -1,6 +1,7 @@
 //! A session with a simulated robot, and the one page that it has.
 
 use crate::recording::Recording;
+use crate::showing::Showing;
 use rumbo_experiment::files::{FileError, Overrides};
 use rumbo_lab::SimulatedRobot;
 use rumbo_log::{Choice, Level, LoggedEvent, Manifest, WriteError};
@@ -86,6 +87,8 @@ pub struct Lab {
     waiting: Vec<Order>,
     lease: Lease,
     page: PageId,
+    /// A recording that is shown; the robot waits meanwhile.
+    showing: Option<Box<Showing>>,
     cursor: Cursor,
     /// The page has had its first message.
     greeted: bool,
@@ -133,6 +136,7 @@ impl Lab {
             // The first page is always admitted.
             page: lease.join(true).unwrap_or_default(),
             lease,
+            showing: None,
             cursor: Cursor::default(),
             greeted: false,
             seat: None,
@@ -156,6 +160,15 @@ impl Lab {
         }
     }
 
+    /// Shows a recording, or `None`: the lab again, whose robot waits meanwhile. To the page it is a new connection.
+    pub fn show(&mut self, recording: Option<Showing>) {
+        self.showing = recording.map(Box::new);
+        self.waiting.clear();
+        self.cursor = Cursor::default();
+        self.greeted = false;
+        self.seat = None;
+    }
+
     /// Warns the page, with the next news.
     pub fn warn(&mut self, text: String) {
         self.warnings.push(text);
@@ -170,6 +183,10 @@ impl Lab {
         let began_us = wall_us();
         self.driver.host().day_ms = day_ms;
         let waiting = std::mem::take(&mut self.waiting);
+        if let Some(showing) = &mut self.showing {
+            showing.advance(&waiting, began_us, day_ms);
+            return Ok(());
+        }
         let stop = waiting.contains(&Order::Robot(Command::Stop));
         self.driver.obey(stop_first(waiting, stop), began_us)?;
         self.driver.wall_passed(began_us);
@@ -211,7 +228,11 @@ impl Lab {
         if self.seat.replace(view) != Some(view) {
             messages.extend(ToPage::Control(view).json());
         }
-        let mut news = self.driver.host().board.news(&mut self.cursor);
+        let board = match &self.showing {
+            Some(showing) => &showing.board,
+            None => &self.driver.host().board,
+        };
+        let mut news = board.news(&mut self.cursor);
         let t_s = news.state.as_ref().map_or(0.0, |state| state.t_s);
         let refused = self.warnings.drain(..).map(|text| LoggedEvent {
             t_s,

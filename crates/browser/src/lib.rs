@@ -7,5 +7,7 @@
 pub mod exports;
 mod lab;
 mod recording;
+mod showing;
 
 pub use lab::{Lab, Start};
+pub use showing::Showing;

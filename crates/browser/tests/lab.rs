@@ -1,7 +1,7 @@
 //! The lab of a page, driven as its worker drives it, by a clock of the test.
 #![allow(clippy::unwrap_used, reason = "helpers of tests too")]
 
-use rumbo_browser::{Lab, Start};
+use rumbo_browser::{Lab, Showing, Start};
 use rumbo_log::Log;
 use std::cell::Cell;
 
@@ -136,4 +136,71 @@ fn the_recording_is_a_log_of_the_run_since_its_reset() {
     assert_eq!(manifest.scenario.as_deref(), Some("mode5"));
     assert_eq!(manifest.seed, Some(3));
     assert!(log.rows.len() > 20 && log.rows.iter().all(|row| row.t_ms <= 1_000));
+}
+
+/// The run of a lab that drove for this long, as a file.
+fn recorded(seconds: f64) -> Vec<u8> {
+    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    drive(&mut lab, &Cell::new(0), seconds);
+    lab.log("2026-11-23T22:40:03Z".into()).unwrap().1
+}
+
+#[test]
+fn a_recording_is_replayed_in_place_of_the_lab_which_goes_on_where_it_was() {
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    drive(&mut lab, &clock_us, 2.0);
+    let showing = Showing::new("robot.mcap", recorded(4.0)).unwrap();
+    lab.show(Some(showing));
+    let messages = drive(&mut lab, &clock_us, 0.1);
+    // As to a page that has just come: all of the log, paused at its beginning.
+    assert!(is("hello")(&&messages[0]), "{}", messages[0]);
+    let shown = state(&messages);
+    assert!(shown.contains(r#""t_s":0.0"#), "{shown}");
+    assert!(
+        shown.contains(r#""replay":{"name":"robot","duration_s":"#),
+        "{shown}"
+    );
+    assert!(messages.iter().any(|message| is("samples")(&message)));
+    lab.order(r#"{"type":"seek","t_s":1.5}"#);
+    assert!(state(&drive(&mut lab, &clock_us, 0.1)).contains(r#""t_s":1.5"#));
+    lab.order(r#"{"type":"speed","factor":2}"#);
+    let played = drive(&mut lab, &clock_us, 0.51);
+    assert!(
+        state(&played).contains(r#""t_s":2.5"#),
+        "{}",
+        state(&played)
+    );
+    lab.order(r#"{"type":"arm"}"#);
+    let messages = drive(&mut lab, &clock_us, 0.1).concat();
+    assert!(messages.contains("this is a replay: nothing is sent to a robot"));
+
+    lab.show(None);
+    let messages = drive(&mut lab, &clock_us, 0.2);
+    assert!(is("hello")(&&messages[0]), "{}", messages[0]);
+    let shown = state(&messages);
+    assert!(
+        shown.contains(r#""t_s":2."#) && !shown.contains("replay"),
+        "{shown}"
+    );
+    assert!(shown.contains(r#""armed":false"#), "{shown}");
+}
+
+#[test]
+fn what_is_no_recording_says_what_it_is_and_a_damaged_one_is_shown_as_far_as_it_goes() {
+    let why = |file: &str, bytes: &[u8]| Showing::new(file, bytes.to_vec()).unwrap_err();
+    let whole = recorded(3.0);
+    assert_eq!(
+        why("notes.mcap", b"not a log at all"),
+        "notes.mcap: is no MCAP log; give a log of rumbo, or convert a CSV with `rumbo import`"
+    );
+    assert!(why("short.mcap", &whole[..60]).starts_with("short.mcap: ends before"));
+    assert!(why("long.mcap", &vec![0; (100 << 20) + 1]).contains("at most 100 MB"));
+
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    let cut = &whole[..whole.len() * 2 / 3];
+    lab.show(Some(Showing::new("cut.mcap", cut.to_vec()).unwrap()));
+    let messages = drive(&mut lab, &clock_us, 0.1).concat();
+    assert!(messages.contains("the log ends early") || messages.contains("the log is damaged"));
 }

@@ -177,6 +177,16 @@ export const ROBOT = {
   'recording: more came in this second than a robot says; {} bytes of the link and {} samples and events are left out':
     'grabación: en este segundo llegó más de lo que un robot dice; se omiten {} bytes del enlace y {} muestras y eventos',
   'about the log: {}': 'sobre la grabación: {}',
+  '{}: cannot be read ({})': '{}: no se puede leer ({})',
+  '{}: is no MCAP log; give a log of rumbo, or convert a CSV with `rumbo import`': '{}: no es una grabación MCAP; usa una de rumbo, o convierte un CSV con `rumbo import`',
+  '{}: ends before its first record: its writer was stopped at once, or it was cut off when it was copied; nothing of it can be read':
+    '{}: acaba antes de su primer registro: quien la escribía se detuvo enseguida, o se cortó al copiarla; no se puede leer nada de ella',
+  '{}: ends before anything of rumbo in it; was it cut off when it was copied, or is it another program\'s log?':
+    '{}: acaba antes de que haya en ella algo de rumbo; ¿se cortó al copiarla, o es la grabación de otro programa?',
+  '{}: holds neither a manifest nor signals of rumbo; is it another program\'s log?': '{}: no contiene ni un manifiesto ni señales de rumbo; ¿es la grabación de otro programa?',
+  '{}: nothing of what happened can be had from it: {}': '{}: no se puede sacar nada de lo que pasó: {}',
+  '{}: not opened, a recording has at most {} MB here; `rumbo replay` shows it on a computer': '{}: no se abre, aquí una grabación tiene como mucho {} MB; `rumbo replay` la muestra en un ordenador',
+  '{}: not opened, it does not fit into the memory of the page; `rumbo replay` shows it on a computer': '{}: no se abre, no cabe en la memoria de la página; `rumbo replay` la muestra en un ordenador',
   'the log is damaged: {}': 'la grabación está dañada: {}',
   'the log ends early: {}': 'la grabación acaba antes de tiempo: {}', 'this is a replay: nothing is sent to a robot': 'esto es una grabación: no se envía nada a ningún robot',
   'port {} is gone ({}); waiting for it': 'el puerto {} ya no está ({}); se espera a que vuelva', 'port {} is back': 'el puerto {} ha vuelto',
