@@ -3,13 +3,15 @@ export default function init(): Promise<unknown>;
 
 export class Lab {
   /** `start` is what runs, as JSON: `Start` of `crates/browser`. */
-  constructor(start: string, id: number);
+  constructor(start: string);
   /** Of Rumbo. */
   readonly version: string;
   /** When the run began [ms since 1970]. */
   readonly began_ms: number;
   /** The run so far as a log, which began at this time in UTC. */
   log(started: string): { name: string, bytes: Uint8Array<ArrayBuffer> };
+  /** The run so far for a link, as JSON. */
+  share(): string;
   /** Shows a recording in place of the lab, which waits. */
   show(recording: Recording): void;
   /** Shows the lab again. */

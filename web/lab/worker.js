@@ -4,8 +4,9 @@
  *
  * Strings from the page are orders; null says that it has read what it was sent, and may be sent more: a slow page loses
  * samples of plots, and the lab does not wait for it. 'save' asks for the recording, a file `{ name, bytes }`; such a file
- * from the page is shown as a replay, as 'replay' shows the recording, and 'resume' shows the lab again. To the page go
- * arrays of the messages of the station's WebSocket, or `{ error }` when the lab has ended.
+ * from the page is shown as a replay, as 'replay' shows the recording, and 'resume' shows the lab again. 'share' asks for the
+ * run as a link carries it, `{ shared }`. To the page go arrays of the messages of the station's WebSocket, or `{ error }`
+ * when the lab has ended.
  */
 import { readLink } from '../src/run_link.js';
 import init, { Lab, Recording } from './rumbo.js';
@@ -70,6 +71,7 @@ self.addEventListener('message', ({ data }) => {
   if (data === 'save') save(lab);
   else if (data === 'replay') show(lab, recorded(lab));
   else if (data === 'resume') lab.resume();
+  else if (data === 'share') self.postMessage({ shared: lab.share() });
   else if (typeof data === 'object') show(lab, data);
   else lab.order(data);
   // It does not wait for the next round.
@@ -78,14 +80,13 @@ self.addEventListener('message', ({ data }) => {
 
 /** The lab that the worker's address asks for; if it asks for what is not there, the usual one, which says so. */
 function open() {
-  const [random = 0] = crypto.getRandomValues(new Uint8Array(1));
   const { start, version } = readLink(location.search);
   try {
-    const made = new Lab(JSON.stringify(start), random);
+    const made = new Lab(JSON.stringify(start));
     if (version !== null && version !== made.version) made.warn(`the link is of version ${version}, this is ${made.version}: the run may differ`);
     return made;
   } catch (error) {
-    const made = new Lab('{}', random);
+    const made = new Lab('{}');
     made.warn(`the link is not for this version: ${error}`);
     return made;
   }

@@ -167,7 +167,7 @@ const checkup = new CheckupDialog(send, store, () => state);
 element('checkup', HTMLButtonElement).addEventListener('click', () => checkup.open(sonars, servo));
 const recordings = new Recordings(() => plots.modes, askLab, showRecording);
 const calibration = new CalibrationDialog(send);
-new Share(() => ({ scene: simulated, table, own: state !== null && isOwn(state), version: version ?? '' }));
+new Share(() => ({ scene: simulated, table, version: version ?? '' }), () => (link instanceof WorkerLink ? link.share() : Promise.reject(new Error('no lab'))));
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
 makeEnlargeable();
 const tour = new Tour();

@@ -28,11 +28,11 @@ pub struct Lab(Inner);
 
 #[wasm_bindgen]
 impl Lab {
-    /// The robot at its start, in real time; `start` is a [`Start`] as JSON, `id` is to be random.
+    /// The robot at its start, in real time; `start` is a [`Start`] as JSON.
     #[wasm_bindgen(constructor)]
-    pub fn new(start: &str, id: u8) -> Result<Lab, String> {
+    pub fn new(start: &str) -> Result<Lab, String> {
         let start: Start = serde_json::from_str(start).map_err(|error| error.to_string())?;
-        let lab = Inner::new(start, id, day_ms());
+        let lab = Inner::new(start, day_ms());
         lab.map(Lab).map_err(|error| error.to_string())
     }
 
@@ -52,6 +52,11 @@ impl Lab {
     pub fn log(&mut self, started: String) -> Result<LogFile, String> {
         let (name, bytes) = self.0.log(started).map_err(|error| error.to_string())?;
         Ok(LogFile { name, bytes })
+    }
+
+    /// The run so far for a link: a [`Shared`](crate::Shared) as JSON.
+    pub fn share(&mut self) -> Result<String, String> {
+        serde_json::to_string(&self.0.share()).map_err(|error| error.to_string())
     }
 
     /// Shows a recording in place of the lab, which waits.

@@ -73,6 +73,12 @@ impl<H: Host> Driver<H> {
         &mut self.host
     }
 
+    /// The target's time since its start or last reset \[us\].
+    #[must_use]
+    pub fn target_us(&self) -> u64 {
+        self.target.now_us()
+    }
+
     /// The requested speed; 0 is a pause.
     #[must_use]
     pub fn speed(&self) -> f64 {

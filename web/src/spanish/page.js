@@ -30,7 +30,10 @@ export const PAGE = {
   'Back to the lab': 'Volver al laboratorio', 'Close the recording: the lab goes on where it was': 'Cierra la grabación: el laboratorio sigue donde estaba',
   'Save this run': 'Guardar esta grabación', 'Save the recording of the run so far as a file': 'Guarda en un archivo lo grabado hasta ahora',
   'Share': 'Compartir', 'A link that opens this run elsewhere': 'Un enlace que abre esto mismo en otro sitio', 'Copy': 'Copiar', 'copied': 'copiado', 'copy it from the field': 'cópialo del campo',
-  'The link opens this scenario, world, sensor layout and seed. Your program is not in it.': 'El enlace abre este escenario, mundo, montaje y semilla. Tu programa no va en él.',
+  'The link opens this scenario, world, sensor layout and seed, and repeats this run from its start, to the last bit.':
+    'El enlace abre este escenario, mundo, montaje y semilla, y repite esta ejecución desde el principio, bit a bit.',
+  'with what was done by hand until {} s (changes of commands: {})': 'con lo hecho a mano hasta {} s (cambios de órdenes: {})',
+  'What was done by hand is not in it: {}.': 'Lo hecho a mano no va en él: {}.', 'it has {} characters: some programs cut it': 'tiene {} caracteres: algunos programas lo cortan',
   'The link opens this scenario, world, sensor layout and seed, with these parameters.': 'El enlace abre este escenario, mundo, montaje y semilla, con estos parámetros.',
   'Run a program…': 'Ejecutar un programa…', 'Run a program for the Arduino Mega, .elf or .hex, on an emulated one': 'Ejecuta un programa para el Arduino Mega, .elf o .hex, en uno emulado',
   '.elf or .hex, or drop one here; an .ino needs rumbo on a computer': '.elf o .hex, o suelta uno aquí; un .ino necesita rumbo en un ordenador',
