@@ -87,7 +87,22 @@ function send(order) {
   if (link.send(order)) return;
   if (order.type !== 'stop' && performance.now() - unsent_ms < UNSENT_MS) return;
   unsent_ms = performance.now();
-  events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text: isSite ? 'not sent: the lab of this page is not there' : order.type === 'stop' ? 'STOP was not sent: there is no connection to the station' : 'not sent: there is no connection to the station' }]);
+  complain(isSite ? 'not sent: the lab of this page is not there' : order.type === 'stop' ? 'STOP was not sent: there is no connection to the station' : 'not sent: there is no connection to the station');
+}
+
+/** @param {string} text */
+function complain(text) {
+  events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text }]);
+}
+
+/** Asks the lab of the site. @param {'save' | 'replay' | 'resume'} what */
+function askLab(what) {
+  if (link instanceof WorkerLink) link.ask(what);
+}
+
+/** Shows a recording in place of the site's lab. @param {File} file */
+function showRecording(file) {
+  if (link instanceof WorkerLink) link.show(file).catch((error) => complain(`${file.name}: ${error}`));
 }
 
 /** When the data drawn next was received; and times from there to the frame after, while a test measures. */
@@ -109,12 +124,12 @@ const redraw = onFrame(() => {
 const header = new Header(send);
 const seat = new Seat(send);
 const parameters = new ParameterTable(send);
-const replay = new ReplayBar(send);
+const replay = new ReplayBar(send, () => askLab('resume'));
 const events = new EventList((t_s) => {
   if (replay.shown) replay.seek(t_s);
 });
 const consoles = new Consoles(send, (usart) => store.readings.printedBy(usart).length > 0, (usart) => plots.showPrinted(usart));
-const program = new ProgramPanel(send, (text) => events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text }]));
+const program = new ProgramPanel(send, complain, showRecording);
 /** The run that the consoles are of. @type {number | null} */
 let consoleRun = null;
 const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);
@@ -150,11 +165,9 @@ const layoutDialog = new LayoutDialog(plots);
 element('layouts', HTMLButtonElement).addEventListener('click', () => layoutDialog.open());
 const checkup = new CheckupDialog(send, store, () => state);
 element('checkup', HTMLButtonElement).addEventListener('click', () => checkup.open(sonars, servo));
-const recordings = new Recordings(() => plots.modes, () => {
-  if (link instanceof WorkerLink) link.save();
-});
+const recordings = new Recordings(() => plots.modes, askLab, showRecording);
 const calibration = new CalibrationDialog(send);
-new Share(() => ({ scene: simulated, table, own: state !== null && isOwn(state), version: version ?? '' }));
+new Share(() => ({ scene: simulated, table, version: version ?? '' }), () => (link instanceof WorkerLink ? link.share() : Promise.reject(new Error('no lab'))));
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
 makeEnlargeable();
 const tour = new Tour();

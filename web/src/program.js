@@ -40,11 +40,13 @@ export class ProgramPanel {
   #shown = '';
 
   /**
-   * A sketch or an image that is dropped on the page runs, where there is an emulated Mega to run it.
+   * A sketch or an image that is dropped on the page runs, where there is an emulated Mega to run it. On the site a
+   * recording that is dropped is shown.
    * @param {(order: import('./types.js').Order) => void} send
    * @param {(why: string) => void} complain
+   * @param {(file: File) => void} showRecording
    */
-  constructor(send, complain) {
+  constructor(send, complain, showRecording) {
     const carriesFile = (/** @type {DragEvent} */ event) => (isSite || !this.#panel.hidden) && event.dataTransfer?.types.includes('Files');
     const run = async (/** @type {File} */ file) => {
       if (file.size > LARGEST) complain(t('{}: not sent, a program has at most {} MB', file.name, LARGEST / 1e6));
@@ -57,7 +59,8 @@ export class ProgramPanel {
       const file = event.dataTransfer?.files[0];
       if (!file || !carriesFile(event)) return;
       event.preventDefault();
-      await run(file);
+      if (isSite && /\.mcap$/i.test(file.name)) showRecording(file);
+      else await run(file);
     });
     if (!isSite) return;
     setText(this.#drop, t('.elf or .hex, or drop one here; an .ino needs rumbo on a computer'));

@@ -1,7 +1,7 @@
 // @ts-check
 /** The recordings of this computer: find one, open it as a replay, compare two, delete. */
 import { Comparison } from './comparison.js';
-import { complaint, dialog } from './dialog.js';
+import { complaint, dialog, fileButton } from './dialog.js';
 import { create, element, setText } from './dom.js';
 import { ask } from './key.js';
 import { language, said, t } from './text.js';
@@ -31,15 +31,24 @@ export class Recordings {
 
   /**
    * @param {() => import('./types.js').ModeEntry[]} modes
-   * @param {() => void} save saves the run of the site's lab
+   * @param {(what: 'save' | 'replay') => void} ask asks the site's lab for its run
+   * @param {(file: File) => void} show shows a recording on the site
    */
-  constructor(modes, save) {
+  constructor(modes, ask, show) {
     this.#modes = modes;
     element('recordings', HTMLButtonElement).addEventListener('click', () => this.open());
     if (isSite) {
       const saves = create('button', { type: 'button', className: 'go', textContent: t('Save this run'), title: t('Save the recording of the run so far as a file') });
-      saves.addEventListener('click', save);
-      this.#dialog.body.append(create('p', { textContent: t('This page records the run until the next reset. Rumbo on a computer opens the file: rumbo replay shows it, rumbo rerun runs it again. It also keeps every session and compares two.') }), create('div', { className: 'row' }, saves));
+      saves.addEventListener('click', () => ask('save'));
+      const replays = create('button', { type: 'button', textContent: t('Replay this run'), title: t('Show the run so far as a replay; the robot waits meanwhile') });
+      const close = (/** @type {() => void} */ work) => {
+        this.#dialog.dialog.close();
+        work();
+      };
+      replays.addEventListener('click', () => close(() => ask('replay')));
+      const opens = fileButton(t('Open a recording…'), '.mcap', (file) => close(() => show(file)));
+      opens.title = t('Show a saved recording, .mcap, as a replay; dropping it on the page does the same');
+      this.#dialog.body.append(create('p', { textContent: t('This page records the run until the next reset. A saved recording can be opened here again. Rumbo on a computer opens it too: rumbo replay shows it, rumbo rerun runs it again. It also keeps every session and compares two.') }), create('div', { className: 'row' }, saves, replays, opens));
       return;
     }
     const head = create('thead', {}, create('tr', {}, ...[t('compare'), t('recording'), t('actions'), t('duration'), t('size'), t('seed')].map((textContent) => create('th', { textContent, scope: 'col' }))));

@@ -3,6 +3,7 @@
 import { create, element, setText } from './dom.js';
 import { format, formatShort } from './units.js';
 import { t } from './text.js';
+import { isSite } from './worker_link.js';
 
 /** @typedef {import('./types.js').State} State */
 /** @typedef {import('./panel.js').Send} Send */
@@ -22,9 +23,15 @@ export class ReplayBar {
   #dragging = false;
   #asked_ms = 0;
 
-  /** @param {Send} send */
-  constructor(send) {
+  /**
+   * @param {Send} send
+   * @param {() => void} resume shows the lab of the site again
+   */
+  constructor(send, resume) {
     this.#send = send;
+    const back = element('replay-end', HTMLButtonElement);
+    back.hidden = !isSite;
+    back.addEventListener('click', resume);
     this.#speed.replaceChildren(...SPEEDS.map((factor) => create('option', { value: String(factor), textContent: `× ${formatShort(factor)}` })));
     this.#speed.value = '1';
     this.#play.addEventListener('click', () => this.toggle());
@@ -85,6 +92,8 @@ export class ReplayBar {
     this.#scrub.max = String(replay.duration_s);
     if (!this.#dragging) this.#scrub.value = String(state.t_s);
     setText(this.#time, t('{} of {} s', format(state.t_s, 2), format(replay.duration_s, 2)));
-    element('replay-name', HTMLSpanElement).textContent = replay.name;
+    const name = element('replay-name', HTMLSpanElement);
+    setText(name, replay.name);
+    name.title = replay.name;
   }
 }

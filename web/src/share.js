@@ -1,44 +1,79 @@
 // @ts-check
-/** *Share*: the link of what runs, to copy. On the site only: a station's address is for its own computer. */
+/**
+ * *Share*: the link of what runs, to copy, with what was done by hand or without. On the site only: a station's address is
+ * for its own computer.
+ */
 import { dialog } from './dialog.js';
 import { create, element, setText } from './dom.js';
-import { readLink, writeLink } from './run_link.js';
-import { t } from './text.js';
+import { LONGEST, readLink, writeLink } from './run_link.js';
+import { said, t } from './text.js';
+import { format } from './units.js';
 import { isSite } from './worker_link.js';
 
 /** @typedef {import('./types.js').Scene} Scene */
 /** @typedef {import('./types.js').Parameter} Parameter */
+/** @typedef {import('./worker_link.js').Shared} Shared */
+
+/** What the page knows of the run. @typedef {{scene: Scene | null, table: Parameter[], version: string}} Known */
 
 export class Share {
   #dialog = dialog('share-dialog', t('Share'));
+  #about = create('p', { className: 'hint' });
+  #by_hand = create('input', { type: 'checkbox', id: 'share-drive', checked: true });
+  #changes = create('span');
+  #row = create('label', { className: 'row' }, this.#by_hand, this.#changes);
   #link = create('input', { type: 'text', id: 'share-link', readOnly: true });
   #copied = create('output', { className: 'hint' });
+  #known;
+  /** @type {Shared | null} */
+  #shared = null;
 
-  /** @param {() => {scene: Scene | null, table: Parameter[], own: boolean, version: string}} now */
-  constructor(now) {
+  /**
+   * @param {() => Known} known
+   * @param {() => Promise<Shared>} ask asks the lab
+   */
+  constructor(known, ask) {
+    this.#known = known;
     const button = element('share', HTMLButtonElement);
     button.hidden = !isSite;
     if (!isSite) return;
-    const about = create('p', { className: 'hint' });
     const copy = create('button', { type: 'button', className: 'go', textContent: t('Copy') });
     copy.addEventListener('click', async () => {
       this.#link.select();
       await navigator.clipboard.writeText(this.#link.value).then(() => setText(this.#copied, t('copied')), () => setText(this.#copied, t('copy it from the field')));
     });
     this.#link.setAttribute('aria-label', t('Link'));
-    this.#dialog.body.append(about, create('div', { className: 'row' }, this.#link, copy, this.#copied));
-    button.addEventListener('click', () => {
-      const { scene, table, own, version } = now();
-      if (!scene) return;
-      const changed = table.filter((each) => each.value !== null && each.value !== each.default).map(({ name, value }) => [name, value]);
-      const { robot } = readLink(location.hash).start;
-      this.#link.value = writeLink(location.href, scene.choice, robot, Object.fromEntries(changed), version);
-      setText(about, own ? t('The link opens this scenario, world, sensor layout and seed. Your program is not in it.') : t('The link opens this scenario, world, sensor layout and seed, with these parameters.'));
-      setText(this.#copied, '');
+    this.#dialog.body.append(this.#about, this.#row, create('div', { className: 'row' }, this.#link, copy, this.#copied));
+    this.#by_hand.addEventListener('change', () => this.#show());
+    button.addEventListener('click', async () => {
+      this.#shared = await ask();
+      this.#show();
       this.#dialog.open();
       this.#link.select();
     });
     // Another link in the same tab.
     addEventListener('hashchange', () => location.reload());
+  }
+
+  #show() {
+    const { scene, table, version } = this.#known();
+    const shared = this.#shared;
+    if (!scene || !shared) return;
+    const { robot } = readLink(location.hash).start;
+    const choice = { ...scene.choice, robot };
+    const changed = table.flatMap(({ name, value, default: usual }) => (value === null || value === usual ? [] : [[name, value]]));
+    const setUp = writeLink(location.href, { ...choice, parameters: Object.fromEntries(changed) }, version);
+    const { drive, until_s, hash, parameters, changes } = shared;
+    const driven = drive === null || changes === 0 ? null : writeLink(location.href, { ...choice, parameters, drive, until_s, hash }, version);
+    const why = shared.why_not ?? (driven !== null && driven.length > LONGEST ? 'a link has at most 2 KB, this one would be longer' : null);
+    const fits = driven !== null && why === null;
+    const repeats = fits && this.#by_hand.checked;
+    this.#row.hidden = !fits;
+    setText(this.#changes, t('with what was done by hand until {} s (changes of commands: {})', format(until_s, 2), changes));
+    this.#link.value = repeats ? driven : setUp;
+    setText(this.#about, repeats
+      ? t('The link opens this scenario, world, sensor layout and seed, and repeats this run from its start, to the last bit.')
+      : t('The link opens this scenario, world, sensor layout and seed, with these parameters.') + (why === null ? '' : ` ${t('What was done by hand is not in it: {}.', said(why))}`));
+    setText(this.#copied, setUp.length > LONGEST ? t('it has {} characters: some programs cut it', this.#link.value.length) : '');
   }
 }

@@ -7,6 +7,17 @@ import { saveFile } from './dialog.js';
 /** @typedef {import('./types.js').Order} Order */
 /** @typedef {import('./link.js').Connection} Connection */
 
+/**
+ * The run as a link carries it: `Shared` of `crates/browser`.
+ * @typedef {object} Shared
+ * @property {Record<string, number>} parameters With which it began.
+ * @property {string | null} drive The commands given by hand.
+ * @property {string | null} why_not Why a link cannot repeat them.
+ * @property {number} changes
+ * @property {number} until_s
+ * @property {string | null} hash
+ */
+
 /** The session runs in the page, not in a station: the site's `index.html` says so. */
 export const isSite = document.querySelector('meta[name="rumbo-session"]')?.getAttribute('content') === 'page';
 
@@ -15,6 +26,8 @@ export class WorkerLink {
   #worker = null;
   #open = false;
   #onChange;
+  /** Those who wait for the run. @type {((shared: Shared) => void)[]} */
+  #waiting = [];
 
   /**
    * @param {(message: FromServer) => void} onMessage
@@ -31,6 +44,7 @@ export class WorkerLink {
     this.#worker = worker;
     worker.addEventListener('message', ({ data }) => {
       if (data.bytes) return saveFile(data.name, new Blob([data.bytes], { type: 'application/octet-stream' }));
+      if (data.shared) return this.#waiting.shift()?.(JSON.parse(data.shared));
       if (!Array.isArray(data)) return this.#end(data.error);
       if (!this.#open) onChange('open', null);
       this.#open = true;
@@ -48,9 +62,23 @@ export class WorkerLink {
     this.#onChange('ended', why);
   }
 
-  /** Saves the recording of the run so far as a file. */
-  save() {
-    this.#worker?.postMessage('save');
+  /** Saves the recording of the run so far as a file; shows it as a replay; shows the lab again. @param {'save' | 'replay' | 'resume'} what */
+  ask(what) {
+    this.#worker?.postMessage(what);
+  }
+
+  /** The run so far, for a link. @returns {Promise<Shared>} */
+  share() {
+    return new Promise((done) => {
+      this.#waiting.push(done);
+      this.#worker?.postMessage('share');
+    });
+  }
+
+  /** Shows a recording in place of the lab. @param {File} file */
+  async show(file) {
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    this.#worker?.postMessage({ name: file.name, bytes }, [bytes.buffer]);
   }
 
   /**

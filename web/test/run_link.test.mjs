@@ -6,9 +6,16 @@ import { readLink, writeLink } from '../src/run_link.js';
 
 test('a link is read as it was written, and the sensor layout is that of the choice', () => {
   const choice = { scenario: 'mode1', world: 'room', rig: null, seed: 7 };
-  const link = writeLink('http://localhost/rumbo/#old', choice, undefined, { rig: 0, front_kp: 4.5 }, '0.2.0');
+  const link = writeLink('http://localhost/rumbo/#old', { ...choice, robot: undefined, parameters: { rig: 0, front_kp: 4.5 } }, '0.2.0');
   assert.ok(link.startsWith('http://localhost/rumbo/#'), link);
   assert.deepEqual(readLink(new URL(link).hash), { start: { scenario: 'mode1', world: 'room', seed: 7, parameters: { front_kp: 4.5 } }, version: '0.2.0' });
+});
+
+test('what was done by hand stays readable in a link', () => {
+  const start = { scenario: 'free', seed: 1, parameters: {}, drive: '0.5 arm*1.25 goal -1 0.5', until_s: 3.105, hash: '00ff' };
+  const link = writeLink('http://localhost/', start, '0.2.0');
+  assert.ok(link.includes('drive=0.5+arm*1.25+goal+-1+0.5&until_s=3.105'), link);
+  assert.deepEqual(readLink(new URL(link).hash).start, start);
 });
 
 test('an address without a link asks for nothing', () => {

@@ -103,11 +103,106 @@ test('a link opens the same scenario, seed and parameters, and one for something
   await wrong.close();
 });
 
+test('a run driven by hand is repeated by its link, to the last bit', { skip }, async () => {
+  const here = await open({}, 'scenario=mode5&seed=3');
+  const { page } = here;
+  const said = (/** @type {string} */ text) => page.locator('#events li', { hasText: text }).first().waitFor();
+  await page.waitForSelector('#connection.good');
+  await said('mode 5 wheel speed: acknowledged');
+  await page.locator('#on').click();
+  await said('ON: acknowledged');
+  await page.locator('#reference input').first().fill('70');
+  await page.locator('#reference button').first().click();
+  await said('setpoints left 70 rpm, right 70 rpm: acknowledged');
+  const base = page.locator('#parameter-link_timeout_s');
+  await page.locator('#all-parameters').check();
+  await base.fill('0.35');
+  await base.press('Enter');
+  await said('link_timeout_s = 0.35: acknowledged');
+  await page.locator('#stop').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.armed === false);
+  await page.locator('#share').click();
+  await page.locator('#share-drive').waitFor();
+  const whole = new URL(await page.locator('#share-link').inputValue());
+  assert.match(whole.hash, /&drive=[^&]*arm[^&]*stop&until_s=[\d.]+&hash=[0-9a-f]{16}&/);
+  assert.ok(!whole.hash.includes('&link_timeout_s='), whole.hash);
+  assert.ok(whole.href.length < 2_048, whole.href);
+  if (process.env['SCREENSHOT_SHARE']) await page.screenshot({ path: process.env['SCREENSHOT_SHARE'] });
+  // Without it: as it is set up now.
+  await page.locator('#share-drive').uncheck();
+  const setUp = new URL(await page.locator('#share-link').inputValue());
+  assert.ok(!setUp.hash.includes('drive=') && setUp.hash.includes('link_timeout_s=0.35'), setUp.hash);
+  assert.deepEqual([...here.complaints, ...here.abroad], []);
+  await here.close();
+
+  const elsewhere = await open({ locale: 'es-ES' }, whole.hash.slice(1));
+  await elsewhere.page.waitForSelector('#connection.good');
+  await elsewhere.page.locator('#speed').selectOption('8');
+  await elsewhere.page.locator('#events li', { hasText: 'esta es la ejecución del enlace, bit a bit' }).first().waitFor();
+  assert.deepEqual(await elsewhere.page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
+  assert.deepEqual([...elsewhere.complaints, ...elsewhere.abroad], []);
+  await elsewhere.close();
+
+  const changed = await open({}, whole.hash.slice(1).replace('seed=3', 'seed=4'));
+  await changed.page.waitForSelector('#connection.good');
+  await changed.page.locator('#speed').selectOption('8');
+  await changed.page.locator('#events li', { hasText: 'this is not the run of the link' }).first().waitFor();
+  await changed.close();
+});
+
 test('what needs a computer says so', { skip }, async () => {
   await drop('blink.ino', 'void setup() {}');
   await says('compiling a sketch needs rumbo on a computer');
   await drop('notes.txt', 'x');
   await says('only an .ino, .elf or .hex file');
+  assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
+});
+
+test('the run is replayed, as rumbo replay would, and so is a saved one; then the lab goes on', { skip }, async () => {
+  const state = () => page.evaluate(() => /** @type {any} */ (window).rumbo.state());
+  const replays = (/** @type {boolean} */ shown) => page.waitForFunction((shown) => Boolean(/** @type {any} */ (window).rumbo.state()?.replay) === shown, shown);
+  const back = async () => {
+    await page.locator('#replay-end').click();
+    await replays(false);
+  };
+  await page.locator('#recordings').click();
+  const saved = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Save this run' }).click();
+  const download = await saved;
+  const path = join(folder(), download.suggestedFilename());
+  await download.saveAs(path);
+  await page.getByRole('button', { name: 'Replay this run' }).click();
+  await replays(true);
+  const { t_s, speed, replay } = await state();
+  assert.deepEqual([t_s, speed], [0, 0]);
+  assert.match(replay.name, /mode8-random-7$/);
+  assert.equal(await page.locator('#stop').isVisible(), false);
+  // The whole curve, before and after the playhead.
+  await page.waitForFunction((end_s) => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1) > end_s - 1, replay.duration_s);
+  await page.locator('#replay-play').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().t_s > 0.5);
+  await page.locator('#replay-play').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().speed === 0);
+  if (process.env['SCREENSHOT_REPLAY']) await page.screenshot({ path: process.env['SCREENSHOT_REPLAY'] });
+  await back();
+  assert.equal((await state()).replay, undefined);
+  await page.waitForFunction((before_s) => /** @type {any} */ (window).rumbo.state().t_s >= before_s, replay.duration_s);
+
+  const log = readFileSync(path);
+  await drop('saved.mcap', log);
+  await replays(true);
+  assert.equal((await state()).replay.name, 'saved');
+  await says('mission_cruise_m_s = 0.25: acknowledged');
+  await page.locator('#events li', { hasText: 'mission_cruise_m_s = 0.25: acknowledged' }).first().click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().t_s > 0);
+  await back();
+  await drop('cut.mcap', log.subarray(0, log.length * 2 / 3));
+  await replays(true);
+  await page.locator('#events li', { hasText: /the log (?:ends early|is damaged): / }).first().waitFor();
+  await back();
+  await drop('notes.mcap', 'no log');
+  await says('notes.mcap: is no MCAP log; give a log of rumbo, or convert a CSV with `rumbo import`');
+  assert.equal((await state()).replay, undefined);
   assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
 });
 

@@ -1,6 +1,7 @@
 //! What JavaScript sees of it.
 
 use crate::lab::{Lab as Inner, Start};
+use crate::showing::Showing;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 #[wasm_bindgen]
@@ -27,11 +28,11 @@ pub struct Lab(Inner);
 
 #[wasm_bindgen]
 impl Lab {
-    /// The robot at its start, in real time; `start` is a [`Start`] as JSON, `id` is to be random.
+    /// The robot at its start, in real time; `start` is a [`Start`] as JSON.
     #[wasm_bindgen(constructor)]
-    pub fn new(start: &str, id: u8) -> Result<Lab, String> {
+    pub fn new(start: &str) -> Result<Lab, String> {
         let start: Start = serde_json::from_str(start).map_err(|error| error.to_string())?;
-        let lab = Inner::new(start, id, day_ms());
+        let lab = Inner::new(start, day_ms());
         lab.map(Lab).map_err(|error| error.to_string())
     }
 
@@ -51,6 +52,21 @@ impl Lab {
     pub fn log(&mut self, started: String) -> Result<LogFile, String> {
         let (name, bytes) = self.0.log(started).map_err(|error| error.to_string())?;
         Ok(LogFile { name, bytes })
+    }
+
+    /// The run so far for a link: a [`Shared`](crate::Shared) as JSON.
+    pub fn share(&mut self) -> Result<String, String> {
+        serde_json::to_string(&self.0.share()).map_err(|error| error.to_string())
+    }
+
+    /// Shows a recording in place of the lab, which waits.
+    pub fn show(&mut self, recording: Recording) {
+        self.0.show(Some(recording.0));
+    }
+
+    /// Shows the lab again.
+    pub fn resume(&mut self) {
+        self.0.show(None);
     }
 
     /// Warns the page.
@@ -73,6 +89,19 @@ impl Lab {
     /// The messages that are new to the page, as JSON.
     pub fn news(&mut self) -> Vec<String> {
         self.0.news()
+    }
+}
+
+/// A recording to be shown. It is read apart from the lab, which goes on when the memory does not suffice.
+#[wasm_bindgen]
+pub struct Recording(Showing);
+
+#[wasm_bindgen]
+impl Recording {
+    /// Reads a file of this name.
+    #[wasm_bindgen(constructor)]
+    pub fn new(file: &str, bytes: Vec<u8>) -> Result<Recording, String> {
+        Showing::new(file, bytes).map(Recording)
     }
 }
 

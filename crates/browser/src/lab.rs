@@ -1,6 +1,9 @@
 //! A session with a simulated robot, and the one page that it has.
 
+use crate::drive::{self, Change};
+use crate::following::{Following, is_by_hand};
 use crate::recording::Recording;
+use crate::showing::Showing;
 use rumbo_experiment::files::{FileError, Overrides};
 use rumbo_lab::SimulatedRobot;
 use rumbo_log::{Choice, Level, LoggedEvent, Manifest, WriteError};
@@ -9,13 +12,16 @@ use rumbo_session::{
     stop_first,
 };
 use rumbo_wire::Command;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Longest time spent on one round of slices, so that orders do not wait \[us\].
 const ROUND_US: u64 = 20_000;
 /// Orders that wait for a round; a page that gives more at once has gone wrong.
 const WAITING: usize = 1_000;
+/// The session's number. The robot begins anew with each run, so none is left of another session, and the same orders
+/// make the same bytes.
+const SESSION: u8 = 1;
 
 /// What runs when the page is opened: as its address says, or else the first scenario.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
@@ -33,6 +39,29 @@ pub struct Start {
     pub seed: u64,
     /// Values of parameters by name, which hold in every run of the page.
     pub parameters: BTreeMap<String, f64>,
+    /// Commands to repeat in the first run, as [`Shared::drive`].
+    pub drive: Option<String>,
+    /// Until then it was driven \[s\].
+    pub until_s: Option<f64>,
+    /// What the run until then was, as [`Shared::hash`].
+    pub hash: Option<String>,
+}
+
+/// The run as a link carries it: what the page does not know of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Shared {
+    /// With which it began, besides the scenario's.
+    pub parameters: BTreeMap<String, f64>,
+    /// The commands given by hand since, with their times; `None`: a link cannot repeat them.
+    pub drive: Option<String>,
+    /// Why not.
+    pub why_not: Option<String>,
+    /// Changes of commands.
+    pub changes: usize,
+    /// The time now \[s\].
+    pub until_s: f64,
+    /// Of the run until now.
+    pub hash: Option<String>,
 }
 
 impl Default for Start {
@@ -44,6 +73,9 @@ impl Default for Start {
             robot: None,
             seed: 1,
             parameters: BTreeMap::new(),
+            drive: None,
+            until_s: None,
+            hash: None,
         }
     }
 }
@@ -53,27 +85,40 @@ struct Page {
     board: Board,
     /// Time of day \[ms since 1970\].
     day_ms: f64,
-    id: u8,
     recording: Option<Recording>,
+    /// The commands given by hand in this run, and why a link cannot repeat it.
+    changes: Vec<Change>,
+    unlike: Option<&'static str>,
     /// The recording has just run out of room.
     full: bool,
 }
 
 impl Host for Page {
     fn random_id(&mut self) -> u8 {
-        self.id = self.id.wrapping_add(1);
-        self.id
+        SESSION
     }
 
     fn publish(&mut self, event: Event) {
         self.board.take(&event, self.day_ms);
-        if let (Event::Entry(entry), Some(recording)) = (&event, &mut self.recording) {
-            self.full |= !recording.keep(entry);
+        match event {
+            Event::Entry(entry) => {
+                if let Some(recording) = &mut self.recording {
+                    self.full |= !recording.keep(&entry);
+                }
+            }
+            Event::Commanded(t_us, commands) => self.changes.push(Change { t_us, commands }),
+            _ => {}
         }
     }
 
     /// The recording of the run before is gone.
     fn begin_run(&mut self, manifest: Manifest) -> Option<(Level, String)> {
+        self.changes.clear();
+        self.unlike = match (&manifest.image, &manifest.eeprom) {
+            (Some(_), _) => Some("a program of your own is not in a link"),
+            (_, Some(_)) => Some("the robot began with parameters that are saved on it"),
+            _ => None,
+        };
         self.recording = Some(Recording::new(manifest, self.day_ms));
         None
     }
@@ -82,10 +127,16 @@ impl Host for Page {
 /// The lab of one page.
 pub struct Lab {
     driver: Driver<Page, SimulatedRobot>,
+    /// Those of the page's address.
+    parameters: BTreeMap<String, f64>,
+    /// A link that still drives.
+    following: Option<Following>,
     /// Orders since the last round.
     waiting: Vec<Order>,
     lease: Lease,
     page: PageId,
+    /// A recording that is shown; the robot waits meanwhile.
+    showing: Option<Box<Showing>>,
     cursor: Cursor,
     /// The page has had its first message.
     greeted: bool,
@@ -95,12 +146,12 @@ pub struct Lab {
 }
 
 impl Lab {
-    /// The robot at its start, in real time; `id` is to be random, `day_ms` is the time of day
-    /// \[ms since 1970\].
+    /// The robot at its start, in real time; `day_ms` is the time of day \[ms since 1970\].
     ///
     /// # Errors
     /// No such scenario, world, rig, robot or parameter, or a value out of its range.
-    pub fn new(start: Start, id: u8, day_ms: f64) -> Result<Self, FileError> {
+    pub fn new(start: Start, day_ms: f64) -> Result<Self, FileError> {
+        let following = Following::of(&start);
         let choice = Choice {
             scenario: start.scenario,
             world: start.world,
@@ -109,15 +160,16 @@ impl Lab {
         };
         let overrides = Overrides {
             robot: start.robot,
-            parameters: start.parameters.into_iter().collect(),
+            parameters: start.parameters.clone().into_iter().collect(),
             ..Overrides::default()
         };
         let robot = SimulatedRobot::new(overrides, choice)?;
         let page = Page {
             board: Board::default(),
             day_ms,
-            id,
             recording: None,
+            changes: Vec::new(),
+            unlike: None,
             full: false,
         };
         let extras = Extras {
@@ -126,17 +178,28 @@ impl Lab {
         };
         let mut driver = Driver::new(Box::new(robot), page, 1.0, extras);
         driver.begin(0);
+        let mut warnings = Vec::new();
+        let mut following = following.unwrap_or_else(|why| {
+            warnings.push(why);
+            None
+        });
+        for (level, text) in following.iter_mut().flat_map(|link| link.notes.drain(..)) {
+            driver.note(level, text, 0);
+        }
         let mut lease = Lease::default();
         Ok(Self {
             driver,
+            parameters: start.parameters,
+            following,
             waiting: Vec::new(),
             // The first page is always admitted.
             page: lease.join(true).unwrap_or_default(),
             lease,
+            showing: None,
             cursor: Cursor::default(),
             greeted: false,
             seat: None,
-            warnings: Vec::new(),
+            warnings,
         })
     }
 
@@ -156,6 +219,15 @@ impl Lab {
         }
     }
 
+    /// Shows a recording, or `None`: the lab again, whose robot waits meanwhile. To the page it is a new connection.
+    pub fn show(&mut self, recording: Option<Showing>) {
+        self.showing = recording.map(Box::new);
+        self.waiting.clear();
+        self.cursor = Cursor::default();
+        self.greeted = false;
+        self.seat = None;
+    }
+
     /// Warns the page, with the next news.
     pub fn warn(&mut self, text: String) {
         self.warnings.push(text);
@@ -170,18 +242,92 @@ impl Lab {
         let began_us = wall_us();
         self.driver.host().day_ms = day_ms;
         let waiting = std::mem::take(&mut self.waiting);
+        if let Some(showing) = &mut self.showing {
+            showing.advance(&waiting, began_us, day_ms);
+            return Ok(());
+        }
+        self.take_over(&waiting, began_us);
         let stop = waiting.contains(&Order::Robot(Command::Stop));
         self.driver.obey(stop_first(waiting, stop), began_us)?;
         self.driver.wall_passed(began_us);
         let mut now_us = began_us;
-        while now_us < began_us + ROUND_US && self.driver.slice(now_us)? {
+        loop {
+            self.follow(now_us)?;
+            if now_us >= began_us + ROUND_US || !self.driver.slice(now_us)? {
+                break;
+            }
             now_us = wall_us();
         }
         self.driver.update(now_us);
+        self.end_following(now_us);
         if std::mem::take(&mut self.driver.host().full) {
             self.warn("the recording is full: save it, and reset for another one".into());
         }
         Ok(())
+    }
+
+    /// An order given by hand ends what a link repeats; of a calibration no link has anything.
+    fn take_over(&mut self, orders: &[Order], wall_us: u64) {
+        if orders.contains(&Order::Calibrate) {
+            self.driver.host().unlike = Some("a calibration is not in a link");
+        }
+        if orders.iter().any(is_by_hand) && self.following.take().is_some() {
+            let text = "the link drives no further: an order was given here";
+            self.driver.note(Level::Info, text.into(), wall_us);
+        }
+    }
+
+    /// Gives the orders of a link that are due.
+    fn follow(&mut self, wall_us: u64) -> Result<(), TargetError> {
+        let target_us = self.driver.target_us();
+        while let Some(order) = self
+            .following
+            .as_mut()
+            .and_then(|link| link.next(target_us))
+        {
+            self.driver.obey([order], wall_us)?;
+        }
+        Ok(())
+    }
+
+    /// At its end, compares the run with that of the link.
+    fn end_following(&mut self, wall_us: u64) {
+        let target_us = self.driver.target_us();
+        let over = |following: &mut Following| target_us >= following.until_us;
+        if let Some(following) = self.following.take_if(over) {
+            let hash = self.hash(following.until_us);
+            let (level, text) = following.verdict(hash);
+            self.driver.note(level, text, wall_us);
+        }
+    }
+
+    fn hash(&mut self, until_us: u64) -> Option<String> {
+        let recording = self.driver.host().recording.as_ref();
+        recording.and_then(|recording| recording.hash(until_us))
+    }
+
+    /// The run so far, for a link.
+    pub fn share(&mut self) -> Shared {
+        let until_us = self.driver.target_us();
+        let hash = self.hash(until_us);
+        let page = self.driver.host();
+        let changes = page.changes.len();
+        let why_not = match page.unlike {
+            Some(why) => Some(why.into()),
+            None if changes > drive::MOST => Some(format!(
+                "a link has at most {} changes of commands, this run has {changes}",
+                drive::MOST
+            )),
+            None => None,
+        };
+        Shared {
+            drive: why_not.is_none().then(|| drive::to_text(&page.changes)),
+            why_not,
+            changes,
+            until_s: until_us as f64 / 1e6,
+            hash,
+            parameters: self.parameters.clone(),
+        }
     }
 
     /// When the run began: time of day \[ms since 1970\].
@@ -211,7 +357,11 @@ impl Lab {
         if self.seat.replace(view) != Some(view) {
             messages.extend(ToPage::Control(view).json());
         }
-        let mut news = self.driver.host().board.news(&mut self.cursor);
+        let board = match &self.showing {
+            Some(showing) => &showing.board,
+            None => &self.driver.host().board,
+        };
+        let mut news = board.news(&mut self.cursor);
         let t_s = news.state.as_ref().map_or(0.0, |state| state.t_s);
         let refused = self.warnings.drain(..).map(|text| LoggedEvent {
             t_s,

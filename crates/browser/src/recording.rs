@@ -38,6 +38,12 @@ impl Recording {
         self.bytes < ROOM
     }
 
+    /// The run up to this time of the target in one number; `None` where not all of it is kept.
+    pub(crate) fn hash(&self, until_us: u64) -> Option<String> {
+        let entries = self.entries.iter().map(AsRef::as_ref);
+        (self.bytes < ROOM).then(|| format!("{:016x}", rumbo_lab::recorded_hash(entries, until_us)))
+    }
+
     /// The name of a file for it, and the file; `started` is when the run began, as in a manifest.
     pub(crate) fn log(&self, started: String) -> Result<(String, Vec<u8>), WriteError> {
         let manifest = Manifest {

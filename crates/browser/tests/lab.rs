@@ -1,7 +1,7 @@
 //! The lab of a page, driven as its worker drives it, by a clock of the test.
 #![allow(clippy::unwrap_used, reason = "helpers of tests too")]
 
-use rumbo_browser::{Lab, Start};
+use rumbo_browser::{Lab, Shared, Showing, Start};
 use rumbo_log::Log;
 use std::cell::Cell;
 
@@ -28,7 +28,7 @@ fn state(messages: &[String]) -> &str {
 
 #[test]
 fn the_page_is_greeted_first_and_gets_what_the_station_sends() {
-    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    let mut lab = Lab::new(Start::default(), 0.0).unwrap();
     let messages = drive(&mut lab, &Cell::new(0), 1.0);
     assert!(is("hello")(&&messages[0]), "{}", messages[0]);
     for kind in [
@@ -53,7 +53,7 @@ fn the_page_is_greeted_first_and_gets_what_the_station_sends() {
 #[test]
 fn the_robot_is_armed_and_stop_comes_before_all_that_waits() {
     let clock_us = Cell::new(0);
-    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    let mut lab = Lab::new(Start::default(), 0.0).unwrap();
     drive(&mut lab, &clock_us, 1.0);
     lab.order(r#"{"type":"arm"}"#);
     let messages = drive(&mut lab, &clock_us, 0.5);
@@ -67,7 +67,7 @@ fn the_robot_is_armed_and_stop_comes_before_all_that_waits() {
 #[test]
 fn what_is_no_order_is_reported_and_the_lab_goes_on() {
     let clock_us = Cell::new(0);
-    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    let mut lab = Lab::new(Start::default(), 0.0).unwrap();
     drive(&mut lab, &clock_us, 0.1);
     lab.order(r#"{"type":"fly"}"#);
     let messages = drive(&mut lab, &clock_us, 0.5);
@@ -81,7 +81,7 @@ fn what_is_no_order_is_reported_and_the_lab_goes_on() {
 #[test]
 fn a_page_that_slept_does_not_rush_and_a_high_speed_does_not_hold_up_orders() {
     let clock_us = Cell::new(0);
-    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    let mut lab = Lab::new(Start::default(), 0.0).unwrap();
     drive(&mut lab, &clock_us, 0.1);
     lab.order(r#"{"type":"speed","factor":100}"#);
     drive(&mut lab, &clock_us, 0.1);
@@ -106,7 +106,7 @@ fn a_link_sets_the_experiment_and_one_that_is_wrong_says_where() {
         parameters: [("link_timeout_s".to_owned(), 0.3)].into(),
         ..Start::default()
     };
-    let mut lab = Lab::new(start.clone(), 7, 0.0).unwrap();
+    let mut lab = Lab::new(start.clone(), 0.0).unwrap();
     let messages = drive(&mut lab, &clock_us, 20.0);
     let scene = messages.iter().find(is("scene")).unwrap();
     assert!(scene.contains("\"scenario\":\"mode5\"") && scene.contains("\"seed\":9"));
@@ -118,14 +118,14 @@ fn a_link_sets_the_experiment_and_one_that_is_wrong_says_where() {
         parameters: [("link_timeout".to_owned(), 0.3)].into(),
         ..start
     };
-    let why = Lab::new(wrong, 7, 0.0).err().unwrap().to_string();
+    let why = Lab::new(wrong, 0.0).err().unwrap().to_string();
     assert!(why.contains("link_timeout"), "{why}");
 }
 
 #[test]
 fn the_recording_is_a_log_of_the_run_since_its_reset() {
     let clock_us = Cell::new(0);
-    let mut lab = Lab::new(Start::default(), 7, 0.0).unwrap();
+    let mut lab = Lab::new(Start::default(), 0.0).unwrap();
     drive(&mut lab, &clock_us, 1.0);
     lab.order(r#"{"type":"reset","scenario":"mode5","world":null,"seed":3}"#);
     drive(&mut lab, &clock_us, 1.0);
@@ -136,4 +136,205 @@ fn the_recording_is_a_log_of_the_run_since_its_reset() {
     assert_eq!(manifest.scenario.as_deref(), Some("mode5"));
     assert_eq!(manifest.seed, Some(3));
     assert!(log.rows.len() > 20 && log.rows.iter().all(|row| row.t_ms <= 1_000));
+}
+
+/// The run of a lab that drove for this long, as a file.
+fn recorded(seconds: f64) -> Vec<u8> {
+    let mut lab = Lab::new(Start::default(), 0.0).unwrap();
+    drive(&mut lab, &Cell::new(0), seconds);
+    lab.log("2026-11-23T22:40:03Z".into()).unwrap().1
+}
+
+#[test]
+fn a_recording_is_replayed_in_place_of_the_lab_which_goes_on_where_it_was() {
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(Start::default(), 0.0).unwrap();
+    drive(&mut lab, &clock_us, 2.0);
+    let showing = Showing::new("robot.mcap", recorded(4.0)).unwrap();
+    lab.show(Some(showing));
+    let messages = drive(&mut lab, &clock_us, 0.1);
+    // As to a page that has just come: all of the log, paused at its beginning.
+    assert!(is("hello")(&&messages[0]), "{}", messages[0]);
+    let shown = state(&messages);
+    assert!(shown.contains(r#""t_s":0.0"#), "{shown}");
+    assert!(
+        shown.contains(r#""replay":{"name":"robot","duration_s":"#),
+        "{shown}"
+    );
+    assert!(messages.iter().any(|message| is("samples")(&message)));
+    lab.order(r#"{"type":"seek","t_s":1.5}"#);
+    assert!(state(&drive(&mut lab, &clock_us, 0.1)).contains(r#""t_s":1.5"#));
+    lab.order(r#"{"type":"speed","factor":2}"#);
+    let played = drive(&mut lab, &clock_us, 0.51);
+    assert!(
+        state(&played).contains(r#""t_s":2.5"#),
+        "{}",
+        state(&played)
+    );
+    lab.order(r#"{"type":"arm"}"#);
+    let messages = drive(&mut lab, &clock_us, 0.1).concat();
+    assert!(messages.contains("this is a replay: nothing is sent to a robot"));
+
+    lab.show(None);
+    let messages = drive(&mut lab, &clock_us, 0.2);
+    assert!(is("hello")(&&messages[0]), "{}", messages[0]);
+    let shown = state(&messages);
+    assert!(
+        shown.contains(r#""t_s":2."#) && !shown.contains("replay"),
+        "{shown}"
+    );
+    assert!(shown.contains(r#""armed":false"#), "{shown}");
+}
+
+#[test]
+fn what_is_no_recording_says_what_it_is_and_a_damaged_one_is_shown_as_far_as_it_goes() {
+    let why = |file: &str, bytes: &[u8]| Showing::new(file, bytes.to_vec()).unwrap_err();
+    let whole = recorded(3.0);
+    assert_eq!(
+        why("notes.mcap", b"not a log at all"),
+        "notes.mcap: is no MCAP log; give a log of rumbo, or convert a CSV with `rumbo import`"
+    );
+    assert!(why("short.mcap", &whole[..60]).starts_with("short.mcap: ends before"));
+    assert!(why("long.mcap", &vec![0; (100 << 20) + 1]).contains("at most 100 MB"));
+
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(Start::default(), 0.0).unwrap();
+    let cut = &whole[..whole.len() * 2 / 3];
+    lab.show(Some(Showing::new("cut.mcap", cut.to_vec()).unwrap()));
+    let messages = drive(&mut lab, &clock_us, 0.1).concat();
+    assert!(messages.contains("the log ends early") || messages.contains("the log is damaged"));
+}
+
+/// A run driven by hand: ON, another setpoint, a parameter, a movement held by a key that is let go, OFF.
+fn driven_by_hand() -> Shared {
+    let clock_us = Cell::new(0);
+    let start = Start {
+        scenario: "free".into(),
+        world: Some("wall_front".into()),
+        seed: 5,
+        parameters: [("link_timeout_s".to_owned(), 0.4)].into(),
+        ..Start::default()
+    };
+    let mut lab = Lab::new(start, 0.0).unwrap();
+    drive(&mut lab, &clock_us, 0.73);
+    lab.order(r#"{"type":"arm"}"#);
+    drive(&mut lab, &clock_us, 0.41);
+    lab.order(r#"{"type":"move_speed","movement":1,"speed_rad_s":4.3333,"held":true}"#);
+    drive(&mut lab, &clock_us, 1.5);
+    lab.order(r#"{"type":"set_param","id":3,"value":0.123}"#);
+    lab.order(r#"{"type":"move_duty","movement":3,"duty":0.3}"#);
+    drive(&mut lab, &clock_us, 0.9);
+    lab.order(r#"{"type":"disarm"}"#);
+    drive(&mut lab, &clock_us, 1.0);
+    lab.share()
+}
+
+/// What a link of this run opens.
+fn linked(shared: &Shared) -> Start {
+    Start {
+        scenario: "free".into(),
+        world: Some("wall_front".into()),
+        seed: 5,
+        parameters: shared.parameters.clone(),
+        drive: shared.drive.clone(),
+        until_s: Some(shared.until_s),
+        hash: shared.hash.clone(),
+        ..Start::default()
+    }
+}
+
+const THE_SAME: &str = "this is the run of the link, bit for bit";
+
+#[test]
+fn a_run_driven_by_hand_is_the_same_to_the_last_bit_where_its_link_is_opened() {
+    let shared = driven_by_hand();
+    // The movement ends when the key is no longer held.
+    assert_eq!(shared.changes, 6, "{:?}", shared.drive);
+    assert!(shared.drive.as_ref().unwrap().len() < 200);
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(linked(&shared), 0.0).unwrap();
+    // In other rounds.
+    lab.order(r#"{"type":"speed","factor":7.7}"#);
+    let messages = drive(&mut lab, &clock_us, 1.2).concat();
+    assert!(messages.contains(THE_SAME), "{messages}");
+    // It can be shared on.
+    let again = lab.share();
+    assert_eq!(again.drive, shared.drive);
+
+    let other = Start {
+        seed: 6,
+        ..linked(&shared)
+    };
+    let mut lab = Lab::new(other, 0.0).unwrap();
+    let messages = drive(&mut lab, &clock_us, 6.0).concat();
+    assert!(messages.contains("this is not the run of the link"));
+}
+
+#[test]
+fn an_order_given_by_hand_ends_what_a_link_repeats_and_stop_stays_stop() {
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(linked(&driven_by_hand()), 0.0).unwrap();
+    let messages = drive(&mut lab, &clock_us, 1.1);
+    assert!(
+        state(&messages).contains(r#""armed":true"#),
+        "{}",
+        state(&messages)
+    );
+    lab.order(r#"{"type":"stop"}"#);
+    let messages = drive(&mut lab, &clock_us, 5.0);
+    assert!(state(&messages).contains(r#""armed":false"#));
+    let messages = messages.concat();
+    assert!(messages.contains("the link drives no further: an order was given here"));
+    assert!(!messages.contains(THE_SAME) && !messages.contains("movement"));
+}
+
+#[test]
+fn a_link_with_too_many_changes_or_wrong_ones_says_so_and_opens_what_it_can() {
+    let said = |drive_text: &str| {
+        let start = Start {
+            drive: Some(drive_text.into()),
+            until_s: Some(1.0),
+            hash: Some("0".into()),
+            ..Start::default()
+        };
+        let mut lab = Lab::new(start, 0.0).unwrap();
+        drive(&mut lab, &Cell::new(0), 1.5)
+    };
+    let many = vec!["0.5 arm"; 17].join("*");
+    let messages = said(&many);
+    assert!(state(&messages).contains(r#""armed":true"#));
+    assert!(
+        messages
+            .concat()
+            .contains("the link has 17 changes of commands")
+    );
+    let messages = said("0.5 arm*0.4 stop");
+    assert!(state(&messages).contains(r#""armed":false"#));
+    assert!(
+        messages
+            .concat()
+            .contains("the link's commands are left out")
+    );
+}
+
+#[test]
+fn a_run_that_no_link_can_repeat_says_why() {
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(Start::default(), 0.0).unwrap();
+    drive(&mut lab, &clock_us, 1.0);
+    for value in 0..17 {
+        lab.order(&format!(
+            r#"{{"type":"reference","value":0.{}}}"#,
+            value + 30
+        ));
+        drive(&mut lab, &clock_us, 0.3);
+    }
+    let shared = lab.share();
+    assert_eq!((shared.changes, &shared.drive), (17, &None));
+    assert!(shared.why_not.unwrap().contains("at most 16"));
+    lab.order(r#"{"type":"save_params"}"#);
+    drive(&mut lab, &clock_us, 1.0);
+    lab.order(r#"{"type":"reset","scenario":"mode5","world":null,"seed":3}"#);
+    drive(&mut lab, &clock_us, 1.0);
+    assert!(lab.share().why_not.unwrap().contains("saved on it"));
 }

@@ -93,15 +93,13 @@ fn files(format: Format, stamp: &Stamp) -> Vec<(&'static str, Mark)> {
 /// Reports on stderr that a log ends early; an empty one is an error.
 pub(crate) fn warn_if_cut(path: &Path, log: &Log) -> Result<(), Failure> {
     let shown = path.display();
-    if let Some(why) = log.cut.as_ref().filter(|_| log.holds_nothing()) {
+    if let Some(why) = log.why_empty() {
         let again = log
             .manifest
             .as_ref()
             .and_then(once_more)
             .unwrap_or_default();
-        return Err(Failure::Input(format!(
-            "{shown}: nothing of what happened can be had from it: {why}{again}"
-        )));
+        return Err(Failure::Input(format!("{shown}: {why}{again}")));
     }
     for note in &log.notes {
         output::note(&format!("{shown}: {note}"));

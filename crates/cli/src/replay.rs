@@ -14,13 +14,10 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     }
     let read = match args.ghost {
         Some(_) => log_file::read,
-        None => log_file::read_signals,
+        None => log_file::read_replay,
     };
     let mut log = read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log)?;
-    if log.speaks_text() {
-        log = log_file::read(&args.log).map_err(Failure::input)?;
-    }
     let ghost = match &args.ghost {
         Some(scenario) => Some(ghost::add_to(&mut log, &args.log, scenario.as_deref())?),
         None => None,

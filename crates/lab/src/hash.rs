@@ -3,6 +3,7 @@
 use crate::program::Held;
 use rumbo_experiment::files::{FileError, Library, Overrides};
 use rumbo_experiment::run::{self, RunResult};
+use rumbo_log::{Entry, Row};
 use rumbo_sim::trace::Sample;
 
 const CRC: crc::Crc<u64> = crc::Crc::<u64>::new(&crc::CRC_64_XZ);
@@ -18,6 +19,36 @@ pub fn run_hash(scenario: &str, seed: u64, image: Option<(&str, &[u8])>) -> Resu
         setup.firmware = Some(Held::new(name, bytes)?.firmware(&setup, None)?);
     }
     Ok(of(&run::run(&setup, seed)?))
+}
+
+/// Telemetry is on the board this long after its time at the latest, or was lost \[ms\].
+const UNDER_WAY_MS: u64 = 1_000;
+
+/// A session's run up to this time of the target: the CRC-64 of all bytes on the link before it, and of all signals, ground
+/// truth among them, but those of its last second, which may be under way.
+#[must_use]
+pub fn recorded_hash<'a>(entries: impl IntoIterator<Item = &'a Entry>, until_us: u64) -> u64 {
+    let signals_ms = (until_us / 1_000).saturating_sub(UNDER_WAY_MS) as i64;
+    // Apart: which of both comes first depends on how often the session was asked.
+    let (mut link, mut signals) = (CRC.digest(), CRC.digest());
+    for entry in entries {
+        match entry {
+            Entry::Burst(burst) if burst.t_us < until_us => {
+                link.update(&burst.t_us.to_le_bytes());
+                link.update(&[u8::from(burst.to_robot)]);
+                link.update(&burst.bytes);
+            }
+            Entry::Rows(rows) => {
+                for row in rows.iter().filter(|row| row.t_ms < signals_ms) {
+                    let values = (0..Row::names().count()).filter_map(|column| row.get(column));
+                    values.for_each(|value| signals.update(&bits(value)));
+                }
+            }
+            _ => {}
+        }
+    }
+    link.update(&signals.finalize().to_le_bytes());
+    link.finalize()
 }
 
 fn of(result: &RunResult) -> u64 {

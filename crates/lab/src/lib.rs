@@ -13,7 +13,7 @@ mod robot;
 mod scene;
 
 pub use calibration::calibration;
-pub use hash::run_hash;
+pub use hash::{recorded_hash, run_hash};
 pub use program::{Made, Make, OwnProgram, Workshop, problem};
 pub use robot::{Cable, SimulatedRobot, type_to};
 pub use scene::scene;

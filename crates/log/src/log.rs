@@ -88,6 +88,15 @@ impl Log {
         silent && self.readings.is_empty() && self.link.is_empty() && self.said.is_empty()
     }
 
+    /// Why nothing of what happened can be had from it, if so.
+    #[must_use]
+    pub fn why_empty(&self) -> Option<String> {
+        let why = self.cut.as_ref().filter(|_| self.holds_nothing())?;
+        Some(format!(
+            "nothing of what happened can be had from it: {why}"
+        ))
+    }
+
     /// The robot spoke the original's text, which people can read, too.
     #[must_use]
     pub fn speaks_text(&self) -> bool {

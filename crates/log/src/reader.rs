@@ -39,6 +39,19 @@ impl Log {
         read(from, false)
     }
 
+    /// Reads a log to be shown as a replay: without the raw bytes of its link, unless people read them as text.
+    ///
+    /// # Errors
+    /// As [`Log::read`].
+    pub fn read_replay(mut from: impl Read + Seek) -> Result<Self, ReadError> {
+        let log = read(&mut from, false)?;
+        if !log.speaks_text() {
+            return Ok(log);
+        }
+        from.rewind()?;
+        read(from, true)
+    }
+
     /// How the robot first named itself in frames.
     #[must_use]
     pub fn hello(&self) -> Option<Hello> {

@@ -116,6 +116,7 @@ impl Board {
                 self.bytes.clear();
                 false
             }
+            Event::Commanded(..) => false,
             Event::Received(now_ms) => {
                 self.received = (wall_ms, *now_ms);
                 false

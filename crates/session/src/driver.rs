@@ -83,9 +83,9 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
         &mut self.target
     }
 
-    /// The target's time \[us\].
+    /// The target's time since its start or last reset \[us\].
     #[must_use]
-    pub fn now_us(&self) -> u64 {
+    pub fn target_us(&self) -> u64 {
         self.target.now_us()
     }
 

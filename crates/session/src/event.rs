@@ -2,6 +2,7 @@
 
 use crate::console::ConsoleText;
 use rumbo_log::Entry;
+use rumbo_wire::Command;
 use std::sync::Arc;
 
 /// Something to show or to record.
@@ -13,6 +14,9 @@ pub enum Event {
     Entry(Arc<Entry>),
     /// Text from a robot; a log has its bytes.
     Console(ConsoleText),
+    /// Commands that the operator gave together, at this time of the target \[us\]; an end of a movement held by a key is
+    /// one too.
+    Commanded(u64, Vec<Command>),
     /// The next samples arrived at this time of the session \[ms\].
     Received(i64),
 }

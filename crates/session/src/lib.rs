@@ -2,7 +2,8 @@
 //!
 //! A [`Session`] knows no port, thread, clock or socket. Its [`Driver`] advances the [`Target`], hands over the bytes
 //! received, sends the outgoing ones, and publishes the [`Event`]s: to the page's [`Board`], to a log, to a bridge,
-//! each of which takes what it needs. The program around the driver, its [`Host`], has the clock and the threads.
+//! each of which takes what it needs. The program around the driver, its [`Host`], has the clock and the threads. A
+//! [`Replay`] gives the same events of a log.
 
 pub mod anomaly;
 mod board;
@@ -24,6 +25,7 @@ mod origin;
 mod pace;
 mod page;
 mod printed;
+mod replay;
 mod robot_clock;
 mod round_trip;
 mod session;
@@ -45,6 +47,7 @@ pub use lease::{Lease, PageId, Seat, View};
 pub use orders::{BadOrder, MAX_ORDER, MAX_SPEED, Order, SHORT_ORDER, stop_first};
 pub use pace::{Pace, SLICE_US};
 pub use page::{LinkBytes, ReadingGroup, ToPage};
+pub use replay::Replay;
 pub use session::{Ask, Going, Now, Session, Sight};
 pub use target::{Abilities, About, Ghost, LinkNews, Shown, Standing, Target};
 pub use watch::{BaudTooLow, DEFAULT_BAUD, check_baud};

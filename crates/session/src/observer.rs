@@ -202,6 +202,11 @@ impl Observer {
         self.refused.as_deref()
     }
 
+    /// Notes the operator's commands.
+    pub(crate) fn commanded(&mut self, t_us: u64, commands: Vec<Command>) {
+        self.events.push(Event::Commanded(t_us, commands));
+    }
+
     /// Notes raw bytes of the link.
     pub(crate) fn link(&mut self, burst: Burst) {
         self.emit(Entry::Burst(burst));

@@ -22,6 +22,14 @@ pub fn read_signals(path: &Path) -> Result<Log, LogError> {
     open(path).and_then(Log::read_signals).map_err(of(path))
 }
 
+/// Reads a log to be shown as a replay.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_replay(path: &Path) -> Result<Log, LogError> {
+    open(path).and_then(Log::read_replay).map_err(of(path))
+}
+
 /// What a log is, without reading it.
 ///
 /// # Errors

@@ -194,10 +194,7 @@ impl Recordings {
     /// Serves a replay; returns its address.
     pub(crate) fn replay(&self, name: &str) -> Result<String, RecordingError> {
         let path = self.find(name)?;
-        let mut log = log_file::read_signals(&path).map_err(RecordingError::NotRead)?;
-        if log.speaks_text() {
-            log = log_file::read(&path).map_err(RecordingError::NotRead)?;
-        }
+        let log = log_file::read_replay(&path).map_err(RecordingError::NotRead)?;
         let (url, server) = (self.show)(name.into(), log).map_err(RecordingError::NotServed)?;
         let mut replays = self.replays.lock().unwrap_or_else(PoisonError::into_inner);
         if replays.len() == MOST_REPLAYS {

@@ -8,13 +8,13 @@ use crate::guard::{self, Guard};
 use crate::lease::Lease;
 use crate::recorder::Recording;
 use crate::recordings::Recordings;
-use crate::replay::Replay;
+use crate::replay;
 use crate::session::{Orders, Running};
 use crate::socket::Hub;
 use crate::subscribers::Subscribers;
 use crate::web;
 use rumbo_log::Log;
-use rumbo_session::{Extras, Ghost, Order, Target, TargetError};
+use rumbo_session::{Extras, Ghost, Order, Replay, Target, TargetError};
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
@@ -193,7 +193,7 @@ pub fn serve_log(
     ghost: Option<Box<dyn Ghost>>,
 ) -> Result<Lab, ServeError> {
     start(at, None, move |board, orders| {
-        Replay::new(name, log, board, orders, speed, ghost).run();
+        replay::run(Replay::new(name, log, speed, ghost), &board, &orders);
         Ok(())
     })
 }

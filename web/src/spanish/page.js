@@ -23,11 +23,17 @@ export const PAGE = {
   'connecting…': 'conectando…', 'no connection': 'sin conexión',
   'No connection to the station. Trying again…': 'Sin conexión con la estación. Reintentando…', 'No connection to the station: {}. Trying again…': 'Sin conexión con la estación: {}. Reintentando…',
   'The lab of this page has ended: {}. Load the page again.': 'El laboratorio de esta página ha terminado: {}. Carga la página otra vez.',
-  'This page records the run until the next reset. Rumbo on a computer opens the file: rumbo replay shows it, rumbo rerun runs it again. It also keeps every session and compares two.':
-    'Esta página graba hasta el próximo reinicio. Rumbo en un ordenador abre el archivo: rumbo replay lo muestra, rumbo rerun lo ejecuta otra vez. También guarda cada sesión y compara dos.',
+  'This page records the run until the next reset. A saved recording can be opened here again. Rumbo on a computer opens it too: rumbo replay shows it, rumbo rerun runs it again. It also keeps every session and compares two.':
+    'Esta página graba hasta el próximo reinicio. Una grabación guardada se puede volver a abrir aquí. Rumbo en un ordenador también la abre: rumbo replay la muestra, rumbo rerun la ejecuta otra vez. Además guarda cada sesión y compara dos.',
+  'Replay this run': 'Reproducir esta grabación', 'Show the run so far as a replay; the robot waits meanwhile': 'Reproduce lo grabado hasta ahora; el robot espera mientras tanto',
+  'Open a recording…': 'Abrir una grabación…', 'Show a saved recording, .mcap, as a replay; dropping it on the page does the same': 'Reproduce una grabación guardada, .mcap; también se puede soltar en la página',
+  'Back to the lab': 'Volver al laboratorio', 'Close the recording: the lab goes on where it was': 'Cierra la grabación: el laboratorio sigue donde estaba',
   'Save this run': 'Guardar esta grabación', 'Save the recording of the run so far as a file': 'Guarda en un archivo lo grabado hasta ahora',
   'Share': 'Compartir', 'A link that opens this run elsewhere': 'Un enlace que abre esto mismo en otro sitio', 'Copy': 'Copiar', 'copied': 'copiado', 'copy it from the field': 'cópialo del campo',
-  'The link opens this scenario, world, sensor layout and seed. Your program is not in it.': 'El enlace abre este escenario, mundo, montaje y semilla. Tu programa no va en él.',
+  'The link opens this scenario, world, sensor layout and seed, and repeats this run from its start, to the last bit.':
+    'El enlace abre este escenario, mundo, montaje y semilla, y repite esta ejecución desde el principio, bit a bit.',
+  'with what was done by hand until {} s (changes of commands: {})': 'con lo hecho a mano hasta {} s (cambios de órdenes: {})',
+  'What was done by hand is not in it: {}.': 'Lo hecho a mano no va en él: {}.', 'it has {} characters: some programs cut it': 'tiene {} caracteres: algunos programas lo cortan',
   'The link opens this scenario, world, sensor layout and seed, with these parameters.': 'El enlace abre este escenario, mundo, montaje y semilla, con estos parámetros.',
   'Run a program…': 'Ejecutar un programa…', 'Run a program for the Arduino Mega, .elf or .hex, on an emulated one': 'Ejecuta un programa para el Arduino Mega, .elf o .hex, en uno emulado',
   '.elf or .hex, or drop one here; an .ino needs rumbo on a computer': '.elf o .hex, o suelta uno aquí; un .ino necesita rumbo en un ordenador',
@@ -98,7 +104,7 @@ export const PAGE = {
   // Replay.
   'whole log': 'toda', 'Follow': 'Seguir', 'ghost l.': 'fantasma izq.', 'ghost r.': 'fantasma der.', 'ghost front': 'fantasma frontal', 'ghost range, left sonar': 'distancia del fantasma, sonar izquierdo', 'ghost range, right sonar': 'distancia del fantasma, sonar derecho',
   'ghost range, front sonar': 'distancia del fantasma, sonar frontal', 'ghost speed, left wheel': 'velocidad del fantasma, rueda izquierda', 'ghost speed, right wheel': 'velocidad del fantasma, rueda derecha',
-  'Replay': 'Grabación', 'The log that is shown': 'La grabación que se muestra', 'Play': 'Reproducir', 'Pause': 'Pausa',
+  'Replay': 'Grabación', 'Play': 'Reproducir', 'Pause': 'Pausa',
   'Play or pause (K)': 'Reproducir o pausar (K)', 'One telemetry frame back (comma)': 'Una trama de telemetría atrás (coma)', 'One frame back': 'Una trama atrás',
   'One telemetry frame on (full stop)': 'Una trama de telemetría adelante (punto)', 'One frame on': 'Una trama adelante',
   'Time in the log': 'Tiempo en la grabación', 'Speed of the replay': 'Velocidad de la reproducción', '{} of {} s': '{} de {} s',

@@ -139,7 +139,7 @@ impl<T: Target> Driven<T> {
 
     /// The session's time \[us\].
     pub(crate) fn now_us(&self) -> u64 {
-        self.driver.now_us()
+        self.driver.target_us()
     }
 
     /// The newest signals that are not older than `age_us`.

@@ -27,6 +27,7 @@ impl Session {
         if let Err(why) = self.client.submit(command, now.target_us) {
             return self.refuse(&command, &self.why_not(why), now);
         }
+        self.observer.commanded(now.target_us, vec![command]);
         self.await_parameter(&command);
         // At once: STOP does not wait for the next slice.
         self.say(now);
@@ -34,22 +35,31 @@ impl Session {
 
     /// Commands that belong together: sent one after the other, all accepted or none.
     pub(super) fn commands(&mut self, commands: Vec<Command>, now: Now) {
+        if self.submit(&commands, now) {
+            self.observer.commanded(now.target_us, commands);
+        }
+    }
+
+    /// Whether they were accepted.
+    fn submit(&mut self, commands: &[Command], now: Now) -> bool {
         if self.client.speaks_text() {
-            return commands
-                .into_iter()
-                .for_each(|command| self.command(command, now));
+            let each = commands.iter();
+            each.for_each(|command| self.command(*command, now));
+            return false;
         }
         self.observer.order_given();
-        let Some(first) = commands.first().copied() else {
-            return;
+        let Some(first) = commands.first() else {
+            return false;
         };
         if let Err(why) = self.client.submit_in_turn(commands.iter().copied()) {
-            return self.refuse(&first, &self.why_not(why), now);
+            self.refuse(first, &self.why_not(why), now);
+            return false;
         }
         commands
             .iter()
             .for_each(|command| self.await_parameter(command));
         self.say(now);
+        true
     }
 
     fn await_parameter(&mut self, command: &Command) {
@@ -77,6 +87,7 @@ impl Session {
             let why = "this robot speaks the original's text, which has no words for it";
             return self.refuse(command, why, now);
         }
+        self.observer.commanded(now.target_us, vec![*command]);
         let said = words::command(command, self.client.mode());
         let text = format!("{said}: sent, text is not acknowledged");
         self.note(rumbo_log::Level::Info, text, now);
@@ -141,7 +152,7 @@ impl Session {
         self.briefed = true;
         let mut commands = self.about.first_commands.clone();
         commands.retain(|command| *command != Command::Arm);
-        self.commands(commands, now);
+        self.submit(&commands, now);
     }
 
     /// The ghost was moved to the robot, or why not.

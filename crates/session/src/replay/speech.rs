@@ -1,8 +1,8 @@
 //! Text in a log, from the USARTs of an emulated chip or a robot that speaks text, shown as the playhead passes it.
 
-use crate::board::Board;
+use crate::console::{ConsoleText, LINK_CONSOLE, readable};
+use crate::event::Event;
 use rumbo_log::Log;
-use rumbo_session::{ConsoleText, Event, LINK_CONSOLE, readable};
 use std::collections::BTreeMap;
 
 /// The text, and how much of it the pages have.
@@ -41,23 +41,22 @@ impl Speech {
         self.said.partition_point(|(at_ms, ..)| *at_ms <= t_ms)
     }
 
-    /// The playhead was moved: the pages, now empty, get the text between these times.
-    pub(super) fn seek(&mut self, from_ms: f64, to_ms: f64, board: &Board) {
+    /// The playhead was moved: the pages, now empty, have none of the text after this time.
+    pub(super) fn seek(&mut self, from_ms: f64) {
         self.next = self.after(from_ms);
-        self.advance(to_ms, board);
     }
 
-    /// The playhead has advanced to this time.
-    pub(super) fn advance(&mut self, to_ms: f64, board: &Board) {
+    /// The playhead has advanced to this time: the text up to there.
+    pub(super) fn advance(&mut self, to_ms: f64) -> impl Iterator<Item = Event> {
         let end = self.after(to_ms).max(self.next);
         let mut by_usart: BTreeMap<u8, Vec<u8>> = BTreeMap::new();
         for (_, usart, bytes) in self.said.get(self.next..end).unwrap_or_default() {
             by_usart.entry(*usart).or_default().extend(bytes);
         }
         self.next = end;
-        for (usart, bytes) in by_usart {
+        by_usart.into_iter().map(|(usart, bytes)| {
             let text = readable(&bytes);
-            board.take(&Event::Console(ConsoleText { usart, text }));
-        }
+            Event::Console(ConsoleText { usart, text })
+        })
     }
 }

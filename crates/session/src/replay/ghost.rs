@@ -1,14 +1,12 @@
 //! The ghost of a log, restarted in the middle: it is advanced from the beginning up to there, moved to the robot's
-//! pose, and continues. That takes a while for a long log and is done in slices: what is not known yet is not shown,
+//! pose, and continues. That takes a while for a long log and is done in steps: what is not known yet is not shown,
 //! and nothing blocks.
 
+use crate::error::TargetError;
+use crate::target::{Ghost, Standing};
 use rumbo_log::{Log, Row, compose};
-use rumbo_session::{Ghost, Standing, TargetError};
-use std::time::{Duration, Instant};
 
-/// Time spent on the ghost per call.
-const SLICE: Duration = Duration::from_millis(12);
-/// It is advanced by this much between two checks of the time \[us\].
+/// On its way to where it is put, a step advances it by this much \[us\].
 const STEP_US: u64 = 500_000;
 
 /// A restart in progress.
@@ -61,29 +59,27 @@ impl GhostReplay {
         Ok(())
     }
 
-    /// Works for one slice of time.
+    /// Works one step further.
     pub(super) fn work(&mut self, log: &mut Log) -> Result<(), TargetError> {
-        let until = Instant::now() + SLICE;
-        while let Some(work) = &mut self.work
-            && Instant::now() < until
-        {
-            if let Some((at_us, standing)) = work.put {
-                work.reached_us = (work.reached_us + STEP_US).min(at_us);
-                self.ghost.advance_to(work.reached_us)?;
-                if work.reached_us == at_us {
-                    self.ghost.place(standing);
-                    work.put = None;
-                }
-                continue;
+        let Some(work) = &mut self.work else {
+            return Ok(());
+        };
+        if let Some((at_us, standing)) = work.put {
+            work.reached_us = (work.reached_us + STEP_US).min(at_us);
+            self.ghost.advance_to(work.reached_us)?;
+            if work.reached_us == at_us {
+                self.ghost.place(standing);
+                work.put = None;
             }
-            match log.rows.get_mut(work.next_row) {
-                Some(row) => {
-                    let at = self.ghost.advance_to(to_us(row.t_ms))?;
-                    row.set_ghost(Some(&at));
-                    work.next_row += 1;
-                }
-                None => self.work = None,
+            return Ok(());
+        }
+        match log.rows.get_mut(work.next_row) {
+            Some(row) => {
+                let at = self.ghost.advance_to(to_us(row.t_ms))?;
+                row.set_ghost(Some(&at));
+                work.next_row += 1;
             }
+            None => self.work = None,
         }
         Ok(())
     }
