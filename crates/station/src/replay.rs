@@ -140,6 +140,7 @@ impl Replay {
             | Order::Route(_)
             | Order::Type(..)
             | Order::Program(..)
+            | Order::Profile(_)
                 if !self.warned =>
             {
                 self.warned = true;
@@ -150,6 +151,7 @@ impl Replay {
             | Order::Route(_)
             | Order::Type(..)
             | Order::Program(..)
+            | Order::Profile(_)
             | Order::TakeControl
             | Order::ReleaseControl => {}
         }
