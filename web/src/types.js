@@ -85,13 +85,20 @@
  * @property {string} [refused] The last order, if it was refused or dropped, and why.
  * @property {string[]} [alarms] Alarms that need action at once.
  * @property {{phase: 'running', since_s: number} | {phase: 'done', findings: Findings, at_s: number} | {phase: 'failed', why: string, at_s: number}} [calibration]
- * @property {{name: string, link_usart: number | null, phase: 'running' | 'compiling' | 'rejected', watched: boolean, complaints?: {place: string | null, text: string, line: string | null}[]}} [program] Of an emulated robot; what the compiler rejects of it.
+ * @property {{name: string, link_usart: number | null, phase: 'running' | 'compiling' | 'rejected', watched: boolean, complaints?: {place: string | null, text: string, line: string | null}[], profile?: Profile}} [program] Of an emulated robot; what the compiler rejects of it; where its time goes, while that is counted.
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
  *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number,
  *   clock_offset_ms?: number, clock_fast_ppm?: number}} link When the robot's clock began, in the session's time, and by how much it is fast.
  * @property {{mode: number, armed: boolean, fault: string | null, battery_v: number | null, true_battery_v: number | null,
  *   reference: [number, number], overruns: number, servo_rad: number, rig: string | null, errand: Errand, foreign: boolean, text?: boolean}} robot `text`: it speaks the original's.
+ *
+ * @typedef {object} Profile Where the time of a program goes, in cycles of its clock.
+ * @property {number} cycles
+ * @property {number} asleep
+ * @property {number} hertz
+ * @property {{name: string, calls: number, own: number, total: number}[]} functions
+ * @property {{vector: number, name: string, count: number, total: number, mean: number, longest: number, worst_latency: number}[]} interrupts
  *
  * @typedef {{source: 'truth' | 'loops' | {usart: number}, names: string[], rows: [number, Cell[]][]}} ReadingGroup Time [s] and values of signals beside the telemetry; `usart`: the port that printed them.
  *
@@ -131,6 +138,7 @@
  *   | {type: 'rig', rig: string}
  *   | {type: 'set_param', id: number, value: number}
  *   | {type: 'program', name: string, data: string}
+ *   | {type: 'profile', on: boolean}
  *   | {type: 'type', usart: number, text: string}
  *   | {type: 'speed', factor: number}
  *   | {type: 'seek', t_s: number}

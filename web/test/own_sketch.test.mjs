@@ -57,6 +57,25 @@ test('a sketch without telemetry is seen to drive, and what it cannot serve is n
   assert.deepEqual(ports, ['Serial (USB)', 'Serial1 (Bluetooth)']);
 });
 
+test('the tab Profile shows where its time goes, and its interrupts', { skip }, async () => {
+  await page.getByRole('tab', { name: 'Profile' }).click();
+  assert.equal(await page.locator('#profile-functions').isVisible(), false);
+  await page.locator('#profile-run').click();
+  const cells = (/** @type {import('playwright-core').Locator} */ row) => row.locator('th, td').allTextContents();
+  // `pulseIn` waits for the echo, `delay` for the next round; timer 0 is the clock of both.
+  const waits = page.locator('#profile-functions tbody tr').filter({ hasText: /pulseIn|countPulse|delay|micros/ });
+  await waits.first().waitFor();
+  const clock = page.locator('#profile-interrupts tbody tr', { hasText: 'TIMER0_OVF' });
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().program.profile?.cycles > 16e6);
+  const [, count, rate, , mean, longest] = (await cells(clock)).map((text) => Number(text.replace(/[^\d.]/g, '')));
+  // Every 1,024 us.
+  assert.ok(Number(count) > 900 && Math.abs(Number(rate) - 976.6) < 2, `${count} ${rate}`);
+  assert.ok(Number(mean) > 20 && Number(mean) <= Number(longest) && Number(longest) < 400, `${mean} ${longest}`);
+  await page.locator('#profile-run').click();
+  await page.locator('#profile-functions').waitFor({ state: 'hidden' });
+  await page.getByRole('tab', { name: 'Events' }).click();
+});
+
 test('the numbers that it prints are plotted', { skip }, async () => {
   await page.locator('#console').filter({ hasText: /\d+\.\d\d/ }).waitFor();
   await page.locator('#console-plot').click();

@@ -3,9 +3,13 @@
 
 use crate::manifest::hash_of;
 use crate::robot::SimulatedRobot;
+use rumbo_emulator::devices::CLOCK_HZ;
 use rumbo_emulator::image::Image;
+use rumbo_emulator::observe::profile::Profile;
 use rumbo_experiment::files::{FileError, Setup, firmware};
-use rumbo_log::{Complaint, Level, ProgramPhase, ProgramState};
+use rumbo_log::{
+    Complaint, FunctionShare, InterruptShare, Level, ProgramPhase, ProgramProfile, ProgramState,
+};
 use rumbo_session::{LinkNews, TargetError};
 use rumbo_sim::boards::Board;
 use rumbo_sim::mega::firmware::Firmware;
@@ -40,6 +44,39 @@ pub fn problem(text: String) -> Complaint {
     Complaint {
         text,
         ..Complaint::default()
+    }
+}
+
+/// Most functions that the page lists.
+const FUNCTIONS: usize = 30;
+
+/// A profile for the page.
+fn shares(profile: &Profile) -> ProgramProfile {
+    let functions = profile.costliest(FUNCTIONS).into_iter();
+    let interrupts = profile.interrupts().into_iter();
+    ProgramProfile {
+        cycles: profile.cycles(),
+        asleep: profile.cycles_asleep(),
+        hertz: CLOCK_HZ as u32,
+        functions: functions
+            .map(|each| FunctionShare {
+                name: each.name,
+                calls: each.calls,
+                own: each.own,
+                total: each.total,
+            })
+            .collect(),
+        interrupts: interrupts
+            .map(|each| InterruptShare {
+                vector: each.vector,
+                name: profile.vector_name(each.vector).to_owned(),
+                count: each.count,
+                total: each.total,
+                mean: each.mean(),
+                longest: each.longest,
+                worst_latency: each.worst_latency,
+            })
+            .collect(),
     }
 }
 
@@ -120,6 +157,7 @@ impl SimulatedRobot {
             watched: program.is_some_and(|program| program.watched),
             phase: program.map(|program| program.phase).unwrap_or_default(),
             complaints: program.map_or_else(Vec::new, |program| program.complaints.clone()),
+            profile: mega.chip().observers().profiled().map(shares),
         })
     }
 

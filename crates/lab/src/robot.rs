@@ -4,6 +4,7 @@ use crate::prepare::{Prepared, prepare};
 use crate::program::{Held, Make, OwnProgram};
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
+use rumbo_emulator::observe::profile::Profile;
 use rumbo_experiment::files::{FileError, Library, Overrides};
 use rumbo_log::{Choice, Manifest, MapPose, ProgramState, Scene, Source, Truth};
 use rumbo_session::{Abilities, LinkNews, Shown, Standing, Target, TargetError};
@@ -43,6 +44,8 @@ pub struct SimulatedRobot {
     mode: ModeId,
     /// When the instruments are read next \[us\].
     reading_due_us: u64,
+    /// The cycles of the emulated program are counted.
+    profiling: bool,
     /// The emulated program's end has been reported.
     ended: bool,
     /// What has happened to the program and is not reported yet.
@@ -82,6 +85,7 @@ impl SimulatedRobot {
             manifest,
             mode,
             reading_due_us: 0,
+            profiling: false,
             ended: false,
             news: VecDeque::new(),
             scene,
@@ -285,6 +289,15 @@ impl Target for SimulatedRobot {
         }
     }
 
+    fn profile(&mut self, on: bool) -> Result<(), TargetError> {
+        if self.sim.mega().is_none() {
+            return Err(TargetError::NoChip);
+        }
+        self.profiling = on;
+        self.begin_profile();
+        Ok(())
+    }
+
     fn run_program(&mut self, name: String, content: Vec<u8>) -> Result<(), TargetError> {
         self.drop_program(name, content)
     }
@@ -314,6 +327,21 @@ impl Target for SimulatedRobot {
 }
 
 impl SimulatedRobot {
+    /// Counts the cycles of the program at the pins from zero, if they are to be counted.
+    fn begin_profile(&mut self) {
+        let Some(mega) = self.sim.mega_mut() else {
+            return;
+        };
+        let counts = self
+            .profiling
+            .then(|| Profile::new(mega.firmware().image()));
+        let observers = mega.chip_mut().observers_mut();
+        match counts {
+            Some(counts) => observers.profile(counts),
+            None => observers.end_profile(),
+        }
+    }
+
     /// Starts again from time 0, as switched off and on again: saved parameters persist.
     pub(crate) fn start_again(&mut self, choice: Choice) -> Result<(), FileError> {
         let memory = self.sim.memory();
@@ -330,6 +358,7 @@ impl SimulatedRobot {
         if let Some(debugging) = &mut self.debugging {
             debugging.forget();
         }
+        self.begin_profile();
         self.mode = fresh.mode;
         (self.reading_due_us, self.ended) = (0, false);
         self.first_commands = fresh.first_commands;

@@ -57,8 +57,8 @@ pub use scene::{
 pub use schema::Topic;
 pub use signals::{Cell, EARLIER_MS, Row, Sample, Spread};
 pub use state::{
-    CalibrationState, Complaint, End, Finding, Findings, LinkState, ProgramPhase, ProgramState,
-    ReplayState, RobotState, State, Task,
+    CalibrationState, Complaint, End, Finding, Findings, FunctionShare, InterruptShare, LinkState,
+    ProgramPhase, ProgramProfile, ProgramState, ReplayState, RobotState, State, Task,
 };
 pub use summary::Summary;
 pub use writer::{LogWriter, WriteError};

@@ -51,6 +51,56 @@ pub struct ProgramState {
     /// What the compiler rejects; then the robot stands still.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub complaints: Vec<Complaint>,
+    /// Where its time goes, while that is measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile: Option<ProgramProfile>,
+}
+
+/// Where the time of a program goes; all times in cycles of its clock.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ProgramProfile {
+    /// All that were counted.
+    pub cycles: u64,
+    /// Of them asleep.
+    pub asleep: u64,
+    /// Cycles in a second.
+    pub hertz: u32,
+    /// The costliest functions, those first that cost most with all that they call.
+    pub functions: Vec<FunctionShare>,
+    /// The interrupts that were served, by vector.
+    pub interrupts: Vec<InterruptShare>,
+}
+
+/// What a function costs.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FunctionShare {
+    /// Its name.
+    pub name: String,
+    /// How often it was called.
+    pub calls: u64,
+    /// Cycles in itself.
+    pub own: u64,
+    /// Cycles with all that it calls.
+    pub total: u64,
+}
+
+/// What an interrupt costs.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InterruptShare {
+    /// Its vector.
+    pub vector: u8,
+    /// The vector's name in the datasheet.
+    pub name: String,
+    /// How often it was served.
+    pub count: u64,
+    /// Cycles of all of them, from the entry to the end of RETI.
+    pub total: u64,
+    /// Cycles of one, on average.
+    pub mean: u64,
+    /// Cycles of the longest.
+    pub longest: u64,
+    /// Most cycles from its request to its first instruction.
+    pub worst_latency: u64,
 }
 
 /// What a program does.

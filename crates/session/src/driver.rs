@@ -157,6 +157,11 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
                     self.note(Level::Warning, format!("program: refused, {why}"), wall_us);
                 }
             }
+            Ask::Profile(on) => {
+                if let Err(why) = self.target.profile(on) {
+                    self.note(Level::Warning, format!("profile: refused, {why}"), wall_us);
+                }
+            }
             Ask::Ghost(standing) => {
                 let done = self.target.restart_ghost(standing);
                 self.session.ghost_restarted(done, now);

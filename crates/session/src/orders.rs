@@ -54,6 +54,8 @@ pub enum Order {
     RestartGhost,
     /// Run this program on the emulated Mega: the name of its file, which is no path, and what is in it.
     Program(String, Vec<u8>),
+    /// Count the cycles of the program on the emulated chip, from zero, or no longer.
+    Profile(bool),
 }
 
 /// The orders to execute when STOP was pressed (`stop`): no older command to the robot comes after it.
@@ -153,6 +155,9 @@ enum Message {
     Program {
         name: String,
         data: String,
+    },
+    Profile {
+        on: bool,
     },
     Seek {
         t_s: f64,
@@ -268,6 +273,7 @@ impl FromStr for Order {
                 )));
             }
             Message::Program { name, data } => program(name, &data)?,
+            Message::Profile { on } => Order::Profile(on),
             Message::Seek { t_s } if t_s.is_finite() => Order::Seek(t_s),
             Message::Seek { .. } => return Err(BadOrder("t_s is too large".into())),
             Message::Step { frames } => Order::Step(frames),

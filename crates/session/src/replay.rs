@@ -131,6 +131,7 @@ impl Replay {
             | Order::Route(_)
             | Order::Type(..)
             | Order::Program(..)
+            | Order::Profile(_)
                 if !self.warned =>
             {
                 self.warned = true;
@@ -141,6 +142,7 @@ impl Replay {
             | Order::Route(_)
             | Order::Type(..)
             | Order::Program(..)
+            | Order::Profile(_)
             | Order::TakeControl
             | Order::ReleaseControl => {}
         }

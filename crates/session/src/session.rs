@@ -52,6 +52,8 @@ pub enum Ask {
     Ghost(Standing),
     /// Run this program; why not is reported as a note.
     Program(String, Vec<u8>),
+    /// Count the cycles of its program, or no longer.
+    Profile(bool),
     /// Calibrate the robot; then [`Session::calibration_begun`].
     Calibrate,
 }
@@ -205,6 +207,7 @@ impl Session {
             Order::TakeControl | Order::ReleaseControl => {}
             Order::RestartGhost => return Some(Ask::Ghost(self.observer.standing())),
             Order::Program(name, data) => return Some(Ask::Program(name, data)),
+            Order::Profile(on) => return Some(Ask::Profile(on)),
             Order::Seek(_) | Order::Step(_) => {
                 let text = "refused, this is no replay of a log";
                 self.note(Level::Warning, text.into(), now);

@@ -155,6 +155,14 @@ pub trait Target: Send {
         Err(TargetError::NoPrograms)
     }
 
+    /// Counts the cycles of the program of an emulated chip from zero, or no longer; [`Target::program`] shows them.
+    ///
+    /// # Errors
+    /// If there is no such chip.
+    fn profile(&mut self, _on: bool) -> Result<(), TargetError> {
+        Err(TargetError::NoChip)
+    }
+
     /// Starts again from time 0 with the choice given.
     ///
     /// # Errors

@@ -60,6 +60,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/plot.js": SCRIPT,
     "src/plot_dialog.js": SCRIPT,
     "src/plots.js": SCRIPT,
+    "src/profile.js": SCRIPT,
     "src/program.js": SCRIPT,
     "src/readings.js": SCRIPT,
     "src/recordings.js": SCRIPT,

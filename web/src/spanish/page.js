@@ -195,6 +195,19 @@ export const PAGE = {
   'its version is {}, this page knows {}': 'su versión es {}, esta página conoce la {}', 'window_s must be {} to {} s': 'window_s debe ser de {} a {} s', 'there are {} plots, {} at most': 'hay {} gráficas, {} como máximo',
   'plot {}': 'la gráfica {}', '{} has no title': '{} no tiene título', '{} has no signals': '{} no tiene señales', '{} has a signal that is none: {}': '{} tiene una señal que no existe: {}',
   'the signals of {} have more than two units: {}': 'las señales de {} tienen más de dos unidades: {}', 'the limits of {} are not two numbers, min below max': 'los límites de {} no son dos números, mínimo y máximo', 'the weight of {} must be {} to {}': 'el peso de {} debe ser de {} a {}',
+  // The profile.
+  'Profile': 'Perfil', 'Count cycles': 'Contar ciclos', 'Stop counting': 'Dejar de contar', 'Functions': 'Funciones', 'Interrupts': 'Interrupciones',
+  'Counts the cycles of the program by function and interrupt. Meanwhile the emulation is about eight times slower.':
+    'Cuenta los ciclos del programa por función e interrupción. Mientras tanto la emulación es unas ocho veces más lenta.',
+  '{} s of the program, {} asleep': '{} s del programa, {} en reposo', 'function': 'función', 'own': 'propio', 'with calls': 'con llamadas', 'calls': 'llamadas', 'cycles each': 'ciclos cada una',
+  'Its name, as far as the program has symbols; else its address': 'Su nombre, si el programa tiene símbolos; si no, su dirección',
+  'Share of all cycles in the function itself': 'Parte de todos los ciclos en la propia función', 'Share of all cycles with the functions that it calls': 'Parte de todos los ciclos con las funciones a las que llama',
+  'How often it was called since the count began': 'Cuántas veces se llamó desde que empezó la cuenta', 'Mean cycles of a call, with what it calls': 'Ciclos medios de una llamada, con lo que llama',
+  'interrupt': 'interrupción', 'Number and name of the vector in the datasheet': 'Número y nombre del vector en la hoja de datos', 'count': 'veces', 'How often it was served': 'Cuántas veces se atendió',
+  'per s': 'por s', 'How often in a second of the program': 'Cuántas veces en un segundo del programa', 'share': 'parte', 'Share of all cycles': 'Parte de todos los ciclos',
+  'mean': 'media', 'Mean cycles, from the entry to the end of RETI': 'Ciclos medios, desde la entrada hasta el final de RETI',
+  'longest': 'máximo', 'Most cycles, from the entry to the end of RETI': 'Más ciclos, desde la entrada hasta el final de RETI',
+  'latest': 'espera', 'Most cycles from the request to the first instruction': 'Más ciclos desde la petición hasta la primera instrucción',
   // Consoles, parameters, events.
   'Consoles': 'Consolas', 'what the emulated chip sends': 'lo que envía el chip emulado', 'Text of the USART': 'Texto de la USART', 'Line to send': 'Línea que enviar', 'Send': 'Enviar',
   'Send the line, ended by LF, to this USART': 'Envía la línea, acabada en LF, a esta USART',

@@ -76,6 +76,11 @@ impl Observers {
         self.profile = Some(Box::new(profile));
     }
 
+    /// Ends that: the program runs at full speed again.
+    pub fn end_profile(&mut self) {
+        self.profile = None;
+    }
+
     /// The counts so far.
     pub fn profiled(&self) -> Option<&Profile> {
         self.profile.as_deref()

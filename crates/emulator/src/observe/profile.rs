@@ -12,7 +12,7 @@ use crate::cpu::{Cpu, Turn};
 use crate::decode::{Code, FLASH_WORDS};
 use crate::image::Image;
 use crate::model::Model;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// Deepest chain of calls that is followed.
 const DEEPEST: usize = 512;
@@ -75,6 +75,14 @@ pub struct InterruptUse {
     pub longest: u64,
     /// The longest time from the request (flag raised and enabled) to the first instruction at the vector.
     pub worst_latency: u64,
+}
+
+impl InterruptUse {
+    /// The mean of one time; 0 before the first has ended.
+    #[must_use]
+    pub fn mean(&self) -> u64 {
+        self.total.checked_div(self.count).unwrap_or(0)
+    }
 }
 
 /// What a function cost, cycles.
@@ -375,6 +383,23 @@ impl Profile {
         }
         lines.sort();
         lines.concat()
+    }
+
+    /// The name of a vector in the datasheet.
+    pub fn vector_name(&self, vector: u8) -> &'static str {
+        self.model.vector_name(vector)
+    }
+
+    /// The functions that ran, of which so many cost the most with all that they call. One that ran already when the profile
+    /// began has no call, such as `main`.
+    pub fn costliest(&self, most: usize) -> Vec<FunctionUse> {
+        let entries = self.nodes.iter().filter(|node| node.interrupt);
+        let entries: BTreeSet<&str> = entries.map(|node| self.name(node.function)).collect();
+        let asleep = self.name(self.asleep);
+        let ran = self.functions().into_iter();
+        ran.filter(|function| function.name != asleep && !entries.contains(&*function.name))
+            .take(most)
+            .collect()
     }
 
     /// The interrupts that were served, by vector.

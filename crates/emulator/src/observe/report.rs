@@ -21,32 +21,38 @@ impl Profile {
         );
         let mut rows =
             vec![["function", "calls", "every ms", "own %", "with calls %"].map(String::from)];
-        let functions = self.functions();
-        let listed = functions
-            .iter()
-            .filter(|function| function.calls > 0)
-            .take(FUNCTIONS);
-        rows.extend(listed.map(
+        rows.extend(self.costliest(FUNCTIONS).into_iter().map(
             |FunctionUse {
                  name,
                  calls,
                  own,
                  total,
              }| {
-                let every_ms = 1e3 * all / HERTZ / *calls as f64;
+                let every_ms = match calls {
+                    0 => "-".to_owned(),
+                    calls => format!("{:.3}", 1e3 * all / HERTZ / calls as f64),
+                };
                 [
-                    name.clone(),
+                    name,
                     calls.to_string(),
-                    format!("{every_ms:.3}"),
-                    percent(*own),
-                    percent(*total),
+                    every_ms,
+                    percent(own),
+                    percent(total),
                 ]
             },
         ));
         text += &table(&rows);
         let interrupts = self.interrupts();
         if !interrupts.is_empty() {
-            let titles = ["interrupt", "count", "total %", "longest", "worst latency"];
+            let titles = [
+                "interrupt",
+                "count",
+                "per s",
+                "total %",
+                "mean",
+                "longest",
+                "worst latency",
+            ];
             let mut rows = vec![titles.map(String::from)];
             rows.extend(interrupts.iter().map(|interrupt| {
                 let InterruptUse {
@@ -57,9 +63,11 @@ impl Profile {
                     worst_latency,
                 } = *interrupt;
                 [
-                    self.model.vector_name(vector).to_owned(),
+                    self.vector_name(vector).to_owned(),
                     count.to_string(),
+                    format!("{:.1}", count as f64 * HERTZ / all),
                     percent(total),
+                    time(interrupt.mean()),
                     time(longest),
                     time(worst_latency),
                 ]
@@ -76,19 +84,21 @@ fn time(cycles: u64) -> String {
 }
 
 /// The first column to the left, the others to the right.
-fn table(rows: &[[String; 5]]) -> String {
+fn table<const COLUMNS: usize>(rows: &[[String; COLUMNS]]) -> String {
     let width = |column: usize| {
         rows.iter()
             .map(|row| row[column].chars().count())
             .max()
             .unwrap_or(0)
     };
-    let widths: [usize; 5] = std::array::from_fn(width);
     let mut text = String::new();
-    for [name, rest @ ..] in rows {
-        text += &format!("  {name:<0$}", widths[0]);
-        for (cell, width) in rest.iter().zip(&widths[1..]) {
-            text += &format!("  {cell:>width$}");
+    for row in rows {
+        for (column, cell) in row.iter().enumerate() {
+            let width = width(column);
+            text += &match column {
+                0 => format!("  {cell:<width$}"),
+                _ => format!("  {cell:>width$}"),
+            };
         }
         text += "\n";
     }
