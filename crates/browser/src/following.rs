@@ -97,6 +97,7 @@ pub(crate) fn is_by_hand(order: &Order) -> bool {
             | Order::TakeControl
             | Order::ReleaseControl
             | Order::RestartGhost
+            | Order::Profile(_)
             | Order::Seek(_)
             | Order::Step(_)
     )
