@@ -138,6 +138,89 @@ fn model_solutions_get_full_marks_and_mistakes_lose_points_on_their_line() {
     );
 }
 
+/// The assignment `wall` for the robot with an Arduino Uno, and its model: another pin, one serial port, and by the clock
+/// what comes over Bluetooth on a Mega.
+fn for_an_uno(bench: &Path) -> String {
+    let read = |name: &str| fs::read_to_string(assignment("wall").join(name)).unwrap();
+    let replaced = |text: String, changes: &[(&str, &str)]| {
+        changes.iter().fold(text, |text, (from, to)| {
+            assert!(text.contains(from), "{from}");
+            text.replace(from, to)
+        })
+    };
+    let file = replaced(
+        read("assignment.toml"),
+        &[
+            ("board = \"mega\"", "board = \"uno\""),
+            ("wiring = \"mode_1\"", "wiring = \"uno\""),
+        ],
+    );
+    fs::write(bench.join("assignment.toml"), file).unwrap();
+    let scenario = replaced(
+        read("scenario.toml"),
+        &[("robot = \"memoria\"", "robot = \"uno\"")],
+    );
+    fs::write(bench.join("scenario.toml"), scenario).unwrap();
+    replaced(
+        read("model/model.ino"),
+        &[
+            ("BACKWARD[] = {2, 8}", "BACKWARD[] = {10, 8}"),
+            ("Serial1", "Serial"),
+            // Timer 0 makes a faster PWM than the Mega's pins have: the motors' dead zone is wider.
+            ("DEAD_ZONE = 66", "DEAD_ZONE = 90"),
+            (
+                "  listen();\n",
+                "  on = millis() > 500;\n  wantedCm = millis() < 5500 ? 30 : 50;\n",
+            ),
+        ],
+    )
+}
+
+#[test]
+fn hand_ins_for_an_uno_are_compiled_and_driven_on_one() {
+    let Some(bench) = bench("uno") else {
+        return;
+    };
+    let model = for_an_uno(&bench);
+    hand_in(&bench, "model", &model);
+    hand_in(&bench, "lazy", "void setup() {}\nvoid loop() {}\n");
+    hand_in(
+        &bench,
+        "mega",
+        &model.replace("Serial.begin", "Serial1.begin"),
+    );
+    let mark = |more: &[&str]| {
+        let mut command = program();
+        command.current_dir(&bench);
+        command.args(["grade", "assignment.toml", "in", "--language", "en"]);
+        command.args(more);
+        command.env("RUMBO_CACHE", folder().join("sketches"));
+        command.output().unwrap()
+    };
+    let output = mark(&["--out", "out"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let results = results(&bench.join("out"));
+    let points = |hand_in: &str| results[hand_in]["score"].as_f64().unwrap();
+    assert!(points("model") > 8.5, "{}", results["model"]);
+    assert_eq!(points("lazy"), 0.0);
+    // A Uno has one serial port.
+    assert_eq!(points("mega"), 0.0);
+    let said = results["mega"].to_string();
+    assert!(said.contains("Serial1"), "{said}");
+
+    // An assignment says the board of its robots or none.
+    let file = fs::read_to_string(bench.join("assignment.toml")).unwrap();
+    let wrong = file.replace("board = \"uno\"", "board = \"mega\"");
+    fs::write(bench.join("assignment.toml"), wrong).unwrap();
+    let output = mark(&[]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(
+        said.contains("board = mega: the robots of its scenarios have the board \"uno\""),
+        "{said}"
+    );
+}
+
 #[test]
 fn hostile_hand_ins_gain_nothing_and_change_no_other_mark() {
     let Some(bench) = bench("hostile") else {

@@ -190,11 +190,7 @@ impl Assignment {
             tests,
             criteria,
         };
-        if let Some(board) = root.text("board")
-            && board.value != "mega2560"
-        {
-            root.complain("board", board.line, &board.value, "must be \"mega2560\"");
-        }
+        check_board(&root, &assignment.tests);
         spanish.finish();
         root.finish();
         source.verdict()?;
@@ -204,6 +200,27 @@ impl Assignment {
     /// Runs of each hand-in.
     pub fn runs(&self) -> usize {
         self.tests.iter().map(|test| test.seeds().count()).sum()
+    }
+}
+
+/// A hand-in is compiled once, for the board that all robots of the scenarios have.
+fn check_board(root: &Table<'_, '_>, tests: &[Test]) {
+    let mut boards = tests.iter().map(|test| test.setup.robot.board.name);
+    let named = root.text("board");
+    let Some(board) = boards.next() else {
+        return;
+    };
+    if boards.any(|other| other != board) {
+        root.complain_here(
+            "the robots of its scenarios have different boards: write an assignment for each",
+        );
+    }
+    if let Some(named) = named
+        && named.value != board
+        && !(named.value == "mega2560" && board == "mega")
+    {
+        let must = format!("the robots of its scenarios have the board \"{board}\"");
+        root.complain("board", named.line, &named.value, &must);
     }
 }
 
