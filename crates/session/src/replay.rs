@@ -124,27 +124,18 @@ impl Replay {
             Order::Seek(t_s) => self.seek(t_s * 1e3),
             Order::Step(frames) => self.step(*frames),
             Order::Reset(_) => self.seek(0.0),
-            Order::Calibrate => {}
             Order::RestartGhost => self.restart_ghost(),
             Order::Robot(_)
             | Order::Hold(_)
             | Order::Route(_)
             | Order::Type(..)
             | Order::Program(..)
-            | Order::Profile(_)
-                if !self.warned =>
-            {
-                self.warned = true;
-                self.note("this is a replay: nothing is sent to a robot".into());
+            | Order::Profile(_) => {
+                if !std::mem::replace(&mut self.warned, true) {
+                    self.note("this is a replay: nothing is sent to a robot".into());
+                }
             }
-            Order::Robot(_)
-            | Order::Hold(_)
-            | Order::Route(_)
-            | Order::Type(..)
-            | Order::Program(..)
-            | Order::Profile(_)
-            | Order::TakeControl
-            | Order::ReleaseControl => {}
+            Order::Calibrate | Order::TakeControl | Order::ReleaseControl => {}
         }
     }
 
