@@ -124,6 +124,11 @@ messages! {
         /// Not known.
         effort: Vec<f64>,
     }
+    /// The time of a simulation.
+    "rosgraph_msgs/msg/Clock" Clock {
+        /// It.
+        clock: Time,
+    }
     /// A distance. Infinite: nothing within reach (REP 117).
     "sensor_msgs/msg/Range" Range {
         /// When; the frame of the sensor, x along its axis.
@@ -219,5 +224,12 @@ messages! {
         function: String,
         /// 0.
         line: u32,
+    }
+    /// The answer of a service that has no question.
+    "std_srvs/srv/Trigger_Response" Triggered {
+        /// It was done.
+        success: bool,
+        /// Why not, in words.
+        message: String,
     }
 }
