@@ -148,8 +148,9 @@ fn compare(what: &str, mut world: Given) {
     });
     let (mut outputs, mut transmitted) = (Outputs::default(), Vec::new());
     let [mut native, mut chip] = [String::new(), String::new()];
-    let (mut worst, mut driven) = ([0; 9], 0);
-    let (mut ticks, mut late) = ([0; 9], [0; 9]);
+    const NUMBERS: usize = ModeId::ALL[ModeId::ALL.len() - 1] as usize + 1;
+    let (mut worst, mut driven) = ([0; NUMBERS], 0);
+    let (mut ticks, mut late) = ([0; NUMBERS], [0; NUMBERS]);
     let count = world.ticks();
     for tick in 1..=count {
         let inputs = world.inputs(tick, &outputs);

@@ -3,7 +3,7 @@
 use rumbo_control::mode::waypoints::Waypoint;
 use rumbo_control::mode::{Level, ModeId, Movement};
 use rumbo_control::params::ParamId;
-use rumbo_control::{Echo, Edges, Inputs, Micros, Outputs, SonarId, TICK_US, Wheels};
+use rumbo_control::{Echo, Edges, Inputs, Micros, Outputs, SonarId, TICK_US, Velocity, Wheels};
 use rumbo_wire::{Command, Message, RobotTime, ToRobot};
 use std::collections::VecDeque;
 
@@ -168,6 +168,14 @@ impl World {
                 300 | 600 | 900 => self.set_going(),
                 later if later > 300 && later.is_multiple_of(97) => self.arm(),
                 other if other % 20 == 10 && !self.in_text => self.send(&ToRobot::Heartbeat),
+                later
+                    if self.mode == ModeId::Twist
+                        && !self.in_text
+                        && later % 300 < 150
+                        && later % 7 == 0 =>
+                {
+                    self.velocity();
+                }
                 _ => {}
             }
         }
@@ -180,14 +188,29 @@ impl World {
         self.seq = (self.seq + 1) & 0xF;
     }
 
-    fn command(&mut self, command: Command) {
-        self.number = self.number.wrapping_add(1);
-        // One in forty comes too late, or from before the start.
+    /// The newest robot time that a station has; one in forty is too old for anything, or from before the start.
+    fn seen(&mut self) -> RobotTime {
         let late_ms = if self.random.chance(40) { 2_500 } else { 0 };
-        let seen = RobotTime {
+        RobotTime {
             start: u8::from(self.random.chance(200)),
             ms: (self.tick * (TICK_US / 1_000)).saturating_sub(100 + late_ms),
+        }
+    }
+
+    /// One in twenty is faster than any robot.
+    fn velocity(&mut self) {
+        let scale = if self.random.chance(20) { 40.0 } else { 1.0 };
+        let velocity = Velocity {
+            forward_m_s: scale * self.random.between(-0.8, 0.8),
+            yaw_rad_s: scale * self.random.between(-8.0, 8.0),
         };
+        let seen = self.seen();
+        self.send(&ToRobot::Velocity { velocity, seen });
+    }
+
+    fn command(&mut self, command: Command) {
+        self.number = self.number.wrapping_add(1);
+        let seen = self.seen();
         self.send(&ToRobot::Command {
             session: 1,
             number: self.number,
@@ -210,7 +233,7 @@ impl World {
 
     /// Another mode, mostly with the sonars that it needs.
     fn begin(&mut self) {
-        self.mode = ModeId::ALL[self.random.below(9) as usize];
+        self.mode = ModeId::ALL[self.random.below(ModeId::ALL.len() as u32) as usize];
         if self.in_text {
             self.line("OFF");
             let number = self.mode as u8;
@@ -285,7 +308,7 @@ impl World {
                 );
                 self.command(Command::Goal { x_m, y_m });
             }
-            ModeId::WallHold => {}
+            ModeId::WallHold | ModeId::Twist => {}
         }
         self.arm();
     }

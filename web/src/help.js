@@ -7,8 +7,8 @@ import { t } from './text.js';
 /** Keys and what they do. */
 const KEYS = () => [
   [t('Space'), t('STOP, from anywhere but a line of text. In forms Enter ticks a box and presses a button.')],
-  [t('arrow keys'), t('mode 0, armed: drive while held; letting go, another window or another field releases the wheels')],
-  [t('gamepad'), t('mode 0, armed: left stick or cross drives while a shoulder button is held; B or circle is STOP')],
+  [t('arrow keys'), t('modes 0 and 10, armed: drive while held; letting go, another window or another field releases the wheels')],
+  [t('gamepad'), t('modes 0 and 10, armed: left stick or cross drives while a shoulder button is held; B or circle is STOP')],
   ['P', t('hold the plots, or go on')],
   ['L', t('follow the newest data')],
   ['M', t('in the plots: set the mark, from which times and values are counted; Escape takes it away')],

@@ -14,7 +14,7 @@ const KEPT = 400;
 /** Bytes of a frame that are shown. */
 const SHOWN = 24;
 /** Names of the frames, by their kind (docs/protocol.md). @type {Record<number, string>} */
-const KINDS = { 1: 'HELLO', 2: 'telemetry', 3: 'status', 4: 'event', 5: 'acknowledgement', 6: 'heading', 8: 'HELLO', 9: 'heartbeat', 10: 'command' };
+const KINDS = { 1: 'HELLO', 2: 'telemetry', 3: 'status', 4: 'event', 5: 'acknowledgement', 6: 'heading', 8: 'HELLO', 9: 'heartbeat', 10: 'command', 11: 'velocity' };
 
 export class LinkMeter {
   #figures = element('link-figures', HTMLDListElement);

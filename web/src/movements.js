@@ -8,11 +8,10 @@
 import { number, read, setLimits, write } from './decimal.js';
 import { create, element } from './dom.js';
 import { RPM_PER_RAD_S } from './units.js';
-import { watchGamepads } from './gamepad.js';
 import { t } from './text.js';
 
 /** @typedef {import('./panel.js').Send} Send */
-/** @typedef {import('./gamepad.js').Stick} Stick */
+/** @typedef {import('./steering.js').Stick} Stick */
 
 /** The movements, by their numbers, as they lie around the robot. */
 const MOVEMENTS = [
@@ -36,79 +35,34 @@ export class Movements {
   #level = number('level', 35, 0, 100);
   #unit = create('select', { id: 'level-unit', title: t('Open loop by PWM, or closed loop by speed') },
     create('option', { value: 'duty', textContent: '% PWM' }), create('option', { value: 'speed', textContent: 'rpm' }));
-  /** @type {Set<string>} */
-  #keys = new Set();
-  /** What a gamepad holds. @type {Stick | null} */
-  #stick = null;
   /** The movement that is held, and the part of the level; null: none. @type {{movement: number, depth: number} | null} */
   #held = null;
-  /** Keys drive: mode 0 is armed. */
-  #live = false;
 
   /** @param {Send} send */
   constructor(send) {
     this.#send = send;
     this.#layOut();
-    addEventListener('keydown', (event) => this.#press(event), { capture: true });
-    addEventListener('keyup', (event) => {
-      if (this.#keys.delete(event.key)) this.#follow();
-    }, { capture: true });
-    addEventListener('blur', () => this.#letGo());
-    document.addEventListener('visibilitychange', () => this.#letGo());
-    document.addEventListener('focusin', (event) => {
-      if (isField(event.target)) this.#letGo();
-    });
     setInterval(() => {
       if (this.#held !== null) this.#order(this.#held.movement, true, this.#held.depth);
     }, REPEAT_MS);
-    watchGamepads((stick) => this.#steer(stick), () => send({ type: 'stop' }));
   }
 
   /** @param {boolean} shown @param {boolean} armed */
   show(shown, armed) {
     this.#root.hidden = !shown;
-    this.#live = shown && armed;
-    if (!this.#live) {
-      this.#keys.clear();
-      this.#stick = this.#held = null;
-    }
+    if (!shown || !armed) this.#held = null;
   }
 
-  /** @param {Stick | null} stick */
-  #steer(stick) {
-    if (!this.#live || (stick === null && this.#stick === null)) return;
-    this.#stick = stick;
-    this.#follow();
-  }
-
-  /** @param {KeyboardEvent} event */
-  #press(event) {
-    if (!this.#live || !event.key.startsWith('Arrow') || event.ctrlKey || event.metaKey || event.altKey || isField(event.target)) return;
-    event.preventDefault();
-    event.stopPropagation();
-    if (event.repeat) return;
-    this.#keys.add(event.key);
-    this.#follow();
-  }
-
-  #letGo() {
-    this.#keys.clear();
-    this.#stick = null;
-    this.#follow();
-  }
-
-  /** Drives by the pressed keys, or the gamepad. */
-  #follow() {
-    const down = (/** @type {string} */ key) => Number(this.#keys.has(key));
-    const { forward, left, depth } = this.#keys.size > 0 || !this.#stick
-      ? { forward: down('ArrowUp') - down('ArrowDown'), left: down('ArrowLeft') - down('ArrowRight'), depth: 1 } : this.#stick;
+  /** Follows keys or a gamepad. @param {Stick | null} stick */
+  steer = (stick) => {
+    const { forward, left, depth } = stick ?? { forward: 0, left: 0, depth: 1 };
     const movement = BY_KEYS[`${forward},${left}`];
     const wanted = movement === undefined ? null : { movement, depth };
     if (wanted?.movement === this.#held?.movement && wanted?.depth === this.#held?.depth) return;
     if (wanted !== null && !this.#level.reportValidity()) return;
     this.#held = wanted;
     this.#order(wanted?.movement ?? RELEASE, wanted !== null, depth);
-  }
+  };
 
   /** @param {number} movement @param {boolean} held @param {number} [depth] the part of the level */
   #order(movement, held, depth = 1) {
@@ -136,9 +90,4 @@ export class Movements {
     const hint = create('span', { className: 'hint', textContent: t('Armed, the arrow keys drive while they are held, or a gamepad with a shoulder button.') });
     this.#root.replaceChildren(pad, create('div', { className: 'stack' }, level, hint));
   }
-}
-
-/** @param {EventTarget | null} target */
-function isField(target) {
-  return target instanceof HTMLInputElement || target instanceof HTMLSelectElement;
 }

@@ -2,9 +2,11 @@
 /** The command panel: mode, ON and OFF, STOP, and the controls of the mode. */
 import { number, read } from './decimal.js';
 import { create, element, setText } from './dom.js';
+import { Joystick } from './joystick.js';
 import { Movements } from './movements.js';
 import { isOwn } from './program.js';
 import { Places } from './places.js';
+import { Steering } from './steering.js';
 import { CM_PER_M, RPM_PER_RAD_S, format } from './units.js';
 import { named, said, t } from './text.js';
 
@@ -23,6 +25,8 @@ export class CommandPanel {
   /** @type {Scene | null} */
   #scene = null;
   #movements;
+  #joystick;
+  #steering;
   #places;
   /** @type {ModeEntry[]} */
   #entries = [];
@@ -35,6 +39,8 @@ export class CommandPanel {
   constructor(send, map) {
     this.#send = send;
     this.#movements = new Movements(send);
+    this.#joystick = new Joystick(send);
+    this.#steering = new Steering(() => send({ type: 'stop' }));
     this.#places = new Places(send, map);
     element('stop', HTMLButtonElement).addEventListener('click', () => send({ type: 'stop' }));
     element('on', HTMLButtonElement).addEventListener('click', () => send({ type: 'arm' }));
@@ -89,6 +95,9 @@ export class CommandPanel {
     document.body.classList.toggle('armed', armed);
     this.#armed.className = `chip ${fault ? 'bad' : armed ? 'good' : ''}`;
     this.#movements.show(entry?.movements ?? false, armed);
+    this.#joystick.show(entry?.velocity ?? false, armed);
+    const steered = entry?.movements ? this.#movements : entry?.velocity ? this.#joystick : null;
+    this.#steering.give(armed && steered ? steered.steer : null);
     if (this.#shown !== mode && entry) {
       this.#shown = mode;
       this.#layOut(entry);

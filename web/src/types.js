@@ -13,6 +13,7 @@
  * @property {boolean} heading It has a heading setpoint.
  * @property {boolean} movements Takes basic movements.
  * @property {number | null} route Takes a route of at most so many places.
+ * @property {boolean} velocity Takes velocities, repeated.
  * @property {boolean} lane Follows a lane on command.
  * @property {string[]} rigs The rigs it can drive with.
  * @property {[string, number[]][]} parameters Title and numbers of each group, the most important first.
@@ -131,6 +132,7 @@
  *   | {type: 'wheel_reference', left: number, right: number}
  *   | {type: 'move_duty', movement: number, duty: number, held?: boolean}
  *   | {type: 'move_speed', movement: number, speed_rad_s: number, held?: boolean}
+ *   | {type: 'velocity', forward_m_s: number, yaw_rad_s: number}
  *   | {type: 'goal', x_m: number, y_m: number}
  *   | {type: 'lane'}
  *   | {type: 'route', repeat: boolean, relative: boolean, waypoints: {x_m: number, y_m: number}[]}

@@ -106,6 +106,30 @@ test('a gamepad that drives is released when another window gets the focus, and 
   await page.waitForFunction(() => !(/** @type {any} */ (window).rumbo.state().robot.armed));
 });
 
+test('in mode 10 the pad drives while it is held, as far as it is dragged, and the wheels stand when it is let go', async () => {
+  await page.locator('#modes button[value="10"]').click();
+  await page.locator('#modes button[value="10"][aria-pressed="true"]').waitFor();
+  await page.locator('#on').click();
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.armed);
+  await page.locator('#top-forward').fill('0.2');
+  const pad = page.locator('.joystick.live');
+  const { x, y, width, height } = await pad.boundingBox() ?? { x: 0, y: 0, width: 0, height: 0 };
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  // Half a radius up: half of 0.2 m/s, with wheels of 33 mm.
+  await page.mouse.move(x + width / 2, y + height / 4);
+  await latest('left_ref_rpm', 26, 32);
+  await page.mouse.move(x + width / 2, y + height / 4 + 1);
+  // Longer than the robot drives without a velocity.
+  const before_s = await page.evaluate(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1));
+  await page.waitForFunction((before_s) => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1) > before_s + 0.8, before_s);
+  await latest('left_ref_rpm', 26, 32);
+  await page.mouse.up();
+  await latest('left_pwm', 0);
+  assert.match(await page.locator('#joystick output').innerText(), /^0\.00 m\/s/);
+  await page.locator('#stop').click();
+});
+
 test('help opens by key and by button, and closes by Escape', async () => {
   await page.locator('#map').focus();
   await page.keyboard.press('?');

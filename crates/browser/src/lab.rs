@@ -271,6 +271,12 @@ impl Lab {
         if orders.contains(&Order::Calibrate) {
             self.driver.host().unlike = Some("a calibration is not in a link");
         }
+        if orders
+            .iter()
+            .any(|order| matches!(order, Order::Velocity(_)))
+        {
+            self.driver.host().unlike = Some("velocities, many a second, are not in a link");
+        }
         if orders.iter().any(is_by_hand) && self.following.take().is_some() {
             let text = "the link drives no further: an order was given here";
             self.driver.note(Level::Info, text.into(), wall_us);

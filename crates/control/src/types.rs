@@ -231,6 +231,15 @@ impl Default for AgedRange {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ServoAngle(pub f32);
 
+/// Velocity of the robot's body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Velocity {
+    /// Forward [m/s].
+    pub forward_m_s: f32,
+    /// Yaw rate, to the left [rad/s].
+    pub yaw_rad_s: f32,
+}
+
 /// Position and heading in the world frame (REP 103).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {

@@ -469,3 +469,17 @@ fn a_snapshot_in_the_middle_of_frames_goes_on_as_the_original() {
     assert_eq!(chip.take_outputs(), snapshot.take_outputs());
     assert_eq!(read(&mut chip, UDR0), read(&mut snapshot, UDR0));
 }
+
+#[test]
+fn a_byte_written_while_the_transmitter_is_off_is_lost_and_noted() {
+    let (mut chip, _) = set_up(&[(UDR0, 65), (UCSR0B, SEND), (UDR0, 66)]);
+    chip.run_until(100_000);
+    let bytes: Vec<u16> = sent(&mut chip)
+        .into_iter()
+        .map(|(_, byte, _)| byte)
+        .collect();
+    assert_eq!(bytes, [66]);
+    // LDI, and the first STS.
+    assert_eq!(chip.devices().unsent_at(0), Some(1));
+    assert_eq!(chip.devices().unsent_at(1), None);
+}

@@ -6,7 +6,7 @@ use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_emulator::observe::profile::Profile;
 use rumbo_experiment::files::{FileError, Library, Overrides};
-use rumbo_log::{Choice, Manifest, MapPose, ProgramState, Scene, Source, Truth};
+use rumbo_log::{Choice, Level, Manifest, MapPose, ProgramState, Scene, Source, Truth};
 use rumbo_session::{Abilities, LinkNews, Shown, Standing, Target, TargetError};
 use rumbo_sim::boards::Board;
 use rumbo_sim::debugging::Debugging;
@@ -273,11 +273,15 @@ impl Target for SimulatedRobot {
             let news = debugging.take_news().into_iter();
             self.news.extend(news.map(LinkNews::Held));
         }
-        if !self.ended
-            && let Some(verdict) = self.sim.verdict()
-        {
-            self.ended = true;
-            self.news.push_back(LinkNews::Ended(verdict));
+        if !self.ended {
+            let ended = self.sim.verdict().map(LinkNews::Ended);
+            let stands = || {
+                let why = self.sim.mega()?.standstill()?;
+                Some(LinkNews::Program(Level::Warning, why))
+            };
+            let end = ended.or_else(stands);
+            self.ended = end.is_some();
+            self.news.extend(end);
         }
         self.news.pop_front()
     }

@@ -1,5 +1,5 @@
 //! Programs dropped on the page of a lab that has images in memory only.
-#![allow(clippy::unwrap_used, reason = "helpers of tests too")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests too")]
 
 use rumbo_experiment::files::Overrides;
 use rumbo_lab::SimulatedRobot;
@@ -54,4 +54,39 @@ fn what_is_no_image_is_refused_with_the_reason_and_the_robot_goes_on() {
     assert!(why.contains("a.elf"), "{why}");
     assert!(robot.news().is_none() && robot.program().is_none());
     assert_eq!(robot.now_us(), 5_000);
+}
+
+/// What is said of a program in its first 0.1 s.
+fn said_of(image: &[u8]) -> Vec<String> {
+    let mut robot = robot();
+    robot.run_program("odd.hex".into(), image.into()).unwrap();
+    let mut said = Vec::new();
+    for _ in 0..20 {
+        robot.advance(5_000).unwrap();
+        while let Some(news) = robot.news() {
+            if let LinkNews::Program(_, text) = news {
+                said.push(text);
+            }
+        }
+    }
+    said
+}
+
+#[test]
+fn a_program_that_stands_still_for_good_is_reported_once_with_the_reason() {
+    let [stands] = &said_of(IDLE)[..] else {
+        panic!("once");
+    };
+    assert!(
+        stands.contains("a loop of one instruction at 0x0"),
+        "{stands}"
+    );
+    // Sleeps with interrupts off.
+    let [sleeps] = &said_of(b":0800000081E083BF8895FECF6B\n:00000001FF\n")[..] else {
+        panic!("once");
+    };
+    assert!(sleeps.contains("sleeps with interrupts off"), "{sleeps}");
+    // The same with interrupts on: `sei` first, and no interrupt comes.
+    let enabled = b":0A000000789481E083BF8895FECF5D\n:00000001FF\n";
+    assert_eq!(said_of(enabled), [""; 0]);
 }

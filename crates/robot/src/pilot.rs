@@ -10,7 +10,9 @@ use rumbo_control::math::round;
 use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, SetpointError};
 use rumbo_control::params::{ParamError, ParamId, Params};
 use rumbo_control::rig::Rig;
-use rumbo_control::{Drive, Duty, Fault, Inputs, Outputs, Range, ServoAngle, SonarId, Wheels};
+use rumbo_control::{
+    Drive, Duty, Fault, Inputs, Outputs, Range, ServoAngle, SonarId, Velocity, Wheels,
+};
 use rumbo_wire::{Command, Refusal, Telemetry};
 
 use crate::encoders::EncoderWatch;
@@ -341,6 +343,11 @@ impl Pilot {
             }
             _ => 0.0,
         })
+    }
+
+    /// Takes a velocity; one that the mode refuses changes nothing, and nobody waits for an answer.
+    pub(crate) fn set_velocity(&mut self, velocity: Velocity) {
+        self.mode.set_velocity(velocity).ok();
     }
 
     /// A parameter's value.

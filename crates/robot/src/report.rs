@@ -339,7 +339,7 @@ fn write_row(line: &mut Line, status: &Status, signals: &Signals) {
             line.range(front.range);
             return;
         }
-        ModeId::Manual | ModeId::WheelSpeed | ModeId::StraightLine => {
+        ModeId::Manual | ModeId::WheelSpeed | ModeId::StraightLine | ModeId::Twist => {
             line.speeds(&signals.wheel_rad_s());
             line.speed(telemetry.wheel_ref_rad_s.right);
         }

@@ -13,7 +13,7 @@ use rumbo_control::{Fault, Inputs, Outputs, ServoAngle};
 use rumbo_wire::text::TextCommand;
 use rumbo_wire::{
     Ack, Body, COMMAND_LIFE_MS, Command, Decoder, EventKind, Hello, Message, PROTOCOL_VERSION,
-    Received, Refusal, ResetCause, RobotTime, Status, ToRobot, codec,
+    Received, Refusal, ResetCause, RobotTime, Status, ToRobot, VELOCITY_LIFE_MS, codec,
 };
 
 use crate::clock::Clock;
@@ -315,6 +315,12 @@ impl Robot {
                 Verdict::Repeated(ack) => self.reporter.acknowledge(ack),
                 Verdict::Late => {}
             },
+            ToRobot::Velocity { velocity, seen } => {
+                let age_ms = self.time().since(seen);
+                if !judge_age || age_ms.is_some_and(|ms| ms <= VELOCITY_LIFE_MS) {
+                    self.pilot.set_velocity(velocity);
+                }
+            }
         }
         // Only now: a start that comes alone, out of a silent link, finds it dead.
         self.supervisor.sign_of_life(self.clock.now());

@@ -25,6 +25,8 @@ pub struct ModeEntry {
     route: Option<usize>,
     /// Follows a lane on command.
     lane: bool,
+    /// Takes velocities.
+    velocity: bool,
     /// Names of the rigs it can drive with.
     rigs: Vec<&'static str>,
     /// Its parameters by number, those that matter most first: title and numbers.
@@ -73,6 +75,7 @@ fn mode_entry(mode: ModeId) -> ModeEntry {
             _ => None,
         },
         lane: about.takes == Some(Takes::Lane),
+        velocity: about.takes == Some(Takes::Velocity),
         rigs: about.rigs.iter().map(Rig::name).collect(),
         parameters: about
             .parameters

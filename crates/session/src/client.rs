@@ -18,9 +18,9 @@ use crate::meter::Meter;
 use crate::robot_clock::RobotClock;
 use crate::terminal::Terminal;
 use handshake::Handshake;
-use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
+use rumbo_control::{Velocity, Wheels};
 use rumbo_wire::text::RowKind;
 use rumbo_wire::{Command, Decoder, Hello, Message, PROTOCOL_VERSION, ToRobot};
 
@@ -169,6 +169,19 @@ impl RobotClient {
         Ok(())
     }
 
+    /// Takes a velocity for mode 10; an earlier one that has not left yet is dropped.
+    ///
+    /// # Errors
+    /// [`NotTaken::NotConnected`].
+    pub fn submit_velocity(&mut self, velocity: Velocity) -> Result<(), NotTaken> {
+        if !self.connected {
+            return Err(NotTaken::NotConnected);
+        }
+        self.manager
+            .submit_velocity(velocity, self.handshake.newest());
+        Ok(())
+    }
+
     /// Appends the bytes to be sent now. To be called after every step of time.
     pub fn poll(&mut self, now_us: u64, to_robot: &mut Vec<u8>, events: &mut Vec<LinkEvent>) {
         let before = to_robot.len();
@@ -204,6 +217,9 @@ impl RobotClient {
             && let Some(command) = self.manager.poll(self.handshake.newest(), now_us)
         {
             self.say(command, now_us, to_robot);
+        }
+        if let Some(velocity) = self.manager.poll_velocity(now_us) {
+            self.say(velocity, now_us, to_robot);
         }
         self.watch_stop(now_us, events);
         if self

@@ -11,6 +11,7 @@
 //! (Karn).
 
 use crate::round_trip::{self, RoundTrip};
+use rumbo_control::Velocity;
 use rumbo_wire::{Ack, COMMAND_LIFE_MS, Command, Refusal, RobotTime, ToRobot};
 use std::collections::VecDeque;
 
@@ -19,6 +20,8 @@ const MAX_WAITING: usize = 64;
 /// An order is given up when it has not been acknowledged for this long \[us\], as the robot does by its own clock.
 pub const EXPIRY_US: u64 = COMMAND_LIFE_MS as u64 * 1_000;
 
+/// Velocities leave this far apart at least \[us\]: 14 bytes each time, a third of a link of 9600 baud.
+const VELOCITY_PERIOD_US: u64 = 40_000;
 /// A read without an answer is sent this often before another session is tried.
 const SENDS_PER_SESSION: u32 = 6;
 
@@ -103,6 +106,9 @@ pub struct CommandManager {
     waiting: VecDeque<Waiting>,
     background: VecDeque<Command>,
     in_flight: Option<InFlight>,
+    /// The newest velocity, until it is sent, with the newest robot time known when it was given.
+    velocity: Option<(Velocity, RobotTime)>,
+    velocity_sent_us: Option<u64>,
     round_trip: RoundTrip,
     outcomes: Vec<Outcome>,
 }
@@ -116,6 +122,8 @@ impl CommandManager {
             waiting: VecDeque::new(),
             background: VecDeque::new(),
             in_flight: None,
+            velocity: None,
+            velocity_sent_us: None,
             round_trip: RoundTrip::default(),
             outcomes: Vec::new(),
         }
@@ -150,6 +158,24 @@ impl CommandManager {
             .into_iter()
             .map(|command| Waiting { command, given });
         self.waiting.extend(waiting);
+    }
+
+    /// Takes a velocity; one that has not been sent yet is dropped. `seen` is the newest robot time known.
+    pub fn submit_velocity(&mut self, velocity: Velocity, seen: RobotTime) {
+        self.velocity = Some((velocity, seen));
+    }
+
+    /// The velocity to be sent now, if any. To be called after every step of time.
+    pub fn poll_velocity(&mut self, now_us: u64) -> Option<ToRobot> {
+        if self
+            .velocity_sent_us
+            .is_some_and(|sent_us| now_us < sent_us + VELOCITY_PERIOD_US)
+        {
+            return None;
+        }
+        let (velocity, seen) = self.velocity.take()?;
+        self.velocity_sent_us = Some(now_us);
+        Some(ToRobot::Velocity { velocity, seen })
     }
 
     /// Takes a command that gives way to the operator's: reading the parameters.
@@ -191,9 +217,11 @@ impl CommandManager {
         self.waiting.clear();
         self.background.clear();
         self.in_flight = None;
+        self.velocity = None;
     }
 
     fn give_up_waiting(&mut self, fate: Fate) {
+        self.velocity = None;
         let given_up = self.waiting.drain(..).map(|waiting| Outcome {
             command: waiting.command,
             fate,

@@ -2,11 +2,11 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use rumbo_control::Wheels;
 use rumbo_control::mode::waypoints::{MAX_WAYPOINTS, Waypoint};
 use rumbo_control::mode::{ModeId, Movement};
 use rumbo_control::params::ParamId;
 use rumbo_control::rig::Rig;
+use rumbo_control::{Velocity, Wheels};
 use rumbo_log::Choice;
 use rumbo_wire::{Command, Level};
 use serde::Deserialize;
@@ -32,6 +32,8 @@ pub enum Order {
     Robot(Command),
     /// A movement that lasts while the page repeats it, as long as a key is held down.
     Hold(Command),
+    /// A velocity for mode 10, which the sender repeats while the robot is to move. Only the newest one is sent.
+    Velocity(Velocity),
     /// A route for the robot: the command that begins it and its waypoints.
     Route(Vec<Command>),
     /// A line for a USART of an emulated chip.
@@ -122,6 +124,10 @@ enum Message {
         speed_rad_s: f32,
         #[serde(default)]
         held: bool,
+    },
+    Velocity {
+        forward_m_s: f32,
+        yaw_rad_s: f32,
     },
     Goal {
         x_m: f32,
@@ -243,6 +249,13 @@ impl FromStr for Order {
                 Level::Speed(finite("speed_rad_s", speed_rad_s)?),
                 held,
             )?,
+            Message::Velocity {
+                forward_m_s,
+                yaw_rad_s,
+            } => Order::Velocity(Velocity {
+                forward_m_s: finite("forward_m_s", forward_m_s)?,
+                yaw_rad_s: finite("yaw_rad_s", yaw_rad_s)?,
+            }),
             Message::Goal { x_m, y_m } => Order::Robot(Command::Goal {
                 x_m: finite("x_m", x_m)?,
                 y_m: finite("y_m", y_m)?,

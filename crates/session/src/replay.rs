@@ -127,6 +127,7 @@ impl Replay {
             Order::RestartGhost => self.restart_ghost(),
             Order::Robot(_)
             | Order::Hold(_)
+            | Order::Velocity(_)
             | Order::Route(_)
             | Order::Type(..)
             | Order::Program(..)

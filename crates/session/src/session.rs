@@ -98,6 +98,8 @@ pub struct Session {
     state_noted_us: Option<u64>,
     /// The movement held by a key, and when it expires unless the page repeats it \[us\].
     held: Option<(Command, u64)>,
+    /// A velocity was refused: when that was said \[us\].
+    velocity_refused_us: Option<u64>,
     /// The robot has been sent its first commands.
     briefed: bool,
     /// The port is gone and not back yet.
@@ -121,6 +123,7 @@ impl Session {
             calibration: None,
             state_noted_us: None,
             held: None,
+            velocity_refused_us: None,
             briefed: false,
             port_gone: false,
             link_watch: LinkWatch::default(),
@@ -165,6 +168,7 @@ impl Session {
         self.link_events.clear();
         self.to_robot.clear();
         self.held = None;
+        self.velocity_refused_us = None;
         self.calibrating = None;
         self.calibration = None;
         self.briefed = false;
@@ -185,6 +189,7 @@ impl Session {
                 self.command(command, now);
             }
             Order::Hold(command) => self.hold(command, now),
+            Order::Velocity(velocity) => self.velocity(velocity, now),
             Order::Route(commands) => {
                 self.held = None;
                 self.commands(commands, now);

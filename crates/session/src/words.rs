@@ -3,7 +3,9 @@
 use crate::anomaly::Anomaly;
 use crate::client::NotTaken;
 use crate::commands::{Fate, Outcome};
-use rumbo_control::mode::{ModeId, Movement, Reference, ReferenceKind};
+use rumbo_control::Velocity;
+use rumbo_control::mode::twist::{MAX_FORWARD_M_S, MAX_YAW_RAD_S};
+use rumbo_control::mode::{ModeId, Movement, Reference, ReferenceKind, SetpointError};
 use rumbo_control::params::ParamId;
 use rumbo_log::parameter;
 
@@ -72,6 +74,24 @@ pub(crate) fn command(command: &Command, mode: ModeId) -> String {
             format!("waypoint ({x_m:.2}, {y_m:.2}) m")
         }
     }
+}
+
+/// The velocity in words.
+pub(crate) fn velocity(velocity: Velocity) -> String {
+    let Velocity {
+        forward_m_s,
+        yaw_rad_s,
+    } = velocity;
+    format!("velocity {forward_m_s:.2} m/s, {yaw_rad_s:.2} rad/s")
+}
+
+/// Why a velocity is refused.
+pub(crate) fn bad_velocity(why: SetpointError) -> String {
+    let what = match why {
+        SetpointError::NotFinite => "not a number",
+        _ => "out of range",
+    };
+    format!("{what}: up to {MAX_FORWARD_M_S} m/s and {MAX_YAW_RAD_S} rad/s either way")
 }
 
 /// A movement by the name of its button.

@@ -4,6 +4,8 @@
 mod support;
 
 use proptest::prelude::*;
+use rumbo_control::Velocity;
+use rumbo_control::mode::ModeId;
 use rumbo_log::{Entry, Findings, Log, LogWriter, Manifest, Row, Source};
 use rumbo_session::{
     About, Ask, Board, CalibrationError, Cursor, Event, Going, Guest, LinkNews, Now, Order,
@@ -366,4 +368,65 @@ fn stop_takes_the_link_back_from_a_guest_and_another_order_does_not() {
     session.take_bytes();
     session.receive(&[2], Now::default());
     assert!(session.take_bytes().is_empty());
+}
+
+fn velocity(forward_m_s: f32) -> Order {
+    Order::Velocity(Velocity {
+        forward_m_s,
+        yaw_rad_s: 0.0,
+    })
+}
+
+/// What was refused, in words.
+fn refusals(bench: &Bench) -> Vec<String> {
+    let said = bench.events.iter().filter_map(|event| match event {
+        Event::Entry(entry) => match &**entry {
+            Entry::Event(event) if event.text.contains("refused") => Some(event.text.clone()),
+            _ => None,
+        },
+        _ => None,
+    });
+    said.collect()
+}
+
+#[test]
+fn of_many_velocities_the_newest_leaves_25_times_a_second_and_stop_drops_what_waits() {
+    let mut bench = Bench::new();
+    bench.pass(2_000);
+    bench.order(Order::Robot(Command::Mode(ModeId::Twist)));
+    bench.pass(300);
+    for step in 1..=200_u8 {
+        bench.order(velocity(f32::from(step) / 1_000.0));
+        bench.pass(5);
+    }
+    let sent = std::mem::take(&mut bench.toy.velocities);
+    assert!((24..=26).contains(&sent.len()), "{}", sent.len());
+    assert!(sent.is_sorted_by(|a, b| a.forward_m_s < b.forward_m_s));
+    bench.order(velocity(0.3));
+    bench.order(STOP);
+    bench.pass(500);
+    let newer = |velocity: &Velocity| velocity.forward_m_s > 0.25;
+    assert!(!bench.toy.velocities.iter().any(newer));
+}
+
+#[test]
+fn a_velocity_is_refused_without_a_robot_in_another_mode_and_when_absurd_and_that_is_said_once_in_two_seconds()
+ {
+    let mut bench = Bench::new();
+    bench.order(velocity(0.1));
+    bench.pass(2_000);
+    for _ in 0..100 {
+        bench.order(velocity(0.1));
+        bench.pass(20);
+    }
+    bench.order(Order::Robot(Command::Mode(ModeId::Twist)));
+    bench.pass(2_300);
+    bench.order(velocity(1.5));
+    bench.pass(20);
+    assert_eq!(bench.toy.velocities, []);
+    let said = refusals(&bench);
+    let of = |what: &str| said.iter().filter(|text| text.contains(what)).count();
+    assert_eq!(of("no robot answers"), 1, "{said:?}");
+    assert_eq!(of("select mode 10"), 1, "{said:?}");
+    assert_eq!(of("out of range"), 1, "{said:?}");
 }

@@ -8,7 +8,7 @@
 
 use proptest::prelude::*;
 use rumbo_control::mode::{Level, ModeId, Movement};
-use rumbo_control::{Inputs, Micros, TICK_US};
+use rumbo_control::{Duty, Inputs, Micros, TICK_US, Velocity, Wheels};
 use rumbo_robot::{Config, Robot};
 use rumbo_session::client::{KnownTable, LinkEvent, RobotClient};
 use rumbo_wire::{Command, Decoder, Message, Received, ResetCause, ToRobot};
@@ -100,6 +100,8 @@ struct Bench {
     ons: Vec<On>,
     losses: u32,
     armed: bool,
+    /// A bridge is on.
+    driven: bool,
     /// How often an ON armed it.
     arrivals: u32,
     sent: Decoder<128>,
@@ -118,6 +120,7 @@ impl Bench {
             ons: Vec::new(),
             losses: 0,
             armed: false,
+            driven: false,
             arrivals: 0,
             sent: Decoder::default(),
         }
@@ -190,10 +193,11 @@ impl Bench {
             self.robot.receive(byte);
         }
         let now = Micros((self.now_us - self.started_us) as u32);
-        self.robot.tick(&Inputs {
+        let outputs = self.robot.tick(&Inputs {
             now,
             ..Inputs::default()
         });
+        self.driven = outputs.drive != Wheels::both(Duty::RELEASED);
         self.robot.report();
         self.judge_armed()
     }
@@ -298,5 +302,35 @@ fn an_on_that_is_repeated_until_it_expires_does_not_get_younger() {
             Action::Pass(2_100 - lost_ms),
         ];
         assert_eq!(run(&script).unwrap().arrivals, 0, "{lost_ms}");
+    }
+}
+
+#[test]
+fn a_velocity_that_a_module_holds_back_moves_nothing_when_it_comes() {
+    for (held_ms, moves) in [(0, true), (280, false)] {
+        let mut bench = Bench::new();
+        let pass = |bench: &mut Bench, ms| bench.obey(&Action::Pass(ms)).unwrap();
+        let drive = |bench: &mut Bench, forward_m_s| {
+            let velocity = Velocity {
+                forward_m_s,
+                yaw_rad_s: 0.0,
+            };
+            bench.client.submit_velocity(velocity).unwrap();
+            bench.obey(&Action::Pass(40)).unwrap();
+        };
+        pass(&mut bench, 1_000);
+        for command in [Command::Mode(ModeId::Twist), Command::Arm] {
+            bench.obey(&Action::Order(command)).unwrap();
+            pass(&mut bench, 200);
+        }
+        // A sign of life that moves nothing.
+        drive(&mut bench, 0.0);
+        bench.obey(&Action::Link(Way::Holds, Way::Flows)).unwrap();
+        drive(&mut bench, 0.2);
+        pass(&mut bench, held_ms);
+        bench.obey(&Action::Link(Way::Flows, Way::Flows)).unwrap();
+        pass(&mut bench, 30);
+        assert!(bench.armed, "{:?}", bench.robot.fault());
+        assert_eq!(bench.driven, moves, "{held_ms}");
     }
 }

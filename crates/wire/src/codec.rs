@@ -6,7 +6,7 @@
 use rumbo_control::math::{is_finite, round};
 use rumbo_control::mode::{ModeId, Movement};
 use rumbo_control::rig::Rig;
-use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Wheels};
+use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Velocity, Wheels};
 
 use crate::bytes::{Reader, Writer};
 use crate::frame::{Body, Frame, Kind};
@@ -62,7 +62,7 @@ impl Message for FromRobot {
             Kind::Event => FromRobot::Event(event(&mut from)?),
             Kind::Ack => FromRobot::Ack(ack(&mut from)?),
             Kind::HeadingRef => FromRobot::HeadingRef(from_turn(from.u16())),
-            Kind::StationHello | Kind::Heartbeat | Kind::Command => {
+            Kind::StationHello | Kind::Heartbeat | Kind::Command | Kind::Velocity => {
                 return Err(Malformed::Direction);
             }
         };
@@ -90,6 +90,12 @@ impl Message for ToRobot {
                 }
                 Kind::Command
             }
+            ToRobot::Velocity { velocity, seen } => {
+                to.put(to_i16(velocity.forward_m_s, VELOCITY_PER_UNIT).to_le_bytes())
+                    .put(to_i16(velocity.yaw_rad_s, VELOCITY_PER_UNIT).to_le_bytes());
+                put_time(&mut to, seen);
+                Kind::Velocity
+            }
         };
         Frame::new(kind, seq, to.payload())
     }
@@ -114,6 +120,13 @@ impl Message for ToRobot {
                     },
                 }
             }
+            Kind::Velocity => ToRobot::Velocity {
+                velocity: Velocity {
+                    forward_m_s: from_i16(from.i16(), VELOCITY_PER_UNIT),
+                    yaw_rad_s: from_i16(from.i16(), VELOCITY_PER_UNIT),
+                },
+                seen: time(&mut from),
+            },
             _ => return Err(Malformed::Direction),
         };
         from.finish()?;
@@ -140,6 +153,8 @@ fn hello(from: &mut Reader) -> Result<Hello, Malformed> {
 
 /// Positions are sent in millimetres.
 const POSITION_PER_M: f32 = 1_000.0;
+/// Velocities are sent in mm/s and mrad/s.
+const VELOCITY_PER_UNIT: f32 = 1_000.0;
 /// Wheel speeds and their references are sent in 0.02 rad/s: up to 40.9 rad/s, 391 rpm.
 const SPEED_PER_RAD_S: f32 = 50.0;
 /// Ranges are sent in 2.5 mm: up to 2.5525 m.

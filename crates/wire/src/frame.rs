@@ -41,11 +41,13 @@ pub enum Kind {
     Heartbeat = 9,
     /// [`crate::ToRobot::Command`].
     Command = 10,
+    /// [`crate::ToRobot::Velocity`].
+    Velocity = 11,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 9] = [
+    pub const ALL: [Kind; 10] = [
         Kind::RobotHello,
         Kind::Telemetry,
         Kind::Status,
@@ -55,6 +57,7 @@ impl Kind {
         Kind::StationHello,
         Kind::Heartbeat,
         Kind::Command,
+        Kind::Velocity,
     ];
 
     /// The kind with this number.

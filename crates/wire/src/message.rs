@@ -4,13 +4,16 @@ pub use rumbo_control::mode::Level;
 pub use rumbo_control::mode::waypoints::Waypoint;
 use rumbo_control::mode::{ModeId, Movement};
 use rumbo_control::rig::Rig;
-use rumbo_control::{AgedRange, Duty, Fault, Pose, Wheels};
+use rumbo_control::{AgedRange, Duty, Fault, Pose, Velocity, Wheels};
 
 /// Version of the binary protocol; raised when a change is not understood by the other end.
 pub const PROTOCOL_VERSION: u8 = 3;
 
 /// Oldest command that a robot obeys, by its own clock, if the command [is timed](Command::is_timed) \[ms\].
 pub const COMMAND_LIFE_MS: u32 = 2_000;
+
+/// Oldest velocity that a robot drives, by its own clock \[ms\].
+pub const VELOCITY_LIFE_MS: u32 = 300;
 
 /// An instant by the robot's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,6 +86,15 @@ pub enum ToRobot {
         command: Command,
         /// The newest robot time that the station had received when the command was issued. Sent only with commands
         /// that [are timed](Command::is_timed); otherwise the default.
+        seen: RobotTime,
+    },
+    /// The velocity of mode 10 from now on; the newest one counts. Neither acknowledged nor repeated: it is refused in
+    /// silence by a robot in another mode, when it is older than [`VELOCITY_LIFE_MS`] and when it is out of range. It
+    /// arms nothing.
+    Velocity {
+        /// Sent with 1 mm/s and 1 mrad/s.
+        velocity: Velocity,
+        /// The newest robot time that the station had received when the velocity was issued.
         seen: RobotTime,
     },
 }

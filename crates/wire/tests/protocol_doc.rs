@@ -1,7 +1,7 @@
 //! `docs/protocol.md` matches the code: its examples, numbers and columns are computed here.
 #![allow(clippy::unwrap_used, reason = "a test helper")]
 
-use rumbo_control::{AgedRange, Duty, Pose, Range, Wheels};
+use rumbo_control::{AgedRange, Duty, Pose, Range, Velocity, Wheels};
 use rumbo_wire::frame::MAX_FRAME;
 use rumbo_wire::text::RowKind;
 use rumbo_wire::*;
@@ -116,6 +116,14 @@ fn the_numbers_of_the_tables_are_right() {
         ),
         (ToRobot::Hello.frame(0), "8 | station | HELLO"),
         (ToRobot::Heartbeat.frame(0), "9 | station | heartbeat"),
+        (
+            ToRobot::Velocity {
+                velocity: Velocity::default(),
+                seen: RobotTime::default(),
+            }
+            .frame(0),
+            "11 | station | velocity",
+        ),
     ];
     for (frame, row) in sizes {
         let wire = frame.bytes().len();

@@ -56,10 +56,10 @@ export const PAGE = {
   'Every event says its cause and what to do. Each run is recorded; `rumbo list logs` finds it, `rumbo replay` shows it here.':
     'Cada suceso dice su causa y qué hacer. Cada ejecución se graba; `rumbo list logs` la encuentra, `rumbo replay` la muestra aquí.',
   'STOP, from anywhere but a line of text. In forms Enter ticks a box and presses a button.': 'PARAR, desde cualquier sitio salvo una línea de texto. En los formularios Intro marca casillas y pulsa botones.',
-  'arrow keys': 'flechas', 'mode 0, armed: drive while held; letting go, another window or another field releases the wheels':
-    'modo 0, armado: mueven mientras se pulsan; al soltar, con otra ventana u otro campo se sueltan las ruedas',
-  'gamepad': 'mando', 'mode 0, armed: left stick or cross drives while a shoulder button is held; B or circle is STOP':
-    'modo 0, armado: la palanca izquierda o la cruz mueven con un botón superior pulsado; B o círculo es PARAR',
+  'arrow keys': 'flechas', 'modes 0 and 10, armed: drive while held; letting go, another window or another field releases the wheels':
+    'modos 0 y 10, armado: mueven mientras se pulsan; al soltar, con otra ventana u otro campo se sueltan las ruedas',
+  'gamepad': 'mando', 'modes 0 and 10, armed: left stick or cross drives while a shoulder button is held; B or circle is STOP':
+    'modos 0 y 10, armado: la palanca izquierda o la cruz mueven con un botón superior pulsado; B o círculo es PARAR',
   'hold the plots, or go on': 'detiene las gráficas, o sigue', 'follow the newest data': 'sigue los datos más nuevos',
   'in the plots: set the mark, from which times and values are counted; Escape takes it away': 'en las gráficas: pone la marca desde la que se cuentan tiempos y valores; Escape la quita',
   '+ − 0, arrow keys': '+ − 0, flechas', 'in the map: zoom, fit, move, and Enter picks the point in the middle; in the plots: zoom and move in time':
@@ -125,6 +125,8 @@ export const PAGE = {
   'Start the simulation again with an experiment of this mode: its world, its sonars': 'Empieza la simulación de nuevo con un experimento de este modo: su mundo, sus sonares', 'setpoint': 'referencia', 'Set': 'Fijar', 'now {} cm': 'ahora {} cm', 'now {} rpm': 'ahora {} rpm', '{} to {} {}': 'de {} a {} {}', 'a number': 'un número', 'a number from {} to {}': 'un número de {} a {}',
   'left': 'izq.', 'right': 'der.', 'front': 'frontal', 'both': 'ambas',
   'Open loop by PWM, or closed loop by speed': 'Lazo abierto por PWM, o lazo cerrado por velocidad', 'pivot on': 'pivote', 'L|wheel': 'I', 'R|wheel': 'D', 'level': 'nivel',
+  'Armed, drag on the pad; or the arrow keys, or a gamepad with a shoulder button.': 'Armado, arrastra en el disco; o las flechas, o un mando con un botón superior.',
+  'Drag: up is forward, left is a turn to the left': 'Arrastra: arriba es adelante, a la izquierda es girar a la izquierda', 'at most': 'como máximo',
   'Armed, the arrow keys drive while they are held, or a gamepad with a shoulder button.':
     'Armado, las flechas lo mueven mientras se pulsan, o un mando con un botón superior.',
   'arc left': 'arco a la izquierda', 'forward': 'adelante', 'arc right': 'arco a la derecha', 'turn left about the centre': 'giro a la izquierda sobre el centro',

@@ -5,7 +5,7 @@
 export const ROBOT = {
   // Modes.
   'manual': 'manual', 'front distance': 'distancia', 'front align': 'alinear', 'wall hold': 'mantener pared', 'wall follow': 'seguir pared',
-  'wheel speed': 'velocidad', 'straight line': 'línea recta', 'waypoints': 'ruta', 'mission': 'misión',
+  'wheel speed': 'velocidad', 'straight line': 'línea recta', 'waypoints': 'ruta', 'mission': 'misión', 'twist': 'twist',
   'basic movements, open loop or by speed': 'movimientos básicos, en lazo abierto o por velocidad',
   'stop at a distance from the wall ahead': 'parar a una distancia de la pared de enfrente',
   'stop square to the wall ahead, at a distance from it': 'parar perpendicular a la pared de enfrente, a una distancia de ella',
@@ -15,6 +15,7 @@ export const ROBOT = {
   'straight on at a commanded speed': 'en línea recta a la velocidad de referencia',
   'visit the waypoints of a route in turn, such as a square of 1 m': 'visitar por orden los puntos de una ruta, como un cuadrado de 1 m',
   'reach a goal around obstacles, or follow a lane of boxes': 'llegar a un destino rodeando obstáculos, o seguir un carril de cajas',
+  'a forward speed and a yaw rate from outside': 'una velocidad de avance y otra de giro, desde fuera',
   // Groups of parameters.
   'arcs': 'arcos', 'approach to the wall': 'acercamiento a la pared', 'straightening': 'corrección del rumbo', 'angle to the wall': 'ángulo con la pared',
   'along the wall': 'a lo largo de la pared', 'distance to the wall': 'distancia a la pared', 'ramp': 'rampa', 'route': 'ruta', 'lane': 'carril',
@@ -32,11 +33,12 @@ export const ROBOT = {
   // States.
   'off': 'apagado', 'fault': 'fallo', 'armed': 'armado', 'state {}': 'estado {}', 'stop': 'parar', 'open loop': 'lazo abierto', 'by speed': 'por velocidad',
   'approach': 'acercarse', 'settle': 'asentarse', 'hold': 'mantener', 'look': 'mirar', 'turn': 'girar', 'measure': 'medir', 'follow': 'seguir', 'slow': 'despacio',
-  'at rest': 'en reposo', 'turning': 'girando', 'drive': 'avanzar', 'wait': 'esperar', 'pursue': 'perseguir', 'final turn': 'giro final', 'done': 'acabado',
+  'at rest': 'en reposo', 'turning': 'girando', 'drive': 'avanzar', 'wait': 'esperar', 'waiting': 'esperando', 'driving': 'en marcha', 'pursue': 'perseguir', 'final turn': 'giro final', 'done': 'acabado',
   'wait for goal': 'esperar destino', 'initial turn': 'giro inicial', 'initialise': 'iniciar', 'go to goal': 'ir al destino', 'sweep right': 'barrer a la derecha',
   'sweep left': 'barrer a la izquierda', 'decide': 'decidir', 'avoidance turn': 'giro de evasión', 'advance seeking the obstacle': 'avanzar buscando el obstáculo',
   'advance along it': 'avanzar a su lado', 'advance a safe distance': 'avanzar distancia de seguridad', 'unreachable': 'inalcanzable', 'straight on': 'recto', 'prove the front sonar': 'comprobar el sonar delantero', 'reached': 'alcanzado',
   // Why a state leads to another.
+  'a velocity comes': 'llega una velocidad', 'none for half a second': 'ninguna en medio segundo',
   '12.5 cm on': '12,5 cm más', 'a goal arrives': 'llega un destino', 'a movement by duty': 'un movimiento por PWM',
   'a movement by speed': 'un movimiento por velocidad', 'a setpoint that is not zero': 'una referencia que no es cero',
   'a waypoint is appended': 'se añade un punto de ruta', 'an obstacle ahead': 'un obstáculo delante', 'askew for 0.3 s': 'torcido durante 0,3 s',
@@ -104,6 +106,8 @@ export const ROBOT = {
     'los sonares del robot no están donde este modo los necesita; móntalos así y fija el parámetro `rig`',
   'allowed is one of {}': 'se permite uno de {}', 'allowed is {} to {}': 'se permite de {} a {}', 'allowed is {} to {} m for each coordinate': 'se permite de {} a {} m en cada coordenada',
   'allowed is -{} to {} m for each coordinate, and {} waypoints': 'se permite de -{} a {} m en cada coordenada, y {} puntos de ruta', 'out of range': 'fuera de rango',
+  '{}: up to {} m/s and {} rad/s either way': '{}: hasta {} m/s y {} rad/s en ambos sentidos', 'not a number': 'no es un número',
+  'the robot is in another mode; select mode 10, twist': 'el robot está en otro modo; elige el modo 10, twist', 'velocity {} m/s, {} rad/s': 'velocidad {} m/s, {} rad/s',
   'not confirmed': 'sin confirmar', 'too many commands wait for the robot': 'demasiadas órdenes esperan al robot',
   'no robot answers; check that it is on and in reach, then give the order again': 'no responde ningún robot; comprueba que está encendido y al alcance, y da la orden otra vez',
   'the port is gone; give the order again when it is back': 'el puerto ya no está; da la orden otra vez cuando vuelva',
@@ -166,7 +170,7 @@ export const ROBOT = {
   'this is not the run of the link: that one is of another version, or the link was changed': 'esta no es la ejecución del enlace: aquella es de otra versión, o se cambió el enlace',
   'a link has at most {} changes of commands, this run has {}': 'un enlace tiene como mucho {} cambios de órdenes, y esta ejecución tiene {}',
   'a link has at most 2 KB, this one would be longer': 'un enlace tiene como mucho 2 KB, y este sería más largo',
-  'a program of your own is not in a link': 'un programa propio no va en un enlace', 'a calibration is not in a link': 'una calibración no va en un enlace',
+  'a program of your own is not in a link': 'un programa propio no va en un enlace', 'a calibration is not in a link': 'una calibración no va en un enlace', 'velocities, many a second, are not in a link': 'las velocidades, muchas por segundo, no van en un enlace',
   'the robot began with parameters that are saved on it': 'el robot empezó con parámetros guardados en él',
   'the recording is full: save it, and reset for another one': 'la grabación está llena: guárdala, y reinicia para empezar otra',
   'its program could not be loaded': 'no se pudo cargar su programa',

@@ -3,7 +3,7 @@
 use super::description::{Description, ReferenceKind};
 use super::{
     Action, Look, Mode, SetpointError, front_align, front_distance, manual, mission, straight_line,
-    wall_follow, wall_hold, waypoints, wheel_speed,
+    twist, wall_follow, wall_hold, waypoints, wheel_speed,
 };
 use crate::estimate::Estimate;
 use crate::params::Params;
@@ -13,7 +13,7 @@ use crate::types::{Fault, Wheels};
 /// Declares [`ModeId`] and [`ActiveMode`] by a list of modes and their modules.
 macro_rules! modes {
     ($( #[doc = $about:literal] $( #[$default:ident] )? $mode:ident: $module:ident; )+) => {
-        /// The modes of the report, by the number they have there.
+        /// The modes: those of the report by the number they have there, and others.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[repr(u8)]
         pub enum ModeId { $( #[doc = $about] $( #[$default] )? $mode = $module::DESCRIPTION.number, )+ }
@@ -128,6 +128,8 @@ modes! {
     Waypoints: waypoints;
     /// A goal around obstacles, or a lane of boxes (memoria 5).
     Mission: mission;
+    /// A forward speed and a yaw rate from outside.
+    Twist: twist;
 }
 
 impl ModeId {
@@ -139,7 +141,7 @@ impl ModeId {
 
     /// The mode with this number.
     pub fn from_number(number: u8) -> Option<ModeId> {
-        Self::ALL.get(usize::from(number)).copied()
+        Self::ALL.into_iter().find(|mode| *mode as u8 == number)
     }
 }
 
@@ -163,12 +165,13 @@ mod tests {
 
     #[test]
     fn modes_are_found_by_their_number() {
-        for (number, mode) in (0..).zip(ModeId::ALL) {
-            assert_eq!(mode as u8, number);
-            assert_eq!(ModeId::from_number(number), Some(mode));
+        assert!(ModeId::ALL.is_sorted_by_key(|mode| *mode as u8));
+        for mode in ModeId::ALL {
+            assert_eq!(ModeId::from_number(mode as u8), Some(mode));
             assert_eq!(ActiveMode::new(mode).id(), mode);
         }
-        assert_eq!(ModeId::from_number(ModeId::ALL.len() as u8), None);
+        assert_eq!(ModeId::from_number(9), None);
+        assert_eq!(ModeId::from_number(11), None);
     }
 
     #[test]

@@ -2,9 +2,11 @@
 
 use super::mission::Task;
 use super::waypoints::{self, Route, Waypoint};
-use super::{ActiveMode, Level, MAX_WHEEL_RAD_S, Movement, SetpointError, manual, wheel_speed};
+use super::{
+    ActiveMode, Level, MAX_WHEEL_RAD_S, Movement, SetpointError, manual, twist, wheel_speed,
+};
 use crate::math::is_finite;
-use crate::types::Wheels;
+use crate::types::{Velocity, Wheels};
 
 impl ActiveMode {
     /// Sets the reference of each wheel [rad/s] in mode 5.
@@ -78,6 +80,17 @@ impl ActiveMode {
             return Err(SetpointError::NotInThisMode);
         };
         route.push(waypoint)
+    }
+
+    /// Sets the velocity of mode 10, for half a second.
+    ///
+    /// # Errors
+    /// Why it is refused; the last one stays.
+    pub fn set_velocity(&mut self, value: Velocity) -> Result<(), SetpointError> {
+        let Self::Twist(velocity, state) = self else {
+            return Err(SetpointError::NotInThisMode);
+        };
+        twist::set(velocity, state, value)
     }
 
     /// Sets the movement of mode 0.

@@ -129,6 +129,8 @@ pub enum Takes {
     Route(usize),
     /// The command to follow a lane.
     Lane,
+    /// Velocities, repeated.
+    Velocity,
 }
 
 /// Parameters that belong together.

@@ -11,6 +11,7 @@ pub mod front_distance;
 pub mod manual;
 pub mod mission;
 pub mod straight_line;
+pub mod twist;
 pub mod wall_follow;
 pub mod wall_hold;
 pub mod waypoints;

@@ -72,6 +72,15 @@ pub(crate) enum Turn {
     Noticed,
 }
 
+/// How a program stands still.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standstill {
+    /// It sleeps.
+    Asleep,
+    /// An instruction jumps to itself, as at the end of a program whose `main` has returned.
+    Loop,
+}
+
 /// The processor with its memories.
 #[derive(Clone, Debug)]
 pub struct Cpu {
@@ -248,6 +257,19 @@ impl Cpu {
     /// The CPU sleeps until an interrupt.
     pub fn is_sleeping(&self) -> bool {
         self.sleeping
+    }
+
+    /// How the program stands still for good, if it does: with interrupts off, only a reset leads on.
+    pub fn standstill(&self) -> Option<Standstill> {
+        const JUMP_TO_ITSELF: [u8; 2] = 0xCFFF_u16.to_le_bytes();
+        let at = 2 * self.program_counter() as usize;
+        if self.status.interrupts {
+            None
+        } else if self.sleeping {
+            Some(Standstill::Asleep)
+        } else {
+            (self.flash.get(at..at + 2) == Some(&JUMP_TO_ITSELF)).then_some(Standstill::Loop)
+        }
     }
 
     /// Pushing below this address is a stack that has run into data.

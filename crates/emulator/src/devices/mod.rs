@@ -188,6 +188,11 @@ impl Devices {
             .receiving_baud(&self.core)
     }
 
+    /// The first instruction \[words\] that wrote a byte to this USART while its transmitter was off: the byte is lost.
+    pub fn unsent_at(&self, usart: u8) -> Option<u32> {
+        self.usarts.get(usize::from(usart))?.unsent_at()
+    }
+
     /// What the EEPROM holds.
     pub fn eeprom(&self) -> &[u8] {
         &self.eeprom.bytes

@@ -350,3 +350,28 @@ fn what_is_wanted_first_is_read_first_and_the_rest_as_it_came() {
     }
     assert_eq!(read, [2, 0, 1, 3].map(|id| Command::GetParam { id }));
 }
+
+#[test]
+fn a_velocity_does_not_outlive_stop_nor_the_link() {
+    let velocity = Velocity {
+        forward_m_s: 0.2,
+        yaw_rad_s: 0.0,
+    };
+    let endings: [fn(&mut CommandManager); 3] = [
+        |manager| manager.submit(Command::Stop, SEEN, 0).unwrap(),
+        |manager| manager.submit(Command::Disarm, SEEN, 0).unwrap(),
+        |manager| manager.give_up(Fate::LinkLost),
+    ];
+    for end in endings {
+        let mut manager = CommandManager::new(SESSION);
+        manager.submit_velocity(velocity, SEEN);
+        end(&mut manager);
+        assert_eq!(manager.poll_velocity(100_000), None);
+        manager.submit_velocity(velocity, SEEN);
+        let sent = ToRobot::Velocity {
+            velocity,
+            seen: SEEN,
+        };
+        assert_eq!(manager.poll_velocity(100_000), Some(sent));
+    }
+}

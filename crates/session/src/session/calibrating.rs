@@ -89,7 +89,7 @@ impl Session {
                 self.calibration_ended(Err(CalibrationError::Stopped), now);
                 false
             }
-            Order::Robot(_) | Order::Hold(_) | Order::Route(_) => {
+            Order::Robot(_) | Order::Hold(_) | Order::Velocity(_) | Order::Route(_) => {
                 let text = "refused, the robot calibrates itself; STOP ends that";
                 self.note(Level::Warning, text.into(), now);
                 true

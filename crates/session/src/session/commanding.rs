@@ -5,12 +5,16 @@ use super::{Ask, Now, Session};
 use crate::client::NotTaken;
 use crate::error::TargetError;
 use crate::words;
-use rumbo_control::mode::Movement;
+use rumbo_control::Velocity;
+use rumbo_control::mode::{ModeId, Movement, twist};
 use rumbo_log::parameter;
 use rumbo_wire::{Command, Level};
 
 /// A movement that a key holds ends this long after the page last repeated it: a page that is gone releases it \[us\].
 const HOLD_US: u64 = 600_000;
+
+/// Refused velocities are reported this often \[us\].
+const REFUSED_AGAIN_US: u64 = 2_000_000;
 
 impl Session {
     pub(super) fn command(&mut self, command: Command, now: Now) {
@@ -31,6 +35,41 @@ impl Session {
         self.await_parameter(&command);
         // At once: STOP does not wait for the next slice.
         self.say(now);
+    }
+
+    /// A velocity for mode 10. They come many times a second: that they are refused is said every two seconds.
+    pub(super) fn velocity(&mut self, velocity: Velocity, now: Now) {
+        match self.submit_velocity(velocity) {
+            Ok(()) => {
+                self.observer.order_given();
+                self.velocity_refused_us = None;
+                // At once: it is short-lived.
+                self.say(now);
+            }
+            Err(why) => {
+                let said = |at_us: u64| now.wall_us < at_us + REFUSED_AGAIN_US;
+                if !self.velocity_refused_us.is_some_and(said) {
+                    self.velocity_refused_us = Some(now.wall_us);
+                    let asked = words::velocity(velocity);
+                    self.observer
+                        .refuse(now.target_ms(), format!("{asked}: refused, {why}"));
+                }
+            }
+        }
+    }
+
+    /// Why it is not sent, for people.
+    fn submit_velocity(&mut self, velocity: Velocity) -> Result<(), String> {
+        if self.client.speaks_text() {
+            return Err("this robot speaks the original's text, which has no words for it".into());
+        }
+        if self.client.connected() && self.client.mode() != ModeId::Twist {
+            return Err("the robot is in another mode; select mode 10, twist".into());
+        }
+        twist::check(velocity).map_err(words::bad_velocity)?;
+        self.client
+            .submit_velocity(velocity)
+            .map_err(|why| self.why_not(why))
     }
 
     /// Commands that belong together: sent one after the other, all accepted or none.

@@ -5,7 +5,7 @@
 
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamError, ParamId, Params, SCHEMA};
-use rumbo_control::{AgedRange, Duty, Pose, Range, Wheels};
+use rumbo_control::{AgedRange, Duty, Pose, Range, Velocity, Wheels};
 use rumbo_log::{Choice, Experiment, MapPose, Obstacle, Scene, SonarMount, Truth};
 use rumbo_session::{Abilities, Target, TargetError};
 use rumbo_wire::{
@@ -39,6 +39,8 @@ pub(crate) struct Toy {
     choice: Choice,
     /// How often each command was applied.
     pub(crate) applied: Vec<Command>,
+    /// The velocities that arrived.
+    pub(crate) velocities: Vec<Velocity>,
 }
 
 impl Default for Toy {
@@ -66,6 +68,7 @@ impl Default for Toy {
                 seed: 1,
             },
             applied: Vec::new(),
+            velocities: Vec::new(),
         }
     }
 }
@@ -93,6 +96,7 @@ impl Toy {
             up: std::mem::take(&mut self.up),
             down: std::mem::take(&mut self.down),
             applied: std::mem::take(&mut self.applied),
+            velocities: std::mem::take(&mut self.velocities),
             ..Self::default()
         };
         self.hello();
@@ -158,6 +162,7 @@ impl Toy {
                 self.last = Some(ack);
                 self.say(FromRobot::Ack(ack));
             }
+            Ok(ToRobot::Velocity { velocity, .. }) => self.velocities.push(velocity),
             Ok(ToRobot::Heartbeat) | Err(_) => {}
         }
     }

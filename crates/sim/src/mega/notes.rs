@@ -3,6 +3,7 @@
 use super::Mega;
 use super::console::Console;
 use super::firmware::Language;
+use rumbo_emulator::cpu::Standstill;
 use rumbo_emulator::devices::Unmodelled;
 
 /// The USARTs as a sketch calls them.
@@ -22,7 +23,44 @@ impl Mega {
             )
         };
         let strange = self.chip.unmodelled().iter().map(line);
-        strange.chain(self.silence()).collect()
+        let notes = strange.chain(self.standstill()).chain(self.unsent());
+        notes.chain(self.silence()).collect()
+    }
+
+    /// That the program stands still for good, and why.
+    pub fn standstill(&self) -> Option<String> {
+        let still = self.chip.cpu().standstill()?;
+        let (name, image) = (self.firmware.name(), self.firmware.image());
+        let word = self.chip.cpu().program_counter();
+        let place = image.place(word);
+        let at_the_end = matches!(
+            image.function(word),
+            Some("__stop_program" | "_exit" | "exit")
+        );
+        Some(match still {
+            Standstill::Asleep => format!(
+                "firmware {name}: it sleeps with interrupts off, before {place}: nothing wakes it; call sei() before sleep_cpu()"
+            ),
+            Standstill::Loop if at_the_end => format!(
+                "firmware {name}: main() has returned, or exit() was called: nothing runs any more; main() needs a loop that never ends"
+            ),
+            Standstill::Loop => format!(
+                "firmware {name}: it stands in a loop of one instruction at {place} with interrupts off: only a reset leads on"
+            ),
+        })
+    }
+
+    /// Bytes that could not leave.
+    fn unsent(&self) -> impl Iterator<Item = String> {
+        let (name, image) = (self.firmware.name(), self.firmware.image());
+        let devices = self.chip.devices();
+        (0..4).filter_map(move |usart| {
+            let place = image.place(devices.unsent_at(usart)?);
+            Some(format!(
+                "firmware {name}: UDR{usart} was written at {place} while the transmitter of {} was off: nothing was sent; set TXEN{usart} in UCSR{usart}B, or call begin()",
+                NAMES[usize::from(usart)]
+            ))
+        })
     }
 
     /// What a program for another wiring, or for no robot at all, does not do.

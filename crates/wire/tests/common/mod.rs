@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use rumbo_control::mode::{ModeId, Movement};
 use rumbo_control::rig::Rig;
-use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Wheels};
+use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Velocity, Wheels};
 use rumbo_wire::message::Waypoint;
 use rumbo_wire::*;
 
@@ -162,6 +162,15 @@ pub(crate) fn to_robot() -> impl Strategy<Value = ToRobot> {
     prop_oneof![
         Just(ToRobot::Hello),
         Just(ToRobot::Heartbeat),
+        (-32_767i16..=32_767, -32_767i16..=32_767, time()).prop_map(
+            |(forward_mm_s, yaw_mrad_s, seen)| ToRobot::Velocity {
+                velocity: Velocity {
+                    forward_m_s: f32::from(forward_mm_s) / 1_000.0,
+                    yaw_rad_s: f32::from(yaw_mrad_s) / 1_000.0,
+                },
+                seen,
+            }
+        ),
         (any::<(u8, u16)>(), command(), time()).prop_map(|((session, number), command, seen)| {
             ToRobot::Command {
                 session,

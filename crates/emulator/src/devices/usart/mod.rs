@@ -60,6 +60,8 @@ pub(crate) struct Usart {
     drives_clock: bool,
     /// The cycle in which it lost its clock.
     stopped: Option<u64>,
+    /// The first instruction that wrote a byte to be sent while the transmitter was off [words].
+    unsent_at: Option<u32>,
 }
 
 /// After reset.
@@ -83,15 +85,22 @@ pub(crate) fn new(place: &'static Place) -> Usart {
         clocked: Clocked::default(),
         drives_clock: false,
         stopped: None,
+        unsent_at: None,
     }
 }
 
 impl Usart {
+    /// The first instruction that wrote a byte to be sent while the transmitter was off [words].
+    pub(crate) fn unsent_at(&self) -> Option<u32> {
+        self.unsent_at
+    }
+
     /// Resets; the sender outside continues.
     pub(crate) fn reset(&mut self, core: &mut Core) {
         let line = std::mem::take(&mut self.line);
         *self = Usart {
             line,
+            unsent_at: self.unsent_at,
             ..new(self.place)
         };
         self.reschedule(core);
@@ -350,7 +359,10 @@ impl Usart {
                 self.transmitter
                     .write(data, self.format, self.rate, at.cycle);
             }
-            Some(Register::Data) | None => {}
+            Some(Register::Data) => {
+                self.unsent_at.get_or_insert(at.program_counter);
+            }
+            None => {}
         }
         self.request(core);
         self.reschedule(core);
