@@ -11,7 +11,7 @@ use rumbo_experiment::files::Overrides;
 use rumbo_lab::{OwnProgram, SimulatedRobot};
 use rumbo_log::Choice;
 use rumbo_sim::debugging::Debugging;
-use rumbo_station::{Lab, LabConfig};
+use rumbo_station::{Lab, LabConfig, Print};
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.
 pub(crate) fn lab(args: &mut LabArgs) -> Result<(), Failure> {
@@ -20,14 +20,14 @@ pub(crate) fn lab(args: &mut LabArgs) -> Result<(), Failure> {
     if args.pty {
         return crate::pty::offer(robot, args.speed);
     }
-    browser::show(served(args, robot)?, args.session.serve)
+    browser::show(served(args, robot, None)?, args.session.serve)
 }
 
-/// Serves the dashboard.
+/// Serves the dashboard, for one who may be looking at the terminal.
 #[cfg(feature = "ros")]
 pub(crate) fn serve(args: &mut LabArgs) -> Result<Lab, Failure> {
     let robot = simulated(args)?;
-    served(args, robot)
+    served(args, robot, Some(output::aside))
 }
 
 /// The simulated robot.
@@ -61,12 +61,12 @@ fn simulated(args: &mut LabArgs) -> Result<SimulatedRobot, Failure> {
     Ok(robot)
 }
 
-fn served(args: &LabArgs, robot: SimulatedRobot) -> Result<Lab, Failure> {
+fn served(args: &LabArgs, robot: SimulatedRobot, echo: Option<Print>) -> Result<Lab, Failure> {
     let config = LabConfig {
         at: args.session.serve.at(),
         speed: args.speed,
         recording: logs::recording(args.session.out.as_deref()),
-        echo: None,
+        echo,
         #[cfg(feature = "foxglove")]
         bridge: bridge(args.session.bridge)?,
     };

@@ -11,13 +11,13 @@ use std::io::{Seek, Write};
 
 /// A quality of service as rosbag2 notes it.
 fn quality(quality: Quality) -> String {
-    let Quality { latched, depth } = quality;
-    let durability = if latched { 1 } else { 2 };
+    let reliability = if quality.reliable { 1 } else { 2 };
+    let durability = if quality.latched { 1 } else { 2 };
     let forever = json!({ "sec": 9_223_372_036_u64, "nsec": 854_775_807_u64 });
     json!([{
         "history": 1,
-        "depth": depth,
-        "reliability": 1,
+        "depth": quality.depth,
+        "reliability": reliability,
         "durability": durability,
         "deadline": forever,
         "lifespan": forever,

@@ -30,6 +30,8 @@ pub enum Incoming {
     Message {
         /// The subscription.
         channel: Channel,
+        /// The publisher, by the bridge's own account.
+        sender: [u8; 16],
         /// Time since it was sent, by the clocks of both computers \[s\]; `None`: the sender does not say.
         age_s: Option<f64>,
         /// The message.

@@ -35,6 +35,7 @@ const CYCLONE: [u8; 2] = [0x01, 0x10];
 const CYCLONE_HEAD: usize = 16;
 /// Requests and answers kept.
 const SERVICE: Quality = Quality {
+    reliable: true,
     latched: false,
     depth: 10,
 };
@@ -162,8 +163,12 @@ fn policies(quality: Quality) -> QosPolicies {
         true => Durability::TransientLocal,
         false => Durability::Volatile,
     };
-    QosPolicyBuilder::new()
-        .reliable(Duration::ZERO)
+    let builder = QosPolicyBuilder::new();
+    let builder = match quality.reliable {
+        true => builder.reliable(Duration::ZERO),
+        false => builder.best_effort(),
+    };
+    builder
         .durability(durability)
         .history(History::KeepLast {
             depth: quality.depth,
@@ -205,6 +210,7 @@ impl Dds {
         let subscriber = participant.create_subscriber(&any);
         let publisher = publisher.map_err(|error| refused(&error))?;
         let quality = Quality {
+            reliable: true,
             latched: true,
             depth: 1,
         };
@@ -325,6 +331,7 @@ fn age_s(sent: Timestamp) -> f64 {
 fn message(channel: Channel, sample: &DeserializedCacheChange<Raw>) -> Option<Incoming> {
     Some(Incoming::Message {
         channel,
+        sender: sample.writer_guid().to_bytes(),
         age_s: sample.source_timestamp().map(age_s),
         data: with_header(&sample.sample, 0)?,
     })

@@ -72,6 +72,13 @@ messages! {
         /// About them.
         angular: Vector3,
     }
+    /// A velocity of an instant.
+    "geometry_msgs/msg/TwistStamped" TwistStamped {
+        /// When; in which frame.
+        header: Header,
+        /// The velocity.
+        twist: Twist,
+    }
     /// A velocity and how sure it is.
     "geometry_msgs/msg/TwistWithCovariance" TwistWithCovariance {
         /// The velocity.

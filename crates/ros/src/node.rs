@@ -2,9 +2,9 @@
 
 use crate::bridge::{Bridge, BridgeError, Caller, Channel, Incoming, ServiceType};
 use crate::convert::Sent;
-use crate::messages::Triggered;
-use crate::topics::Topic;
-use crate::types::encode;
+use crate::messages::{Triggered, Twist, TwistStamped};
+use crate::topics::{Quality, Topic};
+use crate::types::{Message, decode, encode};
 use std::collections::BTreeMap;
 
 /// The node's name.
@@ -20,7 +20,37 @@ pub struct Node<B> {
     namespace: String,
     topics: BTreeMap<Topic, Channel>,
     services: BTreeMap<Channel, usize>,
+    /// Where velocities come from, and whether they are stamped.
+    velocities: Option<(Channel, bool)>,
 }
+
+/// What others want.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wish {
+    /// A service is called.
+    Call(Call),
+    /// The robot is to drive.
+    Drive(Result<Velocity, BadVelocity>),
+}
+
+/// A velocity that the robot is to drive at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Velocity {
+    /// \[m/s\].
+    pub forward_m_s: f64,
+    /// \[rad/s\], positive to the left.
+    pub yaw_rad_s: f64,
+    /// Its publisher.
+    pub sender: [u8; 16],
+    /// Time since it was sent, by the clocks of both computers \[s\]; `None`: the sender does not say.
+    pub age_s: Option<f64>,
+    /// Its own time stamp, if it has one \[ns\].
+    pub stamp_ns: Option<i64>,
+}
+
+/// A message that is no velocity: it cannot be decoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BadVelocity;
 
 /// Somebody has called a service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +69,7 @@ impl<B: Bridge> Node<B> {
             namespace: namespace.to_owned(),
             topics: BTreeMap::new(),
             services: BTreeMap::new(),
+            velocities: None,
         }
     }
 
@@ -85,14 +116,50 @@ impl<B: Bridge> Node<B> {
         self.bridge.publish(channel, &message.data)
     }
 
-    /// The next call of a service, without waiting.
-    pub fn call(&mut self) -> Option<Call> {
+    /// Subscribes to velocities: `geometry_msgs/Twist`, or `TwistStamped`. Not reliably: any publisher will do, and what
+    /// is old is not sent again.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    pub fn take_velocities(&mut self, stamped: bool) -> Result<(), BridgeError> {
+        let definition = match stamped {
+            true => TwistStamped::DEFINITION,
+            false => Twist::DEFINITION,
+        };
+        let quality = Quality {
+            reliable: false,
+            latched: false,
+            depth: 1,
+        };
+        let name = format!("{}/cmd_vel", self.namespace);
+        let channel = self.bridge.subscribe(&name, definition, quality)?;
+        self.velocities = Some((channel, stamped));
+        Ok(())
+    }
+
+    /// What others want next, without waiting.
+    pub fn wish(&mut self) -> Option<Wish> {
         while let Some(incoming) = self.bridge.receive() {
-            if let Incoming::Request { caller, .. } = incoming
-                && let Some(service) = self.services.get(&caller.service)
-            {
-                let service = *service;
-                return Some(Call { service, caller });
+            match incoming {
+                Incoming::Request { caller, .. } => {
+                    if let Some(service) = self.services.get(&caller.service) {
+                        let service = *service;
+                        return Some(Wish::Call(Call { service, caller }));
+                    }
+                }
+                Incoming::Message {
+                    channel,
+                    sender,
+                    age_s,
+                    data,
+                } => {
+                    if let Some((velocities, stamped)) = self.velocities
+                        && velocities == channel
+                    {
+                        let velocity = velocity(&data, stamped, sender, age_s);
+                        return Some(Wish::Drive(velocity));
+                    }
+                }
             }
         }
         None
@@ -115,4 +182,34 @@ impl<B: Bridge> Node<B> {
     pub fn trouble(&mut self) -> Option<String> {
         self.bridge.trouble()
     }
+}
+
+/// The velocity in a message.
+fn velocity(
+    data: &[u8],
+    stamped: bool,
+    sender: [u8; 16],
+    age_s: Option<f64>,
+) -> Result<Velocity, BadVelocity> {
+    /// Along the axes and about them.
+    type Content = ([f64; 3], [f64; 3]);
+    type Stamped = ((i32, u32, String), Content);
+    let (stamp_ns, (linear, angular)) = match stamped {
+        true => {
+            let ((sec, nanosec, _), twist): Stamped = decode(data).map_err(|_| BadVelocity)?;
+            let stamp_ns = i64::from(sec) * 1_000_000_000 + i64::from(nanosec);
+            (Some(stamp_ns).filter(|stamp_ns| *stamp_ns != 0), twist)
+        }
+        false => {
+            let twist: Content = decode(data).map_err(|_| BadVelocity)?;
+            (None, twist)
+        }
+    };
+    Ok(Velocity {
+        forward_m_s: linear[0],
+        yaw_rad_s: angular[2],
+        sender,
+        age_s,
+        stamp_ns,
+    })
 }

@@ -32,9 +32,11 @@ pub enum Topic {
     Clock,
 }
 
-/// How a topic is carried; all of them reliably, since RViz asks for that.
+/// How a topic is carried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quality {
+    /// What is lost is sent again.
+    pub reliable: bool,
     /// Those who come late get the last messages.
     pub latched: bool,
     /// Messages kept for a reader that is slow.
@@ -87,11 +89,15 @@ impl Topic {
         }
     }
 
-    /// How it is carried.
+    /// How it is carried: reliably, since RViz asks for that.
     #[must_use]
     pub fn quality(self) -> Quality {
         let latched = matches!(self, Self::StaticTransforms | Self::Description);
         let depth = if latched { 1 } else { 10 };
-        Quality { latched, depth }
+        Quality {
+            reliable: true,
+            latched,
+            depth,
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::live::{ConnectArgs, LabArgs};
 use super::values::positive_speed;
+use crate::failure::Failure;
 use crate::ros::{domain, namespace};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -22,6 +23,22 @@ pub(crate) struct RosArgs {
     pub(crate) source: RosSource,
     #[command(flatten)]
     pub(crate) node: NodeArgs,
+}
+
+impl RosArgs {
+    /// A robot that is offered as a serial port has no session that could be a node.
+    ///
+    /// # Errors
+    /// That one is asked for.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        match &self.source {
+            #[cfg(unix)]
+            RosSource::Lab(lab) if lab.pty => Err(Failure::input(
+                "--pty offers the robot to another program: run `rumbo lab --pty`, then `rumbo ros connect` with the port",
+            )),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// What becomes a node.
@@ -52,6 +69,9 @@ pub(crate) struct NodeArgs {
     /// Domain, 0..232 [default: ROS_DOMAIN_ID, or else 0]
     #[arg(long, value_name = "N", global = true, value_parser = domain)]
     pub(crate) domain: Option<u16>,
+    /// Velocities on cmd_vel are geometry_msgs/TwistStamped instead of Twist
+    #[arg(long, global = true)]
+    pub(crate) stamped: bool,
     /// Be there for other computers too, in all networks of this one: everyone there can drive the robot
     #[arg(long, global = true)]
     pub(crate) network: bool,

@@ -3,13 +3,14 @@
 mod play;
 mod session;
 
-use crate::args::{NodeArgs, RosArgs, RosSource};
+use crate::args::{NodeArgs, RosArgs, RosSource, ServeArgs};
 use crate::failure::Failure;
 use crate::{browser, connect, lab, output};
 use rumbo_ros::bridge::BridgeError;
 use rumbo_ros::dds::{Dds, Reach};
 use rumbo_ros::node::{self, Node};
-use rumbo_station::Lab;
+use rumbo_station::{Client, Lab};
+use session::Live;
 use std::time::Duration;
 
 /// The environment's variable that names the domain.
@@ -23,19 +24,18 @@ type RosNode = Node<Dds>;
 
 /// Joins the domain first: where that is refused, nothing is opened.
 pub(crate) fn ros(args: &mut RosArgs) -> Result<(), Failure> {
+    args.check()?;
     let node = join(&args.node)?;
     match &mut args.source {
         RosSource::Lab(lab) => {
             let served = lab::serve(lab)?;
-            beside(served, node, true, |served| {
-                browser::show(served, lab.session.serve)
-            })
+            let live = Live::new(node, client(&served)?, true, args.node.stamped);
+            beside(served, live, lab.session.serve)
         }
         RosSource::Connect(connect) => {
             let served = connect::serve(connect)?;
-            beside(served, node, false, |served| {
-                browser::show(served, connect.session.serve)
-            })
+            let live = Live::new(node, client(&served)?, false, args.node.stamped);
+            beside(served, live, connect.session.serve)
         }
         RosSource::Replay(log) => play::play(log, node),
     }
@@ -85,20 +85,17 @@ pub(crate) fn namespace(text: &str) -> Result<String, String> {
     }
 }
 
+fn client(served: &Lab) -> Result<Client, Failure> {
+    let client = served.client();
+    client.ok_or_else(|| Failure::input("no place for a node in the session"))
+}
+
 /// Runs the node beside a session, until that ends.
-fn beside(
-    served: Lab,
-    node: RosNode,
-    simulated: bool,
-    show: impl FnOnce(Lab) -> Result<(), Failure>,
-) -> Result<(), Failure> {
-    let client = served
-        .client()
-        .ok_or_else(|| Failure::input("no place for a node in the session"))?;
-    let live = session::Live::new(node, client, simulated).map_err(Failure::input)?;
+fn beside(served: Lab, live: Result<Live, BridgeError>, serve: ServeArgs) -> Result<(), Failure> {
+    let live = live.map_err(Failure::input)?;
     let thread = std::thread::Builder::new().name("ros".into());
     let thread = thread.spawn(move || live.run()).map_err(Failure::input)?;
-    let shown = show(served);
+    let shown = browser::show(served, serve);
     let ended = thread.join();
     shown?;
     match ended {

@@ -1,7 +1,8 @@
 //! A session as a node of ROS 2 shows it: what is new on its board becomes messages, calls of services become orders.
 //!
 //! A call is answered when the robot's state shows what was asked for, or the robot has refused it. The node takes
-//! control for a call, as a page does, and releases it after it; calling `take_control` keeps it.
+//! control for a call, as a page does, and releases it after it; calling `take_control` keeps it. Velocities take it while
+//! they come.
 
 use super::{RosNode, WAKE, report};
 use crate::output;
@@ -11,7 +12,8 @@ use rumbo_ros::bridge::BridgeError;
 use rumbo_ros::convert::{ConvertError, Converter, Sent, clock};
 use rumbo_ros::geometry::Geometry;
 use rumbo_ros::messages::DiagnosticStatus;
-use rumbo_ros::node::Call;
+use rumbo_ros::node::{BadVelocity, Call, Velocity, Wish};
+use rumbo_ros::types::Byte;
 use rumbo_session::{News, Order, Seat};
 use rumbo_station::Client;
 use rumbo_wire::Command;
@@ -20,6 +22,14 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// A call is answered within this time.
 const PATIENCE: Duration = Duration::from_secs(3);
+/// Oldest velocity that is passed on [s]; the robot judges by the same, from there on.
+const OLDEST_S: f64 = 0.3;
+/// Without a velocity for this long control is released; the robot has released its wheels.
+const SILENCE: Duration = Duration::from_millis(500);
+/// Refusals are said this often at most, and shown for this long.
+const AGAIN: Duration = Duration::from_secs(2);
+/// Two who send velocities within this time drive by turns.
+const ALTERNATING: Duration = Duration::from_millis(500);
 /// The session has certainly taken an order after this time.
 const TAKEN: Duration = Duration::from_millis(50);
 /// The clock of a simulation is told this often at least: a pause has a time too.
@@ -64,6 +74,19 @@ struct Waiting {
     releases: bool,
 }
 
+/// What is known of those who send velocities.
+#[derive(Default)]
+struct Driving {
+    /// Who sent the last one, and when it came.
+    last: Option<([u8; 16], Instant)>,
+    /// Another one has sent one within [`ALTERNATING`] of it.
+    alternating: Option<Instant>,
+    /// Control was taken for them.
+    holds: bool,
+    /// Why one was not passed on, and when.
+    refused: Option<(String, Instant)>,
+}
+
 /// A session as a node.
 pub(super) struct Live {
     node: RosNode,
@@ -71,6 +94,7 @@ pub(super) struct Live {
     simulated: bool,
     services: Vec<(String, Service)>,
     waiting: Vec<Waiting>,
+    driving: Driving,
     converter: Converter,
     run: u32,
     scene: Option<Scene>,
@@ -88,7 +112,9 @@ impl Live {
         mut node: RosNode,
         client: Client,
         simulated: bool,
+        stamped: bool,
     ) -> Result<Self, BridgeError> {
+        node.take_velocities(stamped)?;
         let services = services();
         services.iter().try_for_each(|(name, _)| node.offer(name))?;
         Ok(Self {
@@ -98,6 +124,7 @@ impl Live {
             simulated,
             services,
             waiting: Vec::new(),
+            driving: Driving::default(),
             run: 0,
             scene: None,
             parameters: BTreeMap::new(),
@@ -116,10 +143,14 @@ impl Live {
             for message in self.converter.take() {
                 self.publish(&message);
             }
-            while let Some(call) = self.node.call() {
-                self.begin(call);
+            while let Some(wish) = self.node.wish() {
+                match wish {
+                    Wish::Call(call) => self.begin(call),
+                    Wish::Drive(velocity) => self.drive(velocity),
+                }
             }
             self.settle(has_state);
+            self.release();
             if let Some(trouble) = self.node.trouble() {
                 output::note(&format!("ROS 2: {trouble}"));
             }
@@ -197,10 +228,100 @@ impl Live {
             Seat::Free => "nobody has control",
             Seat::Passenger | Seat::Viewer => "a page of the dashboard has control",
         };
+        let driving = &self.driving;
+        let lately = |since: &Instant| since.elapsed() < AGAIN;
+        let refused = driving.refused.as_ref().filter(|(_, since)| lately(since));
+        let (level, message) = match refused {
+            Some((why, _)) => (1, format!("/cmd_vel: {why}")),
+            None if driving.alternating.as_ref().is_some_and(lately) => {
+                let text = "/cmd_vel: two publishers drive by turns, the newest counts";
+                (1, text.to_owned())
+            }
+            None => (0, control.to_owned()),
+        };
         DiagnosticStatus {
+            level: Byte(level),
             name: format!("{}: ROS 2", self.node.speaker()),
-            message: control.to_owned(),
+            message,
             ..DiagnosticStatus::default()
+        }
+    }
+
+    /// Passes a velocity on, or says why not: the one way from ROS 2 to the wheels.
+    fn drive(&mut self, velocity: Result<Velocity, BadVelocity>) {
+        let passed = velocity
+            .map_err(|BadVelocity| "it cannot be decoded".to_owned())
+            .and_then(|velocity| self.pass_on(velocity));
+        let Err(why) = passed else {
+            return;
+        };
+        let now = Instant::now();
+        let said = self.driving.refused.as_ref();
+        if said.is_none_or(|(before, since)| *before != why || since.elapsed() >= AGAIN) {
+            output::note(&format!("ROS 2: /cmd_vel: {why}"));
+            self.driving.refused = Some((why, now));
+        }
+    }
+
+    fn pass_on(&mut self, velocity: Velocity) -> Result<(), String> {
+        let now = Instant::now();
+        if let Some((before, since)) = self.driving.last.replace((velocity.sender, now))
+            && before != velocity.sender
+            && since.elapsed() < ALTERNATING
+        {
+            self.driving.alternating = Some(now);
+        }
+        self.check_age(&velocity)?;
+        // What is out of range is refused by the session; a number that is none does not get there.
+        let number = |value: f64, what: &str| match value.is_finite() {
+            true => Ok(value as f32),
+            false => Err(format!("refused, its {what} is not a finite number")),
+        };
+        let order = Order::Velocity(rumbo_control::Velocity {
+            forward_m_s: number(velocity.forward_m_s, "forward speed")?,
+            yaw_rad_s: number(velocity.yaw_rad_s, "yaw rate")?,
+        });
+        let held = self.client.view().seat == Seat::Driver;
+        self.client.order(order)?;
+        self.driving.holds |= !held;
+        Ok(())
+    }
+
+    /// Refuses what is old, or of another time.
+    fn check_age(&self, velocity: &Velocity) -> Result<(), String> {
+        let now_ns = match self.simulated {
+            true => self.clock_ms as f64 * 1e6,
+            false => SystemTime::now()
+                .duration_since(UNIX_EPOCH)
+                .map_or(0.0, |since| since.as_nanos() as f64),
+        };
+        let stamp_s = velocity
+            .stamp_ns
+            .map(|stamp_ns| (now_ns - stamp_ns as f64) / 1e9);
+        for (age_s, of) in [(velocity.age_s, "sent"), (stamp_s, "stamped")] {
+            match age_s {
+                Some(age_s) if age_s > OLDEST_S => {
+                    return Err(format!("refused, it was {of} {age_s:.1} s ago"));
+                }
+                Some(age_s) if age_s < -OLDEST_S => {
+                    let ahead_s = -age_s;
+                    return Err(format!(
+                        "refused, it is {of} {ahead_s:.1} s ahead of the time here; do the clocks agree?"
+                    ));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Releases the control that velocities have taken, when there are none any more.
+    fn release(&mut self) {
+        let is_silent = |(_, since): ([u8; 16], Instant)| since.elapsed() >= SILENCE;
+        if self.driving.holds && self.driving.last.is_none_or(is_silent) {
+            self.driving.holds = false;
+            // Releasing is never refused.
+            let _ = self.client.order(Order::ReleaseControl);
         }
     }
 
@@ -210,6 +331,8 @@ impl Live {
         let Some((_, service)) = self.services.get(call.service) else {
             return;
         };
+        // Control that velocities hold is released with them.
+        let held = held || self.driving.holds;
         let (order, releases) = match service {
             Service::Robot(command, _) => (Order::Robot(*command), !held),
             Service::Mode(mode) => (Order::Robot(Command::Mode(*mode)), !held),
@@ -217,6 +340,8 @@ impl Live {
             Service::ReleaseControl => (Order::ReleaseControl, false),
         };
         let for_robot = matches!(order, Order::Robot(_));
+        // What is taken by a call is kept without velocities, too.
+        self.driving.holds &= order != Order::TakeControl;
         match self.client.order(order) {
             Ok(()) if for_robot => self.waiting.push(Waiting {
                 call,
