@@ -118,6 +118,10 @@ struct NodeEntities<'a> {
 }
 
 /// What a channel is.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "there are thirty of them, and they are not moved"
+)]
 enum Carrier {
     Publication(Writer),
     Subscription(Reader),

@@ -21,7 +21,7 @@ const ARM: Order = Order::Robot(Command::Arm);
 async fn wait_for_state(client: &mut Client, wanted: impl Fn(&State) -> bool) {
     let until = Instant::now() + PATIENCE;
     while Instant::now() < until {
-        let news = client.news().expect("the session goes on");
+        let news = client.news().unwrap();
         if news.state.is_some_and(|state| wanted(&state)) {
             return;
         }

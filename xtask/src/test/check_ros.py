@@ -437,6 +437,12 @@ def check_two(peer, first):
     assert first.process.poll() is None
 
 
+def check_example():
+    example = [sys.executable, "examples/ros2/drive.py"]
+    run = subprocess.run(example, capture_output=True, text=True, timeout=PATIENCE_S)
+    assert run.returncode == 0 and run.stdout.startswith("x "), run
+
+
 def check_connected(peer):
     """A robot at a port: its messages have the time of day."""
     simulated = Program("lab", "--pty", "--scenario", "mode1", ready="/dev/")
@@ -504,6 +510,8 @@ def main():
     done("a killed peer")
     check_two(peer, first)
     done("two robots")
+    check_example()
+    done("the example")
     first.end()
     check_connected(peer)
     done("a robot at a port")

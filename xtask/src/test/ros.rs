@@ -24,7 +24,7 @@ pub(super) fn check(project: &Project) -> Result<(), Stop> {
         .args(["-c", "import rclpy, cyclonedds"])
         .output();
     if !import.is_ok_and(|import| import.status.success()) {
-        let remedy = "rclpy of PyPI does not run here; it is built for Linux and Python 3.11";
+        let remedy = "rclpy of PyPI does not run here; it is built for Linux, Python 3.11 to 3.13";
         return Err(Stop::Missing(remedy.to_owned()));
     }
     // The binary comes with the tests of the command line; any of them will do.
