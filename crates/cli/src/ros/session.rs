@@ -28,6 +28,8 @@ const OLDEST_S: f64 = 0.3;
 const SILENCE: Duration = Duration::from_millis(500);
 /// Refusals are said this often at most, and shown for this long.
 const AGAIN: Duration = Duration::from_secs(2);
+/// Most calls and velocities taken in a row: a flood of them does not keep messages from going out.
+const AT_ONCE: usize = 64;
 /// Two who send velocities within this time drive by turns.
 const ALTERNATING: Duration = Duration::from_millis(500);
 /// The session has certainly taken an order after this time.
@@ -103,7 +105,14 @@ pub(super) struct Live {
     /// The time of a simulation [ms], and when it was told last.
     clock_ms: i64,
     clocked: Instant,
+    /// When trouble with others was said last.
+    troubled: Option<Instant>,
     reported: bool,
+}
+
+/// Whether something may be said again that was said then.
+fn is_due(said: Option<Instant>) -> bool {
+    said.is_none_or(|said| said.elapsed() >= AGAIN)
 }
 
 impl Live {
@@ -131,6 +140,7 @@ impl Live {
             state: State::default(),
             clock_ms: 0,
             clocked: Instant::now(),
+            troubled: None,
             reported: false,
         })
     }
@@ -143,16 +153,20 @@ impl Live {
             for message in self.converter.take() {
                 self.publish(&message);
             }
-            while let Some(wish) = self.node.wish() {
-                match wish {
-                    Wish::Call(call) => self.begin(call),
-                    Wish::Drive(velocity) => self.drive(velocity),
+            for _ in 0..AT_ONCE {
+                match self.node.wish() {
+                    Some(Wish::Call(call)) => self.begin(call),
+                    Some(Wish::Drive(velocity)) => self.drive(velocity),
+                    None => break,
                 }
             }
             self.settle(has_state);
             self.release();
-            if let Some(trouble) = self.node.trouble() {
+            if is_due(self.troubled)
+                && let Some(trouble) = self.node.trouble()
+            {
                 output::note(&format!("ROS 2: {trouble}"));
+                self.troubled = Some(Instant::now());
             }
             std::thread::sleep(WAKE);
         }
@@ -255,11 +269,9 @@ impl Live {
         let Err(why) = passed else {
             return;
         };
-        let now = Instant::now();
-        let said = self.driving.refused.as_ref();
-        if said.is_none_or(|(before, since)| *before != why || since.elapsed() >= AGAIN) {
+        if is_due(self.driving.refused.as_ref().map(|(_, said)| *said)) {
             output::note(&format!("ROS 2: /cmd_vel: {why}"));
-            self.driving.refused = Some((why, now));
+            self.driving.refused = Some((why, Instant::now()));
         }
     }
 
