@@ -52,11 +52,12 @@ impl Project {
         command
     }
 
-    /// A command of cargo on the whole workspace with the bridge to Foxglove, which the usual build leaves out. Cargo
-    /// builds a dependency once for each set of features: what the tests share with it is not built again.
+    /// A command of cargo on the whole workspace with the bridge to Foxglove and the node of ROS 2, which the usual build
+    /// leaves out. Cargo builds a dependency once for each set of features: what the tests share with it is not built
+    /// again.
     pub(crate) fn whole(&self, command: &str) -> Command {
-        let bridge = "--features=rumbo-cli/foxglove";
-        self.cargo(&[command, "--workspace", bridge, "--locked"])
+        let features = "--features=rumbo-cli/foxglove,rumbo-cli/ros";
+        self.cargo(&[command, "--workspace", features, "--locked"])
     }
 
     /// Builds the release binary of `rumbo` (does nothing when it is fresh) and returns its path.

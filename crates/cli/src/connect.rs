@@ -9,10 +9,15 @@ use crate::logs;
 use crate::output;
 use rumbo_session::Target;
 use rumbo_station::port::{self, Port};
-use rumbo_station::{Extras, LabConfig};
+use rumbo_station::{Extras, Lab, LabConfig};
+
+/// Opens the port, serves the dashboard, and shows it.
+pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
+    browser::show(serve(args)?, args.session.serve)
+}
 
 /// Opens the port and serves the dashboard.
-pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
+pub(crate) fn serve(args: &ConnectArgs) -> Result<Lab, Failure> {
     if !args.address.starts_with(port::TCP) {
         let warning = rumbo_session::check_baud(args.baud)
             .map_err(|error| Failure::Input(format!("--baud: {error}")))?;
@@ -37,6 +42,5 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
         text: args.text,
         ..calibrate::in_dashboard()
     };
-    let served = rumbo_station::serve_with(config, robot, extras).map_err(Failure::input)?;
-    browser::show(served, args.session.serve)
+    rumbo_station::serve_with(config, robot, extras).map_err(Failure::input)
 }

@@ -11,10 +11,29 @@ use rumbo_experiment::files::Overrides;
 use rumbo_lab::{OwnProgram, SimulatedRobot};
 use rumbo_log::Choice;
 use rumbo_sim::debugging::Debugging;
-use rumbo_station::LabConfig;
+use rumbo_station::{Lab, LabConfig, Print};
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.
-pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
+pub(crate) fn lab(args: &mut LabArgs) -> Result<(), Failure> {
+    let robot = simulated(args)?;
+    #[cfg(unix)]
+    if args.pty {
+        return crate::pty::offer(robot, args.speed);
+    }
+    browser::show(served(args, robot, None)?, args.session.serve)
+}
+
+/// Serves the dashboard, for one who may be looking at the terminal.
+#[cfg(feature = "ros")]
+pub(crate) fn serve(args: &mut LabArgs) -> Result<Lab, Failure> {
+    let robot = simulated(args)?;
+    served(args, robot, Some(output::aside))
+}
+
+/// The simulated robot.
+fn simulated(args: &mut LabArgs) -> Result<SimulatedRobot, Failure> {
+    let robot = args.setting.robot.as_deref();
+    args.image.compile(robot, Some(&args.scenario))?;
     let choice = Choice {
         scenario: args.scenario.clone(),
         world: args.setting.world.clone(),
@@ -39,21 +58,20 @@ pub(crate) fn lab(args: &LabArgs) -> Result<(), Failure> {
     if args.usb_pty {
         robot.plug_in(Box::new(crate::pty::UsbPort::offer()?));
     }
-    #[cfg(unix)]
-    if args.pty {
-        return crate::pty::offer(robot, args.speed);
-    }
+    Ok(robot)
+}
+
+fn served(args: &LabArgs, robot: SimulatedRobot, echo: Option<Print>) -> Result<Lab, Failure> {
     let config = LabConfig {
         at: args.session.serve.at(),
         speed: args.speed,
         recording: logs::recording(args.session.out.as_deref()),
-        echo: None,
+        echo,
         #[cfg(feature = "foxglove")]
         bridge: bridge(args.session.bridge)?,
     };
-    let lab = rumbo_station::serve_with(config, Box::new(robot), calibrate::in_dashboard())
-        .map_err(Failure::input)?;
-    browser::show(lab, args.session.serve)
+    rumbo_station::serve_with(config, Box::new(robot), calibrate::in_dashboard())
+        .map_err(Failure::input)
 }
 
 /// The port for a debugger, printed to stderr.

@@ -36,6 +36,8 @@ mod recorded;
 mod replay;
 mod rerun;
 mod results;
+#[cfg(feature = "ros")]
+mod ros;
 mod ros2bag;
 mod run;
 mod run_log;
@@ -67,11 +69,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::New(args)) => sketch::begin(&args),
         Some(Command::Completions(args)) => manual::completions(&args),
         Some(Command::Manual(args)) => manual::manual(&args),
-        Some(Command::Lab(mut args)) => {
-            let robot = args.setting.robot.as_deref();
-            args.image.compile(robot, Some(&args.scenario))?;
-            lab::lab(&args)
-        }
+        Some(Command::Lab(mut args)) => lab::lab(&mut args),
         Some(Command::Connect(args)) => connect::connect(&args),
         Some(Command::Flash(args)) => flash::flash(&args),
         Some(Command::Run(mut args)) => {
@@ -91,6 +89,8 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
             experiments::experiments(&args)
         }
         Some(Command::Grade(args)) => grade::grade(&args),
+        #[cfg(feature = "ros")]
+        Some(Command::Ros(mut args)) => ros::ros(&mut args),
         Some(Command::Replay(args)) => replay::replay(&args),
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
@@ -100,9 +100,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Prune(args)) => logs::prune(&args),
         None => {
             let mut args = cli.lab;
-            let robot = args.setting.robot.as_deref();
-            args.image.compile(robot, Some(&args.scenario))?;
-            lab::lab(&args)
+            lab::lab(&mut args)
         }
     }
 }

@@ -1,22 +1,23 @@
 //! A bag of ROS 2: a folder with an MCAP file and `metadata.yaml`, as rosbag2 writes it (its version 5: Humble and
 //! newer read it).
 
-use crate::convert::{Sent, Topic};
+use crate::convert::Sent;
+use crate::topics::{Quality, Topic};
 use mcap::records::MessageHeader;
 use mcap::{Compression, McapError, WriteOptions};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 
-/// The quality of service of a topic, as rosbag2 notes it: reliable; a latched topic keeps its last message for those
-/// who come late.
-fn quality(is_latched: bool) -> String {
-    let (depth, durability) = if is_latched { (1, 1) } else { (10, 2) };
+/// A quality of service as rosbag2 notes it.
+fn quality(quality: Quality) -> String {
+    let reliability = if quality.reliable { 1 } else { 2 };
+    let durability = if quality.latched { 1 } else { 2 };
     let forever = json!({ "sec": 9_223_372_036_u64, "nsec": 854_775_807_u64 });
     json!([{
         "history": 1,
-        "depth": depth,
-        "reliability": 1,
+        "depth": quality.depth,
+        "reliability": reliability,
         "durability": durability,
         "deadline": forever,
         "lifespan": forever,
@@ -42,7 +43,7 @@ pub fn write<W: Write + Seek>(into: W, messages: &[Sent], library: &str) -> Resu
         let definition = topic.definition();
         let schema = bag.add_schema(definition.name, "ros2msg", definition.text().as_bytes())?;
         let about = [
-            ("offered_qos_profiles", quality(topic.is_latched())),
+            ("offered_qos_profiles", quality(topic.quality())),
             ("topic_type_hash", definition.hash()),
         ];
         let about = about.map(|(key, value)| (key.to_owned(), value));
@@ -81,7 +82,7 @@ pub fn metadata(messages: &[Sent], file: &str) -> String {
                 "type": topic.definition().name,
                 "type_description_hash": topic.definition().hash(),
                 "serialization_format": "cdr",
-                "offered_qos_profiles": quality(topic.is_latched()),
+                "offered_qos_profiles": quality(topic.quality()),
             },
             "message_count": count,
         })

@@ -1,89 +1,23 @@
-//! A log as messages of ROS 2, by topic.
+//! What is known of a robot as messages of ROS 2, by topic: of a log, or as it happens.
 
 use crate::geometry::{
     BASE, Geometry, MAP, ODOM, SONARS, WHEELS, pose, seen_from, stamped, transform,
 };
 use crate::messages::{
-    BatteryState, DiagnosticStatus, Diagnostics, Event, Header, JointState, KeyValue, Odometry,
-    Range, Text, Time, Transforms,
+    BatteryState, Clock, DiagnosticStatus, Diagnostics, Event, Header, JointState, KeyValue,
+    Odometry, Range, Text, Time, Transforms,
 };
-use crate::types::{Byte, Covariance, Definition, Message, encode};
-use rumbo_log::{Level, Log, MapPose, Row, SonarMount, State, compose};
+use crate::topics::Topic;
+use crate::types::{Byte, Covariance, Message, encode};
+use rumbo_log::{Level, Log, LoggedEvent, MapPose, Row, SonarMount, State, compose};
 use std::fmt;
 use time::OffsetDateTime;
 use time::format_description::well_known::Rfc3339;
 
 /// Shortest distance that the sonars measure [m]: HC-SR04.
 const LEAST_M: f32 = 0.02;
-/// Who says the events.
-const SPEAKER: &str = "rumbo";
-
-/// A topic.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Topic {
-    /// Pose and velocity, as the robot estimates them.
-    Odometry,
-    /// Frames that move.
-    Transforms,
-    /// Frames that do not.
-    StaticTransforms,
-    /// Wheels and servo.
-    Joints,
-    /// A sonar's distance, by `SonarId` number.
-    Range(u8),
-    /// Battery.
-    Battery,
-    /// State of robot and link.
-    Diagnostics,
-    /// What happened.
-    Events,
-    /// True pose and velocity, of a simulated robot.
-    Truth,
-    /// The robot's URDF.
-    Description,
-}
-
-impl Topic {
-    /// Its name.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Odometry => "/odom",
-            Self::Transforms => "/tf",
-            Self::StaticTransforms => "/tf_static",
-            Self::Joints => "/joint_states",
-            Self::Range(0) => "/sonar/left",
-            Self::Range(1) => "/sonar/right",
-            Self::Range(_) => "/sonar/front",
-            Self::Battery => "/battery_state",
-            Self::Diagnostics => "/diagnostics",
-            Self::Events => "/rosout",
-            Self::Truth => "/ground_truth/odom",
-            Self::Description => "/robot_description",
-        }
-    }
-
-    /// The type of its messages.
-    #[must_use]
-    pub fn definition(self) -> &'static Definition {
-        match self {
-            Self::Odometry | Self::Truth => Odometry::DEFINITION,
-            Self::Transforms | Self::StaticTransforms => Transforms::DEFINITION,
-            Self::Joints => JointState::DEFINITION,
-            Self::Range(_) => Range::DEFINITION,
-            Self::Battery => BatteryState::DEFINITION,
-            Self::Diagnostics => Diagnostics::DEFINITION,
-            Self::Events => Event::DEFINITION,
-            Self::Description => Text::DEFINITION,
-        }
-    }
-
-    /// Its last message is kept for those who come late.
-    #[must_use]
-    pub fn is_latched(self) -> bool {
-        matches!(self, Self::StaticTransforms | Self::Description)
-    }
-}
+/// The node that speaks in a bag, and a live one outside a namespace.
+pub const SPEAKER: &str = "rumbo";
 
 /// A message on its topic.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,56 +62,73 @@ impl std::error::Error for ConvertError {}
 /// # Errors
 /// [`ConvertError`].
 pub fn messages(log: &Log) -> Result<Vec<Sent>, ConvertError> {
-    let first = log.rows.first().ok_or(ConvertError::NoTelemetry)?;
-    let geometry = Geometry::of(log).ok_or(ConvertError::NoGeometry)?;
+    if log.rows.is_empty() {
+        return Err(ConvertError::NoTelemetry);
+    }
+    let parameters = log.parameters();
+    let geometry = Geometry::new(log.scene(), |name| parameters.get(name).copied());
     let started = log.manifest.as_ref().and_then(|manifest| {
         let started = manifest.started.as_ref()?;
         OffsetDateTime::parse(started, &Rfc3339).ok()
     });
     let started = started.map_or(0, OffsetDateTime::unix_timestamp_nanos);
-    let mut converter = Converter {
-        geometry,
-        started_ns: u64::try_from(started).unwrap_or(0),
-        robot: log
-            .manifest
-            .as_ref()
-            .and_then(|manifest| manifest.robot.clone())
-            .unwrap_or_default(),
-        origin: Origin::default(),
-        wheel_rad: [0.0; 2],
-        last_ms: first.t_ms,
-        sent: Vec::new(),
-    };
-    converter.begin(first)?;
+    let robot = log.manifest.as_ref();
+    let robot = robot.and_then(|manifest| manifest.robot.clone());
+    let mut converter = Converter::new(
+        SPEAKER,
+        robot.unwrap_or_default(),
+        u64::try_from(started).unwrap_or(0),
+    );
+    converter.know(geometry.ok_or(ConvertError::NoGeometry)?);
     for row in &log.rows {
         converter.row(row)?;
     }
     for state in &log.states {
-        converter.state(state)?;
+        converter.state(state, Vec::new())?;
     }
     for event in &log.events {
-        converter.event(event.t_s, event.level, &event.text)?;
+        converter.event(event)?;
     }
-    let mut sent = converter.sent;
+    let mut sent = converter.take();
     sent.sort_by_key(|message| message.t_ns);
     Ok(sent)
 }
 
-struct Converter {
-    geometry: Geometry,
-    started_ns: u64,
-    /// Its name.
+/// The time of a simulation or of a log \[ns\], as a message.
+///
+/// # Errors
+/// [`ConvertError::Encoding`].
+pub fn clock(t_ns: u64) -> Result<Sent, ConvertError> {
+    let clock = stamp(t_ns);
+    let data = encode(&Clock { clock }).map_err(ConvertError::Encoding)?;
+    let topic = Topic::Clock;
+    Ok(Sent { topic, t_ns, data })
+}
+
+/// What is known of a robot, in order of time, as messages.
+#[derive(Debug)]
+pub struct Converter {
+    /// The node that says it.
+    speaker: String,
+    /// Name of the robot.
     robot: String,
+    started_ns: u64,
+    /// Once it is known.
+    geometry: Option<Geometry>,
+    /// Description and fixed frames are still to be sent.
+    is_new: bool,
+    /// Where odometry started in the world, of a simulated robot, as its first row has it.
+    odom_in_map: Option<Option<MapPose>>,
     origin: Origin,
     /// How far the wheels have turned: the sum of the measured speeds.
     wheel_rad: [f64; 2],
-    last_ms: i64,
+    last_ms: Option<i64>,
     sent: Vec<Sent>,
 }
 
 /// The robot's origin in the frame `odom`, in which its pose never jumps (REP 105): it does when the robot begins to count
 /// from somewhere else, as at each goal.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Origin {
     in_odom: MapPose,
     /// Where the log has it, and the last pose.
@@ -199,6 +150,35 @@ impl Origin {
 }
 
 impl Converter {
+    /// For the robot of this name; `speaker` is the node, `started_ns` the time of its time 0 \[ns\].
+    #[must_use]
+    pub fn new(speaker: &str, robot: String, started_ns: u64) -> Self {
+        Self {
+            speaker: speaker.to_owned(),
+            robot,
+            started_ns,
+            geometry: None,
+            is_new: true,
+            odom_in_map: None,
+            origin: Origin::default(),
+            wheel_rad: [0.0; 2],
+            last_ms: None,
+            sent: Vec::new(),
+        }
+    }
+
+    /// Takes the robot's body; without it no row becomes messages. Description and fixed frames follow with the next
+    /// row if it is another one.
+    pub fn know(&mut self, geometry: Geometry) {
+        self.is_new |= self.geometry.as_ref() != Some(&geometry);
+        self.geometry = Some(geometry);
+    }
+
+    /// The messages since the last call.
+    pub fn take(&mut self) -> Vec<Sent> {
+        std::mem::take(&mut self.sent)
+    }
+
     fn put<M: Message>(
         &mut self,
         topic: Topic,
@@ -222,39 +202,51 @@ impl Converter {
     }
 
     /// What does not change.
-    fn begin(&mut self, first: &Row) -> Result<(), ConvertError> {
+    fn begin(&mut self, first: &Row, geometry: &Geometry) -> Result<(), ConvertError> {
         let t_ns = self.at_ms(first.t_ms);
         let is_fixed = |mount: &&SonarMount| !mount.on_servo;
-        let fixed: Vec<&str> = self
-            .geometry
+        let fixed: Vec<&str> = geometry
             .sonars
             .iter()
             .filter(is_fixed)
             .filter_map(frame)
             .collect();
-        let parts = self.geometry.parts([0.0; 2], 0.0).into_iter();
+        let parts = geometry.parts([0.0; 2], 0.0).into_iter();
         let parts = parts.filter(|(part, _)| fixed.contains(part));
         let parts = parts.map(|(part, at)| stamped(&stamp(t_ns), BASE, part, at));
         let mut transforms: Vec<_> = parts.collect();
-        if first.pose("true_").is_some() {
-            let odom = first.pose("origin_").unwrap_or_default();
+        let odom = *self.odom_in_map.get_or_insert_with(|| {
+            let origin = first.pose("origin_").unwrap_or_default();
+            first.pose("true_").map(|_| origin)
+        });
+        if let Some(odom) = odom {
             transforms.push(stamped(&stamp(t_ns), MAP, ODOM, transform(odom)));
         }
         if !transforms.is_empty() {
             self.put(Topic::StaticTransforms, t_ns, &Transforms { transforms })?;
         }
-        let data = self.geometry.urdf(&self.robot);
+        let data = geometry.urdf(&self.robot);
         self.put(Topic::Description, t_ns, &Text { data })
     }
 
-    fn row(&mut self, row: &Row) -> Result<(), ConvertError> {
+    /// The signals of an instant.
+    ///
+    /// # Errors
+    /// [`ConvertError::Encoding`].
+    pub fn row(&mut self, row: &Row) -> Result<(), ConvertError> {
+        let Some(geometry) = self.geometry.clone() else {
+            return Ok(());
+        };
+        if std::mem::take(&mut self.is_new) {
+            self.begin(row, &geometry)?;
+        }
         let t_ns = self.at_ms(row.t_ms);
         let speeds = |prefix: &str| {
             ["left", "right"]
                 .map(|side| row.signal(&format!("{prefix}{side}_rad_s")).unwrap_or(0.0))
         };
-        let elapsed_s = (row.t_ms - self.last_ms).max(0) as f64 / 1e3;
-        self.last_ms = row.t_ms;
+        let last_ms = self.last_ms.replace(row.t_ms).unwrap_or(row.t_ms);
+        let elapsed_s = (row.t_ms - last_ms).max(0) as f64 / 1e3;
         let (before, now) = (speeds_before(row), speeds(""));
         for side in 0..2 {
             self.wheel_rad[side] += 0.5 * elapsed_s * (before[side] + now[side]);
@@ -264,22 +256,24 @@ impl Converter {
         if let Some(at) = row.pose("") {
             let at = self.origin.pose(row.pose("origin_"), at);
             let turned_rad = self.origin.in_odom.heading_rad;
-            let odometry = self.odometry(t_ns, ODOM, at, now, covariance(row, turned_rad));
+            let velocity = geometry.velocity(now);
+            let odometry = self.odometry(t_ns, ODOM, at, velocity, covariance(row, turned_rad));
             self.put(Topic::Odometry, t_ns, &odometry)?;
             frames.push(stamped(&stamp(t_ns), ODOM, BASE, transform(at)));
         }
-        let moving = self.geometry.sonars.iter().filter(|mount| mount.on_servo);
+        let moving = geometry.sonars.iter().filter(|mount| mount.on_servo);
         let moving: Vec<&str> = moving.filter_map(frame).chain(WHEELS).collect();
-        let parts = self.geometry.parts(self.wheel_rad, servo_rad).into_iter();
+        let parts = geometry.parts(self.wheel_rad, servo_rad).into_iter();
         let parts = parts.filter(|(part, _)| moving.contains(part));
         frames.extend(parts.map(|(part, at)| stamped(&stamp(t_ns), BASE, part, at)));
         self.put(Topic::Transforms, t_ns, &Transforms { transforms: frames })?;
-        self.joints(t_ns, now, servo_rad)?;
-        for mount in self.geometry.sonars.clone() {
-            self.range(t_ns, row, &mount)?;
+        self.joints(t_ns, &geometry, now, servo_rad)?;
+        for mount in &geometry.sonars {
+            self.range(t_ns, row, mount)?;
         }
         if let Some(at) = row.pose("true_") {
-            let truth = self.odometry(t_ns, MAP, at, speeds("true_"), Covariance::default());
+            let velocity = geometry.velocity(speeds("true_"));
+            let truth = self.odometry(t_ns, MAP, at, velocity, Covariance::default());
             self.put(Topic::Truth, t_ns, &truth)?;
         }
         Ok(())
@@ -290,7 +284,7 @@ impl Converter {
         t_ns: u64,
         frame: &str,
         at: MapPose,
-        wheel_rad_s: [f64; 2],
+        [forward_m_s, yaw_rad_s]: [f64; 2],
         covariance: Covariance,
     ) -> Odometry {
         let mut odometry = Odometry {
@@ -300,7 +294,6 @@ impl Converter {
         };
         odometry.pose.pose = pose(at);
         odometry.pose.covariance = covariance;
-        let [forward_m_s, yaw_rad_s] = self.geometry.velocity(wheel_rad_s);
         odometry.twist.twist.linear.x = forward_m_s;
         odometry.twist.twist.angular.z = yaw_rad_s;
         odometry
@@ -309,6 +302,7 @@ impl Converter {
     fn joints(
         &mut self,
         t_ns: u64,
+        geometry: &Geometry,
         wheel_rad_s: [f64; 2],
         servo_rad: f64,
     ) -> Result<(), ConvertError> {
@@ -319,7 +313,7 @@ impl Converter {
             velocity: wheel_rad_s.to_vec(),
             effort: Vec::new(),
         };
-        let on_servo = self.geometry.sonars.iter().filter(|mount| mount.on_servo);
+        let on_servo = geometry.sonars.iter().filter(|mount| mount.on_servo);
         for sonar in on_servo.filter_map(frame) {
             joints.name.push(format!("{sonar}_joint"));
             joints.position.push(servo_rad);
@@ -346,7 +340,15 @@ impl Converter {
         self.put(Topic::Range(mount.id), t_ns, &range)
     }
 
-    fn state(&mut self, state: &State) -> Result<(), ConvertError> {
+    /// What changes slowly, and what the speaker has to say of itself.
+    ///
+    /// # Errors
+    /// [`ConvertError::Encoding`].
+    pub fn state(
+        &mut self,
+        state: &State,
+        also: Vec<DiagnosticStatus>,
+    ) -> Result<(), ConvertError> {
         let t_ns = self.at_ms((state.t_s * 1e3) as i64);
         if let Some(battery_v) = state.robot.battery_v {
             let battery = BatteryState {
@@ -408,11 +410,12 @@ impl Converter {
             .chain(of_alarms)
             .map(|(name, (level, message), values)| DiagnosticStatus {
                 level: Byte(level),
-                name: format!("{SPEAKER}: {name}"),
+                name: format!("{}: {name}", self.speaker),
                 message,
                 hardware_id: self.robot.clone(),
                 values,
-            });
+            })
+            .chain(also);
         let diagnostics = Diagnostics {
             status: status.collect(),
             header: self.header(t_ns, ""),
@@ -420,7 +423,12 @@ impl Converter {
         self.put(Topic::Diagnostics, t_ns, &diagnostics)
     }
 
-    fn event(&mut self, t_s: f64, level: Level, text: &str) -> Result<(), ConvertError> {
+    /// What happened.
+    ///
+    /// # Errors
+    /// [`ConvertError::Encoding`].
+    pub fn event(&mut self, event: &LoggedEvent) -> Result<(), ConvertError> {
+        let LoggedEvent { t_s, level, text } = event;
         let t_ns = self.at_ms((t_s * 1e3) as i64);
         let event = Event {
             stamp: stamp(t_ns),
@@ -429,8 +437,8 @@ impl Converter {
                 Level::Warning => 30,
                 Level::Fault => 40,
             },
-            name: SPEAKER.to_owned(),
-            msg: text.to_owned(),
+            name: self.speaker.replace('/', "."),
+            msg: text.clone(),
             ..Event::default()
         };
         self.put(Topic::Events, t_ns, &event)

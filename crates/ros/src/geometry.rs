@@ -1,7 +1,7 @@
 //! Frames and body of a robot, and its URDF.
 
 use crate::messages::{Header, Pose, Quaternion, Time, Transform, TransformStamped, Vector3};
-use rumbo_log::{Log, MapPose, SonarMount};
+use rumbo_log::{MapPose, Scene, SonarMount};
 use std::fmt::Write;
 
 /// The world, of a simulation.
@@ -35,15 +35,11 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// That of a log's robot: as its parameters have it, or else its scene. A real robot's log has no scene: neither
-    /// outline nor sonars.
+    /// That of a robot with these parameters, where they are known, or else of its scene. A real robot has no scene:
+    /// neither outline nor sonars. `None` where neither has its sizes.
     #[must_use]
-    pub fn of(log: &Log) -> Option<Self> {
-        let (scene, parameters) = (log.scene(), log.parameters());
-        let parameter = |name: &str, else_m: Option<f64>| {
-            let known = parameters.get(name).map(|value| f64::from(*value));
-            known.or(else_m)
-        };
+    pub fn new(scene: Option<&Scene>, parameter: impl Fn(&str) -> Option<f32>) -> Option<Self> {
+        let parameter = |name: &str, else_m: Option<f64>| parameter(name).map(f64::from).or(else_m);
         let scene_radius_m = scene.map(|scene| scene.wheel_radius_m);
         Some(Self {
             radius_m: [
@@ -109,6 +105,8 @@ impl Geometry {
             .chars()
             .filter(|c| c.is_alphanumeric() || *c == '_')
             .collect();
+        // A robot of URDF has a name.
+        let name = if name.is_empty() { "robot" } else { &name };
         let mut text = format!("<?xml version=\"1.0\"?>\n<robot name=\"{name}\">\n");
         let [low, high] = self.extent();
         let [x, y] = [0, 1].map(|axis: usize| 0.5 * (low[axis] + high[axis]));

@@ -4,15 +4,23 @@
 //! types      what a message is made of: its definition as text, its hash (REP 2016)
 //! messages   the messages used here
 //! geometry   frames and body of a robot; its URDF
-//! convert    a log as messages, by topic
+//! topics     the topics of a robot: names, types, quality of service
+//! convert    a log, or what happens, as messages by topic
 //! bag        the bag: an MCAP file and its metadata
+//! node       a robot as a node: topics and services on a bridge
+//! bridge     what a node asks of a middleware; dds: over DDS (feature `dds`)
 //! ```
 //!
 //! Frames follow REP 103 (x forward, y left, counter-clockwise; metres, radians) and REP 105 (`map`, `odom`,
 //! `base_link`). `base_link` is the middle of the wheels' axis, on the floor.
 
 pub mod bag;
+pub mod bridge;
 pub mod convert;
+#[cfg(feature = "dds")]
+pub mod dds;
 pub mod geometry;
 pub mod messages;
+pub mod node;
+pub mod topics;
 pub mod types;

@@ -72,6 +72,13 @@ messages! {
         /// About them.
         angular: Vector3,
     }
+    /// A velocity of an instant.
+    "geometry_msgs/msg/TwistStamped" TwistStamped {
+        /// When; in which frame.
+        header: Header,
+        /// The velocity.
+        twist: Twist,
+    }
     /// A velocity and how sure it is.
     "geometry_msgs/msg/TwistWithCovariance" TwistWithCovariance {
         /// The velocity.
@@ -123,6 +130,11 @@ messages! {
         velocity: Vec<f64>,
         /// Not known.
         effort: Vec<f64>,
+    }
+    /// The time of a simulation.
+    "rosgraph_msgs/msg/Clock" Clock {
+        /// It.
+        clock: Time,
     }
     /// A distance. Infinite: nothing within reach (REP 117).
     "sensor_msgs/msg/Range" Range {
@@ -219,5 +231,12 @@ messages! {
         function: String,
         /// 0.
         line: u32,
+    }
+    /// The answer of a service that has no question.
+    "std_srvs/srv/Trigger_Response" Triggered {
+        /// It was done.
+        success: bool,
+        /// Why not, in words.
+        message: String,
     }
 }

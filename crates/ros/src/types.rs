@@ -4,6 +4,7 @@
 //! both ends of a topic mean the same.
 
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -250,4 +251,18 @@ impl Definition {
 pub fn encode<M: Message>(message: &M) -> Result<Vec<u8>, cdr_encoding::Error> {
     let body = cdr_encoding::to_vec::<M, byteorder::LittleEndian>(message)?;
     Ok([&[0, 1, 0, 0], &body[..]].concat())
+}
+
+/// The contents of a message, from its bytes in CDR with their header. A message is a tuple of its fields here: any type
+/// of the same shape will do.
+///
+/// # Errors
+/// Bytes that end early or hold something else.
+pub fn decode<T: DeserializeOwned>(data: &[u8]) -> Result<T, cdr_encoding::Error> {
+    let (header, body) = data.split_at_checked(4).unwrap_or_default();
+    let decoded = match header {
+        [0, 0, ..] => cdr_encoding::from_bytes::<T, byteorder::BigEndian>(body),
+        _ => cdr_encoding::from_bytes::<T, byteorder::LittleEndian>(body),
+    };
+    decoded.map(|(content, _)| content)
 }

@@ -1,7 +1,8 @@
 //! Logs as messages.
 
 use rumbo_log::{Log, MapPose, Row, Scene};
-use rumbo_ros::convert::{ConvertError, Topic, messages};
+use rumbo_ros::convert::{ConvertError, messages};
+use rumbo_ros::topics::Topic;
 
 /// A log of rows with these poses and origins: x [m].
 fn log(rows: &[(f64, f64)]) -> Log {

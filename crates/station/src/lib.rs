@@ -7,6 +7,7 @@ mod assets;
 mod board;
 #[cfg(feature = "foxglove")]
 mod bridge;
+mod client;
 mod door;
 mod echo;
 mod ending;
@@ -16,6 +17,7 @@ mod guard;
 pub mod headless;
 mod lease;
 pub mod log_file;
+mod order_sender;
 pub mod port;
 mod recorder;
 mod recordings;
@@ -30,6 +32,7 @@ pub use rumbo_session::Extras;
 
 #[cfg(feature = "foxglove")]
 pub use bridge::{BRIDGE_PORT, Bridge, BridgeError};
+pub use client::Client;
 pub use echo::Print;
 pub use ending::asked_to_end;
 pub use error::{ServeError, SessionError};

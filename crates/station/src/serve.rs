@@ -1,11 +1,13 @@
 //! Starts the lab: binds the port, then runs the session and the web server in threads of their own.
 
 use crate::board::Board;
+use crate::client::Client;
 use crate::door;
 use crate::echo::{Echo, Print};
 use crate::error::{ServeError, SessionError};
 use crate::guard::{self, Guard};
 use crate::lease::Lease;
+use crate::order_sender::OrderSender;
 use crate::recorder::Recording;
 use crate::recordings::Recordings;
 use crate::replay;
@@ -14,12 +16,11 @@ use crate::socket::Hub;
 use crate::subscribers::Subscribers;
 use crate::web;
 use rumbo_log::Log;
-use rumbo_session::{Extras, Ghost, Order, Replay, Target, TargetError};
+use rumbo_session::{Extras, Ghost, Replay, Target, TargetError};
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-use std::sync::mpsc::{self, Receiver, SyncSender};
+use std::sync::mpsc::{self, Receiver};
 use std::thread::JoinHandle;
 use tokio::sync::oneshot;
 
@@ -87,8 +88,10 @@ pub struct Lab {
     url: String,
     viewers_url: String,
     opened: Receiver<()>,
+    board: Arc<Board>,
+    lease: Lease,
     /// `None` once ended. The session runs while there are senders.
-    orders: Option<SyncSender<Order>>,
+    orders: Option<Arc<OrderSender>>,
     web_ends: Option<oneshot::Sender<()>>,
     session: Option<JoinHandle<Result<(), TargetError>>>,
     web: Option<JoinHandle<()>>,
@@ -103,6 +106,12 @@ impl Lab {
     /// The address for viewers; it can be opened any number of times.
     pub fn viewers_url(&self) -> &str {
         &self.viewers_url
+    }
+
+    /// A client beside the pages; `None`: too many are there.
+    #[must_use]
+    pub fn client(&self) -> Option<Client> {
+        Client::join(&self.board, self.orders.as_ref()?, &self.lease)
     }
 
     /// Returns when [`Self::url`] has been opened, or when there is nothing to open any more.
@@ -137,9 +146,6 @@ impl Drop for Lab {
         drop((web, session));
     }
 }
-
-/// Orders that may wait for the session, which takes them every few milliseconds.
-const ORDERS_WAITING: usize = 256;
 
 /// Serves the dashboard of `target` until the returned [`Lab`] is dropped. Prints nothing.
 ///
@@ -235,15 +241,10 @@ fn start_on(
     let (url, viewers_url) = (guard.url(), guard.viewers_url());
 
     let board = Arc::new(Board::default());
-    let stop = Arc::new(AtomicBool::new(false));
-    let (orders, queue) = mpsc::sync_channel(ORDERS_WAITING);
-    let (shown, waiting) = (
-        Arc::clone(&board),
-        Orders {
-            queue,
-            stop: Arc::clone(&stop),
-        },
-    );
+    let lease = Lease::default();
+    let (orders, waiting) = OrderSender::new();
+    let orders = Arc::new(orders);
+    let shown = Arc::clone(&board);
     let session_over = opens.clone();
     let session = std::thread::Builder::new()
         .name("session".into())
@@ -256,10 +257,9 @@ fn start_on(
     let router = web::router(
         Arc::new(guard),
         Hub {
-            board,
-            orders: orders.clone(),
-            stop,
-            lease: Lease::default(),
+            board: Arc::clone(&board),
+            orders: Arc::clone(&orders),
+            lease: lease.clone(),
             local,
             recordings,
         },
@@ -276,6 +276,8 @@ fn start_on(
         url,
         viewers_url,
         opened,
+        board,
+        lease,
         orders: Some(orders),
         web_ends: Some(web_ends),
         session: Some(session),

@@ -9,6 +9,7 @@
 use crate::board::Board;
 use crate::guard::Role;
 use crate::lease::{Lease, Place};
+use crate::order_sender::{OrderSender, TOO_MANY};
 use crate::recordings::Recordings;
 use axum::body::Bytes;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
@@ -16,10 +17,7 @@ use futures_util::stream::SplitSink;
 use futures_util::{Sink, SinkExt, Stream, StreamExt};
 use rumbo_log::{Level, LoggedEvent};
 use rumbo_session::{Cursor, MAX_ORDER, News, Order, SHORT_ORDER, ToPage};
-use rumbo_wire::Command;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::{interval, sleep, timeout};
@@ -43,8 +41,7 @@ const SILENCE: Duration = Duration::from_secs(15);
 #[derive(Clone, Debug)]
 pub(crate) struct Hub {
     pub(crate) board: Arc<Board>,
-    pub(crate) orders: SyncSender<Order>,
-    pub(crate) stop: Arc<AtomicBool>,
+    pub(crate) orders: Arc<OrderSender>,
     pub(crate) lease: Lease,
     /// Only this computer reaches the pages: they may hand in programs, and see and delete recordings.
     pub(crate) local: bool,
@@ -158,14 +155,10 @@ async fn take_orders(
             let _ = refuse.try_send(why);
             continue;
         }
-        if order == Order::Robot(Command::Stop) {
-            hub.stop.store(true, Ordering::SeqCst);
-        }
-        // A full queue wakes the session anyway, and STOP has its own flag.
-        if hub.orders.try_send(order).is_err() {
+        if hub.orders.send(order).is_err() {
             return Some(Closing {
                 code: close_code::AGAIN,
-                text: "too many orders at once".into(),
+                text: TOO_MANY.into(),
             });
         }
     }
@@ -252,8 +245,7 @@ mod tests {
     fn hub() -> Hub {
         Hub {
             board: Arc::new(Board::default()),
-            orders: std::sync::mpsc::sync_channel(1).0,
-            stop: Arc::default(),
+            orders: Arc::new(OrderSender::new().0),
             lease: Lease::default(),
             local: true,
             recordings: None,

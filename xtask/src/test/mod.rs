@@ -6,6 +6,7 @@
 
 mod logs;
 mod readme;
+mod ros;
 pub(crate) mod tools;
 mod web;
 pub(crate) mod wheel;
@@ -48,7 +49,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 17] = [
+const STEPS: [Step; 18] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
@@ -91,8 +92,13 @@ const STEPS: [Step; 17] = [
     },
     Step {
         name: "test",
-        what: "the tests of all crates, the bridge to Foxglove included",
+        what: "the tests of all crates, the bridge to Foxglove and the node of ROS 2 included",
         check: tests,
+    },
+    Step {
+        name: "ros",
+        what: "robots as nodes of ROS 2, as genuine peers see them",
+        check: ros::check,
     },
     Step {
         name: "fuzz",

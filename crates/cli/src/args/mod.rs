@@ -3,6 +3,8 @@
 mod groups;
 mod live;
 mod logs;
+#[cfg(feature = "ros")]
+mod ros;
 mod runs;
 mod studies;
 mod values;
@@ -14,6 +16,8 @@ pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs};
 pub(crate) use logs::{
     CompareArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
 };
+#[cfg(feature = "ros")]
+pub(crate) use ros::{NodeArgs, PlayArgs, RosArgs, RosSource};
 pub(crate) use runs::{
     CalibrateArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, RunArgs,
 };
@@ -53,6 +57,9 @@ pub(crate) enum Command {
     Lab(LabArgs),
     /// Drive a real robot from the same dashboard, over a serial port or TCP
     Connect(ConnectArgs),
+    /// Show a robot, or the log of one, to ROS 2 as a node, and let it be driven from there
+    #[cfg(feature = "ros")]
+    Ros(Box<RosArgs>),
     /// Write the firmware to an Arduino Mega
     Flash(FlashArgs),
     /// Run scenarios as fast as the machine can and judge their metrics

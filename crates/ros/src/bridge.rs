@@ -1,0 +1,122 @@
+//! What a node asks of a middleware: to publish, to subscribe, to serve. All data are bytes in CDR with their header of
+//! four bytes, as [`encode`](crate::types::encode) makes them.
+
+use crate::topics::Quality;
+use crate::types::Definition;
+use std::fmt;
+
+/// The type of a service: package and name, `std_srvs/srv/Trigger`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ServiceType(pub &'static str);
+
+/// Something a bridge carries, numbered by the bridge.
+pub type Channel = usize;
+
+/// Who asked a service, by the bridge's own account; the answer goes there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Caller {
+    /// The service.
+    pub service: Channel,
+    /// The client, 16 bytes that are its own.
+    pub client: [u8; 16],
+    /// Its request.
+    pub number: i64,
+}
+
+/// What has come in.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Incoming {
+    /// A message of a subscription.
+    Message {
+        /// The subscription.
+        channel: Channel,
+        /// The publisher, by the bridge's own account.
+        sender: [u8; 16],
+        /// Time since it was sent, by the clocks of both computers \[s\]; `None`: the sender does not say.
+        age_s: Option<f64>,
+        /// The message.
+        data: Vec<u8>,
+    },
+    /// A request to a service.
+    Request {
+        /// Who asks.
+        caller: Caller,
+        /// The request.
+        data: Vec<u8>,
+    },
+}
+
+/// A middleware with one node on it. Names are absolute: `/odom`.
+pub trait Bridge {
+    /// Announces a topic to publish on.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    fn advertise(
+        &mut self,
+        name: &str,
+        of: &Definition,
+        quality: Quality,
+    ) -> Result<Channel, BridgeError>;
+
+    /// Publishes a message on a topic that was announced. Never waits for a reader.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    fn publish(&mut self, topic: Channel, data: &[u8]) -> Result<(), BridgeError>;
+
+    /// Subscribes to a topic.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    fn subscribe(
+        &mut self,
+        name: &str,
+        of: &Definition,
+        quality: Quality,
+    ) -> Result<Channel, BridgeError>;
+
+    /// Offers a service.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    fn serve(&mut self, name: &str, of: ServiceType) -> Result<Channel, BridgeError>;
+
+    /// The next message or request, without waiting.
+    fn receive(&mut self) -> Option<Incoming>;
+
+    /// Answers a request.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    fn answer(&mut self, caller: Caller, data: &[u8]) -> Result<(), BridgeError>;
+
+    /// What a person should know of the others since the last call: one who uses a name of ours with another type.
+    fn trouble(&mut self) -> Option<String>;
+}
+
+/// Why a middleware refused.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum BridgeError {
+    /// The domain cannot be joined: which, and why.
+    Domain(u16, String),
+    /// A topic or service cannot be announced: which, and why.
+    Announce(String, String),
+    /// Something cannot be sent: why.
+    Send(String),
+}
+
+impl fmt::Display for BridgeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Domain(domain, why) => write!(
+                f,
+                "domain {domain} of ROS 2 cannot be joined ({why}); is a network up, and are its ports free? --domain takes another"
+            ),
+            Self::Announce(name, why) => write!(f, "{name} cannot be announced: {why}"),
+            Self::Send(why) => write!(f, "nothing can be sent: {why}"),
+        }
+    }
+}
+
+impl std::error::Error for BridgeError {}

@@ -1,0 +1,215 @@
+//! A robot as a node: its topics and services on a bridge.
+
+use crate::bridge::{Bridge, BridgeError, Caller, Channel, Incoming, ServiceType};
+use crate::convert::Sent;
+use crate::messages::{Triggered, Twist, TwistStamped};
+use crate::topics::{Quality, Topic};
+use crate::types::{Message, decode, encode};
+use std::collections::BTreeMap;
+
+/// The node's name.
+pub const NAME: &str = "rumbo";
+
+/// The type of its services: without a question, answered by yes or no, and why.
+const TRIGGER: ServiceType = ServiceType("std_srvs/srv/Trigger");
+
+/// A node. Topics are announced with their first message.
+#[derive(Debug)]
+pub struct Node<B> {
+    bridge: B,
+    namespace: String,
+    topics: BTreeMap<Topic, Channel>,
+    services: BTreeMap<Channel, usize>,
+    /// Where velocities come from, and whether they are stamped.
+    velocities: Option<(Channel, bool)>,
+}
+
+/// What others want.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wish {
+    /// A service is called.
+    Call(Call),
+    /// The robot is to drive.
+    Drive(Result<Velocity, BadVelocity>),
+}
+
+/// A velocity that the robot is to drive at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Velocity {
+    /// \[m/s\].
+    pub forward_m_s: f64,
+    /// \[rad/s\], positive to the left.
+    pub yaw_rad_s: f64,
+    /// Its publisher.
+    pub sender: [u8; 16],
+    /// Time since it was sent, by the clocks of both computers \[s\]; `None`: the sender does not say.
+    pub age_s: Option<f64>,
+    /// Its own time stamp, if it has one \[ns\].
+    pub stamp_ns: Option<i64>,
+}
+
+/// A message that is no velocity: it cannot be decoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BadVelocity;
+
+/// Somebody has called a service.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Call {
+    /// Which one, in the order in which they are offered.
+    pub service: usize,
+    /// Who is to be answered.
+    pub caller: Caller,
+}
+
+impl<B: Bridge> Node<B> {
+    /// A node in a namespace (empty, or `/name`).
+    pub fn new(bridge: B, namespace: &str) -> Self {
+        Self {
+            bridge,
+            namespace: namespace.to_owned(),
+            topics: BTreeMap::new(),
+            services: BTreeMap::new(),
+            velocities: None,
+        }
+    }
+
+    /// The node's name with its namespace, without the first slash: `rumbo`, `first/rumbo`.
+    #[must_use]
+    pub fn speaker(&self) -> String {
+        let name = format!("{}/{NAME}", self.namespace);
+        name.trim_start_matches('/').to_owned()
+    }
+
+    /// Offers one more service, under the node's name: `arm` is `/rumbo/arm`.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    pub fn offer(&mut self, service: &str) -> Result<(), BridgeError> {
+        let name = format!("/{}/{service}", self.speaker());
+        let channel = self.bridge.serve(&name, TRIGGER)?;
+        self.services.insert(channel, self.services.len());
+        Ok(())
+    }
+
+    /// Announces a topic, if that has not been done.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    pub fn announce(&mut self, topic: Topic) -> Result<Channel, BridgeError> {
+        if let Some(channel) = self.topics.get(&topic) {
+            return Ok(*channel);
+        }
+        let name = topic.name_in(&self.namespace);
+        let channel = self
+            .bridge
+            .advertise(&name, topic.definition(), topic.quality())?;
+        self.topics.insert(topic, channel);
+        Ok(channel)
+    }
+
+    /// Publishes a message.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    pub fn publish(&mut self, message: &Sent) -> Result<(), BridgeError> {
+        let channel = self.announce(message.topic)?;
+        self.bridge.publish(channel, &message.data)
+    }
+
+    /// Subscribes to velocities: `geometry_msgs/Twist`, or `TwistStamped`. Not reliably: any publisher will do, and what
+    /// is old is not sent again.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    pub fn take_velocities(&mut self, stamped: bool) -> Result<(), BridgeError> {
+        let definition = match stamped {
+            true => TwistStamped::DEFINITION,
+            false => Twist::DEFINITION,
+        };
+        let quality = Quality {
+            reliable: false,
+            latched: false,
+            depth: 1,
+        };
+        let name = format!("{}/cmd_vel", self.namespace);
+        let channel = self.bridge.subscribe(&name, definition, quality)?;
+        self.velocities = Some((channel, stamped));
+        Ok(())
+    }
+
+    /// What others want next, without waiting.
+    pub fn wish(&mut self) -> Option<Wish> {
+        while let Some(incoming) = self.bridge.receive() {
+            match incoming {
+                Incoming::Request { caller, .. } => {
+                    if let Some(service) = self.services.get(&caller.service) {
+                        let service = *service;
+                        return Some(Wish::Call(Call { service, caller }));
+                    }
+                }
+                Incoming::Message {
+                    channel,
+                    sender,
+                    age_s,
+                    data,
+                } => {
+                    if let Some((velocities, stamped)) = self.velocities
+                        && velocities == channel
+                    {
+                        let velocity = velocity(&data, stamped, sender, age_s);
+                        return Some(Wish::Drive(velocity));
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// Answers a call: whether it was done, and what there is to say.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    pub fn answer(&mut self, call: Call, done: Result<(), String>) -> Result<(), BridgeError> {
+        let answer = Triggered {
+            success: done.is_ok(),
+            message: done.err().unwrap_or_default(),
+        };
+        let data = encode(&answer).map_err(|error| BridgeError::Send(error.to_string()))?;
+        self.bridge.answer(call.caller, &data)
+    }
+
+    /// What a person should know of the others since the last call.
+    pub fn trouble(&mut self) -> Option<String> {
+        self.bridge.trouble()
+    }
+}
+
+/// The velocity in a message.
+fn velocity(
+    data: &[u8],
+    stamped: bool,
+    sender: [u8; 16],
+    age_s: Option<f64>,
+) -> Result<Velocity, BadVelocity> {
+    /// Along the axes and about them.
+    type Content = ([f64; 3], [f64; 3]);
+    type Stamped = ((i32, u32, String), Content);
+    let (stamp_ns, (linear, angular)) = match stamped {
+        true => {
+            let ((sec, nanosec, _), twist): Stamped = decode(data).map_err(|_| BadVelocity)?;
+            let stamp_ns = i64::from(sec) * 1_000_000_000 + i64::from(nanosec);
+            (Some(stamp_ns).filter(|stamp_ns| *stamp_ns != 0), twist)
+        }
+        false => {
+            let twist: Content = decode(data).map_err(|_| BadVelocity)?;
+            (None, twist)
+        }
+    };
+    Ok(Velocity {
+        forward_m_s: linear[0],
+        yaw_rad_s: angular[2],
+        sender,
+        age_s,
+        stamp_ns,
+    })
+}

@@ -1,0 +1,103 @@
+//! The topics of a robot: names, types, quality of service.
+
+use crate::messages::{
+    BatteryState, Clock, Diagnostics, Event, JointState, Odometry, Range, Text, Transforms,
+};
+use crate::types::{Definition, Message};
+
+/// A topic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Topic {
+    /// Pose and velocity, as the robot estimates them.
+    Odometry,
+    /// Frames that move.
+    Transforms,
+    /// Frames that do not.
+    StaticTransforms,
+    /// Wheels and servo.
+    Joints,
+    /// A sonar's distance, by `SonarId` number.
+    Range(u8),
+    /// Battery.
+    Battery,
+    /// State of robot and link.
+    Diagnostics,
+    /// What happened.
+    Events,
+    /// True pose and velocity, of a simulated robot.
+    Truth,
+    /// The robot's URDF.
+    Description,
+    /// The time of a simulation; no part of a bag, which has its own times.
+    Clock,
+}
+
+/// How a topic is carried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quality {
+    /// What is lost is sent again.
+    pub reliable: bool,
+    /// Those who come late get the last messages.
+    pub latched: bool,
+    /// Messages kept for a reader that is slow.
+    pub depth: i32,
+}
+
+impl Topic {
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Odometry => "/odom",
+            Self::Transforms => "/tf",
+            Self::StaticTransforms => "/tf_static",
+            Self::Joints => "/joint_states",
+            Self::Range(0) => "/sonar/left",
+            Self::Range(1) => "/sonar/right",
+            Self::Range(_) => "/sonar/front",
+            Self::Battery => "/battery_state",
+            Self::Diagnostics => "/diagnostics",
+            Self::Events => "/rosout",
+            Self::Truth => "/ground_truth/odom",
+            Self::Description => "/robot_description",
+            Self::Clock => "/clock",
+        }
+    }
+
+    /// Its name for a robot in a namespace (empty, or `/name`). What tools look for in one place stays there.
+    #[must_use]
+    pub fn name_in(self, namespace: &str) -> String {
+        match self {
+            Self::Diagnostics | Self::Events => self.name().to_owned(),
+            _ => format!("{namespace}{}", self.name()),
+        }
+    }
+
+    /// The type of its messages.
+    #[must_use]
+    pub fn definition(self) -> &'static Definition {
+        match self {
+            Self::Odometry | Self::Truth => Odometry::DEFINITION,
+            Self::Transforms | Self::StaticTransforms => Transforms::DEFINITION,
+            Self::Joints => JointState::DEFINITION,
+            Self::Range(_) => Range::DEFINITION,
+            Self::Battery => BatteryState::DEFINITION,
+            Self::Diagnostics => Diagnostics::DEFINITION,
+            Self::Events => Event::DEFINITION,
+            Self::Description => Text::DEFINITION,
+            Self::Clock => Clock::DEFINITION,
+        }
+    }
+
+    /// How it is carried: reliably, since RViz asks for that.
+    #[must_use]
+    pub fn quality(self) -> Quality {
+        let latched = matches!(self, Self::StaticTransforms | Self::Description);
+        let depth = if latched { 1 } else { 10 };
+        Quality {
+            reliable: true,
+            latched,
+            depth,
+        }
+    }
+}

