@@ -4,6 +4,7 @@
 //! is skipped with the remedy; with `CI=true` that is a failure. Debug builds serve the tests, one release build the
 //! browser and the README, so nothing is built twice in the same way.
 
+mod lessons;
 mod logs;
 mod readme;
 pub(crate) mod tools;
@@ -48,7 +49,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 17] = [
+const STEPS: [Step; 18] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
@@ -133,6 +134,11 @@ const STEPS: [Step; 17] = [
         name: "readme",
         what: "the commands of the README",
         check: readme::check,
+    },
+    Step {
+        name: "lessons",
+        what: "the figures of the lessons are those of the runs",
+        check: lessons::check,
     },
 ];
 
