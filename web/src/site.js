@@ -6,8 +6,9 @@ import { language, t } from './text.js';
 /** Shown in another page of the site. */
 export const isEmbedded = window.top !== window;
 
-/** Links to the site's other pages, in the reader's language where they have it. */
+/** Links to the site's other pages, in the reader's language where they have it; within one of them, a layout without them. */
 export function linkPages() {
+  document.body.classList.toggle('embedded', isEmbedded);
   if (isEmbedded) return;
   const pages = [
     [t('Lessons'), `docs/lessons/${language}/`],
