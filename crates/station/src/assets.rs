@@ -71,6 +71,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/seat.js": SCRIPT,
     "src/share.js": SCRIPT,
     "src/signals.js": SCRIPT,
+    "src/site.js": SCRIPT,
     "src/sketch.js": SCRIPT,
     "src/spanish/guide.js": SCRIPT,
     "src/spanish/page.js": SCRIPT,
