@@ -1,10 +1,11 @@
 // @ts-check
 /**
- * Service worker of the site: keeps all its files, so that the lab opens without a network too. A newer site is fetched
- * beside the one in use, and taken when no page has that open any more: a page never mixes two of them.
+ * Service worker of the site: keeps the lab's files from the start, so that it opens without a network too, and every other
+ * page from when it is opened first. A newer site is fetched beside the one in use, and taken when no page has that open
+ * any more: a page never mixes two of them.
  */
 
-// Put in by `cargo xtask site`: the files, and a number that changes with their contents.
+// Put in by `cargo xtask site`: the lab's files, and a number that changes with the contents of any file of the site.
 /** @type {string[]} */
 const FILES = [];
 const VERSION = '';
@@ -26,8 +27,16 @@ worker.addEventListener('activate', (/** @type {any} */ event) => {
   event.waitUntil(clean);
 });
 
+/** @param {Request} request */
+async function answer(request) {
+  const cache = await caches.open(CACHE);
+  const kept = await cache.match(request, { ignoreSearch: true });
+  if (kept) return kept;
+  const fetched = await fetch(request);
+  if (fetched.ok && !fetched.redirected && fetched.type === 'basic') await cache.put(request, fetched.clone());
+  return fetched;
+}
+
 worker.addEventListener('fetch', (/** @type {any} */ event) => {
-  if (event.request.method !== 'GET') return;
-  const found = caches.open(CACHE).then((cache) => cache.match(event.request, { ignoreSearch: true }));
-  event.respondWith(found.then((kept) => kept ?? fetch(event.request)));
+  if (event.request.method === 'GET') event.respondWith(answer(event.request));
 });

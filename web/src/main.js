@@ -32,6 +32,7 @@ import { Recordings } from './recordings.js';
 import { ReplayBar } from './replay.js';
 import { Seat } from './seat.js';
 import { Share } from './share.js';
+import { isEmbedded, linkPages } from './site.js';
 import { StateLine, pointerWords } from './stateline.js';
 import { StepFigures, figures } from './step.js';
 import { Store } from './store.js';
@@ -243,7 +244,7 @@ function receive(message) {
       stateLine.show(state);
       alarm.show(state);
       stepFigures.show(panel.mode);
-      if (simulated && !isOwn(state) && !state.replay && !document.body.classList.contains('viewer')) tour.offer();
+      if (simulated && !isEmbedded && !isOwn(state) && !state.replay && !document.body.classList.contains('viewer')) tour.offer();
       tour.show(state);
       program.show(state);
       profile.show(state);
@@ -300,8 +301,11 @@ function receive(message) {
   }
 }
 
-// Where the browser allows it, the site opens without a network from now on.
-if (isSite) navigator.serviceWorker?.register('offline.js').catch(() => {});
+if (isSite) {
+  linkPages();
+  // Where the browser allows it, the site opens without a network from now on.
+  navigator.serviceWorker?.register('offline.js').catch(() => {});
+}
 
 const notice = new Notice();
 const link = new (isSite ? WorkerLink : Link)(receive, (now, why) => {

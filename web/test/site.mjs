@@ -6,7 +6,7 @@ import { extname, join, normalize } from 'node:path';
 import { chromium } from 'playwright-core';
 import { BROWSER_ARGS, PATIENCE_MS } from './dashboard.mjs';
 
-const FOLDER = process.env['SITE'] ?? '';
+export const FOLDER = process.env['SITE'] ?? '';
 /** Why there is nothing to test, or false. */
 export const skip = existsSync(join(FOLDER, 'lab/rumbo_bg.wasm')) ? false : 'SITE is no site: run `cargo xtask site`, and name its folder';
 if (skip && process.env['CI']) throw new Error(skip);
@@ -42,8 +42,9 @@ function serve() {
  * Opens the site. What its scripts complain of is in `complaints`, and requests that leave it are in `abroad`.
  * @param {import('playwright-core').BrowserContextOptions} [options]
  * @param {string} [link] what follows the `#` of its address
+ * @param {string} [path] of a page other than the lab
  */
-export async function open(options = {}, link = '') {
+export async function open(options = {}, link = '', path = '') {
   const server = await serve();
   const browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, colorScheme: 'dark', locale: 'en-GB', ...options });
@@ -61,10 +62,10 @@ export async function open(options = {}, link = '') {
   context.on('request', (request) => {
     if (!request.url().startsWith(server.url) && !/^(blob|data):/.test(request.url())) abroad.push(request.url());
   });
-  await page.goto(server.url + (link && `#${link}`));
+  await page.goto(server.url + path + (link && `#${link}`));
   const close = async () => {
     await browser.close();
     server.close();
   };
-  return { page, complaints, abroad, unplug: server.close, close };
+  return { page, complaints, abroad, url: server.url, unplug: server.close, close };
 }

@@ -239,4 +239,33 @@ mod tests {
     fn an_unknown_option_is_an_error() {
         assert!(request(&["test", "--fast"]).is_err_and(|error| error.contains("--fast")));
     }
+
+    #[test]
+    fn every_command_of_the_documents_is_known() {
+        let tree = tidy::Tree::read(&Project::find().unwrap()).unwrap();
+        let mut seen = 0;
+        for (path, text) in tree.texts(|path| path.ends_with(".md") && path != "CHANGELOG.md") {
+            for (at, name) in text.match_indices("cargo xtask ") {
+                // Between backquotes it may go on in the next line; in a block it ends with the line, or before a comment.
+                let ends: &[char] = match text[..at].ends_with('\n') {
+                    true => &['`', '#', '\n'],
+                    false => &['`', '#'],
+                };
+                let words = text[at + name.len()..].split(ends).next().unwrap();
+                let found = request(&words.split_whitespace().collect::<Vec<_>>());
+                let Ok(Request::Run { command, .. }) = &found else {
+                    assert!(matches!(found, Ok(Request::Help(_))), "{path}: {words}");
+                    continue;
+                };
+                let known = HELP.contains(&format!("\n  {command} "));
+                // In a sentence it stands for any of them.
+                assert!(
+                    known || command == "<command>",
+                    "{path}: cargo xtask {words}"
+                );
+                seen += 1;
+            }
+        }
+        assert!(seen > 40, "{seen}");
+    }
 }

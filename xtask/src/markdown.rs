@@ -73,7 +73,7 @@ impl Markdown {
 }
 
 /// Letters and digits in lower case, spaces as hyphens, everything else left out.
-fn anchor(title: &str) -> String {
+pub(crate) fn anchor(title: &str) -> String {
     title
         .trim()
         .chars()

@@ -33,8 +33,12 @@ impl Chip {
             cpu.set_stack_floor(end);
         }
         let mut devices = Devices::new(model);
-        let boot = image.flash().get(2 * model.boot_start(fuses) as usize..);
+        let boot_start = model.boot_start(fuses);
+        let boot = image.flash().get(2 * boot_start as usize..);
         let boot = boot.is_some_and(|boot| boot.iter().take(2).any(|byte| *byte != 0xFF));
+        if boot {
+            cpu.set_boot_loader(boot_start);
+        }
         cpu.set_program_counter(devices.set_fuses(fuses, boot));
         let eeprom = image.eeprom();
         let fits = eeprom.len().min(model.eeprom_bytes);

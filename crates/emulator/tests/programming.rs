@@ -5,6 +5,7 @@ mod common;
 
 use common::*;
 use rumbo_emulator::chip::Chip;
+use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::Fuses;
 use rumbo_emulator::image::Image;
 use rumbo_emulator::model::ATMEGA2560;
@@ -34,6 +35,11 @@ fn spm(command: u8, word: u16, z: u16) -> Vec<u16> {
 
 /// A chip with `words` in its boot section, and an endless loop of 0x1234 everywhere in its second page.
 fn with_boot(words: &[u16], fuses: Fuses) -> Chip {
+    with_application(words, fuses, 512)
+}
+
+/// The same with this many bytes of an application.
+fn with_application(words: &[u16], fuses: Fuses, bytes_of_it: u16) -> Chip {
     let mut records = vec![ihex::Record::ExtendedLinearAddress(3)];
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     for (index, chunk) in bytes.chunks(16).enumerate() {
@@ -43,7 +49,7 @@ fn with_boot(words: &[u16], fuses: Fuses) -> Chip {
         });
     }
     records.push(ihex::Record::ExtendedLinearAddress(0));
-    for offset in (0..512).step_by(16) {
+    for offset in (0..bytes_of_it).step_by(16) {
         records.push(ihex::Record::Data {
             offset,
             value: [0x34, 0x12].repeat(8),
@@ -180,4 +186,22 @@ fn a_boot_loader_is_passed_when_it_has_jumped_to_the_application() {
     let mut bare = chip_of(&[0xCFFF]);
     bare.pass_boot_loader(u64::MAX);
     assert_eq!(bare.cycle(), 0);
+}
+
+#[test]
+fn without_an_application_the_blank_flash_leads_to_the_boot_loader_again() {
+    // JMP 0: three cycles, and one for each blank word.
+    let mut chip = with_application(&[0x940C, 0], ATMEGA2560.fuses, 0);
+    let start = ATMEGA2560.boot_start(ATMEGA2560.fuses);
+    for round in 0..3 {
+        assert_eq!(chip.cpu().program_counter(), start, "round {round}");
+        chip.step();
+        assert_eq!(chip.cpu().program_counter(), 0);
+        let arrives = chip.cycle() + u64::from(start);
+        assert_eq!(chip.run_until(arrives), Stopped::Reached);
+        assert_eq!(chip.cycle(), arrives);
+    }
+    // Behind the end of an application it is an error, as without a boot loader.
+    let mut chip = with_application(&[0x940C, 0], ATMEGA2560.fuses, 16);
+    assert!(matches!(chip.run_until(1_000_000), Stopped::Ended(_)));
 }

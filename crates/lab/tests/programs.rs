@@ -81,6 +81,11 @@ fn a_program_that_stands_still_for_good_is_reported_once_with_the_reason() {
         stands.contains("a loop of one instruction at 0x0"),
         "{stands}"
     );
+    // `cli` and `rjmp .-2`, as behind a `main` that has returned.
+    let [ends] = &said_of(b":04000000F894FFCFA2\n:00000001FF\n")[..] else {
+        panic!("once");
+    };
+    assert!(ends.contains("main() returned"), "{ends}");
     // Sleeps with interrupts off.
     let [sleeps] = &said_of(b":0800000081E083BF8895FECF6B\n:00000001FF\n")[..] else {
         panic!("once");

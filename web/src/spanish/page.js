@@ -29,6 +29,7 @@ export const PAGE = {
   'Open a recording…': 'Abrir una grabación…', 'Show a saved recording, .mcap, as a replay; dropping it on the page does the same': 'Reproduce una grabación guardada, .mcap; también se puede soltar en la página',
   'Back to the lab': 'Volver al laboratorio', 'Close the recording: the lab goes on where it was': 'Cierra la grabación: el laboratorio sigue donde estaba',
   'Save this run': 'Guardar esta grabación', 'Save the recording of the run so far as a file': 'Guarda en un archivo lo grabado hasta ahora',
+  'Pages': 'Páginas', 'Lessons': 'Lecciones', 'Guides': 'Guías', 'Theory': 'Teoría',
   'Share': 'Compartir', 'A link that opens this run elsewhere': 'Un enlace que abre esto mismo en otro sitio', 'Copy': 'Copiar', 'copied': 'copiado', 'copy it from the field': 'cópialo del campo',
   'The link opens this scenario, world, sensor layout and seed, and repeats this run from its start, to the last bit.':
     'El enlace abre este escenario, mundo, montaje y semilla, y repite esta ejecución desde el principio, bit a bit.',

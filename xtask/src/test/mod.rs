@@ -4,6 +4,7 @@
 //! is skipped with the remedy; with `CI=true` that is a failure. Debug builds serve the tests, one release build the
 //! browser and the README, so nothing is built twice in the same way.
 
+mod lessons;
 mod logs;
 mod readme;
 mod ros;
@@ -139,6 +140,11 @@ const STEPS: [Step; 18] = [
         name: "readme",
         what: "the commands of the README",
         check: readme::check,
+    },
+    Step {
+        name: "lessons",
+        what: "the figures of the lessons are those of the runs",
+        check: lessons::check,
     },
 ];
 

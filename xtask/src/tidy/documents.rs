@@ -13,24 +13,41 @@ const WIDTH: usize = 120;
 /// Checks all Markdown files.
 pub(crate) fn check(tree: &Tree) -> Vec<Finding> {
     let mut findings = records(tree);
-    for (path, text) in tree.texts(|path| path.ends_with(".md") && !path.contains("node_modules/"))
-    {
+    for (path, text) in tree.texts(is_document) {
         let parts = Markdown::parse(text);
         let long = (1..).zip(text.lines()).filter(|(line, text)| {
-            text.chars().count() > WIDTH && !parts.wide.iter().any(|wide| wide.contains(line))
+            let breaks = !is_definition(text) && !parts.wide.iter().any(|wide| wide.contains(line));
+            text.chars().count() > WIDTH && breaks
         });
         findings.extend(long.map(|(line, text)| {
             let length = text.chars().count();
             let what = format!("{length} characters; a line of text has at most {WIDTH}: break it");
             Finding::error(path, line, what)
         }));
-        for (line, target) in parts.links {
-            if let Some(what) = broken(tree, path, &target) {
-                findings.push(Finding::error(path, line, what));
-            }
-        }
     }
+    findings.extend(broken_links(tree));
     findings
+}
+
+/// The links of all Markdown files that lead nowhere.
+pub(crate) fn broken_links(tree: &Tree) -> Vec<Finding> {
+    let files = tree.texts(is_document);
+    let links = files.flat_map(|(path, text)| {
+        let links = Markdown::parse(text).links.into_iter();
+        links.filter_map(move |(line, target)| {
+            Some(Finding::error(path, line, broken(tree, path, &target)?))
+        })
+    });
+    links.collect()
+}
+
+/// The address of a link, apart from the text: `[name]: address`.
+fn is_definition(line: &str) -> bool {
+    line.starts_with('[') && line.contains("]: ")
+}
+
+fn is_document(path: &str) -> bool {
+    path.ends_with(".md") && !path.contains("node_modules/")
 }
 
 /// The problem of a link in the file `from`, if any. Addresses with a scheme are not followed: other sites, and figures
@@ -67,7 +84,7 @@ fn broken(tree: &Tree, from: &str, target: &str) -> Option<String> {
 }
 
 /// The path that a link `target` in the file `from` means, relative to the root.
-fn resolve(from: &str, target: &str) -> String {
+pub(crate) fn resolve(from: &str, target: &str) -> String {
     let mut folders: Vec<&str> = from.split('/').collect();
     folders.pop();
     for part in target.split('/') {
@@ -143,12 +160,13 @@ mod tests {
     }
 
     #[test]
-    fn a_line_of_text_has_at_most_120_characters_but_tables_and_code_have_their_width() {
+    fn a_line_of_text_has_at_most_120_characters_but_tables_code_and_addresses_have_their_width() {
         let (fits, long) = ("é".repeat(120), "é".repeat(121));
-        let page = format!("{fits}\n\n| a |\n|---|\n| {long} |\n\n```text\n{long}\n```\n");
+        let page =
+            format!("{fits}\n\n| a |\n|---|\n| {long} |\n\n```text\n{long}\n```\n\n[a]: {long}\n");
         assert_eq!(found(&[("a.md", &page)]), [""; 0]);
         let page = format!("{page}\n- {long}\n");
-        let what = "a.md:11: 123 characters; a line of text has at most 120: break it";
+        let what = "a.md:13: 123 characters; a line of text has at most 120: break it";
         assert_eq!(found(&[("a.md", &page)]), [what]);
     }
 

@@ -13,6 +13,8 @@ mod source;
 use std::collections::BTreeMap;
 use std::fmt;
 
+pub(crate) use documents::{broken_links, resolve};
+
 use crate::project::{Project, metadata};
 
 /// The project's files by path relative to the root, with `/` between folders; no text for binary files.
@@ -21,7 +23,7 @@ pub(crate) struct Tree {
 }
 
 impl Tree {
-    fn read(project: &Project) -> Result<Self, String> {
+    pub(crate) fn read(project: &Project) -> Result<Self, String> {
         let mut files = BTreeMap::new();
         for path in project.files()? {
             let bytes = std::fs::read(project.root.join(&path))
@@ -35,7 +37,10 @@ impl Tree {
     }
 
     /// The text files whose path satisfies `wanted`, in order of their paths.
-    fn texts(&self, wanted: impl Fn(&str) -> bool) -> impl Iterator<Item = (&str, &str)> {
+    pub(crate) fn texts(
+        &self,
+        wanted: impl Fn(&str) -> bool,
+    ) -> impl Iterator<Item = (&str, &str)> {
         let texts = self
             .files
             .iter()

@@ -30,6 +30,19 @@ impl Cpu {
         self.astray = Some((target, arrival));
     }
 
+    /// Whether what stands here is the blank flash below a boot loader; found out where an application would begin.
+    #[cold]
+    pub(super) fn runs_through(&mut self, program_counter: u32) -> bool {
+        if program_counter == 0 {
+            let blank = |boot: &u32| {
+                let below = &self.flash[..2 * *boot as usize];
+                below.iter().all(|byte| *byte == 0xFF)
+            };
+            self.blank_to = self.boot.filter(blank).unwrap_or(0);
+        }
+        program_counter < self.blank_to
+    }
+
     /// How the program counter got to `program_counter`.
     pub(super) fn arrival(&self, program_counter: u32) -> Arrival {
         if program_counter == 0 {

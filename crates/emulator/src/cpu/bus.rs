@@ -169,6 +169,7 @@ impl Cpu {
     /// SPM has changed the flash.
     #[cold]
     pub(super) fn program(&mut self, stored: Stored) {
+        self.blank_to = 0;
         match stored {
             Stored::Nothing => {}
             Stored::Erased(page) => {

@@ -471,6 +471,7 @@ impl Cpu {
                     self.rest(pc, cycle, status);
                     return true;
                 }
+                Code::Erased if self.runs_through(pc) => {}
                 Code::Erased => {
                     self.rest(pc, cycle, status);
                     self.end(Verdict::ErasedFlash {

@@ -77,8 +77,10 @@ pub(crate) enum Turn {
 pub enum Standstill {
     /// It sleeps.
     Asleep,
-    /// An instruction jumps to itself, as at the end of a program whose `main` has returned.
+    /// An instruction jumps to itself.
     Loop,
+    /// The same behind CLI, as avr-libc's `_exit` does, where a program goes whose `main` has returned.
+    End,
 }
 
 /// The processor with its memories.
@@ -117,6 +119,10 @@ pub struct Cpu {
     verdict: Option<Verdict>,
     /// Where the last jump led behind which nothing can run, and what kind of jump it was.
     astray: Option<(u32, Arrival)>,
+    /// Where a boot loader begins, if the program has one [words].
+    boot: Option<u32>,
+    /// Up to here all flash is erased, below a boot loader [words]; 0: it is not.
+    blank_to: u32,
 }
 
 impl Cpu {
@@ -160,6 +166,8 @@ impl Cpu {
             shadow: false,
             verdict: None,
             astray: None,
+            boot: None,
+            blank_to: 0,
         };
         cpu.status = Status::from_bits(0);
         for word in 0..fits.div_ceil(2) as u32 {
@@ -261,15 +269,27 @@ impl Cpu {
 
     /// How the program stands still for good, if it does: with interrupts off, only a reset leads on.
     pub fn standstill(&self) -> Option<Standstill> {
+        const CLI: [u8; 2] = 0x94F8_u16.to_le_bytes();
         const JUMP_TO_ITSELF: [u8; 2] = 0xCFFF_u16.to_le_bytes();
         let at = 2 * self.program_counter() as usize;
+        let (before, here) = (at.wrapping_sub(2), self.flash.get(at..at + 2));
         if self.status.interrupts {
             None
         } else if self.sleeping {
             Some(Standstill::Asleep)
+        } else if here != Some(&JUMP_TO_ITSELF) {
+            None
+        } else if self.flash.get(before..at) == Some(&CLI) {
+            Some(Standstill::End)
         } else {
-            (self.flash.get(at..at + 2) == Some(&JUMP_TO_ITSELF)).then_some(Standstill::Loop)
+            Some(Standstill::Loop)
         }
+    }
+
+    /// A boot loader begins there \[words\]: while no application is below it, erased flash is run through, as on the chip,
+    /// where each erased word takes a cycle and does nothing.
+    pub fn set_boot_loader(&mut self, word: u32) {
+        self.boot = Some(word & self.last_word);
     }
 
     /// Pushing below this address is a stack that has run into data.

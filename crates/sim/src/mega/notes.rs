@@ -31,18 +31,13 @@ impl Mega {
     pub fn standstill(&self) -> Option<String> {
         let still = self.chip.cpu().standstill()?;
         let (name, image) = (self.firmware.name(), self.firmware.image());
-        let word = self.chip.cpu().program_counter();
-        let place = image.place(word);
-        let at_the_end = matches!(
-            image.function(word),
-            Some("__stop_program" | "_exit" | "exit")
-        );
+        let place = image.place(self.chip.cpu().program_counter());
         Some(match still {
             Standstill::Asleep => format!(
                 "firmware {name}: it sleeps with interrupts off, before {place}: nothing wakes it; call sei() before sleep_cpu()"
             ),
-            Standstill::Loop if at_the_end => format!(
-                "firmware {name}: main() has returned, or exit() was called: nothing runs any more; main() needs a loop that never ends"
+            Standstill::End => format!(
+                "firmware {name}: it has ended at {place}: main() returned, or exit() was called, or it stops itself with cli() and an empty loop; main() needs a loop that never ends"
             ),
             Standstill::Loop => format!(
                 "firmware {name}: it stands in a loop of one instruction at {place} with interrupts off: only a reset leads on"

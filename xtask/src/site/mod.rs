@@ -1,8 +1,12 @@
-//! `cargo xtask site`: the lab as a static page in `site/`, for any web server that serves files.
+//! `cargo xtask site`: the lab, and beside it lessons and documents, as static pages in `site/`, for any web server that
+//! serves files.
 //!
 //! The crate `browser` is compiled to WebAssembly with the Rust of the firmware, which has the sources of the library:
 //! no further target need be installed. Beside it stand the files of `web/`; `index.html` gets a content policy, which
-//! the station sends as a header, and the note that its session runs in the page.
+//! the station sends as a header, and the note that its session runs in the page. [`pages`] are all the others; `api/` is
+//! what rustdoc makes of the crates that others can use.
+
+mod pages;
 
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -26,7 +30,7 @@ const FILES: [&str; 5] = [
 /// Keeps the files for use without a network, by their list.
 const OFFLINE: &str = "offline.js";
 const LIST: &str = "const FILES = [];\nconst VERSION = '';\n";
-const FOLDERS: [&str; 4] = ["src", "src/spanish", "lab", "vendor/uplot"];
+const FOLDERS: [&str; 5] = ["src", "src/spanish", "lab", "vendor/uplot", "pages"];
 /// Where the additions to `index.html` go.
 const MARK: &str = "<meta charset=\"utf-8\">\n";
 /// Everything comes from the site itself; blobs are pictures that the page made. Browsers count the compilation of
@@ -69,35 +73,60 @@ pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
     let lab = site.join("lab");
     let mut bindgen = project.cargo(&["run", "--quiet", "--locked", "-p", "rumbo-bindgen", "--"]);
     run_command(bindgen.arg(&wasm).arg(&lab).arg("rumbo"))?;
-    list_files(&site)?;
+    let lab_files = names_below(&site)?;
+    pages::write(project, &site)?;
+    document(project, &site.join("api"))?;
+    list_files(&site, lab_files)?;
+    pages::check(&site)?;
     Ok(site)
 }
 
-/// Gives the service worker the list of the files, and a version that changes with what is in them.
-fn list_files(site: &Path) -> Result<(), String> {
-    let mut files = files_below(site)?;
-    files.sort();
-    let offline = site.join(OFFLINE);
-    let mut hasher = DefaultHasher::new();
-    // The page itself is asked for by its folder.
-    let mut names = vec!["./".to_owned()];
-    for path in &files {
-        let content = fs::read(path).map_err(|error| wrong(path, &error))?;
-        let name = path.strip_prefix(site).unwrap_or(path);
-        let name = name.to_string_lossy().replace('\\', "/");
-        (&name, content).hash(&mut hasher);
-        if *path != offline && !name.ends_with(".d.ts") {
-            names.push(name);
-        }
+/// What rustdoc makes of the crates that others can use.
+fn document(project: &Project, folder: &Path) -> Result<(), String> {
+    // Apart: the usual folder has all crates.
+    let target = project.target.join("api");
+    let mut doc = project.cargo(&["doc", "--quiet", "--locked", "--no-deps", "--lib"]);
+    doc.args(pages::API.map(|name| format!("--package=rumbo-{name}")));
+    run_command(doc.arg("--target-dir").arg(&target))?;
+    let made = target.join("doc");
+    for name in names_below(&made)? {
+        copy(&made.join(&name), &folder.join(&name))?;
     }
+    Ok(())
+}
+
+/// Gives the service worker the list of the lab's files, which it keeps from the start, and a version that changes with
+/// what is in any file of the site.
+fn list_files(site: &Path, mut lab_files: Vec<String>) -> Result<(), String> {
+    let mut hasher = DefaultHasher::new();
+    for name in names_below(site)? {
+        let path = site.join(&name);
+        let content = fs::read(&path).map_err(|error| wrong(&path, &error))?;
+        (&name, content).hash(&mut hasher);
+    }
+    lab_files.retain(|name| name != OFFLINE && !name.ends_with(".d.ts"));
+    // The page itself is asked for by its folder.
+    lab_files.insert(0, "./".to_owned());
+    let offline = site.join(OFFLINE);
     let text = fs::read_to_string(&offline).map_err(|error| wrong(&offline, &error))?;
     let Some((before, after)) = text.split_once(LIST) else {
         return Err(format!("{}: no line {LIST:?}", offline.display()));
     };
-    let list = serde_json::json!(names);
+    let list = serde_json::json!(lab_files);
     let version = hasher.finish();
     let text = format!("{before}const FILES = {list};\nconst VERSION = '{version:016x}';\n{after}");
     fs::write(&offline, text).map_err(|error| wrong(&offline, &error))
+}
+
+/// Paths of all files below a folder, relative to it, in order.
+fn names_below(folder: &Path) -> Result<Vec<String>, String> {
+    let name = |path: PathBuf| {
+        let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy();
+        name.replace('\\', "/")
+    };
+    let mut names: Vec<String> = files_below(folder)?.into_iter().map(name).collect();
+    names.sort();
+    Ok(names)
 }
 
 fn files_below(folder: &Path) -> Result<Vec<PathBuf>, String> {
