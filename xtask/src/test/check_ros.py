@@ -4,6 +4,8 @@ Argument: a folder for logs. `RUMBO_COMMAND` names a `rumbo` with the feature `r
 """
 
 import atexit
+import base64
+import json
 import math
 import os
 import random
@@ -243,6 +245,41 @@ class Peer:
         return publisher
 
 
+class Page:
+    """A page of the dashboard at the address that was printed; it only gives orders."""
+
+    def __init__(self, url):
+        host, query = url.split("/")[2], url.split("?")[1]
+        head = f"Host: {host}\r\nOrigin: http://{host}\r\n"
+        request = f"POST /key?{query} HTTP/1.1\r\n{head}Authorization: Bearer test\r\nConnection: close\r\n\r\n"
+        with self._connect(host) as connection:
+            connection.sendall(request.encode())
+            key = connection.makefile("rb").read().decode().split("\r\n\r\n")[1]
+        upgrade = "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+        upgrade += f"Sec-WebSocket-Key: {base64.b64encode(bytes(16)).decode()}\r\nSec-WebSocket-Protocol: rumbo, {key}\r\n"
+        self.socket = self._connect(host)
+        self.socket.sendall(f"GET /ws HTTP/1.1\r\n{head}{upgrade}\r\n".encode())
+        assert self.socket.recv(12) == b"HTTP/1.1 101"
+        threading.Thread(target=self._drain, daemon=True).start()
+
+    @staticmethod
+    def _connect(host):
+        name, port = host.split(":")
+        return socket.create_connection((name, int(port)), PATIENCE_S)
+
+    def _drain(self):
+        try:
+            while self.socket.recv(1 << 16):
+                pass
+        except OSError:
+            pass
+
+    def order(self, kind):
+        text = json.dumps({"type": kind}).encode()
+        # A masked text; the mask of zeros changes nothing.
+        self.socket.sendall(bytes([0x81, 0x80 | len(text), 0, 0, 0, 0]) + text)
+
+
 class Cyclone:
     """A participant of Cyclone DDS."""
 
@@ -343,7 +380,7 @@ def check_late(cyclone):
 def check_driving(peer, odometry, truth, robot):
     # Connecting has armed nothing, and so does a velocity.
     assert abs(moved_m(odometry, lambda: peer.drive("/cmd_vel", lambda: twist(0.15), 0.5))) < 1e-3
-    wait_for("why not", lambda: robot.said("select mode 10"))
+    wait_for("why not", lambda: robot.said("the robot is in another mode; call mode/twist"))
     peer.must("/rumbo/mode/twist")
     peer.must("/rumbo/arm")
     refused = peer.call("/rumbo/mode/manual")
@@ -367,6 +404,39 @@ def check_driving(peer, odometry, truth, robot):
     wait_for("what is too fast", lambda: robot.said("out of range"))
     peer.must("/rumbo/stop")
     assert abs(moved_m(odometry, lambda: peer.drive("/cmd_vel", lambda: twist(0.15), 0.5))) < 1e-3
+
+
+def robot_is(diagnostics, what):
+    """Whether the newest diagnostics have the robot so."""
+    newest = diagnostics.take(N=50)[-1:]
+    return newest and newest[0].status[0].message == what
+
+
+def check_page(peer, cyclone, odometry, robot):
+    """The robot is off, in the mode that takes velocities."""
+    diagnostics = cyclone.read("rt/diagnostics", DiagnosticArray, cyclone.volatile)
+    page = Page(robot.ready)
+    page.order("arm")
+    wait_for("the page's ON", lambda: robot_is(diagnostics, "on"))
+    refused = peer.call("/rumbo/arm").message
+    assert "another page has control" in refused, refused
+    assert abs(moved_m(odometry, lambda: peer.drive("/cmd_vel", lambda: twist(0.15), 0.5))) < 1e-3
+    status = wait_for("diagnostics", lambda: diagnostics.take(N=50))[-1].status[2]
+    assert (status.level, "another page has control" in status.message) == (1, True), status
+    # STOP needs no control, from either side.
+    peer.must("/rumbo/stop")
+    page.order("release_control")
+    wait_for("ROS 2 to be let in", lambda: peer.call("/rumbo/arm").success)
+    wait_for("ON", lambda: robot_is(diagnostics, "on"))
+    driving = threading.Thread(target=peer.drive, args=("/cmd_vel", lambda: twist(0.15), 4.0))
+    driving.start()
+    wait_for("driving", lambda: odometry[-1].twist.twist.linear.x > 0.1)
+    page.order("stop")
+    wait_for("standing still", lambda: abs(odometry[-1].twist.twist.linear.x) < 0.005)
+    assert driving.is_alive()
+    before = x_m(odometry)
+    driving.join()
+    assert abs(x_m(odometry) - before) < 0.01, (before, x_m(odometry))
 
 
 def check_cyclone_calls(cyclone):
@@ -502,6 +572,8 @@ def main():
     done("latched topics, late")
     check_driving(peer, odometry, truth, first)
     done("services and velocities")
+    check_page(peer, cyclone, odometry, first)
+    done("STOP of a page")
     check_cyclone_calls(cyclone)
     done("services of Cyclone")
     check_garbage(peer, cyclone, odometry, first)

@@ -2,7 +2,7 @@
 //!
 //! A call is answered when the robot's state shows what was asked for, or the robot has refused it. The node takes
 //! control for a call, as a page does, and releases it after it; calling `take_control` keeps it. Velocities take it while
-//! they come.
+//! they drive.
 
 use super::{RosNode, WAKE, report};
 use crate::output;
@@ -26,8 +26,10 @@ const PATIENCE: Duration = Duration::from_secs(3);
 const OLDEST_S: f64 = 0.3;
 /// Without a velocity for this long control is released; the robot has released its wheels.
 const SILENCE: Duration = Duration::from_millis(500);
-/// Refusals are said this often at most, and shown for this long.
+/// Refusals are said this often at most.
 const AGAIN: Duration = Duration::from_secs(2);
+/// Diagnostics show them for this long.
+const SHOWN: Duration = Duration::from_secs(4);
 /// Most calls and velocities taken in a row: a flood of them does not keep messages from going out.
 const AT_ONCE: usize = 64;
 /// Two who send velocities within this time drive by turns.
@@ -85,8 +87,12 @@ struct Driving {
     alternating: Option<Instant>,
     /// Control was taken for them.
     holds: bool,
+    /// When one was passed on.
+    passed: Option<Instant>,
     /// Why one was not passed on, and when.
     refused: Option<(String, Instant)>,
+    /// The same of what was said on the terminal.
+    said: Option<(String, Instant)>,
 }
 
 /// A session as a node.
@@ -105,14 +111,14 @@ pub(super) struct Live {
     /// The time of a simulation [ms], and when it was told last.
     clock_ms: i64,
     clocked: Instant,
-    /// When trouble with others was said last.
-    troubled: Option<Instant>,
+    /// The last trouble with others, and when it was said.
+    trouble: Option<(String, Instant)>,
     reported: bool,
 }
 
-/// Whether something may be said again that was said then.
-fn is_due(said: Option<Instant>) -> bool {
-    said.is_none_or(|said| said.elapsed() >= AGAIN)
+/// Whether there may be said more, after what was said then.
+fn is_due(said: Option<&(String, Instant)>) -> bool {
+    said.is_none_or(|(_, since)| since.elapsed() >= AGAIN)
 }
 
 impl Live {
@@ -140,7 +146,7 @@ impl Live {
             state: State::default(),
             clock_ms: 0,
             clocked: Instant::now(),
-            troubled: None,
+            trouble: None,
             reported: false,
         })
     }
@@ -162,11 +168,11 @@ impl Live {
             }
             self.settle(has_state);
             self.release();
-            if is_due(self.troubled)
+            if is_due(self.trouble.as_ref())
                 && let Some(trouble) = self.node.trouble()
             {
                 output::note(&format!("ROS 2: {trouble}"));
-                self.troubled = Some(Instant::now());
+                self.trouble = Some((trouble, Instant::now()));
             }
             std::thread::sleep(WAKE);
         }
@@ -242,16 +248,18 @@ impl Live {
             Seat::Free => "nobody has control",
             Seat::Passenger | Seat::Viewer => "a page of the dashboard has control",
         };
-        let driving = &self.driving;
-        let lately = |since: &Instant| since.elapsed() < AGAIN;
-        let refused = driving.refused.as_ref().filter(|(_, since)| lately(since));
-        let (level, message) = match refused {
-            Some((why, _)) => (1, format!("/cmd_vel: {why}")),
-            None if driving.alternating.as_ref().is_some_and(lately) => {
+        let lately = |said: &&(String, Instant)| said.1.elapsed() < SHOWN;
+        let refused = self.driving.refused.as_ref().filter(lately);
+        let trouble = self.trouble.as_ref().filter(lately);
+        let alternating = self.driving.alternating.map(|since| since.elapsed());
+        let (level, message) = match (refused, trouble) {
+            (Some((why, _)), _) => (1, format!("/cmd_vel: {why}")),
+            (None, Some((trouble, _))) => (1, trouble.clone()),
+            (None, None) if alternating.is_some_and(|since| since < SHOWN) => {
                 let text = "/cmd_vel: two publishers drive by turns, the newest counts";
                 (1, text.to_owned())
             }
-            None => (0, control.to_owned()),
+            (None, None) => (0, control.to_owned()),
         };
         DiagnosticStatus {
             level: Byte(level),
@@ -269,10 +277,11 @@ impl Live {
         let Err(why) = passed else {
             return;
         };
-        if is_due(self.driving.refused.as_ref().map(|(_, said)| *said)) {
+        if is_due(self.driving.said.as_ref()) {
             output::note(&format!("ROS 2: /cmd_vel: {why}"));
-            self.driving.refused = Some((why, Instant::now()));
+            self.driving.said = Some((why.clone(), Instant::now()));
         }
+        self.driving.refused = Some((why, Instant::now()));
     }
 
     fn pass_on(&mut self, velocity: Velocity) -> Result<(), String> {
@@ -284,6 +293,14 @@ impl Live {
             self.driving.alternating = Some(now);
         }
         self.check_age(&velocity)?;
+        // What would move nothing takes no control from the pages.
+        let robot = &self.state.robot;
+        if robot.mode != ModeId::Twist as u8 {
+            return Err("refused, the robot is in another mode; call mode/twist".into());
+        }
+        if !robot.armed {
+            return Err("refused, the robot is off; call arm".into());
+        }
         // What is out of range is refused by the session; a number that is none does not get there.
         let number = |value: f64, what: &str| match value.is_finite() {
             true => Ok(value as f32),
@@ -296,6 +313,7 @@ impl Live {
         let held = self.client.view().seat == Seat::Driver;
         self.client.order(order)?;
         self.driving.holds |= !held;
+        self.driving.passed = Some(now);
         Ok(())
     }
 
@@ -329,8 +347,8 @@ impl Live {
 
     /// Releases the control that velocities have taken, when there are none any more.
     fn release(&mut self) {
-        let is_silent = |(_, since): ([u8; 16], Instant)| since.elapsed() >= SILENCE;
-        if self.driving.holds && self.driving.last.is_none_or(is_silent) {
+        let is_silent = |passed: Instant| passed.elapsed() >= SILENCE;
+        if self.driving.holds && self.driving.passed.is_none_or(is_silent) {
             self.driving.holds = false;
             // Releasing is never refused.
             let _ = self.client.order(Order::ReleaseControl);
