@@ -26,6 +26,35 @@ export class Lab {
   news(): string[];
 }
 
+export class Robot {
+  /** A session with a real robot at the port of this name; with `text` it runs the original program. */
+  constructor(port: string, baud: number, text: boolean);
+  /** These bytes arrived. */
+  arrived(bytes: Uint8Array): void;
+  /** The bytes to send since the last call. */
+  take_outgoing(): Uint8Array<ArrayBuffer>;
+  /** The port is gone, and why. */
+  lost(why: string): void;
+  /** It is open again. */
+  back(): void;
+  /** Warns the page. */
+  warn(text: string): void;
+  /** Takes an order, as JSON. */
+  order(json: string): void;
+  /** One round. */
+  advance(): void;
+  /** The messages that are new to the page, as JSON. */
+  news(): string[];
+  /** When the session began [ms since 1970]. */
+  readonly began_ms: number;
+  /** Begins to write the session so far as a log, which began at this time in UTC. */
+  save(started: string): void;
+  /** Goes on writing for a few milliseconds; the log, once it is complete. */
+  saved(): { name: string, bytes: Uint8Array<ArrayBuffer> } | undefined;
+  /** Gives its memory back. */
+  free(): void;
+}
+
 /** A recording to be shown; it is read apart from the lab, which goes on when the memory does not suffice. */
 export class Recording {
   constructor(file: string, bytes: Uint8Array);

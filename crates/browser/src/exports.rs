@@ -1,6 +1,7 @@
 //! What JavaScript sees of it.
 
 use crate::lab::{Lab as Inner, Start};
+use crate::robot::Robot as Real;
 use crate::showing::Showing;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -14,6 +15,19 @@ extern "C" {
 
     #[wasm_bindgen(js_namespace = console)]
     fn error(text: &str);
+
+    #[wasm_bindgen(js_namespace = crypto, js_name = getRandomValues)]
+    fn fill_randomly(bytes: &mut [u8]);
+}
+
+fn wall_us() -> u64 {
+    (now_ms() * 1e3) as u64
+}
+
+fn random_id() -> u8 {
+    let mut id = [0];
+    fill_randomly(&mut id);
+    id[0]
 }
 
 /// A panic says why on the console before it ends the worker.
@@ -81,7 +95,6 @@ impl Lab {
 
     /// One round, of 20 ms at most.
     pub fn advance(&mut self) -> Result<(), String> {
-        let wall_us = || (now_ms() * 1e3) as u64;
         let done = self.0.advance(wall_us, day_ms());
         done.map_err(|error| error.to_string())
     }
@@ -89,6 +102,78 @@ impl Lab {
     /// The messages that are new to the page, as JSON.
     pub fn news(&mut self) -> Vec<String> {
         self.0.news()
+    }
+}
+
+/// A real robot at a serial port.
+#[wasm_bindgen]
+pub struct Robot(Real);
+
+#[wasm_bindgen]
+impl Robot {
+    /// A session with the robot at the port of this name. With `text` it runs the original program.
+    #[wasm_bindgen(constructor)]
+    pub fn new(port: String, baud: u32, text: bool) -> Result<Robot, String> {
+        let robot = Real::new(port, baud, text, random_id, wall_us(), day_ms());
+        robot.map(Robot).map_err(|error| error.to_string())
+    }
+
+    /// These bytes arrived.
+    pub fn arrived(&mut self, bytes: &[u8]) {
+        self.0.arrived(bytes);
+    }
+
+    /// The bytes to send since the last call.
+    pub fn take_outgoing(&mut self) -> Vec<u8> {
+        self.0.take_outgoing()
+    }
+
+    /// The port is gone, and why.
+    pub fn lost(&mut self, why: &str) {
+        self.0.lost(why);
+    }
+
+    /// It is open again.
+    pub fn back(&mut self) {
+        self.0.back();
+    }
+
+    /// Takes an order, as JSON.
+    pub fn order(&mut self, json: &str) {
+        self.0.order(json);
+    }
+
+    /// Warns the page.
+    pub fn warn(&mut self, text: String) {
+        self.0.warn(text);
+    }
+
+    /// One round.
+    pub fn advance(&mut self) -> Result<(), String> {
+        let done = self.0.advance(wall_us, day_ms());
+        done.map_err(|error| error.to_string())
+    }
+
+    /// The messages that are new to the page, as JSON.
+    pub fn news(&mut self) -> Vec<String> {
+        self.0.news()
+    }
+
+    /// When the session began \[ms since 1970\].
+    #[wasm_bindgen(getter)]
+    pub fn began_ms(&mut self) -> f64 {
+        self.0.began_ms()
+    }
+
+    /// Begins to write the session so far as a log, which began at `started`, the time in UTC.
+    pub fn save(&mut self, started: String) -> Result<(), String> {
+        self.0.save(started).map_err(|error| error.to_string())
+    }
+
+    /// Goes on writing for a few milliseconds; the log, once it is complete.
+    pub fn saved(&mut self) -> Result<Option<LogFile>, String> {
+        let saved = self.0.saved(wall_us).map_err(|error| error.to_string())?;
+        Ok(saved.map(|(name, bytes)| LogFile { name, bytes }))
     }
 }
 
