@@ -55,6 +55,24 @@ export class Robot {
   free(): void;
 }
 
+/** Writes a program to an Arduino Mega at a serial port. */
+export class Flasher {
+  /** The program in a file of this name. */
+  constructor(file: string, content: Uint8Array);
+  /** These bytes arrived. */
+  receive(bytes: Uint8Array): void;
+  /** What to do with the port now; nothing of it: to wait for bytes, or some milliseconds. */
+  poll(): { lines?: boolean, send?: Uint8Array<ArrayBuffer>, done: boolean };
+  /** What is going on, in a word or two. */
+  readonly phase: string;
+  /** Which part of all is done, 0 to 1. */
+  readonly part: number;
+  /** What an end now leaves behind. */
+  readonly aftermath: string;
+  /** Gives its memory back. */
+  free(): void;
+}
+
 /** A recording to be shown; it is read apart from the lab, which goes on when the memory does not suffice. */
 export class Recording {
   constructor(file: string, bytes: Uint8Array);

@@ -8,15 +8,18 @@
  * file from the page is shown as a replay, as 'replay' shows the recording, and 'resume' shows the lab again. 'share' asks
  * for the run as a link carries it, `{ shared }`. `{ connect }` begins a session with the robot at a port, `{ choose }`
  * looks for it at another one, and 'leave' goes back to the lab; `{ port }` is the port's name or null, `{ refused }` why
- * there is none. To the page go arrays of the messages of the station's WebSocket, or `{ error }` when the session has ended.
+ * there is none. `{ flash }` writes a program to a board, `{ flashed }` says how far that is. To the page go arrays of the messages of the station's WebSocket, or `{ error }` when the session has ended.
  */
 import { readLink } from '../src/run_link.js';
 import { LOCK } from '../src/serial_ports.js';
-import init, { Lab, Recording, Robot } from './rumbo.js';
+import { flash } from './flash.js';
+import init, { Flasher, Lab, Recording, Robot } from './rumbo.js';
 import { SerialLink, pause, wordsOf } from './serial_link.js';
 
 /** What the page asks for to drive a real robot. @typedef {{kind: string, name: string, baud: number, text: boolean}} Wanted */
 
+/** A program to be written, and the port of the board. @typedef {{kind: string, name: string, file: string, content: Uint8Array}} Program */
+/** How far that is: a phase and the part that is done, or why it has ended. @typedef {{phase: string, part: number} | {error: string}} Flashed */
 /** @typedef {{session: Robot, link: SerialLink, release: () => void, leaving: boolean}} Driven */
 
 /** Time between two rounds [ms]; a round takes at most 20 ms, so that orders do not wait. */
@@ -119,6 +122,32 @@ async function connect({ kind, name, baud, text }) {
   }
 }
 
+/** @param {Flashed} flashed */
+const report = (flashed) => self.postMessage({ flashed });
+
+/** Writes a program to the board at a port. @param {Program} program */
+async function write({ kind, name, file, content }) {
+  const release = await takeLock();
+  if (!release) return report({ error: 'another page of this browser drives a robot: go back to its lab first' });
+  /** @type {Flasher | null} */
+  let flasher = null;
+  try {
+    const made = new Flasher(file, content);
+    flasher = made;
+    let reported = -1;
+    await flash(kind, made, () => {
+      const percent = Math.floor(made.part * 100);
+      if (percent !== reported) report({ phase: made.phase, part: made.part });
+      reported = percent;
+    });
+    report({ phase: 'done', part: 1 });
+  } catch (error) {
+    report({ error: `${name}: ${wordsOf(error)}${flasher?.aftermath ?? ''}` });
+  }
+  flasher?.free();
+  return release();
+}
+
 /** Stops the robot and goes back to the lab; the page gets the recording. @param {Driven} robot */
 async function leave(robot) {
   const { session, link, release } = robot;
@@ -162,6 +191,7 @@ function askLab(lab, data) {
   else if (data === 'resume') lab.resume();
   else if (data === 'share') self.postMessage({ shared: lab.share() });
   else if (data.connect) connect(data.connect).catch(end);
+  else if (data.flash) write(data.flash).catch(end);
   else if (data.bytes) show(lab, data);
   else if (typeof data === 'string' && data.startsWith('{')) lab.order(data);
 }

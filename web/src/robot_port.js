@@ -1,8 +1,9 @@
 // @ts-check
 /** A real robot at a serial port of the browser, on the site: the dialog that begins it, and the line that ends it. */
-import { complaint, dialog } from './dialog.js';
+import { complaint, dialog, wordsOf } from './dialog.js';
 import { create, element, setText } from './dom.js';
-import { LOCK, kindOf, nameOf, serial } from './serial_ports.js';
+import { FlashForm } from './flash_form.js';
+import { choosePort, kindOf, nameOf, noOtherDrives, serial } from './serial_ports.js';
 import { said, t } from './text.js';
 import { isSite } from './worker_link.js';
 
@@ -21,20 +22,6 @@ import { isSite } from './worker_link.js';
 /** The speed of the robot's Bluetooth module, then those of others [baud]. */
 const SPEEDS = [9_600, 19_200, 38_400, 57_600, 115_200];
 
-/** A port that a person chooses; others that cannot be told from it are given back. @param {import('./serial_ports.js').Serial} ports */
-async function choosePort(ports) {
-  const port = await ports.requestPort();
-  const granted = await ports.getPorts();
-  await Promise.all(granted.filter((each) => each !== port && kindOf(each) === kindOf(port)).map((each) => each.forget()));
-  return port;
-}
-
-/** @param {unknown} error */
-function wordsOf(error) {
-  if (error instanceof DOMException && error.name === 'NotFoundError') return t('no port was chosen');
-  return error instanceof Error ? said(error.message) : String(error);
-}
-
 export class RobotPort {
   #ask;
   #dialog = dialog('robot-dialog', t('A real robot'));
@@ -46,7 +33,10 @@ export class RobotPort {
   #name = element('port-name', HTMLElement);
   #choose = element('port-choose', HTMLButtonElement);
 
-  /** @param {(what: {connect: Wanted} | {choose: string} | 'leave') => void} ask asks the worker */
+  /** @type {FlashForm | null} */
+  #flash = null;
+
+  /** @param {(what: {connect: Wanted} | {choose: string} | {flash: import('./flash_form.js').Program} | 'leave') => void} ask asks the worker */
   constructor(ask) {
     this.#ask = ask;
     const begins = element('real-robot', HTMLButtonElement);
@@ -70,6 +60,8 @@ export class RobotPort {
     this.#dialog.body.append(
       create('div', { className: 'row' }, create('label', {}, `${t('speed of the line')} `, this.#speed, ' baud'), create('label', {}, this.#text, ` ${t('it runs the original program, which is silent until ON')}`)),
       create('div', { className: 'row' }, this.#connect), this.#complaint);
+    this.#flash = new FlashForm((program) => ask({ flash: program }));
+    this.#dialog.body.append(this.#flash.body);
   }
 
   #open() {
@@ -94,9 +86,7 @@ export class RobotPort {
 
   /** @param {import('./serial_ports.js').Serial} ports */
   async #begin(ports) {
-    // Its port would be given back, if it is of the same kind.
-    const { held } = await navigator.locks.query();
-    if (held?.some(({ name }) => name === LOCK)) throw new Error('another page of this browser drives a robot: go back to its lab first');
+    await noOtherDrives();
     const port = await choosePort(ports);
     this.#ask({ connect: { kind: kindOf(port), name: nameOf(port), baud: Number(this.#speed.value), text: this.#text.checked } });
   }
@@ -108,6 +98,7 @@ export class RobotPort {
 
   /** @param {PortNews} news */
   show(news) {
+    if ('flashed' in news) return this.#flash?.show(news.flashed);
     this.#connect.disabled = false;
     if ('refused' in news) return setText(this.#complaint, said(news.refused));
     if ('gone' in news) {

@@ -40,3 +40,17 @@ export function nameOf(port) {
   if (usbVendorId !== undefined) return `USB ${hex(usbVendorId)}:${hex(usbProductId)}`;
   return bluetoothServiceClassId === undefined ? 'serial' : 'Bluetooth';
 }
+
+/** A port that a person chooses; others that cannot be distinguished from it are given back. @param {Serial} ports */
+export async function choosePort(ports) {
+  const port = await ports.requestPort();
+  const granted = await ports.getPorts();
+  await Promise.all(granted.filter((each) => each !== port && kindOf(each) === kindOf(port)).map((each) => each.forget()));
+  return port;
+}
+
+/** Throws where another page uses a port: that would be given back, if the one chosen here is of its kind. */
+export async function noOtherDrives() {
+  const { held } = await navigator.locks.query();
+  if (held?.some(({ name }) => name === LOCK)) throw new Error('another page of this browser drives a robot: go back to its lab first');
+}

@@ -19,8 +19,9 @@ import { saveFile } from './dialog.js';
  */
 
 /**
- * What the worker says of the port of a real robot: it is driven there, or no longer; it is gone, or back; why there is none.
- * @typedef {{port: string | null} | {gone: boolean} | {refused: string}} PortNews
+ * What the worker says of the port of a real robot: it is driven there, or no longer; it is gone, or back; why there is
+ * none; how far the writing of a program is.
+ * @typedef {{port: string | null} | {gone: boolean} | {refused: string} | {flashed: import('./flash_form.js').Flashed}} PortNews
  */
 
 /** The session runs in the page, not in a station: the site's `index.html` says so. */
@@ -52,7 +53,7 @@ export class WorkerLink {
     worker.addEventListener('message', ({ data }) => {
       if (data.bytes) return saveFile(data.name, new Blob([data.bytes], { type: 'application/octet-stream' }));
       if (data.shared) return this.#waiting.shift()?.(JSON.parse(data.shared));
-      if ('port' in data || 'gone' in data || 'refused' in data) return this.onPort(data);
+      if (['port', 'gone', 'refused', 'flashed'].some((name) => name in data)) return this.onPort(data);
       if (!Array.isArray(data)) return this.#end(data.error);
       if (!this.#open) onChange('open', null);
       this.#open = true;
@@ -74,8 +75,8 @@ export class WorkerLink {
 
   /**
    * Saves the recording of the run so far as a file; shows it as a replay; shows the lab again; leaves the real robot for
-   * the lab; drives a real robot; looks for it at another port.
-   * @param {'save' | 'replay' | 'resume' | 'leave' | {connect: import('./robot_port.js').Wanted} | {choose: string}} what
+   * the lab; drives a real robot; looks for it at another port; writes a program to a board.
+   * @param {'save' | 'replay' | 'resume' | 'leave' | {connect: import('./robot_port.js').Wanted} | {choose: string} | {flash: import('./flash_form.js').Program}} what
    */
   ask(what) {
     this.#worker?.postMessage(what);

@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * A serial port for the site's tests: `navigator.serial` of the page and of its worker is a stand-in, whose other end is
- * the simulated robot of `rumbo lab --pty`, behind the server of the site.
+ * behind the server of the site: the simulated robot of `rumbo lab --pty`, or a boot loader.
  */
 import { spawn } from 'node:child_process';
 import { openSync, writeSync } from 'node:fs';
@@ -81,26 +81,33 @@ function standIn(base) {
   Object.defineProperty(navigator, 'serial', { value: serial, configurable: true });
 }
 
-/** The other end of the port, with the test's hand on its plug. */
+/**
+ * What is at the other end of the port.
+ * @typedef {object} End
+ * @property {(bytes: Buffer) => void} write
+ * @property {(send: (bytes: Uint8Array) => void) => void} begin
+ * @property {(signals: {dataTerminalReady?: boolean}) => void} signal
+ * @property {() => void} close
+ */
+
+/** The port, with the test's hand on its plug. */
 export class SerialRobot {
   /** A person chooses a port when asked. */
   chooses = true;
   /** Bytes sent to the robot so far. */
   sent = 0;
+  /** The last speed at which it was opened [baud]. @type {number | null} */
+  baud = null;
   #plugged = true;
   #granted = 0;
   /** @type {Set<import('node:http').ServerResponse>} */
   #readers = new Set();
-  /** @type {number | null} */
-  #pty = null;
+  #end;
 
-  /** @param {import('node:child_process').ChildProcess} robot @param {string} path of its pseudo terminal */
-  constructor(robot, path) {
-    this.robot = robot;
-    this.#pty = openSync(path, 'r+');
-    this.terminal = new ReadStream(this.#pty);
-    this.terminal.setRawMode(true);
-    this.terminal.on('data', (bytes) => this.#readers.forEach((reader) => reader.write(bytes)));
+  /** @param {End} end */
+  constructor(end) {
+    this.#end = end;
+    end.begin((bytes) => this.#readers.forEach((reader) => reader.write(bytes)));
   }
 
   /** What the page runs before its own scripts; and the worker. @param {string} url of the site */
@@ -131,6 +138,7 @@ export class SerialRobot {
     } else if (what === 'ports') {
       response.writeHead(200, { 'Content-Type': 'application/json' }).end(JSON.stringify(this.#plugged ? Array(this.#granted).fill(INFO) : []));
     } else if (what === 'open' && this.#plugged) {
+      this.baud = Number(new URL(request.url ?? '', 'http://localhost').searchParams.get('baud'));
       response.writeHead(200, { 'Content-Type': 'application/octet-stream' });
       response.flushHeaders();
       this.#readers.add(response);
@@ -138,8 +146,11 @@ export class SerialRobot {
     } else if (what === 'write' && this.#plugged) {
       request.on('data', (/** @type {Buffer} */ bytes) => {
         this.sent += bytes.length;
-        if (this.#pty !== null) writeSync(this.#pty, bytes);
+        this.#end.write(bytes);
       });
+      request.on('end', () => response.writeHead(204).end());
+    } else if (what === 'signals') {
+      request.on('data', (/** @type {Buffer} */ signals) => this.#end.signal(JSON.parse(signals.toString())));
       request.on('end', () => response.writeHead(204).end());
     } else if (what === 'close') {
       this.#readers.forEach((reader) => reader.end());
@@ -151,14 +162,85 @@ export class SerialRobot {
   }
 
   close() {
-    this.terminal.destroy();
-    this.robot.kill();
+    this.#end.close();
   }
 }
 
 /** Starts a simulated robot at a port. */
 export async function startRobot() {
   const robot = spawn(program(), ['lab', '--pty'], { stdio: ['ignore', 'pipe', 'inherit'] });
-  for await (const path of createInterface({ input: robot.stdout })) return new SerialRobot(robot, path.trim());
+  for await (const path of createInterface({ input: robot.stdout })) {
+    const pty = openSync(path.trim(), 'r+');
+    const terminal = new ReadStream(pty);
+    terminal.setRawMode(true);
+    return new SerialRobot({
+      write: (bytes) => { writeSync(pty, bytes); },
+      begin: (send) => terminal.on('data', send),
+      signal: () => {},
+      close: () => {
+        terminal.destroy();
+        robot.kill();
+      },
+    });
+  }
   throw new Error('rumbo lab --pty: no port');
+}
+
+/** A board's flash and boot loader, as far as one sees them from the port; `crates/flash` is tested with the real one. */
+export class BootLoader {
+  flash = Buffer.alloc(0x3_E000, 0xFF);
+  signature = [0x1E, 0x98, 0x01];
+  /** How often DTR was pulled. */
+  resets = 0;
+  #address = 0;
+  #erased = 0;
+  #received = Buffer.alloc(0);
+  /** @type {(bytes: Uint8Array) => void} */
+  #send = () => {};
+
+  /** @param {(bytes: Uint8Array) => void} send */
+  begin(send) {
+    this.#send = send;
+  }
+
+  /** @param {{dataTerminalReady?: boolean}} signals */
+  signal({ dataTerminalReady }) {
+    if (!dataTerminalReady) return;
+    this.resets += 1;
+    this.#address = this.#erased = 0;
+    this.#received = Buffer.alloc(0);
+  }
+
+  /** @param {Buffer} bytes */
+  write(bytes) {
+    this.#received = Buffer.concat([this.#received, bytes]);
+    for (;;) {
+      const length = this.#received.length < 5 ? Infinity : this.#received.readUInt16BE(2);
+      if (this.#received.length < length + 6) return;
+      const answer = this.#obey(this.#received.subarray(5, 5 + length));
+      const message = Buffer.from([0x1B, this.#received[1] ?? 0, answer.length >> 8, answer.length & 255, 0x0E, ...answer, 0]);
+      message[message.length - 1] = message.reduce((sum, byte) => sum ^ byte, 0);
+      this.#received = this.#received.subarray(length + 6);
+      this.#send(message);
+    }
+  }
+
+  /** @param {Buffer} body @returns {number[]} */
+  #obey(body) {
+    const [command] = body;
+    const size = body.length > 2 ? body.readUInt16BE(1) : 0;
+    if (command === 0x1B) return [0x1B, 0, this.signature[body[4] ?? 0] ?? 0, 0];
+    if (command === 0x06) this.#address = 2 * body.readUInt32BE(1);
+    if (command === 0x14) {
+      const page = this.flash.subarray(this.#address, this.#address += size);
+      return [0x14, 0, ...page, 0];
+    }
+    if (command === 0x13) {
+      this.flash.fill(0xFF, this.#erased, this.#erased += size);
+      for (const byte of body.subarray(10)) this.flash.writeUInt8(this.flash.readUInt8(this.#address) & byte, this.#address++);
+    }
+    return [command ?? 0, 0];
+  }
+
+  close() {}
 }

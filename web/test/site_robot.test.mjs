@@ -4,11 +4,11 @@
  * `rumbo lab --pty`. SCREENSHOT_PORT is a file for a picture, with SCREENSHOT_PORT_PHONE for a phone's.
  */
 import assert from 'node:assert/strict';
-import { statSync } from 'node:fs';
+import { existsSync, readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { folder } from './dashboard.mjs';
-import { startRobot } from './serial_robot.mjs';
+import { PATIENCE_MS, folder } from './dashboard.mjs';
+import { BootLoader, SerialRobot, startRobot } from './serial_robot.mjs';
 import { open, skip as noSite } from './site.mjs';
 
 const skip = noSite || (process.env['RUMBO_BIN'] ? false : 'RUMBO_BIN names no program');
@@ -33,6 +33,38 @@ after(async () => {
   await site?.close();
   robot?.close();
 });
+
+/** A program of eleven pages. */
+const wanted = Array.from({ length: 2_600 }, (_, at) => (at * 7 + (at >> 8)) & 255);
+
+/** A program as Intel HEX. @param {number[]} bytes */
+function hex(bytes) {
+  const lines = [];
+  for (let at = 0; at < bytes.length; at += 16) {
+    const data = bytes.slice(at, at + 16);
+    const record = [data.length, at >> 8, at & 255, 0, ...data];
+    record.push(-record.reduce((sum, byte) => sum + byte, 0) & 255);
+    lines.push(`:${record.map((byte) => byte.toString(16).padStart(2, '0')).join('').toUpperCase()}\n`);
+  }
+  return `${lines.join('')}:00000001FF\n`;
+}
+
+/** The bytes of a whole program in Intel HEX, from address 0. @param {string} text */
+function bytesOf(text) {
+  const flash = Buffer.alloc(0x3_E000, 0xFF);
+  let [base, end] = [0, 0];
+  for (const line of text.split('\n').filter((each) => each.startsWith(':'))) {
+    const record = Buffer.from(line.slice(1).trim(), 'hex');
+    const [type, data] = [record[3], record.subarray(4, -1)];
+    if (type === 2) base = 16 * data.readUInt16BE(0);
+    if (type === 4) base = 0x1_0000 * data.readUInt16BE(0);
+    if (type !== 0) continue;
+    const at = base + record.readUInt16BE(1);
+    data.copy(flash, at);
+    end = Math.max(end, at + data.length);
+  }
+  return flash.subarray(0, end);
+}
 
 const state = () => page.evaluate(() => /** @type {any} */ (window).rumbo.state());
 /** @param {boolean} armed */
@@ -150,6 +182,59 @@ test('back in the lab the robot is stopped, its recording is saved, and the lab 
   const { robot: { armed, fault } } = await state();
   assert.deepEqual([armed, fault], [false, null]);
   assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
+});
+
+test('a program is written to a Mega and read back; one for another chip and a lost cable are reported', { skip: noSite }, async () => {
+  const board = new BootLoader();
+  const port = new SerialRobot(board);
+  const here = await open({}, '', port);
+  const { page } = here;
+  const says = (/** @type {string} */ text) => page.locator('#flash .complaint', { hasText: text }).waitFor();
+  /** @param {string} name @param {string} text */
+  const choose = (name, text) => page.locator('#flash input[type="file"]').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(text) });
+  await page.waitForSelector('#connection.good');
+  await page.locator('#real-robot').click();
+  await page.locator('#flash summary').click();
+  const carried = join(process.env['SITE'] ?? '', 'rumbo.hex');
+  if (existsSync(carried)) {
+    const own = bytesOf(readFileSync(carried, 'utf8'));
+    await page.locator('#flash-write').click();
+    // A thousand messages to and fro, each a request here.
+    await page.locator('#flash-phase', { hasText: 'done: the robot starts again, disarmed' }).waitFor({ timeout: 5 * PATIENCE_MS });
+    assert.ok(board.flash.subarray(0, own.length).equals(own));
+    board.resets = 0;
+  } else {
+    assert.ok(await page.locator('#flash-write').isDisabled());
+  }
+  await choose('mine.hex', hex(wanted));
+  await page.locator('#flash-phase', { hasText: 'done' }).waitFor({ state: 'hidden' });
+  await page.locator('#flash-write').click();
+  await page.locator('#flash-phase', { hasText: 'done: the robot starts again, disarmed' }).waitFor();
+  assert.deepEqual([...board.flash.subarray(0, wanted.length)], wanted);
+  assert.deepEqual([board.resets, port.baud], [2, 115_200]);
+  if (process.env['SCREENSHOT_FLASH']) await page.screenshot({ path: process.env['SCREENSHOT_FLASH'] });
+  await choose('notes.hex', 'no program');
+  await page.locator('#flash-write').click();
+  await says('notes.hex: neither an ELF file nor Intel HEX');
+  board.signature = [0x1E, 0x95, 0x0F];
+  await choose('mine.hex', hex(wanted));
+  await page.locator('#flash-write').click();
+  await says('signature 1e950f, an ATmega2560 has 1e9801');
+  board.signature = [0x1E, 0x98, 0x01];
+  const { write } = board;
+  // The cable goes with the fourth page.
+  let pages = 0;
+  board.write = function (bytes) {
+    pages += Number(bytes[5] === 0x13);
+    if (pages < 4) write.call(this, bytes);
+    else port.unplug();
+  };
+  await page.locator('#flash-write').click();
+  await says('The board has no whole program now, and stands still until one is written');
+  assert.deepEqual([...board.flash.subarray(0, 4)], [0xFF, 0xCF, 0xFF, 0xCF]);
+  // The lab goes on beside it.
+  assert.equal((await page.evaluate(() => /** @type {any} */ (window).rumbo.state())).simulated, true);
+  await here.close();
 });
 
 test('a browser without serial ports says which one has them', { skip: noSite }, async () => {

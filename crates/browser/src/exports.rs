@@ -3,6 +3,7 @@
 use crate::lab::{Lab as Inner, Start};
 use crate::robot::Robot as Real;
 use crate::showing::Showing;
+use rumbo_flash::{Action, Programmer};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 #[wasm_bindgen]
@@ -187,6 +188,65 @@ impl Recording {
     #[wasm_bindgen(constructor)]
     pub fn new(file: &str, bytes: Vec<u8>) -> Result<Recording, String> {
         Showing::new(file, bytes).map(Recording)
+    }
+}
+
+/// Writes a program to an Arduino Mega at a serial port.
+#[wasm_bindgen]
+pub struct Flasher(Programmer);
+
+/// What is to be done with the port; nothing of it: to wait for bytes, or some milliseconds.
+#[wasm_bindgen(getter_with_clone)]
+pub struct Turn {
+    /// Pull DTR and RTS, or release them.
+    pub lines: Option<bool>,
+    /// Send these bytes.
+    pub send: Option<Vec<u8>>,
+    /// All is done.
+    pub done: bool,
+}
+
+#[wasm_bindgen]
+impl Flasher {
+    /// The program in a file of this name.
+    #[wasm_bindgen(constructor)]
+    pub fn new(file: &str, content: &[u8]) -> Result<Flasher, String> {
+        crate::programmer(file, content).map(Flasher)
+    }
+
+    /// These bytes arrived.
+    pub fn receive(&mut self, bytes: &[u8]) {
+        self.0.receive(bytes);
+    }
+
+    /// What to do now.
+    pub fn poll(&mut self) -> Result<Turn, String> {
+        let action = self.0.poll(wall_us()).map_err(|error| error.to_string())?;
+        let done = action == Action::Done;
+        let (lines, send) = match action {
+            Action::Lines(pulled) => (Some(pulled), None),
+            Action::Send(bytes) => (None, Some(bytes)),
+            Action::Wait | Action::Done => (None, None),
+        };
+        Ok(Turn { lines, send, done })
+    }
+
+    /// What is going on, in a word or two.
+    #[wasm_bindgen(getter)]
+    pub fn phase(&self) -> String {
+        self.0.progress().0.to_string()
+    }
+
+    /// Which part of all is done, 0 to 1.
+    #[wasm_bindgen(getter)]
+    pub fn part(&self) -> f64 {
+        self.0.progress().1
+    }
+
+    /// What an end now leaves behind.
+    #[wasm_bindgen(getter)]
+    pub fn aftermath(&self) -> String {
+        self.0.aftermath().into()
     }
 }
 

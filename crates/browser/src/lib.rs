@@ -8,6 +8,7 @@ mod desk;
 mod drive;
 #[cfg(target_family = "wasm")]
 pub mod exports;
+mod flasher;
 mod following;
 mod lab;
 mod recording;
@@ -15,6 +16,7 @@ mod robot;
 mod serial_port;
 mod showing;
 
+pub use flasher::programmer;
 pub use lab::{Lab, Shared, Start};
 pub use robot::Robot;
 pub use showing::Showing;
