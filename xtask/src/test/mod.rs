@@ -50,7 +50,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 18] = [
+const STEPS: [Step; 19] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
